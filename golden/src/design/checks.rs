@@ -1,0 +1,126 @@
+//! Range and spelling checks, each with a message that says what to do.
+
+use super::DesignError;
+
+/// Makes errors that name the file.
+pub(crate) struct Check<'a> {
+    pub(crate) origin: &'a str,
+}
+
+impl Check<'_> {
+    pub(crate) fn value(&self, key: &str, problem: String, remedy: String) -> DesignError {
+        DesignError::Value { origin: self.origin.to_owned(), key: key.to_owned(), problem, remedy }
+    }
+
+    pub(crate) fn integer(&self, key: &str, value: i64, low: i64, high: i64) -> Result<i64, DesignError> {
+        if (low..=high).contains(&value) {
+            Ok(value)
+        } else {
+            Err(self.value(key, format!("is {value}"), format!("use a whole number from {low} to {high}")))
+        }
+    }
+
+    pub(crate) fn real(&self, key: &str, value: f64, low: f64, high: f64, unit: &str) -> Result<f64, DesignError> {
+        // A NaN is in no range.
+        if (low..=high).contains(&value) {
+            Ok(value)
+        } else {
+            Err(self.value(
+                key,
+                format!("is {value}"),
+                format!("use a number from {low} to {high} {unit}").trim_end().to_owned(),
+            ))
+        }
+    }
+
+    /// Two numbers; a TOML reader drops what is too much for a fixed array.
+    pub(crate) fn pair(&self, key: &str, values: &[f64]) -> Result<[f64; 2], DesignError> {
+        values
+            .try_into()
+            .map_err(|_| self.value(key, format!("has {} values", values.len()), "use two, for x and y".to_owned()))
+    }
+
+    pub(crate) fn above_zero(&self, key: &str, value: f64, high: f64, unit: &str) -> Result<f64, DesignError> {
+        if value > 0.0 && value <= high {
+            Ok(value)
+        } else {
+            let limit = if high < f64::MAX { format!("and at most {high} {unit}") } else { "and finite".to_owned() };
+            Err(self.value(key, format!("is {value}"), format!("use a number greater than 0 {limit}")))
+        }
+    }
+
+    pub(crate) fn choice(
+        &self,
+        key: &str,
+        found: Option<&str>,
+        allowed: &'static [&'static str],
+    ) -> Result<(), DesignError> {
+        match found {
+            Some(word) if !allowed.contains(&word) => Err(DesignError::Choice {
+                origin: self.origin.to_owned(),
+                key: key.to_owned(),
+                found: word.to_owned(),
+                allowed,
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Longest name; file systems and tools cope with it as a part of longer names.
+const MAX_NAME: usize = 64;
+
+pub(crate) fn name(check: &Check, name: &str) -> Result<(), DesignError> {
+    let refuse = |problem: String| {
+        Err(check.value(
+            "name",
+            problem,
+            "use a Verilog identifier: a letter or _, then letters, digits and _".to_owned(),
+        ))
+    };
+    let mut characters = name.chars();
+    let starts_well = characters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
+    if !starts_well || !characters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        return refuse(format!("is {name:?}, which is no Verilog identifier"));
+    }
+    if name.len() > MAX_NAME {
+        return refuse(format!("has {} characters, more than {MAX_NAME}", name.len()));
+    }
+    if KEYWORDS.split_whitespace().any(|keyword| keyword == name) {
+        return refuse(format!("is \"{name}\", a Verilog keyword"));
+    }
+    Ok(())
+}
+
+pub(crate) fn part(check: &Check, part: &str) -> Result<(), DesignError> {
+    let legal = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+    if part.is_empty() || part.len() > MAX_NAME || !part.chars().all(legal) {
+        return Err(check.value(
+            "hardware.part",
+            format!("is {part:?}"),
+            format!("use 1 to {MAX_NAME} letters, digits, dots, dashes and underscores"),
+        ));
+    }
+    Ok(())
+}
+
+/// Keywords of IEEE 1364-2005 and IEEE 1800-2017: tools read the generated files as either.
+const KEYWORDS: &str = "
+    accept_on alias always always_comb always_ff always_latch and assert assign assume automatic before begin bind
+    bins binsof bit break buf bufif0 bufif1 byte case casex casez cell chandle checker class clocking cmos config
+    const constraint context continue cover covergroup coverpoint cross deassign default defparam design disable
+    dist do edge else end endcase endchecker endclass endclocking endconfig endfunction endgenerate endgroup
+    endinterface endmodule endpackage endprimitive endprogram endproperty endspecify endsequence endtable endtask
+    enum event eventually expect export extends extern final first_match for force foreach forever fork forkjoin
+    function generate genvar global highz0 highz1 if iff ifnone ignore_bins illegal_bins implements implies import
+    incdir include initial inout input inside instance int integer interconnect interface intersect join join_any
+    join_none large let liblist library local localparam logic longint macromodule matches medium modport module
+    nand negedge nettype new nexttime nmos nor noshowcancelled not notif0 notif1 null or output package packed
+    parameter pmos posedge primitive priority program property protected pull0 pull1 pulldown pullup
+    pulsestyle_ondetect pulsestyle_onevent pure rand randc randcase randsequence rcmos real realtime ref reg
+    reject_on release repeat restrict return rnmos rpmos rtran rtranif0 rtranif1 s_always s_eventually s_nexttime
+    s_until s_until_with scalared sequence shortint shortreal showcancelled signed small soft solve specify
+    specparam static string strong strong0 strong1 struct super supply0 supply1 sync_accept_on sync_reject_on
+    table tagged task this throughout time timeprecision timeunit tran tranif0 tranif1 tri tri0 tri1 triand trior
+    trireg type typedef union unique unique0 unsigned until until_with untyped use uwire var vectored virtual void
+    wait wait_order wand weak weak0 weak1 while wildcard wire with within wor xnor xor";

@@ -1,0 +1,223 @@
+//! The design file: what sensor, what algorithm, what hardware.
+//!
+//! A [`Design`] that exists has passed every check, so code that takes one need not check again.
+
+pub(crate) mod checks;
+mod parse;
+mod print;
+
+use std::path::{Path, PathBuf};
+
+pub(crate) use parse::{RawSensor, syntax_position};
+
+/// Largest number of columns or rows of a sensor.
+pub const MAX_SIDE: usize = 32;
+/// Largest number of `SpMV` lanes.
+pub const MAX_LANES: usize = 64;
+/// Key `algorithm.noise_floor_pa`, when absent, is the full scale divided by this.
+pub const NOISE_FLOOR_DIVISOR: f64 = 65536.0;
+
+/// A checked design: everything needed to compute matrices and to plan hardware.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// Module and folder name, a Verilog identifier.
+    pub name: String,
+    /// Geometry of the sensor.
+    pub sensor: Sensor,
+    /// Choices that change the result.
+    pub algorithm: Algorithm,
+    /// Choices that change only speed, size and rounding.
+    pub hardware: Hardware,
+}
+
+/// Geometry of a rectangular grid of taxels under an elastic layer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensor {
+    /// Taxels along x, 2 to [`MAX_SIDE`].
+    pub columns: usize,
+    /// Taxels along y, 2 to [`MAX_SIDE`].
+    pub rows: usize,
+    /// Distance between neighbours along x and y, in millimetres.
+    pub pitch_mm: [f64; 2],
+    /// Thickness of the layer above the taxels, in millimetres.
+    pub depth_mm: f64,
+}
+
+impl Sensor {
+    /// Number of taxels, `columns * rows`.
+    pub fn taxels(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Position of taxel `index = iy * columns + ix` in metres; the first taxel is the origin.
+    pub fn position_m(&self, index: usize) -> [f64; 2] {
+        let (ix, iy) = (index % self.columns, index / self.columns);
+        [ix as f64 * self.pitch_mm[0] * 1e-3, iy as f64 * self.pitch_mm[1] * 1e-3]
+    }
+
+    /// Depth of the taxels below the surface in metres.
+    pub fn depth_m(&self) -> f64 {
+        self.depth_mm * 1e-3
+    }
+}
+
+/// How a force on one surface point loads a taxel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// Point force on an elastic half-space, as in the paper (Eq. 4).
+    Point,
+}
+
+/// Which entries of the 13 matrices are kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    /// All of them.
+    None,
+    /// A band around the diagonal.
+    F1 {
+        /// Number of diagonals **removed** on either side: kept is `|i - j| <= (m - 1) - l`.
+        l: usize,
+    },
+    /// Entries that are large within their row.
+    F2 {
+        /// Kept is `|B_ij| >= max_j(B_ij) / (1000 p)`, with the signed maximum of the row.
+        p: f64,
+    },
+}
+
+/// How the friction components are found once the optimisation problem is set up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Estimator {
+    /// Along the line that the direction of push fixes in the plane of the friction components.
+    Line,
+}
+
+/// What a frame yields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outputs {
+    /// The summary and three force components for each taxel.
+    Field,
+}
+
+/// The `[algorithm]` table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Algorithm {
+    /// Load model behind C31, C32 and C33.
+    pub kernel: Kernel,
+    /// Sparsity of the 13 matrices.
+    pub filter: Filter,
+    /// Friction estimator.
+    pub estimator: Estimator,
+    /// Contents of the output.
+    pub outputs: Outputs,
+    /// Stress in pascals below which a taxel tells nothing; full scale / 65536 unless given.
+    pub noise_floor_pa: f64,
+}
+
+/// Number system of the hardware.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// Two's complement with one power-of-two scale for each matrix and vector.
+    Fixed,
+}
+
+/// The `[hardware]` table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hardware {
+    /// Number system.
+    pub arithmetic: Arithmetic,
+    /// Width of matrix entries, 8 to 18 bits.
+    pub coefficient_bits: u32,
+    /// Width of vector entries, 16 to 27 bits.
+    pub data_bits: u32,
+    /// Largest stress magnitude in pascals; larger input is clamped and reported.
+    pub full_scale_pa: f64,
+    /// `SpMV` lanes, 1 to [`MAX_LANES`].
+    pub lanes: usize,
+    /// Clock in megahertz, 1 to 1000.
+    pub clock_mhz: f64,
+    /// FPGA part name.
+    pub part: String,
+}
+
+/// What is wrong with a design or scene file.
+#[derive(Debug, thiserror::Error)]
+pub enum DesignError {
+    /// The file could not be read.
+    #[error("{}: cannot read the file: {source}; check the path and the permissions", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The text is no TOML, a key is unknown or missing, or a value has the wrong type.
+    #[error("{origin}, line {line}, column {column}{}: {message}", near(context))]
+    Syntax {
+        /// File name.
+        origin: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column in characters, from 1.
+        column: usize,
+        /// The line's text.
+        context: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// A value has the right type but is out of range or contradicts another.
+    #[error("{origin}: {key} {problem}; {remedy}")]
+    Value {
+        /// File name.
+        origin: String,
+        /// Dotted key, e.g. `sensor.columns`.
+        key: String,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A word that is not among the allowed ones.
+    #[error("{origin}: {key} is \"{found}\"; choose one of: {}", allowed.join(", "))]
+    Choice {
+        /// File name.
+        origin: String,
+        /// Dotted key.
+        key: String,
+        /// The word found.
+        found: String,
+        /// The words allowed.
+        allowed: &'static [&'static str],
+    },
+}
+
+fn near(context: &str) -> String {
+    if context.is_empty() { String::new() } else { format!(", in `{context}`") }
+}
+
+impl Design {
+    /// Reads and checks a design file.
+    ///
+    /// # Errors
+    ///
+    /// Every way a file can be wrong, see [`DesignError`]; the message names the file, the key and the remedy.
+    pub fn load(path: &Path) -> Result<Self, DesignError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })?;
+        Self::from_toml(&text, &path.display().to_string())
+    }
+
+    /// Checks the text of a design file; `origin` is the name to use in messages.
+    ///
+    /// # Errors
+    ///
+    /// As [`Design::load`], without the reading.
+    pub fn from_toml(text: &str, origin: &str) -> Result<Self, DesignError> {
+        parse::design(text, origin)
+    }
+
+    /// The resolved design as TOML: every key, in a fixed order; parsing it gives this design back.
+    pub fn to_toml(&self) -> String {
+        print::to_toml(self)
+    }
+}

@@ -1,0 +1,183 @@
+//! From TOML text to a checked [`Design`].
+
+use serde::Deserialize;
+
+use super::checks::{self, Check};
+use super::{
+    Algorithm, Arithmetic, Design, DesignError, Estimator, Filter, Hardware, Kernel, MAX_LANES, MAX_SIDE,
+    NOISE_FLOOR_DIVISOR, Outputs, Sensor,
+};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawDesign {
+    name: String,
+    sensor: RawSensor,
+    #[serde(default)]
+    algorithm: RawAlgorithm,
+    #[serde(default)]
+    hardware: RawHardware,
+}
+
+// Counts are read as `i64` so that a negative one gets a message about its range, not about its type.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RawSensor {
+    columns: i64,
+    rows: i64,
+    pitch_mm: Vec<f64>,
+    depth_mm: f64,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct RawAlgorithm {
+    kernel: Option<String>,
+    filter: Option<RawFilter>,
+    estimator: Option<String>,
+    outputs: Option<String>,
+    noise_floor_pa: Option<f64>,
+}
+
+// Not a tagged enum: those lose the position of an error and cannot say which key belongs to which kind.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawFilter {
+    kind: String,
+    l: Option<i64>,
+    p: Option<f64>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct RawHardware {
+    arithmetic: Option<String>,
+    coefficient_bits: Option<i64>,
+    data_bits: Option<i64>,
+    full_scale_pa: Option<f64>,
+    lanes: Option<i64>,
+    clock_mhz: Option<f64>,
+    part: Option<String>,
+}
+
+pub(super) fn design(text: &str, origin: &str) -> Result<Design, DesignError> {
+    let raw: RawDesign = toml::from_str(text).map_err(|error| syntax_position(&error, text, origin))?;
+    let check = Check { origin };
+    checks::name(&check, &raw.name)?;
+    let sensor = raw.sensor.check(origin)?;
+    let hardware = hardware(&check, raw.hardware)?;
+    let algorithm = algorithm(&check, raw.algorithm, &sensor, hardware.full_scale_pa)?;
+    Ok(Design { name: raw.name, sensor, algorithm, hardware })
+}
+
+/// Turns an error of the TOML reader into one with line and column.
+pub(crate) fn syntax_position(error: &toml::de::Error, text: &str, origin: &str) -> DesignError {
+    let offset = error.span().map_or(0, |span| span.start.min(text.len()));
+    let before = text.get(..offset).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |position| position + 1);
+    let context = text.get(line_start..).and_then(|rest| rest.lines().next()).unwrap_or("").trim();
+    DesignError::Syntax {
+        origin: origin.to_owned(),
+        line: before.matches('\n').count() + 1,
+        column: before.get(line_start..).map_or(0, |text| text.chars().count()) + 1,
+        context: context.chars().take(80).collect(),
+        message: error.message().replace('\n', ", "),
+    }
+}
+
+impl RawSensor {
+    pub(crate) fn check(self, origin: &str) -> Result<Sensor, DesignError> {
+        let check = Check { origin };
+        let side = |key, value| check.integer(key, value, 2, MAX_SIDE as i64);
+        let length = |key, value| check.real(key, value, 0.01, 1000.0, "mm");
+        let pitch_mm = check.pair("sensor.pitch_mm", &self.pitch_mm)?;
+        Ok(Sensor {
+            columns: side("sensor.columns", self.columns)? as usize,
+            rows: side("sensor.rows", self.rows)? as usize,
+            pitch_mm: [length("sensor.pitch_mm[0]", pitch_mm[0])?, length("sensor.pitch_mm[1]", pitch_mm[1])?],
+            depth_mm: length("sensor.depth_mm", self.depth_mm)?,
+        })
+    }
+}
+
+fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, full_scale_pa: f64) -> Result<Algorithm, DesignError> {
+    let filter = match raw.filter {
+        Some(raw) => filter(check, &raw, sensor)?,
+        None => Filter::None,
+    };
+    check.choice("algorithm.kernel", raw.kernel.as_deref(), &["point"])?;
+    check.choice("algorithm.estimator", raw.estimator.as_deref(), &["line"])?;
+    check.choice("algorithm.outputs", raw.outputs.as_deref(), &["field"])?;
+    let noise_floor_pa = match raw.noise_floor_pa {
+        Some(value) => check.above_zero("algorithm.noise_floor_pa", value, full_scale_pa, "Pa")?,
+        None => full_scale_pa / NOISE_FLOOR_DIVISOR,
+    };
+    Ok(Algorithm { kernel: Kernel::Point, filter, estimator: Estimator::Line, outputs: Outputs::Field, noise_floor_pa })
+}
+
+fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<Filter, DesignError> {
+    let refuse = |key: &str, given: bool| {
+        if given {
+            Err(check.value(
+                &format!("algorithm.filter.{key}"),
+                format!("does not belong to a filter of kind \"{}\"", raw.kind),
+                "remove it or choose another kind".to_owned(),
+            ))
+        } else {
+            Ok(())
+        }
+    };
+    let missing = |key: &str, example: &str| {
+        check.value(
+            &format!("algorithm.filter.{key}"),
+            "is missing".to_owned(),
+            format!("write filter = {{ kind = \"{}\", {example} }}", raw.kind),
+        )
+    };
+    match raw.kind.as_str() {
+        "none" => {
+            refuse("l", raw.l.is_some())?;
+            refuse("p", raw.p.is_some())?;
+            Ok(Filter::None)
+        }
+        "f1" => {
+            refuse("p", raw.p.is_some())?;
+            let value = raw.l.ok_or_else(|| missing("l", "l = 40"))?;
+            // The diagonal and one neighbour on either side is the narrowest band allowed.
+            let limit = sensor.taxels() as i64 - 2;
+            let l = check.integer("algorithm.filter.l", value, 1, limit)?;
+            Ok(Filter::F1 { l: l as usize })
+        }
+        "f2" => {
+            refuse("l", raw.l.is_some())?;
+            let value = raw.p.ok_or_else(|| missing("p", "p = 30"))?;
+            let p = check.above_zero("algorithm.filter.p", value, f64::MAX, "")?;
+            Ok(Filter::F2 { p })
+        }
+        other => Err(DesignError::Choice {
+            origin: check.origin.to_owned(),
+            key: "algorithm.filter.kind".to_owned(),
+            found: other.to_owned(),
+            allowed: &["none", "f1", "f2"],
+        }),
+    }
+}
+
+fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
+    let integer = |key, value: Option<i64>, default, low, high| match value {
+        Some(value) => check.integer(key, value, low, high),
+        None => Ok(default),
+    };
+    check.choice("hardware.arithmetic", raw.arithmetic.as_deref(), &["fixed"])?;
+    let part = raw.part.unwrap_or_else(|| "xczu9eg-ffvb1156-2-e".to_owned());
+    checks::part(check, &part)?;
+    Ok(Hardware {
+        arithmetic: Arithmetic::Fixed,
+        coefficient_bits: integer("hardware.coefficient_bits", raw.coefficient_bits, 18, 8, 18)? as u32,
+        data_bits: integer("hardware.data_bits", raw.data_bits, 27, 16, 27)? as u32,
+        full_scale_pa: check.above_zero("hardware.full_scale_pa", raw.full_scale_pa.unwrap_or(100_000.0), 1e9, "Pa")?,
+        lanes: integer("hardware.lanes", raw.lanes, 16, 1, MAX_LANES as i64)? as usize,
+        clock_mhz: check.real("hardware.clock_mhz", raw.clock_mhz.unwrap_or(125.0), 1.0, 1000.0, "MHz")?,
+        part,
+    })
+}

@@ -1,0 +1,216 @@
+//! Ground truth: frames of normal stress from contacts whose forces are known.
+//!
+//! The elastic models here are independent of the estimator's own kernel.
+
+mod bessel;
+mod half_space;
+mod parse;
+mod spectral;
+mod transfer;
+
+use std::path::Path;
+
+pub use spectral::Shape;
+pub use transfer::Medium;
+
+use crate::design::{DesignError, Sensor};
+use spectral::UnitResponses;
+
+/// What is wrong with a scene.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// The file, a key or a value.
+    #[error(transparent)]
+    File(#[from] DesignError),
+    /// Depth and distances differ too much.
+    #[error(
+        "contact {contact}: the taxels reach too far from the contact for a depth of {depth_mm} mm ({waves:.0} wave \
+         numbers would be needed along an axis); use a larger depth, a smaller grid, or a centre nearer to it"
+    )]
+    TooFine {
+        /// Which contact, from 1.
+        contact: usize,
+        /// Depth of the sensor.
+        depth_mm: f64,
+        /// Wave numbers along one axis.
+        waves: f64,
+    },
+}
+
+/// A contact that slides: normal force, and friction times it along one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Distribution of the load.
+    pub shape: Shape,
+    /// Centre, in metres from the first taxel.
+    pub centre_m: [f64; 2],
+    /// Normal force in newtons, positive when pressing.
+    pub normal_force_n: f64,
+    /// Tangential over normal force.
+    pub friction: f64,
+    /// Direction of the tangential force in degrees from x towards y; a sweep takes its place.
+    pub direction_deg: f64,
+}
+
+/// Contacts on a sensor, possibly in a sweep of directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Geometry of the sensor.
+    pub sensor: Sensor,
+    /// The body between surface and taxels.
+    pub medium: Medium,
+    /// The contacts; their stresses add up.
+    pub contacts: Vec<Contact>,
+    /// Directions in degrees, one frame each, common to all contacts. Without any there is one frame, with each
+    /// contact's own direction.
+    pub sweep_deg: Vec<f64>,
+}
+
+/// A frame with its true forces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFrame {
+    /// A few words for tables.
+    pub label: String,
+    /// Stress in pascals, one value for each taxel.
+    pub stress: Vec<f64>,
+    /// Resultant force `[F_x, F_y, F_z]` in newtons; `F_z < 0` presses.
+    pub force: [f64; 3],
+    /// Tangential over normal resultant.
+    pub friction: f64,
+    /// Direction of the tangential resultant in radians, `atan2(F_y, F_x)`.
+    pub direction: f64,
+}
+
+impl Scene {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::File`], with file and key.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })?;
+        Self::from_toml(&text, &path.display().to_string())
+    }
+
+    /// Checks the text of a scene file; `origin` is the name to use in messages.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scene::load`], without the reading.
+    pub fn from_toml(text: &str, origin: &str) -> Result<Self, SceneError> {
+        Ok(parse::scene(text, origin)?)
+    }
+
+    /// The standing set of frames for a sensor: a round Hertz contact at its centre on a nearly incompressible bonded
+    /// layer, friction 0.5, in 36 directions.
+    ///
+    /// Radius 7 mm and 6 N where the grid allows, as for the first sensor of the paper. On a smaller grid both shrink
+    /// and on a coarser one both grow, at the same pressure, so that the stress stays below 100 kPa.
+    pub fn standing(sensor: &Sensor) -> Self {
+        const RADIUS_MM: f64 = 7.0;
+        const FORCE_N: f64 = 6.0;
+        // The share of the short side that 7 mm are on the paper's first sensor.
+        const SHARE: f64 = 7.0 / 18.0;
+        let [pitch_x, pitch_y] = sensor.pitch_mm;
+        let side_x = (sensor.columns - 1) as f64 * pitch_x;
+        let side_y = (sensor.rows - 1) as f64 * pitch_y;
+        // Even on two rows a contact reaches the taxels on either side of it.
+        let pitch = pitch_x.max(pitch_y);
+        let limit = (SHARE * side_x.min(side_y)).max(0.75 * pitch);
+        let radius = RADIUS_MM.max(pitch).min(limit);
+        Self {
+            sensor: sensor.clone(),
+            medium: Medium::BondedLayer { poisson: 0.49 },
+            contacts: vec![Contact {
+                shape: Shape::Hertz { semi_axes_m: [radius * 1e-3; 2] },
+                centre_m: [0.5e-3 * side_x, 0.5e-3 * side_y],
+                normal_force_n: FORCE_N * (radius / RADIUS_MM).powi(2),
+                friction: 0.5,
+                direction_deg: 0.0,
+            }],
+            sweep_deg: (0..36).map(|step| f64::from(step) * 10.0).collect(),
+        }
+    }
+
+    /// Computes the frames.
+    ///
+    /// The stress of each contact is computed once for each kind of load and then combined for each direction.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::TooFine`] when a depth is tiny compared with the size of the grid or of a contact.
+    pub fn frames(&self) -> Result<Vec<SceneFrame>, SceneError> {
+        let responses = self
+            .contacts
+            .iter()
+            .enumerate()
+            .map(|(index, contact)| self.unit_responses(index, contact))
+            .collect::<Result<Vec<_>, _>>()?;
+        if self.sweep_deg.is_empty() {
+            return Ok(vec![self.combine(&responses, None)]);
+        }
+        Ok(self.sweep_deg.iter().map(|&direction| self.combine(&responses, Some(direction))).collect())
+    }
+
+    fn unit_responses(&self, index: usize, contact: &Contact) -> Result<UnitResponses, SceneError> {
+        let sensor = &self.sensor;
+        let depth = sensor.depth_m();
+        let offset = |taxel: usize| {
+            let position = sensor.position_m(taxel);
+            [0, 1].map(|axis| position[axis] - contact.centre_m[axis])
+        };
+        if let (Medium::HalfSpace, Shape::Hertz { semi_axes_m }) = (self.medium, contact.shape) {
+            let mut responses: UnitResponses = std::array::from_fn(|_| Vec::new());
+            for taxel in 0..sensor.taxels() {
+                let stress = half_space::hertz(semi_axes_m, offset(taxel), depth);
+                for (response, stress) in responses.iter_mut().zip(stress) {
+                    response.push(stress);
+                }
+            }
+            return Ok(responses);
+        }
+        let offsets = [
+            (0..sensor.columns).map(|ix| offset(ix)[0]).collect(),
+            (0..sensor.rows).map(|iy| offset(iy * sensor.columns)[1]).collect(),
+        ];
+        spectral::responses(self.medium, contact.shape, depth, &offsets, spectral::FINE)
+            .map_err(|waves| SceneError::TooFine { contact: index + 1, depth_mm: sensor.depth_mm, waves })
+    }
+
+    fn combine(&self, responses: &[UnitResponses], sweep_deg: Option<f64>) -> SceneFrame {
+        let mut stress = vec![0.0; self.sensor.taxels()];
+        let mut force = [0.0; 3];
+        for (contact, [normal, along_x, along_y]) in self.contacts.iter().zip(responses) {
+            let angle = sweep_deg.unwrap_or(contact.direction_deg);
+            let pressing = contact.normal_force_n;
+            let tangential = contact.friction * pressing;
+            let (fx, fy) = (tangential * cos_degrees(angle), tangential * cos_degrees(angle - 90.0));
+            for (taxel, sum) in stress.iter_mut().enumerate() {
+                *sum += pressing * normal[taxel] + fx * along_x[taxel] + fy * along_y[taxel];
+            }
+            force[0] += fx;
+            force[1] += fy;
+            force[2] -= pressing;
+        }
+        SceneFrame {
+            label: match sweep_deg {
+                Some(angle) => format!("direction {angle} deg"),
+                None => "one frame".to_owned(),
+            },
+            stress,
+            force,
+            friction: force[0].hypot(force[1]) / force[2].abs(),
+            direction: force[1].atan2(force[0]),
+        }
+    }
+}
+
+/// Cosine of an angle in degrees; exact where the cosine is 0 or 1, so that a push along an axis has no trace of the
+/// other axis.
+fn cos_degrees(degrees: f64) -> f64 {
+    if degrees.rem_euclid(180.0).to_bits() == 90_f64.to_bits() {
+        return 0.0;
+    }
+    degrees.rem_euclid(360.0).to_radians().cos()
+}

@@ -1,0 +1,239 @@
+//! Stress under a contact of known load spectrum, by the transfer function of the medium.
+//!
+//! The inverse Fourier integral is summed by the midpoint rule on a grid of wave vectors. Since the spectrum of the
+//! load is known exactly, the rule errs only by the images of the contact at multiples of `2 pi / step`, which are
+//! put so far away that they do not matter, and by the waves left out, of which the depth leaves `exp(-k h)`.
+
+use std::f64::consts::PI;
+
+use super::bessel::j1;
+use super::transfer::Medium;
+
+/// A contact's distribution of load; normal and tangential load have the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// Elliptical Hertz contact, `sqrt(1 - x^2/a^2 - y^2/b^2)`.
+    Hertz {
+        /// Semi-axes along x and y in metres.
+        semi_axes_m: [f64; 2],
+    },
+    /// Uniform load on a disc.
+    Disc {
+        /// Radius in metres.
+        radius_m: f64,
+    },
+}
+
+impl Shape {
+    /// Semi-axes along x and y in metres.
+    pub fn semi_axes_m(self) -> [f64; 2] {
+        match self {
+            Self::Hertz { semi_axes_m } => semi_axes_m,
+            Self::Disc { radius_m } => [radius_m; 2],
+        }
+    }
+
+    /// Fourier transform of the load of a unit force; `kappa` is the length of `(a kx, b ky)`.
+    fn spectrum(self, kappa: f64) -> f64 {
+        match self {
+            // Below 0.1 the closed form loses digits, and the series is exact to f64.
+            Self::Hertz { .. } if kappa < 0.1 => {
+                let k2 = kappa * kappa;
+                1.0 - k2 / 10.0 * (1.0 - k2 / 28.0 * (1.0 - k2 / 54.0))
+            }
+            Self::Hertz { .. } => 3.0 * (kappa.sin() - kappa * kappa.cos()) / kappa.powi(3),
+            Self::Disc { .. } if kappa < 1e-8 => 1.0,
+            Self::Disc { .. } => 2.0 * j1(kappa) / kappa,
+        }
+    }
+}
+
+/// How finely the integral is summed.
+#[derive(Clone, Copy, Debug)]
+pub struct Resolution {
+    /// Largest wave number times the depth.
+    pub largest_kh: f64,
+    /// Distance from any taxel to the nearest image of the contact, in depths.
+    pub image_distance: f64,
+}
+
+/// Relative errors below 1e-10 of the peak for a layer and 1e-6 for a half-space, whose images fade slowly.
+pub const FINE: Resolution = Resolution { largest_kh: 32.0, image_distance: 50.0 };
+
+/// Largest number of wave numbers along one axis, about two seconds' work.
+const MAX_WAVES: f64 = 4096.0;
+
+/// Responses at the points of a grid to 1 N pressing, 1 N along x, 1 N along y, in pascals per newton: one vector
+/// each, in taxel order.
+pub type UnitResponses = [Vec<f64>; 3];
+
+/// Sums the response of `medium` at depth `depth_m` below a contact of the given shape.
+///
+/// `offsets_m` are the coordinates of the grid's columns and rows minus the centre of the contact. Returns the number
+/// of wave numbers needed if that is beyond reason: the depth is then tiny compared with the distances.
+pub fn responses(
+    medium: Medium,
+    shape: Shape,
+    depth_m: f64,
+    offsets_m: &[Vec<f64>; 2],
+    resolution: Resolution,
+) -> Result<UnitResponses, f64> {
+    let semi_axes = shape.semi_axes_m();
+    let largest = resolution.largest_kh / depth_m;
+    let mut axes = Vec::with_capacity(2);
+    for (offsets, semi_axis) in offsets_m.iter().zip(semi_axes) {
+        let reach = offsets.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
+        let step = 2.0 * PI / (reach + semi_axis + resolution.image_distance * depth_m);
+        let waves = (largest / step).ceil();
+        if waves > MAX_WAVES {
+            return Err(waves);
+        }
+        axes.push(Axis::new(step, waves as usize, offsets));
+    }
+    let [along_x, along_y] = [&axes[0], &axes[1]];
+    // Four quadrants of wave vectors, and (2 pi)^2 from the inverse transform.
+    let weight = along_x.step * along_y.step / (PI * PI);
+    let columns = offsets_m[0].len();
+    let mut sums: UnitResponses = std::array::from_fn(|_| vec![0.0; columns * offsets_m[1].len()]);
+    for (&ky, (cos_y, sin_y)) in along_y.waves.iter().zip(&along_y.tables) {
+        let mut row = [vec![0.0; columns], vec![0.0; columns], vec![0.0; columns]];
+        for (&kx, (cos_x, sin_x)) in along_x.waves.iter().zip(&along_x.tables) {
+            let k = kx.hypot(ky);
+            if k > largest {
+                break;
+            }
+            let [h_p, h_q] = medium.transfer(k * depth_m);
+            let load = weight * shape.spectrum((kx * semi_axes[0]).hypot(ky * semi_axes[1]));
+            let normal = load * h_p;
+            let (shear_x, shear_y) = (load * h_q * kx / k, load * h_q * ky / k);
+            for (column, (cos, sin)) in cos_x.iter().zip(sin_x).enumerate() {
+                row[0][column] += normal * cos;
+                row[1][column] += shear_x * sin;
+                row[2][column] += shear_y * cos;
+            }
+        }
+        // Of exp(i k . r) the normal load keeps cos cos; i times it, times the odd factor kx / k, keeps -sin cos.
+        for (line, (cos, sin)) in cos_y.iter().zip(sin_y).enumerate() {
+            let taxels = line * columns..(line + 1) * columns;
+            for (sums, (row, factor)) in sums.iter_mut().zip(row.iter().zip([cos, cos, sin])) {
+                for (sum, value) in sums[taxels.clone()].iter_mut().zip(row) {
+                    *sum -= value * factor;
+                }
+            }
+        }
+    }
+    Ok(sums)
+}
+
+/// Wave numbers along one axis, with cosine and sine at each grid coordinate.
+struct Axis {
+    step: f64,
+    waves: Vec<f64>,
+    tables: Vec<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Axis {
+    fn new(step: f64, count: usize, offsets: &[f64]) -> Self {
+        // Midpoints: images alternate in sign and all but cancel, and k = 0, where k / |k| has no value, is avoided.
+        let waves: Vec<f64> = (0..count).map(|index| (index as f64 + 0.5) * step).collect();
+        let tables = waves
+            .iter()
+            .map(|k| {
+                let (sines, cosines): (Vec<f64>, Vec<f64>) = offsets.iter().map(|x| (k * x).sin_cos()).unzip();
+                (cosines, sines)
+            })
+            .collect();
+        Self { step, waves, tables }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::half_space;
+
+    const DEPTH: f64 = 3e-3;
+    const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
+
+    fn offsets() -> [Vec<f64>; 2] {
+        let axis = |centre: f64| (0..8).map(|i| f64::from(i) * 4e-3 - centre).collect();
+        [axis(13e-3), axis(9e-3)]
+    }
+
+    /// Largest difference over all points and kinds of load, relative to the peak under the normal load.
+    fn difference(one: &UnitResponses, other: &UnitResponses) -> f64 {
+        let peak = one[0].iter().fold(0.0_f64, |peak, s| peak.max(s.abs()));
+        let pairs = one.iter().flatten().zip(other.iter().flatten());
+        pairs.fold(0.0_f64, |max, (a, b)| max.max((a - b).abs())) / peak
+    }
+
+    #[test]
+    fn with_the_half_space_it_agrees_with_the_closed_form() {
+        let offsets = offsets();
+        for semi_axes_m in [[7e-3, 7e-3], [8e-3, 3e-3], [2e-3, 5e-3]] {
+            let shape = Shape::Hertz { semi_axes_m };
+            let found = responses(Medium::HalfSpace, shape, DEPTH, &offsets, FINE).unwrap();
+            let mut expected: UnitResponses = std::array::from_fn(|_| Vec::new());
+            for y in &offsets[1] {
+                for x in &offsets[0] {
+                    let stress = half_space::hertz(semi_axes_m, [*x, *y], DEPTH);
+                    for (response, stress) in expected.iter_mut().zip(stress) {
+                        response.push(stress);
+                    }
+                }
+            }
+            let error = difference(&expected, &found);
+            assert!(error < 1e-6, "{semi_axes_m:?}: {error:e}");
+        }
+    }
+
+    #[test]
+    fn a_finer_sum_changes_nothing() {
+        let offsets = offsets();
+        let finer = Resolution { largest_kh: 1.3 * FINE.largest_kh, image_distance: 2.0 * FINE.image_distance };
+        let ellipse = Shape::Hertz { semi_axes_m: [7e-3, 4e-3] };
+        let disc = Shape::Disc { radius_m: 10e-3 };
+        for (medium, shape, limit) in [(LAYER, ellipse, 1e-10), (LAYER, disc, 1e-10), (Medium::HalfSpace, disc, 1e-6)] {
+            let [one, other] =
+                [FINE, finer].map(|resolution| responses(medium, shape, DEPTH, &offsets, resolution).unwrap());
+            let error = difference(&other, &one);
+            assert!(error < limit, "{medium:?} {shape:?}: {error:e}");
+        }
+    }
+
+    #[test]
+    fn a_coarse_sum_shows() {
+        let coarse = Resolution { largest_kh: 4.0, image_distance: 1.0 };
+        let disc = Shape::Disc { radius_m: 10e-3 };
+        let [fine, coarse] = [FINE, coarse].map(|r| responses(LAYER, disc, DEPTH, &offsets(), r).unwrap());
+        assert!(difference(&fine, &coarse) > 1e-4);
+    }
+
+    #[test]
+    fn the_layer_carries_the_whole_force() {
+        // Midpoint sum over a grid that covers the contact and what spreads from it.
+        let axis: Vec<f64> = (-30..=30).map(|i| f64::from(i) * 1e-3).collect();
+        let disc = Shape::Disc { radius_m: 10e-3 };
+        let sums = responses(LAYER, disc, DEPTH, &[axis.clone(), axis], FINE)
+            .unwrap()
+            .map(|stress| stress.iter().sum::<f64>() * 1e-6);
+        assert!((sums[0] + 1.0).abs() < 1e-3, "{sums:?}");
+        assert!(sums[1].abs() < 1e-9 && sums[2].abs() < 1e-9, "{sums:?}");
+    }
+
+    #[test]
+    fn tension_trails_the_push_on_the_layer_too() {
+        let axis = vec![-10e-3, 0.0, 10e-3];
+        let shape = Shape::Hertz { semi_axes_m: [7e-3, 7e-3] };
+        let [normal, x, y] = responses(LAYER, shape, DEPTH, &[axis.clone(), axis], FINE).unwrap();
+        assert!(normal[4] < 0.0);
+        assert!(x[3] > 0.0 && x[5] < 0.0, "{x:?}");
+        assert!(y[1] > 0.0 && y[7] < 0.0, "{y:?}");
+    }
+
+    #[test]
+    fn too_small_a_depth_is_refused() {
+        let disc = Shape::Disc { radius_m: 10e-3 };
+        assert!(responses(LAYER, disc, 1e-5, &offsets(), FINE).is_err());
+    }
+}

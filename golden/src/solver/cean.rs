@@ -1,0 +1,44 @@
+//! Contact analysis: is there a contact, and which way is it pushed.
+
+use nalgebra::DVector;
+
+/// What the contact analysis finds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Sum of |b| over all taxels in pascals.
+    pub stress_sum: f64,
+    /// Whether that sum reaches the noise floor of `m` taxels.
+    pub touched: bool,
+    /// Centroid of the compressed taxels minus that of the taxels in tension, in metres; its direction is the
+    /// direction of push. `None` where no taxel reaches the noise floor on one of the two sides.
+    pub direction: Option<[f64; 2]>,
+}
+
+/// Analyses the stress `b` (pascals, length m) at `positions` (metres).
+///
+/// Tension trails the push, so the vector from the centroid of tension to that of compression points along it
+/// (Pinto-Salamanca et al., Sensors 2024, Eq. 24, kept as a vector so that it has no poles). `noise_floor` in
+/// pascals decides whether there is a contact and a direction at all; the centroids take in every taxel.
+pub fn cean(b: &DVector<f64>, positions: &[[f64; 2]], noise_floor: f64) -> Contact {
+    let stress_sum: f64 = b.iter().map(|stress| stress.abs()).sum();
+    let compressed = b.iter().any(|&stress| stress < -noise_floor);
+    let tensile = b.iter().any(|&stress| stress > noise_floor);
+    let direction = (compressed && tensile).then(|| {
+        let c = centroid(b, positions, |stress| (-stress).max(0.0));
+        let t = centroid(b, positions, |stress| stress.max(0.0));
+        [c[0] - t[0], c[1] - t[1]]
+    });
+    Contact { stress_sum, touched: stress_sum >= b.len() as f64 * noise_floor, direction }
+}
+
+/// Mean position under a weight that is not zero everywhere.
+fn centroid(b: &DVector<f64>, positions: &[[f64; 2]], weight: impl Fn(f64) -> f64) -> [f64; 2] {
+    let mut sums = [0.0; 3];
+    for (&stress, position) in b.iter().zip(positions) {
+        let weight = weight(stress);
+        sums[0] += weight * position[0];
+        sums[1] += weight * position[1];
+        sums[2] += weight;
+    }
+    [sums[0] / sums[2], sums[1] / sums[2]]
+}

@@ -1,0 +1,50 @@
+//! The status word of a frame.
+
+use std::fmt;
+
+/// A set of status bits; the same bits as in the first word of the hardware's output.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Status(pub u32);
+
+impl Status {
+    /// The stresses add up to less than the noise floor: all results are zero.
+    pub const NO_CONTACT: Self = Self(1 << 0);
+    /// Nothing tells the direction of push: the friction components are zero.
+    pub const DIRECTION_UNKNOWN: Self = Self(1 << 1);
+    /// A friction component is at the end of its range.
+    pub const AT_BOUND: Self = Self(1 << 2);
+    /// A stress beyond full scale was clamped.
+    pub const SATURATED: Self = Self(1 << 3);
+    /// A NaN or an infinity in the frame: all results are zero.
+    pub const NOT_FINITE: Self = Self(1 << 4);
+    /// Too few or too many values in the frame (hardware only): all results are zero.
+    pub const FRAME_LENGTH: Self = Self(1 << 5);
+
+    /// All bits with the words that describe them, from bit 0 on.
+    pub const NAMED: [(Self, &'static str); 6] = [
+        (Self::NO_CONTACT, "no contact"),
+        (Self::DIRECTION_UNKNOWN, "direction unknown"),
+        (Self::AT_BOUND, "optimum at the bound"),
+        (Self::SATURATED, "saturated"),
+        (Self::NOT_FINITE, "NaN or infinity in"),
+        (Self::FRAME_LENGTH, "frame length wrong"),
+    ];
+
+    /// True if every bit of `other` is set.
+    pub fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// Sets the bits of `other`.
+    pub fn insert(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words: Vec<&str> =
+            Self::NAMED.into_iter().filter(|(bit, _)| self.contains(*bit)).map(|(_, word)| word).collect();
+        formatter.write_str(&if words.is_empty() { "good".to_owned() } else { words.join(", ") })
+    }
+}

@@ -1,0 +1,163 @@
+//! Design files: defaults, round trip, and a clear refusal of everything else.
+
+#![allow(clippy::float_cmp)] // the same bits are meant
+
+use std::path::Path;
+
+use golden::design::{Design, Filter};
+
+const MINIMAL: &str = "name = \"pad\"\n[sensor]\ncolumns = 10\nrows = 8\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
+
+fn message(text: &str) -> String {
+    Design::from_toml(text, "pad.toml").expect_err("the file is wrong").to_string()
+}
+
+/// Replaces a line of the minimal file, or adds one at the end.
+fn with(line: &str, replacement: &str) -> String {
+    assert!(MINIMAL.contains(line), "no such line: {line}");
+    MINIMAL.replace(line, replacement)
+}
+
+#[track_caller]
+fn refused(text: &str, parts: &[&str]) {
+    let message = message(text);
+    assert!(message.contains("pad.toml"), "no file name in: {message}");
+    for part in parts {
+        assert!(message.contains(part), "no {part:?} in: {message}");
+    }
+    assert!(!message.contains('\n'), "more than one line: {message}");
+}
+
+#[test]
+fn everything_but_name_and_sensor_has_a_default() {
+    let design = Design::from_toml(MINIMAL, "pad.toml").unwrap();
+    assert_eq!(design.algorithm.filter, Filter::None);
+    assert_eq!(design.algorithm.noise_floor_pa, 100_000.0 / 65536.0);
+    assert_eq!((design.hardware.coefficient_bits, design.hardware.data_bits, design.hardware.lanes), (18, 27, 16));
+    assert_eq!(design.hardware.part, "xczu9eg-ffvb1156-2-e");
+}
+
+#[test]
+fn whole_numbers_do_where_reals_are_asked_for() {
+    let design = Design::from_toml(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4, 2]"), "").unwrap();
+    assert_eq!(design.sensor.pitch_mm, [4.0, 2.0]);
+}
+
+#[test]
+fn the_resolved_design_reads_back_the_same() {
+    for filter in ["{ kind = \"none\" }", "{ kind = \"f1\", l = 7 }", "{ kind = \"f2\", p = 0.3 }"] {
+        let text =
+            format!("{MINIMAL}[algorithm]\nfilter = {filter}\n[hardware]\nfull_scale_pa = 12345.678\nlanes = 3\n");
+        let design = Design::from_toml(&text, "pad.toml").unwrap();
+        let resolved = design.to_toml();
+        let again = Design::from_toml(&resolved, "resolved").unwrap();
+        assert_eq!(design, again);
+        assert_eq!(again.to_toml(), resolved);
+    }
+}
+
+#[test]
+fn every_design_of_the_repository_loads() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs");
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let design = Design::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let name = stem.replace('-', "_");
+        assert!(design.name.starts_with(&name), "{} in {stem}", design.name);
+        names.push(stem);
+    }
+    assert!(names.len() >= 12, "{names:?}");
+}
+
+#[test]
+fn unknown_and_missing_keys() {
+    refused(&with("depth_mm = 3.0", "depth_mm = 3.0\nwidth = 2"), &["width", "line 7", "depth_mm"]);
+    refused(&format!("{MINIMAL}[hardwear]\nlanes = 3\n"), &["hardwear", "hardware"]);
+    refused(&format!("{MINIMAL}[hardware]\nlane = 3\n"), &["lane"]);
+    refused(&with("rows = 8\n", ""), &["rows", "missing"]);
+    refused(&with("name = \"pad\"\n", ""), &["name", "missing"]);
+    refused("name = \"pad\"\n", &["sensor", "missing"]);
+    refused(&format!("{MINIMAL}[algorithm]\nfilter = {{ kind = \"f1\", l = 4, q = 1 }}\n"), &["q", "line 8"]);
+}
+
+#[test]
+fn wrong_types_and_broken_toml() {
+    refused(&with("columns = 10", "columns = \"ten\""), &["line 3", "columns"]);
+    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0]"), &["sensor.pitch_mm", "1 values", "two"]);
+    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0, 2.0, 1.0]"), &["sensor.pitch_mm", "3 values", "two"]);
+    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0, \"2\"]"), &["line 5", "pitch_mm"]);
+    refused(&with("columns = 10", "columns = = 10"), &["line 3"]);
+}
+
+#[test]
+fn sizes_out_of_range() {
+    for value in ["0", "-3", "1", "33", "9000000000000000000"] {
+        refused(&with("columns = 10", &format!("columns = {value}")), &["sensor.columns", value, "2 to 32"]);
+        refused(&with("rows = 8", &format!("rows = {value}")), &["sensor.rows", "2 to 32"]);
+    }
+    for value in ["0.0", "-3.0", "nan", "inf", "0.009", "1000.1"] {
+        refused(&with("depth_mm = 3.0", &format!("depth_mm = {value}")), &["sensor.depth_mm", "0.01 to 1000"]);
+        refused(
+            &with("pitch_mm = [4.0, 2.0]", &format!("pitch_mm = [4.0, {value}]")),
+            &["sensor.pitch_mm[1]", "0.01 to 1000"],
+        );
+    }
+}
+
+#[test]
+fn names_that_are_no_identifiers() {
+    for name in ["", "1st", "a b", "a-b", "a$b", "ä", "../x", "a\\n"] {
+        refused(&with("\"pad\"", &format!("\"{name}\"")), &["name", "Verilog identifier"]);
+    }
+    for keyword in ["module", "reg", "logic", "small"] {
+        refused(&with("\"pad\"", &format!("\"{keyword}\"")), &["name", "keyword"]);
+    }
+    refused(&with("\"pad\"", &format!("\"{}\"", "x".repeat(65))), &["name", "65"]);
+    assert!(Design::from_toml(&with("\"pad\"", &format!("\"_{}\"", "x".repeat(63))), "pad.toml").is_ok());
+}
+
+#[test]
+fn options_are_refused_with_the_list_of_allowed_ones() {
+    for (line, parts) in [
+        ("kernel = \"cell\"", ["algorithm.kernel", "cell", "point"]),
+        ("estimator = \"joint\"", ["algorithm.estimator", "joint", "line"]),
+        ("outputs = \"resultants\"", ["algorithm.outputs", "resultants", "field"]),
+        ("filter = { kind = \"f3\" }", ["algorithm.filter.kind", "f3", "none, f1, f2"]),
+        ("filter = { kind = \"f1\" }", ["algorithm.filter.l", "missing", "l ="]),
+        ("filter = { kind = \"f2\" }", ["algorithm.filter.p", "missing", "p ="]),
+        ("filter = { kind = \"f1\", l = 4, p = 2.0 }", ["algorithm.filter.p", "f1", "remove"]),
+        ("filter = { kind = \"none\", l = 4 }", ["algorithm.filter.l", "none", "remove"]),
+        // 80 taxels: 78 is the narrowest band.
+        ("filter = { kind = \"f1\", l = 0 }", ["algorithm.filter.l", "is 0", "1 to 78"]),
+        ("filter = { kind = \"f1\", l = 79 }", ["algorithm.filter.l", "is 79", "1 to 78"]),
+        ("filter = { kind = \"f2\", p = 0.0 }", ["algorithm.filter.p", "is 0", "greater than 0"]),
+        ("filter = { kind = \"f2\", p = inf }", ["algorithm.filter.p", "inf", "finite"]),
+        ("filter = { kind = \"f2\", p = nan }", ["algorithm.filter.p", "NaN", "finite"]),
+        ("noise_floor_pa = 0.0", ["algorithm.noise_floor_pa", "is 0", "greater than 0"]),
+        ("noise_floor_pa = 1e6", ["algorithm.noise_floor_pa", "1000000", "100000"]),
+    ] {
+        refused(&format!("{MINIMAL}[algorithm]\n{line}\n"), &parts);
+    }
+    for (line, parts) in [
+        ("arithmetic = \"float\"", ["hardware.arithmetic", "float", "fixed"]),
+        ("coefficient_bits = 19", ["hardware.coefficient_bits", "19", "8 to 18"]),
+        ("data_bits = 15", ["hardware.data_bits", "15", "16 to 27"]),
+        ("lanes = 0", ["hardware.lanes", "is 0", "1 to 64"]),
+        ("lanes = 65", ["hardware.lanes", "65", "1 to 64"]),
+        ("full_scale_pa = -1.0", ["hardware.full_scale_pa", "-1", "0"]),
+        ("full_scale_pa = 1e10", ["hardware.full_scale_pa", "10000000000", "1000000000"]),
+        ("clock_mhz = 0.5", ["hardware.clock_mhz", "0.5", "1 to 1000"]),
+        ("part = \"a; rm\"", ["hardware.part", "a; rm", "letters"]),
+        ("part = \"\"", ["hardware.part", "\"\"", "letters"]),
+    ] {
+        refused(&format!("{MINIMAL}[hardware]\n{line}\n"), &parts);
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there() {
+    let error = Design::load(Path::new("no/such/file.toml")).unwrap_err();
+    assert!(error.to_string().contains("no/such/file.toml"));
+}

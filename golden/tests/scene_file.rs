@@ -1,0 +1,161 @@
+//! Scene files: what they make, and a clear refusal of everything else.
+
+#![allow(clippy::float_cmp)] // the same bits are meant
+
+use std::path::Path;
+
+use golden::design::Sensor;
+use golden::scene::{Medium, Scene};
+
+const MINIMAL: &str = "[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+    [medium]\nkind = \"bonded_layer\"\npoisson = 0.49\n\
+    [[contact]]\nshape = \"hertz\"\nsemi_axes_mm = [5.0, 4.0]\ncentre_mm = [10.0, 8.0]\n\
+    normal_force_n = 4.0\nfriction = 0.5\ndirection_deg = 30.0\n";
+
+fn with(line: &str, replacement: &str) -> String {
+    assert!(MINIMAL.contains(line), "no such line: {line}");
+    MINIMAL.replace(line, replacement)
+}
+
+#[track_caller]
+fn refused(text: &str, parts: &[&str]) {
+    let message = Scene::from_toml(text, "push.toml").unwrap_err().to_string();
+    assert!(message.contains("push.toml"), "no file name in: {message}");
+    for part in parts {
+        assert!(message.contains(part), "no {part:?} in: {message}");
+    }
+    assert!(!message.contains('\n'), "more than one line: {message}");
+}
+
+#[test]
+fn the_true_force_is_that_of_the_contact() {
+    let frames = Scene::from_toml(MINIMAL, "").unwrap().frames().unwrap();
+    assert_eq!(frames.len(), 1);
+    let [fx, fy, fz] = frames[0].force;
+    assert!((fx - 2.0 * 30_f64.to_radians().cos()).abs() < 1e-12);
+    assert!((fy - 1.0).abs() < 1e-12);
+    assert_eq!(fz, -4.0);
+    assert!((frames[0].friction - 0.5).abs() < 1e-12);
+    assert!((frames[0].direction - 30_f64.to_radians()).abs() < 1e-12);
+    assert!(frames[0].stress.iter().any(|stress| *stress < -1000.0));
+}
+
+#[test]
+fn contacts_add_up() {
+    let contact = &MINIMAL[MINIMAL.find("[[contact]]").unwrap()..];
+    let twice = Scene::from_toml(&format!("{MINIMAL}{contact}"), "").unwrap();
+    let one = &Scene::from_toml(MINIMAL, "").unwrap().frames().unwrap()[0];
+    let two = &twice.frames().unwrap()[0];
+    assert_eq!(two.force, one.force.map(|force| 2.0 * force));
+    for (two, one) in two.stress.iter().zip(&one.stress) {
+        assert!((two - 2.0 * one).abs() < 1e-9 * one.abs());
+    }
+}
+
+#[test]
+fn a_sweep_has_both_ends() {
+    let sweep = "[sweep]\ndirection_deg = { from = 0, to = 0.3, step = 0.1 }\n";
+    let text = with("direction_deg = 30.0\n", sweep);
+    let frames = Scene::from_toml(&text, "").unwrap().frames().unwrap();
+    assert_eq!(frames.len(), 4);
+    assert!((frames[3].direction - 0.3_f64.to_radians()).abs() < 1e-12);
+}
+
+#[test]
+fn a_push_along_an_axis_has_no_trace_of_the_other() {
+    let sweep = "[sweep]\ndirection_deg = { from = -360, to = 360, step = 90 }\n";
+    let text = with("direction_deg = 30.0\n", sweep);
+    for frame in Scene::from_toml(&text, "").unwrap().frames().unwrap() {
+        assert!(frame.force[0] == 0.0 || frame.force[1] == 0.0, "{frame:?}");
+    }
+}
+
+#[test]
+fn a_rigid_ground_gathers_the_stress() {
+    // At its base a layer carries the force on a smaller area than a half-space does at the same depth.
+    let layer = Scene::from_toml(MINIMAL, "").unwrap().frames().unwrap();
+    let text = with("kind = \"bonded_layer\"\npoisson = 0.49", "kind = \"half_space\"");
+    let scene = Scene::from_toml(&text, "").unwrap();
+    assert_eq!(scene.medium, Medium::HalfSpace);
+    let half_space = scene.frames().unwrap();
+    let peak = |frames: &[golden::scene::SceneFrame]| frames[0].stress.iter().fold(0.0_f64, |low, &s| low.min(s));
+    assert!(peak(&layer) < peak(&half_space) && peak(&half_space) < 0.5 * peak(&layer));
+}
+
+#[test]
+fn every_scene_of_the_repository_has_36_frames() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let scene = Scene::load(&entry.unwrap().path()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scene.frames().unwrap().len(), 36);
+        count += 1;
+    }
+    assert!(count >= 2);
+}
+
+#[test]
+fn the_standing_set_fits_any_ordinary_sensor() {
+    for (columns, rows, pitch_mm, depth_mm) in [
+        (10, 10, [4.0, 2.0], 3.0),
+        (4, 3, [4.0, 4.0], 3.0),
+        (2, 2, [10.0, 10.0], 5.0),
+        (32, 32, [1.0, 1.5], 1.0),
+        (27, 32, [12.0, 12.0], 6.0),
+    ] {
+        let sensor = Sensor { columns, rows, pitch_mm, depth_mm };
+        let frames = Scene::standing(&sensor).frames().unwrap();
+        assert_eq!(frames.len(), 36);
+        for frame in &frames {
+            let low = frame.stress.iter().fold(0.0_f64, |low, &s| low.min(s));
+            assert!(low < -10_000.0 && low > -100_000.0, "{sensor:?}: {low}");
+            assert!((frame.friction - 0.5).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn the_standing_set_of_the_first_sensor_is_its_scene() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/sensor1-hertz.toml");
+    let scene = Scene::load(&path).unwrap();
+    let standing = Scene::standing(&scene.sensor);
+    let pairs = scene.frames().unwrap();
+    for (file, standing) in pairs.iter().zip(standing.frames().unwrap()) {
+        for (a, b) in file.stress.iter().zip(&standing.stress) {
+            assert!((a - b).abs() < 1e-6, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn wrong_files() {
+    refused(&with("friction", "fricton"), &["fricton", "friction"]);
+    refused(&with("poisson = 0.49\n", ""), &["medium.poisson", "missing"]);
+    refused(&with("poisson = 0.49", "poisson = 0.51"), &["medium.poisson", "0.51", "0 to 0.5"]);
+    refused(&with("bonded_layer", "water"), &["medium.kind", "water", "bonded_layer, half_space"]);
+    refused(&with("bonded_layer", "half_space"), &["medium.poisson", "remove"]);
+    refused(&with("\"hertz\"", "\"cone\""), &["contact[0].shape", "cone", "hertz, disc"]);
+    refused(&with("\"hertz\"", "\"disc\""), &["contact[0].semi_axes_mm", "disc", "radius_mm"]);
+    refused(&with("semi_axes_mm = [5.0, 4.0]\n", ""), &["contact[0].semi_axes_mm", "missing"]);
+    refused(&with("[5.0, 4.0]", "[5.0]"), &["contact[0].semi_axes_mm", "two"]);
+    refused(&with("[5.0, 4.0]", "[5.0, 0.0]"), &["contact[0].semi_axes_mm[1]", "0.01 to 1000"]);
+    refused(&with("[10.0, 8.0]", "[nan, 8.0]"), &["contact[0].centre_mm[0]", "NaN"]);
+    refused(&with("normal_force_n = 4.0", "normal_force_n = -4.0"), &["normal_force_n", "-4", "greater than 0"]);
+    refused(&with("friction = 0.5", "friction = -0.5"), &["friction", "-0.5"]);
+    refused(&with("direction_deg = 30.0\n", ""), &["direction_deg", "missing", "sweep"]);
+    refused(&with("rows = 5", "rows = 0"), &["sensor.rows", "2 to 32"]);
+    refused(&MINIMAL[..MINIMAL.find("[[contact]]").unwrap()], &["contact", "missing"]);
+    let swept = |range: &str| format!("{MINIMAL}[sweep]\ndirection_deg = {range}\n");
+    refused(&swept("{ from = 0, to = 9, step = 1 }"), &["direction_deg", "contradicts"]);
+    refused(&swept("{ from = 0, to = 9, step = 0 }"), &["step", "greater than 0"]);
+    refused(&swept("{ from = 9, to = 0, step = 1 }"), &["to", "below"]);
+    refused(&swept("{ from = 0, to = 360, step = 1e-6 }"), &["step", "360000001"]);
+}
+
+#[test]
+fn a_depth_out_of_proportion_is_refused() {
+    let text = with("depth_mm = 3.0", "depth_mm = 0.01");
+    let error = Scene::from_toml(&text, "").unwrap().frames().unwrap_err();
+    let message = error.to_string();
+    assert!(message.contains("contact 1") && message.contains("0.01 mm"), "{message}");
+}
