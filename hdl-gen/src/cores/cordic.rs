@@ -1,0 +1,350 @@
+//! Vectoring CORDIC: magnitude and angle of a vector, one iteration a cycle.
+
+use rust_hdl_core::prelude::*;
+
+use super::emit::{Description, emit};
+use super::register::{Register, comment, dff_setup};
+use super::sint::{Sint, signed_bit_cast, signed_cast, unsigned_cast};
+use super::{CoreError, CoreFile};
+
+/// Micro-rotations of one conversion.
+pub const ITERATIONS: u32 = 30;
+
+/// Cycles from `start` to `done`: a start in cycle 0 gives `done` in cycle 32.
+pub const LATENCY: u32 = 32;
+
+/// The factor left in the magnitude: the product of `sqrt(1 + 2^-2i)` over the iterations.
+pub const CORDIC_GAIN: f64 = 1.646_760_258_121_065_4;
+
+/// Fraction bits of the angle, in radians.
+pub const ANGLE_FRACTION_BITS: u32 = 29;
+
+/// Bits below the result's last place, against the truncation of every iteration.
+const GUARD_BITS: u32 = 5;
+
+/// `atan(2^-i)` with [`ANGLE_FRACTION_BITS`] + [`GUARD_BITS`] fraction bits, to nearest.
+const ARC_TANGENTS: [i64; ITERATIONS as usize] = [
+    13_493_037_705,
+    7_965_405_270,
+    4_208_701_385,
+    2_136_402_539,
+    1_072_346_990,
+    536_696_252,
+    268_413_614,
+    134_214_997,
+    67_108_523,
+    33_554_389,
+    16_777_211,
+    8_388_607,
+    4_194_304,
+    2_097_152,
+    1_048_576,
+    524_288,
+    262_144,
+    131_072,
+    65_536,
+    32_768,
+    16_384,
+    8_192,
+    4_096,
+    2_048,
+    1_024,
+    512,
+    256,
+    128,
+    64,
+    32,
+];
+
+/// A quarter turn in the format of [`ARC_TANGENTS`].
+const QUARTER_TURN: i64 = 26_986_075_409;
+
+/// What `sptfra_cordic` answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Vector {
+    /// [`CORDIC_GAIN`] times the length, in the unit of the components: 34 bits.
+    pub magnitude: u64,
+    /// `atan2(y, x)` in radians with [`ANGLE_FRACTION_BITS`] fraction bits.
+    pub angle: i32,
+}
+
+/// Magnitude and angle of `(x, y)`, components within ±2^30; `(0, 0)` gives zeros.
+///
+/// For a larger component of at least 2^29 the angle is within 2^-26 rad and the magnitude within 2^-26 of itself.
+pub fn vector(x: i32, y: i32) -> Vector {
+    if x == 0 && y == 0 {
+        return Vector { magnitude: 0, angle: 0 };
+    }
+    let (x0, y0) = (i64::from(x) << GUARD_BITS, i64::from(y) << GUARD_BITS);
+    // The micro-rotations reach 1.74 rad: a vector in the left half plane first turns by a quarter.
+    let (mut x, mut y, mut z) = match (x < 0, y < 0) {
+        (false, _) => (x0, y0, 0),
+        (true, false) => (y0, -x0, QUARTER_TURN),
+        (true, true) => (-y0, x0, -QUARTER_TURN),
+    };
+    for (i, arc_tangent) in ARC_TANGENTS.iter().enumerate() {
+        (x, y, z) = if y < 0 {
+            (x - (y >> i), y + (x >> i), z - arc_tangent)
+        } else {
+            (x + (y >> i), y - (x >> i), z + arc_tangent)
+        };
+    }
+    let half = 1 << (GUARD_BITS - 1);
+    Vector { magnitude: ((x + half) >> GUARD_BITS).cast_unsigned(), angle: ((z + half) >> GUARD_BITS) as i32 }
+}
+
+#[derive(LogicBlock)]
+struct Cordic {
+    clock: Signal<In, Clock>,
+    reset: Signal<In, Bit>,
+    start: Signal<In, Bit>,
+    x: Signal<In, Sint<32>>,
+    y: Signal<In, Sint<32>>,
+    magnitude: Signal<Out, Bits<34>>,
+    angle: Signal<Out, Sint<32>>,
+    done: Signal<Out, Bit>,
+    rotating: Register<Bit>,
+    rounding: Register<Bit>,
+    finished: Register<Bit>,
+    iteration: Register<Bits<5>>,
+    origin: Register<Bit>,
+    along: Register<Sint<39>>,
+    across: Register<Sint<39>>,
+    turned: Register<Sint<37>>,
+    magnitude_out: Register<Bits<34>>,
+    angle_out: Register<Sint<32>>,
+    x_wide: Signal<Local, Sint<39>>,
+    y_wide: Signal<Local, Sint<39>>,
+    along_part: Signal<Local, Sint<39>>,
+    across_part: Signal<Local, Sint<39>>,
+    arc_tangent: Signal<Local, Sint<37>>,
+    along_rounded: Signal<Local, Sint<39>>,
+    turned_rounded: Signal<Local, Sint<37>>,
+    along_bits: Signal<Local, Bits<39>>,
+    turned_bits: Signal<Local, Bits<37>>,
+    angle_bits: Signal<Local, Bits<32>>,
+    quarter_turn: Constant<Sint<37>>,
+    arc_tangents: [Constant<Sint<37>>; ITERATIONS as usize],
+}
+
+impl Default for Cordic {
+    fn default() -> Self {
+        Self {
+            clock: Signal::default(),
+            reset: Signal::default(),
+            start: Signal::default(),
+            x: Signal::default(),
+            y: Signal::default(),
+            magnitude: Signal::default(),
+            angle: Signal::default(),
+            done: Signal::default(),
+            rotating: Register::default(),
+            rounding: Register::default(),
+            finished: Register::default(),
+            iteration: Register::default(),
+            origin: Register::default(),
+            along: Register::default(),
+            across: Register::default(),
+            turned: Register::default(),
+            magnitude_out: Register::default(),
+            angle_out: Register::default(),
+            x_wide: Signal::default(),
+            y_wide: Signal::default(),
+            along_part: Signal::default(),
+            across_part: Signal::default(),
+            arc_tangent: Signal::default(),
+            along_rounded: Signal::default(),
+            turned_rounded: Signal::default(),
+            along_bits: Signal::default(),
+            turned_bits: Signal::default(),
+            angle_bits: Signal::default(),
+            quarter_turn: Constant::new(QUARTER_TURN.into()),
+            arc_tangents: ARC_TANGENTS.map(|entry| Constant::new(entry.into())),
+        }
+    }
+}
+
+impl Logic for Cordic {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, rotating, iteration, origin, along, across, turned, magnitude_out, angle_out);
+        clock!(self, clock, rounding, finished);
+        self.rounding.d.next = false;
+        self.finished.d.next = self.rounding.q.val();
+
+        comment!("one micro-rotation: the angle and the part of each component that moves to the other");
+        self.along_part.next = self.along.q.val() >> self.iteration.q.val();
+        self.across_part.next = self.across.q.val() >> self.iteration.q.val();
+        match self.iteration.q.val().index() {
+            0 => self.arc_tangent.next = self.arc_tangents[0].val(),
+            1 => self.arc_tangent.next = self.arc_tangents[1].val(),
+            2 => self.arc_tangent.next = self.arc_tangents[2].val(),
+            3 => self.arc_tangent.next = self.arc_tangents[3].val(),
+            4 => self.arc_tangent.next = self.arc_tangents[4].val(),
+            5 => self.arc_tangent.next = self.arc_tangents[5].val(),
+            6 => self.arc_tangent.next = self.arc_tangents[6].val(),
+            7 => self.arc_tangent.next = self.arc_tangents[7].val(),
+            8 => self.arc_tangent.next = self.arc_tangents[8].val(),
+            9 => self.arc_tangent.next = self.arc_tangents[9].val(),
+            10 => self.arc_tangent.next = self.arc_tangents[10].val(),
+            11 => self.arc_tangent.next = self.arc_tangents[11].val(),
+            12 => self.arc_tangent.next = self.arc_tangents[12].val(),
+            13 => self.arc_tangent.next = self.arc_tangents[13].val(),
+            14 => self.arc_tangent.next = self.arc_tangents[14].val(),
+            15 => self.arc_tangent.next = self.arc_tangents[15].val(),
+            16 => self.arc_tangent.next = self.arc_tangents[16].val(),
+            17 => self.arc_tangent.next = self.arc_tangents[17].val(),
+            18 => self.arc_tangent.next = self.arc_tangents[18].val(),
+            19 => self.arc_tangent.next = self.arc_tangents[19].val(),
+            20 => self.arc_tangent.next = self.arc_tangents[20].val(),
+            21 => self.arc_tangent.next = self.arc_tangents[21].val(),
+            22 => self.arc_tangent.next = self.arc_tangents[22].val(),
+            23 => self.arc_tangent.next = self.arc_tangents[23].val(),
+            24 => self.arc_tangent.next = self.arc_tangents[24].val(),
+            25 => self.arc_tangent.next = self.arc_tangents[25].val(),
+            26 => self.arc_tangent.next = self.arc_tangents[26].val(),
+            27 => self.arc_tangent.next = self.arc_tangents[27].val(),
+            28 => self.arc_tangent.next = self.arc_tangents[28].val(),
+            _ => self.arc_tangent.next = self.arc_tangents[29].val(),
+        }
+
+        comment!("a vector in the left half plane first turns by a quarter: the micro-rotations reach 1.74 rad");
+        self.x_wide.next = signed_bit_cast::<39, 32>(self.x.val()) << 5;
+        self.y_wide.next = signed_bit_cast::<39, 32>(self.y.val()) << 5;
+        if self.rotating.q.val() {
+            if self.across.q.val().get_bit(38) {
+                self.along.d.next = self.along.q.val() - self.across_part.val();
+                self.across.d.next = self.across.q.val() + self.along_part.val();
+                self.turned.d.next = self.turned.q.val() - self.arc_tangent.val();
+            } else {
+                self.along.d.next = self.along.q.val() + self.across_part.val();
+                self.across.d.next = self.across.q.val() - self.along_part.val();
+                self.turned.d.next = self.turned.q.val() + self.arc_tangent.val();
+            }
+            self.iteration.d.next = self.iteration.q.val() + 1;
+            if self.iteration.q.val() == 29 {
+                self.rotating.d.next = false;
+                self.rounding.d.next = true;
+            }
+        } else if self.start.val() & !self.rounding.q.val() {
+            if !self.x.val().get_bit(31) {
+                self.along.d.next = self.x_wide.val();
+                self.across.d.next = self.y_wide.val();
+                self.turned.d.next = 0.into();
+            } else if !self.y.val().get_bit(31) {
+                self.along.d.next = self.y_wide.val();
+                self.across.d.next = -self.x_wide.val();
+                self.turned.d.next = self.quarter_turn.val();
+            } else {
+                self.along.d.next = -self.y_wide.val();
+                self.across.d.next = self.x_wide.val();
+                self.turned.d.next = -self.quarter_turn.val();
+            }
+            self.origin.d.next = (self.x.val() == 0.into()) & (self.y.val() == 0.into());
+            self.iteration.d.next = 0.into();
+            self.rotating.d.next = true;
+        }
+
+        comment!("round the guard bits away");
+        self.along_rounded.next = self.along.q.val() + 16.into();
+        self.turned_rounded.next = self.turned.q.val() + 16.into();
+        self.along_bits.next = unsigned_cast(self.along_rounded.val());
+        self.turned_bits.next = unsigned_cast(self.turned_rounded.val());
+        self.angle_bits.next = self.turned_bits.val().get_bits::<32>(5);
+        if self.rounding.q.val() {
+            self.magnitude_out.d.next = self.along_bits.val().get_bits::<34>(5);
+            self.angle_out.d.next = signed_cast(self.angle_bits.val());
+            if self.origin.q.val() {
+                self.angle_out.d.next = 0.into();
+            }
+        }
+
+        comment!("reset ends what is under way");
+        if self.reset.val() {
+            self.rotating.d.next = false;
+            self.rounding.d.next = false;
+            self.finished.d.next = false;
+        }
+        self.magnitude.next = self.magnitude_out.q.val();
+        self.angle.next = self.angle_out.q.val();
+        self.done.next = self.finished.q.val();
+    }
+}
+
+const DESCRIPTION: Description = Description {
+    module: "sptfra_cordic",
+    banner: "\
+Vectoring CORDIC: magnitude and angle of (x, y).
+
+30 micro-rotations, one a cycle: start in cycle 0 gives done, for one cycle, in cycle 32; a new start is taken
+from that cycle on. The angle is atan2(y, x) in radians with 29 fraction bits, the magnitude 1.6467602581210654
+(the CORDIC gain) times the length, in units of x and y. For max(|x|, |y|) >= 2^29 the angle is within
+2^-26 rad and the magnitude within 2^-26 of itself; (0, 0) gives zeros.",
+    ports: &[
+        ("clock", "rising edge"),
+        ("reset", "synchronous, high: gives up the conversion under way"),
+        ("start", "takes the operands; ignored while a conversion is under way"),
+        ("x", "component along angle 0"),
+        ("y", "component along angle pi/2"),
+        ("magnitude", "valid from done until the next done"),
+        ("angle", "valid from done until the next done"),
+        ("done", "high for one cycle, 32 cycles after start"),
+    ],
+    unused: &["along_bits", "turned_bits"],
+};
+
+pub(super) fn core() -> Result<CoreFile, CoreError> {
+    emit(Cordic::default(), &DESCRIPTION)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TOLERANCE: f64 = 1.0 / 67_108_864.0;
+
+    fn check(x: i32, y: i32) {
+        let answer = vector(x, y);
+        let angle = f64::from(answer.angle) / f64::from(ANGLE_FRACTION_BITS).exp2();
+        let length = CORDIC_GAIN * f64::from(x).hypot(f64::from(y));
+        assert!((angle - f64::from(y).atan2(f64::from(x))).abs() <= TOLERANCE, "{x} {y}: {angle}");
+        assert!((answer.magnitude as f64 - length).abs() <= TOLERANCE * length, "{x} {y}: {answer:?}");
+    }
+
+    #[test]
+    fn tables_hold_the_arc_tangents() {
+        let scale = f64::from(ANGLE_FRACTION_BITS + GUARD_BITS).exp2();
+        let mut gain = 1.0;
+        for (i, &entry) in ARC_TANGENTS.iter().enumerate() {
+            let tangent = (-(i as f64)).exp2();
+            assert_eq!(entry, (tangent.atan() * scale).round() as i64, "{i}");
+            gain *= tangent.hypot(1.0);
+        }
+        assert_eq!(QUARTER_TURN, (std::f64::consts::FRAC_PI_2 * scale).round() as i64);
+        assert!((gain - CORDIC_GAIN).abs() < 1e-15);
+    }
+
+    #[test]
+    fn is_accurate_for_normalised_vectors() {
+        let mut state = 5_u64;
+        for _ in 0..100_000 {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let large = (1 << 29) + (state >> 35) as i32;
+            let large = if state & (1 << 20) == 0 { large } else { -large };
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let small = (state.cast_signed() >> (34 + (state >> 5) % 30)) as i32;
+            check(large, small);
+            check(small, large);
+        }
+    }
+
+    #[test]
+    fn axes_and_origin() {
+        for length in [1 << 29, (1 << 29) + 1, 1 << 30] {
+            for (x, y) in [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)] {
+                check(x * length, y * length);
+            }
+        }
+        assert_eq!(vector(0, 0), Vector { magnitude: 0, angle: 0 });
+    }
+}

@@ -1,0 +1,239 @@
+//! 64-bit fixed point, scaled by a power of two, to float32.
+
+use rust_hdl_core::prelude::*;
+
+use super::emit::{Description, emit};
+use super::register::{Register, comment, dff_setup};
+use super::sint::{Sint, signed_bit_cast, unsigned_cast};
+use super::{CoreError, CoreFile};
+
+/// Enabled cycles from `fixed` to `float_bits`; one conversion a cycle.
+pub const LATENCY: u32 = 4;
+
+/// The float32 bits of `fixed * 2^exponent`, rounded to nearest even.
+///
+/// Zero gives +0. What rounds to less than the smallest normal number (2^-126) becomes a zero of the same sign, what
+/// exceeds the largest finite number an infinity. The port takes `exponent` in -512 ..= 511.
+pub fn convert(fixed: i64, exponent: i32) -> u32 {
+    let magnitude = fixed.unsigned_abs();
+    if magnitude == 0 {
+        return 0;
+    }
+    let sign = u32::from(fixed < 0) << 31;
+    let zeros = magnitude.leading_zeros();
+    let normalised = magnitude << zeros;
+    // The leading one stands for 2^(63 - zeros + exponent); 127 is the bias of float32.
+    let biased = 127 + 63 - i64::from(zeros) + i64::from(exponent);
+    let fraction = (normalised >> 40) as i64 & 0x7f_ffff;
+    let (half, sticky) = (normalised >> 39 & 1 == 1, normalised & ((1 << 39) - 1) != 0);
+    let up = i64::from(half && (sticky || fraction & 1 == 1));
+    // A carry out of the fraction raises the exponent.
+    let rounded = (biased << 23) + fraction + up;
+    match rounded >> 23 {
+        ..=0 => sign,
+        1..=254 => sign | rounded as u32,
+        255.. => sign | f32::INFINITY.to_bits(),
+    }
+}
+
+#[derive(LogicBlock, Default)]
+struct FixedToFloat {
+    clock: Signal<In, Clock>,
+    enable: Signal<In, Bit>,
+    fixed: Signal<In, Sint<64>>,
+    exponent: Signal<In, Sint<10>>,
+    float_bits: Signal<Out, Bits<32>>,
+    negative_m: Register<Bit>,
+    magnitude: Register<Bits<64>>,
+    scale_m: Register<Sint<11>>,
+    negative_c: Register<Bit>,
+    coarse: Register<Bits<64>>,
+    coarse_zeros: Register<Bits<2>>,
+    scale_c: Register<Sint<11>>,
+    negative_n: Register<Bit>,
+    normal: Register<Bits<40>>,
+    sticky_n: Register<Bit>,
+    biased: Register<Bits<11>>,
+    result: Register<Bits<32>>,
+    pattern: Signal<Local, Bits<64>>,
+    by_four: Signal<Local, Bits<64>>,
+    by_one: Signal<Local, Bits<64>>,
+    zeros_four: Signal<Local, Bits<2>>,
+    zeros_one: Signal<Local, Bits<2>>,
+    zeros: Signal<Local, Bits<11>>,
+    scale_bits: Signal<Local, Bits<11>>,
+    sticky: Signal<Local, Bit>,
+    up: Signal<Local, Bit>,
+    rounded: Signal<Local, Bits<34>>,
+    exponent_out: Signal<Local, Bits<11>>,
+    vanishes: Signal<Local, Bit>,
+    overflows: Signal<Local, Bit>,
+    sign: Signal<Local, Bits<32>>,
+}
+
+impl Logic for FixedToFloat {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, negative_m, magnitude, scale_m);
+        dff_setup!(self, clock, negative_c, coarse, coarse_zeros, scale_c);
+        dff_setup!(self, clock, negative_n, normal, sticky_n, biased, result);
+
+        comment!("sign and magnitude; the biased exponent if the leading one were bit 63");
+        self.pattern.next = unsigned_cast(self.fixed.val());
+        if self.enable.val() {
+            self.negative_m.d.next = self.pattern.val().get_bit(63);
+            self.magnitude.d.next = self.pattern.val();
+            if self.pattern.val().get_bit(63) {
+                self.magnitude.d.next = !self.pattern.val() + 1;
+            }
+            self.scale_m.d.next = signed_bit_cast::<11, 10>(self.exponent.val()) + 190.into();
+        }
+
+        comment!("leading zeros in steps of 16");
+        if self.enable.val() {
+            self.negative_c.d.next = self.negative_m.q.val();
+            self.scale_c.d.next = self.scale_m.q.val();
+            if self.magnitude.q.val().get_bits::<16>(48).any() {
+                self.coarse.d.next = self.magnitude.q.val();
+                self.coarse_zeros.d.next = 0.into();
+            } else if self.magnitude.q.val().get_bits::<16>(32).any() {
+                self.coarse.d.next = self.magnitude.q.val() << 16;
+                self.coarse_zeros.d.next = 1.into();
+            } else if self.magnitude.q.val().get_bits::<16>(16).any() {
+                self.coarse.d.next = self.magnitude.q.val() << 32;
+                self.coarse_zeros.d.next = 2.into();
+            } else {
+                self.coarse.d.next = self.magnitude.q.val() << 48;
+                self.coarse_zeros.d.next = 3.into();
+            }
+        }
+
+        comment!("leading zeros in steps of 4, then 1");
+        if self.coarse.q.val().get_bits::<4>(60).any() {
+            self.by_four.next = self.coarse.q.val();
+            self.zeros_four.next = 0.into();
+        } else if self.coarse.q.val().get_bits::<4>(56).any() {
+            self.by_four.next = self.coarse.q.val() << 4;
+            self.zeros_four.next = 1.into();
+        } else if self.coarse.q.val().get_bits::<4>(52).any() {
+            self.by_four.next = self.coarse.q.val() << 8;
+            self.zeros_four.next = 2.into();
+        } else {
+            self.by_four.next = self.coarse.q.val() << 12;
+            self.zeros_four.next = 3.into();
+        }
+        if self.by_four.val().get_bit(63) {
+            self.by_one.next = self.by_four.val();
+            self.zeros_one.next = 0.into();
+        } else if self.by_four.val().get_bit(62) {
+            self.by_one.next = self.by_four.val() << 1;
+            self.zeros_one.next = 1.into();
+        } else if self.by_four.val().get_bit(61) {
+            self.by_one.next = self.by_four.val() << 2;
+            self.zeros_one.next = 2.into();
+        } else {
+            self.by_one.next = self.by_four.val() << 3;
+            self.zeros_one.next = 3.into();
+        }
+        self.zeros.next = (bit_cast::<11, 2>(self.coarse_zeros.q.val()) << 4)
+            | (bit_cast::<11, 2>(self.zeros_four.val()) << 2)
+            | bit_cast::<11, 2>(self.zeros_one.val());
+        self.scale_bits.next = unsigned_cast(self.scale_c.q.val());
+        if self.enable.val() {
+            self.negative_n.d.next = self.negative_c.q.val();
+            self.normal.d.next = self.by_one.val().get_bits::<40>(24);
+            self.sticky_n.d.next = self.coarse.q.val().get_bits::<24>(0).any();
+            self.biased.d.next = self.scale_bits.val() - self.zeros.val();
+        }
+
+        comment!("round to nearest even: a carry out of the fraction raises the exponent above it");
+        self.sticky.next = self.sticky_n.q.val() | self.normal.q.val().get_bits::<15>(0).any();
+        self.up.next = self.normal.q.val().get_bit(15) & (self.sticky.val() | self.normal.q.val().get_bit(16));
+        self.rounded.next = ((bit_cast::<34, 11>(self.biased.q.val()) << 23)
+            | bit_cast::<34, 23>(self.normal.q.val().get_bits::<23>(16)))
+            + bit_cast::<34, 1>(self.up.val().into());
+        self.exponent_out.next = self.rounded.val().get_bits::<11>(23);
+        self.vanishes.next = self.exponent_out.val().get_bit(10) | (self.exponent_out.val() == 0);
+        self.overflows.next = self.exponent_out.val() >= 255;
+        self.sign.next = bit_cast::<32, 1>(self.negative_n.q.val().into()) << 31;
+        if self.enable.val() {
+            if self.vanishes.val() | !self.normal.q.val().get_bit(39) {
+                self.result.d.next = self.sign.val();
+            } else if self.overflows.val() {
+                self.result.d.next = self.sign.val() | 0x7f80_0000;
+            } else {
+                self.result.d.next = self.sign.val() | bit_cast::<32, 31>(self.rounded.val().get_bits::<31>(0));
+            }
+        }
+        self.float_bits.next = self.result.q.val();
+    }
+}
+
+const DESCRIPTION: Description = Description {
+    module: "sptfra_fixed_to_float",
+    banner: "\
+64-bit fixed point to float32: float_bits = fixed * 2^exponent, rounded to nearest even.
+
+Latency 4 enabled cycles (magnitude, two of normalisation, rounding), one value an enabled cycle. Zero gives +0;
+what rounds to less than 2^-126 becomes a zero of its sign, what exceeds the largest finite number an infinity.",
+    ports: &[
+        ("clock", "rising edge"),
+        ("enable", "every stage advances; else all hold"),
+        ("fixed", "two's complement integer"),
+        ("exponent", "power of two it is multiplied by; sampled with fixed"),
+        ("float_bits", "IEEE 754 single precision"),
+    ],
+    unused: &["by_one"],
+};
+
+pub(super) fn core() -> Result<CoreFile, CoreError> {
+    emit(FixedToFloat::default(), &DESCRIPTION)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn next(state: &mut u64) -> u64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        *state ^ (*state >> 29)
+    }
+
+    #[test]
+    fn agrees_with_the_native_conversion() {
+        let mut state = 7;
+        for _ in 0..200_000 {
+            let width = next(&mut state) >> 58;
+            let fixed = next(&mut state).cast_signed() >> width;
+            assert_eq!(convert(fixed, 0), (fixed as f32).to_bits(), "{fixed}");
+        }
+        for fixed in [0, 1, -1, i64::MIN, i64::MAX, (1 << 24) + 1, (1 << 24) + 3, (1 << 25) - 1, -((1 << 40) - 1)] {
+            assert_eq!(convert(fixed, 0), (fixed as f32).to_bits(), "{fixed}");
+        }
+    }
+
+    #[test]
+    fn scales_by_the_exponent() {
+        let mut state = 3;
+        for _ in 0..200_000 {
+            let fixed = next(&mut state).cast_signed() >> 12;
+            let exponent = (next(&mut state) >> 32) as i32 % 200;
+            // 52 bits are exact in an f64, and so is the power of two.
+            let expected = (fixed as f64 * f64::from(exponent).exp2()) as f32;
+            let expected = if expected.is_subnormal() { 0.0_f32.copysign(expected) } else { expected };
+            assert_eq!(convert(fixed, exponent), expected.to_bits(), "{fixed} {exponent}");
+        }
+    }
+
+    #[test]
+    fn flushes_and_overflows_with_the_sign() {
+        assert_eq!(convert(1, -127), 0);
+        assert_eq!(convert(-1, -127), 0x8000_0000);
+        assert_eq!(convert(1, -126), f32::MIN_POSITIVE.to_bits());
+        assert_eq!(convert((1 << 25) - 1, -151), f32::MIN_POSITIVE.to_bits(), "rounds up into the normal range");
+        assert_eq!(convert((1 << 24) - 1, 104), f32::MAX.to_bits());
+        assert_eq!(convert(-1, 128), f32::NEG_INFINITY.to_bits());
+        assert_eq!(convert((1 << 25) - 1, 103), f32::INFINITY.to_bits());
+        assert_eq!(convert(0, 511), 0);
+    }
+}
