@@ -1,0 +1,75 @@
+//! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
+
+mod mcsr;
+mod metadata;
+mod roms;
+mod verilog;
+mod view;
+
+use std::collections::BTreeMap;
+
+use sha2::{Digest, Sha256};
+use thiserror::Error;
+
+use crate::cores::{self, CoreError};
+use crate::plan::Plan;
+
+pub use metadata::{nnz, predicted};
+
+/// Relative path, with forward slashes, to contents.
+pub type FileMap = BTreeMap<String, Vec<u8>>;
+
+/// Why a plan could not be printed. Each is a defect of the generator, not of the design.
+#[derive(Debug, Error)]
+pub enum EmitError {
+    /// A leaf core's Verilog did not come out in the form expected.
+    #[error(transparent)]
+    Core(#[from] CoreError),
+    /// A template does not fit its data.
+    #[error("template {template}: {source}; please report this design")]
+    Template {
+        /// The template.
+        template: String,
+        /// What the engine says.
+        source: tera::Error,
+    },
+    /// Metadata could not be serialised.
+    #[error("metadata.json: {0}; please report this design")]
+    Metadata(#[from] serde_json::Error),
+}
+
+/// Version of the generator, as printed into every file.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Prints every file of the design's folder: `rtl/`, `rom/`, `mcsr/`, `metadata.json`, `design.toml`.
+///
+/// # Errors
+/// [`EmitError`] if a template and its data do not fit each other.
+pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
+    let mut files = FileMap::new();
+    let design = plan.design.to_toml();
+    let hash = design_hash(&design);
+    for core in cores::emit_all()? {
+        files.insert(format!("rtl/{}.v", core.module), core.verilog.into_bytes());
+    }
+    for (module, text) in verilog::render(plan, &hash)? {
+        files.insert(format!("rtl/{module}.v"), text.into_bytes());
+    }
+    roms::insert(plan, &mut files);
+    mcsr::insert(plan, &mut files);
+    files.insert("design.toml".to_owned(), design.into_bytes());
+    let metadata = metadata::metadata(plan, &hash, &files)?;
+    files.insert("metadata.json".to_owned(), metadata);
+    Ok(files)
+}
+
+/// First 16 hexadecimal digits of the SHA-256 of generator version and resolved design.
+pub fn design_hash(resolved_design: &str) -> String {
+    let digest = Sha256::digest(format!("{VERSION}\n{resolved_design}"));
+    digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Name of a ROM file of one lane.
+fn lane_file(name: &str, contents: &str, lane: usize) -> String {
+    format!("rom/{name}_{contents}_lane{lane:02}.mem")
+}

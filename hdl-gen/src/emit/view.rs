@@ -1,0 +1,367 @@
+//! Everything the templates print, computed: they contain text, this contains numbers and widths.
+
+use golden::design::Filter;
+use serde::Serialize;
+
+use crate::cores::cordic;
+use crate::model::{SUMMARY_WORDS, inverse_gain};
+use crate::plan::Plan;
+use crate::plan::format::address_bits;
+use crate::plan::optimum::{
+    CENTROID_FRACTION, FRICTION_FRACTION, HINGE_DROP, LEVEL_SHIFT, LINE_FRACTION, LINE_SUM_BITS, PITCH_FRACTION,
+    SEARCH_STEPS,
+};
+use crate::plan::product::{Block, Epilogue, Product, Vector};
+use crate::plan::timing::{DIRECTION_LATENCY, LINE_LATENCY, OUTPUT_DEPTH, SUMMARY_LATENCY};
+
+/// One sparse product as the templates see it.
+#[derive(Serialize)]
+pub struct ProductView {
+    index: usize,
+    text: String,
+    operand: String,
+    length: u64,
+    wait: u64,
+    /// Verilog expression of the operand's first word in the lanes' memories.
+    base: String,
+    shift: u32,
+    half: u64,
+    /// Verilog slice that drops `shift` bits.
+    slice: String,
+    /// Co's role bits, where the result is Co's.
+    role: Option<String>,
+}
+
+/// The data of all templates. Widths end in `_width`, counts of words in `_depth`.
+#[derive(Serialize)]
+pub struct View {
+    name: String,
+    columns: usize,
+    rows: usize,
+    taxels: usize,
+    filter: String,
+    beats: usize,
+    clock_mhz: f64,
+    latency_cycles: u64,
+    latency_us: String,
+    interval_cycles: u64,
+    interval_us: String,
+    lanes: usize,
+    coefficient_bits: u32,
+    data_bits: u32,
+    issue_cycles: u64,
+    drained: u64,
+    drain_cycles: u64,
+    macs: u64,
+    busy_percent: String,
+    overlap: bool,
+
+    products: Vec<ProductView>,
+    product_width: u32,
+    co_first: usize,
+    op_first: usize,
+    last_product: usize,
+    mark_product: usize,
+    least_shift: u32,
+    count_width: u32,
+
+    lane_width: u32,
+    /// Values that a lane number of `lane_width` bits can have.
+    lane_codes: u32,
+    pending_extended: String,
+    row_width: u32,
+    column_width: u32,
+    index_width: u32,
+    x_width: u32,
+    y_width: u32,
+    word_depth: usize,
+    word_address_width: u32,
+    segment_depth: usize,
+    segment_address_width: u32,
+    operand_depth: usize,
+    operand_address_width: u32,
+    visit_depth: usize,
+    visit_address_width: u32,
+    field_depth: usize,
+    field_width: u32,
+    field_address_width: u32,
+    beat_width: u32,
+    g_total: usize,
+    g_count_width: u32,
+
+    column_extended: String,
+    taxel_extended: String,
+    row_extended: String,
+    g_row_extended: String,
+    row_to_field: String,
+    coefficient_extended: String,
+    operand_extended: String,
+    u_extended: String,
+    stress_data: String,
+    beat_component: String,
+    beat_unused: String,
+
+    stress_lsb: i32,
+    stress_shift: String,
+    stress_bound: i64,
+    weight_lsb: i32,
+    g_lsb: i32,
+    f_lsb: i32,
+    f_exponent: String,
+    weight_base: usize,
+    g30_base: usize,
+    g31_base: usize,
+    g32_base: usize,
+
+    taxel_floor: i64,
+    contact_floor: i64,
+    pitch_x: i64,
+    pitch_y: i64,
+    pitch_fraction: u32,
+    pitch_half: u64,
+    centroid_fraction: u32,
+    direction_latency: u64,
+
+    friction_fraction: u32,
+    line_fraction: u32,
+    line_sum_bits: u32,
+    line_latency: u64,
+    one: i64,
+    dependent_half: u64,
+    hinge_drop: u32,
+    level_exponent: i32,
+    search_steps: u32,
+    search_latency: u64,
+    decision_cycles: u32,
+    cells: usize,
+    elements: usize,
+    element_width: u32,
+    element_shift: u32,
+    u_element: String,
+    last_count: usize,
+    tree_levels: u32,
+    tree_leaves: usize,
+    margin: String,
+    search_unused: String,
+    inverse_gain: i64,
+    angle_fraction: u32,
+    summary_latency: u64,
+    output_depth: u64,
+}
+
+impl View {
+    /// Derives every number and width from the plan.
+    #[allow(clippy::too_many_lines)] // one line a field; splitting it would scatter the list
+    pub fn new(plan: &Plan) -> Self {
+        let design = &plan.design;
+        let hardware = &design.hardware;
+        let schedule = &plan.schedule;
+        let optimum = &plan.optimum;
+        let data = hardware.data_bits;
+        let taxels = plan.taxels();
+        let field_depth = 3 * taxels;
+        let beats = SUMMARY_WORDS + field_depth;
+        let row_width = address_bits(taxels);
+        let operand_depth = plan.slots.len() * taxels;
+        let operand_width = address_bits(operand_depth);
+        let field_width = address_bits(field_depth);
+        let beat_width = address_bits(beats);
+        let f_lsb = plan.formats.g.lsb - FRICTION_FRACTION as i32;
+        let drain_cycles = schedule.drained - (schedule.issue_cycles() - 1);
+        let longest = schedule.windows.iter().map(|window| window.length.max(window.wait)).max().unwrap_or(1);
+        let element_width = address_bits(optimum.elements);
+        let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
+        Self {
+            name: design.name.clone(),
+            columns: design.sensor.columns,
+            rows: design.sensor.rows,
+            taxels,
+            filter: filter_text(&design.algorithm.filter),
+            beats,
+            clock_mhz: hardware.clock_mhz,
+            latency_cycles: plan.timeline.latency_cycles,
+            latency_us: microseconds(plan.timeline.latency_cycles),
+            interval_cycles: plan.timeline.interval_cycles,
+            interval_us: microseconds(plan.timeline.interval_cycles),
+            lanes: hardware.lanes,
+            coefficient_bits: hardware.coefficient_bits,
+            data_bits: data,
+            issue_cycles: schedule.issue_cycles(),
+            drained: schedule.drained,
+            drain_cycles,
+            macs: schedule.windows.iter().map(|window| window.macs).sum(),
+            busy_percent: format!("{:.1}", 100.0 * schedule.busy_fraction()),
+            overlap: plan.timeline.overlap,
+
+            products: (0..plan.products.len()).map(|index| product_view(plan, index, operand_width)).collect(),
+            product_width: address_bits(plan.products.len()),
+            co_first: plan.turn(Block::Co).0,
+            op_first: plan.turn(Block::Op).0,
+            last_product: plan.products.len() - 1,
+            mark_product: plan.turn(Block::Op).0,
+            least_shift: plan.products.iter().map(|product| product.shift).min().unwrap_or(0),
+            count_width: address_bits(longest.max(drain_cycles) as usize + 1),
+
+            lane_width: address_bits(hardware.lanes),
+            lane_codes: 1 << address_bits(hardware.lanes),
+            pending_extended: zero_extend("pending", hardware.lanes as u32, 1 << address_bits(hardware.lanes)),
+            row_width,
+            column_width: row_width,
+            index_width: address_bits(taxels + 1),
+            x_width: address_bits(design.sensor.columns),
+            y_width: address_bits(design.sensor.rows),
+            word_depth: schedule.word_depth(),
+            word_address_width: address_bits(schedule.word_depth()),
+            segment_depth: schedule.segment_depth(),
+            segment_address_width: address_bits(schedule.segment_depth()),
+            operand_depth,
+            operand_address_width: operand_width,
+            visit_depth: schedule.visits.len(),
+            visit_address_width: address_bits(schedule.visits.len()),
+            field_depth,
+            field_width,
+            field_address_width: address_bits(2 * field_depth),
+            beat_width,
+            g_total: 9 * taxels,
+            g_count_width: address_bits(9 * taxels + 1),
+
+            column_extended: zero_extend("column", row_width, operand_width),
+            taxel_extended: zero_extend("taxel", row_width, operand_width),
+            row_extended: zero_extend("result_row", row_width, operand_width),
+            g_row_extended: zero_extend("g_row", row_width, operand_width),
+            row_to_field: zero_extend("result_row", row_width, field_width),
+            coefficient_extended: sign_extend("coefficient", hardware.coefficient_bits, 18),
+            operand_extended: sign_extend("operand", data, 27),
+            u_extended: sign_extend("result_value", data, 27),
+            stress_data: if data == 27 { "fixed".to_owned() } else { format!("fixed[{}:0]", data - 1) },
+            beat_component: slice("beat_component", beat_width, field_width),
+            beat_unused: if beat_width > field_width {
+                format!(", beat_component[{}:{field_width}]", beat_width - 1)
+            } else {
+                String::new()
+            },
+
+            stress_lsb: plan.formats.stress.lsb,
+            stress_shift: signed_literal(10, -plan.formats.stress.lsb),
+            stress_bound: plan.formats.stress.bound,
+            weight_lsb: plan.formats.weight.lsb,
+            g_lsb: plan.formats.g.lsb,
+            f_lsb,
+            f_exponent: signed_literal(10, f_lsb),
+            weight_base: slot_base(plan, Vector::Weight),
+            g30_base: slot_base(plan, Vector::G(3, 0)),
+            g31_base: slot_base(plan, Vector::G(3, 1)),
+            g32_base: slot_base(plan, Vector::G(3, 2)),
+
+            taxel_floor: plan.thresholds.taxel,
+            contact_floor: plan.thresholds.contact,
+            pitch_x: plan.direction.pitch[0],
+            pitch_y: plan.direction.pitch[1],
+            pitch_fraction: PITCH_FRACTION,
+            pitch_half: half(PITCH_FRACTION),
+            centroid_fraction: CENTROID_FRACTION,
+            direction_latency: DIRECTION_LATENCY,
+
+            friction_fraction: FRICTION_FRACTION,
+            line_fraction: LINE_FRACTION,
+            line_sum_bits: LINE_SUM_BITS,
+            line_latency: LINE_LATENCY,
+            one: 1 << FRICTION_FRACTION,
+            dependent_half: half(LINE_FRACTION),
+            hinge_drop: HINGE_DROP,
+            level_exponent: LEVEL_SHIFT,
+            search_steps: SEARCH_STEPS,
+            search_latency: plan.timeline.search_cycles,
+            decision_cycles: optimum.decision_cycles(),
+            cells: optimum.cells,
+            elements: optimum.elements,
+            element_width,
+            element_shift: optimum.elements.trailing_zeros(),
+            u_element: if optimum.elements == 1 { "1'b0".to_owned() } else { slice("u_row", row_width, element_width) },
+            last_count: taxels - (optimum.cells - 1) * optimum.elements,
+            tree_levels: optimum.tree_levels(),
+            tree_leaves: 1 << optimum.tree_levels(),
+            margin: match optimum.level_shift {
+                shift if shift >= 0 => format!("{{8'd0, stress_sum}} << {shift}"),
+                shift => format!("{{8'd0, stress_sum}} >> {}", -shift),
+            },
+            search_unused: if optimum.tree_levels() == 0 { String::new() } else { ", nodes[47:0]".to_owned() },
+            inverse_gain: inverse_gain(),
+            angle_fraction: cordic::ANGLE_FRACTION_BITS,
+            summary_latency: SUMMARY_LATENCY,
+            output_depth: OUTPUT_DEPTH,
+        }
+    }
+}
+
+fn product_view(plan: &Plan, index: usize, operand_width: u32) -> ProductView {
+    let product = &plan.products[index];
+    let window = plan.schedule.windows[index];
+    let matrix = &plan.matrices[product.matrix].name;
+    let base = slot_base(plan, product.operand);
+    let data = plan.design.hardware.data_bits;
+    let high = product.shift + data - 1;
+    // Few bits to drop: what remains is shorter than the result and takes copies of the sign.
+    let slice = match high.checked_sub(47) {
+        Some(missing) if missing > 0 => format!("{{ {{{missing}{{value[47]}}}}, value[47:{}]}}", product.shift),
+        _ => format!("value[{high}:{}]", product.shift),
+    };
+    ProductView {
+        index,
+        text: format!("{matrix} {} -> {}", product.operand.name(), product.result.name()),
+        operand: product.operand.name(),
+        length: window.length,
+        wait: window.wait,
+        base: if product.operand == Vector::Stress {
+            format!("bank ? {operand_width}'d{} : {operand_width}'d0", plan.taxels())
+        } else {
+            format!("{operand_width}'d{base}")
+        },
+        shift: product.shift,
+        half: if product.shift == 0 { 0 } else { half(product.shift) },
+        slice,
+        role: role(product),
+    }
+}
+
+/// `{is A_p b, is g, add A_p b, p - 1, q}`.
+fn role(product: &Product) -> Option<String> {
+    let adds = u8::from(matches!(product.epilogue, Epilogue::Add(_)));
+    match product.result {
+        Vector::Partial(p) => Some(format!("7'b100_{:02b}_00", p - 1)),
+        Vector::G(p, q) => Some(format!("7'b01{adds}_{:02b}_{q:02b}", p - 1)),
+        Vector::Stress | Vector::Weight | Vector::U(_) => None,
+    }
+}
+
+fn slot_base(plan: &Plan, vector: Vector) -> usize {
+    plan.slots.iter().position(|&slot| slot == vector).unwrap_or(0) * plan.taxels()
+}
+
+fn half(shift: u32) -> u64 {
+    1 << (shift - 1)
+}
+
+fn zero_extend(signal: &str, from: u32, to: u32) -> String {
+    if to > from { format!("{{{}'d0, {signal}}}", to - from) } else { signal.to_owned() }
+}
+
+fn sign_extend(signal: &str, from: u32, to: u32) -> String {
+    if to > from { format!("{{ {{{}{{{signal}[{}]}}}}, {signal}}}", to - from, from - 1) } else { signal.to_owned() }
+}
+
+fn slice(signal: &str, from: u32, to: u32) -> String {
+    if from > to { format!("{signal}[{}:0]", to - 1) } else { signal.to_owned() }
+}
+
+fn signed_literal(bits: u32, value: i32) -> String {
+    if value < 0 { format!("-{bits}'sd{}", -value) } else { format!("{bits}'sd{value}") }
+}
+
+fn filter_text(filter: &Filter) -> String {
+    match filter {
+        Filter::None => "none".to_owned(),
+        Filter::F1 { l } => format!("F1 with L = {l}"),
+        Filter::F2 { p } => format!("F2 with p = {p}"),
+    }
+}

@@ -1,0 +1,88 @@
+//! Op's summary in integers: friction components, resultants, friction coefficient, angle.
+
+use crate::cores::{cordic, divider};
+use crate::plan::format::{largest, round_shift};
+use crate::plan::optimum::{FRICTION_FRACTION, LINE_FRACTION};
+
+use super::ByPq;
+use super::optimum::Line;
+
+/// Fraction bits of the CORDIC's inverse gain.
+pub const GAIN_FRACTION: u32 = 26;
+
+/// `1 / gain` of the CORDIC with [`GAIN_FRACTION`] fraction bits.
+pub fn inverse_gain() -> i64 {
+    (f64::from(1_u32 << GAIN_FRACTION) / cordic::CORDIC_GAIN).round() as i64
+}
+
+/// The scalar results of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// `mu_x`, `mu_y` with [`FRICTION_FRACTION`] fraction bits.
+    pub friction: [i64; 2],
+    /// The dependent component left [-2, 2).
+    pub dependent_clipped: bool,
+    /// Resultants, [`FRICTION_FRACTION`] bits finer than g.
+    pub forces: [i64; 3],
+    /// `mu = quotient * 2^exponent`.
+    pub friction_quotient: u64,
+    /// See `friction_quotient`.
+    pub friction_exponent: i32,
+    /// `phi` in radians with 29 fraction bits.
+    pub angle: i32,
+}
+
+impl Summary {
+    pub fn new(sums: &ByPq<i64>, line: &Line, t: i64) -> Self {
+        let exact = round_shift((line.c0 << FRICTION_FRACTION) + line.c1 * t, LINE_FRACTION);
+        let dependent = exact.clamp(-largest(18) - 1, largest(18));
+        let friction = match (line.unknown, line.x_is_free) {
+            (true, _) => [0, 0],
+            (false, true) => [t, dependent],
+            (false, false) => [dependent, t],
+        };
+        let forces = sums.map(|[g0, g1, g2]| (g0 << FRICTION_FRACTION) + friction[0] * g1 + friction[1] * g2);
+        let tangential = Tangential::new(forces[0], forces[1]);
+        let normal = forces[2].unsigned_abs();
+        let normal_bits = bits(normal);
+        let quotient = if tangential.bits == 0 || normal_bits == 0 {
+            0
+        } else {
+            let unit = ((u128::from(normal) << (64 - normal_bits)) >> 32) as u64;
+            divider::divide((tangential.magnitude & ((1 << 38) - 1)) << 26, unit)
+        };
+        Self {
+            friction,
+            dependent_clipped: !line.unknown && dependent != exact,
+            forces,
+            friction_quotient: quotient,
+            friction_exponent: tangential.bits as i32 - normal_bits as i32 - 30,
+            angle: tangential.angle,
+        }
+    }
+}
+
+/// `(F_x, F_y)` in polar form.
+struct Tangential {
+    /// Significant bits of the larger component.
+    bits: u32,
+    /// `sqrt(x^2 + y^2)` of the components scaled to 30 bits, times 64.
+    magnitude: u64,
+    angle: i32,
+}
+
+impl Tangential {
+    fn new(x: i64, y: i64) -> Self {
+        let bits = bits(((x ^ (x >> 63)) | (y ^ (y >> 63))) as u64);
+        let unit = |value: i64| ((value << (63 - bits)) >> 33) as i32;
+        let vector = cordic::vector(unit(x), unit(y));
+        let gain = inverse_gain() as u64;
+        let high = (vector.magnitude >> 17) * gain;
+        let low = (vector.magnitude & ((1 << 17) - 1)) * gain;
+        Self { bits, magnitude: ((high << 17) + low) >> 20, angle: vector.angle }
+    }
+}
+
+fn bits(value: u64) -> u32 {
+    64 - value.leading_zeros()
+}

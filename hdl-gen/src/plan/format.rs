@@ -1,0 +1,86 @@
+//! Fixed-point formats: how many bits a number has and what its last bit is worth.
+
+use serde::Serialize;
+
+/// Width of one SpMV lane's accumulator in bits: that of a DSP48E2.
+pub const ACCUMULATOR_BITS: u32 = 48;
+
+/// A signed fixed-point format: `value = integer * 2^lsb`, with `|integer| <= bound`.
+///
+/// The bound is a proven one: no input within the design's full scale can exceed it, so numbers in this
+/// format need no saturation logic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Format {
+    /// Two's complement width in bits.
+    pub bits: u32,
+    /// Exponent of the least significant bit: one step is worth `2^lsb` of the unit.
+    pub lsb: i32,
+    /// Largest magnitude that can occur, in steps.
+    pub bound: i64,
+}
+
+impl Format {
+    /// The finest format of `bits` bits that holds `±limit` (in the unit of the quantity).
+    pub fn covering(limit: f64, bits: u32) -> Self {
+        let top = largest(bits) as f64;
+        let mut lsb = (limit / top).log2().floor() as i32 - 1;
+        while (limit * pow2(-lsb)).round() > top {
+            lsb += 1;
+        }
+        Self { bits, lsb, bound: (limit * pow2(-lsb)).round() as i64 }
+    }
+
+    /// The worth of one step in the unit of the quantity.
+    pub fn step(self) -> f64 {
+        pow2(self.lsb)
+    }
+}
+
+/// Largest positive integer of a two's complement word of `bits` bits.
+pub const fn largest(bits: u32) -> i64 {
+    (1 << (bits - 1)) - 1
+}
+
+/// `2^exponent` as f64, exact over the whole range of the formats.
+pub fn pow2(exponent: i32) -> f64 {
+    f64::from(exponent).exp2()
+}
+
+/// Bits needed to count from 0 to `count - 1`; at least one.
+pub const fn address_bits(count: usize) -> u32 {
+    if count <= 2 { 1 } else { usize::BITS - (count - 1).leading_zeros() }
+}
+
+/// Rounds `value / 2^shift` to the nearest integer, ties towards plus infinity: what the hardware's
+/// add-half-and-shift does.
+pub const fn round_shift(value: i64, shift: u32) -> i64 {
+    if shift == 0 { value } else { (value + (1 << (shift - 1))) >> shift }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn covering_is_the_finest_format_that_fits() {
+        for (limit, bits) in [(100_000.0, 27), (1.0, 18), (0.37, 16), (3e-9, 27)] {
+            let format = Format::covering(limit, bits);
+            assert!(format.bound <= largest(bits));
+            let finer = (limit * pow2(1 - format.lsb)).round() as i64;
+            assert!(finer > largest(bits), "{limit} at {bits} bits could use a finer step");
+        }
+    }
+
+    #[test]
+    fn rounding_goes_to_the_nearest_step() {
+        assert_eq!(round_shift(5, 1), 3);
+        assert_eq!(round_shift(-5, 1), -2);
+        assert_eq!(round_shift(-7, 2), -2);
+        assert_eq!(round_shift(9, 0), 9);
+    }
+
+    #[test]
+    fn address_widths() {
+        assert_eq!([1, 2, 3, 4, 5, 512, 513].map(address_bits), [1, 1, 2, 2, 3, 9, 10]);
+    }
+}

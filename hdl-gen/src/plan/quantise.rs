@@ -1,0 +1,113 @@
+//! Coefficients as integers: one power-of-two scale per matrix.
+
+use nalgebra_sparse::CsrMatrix;
+
+use super::PlanError;
+use super::format::{ACCUMULATOR_BITS, largest, pow2};
+
+/// Coefficients with fewer significant bits than this reconstruct nothing worth having.
+const FEWEST_USEFUL_BITS: u32 = 6;
+
+/// A sparse matrix with integer coefficients, `value = coefficient * 2^lsb`, rows in order, columns ascending.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct QuantisedMatrix {
+    /// Name of the matrix as stored, for instance `A1` or `-(I + D30)`.
+    pub name: String,
+    /// Per row, the `(column, coefficient)` pairs of the MCSR form. No row is empty.
+    pub rows: Vec<Vec<(u32, i32)>>,
+    /// Exponent of a coefficient's last bit.
+    pub lsb: i32,
+    /// Largest row sum of coefficient magnitudes.
+    pub row_sum: i64,
+}
+
+impl QuantisedMatrix {
+    /// Rounds `matrix` to `bits`-bit coefficients, as finely as both the coefficient width and the 48-bit
+    /// accumulator allow for operands of magnitude up to `operand_bound`.
+    ///
+    /// # Errors
+    /// [`PlanError::CoefficientWidth`] when the accumulator leaves the coefficients less than six bits.
+    pub fn new(name: &str, matrix: &CsrMatrix<f64>, bits: u32, operand_bound: i64) -> Result<Self, PlanError> {
+        let largest_entry = matrix.values().iter().fold(0.0_f64, |top, value| top.max(value.abs()));
+        let top = largest(bits);
+        let mut lsb = (largest_entry / top as f64).log2().floor() as i32 - 1;
+        while (largest_entry * pow2(-lsb)).round() > top as f64 {
+            lsb += 1;
+        }
+        let finest = lsb;
+        loop {
+            let quantised = Self::at(name, matrix, lsb);
+            let fits =
+                i128::from(quantised.row_sum) * i128::from(operand_bound) <= i128::from(largest(ACCUMULATOR_BITS));
+            if fits {
+                return Ok(quantised);
+            }
+            lsb += 1;
+            if (lsb - finest) as u32 + FEWEST_USEFUL_BITS > bits {
+                return Err(PlanError::CoefficientWidth { matrix: name.to_owned(), bits, needed: FEWEST_USEFUL_BITS });
+            }
+        }
+    }
+
+    fn at(name: &str, matrix: &CsrMatrix<f64>, lsb: i32) -> Self {
+        let scale = pow2(-lsb);
+        let rows: Vec<Vec<(u32, i32)>> = matrix
+            .row_iter()
+            .map(|row| {
+                let entries = row.col_indices().iter().zip(row.values());
+                entries.map(|(&column, &value)| (column as u32, (value * scale).round() as i32)).collect()
+            })
+            .collect();
+        let row_sum =
+            rows.iter().map(|row| row.iter().map(|&(_, value)| i64::from(value.abs())).sum()).max().unwrap_or(0);
+        Self { name: name.to_owned(), rows, lsb, row_sum }
+    }
+
+    /// Number of stored coefficients: MACs per product.
+    pub fn nnz(&self) -> usize {
+        self.rows.iter().map(Vec::len).sum()
+    }
+
+    /// Row `row` times `operand` in the accumulator, exactly.
+    pub fn row_product(&self, row: usize, operand: &[i64]) -> i64 {
+        self.rows[row].iter().map(|&(column, value)| i64::from(value) * operand[column as usize]).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra_sparse::CooMatrix;
+
+    fn csr(entries: &[(usize, usize, f64)], size: usize) -> CsrMatrix<f64> {
+        let mut coo = CooMatrix::new(size, size);
+        for &(row, column, value) in entries {
+            coo.push(row, column, value);
+        }
+        CsrMatrix::from(&coo)
+    }
+
+    #[test]
+    fn uses_the_whole_coefficient_width() {
+        let matrix = csr(&[(0, 0, 0.75), (0, 1, -0.1), (1, 1, 0.2)], 2);
+        let quantised = QuantisedMatrix::new("A1", &matrix, 18, 1 << 26).unwrap();
+        assert_eq!(quantised.rows[0][0].1, 98304);
+        assert_eq!(quantised.lsb, -17);
+        assert_eq!(quantised.nnz(), 3);
+    }
+
+    #[test]
+    fn gives_up_bits_before_the_accumulator_overflows() {
+        let dense: Vec<_> = (0..64).map(|column| (0, column, 1.0)).chain((1..64).map(|row| (row, row, 1.0))).collect();
+        let quantised = QuantisedMatrix::new("A1", &csr(&dense, 64), 18, largest(27)).unwrap();
+        assert!(quantised.row_sum * largest(27) <= largest(ACCUMULATOR_BITS));
+        assert_eq!(quantised.lsb, -15);
+    }
+
+    #[test]
+    fn says_when_nothing_useful_is_left() {
+        let dense: Vec<_> = (0..64).flat_map(|row| (0..64).map(move |column| (row, column, 1.0))).collect();
+        let error = QuantisedMatrix::new("A1", &csr(&dense, 64), 8, largest(40)).unwrap_err();
+        assert!(error.to_string().contains("A1"), "{error}");
+    }
+}

@@ -1,0 +1,154 @@
+//! Predicted cycles, exact: every count below is that of the emitted pipelines and is compared with simulation.
+
+use serde::Serialize;
+
+use super::optimum::{OptimumPlan, SEARCH_STEPS};
+use super::product::{Product, Vector};
+use super::schedule::{Schedule, Visit};
+use crate::cores::{cordic, divider};
+
+/// From a beat at the input to its stress at the operand memories' write port: skid buffer and conversion.
+const BEAT_TO_WRITE: u64 = 4;
+/// From the last write of a frame to We's start pulse.
+const WRITE_TO_START: u64 = 2;
+/// From We's start pulse to the first issue.
+const START_TO_ISSUE: u64 = 1;
+/// From the last write of a frame to the next frame's first beat entering the conversion, `CeAn` permitting.
+const WRITE_TO_OPEN: u64 = 1;
+/// From the collector's visit to the last g, to the end of the frame sums.
+const VISIT_TO_SUMS: u64 = 6;
+/// From the frame sums to the line's start, the direction being there.
+const SUMS_TO_LINE: u64 = 1;
+/// From the line's start to its end: products, then two divisions.
+pub const LINE_LATENCY: u64 = 16 + 2 * divider::LATENCY as u64;
+/// From the last write of a frame to its direction: four divisions and two products.
+pub const DIRECTION_LATENCY: u64 = 10 + 4 * (divider::LATENCY as u64 + 1);
+/// From the end of the search to the end of the summary.
+pub const SUMMARY_LATENCY: u64 = 38 + cordic::LATENCY as u64 + divider::LATENCY as u64;
+/// From `output_start` to the first beat leaving Op.
+pub const OUTPUT_DEPTH: u64 = 8;
+/// One more for the skid buffer at the output.
+const OUTPUT_SKID: u64 = 1;
+/// Summary beats of an output frame.
+pub const SUMMARY_BEATS: u64 = 8;
+/// Frames after which the interval is steady.
+const SETTLED: usize = 24;
+
+/// Predicted times of one design, in clock cycles.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Timeline {
+    /// First beat in to last beat out of a single frame, both included, with streams that never wait.
+    pub latency_cycles: u64,
+    /// Distance of consecutive frames' last beats, input always there, sink always ready.
+    pub interval_cycles: u64,
+    /// First to last issue of the lanes.
+    pub spmv_cycles: u64,
+    /// Start to end of the optimum search.
+    pub search_cycles: u64,
+    /// Whether a frame's products may begin while Op still works on the frame before.
+    pub overlap: bool,
+}
+
+/// Fixed durations from which the timeline is computed.
+struct Durations {
+    taxels: u64,
+    beats: u64,
+    drained: u64,
+    sums: u64,
+    search: u64,
+    overlap: bool,
+}
+
+/// Cycles at which a frame passes the stations.
+#[derive(Clone, Copy, Default)]
+struct Frame {
+    first_write: u64,
+    last_write: u64,
+    start: u64,
+    drained: u64,
+    output_start: u64,
+}
+
+impl Timeline {
+    /// Predicts latency and interval.
+    pub fn new(taxels: usize, products: &[Product], schedule: &Schedule, optimum: &OptimumPlan) -> Self {
+        let search = search_cycles(optimum);
+        let is_g = |visit: &&Visit| matches!(products[visit.product as usize].result, Vector::G(..));
+        let sums = schedule.visits.iter().rfind(is_g).map_or(0, |visit| visit.cycle);
+        let first_op_issue = products
+            .iter()
+            .position(|product| matches!(product.result, Vector::U(_)))
+            .map_or(0, |index| schedule.windows[index].start);
+        let mut durations = Durations {
+            taxels: taxels as u64,
+            beats: SUMMARY_BEATS + 3 * taxels as u64,
+            drained: schedule.drained,
+            sums: sums + VISIT_TO_SUMS,
+            search,
+            overlap: false,
+        };
+        // Op is busy from drained to the hand-over of its results; the next frame needs it from its first u on,
+        // and, for the sums, from its last g on.
+        let line_in_time = durations.sums.max(DIRECTION_LATENCY) + SUMS_TO_LINE + LINE_LATENCY <= durations.drained;
+        let busy = 1 + search + SUMMARY_LATENCY + 2;
+        durations.overlap = line_in_time && busy < first_op_issue.min(durations.sums);
+        let mut frames: Vec<Frame> = Vec::with_capacity(SETTLED);
+        for _ in 0..SETTLED {
+            frames.push(durations.next(&frames));
+        }
+        let last_beat = |frame: &Frame| frame.output_start + OUTPUT_DEPTH + OUTPUT_SKID + durations.beats - 1;
+        let first_beat = frames[0].first_write - BEAT_TO_WRITE;
+        Self {
+            latency_cycles: last_beat(&frames[0]) - first_beat + 1,
+            interval_cycles: last_beat(&frames[SETTLED - 1]) - last_beat(&frames[SETTLED - 2]),
+            spmv_cycles: schedule.issue_cycles(),
+            search_cycles: search,
+            overlap: durations.overlap,
+        }
+    }
+}
+
+impl Durations {
+    /// When the frame after `before` passes the stations, if its input waits at the door.
+    fn next(&self, before: &[Frame]) -> Frame {
+        let count = before.len();
+        let back = |n: usize| count.checked_sub(n).map(|index| before[index]);
+        let mut frame = Frame::default();
+        let mut open = 1; // the beat leaves the skid buffer
+        if let Some(previous) = back(1) {
+            open = open.max(previous.last_write + WRITE_TO_OPEN).max(previous.last_write + DIRECTION_LATENCY);
+        }
+        if let Some(older) = back(2) {
+            open = open.max(older.drained + 1);
+        }
+        frame.first_write = open + BEAT_TO_WRITE - 1;
+        frame.last_write = frame.first_write + self.taxels - 1;
+        frame.start = frame.last_write + WRITE_TO_START;
+        if let Some(previous) = back(1) {
+            frame.start = frame.start.max(previous.drained + 2);
+            if !self.overlap {
+                frame.start = frame.start.max(previous.output_start + 2);
+            }
+        }
+        if let Some(older) = back(2) {
+            frame.start = frame.start.max(older.output_start + self.beats + 4);
+        }
+        let first_issue = frame.start + START_TO_ISSUE;
+        frame.drained = first_issue + self.drained;
+        let line_start = (first_issue + self.sums + SUMS_TO_LINE).max(frame.last_write + DIRECTION_LATENCY);
+        let search_start = (frame.drained + 1).max(line_start + LINE_LATENCY);
+        frame.output_start = search_start + self.search + SUMMARY_LATENCY + 1;
+        if let Some(previous) = back(1) {
+            frame.output_start = frame.output_start.max(previous.output_start + self.beats + 2);
+        }
+        frame
+    }
+}
+
+/// Start to end of the search: both passes, the slope bisections, the floor, the level bisections.
+fn search_cycles(optimum: &OptimumPlan) -> u64 {
+    let elements = optimum.elements as u64;
+    let decision = u64::from(optimum.decision_cycles());
+    let steps = u64::from(SEARCH_STEPS);
+    2 * elements + 6 + steps * (elements + decision) + (steps + 1) * (2 * elements + decision)
+}
