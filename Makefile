@@ -1,0 +1,64 @@
+# The menu: `make help`.
+
+.DEFAULT_GOAL := help
+MAKEFLAGS += --no-builtin-rules
+
+CARGO  ?= cargo
+TARGET := $(or $(CARGO_TARGET_DIR),target)
+# The development profile: its dependencies are optimised, a frame is simulated by compiled C++ in any profile, and
+# `make run` and `make test` share one build. A release build would take minutes more to save under a second.
+BIN    := $(TARGET)/debug
+
+DESIGN ?= designs/sensor1-f1-l40.toml
+SCENE  ?= scenes/sensor1-hertz.toml
+FRAMES := $(TARGET)/run/$(basename $(notdir $(SCENE))).csv
+FORCES := $(FRAMES:.csv=.forces.csv)
+
+.PHONY: help
+help: ## This menu
+	@echo 'make TARGET, for example `make run`:'
+	@echo
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@echo
+	@echo 'make run DESIGN=designs/sensor2-none.toml SCENE=scenes/sensor2-disc.toml  for another design and scene'
+
+.PHONY: run
+run: tools build ## Design to Verilog to simulation: 36 frames through the RTL, with a table of the results
+	@mkdir -p $(dir $(FRAMES))
+	@$(BIN)/hdl-gen generate $(DESIGN)
+	@$(BIN)/golden scene $(SCENE) --out $(FRAMES)
+	@echo
+	@$(BIN)/testbench run $(DESIGN) --frames $(FRAMES) --reference $(FORCES)
+
+.PHONY: test
+test: tools lint ## Everything: formatting, lints, all tests of all crates
+	$(CARGO) test --workspace
+
+.PHONY: lint
+lint: ## Formatting and clippy, warnings are errors
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --all-targets -- -D warnings
+
+.PHONY: format
+format: ## Format the Rust sources
+	$(CARGO) fmt --all
+
+.PHONY: build
+build: ## The three commands: golden, hdl-gen, testbench
+	$(CARGO) build --workspace --bins
+
+.PHONY: doc
+doc: ## The crates' documentation, in target/doc
+	$(CARGO) doc --workspace --no-deps
+
+.PHONY: tools
+tools: ## Install Verilator, Yosys and Icarus Verilog where they are missing
+	@tools/install.sh
+
+.PHONY: clean
+clean: ## Remove what was built; the tools in .venv stay
+	$(CARGO) clean
+
+.PHONY: distclean
+distclean: clean ## Remove the tools too
+	rm -rf .venv

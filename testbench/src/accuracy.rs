@@ -1,0 +1,146 @@
+//! The core's answers against the f64 solver and against the true forces.
+
+use golden::metrics::{ErrorSummary, Outcome, field_error};
+use golden::solver::{Solution, Status};
+use serde::Serialize;
+
+use crate::words::Answer;
+
+/// Largest errors against the f64 solver with the same filter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SolverError {
+    /// Over frames and axes: `|F - F_ref| / |F_z,ref|` of the same frame.
+    pub resultant_max: f64,
+    /// Over frames, taxels and axes: `|f - f_ref|` relative to the largest `|f_z,ref|` of the same frame.
+    pub field_max: f64,
+}
+
+impl SolverError {
+    /// Compares answers with solutions, pair by pair. A frame that the solver calls empty and the core does not has an
+    /// infinite error.
+    pub fn new(answers: &[Answer], solutions: &[Solution]) -> Self {
+        answers.iter().zip(solutions).fold(Self::default(), |worst, (answer, solution)| {
+            let field = if answer.field[2].is_empty() { 0.0 } else { field_error(&solution.field, &answer.field) };
+            Self {
+                resultant_max: worst.resultant_max.max(resultant_error(&solution.resultant, &answer.resultant)),
+                field_max: worst.field_max.max(field),
+            }
+        })
+    }
+}
+
+fn resultant_error(reference: &[f64; 3], found: &[f64; 3]) -> f64 {
+    let difference = reference.iter().zip(found).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    if difference == 0.0 { 0.0 } else { difference / reference[2].abs() }
+}
+
+/// Number of frames by status; a frame with several bits set counts under each of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct StatusCounts {
+    /// No bit set.
+    pub good: usize,
+    /// Bit 0.
+    pub no_contact: usize,
+    /// Bit 1.
+    pub direction_unknown: usize,
+    /// Bit 2.
+    pub at_bound: usize,
+    /// Bit 3.
+    pub saturated: usize,
+    /// Bit 4.
+    pub not_finite: usize,
+    /// Bit 5.
+    pub frame_length: usize,
+}
+
+impl StatusCounts {
+    /// Counts the answers.
+    pub fn new(answers: &[Answer]) -> Self {
+        let with = |bit: Status| answers.iter().filter(|answer| Status(answer.status).contains(bit)).count();
+        Self {
+            good: answers.iter().filter(|answer| answer.status == 0).count(),
+            no_contact: with(Status::NO_CONTACT),
+            direction_unknown: with(Status::DIRECTION_UNKNOWN),
+            at_bound: with(Status::AT_BOUND),
+            saturated: with(Status::SATURATED),
+            not_finite: with(Status::NOT_FINITE),
+            frame_length: with(Status::FRAME_LENGTH),
+        }
+    }
+
+    /// The counts that are not zero, with words for people.
+    pub fn present(&self) -> Vec<(&'static str, usize)> {
+        let bits = [
+            self.no_contact,
+            self.direction_unknown,
+            self.at_bound,
+            self.saturated,
+            self.not_finite,
+            self.frame_length,
+        ];
+        let named = Status::NAMED.into_iter().zip(bits).map(|((_, name), count)| (name, count));
+        std::iter::once(("good", self.good)).chain(named).filter(|&(_, count)| count > 0).collect()
+    }
+}
+
+/// Errors of the answers against true forces, in percent.
+pub fn against_truth(answers: &[Answer], truth: &[Outcome]) -> ErrorSummary {
+    let found =
+        answers.iter().map(|answer| Outcome { force: answer.resultant, friction: answer.mu, direction: answer.phi });
+    ErrorSummary::new(&truth.iter().copied().zip(found).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer(status: u32) -> Answer {
+        Answer {
+            status,
+            counter: 0,
+            resultant: [3.0, 0.0, -6.0],
+            mu: 0.5,
+            phi: 0.0,
+            mu_xy: [0.5, 0.0],
+            field: [vec![1.0, 2.0], vec![0.0, 0.0], vec![-2.0, -4.0]],
+        }
+    }
+
+    fn solution() -> Solution {
+        let Answer { resultant, field, .. } = answer(0);
+        Solution { resultant, field, mu: 0.5, ..Solution::zeros(Status(0), 2) }
+    }
+
+    #[test]
+    fn equal_results_have_no_error() {
+        let error = SolverError::new(&[answer(0)], &[solution()]);
+        assert_eq!(error, SolverError { resultant_max: 0.0, field_max: 0.0 });
+    }
+
+    #[test]
+    fn the_worst_frame_counts() {
+        let mut wrong = answer(0);
+        wrong.resultant[1] = 0.6;
+        wrong.field[0][1] = 2.4;
+        let error = SolverError::new(&[answer(0), wrong, answer(0)], &[solution(), solution(), solution()]);
+        assert!((error.resultant_max - 0.1).abs() < 1e-12, "{error:?}");
+        assert!((error.field_max - 0.1).abs() < 1e-12, "{error:?}");
+    }
+
+    #[test]
+    fn statuses_are_counted_by_bit() {
+        let counts = StatusCounts::new(&[answer(0), answer(0b1010), answer(1 << 3), answer(1)]);
+        let expected =
+            StatusCounts { good: 1, no_contact: 1, direction_unknown: 1, saturated: 2, ..Default::default() };
+        assert_eq!(counts, expected);
+        assert_eq!(counts.present()[0], ("good", 1));
+        assert_eq!(counts.present().len(), 4);
+    }
+
+    #[test]
+    fn truth_is_compared_in_percent() {
+        let truth = Outcome { force: [3.6, 0.0, -6.0], friction: 0.6, direction: 0.0 };
+        let summary = against_truth(&[answer(0)], &[truth]);
+        assert!((summary.e_fx.max - 10.0).abs() < 1e-9 && (summary.e_mu.max - 10.0).abs() < 1e-9);
+    }
+}

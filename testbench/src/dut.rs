@@ -1,0 +1,157 @@
+//! A simulated core, one clock cycle at a time.
+
+use std::ffi::{CString, c_char, c_void};
+use std::path::{Path, PathBuf};
+
+use libloading::Library;
+use thiserror::Error;
+
+/// The side of a stream that its sender drives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Beat {
+    /// `tvalid`.
+    pub valid: bool,
+    /// `tdata`.
+    pub data: u32,
+    /// `tlast`.
+    pub last: bool,
+}
+
+/// What drives the core during one clock cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Inputs {
+    /// `aresetn`: false resets.
+    pub run: bool,
+    /// `s_axis_tvalid`, `tdata`, `tlast`.
+    pub source: Beat,
+    /// `m_axis_tready`.
+    pub ready: bool,
+}
+
+/// What the core shows before the rising edge that ends the cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outputs {
+    /// `s_axis_tready`.
+    pub ready: bool,
+    /// `m_axis_tvalid`, `tdata`, `tlast`.
+    pub sink: Beat,
+}
+
+/// Anything with the two streams of a core: the simulated RTL, or a stand-in in a test of the driver.
+pub trait Core {
+    /// One clock cycle.
+    ///
+    /// # Errors
+    /// [`DutError::Failed`] if the simulation stopped.
+    fn step(&mut self, inputs: Inputs) -> Result<Outputs, DutError>;
+}
+
+/// Why a simulated core cannot be used.
+#[derive(Debug, Error)]
+pub enum DutError {
+    /// The shared object cannot be loaded.
+    #[error("cannot load the simulation {}: {source}", .path.display())]
+    Load {
+        /// The shared object.
+        path: PathBuf,
+        /// Why not.
+        source: libloading::Error,
+    },
+    /// `$fatal`, `$stop`, or a ROM file that is missing or longer than its ROM.
+    #[error("the simulation stopped: {0}")]
+    Failed(String),
+    /// The design was built without tracing, or the file cannot be created.
+    #[error("cannot write a trace to {}", .0.display())]
+    Trace(PathBuf),
+}
+
+type New = unsafe extern "C" fn(seed: u32, text: *mut c_char, size: usize) -> *mut c_void;
+type Step = unsafe extern "C" fn(dut: *mut c_void, inputs: u64, text: *mut c_char, size: usize) -> u64;
+type Delete = unsafe extern "C" fn(dut: *mut c_void);
+type OpenTrace = unsafe extern "C" fn(dut: *mut c_void, path: *const c_char) -> i32;
+
+/// The RTL as Verilator compiled it.
+pub struct Dut {
+    handle: *mut c_void,
+    step: Step,
+    delete: Delete,
+    // Dropped after `delete` was called: the functions above live in it.
+    library: Library,
+}
+
+const MESSAGE_SIZE: usize = 512;
+const FAILED: u64 = 1 << 63;
+
+impl Dut {
+    /// Loads a shared object that [`crate::verilate`] built. See [`crate::verilate::Built::load`] for `seed`.
+    ///
+    /// # Errors
+    /// [`DutError`] if it cannot be loaded or a ROM file cannot be read.
+    pub fn load(path: &Path, seed: u32) -> Result<Self, DutError> {
+        let failed = |source| DutError::Load { path: path.to_owned(), source };
+        // SAFETY: the library is our own wrapper, whose functions have exactly these signatures and whose
+        // initialisers touch nothing outside it.
+        let (library, new, step, delete) = unsafe {
+            let library = Library::new(path).map_err(failed)?;
+            let new: New = *library.get(b"dut_new").map_err(failed)?;
+            let step: Step = *library.get(b"dut_step").map_err(failed)?;
+            let delete: Delete = *library.get(b"dut_delete").map_err(failed)?;
+            (library, new, step, delete)
+        };
+        let mut text = [0u8; MESSAGE_SIZE];
+        // SAFETY: `text` is writable for its whole size.
+        let handle = unsafe { new(seed, text.as_mut_ptr().cast(), text.len()) };
+        if handle.is_null() {
+            return Err(DutError::Failed(message(&text)));
+        }
+        Ok(Self { handle, step, delete, library })
+    }
+
+    /// Writes every signal to `path` from now on; the file is complete when the core is dropped.
+    ///
+    /// # Errors
+    /// [`DutError::Trace`] if the design was built without tracing or the file cannot be created.
+    pub fn trace(&mut self, path: &Path) -> Result<(), DutError> {
+        let failed = || DutError::Trace(path.to_owned());
+        let name = CString::new(path.as_os_str().as_encoded_bytes()).map_err(|_| failed())?;
+        // SAFETY: the signature is the wrapper's; the handle is live and the name ends with a zero.
+        let opened = unsafe {
+            let open: OpenTrace = *self.library.get(b"dut_trace").map_err(|_| failed())?;
+            open(self.handle, name.as_ptr())
+        };
+        if opened == 0 { Err(failed()) } else { Ok(()) }
+    }
+}
+
+impl Core for Dut {
+    #[inline]
+    fn step(&mut self, inputs: Inputs) -> Result<Outputs, DutError> {
+        let word = u64::from(inputs.source.data)
+            | u64::from(inputs.source.valid) << 32
+            | u64::from(inputs.source.last) << 33
+            | u64::from(inputs.ready) << 34
+            | u64::from(inputs.run) << 35;
+        let mut text = [const { std::mem::MaybeUninit::<u8>::uninit() }; MESSAGE_SIZE];
+        // SAFETY: the handle is live, and `text` is writable for its whole size.
+        let outputs = unsafe { (self.step)(self.handle, word, text.as_mut_ptr().cast(), MESSAGE_SIZE) };
+        if outputs & FAILED != 0 {
+            // SAFETY: on failure the wrapper wrote a message and its final zero; the rest is never looked at.
+            let text = unsafe { std::ffi::CStr::from_ptr(text.as_ptr().cast()) };
+            return Err(DutError::Failed(text.to_string_lossy().into_owned()));
+        }
+        let bit = |position: u32| outputs >> position & 1 != 0;
+        Ok(Outputs { sink: Beat { data: outputs as u32, valid: bit(32), last: bit(33) }, ready: bit(34) })
+    }
+}
+
+impl Drop for Dut {
+    fn drop(&mut self) {
+        // SAFETY: the handle came from `dut_new` of this library and is not used again.
+        unsafe { (self.delete)(self.handle) }
+    }
+}
+
+fn message(text: &[u8]) -> String {
+    let end = text.iter().position(|&byte| byte == 0).unwrap_or(text.len());
+    String::from_utf8_lossy(&text[..end]).into_owned()
+}

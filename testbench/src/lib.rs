@@ -1,0 +1,16 @@
+//! Simulates the emitted RTL and checks it: Verilator builds it, Rust drives its AXI-Streams, the integer model and
+//! the f64 solver judge the result.
+
+pub mod accuracy;
+pub mod compare;
+pub mod dut;
+pub mod frame_set;
+pub mod progress;
+pub mod report;
+pub mod run;
+pub mod simulate;
+pub mod stream;
+pub mod table;
+pub mod tools;
+pub mod verilate;
+pub mod words;

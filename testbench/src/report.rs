@@ -1,0 +1,149 @@
+//! Everything a run found out, for machines (JSON) and as the source of the table for people.
+
+use std::collections::BTreeMap;
+
+use golden::metrics::ErrorSummary;
+use hdl_gen::plan::Plan;
+use serde::Serialize;
+
+use crate::accuracy::{SolverError, StatusCounts};
+use crate::compare::Mismatch;
+
+/// The published design of the method, for one frame of a 10 × 10 sensor (Pinto-Salamanca et al., Sensors 2024).
+pub const PUBLISHED: Published = Published { latency_cycles: 7_335_000, milliseconds: 58.68, dsp: 568, bram36: 849 };
+
+/// Figures of the published design.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Published {
+    /// Cycles from a frame to its forces.
+    pub latency_cycles: u64,
+    /// The same in time, at 125 MHz.
+    pub milliseconds: f64,
+    /// Multipliers.
+    pub dsp: u32,
+    /// Block memories.
+    pub bram36: u32,
+}
+
+/// What the plan says without simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Predicted {
+    /// First beat in to last beat out, both counted.
+    pub latency_cycles: u64,
+    /// Between the last beats of consecutive frames.
+    pub interval_cycles: u64,
+    /// DSP48E2.
+    pub dsp: usize,
+    /// RAMB36; a RAMB18 counts one half.
+    pub bram36: f64,
+}
+
+/// Times at the design's clock.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Microseconds {
+    /// Of `latency_cycles`.
+    pub latency: f64,
+    /// Of `interval_cycles`.
+    pub interval: f64,
+}
+
+/// One stream mode.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModeReport {
+    /// Which ends pause.
+    pub mode: &'static str,
+    /// Whether every word is the model's.
+    pub bit_exact: bool,
+    /// Words compared.
+    pub words: u64,
+    /// Words that differ.
+    pub mismatches: u64,
+    /// Cycles simulated.
+    pub cycles: u64,
+    /// The first words that differ.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub first_mismatches: Vec<Mismatch>,
+}
+
+/// The result of `testbench run`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// The design's name.
+    pub design: String,
+    /// Sensor, filter, lanes, clock and part in a line for people.
+    #[serde(skip)]
+    pub description: String,
+    /// Where the frames come from.
+    pub frames_from: String,
+    /// Number of frames in the set.
+    pub frames: usize,
+    /// Whether the RTL gave the model's word everywhere, in all stream modes.
+    pub bit_exact: bool,
+    /// Words that differ, over all stream modes.
+    pub mismatches: u64,
+    /// Measured: first beat in to last beat out of a frame alone, both counted.
+    pub latency_cycles: u64,
+    /// Measured: between the last beats of consecutive frames, sent back to back.
+    pub interval_cycles: u64,
+    /// Predicted by the plan.
+    pub predicted: Predicted,
+    /// The measured cycles at the design's clock.
+    pub microseconds: Microseconds,
+    /// Against the f64 solver.
+    pub error: SolverError,
+    /// Against the true forces, in percent; absent if they are not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub true_force_errors: Option<ErrorSummary>,
+    /// Frames by status bit.
+    pub status_counts: StatusCounts,
+    /// By stream mode.
+    pub modes: Vec<ModeReport>,
+    /// DSP48E2, as the plan counts them.
+    pub dsp: usize,
+    /// RAMB36, as the plan counts them.
+    pub bram36: f64,
+    /// Bits in ROM files.
+    pub rom_bits: u64,
+    /// Entries of the 13 matrices after the filter.
+    pub nnz: BTreeMap<&'static str, usize>,
+    /// `SpMV` lanes.
+    pub lanes: usize,
+    /// Fraction of lane cycles that multiply, while an `SpMV` phase runs.
+    pub lanes_busy: f64,
+    /// Clock.
+    pub clock_mhz: f64,
+    /// The published design, for a sensor of its size.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub published: Option<Published>,
+    /// The simulator.
+    pub simulator: String,
+}
+
+/// One line on what the design is.
+pub fn describe(plan: &Plan) -> String {
+    use golden::design::Filter;
+    let (sensor, hardware) = (&plan.design.sensor, &plan.design.hardware);
+    let filter = match plan.design.algorithm.filter {
+        Filter::None => "no filter".to_owned(),
+        Filter::F1 { l } => format!("filter F1 L = {l}"),
+        Filter::F2 { p } => format!("filter F2 p = {p}"),
+    };
+    format!(
+        "{} × {} taxels of {} × {} mm, {} mm deep · {filter} · {} lanes · {} × {} bits · {} MHz",
+        sensor.columns,
+        sensor.rows,
+        sensor.pitch_mm[0],
+        sensor.pitch_mm[1],
+        sensor.depth_mm,
+        hardware.lanes,
+        hardware.coefficient_bits,
+        hardware.data_bits,
+        hardware.clock_mhz
+    )
+}
+
+/// The published figures, if the sensor has the size they were published for.
+pub fn published_for(plan: &Plan) -> Option<Published> {
+    let sensor = &plan.design.sensor;
+    ((sensor.columns, sensor.rows) == (10, 10)).then_some(PUBLISHED)
+}

@@ -1,0 +1,151 @@
+//! One design's frames through the simulated core: all stream modes, then the timing.
+
+use std::path::Path;
+use std::thread;
+
+use crate::compare::Comparison;
+use crate::dut::{Dut, DutError};
+use crate::stream::{Mode, Pacing, StreamError, Traffic, exchange};
+use crate::verilate::Built;
+
+/// Frames sent one at a time for the latency.
+const LATENCY_FRAMES: usize = 3;
+/// Frames sent back to back for the interval: enough to fill every buffer and repeat.
+const INTERVAL_FRAMES: usize = 12;
+
+/// What to send and what must come back.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<'a> {
+    /// The design.
+    pub built: &'a Built,
+    /// Input packets.
+    pub packets: &'a [Vec<u32>],
+    /// The answers of the integer model, one for each packet, its frame counter starting at 0.
+    pub expected: &'a [Vec<u32>],
+    /// Columns of the sensor, to name words.
+    pub columns: usize,
+    /// See [`Traffic::timeout`].
+    pub timeout: u64,
+    /// Decides the pauses and the registers' random start.
+    pub seed: u32,
+    /// Where to write the signals of the free-running mode.
+    pub trace: Option<&'a Path>,
+}
+
+/// One stream mode's result.
+#[derive(Clone, Debug)]
+pub struct ModeResult {
+    /// The mode.
+    pub mode: Mode,
+    /// Cycles simulated.
+    pub cycles: u64,
+    /// Against the model.
+    pub comparison: Comparison,
+}
+
+/// What the simulation showed.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// The modes in the order of [`Mode::all`].
+    pub modes: Vec<ModeResult>,
+    /// The core's answers in the free-running mode.
+    pub answers: Vec<Vec<u32>>,
+    /// First beat in to last beat out of a frame alone, both counted.
+    pub latency_cycles: u64,
+    /// Distance of the frames' last beats, back to back.
+    pub interval_cycles: u64,
+}
+
+impl Simulation {
+    /// True if no word of any mode differs from the model.
+    pub fn is_exact(&self) -> bool {
+        self.modes.iter().all(|result| result.comparison.is_exact())
+    }
+
+    /// Words that differ, over all modes.
+    pub fn mismatches(&self) -> u64 {
+        self.modes.iter().map(|result| result.comparison.mismatches).sum()
+    }
+}
+
+/// Why a simulation gave no result.
+#[derive(Debug, thiserror::Error)]
+pub enum SimulationError {
+    /// There is nothing to send.
+    #[error("no frames to simulate")]
+    NoFrames,
+    /// The core cannot be loaded or traced.
+    #[error(transparent)]
+    Dut(#[from] DutError),
+    /// The streams failed.
+    #[error("{mode}: {source}")]
+    Stream {
+        /// In which mode.
+        mode: &'static str,
+        /// How.
+        source: StreamError,
+    },
+}
+
+/// Runs all modes and the timing, each on a core and a thread of its own. `progress` is called once a frame answered,
+/// in all [`frames_to_simulate`] times.
+///
+/// # Errors
+/// The first [`SimulationError`] in the order of the modes.
+pub fn simulate(job: &Job<'_>, progress: &(impl Fn() + Sync)) -> Result<Simulation, SimulationError> {
+    if job.packets.is_empty() {
+        return Err(SimulationError::NoFrames);
+    }
+    thread::scope(|scope| {
+        let running = Mode::all(u64::from(job.seed)).map(|mode| scope.spawn(move || run_mode(job, mode, progress)));
+        let timing = scope.spawn(|| measure(job, progress));
+        let mut modes = Vec::new();
+        let mut answers = Vec::new();
+        for thread in running {
+            let (result, words) = join(thread)?;
+            if modes.is_empty() {
+                answers = words;
+            }
+            modes.push(result);
+        }
+        let (latency_cycles, interval_cycles) = join(timing)?;
+        Ok(Simulation { modes, answers, latency_cycles, interval_cycles })
+    })
+}
+
+/// How many frames [`simulate`] sends for a set of `frames`.
+pub fn frames_to_simulate(frames: usize) -> u64 {
+    (4 * frames + LATENCY_FRAMES + INTERVAL_FRAMES) as u64
+}
+
+fn join<T>(thread: thread::ScopedJoinHandle<'_, T>) -> T {
+    thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResult, Vec<Vec<u32>>), SimulationError> {
+    let mut core = job.built.load(job.seed)?;
+    if let (Some(path), true) = (job.trace, mode.is_free()) {
+        core.trace(path)?;
+    }
+    let traffic = Traffic::new(job.packets, job.timeout).with_mode(&mode);
+    let outcome = exchange(&mut core, &traffic, |_| progress())
+        .map_err(|source| SimulationError::Stream { mode: mode.name, source })?;
+    let answers: Vec<Vec<u32>> = outcome.exchanges.into_iter().map(|exchange| exchange.words).collect();
+    let comparison = Comparison::new(job.expected, answers.iter().map(Vec::as_slice), job.columns);
+    Ok((ModeResult { mode, cycles: outcome.cycles, comparison }, answers))
+}
+
+/// Latency and interval, on frames repeated as often as needed.
+fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<(u64, u64), SimulationError> {
+    let failed = |source| SimulationError::Stream { mode: "timing", source };
+    let mut core: Dut = job.built.load(job.seed)?;
+    let mut run = |count, pacing| {
+        let packets: Vec<Vec<u32>> = job.packets.iter().cycle().take(count).cloned().collect();
+        let traffic = Traffic::new(&packets, job.timeout).with_pacing(pacing);
+        exchange(&mut core, &traffic, |_| progress()).map_err(failed)
+    };
+    let alone = run(LATENCY_FRAMES, Pacing::OneAtATime)?.latency();
+    let together = run(INTERVAL_FRAMES, Pacing::BackToBack)?.interval();
+    // Both are there: more than one frame was answered, or `run` had failed.
+    Ok((alone.unwrap_or_default(), together.unwrap_or_default()))
+}
