@@ -162,7 +162,7 @@ fn is_pseudo_inverse(name: MatrixName) -> bool {
 fn stored_form(name: MatrixName, matrix: &CsrMatrix<f64>) -> (String, CsrMatrix<f64>) {
     let (label, sign, diagonal) = match name {
         MatrixName::D10 | MatrixName::D20 => (format!("-{}", name.as_str()), -1.0, 0.0),
-        MatrixName::D11 | MatrixName::D22 => (format!("I + {}", name.as_str()), 1.0, 1.0),
+        MatrixName::D11 | MatrixName::D22 => (format!("(I + {})", name.as_str()), 1.0, 1.0),
         MatrixName::D30 => (format!("-(I + {})", name.as_str()), -1.0, -1.0),
         _ => (name.as_str().to_owned(), 1.0, 0.0),
     };
