@@ -113,6 +113,9 @@ pub struct View {
     g31_base: usize,
     g32_base: usize,
 
+    /// Verilog sums of shifted `weight_1`: its products with the taxel's column and row.
+    moment_x: String,
+    moment_y: String,
     taxel_floor: i64,
     contact_floor: i64,
     pitch_x: i64,
@@ -253,6 +256,8 @@ impl View {
             g31_base: slot_base(plan, Vector::G(3, 1)),
             g32_base: slot_base(plan, Vector::G(3, 2)),
 
+            moment_x: shift_and_add("weight_1", "column_1", address_bits(design.sensor.columns)),
+            moment_y: shift_and_add("weight_1", "row_1", address_bits(design.sensor.rows)),
             taxel_floor: plan.thresholds.taxel,
             contact_floor: plan.thresholds.contact,
             pitch_x: plan.direction.pitch[0],
@@ -352,6 +357,12 @@ fn sign_extend(signal: &str, from: u32, to: u32) -> String {
 
 fn slice(signal: &str, from: u32, to: u32) -> String {
     if from > to { format!("{signal}[{}:0]", to - 1) } else { signal.to_owned() }
+}
+
+/// `value * index` as a sum of shifted copies, one for each bit of the index.
+fn shift_and_add(value: &str, index: &str, bits: u32) -> String {
+    let term = |bit| format!("(({value} << {bit}) & {{48{{{index}[{bit}]}}}})");
+    (0..bits).map(term).collect::<Vec<_>>().join("\n        + ")
 }
 
 fn signed_literal(bits: u32, value: i32) -> String {

@@ -9,7 +9,7 @@ use super::product::Vector;
 use super::schedule::Schedule;
 
 /// Memories of fewer bits than this go into LUTs rather than block RAM.
-const DISTRIBUTED_BITS: usize = 2048;
+const DISTRIBUTED_BITS: usize = 4096;
 /// Multipliers outside the lanes and the cells: `CeAn` 1, line 1, summary 1, output 2.
 const SCALAR_MULTIPLIERS: usize = 5;
 /// Shapes of half a RAMB36 as `(depth, width)`.
