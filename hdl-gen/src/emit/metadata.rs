@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 
 use crate::model::SUMMARY_WORDS;
 use crate::plan::Plan;
+use crate::plan::product::Vector;
 
 use super::{EmitError, FileMap, VERSION};
 
@@ -68,10 +69,13 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         })
         .collect();
     let slots: Vec<Value> = plan
-        .slots
-        .iter()
-        .enumerate()
-        .map(|(slot, vector)| json!({ "vector": vector.name(), "first_word": slot * plan.taxels() }))
+        .operands
+        .slots()
+        .into_iter()
+        .map(|(first_word, vectors)| {
+            let names: Vec<String> = vectors.into_iter().map(Vector::name).collect();
+            json!({ "first_word": first_word, "vectors": names })
+        })
         .collect();
     let value = json!({
         "name": plan.design.name,

@@ -7,6 +7,7 @@ use crate::cores::cordic;
 use crate::model::{SUMMARY_WORDS, inverse_gain};
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
+use crate::plan::layout::Place;
 use crate::plan::optimum::{
     CENTROID_FRACTION, FRICTION_FRACTION, HINGE_DROP, LEVEL_SHIFT, LINE_FRACTION, LINE_SUM_BITS, PITCH_FRACTION,
     SEARCH_STEPS,
@@ -108,10 +109,10 @@ pub struct View {
     g_lsb: i32,
     f_lsb: i32,
     f_exponent: String,
-    weight_base: usize,
-    g30_base: usize,
-    g31_base: usize,
-    g32_base: usize,
+    weight_base: String,
+    g30_base: String,
+    g31_base: String,
+    g32_base: String,
 
     /// Verilog sums of shifted `weight_1`: its products with the taxel's column and row.
     moment_x: String,
@@ -165,7 +166,7 @@ impl View {
         let field_depth = 3 * taxels;
         let beats = SUMMARY_WORDS + field_depth;
         let row_width = address_bits(taxels);
-        let operand_depth = plan.slots.len() * taxels;
+        let operand_depth = plan.operands.words();
         let operand_width = address_bits(operand_depth);
         let field_width = address_bits(field_depth);
         let beat_width = address_bits(beats);
@@ -196,7 +197,7 @@ impl View {
             busy_percent: format!("{:.1}", 100.0 * schedule.busy_fraction()),
             overlap: plan.timeline.overlap,
 
-            products: (0..plan.products.len()).map(|index| product_view(plan, index, operand_width)).collect(),
+            products: (0..plan.products.len()).map(|index| product_view(plan, index)).collect(),
             product_width: address_bits(plan.products.len()),
             co_first: plan.turn(Block::Co).0,
             op_first: plan.turn(Block::Op).0,
@@ -251,10 +252,10 @@ impl View {
             g_lsb: plan.formats.g.lsb,
             f_lsb,
             f_exponent: signed_literal(10, f_lsb),
-            weight_base: slot_base(plan, Vector::Weight),
-            g30_base: slot_base(plan, Vector::G(3, 0)),
-            g31_base: slot_base(plan, Vector::G(3, 1)),
-            g32_base: slot_base(plan, Vector::G(3, 2)),
+            weight_base: operand_base(plan, Vector::Weight),
+            g30_base: operand_base(plan, Vector::G(3, 0)),
+            g31_base: operand_base(plan, Vector::G(3, 1)),
+            g32_base: operand_base(plan, Vector::G(3, 2)),
 
             moment_x: shift_and_add("weight_1", "column_1", address_bits(design.sensor.columns)),
             moment_y: shift_and_add("weight_1", "row_1", address_bits(design.sensor.rows)),
@@ -299,11 +300,10 @@ impl View {
     }
 }
 
-fn product_view(plan: &Plan, index: usize, operand_width: u32) -> ProductView {
+fn product_view(plan: &Plan, index: usize) -> ProductView {
     let product = &plan.products[index];
     let window = plan.schedule.windows[index];
     let matrix = &plan.matrices[product.matrix].name;
-    let base = slot_base(plan, product.operand);
     let data = plan.design.hardware.data_bits;
     let high = product.shift + data - 1;
     // Few bits to drop: what remains is shorter than the result and takes copies of the sign.
@@ -317,11 +317,7 @@ fn product_view(plan: &Plan, index: usize, operand_width: u32) -> ProductView {
         operand: product.operand.name(),
         length: window.length,
         wait: window.wait,
-        base: if product.operand == Vector::Stress {
-            format!("bank ? {operand_width}'d{} : {operand_width}'d0", plan.taxels())
-        } else {
-            format!("{operand_width}'d{base}")
-        },
+        base: operand_base(plan, product.operand),
         shift: product.shift,
         half: if product.shift == 0 { 0 } else { half(product.shift) },
         slice,
@@ -339,8 +335,15 @@ fn role(product: &Product) -> Option<String> {
     }
 }
 
-fn slot_base(plan: &Plan, vector: Vector) -> usize {
-    plan.slots.iter().position(|&slot| slot == vector).unwrap_or(0) * plan.taxels()
+/// Verilog expression of a vector's first word in the operand memories; `bank` is that of the frame's stress.
+fn operand_base(plan: &Plan, vector: Vector) -> String {
+    let width = address_bits(plan.operands.words());
+    match plan.operands.place(vector) {
+        Some(Place::Fixed(word)) => format!("{width}'d{word}"),
+        Some(Place::StressBank) => format!("(bank ? {width}'d{} : {width}'d0)", plan.taxels()),
+        // No product reads it, so nothing writes it either.
+        None => format!("{width}'d0"),
+    }
 }
 
 fn half(shift: u32) -> u64 {

@@ -4,6 +4,7 @@
 //! describes it. Nothing here knows Verilog.
 
 pub mod format;
+pub mod layout;
 pub mod optimum;
 pub mod paper;
 pub mod product;
@@ -19,6 +20,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use format::{Format, pow2};
+use layout::OperandLayout;
 use optimum::{DirectionPlan, OptimumPlan};
 use product::{Block, Product, Vector};
 use quantise::QuantisedMatrix;
@@ -143,8 +145,8 @@ pub struct Plan {
     pub direction: DirectionPlan,
     /// Constants of Op.
     pub optimum: OptimumPlan,
-    /// Vectors in each lane's operand memory; the two banks of the stress come first.
-    pub slots: Vec<Vector>,
+    /// Vectors in each lane's operand memory.
+    pub operands: OperandLayout,
     /// The lanes' work, cycle by cycle.
     pub schedule: Schedule,
     /// Predicted cycles.
@@ -177,9 +179,9 @@ impl Plan {
         let taxels = design.sensor.taxels();
         let direction = DirectionPlan::new(design.sensor.pitch_mm);
         let optimum = OptimumPlan::new(taxels, hardware.lanes, &paper.formats);
-        let slots = slots(&paper.products);
+        let operands = OperandLayout::new(&paper.products, taxels);
         let timeline = Timeline::new(taxels, &paper.products, &schedule, &optimum);
-        let resources = Resources::new(design, &slots, &schedule, &optimum);
+        let resources = Resources::new(design, &operands, &schedule, &optimum);
         Ok(Self {
             design: design.clone(),
             condition: Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() },
@@ -190,7 +192,7 @@ impl Plan {
             thresholds,
             direction,
             optimum,
-            slots,
+            operands,
             schedule,
             timeline,
             resources,
@@ -218,16 +220,4 @@ fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> 
     let taxel = ((floor_pa * pow2(-stress.lsb)).round() as i64).max(1);
     let contact = ((floor_pa * design.sensor.taxels() as f64 * pow2(-stress.lsb)).round() as i64).max(1);
     Ok(Thresholds { taxel, contact })
-}
-
-/// Operand memory: two banks of stress, so that one frame arrives while another is worked on, then every other
-/// operand in order of first use.
-fn slots(products: &[Product]) -> Vec<Vector> {
-    let mut slots = vec![Vector::Stress, Vector::Stress];
-    for product in products {
-        if !slots.contains(&product.operand) {
-            slots.push(product.operand);
-        }
-    }
-    slots
 }

@@ -4,8 +4,8 @@ use golden::design::Design;
 use serde::Serialize;
 
 use super::format::address_bits;
+use super::layout::OperandLayout;
 use super::optimum::OptimumPlan;
-use super::product::Vector;
 use super::schedule::Schedule;
 
 /// Memories of fewer bits than this go into LUTs rather than block RAM.
@@ -47,7 +47,7 @@ pub struct Resources {
 
 impl Resources {
     /// Counts what the emitted modules will infer.
-    pub fn new(design: &Design, slots: &[Vector], schedule: &Schedule, optimum: &OptimumPlan) -> Self {
+    pub fn new(design: &Design, operands: &OperandLayout, schedule: &Schedule, optimum: &OptimumPlan) -> Self {
         let taxels = design.sensor.taxels();
         let lanes = design.hardware.lanes;
         let data = design.hardware.data_bits;
@@ -58,7 +58,7 @@ impl Resources {
             memory("columns", lanes, words, address_bits(taxels), true),
             memory("MACs per row", lanes, schedule.segment_depth(), 16, true),
             memory("visits", 1, schedule.visits.len(), address_bits(lanes) + products + address_bits(taxels), true),
-            memory("operands", lanes, slots.len() * taxels, data, false),
+            memory("operands", lanes, operands.words(), data, false),
             memory("A_p b", 1, 3 * taxels, data, false),
             memory("field", 3, 6 * taxels, data, false),
         ];
