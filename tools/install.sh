@@ -49,7 +49,7 @@ if [ -n "$needed$wanted" ]; then
     fi
 fi
 
-have cargo || fail "cargo not found: install Rust from https://rustup.rs, then run this again"
+have cargo || fail "cargo not found: install Rust, then run this again"
 
 # --- Python tools ----------------------------------------------------------------------------------------------------
 
