@@ -16,7 +16,7 @@ use super::product::{Block, Epilogue, Product, Vector};
 use super::quantise::QuantisedMatrix;
 
 /// Cycles from the issue of a row's last MAC to its sum standing in the lane's result register.
-pub const ISSUE_TO_RESULT: u64 = 6;
+pub const ISSUE_TO_RESULT: u64 = 7;
 /// Results that a lane holds until the collector comes.
 pub const RESULT_PLACES: usize = 2;
 /// Cycles from a collector visit to the first issue that may read the value as an operand.

@@ -16,17 +16,17 @@ const START_TO_ISSUE: u64 = 1;
 /// From the last write of a frame to the next frame's first beat entering the conversion, `CeAn` permitting.
 const WRITE_TO_OPEN: u64 = 1;
 /// From the collector's visit to the last g, to the end of the frame sums.
-const VISIT_TO_SUMS: u64 = 6;
+const VISIT_TO_SUMS: u64 = 7;
 /// From the frame sums to the line's start, the direction being there.
 const SUMS_TO_LINE: u64 = 1;
 /// From the line's start to its end: products, then two divisions.
-pub const LINE_LATENCY: u64 = 16 + 2 * divider::LATENCY as u64;
+pub const LINE_LATENCY: u64 = 18 + 2 * divider::LATENCY as u64;
 /// From the last write of a frame to its direction: four divisions and two products.
 pub const DIRECTION_LATENCY: u64 = 10 + 4 * (divider::LATENCY as u64 + 1);
 /// From the end of the search to the end of the summary.
-pub const SUMMARY_LATENCY: u64 = 38 + cordic::LATENCY as u64 + divider::LATENCY as u64;
+pub const SUMMARY_LATENCY: u64 = 40 + cordic::LATENCY as u64 + divider::LATENCY as u64;
 /// From `output_start` to the first beat leaving Op.
-pub const OUTPUT_DEPTH: u64 = 8;
+pub const OUTPUT_DEPTH: u64 = 9;
 /// One more for the skid buffer at the output.
 const OUTPUT_SKID: u64 = 1;
 /// Summary beats of an output frame.
@@ -139,7 +139,7 @@ impl Durations {
         let search_start = (frame.drained + 1).max(line_start + LINE_LATENCY);
         frame.output_start = search_start + self.search + SUMMARY_LATENCY + 1;
         if let Some(previous) = back(1) {
-            frame.output_start = frame.output_start.max(previous.output_start + self.beats + 2);
+            frame.output_start = frame.output_start.max(previous.output_start + self.beats + 3);
         }
         frame
     }
@@ -150,5 +150,5 @@ fn search_cycles(optimum: &OptimumPlan) -> u64 {
     let elements = optimum.elements as u64;
     let decision = u64::from(optimum.decision_cycles());
     let steps = u64::from(SEARCH_STEPS);
-    2 * elements + 6 + steps * (elements + decision) + (steps + 1) * (2 * elements + decision)
+    2 * elements + 7 + steps * (elements + decision) + (steps + 1) * (2 * elements + decision)
 }
