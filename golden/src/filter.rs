@@ -3,19 +3,25 @@
 use nalgebra::DMatrix;
 use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
-use crate::design::Filter;
+use crate::design::{Filter, MatrixFilter};
 use crate::matrices::{Matrices, MatrixName};
 
 /// Why a filter cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FilterError {
+    /// F3 before its search.
+    #[error(
+        "the filter f3 has reference scenes but no choices yet; run `golden choose DESIGN.toml --out RESOLVED.toml` \
+         once and use RESOLVED.toml"
+    )]
+    Unresolved,
     /// Nothing of a matrix is left.
     #[error("the filter {filter} empties matrix {matrix}; use a weaker filter (f1: smaller l, f2: larger p)")]
     EmptyMatrix {
         /// The matrix.
         matrix: MatrixName,
-        /// The filter, as in the design file.
-        filter: String,
+        /// Its filter.
+        filter: MatrixFilter,
     },
     /// Nothing of a row is left, so a taxel would get no result.
     #[error(
@@ -26,8 +32,8 @@ pub enum FilterError {
         matrix: MatrixName,
         /// The first empty row, from 0.
         row: usize,
-        /// The filter, as in the design file.
-        filter: String,
+        /// Its filter.
+        filter: MatrixFilter,
     },
 }
 
@@ -38,15 +44,16 @@ pub struct FilteredMatrices {
 }
 
 impl FilteredMatrices {
-    /// Filters all 13 matrices alike.
+    /// Filters all 13 matrices.
     ///
     /// # Errors
     ///
-    /// [`FilterError`] when a matrix or a row of one loses every entry.
+    /// [`FilterError::Unresolved`] for F3 without choices, others when a matrix or a row of one loses every entry.
     pub fn new(matrices: &Matrices, filter: &Filter) -> Result<Self, FilterError> {
         let thirteen = MatrixName::ALL
             .into_iter()
             .map(|name| {
+                let filter = filter.of(name).ok_or(FilterError::Unresolved)?;
                 let sparse = apply(matrices.get(name), filter);
                 check(name, &sparse, filter)?;
                 Ok(sparse)
@@ -70,43 +77,37 @@ impl FilteredMatrices {
 ///
 /// The counts of Table 1 fix two points on which the text of the paper misleads: `l` of F1 counts the diagonals
 /// removed, and the row maximum of F2 is a signed one, so that a row without a positive entry is kept whole.
-pub fn apply(matrix: &DMatrix<f64>, filter: &Filter) -> CsrMatrix<f64> {
+pub fn apply(matrix: &DMatrix<f64>, filter: MatrixFilter) -> CsrMatrix<f64> {
     let (rows, columns) = matrix.shape();
+    let keeps = rule(matrix, filter);
     let mut kept = CooMatrix::new(rows, columns);
     for row in 0..rows {
-        let threshold = match *filter {
-            Filter::F2 { p } => matrix.row(row).max() / (1000.0 * p),
-            Filter::None | Filter::F1 { .. } => 0.0,
-        };
-        for column in 0..columns {
-            let value = matrix[(row, column)];
-            let keep = match *filter {
-                Filter::None => true,
-                Filter::F1 { l } => row.abs_diff(column) + l < rows,
-                Filter::F2 { .. } => value.abs() >= threshold,
-            };
-            if keep {
-                kept.push(row, column, value);
-            }
+        for column in (0..columns).filter(|&column| keeps(row, column)) {
+            kept.push(row, column, matrix[(row, column)]);
         }
     }
     CsrMatrix::from(&kept)
 }
 
-fn check(name: MatrixName, matrix: &CsrMatrix<f64>, filter: &Filter) -> Result<(), FilterError> {
-    if matrix.nnz() == 0 {
-        return Err(FilterError::EmptyMatrix { matrix: name, filter: describe(filter) });
-    }
-    match matrix.row_iter().position(|row| row.nnz() == 0) {
-        Some(row) => Err(FilterError::EmptyRow { matrix: name, row, filter: describe(filter) }),
-        None => Ok(()),
+/// Whether the filter keeps the entry at `(row, column)` of the matrix.
+pub(crate) fn rule(matrix: &DMatrix<f64>, filter: MatrixFilter) -> impl Fn(usize, usize) -> bool {
+    let thresholds: Vec<f64> = match filter {
+        MatrixFilter::F2 { p } => matrix.row_iter().map(|row| row.max() / (1000.0 * p)).collect(),
+        MatrixFilter::None | MatrixFilter::F1 { .. } => Vec::new(),
+    };
+    move |row, column| match filter {
+        MatrixFilter::None => true,
+        MatrixFilter::F1 { l } => row.abs_diff(column) + l < matrix.nrows(),
+        MatrixFilter::F2 { .. } => matrix[(row, column)].abs() >= thresholds[row],
     }
 }
 
-fn describe(filter: &Filter) -> String {
-    match filter {
-        Filter::None => "none".to_owned(),
-        Filter::F1 { l } => format!("f1 with l = {l}"),
-        Filter::F2 { p } => format!("f2 with p = {p}"),
+fn check(name: MatrixName, matrix: &CsrMatrix<f64>, filter: MatrixFilter) -> Result<(), FilterError> {
+    if matrix.nnz() == 0 {
+        return Err(FilterError::EmptyMatrix { matrix: name, filter });
+    }
+    match matrix.row_iter().position(|row| row.nnz() == 0) {
+        Some(row) => Err(FilterError::EmptyRow { matrix: name, row, filter }),
+        None => Ok(()),
     }
 }

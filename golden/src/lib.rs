@@ -21,10 +21,12 @@
 //! (millimetres only in files); stress is positive in tension and **negative in compression**; `f_z < 0`
 //! presses on the sensor and `(f_x, f_y)` is the force the object exerts along the surface.
 
+pub mod choose;
 pub mod design;
 pub mod filter;
 pub mod forces;
 pub mod frames;
+pub mod half_space;
 pub mod kernel;
 pub mod matrices;
 pub mod metrics;

@@ -1,19 +1,11 @@
-//! The `golden` command: frames with known forces, and forces from frames.
+//! The `golden` command: frames with known forces, forces from frames, and the choice of filters.
 
-use std::error::Error;
-use std::path::{Path, PathBuf};
+mod commands;
+
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use indicatif::ProgressBar;
-use serde::Serialize;
-
-use golden::design::Design;
-use golden::forces;
-use golden::frames;
-use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
-use golden::scene::Scene;
-use golden::solver::{Solution, Solver, Status};
 
 /// Reference solver and ground truth for three-axis tactile sensing from normal stress.
 #[derive(Parser)]
@@ -29,11 +21,12 @@ enum Command {
     ///
     /// The frames go to FRAMES.csv, one frame a line, and the true forces beside it, to FRAMES.forces.csv, in the
     /// columns of `golden solve`.
+    #[command(after_long_help = SCENE_FILE)]
     Scene {
         /// Scene file (TOML).
         scene: PathBuf,
         /// Where to write the frames (CSV).
-        #[arg(long)]
+        #[arg(long, value_name = "FRAMES.csv")]
         out: PathBuf,
         /// Report as JSON.
         #[arg(long)]
@@ -43,177 +36,111 @@ enum Command {
     ///
     /// A line of FORCES.csv has, for one frame: status, `F_x`, `F_y`, `F_z`, mu, phi, `mu_x`, `mu_y`, and with --field then
     /// `f_x`, `f_y`, `f_z` of each taxel. Newtons and radians.
+    #[command(after_long_help = ALGORITHM)]
     Solve {
         /// Design file (TOML).
         design: PathBuf,
         /// Frames (CSV): one frame a line, stresses in pascals, compression negative.
-        #[arg(long)]
+        #[arg(long, value_name = "FRAMES.csv")]
         frames: PathBuf,
         /// Where to write the forces (CSV).
-        #[arg(long)]
+        #[arg(long, value_name = "FORCES.csv")]
         out: PathBuf,
         /// Write the forces of each taxel too.
         #[arg(long)]
         field: bool,
         /// True forces of the same frames (CSV, as `golden scene` writes them), to report the errors.
-        #[arg(long)]
+        #[arg(long, value_name = "FORCES.csv")]
         reference: Option<PathBuf>,
         /// Report as JSON.
         #[arg(long)]
         json: bool,
     },
+    /// Choose the filter of each matrix for a design with filter f3.
+    ///
+    /// Tries, one matrix at a time, the bands f1 with l = 10 to 90 and the row thresholds f2 with p = 10 to 90 on the
+    /// frames of the design's reference scenes, and chooses the one with the least product of friction error and entries
+    /// kept. The design with the choices goes to RESOLVED.toml, from which hardware is generated without a search.
+    #[command(after_long_help = CHOOSE_FILES)]
+    Choose {
+        /// Design file (TOML).
+        design: PathBuf,
+        /// Where to write the design with the choices (TOML).
+        #[arg(long, value_name = "RESOLVED.toml")]
+        out: PathBuf,
+        /// Where to write what was measured of every candidate (CSV).
+        #[arg(long, value_name = "CANDIDATES.csv")]
+        csv: Option<PathBuf>,
+        /// Report as JSON, with every candidate.
+        #[arg(long)]
+        json: bool,
+    },
 }
+
+const SCENE_FILE: &str = r#"Scene file:
+  [sensor]                          # as in the design file
+  columns = 10
+  rows = 10
+  pitch_mm = [4.0, 2.0]
+  depth_mm = 3.0
+
+  [medium]
+  kind = "bonded_layer"             # on a rigid ground, with poisson; or "half_space" without
+  poisson = 0.49
+
+  [[contact]]                       # one table for each contact; their stresses add up
+  shape = "hertz"                   # ellipse: semi_axes_mm; "rectangle", uniform: sides_mm;
+  semi_axes_mm = [7.0, 7.0]         # "disc", uniform, and "punch", flat and rigid: radius_mm
+  centre_mm = [18.0, 9.0]           # from the first taxel
+  normal_force_n = 6.0              # positive when pressing
+  friction = 0.5                    # tangential over normal force
+  direction_deg = 30.0              # of the tangential force, from x towards y
+
+  [sweep]                           # optional: one frame for each direction, which is
+  direction_deg = { from = 0, to = 350, step = 10 } # added to those of the contacts
+
+  [sensor_errors]                   # optional, and so is every key; applied in this order
+  seed = 1                          # of gains and noise
+  gain_spread = 0.01                # standard deviation of the taxels' gains around 1
+  noise = 0.002                     # standard deviation, share of the frame's largest stress
+  quantisation_bits = 12            # of a converter with the range full_scale_pa
+  full_scale_pa = 100000.0
+  dead = [37]                       # taxels that read 0
+  saturated = [58]                  # taxels that read minus full_scale_pa"#;
+
+const ALGORITHM: &str = r#"In the design file, what changes the result:
+  [algorithm]
+  kernel = "point"                  # point forces, as in the paper; friction is the better one. Or "cell": forces
+                                    # spread over a cell of the grid; the normal force is right without a gain
+  filter = { kind = "none" }        # or { kind = "f1", l = 40 }: l diagonals removed on either side;
+                                    # { kind = "f2", p = 30 }: kept is |B_ij| >= row maximum / (1000 p);
+                                    # { kind = "f3", ... }: a filter for each matrix, see `golden choose --help`
+  noise_floor_pa = 1.5              # stress below which a taxel tells nothing; full scale / 65536 if absent"#;
+
+const CHOOSE_FILES: &str = r#"In the design file:
+  [algorithm]
+  filter = { kind = "f3", scenes = ["../scenes/sensor1-hertz.toml"] } # relative to the design file
+
+In RESOLVED.toml, besides:
+  [algorithm.filter.choices]        # "none", "f1 l=40" or "f2 p=30" for each of the 13 matrices
+  C33inv = "f2 p=30"
+
+Columns of CANDIDATES.csv: matrix, filter, entries kept (Nnz), error of the friction coefficient in
+percent (e_mu, mean over the frames), e_mu * Nnz, and 1 for the candidate chosen, else 0."#;
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Scene { scene, out, json } => make_frames(&scene, &out, json),
+        Command::Scene { scene, out, json } => commands::scene::run(&scene, &out, json),
         Command::Solve { design, frames, out, field, reference, json } => {
-            solve(&design, &frames, &out, field, reference.as_deref(), json)
+            commands::solve::run(&design, &frames, &out, field, reference.as_deref(), json)
         }
+        Command::Choose { design, out, csv, json } => commands::choose::run(&design, &out, csv.as_deref(), json),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::FAILURE
-        }
-    }
-}
-
-/// Refuses an output that is one of the inputs.
-fn keep_apart(out: &Path, inputs: &[&Path]) -> Result<(), String> {
-    let same = |input: &&&Path| match (out.canonicalize(), input.canonicalize()) {
-        (Ok(out), Ok(input)) => out == input,
-        _ => false,
-    };
-    match inputs.iter().find(same) {
-        Some(input) => Err(format!(
-            "{}: the output would overwrite the input {}; choose another name",
-            out.display(),
-            input.display()
-        )),
-        None => Ok(()),
-    }
-}
-
-#[derive(Serialize)]
-struct SceneReport<'a> {
-    frames: usize,
-    taxels: usize,
-    frames_file: &'a Path,
-    forces_file: &'a Path,
-}
-
-fn make_frames(scene: &Path, out: &Path, json: bool) -> Result<(), Box<dyn Error>> {
-    let forces_file = forces::reference_path(out);
-    keep_apart(out, &[scene])?;
-    keep_apart(&forces_file, &[scene])?;
-    let scene = Scene::load(scene)?;
-    let made = scene.frames()?;
-    if forces_file == out {
-        return Err(
-            format!("{}: the true forces would overwrite the frames; choose another name", out.display()).into()
-        );
-    }
-    // The forces first: a frame file always has its forces beside it.
-    forces::write_reference(&forces_file, &made)?;
-    let stresses: Vec<Vec<f64>> = made.into_iter().map(|frame| frame.stress).collect();
-    frames::write_frames(out, &stresses)?;
-    if json {
-        let report = SceneReport {
-            frames: stresses.len(),
-            taxels: scene.sensor.taxels(),
-            frames_file: out,
-            forces_file: &forces_file,
-        };
-        println!("{}", serde_json::to_string_pretty(&report)?);
-    } else {
-        println!("{} frames of {} taxels in {}", stresses.len(), scene.sensor.taxels(), out.display());
-        println!("their true forces in {}", forces_file.display());
-    }
-    Ok(())
-}
-
-#[derive(Serialize)]
-struct StatusCount {
-    status: u32,
-    meaning: String,
-    frames: usize,
-}
-
-#[derive(Serialize)]
-struct SolveReport<'a> {
-    design: &'a str,
-    frames: usize,
-    forces_file: &'a Path,
-    status_counts: Vec<StatusCount>,
-    /// Errors against the true forces, in percent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    errors: Option<ErrorSummary>,
-}
-
-fn solve(
-    design: &Path,
-    frames: &Path,
-    out: &Path,
-    with_field: bool,
-    reference: Option<&Path>,
-    json: bool,
-) -> Result<(), Box<dyn Error>> {
-    let inputs = [Some(design), Some(frames), reference];
-    keep_apart(out, &inputs.into_iter().flatten().collect::<Vec<_>>())?;
-    let design = Design::load(design)?;
-    let frames = frames::read_frames(frames, design.sensor.taxels())?;
-    let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
-    let solver = Solver::new(&design)?;
-    // Draws on a terminal only.
-    let progress = ProgressBar::new(frames.len() as u64);
-    let solutions = frames
-        .iter()
-        .map(|frame| {
-            progress.inc(1);
-            solver.solve(frame)
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    progress.finish_and_clear();
-    forces::write_solutions(out, &solutions, with_field)?;
-
-    let report = SolveReport {
-        design: &design.name,
-        frames: solutions.len(),
-        forces_file: out,
-        status_counts: count_statuses(&solutions),
-        errors: truth.map(|truth| {
-            let found = solutions.iter().map(Outcome::from);
-            ErrorSummary::new(&truth.into_iter().zip(found).collect::<Vec<_>>())
-        }),
-    };
-    if json {
-        println!("{}", serde_json::to_string_pretty(&report)?);
-    } else {
-        print_report(&report);
-    }
-    Ok(())
-}
-
-fn count_statuses(solutions: &[Solution]) -> Vec<StatusCount> {
-    let mut words: Vec<u32> = solutions.iter().map(|solution| solution.status.0).collect();
-    words.sort_unstable();
-    words
-        .chunk_by(|a, b| a == b)
-        .map(|equal| StatusCount { status: equal[0], meaning: Status(equal[0]).to_string(), frames: equal.len() })
-        .collect()
-}
-
-fn print_report(report: &SolveReport) {
-    println!("{}: forces of {} frames in {}", report.design, report.frames, report.forces_file.display());
-    for count in &report.status_counts {
-        println!("  {:>6} frames: {}", count.frames, count.meaning);
-    }
-    if let Some(errors) = &report.errors {
-        println!("errors in %       max  std. error");
-        for (name, spread) in ERROR_NAMES.iter().zip(errors.spreads()) {
-            println!("  {name:<8} {:>10.2}  {:>10.2}", spread.max, spread.standard_error);
         }
     }
 }

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use nalgebra::DMatrix;
 
-use crate::design::Sensor;
+use crate::design::{Kernel, Sensor};
 use crate::kernel;
 
 /// Names of the 13 matrices, in the order of Table 1 of the paper.
@@ -142,13 +142,13 @@ pub struct Matrices {
 const SINGULAR: f64 = 1.0 / f64::EPSILON;
 
 impl Matrices {
-    /// Computes all matrices of a sensor (Pinto-Salamanca et al., Sensors 2024, Eqs. 4, 7 and 14).
+    /// Computes all matrices of a sensor for a load kernel (Pinto-Salamanca et al., Sensors 2024, Eqs. 4, 7 and 14).
     ///
     /// # Errors
     ///
     /// [`MatrixError::Singular`] when C33 or `A A^T` is singular to working precision.
-    pub fn new(sensor: &Sensor) -> Result<Self, MatrixError> {
-        let [c31, c32, c33] = kernel::point_matrices(sensor);
+    pub fn new(sensor: &Sensor, kernel: Kernel) -> Result<Self, MatrixError> {
+        let [c31, c32, c33] = kernel::matrices(sensor, kernel);
         let taxels = sensor.taxels();
         let singular = |matrix, condition| MatrixError::Singular {
             matrix,

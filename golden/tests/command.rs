@@ -169,6 +169,82 @@ fn other_bad_input() {
 }
 
 #[test]
+fn choose_then_solve() {
+    let folder = TempDir::new().unwrap();
+    let [design, resolved, table] = ["pad.toml", "resolved.toml", "c.csv"].map(|name| folder.path().join(name));
+    let scene = "[medium]\nkind = \"half_space\"\n[[contact]]\nshape = \"rectangle\"\nsides_mm = [7.0, 6.0]\n\
+        centre_mm = [6.0, 4.0]\nnormal_force_n = 2.0\nfriction = 0.4\n\
+        [sweep]\ndirection_deg = { from = 0, to = 315, step = 45 }\n";
+    let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+    fs::write(folder.path().join("scene.toml"), format!("{sensor}{scene}")).unwrap();
+    let filter = "[algorithm]\nfilter = { kind = \"f3\", scenes = [\"scene.toml\"] }\n";
+    fs::write(&design, format!("name = \"pad\"\n{sensor}{filter}")).unwrap();
+
+    let (_frames_folder, frames) = folder_with(&row("-900"));
+    let out = folder.path().join("out.csv");
+    let solve = |design: &Path| golden(&["solve", text(design), "--frames", text(&frames), "--out", text(&out)]);
+    let refused = solve(&design);
+    assert!(!refused.status.success());
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(said.contains("golden choose") && said.lines().count() == 1, "{said}");
+
+    let output = golden(&["choose", text(&design), "--out", text(&resolved), "--csv", text(&table), "--json"]);
+    assert!(output.status.success(), "{output:?}");
+    assert!(output.stderr.is_empty(), "progress belongs on a terminal");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&report["design"], &report["frames"]), (&"pad".into(), &8.into()));
+    let candidates = report["candidates"].as_array().unwrap();
+    let lines = fs::read_to_string(&table).unwrap();
+    assert_eq!(lines.lines().count(), 1 + 13 * 10);
+    assert_eq!(lines.lines().next(), Some("matrix,filter,nnz,e_mu,e_mu_nnz,chosen"));
+    for (line, candidate) in lines.lines().skip(1).zip(candidates) {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(
+            (cells[0], cells[1]),
+            (candidate["matrix"].as_str().unwrap(), candidate["filter"].as_str().unwrap())
+        );
+        assert_eq!(cells[2].parse::<u64>().unwrap(), candidate["nnz"].as_u64().unwrap());
+        assert_eq!(cells[5] == "1", candidate["chosen"].as_bool().unwrap());
+        let choice = format!("\n{} = \"{}\"\n", cells[0], cells[1]);
+        assert_eq!(fs::read_to_string(&resolved).unwrap().contains(&choice), cells[5] == "1", "{choice}");
+    }
+    assert!(solve(&resolved).status.success());
+
+    // From the resolved design, to another folder: the scenes are found from there, and the choices are the same.
+    let elsewhere = folder.path().join("elsewhere");
+    fs::create_dir(&elsewhere).unwrap();
+    let again = elsewhere.join("again.toml");
+    let output = golden(&["choose", text(&resolved), "--out", text(&again)]);
+    assert!(output.status.success(), "{output:?}");
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("8 frames") && said.contains("all together"), "{said}");
+    let moved = fs::read_to_string(&again).unwrap();
+    assert!(moved.contains("\"../scene.toml\""), "{moved}");
+    assert_eq!(moved.replace("../scene.toml", "scene.toml"), fs::read_to_string(&resolved).unwrap());
+
+    for (arguments, part) in [
+        (vec!["choose", text(&design), "--out", text(&design)], "overwrite the input"),
+        (vec!["choose", text(&design), "--out", text(&again), "--csv", text(&again)], "two names"),
+        (vec!["choose", text(&repository("designs/small.toml")), "--out", text(&again)], "nothing to choose"),
+    ] {
+        let output = golden(&arguments);
+        assert!(!output.status.success(), "{arguments:?}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(part) && said.lines().count() == 1, "{said}");
+    }
+    assert_eq!(fs::read_to_string(&again).unwrap(), moved);
+}
+
+#[test]
+fn the_scene_file_of_the_help_is_one() {
+    let output = golden(&["scene", "--help"]);
+    let help = String::from_utf8(output.stdout).unwrap();
+    let scene = help.split("Scene file:\n").nth(1).unwrap();
+    let frames = golden::scene::Scene::from_toml(scene, "help").unwrap().frames().unwrap();
+    assert_eq!(frames.len(), 36);
+}
+
+#[test]
 fn an_old_file_is_replaced_whole() {
     let (folder, frames) = folder_with(&row("-900"));
     let out = folder.path().join("out.csv");

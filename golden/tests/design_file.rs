@@ -46,13 +46,56 @@ fn whole_numbers_do_where_reals_are_asked_for() {
 #[test]
 fn the_resolved_design_reads_back_the_same() {
     for filter in ["{ kind = \"none\" }", "{ kind = \"f1\", l = 7 }", "{ kind = \"f2\", p = 0.3 }"] {
-        let text =
-            format!("{MINIMAL}[algorithm]\nfilter = {filter}\n[hardware]\nfull_scale_pa = 12345.678\nlanes = 3\n");
+        let text = format!(
+            "{MINIMAL}[algorithm]\nkernel = \"cell\"\nfilter = {filter}\n[hardware]\nfull_scale_pa = 12345.678\nlanes = 3\n"
+        );
         let design = Design::from_toml(&text, "pad.toml").unwrap();
         let resolved = design.to_toml();
         let again = Design::from_toml(&resolved, "resolved").unwrap();
         assert_eq!(design, again);
         assert_eq!(again.to_toml(), resolved);
+    }
+}
+
+/// The minimal file with F3 and a filter for each matrix, in which `line` replaces that of A2.
+fn with_choices(line: &str) -> String {
+    let names = "C33inv A1 A2 A3 D10 D11 D12 D20 D21 D22 D30 D31 D32";
+    let lines: String = names.split(' ').map(|name| format!("{name} = \"f2 p=2.5\"\n")).collect();
+    let lines = lines.replace("A2 = \"f2 p=2.5\"", line);
+    format!("{MINIMAL}[algorithm.filter]\nkind = \"f3\"\n[algorithm.filter.choices]\n{lines}")
+}
+
+#[test]
+fn a_filter_for_each_matrix_reads_back_the_same() {
+    for line in ["A2 = \"f1 l=40\"", "A2 = \"none\"", "A2 = \" f2  p=0.25 \""] {
+        let design = Design::from_toml(&with_choices(line), "pad.toml").unwrap();
+        let resolved = design.to_toml();
+        assert_eq!(Design::from_toml(&resolved, "resolved").unwrap(), design, "{resolved}");
+        let text = line.trim_start_matches("A2 = ").replace("\" f2  p=0.25 \"", "\"f2 p=0.25\"");
+        assert!(resolved.contains(&format!("A2 = {text}\n")), "{resolved}");
+    }
+    let scenes = "filter = { kind = \"f3\", scenes = [\"../a \\\"b\\\".toml\", 'c\\d.toml'] }";
+    let design = Design::from_toml(&format!("{MINIMAL}[algorithm]\n{scenes}\n"), "pad.toml").unwrap();
+    let again = Design::from_toml(&design.to_toml(), "resolved").unwrap();
+    assert_eq!(again, design);
+    let expected = vec!["../a \"b\".toml".to_owned(), "c\\d.toml".to_owned()];
+    assert_eq!(again.algorithm.filter, Filter::F3 { scenes: expected, choices: None });
+}
+
+#[test]
+fn choices_that_are_none() {
+    for (line, parts) in [
+        ("", ["algorithm.filter.choices.A2", "missing", "golden choose"]),
+        ("A2 = \"f3\"", ["algorithm.filter.choices.A2", "f3", "f1 l=40"]),
+        ("A2 = \"f1 p=3\"", ["algorithm.filter.choices.A2", "f1 p=3", "f2 p=30"]),
+        ("A2 = \"f1 l=-3\"", ["algorithm.filter.choices.A2", "f1 l=-3", "f2 p=30"]),
+        ("A2 = \"f1 l=79\"", ["algorithm.filter.choices.A2", "is 79", "1 to 78"]),
+        ("A2 = \"f2 p=0\"", ["algorithm.filter.choices.A2", "is 0", "greater than 0"]),
+        ("A2 = \"f2 p=NaN\"", ["algorithm.filter.choices.A2", "NaN", "greater than 0"]),
+        ("A2 = \"none\"\nA4 = \"none\"", ["algorithm.filter.choices.A4", "A4", "names are C33inv"]),
+        ("A2 = 30", ["A2", "line", "string"]),
+    ] {
+        refused(&with_choices(line), &parts);
     }
 }
 
@@ -68,7 +111,7 @@ fn every_design_of_the_repository_loads() {
         assert!(design.name.starts_with(&name), "{} in {stem}", design.name);
         names.push(stem);
     }
-    assert!(names.len() >= 12, "{names:?}");
+    assert!(names.len() >= 14, "{names:?}");
 }
 
 #[test]
@@ -121,10 +164,14 @@ fn names_that_are_no_identifiers() {
 #[test]
 fn options_are_refused_with_the_list_of_allowed_ones() {
     for (line, parts) in [
-        ("kernel = \"cell\"", ["algorithm.kernel", "cell", "point"]),
+        ("kernel = \"line\"", ["algorithm.kernel", "line", "point, cell"]),
         ("estimator = \"joint\"", ["algorithm.estimator", "joint", "line"]),
         ("outputs = \"resultants\"", ["algorithm.outputs", "resultants", "field"]),
-        ("filter = { kind = \"f3\" }", ["algorithm.filter.kind", "f3", "none, f1, f2"]),
+        ("filter = { kind = \"f4\" }", ["algorithm.filter.kind", "f4", "none, f1, f2, f3"]),
+        ("filter = { kind = \"f3\" }", ["algorithm.filter.scenes", "missing", "scenes = ["]),
+        ("filter = { kind = \"f3\", scenes = [] }", ["algorithm.filter.scenes", "missing", "scenes = ["]),
+        ("filter = { kind = \"f3\", l = 4 }", ["algorithm.filter.l", "f3", "remove"]),
+        ("filter = { kind = \"f2\", p = 4, scenes = [\"a\"] }", ["algorithm.filter.scenes", "f2", "remove"]),
         ("filter = { kind = \"f1\" }", ["algorithm.filter.l", "missing", "l ="]),
         ("filter = { kind = \"f2\" }", ["algorithm.filter.p", "missing", "p ="]),
         ("filter = { kind = \"f1\", l = 4, p = 2.0 }", ["algorithm.filter.p", "f1", "remove"]),

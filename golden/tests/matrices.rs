@@ -2,7 +2,7 @@
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
-use golden::design::{Filter, Sensor};
+use golden::design::{Filter, Kernel, Sensor};
 use golden::filter::FilteredMatrices;
 use golden::matrices::{Matrices, MatrixName};
 use nalgebra::DMatrix;
@@ -15,9 +15,9 @@ fn sensor(pitch_mm: [f64; 2]) -> Sensor {
 const SENSOR_1: [f64; 2] = [4.0, 2.0];
 const SENSOR_2: [f64; 2] = [4.0, 4.0];
 
-fn counts(pitch_mm: [f64; 2], filter: Filter) -> [usize; 13] {
-    let matrices = Matrices::new(&sensor(pitch_mm)).unwrap();
-    let filtered = FilteredMatrices::new(&matrices, &filter).unwrap();
+fn counts(pitch_mm: [f64; 2], filter: &Filter) -> [usize; 13] {
+    let matrices = Matrices::new(&sensor(pitch_mm), Kernel::Point).unwrap();
+    let filtered = FilteredMatrices::new(&matrices, filter).unwrap();
     MatrixName::ALL.map(|name| filtered.nnz(name))
 }
 
@@ -30,23 +30,23 @@ fn row_thresholds_count_as_in_table_1() {
         (SENSOR_2, 50.0, [5348, 9430, 9430, 7588, 9440, 9968, 9196, 9440, 9196, 9968, 10000, 9442, 9442]),
     ];
     for (pitch, p, expected) in table {
-        assert_eq!(counts(pitch, Filter::F2 { p }), expected, "pitch {pitch:?}, p = {p}");
+        assert_eq!(counts(pitch, &Filter::F2 { p }), expected, "pitch {pitch:?}, p = {p}");
     }
     // An entry of the paper's F3 column for sensor 2.
-    assert_eq!(counts(SENSOR_2, Filter::F2 { p: 70.0 })[0], 5732);
+    assert_eq!(counts(SENSOR_2, &Filter::F2 { p: 70.0 })[0], 5732);
 }
 
 #[test]
 fn bands_count_as_in_table_1() {
     for (l, expected) in [(40, 8360), (50, 7450)] {
-        assert_eq!(counts(SENSOR_1, Filter::F1 { l }), [expected; 13]);
+        assert_eq!(counts(SENSOR_1, &Filter::F1 { l }), [expected; 13]);
     }
-    assert_eq!(counts(SENSOR_1, Filter::None), [10_000; 13]);
+    assert_eq!(counts(SENSOR_1, &Filter::None), [10_000; 13]);
 }
 
 #[test]
 fn filtered_entries_are_the_unfiltered_ones() {
-    let matrices = Matrices::new(&sensor(SENSOR_1)).unwrap();
+    let matrices = Matrices::new(&sensor(SENSOR_1), Kernel::Point).unwrap();
     let filtered = FilteredMatrices::new(&matrices, &Filter::F1 { l: 40 }).unwrap();
     for name in MatrixName::ALL {
         for (row, column, value) in filtered.get(name).triplet_iter() {
@@ -58,13 +58,14 @@ fn filtered_entries_are_the_unfiltered_ones() {
 
 #[test]
 fn a_filter_that_leaves_nothing_is_refused() {
-    let matrices = Matrices::new(&sensor(SENSOR_1)).unwrap();
+    let matrices = Matrices::new(&sensor(SENSOR_1), Kernel::Point).unwrap();
     let error = FilteredMatrices::new(&matrices, &Filter::F2 { p: 1e-6 }).unwrap_err().to_string();
-    assert!(error.contains("C33inv") && error.contains("p = 0.000001"), "{error}");
+    assert!(error.contains("C33inv") && error.contains("f2 p=0.000001"), "{error}");
     // On a deep sensor some rows of C33inv have their largest magnitude in a negative entry, and stay; others go.
     let deep = Sensor { depth_mm: 12.0, ..sensor(SENSOR_2) };
-    let error =
-        FilteredMatrices::new(&Matrices::new(&deep).unwrap(), &Filter::F2 { p: 0.000_999 }).unwrap_err().to_string();
+    let error = FilteredMatrices::new(&Matrices::new(&deep, Kernel::Point).unwrap(), &Filter::F2 { p: 0.000_999 })
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("row 1 of matrix C33inv"), "{error}");
 }
 
@@ -83,8 +84,8 @@ fn assert_close(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64, w
 }
 
 /// The equations that define the matrices, on any sensor; `tolerance` grows with the condition number.
-fn check_algebra(sensor: &Sensor) {
-    let matrices = Matrices::new(sensor).unwrap();
+fn check_algebra(sensor: &Sensor, kernel: Kernel) {
+    let matrices = Matrices::new(sensor, kernel).unwrap();
     let get = |name| matrices.get(name).clone();
     let m = sensor.taxels();
     let one = DMatrix::identity(m, m);
@@ -115,8 +116,10 @@ fn check_algebra(sensor: &Sensor) {
 
 #[test]
 fn the_papers_sensors_satisfy_the_algebra() {
-    check_algebra(&sensor(SENSOR_1));
-    check_algebra(&sensor(SENSOR_2));
+    for kernel in [Kernel::Point, Kernel::Cell] {
+        check_algebra(&sensor(SENSOR_1), kernel);
+        check_algebra(&sensor(SENSOR_2), kernel);
+    }
 }
 
 proptest! {
@@ -124,18 +127,17 @@ proptest! {
     #[test]
     fn any_sensor_satisfies_the_algebra(
         columns in 2_usize..8, rows in 2_usize..8,
-        pitch_x in 1.0..10.0_f64, pitch_y in 1.0..10.0_f64, ratio in 0.3..2.0_f64,
+        pitch_x in 1.0..10.0_f64, pitch_y in 1.0..10.0_f64, ratio in 0.3..2.0_f64, cell in proptest::bool::ANY,
     ) {
-        check_algebra(&Sensor {
-            columns, rows, pitch_mm: [pitch_x, pitch_y], depth_mm: ratio * pitch_x.min(pitch_y),
-        });
+        let sensor = Sensor { columns, rows, pitch_mm: [pitch_x, pitch_y], depth_mm: ratio * pitch_x.min(pitch_y) };
+        check_algebra(&sensor, if cell { Kernel::Cell } else { Kernel::Point });
     }
 }
 
 #[test]
 fn tension_trails_the_push() {
     // A force along +x on the middle of the grid: tension behind it, compression ahead.
-    let matrices = Matrices::new(&sensor(SENSOR_1)).unwrap();
+    let matrices = Matrices::new(&sensor(SENSOR_1), Kernel::Point).unwrap();
     let force = 45;
     assert!(matrices.c31[(44, force)] > 0.0 && matrices.c31[(46, force)] < 0.0);
     assert!(matrices.c32[(35, force)] > 0.0 && matrices.c32[(55, force)] < 0.0);
@@ -155,14 +157,17 @@ fn condition_numbers() {
         (4.0, (2.4e5, 0.05e5), (3.845e10, 0.001e10)),
     ];
     for (ratio, c33, aat) in table {
-        let matrices =
-            Matrices::new(&Sensor { columns: 10, rows: 10, pitch_mm: [4.0, 4.0], depth_mm: 4.0 * ratio }).unwrap();
+        let matrices = Matrices::new(
+            &Sensor { columns: 10, rows: 10, pitch_mm: [4.0, 4.0], depth_mm: 4.0 * ratio },
+            Kernel::Point,
+        )
+        .unwrap();
         for ((expected, tolerance), found) in [(c33, matrices.condition_c33()), (aat, matrices.condition_aat())] {
             assert!((found - expected).abs() <= tolerance, "h/s = {ratio}: {found} for {expected}");
         }
     }
     for (pitch, expected) in [(SENSOR_1, (7.2, 52.0)), (SENSOR_2, (1.83, 3.4))] {
-        let matrices = Matrices::new(&sensor(pitch)).unwrap();
+        let matrices = Matrices::new(&sensor(pitch), Kernel::Point).unwrap();
         assert!((matrices.condition_c33() / expected.0 - 1.0).abs() < 0.01);
         assert!((matrices.condition_aat() / expected.1 - 1.0).abs() < 0.015);
     }
@@ -170,8 +175,9 @@ fn condition_numbers() {
 
 #[test]
 fn a_sensor_too_deep_to_invert_is_refused() {
-    let error =
-        Matrices::new(&Sensor { columns: 10, rows: 10, pitch_mm: [1.0, 1.0], depth_mm: 12.0 }).unwrap_err().to_string();
+    let error = Matrices::new(&Sensor { columns: 10, rows: 10, pitch_mm: [1.0, 1.0], depth_mm: 12.0 }, Kernel::Point)
+        .unwrap_err()
+        .to_string();
     for part in ["singular", "condition number", "12 mm", "smaller depth"] {
         assert!(error.contains(part), "no {part:?} in: {error}");
     }

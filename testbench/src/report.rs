@@ -123,10 +123,11 @@ pub struct Report {
 pub fn describe(plan: &Plan) -> String {
     use golden::design::Filter;
     let (sensor, hardware) = (&plan.design.sensor, &plan.design.hardware);
-    let filter = match plan.design.algorithm.filter {
+    let filter = match &plan.design.algorithm.filter {
         Filter::None => "no filter".to_owned(),
         Filter::F1 { l } => format!("filter F1 L = {l}"),
         Filter::F2 { p } => format!("filter F2 p = {p}"),
+        Filter::F3 { .. } => "filter F3".to_owned(),
     };
     format!(
         "{} × {} taxels of {} × {} mm, {} mm deep · {filter} · {} lanes · {} × {} bits · {} MHz",

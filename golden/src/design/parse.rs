@@ -3,9 +3,10 @@
 use serde::Deserialize;
 
 use super::checks::{self, Check};
+use super::parse_filter::{self, RawFilter};
 use super::{
-    Algorithm, Arithmetic, Design, DesignError, Estimator, Filter, Hardware, Kernel, MAX_LANES, MAX_SIDE,
-    NOISE_FLOOR_DIVISOR, Outputs, Sensor,
+    Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Kernel, MAX_LANES,
+    MAX_SIDE, NOISE_FLOOR_DIVISOR, Outputs, Sensor,
 };
 
 #[derive(Deserialize)]
@@ -37,15 +38,6 @@ struct RawAlgorithm {
     estimator: Option<String>,
     outputs: Option<String>,
     noise_floor_pa: Option<f64>,
-}
-
-// Not a tagged enum: those lose the position of an error and cannot say which key belongs to which kind.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawFilter {
-    kind: String,
-    l: Option<i64>,
-    p: Option<f64>,
 }
 
 #[derive(Deserialize, Default)]
@@ -102,65 +94,18 @@ impl RawSensor {
 
 fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, full_scale_pa: f64) -> Result<Algorithm, DesignError> {
     let filter = match raw.filter {
-        Some(raw) => filter(check, &raw, sensor)?,
+        Some(raw) => parse_filter::filter(check, &raw, sensor)?,
         None => Filter::None,
     };
-    check.choice("algorithm.kernel", raw.kernel.as_deref(), &["point"])?;
+    check.choice("algorithm.kernel", raw.kernel.as_deref(), &["point", "cell"])?;
+    let kernel = if raw.kernel.as_deref() == Some("cell") { Kernel::Cell } else { Kernel::Point };
     check.choice("algorithm.estimator", raw.estimator.as_deref(), &["line"])?;
     check.choice("algorithm.outputs", raw.outputs.as_deref(), &["field"])?;
     let noise_floor_pa = match raw.noise_floor_pa {
         Some(value) => check.above_zero("algorithm.noise_floor_pa", value, full_scale_pa, "Pa")?,
         None => full_scale_pa / NOISE_FLOOR_DIVISOR,
     };
-    Ok(Algorithm { kernel: Kernel::Point, filter, estimator: Estimator::Line, outputs: Outputs::Field, noise_floor_pa })
-}
-
-fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<Filter, DesignError> {
-    let refuse = |key: &str, given: bool| {
-        if given {
-            Err(check.value(
-                &format!("algorithm.filter.{key}"),
-                format!("does not belong to a filter of kind \"{}\"", raw.kind),
-                "remove it or choose another kind".to_owned(),
-            ))
-        } else {
-            Ok(())
-        }
-    };
-    let missing = |key: &str, example: &str| {
-        check.value(
-            &format!("algorithm.filter.{key}"),
-            "is missing".to_owned(),
-            format!("write filter = {{ kind = \"{}\", {example} }}", raw.kind),
-        )
-    };
-    match raw.kind.as_str() {
-        "none" => {
-            refuse("l", raw.l.is_some())?;
-            refuse("p", raw.p.is_some())?;
-            Ok(Filter::None)
-        }
-        "f1" => {
-            refuse("p", raw.p.is_some())?;
-            let value = raw.l.ok_or_else(|| missing("l", "l = 40"))?;
-            // The diagonal and one neighbour on either side is the narrowest band allowed.
-            let limit = sensor.taxels() as i64 - 2;
-            let l = check.integer("algorithm.filter.l", value, 1, limit)?;
-            Ok(Filter::F1 { l: l as usize })
-        }
-        "f2" => {
-            refuse("l", raw.l.is_some())?;
-            let value = raw.p.ok_or_else(|| missing("p", "p = 30"))?;
-            let p = check.above_zero("algorithm.filter.p", value, f64::MAX, "")?;
-            Ok(Filter::F2 { p })
-        }
-        other => Err(DesignError::Choice {
-            origin: check.origin.to_owned(),
-            key: "algorithm.filter.kind".to_owned(),
-            found: other.to_owned(),
-            allowed: &["none", "f1", "f2"],
-        }),
-    }
+    Ok(Algorithm { kernel, filter, estimator: Estimator::Line, outputs: Outputs::Field, noise_floor_pa })
 }
 
 fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
@@ -175,7 +120,12 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         arithmetic: Arithmetic::Fixed,
         coefficient_bits: integer("hardware.coefficient_bits", raw.coefficient_bits, 18, 8, 18)? as u32,
         data_bits: integer("hardware.data_bits", raw.data_bits, 27, 16, 27)? as u32,
-        full_scale_pa: check.above_zero("hardware.full_scale_pa", raw.full_scale_pa.unwrap_or(100_000.0), 1e9, "Pa")?,
+        full_scale_pa: check.above_zero(
+            "hardware.full_scale_pa",
+            raw.full_scale_pa.unwrap_or(DEFAULT_FULL_SCALE_PA),
+            1e9,
+            "Pa",
+        )?,
         lanes: integer("hardware.lanes", raw.lanes, 16, 1, MAX_LANES as i64)? as usize,
         clock_mhz: check.real("hardware.clock_mhz", raw.clock_mhz.unwrap_or(125.0), 1.0, 1000.0, "MHz")?,
         part,

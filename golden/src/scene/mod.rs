@@ -1,16 +1,18 @@
 //! Ground truth: frames of normal stress from contacts whose forces are known.
 //!
-//! The elastic models here are independent of the estimator's own kernel.
+//! The elastic models here are those of a layer or of loads with an extent, not the estimator's own.
 
 mod bessel;
-mod half_space;
 mod parse;
+mod sensor_errors;
+mod shape;
 mod spectral;
 mod transfer;
 
 use std::path::Path;
 
-pub use spectral::Shape;
+pub use sensor_errors::{Converter, SensorErrors};
+pub use shape::Shape;
 pub use transfer::Medium;
 
 use crate::design::{DesignError, Sensor};
@@ -48,7 +50,7 @@ pub struct Contact {
     pub normal_force_n: f64,
     /// Tangential over normal force.
     pub friction: f64,
-    /// Direction of the tangential force in degrees from x towards y; a sweep takes its place.
+    /// Direction of the tangential force in degrees from x towards y; the directions of a sweep are added to it.
     pub direction_deg: f64,
 }
 
@@ -61,9 +63,11 @@ pub struct Scene {
     pub medium: Medium,
     /// The contacts; their stresses add up.
     pub contacts: Vec<Contact>,
-    /// Directions in degrees, one frame each, common to all contacts. Without any there is one frame, with each
-    /// contact's own direction.
+    /// Directions in degrees, one frame each, added to those of all contacts. Without any there is one frame, with
+    /// each contact's own direction.
     pub sweep_deg: Vec<f64>,
+    /// Errors of the sensor; the true forces stay those of the contacts.
+    pub sensor_errors: SensorErrors,
 }
 
 /// A frame with its true forces.
@@ -130,6 +134,7 @@ impl Scene {
                 direction_deg: 0.0,
             }],
             sweep_deg: (0..36).map(|step| f64::from(step) * 10.0).collect(),
+            sensor_errors: SensorErrors::default(),
         }
     }
 
@@ -147,10 +152,15 @@ impl Scene {
             .enumerate()
             .map(|(index, contact)| self.unit_responses(index, contact))
             .collect::<Result<Vec<_>, _>>()?;
-        if self.sweep_deg.is_empty() {
-            return Ok(vec![self.combine(&responses, None)]);
+        let directions = match self.sweep_deg.as_slice() {
+            [] => vec![None],
+            sweep => sweep.iter().copied().map(Some).collect(),
+        };
+        let mut frames: Vec<_> = directions.into_iter().map(|direction| self.combine(&responses, direction)).collect();
+        for (index, frame) in frames.iter_mut().enumerate() {
+            self.sensor_errors.apply(index, &mut frame.stress);
         }
-        Ok(self.sweep_deg.iter().map(|&direction| self.combine(&responses, Some(direction))).collect())
+        Ok(frames)
     }
 
     fn unit_responses(&self, index: usize, contact: &Contact) -> Result<UnitResponses, SceneError> {
@@ -160,15 +170,12 @@ impl Scene {
             let position = sensor.position_m(taxel);
             [0, 1].map(|axis| position[axis] - contact.centre_m[axis])
         };
-        if let (Medium::HalfSpace, Shape::Hertz { semi_axes_m }) = (self.medium, contact.shape) {
-            let mut responses: UnitResponses = std::array::from_fn(|_| Vec::new());
-            for taxel in 0..sensor.taxels() {
-                let stress = half_space::hertz(semi_axes_m, offset(taxel), depth);
-                for (response, stress) in responses.iter_mut().zip(stress) {
-                    response.push(stress);
-                }
+        if self.medium == Medium::HalfSpace {
+            let stresses: Option<Vec<_>> =
+                (0..sensor.taxels()).map(|taxel| contact.shape.half_space(offset(taxel), depth)).collect();
+            if let Some(stresses) = stresses {
+                return Ok([0, 1, 2].map(|load| stresses.iter().map(|stress| stress[load]).collect()));
             }
-            return Ok(responses);
         }
         let offsets = [
             (0..sensor.columns).map(|ix| offset(ix)[0]).collect(),
@@ -182,7 +189,7 @@ impl Scene {
         let mut stress = vec![0.0; self.sensor.taxels()];
         let mut force = [0.0; 3];
         for (contact, [normal, along_x, along_y]) in self.contacts.iter().zip(responses) {
-            let angle = sweep_deg.unwrap_or(contact.direction_deg);
+            let angle = contact.direction_deg + sweep_deg.unwrap_or(0.0);
             let pressing = contact.normal_force_n;
             let tangential = contact.friction * pressing;
             let (fx, fy) = (tangential * cos_degrees(angle), tangential * cos_degrees(angle - 90.0));

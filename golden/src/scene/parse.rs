@@ -2,9 +2,9 @@
 
 use serde::Deserialize;
 
-use super::{Contact, Medium, Scene, Shape};
+use super::{Contact, Converter, Medium, Scene, SensorErrors, Shape};
 use crate::design::checks::Check;
-use crate::design::{DesignError, RawSensor, syntax_position};
+use crate::design::{DEFAULT_FULL_SCALE_PA, DesignError, RawSensor, syntax_position};
 
 /// Most frames of a sweep.
 const MAX_FRAMES: f64 = 100_000.0;
@@ -17,6 +17,7 @@ struct RawScene {
     #[serde(default)]
     contact: Vec<RawContact>,
     sweep: Option<RawSweep>,
+    sensor_errors: Option<RawSensorErrors>,
 }
 
 #[derive(Deserialize)]
@@ -31,6 +32,7 @@ struct RawMedium {
 struct RawContact {
     shape: String,
     semi_axes_mm: Option<Vec<f64>>,
+    sides_mm: Option<Vec<f64>>,
     radius_mm: Option<f64>,
     centre_mm: Vec<f64>,
     normal_force_n: f64,
@@ -52,6 +54,18 @@ struct RawRange {
     step: f64,
 }
 
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSensorErrors {
+    seed: Option<i64>,
+    gain_spread: Option<f64>,
+    noise: Option<f64>,
+    quantisation_bits: Option<i64>,
+    full_scale_pa: Option<f64>,
+    dead: Option<Vec<i64>>,
+    saturated: Option<Vec<i64>>,
+}
+
 pub(super) fn scene(text: &str, origin: &str) -> Result<Scene, DesignError> {
     let raw: RawScene = toml::from_str(text).map_err(|error| syntax_position(&error, text, origin))?;
     let check = Check { origin };
@@ -66,12 +80,14 @@ pub(super) fn scene(text: &str, origin: &str) -> Result<Scene, DesignError> {
         .contact
         .iter()
         .enumerate()
-        .map(|(index, raw)| {
-            let keys = |key: &str| format!("contact[{index}].{key}");
-            contact(&check, raw, &keys, !sweep_deg.is_empty())
-        })
+        .map(|(index, raw)| contact(&check, raw, &|key| format!("contact[{index}].{key}"), !sweep_deg.is_empty()))
         .collect::<Result<_, _>>()?;
-    Ok(Scene { sensor: raw.sensor.check(origin)?, medium: medium(&check, &raw.medium)?, contacts, sweep_deg })
+    let sensor = raw.sensor.check(origin)?;
+    let sensor_errors = match raw.sensor_errors {
+        Some(raw) => sensor_errors(&check, &raw, sensor.taxels())?,
+        None => SensorErrors::default(),
+    };
+    Ok(Scene { sensor, medium: medium(&check, &raw.medium)?, contacts, sweep_deg, sensor_errors })
 }
 
 fn medium(check: &Check, raw: &RawMedium) -> Result<Medium, DesignError> {
@@ -100,43 +116,16 @@ fn contact(
     key: &impl Fn(&str) -> String,
     swept: bool,
 ) -> Result<Contact, DesignError> {
-    let foreign = |name: &str| {
-        check.value(
-            &key(name),
-            format!("does not belong to a contact of shape \"{}\"", raw.shape),
-            "a hertz contact has semi_axes_mm, a disc has radius_mm".to_owned(),
-        )
-    };
-    let missing = |name: &str, remedy: &str| check.value(&key(name), "is missing".to_owned(), remedy.to_owned());
-    let metres = |name: &str, length: f64| check.real(&key(name), length, 0.01, 1000.0, "mm").map(|mm| mm * 1e-3);
-    check.choice(&key("shape"), Some(&raw.shape), &["hertz", "disc"])?;
-    let shape = match (raw.shape == "disc", &raw.semi_axes_mm, raw.radius_mm) {
-        (false, Some(semi_axes), None) => {
-            let [a, b] = check.pair(&key("semi_axes_mm"), semi_axes)?;
-            Shape::Hertz { semi_axes_m: [metres("semi_axes_mm[0]", a)?, metres("semi_axes_mm[1]", b)?] }
-        }
-        (true, None, Some(radius)) => Shape::Disc { radius_m: metres("radius_mm", radius)? },
-        (false, None, None) => {
-            return Err(missing("semi_axes_mm", "write both semi-axes of the ellipse, such as [7.0, 7.0]"));
-        }
-        (true, None, None) => {
-            return Err(missing("radius_mm", "write the radius, such as 10.0"));
-        }
-        (false, _, Some(_)) => return Err(foreign("radius_mm")),
-        (true, Some(_), _) => return Err(foreign("semi_axes_mm")),
-    };
+    let shape = shape(check, raw, key)?;
     let direction_deg = match (swept, raw.direction_deg) {
+        (_, Some(angle)) => angle_in_range(check, &key("direction_deg"), angle)?,
         (true, None) => 0.0,
-        (true, Some(_)) => {
+        (false, None) => {
             return Err(check.value(
                 &key("direction_deg"),
-                "contradicts the sweep".to_owned(),
-                "remove it, or remove [sweep]".to_owned(),
+                "is missing".to_owned(),
+                "write the direction of the tangential force, or add a [sweep]".to_owned(),
             ));
-        }
-        (false, Some(angle)) => angle_in_range(check, &key("direction_deg"), angle)?,
-        (false, None) => {
-            return Err(missing("direction_deg", "write the direction of the tangential force, or add a [sweep]"));
         }
     };
     let [x, y] = check.pair(&key("centre_mm"), &raw.centre_mm)?;
@@ -147,6 +136,86 @@ fn contact(
         normal_force_n: check.above_zero(&key("normal_force_n"), raw.normal_force_n, 1e6, "N (it presses)")?,
         friction: check.real(&key("friction"), raw.friction, 0.0, 10.0, "")?,
         direction_deg,
+    })
+}
+
+fn shape(check: &Check, raw: &RawContact, key: &impl Fn(&str) -> String) -> Result<Shape, DesignError> {
+    check.choice(&key("shape"), Some(&raw.shape), &["hertz", "rectangle", "disc", "punch"])?;
+    let (wanted, example) = match raw.shape.as_str() {
+        "hertz" => ("semi_axes_mm", "both semi-axes of the ellipse, such as [7.0, 7.0]"),
+        "rectangle" => ("sides_mm", "the lengths of both sides, such as [10.0, 6.0]"),
+        _ => ("radius_mm", "the radius, such as 10.0"),
+    };
+    let given = [
+        ("semi_axes_mm", raw.semi_axes_mm.is_some()),
+        ("sides_mm", raw.sides_mm.is_some()),
+        ("radius_mm", raw.radius_mm.is_some()),
+    ];
+    if let Some((foreign, _)) = given.into_iter().find(|&(name, given)| given && name != wanted) {
+        return Err(check.value(
+            &key(foreign),
+            format!("does not belong to a contact of shape \"{}\"", raw.shape),
+            format!("remove it; the size of this shape is {wanted}"),
+        ));
+    }
+    let missing = || check.value(&key(wanted), "is missing".to_owned(), format!("write {example}"));
+    let metres = |name: &str, length: f64| check.real(&key(name), length, 0.01, 1000.0, "mm").map(|mm| mm * 1e-3);
+    let pair = |values: &Option<Vec<f64>>| {
+        let [x, y] = check.pair(&key(wanted), values.as_ref().ok_or_else(missing)?)?;
+        Ok([metres(&format!("{wanted}[0]"), x)?, metres(&format!("{wanted}[1]"), y)?])
+    };
+    let radius = || metres(wanted, raw.radius_mm.ok_or_else(missing)?);
+    Ok(match raw.shape.as_str() {
+        "hertz" => Shape::Hertz { semi_axes_m: pair(&raw.semi_axes_mm)? },
+        "rectangle" => Shape::Rectangle { sides_m: pair(&raw.sides_mm)? },
+        "disc" => Shape::Disc { radius_m: radius()? },
+        _ => Shape::Punch { radius_m: radius()? },
+    })
+}
+
+fn sensor_errors(check: &Check, raw: &RawSensorErrors, taxels: usize) -> Result<SensorErrors, DesignError> {
+    let share = |name: &str, value: Option<f64>| {
+        check.real(&format!("sensor_errors.{name}"), value.unwrap_or(0.0), 0.0, 1.0, "(a share: 0.002 is 0.2 %)")
+    };
+    let list = |name: &str, taxels_given: &Option<Vec<i64>>| {
+        let given = taxels_given.iter().flatten().enumerate();
+        given
+            .map(|(index, &taxel)| {
+                let key = format!("sensor_errors.{name}[{index}]");
+                check.integer(&key, taxel, 0, taxels as i64 - 1).map(|taxel| taxel as usize)
+            })
+            .collect::<Result<Vec<_>, _>>()
+    };
+    let full_scale_pa = check.above_zero(
+        "sensor_errors.full_scale_pa",
+        raw.full_scale_pa.unwrap_or(DEFAULT_FULL_SCALE_PA),
+        1e9,
+        "Pa",
+    )?;
+    let dead = list("dead", &raw.dead)?;
+    let saturated = list("saturated", &raw.saturated)?;
+    if let Some(taxel) = saturated.iter().find(|taxel| dead.contains(taxel)) {
+        return Err(check.value(
+            "sensor_errors.saturated",
+            format!("has taxel {taxel}, which is dead"),
+            "list a taxel under one of the two".to_owned(),
+        ));
+    }
+    let converter = match raw.quantisation_bits {
+        Some(bits) => {
+            let bits = check.integer("sensor_errors.quantisation_bits", bits, 2, 32)? as u32;
+            Some(Converter { bits, full_scale_pa })
+        }
+        None => None,
+    };
+    Ok(SensorErrors {
+        seed: check.integer("sensor_errors.seed", raw.seed.unwrap_or(0), 0, i64::MAX)? as u64,
+        gain_spread: share("gain_spread", raw.gain_spread)?,
+        noise: share("noise", raw.noise)?,
+        converter,
+        dead,
+        // Pressed too hard: the end of the range for compression.
+        stuck: saturated.into_iter().map(|taxel| (taxel, -full_scale_pa)).collect(),
     })
 }
 

@@ -6,47 +6,8 @@
 
 use std::f64::consts::PI;
 
-use super::bessel::j1;
+use super::shape::Shape;
 use super::transfer::Medium;
-
-/// A contact's distribution of load; normal and tangential load have the same.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
-    /// Elliptical Hertz contact, `sqrt(1 - x^2/a^2 - y^2/b^2)`.
-    Hertz {
-        /// Semi-axes along x and y in metres.
-        semi_axes_m: [f64; 2],
-    },
-    /// Uniform load on a disc.
-    Disc {
-        /// Radius in metres.
-        radius_m: f64,
-    },
-}
-
-impl Shape {
-    /// Semi-axes along x and y in metres.
-    pub fn semi_axes_m(self) -> [f64; 2] {
-        match self {
-            Self::Hertz { semi_axes_m } => semi_axes_m,
-            Self::Disc { radius_m } => [radius_m; 2],
-        }
-    }
-
-    /// Fourier transform of the load of a unit force; `kappa` is the length of `(a kx, b ky)`.
-    fn spectrum(self, kappa: f64) -> f64 {
-        match self {
-            // Below 0.1 the closed form loses digits, and the series is exact to f64.
-            Self::Hertz { .. } if kappa < 0.1 => {
-                let k2 = kappa * kappa;
-                1.0 - k2 / 10.0 * (1.0 - k2 / 28.0 * (1.0 - k2 / 54.0))
-            }
-            Self::Hertz { .. } => 3.0 * (kappa.sin() - kappa * kappa.cos()) / kappa.powi(3),
-            Self::Disc { .. } if kappa < 1e-8 => 1.0,
-            Self::Disc { .. } => 2.0 * j1(kappa) / kappa,
-        }
-    }
-}
 
 /// How finely the integral is summed.
 #[derive(Clone, Copy, Debug)]
@@ -78,12 +39,12 @@ pub fn responses(
     offsets_m: &[Vec<f64>; 2],
     resolution: Resolution,
 ) -> Result<UnitResponses, f64> {
-    let semi_axes = shape.semi_axes_m();
+    let half_extent = shape.half_extent_m();
     let largest = resolution.largest_kh / depth_m;
     let mut axes = Vec::with_capacity(2);
-    for (offsets, semi_axis) in offsets_m.iter().zip(semi_axes) {
+    for (offsets, half) in offsets_m.iter().zip(half_extent) {
         let reach = offsets.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
-        let step = 2.0 * PI / (reach + semi_axis + resolution.image_distance * depth_m);
+        let step = 2.0 * PI / (reach + half + resolution.image_distance * depth_m);
         let waves = (largest / step).ceil();
         if waves > MAX_WAVES {
             return Err(waves);
@@ -103,7 +64,7 @@ pub fn responses(
                 break;
             }
             let [h_p, h_q] = medium.transfer(k * depth_m);
-            let load = weight * shape.spectrum((kx * semi_axes[0]).hypot(ky * semi_axes[1]));
+            let load = weight * shape.spectrum([kx * half_extent[0], ky * half_extent[1]]);
             let normal = load * h_p;
             let (shear_x, shear_y) = (load * h_q * kx / k, load * h_q * ky / k);
             for (column, (cos, sin)) in cos_x.iter().zip(sin_x).enumerate() {
@@ -150,7 +111,6 @@ impl Axis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::half_space;
 
     const DEPTH: f64 = 3e-3;
     const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
@@ -167,37 +127,75 @@ mod tests {
         pairs.fold(0.0_f64, |max, (a, b)| max.max((a - b).abs())) / peak
     }
 
+    const SHAPES: [Shape; 6] = [
+        Shape::Hertz { semi_axes_m: [7e-3, 7e-3] },
+        Shape::Hertz { semi_axes_m: [2e-3, 5e-3] },
+        Shape::Rectangle { sides_m: [14e-3, 5e-3] },
+        Shape::Rectangle { sides_m: [2e-3, 3e-3] },
+        Shape::Disc { radius_m: 10e-3 },
+        Shape::Punch { radius_m: 6e-3 },
+    ];
+
     #[test]
-    fn with_the_half_space_it_agrees_with_the_closed_form() {
+    fn with_the_half_space_it_agrees_with_the_closed_forms() {
         let offsets = offsets();
-        for semi_axes_m in [[7e-3, 7e-3], [8e-3, 3e-3], [2e-3, 5e-3]] {
-            let shape = Shape::Hertz { semi_axes_m };
+        let mut compared = 0;
+        for shape in SHAPES {
+            let places = offsets[1].iter().flat_map(|&y| offsets[0].iter().map(move |&x| [x, y]));
+            let stresses: Option<Vec<_>> = places.map(|place| shape.half_space(place, DEPTH)).collect();
+            let Some(stresses) = stresses else { continue };
+            let expected = [0, 1, 2].map(|load| stresses.iter().map(|stress| stress[load]).collect());
             let found = responses(Medium::HalfSpace, shape, DEPTH, &offsets, FINE).unwrap();
-            let mut expected: UnitResponses = std::array::from_fn(|_| Vec::new());
-            for y in &offsets[1] {
-                for x in &offsets[0] {
-                    let stress = half_space::hertz(semi_axes_m, [*x, *y], DEPTH);
-                    for (response, stress) in expected.iter_mut().zip(stress) {
-                        response.push(stress);
-                    }
-                }
-            }
             let error = difference(&expected, &found);
-            assert!(error < 1e-6, "{semi_axes_m:?}: {error:e}");
+            assert!(error < 1e-6, "{shape:?}: {error:e}");
+            compared += 1;
         }
+        assert_eq!(compared, 5, "all but the disc");
+    }
+
+    #[test]
+    fn under_the_middle_of_a_disc_the_half_space_has_the_textbook_stress() {
+        // Johnson, Contact Mechanics, section 3.4: sigma_zz = -p (1 - z^3 / (a^2 + z^2)^(3/2)).
+        let a: f64 = 10e-3;
+        let disc = Shape::Disc { radius_m: a };
+        let [normal, x, y] = responses(Medium::HalfSpace, disc, DEPTH, &[vec![0.0], vec![0.0]], FINE).unwrap();
+        let expected = -(1.0 - (DEPTH / a.hypot(DEPTH)).powi(3)) / (PI * a * a);
+        assert!((normal[0] / expected - 1.0).abs() < 1e-6, "{normal:?} {expected}");
+        assert!(x[0] == 0.0 && y[0] == 0.0);
     }
 
     #[test]
     fn a_finer_sum_changes_nothing() {
         let offsets = offsets();
         let finer = Resolution { largest_kh: 1.3 * FINE.largest_kh, image_distance: 2.0 * FINE.image_distance };
-        let ellipse = Shape::Hertz { semi_axes_m: [7e-3, 4e-3] };
-        let disc = Shape::Disc { radius_m: 10e-3 };
-        for (medium, shape, limit) in [(LAYER, ellipse, 1e-10), (LAYER, disc, 1e-10), (Medium::HalfSpace, disc, 1e-6)] {
-            let [one, other] =
-                [FINE, finer].map(|resolution| responses(medium, shape, DEPTH, &offsets, resolution).unwrap());
-            let error = difference(&other, &one);
-            assert!(error < limit, "{medium:?} {shape:?}: {error:e}");
+        for (medium, limit) in
+            [(LAYER, 1e-10), (Medium::BondedLayer { poisson: 0.3 }, 1e-10), (Medium::HalfSpace, 1e-6)]
+        {
+            for shape in SHAPES {
+                let [one, other] =
+                    [FINE, finer].map(|resolution| responses(medium, shape, DEPTH, &offsets, resolution).unwrap());
+                let error = difference(&other, &one);
+                assert!(error < limit, "{medium:?} {shape:?}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_sum_converges_to_the_layer() {
+        // Errors on the layer as the sum grows finer, against one much finer than the usual: each step gains at least a
+        // digit until rounding ends it, so that what is left at the usual resolution is rounding.
+        let offsets = offsets();
+        let finest = Resolution { largest_kh: 48.0, image_distance: 80.0 };
+        for shape in SHAPES {
+            let at = |resolution| responses(LAYER, shape, DEPTH, &offsets, resolution).unwrap();
+            let limit = at(finest);
+            let errors = [(6.0, 4.0), (10.0, 8.0), (16.0, 16.0), (24.0, 32.0)]
+                .map(|(largest_kh, image_distance)| difference(&limit, &at(Resolution { largest_kh, image_distance })));
+            assert!(errors[0] > 1e-6, "{shape:?}: {errors:?}");
+            for pair in errors.windows(2) {
+                assert!(pair[1] < 0.1 * pair[0] || pair[1] < 1e-10, "{shape:?}: {errors:?}");
+            }
+            assert!(difference(&limit, &at(FINE)) < 1e-11, "{shape:?}");
         }
     }
 

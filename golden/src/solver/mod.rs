@@ -8,16 +8,16 @@ pub mod cean;
 pub mod co;
 mod line;
 pub mod op;
+pub(crate) mod reading;
 pub mod status;
 pub mod we;
 
 pub use status::Status;
 
-use nalgebra::DVector;
-
 use crate::design::Design;
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
+use reading::{Reader, Reading};
 
 /// Why a solver cannot be made or a frame cannot be solved.
 #[derive(Debug, thiserror::Error)]
@@ -85,9 +85,7 @@ impl Solution {
 /// Everything that stays the same from frame to frame.
 #[derive(Clone, Debug)]
 pub struct Solver {
-    positions: Vec<[f64; 2]>,
-    noise_floor: f64,
-    full_scale: f64,
+    reader: Reader,
     matrices: Matrices,
     filtered: FilteredMatrices,
 }
@@ -101,8 +99,8 @@ impl Solver {
     /// leaves nothing of a row.
     pub fn new(design: &Design) -> Result<Self, SolverError> {
         let name = || design.name.clone();
-        let matrices =
-            Matrices::new(&design.sensor).map_err(|source| SolverError::Matrices { name: name(), source })?;
+        let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)
+            .map_err(|source| SolverError::Matrices { name: name(), source })?;
         let filtered = FilteredMatrices::new(&matrices, &design.algorithm.filter)
             .map_err(|source| SolverError::Filter { name: name(), source })?;
         Ok(Self::from_parts(design, matrices, filtered))
@@ -110,14 +108,7 @@ impl Solver {
 
     /// A solver from matrices already computed for the same design.
     pub fn from_parts(design: &Design, matrices: Matrices, filtered: FilteredMatrices) -> Self {
-        let sensor = &design.sensor;
-        Self {
-            positions: (0..sensor.taxels()).map(|i| sensor.position_m(i)).collect(),
-            noise_floor: design.algorithm.noise_floor_pa,
-            full_scale: design.hardware.full_scale_pa,
-            matrices,
-            filtered,
-        }
+        Self { reader: Reader::new(design), matrices, filtered }
     }
 
     /// The unfiltered matrices.
@@ -132,7 +123,7 @@ impl Solver {
 
     /// Number of values in a frame.
     pub fn taxels(&self) -> usize {
-        self.positions.len()
+        self.reader.taxels()
     }
 
     /// Solves one frame, stress in pascals in taxel order.
@@ -141,24 +132,10 @@ impl Solver {
     ///
     /// [`SolverError::FrameLength`] only; a frame with a NaN, without contact or without a direction gets a status.
     pub fn solve(&self, frame: &[f64]) -> Result<Solution, SolverError> {
-        let taxels = self.taxels();
-        if frame.len() != taxels {
-            return Err(SolverError::FrameLength { found: frame.len(), expected: taxels });
-        }
-        if frame.iter().any(|stress| !stress.is_finite()) {
-            return Ok(Solution::zeros(Status::NOT_FINITE, taxels));
-        }
-        let mut status = Status::default();
-        if frame.iter().any(|stress| stress.abs() > self.full_scale) {
-            status.insert(Status::SATURATED);
-        }
-        let clamped = frame.iter().map(|stress| stress.clamp(-self.full_scale, self.full_scale));
-        let b = DVector::from_iterator(taxels, clamped);
-
-        let contact = cean::cean(&b, &self.positions, self.noise_floor);
-        if !contact.touched {
-            return Ok(Solution::zeros(Status::NO_CONTACT, taxels));
-        }
+        let (b, contact, mut status) = match self.reader.read(frame)? {
+            Reading::Contact { b, contact, status } => (b, contact, status),
+            Reading::Nothing(status) => return Ok(Solution::zeros(status, self.taxels())),
+        };
         let weights = we::we(&b, &self.filtered);
         let coefficients = co::co(&b, &weights, &self.filtered);
         let forces = op::op(&contact, &coefficients, &self.matrices, op::LEVEL);

@@ -1,6 +1,6 @@
 //! Optimum: the friction components, and with them the forces.
 
-use nalgebra::DVector;
+use nalgebra::{DVector, DVectorView};
 
 use super::cean::Contact;
 use super::co::Coefficients;
@@ -66,49 +66,56 @@ pub fn line(direction: [f64; 2], sums: &[[f64; 3]; 3]) -> Option<Line> {
     (line.offset.abs() < MAX_LINE_RATIO && line.slope.abs() < MAX_LINE_RATIO).then_some(line)
 }
 
+/// Finds the friction components `[mu_x, mu_y]` on the line of the direction of push.
+///
+/// `sums` are the `G_pq` and `u` the stresses `C33 g_3q` in pascals. Without a direction, or with a degenerate line,
+/// the components are 0, and the status says why.
+pub(crate) fn friction(
+    contact: &Contact,
+    sums: &[[f64; 3]; 3],
+    u: [DVectorView<f64>; 3],
+    level: f64,
+) -> (Status, [f64; 2]) {
+    let mut status = Status::default();
+    let mut mu = [0.0; 2];
+    let Some(line) = contact.direction.and_then(|direction| line(direction, sums)) else {
+        status.insert(Status::DIRECTION_UNKNOWN);
+        return (status, mu);
+    };
+    let (independent, dependent) = (line.independent, 1 - line.independent);
+    let alpha = u[0] + u[1 + dependent] * line.offset;
+    let beta = u[1 + independent] + u[1 + dependent] * line.slope;
+    let allowance = level * contact.stress_sum;
+    let found = line::level_set(alpha.as_slice(), beta.as_slice(), allowance);
+    mu[independent] = found.interval[0].midpoint(found.interval[1]);
+    let wanted = line.offset + line.slope * mu[independent];
+    mu[dependent] = wanted.clamp(-DEPENDENT_RANGE, DEPENDENT_RANGE);
+    if found.at_bound || !(-DEPENDENT_RANGE..DEPENDENT_RANGE).contains(&wanted) {
+        status.insert(Status::AT_BOUND);
+    }
+    (status, mu)
+}
+
 /// Finds the friction components on the line of the direction of push and evaluates the forces.
 ///
 /// `level` is [`LEVEL`] or another share of the sum of |b|. Without a direction, or with a degenerate line, the
 /// components are 0.
 pub fn op(contact: &Contact, coefficients: &Coefficients, matrices: &Matrices, level: f64) -> Forces {
     let u = [0, 1, 2].map(|q| &matrices.c33 * &coefficients.g[2][q]);
-    let line = contact.direction.and_then(|direction| line(direction, &coefficients.sums));
-    let mut status = Status::default();
-    let mut mu = [0.0; 2];
-    match line {
-        None => status.insert(Status::DIRECTION_UNKNOWN),
-        Some(line) => {
-            let (independent, dependent) = (line.independent, 1 - line.independent);
-            let alpha = &u[0] + &u[1 + dependent] * line.offset;
-            let beta = &u[1 + independent] + &u[1 + dependent] * line.slope;
-            let allowance = level * contact.stress_sum;
-            let found = line::level_set(alpha.as_slice(), beta.as_slice(), allowance);
-            mu[independent] = found.interval[0].midpoint(found.interval[1]);
-            let wanted = line.offset + line.slope * mu[independent];
-            mu[dependent] = wanted.clamp(-DEPENDENT_RANGE, DEPENDENT_RANGE);
-            if found.at_bound || !(-DEPENDENT_RANGE..DEPENDENT_RANGE).contains(&wanted) {
-                status.insert(Status::AT_BOUND);
-            }
-        }
-    }
+    let (status, mu) = friction(contact, &coefficients.sums, u.each_ref().map(DVector::as_view), level);
     let [mu_x, mu_y] = mu;
     let field = coefficients.g.each_ref().map(|[g0, g1, g2]| g0 + g1 * mu_x + g2 * mu_y);
     let resultant = field.each_ref().map(DVector::sum);
-    let [x, y, z] = resultant;
+    let [x, y, _] = resultant;
     let normal = &u[0] + &u[1] * mu_x + &u[2] * mu_y;
     let tangential = &matrices.c31 * &field[0] + &matrices.c32 * &field[1];
     let [condition_1, condition_2] = conditions(&normal, &tangential);
-    Forces {
-        status,
-        mu_x,
-        mu_y,
-        condition_1,
-        condition_2,
-        field,
-        resultant,
-        mu: if z == 0.0 { 0.0 } else { x.hypot(y) / z.abs() },
-        phi: y.atan2(x),
-    }
+    Forces { status, mu_x, mu_y, condition_1, condition_2, field, resultant, mu: quotient(resultant), phi: y.atan2(x) }
+}
+
+/// Friction of a resultant: tangential over normal force, 0 where there is no normal force (Eq. 29).
+pub(crate) fn quotient([x, y, z]: [f64; 3]) -> f64 {
+    if z == 0.0 { 0.0 } else { x.hypot(y) / z.abs() }
 }
 
 /// Both conditions of the paper (Eqs. 20 and 21) in pascals for the stress of the normal and the tangential forces.

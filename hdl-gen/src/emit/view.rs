@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::cores::cordic;
 use crate::model::{SUMMARY_WORDS, inverse_gain};
 use crate::plan::Plan;
-use crate::plan::format::address_bits;
+use crate::plan::format::{ACCUMULATOR_BITS, address_bits};
 use crate::plan::layout::Place;
 use crate::plan::optimum::{
     CENTROID_FRACTION, FRICTION_FRACTION, HINGE_DROP, LEVEL_SHIFT, LINE_FRACTION, LINE_SUM_BITS, PITCH_FRACTION,
@@ -63,7 +63,11 @@ pub struct View {
     op_first: usize,
     last_product: usize,
     mark_product: usize,
-    least_shift: u32,
+    /// Highest and lowest bit of the rounded accumulator that is in any result.
+    greatest_bit: u32,
+    least_bit: u32,
+    /// The other bits, as they join `_unused`.
+    sum_unused: String,
     count_width: u32,
 
     lane_width: u32,
@@ -174,6 +178,9 @@ impl View {
         let drain_cycles = schedule.drained - (schedule.issue_cycles() - 1);
         let longest = schedule.windows.iter().map(|window| window.length.max(window.wait)).max().unwrap_or(1);
         let element_width = address_bits(optimum.elements);
+        let shifts = plan.products.iter().map(|product| product.shift);
+        let greatest_bit = (shifts.clone().max().unwrap_or(0) + data - 1).min(ACCUMULATOR_BITS - 1);
+        let least_bit = shifts.min().unwrap_or(0);
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
             name: design.name.clone(),
@@ -203,7 +210,9 @@ impl View {
             op_first: plan.turn(Block::Op).0,
             last_product: plan.products.len() - 1,
             mark_product: plan.turn(Block::Op).0,
-            least_shift: plan.products.iter().map(|product| product.shift).min().unwrap_or(0),
+            greatest_bit,
+            least_bit,
+            sum_unused: bits_outside("sum", ACCUMULATOR_BITS - 1, greatest_bit, least_bit),
             count_width: address_bits(longest.max(drain_cycles) as usize + 1),
 
             lane_width: address_bits(hardware.lanes),
@@ -368,6 +377,13 @@ fn shift_and_add(value: &str, index: &str, bits: u32) -> String {
     (0..bits).map(term).collect::<Vec<_>>().join("\n        + ")
 }
 
+/// The bits of `signal`, whose highest is `top`, that are not from `high` to `low`: `, signal[..], signal[..]`.
+fn bits_outside(signal: &str, top: u32, high: u32, low: u32) -> String {
+    let above = if high < top { format!(", {signal}[{top}:{}]", high + 1) } else { String::new() };
+    let below = if low > 0 { format!(", {signal}[{}:0]", low - 1) } else { String::new() };
+    above + &below
+}
+
 fn signed_literal(bits: u32, value: i32) -> String {
     if value < 0 { format!("-{bits}'sd{}", -value) } else { format!("{bits}'sd{value}") }
 }
@@ -377,5 +393,6 @@ fn filter_text(filter: &Filter) -> String {
         Filter::None => "none".to_owned(),
         Filter::F1 { l } => format!("F1 with L = {l}"),
         Filter::F2 { p } => format!("F2 with p = {p}"),
+        Filter::F3 { .. } => "F3, chosen for each matrix".to_owned(),
     }
 }

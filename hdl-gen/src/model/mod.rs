@@ -6,6 +6,8 @@
 mod direction;
 mod optimum;
 mod summary;
+#[cfg(test)]
+mod tests;
 
 use crate::cores::{fixed_to_float, float_to_fixed};
 use crate::plan::Plan;

@@ -5,6 +5,13 @@ use serde::Serialize;
 /// Width of one SpMV lane's accumulator in bits: that of a DSP48E2.
 pub const ACCUMULATOR_BITS: u32 = 48;
 
+/// Most bits that a product drops between accumulator and result. A matrix whose results are so small beside the
+/// others' that it would drop more is stored with fewer bits instead: they would be lost in the rounding.
+pub const MOST_SHIFT: u32 = 40;
+
+/// Largest magnitude of a row's sum in the accumulator. Above it is room for the half step that rounding adds.
+pub const ACCUMULATOR_LIMIT: i64 = largest(ACCUMULATOR_BITS) - (1 << (MOST_SHIFT - 1));
+
 /// A signed fixed-point format: `value = integer * 2^lsb`, with `|integer| <= bound`.
 ///
 /// The bound is a proven one: no input within the design's full scale can exceed it, so numbers in this

@@ -50,16 +50,6 @@ pub enum PlanError {
         /// Fewest useful bits.
         needed: u32,
     },
-    /// A result's worst case does not fit.
-    #[error(
-        "[hardware] data_bits = {bits}: no scale holds the worst case of {vector}; raise data_bits or full_scale_pa"
-    )]
-    Range {
-        /// The vector.
-        vector: &'static str,
-        /// Vector width of the design.
-        bits: u32,
-    },
     /// The stress step is so coarse that the noise floor disappears in it.
     #[error(
         "[hardware] data_bits = {bits}: one step of stress is {step_pa} Pa, more than 16 times the noise floor of \
@@ -73,7 +63,30 @@ pub enum PlanError {
         /// Noise floor of the design.
         floor_pa: f64,
     },
+    /// The geometry amplifies so much that the worst case leaves the forces too few bits.
+    #[error(
+        "[hardware] data_bits = {bits}: the worst case of {vector} is {worst_n:.3e} N, so one step is {step_n:.3e} N, \
+         more than 1/{FEWEST_FORCE_STEPS} of a taxel's force at full scale ({taxel_n:.3e} N); the condition number of \
+         A A^T is {condition:.1e}: lower [sensor] depth_mm, raise the pitch, or raise data_bits"
+    )]
+    ForceResolution {
+        /// The vector.
+        vector: &'static str,
+        /// Vector width of the design.
+        bits: u32,
+        /// Largest magnitude that the format must hold.
+        worst_n: f64,
+        /// Worth of one step.
+        step_n: f64,
+        /// Full-scale stress times the area of a taxel.
+        taxel_n: f64,
+        /// 2-norm condition number of A Aᵀ.
+        condition: f64,
+    },
 }
+
+/// Fewest steps of a force format that a taxel's force at full scale must span.
+const FEWEST_FORCE_STEPS: u32 = 64;
 
 /// Formats of the four kinds of vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -161,7 +174,7 @@ impl Plan {
     /// # Errors
     /// [`PlanError`] if the geometry is singular, the filter empties a matrix, or the widths are too small.
     pub fn new(design: &Design) -> Result<Self, PlanError> {
-        let matrices = Matrices::new(&design.sensor)?;
+        let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)?;
         let filtered = FilteredMatrices::new(&matrices, &design.algorithm.filter)?;
         Self::from_parts(design, &matrices, &filtered)
     }
@@ -175,6 +188,8 @@ impl Plan {
         let stress = Format::covering(hardware.full_scale_pa, hardware.data_bits);
         let thresholds = thresholds(design, stress)?;
         let paper = paper::build(matrices, filtered, stress, hardware.coefficient_bits, hardware.data_bits)?;
+        let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
+        check_force_resolution(design, &paper.formats, condition)?;
         let schedule = Schedule::new(&paper.products, &paper.matrices, hardware.lanes);
         let taxels = design.sensor.taxels();
         let direction = DirectionPlan::new(design.sensor.pitch_mm);
@@ -184,7 +199,7 @@ impl Plan {
         let resources = Resources::new(design, &operands, &schedule, &optimum);
         Ok(Self {
             design: design.clone(),
-            condition: Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() },
+            condition,
             nnz: Nnz(MatrixName::ALL.into_iter().map(|name| (name, filtered.nnz(name))).collect()),
             matrices: paper.matrices,
             products: paper.products,
@@ -210,6 +225,24 @@ impl Plan {
         let count = self.products.iter().filter(|product| product.block == block).count();
         (first, first + count)
     }
+}
+
+fn check_force_resolution(design: &Design, formats: &Formats, condition: Condition) -> Result<(), PlanError> {
+    let [x, y] = design.sensor.pitch_mm;
+    let taxel_n = design.hardware.full_scale_pa * x * y * 1e-6;
+    for (vector, format) in [("|w|", formats.weight), ("g", formats.g)] {
+        if format.step() * f64::from(FEWEST_FORCE_STEPS) > taxel_n {
+            return Err(PlanError::ForceResolution {
+                vector,
+                bits: format.bits,
+                worst_n: format.bound as f64 * format.step(),
+                step_n: format.step(),
+                taxel_n,
+                condition: condition.aat,
+            });
+        }
+    }
+    Ok(())
 }
 
 fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> {

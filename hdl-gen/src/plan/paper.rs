@@ -4,9 +4,9 @@ use golden::filter::FilteredMatrices;
 use golden::matrices::{Matrices, MatrixName};
 use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
-use super::format::{Format, largest};
+use super::format::{Format, MOST_SHIFT, largest};
 use super::product::{Block, Epilogue, Product, Vector};
-use super::quantise::QuantisedMatrix;
+use super::quantise::{ANY_LSB, QuantisedMatrix};
 use super::{Formats, PlanError};
 
 /// How the twelve products of Co follow each other. `A_p b` come first: they keep the lanes busy while the
@@ -56,33 +56,31 @@ pub fn build(
     coefficient_bits: u32,
     data_bits: u32,
 ) -> Result<PaperPlan, PlanError> {
-    let quantise = |name: MatrixName, bound| {
+    let quantise = |name: MatrixName, bound, least_lsb| {
         let (label, stored) = stored_form(name, filtered.get(name));
-        QuantisedMatrix::new(&label, &stored, coefficient_bits, bound)
+        QuantisedMatrix::new(&label, &stored, coefficient_bits, bound, least_lsb)
     };
-    let inverse = quantise(MatrixName::C33inv, stress.bound)?;
-    let weight = result_format("|w|", &[vec![(&inverse, stress)]], data_bits)?;
+    let inverse = quantise(MatrixName::C33inv, stress.bound, ANY_LSB)?;
+    let weight = result_format(&[vec![(&inverse, stress)]], data_bits);
 
-    let mut stored = vec![inverse];
+    let operand = |name| if is_pseudo_inverse(name) { stress } else { weight };
+    let mut of_co = Vec::with_capacity(CO_ORDER.len());
     for name in CO_ORDER {
-        let bound = if is_pseudo_inverse(name) { stress.bound } else { weight.bound };
-        stored.push(quantise(name, bound)?);
+        of_co.push(quantise(name, operand(name).bound, ANY_LSB)?);
     }
-    let g = {
-        let at = |name: MatrixName| &stored[1 + CO_ORDER.iter().position(|&other| other == name).unwrap_or(0)];
-        let mut sums: Vec<Vec<(&QuantisedMatrix, Format)>> = Vec::new();
-        for (pseudo_inverse, with_weight) in
-            [(MatrixName::A1, MatrixName::D10), (MatrixName::A2, MatrixName::D20), (MatrixName::A3, MatrixName::D30)]
-        {
-            sums.push(vec![(at(pseudo_inverse), stress), (at(with_weight), weight)]);
+    let alone = g_format(&of_co, stress, weight, data_bits);
+    for (name, matrix) in CO_ORDER.into_iter().zip(&mut of_co) {
+        let least_lsb = alone.lsb - operand(name).lsb - MOST_SHIFT as i32;
+        if matrix.lsb < least_lsb {
+            *matrix = quantise(name, operand(name).bound, least_lsb)?;
         }
-        for name in CO_ORDER.into_iter().filter(|&name| !is_pseudo_inverse(name)) {
-            sums.push(vec![(at(name), weight)]);
-        }
-        result_format("g", &sums, data_bits)?
-    };
-    let base = QuantisedMatrix::new("C33", &CsrMatrix::from(&matrices.c33), coefficient_bits, g.bound)?;
-    let u = result_format("u", &[vec![(&base, g)]], data_bits)?;
+    }
+    // The last bits of the small ones have changed, and with them perhaps the bound.
+    let g = g_format(&of_co, stress, weight, data_bits);
+    let base = QuantisedMatrix::new("C33", &CsrMatrix::from(&matrices.c33), coefficient_bits, g.bound, ANY_LSB)?;
+    let u = result_format(&[vec![(&base, g)]], data_bits);
+    let mut stored = vec![inverse];
+    stored.append(&mut of_co);
     stored.push(base);
 
     let formats = Formats { stress, weight, g, u };
@@ -178,30 +176,37 @@ fn stored_form(name: MatrixName, matrix: &CsrMatrix<f64>) -> (String, CsrMatrix<
     (label, CsrMatrix::from(&coo))
 }
 
-/// The finest `bits`-bit format for results that are sums of products: `sums` lists, per result, its terms as
-/// `(matrix, operand format)`. Its step is never finer than that of an accumulator it is rounded from.
-fn result_format(
-    vector: &'static str,
-    sums: &[Vec<(&QuantisedMatrix, Format)>],
-    bits: u32,
-) -> Result<Format, PlanError> {
-    let accumulator_lsb = |&(matrix, operand): &(&QuantisedMatrix, Format)| matrix.lsb + operand.lsb;
-    let finest = sums.iter().flatten().map(accumulator_lsb).max().unwrap_or(0);
-    let coarsest = sums.iter().flatten().map(accumulator_lsb).min().unwrap_or(0);
-    for lsb in finest.. {
-        if lsb - coarsest >= 47 {
-            break;
-        }
-        let of_sum = |terms: &Vec<(&QuantisedMatrix, Format)>| -> i64 {
-            let of_term = |term: &(&QuantisedMatrix, Format)| {
-                Product::result_bound(term.0, term.1.bound, (lsb - accumulator_lsb(term)) as u32)
-            };
-            terms.iter().map(of_term).sum()
-        };
-        let bound = sums.iter().map(of_sum).max().unwrap_or(0);
-        if bound <= largest(bits) {
-            return Ok(Format { bits, lsb, bound });
+/// The format of all nine `g_pq` and of `A_p b`; `matrices` are those of [`CO_ORDER`].
+fn g_format(matrices: &[QuantisedMatrix], stress: Format, weight: Format, bits: u32) -> Format {
+    let terms = || CO_ORDER.into_iter().zip(matrices);
+    let of_p = |name| indices(name).0;
+    let mut sums: Vec<Vec<(&QuantisedMatrix, Format)>> = Vec::new();
+    for (name, matrix) in terms() {
+        match indices(name).1 {
+            None => sums.push(vec![(matrix, stress)]),
+            Some(0) => {
+                let partial = terms().find(|&(other, _)| is_pseudo_inverse(other) && of_p(other) == of_p(name));
+                sums.push(partial.map(|(_, matrix)| (matrix, stress)).into_iter().chain([(matrix, weight)]).collect());
+            }
+            Some(_) => sums.push(vec![(matrix, weight)]),
         }
     }
-    Err(PlanError::Range { vector, bits })
+    result_format(&sums, bits)
+}
+
+/// The finest `bits`-bit format for results that are sums of products: `sums` lists, per result, its terms as
+/// `(matrix, operand format)`. Its step is never finer than that of an accumulator it is rounded from.
+fn result_format(sums: &[Vec<(&QuantisedMatrix, Format)>], bits: u32) -> Format {
+    let accumulator_lsb = |&(matrix, operand): &(&QuantisedMatrix, Format)| matrix.lsb + operand.lsb;
+    let bound = |lsb: i32| -> i64 {
+        let of_term = |term: &(&QuantisedMatrix, Format)| {
+            Product::result_bound(term.0, term.1.bound, (lsb - accumulator_lsb(term)) as u32)
+        };
+        sums.iter().map(|terms| terms.iter().map(of_term).sum()).max().unwrap_or(0)
+    };
+    let mut lsb = sums.iter().flatten().map(accumulator_lsb).max().unwrap_or(0);
+    while bound(lsb) > largest(bits) {
+        lsb += 1;
+    }
+    Format { bits, lsb, bound: bound(lsb) }
 }

@@ -75,6 +75,7 @@ pub struct Product {
 impl Product {
     /// Largest magnitude of a rounded result before the epilogue, for operands up to `operand_bound`.
     pub fn result_bound(matrix: &QuantisedMatrix, operand_bound: i64, shift: u32) -> i64 {
-        round_shift(matrix.row_sum * operand_bound, shift)
+        // An accumulator has 48 bits: beyond that, and well within the 64 of this word, nothing is left.
+        round_shift(matrix.row_sum * operand_bound, shift.min(62))
     }
 }

@@ -3,8 +3,10 @@
 use nalgebra_sparse::CsrMatrix;
 
 use super::PlanError;
-use super::format::{ACCUMULATOR_BITS, largest, pow2};
+use super::format::{ACCUMULATOR_LIMIT, largest, pow2};
 
+/// As [`QuantisedMatrix::new`] takes it where the matrix alone decides; its reciprocal is still a normal f64.
+pub const ANY_LSB: i32 = -900;
 /// Coefficients with fewer significant bits than this reconstruct nothing worth having.
 const FEWEST_USEFUL_BITS: u32 = 6;
 
@@ -23,23 +25,29 @@ pub struct QuantisedMatrix {
 
 impl QuantisedMatrix {
     /// Rounds `matrix` to `bits`-bit coefficients, as finely as both the coefficient width and the 48-bit
-    /// accumulator allow for operands of magnitude up to `operand_bound`.
+    /// accumulator allow for operands of magnitude up to `operand_bound`, but with a last bit worth `2^least_lsb`
+    /// or more.
     ///
     /// # Errors
     /// [`PlanError::CoefficientWidth`] when the accumulator leaves the coefficients less than six bits.
-    pub fn new(name: &str, matrix: &CsrMatrix<f64>, bits: u32, operand_bound: i64) -> Result<Self, PlanError> {
+    pub fn new(
+        name: &str,
+        matrix: &CsrMatrix<f64>,
+        bits: u32,
+        operand_bound: i64,
+        least_lsb: i32,
+    ) -> Result<Self, PlanError> {
         let largest_entry = matrix.values().iter().fold(0.0_f64, |top, value| top.max(value.abs()));
         let top = largest(bits);
-        let mut lsb = (largest_entry / top as f64).log2().floor() as i32 - 1;
+        // A filter may leave nothing but zeros, whose logarithm is minus infinity.
+        let mut lsb = ((largest_entry / top as f64).log2().floor() - 1.0).max(f64::from(least_lsb)) as i32;
         while (largest_entry * pow2(-lsb)).round() > top as f64 {
             lsb += 1;
         }
         let finest = lsb;
         loop {
             let quantised = Self::at(name, matrix, lsb);
-            let fits =
-                i128::from(quantised.row_sum) * i128::from(operand_bound) <= i128::from(largest(ACCUMULATOR_BITS));
-            if fits {
+            if i128::from(quantised.row_sum) * i128::from(operand_bound) <= i128::from(ACCUMULATOR_LIMIT) {
                 return Ok(quantised);
             }
             lsb += 1;
@@ -90,7 +98,7 @@ mod tests {
     #[test]
     fn uses_the_whole_coefficient_width() {
         let matrix = csr(&[(0, 0, 0.75), (0, 1, -0.1), (1, 1, 0.2)], 2);
-        let quantised = QuantisedMatrix::new("A1", &matrix, 18, 1 << 26).unwrap();
+        let quantised = QuantisedMatrix::new("A1", &matrix, 18, 1 << 26, ANY_LSB).unwrap();
         assert_eq!(quantised.rows[0][0].1, 98304);
         assert_eq!(quantised.lsb, -17);
         assert_eq!(quantised.nnz(), 3);
@@ -98,16 +106,27 @@ mod tests {
 
     #[test]
     fn gives_up_bits_before_the_accumulator_overflows() {
-        let dense: Vec<_> = (0..64).map(|column| (0, column, 1.0)).chain((1..64).map(|row| (row, row, 1.0))).collect();
-        let quantised = QuantisedMatrix::new("A1", &csr(&dense, 64), 18, largest(27)).unwrap();
-        assert!(quantised.row_sum * largest(27) <= largest(ACCUMULATOR_BITS));
-        assert_eq!(quantised.lsb, -15);
+        // 64 ones with 15 fraction bits times a full 27-bit operand fill the accumulator, but for the rounding.
+        for (ones, lsb) in [(31, -16), (63, -15), (64, -14)] {
+            let row: Vec<_> = (0..ones).map(|column| (0, column, 1.0)).collect();
+            let quantised = QuantisedMatrix::new("A1", &csr(&row, 64), 18, largest(27), ANY_LSB).unwrap();
+            assert!(quantised.row_sum * largest(27) <= ACCUMULATOR_LIMIT);
+            assert_eq!(quantised.lsb, lsb, "{ones} ones");
+        }
+    }
+
+    #[test]
+    fn is_no_finer_than_asked() {
+        for (entry, expected) in [(1.0, 64), (0.001, 0), (0.0, 0)] {
+            let quantised = QuantisedMatrix::new("D12", &csr(&[(0, 0, entry)], 1), 18, 1 << 26, -6).unwrap();
+            assert_eq!((quantised.lsb, quantised.rows[0][0].1), (-6, expected));
+        }
     }
 
     #[test]
     fn says_when_nothing_useful_is_left() {
         let dense: Vec<_> = (0..64).flat_map(|row| (0..64).map(move |column| (row, column, 1.0))).collect();
-        let error = QuantisedMatrix::new("A1", &csr(&dense, 64), 8, largest(40)).unwrap_err();
+        let error = QuantisedMatrix::new("A1", &csr(&dense, 64), 8, largest(40), ANY_LSB).unwrap_err();
         assert!(error.to_string().contains("A1"), "{error}");
     }
 }

@@ -1,0 +1,199 @@
+//! The search behind filter F3: for each matrix the filter that costs friction least for the entries it keeps.
+//!
+//! With only that matrix filtered, every candidate is judged by `e_mu * Nnz`, where `e_mu` is the error of the
+//! friction coefficient averaged over reference frames (Pinto-Salamanca et al., Sensors 2024, Eqs. 27 to 29).
+
+mod scenes;
+mod trial;
+
+pub use scenes::{rebase_scenes, reference_frames};
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use serde::{Serialize, Serializer};
+
+use crate::design::{Choices, Design, Filter, MatrixFilter};
+use crate::filter::{FilterError, FilteredMatrices};
+use crate::matrices::{Matrices, MatrixError, MatrixName};
+use crate::scene::{SceneError, SceneFrame};
+use crate::solver::{Solver, SolverError};
+use trial::Trial;
+
+/// Why no choice can be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ChooseError {
+    /// The design has another filter.
+    #[error(
+        "{name}: the filter is not f3, so there is nothing to choose; write \
+         filter = {{ kind = \"f3\", scenes = [\"SCENE.toml\"] }} under [algorithm]"
+    )]
+    OtherFilter {
+        /// Name of the design.
+        name: String,
+    },
+    /// Choices were given by hand.
+    #[error(
+        "{name}: the filter f3 names no scenes to choose by; write scenes = [\"SCENE.toml\"] beside its kind, \
+         relative to the design file"
+    )]
+    NoScenes {
+        /// Name of the design.
+        name: String,
+    },
+    /// A reference scene is wrong.
+    #[error("{}", in_scene(path, source))]
+    Scene {
+        /// The scene file.
+        path: PathBuf,
+        /// Why.
+        source: SceneError,
+    },
+    /// A reference scene is that of another sensor.
+    #[error(
+        "reference scene {}: its [sensor] is not that of the design {name}; give a scene with the same columns, rows, \
+         pitch_mm and depth_mm",
+        path.display()
+    )]
+    OtherSensor {
+        /// The scene file.
+        path: PathBuf,
+        /// Name of the design.
+        name: String,
+    },
+    /// The sensor's matrices cannot be computed.
+    #[error(transparent)]
+    Matrices(#[from] MatrixError),
+    /// The choices leave nothing of a row.
+    #[error(transparent)]
+    Filter(#[from] FilterError),
+    /// The frames are not those of the sensor.
+    #[error(transparent)]
+    Frames(#[from] SolverError),
+}
+
+/// What is wrong with a scene, with its file; that is part of some messages already.
+fn in_scene(path: &Path, error: &SceneError) -> String {
+    match error {
+        SceneError::File(error) => format!("reference scene {error}"),
+        SceneError::TooFine { .. } => format!("reference scene {}: {error}", path.display()),
+    }
+}
+
+/// One filter of one matrix, judged.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Candidate {
+    /// The matrix.
+    #[serde(serialize_with = "as_text")]
+    pub matrix: MatrixName,
+    /// Its filter.
+    #[serde(serialize_with = "as_text")]
+    pub filter: MatrixFilter,
+    /// Entries it keeps.
+    pub nnz: usize,
+    /// Error of the friction coefficient in percent, mean over the frames, with only this matrix filtered.
+    pub e_mu: f64,
+    /// `e_mu * nnz`, of which the least is chosen.
+    pub cost: f64,
+    /// Whether it is.
+    pub chosen: bool,
+}
+
+fn as_text<S: Serializer>(value: &impl ToString, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&value.to_string())
+}
+
+/// What the search found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Choice {
+    /// All candidates, matrix by matrix, F1 before F2, the parameter rising: Figure 11 of the paper.
+    pub candidates: Vec<Candidate>,
+    /// Frames they were judged by.
+    pub frames: usize,
+    /// Mean error of the friction coefficient in percent without a filter.
+    pub e_mu_unfiltered: f64,
+    /// The same with all choices together.
+    pub e_mu_chosen: f64,
+    /// Entries kept in all 13 matrices.
+    pub nnz_chosen: usize,
+}
+
+impl Choice {
+    /// The filter of each matrix.
+    pub fn choices(&self) -> Choices {
+        let mut filters = [MatrixFilter::None; MatrixName::ALL.len()];
+        for candidate in self.candidates.iter().filter(|candidate| candidate.chosen) {
+            filters[candidate.matrix.index()] = candidate.filter;
+        }
+        Choices::new(filters)
+    }
+}
+
+/// Number of candidates of a search on a sensor of `taxels`, for progress.
+pub fn candidate_count(taxels: usize) -> usize {
+    MatrixName::ALL.len() * candidate_filters(taxels).len()
+}
+
+/// The filters tried on each matrix: `L` and `p` from 10 to 90 in steps of 10, as in the paper; on a small sensor
+/// only the bands that leave a neighbour of the diagonal.
+fn candidate_filters(taxels: usize) -> Vec<MatrixFilter> {
+    let steps = || (1..=9).map(|step| 10 * step);
+    let bands = steps().filter(|&l| l + 2 <= taxels).map(|l| MatrixFilter::F1 { l });
+    bands.chain(steps().map(|p| MatrixFilter::F2 { p: p as f64 })).collect()
+}
+
+/// Searches the filter of each matrix of a design by reference frames; `tick` is called after every candidate, from
+/// several threads.
+///
+/// Of candidates that cost the same the first is chosen: F1 before F2, as in Eq. 27, then the smaller parameter.
+///
+/// # Errors
+///
+/// [`ChooseError::Matrices`] for a sensor whose matrices are singular, [`ChooseError::Frames`] for frames of another
+/// sensor.
+pub fn choose(design: &Design, frames: &[SceneFrame], tick: &(dyn Fn() + Sync)) -> Result<Choice, ChooseError> {
+    let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)?;
+    let trial = Trial::new(design, &matrices, frames)?;
+    let filters = candidate_filters(design.sensor.taxels());
+    let pairs: Vec<_> =
+        MatrixName::ALL.into_iter().flat_map(|matrix| filters.iter().map(move |&filter| (matrix, filter))).collect();
+    let mut candidates: Vec<Candidate> = pairs
+        .into_par_iter()
+        .map(|(matrix, filter)| {
+            let (nnz, e_mu) = trial.judge(matrix, filter);
+            tick();
+            Candidate { matrix, filter, nnz, e_mu, cost: e_mu * nnz as f64, chosen: false }
+        })
+        .collect();
+    for of_matrix in candidates.chunks_mut(filters.len()) {
+        // `min_by` keeps the first of equal ones.
+        if let Some(best) = of_matrix.iter_mut().min_by(|a, b| a.cost.total_cmp(&b.cost)) {
+            best.chosen = true;
+        }
+    }
+    let mut choice = Choice {
+        candidates,
+        frames: frames.len(),
+        e_mu_unfiltered: trial.unfiltered(),
+        e_mu_chosen: 0.0,
+        nnz_chosen: 0,
+    };
+    let together = Filter::F3 { scenes: Vec::new(), choices: Some(Box::new(choice.choices())) };
+    let filtered = FilteredMatrices::new(&matrices, &together)?;
+    choice.nnz_chosen = MatrixName::ALL.into_iter().map(|name| filtered.nnz(name)).sum();
+    choice.e_mu_chosen = mean_error(&Solver::from_parts(design, matrices.clone(), filtered), frames)?;
+    Ok(choice)
+}
+
+/// Mean error of a solver's friction coefficient over frames, in percent (Eq. 28).
+///
+/// # Errors
+///
+/// [`SolverError::FrameLength`] for frames of another sensor.
+pub fn mean_error(solver: &Solver, frames: &[SceneFrame]) -> Result<f64, SolverError> {
+    let mut sum = 0.0;
+    for frame in frames {
+        sum += 100.0 * (frame.friction - solver.solve(&frame.stress)?.mu).abs();
+    }
+    Ok(sum / frames.len() as f64)
+}

@@ -1,0 +1,107 @@
+//! `golden choose`: the filter of each matrix.
+
+use std::error::Error;
+use std::fmt::Write;
+use std::path::Path;
+
+use golden::choose::{Choice, candidate_count, choose, rebase_scenes, reference_frames};
+use golden::design::{Design, Filter};
+use golden::output::write_whole;
+use indicatif::ProgressBar;
+use serde::Serialize;
+
+use super::keep_apart;
+
+#[derive(Serialize)]
+struct Report<'a> {
+    design: &'a str,
+    resolved: &'a Path,
+    #[serde(flatten)]
+    choice: &'a Choice,
+}
+
+/// Searches the filters of the design in `path` and writes the resolved design to `out`, the candidates to `csv`.
+pub fn run(path: &Path, out: &Path, csv: Option<&Path>, json: bool) -> Result<(), Box<dyn Error>> {
+    let mut design = Design::load(path)?;
+    let from = folder(path);
+    let scenes = match &design.algorithm.filter {
+        Filter::F3 { scenes, .. } => scenes.clone(),
+        _ => Vec::new(),
+    };
+    let mut inputs: Vec<_> = scenes.iter().map(|scene| from.join(scene)).collect();
+    inputs.push(path.to_path_buf());
+    let inputs: Vec<&Path> = inputs.iter().map(AsRef::as_ref).collect();
+    for output in [Some(out), csv].into_iter().flatten() {
+        keep_apart(output, &inputs)?;
+    }
+    if csv == Some(out) {
+        return Err(format!("{}: named for both the design and the table; choose two names", out.display()).into());
+    }
+    let frames = reference_frames(&design, from)?;
+    // Draws on a terminal only.
+    let progress = ProgressBar::new(candidate_count(design.sensor.taxels()) as u64);
+    let found = choose(&design, &frames, &|| progress.inc(1));
+    progress.finish_and_clear();
+    let choice = found?;
+
+    design.algorithm.filter =
+        Filter::F3 { scenes: rebase_scenes(&scenes, from, folder(out)), choices: Some(Box::new(choice.choices())) };
+    let mut text =
+        "# Resolved by `golden choose`: the filter of each matrix is chosen by the scenes named here.\n".to_owned();
+    text.push_str(&design.to_toml());
+    if let Some(csv) = csv {
+        write_whole(csv, table(&choice).as_bytes())?;
+    }
+    write_whole(out, text.as_bytes())?;
+
+    if json {
+        let report = Report { design: &design.name, resolved: out, choice: &choice };
+        println!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        print_report(&design.name, out, &choice);
+    }
+    Ok(())
+}
+
+fn folder(file: &Path) -> &Path {
+    match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn table(choice: &Choice) -> String {
+    let mut text = "matrix,filter,nnz,e_mu,e_mu_nnz,chosen\n".to_owned();
+    for candidate in &choice.candidates {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{},{},{},{:?},{:?},{}",
+            candidate.matrix,
+            candidate.filter,
+            candidate.nnz,
+            candidate.e_mu,
+            candidate.cost,
+            u8::from(candidate.chosen)
+        );
+    }
+    text
+}
+
+fn print_report(name: &str, out: &Path, choice: &Choice) {
+    println!("{name}: filters chosen by {} frames", choice.frames);
+    println!("  matrix  filter        Nnz    e_mu %    e_mu * Nnz");
+    for candidate in choice.candidates.iter().filter(|candidate| candidate.chosen) {
+        println!(
+            "  {:<7} {:<8} {:>8}  {:>8.4}  {:>12.1}",
+            candidate.matrix.as_str(),
+            candidate.filter,
+            candidate.nnz,
+            candidate.e_mu,
+            candidate.cost
+        );
+    }
+    println!("  all together     {:>8}  {:>8.4}", choice.nnz_chosen, choice.e_mu_chosen);
+    println!("  without a filter           {:>8.4}", choice.e_mu_unfiltered);
+    println!("the resolved design is {}", out.display());
+}

@@ -1,0 +1,98 @@
+//! `golden solve`: forces from frames.
+
+use std::error::Error;
+use std::path::Path;
+
+use golden::design::Design;
+use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
+use golden::solver::{Solution, Solver, Status};
+use golden::{forces, frames};
+use indicatif::ProgressBar;
+use serde::Serialize;
+
+use super::keep_apart;
+
+#[derive(Serialize)]
+struct StatusCount {
+    status: u32,
+    meaning: String,
+    frames: usize,
+}
+
+#[derive(Serialize)]
+struct SolveReport<'a> {
+    design: &'a str,
+    frames: usize,
+    forces_file: &'a Path,
+    status_counts: Vec<StatusCount>,
+    /// Errors against the true forces, in percent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    errors: Option<ErrorSummary>,
+}
+
+/// Solves `frames` and writes the forces to `out`.
+pub fn run(
+    design: &Path,
+    frames: &Path,
+    out: &Path,
+    with_field: bool,
+    reference: Option<&Path>,
+    json: bool,
+) -> Result<(), Box<dyn Error>> {
+    let inputs = [Some(design), Some(frames), reference];
+    keep_apart(out, &inputs.into_iter().flatten().collect::<Vec<_>>())?;
+    let design = Design::load(design)?;
+    let frames = frames::read_frames(frames, design.sensor.taxels())?;
+    let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
+    let solver = Solver::new(&design)?;
+    // Draws on a terminal only.
+    let progress = ProgressBar::new(frames.len() as u64);
+    let solutions = frames
+        .iter()
+        .map(|frame| {
+            progress.inc(1);
+            solver.solve(frame)
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    progress.finish_and_clear();
+    forces::write_solutions(out, &solutions, with_field)?;
+
+    let report = SolveReport {
+        design: &design.name,
+        frames: solutions.len(),
+        forces_file: out,
+        status_counts: count_statuses(&solutions),
+        errors: truth.map(|truth| {
+            let found = solutions.iter().map(Outcome::from);
+            ErrorSummary::new(&truth.into_iter().zip(found).collect::<Vec<_>>())
+        }),
+    };
+    if json {
+        println!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        print_report(&report);
+    }
+    Ok(())
+}
+
+fn count_statuses(solutions: &[Solution]) -> Vec<StatusCount> {
+    let mut words: Vec<u32> = solutions.iter().map(|solution| solution.status.0).collect();
+    words.sort_unstable();
+    words
+        .chunk_by(|a, b| a == b)
+        .map(|equal| StatusCount { status: equal[0], meaning: Status(equal[0]).to_string(), frames: equal.len() })
+        .collect()
+}
+
+fn print_report(report: &SolveReport) {
+    println!("{}: forces of {} frames in {}", report.design, report.frames, report.forces_file.display());
+    for count in &report.status_counts {
+        println!("  {:>6} frames: {}", count.frames, count.meaning);
+    }
+    if let Some(errors) = &report.errors {
+        println!("errors in %       max  std. error");
+        for (name, spread) in ERROR_NAMES.iter().zip(errors.spreads()) {
+            println!("  {name:<8} {:>10.2}  {:>10.2}", spread.max, spread.standard_error);
+        }
+    }
+}

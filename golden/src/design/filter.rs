@@ -1,0 +1,108 @@
+//! Filters of the matrices, as a design states them.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::matrices::MatrixName;
+
+/// Which entries of the 13 matrices are kept.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Filter {
+    /// All of them.
+    None,
+    /// A band around the diagonal.
+    F1 {
+        /// Number of diagonals **removed** on either side: kept is `|i - j| <= (m - 1) - l`.
+        l: usize,
+    },
+    /// Entries that are large within their row.
+    F2 {
+        /// Kept is `|B_ij| >= max_j(B_ij) / (1000 p)`, with the signed maximum of the row.
+        p: f64,
+    },
+    /// For each matrix its own filter, chosen by what it does to the friction in reference scenes (Pinto-Salamanca
+    /// et al., Sensors 2024, Eq. 27).
+    F3 {
+        /// Scene files to choose by, relative to the design file; not read once the choices are there.
+        scenes: Vec<String>,
+        /// The choices, or `None` before the search of [`crate::choose`].
+        choices: Option<Box<Choices>>,
+    },
+}
+
+impl Filter {
+    /// The filter of one matrix, or `None` for F3 without choices.
+    pub fn of(&self, matrix: MatrixName) -> Option<MatrixFilter> {
+        match self {
+            Self::None => Some(MatrixFilter::None),
+            Self::F1 { l } => Some(MatrixFilter::F1 { l: *l }),
+            Self::F2 { p } => Some(MatrixFilter::F2 { p: *p }),
+            Self::F3 { choices, .. } => choices.as_ref().map(|choices| choices.of(matrix)),
+        }
+    }
+}
+
+/// Which entries of one matrix are kept.
+///
+/// As text, in design files and reports: `none`, `f1 l=40` or `f2 p=30`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MatrixFilter {
+    /// All of them.
+    None,
+    /// As [`Filter::F1`].
+    F1 {
+        /// Diagonals removed on either side.
+        l: usize,
+    },
+    /// As [`Filter::F2`].
+    F2 {
+        /// Kept is `|B_ij| >= max_j(B_ij) / (1000 p)`.
+        p: f64,
+    },
+}
+
+impl fmt::Display for MatrixFilter {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => formatter.pad("none"),
+            Self::F1 { l } => formatter.pad(&format!("f1 l={l}")),
+            Self::F2 { p } => formatter.pad(&format!("f2 p={p}")),
+        }
+    }
+}
+
+/// A text that is no filter of a matrix.
+#[derive(Debug, thiserror::Error)]
+#[error("\"{0}\" is no filter of a matrix; write \"none\", \"f1 l=40\" or \"f2 p=30\"")]
+pub struct UnknownMatrixFilter(String);
+
+impl FromStr for MatrixFilter {
+    type Err = UnknownMatrixFilter;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let parsed = match words.as_slice() {
+            ["none"] => Some(Self::None),
+            ["f1", l] => l.strip_prefix("l=").and_then(|l| l.parse().ok()).map(|l| Self::F1 { l }),
+            ["f2", p] => p.strip_prefix("p=").and_then(|p| p.parse().ok()).map(|p| Self::F2 { p }),
+            _ => None,
+        };
+        parsed.ok_or_else(|| UnknownMatrixFilter(text.to_owned()))
+    }
+}
+
+/// A filter for each of the 13 matrices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choices([MatrixFilter; MatrixName::ALL.len()]);
+
+impl Choices {
+    /// Choices in the order of [`MatrixName::ALL`].
+    pub fn new(filters: [MatrixFilter; MatrixName::ALL.len()]) -> Self {
+        Self(filters)
+    }
+
+    /// The filter of one matrix.
+    pub fn of(&self, matrix: MatrixName) -> MatrixFilter {
+        self.0[matrix.index()]
+    }
+}

@@ -1,0 +1,113 @@
+//! From the `filter` of a design file to a checked [`Filter`].
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use super::checks::Check;
+use super::{Choices, DesignError, Filter, MatrixFilter, Sensor};
+use crate::matrices::MatrixName;
+
+// Not a tagged enum: those lose the position of an error and cannot say which key belongs to which kind.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawFilter {
+    kind: String,
+    l: Option<i64>,
+    p: Option<f64>,
+    scenes: Option<Vec<String>>,
+    choices: Option<BTreeMap<String, String>>,
+}
+
+pub(super) fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<Filter, DesignError> {
+    let own: &[&str] = match raw.kind.as_str() {
+        "none" => &[],
+        "f1" => &["l"],
+        "f2" => &["p"],
+        "f3" => &["scenes", "choices"],
+        other => {
+            return Err(DesignError::Choice {
+                origin: check.origin.to_owned(),
+                key: "algorithm.filter.kind".to_owned(),
+                found: other.to_owned(),
+                allowed: &["none", "f1", "f2", "f3"],
+            });
+        }
+    };
+    let given = [
+        ("l", raw.l.is_some()),
+        ("p", raw.p.is_some()),
+        ("scenes", raw.scenes.is_some()),
+        ("choices", raw.choices.is_some()),
+    ];
+    if let Some((foreign, _)) = given.into_iter().find(|&(key, given)| given && !own.contains(&key)) {
+        return Err(check.value(
+            &format!("algorithm.filter.{foreign}"),
+            format!("does not belong to a filter of kind \"{}\"", raw.kind),
+            "remove it or choose another kind".to_owned(),
+        ));
+    }
+    let missing = |key: &str, example: &str| {
+        check.value(
+            &format!("algorithm.filter.{key}"),
+            "is missing".to_owned(),
+            format!("write filter = {{ kind = \"{}\", {example} }}", raw.kind),
+        )
+    };
+    match raw.kind.as_str() {
+        "f1" => {
+            let l = band(check, "algorithm.filter.l", raw.l.ok_or_else(|| missing("l", "l = 40"))?, sensor)?;
+            Ok(Filter::F1 { l })
+        }
+        "f2" => {
+            let value = raw.p.ok_or_else(|| missing("p", "p = 30"))?;
+            Ok(Filter::F2 { p: check.above_zero("algorithm.filter.p", value, f64::MAX, "")? })
+        }
+        "f3" => {
+            let scenes = raw.scenes.clone().unwrap_or_default();
+            if scenes.is_empty() && raw.choices.is_none() {
+                return Err(missing("scenes", "scenes = [\"../scenes/sensor1-hertz.toml\"]"));
+            }
+            let choices = raw.choices.as_ref().map(|raw| choices(check, raw, sensor)).transpose()?;
+            Ok(Filter::F3 { scenes, choices: choices.map(Box::new) })
+        }
+        _ => Ok(Filter::None),
+    }
+}
+
+fn band(check: &Check, key: &str, value: i64, sensor: &Sensor) -> Result<usize, DesignError> {
+    // The diagonal and one neighbour on either side is the narrowest band allowed.
+    check.integer(key, value, 1, sensor.taxels() as i64 - 2).map(|l| l as usize)
+}
+
+fn choices(check: &Check, raw: &BTreeMap<String, String>, sensor: &Sensor) -> Result<Choices, DesignError> {
+    for name in raw.keys() {
+        if let Err(error) = name.parse::<MatrixName>() {
+            return Err(check.value(
+                &format!("algorithm.filter.choices.{name}"),
+                "is unknown".to_owned(),
+                error.to_string(),
+            ));
+        }
+    }
+    let mut filters = [MatrixFilter::None; MatrixName::ALL.len()];
+    for (name, filter) in MatrixName::ALL.into_iter().zip(&mut filters) {
+        let key = format!("algorithm.filter.choices.{name}");
+        let text = raw.get(name.as_str()).ok_or_else(|| {
+            check.value(
+                &key,
+                "is missing".to_owned(),
+                "give a filter for each of the 13 matrices, or remove the choices and run `golden choose`".to_owned(),
+            )
+        })?;
+        *filter = match text.parse::<MatrixFilter>() {
+            Ok(MatrixFilter::F1 { l }) => {
+                MatrixFilter::F1 { l: band(check, &key, l.try_into().unwrap_or(-1), sensor)? }
+            }
+            Ok(MatrixFilter::F2 { p }) => MatrixFilter::F2 { p: check.above_zero(&key, p, f64::MAX, "")? },
+            Ok(MatrixFilter::None) => MatrixFilter::None,
+            Err(error) => return Err(check.value(&key, "cannot be read".to_owned(), error.to_string())),
+        };
+    }
+    Ok(Choices::new(filters))
+}

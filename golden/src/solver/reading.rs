@@ -1,0 +1,68 @@
+//! From the values of a frame to what can be solved.
+
+use nalgebra::DVector;
+
+use super::cean::{self, Contact};
+use super::{SolverError, Status};
+use crate::design::Design;
+
+/// Reads the frames of one sensor.
+#[derive(Clone, Debug)]
+pub(crate) struct Reader {
+    positions: Vec<[f64; 2]>,
+    noise_floor: f64,
+    full_scale: f64,
+}
+
+/// A frame as the solver takes it.
+pub(crate) enum Reading {
+    /// Something presses.
+    Contact {
+        /// Stress in pascals, within the full scale.
+        b: DVector<f64>,
+        /// What the contact analysis finds.
+        contact: Contact,
+        /// Bits raised so far.
+        status: Status,
+    },
+    /// The result is this status, and zeros.
+    Nothing(Status),
+}
+
+impl Reader {
+    pub(crate) fn new(design: &Design) -> Self {
+        let sensor = &design.sensor;
+        Self {
+            positions: (0..sensor.taxels()).map(|i| sensor.position_m(i)).collect(),
+            noise_floor: design.algorithm.noise_floor_pa,
+            full_scale: design.hardware.full_scale_pa,
+        }
+    }
+
+    /// Number of values in a frame.
+    pub(crate) fn taxels(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Checks, clamps and analyses one frame.
+    pub(crate) fn read(&self, frame: &[f64]) -> Result<Reading, SolverError> {
+        let taxels = self.taxels();
+        if frame.len() != taxels {
+            return Err(SolverError::FrameLength { found: frame.len(), expected: taxels });
+        }
+        if frame.iter().any(|stress| !stress.is_finite()) {
+            return Ok(Reading::Nothing(Status::NOT_FINITE));
+        }
+        let mut status = Status::default();
+        if frame.iter().any(|stress| stress.abs() > self.full_scale) {
+            status.insert(Status::SATURATED);
+        }
+        let clamped = frame.iter().map(|stress| stress.clamp(-self.full_scale, self.full_scale));
+        let b = DVector::from_iterator(taxels, clamped);
+        let contact = cean::cean(&b, &self.positions, self.noise_floor);
+        if !contact.touched {
+            return Ok(Reading::Nothing(Status::NO_CONTACT));
+        }
+        Ok(Reading::Contact { b, contact, status })
+    }
+}
