@@ -17,6 +17,7 @@ have "${CXX:-g++}" || needed="$needed g++"
 have python3 && python3 -c 'import ensurepip, venv' 2> /dev/null || needed="$needed python3 python3-venv"
 have ar || needed="$needed binutils"
 have iverilog || wanted="$wanted iverilog"
+have tclsh || wanted="$wanted tcl"
 if have "${CXX:-g++}"; then
     header zlib.h || wanted="$wanted zlib1g-dev"
     header lz4.h || wanted="$wanted liblz4-dev"
@@ -45,7 +46,7 @@ if [ -n "$needed$wanted" ]; then
     else
         [ -z "$needed" ] || fail "missing:$needed. Not root, so nothing was installed: please install them (Debian names)"
         say "missing, and not root:$wanted (Debian names). 'make run' works without;"
-        say "'make test' needs iverilog; zlib and lz4 headers make traces FST in place of VCD"
+        say "'make test' needs iverilog and tcl; zlib and lz4 headers make traces FST in place of VCD"
     fi
 fi
 

@@ -1,5 +1,6 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
+mod flows;
 mod mcsr;
 mod metadata;
 mod roms;
@@ -41,7 +42,8 @@ pub enum EmitError {
 /// Version of the generator, as printed into every file.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Prints every file of the design's folder: `rtl/`, `rom/`, `mcsr/`, `metadata.json`, `design.toml`.
+/// Prints every file of the design's folder: `rtl/`, `rom/`, `mcsr/`, `vivado/`, file lists, `metadata.json`,
+/// `design.toml`.
 ///
 /// # Errors
 /// [`EmitError`] if a template and its data do not fit each other.
@@ -58,6 +60,8 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     roms::insert(plan, &mut files);
     mcsr::insert(plan, &mut files);
     files.insert("design.toml".to_owned(), design.into_bytes());
+    // After every file that a list or script names.
+    flows::insert(plan, &hash, &mut files)?;
     let metadata = metadata::metadata(plan, &hash, &files)?;
     files.insert("metadata.json".to_owned(), metadata);
     Ok(files)

@@ -1,0 +1,166 @@
+//! Scripts and file lists for the tools that take the Verilog further: Vivado, `FuseSoC`, Bender, and a plain `.f`.
+//!
+//! They name the files that the folder holds, relative to the folder, so they come after everything else.
+
+use serde::Serialize;
+use tera::{Context, Tera};
+
+use crate::model::SUMMARY_WORDS;
+use crate::plan::Plan;
+
+use super::{EmitError, FileMap, VERSION};
+
+/// Bytes of a beat on both streams.
+const BEAT_BYTES: usize = 4;
+/// Width of the DMA's length register unless frames are longer, in bits.
+const LEAST_LENGTH_BITS: u32 = 14;
+
+/// `(path, template)`; `NAME` stands for the design's name.
+const FILES: [(&str, &str); 9] = [
+    ("vivado/files.tcl", include_str!("../../templates/vivado/files.tcl.tera")),
+    ("vivado/NAME.xdc", include_str!("../../templates/vivado/constraints.xdc.tera")),
+    ("vivado/synth.tcl", include_str!("../../templates/vivado/synth.tcl.tera")),
+    ("vivado/package_ip.tcl", include_str!("../../templates/vivado/package_ip.tcl.tera")),
+    ("vivado/block_design.tcl", include_str!("../../templates/vivado/block_design.tcl.tera")),
+    ("vivado/out_of_context.tcl", include_str!("../../templates/vivado/out_of_context.tcl.tera")),
+    ("NAME.f", include_str!("../../templates/vivado/files.f.tera")),
+    ("NAME.core", include_str!("../../templates/vivado/fusesoc.core.tera")),
+    ("Bender.yml", include_str!("../../templates/vivado/Bender.yml.tera")),
+];
+
+/// The data of the templates.
+#[derive(Serialize)]
+struct View {
+    name: String,
+    version: &'static str,
+    hash: String,
+    columns: usize,
+    rows: usize,
+    part: String,
+    /// `part` as one word of Tcl.
+    tcl_part: String,
+    /// `part` as a YAML string.
+    yaml_part: String,
+    clock_mhz: f64,
+    /// Nanoseconds with three decimals, Vivado's resolution.
+    period_ns: String,
+    /// Major and minor version of the generator.
+    ip_version: String,
+    /// Revision of the packaged IP.
+    revision: u32,
+    bytes_in: usize,
+    bytes_out: usize,
+    /// Width of the DMA's length register.
+    length_bits: u32,
+    /// Names of the files in `rtl/` and `rom/`.
+    rtl: Vec<String>,
+    rom: Vec<String>,
+    /// Path of the self-checking testbench and names of its data files in `sim/`.
+    testbench: Option<String>,
+    sim_data: Vec<String>,
+}
+
+impl View {
+    fn new(plan: &Plan, hash: &str, files: &FileMap) -> Self {
+        let design = &plan.design;
+        let testbench = format!("sim/{}_tb.v", design.name);
+        let bytes_in = plan.taxels() * BEAT_BYTES;
+        let bytes_out = (SUMMARY_WORDS + 3 * plan.taxels()) * BEAT_BYTES;
+        Self {
+            version: VERSION,
+            hash: hash.to_owned(),
+            columns: design.sensor.columns,
+            rows: design.sensor.rows,
+            part: design.hardware.part.clone(),
+            // Neither braces nor quotes nor backslashes are legal in a part's name.
+            tcl_part: format!("{{{}}}", design.hardware.part),
+            yaml_part: format!("\"{}\"", design.hardware.part),
+            clock_mhz: design.hardware.clock_mhz,
+            period_ns: period_ns(design.hardware.clock_mhz),
+            ip_version: format!("{}.{}", env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR")),
+            revision: revision(hash),
+            bytes_in,
+            bytes_out,
+            length_bits: (bytes_out.ilog2() + 1).max(LEAST_LENGTH_BITS),
+            rtl: names(files, "rtl/", ".v"),
+            rom: names(files, "rom/", ".mem"),
+            sim_data: names(files, "sim/", ".mem"),
+            testbench: files.contains_key(&testbench).then_some(testbench),
+            name: design.name.clone(),
+        }
+    }
+}
+
+/// Adds the scripts and lists; `files` holds what they name.
+///
+/// # Errors
+/// [`EmitError::Template`] if a template does not fit the view.
+pub fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitError> {
+    let view = View::new(plan, hash, files);
+    let failed = |path: &str| {
+        let template = path.to_owned();
+        move |source| EmitError::Template { template, source }
+    };
+    let context = Context::from_serialize(&view).map_err(failed("view"))?;
+    for (path, template) in FILES {
+        let text = Tera::one_off(template, &context, false).map_err(failed(path))?;
+        files.insert(path.replace("NAME", &view.name), text.into_bytes());
+    }
+    Ok(())
+}
+
+/// Names, without the folder, of the files with this ending directly in `folder`.
+fn names(files: &FileMap, folder: &str, ending: &str) -> Vec<String> {
+    let name = |path: &String| path.strip_prefix(folder).filter(|name| name.ends_with(ending)).map(str::to_owned);
+    files.keys().filter_map(name).filter(|name| !name.contains('/')).collect()
+}
+
+/// Rounded down, so that the constraint is never weaker than the design asks for.
+fn period_ns(clock_mhz: f64) -> String {
+    let picoseconds = (1e6 / clock_mhz).floor() as u64;
+    format!("{}.{:03}", picoseconds / 1000, picoseconds % 1000)
+}
+
+/// The first 28 bits of the design's hash.
+fn revision(hash: &str) -> u32 {
+    hash.chars().take(7).filter_map(|digit| digit.to_digit(16)).fold(0, |value, digit| value << 4 | digit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn periods_are_whole_picoseconds_and_never_too_long() {
+        assert_eq!(period_ns(125.0), "8.000");
+        assert_eq!(period_ns(300.0), "3.333");
+        assert_eq!(period_ns(1.0), "1000.000");
+        assert_eq!(period_ns(160.5), "6.230");
+    }
+
+    #[test]
+    fn revisions_follow_the_hash() {
+        assert_eq!(revision("00000ff00a0b0c0d"), 0xff);
+        assert_eq!(revision("ffffffffffffffff"), 0x0fff_ffff);
+    }
+
+    #[test]
+    fn the_testbench_is_named_only_where_it_is() {
+        let text = golden::design::Design::from_toml(
+            "name = \"d\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n",
+            "d.toml",
+        );
+        let plan = Plan::new(&text.unwrap()).unwrap();
+        let mut files = FileMap::from([("rtl/d.v".to_owned(), Vec::new())]);
+        insert(&plan, "0123456789abcdef", &mut files).unwrap();
+        let text = |files: &FileMap, path: &str| String::from_utf8(files[path].clone()).unwrap();
+        assert!(!text(&files, "d.core").contains("d_tb"));
+        assert_eq!(text(&files, "d.f"), "rtl/d.v\n");
+        files.insert("sim/d_tb.v".to_owned(), Vec::new());
+        files.insert("sim/d_stimulus.mem".to_owned(), Vec::new());
+        insert(&plan, "0123456789abcdef", &mut files).unwrap();
+        assert!(text(&files, "d.core").contains("sim/d_stimulus.mem: {copyto: d_stimulus.mem}"));
+        assert!(text(&files, "d.core").contains("toplevel: d_tb"));
+        assert!(text(&files, "Bender.yml").contains("sim/d_tb.v"));
+    }
+}

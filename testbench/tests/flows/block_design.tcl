@@ -1,0 +1,271 @@
+# Board parts, IP catalogue and block designs.
+
+namespace eval standin {
+    # What is installed: more than one version each, and not in order.
+    variable boards {xilinx.com:zcu102:part0:3.10 xilinx.com:zcu102:part0:3.4 xilinx.com:zcu104:part0:1.1}
+    variable catalogue {
+        xilinx.com:ip:zynq_ultra_ps_e:3.3 xilinx.com:ip:zynq_ultra_ps_e:3.5 xilinx.com:ip:axi_dma:7.1
+        xilinx.com:ip:smartconnect:1.0 xilinx.com:ip:proc_sys_reset:5.0
+    }
+
+    # Legal parameters and values, by IP.
+    variable parameters
+    array set parameters {
+        zynq_ultra_ps_e {
+            PSU__FPGA_PL0_ENABLE {[01]} PSU__CRL_APB__PL0_REF_CTRL__FREQMHZ {[0-9.]+}
+            PSU__USE__M_AXI_GP0 {[01]} PSU__USE__M_AXI_GP1 {[01]} PSU__USE__M_AXI_GP2 {[01]}
+            PSU__USE__S_AXI_GP2 {[01]} PSU__USE__IRQ0 {[01]} PSU__USE__IRQ1 {[01]}
+        }
+        axi_dma {
+            c_include_sg {[01]} c_include_mm2s {[01]} c_include_s2mm {[01]}
+            c_include_mm2s_dre {[01]} c_include_s2mm_dre {[01]}
+            c_m_axis_mm2s_tdata_width {8|16|32|64|128} c_m_axi_mm2s_data_width {32|64|128}
+            c_m_axi_s2mm_data_width {32|64|128}
+            c_sg_length_width {[89]|1[0-9]|2[0-6]} c_addr_width {3[2-9]|[45][0-9]|6[0-4]}
+        }
+        smartconnect {NUM_SI {[1-9]|1[0-6]} NUM_MI {[1-9]|1[0-6]} NUM_CLKS {[1-4]}}
+        proc_sys_reset {}
+        core {ROM_DIR {.*}}
+    }
+
+    # Pins whose presence no parameter decides: name, direction and kind.
+    variable fixed_pins
+    array set fixed_pins {
+        zynq_ultra_ps_e {pl_clk0 out clock pl_resetn0 out reset}
+        axi_dma {
+            s_axi_lite_aclk in clock m_axi_mm2s_aclk in clock m_axi_s2mm_aclk in clock axi_resetn in reset
+            mm2s_introut out interrupt s2mm_introut out interrupt
+        }
+        smartconnect {aclk in clock aresetn in reset}
+        proc_sys_reset {
+            slowest_sync_clk in clock ext_reset_in in reset peripheral_aresetn out reset interconnect_aresetn out reset
+        }
+        core {aclk in clock aresetn in reset}
+    }
+
+    # Pins and interfaces that a parameter switches: parameter, its default, name, side, kind.
+    variable switched
+    array set switched {
+        zynq_ultra_ps_e {
+            PSU__USE__M_AXI_GP0 1 maxihpm0_fpd_aclk in clock PSU__USE__M_AXI_GP0 1 M_AXI_HPM0_FPD master aximm
+            PSU__USE__M_AXI_GP1 1 maxihpm1_fpd_aclk in clock PSU__USE__M_AXI_GP1 1 M_AXI_HPM1_FPD master aximm
+            PSU__USE__M_AXI_GP2 0 maxihpm0_lpd_aclk in clock PSU__USE__M_AXI_GP2 0 M_AXI_HPM0_LPD master aximm
+            PSU__USE__S_AXI_GP2 0 saxihp0_fpd_aclk in clock PSU__USE__S_AXI_GP2 0 S_AXI_HP0_FPD slave aximm
+            PSU__USE__IRQ0 1 pl_ps_irq0 in interrupt PSU__USE__IRQ1 0 pl_ps_irq1 in interrupt
+        }
+        axi_dma {
+            c_include_sg 1 M_AXI_SG master aximm c_include_sg 1 m_axi_sg_aclk in clock
+            c_include_mm2s 1 M_AXI_MM2S master aximm c_include_mm2s 1 M_AXIS_MM2S master axis
+            c_include_s2mm 1 M_AXI_S2MM master aximm c_include_s2mm 1 S_AXIS_S2MM slave axis
+        }
+        smartconnect {}
+        proc_sys_reset {}
+        core {}
+    }
+
+    variable cells
+    array set cells {}
+    # Net of each connected pin and interface, driver of each net.
+    variable nets
+    array set nets {}
+    variable drivers
+    array set drivers {}
+
+    proc installed {names} {
+        set without [setting STANDIN_WITHOUT {}]
+        set found {}
+        foreach name $names {
+            if {![string match $without $name]} {
+                lappend found $name
+            }
+        }
+        return $found
+    }
+
+    proc value {cell parameter default} {
+        variable properties
+        set key cell:$cell,CONFIG.$parameter
+        return [expr {[info exists properties($key)] ? $properties($key) : $default}]
+    }
+
+    # Called for each parameter that is set on a cell.
+    proc configure {object name value} {
+        variable parameters
+        variable cells
+        set kind $cells([string range $object 5 end])
+        array set legal $parameters($kind)
+        if {![regexp {^CONFIG\.(\w+)$} $name -> parameter] || ![info exists legal($parameter)]} {
+            error "$kind has no parameter $name"
+        }
+        if {![regexp "^(?:$legal($parameter))\$" $value]} {
+            error "$kind: $name cannot be $value"
+        }
+    }
+
+    # Name, side and kind of all pins and interfaces of a cell as configured.
+    proc pins {cell} {
+        variable cells
+        variable fixed_pins
+        variable switched
+        set kind $cells($cell)
+        set pins $fixed_pins($kind)
+        foreach {parameter default name side type} $switched($kind) {
+            if {[value $cell $parameter $default]} {
+                lappend pins $name $side $type
+            }
+        }
+        switch $kind {
+            axi_dma { lappend pins S_AXI_LITE slave aximm }
+            core { lappend pins s_axis slave axis m_axis master axis }
+            smartconnect {
+                foreach {prefix count side} [list S [value $cell NUM_SI 2] slave M [value $cell NUM_MI 1] master] {
+                    for {set index 0} {$index < $count} {incr index} {
+                        lappend pins [format %s%02d_AXI $prefix $index] $side aximm
+                    }
+                }
+            }
+        }
+        return $pins
+    }
+
+    # Side and kind of CELL/PIN.
+    proc pin {path} {
+        variable cells
+        foreach {cell wanted} [split $path /] {}
+        if {![info exists cells($cell)]} {
+            error "no cell $cell"
+        }
+        foreach {name side kind} [pins $cell] {
+            if {$name eq $wanted} {
+                return [list $side $kind]
+            }
+        }
+        error "no pin $path"
+    }
+
+    proc attach {path net} {
+        variable nets
+        if {[info exists nets($path)]} {
+            error "$path is connected already"
+        }
+        set nets($path) $net
+    }
+}
+
+standin::command get_board_parts {} 1 1 {
+    set found {}
+    foreach board [standin::installed $::standin::boards] {
+        if {[string match [lindex $words 0] $board]} {
+            lappend found $board
+            set ::standin::properties($board,PART_NAME) xczu9eg-ffvb1156-2-e
+        }
+    }
+    return $found
+}
+standin::command get_ipdefs {-all -filter=} 0 1 {
+    if {![regexp {^VLNV =~ (\S+)$} $option(-filter) -> pattern]} {
+        error "get_ipdefs: filter $option(-filter)"
+    }
+    return [lsearch -all -inline -glob [standin::installed $::standin::catalogue] $pattern]
+}
+standin::command update_ip_catalog {-rebuild -scan_changes} 0 0 {
+    foreach folder [get_property ip_repo_paths [current_project]] {
+        lappend ::standin::catalogue [string trim [standin::text [file join $folder component.xml]]]
+    }
+}
+
+standin::command create_bd_design {} 1 1 {
+    set ::standin::diagram [lindex $words 0]
+    get_property board_part [current_project]
+}
+standin::command create_bd_cell {-type= -vlnv=} 1 1 {
+    standin::choice "type" $option(-type) {ip module hier}
+    standin::choice "IP" $option(-vlnv) $::standin::catalogue
+    foreach {vendor library name version} [split $option(-vlnv) :] {}
+    set cell [lindex $words 0]
+    if {[info exists ::standin::cells($cell)]} {
+        error "there is a cell $cell already"
+    }
+    set ::standin::cells($cell) [expr {$vendor eq "xilinx.com" ? $name : "core"}]
+    return cell:$cell
+}
+standin::command apply_bd_automation {-rule= -config=} 1 1 {
+    standin::choice "rule" $option(-rule) xilinx.com:bd_rule:zynq_ultra_ps_e
+    standin::choice "preset" [lindex $option(-config) 0] apply_board_preset
+}
+standin::command get_bd_pins {} 1 1 {
+    standin::choice "kind of pin" [lindex [standin::pin [lindex $words 0]] 1] {clock reset interrupt}
+    return [lindex $words 0]
+}
+standin::command get_bd_intf_pins {} 1 1 {
+    standin::choice "kind of interface" [lindex [standin::pin [lindex $words 0]] 1] {aximm axis}
+    return [lindex $words 0]
+}
+standin::command connect_bd_net {-net=} 2 inf {
+    set net $option(-net)
+    foreach path $words {
+        foreach {side kind} [standin::pin $path] {}
+        standin::attach $path $net
+        if {$side eq "out"} {
+            if {[info exists ::standin::drivers($net)]} {
+                error "net $net has two drivers"
+            }
+            set ::standin::drivers($net) $kind
+        }
+    }
+    foreach path $words {
+        if {![info exists ::standin::drivers($net)]} {
+            error "net $net has no driver"
+        }
+        standin::choice "driver of $path" $::standin::drivers($net) [lindex [standin::pin $path] 1]
+    }
+}
+standin::command connect_bd_intf_net {} 2 2 {
+    foreach {from to} $words {}
+    foreach {from_side from_kind} [standin::pin $from] {}
+    foreach {to_side to_kind} [standin::pin $to] {}
+    if {"$from_side $to_side" ni {"master slave" "slave master"} || $from_kind ne $to_kind} {
+        error "$from ($from_side $from_kind) does not fit $to ($to_side $to_kind)"
+    }
+    standin::attach $from $from-$to
+    standin::attach $to $from-$to
+}
+standin::command assign_bd_address {} 0 0 { standin::done assign_bd_address }
+standin::command validate_bd_design {} 0 0 {
+    standin::need assign_bd_address
+    foreach cell [lsort [array names ::standin::cells]] {
+        foreach {name side kind} [standin::pins $cell] {
+            if {$side in {in master slave} && ![info exists ::standin::nets($cell/$name)]} {
+                error "$cell/$name is not connected"
+            }
+        }
+    }
+    standin::done validate_bd_design
+}
+standin::command save_bd_design {} 0 0 {
+    standin::need validate_bd_design
+    standin::done save_bd_design
+}
+standin::command get_files {} 1 1 {
+    standin::need save_bd_design
+    standin::choice "file" [lindex $words 0] $::standin::diagram.bd
+    return [lindex $words 0]
+}
+standin::command make_wrapper {-files= -top} 0 0 {
+    standin::need save_bd_design
+    set path [file join [pwd] ${::standin::diagram}_wrapper.v]
+    standin::write $path "\nmodule ${::standin::diagram}_wrapper (\n);\nendmodule\n"
+    return $path
+}
+standin::command get_bd_addr_spaces {} 1 1 {
+    standin::choice "address space" [lindex $words 0] {ps/Data dma/Data_MM2S dma/Data_S2MM}
+    return space:[lindex $words 0]
+}
+standin::command get_bd_addr_segs {-of_objects=} 0 0 {
+    standin::need assign_bd_address
+    standin::choice "address space" $option(-of_objects) space:ps/Data
+    set segment /ps/Data/SEG_dma_Reg
+    set ::standin::properties($segment,OFFSET) 0xA0000000
+    set ::standin::properties($segment,RANGE) 64K
+    return $segment
+}

@@ -1,0 +1,155 @@
+# The IP packager.
+
+namespace eval standin {
+    # Interfaces of the core being packaged: name to vlnv; clock and reset of each; where its files went.
+    variable interfaces
+    variable associated
+    variable core_root
+    variable page
+
+    proc interface_names {} {
+        variable interfaces
+        return [lsort [array names interfaces]]
+    }
+
+    proc has_interface {name} {
+        if {$name ni [interface_names]} {
+            error "the core has no interface $name"
+        }
+    }
+
+    # What Vivado recognises by the names of the ports.
+    proc infer_all {ports} {
+        variable interfaces
+        foreach port $ports {
+            if {[regexp {^(\w+_axis|axis)_tvalid$} $port -> name]} {
+                set interfaces($name) xilinx.com:interface:axis_rtl:1.0
+            } elseif {$port eq "aclk"} {
+                set interfaces(aclk) xilinx.com:signal:clock_rtl:1.0
+            } elseif {$port eq "aresetn"} {
+                set interfaces(aresetn) xilinx.com:signal:reset_rtl:1.0
+            }
+        }
+    }
+}
+
+standin::command ipx::package_project {
+    -root_dir= -vendor= -library= -taxonomy= -import_files -force -set_current=
+} 0 0 {
+    foreach flag {-root_dir -vendor -library -taxonomy -import_files} {
+        if {![info exists option($flag)]} {
+            error "ipx::package_project: $flag is missing"
+        }
+    }
+    set top $::standin::properties(fileset:sources_1,top)
+    set source [standin::source_of $top $::standin::sources]
+    set ::standin::core_ports [standin::ports $source]
+    set ::standin::core_root $option(-root_dir)
+    set ::standin::core_id [list $option(-vendor) $option(-library)]
+    array unset ::standin::interfaces
+    array unset ::standin::associated
+    set ::standin::page ROM_DIR
+    file mkdir [file join $option(-root_dir) src]
+    foreach path [concat $::standin::sources $::standin::memories] {
+        file copy -force $path [file join $option(-root_dir) src]
+    }
+    if {![info exists ::env(STANDIN_BLIND)]} {
+        standin::infer_all $::standin::core_ports
+    }
+    standin::done ipx::package_project
+}
+standin::command ipx::current_core {} 0 0 {
+    standin::need ipx::package_project
+    return core:current
+}
+standin::command ipx::get_bus_interfaces {-of_objects=} 0 1 {
+    standin::choice "core" $option(-of_objects) core:current
+    set found {}
+    foreach name [standin::interface_names] {
+        if {[llength $words] == 0 || $name eq [lindex $words 0]} {
+            lappend found interface:$name
+        }
+    }
+    return $found
+}
+standin::command ipx::infer_bus_interface {} 3 3 {
+    foreach {ports vlnv core} $words {}
+    standin::choice "core" $core core:current
+    standin::choice "interface type" $vlnv {
+        xilinx.com:interface:axis_rtl:1.0 xilinx.com:signal:clock_rtl:1.0 xilinx.com:signal:reset_rtl:1.0
+    }
+    foreach port $ports {
+        if {$port ni $::standin::core_ports} {
+            error "the core has no port $port"
+        }
+    }
+    set ::standin::interfaces([regsub {_t[a-z]+$} [lindex $ports 0] ""]) $vlnv
+}
+standin::command ipx::associate_bus_interfaces {-busif= -clock= -reset=} 1 1 {
+    standin::choice "core" [lindex $words 0] core:current
+    foreach flag [array names option] {
+        if {$flag ne "-clock"} {
+            standin::has_interface $option($flag)
+            set ::standin::associated($option($flag)) $option(-clock)
+        }
+    }
+    # The clock itself is always inferred: the attribute on the port asks for it.
+    if {$option(-clock) ni $::standin::core_ports} {
+        error "the core has no clock $option(-clock)"
+    }
+}
+standin::command ipx::get_file_groups {-of_objects=} 1 1 {
+    standin::choice "core" $option(-of_objects) core:current
+    standin::choice "file group" [lindex $words 0] {
+        xilinx_anylanguagesynthesis xilinx_anylanguagebehavioralsimulation xilinx_xpgui
+    }
+    return group:[lindex $words 0]
+}
+standin::command ipx::get_files {-of_objects=} 0 1 {
+    if {![string match group:* $option(-of_objects)]} {
+        error "ipx::get_files: $option(-of_objects) is no file group"
+    }
+    set found {}
+    foreach path [lsort [glob -directory [file join $::standin::core_root src] *]] {
+        set ::standin::properties(file:$path,NAME) src/[file tail $path]
+        lappend found file:$path
+    }
+    return $found
+}
+standin::command ipgui::get_guiparamspec {-name= -component=} 0 0 {
+    standin::choice "core" $option(-component) core:current
+    return [expr {$option(-name) eq $::standin::page ? "page:$option(-name)" : ""}]
+}
+standin::command ipgui::remove_param {-component=} 1 1 {
+    standin::choice "parameter" [lindex $words 0] page:$::standin::page
+    set ::standin::page {}
+}
+standin::command ipx::create_xgui_files {} 1 1 {
+    standin::choice "core" [lindex $words 0] core:current
+    standin::done ipx::create_xgui_files
+}
+standin::command ipx::update_checksums {} 1 1 {
+    standin::need ipx::create_xgui_files
+    standin::done ipx::update_checksums
+}
+standin::command ipx::check_integrity {} 1 1 {
+    standin::need ipx::update_checksums
+    foreach name [standin::interface_names] {
+        if {![string match *:clock_rtl:* $::standin::interfaces($name)] && ![info exists ::standin::associated($name)]} {
+            error "interface $name has no clock"
+        }
+    }
+    foreach name {s_axis m_axis aresetn} {
+        standin::has_interface $name
+    }
+    foreach name {name version core_revision display_name description} {
+        get_property $name core:current
+    }
+    standin::done ipx::check_integrity
+}
+standin::command ipx::save_core {} 1 1 {
+    standin::need ipx::check_integrity
+    foreach {vendor library} $::standin::core_id {}
+    set vlnv $vendor:$library:[get_property name core:current]:[get_property version core:current]
+    standin::write [file join $::standin::core_root component.xml] "$vlnv\n"
+}
