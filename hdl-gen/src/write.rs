@@ -1,21 +1,24 @@
 //! Puts an emitted design on disk: the whole folder or nothing, and nothing of the user's is touched.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 use crate::emit::FileMap;
 
-/// Lists what the generator wrote into a folder, so that it can tell its own files from the user's.
+/// Lists what the generator wrote into a folder, so that it can tell its own files from the user's: a SHA-256 and a
+/// path a line, as `sha256sum --check` reads it.
 pub const MANIFEST: &str = ".hdl-gen-manifest";
 
 /// Why a folder was not written. In each case it is as it was before.
 #[derive(Debug, Error)]
 pub enum WriteError {
     /// The operating system refused.
-    #[error("{path}: cannot {action}: {source}; choose another folder with --out")]
+    #[error("{}: cannot {action}: {source}; choose another folder with --out", path.display())]
     Io {
         /// File or folder.
         path: PathBuf,
@@ -24,65 +27,91 @@ pub enum WriteError {
         /// The reason.
         source: io::Error,
     },
-    /// Something that the generator did not write is in the way.
-    #[error("{folder}: holds {file}, which hdl-gen did not write; move it away or choose another folder with --out")]
+    /// Something that the generator did not write, or not like that, is in the way.
+    #[error(
+        "{}: holds {file}, which {history}; move it away or choose another folder with --out", folder.display()
+    )]
     Foreign {
         /// The output folder.
         folder: PathBuf,
         /// The first such file, relative to the folder.
         file: String,
+        /// What is known about it.
+        history: &'static str,
     },
     /// The output path is a file.
-    #[error("{0}: is not a folder; choose another with --out")]
+    #[error("{}: is there already and no folder; choose another with --out", .0.display())]
     NotAFolder(PathBuf),
+    /// The new folder did not get its place, nor the old one its place back.
+    #[error("{}: cannot be replaced: {source}; its former contents are in {}", folder.display(), kept.display())]
+    Displaced {
+        /// The output folder.
+        folder: PathBuf,
+        /// Where the old one is now.
+        kept: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+}
+
+fn io_error(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> WriteError {
+    let path = path.to_owned();
+    move |source| WriteError::Io { path, action, source }
 }
 
 /// Writes `files` as the whole contents of `folder`.
 ///
 /// Everything goes into a new folder beside it first, which then takes its place: whoever looks sees the old
-/// design or the new one, never a mixture. An existing folder is replaced only if each of its files was written
-/// by the generator.
+/// design or the new one, never a mixture. An existing folder is replaced only if each of its files is as the
+/// generator wrote it.
 ///
 /// # Errors
 /// [`WriteError`]; the folder then is unchanged.
 pub fn write_folder(folder: &Path, files: &FileMap) -> Result<(), WriteError> {
-    check_owned(folder)?;
-    let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let io = |path: &Path, action| {
-        let path = path.to_owned();
-        move |source| WriteError::Io { path, action, source }
+    check_folder(folder)?;
+    // A link keeps pointing where it does.
+    let target = if folder.exists() {
+        folder.canonicalize().map_err(io_error(folder, "follow the path"))?
+    } else {
+        folder.to_owned()
     };
-    fs::create_dir_all(parent).map_err(io(parent, "create the folder"))?;
-    let staging =
-        tempfile::Builder::new().prefix(".hdl-gen-").tempdir_in(parent).map_err(io(parent, "create a folder in it"))?;
+    let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(parent).map_err(io_error(parent, "create the folder"))?;
+    let staging = tempfile::Builder::new()
+        .prefix(".hdl-gen-")
+        .tempdir_in(parent)
+        .map_err(io_error(parent, "create a folder in it"))?;
     let fresh = staging.path().join("new");
     let mut manifest = String::new();
     for (name, contents) in files {
         let path = fresh.join(name);
         let directory = path.parent().unwrap_or(&fresh);
-        fs::create_dir_all(directory).map_err(io(directory, "create the folder"))?;
-        fs::write(&path, contents).map_err(io(&path, "write the file"))?;
-        manifest.push_str(name);
-        manifest.push('\n');
+        // Messages name the place where the file would have been, not the one beside it.
+        fs::create_dir_all(directory).map_err(io_error(&target.join(name), "create the folder"))?;
+        fs::write(&path, contents).map_err(io_error(&target.join(name), "write the file"))?;
+        manifest.push_str(&format!("{}  {name}\n", digest(contents)));
     }
-    let path = fresh.join(MANIFEST);
-    fs::write(&path, manifest).map_err(io(&path, "write the file"))?;
+    fs::write(fresh.join(MANIFEST), manifest).map_err(io_error(&target.join(MANIFEST), "write the file"))?;
     let old = staging.path().join("old");
-    let replaces = folder.exists();
+    let replaces = target.exists();
     if replaces {
-        fs::rename(folder, &old).map_err(io(folder, "replace the folder"))?;
+        fs::rename(&target, &old).map_err(io_error(folder, "replace the folder"))?;
     }
-    if let Err(source) = fs::rename(&fresh, folder) {
-        if replaces {
-            fs::rename(&old, folder).map_err(io(folder, "put the old folder back"))?;
+    if let Err(source) = fs::rename(&fresh, &target) {
+        if replaces && fs::rename(&old, &target).is_err() {
+            let kept = staging.keep().join("old");
+            return Err(WriteError::Displaced { folder: folder.to_owned(), kept, source });
         }
-        return Err(io(folder, "create the folder")(source));
+        return Err(io_error(folder, "create the folder")(source));
     }
     Ok(())
 }
 
-/// Refuses a folder with files that no manifest of the generator lists.
-fn check_owned(folder: &Path) -> Result<(), WriteError> {
+/// Whether [`write_folder`] would replace `folder`: it is not there, or each file in it is as the generator wrote it.
+///
+/// # Errors
+/// [`WriteError`] if not.
+pub fn check_folder(folder: &Path) -> Result<(), WriteError> {
     if !folder.exists() {
         return Ok(());
     }
@@ -90,34 +119,55 @@ fn check_owned(folder: &Path) -> Result<(), WriteError> {
         return Err(WriteError::NotAFolder(folder.to_owned()));
     }
     let manifest = fs::read_to_string(folder.join(MANIFEST)).unwrap_or_default();
-    let owned: std::collections::BTreeSet<&str> = manifest.lines().collect();
-    for file in files_below(folder, folder)? {
-        if file != MANIFEST && !owned.contains(file.as_str()) {
-            return Err(WriteError::Foreign { folder: folder.to_owned(), file });
-        }
+    let owned: BTreeMap<&str, &str> =
+        manifest.lines().filter_map(|line| line.split_once("  ")).map(|(digest, name)| (name, digest)).collect();
+    match foreign_below(folder, folder, &owned)? {
+        Some((file, history)) => Err(WriteError::Foreign { folder: folder.to_owned(), file, history }),
+        None => Ok(()),
     }
-    Ok(())
 }
 
-/// Paths of all files below `folder`, relative to `root`, with forward slashes, sorted.
-fn files_below(root: &Path, folder: &Path) -> Result<Vec<String>, WriteError> {
-    let failed = |source| WriteError::Io { path: folder.to_owned(), action: "list the folder", source };
+/// The first file below `folder`, relative to `root` with forward slashes, that is not as the manifest says, and what
+/// is known about it. Nothing after it is looked at: the folder may be somebody's home.
+fn foreign_below(
+    root: &Path,
+    folder: &Path,
+    owned: &BTreeMap<&str, &str>,
+) -> Result<Option<(String, &'static str)>, WriteError> {
     let mut entries: Vec<PathBuf> = Vec::new();
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        entries.push(entry.map_err(failed)?.path());
+    for entry in fs::read_dir(folder).map_err(io_error(folder, "list the folder"))? {
+        entries.push(entry.map_err(io_error(folder, "list the folder"))?.path());
     }
     entries.sort();
-    let mut files = Vec::new();
     for path in entries {
         if path.is_dir() && !path.is_symlink() {
-            files.extend(files_below(root, &path)?);
-        } else {
-            let relative = path.strip_prefix(root).unwrap_or(&path);
-            let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
-            files.push(parts.join("/"));
+            let found = foreign_below(root, &path, owned)?;
+            if found.is_some() {
+                return Ok(found);
+            }
+            continue;
         }
+        let relative = path.strip_prefix(root).unwrap_or(&path);
+        let file = relative.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
+        let history = match owned.get(file.as_str()) {
+            _ if file == MANIFEST => continue,
+            None => "hdl-gen did not write",
+            Some(&expected) => {
+                let contents = fs::read(&path).map_err(io_error(&path, "read the file"))?;
+                if digest(&contents) == expected {
+                    continue;
+                }
+                "was changed after hdl-gen wrote it"
+            }
+        };
+        return Ok(Some((file, history)));
     }
-    Ok(files)
+    Ok(None)
+}
+
+/// SHA-256 in hexadecimal.
+fn digest(contents: &[u8]) -> String {
+    Sha256::digest(contents).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]
@@ -144,10 +194,66 @@ mod tests {
         let folder = place.path().join("out");
         write_folder(&folder, &files(&["rtl/a.v"])).unwrap();
         fs::write(folder.join("rtl/mine.v"), "mine").unwrap();
-        let error = write_folder(&folder, &files(&["rtl/c.v"])).unwrap_err();
-        assert!(error.to_string().contains("rtl/mine.v"), "{error}");
+        let error = write_folder(&folder, &files(&["rtl/c.v"])).unwrap_err().to_string();
+        assert!(error.contains("rtl/mine.v, which hdl-gen did not write"), "{error}");
         assert_eq!(fs::read_to_string(folder.join("rtl/mine.v")).unwrap(), "mine");
         assert!(folder.join("rtl/a.v").exists() && !folder.join("rtl/c.v").exists());
+    }
+
+    #[test]
+    fn leaves_the_users_changes_alone() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("out");
+        write_folder(&folder, &files(&["rtl/a.v", "rtl/b.v"])).unwrap();
+        fs::write(folder.join("rtl/b.v"), "better").unwrap();
+        let error = write_folder(&folder, &files(&["rtl/b.v"])).unwrap_err().to_string();
+        assert!(error.contains("rtl/b.v, which was changed after"), "{error}");
+        assert_eq!(fs::read_to_string(folder.join("rtl/b.v")).unwrap(), "better");
+        assert!(folder.join("rtl/a.v").exists());
+    }
+
+    #[test]
+    fn takes_a_folder_that_is_empty_or_lacks_files() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("out");
+        fs::create_dir(&folder).unwrap();
+        write_folder(&folder, &files(&["rtl/a.v", "rtl/b.v"])).unwrap();
+        fs::remove_file(folder.join("rtl/b.v")).unwrap();
+        write_folder(&folder, &files(&["rtl/a.v", "rtl/b.v"])).unwrap();
+        assert!(folder.join("rtl/b.v").exists());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn follows_a_link_and_leaves_it() {
+        let place = tempfile::tempdir().unwrap();
+        let (real, link) = (place.path().join("real"), place.path().join("link"));
+        fs::create_dir(&real).unwrap();
+        std::os::unix::fs::symlink(&real, &link).unwrap();
+        write_folder(&link, &files(&["rtl/a.v"])).unwrap();
+        assert!(link.is_symlink() && real.join("rtl/a.v").exists());
+    }
+
+    #[test]
+    fn a_write_that_fails_midway_leaves_the_old_folder() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("out");
+        write_folder(&folder, &files(&["rtl/a.v"])).unwrap();
+        // A file where a later one needs a folder.
+        let error = write_folder(&folder, &files(&["rtl/c.v", "rtl/c.v/d.v"])).unwrap_err().to_string();
+        assert!(error.contains("rtl/c.v"), "{error}");
+        assert!(folder.join("rtl/a.v").exists() && !folder.join("rtl/c.v").exists());
+        assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1, "nothing is left beside the folder");
+    }
+
+    #[test]
+    fn the_manifest_lists_every_file() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("out");
+        write_folder(&folder, &files(&["abc", "rtl/a.v"])).unwrap();
+        let manifest = fs::read_to_string(folder.join(MANIFEST)).unwrap();
+        let first = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad  abc";
+        assert_eq!((manifest.lines().next(), manifest.lines().count()), (Some(first), 2));
     }
 
     #[test]

@@ -7,6 +7,13 @@ use hdl_gen::emit::{nnz, predicted};
 use hdl_gen::plan::Plan;
 use serde_json::json;
 
+/// Condition number of A Aᵀ above which noise of a thousandth of the stress is no longer a small error of the force.
+const ILL_CONDITIONED: f64 = 1e4;
+/// `(beginning of the part's name, DSP48E2, RAMB36)` of the default part.
+const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
+/// Matrix names in one line of the table.
+const MATRICES_PER_LINE: usize = 7;
+
 /// The report, as text or as JSON.
 pub fn report(plan: &Plan, as_json: bool) -> Result<String, Box<dyn Error>> {
     if as_json { json_report(plan) } else { Ok(text_report(plan)?) }
@@ -32,65 +39,151 @@ fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
 }
 
 fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
-    let design = &plan.design;
-    let sensor = &design.sensor;
-    let hardware = &design.hardware;
-    let timeline = &plan.timeline;
-    let microseconds = |cycles: u64| cycles as f64 / hardware.clock_mhz;
     let mut text = String::new();
-    let out = &mut text;
-    writeln!(out, "{}", design.name)?;
+    writeln!(text, "{}", plan.design.name)?;
+    sensor(&mut text, plan)?;
+    matrices(&mut text, plan)?;
+    speed(&mut text, plan)?;
+    resources(&mut text, plan)?;
+    numbers(&mut text, plan)?;
+    Ok(text)
+}
+
+fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let sensor = &plan.design.sensor;
+    let [x, y] = sensor.pitch_mm;
+    writeln!(out, "\nSensor")?;
     writeln!(
         out,
-        "  sensor      {} x {} taxels, pitch {} x {} mm, depth {} mm",
-        sensor.columns, sensor.rows, sensor.pitch_mm[0], sensor.pitch_mm[1], sensor.depth_mm
+        "  geometry     {} x {} = {} taxels, pitch {x} x {y} mm, depth {} mm",
+        sensor.columns,
+        sensor.rows,
+        plan.taxels(),
+        sensor.depth_mm
     )?;
-    writeln!(out, "  condition   C33 {:.3}, A A^T {:.3}", plan.condition.c33, plan.condition.aat)?;
-    writeln!(out, "  Nnz of {}", plan.taxels() * plan.taxels())?;
-    for chunk in plan.nnz.0.chunks(7) {
+    let condition = &plan.condition;
+    let verdict = if condition.aat > ILL_CONDITIONED {
+        format!(
+            "ill-conditioned: the depth is {:.2} pitches; a smaller one forgives more noise",
+            sensor.depth_mm / x.min(y)
+        )
+    } else {
+        "well conditioned".to_owned()
+    };
+    writeln!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat))
+}
+
+fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let all = plan.taxels() * plan.taxels();
+    let kept: usize = plan.nnz.0.iter().map(|&(_, count)| count).sum();
+    let share = 100.0 * kept as f64 / (all * plan.nnz.0.len()) as f64;
+    // The filter as the design file writes it.
+    let design = plan.design.to_toml();
+    let filter = design.lines().find_map(|line| line.strip_prefix("filter = ")).unwrap_or("");
+    writeln!(out, "\nMatrices, filter = {filter}: {share:.1} % of {all} entries each")?;
+    for chunk in plan.nnz.0.chunks(MATRICES_PER_LINE) {
         let names: String = chunk.iter().map(|(name, _)| format!("{:>9}", name.as_str())).collect();
         let counts: String = chunk.iter().map(|(_, count)| format!("{count:>9}")).collect();
-        writeln!(out, "            {names}\n            {counts}")?;
+        writeln!(out, "  {names}\n  {counts}")?;
     }
-    writeln!(
-        out,
-        "  lanes       {}, {}-bit coefficients, {}-bit vectors, busy {:.1} % of the products' time",
-        hardware.lanes,
-        hardware.coefficient_bits,
-        hardware.data_bits,
-        100.0 * plan.schedule.busy_fraction()
-    )?;
-    for (what, cycles) in [("latency", timeline.latency_cycles), ("interval", timeline.interval_cycles)] {
-        writeln!(out, "  {what:<11} {cycles} cycles = {:.2} us at {} MHz", microseconds(cycles), hardware.clock_mhz)?;
+    Ok(())
+}
+
+fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let clock = plan.design.hardware.clock_mhz;
+    let timeline = &plan.timeline;
+    let busy = 100.0 * plan.schedule.busy_fraction();
+    let rate = clock * 1e6 / timeline.interval_cycles as f64;
+    writeln!(out, "\nSpeed at {clock} MHz")?;
+    for (what, cycles, remark) in [
+        ("latency", timeline.latency_cycles, "first beat in to last beat out".to_owned()),
+        ("interval", timeline.interval_cycles, format!("between frames, {rate:.0} frames a second")),
+        ("products", timeline.spmv_cycles, format!("{} busy {busy:.1} %", count(plan.design.hardware.lanes, "lane"))),
+        ("search", timeline.search_cycles, count(plan.optimum.cells, "evaluation cell")),
+    ] {
+        writeln!(out, "  {what:<9} {cycles:>10} cycles {:>11.2} us   {remark}", cycles as f64 / clock)?;
     }
-    writeln!(out, "              products {}, search {}", timeline.spmv_cycles, timeline.search_cycles)?;
-    writeln!(
-        out,
-        "  resources   {} DSP48E2, {} RAMB36, {} kbit of ROM",
-        plan.resources.dsp,
-        plan.resources.bram36,
-        plan.resources.rom_bits / 1000
-    )?;
-    for memory in &plan.resources.memories {
+    Ok(())
+}
+
+fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let resources = &plan.resources;
+    let part = &plan.design.hardware.part;
+    let (known, dsp, bram36) = KNOWN_PART;
+    writeln!(out, "\nResources, predicted")?;
+    write!(out, "  {} DSP48E2, {} RAMB36, {} bits of ROM", resources.dsp, resources.bram36, resources.rom_bits)?;
+    if !part.starts_with(known) {
+        writeln!(out)?;
+    } else if resources.dsp > dsp || resources.bram36 > bram36 {
+        writeln!(out, "\n  too much for {part}, which has {dsp} DSP48E2 and {bram36} RAMB36; filter more entries")?;
+    } else {
+        let used = |of: f64, all: f64| 100.0 * of / all;
         writeln!(
             out,
-            "              {:<13} {:>3} x {} words of {} bits, {} RAMB36 each",
-            memory.name, memory.count, memory.depth, memory.width, memory.bram36
+            ": {:.1} and {:.1} % of {part}",
+            used(resources.dsp as f64, dsp as f64),
+            used(resources.bram36, bram36)
         )?;
     }
+    writeln!(out, "  {:<14}{:>3}   {:>8} x {:>2}   {:>8}", "memory", "", "words", "bits", "RAMB36")?;
+    for memory in &resources.memories {
+        writeln!(
+            out,
+            "  {:<14}{:>3} x {:>8} x {:>2}   {:>8}",
+            memory.name,
+            memory.count,
+            memory.depth,
+            memory.width,
+            memory.count as f64 * memory.bram36
+        )?;
+    }
+    Ok(())
+}
+
+fn numbers(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let hardware = &plan.design.hardware;
+    writeln!(
+        out,
+        "\nNumbers: {}-bit coefficients, {}-bit vectors, 48-bit sums; no stress within full scale overflows them",
+        hardware.coefficient_bits, hardware.data_bits
+    )?;
     for (what, unit, format) in [
-        ("stress", "Pa", plan.formats.stress),
-        ("weights", "N", plan.formats.weight),
+        ("stress b", "Pa", plan.formats.stress),
+        ("weights |w|", "N", plan.formats.weight),
         ("g", "N", plan.formats.g),
         ("u", "Pa", plan.formats.u),
     ] {
-        writeln!(
-            out,
-            "  format      {what:<8} {} bits, one step 2^{} {unit}, worst case {:.4} {unit}",
-            format.bits,
-            format.lsb,
-            format.bound as f64 * format.step()
-        )?;
+        let step = format!("2^{}", format.lsb);
+        let worst = short(format.bound as f64 * format.step());
+        writeln!(out, "  {what:<12} steps of {step:<6} {unit:<2}   worst case {worst} {unit}")?;
     }
-    Ok(text)
+    Ok(())
+}
+
+/// Four significant digits, or all before the point.
+fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude != 0.0 && !(1e-3..1e7).contains(&magnitude) {
+        return format!("{value:.3e}");
+    }
+    let digits_before = if magnitude < 1.0 { 1.0 } else { magnitude.log10().floor() + 1.0 };
+    format!("{value:.*}", (4.0 - digits_before).max(0.0) as usize)
+}
+
+/// `1 lane`, `2 lanes`.
+pub fn count(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn numbers_are_short() {
+        let cases = [(0.0, "0.000"), (0.5, "0.500"), (7.1989, "7.199"), (52.303, "52.30"), (100_000.0, "100000")];
+        for (value, text) in cases.into_iter().chain([(3.845e10, "3.845e10"), (0.0005, "5.000e-4")]) {
+            assert_eq!(short(value), text);
+        }
+    }
 }

@@ -1,7 +1,9 @@
 //! Command line.
 
+mod generate;
 mod inspect;
 mod new;
+mod progress;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -9,9 +11,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use golden::design::Design;
-use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
-use hdl_gen::write::write_folder;
+
+use progress::Progress;
 
 /// Turns a tactile sensor's geometry and a sparse filter into Verilog that reconstructs triaxial contact forces.
 #[derive(Parser)]
@@ -51,7 +53,7 @@ enum Command {
 
 pub fn main() -> ExitCode {
     match run(Arguments::parse().command) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(text) => print(&text),
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::FAILURE
@@ -59,48 +61,33 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn run(command: Command) -> Result<(), Box<dyn Error>> {
+/// What the command has to say on success.
+fn run(command: Command) -> Result<String, Box<dyn Error>> {
+    let progress = Progress::new();
     match command {
         Command::New { name, dir } => new::write(&name, &dir),
         Command::Inspect { design, json } => {
-            let text = inspect::report(&load(&design)?, json)?;
-            print(&text)
+            let plan = plan(&Design::load(&design)?, &design, &progress)?;
+            inspect::report(&plan, json)
         }
-        Command::Generate { design, out } => generate(&design, out),
+        Command::Generate { design, out } => generate::generate(&design, out, &progress),
     }
 }
 
-fn load(path: &Path) -> Result<Plan, Box<dyn Error>> {
-    let design = Design::load(path)?;
-    Plan::new(&design).map_err(|error| format!("{}: {error}", path.display()).into())
-}
-
-fn generate(path: &Path, out: Option<PathBuf>) -> Result<(), Box<dyn Error>> {
-    let plan = load(path)?;
-    let files = emit(&plan)?;
-    let folder = out.unwrap_or_else(|| Path::new("rtl-out").join(&plan.design.name));
-    write_folder(&folder, &files)?;
-    let bytes: usize = files.values().map(Vec::len).sum();
-    let timeline = &plan.timeline;
-    print(&format!(
-        "{}: {} files, {} KiB\n{} taxels, {} lanes: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n",
-        folder.display(),
-        files.len(),
-        bytes / 1024,
-        plan.taxels(),
-        plan.design.hardware.lanes,
-        timeline.latency_cycles,
-        timeline.interval_cycles,
-        plan.resources.dsp,
-        plan.resources.bram36,
-    ))
+/// The plan of a design from file `path`.
+fn plan(design: &Design, path: &Path, progress: &Progress) -> Result<Plan, Box<dyn Error>> {
+    progress.stage(format!("matrices and plan of {} taxels", design.sensor.taxels()));
+    Plan::new(design).map_err(|error| format!("{}: {error}", path.display()).into())
 }
 
 /// Prints to standard output; a reader that has gone away is no error.
-fn print(text: &str) -> Result<(), Box<dyn Error>> {
+fn print(text: &str) -> ExitCode {
     use std::io::{ErrorKind, Write};
     match std::io::stdout().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
-        _ => Ok(()),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            eprintln!("error: standard output: {error}");
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::SUCCESS,
     }
 }

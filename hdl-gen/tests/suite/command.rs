@@ -1,0 +1,173 @@
+//! The `hdl-gen` command on good input.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::support::design_text;
+
+/// Runs `hdl-gen` in `folder`.
+pub fn hdl_gen(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hdl-gen")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+/// What it prints on success.
+pub fn good(folder: &Path, arguments: &[&str]) -> String {
+    let output = hdl_gen(folder, arguments);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success() && errors.is_empty(), "{arguments:?}: {errors}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A folder with `pad.toml`, a good design.
+pub fn folder_with_design(hardware: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let text = design_text("pad", [4, 3], [4.0, 2.0], 3.0, &format!("[hardware]\n{hardware}"));
+    fs::write(folder.path().join("pad.toml"), text).unwrap();
+    folder
+}
+
+/// Every file below a folder with its contents.
+pub fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(next) = open.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_str().unwrap().to_owned();
+                found.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn from_a_new_design_to_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    assert!(good(here, &["new", "my_pad"]).contains("my_pad.toml"));
+    let text = fs::read_to_string(here.join("my_pad.toml")).unwrap();
+    assert!(text.contains("name = \"my_pad\"") && text.lines().filter(|line| line.contains('#')).count() > 15);
+    assert!(good(here, &["inspect", "my_pad.toml"]).starts_with("my_pad\n"));
+    let said = good(here, &["generate", "my_pad.toml"]);
+    assert!(said.starts_with("rtl-out/my_pad: ") && said.contains("100 taxels, 16 lanes"), "{said}");
+    let files = contents(&here.join("rtl-out/my_pad"));
+    for name in ["rtl/my_pad.v", "rom/my_pad_visits.mem", "mcsr/00_C33inv.txt", "metadata.json", "design.toml"] {
+        assert!(files.contains_key(name), "no {name}");
+    }
+    let beside: Vec<_> = fs::read_dir(here.join("rtl-out")).unwrap().collect();
+    assert_eq!(beside.len(), 1, "nothing is left beside the folder");
+}
+
+#[test]
+fn the_new_designs_values_are_the_defaults() {
+    let folder = tempfile::tempdir().unwrap();
+    good(folder.path(), &["new", "full"]);
+    let full = golden::design::Design::load(&folder.path().join("full.toml")).unwrap();
+    let with_filter = "[algorithm]\nfilter = { kind = \"f1\", l = 40 }";
+    let text = design_text("full", [10, 10], [4.0, 2.0], 3.0, with_filter);
+    assert_eq!(golden::design::Design::from_toml(&text, "full.toml").unwrap(), full);
+}
+
+#[test]
+fn new_writes_into_another_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("designs")).unwrap();
+    good(folder.path(), &["new", "pad", "--dir", "designs"]);
+    assert!(contents(folder.path()).into_keys().eq(["designs/pad.toml"]));
+}
+
+#[test]
+fn inspect_tells_machines_what_is_promised() {
+    let folder = folder_with_design("lanes = 5");
+    let report: Value = serde_json::from_str(&good(folder.path(), &["inspect", "pad.toml", "--json"])).unwrap();
+    let keys = |value: &Value| {
+        let mut keys: Vec<String> = value.as_object().unwrap().keys().cloned().collect();
+        keys.sort();
+        keys.join(" ")
+    };
+    assert_eq!(keys(&report["nnz"]), "A1 A2 A3 C33inv D10 D11 D12 D20 D21 D22 D30 D31 D32");
+    assert!(report["nnz"].as_object().unwrap().values().all(|count| count == 144));
+    assert_eq!(keys(&report["condition"]), "AAT C33");
+    assert!(report["condition"]["AAT"].as_f64().unwrap() > report["condition"]["C33"].as_f64().unwrap());
+    for key in ["latency_cycles", "interval_cycles", "dsp"] {
+        assert!(report["predicted"][key].as_u64().is_some_and(|value| value > 0), "predicted.{key}");
+    }
+    assert!(report["predicted"]["bram36"].is_number());
+    assert!(report["rom_bits"].as_u64().is_some_and(|bits| bits > 10_000));
+    assert_eq!(report["geometry"]["taxels"], 12);
+}
+
+#[test]
+fn inspect_tells_people_the_same_figures() {
+    let folder = folder_with_design("lanes = 1");
+    let report: Value = serde_json::from_str(&good(folder.path(), &["inspect", "pad.toml", "--json"])).unwrap();
+    let text = good(folder.path(), &["inspect", "pad.toml"]);
+    for figure in ["latency_cycles", "interval_cycles", "spmv_cycles", "search_cycles"] {
+        assert!(text.contains(&format!("{} cycles", report["predicted"][figure])), "{figure} in:\n{text}");
+    }
+    for words in
+        ["4 x 3 = 12 taxels", "pitch 4 x 2 mm", "well conditioned", "1 lane busy", "filter = { kind = \"none\" }"]
+    {
+        assert!(text.contains(words), "no {words:?} in:\n{text}");
+    }
+    assert!(text.contains(&format!("{} bits of ROM", report["rom_bits"])), "{text}");
+    assert!(text.lines().all(|line| line.len() <= 110 && line.trim_end() == line), "{text}");
+}
+
+#[test]
+fn inspect_warns_of_what_will_not_work_well() {
+    let folder = tempfile::tempdir().unwrap();
+    let deep = design_text("deep", [10, 10], [4.0, 4.0], 12.0, "");
+    fs::write(folder.path().join("deep.toml"), deep).unwrap();
+    assert!(good(folder.path(), &["inspect", "deep.toml"]).contains("ill-conditioned: the depth is 3.00 pitches"));
+    let huge = design_text("huge", [20, 20], [4.0, 4.0], 3.0, "");
+    fs::write(folder.path().join("huge.toml"), huge).unwrap();
+    assert!(good(folder.path(), &["inspect", "huge.toml"]).contains("too much for xczu9eg-ffvb1156-2-e"));
+}
+
+#[test]
+fn generating_again_changes_nothing() {
+    let folder = folder_with_design("");
+    good(folder.path(), &["generate", "pad.toml", "--out", "a/b/out"]);
+    let before = contents(folder.path());
+    good(folder.path(), &["generate", "pad.toml", "--out", "a/b/out"]);
+    assert_eq!(contents(folder.path()), before);
+    good(folder.path(), &["generate", "pad.toml", "--out", "elsewhere"]);
+    assert_eq!(contents(&folder.path().join("elsewhere")), contents(&folder.path().join("a/b/out")));
+}
+
+#[test]
+fn a_design_that_became_smaller_leaves_no_file_of_the_larger() {
+    let folder = folder_with_design("lanes = 12");
+    good(folder.path(), &["generate", "pad.toml", "--out", "out"]);
+    let text = fs::read_to_string(folder.path().join("pad.toml")).unwrap().replace("lanes = 12", "lanes = 2");
+    fs::write(folder.path().join("pad.toml"), text).unwrap();
+    good(folder.path(), &["generate", "pad.toml", "--out", "out"]);
+    let files = contents(&folder.path().join("out"));
+    assert_eq!(files.keys().filter(|name| name.contains("values_lane")).count(), 2);
+}
+
+#[test]
+fn no_progress_is_drawn_off_a_terminal() {
+    let folder = folder_with_design("");
+    let output = hdl_gen(folder.path(), &["generate", "pad.toml"]);
+    assert!(output.stderr.is_empty() && !output.stdout.contains(&0x1b));
+}
+
+#[test]
+fn every_command_has_help() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in ["new", "inspect", "generate"] {
+        assert!(good(folder.path(), &[command, "--help"]).contains("Usage: hdl-gen"));
+    }
+    assert!(good(folder.path(), &["--version"]).starts_with("hdl-gen "));
+}

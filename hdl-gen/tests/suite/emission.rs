@@ -1,0 +1,114 @@
+//! What is emitted: the same bytes every time, complete, readable back.
+
+use std::collections::BTreeSet;
+
+use golden::design::Design;
+use hdl_gen::emit::{FileMap, emit};
+use serde_json::Value;
+
+use crate::support::{design_text, plan, small_plan};
+
+/// Longest module that a person still reads in one go.
+const MOST_LINES: usize = 330;
+
+fn text_files(files: &FileMap) -> impl Iterator<Item = (&str, &str)> {
+    files.iter().map(|(name, bytes)| (name.as_str(), std::str::from_utf8(bytes).expect("text")))
+}
+
+#[test]
+fn the_same_design_gives_the_same_bytes() {
+    let text = design_text("pad", [5, 4], [4.0, 2.0], 3.0, "[hardware]\nlanes = 6");
+    let once = emit(&plan(&text)).unwrap();
+    let threads: Vec<_> = (0..2)
+        .map(|_| {
+            let text = text.clone();
+            std::thread::spawn(move || emit(&plan(&text)).unwrap())
+        })
+        .collect();
+    assert_eq!(emit(&plan(&text)).unwrap(), once);
+    for thread in threads {
+        assert_eq!(thread.join().unwrap(), once);
+    }
+}
+
+#[test]
+fn files_tell_neither_place_nor_time() {
+    let files = emit(&small_plan("")).unwrap();
+    let here = std::env::current_dir().unwrap();
+    let places = [here.to_str().unwrap(), env!("CARGO_MANIFEST_DIR"), "/home/", "/root/", "/tmp/", "/Users/", "C:\\"];
+    for (name, text) in text_files(&files) {
+        assert!(!name.starts_with('/') && !name.contains(".."), "{name}");
+        for place in places {
+            assert!(!text.contains(place), "{name} contains {place}");
+        }
+        let is_date = |window: &[u8]| {
+            window
+                .iter()
+                .enumerate()
+                .all(|(at, byte)| if at == 4 || at == 7 { *byte == b'-' } else { byte.is_ascii_digit() })
+        };
+        assert!(!text.as_bytes().windows(10).any(is_date), "{name} contains a date");
+        assert!(!text.contains('\r') && text.ends_with('\n'), "{name}: line ends");
+    }
+}
+
+#[test]
+fn the_resolved_design_gives_the_same_files() {
+    let hardware = "lanes = 3\nfull_scale_pa = 12345.6\nclock_mhz = 99.9\ncoefficient_bits = 17\ndata_bits = 26";
+    let files = emit(&small_plan(hardware)).unwrap();
+    let resolved = std::str::from_utf8(&files["design.toml"]).unwrap();
+    assert_eq!(Design::from_toml(resolved, "design.toml").unwrap(), small_plan(hardware).design);
+    assert_eq!(emit(&plan(resolved)).unwrap(), files);
+}
+
+#[test]
+fn metadata_describes_the_folder() {
+    let plan = small_plan("lanes = 5");
+    let files = emit(&plan).unwrap();
+    let metadata: Value = serde_json::from_slice(&files["metadata.json"]).unwrap();
+    assert_eq!(metadata["name"], "pad");
+    assert_eq!(metadata["top"], "pad");
+    assert_eq!(
+        (&metadata["taxels"], &metadata["beats_in"], &metadata["beats_out"]),
+        (&12.into(), &12.into(), &44.into())
+    );
+    assert_eq!(metadata["predicted"]["latency_cycles"], plan.timeline.latency_cycles);
+    assert_eq!(metadata["predicted"]["interval_cycles"], plan.timeline.interval_cycles);
+    assert_eq!(metadata["formats"]["stress_pa"]["lsb"], plan.formats.stress.lsb);
+    assert_eq!(metadata["products"].as_array().unwrap().len(), plan.products.len());
+    assert_eq!(metadata["nnz"].as_object().unwrap().len(), 13);
+    let listed: BTreeSet<&str> = metadata["files"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    let there: BTreeSet<&str> = files.keys().map(String::as_str).filter(|&name| name != "metadata.json").collect();
+    assert_eq!(listed, there);
+}
+
+#[test]
+fn every_file_holds_the_module_it_is_named_after() {
+    for plan in
+        [small_plan("lanes = 1"), plan(&design_text("wide", [10, 10], [4.0, 2.0], 3.0, "[hardware]\nlanes = 64"))]
+    {
+        let files = emit(&plan).unwrap();
+        let modules: Vec<_> = text_files(&files).filter(|(name, _)| name.starts_with("rtl/")).collect();
+        assert!(modules.len() > 20);
+        for (name, text) in modules {
+            let module = name.trim_start_matches("rtl/").trim_end_matches(".v");
+            let code: Vec<&str> = text.lines().filter(|line| line.starts_with("module ")).collect();
+            assert_eq!(code.len(), 1, "{name}");
+            let rest = code[0].trim_start_matches("module ");
+            assert!(rest.starts_with(module) && rest[module.len()..].starts_with([' ', '(']), "{name}: {}", code[0]);
+            assert!(text.lines().count() < MOST_LINES, "{name} has {} lines", text.lines().count());
+            assert!(text.starts_with("// ") && !text.contains("{%"), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_design_that_differs_differs_in_its_hash() {
+    let hash = |hardware: &str| {
+        let files = emit(&small_plan(hardware)).unwrap();
+        let metadata: Value = serde_json::from_slice(&files["metadata.json"]).unwrap();
+        metadata["design_hash"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(hash("lanes = 4"), hash("lanes = 4\nclock_mhz = 125.0"));
+    assert_ne!(hash("lanes = 4"), hash("lanes = 5"));
+}

@@ -1,0 +1,12 @@
+//! Tests of the generator through its public interface, one module a topic.
+
+mod bad_input;
+mod command;
+mod emission;
+mod formats;
+mod lanes;
+mod model;
+mod roms;
+mod scale;
+mod schedule;
+mod support;

@@ -1,0 +1,315 @@
+//! The integer model against the f64 solver, and on frames without an answer.
+
+use golden::design::Design;
+use golden::solver::cean::cean;
+use golden::solver::co::co;
+use golden::solver::we::we;
+use golden::solver::{Solution, Solver};
+use hdl_gen::model::{
+    AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, Model, NO_CONTACT, NOT_FINITE, SATURATED, SUMMARY_WORDS,
+};
+use hdl_gen::plan::Plan;
+use hdl_gen::plan::format::pow2;
+use hdl_gen::plan::product::Vector;
+use hdl_gen::plan::quantise::QuantisedMatrix;
+use nalgebra::DVector;
+use proptest::prelude::*;
+
+use crate::support::{any_design, design_text, small_plan};
+
+/// A sliding contact: an ellipsoid of pressure, and friction along one direction.
+#[derive(Clone, Debug)]
+struct Contact {
+    /// Centre and radius as shares of the grid's size.
+    centre: [f64; 2],
+    radius: f64,
+    friction: f64,
+    direction: f64,
+    /// Largest stress over full scale.
+    strength: f64,
+}
+
+fn any_contact() -> impl Strategy<Value = Contact> {
+    (0.2..0.8_f64, 0.2..0.8_f64, 0.3..0.7_f64, 0.2..0.9_f64, 0.0..6.28_f64, 0.02..0.95_f64).prop_map(
+        |(x, y, radius, friction, direction, strength)| Contact {
+            centre: [x, y],
+            radius,
+            friction,
+            direction,
+            strength,
+        },
+    )
+}
+
+/// The frame that a contact causes by the sensor's own matrices.
+fn frame(contact: &Contact, design: &Design, solver: &Solver) -> Vec<f32> {
+    let sensor = &design.sensor;
+    let size = [sensor.columns as f64 - 1.0, sensor.rows as f64 - 1.0];
+    let pressure = DVector::from_fn(sensor.taxels(), |i, _| {
+        let place = [(i % sensor.columns) as f64, (i / sensor.columns) as f64];
+        let square: f64 =
+            (0..2).map(|axis| ((place[axis] / size[axis] - contact.centre[axis]) / contact.radius).powi(2)).sum();
+        // Never nothing at all, whatever the grid.
+        (1.0 - square).max(0.0).sqrt() + 1e-6
+    });
+    let matrices = solver.matrices();
+    let (sine, cosine) = contact.direction.sin_cos();
+    let stress =
+        (&matrices.c31 * cosine + &matrices.c32 * sine) * &pressure * contact.friction - &matrices.c33 * &pressure;
+    let scale = contact.strength * design.hardware.full_scale_pa / stress.amax();
+    stress.iter().map(|value| (value * scale) as f32).collect()
+}
+
+struct Answer {
+    status: u32,
+    summary: [f64; 7],
+    field: [Vec<f64>; 3],
+}
+
+fn answer(plan: &Plan, frame: &[f32]) -> Answer {
+    let words = Model::new(plan).process(&frame.iter().map(|stress| stress.to_bits()).collect::<Vec<_>>());
+    assert_eq!(words.len(), SUMMARY_WORDS + 3 * plan.taxels());
+    let values: Vec<f64> = words.iter().map(|&word| f64::from(f32::from_bits(word))).collect();
+    Answer {
+        status: words[0],
+        summary: std::array::from_fn(|i| values[1 + i]),
+        field: std::array::from_fn(|p| values[SUMMARY_WORDS + p..].iter().step_by(3).copied().collect()),
+    }
+}
+
+fn reference(solver: &Solver, frame: &[f32]) -> Solution {
+    solver.solve(&frame.iter().map(|&stress| f64::from(stress)).collect::<Vec<_>>()).unwrap()
+}
+
+fn prepare(text: &str) -> (Design, Solver, Plan) {
+    let design = Design::from_toml(text, "test.toml").unwrap();
+    let solver = Solver::new(&design).unwrap();
+    let plan = Plan::from_parts(&design, solver.matrices(), solver.filtered()).unwrap();
+    (design, solver, plan)
+}
+
+/// Largest error of each force vector for the model's own friction components, from rounding alone: half a step of
+/// every coefficient, operand and result, through the row sums.
+fn rounding_bounds(plan: &Plan, frame: &[f32], friction: [f64; 2]) -> [f64; 3] {
+    let half = |lsb: i32| 0.5 * pow2(lsb);
+    let row_sum = |matrix: &QuantisedMatrix| matrix.row_sum as f64 * pow2(matrix.lsb);
+    let formats = &plan.formats;
+    let stress_sum: f64 = frame.iter().map(|stress| f64::from(stress.abs())).sum();
+    let mut weight_error = 0.0;
+    let mut bounds = [0.0; 3];
+    for product in &plan.products {
+        let matrix = &plan.matrices[product.matrix];
+        let step = half(formats.of(product.result).lsb);
+        let of_stress = half(matrix.lsb) * stress_sum + row_sum(matrix) * half(formats.stress.lsb) + step;
+        // Every weight is at most the largest row sum times the largest stress.
+        let inverse = &plan.matrices[0];
+        let top = frame.iter().fold(0.0_f64, |top, stress| top.max(f64::from(stress.abs())));
+        let weight_sum = plan.taxels() as f64 * row_sum(inverse) * top;
+        let of_weight = half(matrix.lsb) * weight_sum + row_sum(matrix) * weight_error + step;
+        match product.result {
+            Vector::Weight => weight_error = of_stress,
+            Vector::Partial(p) => bounds[usize::from(p) - 1] += of_stress,
+            Vector::G(p, 0) => bounds[usize::from(p) - 1] += of_weight,
+            Vector::G(p, q) => bounds[usize::from(p) - 1] += of_weight * friction[usize::from(q) - 1].abs(),
+            Vector::Stress | Vector::U(_) => {}
+        }
+    }
+    bounds
+}
+
+/// Largest magnitude.
+fn top(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |top, value| top.max(value.abs()))
+}
+
+/// Largest `|c0|` and `|c1|` of the line, which beyond 4 has no sense.
+fn line_ratio(frame: &[f32], design: &Design, solver: &Solver) -> f64 {
+    let b = DVector::from_iterator(frame.len(), frame.iter().map(|&stress| f64::from(stress)));
+    let sums = co(&b, &we(&b, solver.filtered()), solver.filtered()).sums;
+    let positions: Vec<[f64; 2]> = (0..frame.len()).map(|taxel| design.sensor.position_m(taxel)).collect();
+    let Some([x, y]) = cean(&b, &positions, design.algorithm.noise_floor_pa).direction else { return 0.0 };
+    let a = sums[0][1] * y - sums[1][1] * x;
+    let e = sums[0][2] * y - sums[1][2] * x;
+    let k = sums[1][0] * x - sums[0][0] * y;
+    let (other, denominator) = if x.abs() >= y.abs() { (a, e) } else { (e, a) };
+    (k / denominator).abs().max((other / denominator).abs())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn forces_are_exact_but_for_rounding(
+        text in any_design(), contacts in proptest::collection::vec(any_contact(), 4),
+    ) {
+        let (design, solver, plan) = prepare(&text);
+        for contact in contacts {
+            let frame = frame(&contact, &design, &solver);
+            let found = answer(&plan, &frame);
+            let b = DVector::from_iterator(frame.len(), frame.iter().map(|&stress| f64::from(stress)));
+            let g = co(&b, &we(&b, solver.filtered()), solver.filtered()).g;
+            let friction = [found.summary[5], found.summary[6]];
+            for (p, bound) in rounding_bounds(&plan, &frame, friction).into_iter().enumerate() {
+                let exact = &g[p][0] + &g[p][1] * friction[0] + &g[p][2] * friction[1];
+                for (found, exact) in found.field[p].iter().zip(exact.iter()) {
+                    let bound = bound + exact.abs() * f64::from(f32::EPSILON);
+                    prop_assert!((found - exact).abs() <= bound, "{found} for {exact}, bound {bound:e}");
+                }
+                // The resultant is the sum of the forces before they are rounded to float32.
+                let error = (found.summary[p] - found.field[p].iter().sum::<f64>()).abs();
+                prop_assert!(error <= plan.taxels() as f64 * top(&found.field[p]) * f64::from(f32::EPSILON));
+            }
+        }
+    }
+
+    #[test]
+    fn friction_and_status_agree_with_the_solver(
+        text in any_design(), contacts in proptest::collection::vec(any_contact(), 4),
+    ) {
+        let full_width: String =
+            text.lines().filter(|line| !line.contains("_bits")).map(|line| line.to_owned() + "\n").collect();
+        let (design, solver, plan) = prepare(&full_width);
+        for contact in contacts {
+            let frame = frame(&contact, &design, &solver);
+            let near = |value: f64, limit: f64| (value / limit - 1.0).abs() < 0.02;
+            let floor = design.algorithm.noise_floor_pa;
+            if frame.iter().any(|&stress| near(f64::from(stress.abs()), floor))
+                || near(line_ratio(&frame, &design, &solver), 4.0)
+            {
+                continue; // either answer is right
+            }
+            let found = answer(&plan, &frame);
+            let expected = reference(&solver, &frame);
+            prop_assert_eq!(found.status & !AT_BOUND, expected.status.0 & !AT_BOUND);
+            let error = (found.summary[5] - expected.mu_x).abs().max((found.summary[6] - expected.mu_y).abs());
+            prop_assert!(error <= 0.02, "friction off by {error}");
+            for p in 0..3 {
+                let scale = top(&expected.field[2]);
+                let error = found.field[p].iter().zip(&expected.field[p]).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
+                prop_assert!(error <= 0.03 * scale, "component {p} off by {error} N of {scale} N");
+            }
+        }
+    }
+
+    #[test]
+    fn no_frame_gives_a_nan(
+        text in any_design(),
+        packets in proptest::collection::vec(proptest::collection::vec(any::<u32>(), 0..80), 3),
+        stresses in proptest::collection::vec(-3.0e5..3.0e5_f32, 64),
+    ) {
+        let plan = crate::support::plan(&text);
+        let fitting = stresses[..plan.taxels()].iter().map(|stress| stress.to_bits()).collect();
+        // The same with one word in three that is not an ordinary number.
+        let odd = [f32::NAN, f32::INFINITY, f32::MAX, f32::MIN, f32::from_bits(1), -0.0].map(f32::to_bits);
+        let mixed = (0..plan.taxels())
+            .map(|taxel| if taxel % 3 == 0 { odd[taxel / 3 % 6] } else { stresses[taxel].to_bits() })
+            .collect();
+        let full = (0..plan.taxels()).map(|taxel| odd[2 + taxel % 4]).collect();
+        let mut model = Model::new(&plan);
+        for packet in packets.into_iter().chain([fitting, mixed, full]) {
+            let words = model.process(&packet);
+            prop_assert_eq!(words.len(), SUMMARY_WORDS + 3 * plan.taxels());
+            prop_assert!(words[1..].iter().all(|&word| f32::from_bits(word).is_finite()));
+        }
+    }
+}
+
+#[test]
+fn the_papers_sensors_keep_within_two_thousandths() {
+    for (pitch, filter) in [
+        ([4.0, 2.0], "{ kind = \"none\" }"),
+        ([4.0, 2.0], "{ kind = \"f1\", l = 40 }"),
+        ([4.0, 2.0], "{ kind = \"f2\", p = 30 }"),
+        ([4.0, 4.0], "{ kind = \"none\" }"),
+        ([4.0, 4.0], "{ kind = \"f2\", p = 50 }"),
+    ] {
+        let (design, solver, plan) =
+            prepare(&design_text("paper", [10, 10], pitch, 3.0, &format!("[algorithm]\nfilter = {filter}")));
+        for step in 0..36 {
+            let direction = f64::from(step * 10).to_radians();
+            let contact = Contact { centre: [0.48, 0.5], radius: 0.3, friction: 0.5, direction, strength: 0.3 };
+            let frame = frame(&contact, &design, &solver);
+            let (found, expected) = (answer(&plan, &frame), reference(&solver, &frame));
+            let scale = top(&expected.field[2]);
+            for p in 0..3 {
+                for (found, expected) in found.field[p].iter().zip(&expected.field[p]) {
+                    assert!((found - expected).abs() <= 2e-3 * scale, "{pitch:?} {filter} at {step}0 degrees");
+                }
+                let error = (found.summary[p] - expected.resultant[p]).abs();
+                assert!(error <= 2e-3 * expected.resultant[2].abs(), "F[{p}] off by {error} N");
+            }
+            assert!((found.summary[3] - expected.mu).abs() <= 2e-3);
+            let turn = (found.summary[4] - expected.phi).abs();
+            assert!(turn.min(std::f64::consts::TAU - turn) <= 4e-3, "phi off by {turn}");
+            assert_eq!(found.status, expected.status.0, "{pitch:?} {filter} at {step}0 degrees");
+        }
+    }
+}
+
+#[test]
+fn frames_without_an_answer_get_a_status() {
+    let plan = small_plan("");
+    let taxels = plan.taxels();
+    let floor = plan.design.algorithm.noise_floor_pa as f32;
+    let all = |stress: f32| vec![stress; taxels];
+    let with = |stress: f32| [vec![stress], vec![-500.0; taxels - 1]].concat();
+    for (frame, status) in [
+        (all(0.0), NO_CONTACT),
+        (all(-0.0), NO_CONTACT),
+        (all(0.98 * floor), NO_CONTACT),
+        (all(f32::from_bits(1)), NO_CONTACT),
+        (with(f32::NAN), NOT_FINITE),
+        (with(f32::INFINITY), NOT_FINITE),
+        (all(f32::NEG_INFINITY), NOT_FINITE),
+        (all(-500.0)[1..].to_vec(), BAD_LENGTH),
+        (vec![-500.0; taxels + 1], BAD_LENGTH),
+        (Vec::new(), BAD_LENGTH),
+        (vec![f32::NAN; 2 * taxels], BAD_LENGTH | NOT_FINITE),
+    ] {
+        let found = answer(&plan, &frame);
+        assert_eq!(found.status, status, "{frame:?}");
+        assert_eq!(found.summary, [0.0; 7]);
+        assert!(found.field.concat().iter().all(|&force| force == 0.0));
+    }
+}
+
+#[test]
+fn without_tension_only_the_direction_is_unknown() {
+    let (_, solver, plan) = prepare(&design_text("pad", [4, 3], [4.0, 2.0], 3.0, ""));
+    for stress in [-500.0, 1.02 * -plan.design.algorithm.noise_floor_pa as f32, 500.0, 99_999.0] {
+        let frame = vec![stress; plan.taxels()];
+        let found = answer(&plan, &frame);
+        assert_eq!(found.status, DIRECTION_UNKNOWN, "{stress} Pa");
+        assert_eq!(reference(&solver, &frame).status.0, DIRECTION_UNKNOWN);
+        assert_eq!(found.summary[5..], [0.0, 0.0]);
+        assert!(found.summary[2] * f64::from(stress) > 0.0, "pressed by compression");
+    }
+}
+
+#[test]
+fn stress_beyond_full_scale_counts_as_full_scale() {
+    let plan = small_plan("full_scale_pa = 2000.0");
+    let contact = |peak: f32| {
+        let mut frame: Vec<f32> = (0..12).map(|taxel| if taxel % 4 < 2 { 90.0 } else { -700.0 }).collect();
+        frame[6] = peak;
+        answer(&plan, &frame)
+    };
+    let (at, beyond, far) = (contact(-2000.0), contact(-2001.0), contact(f32::MIN));
+    assert_eq!(at.status & SATURATED, 0);
+    assert_eq!(beyond.status, at.status | SATURATED);
+    for clipped in [&beyond, &far] {
+        assert_eq!((&clipped.summary, &clipped.field), (&at.summary, &at.field));
+    }
+}
+
+#[test]
+fn frames_are_counted_until_reset() {
+    let plan = small_plan("");
+    let mut model = Model::new(&plan);
+    for frame in 0..65_538_u32 {
+        let words = model.process(&[]);
+        assert_eq!(words[0], (frame % 65_536) << 16 | BAD_LENGTH);
+    }
+    model.reset();
+    assert_eq!(model.process(&[])[0], BAD_LENGTH);
+}

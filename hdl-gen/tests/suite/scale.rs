@@ -1,0 +1,44 @@
+//! The largest sensor: 32 by 32 taxels, nothing filtered.
+
+use golden::design::Design;
+use golden::solver::Solver;
+use hdl_gen::emit::{FileMap, emit};
+use hdl_gen::plan::Plan;
+
+use crate::support::design_text;
+
+const TAXELS: usize = 1024;
+const ENTRIES: usize = TAXELS * TAXELS;
+
+fn lines(files: &FileMap, name: &str) -> usize {
+    files[name].iter().filter(|&&byte| byte == b'\n').count()
+}
+
+#[test]
+fn the_largest_sensor_has_hardware_with_one_lane_and_with_sixteen() {
+    let design = |lanes: usize| {
+        let text = design_text("whole", [32, 32], [4.0, 2.0], 3.0, &format!("[hardware]\nlanes = {lanes}"));
+        Design::from_toml(&text, "whole.toml").unwrap()
+    };
+    let solver = Solver::new(&design(1)).unwrap();
+    for lanes in [1, 16] {
+        let plan = Plan::from_parts(&design(lanes), solver.matrices(), solver.filtered()).unwrap();
+        let cycles = (ENTRIES / lanes) as u64;
+        for window in &plan.schedule.windows {
+            assert!((cycles..cycles + 20).contains(&window.length), "{lanes} lanes: {}", window.length);
+        }
+        assert!((16 * cycles..16 * cycles + 100).contains(&plan.timeline.spmv_cycles));
+        assert!(plan.timeline.latency_cycles < plan.timeline.spmv_cycles + 70_000);
+        assert!(plan.schedule.busy_fraction() > 0.999);
+
+        let files = emit(&plan).unwrap();
+        assert_eq!(lines(&files, "rom/whole_values_lane00.mem"), 14 * ENTRIES / lanes);
+        assert_eq!(lines(&files, "rom/whole_columns_lane00.mem"), 14 * ENTRIES / lanes);
+        assert_eq!(lines(&files, "rom/whole_visits.mem"), 16 * TAXELS);
+        assert_eq!(lines(&files, "mcsr/13_C33.txt"), 4 + TAXELS);
+        // Five digits and a line end for a coefficient, three and one for its column: no more text than needed.
+        assert_eq!(files["rom/whole_values_lane00.mem"].len(), 14 * ENTRIES / lanes * 6);
+        assert_eq!(files["rom/whole_columns_lane00.mem"].len(), 14 * ENTRIES / lanes * 4);
+        assert!(files.values().map(Vec::len).sum::<usize>() < 350_000_000);
+    }
+}

@@ -1,0 +1,47 @@
+//! What several topics need: designs, and executing a schedule as the hardware does.
+
+use golden::design::Design;
+use hdl_gen::plan::Plan;
+use proptest::prelude::*;
+
+/// A design file's text with every optional key left out but those of `more`, which may open tables.
+pub fn design_text(name: &str, size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f64, more: &str) -> String {
+    format!(
+        "name = \"{name}\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n{more}\n",
+        size[0], size[1]
+    )
+}
+
+/// The plan of a design file's text.
+pub fn plan(text: &str) -> Plan {
+    Plan::new(&Design::from_toml(text, "test.toml").unwrap()).unwrap()
+}
+
+/// A 4 by 3 design with the given `[hardware]` keys.
+pub fn small_plan(hardware: &str) -> Plan {
+    plan(&design_text("pad", [4, 3], [4.0, 2.0], 3.0, &format!("[hardware]\n{hardware}")))
+}
+
+/// Texts of designs of 2 by 2 to 8 by 8 taxels, well conditioned, with any filter, widths and lane count.
+pub fn any_design() -> impl Strategy<Value = String> {
+    let filter = |taxels: usize| {
+        prop_oneof![
+            Just("{ kind = \"none\" }".to_owned()),
+            (1..taxels - 1).prop_map(|l| format!("{{ kind = \"f1\", l = {l} }}")),
+            (1.0..90.0_f64).prop_map(|p| format!("{{ kind = \"f2\", p = {p:?} }}")),
+        ]
+    };
+    let geometry = (2_usize..=8, 2_usize..=8, 1.0..6.0_f64, 1.0..6.0_f64, 0.1..1.2_f64);
+    let hardware = (1_usize..=64, 8_u32..=18, 20_u32..=27, 1.0e3..1.0e6_f64);
+    (geometry, hardware).prop_flat_map(move |(geometry, hardware)| {
+        let (columns, rows, x, y, ratio) = geometry;
+        let (lanes, coefficient_bits, data_bits, full_scale) = hardware;
+        filter(columns * rows).prop_map(move |filter| {
+            let more = format!(
+                "[algorithm]\nfilter = {filter}\n[hardware]\nlanes = {lanes}\ncoefficient_bits = {coefficient_bits}\n\
+                 data_bits = {data_bits}\nfull_scale_pa = {full_scale:?}"
+            );
+            design_text("any", [columns, rows], [x, y], ratio * x.min(y), &more)
+        })
+    })
+}
