@@ -61,7 +61,7 @@ synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside t
 
 .PHONY: timing
 timing: tools build ## Place and route for an ECP5-85, for a clock figure from an open flow (a quarter of an hour)
-	@tools/timing.sh $(DESIGN)
+	@tools/timing.sh designs/timing.toml
 
 .PHONY: clean
 clean: ## Remove what was built; the tools in .venv stay
