@@ -1,9 +1,10 @@
 //! The 13 matrices of the method, unfiltered.
 
+use std::f64::consts::FRAC_1_SQRT_2;
 use std::fmt;
 use std::str::FromStr;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Kernel, Sensor};
 use crate::kernel;
@@ -149,7 +150,6 @@ impl Matrices {
     /// [`MatrixError::Singular`] when C33 or `A A^T` is singular to working precision.
     pub fn new(sensor: &Sensor, kernel: Kernel) -> Result<Self, MatrixError> {
         let [c31, c32, c33] = kernel::matrices(sensor, kernel);
-        let taxels = sensor.taxels();
         let singular = |matrix, condition| MatrixError::Singular {
             matrix,
             condition,
@@ -157,14 +157,10 @@ impl Matrices {
             pitch_mm: sensor.pitch_mm,
         };
 
-        let mut transposed = DMatrix::zeros(3 * taxels, taxels);
-        for (block, matrix) in [&c31, &c32, &c33].into_iter().enumerate() {
-            transposed.rows_mut(block * taxels, taxels).copy_from(&matrix.transpose());
-        }
-        let (q, r) = transposed.qr().unpack();
-
-        let condition_c33 = condition(&c33);
-        let condition_a = condition(&r);
+        let classes = parity_classes(sensor);
+        let blocks = [[0, 0], [0, 1], [1, 0], [1, 1]].map(|parity| Block::new(parity, &classes, [&c31, &c32, &c33]));
+        let condition_c33 = condition(blocks.each_ref().map(|block| &block.c33));
+        let condition_a = condition(blocks.each_ref().map(|block| &block.r));
         let condition_aat = condition_a * condition_a;
         if is_singular(condition_c33) {
             return Err(singular("C33", condition_c33));
@@ -173,12 +169,12 @@ impl Matrices {
             return Err(singular("A A^T", condition_aat));
         }
 
-        // A^T = Q R, so A+ = Q R^-T: unlike A^T (A A^T)^-1 this does not square the condition number.
-        let a_plus =
-            r.solve_upper_triangular(&q.transpose()).ok_or_else(|| singular("A A^T", f64::INFINITY))?.transpose();
-        let c33inv = c33.clone().lu().try_inverse().ok_or_else(|| singular("C33", f64::INFINITY))?;
-
-        let a = [0, 1, 2].map(|p| a_plus.rows(p * taxels, taxels).into_owned());
+        let taxels = sensor.taxels();
+        let mut c33inv = DMatrix::zeros(taxels, taxels);
+        let mut a = [c33inv.clone(), c33inv.clone(), c33inv.clone()];
+        for block in blocks {
+            block.add_inverses(&classes, &mut c33inv, &mut a).ok_or_else(|| singular("A A^T", f64::INFINITY))?;
+        }
         let d = |p: usize, c: &DMatrix<f64>| -(&a[p] * c);
         let thirteen = vec![
             c33inv,
@@ -214,13 +210,80 @@ impl Matrices {
     }
 }
 
+/// Orthonormal bases of the vectors of m numbers that are even (0) or odd (1) in x and in y, at `[x][y]`.
+type Classes = [[DMatrix<f64>; 2]; 2];
+
+fn parity_classes(sensor: &Sensor) -> Classes {
+    let along = |count: usize, odd: usize| {
+        DMatrix::from_fn(count, (count + 1 - odd) / 2, |at, index| {
+            let mirror = count - 1 - index;
+            match (at == index, at == mirror) {
+                (true, true) => 1.0,
+                (false, true) if odd == 1 => -FRAC_1_SQRT_2,
+                (true, false) | (false, true) => FRAC_1_SQRT_2,
+                (false, false) => 0.0,
+            }
+        })
+    };
+    [0, 1].map(|x| [0, 1].map(|y| along(sensor.rows, y).kronecker(&along(sensor.columns, x))))
+}
+
+/// C33 and A as far as they concern stresses of one class.
+///
+/// C33 commutes with both mirrors of the grid, C31 is odd in x, C32 odd in y: in the bases of [`Classes`] each falls
+/// apart into four blocks of a quarter the size, and a factorisation of a block costs a 64th.
+struct Block {
+    /// Class of the stress, and of the forces along x, y and z that cause it.
+    stress: [usize; 2],
+    forces: [[usize; 2]; 3],
+    c33: DMatrix<f64>,
+    /// `A^T = Q R`.
+    q: DMatrix<f64>,
+    r: DMatrix<f64>,
+}
+
+impl Block {
+    fn new([x, y]: [usize; 2], classes: &Classes, c: [&DMatrix<f64>; 3]) -> Self {
+        let forces = [[1 - x, y], [x, 1 - y], [x, y]];
+        let fold = classes[x][y].transpose();
+        let folded: Vec<DMatrix<f64>> =
+            c.iter().zip(forces).map(|(matrix, [x, y])| ((&fold * *matrix) * &classes[x][y]).transpose()).collect();
+        let mut transposed = DMatrix::zeros(folded.iter().map(DMatrix::nrows).sum(), fold.nrows());
+        let mut first = 0;
+        for part in &folded {
+            transposed.rows_mut(first, part.nrows()).copy_from(part);
+            first += part.nrows();
+        }
+        let (q, r) = transposed.qr().unpack();
+        Self { stress: [x, y], forces, c33: folded[2].transpose(), q, r }
+    }
+
+    /// Adds the block's share to C33^-1 and to the three parts of A+; `None` where there is no inverse.
+    fn add_inverses(self, classes: &Classes, c33inv: &mut DMatrix<f64>, a: &mut [DMatrix<f64>; 3]) -> Option<()> {
+        let [x, y] = self.stress;
+        let fold = classes[x][y].transpose();
+        *c33inv += (&classes[x][y] * self.c33.lu().try_inverse()?) * &fold;
+        // A+ = Q R^-T: unlike A^T (A A^T)^-1 this does not square the condition number.
+        let a_plus = self.r.solve_upper_triangular(&self.q.transpose())?.transpose();
+        let mut first = 0;
+        for (part, [x, y]) in a.iter_mut().zip(self.forces) {
+            let forces = &classes[x][y];
+            *part += (forces * a_plus.rows(first, forces.ncols())) * &fold;
+            first += forces.ncols();
+        }
+        Some(())
+    }
+}
+
 /// A NaN, from zero over zero, counts as singular.
 fn is_singular(condition: f64) -> bool {
     condition.is_nan() || condition >= SINGULAR
 }
 
-/// Largest over smallest singular value.
-fn condition(matrix: &DMatrix<f64>) -> f64 {
-    let values = matrix.singular_values();
-    values.max() / values.min()
+/// Largest over smallest singular value of a matrix with these blocks.
+fn condition(blocks: [&DMatrix<f64>; 4]) -> f64 {
+    let values = blocks.map(DMatrix::singular_values);
+    let largest = values.iter().map(DVector::max).fold(0.0, f64::max);
+    let smallest = values.iter().map(DVector::min).fold(f64::INFINITY, f64::min);
+    largest / smallest
 }

@@ -89,7 +89,7 @@ pub fn write_folder(folder: &Path, files: &FileMap) -> Result<(), WriteError> {
         // Messages name the place where the file would have been, not the one beside it.
         fs::create_dir_all(directory).map_err(io_error(&target.join(name), "create the folder"))?;
         fs::write(&path, contents).map_err(io_error(&target.join(name), "write the file"))?;
-        manifest.push_str(&format!("{}  {name}\n", digest(contents)));
+        manifest += &(digest(contents) + "  " + name + "\n");
     }
     fs::write(fresh.join(MANIFEST), manifest).map_err(io_error(&target.join(MANIFEST), "write the file"))?;
     let old = staging.path().join("old");

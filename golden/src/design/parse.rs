@@ -120,9 +120,11 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         arithmetic: Arithmetic::Fixed,
         coefficient_bits: integer("hardware.coefficient_bits", raw.coefficient_bits, 18, 8, 18)? as u32,
         data_bits: integer("hardware.data_bits", raw.data_bits, 27, 16, 27)? as u32,
-        full_scale_pa: check.above_zero(
+        // Far above the smallest float32, so that a stress or a force of one step has no denormal.
+        full_scale_pa: check.real(
             "hardware.full_scale_pa",
             raw.full_scale_pa.unwrap_or(DEFAULT_FULL_SCALE_PA),
+            1e-3,
             1e9,
             "Pa",
         )?,

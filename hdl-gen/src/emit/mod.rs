@@ -4,11 +4,13 @@ mod flows;
 mod mcsr;
 mod metadata;
 mod roms;
+mod sim;
 mod verilog;
 mod view;
 
 use std::collections::BTreeMap;
 
+use golden::scene::SceneError;
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
@@ -37,12 +39,15 @@ pub enum EmitError {
     /// Metadata could not be serialised.
     #[error("metadata.json: {0}; please report this design")]
     Metadata(#[from] serde_json::Error),
+    /// The testbench has no frames.
+    #[error("frames of the testbench: {0}")]
+    Scene(#[from] SceneError),
 }
 
 /// Version of the generator, as printed into every file.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Prints every file of the design's folder: `rtl/`, `rom/`, `mcsr/`, `vivado/`, file lists, `metadata.json`,
+/// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, file lists, `metadata.json`,
 /// `design.toml`.
 ///
 /// # Errors
@@ -58,6 +63,7 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
         files.insert(format!("rtl/{module}.v"), text.into_bytes());
     }
     roms::insert(plan, &mut files);
+    sim::insert(plan, &hash, &mut files)?;
     mcsr::insert(plan, &mut files);
     files.insert("design.toml".to_owned(), design.into_bytes());
     // After every file that a list or script names.

@@ -1,7 +1,5 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
-use std::io::Write;
-
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
 
@@ -31,12 +29,14 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
 
 /// `depth` words of `bits` bits in two's complement.
 fn hex(words: impl Iterator<Item = u32>, depth: usize, bits: u32) -> Vec<u8> {
-    let digits = bits.div_ceil(4) as usize;
+    // Digit by digit rather than by the formatter: the largest designs have 30 million words.
+    let digits = bits.div_ceil(4);
     let mask = (1_u32 << bits) - 1;
-    let mut text = Vec::with_capacity(depth * (digits + 1));
+    let mut text = Vec::with_capacity(depth * (digits as usize + 1));
     for word in words.chain(std::iter::repeat(0)).take(depth) {
-        // Writing to a vector cannot fail.
-        let _ = writeln!(text, "{:0digits$x}", word & mask);
+        let word = word & mask;
+        text.extend((0..digits).rev().map(|digit| b"0123456789abcdef"[(word >> (4 * digit)) as usize & 15]));
+        text.push(b'\n');
     }
     text
 }
@@ -49,5 +49,7 @@ mod tests {
     fn words_are_masked_and_padded() {
         let text = hex([-1_i32 as u32, 5].into_iter(), 3, 18);
         assert_eq!(String::from_utf8(text).unwrap(), "3ffff\n00005\n00000\n");
+        let text = hex([0xdead_beef_u32, 0x0123].into_iter(), 2, 16);
+        assert_eq!(String::from_utf8(text).unwrap(), "beef\n0123\n");
     }
 }

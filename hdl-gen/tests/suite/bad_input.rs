@@ -74,6 +74,7 @@ fn sizes_make_sense() {
         ("full_scale_pa", "0.0"),
         ("full_scale_pa", "-1.0"),
         ("full_scale_pa", "inf"),
+        ("full_scale_pa", "1e-300"),
         ("part", "\"x; exec rm\""),
         ("arithmetic", "\"float\""),
     ] {
@@ -112,6 +113,12 @@ fn a_sensor_that_cannot_be_inverted_is_refused() {
 fn widths_resolve_the_noise_floor() {
     let text = "depth_mm = 3.0\n[algorithm]\nnoise_floor_pa = 0.5\n[hardware]\ndata_bits = 16\nfull_scale_pa = 1e6";
     check_design(&changed("depth_mm = 3.0", text), &["data_bits = 16", "noise floor of 0.5 Pa", "full_scale_pa"]);
+}
+
+#[test]
+fn a_geometry_that_amplifies_beyond_the_widths_is_refused() {
+    let text = design_text("deep", [10, 10], [4.0, 4.0], 16.0, "");
+    check_design(&text, &["data_bits = 27", "worst case of", "condition number", "depth_mm"]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The ROM files hold the matrices of the MCSR listings: both are read back as text and compared.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
@@ -33,7 +33,7 @@ fn signed(word: u32, bits: u32) -> i32 {
 }
 
 fn bits_for(count: usize) -> u32 {
-    (0..).find(|&bits| 1_usize << bits >= count).unwrap().max(1)
+    count.next_power_of_two().trailing_zeros().max(1)
 }
 
 struct Reader {
@@ -55,7 +55,7 @@ fn matrices_in_roms(files: &FileMap, plan: &Plan) -> Vec<Rows> {
     let coefficient_bits = plan.design.hardware.coefficient_bits;
     let (row_bits, product_bits) = (bits_for(taxels), bits_for(products.len()));
 
-    let mut visits: Vec<std::collections::VecDeque<(usize, usize)>> = vec![Default::default(); lanes];
+    let mut visits: Vec<VecDeque<(usize, usize)>> = vec![VecDeque::new(); lanes];
     for visit in words(files, &format!("rom/{name}_visits.mem"), bits_for(lanes) + product_bits + row_bits) {
         let lane = (visit >> (product_bits + row_bits)) as usize;
         let product = (visit >> row_bits) as usize & ((1 << product_bits) - 1);
@@ -114,7 +114,7 @@ fn matrices_in_roms(files: &FileMap, plan: &Plan) -> Vec<Rows> {
         assert!(open_head.is_none());
         op_began |= product["block"] == "Op";
     }
-    assert!(visits.iter().all(std::collections::VecDeque::is_empty));
+    assert!(visits.iter().all(VecDeque::is_empty));
     for reader in readers {
         assert!(reader.values[reader.word..].iter().chain(&reader.columns[reader.word..]).all(|&word| word == 0));
     }
@@ -155,7 +155,7 @@ fn check(plan: &Plan) {
         assert_eq!(found, &plan.matrices[product.matrix].rows, "{name}");
     }
     let roms = files.iter().filter(|(name, _)| name.starts_with("rom/"));
-    let lines: usize = roms.map(|(_, bytes)| bytes.iter().filter(|&&byte| byte == b'\n').count()).sum();
+    let lines: usize = roms.map(|(name, _)| text(&files, name).lines().count()).sum();
     let memories = plan.resources.memories.iter().filter(|memory| memory.read_only);
     assert_eq!(lines, memories.map(|memory| memory.count * memory.depth).sum::<usize>(), "words in all ROM files");
 }

@@ -1,9 +1,9 @@
 //! The schedule: who computes what, and when.
 
 use hdl_gen::plan::optimum::OptimumPlan;
-use hdl_gen::plan::product::{Epilogue, Product, Vector};
+use hdl_gen::plan::product::{Block, Epilogue, Product, Vector};
 use hdl_gen::plan::quantise::QuantisedMatrix;
-use hdl_gen::plan::schedule::{ISSUE_TO_RESULT, Schedule, SegmentKind, VISIT_TO_DRAINED};
+use hdl_gen::plan::schedule::{ISSUE_TO_RESULT, Schedule, SegmentKind, VISIT_TO_DRAINED, VISIT_TO_OPERAND};
 use hdl_gen::plan::timing::Timeline;
 use proptest::prelude::*;
 
@@ -154,6 +154,38 @@ fn rows_of_one_entry_keep_two_places_enough() {
         };
         assert_eq!(schedule.lanes.iter().any(idle), lanes > 1, "{size} rows, {lanes} lanes");
         assert!(schedule.visits.len() as u64 <= schedule.drained);
+    }
+}
+
+#[test]
+fn a_product_waits_for_the_last_row_of_its_operand() {
+    // Each product reads first what the one before it wrote last.
+    let reversal = |size: usize| matrix(size, (1..=size).map(|row| vec![((size - row) as u32, 3)]).collect());
+    let chain: Vec<Product> = [
+        (Block::We, Vector::Stress, Vector::Weight),
+        (Block::Co, Vector::Weight, Vector::G(3, 0)),
+        (Block::Op, Vector::G(3, 0), Vector::U(0)),
+    ]
+    .into_iter()
+    .enumerate()
+    .map(|(matrix, (block, operand, result))| Product {
+        matrix,
+        operand,
+        block,
+        epilogue: Epilogue::Keep,
+        result,
+        shift: 0,
+    })
+    .collect();
+    for size in 2..20 {
+        for lanes in 1..10 {
+            let schedule = check(&chain, &vec![reversal(size); 3], lanes);
+            for (index, window) in schedule.windows.iter().enumerate().skip(1) {
+                let of_operand = schedule.visits.iter().filter(|visit| visit.product as usize == index - 1);
+                let last = of_operand.map(|visit| visit.cycle).max().unwrap();
+                assert_eq!(window.start, last + VISIT_TO_OPERAND, "no sooner and no later");
+            }
+        }
     }
 }
 

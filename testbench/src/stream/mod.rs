@@ -14,7 +14,7 @@ pub use pattern::{Gate, Mode, Pattern};
 use crate::dut::{Beat, Core, DutError, Inputs};
 
 /// Reset before the first packet, in cycles.
-const INITIAL_RESET: u64 = 8;
+pub const INITIAL_RESET: u64 = 8;
 /// Cycles watched after the last expected packet, for a beat too many.
 const QUIET: u64 = 64;
 

@@ -1,0 +1,98 @@
+//! A testbench in plain Verilog, with frames and the model's answers to them: any simulator can check the design.
+
+use std::io::Write;
+
+use golden::scene::{Medium, Scene, SceneError};
+use serde::Serialize;
+use tera::Context;
+
+use crate::model::Model;
+use crate::plan::Plan;
+
+use super::{EmitError, FileMap, verilog};
+
+const TEMPLATE: &str = include_str!("../../templates/sim/tb.v.tera");
+/// Directions of the push, off the axes and in all four quadrants.
+const DIRECTIONS_DEG: [f64; 4] = [20.0, 110.0, 200.0, 290.0];
+/// Cycles that a core may take beyond its predicted ones, for the pauses of the streams.
+const SLACK_CYCLES: u64 = 10_000;
+
+/// The data of the template.
+#[derive(Serialize)]
+struct View<'a> {
+    name: &'a str,
+    frames: usize,
+    words_in: usize,
+    words_out: usize,
+    /// Words of an output frame.
+    beats: usize,
+    timeout: u64,
+}
+
+/// Adds `sim/NAME_tb.v`, `sim/NAME_stimulus.mem` and `sim/NAME_expected.mem`.
+///
+/// # Errors
+/// [`EmitError::Template`] if the template does not fit the view; [`EmitError::Scene`] if no frames can be made for
+/// the sensor.
+pub fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitError> {
+    let name = plan.design.name.as_str();
+    let packets = packets(plan)?;
+    let mut model = Model::new(plan);
+    let answers: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
+    let view = View {
+        name,
+        frames: packets.len(),
+        words_in: packets.iter().map(Vec::len).sum(),
+        words_out: answers.iter().map(Vec::len).sum(),
+        beats: model.output_words(),
+        timeout: SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64,
+    };
+    let module = format!("{name}_tb");
+    let context =
+        Context::from_serialize(&view).map_err(|source| EmitError::Template { template: module.clone(), source })?;
+    let text = verilog::design_module(plan, hash, &module, TEMPLATE, &context)?;
+    files.insert(format!("sim/{module}.v"), text.into_bytes());
+    files.insert(format!("sim/{name}_stimulus.mem"), words(&packets));
+    files.insert(format!("sim/{name}_expected.mem"), words(&answers));
+    Ok(())
+}
+
+/// A contact pushed in several directions; between them the frames that have no answer.
+fn packets(plan: &Plan) -> Result<Vec<Vec<u32>>, SceneError> {
+    let scene = Scene { sweep_deg: DIRECTIONS_DEG.to_vec(), ..Scene::standing(&plan.design.sensor) };
+    // On a half-space stress has a closed form, so no layer is too thin.
+    let frames = scene.frames().or_else(|_| Scene { medium: Medium::HalfSpace, ..scene }.frames())?;
+    let mut packets: Vec<Vec<u32>> =
+        frames.iter().map(|frame| frame.stress.iter().map(|&pascal| (pascal as f32).to_bits()).collect()).collect();
+    let taxels = plan.taxels();
+    let mut not_a_number = packets[0].clone();
+    not_a_number[taxels / 2] = f32::NAN.to_bits();
+    packets.insert(1, vec![0; taxels]);
+    packets.insert(3, not_a_number);
+    packets.insert(5, vec![0; taxels - 1]);
+    Ok(packets)
+}
+
+/// Packets as words of 33 bits, the topmost of which is TLAST.
+fn words(packets: &[Vec<u32>]) -> Vec<u8> {
+    let mut text = Vec::new();
+    for packet in packets {
+        for (index, &word) in packet.iter().enumerate() {
+            let last = u64::from(index + 1 == packet.len());
+            // Writing to a vector cannot fail.
+            let _ = writeln!(text, "{:09x}", last << 32 | u64::from(word));
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn the_last_word_of_each_packet_is_marked() {
+        let text = words(&[vec![1, 0xC47A_0000], vec![2]]);
+        assert_eq!(String::from_utf8(text).unwrap(), "000000001\n1c47a0000\n100000002\n");
+    }
+}

@@ -1,0 +1,93 @@
+//! Input packets for tests: plausible ones, noise, and the ends of every range.
+
+use hdl_gen::plan::Plan;
+use hdl_gen::plan::quantise::QuantisedMatrix;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use testbench::words::encode;
+
+/// A round contact somewhere on the sensor, dragged in some direction: compression in front of it, tension behind.
+pub fn contact(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {
+    let (sensor, full_scale) = (&plan.design.sensor, plan.design.hardware.full_scale_pa);
+    let side = |count: usize, pitch: f64| (count - 1) as f64 * pitch;
+    let sides = [side(sensor.columns, sensor.pitch_mm[0]), side(sensor.rows, sensor.pitch_mm[1])];
+    let centre = sides.map(|side| random.random_range(0.2..0.8) * side);
+    let radius = random.random_range(0.2..0.6) * sides[0].max(sides[1]);
+    let peak = full_scale * 10_f64.powf(random.random_range(-2.0..-0.1));
+    let (friction, angle) = (random.random_range(0.0..0.9), random.random_range(0.0..std::f64::consts::TAU));
+    let stress: Vec<f64> = (0..sensor.taxels())
+        .map(|taxel| {
+            let [x, y] = sensor.position_m(taxel).map(|metres| metres * 1e3);
+            let (x, y) = ((x - centre[0]) / radius, (y - centre[1]) / radius);
+            let along = x * angle.cos() + y * angle.sin();
+            -peak * (1.0 + 2.0 * friction * along) * (-(x * x + y * y)).exp()
+        })
+        .collect();
+    encode(&stress)
+}
+
+/// Every taxel at random within the full scale times `share`.
+pub fn noise(plan: &Plan, share: f64, random: &mut ChaCha8Rng) -> Vec<u32> {
+    let limit = share * plan.design.hardware.full_scale_pa;
+    let stress: Vec<f64> = (0..plan.taxels()).map(|_| random.random_range(-limit..=limit)).collect();
+    encode(&stress)
+}
+
+/// Nothing presses.
+pub fn empty(plan: &Plan) -> Vec<u32> {
+    vec![0; plan.taxels()]
+}
+
+/// The ends of the ranges, in the input and, by the signs of matrix rows, inside.
+pub fn extremes(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
+    let taxels = plan.taxels();
+    let full_scale = plan.design.hardware.full_scale_pa;
+    let step = plan.formats.stress.step();
+    let floor = plan.thresholds.taxel as f64 * step;
+    let each = |value: &dyn Fn(usize) -> f64| encode(&(0..taxels).map(value).collect::<Vec<_>>());
+    let sign = |positive: bool| if positive { 1.0 } else { -1.0 };
+    let columns = plan.design.sensor.columns;
+    let chosen = random.random_range(0..taxels);
+    let other = random.random_range(0..taxels);
+    let mut packets = vec![
+        empty(plan),
+        each(&|_| -0.0),
+        each(&|_| -full_scale),
+        each(&|_| full_scale),
+        each(&|taxel| full_scale * sign(taxel % 2 == 0)),
+        each(&|taxel| full_scale * sign((taxel % columns + taxel / columns) % 2 == 1)),
+        each(&|taxel| full_scale * sign(taxel < taxels / 2)),
+        each(&|taxel| if taxel == chosen { -full_scale } else { 0.0 }),
+        each(&|taxel| if taxel == chosen { full_scale } else { 0.0 }),
+        each(&|taxel| if taxel == other { full_scale } else { -full_scale }),
+        each(&|_| -step),
+        each(&|_| step),
+        each(&|taxel| step * sign(taxel % 2 == 0)),
+        each(&|taxel| if taxel == chosen { -step } else { 0.0 }),
+        // Half a step: where rounding decides.
+        each(&|taxel| 0.5 * step * (taxel as f64 - 0.5 * taxels as f64)),
+        // The thresholds of contact and of direction, and one step beyond.
+        each(&|_| -floor),
+        each(&|taxel| (floor + step) * sign(taxel % 3 == 0)),
+        each(&|taxel| if taxel == chosen { floor + step } else { -floor }),
+        // Beyond the full scale, up to the largest float, and down to the smallest.
+        each(&|_| -1.5 * full_scale),
+        each(&|taxel| 1e9 * full_scale * sign(taxel % 3 == 0)),
+        each(&|taxel| f64::from(f32::MAX) * sign(taxel % 2 == 0)),
+        each(&|taxel| f64::from(f32::from_bits(1)) * sign(taxel % 2 == 0)),
+        each(&|taxel| if taxel == chosen { 1.001 * full_scale } else { -0.01 * full_scale }),
+    ];
+    // The first thirteen matrices multiply stress or the weights that come of it: the signs of the longest row drive
+    // its sum to the bound from which the formats were chosen.
+    packets.extend(plan.matrices.iter().take(13).map(|matrix| worst_case(matrix, full_scale, taxels)));
+    packets
+}
+
+fn worst_case(matrix: &QuantisedMatrix, full_scale: f64, taxels: usize) -> Vec<u32> {
+    let weight = |row: &&Vec<(u32, i32)>| row.iter().map(|&(_, value)| i64::from(value).abs()).sum::<i64>();
+    let mut stress = vec![-full_scale; taxels];
+    for &(column, value) in matrix.rows.iter().max_by_key(weight).into_iter().flatten() {
+        stress[column as usize] = if value > 0 { -full_scale } else { full_scale };
+    }
+    encode(&stress)
+}

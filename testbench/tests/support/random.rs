@@ -1,0 +1,101 @@
+//! Random designs, the same in every run. `SPTFRA_TEST_SEED` sets another seed than the usual one.
+
+use std::env;
+
+use golden::design::Design;
+use hdl_gen::plan::Plan;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const DEFAULT_SEED: u64 = 20_240_001;
+/// Draws that have no plan (too narrow for the geometry, or singular) before the test gives up on the generator.
+const MOST_REFUSED: u32 = 20;
+
+/// The seed of all random designs and frames.
+pub fn seed() -> u64 {
+    match env::var("SPTFRA_TEST_SEED") {
+        Ok(text) => text.parse().expect("SPTFRA_TEST_SEED is a whole number"),
+        Err(_) => DEFAULT_SEED,
+    }
+}
+
+/// What makes designs differ.
+pub struct Shape {
+    pub columns: usize,
+    pub rows: usize,
+    pub pitch_mm: [f64; 2],
+    pub depth_mm: f64,
+    pub filter: String,
+    pub lanes: usize,
+    pub coefficient_bits: u32,
+    pub data_bits: u32,
+    pub full_scale_pa: f64,
+}
+
+impl Shape {
+    fn random(random: &mut ChaCha8Rng) -> Self {
+        let mut side =
+            || if random.random_bool(0.8) { random.random_range(2..=8) } else { random.random_range(9..=12) };
+        let (columns, rows) = (side(), side());
+        let taxels = columns * rows;
+        let pitch_mm = [0, 1].map(|_| (random.random_range(1.0..6.0_f64) * 100.0).round() / 100.0);
+        let spacing = (pitch_mm[0] * pitch_mm[1]).sqrt();
+        let filter = match random.random_range(0..3) {
+            0 => "{ kind = \"none\" }".to_owned(),
+            1 => format!("{{ kind = \"f1\", l = {} }}", random.random_range(1..=taxels - 2)),
+            _ => format!("{{ kind = \"f2\", p = {:.4} }}", 10_f64.powf(random.random_range(-2.0..2.0))),
+        };
+        Self {
+            columns,
+            rows,
+            pitch_mm,
+            depth_mm: (spacing * random.random_range(0.3..1.5) * 1000.0).round() / 1000.0,
+            filter,
+            // Compiling takes longer the more lanes there are.
+            lanes: if random.random_bool(0.7) { random.random_range(1..=16) } else { random.random_range(17..=64) },
+            coefficient_bits: random.random_range(8..=18),
+            data_bits: random.random_range(16..=27),
+            full_scale_pa: 10_f64.powi(random.random_range(3..=6)) * random.random_range(1.0..9.0_f64).round(),
+        }
+    }
+
+    pub fn design(&self, name: &str) -> Design {
+        let Self { columns, rows, pitch_mm: [x, y], depth_mm, filter, lanes, .. } = self;
+        let Self { coefficient_bits, data_bits, full_scale_pa, .. } = self;
+        let text = format!(
+            "name = \"{name}\"
+[sensor]
+columns = {columns}
+rows = {rows}
+pitch_mm = [{x:?}, {y:?}]
+depth_mm = {depth_mm:?}
+[algorithm]
+filter = {filter}
+[hardware]
+coefficient_bits = {coefficient_bits}
+data_bits = {data_bits}
+full_scale_pa = {full_scale_pa:?}
+lanes = {lanes}
+"
+        );
+        Design::from_toml(&text, name).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    }
+}
+
+/// The design with this number among those of the seed, and the generator as its draws left it.
+///
+/// # Errors
+/// Why all of too many draws had no plan.
+pub fn plan(number: u64) -> Result<(Plan, ChaCha8Rng), String> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed());
+    random.set_stream(number);
+    let name = format!("random_{number:02}");
+    let mut refused = Vec::new();
+    for _ in 0..MOST_REFUSED {
+        match Plan::new(&Shape::random(&mut random).design(&name)) {
+            Ok(plan) => return Ok((plan, random)),
+            Err(error) => refused.push(error.to_string()),
+        }
+    }
+    Err(format!("no plan after {MOST_REFUSED} draws:\n{}", refused.join("\n")))
+}
