@@ -41,7 +41,7 @@ pub enum FrameError {
     },
     /// A value that is no finite number.
     #[error(
-        "{}, line {line}, column {column}: \"{text}\" is no finite number; give the stress in pascals, \
+        "{}, line {line}, column {column}: \"{text}\" is no finite float32 number; give the stress in pascals, \
          such as -1250.5, and no header line", path.display()
     )]
     Value {
@@ -108,7 +108,7 @@ pub(crate) fn read_rows(
             let value = std::str::from_utf8(field)
                 .ok()
                 .and_then(|text| text.parse::<f64>().ok())
-                .filter(|value| value.is_finite());
+                .filter(|value| value.is_finite() && value.abs() <= f64::from(f32::MAX));
             row.push(value.ok_or_else(|| FrameError::Value {
                 path: path.to_path_buf(),
                 line,

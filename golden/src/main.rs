@@ -1,5 +1,12 @@
 //! The `golden` command: frames with known forces, forces from frames, and the choice of filters.
 
+/// Prints a line, formatted like `println!`, but returns an error where that would panic.
+macro_rules! say {
+    ($($part:tt)*) => {
+        golden::output::print_line(format_args!($($part)*))?
+    };
+}
+
 mod commands;
 
 use std::path::PathBuf;

@@ -11,6 +11,18 @@ pub struct OutputError {
     source: io::Error,
 }
 
+/// Prints a line to standard output. A reader that has gone away, as after `| head`, is no error.
+///
+/// # Errors
+///
+/// When standard output cannot be written, for instance a full disk behind it.
+pub fn print_line(text: std::fmt::Arguments<'_>) -> io::Result<()> {
+    match writeln!(io::stdout().lock(), "{text}") {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}
+
 /// Writes `content` to `path`, in place of what was there.
 ///
 /// The content first goes to a temporary file in the same folder, so that a crash or a full disk leaves either the

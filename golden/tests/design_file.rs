@@ -154,6 +154,7 @@ fn names_that_are_no_identifiers() {
     for name in ["", "1st", "a b", "a-b", "a$b", "ä", "../x", "a\\n"] {
         refused(&with("\"pad\"", &format!("\"{name}\"")), &["name", "Verilog identifier"]);
     }
+    refused(&with("\"pad\"", "\"sptfra_mac\""), &["name", "all designs share"]);
     for keyword in ["module", "reg", "logic", "small"] {
         refused(&with("\"pad\"", &format!("\"{keyword}\"")), &["name", "keyword"]);
     }

@@ -32,7 +32,7 @@ fn simulate(name: &str, files: &Files) -> String {
         let place = folder.path().join(path);
         fs::create_dir_all(place.parent().expect("a file has a folder")).expect("writable");
         fs::write(&place, contents).expect("writable");
-        if (path.starts_with("rtl/") || path.starts_with("sim/")) && path.ends_with(".v") {
+        if (path.starts_with("rtl/") || path.starts_with("sim/")) && path.rsplit('.').next() == Some("v") {
             compiler.arg(path);
         }
     }

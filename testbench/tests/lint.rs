@@ -17,7 +17,7 @@ const RANDOM_DESIGNS: u64 = 20;
 /// One of each kind: square and not, filtered and not, fewest and most lanes, narrowest words.
 fn designs() -> Vec<Design> {
     let mut narrow = shipped("odd");
-    narrow.name = "narrow".to_owned();
+    "narrow".clone_into(&mut narrow.name);
     narrow.hardware.coefficient_bits = 8;
     narrow.hardware.data_bits = 16;
     vec![

@@ -56,9 +56,9 @@ pub fn run(path: &Path, out: &Path, csv: Option<&Path>, json: bool) -> Result<()
 
     if json {
         let report = Report { design: &design.name, resolved: out, choice: &choice };
-        println!("{}", serde_json::to_string_pretty(&report)?);
+        say!("{}", serde_json::to_string_pretty(&report)?);
     } else {
-        print_report(&design.name, out, &choice);
+        print_report(&design.name, out, &choice)?;
     }
     Ok(())
 }
@@ -88,11 +88,11 @@ fn table(choice: &Choice) -> String {
     text
 }
 
-fn print_report(name: &str, out: &Path, choice: &Choice) {
-    println!("{name}: filters chosen by {} frames", choice.frames);
-    println!("  matrix  filter        Nnz    e_mu %    e_mu * Nnz");
+fn print_report(name: &str, out: &Path, choice: &Choice) -> std::io::Result<()> {
+    say!("{name}: filters chosen by {} frames", choice.frames);
+    say!("  matrix  filter        Nnz    e_mu %    e_mu * Nnz");
     for candidate in choice.candidates.iter().filter(|candidate| candidate.chosen) {
-        println!(
+        say!(
             "  {:<7} {:<8} {:>8}  {:>8.4}  {:>12.1}",
             candidate.matrix.as_str(),
             candidate.filter,
@@ -101,7 +101,8 @@ fn print_report(name: &str, out: &Path, choice: &Choice) {
             candidate.cost
         );
     }
-    println!("  all together     {:>8}  {:>8.4}", choice.nnz_chosen, choice.e_mu_chosen);
-    println!("  without a filter           {:>8.4}", choice.e_mu_unfiltered);
-    println!("the resolved design is {}", out.display());
+    say!("  all together     {:>8}  {:>8.4}", choice.nnz_chosen, choice.e_mu_chosen);
+    say!("  without a filter           {:>8.4}", choice.e_mu_unfiltered);
+    say!("the resolved design is {}", out.display());
+    Ok(())
 }

@@ -40,10 +40,10 @@ pub fn run(scene: &Path, out: &Path, json: bool) -> Result<(), Box<dyn Error>> {
             frames_file: out,
             forces_file: &forces_file,
         };
-        println!("{}", serde_json::to_string_pretty(&report)?);
+        say!("{}", serde_json::to_string_pretty(&report)?);
     } else {
-        println!("{} frames of {} taxels in {}", stresses.len(), scene.sensor.taxels(), out.display());
-        println!("their true forces in {}", forces_file.display());
+        say!("{} frames of {} taxels in {}", stresses.len(), scene.sensor.taxels(), out.display());
+        say!("their true forces in {}", forces_file.display());
     }
     Ok(())
 }

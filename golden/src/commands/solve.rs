@@ -68,9 +68,9 @@ pub fn run(
         }),
     };
     if json {
-        println!("{}", serde_json::to_string_pretty(&report)?);
+        say!("{}", serde_json::to_string_pretty(&report)?);
     } else {
-        print_report(&report);
+        print_report(&report)?;
     }
     Ok(())
 }
@@ -84,15 +84,16 @@ fn count_statuses(solutions: &[Solution]) -> Vec<StatusCount> {
         .collect()
 }
 
-fn print_report(report: &SolveReport) {
-    println!("{}: forces of {} frames in {}", report.design, report.frames, report.forces_file.display());
+fn print_report(report: &SolveReport) -> std::io::Result<()> {
+    say!("{}: forces of {} frames in {}", report.design, report.frames, report.forces_file.display());
     for count in &report.status_counts {
-        println!("  {:>6} frames: {}", count.frames, count.meaning);
+        say!("  {:>6} frames: {}", count.frames, count.meaning);
     }
     if let Some(errors) = &report.errors {
-        println!("errors in %       max  std. error");
+        say!("errors in %       max  std. error");
         for (name, spread) in ERROR_NAMES.iter().zip(errors.spreads()) {
-            println!("  {name:<8} {:>10.2}  {:>10.2}", spread.max, spread.standard_error);
+            say!("  {name:<8} {:>10.2}  {:>10.2}", spread.max, spread.standard_error);
         }
     }
+    Ok(())
 }

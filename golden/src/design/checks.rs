@@ -70,6 +70,9 @@ impl Check<'_> {
 /// Longest name; file systems and tools cope with it as a part of longer names.
 const MAX_NAME: usize = 64;
 
+/// Modules that are the same in every design begin so.
+const RESERVED_PREFIX: &str = "sptfra_";
+
 pub(crate) fn name(check: &Check, name: &str) -> Result<(), DesignError> {
     let refuse = |problem: String| {
         Err(check.value(
@@ -88,6 +91,9 @@ pub(crate) fn name(check: &Check, name: &str) -> Result<(), DesignError> {
     }
     if KEYWORDS.split_whitespace().any(|keyword| keyword == name) {
         return refuse(format!("is \"{name}\", a Verilog keyword"));
+    }
+    if name.starts_with(RESERVED_PREFIX) {
+        return refuse(format!("is \"{name}\", which begins like the modules that all designs share"));
     }
     Ok(())
 }
