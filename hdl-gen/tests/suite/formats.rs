@@ -12,7 +12,7 @@ use crate::support::{any_design, design_text, plan, small_plan};
 
 /// For every row of every product the operand that makes its sum largest, through the product's arithmetic: the
 /// accumulator with its rounding fits 48 bits, the result its format's bound.
-pub fn check_worst_cases(plan: &Plan) {
+fn check_worst_cases(plan: &Plan) {
     let mut partial = vec![[0_i64; 3]; plan.taxels()];
     for product in &plan.products {
         let matrix = &plan.matrices[product.matrix];

