@@ -5,6 +5,8 @@ use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
 use crate::design::{Filter, MatrixFilter};
 use crate::matrices::{Matrices, MatrixName};
+use crate::parity::{FoldedMatrix, sign};
+use crate::reduced::ReducedName;
 
 /// Why a filter cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -35,6 +37,25 @@ pub enum FilterError {
         /// Its filter.
         filter: MatrixFilter,
     },
+    /// Nothing of a row of a folded matrix is left.
+    #[error(
+        "the filter {filter} empties row {row} of the folded matrix {matrix}; use a weaker filter (f1: smaller l, f2: \
+         larger p)"
+    )]
+    EmptyFoldedRow {
+        /// The matrix.
+        matrix: ReducedName,
+        /// The first empty row, from 0.
+        row: usize,
+        /// The filter.
+        filter: MatrixFilter,
+    },
+    /// F3 with the reduced plan.
+    #[error(
+        "the filter f3 chooses for each matrix of the paper, and the reduced plan has other matrices; write \
+         plan = \"paper\" under [algorithm], or another filter"
+    )]
+    Reduced,
 }
 
 /// The 13 matrices after the filter, in compressed sparse row form.
@@ -44,7 +65,7 @@ pub struct FilteredMatrices {
 }
 
 impl FilteredMatrices {
-    /// Filters all 13 matrices.
+    /// Filters all 13 matrices, whole ones made and dropped one at a time.
     ///
     /// # Errors
     ///
@@ -54,7 +75,7 @@ impl FilteredMatrices {
             .into_iter()
             .map(|name| {
                 let filter = filter.of(name).ok_or(FilterError::Unresolved)?;
-                let sparse = apply(matrices.get(name), filter);
+                let sparse = apply(&matrices.dense(name), filter);
                 check(name, &sparse, filter)?;
                 Ok(sparse)
             })
@@ -71,6 +92,40 @@ impl FilteredMatrices {
     pub fn nnz(&self, name: MatrixName) -> usize {
         self.get(name).nnz()
     }
+}
+
+/// Number of entries that a filter keeps of one of the 13 matrices, as [`FilteredMatrices::nnz`], without making the
+/// matrix whole: for sensors of thousands of taxels, whose filtered matrices nobody needs.
+pub fn nnz_of(matrices: &Matrices, name: MatrixName, filter: MatrixFilter) -> usize {
+    let quads = matrices.quads();
+    let m = quads.taxels();
+    match filter {
+        MatrixFilter::None => m * m,
+        // l diagonals on either side have 1 + 2 + ... + l entries each.
+        MatrixFilter::F1 { l } => m * m - l * (l + 1),
+        MatrixFilter::F2 { p } => {
+            let folded = matrices.folded(name);
+            (0..quads.count()).map(|q| rows_over_threshold(&folded, q, p)).sum()
+        }
+    }
+}
+
+/// Entries that F2 keeps in all rows of quad q. They are the same but for their order and, in some rows of a matrix
+/// that changes parity, their sign, on which the threshold depends.
+fn rows_over_threshold(folded: &FoldedMatrix, q: usize, p: f64) -> usize {
+    let quads = &folded.quads;
+    let row: Vec<f64> = (0..quads.count())
+        .flat_map(|column| {
+            let values = folded.values(q, column);
+            quads.distinct(column).map(move |(s, _)| values[s])
+        })
+        .collect();
+    let count = |sign: f64| {
+        let threshold = row.iter().fold(f64::NEG_INFINITY, |max, value| max.max(sign * value)) / (1000.0 * p);
+        row.iter().filter(|value| value.abs() >= threshold).count()
+    };
+    let counts = [count(1.0), count(-1.0)];
+    quads.distinct(q).map(|(s, _)| counts[usize::from(sign(folded.parity, s) < 0.0)]).sum()
 }
 
 /// Applies a filter to one matrix (Pinto-Salamanca et al., Sensors 2024, section 2.6, as Table 1 counts it).

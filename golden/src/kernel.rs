@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use crate::design::{Kernel, Sensor};
 use crate::half_space;
+use crate::parity::{FoldedMatrix, Quads};
 
 /// Stress in pascals at a taxel `depth` metres below the surface for a force of one newton at `offset` metres from
 /// it, along x, y and z: the entries of C31, C32, C33.
@@ -32,27 +33,50 @@ pub fn cell(offset: [f64; 2], depth: f64, pitch: [f64; 2]) -> [f64; 3] {
 
 /// C31, C32, C33 of a sensor, each `m` by `m` in Pa/N: row = taxel, column = place of the force.
 pub fn matrices(sensor: &Sensor, kernel: Kernel) -> [DMatrix<f64>; 3] {
-    let (columns, taxels) = (sensor.columns, sensor.taxels());
-    let depth = sensor.depth_m();
-    let pitch = sensor.pitch_mm.map(|side| side * 1e-3);
-    // The entries depend on the distance in grid steps only, so each is computed once. Distances come from steps, not
-    // from differences of positions, and signs are put in afterwards: the symmetries of the grid hold to the bit.
-    let entries: Vec<[f64; 3]> = (0..taxels)
-        .map(|steps| {
-            let offset = [(steps % columns) as f64 * pitch[0], (steps / columns) as f64 * pitch[1]];
-            match kernel {
-                Kernel::Point => point(offset, depth),
-                Kernel::Cell => cell(offset, depth, pitch),
-            }
-        })
-        .collect();
-    [0, 1, 2].map(|axis| {
-        DMatrix::from_fn(taxels, taxels, |row, column| {
-            let (x, y) = (row % columns, row / columns);
-            let (force_x, force_y) = (column % columns, column / columns);
-            let entry = entries[force_y.abs_diff(y) * columns + force_x.abs_diff(x)][axis];
-            let behind = [force_x < x, force_y < y, false][axis];
-            if behind { -entry } else { entry }
-        })
-    })
+    let entries = Entries::new(sensor, kernel);
+    let taxels = sensor.taxels();
+    [0, 1, 2].map(|axis| DMatrix::from_fn(taxels, taxels, |row, column| entries.at(axis, row, column)))
+}
+
+/// C31, C32, C33 of a sensor as blocks: the first is odd in x, the second in y.
+pub fn folded(sensor: &Sensor, kernel: Kernel) -> [FoldedMatrix; 3] {
+    let entries = Entries::new(sensor, kernel);
+    let quads = Quads::new(sensor.columns, sensor.rows);
+    [(0, 1), (1, 2), (2, 0)]
+        .map(|(axis, parity)| FoldedMatrix::from_fn(parity, &quads, |row, column| entries.at(axis, row, column)))
+}
+
+/// The entries of C31, C32, C33 by the distance in grid steps, on which alone they depend: m of each.
+struct Entries {
+    columns: usize,
+    /// For a force at larger x and y.
+    ahead: Vec<[f64; 3]>,
+}
+
+impl Entries {
+    fn new(sensor: &Sensor, kernel: Kernel) -> Self {
+        let columns = sensor.columns;
+        let depth = sensor.depth_m();
+        let pitch = sensor.pitch_mm.map(|side| side * 1e-3);
+        let ahead = (0..sensor.taxels())
+            .map(|steps| {
+                let offset = [(steps % columns) as f64 * pitch[0], (steps / columns) as f64 * pitch[1]];
+                match kernel {
+                    Kernel::Point => point(offset, depth),
+                    Kernel::Cell => cell(offset, depth, pitch),
+                }
+            })
+            .collect();
+        Self { columns, ahead }
+    }
+
+    // Distances come from steps, not from differences of positions, and signs are put in afterwards: the symmetries of
+    // the grid hold to the bit.
+    fn at(&self, axis: usize, row: usize, column: usize) -> f64 {
+        let (x, y) = (row % self.columns, row / self.columns);
+        let (force_x, force_y) = (column % self.columns, column / self.columns);
+        let entry = self.ahead[force_y.abs_diff(y) * self.columns + force_x.abs_diff(x)][axis];
+        let behind = [force_x < x, force_y < y, false][axis];
+        if behind { -entry } else { entry }
+    }
 }

@@ -21,6 +21,7 @@
 //! (millimetres only in files); stress is positive in tension and **negative in compression**; `f_z < 0`
 //! presses on the sensor and `(f_x, f_y)` is the force the object exerts along the surface.
 
+pub mod calibrate;
 pub mod choose;
 pub mod design;
 pub mod filter;
@@ -31,5 +32,7 @@ pub mod kernel;
 pub mod matrices;
 pub mod metrics;
 pub mod output;
+pub mod parity;
+pub mod reduced;
 pub mod scene;
 pub mod solver;

@@ -1,4 +1,4 @@
-//! The `golden` command: frames with known forces, forces from frames, and the choice of filters.
+//! The `golden` command: frames with known forces, forces from frames, the choice of filters, and how fast it all is.
 
 /// Prints a line, formatted like `println!`, but returns an error where that would panic.
 macro_rules! say {
@@ -13,6 +13,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use commands::solve::Recording;
+use golden::calibrate::Settings;
 
 /// Reference solver and ground truth for three-axis tactile sensing from normal stress.
 #[derive(Parser)]
@@ -47,9 +49,13 @@ enum Command {
     Solve {
         /// Design file (TOML).
         design: PathBuf,
-        /// Frames (CSV): one frame a line, stresses in pascals, compression negative.
+        /// Frames (CSV): one frame a line, stresses in pascals, compression negative; counts for a design with
+        /// `pa_per_count`.
         #[arg(long, value_name = "FRAMES.csv")]
         frames: PathBuf,
+        /// Columns of labels before the values of a frame; the file may then have a header.
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        labels: usize,
         /// Where to write the forces (CSV).
         #[arg(long, value_name = "FORCES.csv")]
         out: PathBuf,
@@ -59,6 +65,18 @@ enum Command {
         /// True forces of the same frames (CSV, as `golden scene` writes them), to report the errors.
         #[arg(long, value_name = "FORCES.csv")]
         reference: Option<PathBuf>,
+        /// Report as JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Measure how many frames a second the solver in double precision takes.
+    ///
+    /// One frame after the other, as they come from a sensor, and in batches, as from a file; on one core. The frames are
+    /// pushed contacts at random places, the same in every run. Each figure is the median of several repetitions.
+    Bench {
+        /// Design files (TOML).
+        #[arg(required = true)]
+        designs: Vec<PathBuf>,
         /// Report as JSON.
         #[arg(long)]
         json: bool,
@@ -79,6 +97,30 @@ enum Command {
         #[arg(long, value_name = "CANDIDATES.csv")]
         csv: Option<PathBuf>,
         /// Report as JSON, with every candidate.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Find the constants of the joint estimator for a design with estimator "joint".
+    ///
+    /// Makes contacts at random on a bonded layer, from the seed alone, and fits to their known forces a gain, two
+    /// constants of the friction, and the weights of the correction. The design with the constants goes to RESOLVED.toml.
+    #[command(after_long_help = CALIBRATE_FILES)]
+    Calibrate {
+        /// Design file (TOML).
+        design: PathBuf,
+        /// Where to write the design with the constants (TOML).
+        #[arg(long, value_name = "RESOLVED.toml")]
+        out: PathBuf,
+        /// Seed of the contacts and of the training.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Hidden units of the correction, 0 to 256; 128 unless given, 24 with --quick; 0 for none.
+        #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256))]
+        hidden: Option<u16>,
+        /// Take a tenth of the time, for constants that are about half as good.
+        #[arg(long)]
+        quick: bool,
+        /// Report as JSON.
         #[arg(long)]
         json: bool,
     },
@@ -116,12 +158,20 @@ const SCENE_FILE: &str = r#"Scene file:
   saturated = [58]                  # taxels that read minus full_scale_pa"#;
 
 const ALGORITHM: &str = r#"In the design file, what changes the result:
+  [sensor]                          # besides the geometry, for frames in counts:
+  pa_per_count = -12.5              # pascals of one count, negative where larger counts press
+  calibration = "calibration.csv"   # a line gain,offset for each taxel: Pa = (gain * count + offset) * pa_per_count
+
   [algorithm]
+  plan = "reduced"                  # the paper's result from ten folded matrices, the default without a filter; or
+                                    # "paper": thirteen matrices
   kernel = "point"                  # point forces, as in the paper; friction is the better one. Or "cell": forces
                                     # spread over a cell of the grid; the normal force is right without a gain
   filter = { kind = "none" }        # or { kind = "f1", l = 40 }: l diagonals removed on either side;
                                     # { kind = "f2", p = 30 }: kept is |B_ij| >= row maximum / (1000 p);
                                     # { kind = "f3", ... }: a filter for each matrix, see `golden choose --help`
+  estimator = "line"                # the paper's; or "joint", better, see `golden calibrate --help`
+  outputs = "field"                 # or "resultants": no field; reduced plan only
   noise_floor_pa = 1.5              # stress below which a taxel tells nothing; full scale / 65536 if absent"#;
 
 const CHOOSE_FILES: &str = r#"In the design file:
@@ -135,12 +185,30 @@ In RESOLVED.toml, besides:
 Columns of CANDIDATES.csv: matrix, filter, entries kept (Nnz), error of the friction coefficient in
 percent (e_mu, mean over the frames), e_mu * Nnz, and 1 for the candidate chosen, else 0."#;
 
+const CALIBRATE_FILES: &str = r#"In the design file:
+  [algorithm]
+  estimator = "joint"
+
+In RESOLVED.toml, besides:
+  gain = 1.1                        # factor on all forces
+  tangential = [1.0, 0.0]           # friction vector c1 mu + c3 mu |mu|^2
+  [algorithm.correction]            # weights of the correction, in steps of 2^-12
+  half_window = [3, 7]              # taxels either side of the contact's centre, along x and y
+  hidden = [[...], ...]             # a row for each hidden unit
+  output = [[...], [...]]"#;
+
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Scene { scene, out, json } => commands::scene::run(&scene, &out, json),
-        Command::Solve { design, frames, out, field, reference, json } => {
-            commands::solve::run(&design, &frames, &out, field, reference.as_deref(), json)
+        Command::Solve { design, frames, labels, out, field, reference, json } => {
+            commands::solve::run(&design, &Recording { file: &frames, labels }, &out, field, reference.as_deref(), json)
         }
+        Command::Calibrate { design, out, seed, hidden, quick, json } => {
+            let work = if quick { Settings::quick() } else { Settings::default() };
+            let settings = Settings { seed, hidden: hidden.map_or(work.hidden, usize::from), ..work };
+            commands::calibrate::run(&design, &out, &settings, json)
+        }
+        Command::Bench { designs, json } => commands::bench::run(&designs, json),
         Command::Choose { design, out, csv, json } => commands::choose::run(&design, &out, csv.as_deref(), json),
     };
     match result {

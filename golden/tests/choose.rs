@@ -47,7 +47,7 @@ fn the_search_gives_the_stored_choices() {
         // The same with a solver made from the file.
         let solver = Solver::new(&design).unwrap();
         assert!((mean_error(&solver, &frames).unwrap() - choice.e_mu_chosen).abs() < 1e-12);
-        assert_eq!(MatrixName::ALL.map(|matrix| solver.filtered().nnz(matrix)).iter().sum::<usize>(), nnz);
+        assert_eq!(MatrixName::ALL.map(|matrix| solver.filtered().unwrap().nnz(matrix)).iter().sum::<usize>(), nnz);
     }
 }
 

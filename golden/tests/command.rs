@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use golden::design::Design;
 use golden::frames::{read_frames, write_frames};
 use tempfile::TempDir;
 
@@ -270,4 +271,128 @@ fn an_input_is_never_overwritten() {
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("overwrite the input"), "{said}");
     assert_eq!(fs::read(&frames).unwrap(), before);
+}
+
+#[test]
+fn a_recording_in_counts_with_labels() {
+    let (folder, frames) = folder_with(&format!("name,no,{}\nlying,7,{}\n", row("r"), row("40")));
+    let [design, forces] = ["pad.toml", "out.csv"].map(|name| folder.path().join(name));
+    let small = fs::read_to_string(repository("designs/small.toml")).unwrap();
+    fs::write(&design, small.replace("depth_mm = 3.0", "depth_mm = 3.0\npa_per_count = -12.5")).unwrap();
+    let solve = |labels| {
+        golden(&["solve", text(&design), "--frames", text(&frames), "--labels", labels, "--out", text(&forces)])
+    };
+    let output = solve("2");
+    assert!(output.status.success(), "{output:?}");
+    let found = fs::read_to_string(&forces).unwrap();
+    fs::write(&frames, row("-500")).unwrap();
+    fs::write(&design, &small).unwrap();
+    assert!(solve("0").status.success());
+    assert_eq!(found, fs::read_to_string(&forces).unwrap());
+    assert!(!solve("2").status.success());
+}
+
+#[test]
+fn a_choice_keeps_the_calibration() {
+    let folder = TempDir::new().unwrap();
+    let [design, gains, out] = ["pad.toml", "gains.csv", "out"].map(|name| folder.path().join(name));
+    let scene = repository("scenes/sensor1-hertz.toml");
+    let f3 = fs::read_to_string(repository("designs/sensor1-f3.toml")).unwrap();
+    let start = f3.split("[algorithm.filter]").next().unwrap();
+    let start = start.replace("depth_mm = 3.0", "depth_mm = 3.0\npa_per_count = -0.5\ncalibration = \"gains.csv\"");
+    fs::write(&design, format!("{start}[algorithm.filter]\nkind = \"f3\"\nscenes = [{:?}]\n", text(&scene))).unwrap();
+    fs::write(&gains, "1.25,-3\n".repeat(100)).unwrap();
+    fs::create_dir(&out).unwrap();
+    let resolved = out.join("resolved.toml");
+    let choose = || golden(&["choose", text(&design), "--out", text(&resolved)]);
+    // The second time it is there already.
+    for _ in 0..2 {
+        assert!(choose().status.success());
+        let [before, after] = [&design, &resolved].map(|path| golden::design::Design::load(path).unwrap());
+        assert_eq!(before.input, after.input);
+        // Scenes are in pascals: the counts change nothing of the choice.
+        let stored = golden::design::Design::load(&repository("designs/sensor1-f3.toml")).unwrap();
+        for name in golden::matrices::MatrixName::ALL {
+            assert_eq!(after.algorithm.filter.of(name), stored.algorithm.filter.of(name));
+        }
+    }
+    fs::write(out.join("calibration.csv"), "1.5,-3\n".repeat(100)).unwrap();
+    fs::remove_file(&resolved).unwrap();
+    let refused = choose();
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(!refused.status.success() && message.contains("another folder"), "{message}");
+    assert!(!resolved.exists());
+}
+
+#[test]
+fn bench_measures_each_design() {
+    let designs = ["designs/small.toml", "designs/odd.toml"].map(repository);
+    let output = golden(&["bench", text(&designs[0]), text(&designs[1]), "--json"]);
+    assert!(output.status.success(), "{output:?}");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for (report, (name, plan, taxels)) in
+        report.as_array().unwrap().iter().zip([("small_4x3", "reduced", 12), ("odd", "paper", 35)])
+    {
+        assert_eq!(
+            (&report["design"], &report["plan"], &report["taxels"]),
+            (&name.into(), &plan.into(), &taxels.into())
+        );
+        for way in ["one_by_one", "in_batches"] {
+            let figure = |key: &str| report[way][key].as_f64().unwrap();
+            let [rate, time] = ["frames_per_second", "us_per_frame"].map(figure);
+            assert!((rate * time / 1e6 - 1.0).abs() < 1e-9 && time > 0.1 && time < 1e5, "{report}");
+            let range = [0, 1].map(|end| report[way]["us_per_frame_range"][end].as_f64().unwrap());
+            assert!(range[0] <= time && time <= range[1], "{report}");
+        }
+    }
+    let refused = golden(&["bench", "no/such.toml"]);
+    assert!(!refused.status.success() && String::from_utf8(refused.stderr).unwrap().contains("no/such.toml"));
+}
+
+#[test]
+fn calibrate_then_solve() {
+    let folder = TempDir::new().unwrap();
+    let [design, resolved, frames, out] =
+        ["pad.toml", "out/resolved.toml", "f.csv", "out.csv"].map(|name| folder.path().join(name));
+    fs::create_dir(folder.path().join("out")).unwrap();
+    fs::write(folder.path().join("gains.csv"), "1.25,-3\n".repeat(12)).unwrap();
+    let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\npa_per_count = 2.0\n\
+                  calibration = \"gains.csv\"\n";
+    fs::write(&design, format!("name = \"pad\"\n{sensor}[algorithm]\nestimator = \"joint\"\n")).unwrap();
+    fs::write(&frames, row("-900")).unwrap();
+
+    let calibrate = |more: &[&str]| {
+        golden(&[&["calibrate", text(&design), "--out", text(&resolved), "--quick", "--hidden", "3"], more].concat())
+    };
+    let output = calibrate(&["--json", "--seed", "9"]);
+    assert!(output.status.success(), "{output:?}");
+    assert!(output.stderr.is_empty(), "progress belongs on a terminal");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let written = fs::read_to_string(&resolved).unwrap();
+    assert!(written.contains("seed 9") && written.contains("[algorithm.correction]"), "{written}");
+    let before = Design::load(&design).unwrap();
+    let Design { algorithm, input, .. } = Design::load(&resolved).unwrap();
+    assert_eq!(input, before.input, "the file of gains is there too");
+    let found = algorithm.joint;
+    assert_eq!(found.correction.unwrap().hidden.len(), 3);
+    // JSON is read with an error in the last digit.
+    let near = |said: &serde_json::Value, found: f64| (said.as_f64().unwrap() - found).abs() < 1e-12;
+    assert!(near(&report["gain"], found.gain) && near(&report["tangential"][1], found.tangential[1]), "{report}");
+    let solve = |design: &Path| golden(&["solve", text(design), "--frames", text(&frames), "--out", text(&out)]);
+    assert!(solve(&resolved).status.success());
+    let calibrated = fs::read_to_string(&out).unwrap();
+    assert!(solve(&design).status.success());
+    assert_ne!(calibrated, fs::read_to_string(&out).unwrap());
+
+    let said = String::from_utf8(calibrate(&[]).stdout).unwrap();
+    assert!(said.contains("gain") && said.contains("mu |mu|^2") && said.contains("weights"), "{said}");
+    for (arguments, part) in [
+        (vec!["calibrate", text(&design), "--out", text(&design)], "overwrite the input"),
+        (vec!["calibrate", text(&repository("designs/small.toml")), "--out", text(&out)], "nothing to calibrate"),
+    ] {
+        let output = golden(&arguments);
+        assert!(!output.status.success(), "{arguments:?}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(part) && said.lines().count() == 1, "{said}");
+    }
 }

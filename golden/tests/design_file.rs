@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use golden::design::{Design, Filter};
+use golden::design::{Design, Filter, Optimise, Outputs, PlanKind};
 
 const MINIMAL: &str = "name = \"pad\"\n[sensor]\ncolumns = 10\nrows = 8\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
 
@@ -35,6 +35,77 @@ fn everything_but_name_and_sensor_has_a_default() {
     assert_eq!(design.algorithm.noise_floor_pa, 100_000.0 / 65536.0);
     assert_eq!((design.hardware.coefficient_bits, design.hardware.data_bits, design.hardware.lanes), (18, 27, 16));
     assert_eq!(design.hardware.part, "xczu9eg-ffvb1156-2-e");
+    assert_eq!((design.algorithm.plan, design.algorithm.outputs), (PlanKind::Reduced, Outputs::Field));
+    assert_eq!((design.hardware.target_us, design.hardware.optimise), (None, Optimise::Interval));
+    assert!(!design.hardware.skip_zeros);
+}
+
+#[test]
+fn the_plan_is_the_reduced_one_where_that_changes_nothing_and_fits() {
+    for (more, expected) in [
+        ("[hardware]\nlanes = 4", PlanKind::Reduced),
+        ("[hardware]\nlanes = 6", PlanKind::Paper),
+        ("[algorithm]\nfilter = { kind = \"f1\", l = 7 }", PlanKind::Paper),
+        ("[algorithm]\nfilter = { kind = \"f3\", scenes = [\"a.toml\"] }", PlanKind::Paper),
+        ("[algorithm]\nplan = \"paper\"", PlanKind::Paper),
+        ("[algorithm]\nplan = \"reduced\"\nfilter = { kind = \"f2\", p = 7 }", PlanKind::Reduced),
+    ] {
+        let design = Design::from_toml(&format!("{MINIMAL}{more}\n"), "pad.toml").unwrap();
+        assert_eq!(design.algorithm.plan, expected, "{more}");
+    }
+}
+
+#[test]
+fn keys_of_the_reduced_plan_read_back_the_same() {
+    for (more, parts) in [
+        ("[algorithm]\noutputs = \"resultants\"", ["outputs = \"resultants\"", "plan = \"reduced\""]),
+        ("[hardware]\ntarget_us = 20", ["target_us = 20.0", "plan = \"reduced\""]),
+        ("[hardware]\noptimise = \"latency\"\nskip_zeros = true", ["optimise = \"latency\"", "skip_zeros = true"]),
+        ("[algorithm]\nplan = \"paper\"", ["plan = \"paper\"", "skip_zeros = false"]),
+    ] {
+        let design = Design::from_toml(&format!("{MINIMAL}{more}\n"), "pad.toml").unwrap();
+        let resolved = design.to_toml();
+        assert_eq!(Design::from_toml(&resolved, "resolved").unwrap(), design);
+        assert!(parts.iter().all(|part| resolved.contains(part)), "{resolved}");
+        assert_eq!(design.hardware.lanes, 16);
+        assert_ne!(resolved.contains("lanes = "), resolved.contains("target_us = "), "{resolved}");
+    }
+    let whole = with("columns = 10\nrows = 8", "columns = 64\nrows = 64");
+    assert_eq!(Design::from_toml(&whole, "pad.toml").unwrap().sensor.taxels(), 4096);
+}
+
+#[test]
+fn keys_that_contradict_the_plan() {
+    let paper = "[algorithm]\nplan = \"paper\"\n";
+    let reduced = "[algorithm]\nplan = \"reduced\"\n";
+    for (more, parts) in [
+        (format!("{paper}outputs = \"resultants\""), ["algorithm.outputs", "resultants", "plan = \"reduced\""]),
+        (format!("{paper}[hardware]\noptimise = \"latency\""), ["hardware.optimise", "latency", "plan = \"reduced\""]),
+        (format!("{paper}[hardware]\ntarget_us = 5"), ["hardware.target_us", "is 5", "plan = \"reduced\""]),
+        (format!("{paper}[hardware]\nskip_zeros = true"), ["hardware.skip_zeros", "paper", "plan = \"reduced\""]),
+        (format!("{reduced}[hardware]\nlanes = 6"), ["hardware.lanes", "is 6", "multiple of 4"]),
+        (
+            format!("{reduced}filter = {{ kind = \"f3\", scenes = [\"a\"] }}"),
+            ["algorithm.filter", "f3", "plan = \"paper\""],
+        ),
+        (
+            format!("{reduced}filter = {{ kind = \"f2\", p = 3 }}\n[hardware]\nskip_zeros = true"),
+            ["hardware.skip_zeros", "with a filter", "none"],
+        ),
+        (
+            "[hardware]\nlanes = 8\ntarget_us = 5".to_owned(),
+            ["hardware.target_us", "lanes = 8", "the need or the lanes"],
+        ),
+    ] {
+        refused(&format!("{MINIMAL}{more}\n"), &parts);
+    }
+    for key in ["columns", "rows"] {
+        let large = format!(
+            "{}{paper}",
+            MINIMAL.replace("rows = 8", "rows = 10").replace(&format!("{key} = 10"), &format!("{key} = 33"))
+        );
+        refused(&large, &[&format!("sensor.{key}"), "is 33", "at most 32", "plan = \"reduced\""]);
+    }
 }
 
 #[test]
@@ -136,9 +207,9 @@ fn wrong_types_and_broken_toml() {
 
 #[test]
 fn sizes_out_of_range() {
-    for value in ["0", "-3", "1", "33", "9000000000000000000"] {
-        refused(&with("columns = 10", &format!("columns = {value}")), &["sensor.columns", value, "2 to 32"]);
-        refused(&with("rows = 8", &format!("rows = {value}")), &["sensor.rows", "2 to 32"]);
+    for value in ["0", "-3", "1", "65", "9000000000000000000"] {
+        refused(&with("columns = 10", &format!("columns = {value}")), &["sensor.columns", value, "2 to 64"]);
+        refused(&with("rows = 8", &format!("rows = {value}")), &["sensor.rows", "2 to 64"]);
     }
     for value in ["0.0", "-3.0", "nan", "inf", "0.009", "1000.1"] {
         refused(&with("depth_mm = 3.0", &format!("depth_mm = {value}")), &["sensor.depth_mm", "0.01 to 1000"]);
@@ -166,8 +237,9 @@ fn names_that_are_no_identifiers() {
 fn options_are_refused_with_the_list_of_allowed_ones() {
     for (line, parts) in [
         ("kernel = \"line\"", ["algorithm.kernel", "line", "point, cell"]),
-        ("estimator = \"joint\"", ["algorithm.estimator", "joint", "line"]),
-        ("outputs = \"resultants\"", ["algorithm.outputs", "resultants", "field"]),
+        ("estimator = \"point\"", ["algorithm.estimator", "point", "line, joint"]),
+        ("outputs = \"forces\"", ["algorithm.outputs", "forces", "field, resultants"]),
+        ("plan = \"fast\"", ["algorithm.plan", "fast", "paper, reduced"]),
         ("filter = { kind = \"f4\" }", ["algorithm.filter.kind", "f4", "none, f1, f2, f3"]),
         ("filter = { kind = \"f3\" }", ["algorithm.filter.scenes", "missing", "scenes = ["]),
         ("filter = { kind = \"f3\", scenes = [] }", ["algorithm.filter.scenes", "missing", "scenes = ["]),
@@ -194,6 +266,10 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
         ("data_bits = 15", ["hardware.data_bits", "15", "16 to 27"]),
         ("lanes = 0", ["hardware.lanes", "is 0", "1 to 64"]),
         ("lanes = 65", ["hardware.lanes", "65", "1 to 64"]),
+        ("target_us = 0.0", ["hardware.target_us", "is 0", "greater than 0"]),
+        ("target_us = inf", ["hardware.target_us", "inf", "finite"]),
+        ("optimise = \"area\"", ["hardware.optimise", "area", "interval, latency"]),
+        ("skip_zeros = 1", ["skip_zeros", "line 8", "boolean"]),
         ("full_scale_pa = -1.0", ["hardware.full_scale_pa", "-1", "0"]),
         ("full_scale_pa = 1e10", ["hardware.full_scale_pa", "10000000000", "1000000000"]),
         ("clock_mhz = 0.5", ["hardware.clock_mhz", "0.5", "1 to 1000"]),

@@ -3,8 +3,10 @@
 #![allow(clippy::float_cmp)] // the same bits are meant
 
 use golden::design::{Filter, Kernel, Sensor};
-use golden::filter::FilteredMatrices;
+use golden::filter::{FilteredMatrices, nnz_of};
+use golden::kernel;
 use golden::matrices::{Matrices, MatrixName};
+use golden::parity::FoldedMatrix;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
@@ -45,12 +47,43 @@ fn bands_count_as_in_table_1() {
 }
 
 #[test]
+fn counts_need_no_whole_matrix() {
+    // Sides of every parity: rows on a centre line are there once.
+    for (columns, rows) in [(10, 10), (7, 4), (4, 7), (5, 5), (2, 3)] {
+        let sensor = Sensor { columns, rows, pitch_mm: SENSOR_1, depth_mm: 3.0 };
+        let matrices = Matrices::new(&sensor, Kernel::Point).unwrap();
+        for filter in [Filter::None, Filter::F1 { l: 3 }, Filter::F2 { p: 0.3 }, Filter::F2 { p: 30.0 }] {
+            let filtered = FilteredMatrices::new(&matrices, &filter).unwrap();
+            for name in MatrixName::ALL {
+                let counted = nnz_of(&matrices, name, filter.of(name).unwrap());
+                assert_eq!(counted, filtered.nnz(name), "{name} of {columns} x {rows}, {filter:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_kernels_matrices_survive_folding() {
+    for (columns, rows) in [(10, 10), (7, 4), (4, 7), (5, 5)] {
+        let sensor = Sensor { columns, rows, pitch_mm: SENSOR_1, depth_mm: 3.0 };
+        for kind in [Kernel::Point, Kernel::Cell] {
+            let folded = kernel::folded(&sensor, kind);
+            for (folded, whole) in folded.iter().zip(kernel::matrices(&sensor, kind)) {
+                assert_close(&folded.dense(), &whole, 1e-15 * whole.amax(), "folded and unfolded");
+                assert_eq!(*folded, FoldedMatrix::new(&whole, folded.parity, &folded.quads));
+            }
+        }
+    }
+}
+
+#[test]
 fn filtered_entries_are_the_unfiltered_ones() {
     let matrices = Matrices::new(&sensor(SENSOR_1), Kernel::Point).unwrap();
     let filtered = FilteredMatrices::new(&matrices, &Filter::F1 { l: 40 }).unwrap();
     for name in MatrixName::ALL {
+        let dense = matrices.dense(name);
         for (row, column, value) in filtered.get(name).triplet_iter() {
-            assert_eq!(*value, matrices.get(name)[(row, column)]);
+            assert_eq!(*value, dense[(row, column)]);
             assert!(row.abs_diff(column) <= 59);
         }
     }
@@ -70,10 +103,10 @@ fn a_filter_that_leaves_nothing_is_refused() {
 }
 
 fn blocks(matrices: &Matrices) -> DMatrix<f64> {
-    let m = matrices.c33.nrows();
+    let m = matrices.quads().taxels();
     let mut a = DMatrix::zeros(m, 3 * m);
     for (block, c) in [&matrices.c31, &matrices.c32, &matrices.c33].into_iter().enumerate() {
-        a.columns_mut(block * m, m).copy_from(c);
+        a.columns_mut(block * m, m).copy_from(&c.dense());
     }
     a
 }
@@ -86,16 +119,17 @@ fn assert_close(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64, w
 /// The equations that define the matrices, on any sensor; `tolerance` grows with the condition number.
 fn check_algebra(sensor: &Sensor, kernel: Kernel) {
     let matrices = Matrices::new(sensor, kernel).unwrap();
-    let get = |name| matrices.get(name).clone();
+    let get = |name| matrices.dense(name);
+    let (c32, c33) = (matrices.c32.dense(), matrices.c33.dense());
     let m = sensor.taxels();
     let one = DMatrix::identity(m, m);
     let tolerance = 1e-13 * matrices.condition_c33().max(matrices.condition_aat().sqrt()) * m as f64;
 
-    assert_close(&(&matrices.c33 * get(MatrixName::C33inv)), &one, tolerance, "C33 C33inv");
+    assert_close(&(c33 * get(MatrixName::C33inv)), &one, tolerance, "C33 C33inv");
     let a = blocks(&matrices);
     let mut a_plus = DMatrix::zeros(3 * m, m);
     for (block, name) in [MatrixName::A1, MatrixName::A2, MatrixName::A3].into_iter().enumerate() {
-        a_plus.rows_mut(block * m, m).copy_from(matrices.get(name));
+        a_plus.rows_mut(block * m, m).copy_from(&get(name));
     }
     assert_close(&(&a * &a_plus), &one, tolerance, "A A+");
     let projection = &a_plus * &a;
@@ -111,7 +145,7 @@ fn check_algebra(sensor: &Sensor, kernel: Kernel) {
     ] {
         assert_close(&get(name).transpose(), &get(mirror), tolerance, &format!("{name} = {mirror}^T"));
     }
-    assert_close(&(-(get(MatrixName::A1) * &matrices.c32)), &get(MatrixName::D12), tolerance, "D12 = -A1 C32");
+    assert_close(&(-(get(MatrixName::A1) * c32)), &get(MatrixName::D12), tolerance, "D12 = -A1 C32");
 }
 
 #[test]
@@ -139,9 +173,10 @@ fn tension_trails_the_push() {
     // A force along +x on the middle of the grid: tension behind it, compression ahead.
     let matrices = Matrices::new(&sensor(SENSOR_1), Kernel::Point).unwrap();
     let force = 45;
-    assert!(matrices.c31[(44, force)] > 0.0 && matrices.c31[(46, force)] < 0.0);
-    assert!(matrices.c32[(35, force)] > 0.0 && matrices.c32[(55, force)] < 0.0);
-    assert!(matrices.c33[(45, force)] > 0.0, "f_z < 0 gives compression");
+    let [c31, c32, c33] = [&matrices.c31, &matrices.c32, &matrices.c33].map(FoldedMatrix::dense);
+    assert!(c31[(44, force)] > 0.0 && c31[(46, force)] < 0.0);
+    assert!(c32[(35, force)] > 0.0 && c32[(55, force)] < 0.0);
+    assert!(c33[(45, force)] > 0.0, "f_z < 0 gives compression");
 }
 
 #[test]

@@ -152,7 +152,7 @@ fn wrong_files() {
     refused(&with("normal_force_n = 4.0", "normal_force_n = -4.0"), &["normal_force_n", "-4", "greater than 0"]);
     refused(&with("friction = 0.5", "friction = -0.5"), &["friction", "-0.5"]);
     refused(&with("direction_deg = 30.0\n", ""), &["direction_deg", "missing", "sweep"]);
-    refused(&with("rows = 5", "rows = 0"), &["sensor.rows", "2 to 32"]);
+    refused(&with("rows = 5", "rows = 0"), &["sensor.rows", "2 to 64"]);
     refused(&MINIMAL[..MINIMAL.find("[[contact]]").unwrap()], &["contact", "missing"]);
     let swept = |range: &str| format!("{MINIMAL}[sweep]\ndirection_deg = {range}\n");
     refused(&swept("{ from = 0, to = 9, step = 0 }"), &["step", "greater than 0"]);

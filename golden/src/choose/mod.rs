@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
-use crate::design::{Choices, Design, Filter, MatrixFilter};
+use crate::design::{Choices, Design, Estimator, Filter, Input, MatrixFilter};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError, MatrixName};
 use crate::scene::{SceneError, SceneFrame};
@@ -152,6 +152,10 @@ fn candidate_filters(taxels: usize) -> Vec<MatrixFilter> {
 /// [`ChooseError::Matrices`] for a sensor whose matrices are singular, [`ChooseError::Frames`] for frames of another
 /// sensor.
 pub fn choose(design: &Design, frames: &[SceneFrame], tick: &(dyn Fn() + Sync)) -> Result<Choice, ChooseError> {
+    // Scenes are in pascals, whatever the sensor counts, and filters are judged by the paper's estimator.
+    let mut design = Design { input: Input::default(), ..design.clone() };
+    design.algorithm.estimator = Estimator::Line;
+    let design = &design;
     let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)?;
     let trial = Trial::new(design, &matrices, frames)?;
     let filters = candidate_filters(design.sensor.taxels());

@@ -1,6 +1,6 @@
 //! All reference frames at once, with one matrix filtered.
 
-use nalgebra::{DMatrix, RowDVector};
+use nalgebra::{DMatrix, DVector, RowDVector};
 
 use crate::design::{Design, MatrixFilter};
 use crate::filter;
@@ -8,6 +8,7 @@ use crate::matrices::{Matrices, MatrixName};
 use crate::scene::SceneFrame;
 use crate::solver::SolverError;
 use crate::solver::cean::Contact;
+use crate::solver::line::LineScratch;
 use crate::solver::op;
 use crate::solver::reading::{Reader, Reading};
 
@@ -58,8 +59,10 @@ struct Coefficients {
 ///
 /// A matrix of the tangential coefficients changes a single `G_pq`, by the column sums of what is dropped of it; one of
 /// the normal coefficients changes a `G_pq` and one `u_q`; only C33inv, by way of the weights, changes all.
-pub(super) struct Trial<'a> {
-    matrices: &'a Matrices,
+pub(super) struct Trial {
+    /// The 13 matrices, and C33.
+    matrices: Vec<DMatrix<f64>>,
+    c33: DMatrix<f64>,
     contacts: Vec<Contact>,
     /// True friction.
     truth: Vec<f64>,
@@ -77,13 +80,14 @@ pub(super) struct Trial<'a> {
     unfiltered: Coefficients,
 }
 
-impl<'a> Trial<'a> {
-    pub(super) fn new(design: &Design, matrices: &'a Matrices, frames: &[SceneFrame]) -> Result<Self, SolverError> {
+impl Trial {
+    pub(super) fn new(design: &Design, matrices: &Matrices, frames: &[SceneFrame]) -> Result<Self, SolverError> {
         let reader = Reader::new(design);
         let (mut columns, mut contacts, mut truth, mut unsolved) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
+        let mut b = DVector::zeros(reader.taxels());
         for frame in frames {
-            match reader.read(&frame.stress)? {
-                Reading::Contact { b, contact, .. } => {
+            match reader.read(&frame.stress, &mut b)? {
+                Reading::Contact { contact, .. } => {
                     columns.extend_from_slice(b.as_slice());
                     contacts.push(contact);
                     truth.push(frame.friction);
@@ -92,17 +96,20 @@ impl<'a> Trial<'a> {
             }
         }
         let stress = DMatrix::from_vec(reader.taxels(), contacts.len(), columns);
-        let weights = weights(matrices.get(MatrixName::C33inv), &stress);
+        let c33 = matrices.c33.dense();
+        let matrices = MatrixName::ALL.map(|name| matrices.dense(name)).to_vec();
+        let weights = weights(&matrices[MatrixName::C33inv.index()], &stress);
         let zero = DMatrix::zeros(stress.nrows(), stress.ncols());
         let nothing =
             Coefficients { sums: vec![Sums::default(); contacts.len()], u: [zero.clone(), zero.clone(), zero] };
         let mut trial = Self {
+            column_sums: matrices.iter().map(DMatrix::row_sum).collect(),
             matrices,
+            c33,
             contacts,
             truth,
             unsolved,
             frames: frames.len(),
-            column_sums: MatrixName::ALL.map(|name| matrices.get(name).row_sum()).to_vec(),
             stress,
             magnitude: -&weights,
             weights,
@@ -124,7 +131,7 @@ impl<'a> Trial<'a> {
 
     /// Entries kept, and the mean error of friction in percent, with only one matrix filtered.
     pub(super) fn judge(&self, name: MatrixName, filter: MatrixFilter) -> (usize, f64) {
-        let matrix = self.matrices.get(name);
+        let matrix = &self.matrices[name.index()];
         let keeps = filter::rule(matrix, filter);
         let mut nnz = 0;
         let dropped = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, column| {
@@ -152,7 +159,7 @@ impl<'a> Trial<'a> {
         let mut u = self.unfiltered.u.each_ref();
         let changed;
         if p == 2 {
-            changed = u[q] - &self.matrices.c33 * (dropped * vectors);
+            changed = u[q] - &self.c33 * (dropped * vectors);
             u[q] = &changed;
         }
         (nnz, self.mean_error(&sums, u))
@@ -170,7 +177,7 @@ impl<'a> Trial<'a> {
             sums[1][2] -= sum;
             sums[2][0] += sum;
         }
-        coefficients.u[0] += &self.matrices.c33 * weights;
+        coefficients.u[0] += &self.c33 * weights;
         coefficients
     }
 
@@ -183,7 +190,7 @@ impl<'a> Trial<'a> {
                 sums[p][q] += total;
             }
             if p == 2 {
-                coefficients.u[q] += &self.matrices.c33 * (self.matrices.get(name) * vectors);
+                coefficients.u[q] += &self.c33 * (&self.matrices[name.index()] * vectors);
             }
         }
     }
@@ -191,8 +198,11 @@ impl<'a> Trial<'a> {
     /// Mean error of friction over all frames, in percent.
     fn mean_error(&self, sums: &[Sums], u: [&DMatrix<f64>; 3]) -> f64 {
         let mut total = self.unsolved;
+        let mut scratch = LineScratch::default();
+        let m = self.stress.nrows();
         for (index, ((contact, sums), truth)) in self.contacts.iter().zip(sums).zip(&self.truth).enumerate() {
-            let (_, [mu_x, mu_y]) = op::friction(contact, sums, u.map(|u| u.column(index)), op::LEVEL);
+            let stresses = u.map(|u| &u.as_slice()[index * m..(index + 1) * m]);
+            let (_, [mu_x, mu_y]) = op::friction(contact, sums, stresses, op::LEVEL, &mut scratch);
             let resultant = sums.map(|[g0, g1, g2]| g0 + g1 * mu_x + g2 * mu_y);
             total += 100.0 * (truth - op::quotient(resultant)).abs();
         }

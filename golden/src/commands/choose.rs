@@ -10,7 +10,7 @@ use golden::output::write_whole;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::keep_apart;
+use super::{calibration_beside, folder, keep_apart};
 
 #[derive(Serialize)]
 struct Report<'a> {
@@ -37,6 +37,7 @@ pub fn run(path: &Path, out: &Path, csv: Option<&Path>, json: bool) -> Result<()
     if csv == Some(out) {
         return Err(format!("{}: named for both the design and the table; choose two names", out.display()).into());
     }
+    let calibration = calibration_beside(&design, out)?;
     let frames = reference_frames(&design, from)?;
     // Draws on a terminal only.
     let progress = ProgressBar::new(candidate_count(design.sensor.taxels()) as u64);
@@ -52,6 +53,9 @@ pub fn run(path: &Path, out: &Path, csv: Option<&Path>, json: bool) -> Result<()
     if let Some(csv) = csv {
         write_whole(csv, table(&choice).as_bytes())?;
     }
+    if let Some((file, content)) = calibration {
+        write_whole(&file, content.as_bytes())?;
+    }
     write_whole(out, text.as_bytes())?;
 
     if json {
@@ -61,13 +65,6 @@ pub fn run(path: &Path, out: &Path, csv: Option<&Path>, json: bool) -> Result<()
         print_report(&design.name, out, &choice)?;
     }
     Ok(())
-}
-
-fn folder(file: &Path) -> &Path {
-    match file.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    }
 }
 
 fn table(choice: &Choice) -> String {

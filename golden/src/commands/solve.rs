@@ -30,30 +30,36 @@ struct SolveReport<'a> {
     errors: Option<ErrorSummary>,
 }
 
+/// A file of frames.
+pub struct Recording<'a> {
+    pub file: &'a Path,
+    /// Columns of labels before the values.
+    pub labels: usize,
+}
+
 /// Solves `frames` and writes the forces to `out`.
 pub fn run(
     design: &Path,
-    frames: &Path,
+    frames: &Recording,
     out: &Path,
     with_field: bool,
     reference: Option<&Path>,
     json: bool,
 ) -> Result<(), Box<dyn Error>> {
-    let inputs = [Some(design), Some(frames), reference];
+    let inputs = [Some(design), Some(frames.file), reference];
     keep_apart(out, &inputs.into_iter().flatten().collect::<Vec<_>>())?;
     let design = Design::load(design)?;
-    let frames = frames::read_frames(frames, design.sensor.taxels())?;
+    let frames = frames::read_labelled_frames(frames.file, design.sensor.taxels(), frames.labels)?;
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
     let solver = Solver::new(&design)?;
     // Draws on a terminal only.
     let progress = ProgressBar::new(frames.len() as u64);
-    let solutions = frames
-        .iter()
-        .map(|frame| {
-            progress.inc(1);
-            solver.solve(frame)
-        })
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut workspace = solver.workspace();
+    let mut solutions = vec![Solution::zeros(Status::default(), 0); frames.len()];
+    for (frame, solution) in frames.iter().zip(&mut solutions) {
+        solver.solve_into(&mut workspace, frame, solution)?;
+        progress.inc(1);
+    }
     progress.finish_and_clear();
     forces::write_solutions(out, &solutions, with_field)?;
 

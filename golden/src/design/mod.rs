@@ -4,19 +4,28 @@
 
 pub(crate) mod checks;
 mod filter;
+mod input;
+mod joint;
 mod parse;
 mod parse_filter;
+mod parse_plan;
 mod print;
 
 use std::path::{Path, PathBuf};
 
 pub use filter::{Choices, Filter, MatrixFilter, UnknownMatrixFilter};
+pub use input::{Calibration, Input};
+pub use joint::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_BITS, WEIGHT_FRACTION};
 pub(crate) use parse::{RawSensor, syntax_position};
 
 /// Largest number of columns or rows of a sensor.
-pub const MAX_SIDE: usize = 32;
+pub const MAX_SIDE: usize = 64;
+/// Largest number of columns or rows with the paper's plan, whose matrices are four times as large.
+pub const MAX_SIDE_PAPER: usize = 32;
 /// Largest number of `SpMV` lanes.
 pub const MAX_LANES: usize = 64;
+/// Name of the calibration file beside a resolved design.
+pub const CALIBRATION_FILE: &str = "calibration.csv";
 /// Key `hardware.full_scale_pa` when absent.
 pub const DEFAULT_FULL_SCALE_PA: f64 = 100_000.0;
 /// Key `algorithm.noise_floor_pa`, when absent, is the full scale divided by this.
@@ -29,6 +38,8 @@ pub struct Design {
     pub name: String,
     /// Geometry of the sensor.
     pub sensor: Sensor,
+    /// What the values of a frame are; keys of `[sensor]` too, but not of a scene's sensor.
+    pub input: Input,
     /// Choices that change the result.
     pub algorithm: Algorithm,
     /// Choices that change only speed, size and rounding.
@@ -85,6 +96,9 @@ pub enum Kernel {
 pub enum Estimator {
     /// Along the line that the direction of push fixes in the plane of the friction components.
     Line,
+    /// Over the whole plane of the friction components at once, without a direction: the centroid of a level set of
+    /// Condition 1, calibrated on scenes.
+    Joint,
 }
 
 /// What a frame yields.
@@ -92,17 +106,32 @@ pub enum Estimator {
 pub enum Outputs {
     /// The summary and three force components for each taxel.
     Field,
+    /// The summary only; with the reduced plan.
+    Resultants,
+}
+
+/// How the mathematics is put into products.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlanKind {
+    /// As in the paper: thirteen matrices of m by m, then three products with C33.
+    Paper,
+    /// The same result from ten matrices in four mirror-symmetric blocks of m/4 by m/4, see [`crate::reduced`].
+    Reduced,
 }
 
 /// The `[algorithm]` table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Algorithm {
+    /// Products behind the result; [`PlanKind::Reduced`] unless there is a filter or the lanes are no multiple of 4.
+    pub plan: PlanKind,
     /// Load model behind C31, C32 and C33.
     pub kernel: Kernel,
-    /// Sparsity of the 13 matrices.
+    /// Sparsity of the matrices.
     pub filter: Filter,
     /// Friction estimator.
     pub estimator: Estimator,
+    /// Constants of the joint estimator; the line estimator has none and leaves them at their default.
+    pub joint: Box<JointConstants>,
     /// Contents of the output.
     pub outputs: Outputs,
     /// Stress in pascals below which a taxel tells nothing; full scale / 65536 unless given.
@@ -116,6 +145,15 @@ pub enum Arithmetic {
     Fixed,
 }
 
+/// What the hardware spends its area on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Optimise {
+    /// Frames a second.
+    Interval,
+    /// Time from the last value of a frame to its result; with the reduced plan.
+    Latency,
+}
+
 /// The `[hardware]` table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hardware {
@@ -127,8 +165,15 @@ pub struct Hardware {
     pub data_bits: u32,
     /// Largest stress magnitude in pascals; larger input is clamped and reported.
     pub full_scale_pa: f64,
-    /// `SpMV` lanes, 1 to [`MAX_LANES`].
+    /// `SpMV` lanes, 1 to [`MAX_LANES`]; with the reduced plan a multiple of 4. With a target time the generator
+    /// chooses, and this is the default until then.
     pub lanes: usize,
+    /// Time in microseconds a frame may take; with the reduced plan, in place of the lanes.
+    pub target_us: Option<f64>,
+    /// What the area is spent on.
+    pub optimise: Optimise,
+    /// Whether zeros of |w| are skipped; with the reduced plan and no filter.
+    pub skip_zeros: bool,
     /// Clock in megahertz, 1 to 1000.
     pub clock_mhz: f64,
     /// FPGA part name.
@@ -172,6 +217,18 @@ pub enum DesignError {
         /// What to do.
         remedy: String,
     },
+    /// A calibration file that does not fit the sensor.
+    #[error("{}, line {line}: {problem}; {remedy}", path.display())]
+    Calibration {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
     /// A word that is not among the allowed ones.
     #[error("{origin}: {key} is \"{found}\"; choose one of: {}", allowed.join(", "))]
     Choice {
@@ -199,20 +256,27 @@ impl Design {
     pub fn load(path: &Path) -> Result<Self, DesignError> {
         let text =
             std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })?;
-        Self::from_toml(&text, &path.display().to_string())
+        parse::design(&text, &path.display().to_string(), path.parent())
     }
 
-    /// Checks the text of a design file; `origin` is the name to use in messages.
+    /// Checks the text of a design file; `origin` is the name to use in messages, and a calibration file is looked for
+    /// in its folder.
     ///
     /// # Errors
     ///
     /// As [`Design::load`], without the reading.
     pub fn from_toml(text: &str, origin: &str) -> Result<Self, DesignError> {
-        parse::design(text, origin)
+        parse::design(text, origin, Path::new(origin).parent())
     }
 
-    /// The resolved design as TOML: every key, in a fixed order; parsing it gives this design back.
+    /// The resolved design as TOML: every key, in a fixed order; parsing it gives this design back. A calibration is
+    /// named [`CALIBRATION_FILE`]; write [`Design::calibration_csv`] beside the design under that name.
     pub fn to_toml(&self) -> String {
         print::to_toml(self)
+    }
+
+    /// The calibration as the CSV file that [`Design::to_toml`] names, if there is one.
+    pub fn calibration_csv(&self) -> Option<String> {
+        self.input.calibration.as_ref().map(Calibration::to_csv)
     }
 }

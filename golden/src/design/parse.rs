@@ -1,19 +1,23 @@
 //! From TOML text to a checked [`Design`].
 
+use std::path::Path;
+
 use serde::Deserialize;
 
 use super::checks::{self, Check};
+use super::joint::{self, RawCorrection};
 use super::parse_filter::{self, RawFilter};
+use super::parse_plan::{self, PlanKeys};
 use super::{
-    Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Kernel, MAX_LANES,
-    MAX_SIDE, NOISE_FLOOR_DIVISOR, Outputs, Sensor,
+    Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input,
+    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, Sensor,
 };
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawDesign {
     name: String,
-    sensor: RawSensor,
+    sensor: RawDesignSensor,
     #[serde(default)]
     algorithm: RawAlgorithm,
     #[serde(default)]
@@ -30,12 +34,28 @@ pub(crate) struct RawSensor {
     depth_mm: f64,
 }
 
+/// The sensor of a design; unknown keys would pass if this held a flattened [`RawSensor`].
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawDesignSensor {
+    columns: i64,
+    rows: i64,
+    pitch_mm: Vec<f64>,
+    depth_mm: f64,
+    pa_per_count: Option<f64>,
+    calibration: Option<String>,
+}
+
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 struct RawAlgorithm {
+    plan: Option<String>,
     kernel: Option<String>,
     filter: Option<RawFilter>,
     estimator: Option<String>,
+    gain: Option<f64>,
+    tangential: Option<Vec<f64>>,
+    correction: Option<RawCorrection>,
     outputs: Option<String>,
     noise_floor_pa: Option<f64>,
 }
@@ -48,18 +68,27 @@ struct RawHardware {
     data_bits: Option<i64>,
     full_scale_pa: Option<f64>,
     lanes: Option<i64>,
+    target_us: Option<f64>,
+    optimise: Option<String>,
+    skip_zeros: Option<bool>,
     clock_mhz: Option<f64>,
     part: Option<String>,
 }
 
-pub(super) fn design(text: &str, origin: &str) -> Result<Design, DesignError> {
+/// `folder` is where relative paths of files start.
+pub(super) fn design(text: &str, origin: &str, folder: Option<&Path>) -> Result<Design, DesignError> {
     let raw: RawDesign = toml::from_str(text).map_err(|error| syntax_position(&error, text, origin))?;
     let check = Check { origin };
     checks::name(&check, &raw.name)?;
-    let sensor = raw.sensor.check(origin)?;
+    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, pa_per_count, calibration } = raw.sensor;
+    let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
+    let lanes_given = raw.hardware.lanes.is_some();
     let hardware = hardware(&check, raw.hardware)?;
-    let algorithm = algorithm(&check, raw.algorithm, &sensor, hardware.full_scale_pa)?;
-    Ok(Design { name: raw.name, sensor, algorithm, hardware })
+    let algorithm = algorithm(&check, raw.algorithm, &sensor, &hardware)?;
+    parse_plan::check(&check, &PlanKeys { sensor: &sensor, algorithm: &algorithm, hardware: &hardware, lanes_given })?;
+    // Last, so that what is wrong with the design itself is said before its files are read.
+    let input = Input::new(&check, pa_per_count, calibration.as_deref(), folder, sensor.taxels())?;
+    Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }
 
 /// Turns an error of the TOML reader into one with line and column.
@@ -92,20 +121,31 @@ impl RawSensor {
     }
 }
 
-fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, full_scale_pa: f64) -> Result<Algorithm, DesignError> {
+fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, hardware: &Hardware) -> Result<Algorithm, DesignError> {
+    let full_scale_pa = hardware.full_scale_pa;
     let filter = match raw.filter {
         Some(raw) => parse_filter::filter(check, &raw, sensor)?,
         None => Filter::None,
     };
     check.choice("algorithm.kernel", raw.kernel.as_deref(), &["point", "cell"])?;
     let kernel = if raw.kernel.as_deref() == Some("cell") { Kernel::Cell } else { Kernel::Point };
-    check.choice("algorithm.estimator", raw.estimator.as_deref(), &["line"])?;
-    check.choice("algorithm.outputs", raw.outputs.as_deref(), &["field"])?;
+    check.choice("algorithm.estimator", raw.estimator.as_deref(), &["line", "joint"])?;
+    let (estimator, joint) = if raw.estimator.as_deref() == Some("joint") {
+        let tangential = raw.tangential.as_deref();
+        (Estimator::Joint, joint::constants(check, raw.gain, tangential, raw.correction.as_ref(), sensor)?)
+    } else {
+        let given = [raw.gain.is_some(), raw.tangential.is_some(), raw.correction.is_some()];
+        joint::refuse(check, given)?;
+        (Estimator::Line, JointConstants::default())
+    };
+    check.choice("algorithm.outputs", raw.outputs.as_deref(), &["field", "resultants"])?;
+    let outputs = if raw.outputs.as_deref() == Some("resultants") { Outputs::Resultants } else { Outputs::Field };
     let noise_floor_pa = match raw.noise_floor_pa {
         Some(value) => check.above_zero("algorithm.noise_floor_pa", value, full_scale_pa, "Pa")?,
         None => full_scale_pa / NOISE_FLOOR_DIVISOR,
     };
-    Ok(Algorithm { kernel, filter, estimator: Estimator::Line, outputs: Outputs::Field, noise_floor_pa })
+    let plan = parse_plan::kind(check, raw.plan.as_deref(), &filter, hardware)?;
+    Ok(Algorithm { plan, kernel, filter, estimator, joint: Box::new(joint), outputs, noise_floor_pa })
 }
 
 fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
@@ -114,6 +154,9 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         None => Ok(default),
     };
     check.choice("hardware.arithmetic", raw.arithmetic.as_deref(), &["fixed"])?;
+    check.choice("hardware.optimise", raw.optimise.as_deref(), &["interval", "latency"])?;
+    let optimise = if raw.optimise.as_deref() == Some("latency") { Optimise::Latency } else { Optimise::Interval };
+    let target_us = raw.target_us.map(|target| check.above_zero("hardware.target_us", target, f64::MAX, ""));
     let part = raw.part.unwrap_or_else(|| "xczu9eg-ffvb1156-2-e".to_owned());
     checks::part(check, &part)?;
     Ok(Hardware {
@@ -129,6 +172,9 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
             "Pa",
         )?,
         lanes: integer("hardware.lanes", raw.lanes, 16, 1, MAX_LANES as i64)? as usize,
+        target_us: target_us.transpose()?,
+        optimise,
+        skip_zeros: raw.skip_zeros.unwrap_or(false),
         clock_mhz: check.real("hardware.clock_mhz", raw.clock_mhz.unwrap_or(125.0), 1.0, 1000.0, "MHz")?,
         part,
     })

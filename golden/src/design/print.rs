@@ -4,13 +4,19 @@ use std::fmt::Write;
 
 use toml::Value;
 
-use super::{Arithmetic, Choices, Design, Estimator, Filter, Kernel, Outputs};
+use super::{
+    Arithmetic, CALIBRATION_FILE, Choices, Design, Estimator, Filter, Kernel, Optimise, Outputs, PlanKind, joint,
+};
 use crate::matrices::MatrixName;
 
 // Written by hand, not by serde, so that the order and the layout are those of the documentation. `{:?}` of an f64
 // always has a point or an exponent, so it reads back as the same float.
 pub(super) fn to_toml(design: &Design) -> String {
-    let Design { name, sensor, algorithm, hardware } = design;
+    let Design { name, sensor, input, algorithm, hardware } = design;
+    let plan = match algorithm.plan {
+        PlanKind::Paper => "paper",
+        PlanKind::Reduced => "reduced",
+    };
     let kernel = match algorithm.kernel {
         Kernel::Point => "point",
         Kernel::Cell => "cell",
@@ -22,25 +28,43 @@ pub(super) fn to_toml(design: &Design) -> String {
         Filter::F2 { p } => (format!("filter = {{ kind = \"f2\", p = {p:?} }}\n"), String::new()),
         Filter::F3 { scenes, choices } => (String::new(), f3(scenes, choices.as_deref())),
     };
-    let estimator = match algorithm.estimator {
-        Estimator::Line => "line",
+    let (estimator, [constants, correction]) = match algorithm.estimator {
+        Estimator::Line => ("line", [String::new(), String::new()]),
+        Estimator::Joint => ("joint", joint::print(&algorithm.joint)),
     };
     let outputs = match algorithm.outputs {
         Outputs::Field => "field",
+        Outputs::Resultants => "resultants",
     };
     let arithmetic = match hardware.arithmetic {
         Arithmetic::Fixed => "fixed",
+    };
+    let optimise = match hardware.optimise {
+        Optimise::Interval => "interval",
+        Optimise::Latency => "latency",
+    };
+    let counts = match input.pa_per_count {
+        Some(value) => format!("pa_per_count = {value:?}\n"),
+        None => String::new(),
+    };
+    let calibration = match input.calibration {
+        Some(_) => format!("calibration = \"{CALIBRATION_FILE}\"\n"),
+        None => String::new(),
+    };
+    let speed = match hardware.target_us {
+        Some(target) => format!("target_us = {target:?}"),
+        None => format!("lanes = {}", hardware.lanes),
     };
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write!(
         text,
         "name = \"{name}\"\n\n\
-         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n\n\
-         [algorithm]\nkernel = \"{kernel}\"\n{filter}estimator = \"{estimator}\"\n\
-         outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{filter_table}\n\
+         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{counts}{calibration}\n\
+         [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{filter}estimator = \"{estimator}\"\n\
+         {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\nlanes = {}\nclock_mhz = {:?}\npart = \"{}\"\n",
+         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\nclock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],
@@ -50,7 +74,7 @@ pub(super) fn to_toml(design: &Design) -> String {
         hardware.coefficient_bits,
         hardware.data_bits,
         hardware.full_scale_pa,
-        hardware.lanes,
+        hardware.skip_zeros,
         hardware.clock_mhz,
         hardware.part,
     );

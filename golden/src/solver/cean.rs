@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 /// What the contact analysis finds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// Sum of |b| over all taxels in pascals.
     pub stress_sum: f64,

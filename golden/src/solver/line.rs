@@ -14,23 +14,44 @@ pub(super) struct LevelSet {
     pub(super) interval: [f64; 2],
 }
 
+/// Memory of the search, to be used again for the next frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LineScratch {
+    /// The hinges.
+    pub(super) alpha: Vec<f64>,
+    pub(super) beta: Vec<f64>,
+    knots: Vec<f64>,
+}
+
 /// Finds where `B(t) = sum_i max(0, alpha_i + t beta_i)` on [-1, 1] is within `allowance` of its minimum.
 ///
 /// B is convex and piecewise linear, so the leftmost minimum is found by bisection over its breakpoints on the sign
-/// of the slope, and the ends of the level set by bisection and one interpolation: exact up to rounding.
-pub(super) fn level_set(alpha: &[f64], beta: &[f64], allowance: f64) -> LevelSet {
+/// of the slope, and the ends of the level set by bisection and one interpolation: exact up to rounding. The hinges are
+/// those in `scratch`.
+pub(super) fn level_set(scratch: &mut LineScratch, allowance: f64) -> LevelSet {
+    let LineScratch { alpha, beta, knots } = scratch;
+    let (alpha, beta) = (&*alpha, &*beta);
     let terms = || alpha.iter().zip(beta);
     let value = |t: f64| -> f64 { terms().map(|(a, b)| (a + t * b).max(0.0)).sum() };
     let slope = |t: f64| -> f64 { terms().filter(|(a, b)| *a + t * *b > 0.0).map(|(_, b)| b).sum() };
 
-    let mut knots: Vec<f64> = terms().map(|(a, b)| -a / b).filter(|t| t.abs() < 1.0).chain(RANGE).collect();
-    knots.sort_by(f64::total_cmp);
+    knots.clear();
+    knots.extend(terms().map(|(a, b)| -a / b).filter(|t| t.abs() < 1.0).chain(RANGE));
+    // Equal knots are one, so that an unstable sort, which needs no memory, will do.
+    knots.sort_unstable_by(f64::total_cmp);
     knots.dedup();
 
     // Between neighbouring knots the slope is constant; it is taken in the middle, away from the rounding of the
     // knots themselves.
-    let segments: Vec<[f64; 2]> = knots.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-    let falling = segments.partition_point(|[left, right]| slope(left.midpoint(*right)) < 0.0);
+    let (mut falling, mut end) = (0, knots.len() - 1);
+    while falling < end {
+        let middle = falling.midpoint(end);
+        if slope(knots[middle].midpoint(knots[middle + 1])) < 0.0 {
+            falling = middle + 1;
+        } else {
+            end = middle;
+        }
+    }
     let optimum = knots[falling];
     let minimum = value(optimum);
     let level = minimum + allowance;
@@ -59,6 +80,11 @@ mod tests {
 
     use super::*;
     use proptest::prelude::*;
+
+    fn level_set(alpha: &[f64], beta: &[f64], allowance: f64) -> LevelSet {
+        let mut scratch = LineScratch { alpha: alpha.to_vec(), beta: beta.to_vec(), ..LineScratch::default() };
+        super::level_set(&mut scratch, allowance)
+    }
 
     fn value(alpha: &[f64], beta: &[f64], t: f64) -> f64 {
         let terms = alpha.iter().zip(beta);

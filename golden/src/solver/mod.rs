@@ -2,22 +2,38 @@
 //!
 //! The stages are those of the paper's hardware, each a function of its own: [`cean`] (contact analysis), [`we`]
 //! (weights), [`co`] (coefficients), [`op`] (optimum). [`Solver`] runs them and takes care of frames that have no
-//! answer, which get a [`Status`] and zeros, never a NaN.
+//! answer, which get a [`Status`] and zeros, never a NaN. With the reduced plan the stages We, Co and Op are the same
+//! mathematics on folded vectors, see [`crate::reduced`]. A design may ask for another estimator of friction than the
+//! paper's, with either plan.
 
+mod batch;
 pub mod cean;
 pub mod co;
-mod line;
+pub(crate) mod correction;
+mod fours;
+pub(crate) mod friction;
+pub(crate) mod joint;
+pub(crate) mod line;
 pub mod op;
+mod paper;
 pub(crate) mod reading;
+mod reduced;
 pub mod status;
 pub mod we;
+mod workspace;
 
 pub use status::Status;
+pub use workspace::Workspace;
 
-use crate::design::Design;
+use crate::design::{Design, Outputs, PlanKind};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
-use reading::{Reader, Reading};
+use crate::parity::Quads;
+use crate::reduced::ReducedMatrices;
+use friction::Friction;
+use paper::Paper;
+use reading::Reader;
+use reduced::Reduced;
 
 /// Why a solver cannot be made or a frame cannot be solved.
 #[derive(Debug, thiserror::Error)]
@@ -63,12 +79,12 @@ pub struct Solution {
     pub mu_x: f64,
     /// Friction component along y.
     pub mu_y: f64,
-    /// Forces `f_x, f_y, f_z` in newtons, one value for each taxel.
+    /// Forces `f_x, f_y, f_z` in newtons, one value for each taxel; empty if the design asks for resultants only.
     pub field: [Vec<f64>; 3],
 }
 
 impl Solution {
-    /// The answer to a frame without one: the status and zeros.
+    /// The answer to a frame without one: the status and zeros, in a field of `taxels` values.
     pub fn zeros(status: Status, taxels: usize) -> Self {
         Self {
             status,
@@ -80,6 +96,23 @@ impl Solution {
             field: std::array::from_fn(|_| vec![0.0; taxels]),
         }
     }
+
+    /// As [`Solution::zeros`], in place.
+    fn reset(&mut self, status: Status, taxels: usize) {
+        let mut field = std::mem::take(&mut self.field);
+        for component in &mut field {
+            component.clear();
+            component.resize(taxels, 0.0);
+        }
+        *self = Self { field, ..Self::zeros(status, 0) };
+    }
+
+    /// Puts the friction components and the resultant in place, and what follows from that.
+    fn put_friction(&mut self, [mu_x, mu_y]: [f64; 2], resultant: [f64; 3]) {
+        let [x, y, _] = resultant;
+        (self.mu_x, self.mu_y, self.resultant) = (mu_x, mu_y, resultant);
+        (self.mu, self.phi) = (op::quotient(resultant), y.atan2(x));
+    }
 }
 
 /// Everything that stays the same from frame to frame.
@@ -87,11 +120,19 @@ impl Solution {
 pub struct Solver {
     reader: Reader,
     matrices: Matrices,
-    filtered: FilteredMatrices,
+    products: Products,
+    friction: Friction,
+}
+
+/// The products of the design's plan.
+#[derive(Clone, Debug)]
+enum Products {
+    Paper(Box<Paper>),
+    Reduced(Box<Reduced>),
 }
 
 impl Solver {
-    /// Computes and filters the matrices of a design.
+    /// Computes and filters the matrices of a design, for the plan it names.
     ///
     /// # Errors
     ///
@@ -101,14 +142,27 @@ impl Solver {
         let name = || design.name.clone();
         let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)
             .map_err(|source| SolverError::Matrices { name: name(), source })?;
-        let filtered = FilteredMatrices::new(&matrices, &design.algorithm.filter)
-            .map_err(|source| SolverError::Filter { name: name(), source })?;
-        Ok(Self::from_parts(design, matrices, filtered))
+        let filter = &design.algorithm.filter;
+        match design.algorithm.plan {
+            PlanKind::Paper => {
+                FilteredMatrices::new(&matrices, filter).map(|filtered| Self::from_parts(design, matrices, filtered))
+            }
+            PlanKind::Reduced => {
+                let quads = Quads::new(design.sensor.columns, design.sensor.rows);
+                ReducedMatrices::new(&matrices, &quads, filter).map(|reduced| {
+                    let outputs = design.algorithm.outputs;
+                    let products = Products::Reduced(Box::new(Reduced::new(&quads, reduced, outputs)));
+                    Self { reader: Reader::new(design), matrices, products, friction: Friction::new(design) }
+                })
+            }
+        }
+        .map_err(|source| SolverError::Filter { name: name(), source })
     }
 
-    /// A solver from matrices already computed for the same design.
+    /// A solver by the paper's plan from matrices already computed for the same design, whatever plan that names.
     pub fn from_parts(design: &Design, matrices: Matrices, filtered: FilteredMatrices) -> Self {
-        Self { reader: Reader::new(design), matrices, filtered }
+        let products = Products::Paper(Box::new(Paper::new(&matrices, filtered)));
+        Self { reader: Reader::new(design), matrices, products, friction: Friction::new(design) }
     }
 
     /// The unfiltered matrices.
@@ -116,9 +170,20 @@ impl Solver {
         &self.matrices
     }
 
-    /// The matrices the solver uses.
-    pub fn filtered(&self) -> &FilteredMatrices {
-        &self.filtered
+    /// The matrices the solver uses, with the paper's plan.
+    pub fn filtered(&self) -> Option<&FilteredMatrices> {
+        match &self.products {
+            Products::Paper(paper) => Some(&paper.filtered),
+            Products::Reduced(_) => None,
+        }
+    }
+
+    /// The matrices the solver uses, with the reduced plan.
+    pub fn reduced(&self) -> Option<&ReducedMatrices> {
+        match &self.products {
+            Products::Paper(_) => None,
+            Products::Reduced(reduced) => Some(&reduced.matrices),
+        }
     }
 
     /// Number of values in a frame.
@@ -126,28 +191,21 @@ impl Solver {
         self.reader.taxels()
     }
 
-    /// Solves one frame, stress in pascals in taxel order.
+    /// Solves one frame of values in taxel order, stresses in pascals or the counts that the design's input says.
     ///
     /// # Errors
     ///
     /// [`SolverError::FrameLength`] only; a frame with a NaN, without contact or without a direction gets a status.
     pub fn solve(&self, frame: &[f64]) -> Result<Solution, SolverError> {
-        let (b, contact, mut status) = match self.reader.read(frame)? {
-            Reading::Contact { b, contact, status } => (b, contact, status),
-            Reading::Nothing(status) => return Ok(Solution::zeros(status, self.taxels())),
-        };
-        let weights = we::we(&b, &self.filtered);
-        let coefficients = co::co(&b, &weights, &self.filtered);
-        let forces = op::op(&contact, &coefficients, &self.matrices, op::LEVEL);
-        status.insert(forces.status);
-        Ok(Solution {
-            status,
-            resultant: forces.resultant,
-            mu: forces.mu,
-            phi: forces.phi,
-            mu_x: forces.mu_x,
-            mu_y: forces.mu_y,
-            field: forces.field.map(|component| component.as_slice().to_vec()),
-        })
+        let mut solution = Solution::zeros(Status::default(), 0);
+        self.solve_into(&mut self.workspace(), frame, &mut solution)?;
+        Ok(solution)
+    }
+
+    fn field_length(&self) -> usize {
+        match &self.products {
+            Products::Reduced(reduced) if reduced.outputs == Outputs::Resultants => 0,
+            _ => self.taxels(),
+        }
     }
 }

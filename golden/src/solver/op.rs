@@ -1,10 +1,10 @@
 //! Optimum: the friction components, and with them the forces.
 
-use nalgebra::{DVector, DVectorView};
+use nalgebra::DVector;
 
 use super::cean::Contact;
 use super::co::Coefficients;
-use super::line;
+use super::line::{self, LineScratch};
 use super::status::Status;
 use crate::matrices::Matrices;
 
@@ -73,8 +73,9 @@ pub fn line(direction: [f64; 2], sums: &[[f64; 3]; 3]) -> Option<Line> {
 pub(crate) fn friction(
     contact: &Contact,
     sums: &[[f64; 3]; 3],
-    u: [DVectorView<f64>; 3],
+    u: [&[f64]; 3],
     level: f64,
+    scratch: &mut LineScratch,
 ) -> (Status, [f64; 2]) {
     let mut status = Status::default();
     let mut mu = [0.0; 2];
@@ -83,10 +84,13 @@ pub(crate) fn friction(
         return (status, mu);
     };
     let (independent, dependent) = (line.independent, 1 - line.independent);
-    let alpha = u[0] + u[1 + dependent] * line.offset;
-    let beta = u[1 + independent] + u[1 + dependent] * line.slope;
-    let allowance = level * contact.stress_sum;
-    let found = line::level_set(alpha.as_slice(), beta.as_slice(), allowance);
+    let along = |from: &[f64], times: f64, to: &mut Vec<f64>| {
+        to.clear();
+        to.extend(from.iter().zip(u[1 + dependent]).map(|(from, dependent)| from + dependent * times));
+    };
+    along(u[0], line.offset, &mut scratch.alpha);
+    along(u[1 + independent], line.slope, &mut scratch.beta);
+    let found = line::level_set(scratch, level * contact.stress_sum);
     mu[independent] = found.interval[0].midpoint(found.interval[1]);
     let wanted = line.offset + line.slope * mu[independent];
     mu[dependent] = wanted.clamp(-DEPENDENT_RANGE, DEPENDENT_RANGE);
@@ -102,7 +106,8 @@ pub(crate) fn friction(
 /// components are 0.
 pub fn op(contact: &Contact, coefficients: &Coefficients, matrices: &Matrices, level: f64) -> Forces {
     let u = [0, 1, 2].map(|q| &matrices.c33 * &coefficients.g[2][q]);
-    let (status, mu) = friction(contact, &coefficients.sums, u.each_ref().map(DVector::as_view), level);
+    let stresses = u.each_ref().map(DVector::as_slice);
+    let (status, mu) = friction(contact, &coefficients.sums, stresses, level, &mut LineScratch::default());
     let [mu_x, mu_y] = mu;
     let field = coefficients.g.each_ref().map(|[g0, g1, g2]| g0 + g1 * mu_x + g2 * mu_y);
     let resultant = field.each_ref().map(DVector::sum);

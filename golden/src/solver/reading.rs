@@ -4,11 +4,12 @@ use nalgebra::DVector;
 
 use super::cean::{self, Contact};
 use super::{SolverError, Status};
-use crate::design::Design;
+use crate::design::{Design, Input};
 
 /// Reads the frames of one sensor.
 #[derive(Clone, Debug)]
 pub(crate) struct Reader {
+    input: Input,
     positions: Vec<[f64; 2]>,
     noise_floor: f64,
     full_scale: f64,
@@ -18,8 +19,6 @@ pub(crate) struct Reader {
 pub(crate) enum Reading {
     /// Something presses.
     Contact {
-        /// Stress in pascals, within the full scale.
-        b: DVector<f64>,
         /// What the contact analysis finds.
         contact: Contact,
         /// Bits raised so far.
@@ -33,6 +32,7 @@ impl Reader {
     pub(crate) fn new(design: &Design) -> Self {
         let sensor = &design.sensor;
         Self {
+            input: design.input.clone(),
             positions: (0..sensor.taxels()).map(|i| sensor.position_m(i)).collect(),
             noise_floor: design.algorithm.noise_floor_pa,
             full_scale: design.hardware.full_scale_pa,
@@ -44,8 +44,8 @@ impl Reader {
         self.positions.len()
     }
 
-    /// Checks, clamps and analyses one frame.
-    pub(crate) fn read(&self, frame: &[f64]) -> Result<Reading, SolverError> {
+    /// Checks one frame, converts it to pascals within the full scale, into `b` of length m, and analyses it.
+    pub(crate) fn read(&self, frame: &[f64], b: &mut DVector<f64>) -> Result<Reading, SolverError> {
         let taxels = self.taxels();
         if frame.len() != taxels {
             return Err(SolverError::FrameLength { found: frame.len(), expected: taxels });
@@ -54,15 +54,17 @@ impl Reader {
             return Ok(Reading::Nothing(Status::NOT_FINITE));
         }
         let mut status = Status::default();
-        if frame.iter().any(|stress| stress.abs() > self.full_scale) {
+        for (taxel, (stress, &value)) in b.iter_mut().zip(frame).enumerate() {
+            *stress = self.input.to_pa(taxel, value);
+        }
+        if b.iter().any(|stress| stress.abs() > self.full_scale) {
             status.insert(Status::SATURATED);
         }
-        let clamped = frame.iter().map(|stress| stress.clamp(-self.full_scale, self.full_scale));
-        let b = DVector::from_iterator(taxels, clamped);
-        let contact = cean::cean(&b, &self.positions, self.noise_floor);
+        b.apply(|stress| *stress = stress.clamp(-self.full_scale, self.full_scale));
+        let contact = cean::cean(b, &self.positions, self.noise_floor);
         if !contact.touched {
             return Ok(Reading::Nothing(Status::NO_CONTACT));
         }
-        Ok(Reading::Contact { b, contact, status })
+        Ok(Reading::Contact { contact, status })
     }
 }

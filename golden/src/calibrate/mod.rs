@@ -1,0 +1,152 @@
+//! Constants of the joint estimator, fitted to contacts with known forces.
+//!
+//! Everything comes from the design and a seed: contacts at random on a bonded layer, their stress, the estimate
+//! before it is calibrated, then a gain, two constants for the friction, and the weights of the correction.
+
+mod contacts;
+mod samples;
+mod train;
+
+pub use contacts::random_contacts;
+
+use crate::design::{Design, Estimator, Input, JointConstants};
+use crate::scene::SceneError;
+use crate::solver::SolverError;
+use samples::Sample;
+
+/// How much work the calibration takes on; more of each makes better constants, slowly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Seed of all that is random.
+    pub seed: u64,
+    /// Contacts whose stress is computed.
+    pub contacts: usize,
+    /// Frames made from them, each with a friction, a direction and noise of its own.
+    pub samples: usize,
+    /// Hidden units of the correction; 0 for none.
+    pub hidden: usize,
+    /// Steps of its training.
+    pub steps: usize,
+}
+
+impl Settings {
+    /// A tenth of the work, for a first look: errors are about twice as large.
+    pub fn quick() -> Self {
+        Self { contacts: 800, samples: 4000, hidden: 24, steps: 4000, ..Self::default() }
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { seed: 1, contacts: 8000, samples: 50_000, hidden: 128, steps: 40_000 }
+    }
+}
+
+/// Why a design cannot be calibrated.
+#[derive(Debug, thiserror::Error)]
+pub enum CalibrateError {
+    /// The estimator has no constants.
+    #[error(
+        "{name}: the estimator is \"line\", which has nothing to calibrate; write estimator = \"joint\" under \
+         [algorithm]"
+    )]
+    OtherEstimator {
+        /// Name of the design.
+        name: String,
+    },
+    /// The sensor's matrices or the filter.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+    /// The sensor is too deep or too shallow for scenes.
+    #[error("contacts for the calibration: {0}")]
+    Scene(#[from] SceneError),
+    /// No frame had an answer.
+    #[error(
+        "{name}: none of the {samples} frames made for the calibration has an answer; lower algorithm.noise_floor_pa \
+         or check the filter"
+    )]
+    NoAnswer {
+        /// Name of the design.
+        name: String,
+        /// Frames made.
+        samples: usize,
+    },
+    /// The fitted constants are outside what a design file may hold.
+    #[error(
+        "{name}: the calibration finds gain {gain:.3} and tangential = [{c1:.3}, {c3:.3}], which is out of range: this \
+         sensor cannot be calibrated; check its pitch and depth"
+    )]
+    OutOfRange {
+        /// Name of the design.
+        name: String,
+        /// Factor on the forces.
+        gain: f64,
+        /// Linear friction constant.
+        c1: f64,
+        /// Cubic friction constant.
+        c3: f64,
+    },
+}
+
+/// Part of the work that `tick` reports as done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// One contact's stress.
+    Contact,
+    /// One frame's estimate.
+    Sample,
+    /// One step of the training.
+    Step,
+}
+
+/// Fits the constants of the joint estimator to a design; `tick` is called after each piece of work.
+///
+/// The same design and settings give the same constants on the same machine; another processor may round the sums of
+/// the training differently, which changes a few weights by little.
+///
+/// # Errors
+///
+/// [`CalibrateError`]: another estimator, a sensor without matrices or scenes, or one on which the fit fails.
+pub fn calibrate(
+    design: &Design,
+    settings: &Settings,
+    tick: &mut dyn FnMut(Stage),
+) -> Result<JointConstants, CalibrateError> {
+    let name = || design.name.clone();
+    if design.algorithm.estimator != Estimator::Joint {
+        return Err(CalibrateError::OtherEstimator { name: name() });
+    }
+    // The contacts are in pascals, whatever the sensor counts.
+    let design = &Design { input: Input::default(), ..design.clone() };
+    let half_window = contacts::half_window(&design.sensor);
+    let samples = samples::make(design, settings, half_window, tick)?;
+    if samples.is_empty() {
+        return Err(CalibrateError::NoAnswer { name: name(), samples: settings.samples });
+    }
+    let (gain, targets) = samples::gain_and_targets(&samples);
+    let tangential = fit_tangential(&samples, &targets);
+    let [c1, c3] = tangential;
+    let legal = (0.1..=10.0).contains(&gain) && (0.1..=10.0).contains(&c1) && (-2.0..=2.0).contains(&c3);
+    if !legal {
+        return Err(CalibrateError::OutOfRange { name: name(), gain, c1, c3 });
+    }
+    let correction =
+        (settings.hidden > 0).then(|| train::train(&samples, &targets, tangential, half_window, settings, tick));
+    Ok(JointConstants { gain, tangential, correction })
+}
+
+/// The constants `c1, c3` that bring `c1 mu + c3 mu |mu|^2` closest to the targets, by least squares.
+fn fit_tangential(samples: &[Sample], targets: &[[f64; 2]]) -> [f64; 2] {
+    let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (sample, target) in samples.iter().zip(targets) {
+        let square = sample.mu[0].powi(2) + sample.mu[1].powi(2);
+        let product = sample.mu[0] * target[0] + sample.mu[1] * target[1];
+        a += square;
+        b += square * square;
+        c += square.powi(3);
+        p += product;
+        q += product * square;
+    }
+    let determinant = a * c - b * b;
+    [(p * c - q * b) / determinant, (a * q - b * p) / determinant]
+}

@@ -1,0 +1,117 @@
+//! Frames with known forces, and what the estimator sees in them.
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::{CalibrateError, Settings, Stage, random_contacts};
+use crate::design::Design;
+use crate::scene::{Medium, normal, unit_responses};
+use crate::solver::correction::Look;
+use crate::solver::joint::{self, JointScratch};
+use crate::solver::{Solver, Status};
+
+/// Poisson's ratio of the layers, from and to: rubber, give or take.
+const POISSON: [f64; 2] = [0.45, 0.49];
+/// Layers of different Poisson's ratio.
+const LAYERS: usize = 5;
+/// Largest standard deviation of the noise, as a share of the frame's largest stress.
+const NOISE: f64 = 0.003;
+
+/// One sample in this many has a second contact, pushed the same way: what it makes of one contact must not do harm where
+/// there are two.
+const PAIRED: usize = 8;
+
+/// One frame as the calibration needs it.
+pub(super) struct Sample {
+    /// Estimate before the calibration.
+    pub(super) mu: [f64; 2],
+    /// The contact as the correction sees it.
+    pub(super) look: Look,
+    /// Sums `G_pq` in newtons.
+    sums: [[f64; 3]; 3],
+    /// True resultant in newtons.
+    force: [f64; 3],
+}
+
+/// Makes the frames of a design and estimates them; frames without an answer are left out.
+pub(super) fn make(
+    design: &Design,
+    settings: &Settings,
+    half_window: [usize; 2],
+    tick: &mut dyn FnMut(Stage),
+) -> Result<Vec<Sample>, CalibrateError> {
+    let solver = Solver::new(design)?;
+    let (mut workspace, mut scratch) = (solver.workspace(), JointScratch::default());
+    let mut responses = Vec::with_capacity(settings.contacts);
+    for (index, contact) in random_contacts(&design.sensor, settings.seed, settings.contacts).iter().enumerate() {
+        let share = (index / 8 % LAYERS) as f64 / (LAYERS - 1) as f64;
+        let medium = Medium::BondedLayer { poisson: POISSON[0] + share * (POISSON[1] - POISSON[0]) };
+        responses.push(unit_responses(&design.sensor, medium, contact)?);
+        tick(Stage::Contact);
+    }
+    let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
+    // The contacts use stream 0 of the same seed.
+    random.set_stream(1);
+    let mut samples = Vec::with_capacity(settings.samples);
+    for index in 0..settings.samples {
+        tick(Stage::Sample);
+        let Some(one) = responses.get(index % responses.len().max(1)) else { break };
+        let other = &responses[random.random_range(0..responses.len())];
+        let share = if random.random_range(0..PAIRED) == 0 { random.random_range(0.2..0.8) } else { 0.0 };
+        let friction = random.random::<f64>();
+        let (sin, cos) = (std::f64::consts::TAU * random.random::<f64>()).sin_cos();
+        let [x, y] = [friction * cos, friction * sin];
+        let load = |kind: usize, taxel: usize| (1.0 - share) * one[kind][taxel] + share * other[kind][taxel];
+        let mut frame: Vec<f64> =
+            (0..solver.taxels()).map(|taxel| load(0, taxel) + x * load(1, taxel) + y * load(2, taxel)).collect();
+        let peak = frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+        let deviation = NOISE * random.random::<f64>() * peak;
+        // The estimator has no scale; the frame is put where neither the full scale nor the noise floor matters.
+        let force = 0.5 * design.hardware.full_scale_pa / peak;
+        for stress in &mut frame {
+            *stress = force * (*stress + deviation * normal(&mut random));
+        }
+        let Some(seen) = solver.see(&mut workspace, &frame)? else { continue };
+        let found = joint::raw(&seen, &mut scratch);
+        if !found.status.contains(Status::DIRECTION_UNKNOWN) {
+            joint::look(&seen, found.mu, design.sensor.columns, half_window, &mut scratch);
+            let force = [force * x, force * y, -force];
+            samples.push(Sample { mu: found.mu, look: scratch.look.clone(), sums: *seen.sums, force });
+        }
+    }
+    Ok(samples)
+}
+
+/// The gain, and the friction components that make the tangential resultant of each sample right with it.
+///
+/// The gain is the median of true over estimated normal force: contacts at the border of the grid, which lose force
+/// beyond it, do not drag it along.
+pub(super) fn gain_and_targets(samples: &[Sample]) -> (f64, Vec<[f64; 2]>) {
+    let mut targets: Vec<[f64; 2]> = samples.iter().map(|sample| sample.mu).collect();
+    let mut gain = 1.0;
+    // F_z depends on the friction a little, and the friction wanted on the gain.
+    for _ in 0..4 {
+        let mut ratios: Vec<f64> = samples
+            .iter()
+            .zip(&targets)
+            .map(|(sample, [x, y])| {
+                let [g0, g1, g2] = sample.sums[2];
+                sample.force[2] / (g0 + x * g1 + y * g2)
+            })
+            .collect();
+        ratios.sort_by(f64::total_cmp);
+        gain = ratios[ratios.len() / 2];
+        targets = samples.iter().map(|sample| target(sample, gain)).collect();
+    }
+    (gain, targets)
+}
+
+/// Solves the two equations of the tangential resultant for the friction components.
+fn target(sample: &Sample, gain: f64) -> [f64; 2] {
+    let [[x0, a, b], [y0, c, d], _] = sample.sums;
+    let [x, y] = [sample.force[0] / gain - x0, sample.force[1] / gain - y0];
+    let determinant = a * d - b * c;
+    let found = [(d * x - b * y) / determinant, (a * y - c * x) / determinant];
+    // Without weights nothing answers to friction; such a frame teaches nothing.
+    if found.iter().all(|mu| mu.abs() < 2.0) { found } else { sample.mu }
+}

@@ -1,0 +1,128 @@
+//! `golden bench`: frames a second.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use golden::design::{Design, PlanKind};
+use golden::solver::{Solution, Solver, SolverError, Status};
+use nalgebra::DVector;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+/// Different frames, solved in turn.
+const FRAMES: usize = 128;
+/// Repetitions, of which the median is reported.
+const REPETITIONS: usize = 7;
+/// A repetition takes at least this time, so that the clock's own steps do not matter.
+const LEAST: Duration = Duration::from_millis(100);
+
+#[derive(Serialize)]
+struct Report {
+    /// The design file, as it was named.
+    file: String,
+    design: String,
+    plan: &'static str,
+    taxels: usize,
+    /// Seconds for matrices and filter.
+    setup_s: f64,
+    repetitions: usize,
+    one_by_one: Speed,
+    in_batches: Speed,
+}
+
+#[derive(Serialize)]
+struct Speed {
+    frames_per_second: f64,
+    /// Median of the repetitions.
+    us_per_frame: f64,
+    /// The fastest and the slowest repetition.
+    us_per_frame_range: [f64; 2],
+}
+
+/// Measures each of the designs.
+pub fn run(designs: &[PathBuf], json: bool) -> Result<(), Box<dyn Error>> {
+    let reports = designs.iter().map(|path| measure(path)).collect::<Result<Vec<_>, _>>()?;
+    if json {
+        say!("{}", serde_json::to_string_pretty(&reports)?);
+        return Ok(());
+    }
+    say!("frames a second on one core, median of {REPETITIONS} repetitions");
+    say!("  design                  plan     taxels  setup s   one by one       us   in batches       us");
+    for report in &reports {
+        let Report { design, plan, taxels, setup_s, one_by_one, in_batches, .. } = report;
+        say!(
+            "  {design:<22}  {plan:<7}  {taxels:>6}  {setup_s:>7.2}   {:>10.0}  {:>7.1}   {:>10.0}  {:>7.1}",
+            one_by_one.frames_per_second,
+            one_by_one.us_per_frame,
+            in_batches.frames_per_second,
+            in_batches.us_per_frame
+        );
+    }
+    Ok(())
+}
+
+fn measure(path: &Path) -> Result<Report, Box<dyn Error>> {
+    let design = Design::load(path)?;
+    let start = Instant::now();
+    let solver = Solver::new(&design)?;
+    let setup_s = start.elapsed().as_secs_f64();
+    let frames = contacts(&design, &solver);
+    let mut workspace = solver.workspace();
+    let mut solution = Solution::zeros(Status::default(), 0);
+    let one_by_one =
+        speed(|| frames.iter().try_for_each(|frame| solver.solve_into(&mut workspace, frame, &mut solution)))?;
+    let mut solutions = Vec::new();
+    let in_batches = speed(|| solver.solve_batch(&mut workspace, &frames, &mut solutions))?;
+    let plan = match design.algorithm.plan {
+        PlanKind::Paper => "paper",
+        PlanKind::Reduced => "reduced",
+    };
+    let taxels = solver.taxels();
+    let file = path.display().to_string();
+    Ok(Report { file, design: design.name, plan, taxels, setup_s, repetitions: REPETITIONS, one_by_one, in_batches })
+}
+
+/// Times a function that solves all frames.
+fn speed(mut solve: impl FnMut() -> Result<(), SolverError>) -> Result<Speed, SolverError> {
+    // Once to ask for memory and fill the caches, then as often as it takes.
+    solve()?;
+    let mut times = Vec::with_capacity(REPETITIONS);
+    for _ in 0..REPETITIONS {
+        let (start, mut rounds) = (Instant::now(), 0);
+        while start.elapsed() < LEAST {
+            solve()?;
+            rounds += 1;
+        }
+        times.push(start.elapsed().as_secs_f64() * 1e6 / (rounds * FRAMES) as f64);
+    }
+    times.sort_by(f64::total_cmp);
+    let median = times[REPETITIONS / 2];
+    Ok(Speed {
+        frames_per_second: 1e6 / median,
+        us_per_frame: median,
+        us_per_frame_range: [times[0], times[REPETITIONS - 1]],
+    })
+}
+
+/// Frames of pushed contacts on about a tenth of the sensor, at half the full scale.
+fn contacts(design: &Design, solver: &Solver) -> Vec<Vec<f64>> {
+    let sensor = &design.sensor;
+    let matrices = solver.matrices();
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut frame = || {
+        let [x, y] = [sensor.columns, sensor.rows].map(|side| side as f64 * random.random_range(0.3..0.7));
+        let [a, b] = [sensor.columns, sensor.rows].map(|side| 0.2 * side as f64 + 0.5);
+        let press = DVector::from_fn(sensor.taxels(), |taxel, _| {
+            let [column, row] = [taxel % sensor.columns, taxel / sensor.columns].map(|place| place as f64);
+            (1.0 - ((column - x) / a).powi(2) - ((row - y) / b).powi(2)).max(0.0).sqrt()
+        });
+        let (sine, cosine) = random.random_range(0.0..std::f64::consts::TAU).sin_cos();
+        let pushed = &matrices.c31 * &press * (0.5 * cosine) + &matrices.c32 * &press * (0.5 * sine);
+        let stress = pushed - &matrices.c33 * &press;
+        let scale = 0.5 * design.hardware.full_scale_pa / stress.amax();
+        stress.iter().enumerate().map(|(taxel, stress)| design.input.from_pa(taxel, scale * stress)).collect()
+    };
+    (0..FRAMES).map(|_| frame()).collect()
+}

@@ -1,0 +1,67 @@
+//! `golden calibrate`: the constants of the joint estimator.
+
+use std::error::Error;
+use std::path::Path;
+
+use golden::calibrate::{Settings, calibrate};
+use golden::choose::rebase_scenes;
+use golden::design::{Design, Filter};
+use golden::output::write_whole;
+use indicatif::ProgressBar;
+use serde::Serialize;
+
+use super::{calibration_beside, folder, keep_apart};
+
+#[derive(Serialize)]
+struct Report<'a> {
+    design: &'a str,
+    resolved: &'a Path,
+    gain: f64,
+    tangential: [f64; 2],
+    half_window: Option<[usize; 2]>,
+    weights: usize,
+}
+
+/// Calibrates the design in `path` and writes the resolved design to `out`.
+pub fn run(path: &Path, out: &Path, settings: &Settings, json: bool) -> Result<(), Box<dyn Error>> {
+    keep_apart(out, &[path])?;
+    let mut design = Design::load(path)?;
+    let counts = calibration_beside(&design, out)?;
+    // Draws on a terminal only.
+    let progress = ProgressBar::new((settings.contacts + settings.samples + settings.steps) as u64);
+    let found = calibrate(&design, settings, &mut |_| progress.inc(1));
+    progress.finish_and_clear();
+    *design.algorithm.joint = found?;
+    if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
+        *scenes = rebase_scenes(scenes, folder(path), folder(out));
+    }
+    let mut text =
+        format!("# Resolved by `golden calibrate`, seed {}: the constants of the joint estimator.\n", settings.seed);
+    text.push_str(&design.to_toml());
+    if let Some((file, content)) = counts {
+        write_whole(&file, content.as_bytes())?;
+    }
+    write_whole(out, text.as_bytes())?;
+
+    let constants = &design.algorithm.joint;
+    let correction = constants.correction.as_ref();
+    let report = Report {
+        design: &design.name,
+        resolved: out,
+        gain: constants.gain,
+        tangential: constants.tangential,
+        half_window: correction.map(|correction| correction.half_window),
+        weights: correction.map_or(0, |found| found.hidden.iter().chain(&found.output).map(Vec::len).sum()),
+    };
+    if json {
+        say!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        say!("{}: calibrated design in {}", report.design, out.display());
+        say!("  gain        {:.4}", report.gain);
+        say!("  tangential  {:.4} mu + {:.4} mu |mu|^2", report.tangential[0], report.tangential[1]);
+        if let Some([x, y]) = report.half_window {
+            say!("  correction  {} weights, window {} x {} taxels", report.weights, 2 * x + 1, 2 * y + 1);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,149 @@
+//! What `golden calibrate` finds for the joint estimator, as a part of a design.
+
+use std::fmt::Write;
+
+use serde::Deserialize;
+
+use super::checks::Check;
+use super::{DesignError, Sensor};
+
+/// Weights of a correction are whole numbers of `2^-WEIGHT_FRACTION`.
+pub const WEIGHT_FRACTION: u32 = 12;
+/// Width of a weight in bits.
+pub const WEIGHT_BITS: u32 = 18;
+/// Most hidden units of a correction.
+pub const MAX_HIDDEN: usize = 256;
+/// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.
+pub const EXTRA_INPUTS: usize = 5;
+
+/// Constants of the joint estimator for one design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointConstants {
+    /// Factor on all forces; what a kernel of point forces lacks at long waves.
+    pub gain: f64,
+    /// `[c1, c3]`: the friction vector is `c1 mu + c3 mu |mu|^2` of the centroid of the level set.
+    pub tangential: [f64; 2],
+    /// What a small network adds to that; nothing unless trained.
+    pub correction: Option<Correction>,
+}
+
+impl Default for JointConstants {
+    fn default() -> Self {
+        Self { gain: 1.0, tangential: [1.0, 0.0], correction: None }
+    }
+}
+
+/// Weights of the network that corrects the friction vector, in steps of `2^-WEIGHT_FRACTION`.
+///
+/// It sees a window of `2 half + 1` taxels along each axis around the centre of the contact, row by row, and then
+/// [`EXTRA_INPUTS`] more values.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Correction {
+    /// Taxels on either side of the centre of the window, along x and y.
+    pub half_window: [usize; 2],
+    /// One row of weights for each hidden unit: the window, then the other inputs.
+    pub hidden: Vec<Vec<i32>>,
+    /// Weights of the hidden units in the x and the y component of the correction.
+    pub output: [Vec<i32>; 2],
+}
+
+impl Correction {
+    /// Number of inputs of a hidden unit.
+    pub fn inputs(half_window: [usize; 2]) -> usize {
+        (2 * half_window[0] + 1) * (2 * half_window[1] + 1) + EXTRA_INPUTS
+    }
+}
+
+/// The `[algorithm.correction]` table.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RawCorrection {
+    half_window: Vec<i64>,
+    hidden: Vec<Vec<i64>>,
+    output: Vec<Vec<i64>>,
+}
+
+/// Checks the constants; a design without any has the default ones.
+pub(super) fn constants(
+    check: &Check,
+    gain: Option<f64>,
+    tangential: Option<&[f64]>,
+    raw: Option<&RawCorrection>,
+    sensor: &Sensor,
+) -> Result<JointConstants, DesignError> {
+    let gain = check.real("algorithm.gain", gain.unwrap_or(1.0), 0.1, 10.0, "")?;
+    let [c1, c3] = two(check, "algorithm.tangential", tangential.unwrap_or(&[1.0, 0.0]), "c1 and c3")?;
+    let tangential = [
+        check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
+        check.real("algorithm.tangential[1]", c3, -2.0, 2.0, "")?,
+    ];
+    let correction = raw.map(|raw| correction(check, raw, sensor)).transpose()?;
+    Ok(JointConstants { gain, tangential, correction })
+}
+
+/// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
+pub(super) fn refuse(check: &Check, given: [bool; 3]) -> Result<(), DesignError> {
+    match ["gain", "tangential", "correction"].into_iter().zip(given).find(|(_, given)| *given) {
+        Some((key, _)) => Err(check.value(
+            &format!("algorithm.{key}"),
+            "belongs to the joint estimator".to_owned(),
+            "remove it or write estimator = \"joint\"".to_owned(),
+        )),
+        None => Ok(()),
+    }
+}
+
+fn correction(check: &Check, raw: &RawCorrection, sensor: &Sensor) -> Result<Correction, DesignError> {
+    let key = |name: &str| format!("algorithm.correction.{name}");
+    let again = || "run `golden calibrate` again".to_owned();
+    let [x, y] = two(check, &key("half_window"), &raw.half_window, "for x and y")?;
+    let half = |name: &str, value, side: usize| check.integer(&key(name), value, 0, side as i64 - 1);
+    let half_window =
+        [half("half_window[0]", x, sensor.columns)? as usize, half("half_window[1]", y, sensor.rows)? as usize];
+    let inputs = Correction::inputs(half_window);
+    check.integer(&key("hidden (number of rows)"), raw.hidden.len() as i64, 1, MAX_HIDDEN as i64)?;
+    let row = |name: String, row: &[i64], length: usize| -> Result<Vec<i32>, DesignError> {
+        if row.len() != length {
+            return Err(check.value(&key(&name), format!("has {} weights, not {length}", row.len()), again()));
+        }
+        let limit = 1_i64 << (WEIGHT_BITS - 1);
+        let checked = row.iter().map(|&weight| check.integer(&key(&name), weight, -limit, limit - 1));
+        checked.map(|weight| weight.map(|weight| weight as i32)).collect()
+    };
+    let hidden: Vec<Vec<i32>> = raw
+        .hidden
+        .iter()
+        .enumerate()
+        .map(|(index, weights)| row(format!("hidden[{index}]"), weights, inputs))
+        .collect::<Result<_, _>>()?;
+    let [along_x, along_y] = two(check, &key("output"), &raw.output, "for x and y")?;
+    let output =
+        [row("output[0]".to_owned(), &along_x, hidden.len())?, row("output[1]".to_owned(), &along_y, hidden.len())?];
+    Ok(Correction { half_window, hidden, output })
+}
+
+/// Two values, where a TOML reader would drop a third without a word.
+fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<[T; 2], DesignError> {
+    match values {
+        [first, second] => Ok([first.clone(), second.clone()]),
+        _ => Err(check.value(key, format!("has {} values", values.len()), format!("use two, {which}"))),
+    }
+}
+
+/// The keys of `[algorithm]`, and the table that follows all of them.
+pub(super) fn print(constants: &JointConstants) -> [String; 2] {
+    let JointConstants { gain, tangential: [c1, c3], correction } = constants;
+    let keys = format!("gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
+    let mut table = String::new();
+    if let Some(Correction { half_window: [x, y], hidden, output }) = correction {
+        let rows = |rows: &[Vec<i32>]| -> String { rows.iter().map(|row| format!("    {row:?},\n")).collect() };
+        // Writing to a String cannot fail.
+        let _ = write!(
+            table,
+            "\n[algorithm.correction]\nhalf_window = [{x}, {y}]\nhidden = [\n{}]\noutput = [\n{}]\n",
+            rows(hidden),
+            rows(output)
+        );
+    }
+    [keys, table]
+}

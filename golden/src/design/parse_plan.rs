@@ -1,0 +1,107 @@
+//! The plan of a design, and the keys that only one of the plans has.
+
+use super::checks::Check;
+use super::{Algorithm, DesignError, Filter, Hardware, MAX_SIDE_PAPER, Optimise, Outputs, PlanKind, Sensor};
+
+/// Lanes of the reduced plan come in fours, one for each class of parity.
+const LANES_MULTIPLE: usize = 4;
+
+/// The plan that `word` names. Without one it is the reduced plan wherever that changes nothing of the result and the
+/// lanes fit.
+pub(super) fn kind(
+    check: &Check,
+    word: Option<&str>,
+    filter: &Filter,
+    hardware: &Hardware,
+) -> Result<PlanKind, DesignError> {
+    check.choice("algorithm.plan", word, &["paper", "reduced"])?;
+    let fits = hardware.lanes.is_multiple_of(LANES_MULTIPLE);
+    Ok(match word {
+        Some("paper") => PlanKind::Paper,
+        Some(_) => PlanKind::Reduced,
+        None if *filter == Filter::None && fits => PlanKind::Reduced,
+        None => PlanKind::Paper,
+    })
+}
+
+/// What is checked against the plan.
+pub(super) struct PlanKeys<'a> {
+    pub(super) sensor: &'a Sensor,
+    pub(super) algorithm: &'a Algorithm,
+    pub(super) hardware: &'a Hardware,
+    /// Whether the file has the key `hardware.lanes`.
+    pub(super) lanes_given: bool,
+}
+
+/// Refuses keys that contradict the plan or each other.
+pub(super) fn check(check: &Check, keys: &PlanKeys) -> Result<(), DesignError> {
+    let PlanKeys { sensor, algorithm, hardware, lanes_given } = keys;
+    if let Some(target) = hardware.target_us
+        && *lanes_given
+    {
+        return Err(check.value(
+            "hardware.target_us",
+            format!("is {target} beside lanes = {}", hardware.lanes),
+            "state the need or the lanes: remove one of the two".to_owned(),
+        ));
+    }
+    match algorithm.plan {
+        PlanKind::Paper => paper(check, sensor, algorithm, hardware),
+        PlanKind::Reduced => reduced(check, algorithm, hardware),
+    }
+}
+
+fn paper(check: &Check, sensor: &Sensor, algorithm: &Algorithm, hardware: &Hardware) -> Result<(), DesignError> {
+    let needs = |key: &str, problem: String| {
+        let remedy = "only the reduced plan has that: write plan = \"reduced\" under [algorithm], or remove the key";
+        Err(check.value(key, problem, remedy.to_owned()))
+    };
+    if algorithm.outputs == Outputs::Resultants {
+        return needs("algorithm.outputs", "is \"resultants\" with the paper's plan".to_owned());
+    }
+    if hardware.optimise == Optimise::Latency {
+        return needs("hardware.optimise", "is \"latency\" with the paper's plan".to_owned());
+    }
+    if let Some(target) = hardware.target_us {
+        return needs("hardware.target_us", format!("is {target} with the paper's plan"));
+    }
+    if hardware.skip_zeros {
+        return needs("hardware.skip_zeros", "is true with the paper's plan".to_owned());
+    }
+    for (key, side) in [("sensor.columns", sensor.columns), ("sensor.rows", sensor.rows)] {
+        if side > MAX_SIDE_PAPER {
+            return Err(check.value(
+                key,
+                format!("is {side} with the paper's plan, which has matrices for at most {MAX_SIDE_PAPER}"),
+                "write plan = \"reduced\" under [algorithm] and a multiple of 4 for lanes".to_owned(),
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn reduced(check: &Check, algorithm: &Algorithm, hardware: &Hardware) -> Result<(), DesignError> {
+    if matches!(algorithm.filter, Filter::F3 { .. }) {
+        return Err(check.value(
+            "algorithm.filter",
+            "is of kind \"f3\", which chooses for each matrix of the paper; the reduced plan has other matrices"
+                .to_owned(),
+            "write plan = \"paper\" or another filter".to_owned(),
+        ));
+    }
+    if !hardware.lanes.is_multiple_of(LANES_MULTIPLE) {
+        return Err(check.value(
+            "hardware.lanes",
+            format!("is {} with the reduced plan", hardware.lanes),
+            "use a multiple of 4 from 4 to 64, or write plan = \"paper\" under [algorithm]".to_owned(),
+        ));
+    }
+    if hardware.skip_zeros && algorithm.filter != Filter::None {
+        return Err(check.value(
+            "hardware.skip_zeros",
+            "is true with a filter".to_owned(),
+            "write filter = { kind = \"none\" }, or remove the key".to_owned(),
+        ));
+    }
+    Ok(())
+}

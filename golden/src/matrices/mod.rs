@@ -1,0 +1,124 @@
+//! The 13 matrices of the method, unfiltered.
+
+mod factor;
+mod name;
+
+use std::borrow::Cow;
+
+use nalgebra::DMatrix;
+
+use crate::design::{Kernel, Sensor};
+use crate::kernel;
+use crate::parity::{FoldedMatrix, Quads};
+use factor::Factors;
+pub use name::{MatrixName, UnknownMatrix};
+
+/// Why the matrices of a sensor cannot be computed.
+#[derive(Debug, thiserror::Error)]
+pub enum MatrixError {
+    /// A matrix to be inverted is singular to working precision.
+    #[error(
+        "{matrix} is singular to working precision (condition number {condition:.1e}): a depth of {depth_mm} mm \
+         blurs a pitch of {} x {} mm beyond recovery; use a smaller depth or a larger pitch, depth/pitch below about 3",
+        pitch_mm[0], pitch_mm[1]
+    )]
+    Singular {
+        /// Name of the matrix.
+        matrix: &'static str,
+        /// Its condition number in the 2-norm, as far as it can be told in `f64`.
+        condition: f64,
+        /// Depth of the sensor.
+        depth_mm: f64,
+        /// Pitch of the sensor.
+        pitch_mm: [f64; 2],
+    },
+}
+
+/// C31, C32, C33 and the 13 matrices of a sensor, each `m` by `m`.
+///
+/// `C` matrices are in Pa/N, `C33inv` and `A` in N/Pa, `D` without unit. All have mirror symmetry and are kept as
+/// blocks; the products D are made when asked for, so that a sensor of thousands of taxels needs no more memory than
+/// seven matrices of a quarter of `m^2`.
+#[derive(Clone, Debug)]
+pub struct Matrices {
+    /// Stress for forces along x.
+    pub c31: FoldedMatrix,
+    /// Stress for forces along y.
+    pub c32: FoldedMatrix,
+    /// Stress for forces along z.
+    pub c33: FoldedMatrix,
+    c33inv: FoldedMatrix,
+    a: [FoldedMatrix; 3],
+    condition_c33: f64,
+    condition_aat: f64,
+}
+
+/// Largest condition number that leaves a digit of the result, `1 / f64::EPSILON`.
+const SINGULAR: f64 = 1.0 / f64::EPSILON;
+
+impl Matrices {
+    /// Computes all matrices of a sensor for a load kernel (Pinto-Salamanca et al., Sensors 2024, Eqs. 4, 7 and 14).
+    ///
+    /// # Errors
+    ///
+    /// [`MatrixError::Singular`] when C33 or `A A^T` is singular to working precision.
+    pub fn new(sensor: &Sensor, kernel: Kernel) -> Result<Self, MatrixError> {
+        let singular = |matrix, condition| MatrixError::Singular {
+            matrix,
+            condition,
+            depth_mm: sensor.depth_mm,
+            pitch_mm: sensor.pitch_mm,
+        };
+        let quads = Quads::new(sensor.columns, sensor.rows);
+        let c = kernel::folded(sensor, kernel);
+        let factors = Factors::new(&quads, &c);
+        let condition_c33 = factors.condition_c33();
+        let condition_a = factors.condition_a();
+        let condition_aat = condition_a * condition_a;
+        if is_singular(condition_c33) {
+            return Err(singular("C33", condition_c33));
+        }
+        if is_singular(condition_aat) {
+            return Err(singular("A A^T", condition_aat));
+        }
+        let [c33inv, a1, a2, a3] = factors.inverses(&quads).ok_or_else(|| singular("A A^T", f64::INFINITY))?;
+        let [c31, c32, c33] = c;
+        Ok(Self { c31, c32, c33, c33inv, a: [a1, a2, a3], condition_c33, condition_aat })
+    }
+
+    /// The quads of the sensor.
+    pub fn quads(&self) -> &Quads {
+        &self.c33.quads
+    }
+
+    /// One of the 13 matrices as blocks; the products D are computed here, a quarter of the work of whole matrices.
+    pub fn folded(&self, name: MatrixName) -> Cow<'_, FoldedMatrix> {
+        match (name, name.product()) {
+            (_, Some((p, q))) => Cow::Owned(-self.a[p - 1].times([&self.c33, &self.c31, &self.c32][q])),
+            (MatrixName::A1, _) => Cow::Borrowed(&self.a[0]),
+            (MatrixName::A2, _) => Cow::Borrowed(&self.a[1]),
+            (MatrixName::A3, _) => Cow::Borrowed(&self.a[2]),
+            _ => Cow::Borrowed(&self.c33inv),
+        }
+    }
+
+    /// One of the 13 matrices whole, `m` by `m`. Made anew at each call; on a large sensor ask for one at a time.
+    pub fn dense(&self, name: MatrixName) -> DMatrix<f64> {
+        self.folded(name).dense()
+    }
+
+    /// Condition number of C33 in the 2-norm.
+    pub fn condition_c33(&self) -> f64 {
+        self.condition_c33
+    }
+
+    /// Condition number of `A A^T` in the 2-norm, the square of that of `A`.
+    pub fn condition_aat(&self) -> f64 {
+        self.condition_aat
+    }
+}
+
+/// A NaN, from zero over zero, counts as singular.
+fn is_singular(condition: f64) -> bool {
+    condition.is_nan() || condition >= SINGULAR
+}

@@ -1,0 +1,166 @@
+//! A small network that corrects what the joint estimator systematically gets wrong.
+//!
+//! The taxels sample the stress; where a contact's edge lies between two of them moves the estimate by several
+//! percent, in a way that repeats with the pitch. The network sees the stress that the normal forces alone would
+//! cause, in a window that moves with the contact, and adds a bounded amount to the estimate.
+
+use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
+
+use crate::design::{Correction, WEIGHT_FRACTION};
+
+/// The correction of a component is at most this, so that an unforeseen contact is never made much worse.
+pub const LARGEST: f64 = 1.0 / 4.0;
+/// Stress in the window is taken as a share of `sum |b|`, times this.
+const STRESS_SCALE: f64 = 16.0;
+/// The mirror images of a look.
+pub(crate) const MIRRORS: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
+
+/// What the network sees of a contact.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Look {
+    half_window: [usize; 2],
+    /// The window row by row, then `mu_x, mu_y`, the centre's distance from the middle of the window in pitches, and 1.
+    pub(crate) values: Vec<f64>,
+}
+
+impl Look {
+    /// Looks at the stress `normal` (pascals, taxel order, `columns` to a row) around the centre of its compression.
+    ///
+    /// The window is centred at the taxel next to the centroid of the compressed taxels, and is 0 beyond the grid.
+    pub(crate) fn take(
+        &mut self,
+        normal: &[f64],
+        columns: usize,
+        half_window: [usize; 2],
+        stress_sum: f64,
+        mu: [f64; 2],
+    ) {
+        let mut sums = [0.0; 3];
+        for (taxel, stress) in normal.iter().enumerate() {
+            let weight = (-stress).max(0.0);
+            sums[0] += weight;
+            sums[1] += weight * (taxel % columns) as f64;
+            sums[2] += weight * (taxel / columns) as f64;
+        }
+        // Without compression any place does: there is nothing to see.
+        let centroid = if sums[0] > 0.0 { [sums[1] / sums[0], sums[2] / sums[0]] } else { [0.0; 2] };
+        let centre = centroid.map(|at| (at + 0.5).floor());
+        let [half_x, half_y] = half_window.map(|half| half as i64);
+        let [centre_x, centre_y] = centre.map(|at| at as i64);
+        let rows = (normal.len() / columns) as i64;
+        let scale = if stress_sum > 0.0 { STRESS_SCALE / stress_sum } else { 0.0 };
+        self.half_window = half_window;
+        self.values.clear();
+        for y in centre_y - half_y..=centre_y + half_y {
+            for x in centre_x - half_x..=centre_x + half_x {
+                let inside = (0..columns as i64).contains(&x) && (0..rows).contains(&y);
+                self.values.push(if inside { scale * normal[y as usize * columns + x as usize] } else { 0.0 });
+            }
+        }
+        self.values.extend([mu[0], mu[1], centroid[0] - centre[0], centroid[1] - centre[1], 1.0]);
+    }
+
+    /// Writes the look, mirrored where a sign is negative, to `into`, of the same length.
+    pub(crate) fn mirrored(&self, [sign_x, sign_y]: [f64; 2], into: &mut [f64]) {
+        let [width, height] = self.half_window.map(|half| 2 * half + 1);
+        for (index, value) in into.iter_mut().enumerate().take(width * height) {
+            let (x, y) = (index % width, index / width);
+            let x = if sign_x < 0.0 { width - 1 - x } else { x };
+            let y = if sign_y < 0.0 { height - 1 - y } else { y };
+            *value = self.values[y * width + x];
+        }
+        let signs = [sign_x, sign_y, sign_x, sign_y, 1.0];
+        for (offset, sign) in signs.into_iter().enumerate() {
+            into[width * height + offset] = sign * self.values[width * height + offset];
+        }
+    }
+}
+
+/// The network: one layer of hinges, then two sums.
+#[derive(Clone, Debug)]
+pub(crate) struct Network {
+    pub(crate) half_window: [usize; 2],
+    /// One row for each hidden unit.
+    hidden: DMatrix<f64>,
+    output: [Vec<f64>; 2],
+}
+
+/// Memory of the network, to be used again for the next frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NetworkScratch {
+    inputs: Vec<f64>,
+    units: Vec<f64>,
+}
+
+impl Network {
+    pub(crate) fn new(correction: &Correction) -> Self {
+        let step = (-f64::from(WEIGHT_FRACTION)).exp2();
+        let weight = |whole: &i32| step * f64::from(*whole);
+        let Correction { half_window, hidden, output } = correction;
+        let rows = hidden.iter().flatten().map(weight);
+        Self {
+            half_window: *half_window,
+            hidden: DMatrix::from_row_iterator(hidden.len(), Correction::inputs(*half_window), rows),
+            output: output.each_ref().map(|weights| weights.iter().map(weight).collect()),
+        }
+    }
+
+    /// The correction, each component within [`LARGEST`].
+    ///
+    /// It is the mean over the mirror images of the contact, mirrored back: a mirrored contact gets the mirrored
+    /// correction, exactly.
+    pub(crate) fn correct(&self, look: &Look, scratch: &mut NetworkScratch) -> [f64; 2] {
+        let NetworkScratch { inputs, units } = scratch;
+        inputs.resize(look.values.len(), 0.0);
+        units.resize(self.hidden.nrows(), 0.0);
+        let mut sums = [0.0; 2];
+        for signs in MIRRORS {
+            look.mirrored(signs, inputs);
+            let seen = DVectorView::from_slice(inputs, inputs.len());
+            DVectorViewMut::from_slice(units, self.hidden.nrows()).gemv(1.0, &self.hidden, &seen, 0.0);
+            for ((sum, sign), weights) in sums.iter_mut().zip(signs).zip(&self.output) {
+                let output: f64 = weights.iter().zip(&*units).map(|(weight, unit)| weight * unit.max(0.0)).sum();
+                *sum += sign * output;
+            }
+        }
+        sums.map(|sum| (0.25 * sum).clamp(-LARGEST, LARGEST))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_moves_with_the_contact_and_ends_at_the_grid() {
+        // Compression at column 2 of row 0, in a grid of 4 by 3.
+        let mut normal = vec![0.0; 12];
+        (normal[2], normal[1], normal[3], normal[6]) = (-4.0, -1.0, -1.0, -0.5);
+        let mut seen = Look::default();
+        seen.take(&normal, 4, [1, 1], 16.0, [0.3, -0.2]);
+        let window = [0.0, 0.0, 0.0, -1.0, -4.0, -1.0, 0.0, -0.5, 0.0];
+        assert_eq!(seen.values[..9], window);
+        assert_eq!(seen.values[9..11], [0.3, -0.2]);
+        assert!(seen.values[11].abs() < 1e-15 && (seen.values[12] - 0.5 / 6.5).abs() < 1e-15);
+        assert_eq!(seen.values[13].to_bits(), 1.0_f64.to_bits());
+    }
+
+    #[test]
+    fn a_mirrored_look_has_the_mirrored_correction_and_both_are_bounded() {
+        let correction = Correction {
+            half_window: [1, 0],
+            hidden: vec![vec![4096, -2048, 512, 300, 20, -7, 900, 100], vec![-900, 4096, 77, -100, 5, 80, 1, 50]],
+            output: [vec![300, -200], vec![150, 60]],
+        };
+        let network = Network::new(&correction);
+        let correct = |look: &Look| network.correct(look, &mut NetworkScratch::default());
+        let seen = Look { half_window: [1, 0], values: vec![-0.3, 0.9, 0.2, 0.4, -0.1, 0.25, 0.4, 1.0] };
+        let mut mirror = seen.clone();
+        seen.mirrored([-1.0, 1.0], &mut mirror.values);
+        assert_ne!(seen, mirror);
+        let ([x, y], [mirrored_x, mirrored_y]) = (correct(&seen), correct(&mirror));
+        assert!(x.abs() > 1e-4 && (x + mirrored_x).abs() < 1e-15 && (y - mirrored_y).abs() < 1e-15);
+        let loud = Look { values: seen.values.iter().map(|value| 1000.0 * value).collect(), ..seen };
+        assert_eq!(correct(&loud)[0].abs().to_bits(), LARGEST.to_bits());
+    }
+}

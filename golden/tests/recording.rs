@@ -1,0 +1,170 @@
+//! Frames of a real mat: counts, calibration, labels.
+
+#![allow(clippy::float_cmp)] // the same bits are meant
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use golden::design::{CALIBRATION_FILE, Design, Filter, Kernel};
+use golden::frames::{read_frames, read_labelled_frames};
+use golden::metrics::field_error;
+use golden::solver::{Solver, Status};
+
+const PAD: &str = "name = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
+const LINES: &str = "1.5,0\n0.5,-2\n1,0.25\n\n1,1\n 2 , 3\n16,-1e6\n";
+
+fn file(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// A folder with `pad.toml`, the small design with `keys` more of its sensor, and a calibration file.
+fn folder(keys: &str, calibration: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pad.toml");
+    fs::write(&path, format!("{PAD}{keys}\n")).unwrap();
+    fs::write(folder.path().join("gains.csv"), calibration).unwrap();
+    (folder, path)
+}
+
+const COUNTS: &str = "pa_per_count = -12.5\ncalibration = \"gains.csv\"";
+
+#[test]
+fn counts_become_pascals() {
+    let (_folder, path) = folder(COUNTS, LINES);
+    let design = Design::load(&path).unwrap();
+    let pa = |taxel| design.input.to_pa(taxel, 8.0);
+    assert_eq!([0, 1, 2, 3, 4].map(pa), [-150.0, -25.0, -103.125, -112.5, -237.5]);
+    for taxel in 0..6 {
+        assert!((design.input.from_pa(taxel, pa(taxel)) - 8.0).abs() < 1e-9);
+    }
+    let plain = Design::from_toml(&format!("{PAD}pa_per_count = 2\n"), "pad.toml").unwrap();
+    assert_eq!((plain.input.to_pa(0, 3.0), plain.input.from_pa(0, 3.0)), (6.0, 1.5));
+    let none = Design::from_toml(PAD, "pad.toml").unwrap();
+    assert_eq!((none.input.to_pa(0, 3.0), none.input.from_pa(0, 3.0)), (3.0, 3.0));
+    assert!(!none.to_toml().contains("count") && none.calibration_csv().is_none());
+}
+
+#[test]
+fn the_solver_takes_counts() {
+    let (_folder, path) = folder(COUNTS, LINES);
+    let mut design = Design::load(&path).unwrap();
+    let counts = [800.0, 2000.0, 400.0, -3.0, 10.0, 62600.0];
+    let stress: Vec<f64> = (0..6).map(|taxel| design.input.to_pa(taxel, counts[taxel])).collect();
+    let found = Solver::new(&design).unwrap().solve(&counts).unwrap();
+    design.input = golden::design::Input::default();
+    let solver = Solver::new(&design).unwrap();
+    assert_eq!(found, solver.solve(&stress).unwrap());
+    assert_ne!(found.resultant, solver.solve(&counts).unwrap().resultant);
+    // Full scale is that of the stress: 8001 counts are more than 100 kPa.
+    design.input.pa_per_count = Some(-12.5);
+    let solver = Solver::new(&design).unwrap();
+    let status = |count: f64| solver.solve(&[count; 6]).unwrap().status;
+    assert!(!status(8000.0).contains(Status::SATURATED) && status(8001.0).contains(Status::SATURATED));
+}
+
+#[test]
+fn the_resolved_design_has_its_calibration_beside_it() {
+    let (folder, path) = folder(COUNTS, LINES);
+    let design = Design::load(&path).unwrap();
+    let resolved = folder.path().join("resolved.toml");
+    fs::write(&resolved, design.to_toml()).unwrap();
+    fs::write(folder.path().join(CALIBRATION_FILE), design.calibration_csv().unwrap()).unwrap();
+    let again = Design::load(&resolved).unwrap();
+    assert_eq!(again, design);
+    assert_eq!(again.to_toml(), design.to_toml());
+    let origin = resolved.display().to_string();
+    assert_eq!(Design::from_toml(&design.to_toml(), &origin).unwrap(), design);
+}
+
+#[test]
+fn wrong_inputs_are_refused() {
+    for (keys, parts) in [
+        ("calibration = \"gains.csv\"", ["sensor.calibration", "pa_per_count is not", "add pa_per_count"]),
+        ("pa_per_count = 0", ["sensor.pa_per_count", "is 0", "1e-9"]),
+        ("pa_per_count = nan", ["sensor.pa_per_count", "NaN", "1e9"]),
+        ("pa_per_count = 1\ncalibration = \"none.csv\"", ["none.csv", "cannot read", "path"]),
+        ("pa_per_counts = 1", ["pa_per_counts", "line 7", "pa_per_count"]),
+    ] {
+        let (_folder, path) = folder(keys, LINES);
+        let message = Design::load(&path).unwrap_err().to_string();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+    for (lines, parts) in [
+        (LINES.replace("16,", "16.5,"), ["gains.csv, line 7", "gain is 16.5", "at most 16"]),
+        (LINES.replace("0.5,", "0,"), ["gains.csv, line 2", "gain is 0", "greater than 0"]),
+        (LINES.replace("0.5,", "nan,"), ["gains.csv, line 2", "gain is NaN", "greater than 0"]),
+        (LINES.replace("1e6", "1e7"), ["gains.csv, line 7", "offset is -10000000", "1000000"]),
+        (LINES.replace("1,1", "1;1"), ["gains.csv, line 5", "1;1", "gain,offset"]),
+        (LINES.replace("1,1", "1,1,1"), ["gains.csv, line 5", "1,1,1", "gain,offset"]),
+        (LINES.replace("1,1\n", ""), ["gains.csv, line 6", "after 5 taxels", "sensor has 6"]),
+        (format!("{LINES}1,0"), ["gains.csv, line 8", "after 7 taxels", "sensor has 6"]),
+    ] {
+        let (_folder, path) = folder(COUNTS, &lines);
+        let message = Design::load(&path).unwrap_err().to_string();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+}
+
+#[test]
+fn label_columns_are_skipped() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frames.csv");
+    let read = |text: &str, labels| {
+        fs::write(&path, text).unwrap();
+        read_labelled_frames(&path, 2, labels).map_err(|error| error.to_string())
+    };
+    let two = Ok(vec![vec![1.0, 2.0], vec![3.0, 4.0]]);
+    assert_eq!(read("a,0,1,2\nb,é 1,3,4\n", 2), two);
+    assert_eq!(read("\nname,n,r0,r1\na,0,1,2\n\nb,1,3,4\n", 2), two);
+    assert_eq!(read("1,2\n3,4\n", 0), two);
+    // A header is the first line only, and has no number in it; what looks like one later is a mistake.
+    for (text, labels, part) in [
+        ("n,r0,r1\nm,r0,r1\n", 1, "line 2, column 2"),
+        ("n,1,r1\na,1,2\n", 1, "line 1, column 3"),
+        ("n,nan,inf\na,1,2\n", 1, "line 1, column 2"),
+        ("r0,r1\n1,2\n", 0, "line 1, column 1"),
+        ("a,1\n", 1, "ends at column 2 where 3"),
+        ("a,1,2,3\n", 1, "ends at column 4 where 3"),
+        ("name,r0,r1\n", 1, "no frame"),
+    ] {
+        let message = read(text, labels).unwrap_err();
+        assert!(message.contains(part), "{message}");
+    }
+    let message = read_frames(&file("data/bed_mat_64x27.csv"), 1728).unwrap_err().to_string();
+    assert!(message.contains("line 1, column 1: \"recording\"") && message.contains("--labels"), "{message}");
+}
+
+#[test]
+fn the_mat_carries_the_person() {
+    let mut design = Design::load(&file("designs/bed-mat.toml")).unwrap();
+    let frames = read_labelled_frames(&file("data/bed_mat_64x27.csv"), 1728, 2).unwrap();
+    assert_eq!(frames.len(), 24);
+    let filtered = Solver::new(&design).unwrap();
+    design.algorithm.filter = Filter::None;
+    let cell = Solver::new(&design).unwrap();
+    let [condition_c33, condition_aat] = [cell.matrices().condition_c33(), cell.matrices().condition_aat()];
+    assert!((condition_c33 - 1.194).abs() < 1e-3 && (condition_aat - 1.426).abs() < 1e-3);
+    design.algorithm.kernel = Kernel::Point;
+    let point = Solver::new(&design).unwrap();
+
+    let mut lying = 0;
+    for frame in frames {
+        let solution = cell.solve(&frame).unwrap();
+        let total: f64 = frame.iter().map(|count| -50.0 * count * 0.028 * 0.028).sum();
+        if solution.status == Status::NO_CONTACT {
+            assert!(total > -4.0, "{total}");
+            continue;
+        }
+        lying += 1;
+        // Without tension there is no direction of push.
+        assert_eq!(solution.status, Status::DIRECTION_UNKNOWN);
+        assert!((-780.0..-620.0).contains(&total), "{total}");
+        assert!((solution.resultant[2] / total - 1.0).abs() < 0.002, "{:?} for {total}", solution.resultant);
+        // The point kernel's gain at this depth, 5.9.
+        let short = point.solve(&frame).unwrap().resultant[2] / total;
+        assert!((short - 0.1696).abs() < 1e-4, "{short}");
+        let error = field_error(&solution.field, &filtered.solve(&frame).unwrap().field);
+        assert!(error > 1e-5 && error < 1.3e-3, "{error:e}");
+    }
+    assert_eq!(lying, 22);
+}

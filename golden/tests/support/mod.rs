@@ -1,0 +1,129 @@
+//! Contacts with known forces for every friction and direction, computed once.
+
+use golden::calibrate::random_contacts;
+use golden::design::Sensor;
+use golden::metrics::{Outcome, errors};
+use golden::scene::{Contact, Medium, Scene, SensorErrors, Shape};
+use golden::solver::Solver;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Normal force of all contacts in newtons.
+const FORCE_N: f64 = 6.0;
+
+/// A contact's stress for the normal force, and for a tangential force as large along x and along y, in pascals; and
+/// the directions in which it is pushed, in radians.
+pub struct Pressed {
+    pub loads: [Vec<f64>; 3],
+    pub directions: Vec<f64>,
+}
+
+/// The largest errors over a set of contacts in percent of the normal force.
+pub struct Worst {
+    /// Along x, y, z.
+    pub error: [f64; 3],
+    /// Median of the larger of both tangential errors.
+    pub median: f64,
+    /// Frames with a status other than good.
+    pub flagged: usize,
+}
+
+fn pressed(sensor: &Sensor, medium: Medium, shape: Shape, centre_m: [f64; 2], directions: Vec<f64>) -> Pressed {
+    let contact = Contact { shape, centre_m, normal_force_n: FORCE_N, friction: 1.0, direction_deg: 0.0 };
+    let scene = Scene {
+        sensor: sensor.clone(),
+        medium,
+        contacts: vec![contact],
+        sweep_deg: vec![0.0, 90.0, 180.0],
+        sensor_errors: SensorErrors::default(),
+    };
+    let frames = scene.frames().unwrap();
+    let [ahead, aside, behind] = [0, 1, 2].map(|frame: usize| &frames[frame].stress);
+    let normal: Vec<f64> = ahead.iter().zip(behind).map(|(ahead, behind)| 0.5 * (ahead + behind)).collect();
+    let less = |stress: &[f64]| stress.iter().zip(&normal).map(|(all, normal)| all - normal).collect();
+    Pressed { loads: [normal.clone(), less(ahead), less(aside)], directions }
+}
+
+/// A contact in the middle of the grid, pushed every 10 degrees.
+pub fn centred(sensor: &Sensor, medium: Medium, shape: Shape) -> Vec<Pressed> {
+    let last = sensor.position_m(sensor.taxels() - 1);
+    let directions = (0..36).map(|step| f64::from(10 * step).to_radians()).collect();
+    vec![pressed(sensor, medium, shape, last.map(|far| 0.5 * far), directions)]
+}
+
+/// Round contacts, Hertz and disc in turn, that lie within the grid by a third of the depth: radius 1.25 to 2.5 of the
+/// coarser pitch, but no more than 0.45 of the shorter side; anywhere, pushed anywhere.
+pub fn inside(sensor: &Sensor, medium: Medium, seed: u64, count: usize) -> Vec<Pressed> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
+    let last = sensor.position_m(sensor.taxels() - 1);
+    let pitch = 1e-3 * sensor.pitch_mm[0].max(sensor.pitch_mm[1]);
+    (0..count)
+        .map(|index| {
+            let radius = between(1.25 * pitch, (2.5 * pitch).min(0.45 * last[0].min(last[1])));
+            let margin = radius + sensor.depth_m() / 3.0;
+            let centre = last.map(|far| between(margin.min(0.5 * far), (far - margin).max(0.5 * far)));
+            let shape = match index % 2 {
+                0 => Shape::Hertz { semi_axes_m: [radius; 2] },
+                _ => Shape::Disc { radius_m: radius },
+            };
+            let direction = between(-std::f64::consts::PI, std::f64::consts::PI);
+            pressed(sensor, medium, shape, centre, vec![direction])
+        })
+        .collect()
+}
+
+/// Contacts of the kinds, sizes and places that the calibration is made of, but not the same ones.
+pub fn anywhere(sensor: &Sensor, medium: Medium, count: usize) -> Vec<Pressed> {
+    random_contacts(sensor, 0xdead_beef, count)
+        .into_iter()
+        .map(|contact| {
+            let direction = contact.direction_deg.to_radians();
+            pressed(sensor, medium, contact.shape, contact.centre_m, vec![direction])
+        })
+        .collect()
+}
+
+/// Pairs of round contacts of equal force anywhere inside, pushed the same way, neither knowing of the other.
+pub fn pairs(sensor: &Sensor, medium: Medium, seed: u64, count: usize) -> Vec<Pressed> {
+    let half = |one: f64, other: f64| 0.5 * (one + other);
+    inside(sensor, medium, seed, 2 * count)
+        .chunks_exact(2)
+        .map(|pair| Pressed {
+            loads: [0, 1, 2].map(|load: usize| {
+                let [one, other] = [&pair[0].loads[load], &pair[1].loads[load]];
+                one.iter().zip(other).map(|(&one, &other)| half(one, other)).collect()
+            }),
+            directions: pair[0].directions.clone(),
+        })
+        .collect()
+}
+
+/// Solves every contact in each of its directions, with noise as a share of the largest stress.
+pub fn worst(solver: &Solver, set: &[Pressed], friction: f64, noise: f64) -> Worst {
+    let mut random = ChaCha8Rng::seed_from_u64(0x0015_e000);
+    let (mut error, mut larger, mut flagged) = ([0.0_f64; 3], Vec::new(), 0);
+    for Pressed { loads: [normal, along_x, along_y], directions } in set {
+        for direction in directions {
+            let (sin, cos) = direction.sin_cos();
+            let [x, y] = [friction * cos, friction * sin];
+            let mut frame: Vec<f64> = (0..normal.len()).map(|i| normal[i] + x * along_x[i] + y * along_y[i]).collect();
+            let deviation = noise * frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+            for stress in &mut frame {
+                // Twelve uniform numbers make a normal one, near enough.
+                let sum: f64 = (0..12).map(|_| random.random::<f64>()).sum();
+                *stress += deviation * (sum - 6.0);
+            }
+            let solution = solver.solve(&frame).unwrap();
+            flagged += usize::from(solution.status.0 != 0);
+            let truth = Outcome { force: [FORCE_N * x, FORCE_N * y, -FORCE_N], friction, direction: *direction };
+            let [x, y, z, ..] = errors(&truth, &Outcome::from(&solution));
+            larger.push(x.max(y));
+            for (worst, found) in error.iter_mut().zip([x, y, z]) {
+                *worst = worst.max(found);
+            }
+        }
+    }
+    larger.sort_by(f64::total_cmp);
+    Worst { error, median: larger[larger.len() / 2], flagged }
+}
