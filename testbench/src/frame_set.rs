@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use golden::design::Sensor;
+use golden::design::{Design, Sensor};
 use golden::forces::read_outcomes;
-use golden::frames::{FrameError, read_frames};
+use golden::frames::{FrameError, read_labelled_frames};
 use golden::metrics::Outcome;
 use golden::scene::{Scene, SceneError};
 
@@ -13,7 +13,7 @@ use golden::scene::{Scene, SceneError};
 pub struct FrameSet {
     /// Where they come from, for people.
     pub origin: String,
-    /// Stresses in Pa, one frame of m taxels each.
+    /// What the stream carries, one frame of m taxels each: stresses in Pa, or counts if the design says so.
     pub stress: Vec<Vec<f64>>,
     /// True forces, one for each frame.
     pub truth: Option<Vec<Outcome>>,
@@ -31,12 +31,26 @@ impl FrameSet {
         Ok(Self { origin: "the sensor's standing scene".to_owned(), stress, truth: Some(truth) })
     }
 
-    /// Frames from a CSV file, with true forces from another if there is one.
+    /// The same frames as the design's sensor delivers them: in counts, whole ones, if it counts.
+    #[must_use]
+    pub fn as_delivered(mut self, design: &Design) -> Self {
+        if design.input.pa_per_count.is_some() {
+            for frame in &mut self.stress {
+                for (taxel, value) in frame.iter_mut().enumerate() {
+                    *value = design.input.from_pa(taxel, *value).round();
+                }
+            }
+        }
+        self
+    }
+
+    /// Frames from a CSV file whose lines begin with `labels` columns of other things, with true forces from another
+    /// file if there is one.
     ///
     /// # Errors
     /// [`FrameError`], with file, line and column.
-    pub fn load(frames: &Path, reference: Option<&Path>, sensor: &Sensor) -> Result<Self, FrameError> {
-        let stress = read_frames(frames, sensor.taxels())?;
+    pub fn load(frames: &Path, labels: usize, reference: Option<&Path>, sensor: &Sensor) -> Result<Self, FrameError> {
+        let stress = read_labelled_frames(frames, sensor.taxels(), labels)?;
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
         Ok(Self { origin: frames.display().to_string(), stress, truth })
     }

@@ -2,6 +2,7 @@
 //! the f64 solver judge the result.
 
 pub mod accuracy;
+pub mod bench;
 pub mod compare;
 pub mod dut;
 pub mod frame_set;

@@ -7,7 +7,9 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 use golden::design::Design;
+use golden::output::write_whole;
 
+use testbench::bench::{self, BenchError, Scope};
 use testbench::frame_set::FrameSet;
 use testbench::progress::Progress;
 use testbench::report::Report;
@@ -30,16 +32,62 @@ enum Command {
     /// The streams run free, with an idle source, with a stalled sink, and with both. The exit code is 0 only if every
     /// word is the model's.
     Run(RunArguments),
+    /// Measure: time to generate, speed of the simulation, cycles against lanes and taxels.
+    ///
+    /// With --solver and --cells the page has the figures of `golden bench` and of Yosys too; `make bench` does all of it.
+    /// No figure decides the exit code.
+    Bench(BenchArguments),
+    /// Sum Yosys' cell counts of a generated design by block, beside the predicted ones.
+    ///
+    /// STATISTICS is what `stat -json` prints after a synthesis without -flatten; `tools/synth.sh` does both.
+    Cells {
+        /// Design file (TOML).
+        design: PathBuf,
+        /// Its generated folder.
+        folder: PathBuf,
+        /// Yosys' statistics (JSON).
+        statistics: PathBuf,
+        /// Report as JSON.
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+#[derive(Args)]
+struct BenchArguments {
+    /// Design files (TOML) to generate and simulate.
+    designs: Vec<PathBuf>,
+    /// Largest side of the square sensors in the tables of cycles.
+    #[arg(long, default_value_t = 32)]
+    largest: usize,
+    /// What `golden bench --json` printed.
+    #[arg(long, value_name = "FILE.json")]
+    solver: Option<PathBuf>,
+    /// What `testbench cells --json` printed; once for each design.
+    #[arg(long, value_name = "FILE.json")]
+    cells: Vec<PathBuf>,
+    /// Where to write the page (Markdown).
+    #[arg(long, value_name = "PAGE.md")]
+    page: Option<PathBuf>,
+    /// Where to write the plot of latency against taxels (SVG).
+    #[arg(long, value_name = "PLOT.svg")]
+    plot: Option<PathBuf>,
+    /// Report as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Args)]
 struct RunArguments {
     /// Design file (TOML).
     design: PathBuf,
-    /// Frames (CSV): one frame a line, stresses in pascals, compression negative. Without it, the ground-truth frames
-    /// made for the sensor.
+    /// Frames (CSV): one frame a line, stresses in pascals, compression negative, or counts if the design has
+    /// `pa_per_count`. Without it, the ground-truth frames made for the sensor.
     #[arg(long)]
     frames: Option<PathBuf>,
+    /// Columns of labels before the values of a frame; the file may then have a header.
+    #[arg(long, default_value_t = 0, requires = "frames")]
+    labels: usize,
     /// True forces of the frames (CSV, as `golden scene` writes them), to report the errors.
     #[arg(long, requires = "frames")]
     reference: Option<PathBuf>,
@@ -57,8 +105,15 @@ struct RunArguments {
 }
 
 fn main() -> ExitCode {
-    let Command::Run(arguments) = Arguments::parse().command;
-    match simulate(&arguments).and_then(|report| print(&report, arguments.json).map(|()| report.bit_exact)) {
+    let result = match Arguments::parse().command {
+        Command::Run(arguments) => simulate(&arguments)
+            .and_then(|report| print(&report_text(&report, arguments.json)?).map(|()| report.bit_exact)),
+        Command::Bench(arguments) => bench(&arguments).map(|()| true),
+        Command::Cells { design, folder, statistics, json } => {
+            cells(&design, &folder, &statistics, json).map(|()| true)
+        }
+    };
+    match result {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
@@ -68,14 +123,55 @@ fn main() -> ExitCode {
     }
 }
 
+fn bench(arguments: &BenchArguments) -> Result<(), Box<dyn Error>> {
+    let load = |path: &PathBuf| Ok((path.display().to_string(), Design::load(path)?));
+    let scope = Scope {
+        designs: arguments.designs.iter().map(load).collect::<Result<_, BenchError>>()?,
+        largest: arguments.largest,
+        solver: arguments.solver.clone(),
+        cells: arguments.cells.clone(),
+    };
+    let figures = bench::measure(&scope, &Progress::new())?;
+    if let Some(plot) = &arguments.plot {
+        write_whole(plot, bench::plot::render(&figures.cycles).as_bytes())?;
+    }
+    let page = bench::page::render(&figures, &command(&scope), arguments.plot.as_deref().and_then(file_name));
+    if let Some(path) = &arguments.page {
+        write_whole(path, page.as_bytes())?;
+    }
+    if arguments.json {
+        print(&(serde_json::to_string_pretty(&figures)? + "\n"))
+    } else if let Some(path) = &arguments.page {
+        print(&format!("written: {}\n", path.display()))
+    } else {
+        print(&page)
+    }
+}
+
+/// The command that measures the same again.
+fn command(scope: &Scope) -> String {
+    let designs: Vec<&str> = scope.designs.iter().map(|(path, _)| path.as_str()).collect();
+    format!("testbench bench {} --largest {}", designs.join(" "), scope.largest)
+}
+
+/// The plot lies beside the page.
+fn file_name(path: &Path) -> Option<&str> {
+    path.file_name()?.to_str()
+}
+
+fn cells(design: &Path, folder: &Path, statistics: &Path, json: bool) -> Result<(), Box<dyn Error>> {
+    let cells = bench::cells::count(design, &folder.join("metadata.json"), statistics)?;
+    print(&if json { serde_json::to_string_pretty(&cells)? + "\n" } else { bench::cells::render(&cells) })
+}
+
 fn simulate(arguments: &RunArguments) -> Result<Report, Box<dyn Error>> {
     let design = Design::load(&arguments.design)?;
     let progress = Progress::new();
     let frames = if let Some(path) = &arguments.frames {
-        FrameSet::load(path, arguments.reference.as_deref(), &design.sensor)?
+        FrameSet::load(path, arguments.labels, arguments.reference.as_deref(), &design.sensor)?
     } else {
         progress.stage("making ground-truth frames");
-        FrameSet::standing(&design.sensor)?
+        FrameSet::standing(&design.sensor)?.as_delivered(&design)
     };
     let trace = arguments.trace.as_ref().map(|file| match file {
         Some(file) => file.clone(),
@@ -85,8 +181,11 @@ fn simulate(arguments: &RunArguments) -> Result<Report, Box<dyn Error>> {
     Ok(run(&design, &frames, &options, &progress)?)
 }
 
-fn print(report: &Report, json: bool) -> Result<(), Box<dyn Error>> {
-    let text = if json { serde_json::to_string_pretty(report)? + "\n" } else { table::render(report) };
+fn report_text(report: &Report, json: bool) -> Result<String, serde_json::Error> {
+    if json { Ok(serde_json::to_string_pretty(report)? + "\n") } else { Ok(table::render(report)) }
+}
+
+fn print(text: &str) -> Result<(), Box<dyn Error>> {
     match io::stdout().write_all(text.as_bytes()) {
         // `testbench run … | head` is no failure.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),

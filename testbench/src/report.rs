@@ -36,6 +36,8 @@ pub struct Predicted {
     pub dsp: usize,
     /// RAMB36; a RAMB18 counts one half.
     pub bram36: f64,
+    /// Whether the cycles are those of the worst frame: a design that passes over zeros may be faster.
+    pub worst_case: bool,
 }
 
 /// Times at the design's clock.

@@ -167,6 +167,7 @@ fn summarise(plan: &Plan, simulation: &Simulation, simulator: String) -> Report 
             interval_cycles: plan.timeline.interval_cycles,
             dsp: plan.resources.dsp,
             bram36: plan.resources.bram36,
+            worst_case: plan.design.hardware.skip_zeros,
         },
         microseconds: Microseconds {
             latency: microseconds(simulation.latency_cycles),

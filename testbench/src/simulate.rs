@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::thread;
 
+use hdl_gen::plan::timing::INTERVAL_FRAMES;
+
 use crate::compare::Comparison;
 use crate::dut::{Dut, DutError};
 use crate::stream::{Mode, Pacing, StreamError, Traffic, exchange};
@@ -10,8 +12,6 @@ use crate::verilate::Built;
 
 /// Frames sent one at a time for the latency.
 const LATENCY_FRAMES: usize = 3;
-/// Frames sent back to back for the interval: enough to fill every buffer and repeat.
-const INTERVAL_FRAMES: usize = 12;
 
 /// What to send and what must come back.
 #[derive(Clone, Copy, Debug)]

@@ -4,9 +4,8 @@ mod support;
 
 use std::sync::OnceLock;
 
-use hdl_gen::model::{
-    AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, Model, NO_CONTACT, NOT_FINITE, SATURATED, SUMMARY_WORDS,
-};
+use golden::design::{Design, Optimise, Outputs, PlanKind};
+use hdl_gen::model::{AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, Model, NO_CONTACT, NOT_FINITE, SATURATED};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -17,37 +16,70 @@ use testbench::stream::{INITIAL_RESET, Mode, Outcome, Pacing, Pattern, Reset, Tr
 use testbench::verilate::Built;
 use testbench::words::{Answer, decode, encode};
 
-const LONG: usize = 2000;
+const LONG: usize = 1200;
 
-/// The small design, planned and compiled once.
-fn small() -> &'static (Plan, Built) {
-    static SMALL: OnceLock<(Plan, Built)> = OnceLock::new();
-    SMALL.get_or_init(|| {
-        let plan = planned(&shipped("small"));
-        let built = built(&plan);
-        (plan, built)
+/// A design, planned and compiled.
+struct Subject {
+    plan: Plan,
+    built: Built,
+}
+
+/// The small design in every plan: the paper's, the reduced one for either aim, and without a field.
+fn subjects() -> &'static [Subject] {
+    static SUBJECTS: OnceLock<Vec<Subject>> = OnceLock::new();
+    SUBJECTS.get_or_init(|| {
+        let small = |name: &str, change: &dyn Fn(&mut Design)| {
+            let mut design = shipped("small");
+            name.clone_into(&mut design.name);
+            change(&mut design);
+            design
+        };
+        let designs = [
+            small("small_paper", &|design| design.algorithm.plan = PlanKind::Paper),
+            small("small_reduced", &|design| design.algorithm.plan = PlanKind::Reduced),
+            small("small_latency", &|design| {
+                design.algorithm.plan = PlanKind::Reduced;
+                design.hardware.optimise = Optimise::Latency;
+                (design.sensor.columns, design.sensor.rows) = (3, 3);
+            }),
+            small("small_resultants", &|design| {
+                design.algorithm.plan = PlanKind::Reduced;
+                design.algorithm.outputs = Outputs::Resultants;
+            }),
+        ];
+        in_parallel(&designs, |design| {
+            let plan = planned(design);
+            let built = built(&plan);
+            Subject { plan, built }
+        })
     })
 }
 
-fn run(traffic: &Traffic<'_>) -> Result<Outcome, String> {
-    let mut core = small().1.load(7).map_err(|error| error.to_string())?;
-    exchange(&mut core, traffic, |_| ()).map_err(|error| error.to_string())
-}
+impl Subject {
+    fn run(&self, traffic: &Traffic<'_>) -> Result<Outcome, String> {
+        let mut core = self.built.load(7).map_err(|error| error.to_string())?;
+        exchange(&mut core, traffic, |_| ()).map_err(|error| format!("{}: {error}", self.plan.design.name))
+    }
 
-fn traffic(packets: &[Vec<u32>]) -> Traffic<'_> {
-    Traffic::new(packets, timeout(&small().0))
-}
+    fn traffic<'a>(&self, packets: &'a [Vec<u32>]) -> Traffic<'a> {
+        Traffic::new(packets, timeout(&self.plan))
+    }
 
-/// The answers in order, if each packet has one.
-fn answers(packets: &[Vec<u32>], mode: &Mode) -> Vec<Vec<u32>> {
-    let outcome = run(&traffic(packets).with_mode(mode)).expect(mode.name);
-    assert_eq!(outcome.exchanges.len(), packets.len(), "{}", mode.name);
-    outcome.exchanges.into_iter().map(|exchange| exchange.words).collect()
-}
+    /// The answers in order, if each packet has one.
+    fn answers(&self, packets: &[Vec<u32>], mode: &Mode) -> Vec<Vec<u32>> {
+        let outcome = self.run(&self.traffic(packets).with_mode(mode)).expect(mode.name);
+        assert_eq!(outcome.exchanges.len(), packets.len(), "{}", mode.name);
+        outcome.exchanges.into_iter().map(|exchange| exchange.words).collect()
+    }
 
-/// One answer to a packet sent to a core just out of reset.
-fn answer(packet: &[u32]) -> Vec<u32> {
-    answers(&[packet.to_vec()], &Mode::all(1)[0]).remove(0)
+    /// One answer to a packet sent to a core just out of reset.
+    fn answer(&self, packet: &[u32]) -> Vec<u32> {
+        self.answers(&[packet.to_vec()], &Mode::all(1)[0]).remove(0)
+    }
+
+    fn has_field(&self) -> bool {
+        self.plan.field_words() > 0
+    }
 }
 
 fn read(words: &[u32]) -> Answer {
@@ -55,8 +87,7 @@ fn read(words: &[u32]) -> Answer {
 }
 
 /// A contact that is dragged, with an answer to every question.
-fn good(random: &mut ChaCha8Rng) -> Vec<u32> {
-    let plan = &small().0;
+fn good(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {
     loop {
         let packet = frames::contact(plan, random);
         if Model::new(plan).process(&packet)[0] == 0 {
@@ -98,21 +129,22 @@ fn bad(good: &[u32]) -> Vec<(&'static str, Vec<u32>, u32)> {
 
 #[test]
 fn a_bad_frame_costs_that_frame_only() {
-    let plan = &small().0;
-    let mut random = ChaCha8Rng::seed_from_u64(1);
-    for mode in Mode::all(5) {
+    let cases: Vec<_> = subjects().iter().flat_map(|subject| Mode::all(5).map(|mode| (subject, mode))).collect();
+    in_parallel(&cases, |&(subject, mode)| {
+        let plan = &subject.plan;
+        let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut packets = Vec::new();
         let mut names = Vec::new();
-        for (name, packet, status) in bad(&good(&mut random)) {
-            packets.extend([packet, good(&mut random)]);
+        for (name, packet, status) in bad(&good(plan, &mut random)) {
+            packets.extend([packet, good(plan, &mut random)]);
             names.extend([(name, status), (name, 0)]);
         }
-        let answers = answers(&packets, &mode);
+        let answers = subject.answers(&packets, &mode);
         for (counter, (words, (name, status))) in (0..).zip(answers.iter().zip(names)) {
-            let case = format!("{}, {name}, frame {counter}", mode.name);
+            let case = format!("{}, {}, {name}, frame {counter}", plan.design.name, mode.name);
             assert_eq!(words[0], counter << 16 | status, "{case}");
             if status != 0 {
-                assert_eq!(words[1..], vec![0; SUMMARY_WORDS - 1 + 3 * plan.taxels()], "{case}");
+                assert_eq!(words[1..], vec![0; plan.beats_out() - 1], "{case}");
                 continue;
             }
             // Alone after a reset, the good frame has the same answer.
@@ -120,53 +152,79 @@ fn a_bad_frame_costs_that_frame_only() {
             alone[0] |= counter << 16;
             assert_eq!(*words, alone, "{case}");
         }
-    }
+    });
+}
+
+/// Frames of wrong lengths one right after the other: what each leaves behind is gone before the next.
+#[test]
+fn wrong_lengths_back_to_back() {
+    let cases: Vec<_> = subjects().iter().flat_map(|subject| Mode::all(8).map(|mode| (subject, mode))).collect();
+    in_parallel(&cases, |&(subject, mode)| {
+        let plan = &subject.plan;
+        let mut random = ChaCha8Rng::seed_from_u64(9);
+        let taxels = plan.taxels();
+        let lengths = [1, 1, 1, 3 * taxels, taxels - 1, taxels + 1, 1, 2 * taxels, taxels + 2, 2, taxels - 1, taxels];
+        let mut packets: Vec<Vec<u32>> = Vec::new();
+        for length in lengths.into_iter().chain([taxels]) {
+            packets.push(good(plan, &mut random).into_iter().cycle().take(length).collect());
+        }
+        let mut model = Model::new(plan);
+        let expected: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
+        assert_eq!(subject.answers(&packets, &mode), expected, "{}, {}", plan.design.name, mode.name);
+    });
 }
 
 #[test]
 fn nothing_pressed_is_no_contact() {
-    let taxels = small().0.taxels();
-    let quiet = [0.0, -0.0, 0.9, -0.9].map(|pascal| encode(&vec![pascal; taxels]));
-    for packet in quiet {
-        let words = answer(&packet);
-        assert_eq!(words[0], NO_CONTACT);
-        assert!(words[1..].iter().all(|&word| word == 0));
+    for subject in subjects() {
+        let taxels = subject.plan.taxels();
+        let quiet = [0.0, -0.0, 0.9, -0.9].map(|pascal| encode(&vec![pascal; taxels]));
+        for packet in quiet {
+            let words = subject.answer(&packet);
+            assert_eq!(words[0], NO_CONTACT);
+            assert!(words[1..].iter().all(|&word| word == 0));
+        }
+        let twice = subject.answer(&encode(&vec![-2.0; taxels]));
+        assert_eq!(twice[0] & NO_CONTACT, 0, "twice the noise floor is a contact");
     }
-    assert_eq!(answer(&encode(&vec![-2.0; taxels]))[0] & NO_CONTACT, 0, "twice the noise floor is a contact");
 }
 
 #[test]
 fn pressing_straight_down_has_no_direction() {
-    let taxels = small().0.taxels();
-    let stress: Vec<f64> = (0..taxels).map(|taxel| -1000.0 - 100.0 * (taxel % 5) as f64).collect();
-    for sign in [1.0, -1.0] {
-        let words = answer(&encode(&stress.iter().map(|value| sign * value).collect::<Vec<_>>()));
-        assert_eq!(words[0], DIRECTION_UNKNOWN, "one sign everywhere");
-        let answer = read(&words);
-        assert_eq!(answer.mu_xy.map(f64::to_bits), [0, 0]);
-        assert!(answer.field.iter().flatten().any(|&force| force != 0.0), "the forces of pressing are there");
+    for subject in subjects() {
+        let taxels = subject.plan.taxels();
+        let stress: Vec<f64> = (0..taxels).map(|taxel| -1000.0 - 100.0 * (taxel % 5) as f64).collect();
+        for sign in [1.0, -1.0] {
+            let words = subject.answer(&encode(&stress.iter().map(|value| sign * value).collect::<Vec<_>>()));
+            assert_eq!(words[0], DIRECTION_UNKNOWN, "one sign everywhere");
+            let answer = read(&words);
+            assert_eq!(answer.mu_xy.map(f64::to_bits), [0, 0]);
+            let forces = answer.field.iter().flatten().any(|&force| force != 0.0);
+            assert_eq!(forces, subject.has_field(), "the forces of pressing are there");
+        }
+        assert!(read(&subject.answer(&encode(&stress))).resultant[2] < 0.0, "compression presses");
     }
-    assert!(read(&answer(&encode(&stress))).resultant[2] < 0.0, "compression presses");
 }
 
 #[test]
 fn beyond_the_full_scale_is_the_full_scale_and_is_said() {
-    let full_scale = small().0.design.hardware.full_scale_pa;
-    let mut clamped = vec![-0.3 * full_scale; small().0.taxels()];
-    clamped[2] = full_scale;
-    clamped[5] = -full_scale;
-    let mut beyond = clamped.clone();
-    beyond[2] = 1.5 * full_scale;
-    beyond[5] = -f64::from(f32::MAX);
-    let (clamped, beyond) = (answer(&encode(&clamped)), answer(&encode(&beyond)));
-    assert_eq!(clamped[0] & SATURATED, 0);
-    assert_eq!(beyond[0], clamped[0] | SATURATED);
-    assert_eq!(beyond[1..], clamped[1..]);
+    for subject in subjects() {
+        let full_scale = subject.plan.design.hardware.full_scale_pa;
+        let mut clamped = vec![-0.3 * full_scale; subject.plan.taxels()];
+        clamped[2] = full_scale;
+        clamped[5] = -full_scale;
+        let mut beyond = clamped.clone();
+        beyond[2] = 1.5 * full_scale;
+        beyond[5] = -f64::from(f32::MAX);
+        let (clamped, beyond) = (subject.answer(&encode(&clamped)), subject.answer(&encode(&beyond)));
+        assert_eq!(clamped[0] & SATURATED, 0);
+        assert_eq!(beyond[0], clamped[0] | SATURATED);
+        assert_eq!(beyond[1..], clamped[1..]);
+    }
 }
 
 /// Frames of every kind, at random.
-fn mixed(count: usize, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
-    let plan = &small().0;
+fn mixed(plan: &Plan, count: usize, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     let extremes = frames::extremes(plan, random);
     (0..count)
         .map(|_| match random.random_range(0..8) {
@@ -187,8 +245,12 @@ fn mixed(count: usize, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
 
 #[test]
 fn thousands_of_mixed_frames_in_every_mode() {
-    let plan = &small().0;
-    let packets = mixed(LONG, &mut ChaCha8Rng::seed_from_u64(2));
+    in_parallel(subjects(), mixed_in_every_mode);
+}
+
+fn mixed_in_every_mode(subject: &Subject) {
+    let plan = &subject.plan;
+    let packets = mixed(plan, LONG, &mut ChaCha8Rng::seed_from_u64(2));
     let mut model = Model::new(plan);
     let expected: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
     for status in [0, NO_CONTACT, DIRECTION_UNKNOWN, AT_BOUND, SATURATED, NOT_FINITE, BAD_LENGTH] {
@@ -200,81 +262,112 @@ fn thousands_of_mixed_frames_in_every_mode() {
     let slow = Mode { name: "slow sink", source: Pattern::Free, sink: Pattern::Random { seed: 3, willing: 0.03 } };
     let bursts = Pattern::Bursts { seed: 4, longest_run: 40, longest_pause: 3000 };
     let rare = Mode { name: "rare source, sink with long pauses", source: bursts, sink: bursts };
-    in_parallel(&[free, both, slow, rare], |mode| {
-        let answers = answers(&packets, mode);
+    for mode in [free, both, slow, rare] {
+        let answers = subject.answers(&packets, &mode);
         let comparison = Comparison::new(&expected, answers.iter().map(Vec::as_slice), plan.design.sensor.columns);
-        assert!(comparison.is_exact(), "{}: {:?}", mode.name, comparison.first);
-    });
+        assert!(comparison.is_exact(), "{}, {}: {:?}", plan.design.name, mode.name, comparison.first);
+    }
 }
 
 /// Judges traffic with resets: between two of them the core is a new one, and only packets that were on the way when
 /// one came have no answer.
-fn judge(packets: &[Vec<u32>], resets: &[Reset], outcome: &Outcome) {
-    // One in each of two banks, one being put out, one being sent, one between the search and the output.
-    const MOST_INSIDE: usize = 5;
+fn judge(plan: &Plan, packets: &[Vec<u32>], resets: &[Reset], outcome: &Outcome) {
+    // One in each of two banks, one being put out, one being sent, one between the search and the output. In the reduced
+    // plan one whose search waits for that, one behind it, and eight beats alone fit into the output's registers.
+    let most_inside = if plan.ways() > 1 { 8 } else { 5 };
     let mut exchanges = outcome.exchanges.iter().peekable();
-    let mut next = 0;
+    let (mut next, mut lost) = (0, 0);
     let ends = resets.iter().map(|reset| reset.cycle + INITIAL_RESET).chain([u64::MAX]);
     for end in ends {
-        let mut model = Model::new(&small().0);
-        let mut first = true;
+        let mut model = Model::new(plan);
         while let Some(exchange) = exchanges.next_if(|exchange| exchange.last_out < end) {
-            let most = if first { next + MOST_INSIDE } else { next };
             let packet = exchange.packet;
-            assert!((next..=most).contains(&packet), "packet {packet} answered, {next} expected, {resets:?}");
+            assert!((next..=next + lost).contains(&packet), "packet {packet} answered, {next} expected, {resets:?}");
             assert_eq!(exchange.words, model.process(&packets[packet]), "packet {packet}, {resets:?}");
-            first = false;
-            next = packet + 1;
+            (next, lost) = (packet + 1, 0);
         }
+        lost += most_inside;
     }
     assert_eq!(next, packets.len(), "the last packet is sent after the last reset, {resets:?}");
 }
 
+/// Every pair of a design and one of so many cycles.
+fn with_each_cycle(cycles: impl Fn(&Plan) -> std::ops::Range<u64>, step: usize) -> Vec<(&'static Subject, u64)> {
+    subjects()
+        .iter()
+        .flat_map(|subject| cycles(&subject.plan).step_by(step).map(move |cycle| (subject, cycle)))
+        .collect()
+}
+
 #[test]
 fn a_reset_in_any_cycle_of_a_frame_leaves_no_trace() {
-    let mut random = ChaCha8Rng::seed_from_u64(3);
-    let packets = [good(&mut random), good(&mut random), good(&mut random)];
     // From before the first beat of the first frame to the first beats of the second.
-    let cycles: Vec<u64> = (0..small().0.timeline.latency_cycles + 10).collect();
-    in_parallel(&cycles, |&cycle| {
+    let cases = with_each_cycle(|plan| 0..plan.timeline.latency_cycles + 10, 1);
+    in_parallel(&cases, |&(subject, cycle)| {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let packets = [0; 3].map(|_| good(&subject.plan, &mut random));
         let resets = [Reset { cycle, length: 1 + cycle % 3 }];
-        let alone = traffic(&packets).with_resets(&resets).with_pacing(Pacing::OneAtATime);
-        let outcome = run(&alone).unwrap_or_else(|error| panic!("{resets:?}: {error}"));
-        judge(&packets, &resets, &outcome);
+        let alone = subject.traffic(&packets).with_resets(&resets).with_pacing(Pacing::OneAtATime);
+        let outcome = subject.run(&alone).unwrap_or_else(|error| panic!("{resets:?}: {error}"));
+        judge(&subject.plan, &packets, &resets, &outcome);
     });
 }
 
 #[test]
 fn a_reset_while_frames_overlap_leaves_no_trace() {
-    let mut random = ChaCha8Rng::seed_from_u64(4);
-    let packets: Vec<Vec<u32>> = (0..8).map(|_| good(&mut random)).collect();
-    let timeline = &small().0.timeline;
-    // One interval in which a frame comes in, another is worked on and a third goes out, every second cycle.
-    let begin = timeline.latency_cycles + timeline.interval_cycles;
-    let cycles: Vec<u64> = (begin..begin + timeline.interval_cycles + 2).step_by(2).collect();
-    in_parallel(&cycles, |&cycle| {
+    // One interval in which a frame comes in, others are worked on and one goes out, every second cycle.
+    let interval = |plan: &Plan| {
+        let begin = plan.timeline.latency_cycles + plan.timeline.interval_cycles;
+        begin..begin + plan.timeline.interval_cycles + 2
+    };
+    let cases = with_each_cycle(interval, 2);
+    in_parallel(&cases, |&(subject, cycle)| {
+        let mut random = ChaCha8Rng::seed_from_u64(4);
+        let packets: Vec<Vec<u32>> = (0..10).map(|_| good(&subject.plan, &mut random)).collect();
         let resets = [Reset { cycle, length: 1 }];
-        let outcome =
-            run(&traffic(&packets).with_resets(&resets)).unwrap_or_else(|error| panic!("{resets:?}: {error}"));
-        judge(&packets, &resets, &outcome);
+        let traffic = subject.traffic(&packets).with_resets(&resets);
+        let outcome = subject.run(&traffic).unwrap_or_else(|error| panic!("{resets:?}: {error}"));
+        judge(&subject.plan, &packets, &resets, &outcome);
+    });
+}
+
+/// The sink stands still for so long that every place inside is taken, then a reset.
+#[test]
+fn a_reset_while_frames_pile_up_leaves_no_trace() {
+    let cases = with_each_cycle(|plan| 0..2 * plan.timeline.interval_cycles, 11);
+    in_parallel(&cases, |&(subject, offset)| {
+        let plan = &subject.plan;
+        let mut random = ChaCha8Rng::seed_from_u64(6);
+        let packets: Vec<Vec<u32>> = (0..20).map(|_| good(plan, &mut random)).collect();
+        let interval = plan.timeline.interval_cycles;
+        let sink =
+            Pattern::Bursts { seed: 5, longest_run: 2 * plan.beats_out() as u32, longest_pause: 12 * interval as u32 };
+        let mode = Mode { name: "sink that stands still", source: Pattern::Free, sink };
+        let resets = [Reset { cycle: 8 * interval + offset, length: 1 }];
+        let traffic = Traffic::new(&packets, 8 * timeout(plan)).with_resets(&resets).with_mode(&mode);
+        let outcome = subject.run(&traffic).unwrap_or_else(|error| panic!("{resets:?}: {error}"));
+        judge(plan, &packets, &resets, &outcome);
     });
 }
 
 #[test]
 fn resets_among_mixed_frames_cost_the_frames_inside() {
-    let mut random = ChaCha8Rng::seed_from_u64(5);
-    let packets = mixed(LONG, &mut random);
-    let interval = small().0.timeline.interval_cycles;
-    // Late enough after one another that some frames are answered, and not in the last packets.
-    let mut cycle = 0;
-    let resets: Vec<Reset> = (0..LONG / 16)
-        .map(|_| {
-            cycle += random.random_range(interval..12 * interval);
-            Reset { cycle, length: random.random_range(1..20) }
-        })
-        .collect();
-    let mode = Mode::all(12)[3];
-    let outcome = run(&traffic(&packets).with_resets(&resets).with_mode(&mode)).expect("no rule is broken");
-    assert!(outcome.cycles > cycle, "every reset took place");
-    judge(&packets, &resets, &outcome);
+    in_parallel(subjects(), |subject| {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let packets = mixed(&subject.plan, LONG, &mut random);
+        let interval = subject.plan.timeline.interval_cycles;
+        // Late enough after one another that some frames are answered, and not in the last packets.
+        let mut cycle = 0;
+        let resets: Vec<Reset> = (0..LONG / 24)
+            .map(|_| {
+                cycle += random.random_range(interval..12 * interval);
+                Reset { cycle, length: random.random_range(1..20) }
+            })
+            .collect();
+        let mode = Mode::all(12)[3];
+        let outcome = subject.run(&subject.traffic(&packets).with_resets(&resets).with_mode(&mode));
+        let outcome = outcome.expect("no rule is broken");
+        assert!(outcome.cycles > cycle, "every reset took place");
+        judge(&subject.plan, &packets, &resets, &outcome);
+    });
 }

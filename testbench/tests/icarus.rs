@@ -6,9 +6,9 @@ mod support;
 use std::collections::BTreeMap;
 use std::fs;
 
-use golden::design::Design;
+use golden::design::{Design, Outputs, PlanKind};
 use hdl_gen::emit::emit;
-use support::{in_parallel, planned, shipped, with_lanes};
+use support::{by_plan, in_parallel, planned, shipped, with_lanes};
 use testbench::tools;
 
 type Files = BTreeMap<String, Vec<u8>>;
@@ -32,7 +32,8 @@ fn simulate(name: &str, files: &Files) -> String {
         let place = folder.path().join(path);
         fs::create_dir_all(place.parent().expect("a file has a folder")).expect("writable");
         fs::write(&place, contents).expect("writable");
-        if (path.starts_with("rtl/") || path.starts_with("sim/")) && path.rsplit('.').next() == Some("v") {
+        let verilog = place.extension().is_some_and(|ending| ending == "v");
+        if verilog && (path.starts_with("rtl/") || path.starts_with("sim/")) {
             compiler.arg(path);
         }
     }
@@ -61,11 +62,25 @@ fn icarus_gives_every_word_of_the_model() {
     narrow.hardware.data_bits = 16;
     let mut tiny = with_lanes(shipped("small"), 64);
     (tiny.sensor.columns, tiny.sensor.rows) = (2, 2);
-    in_parallel(&[shipped("small"), narrow, tiny], |design| {
+    let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
+    // Odd sides, a pitch that is not square; and a square one, where one matrix serves both directions.
+    let odd = with_lanes(shipped("odd"), 8);
+    let mut square = shipped("small");
+    (square.sensor.columns, square.sensor.rows) = (5, 5);
+    let designs = [
+        by_plan(shipped("small"), paper, Outputs::Field),
+        by_plan(narrow, paper, Outputs::Field),
+        by_plan(tiny.clone(), paper, Outputs::Field),
+        by_plan(shipped("small"), reduced, Outputs::Field),
+        by_plan(odd, reduced, Outputs::Resultants),
+        by_plan(square, reduced, Outputs::Field),
+        by_plan(tiny, reduced, Outputs::Field),
+    ];
+    in_parallel(&designs, |design| {
         let files = emitted(design);
         let said = simulate(&design.name, &files);
         // Four directions, and one frame each that is empty, has a NaN, and is short.
-        let words = 7 * (8 + 3 * design.sensor.taxels());
+        let words = 7 * planned(design).beats_out();
         assert_eq!(expected(&design.name, &files).len(), words);
         assert!(said.starts_with(&format!("PASS: 7 frames, {words} words, ")), "{}: {said}", design.name);
     });

@@ -5,26 +5,35 @@ mod support;
 use std::fs;
 use std::process::Command;
 
-use golden::design::Design;
+use golden::design::{Design, Outputs, PlanKind};
 use hdl_gen::emit::emit;
 use support::random;
-use support::{in_parallel, planned, shipped, with_lanes};
+use support::{by_plan, in_parallel, planned, shipped, with_lanes};
 use tempfile::TempDir;
 use testbench::tools;
 
 const RANDOM_DESIGNS: u64 = 20;
 
-/// One of each kind: square and not, filtered and not, fewest and most lanes, narrowest words.
+/// One of each kind: square and not, filtered and not, fewest and most lanes, narrowest words, every plan.
 fn designs() -> Vec<Design> {
-    let mut narrow = shipped("odd");
+    let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
+    let mut narrow = by_plan(shipped("odd"), paper, Outputs::Field);
+    let mut tiny = by_plan(shipped("small"), reduced, Outputs::Field);
+    (tiny.sensor.columns, tiny.sensor.rows) = (2, 2);
     "narrow".clone_into(&mut narrow.name);
     narrow.hardware.coefficient_bits = 8;
     narrow.hardware.data_bits = 16;
     vec![
-        shipped("small"),
-        shipped("odd"),
+        by_plan(shipped("small"), paper, Outputs::Field),
+        by_plan(shipped("odd"), paper, Outputs::Field),
         shipped("sensor1-f1-l40"),
-        with_lanes(shipped("small"), 1),
+        with_lanes(by_plan(shipped("small"), paper, Outputs::Field), 1),
+        by_plan(shipped("small"), reduced, Outputs::Field),
+        by_plan(shipped("small"), reduced, Outputs::Resultants),
+        by_plan(with_lanes(shipped("odd"), 12), reduced, Outputs::Field),
+        shipped("sensor1-reduced-64"),
+        shipped("sensor1-resultants"),
+        tiny,
         with_lanes(shipped("sensor1-f1-l40"), 64),
         narrow,
     ]

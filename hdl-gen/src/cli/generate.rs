@@ -27,7 +27,7 @@ pub fn generate(path: &Path, out: Option<PathBuf>, progress: &Progress) -> Resul
         folder.display(),
         files.len(),
         plan.taxels(),
-        super::inspect::count(design.hardware.lanes, "lane"),
+        super::inspect::count(plan.design.hardware.lanes, "lane"),
         timeline.latency_cycles,
         timeline.interval_cycles,
         plan.resources.dsp,

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use hdl_gen::emit::{nnz, predicted};
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::savings::savings;
 use serde_json::json;
 
 /// Condition number of A Aᵀ above which noise of a thousandth of the stress is no longer a small error of the force.
@@ -34,6 +35,8 @@ fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
         "condition": plan.condition,
         "rom_bits": plan.resources.rom_bits,
         "predicted": predicted(plan),
+        "lanes": plan.design.hardware.lanes,
+        "savings": savings(plan),
     });
     Ok(serde_json::to_string_pretty(&value)? + "\n")
 }
@@ -43,6 +46,7 @@ fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
     writeln!(text, "{}", plan.design.name)?;
     sensor(&mut text, plan)?;
     matrices(&mut text, plan)?;
+    reductions(&mut text, plan)?;
     speed(&mut text, plan)?;
     resources(&mut text, plan)?;
     numbers(&mut text, plan)?;
@@ -85,6 +89,20 @@ fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
         let names: String = chunk.iter().map(|(name, _)| format!("{:>9}", name.as_str())).collect();
         let counts: String = chunk.iter().map(|(_, count)| format!("{count:>9}")).collect();
         writeln!(out, "  {names}\n  {counts}")?;
+    }
+    Ok(())
+}
+
+fn reductions(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let steps = savings(plan);
+    let Some(first) = steps.first() else { return Ok(()) };
+    writeln!(out, "\n{:<32}{:>13}{:>8}{:>22}", "Reductions", "MACs a frame", "", "coefficients in ROM")?;
+    for step in &steps {
+        let share = 100.0 * step.macs as f64 / first.macs as f64;
+        writeln!(out, "  {:<30}{:>13} {share:>5.1} %{:>22}", step.step, step.macs, step.coefficients)?;
+    }
+    if plan.design.hardware.skip_zeros {
+        writeln!(out, "  the cycles below are those of a frame without zeros, the worst case")?;
     }
     Ok(())
 }

@@ -16,6 +16,8 @@ pub mod divider;
 pub mod fixed_to_float;
 pub mod float_to_fixed;
 pub mod mac;
+pub mod mac_split;
+pub mod multiply;
 pub mod row_sequencer;
 
 /// One emitted core.
@@ -48,6 +50,49 @@ pub enum CoreError {
     },
 }
 
+/// How a fabric multiplies 18 by 27 bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Multiplier {
+    /// In one DSP block, as UltraScale+ does.
+    Whole,
+    /// In two blocks of 18 by 18 bits whose products are registered before they are added, as on ECP5.
+    Split,
+}
+
+impl Multiplier {
+    /// The form that suits `part`: whole, unless its name is that of a Lattice ECP5. Both take the same cycles.
+    pub fn of_part(part: &str) -> Self {
+        if part.starts_with("LFE5") { Self::Split } else { Self::Whole }
+    }
+
+    /// The module that multiplies and accumulates.
+    pub fn mac(self) -> &'static str {
+        match self {
+            Self::Whole => "sptfra_mac",
+            Self::Split => "sptfra_mac_split",
+        }
+    }
+
+    /// The module that multiplies alone.
+    pub fn multiply(self) -> &'static str {
+        match self {
+            Self::Whole => "sptfra_multiply",
+            Self::Split => "sptfra_multiply_split",
+        }
+    }
+}
+
+/// Emits the cores of a design with multipliers of this form, always in the same order.
+///
+/// # Errors
+/// As [`emit_all`].
+pub fn emit_with(multiplier: Multiplier) -> Result<Vec<CoreFile>, CoreError> {
+    let other = if multiplier == Multiplier::Whole { Multiplier::Split } else { Multiplier::Whole };
+    let mut cores = emit_all()?;
+    cores.retain(|core| core.module != other.mac() && core.module != other.multiply());
+    Ok(cores)
+}
+
 /// Emits every core, always in the same order.
 ///
 /// # Errors
@@ -55,6 +100,9 @@ pub enum CoreError {
 pub fn emit_all() -> Result<Vec<CoreFile>, CoreError> {
     [
         mac::core,
+        mac_split::core,
+        multiply::whole,
+        multiply::split,
         axis_skid::core,
         row_sequencer::core,
         divider::core,

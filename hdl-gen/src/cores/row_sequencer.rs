@@ -37,58 +37,63 @@ pub fn products(rows: &[u16]) -> impl Iterator<Item = Product> {
 #[derive(LogicBlock, Default)]
 struct RowSequencer {
     clock: Signal<In, Clock>,
-    reset: Signal<In, Bit>,
     restart: Signal<In, Bit>,
+    start_address: Signal<In, Bits<16>>,
     issue: Signal<In, Bit>,
     row_word: Signal<In, Bits<16>>,
     row_address: Signal<Out, Bits<16>>,
+    row_fetch: Signal<Out, Bit>,
     first: Signal<Out, Bit>,
     last: Signal<Out, Bit>,
     kind: Signal<Out, Bits<2>>,
     pointer: Register<Bits<16>>,
+    primes: Register<Bit>,
+    at_start: Register<Bit>,
     remaining: Register<Bits<14>>,
     row_kind: Register<Bits<2>>,
-    at_start: Signal<Local, Bit>,
+    at_end: Signal<Local, Bit>,
     count: Signal<Local, Bits<14>>,
     current_kind: Signal<Local, Bits<2>>,
-    pointer_after: Signal<Local, Bits<16>>,
+    fetch: Signal<Local, Bit>,
 }
 
 impl Logic for RowSequencer {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, remaining, row_kind);
-        clock!(self, clock, pointer);
+        dff_setup!(self, clock, pointer, at_start, remaining, row_kind);
+        clock!(self, clock, primes);
 
         comment!("products of this row from this one on");
-        self.at_start.next = self.remaining.q.val() == 0;
-        if self.at_start.val() {
+        if self.at_start.q.val() {
             self.count.next = self.row_word.val().get_bits::<14>(0);
             self.current_kind.next = self.row_word.val().get_bits::<2>(14);
         } else {
             self.count.next = self.remaining.q.val();
             self.current_kind.next = self.row_kind.q.val();
         }
+        self.at_end.next = self.count.val() == 1;
 
         comment!("the next row's word is fetched as soon as this row starts");
-        self.pointer_after.next = self.pointer.q.val();
+        self.fetch.next = self.primes.q.val() | (self.issue.val() & self.at_start.q.val());
+        if self.fetch.val() {
+            self.pointer.d.next = self.pointer.q.val() + 1;
+        }
         if self.issue.val() {
+            self.at_start.d.next = self.at_end.val();
             self.remaining.d.next = self.count.val() - 1;
             self.row_kind.d.next = self.current_kind.val();
-            if self.at_start.val() {
-                self.pointer_after.next = self.pointer.q.val() + 1;
-            }
         }
 
-        comment!("back to row 0");
-        if self.restart.val() | self.reset.val() {
-            self.pointer_after.next = 0.into();
-            self.remaining.d.next = 0.into();
+        comment!("on to another row");
+        self.primes.d.next = self.restart.val();
+        if self.restart.val() {
+            self.pointer.d.next = self.start_address.val();
+            self.at_start.d.next = true;
         }
-        self.pointer.d.next = self.pointer_after.val();
-        self.row_address.next = self.pointer_after.val();
-        self.first.next = self.at_start.val();
-        self.last.next = self.count.val() == 1;
+        self.row_address.next = self.pointer.q.val();
+        self.row_fetch.next = self.fetch.val();
+        self.first.next = self.at_start.q.val();
+        self.last.next = self.at_end.val();
         self.kind.next = self.current_kind.val();
     }
 }
@@ -99,15 +104,16 @@ const DESCRIPTION: Description = Description {
 Row sequencer of a sparse matrix-vector lane: marks the first and the last product of every row.
 
 Walks a ROM with one word a row, {kind[1:0], macs[13:0]} with macs >= 1 products. The ROM is outside and
-registered: row_word is the word at the row_address of the cycle before. One product a cycle, rows of one
-product back to back included; first, last and kind belong to the same cycle as issue.",
+registered: row_word is the word at the row_address of the last cycle with row_fetch. One product a cycle, rows
+of one product back to back included; first, last and kind belong to the same cycle as issue.",
     ports: &[
         ("clock", "rising edge"),
-        ("reset", "synchronous, high: as restart"),
-        ("restart", "back to row 0; issue may follow from the next cycle on"),
+        ("restart", "at first, and at any time: issue may follow two cycles later"),
+        ("start_address", "with restart: address of the word to go on from"),
         ("issue", "one product is issued in this cycle"),
         ("row_word", "the ROM's answer: {kind[1:0], macs[13:0]}"),
-        ("row_address", "the ROM's address, combinational"),
+        ("row_address", "the ROM's address"),
+        ("row_fetch", "the ROM reads"),
         ("first", "with issue: first product of its row"),
         ("last", "with issue: last product of its row"),
         ("kind", "with issue: the row's kind"),

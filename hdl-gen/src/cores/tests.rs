@@ -9,8 +9,11 @@ use super::register::{Register, comment, dff_setup};
 use super::sint::Sint;
 use super::{CoreError, emit_all};
 
-const NAMES: [&str; 7] = [
+const NAMES: [&str; 10] = [
     "sptfra_mac",
+    "sptfra_mac_split",
+    "sptfra_multiply",
+    "sptfra_multiply_split",
     "sptfra_axis_skid",
     "sptfra_row_sequencer",
     "sptfra_divider",

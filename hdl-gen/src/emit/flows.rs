@@ -5,7 +5,6 @@
 use serde::Serialize;
 use tera::{Context, Tera};
 
-use crate::model::SUMMARY_WORDS;
 use crate::plan::Plan;
 
 use super::{EmitError, FileMap, VERSION};
@@ -65,7 +64,7 @@ impl View {
         let design = &plan.design;
         let testbench = format!("sim/{}_tb.v", design.name);
         let bytes_in = plan.taxels() * BEAT_BYTES;
-        let bytes_out = (SUMMARY_WORDS + 3 * plan.taxels()) * BEAT_BYTES;
+        let bytes_out = plan.beats_out() * BEAT_BYTES;
         Self {
             version: VERSION,
             hash: hash.to_owned(),

@@ -23,8 +23,8 @@ fn text(plan: &Plan, index: usize, matrix: &QuantisedMatrix) -> Vec<u8> {
     let uses: Vec<String> = plan
         .products
         .iter()
-        .filter(|product| product.matrix == index)
-        .map(|product| format!("{} -> {}", product.operand.name(), product.result.name()))
+        .filter(|product| product.matrix == index || product.lead.is_some_and(|lead| lead.matrix == index))
+        .map(|product| format!("{} -> {}", product.operand().name(), product.result.name()))
         .collect();
     // Writing to a vector cannot fail.
     let _ = writeln!(
@@ -41,7 +41,8 @@ fn text(plan: &Plan, index: usize, matrix: &QuantisedMatrix) -> Vec<u8> {
     for (row, entries) in matrix.rows.iter().enumerate() {
         let _ = write!(text, "{row}: {} |", entries.len());
         for (column, value) in entries {
-            let _ = write!(text, " {column}:{value}");
+            let ways: Vec<String> = value[..plan.ways()].iter().map(ToString::to_string).collect();
+            let _ = write!(text, " {column}:{}", ways.join(","));
         }
         text.push(b'\n');
     }

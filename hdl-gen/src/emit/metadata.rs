@@ -3,7 +3,6 @@
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::model::SUMMARY_WORDS;
 use crate::plan::Plan;
 use crate::plan::product::Vector;
 
@@ -14,12 +13,14 @@ pub fn predicted(plan: &Plan) -> Value {
     json!({
         "latency_cycles": plan.timeline.latency_cycles,
         "interval_cycles": plan.timeline.interval_cycles,
+        "worst_case": plan.design.hardware.skip_zeros,
         "spmv_cycles": plan.timeline.spmv_cycles,
         "search_cycles": plan.timeline.search_cycles,
         "lanes_busy": plan.schedule.busy_fraction(),
         "dsp": plan.resources.dsp,
         "bram36": plan.resources.bram36,
         "rom_bits": plan.resources.rom_bits,
+        "blocks": plan.resources.blocks,
     })
 }
 
@@ -47,7 +48,7 @@ struct ProductEntry<'a> {
 /// # Errors
 /// [`EmitError::Metadata`] if a value has no JSON form.
 pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, EmitError> {
-    let lanes = plan.design.hardware.lanes as u64;
+    let lanes = plan.walkers() as u64;
     let products: Vec<ProductEntry> = plan
         .products
         .iter()
@@ -56,7 +57,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
             let matrix = &plan.matrices[product.matrix];
             ProductEntry {
                 matrix: &matrix.name,
-                operand: product.operand.name(),
+                operand: product.operand().name(),
                 result: product.result.name(),
                 block: format!("{:?}", product.block),
                 nnz: matrix.nnz(),
@@ -85,7 +86,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         "columns": plan.design.sensor.columns,
         "rows": plan.design.sensor.rows,
         "beats_in": plan.taxels(),
-        "beats_out": SUMMARY_WORDS + 3 * plan.taxels(),
+        "beats_out": plan.beats_out(),
         "clock_mhz": plan.design.hardware.clock_mhz,
         "part": plan.design.hardware.part,
         "condition": plan.condition,

@@ -1,6 +1,7 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
 mod flows;
+mod folded_view;
 mod mcsr;
 mod metadata;
 mod roms;
@@ -14,7 +15,7 @@ use golden::scene::SceneError;
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
-use crate::cores::{self, CoreError};
+use crate::cores::{self, CoreError, Multiplier};
 use crate::plan::Plan;
 
 pub use metadata::{nnz, predicted};
@@ -55,8 +56,9 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
-    let hash = design_hash(&design);
-    for core in cores::emit_all()? {
+    // The calibration is a part of the design that stands in a file of its own.
+    let hash = design_hash(&(design.clone() + &plan.design.calibration_csv().unwrap_or_default()));
+    for core in cores::emit_with(Multiplier::of_part(&plan.design.hardware.part))? {
         files.insert(format!("rtl/{}.v", core.module), core.verilog.into_bytes());
     }
     for (module, text) in verilog::render(plan, &hash)? {
@@ -66,6 +68,9 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     sim::insert(plan, &hash, &mut files)?;
     mcsr::insert(plan, &mut files);
     files.insert("design.toml".to_owned(), design.into_bytes());
+    if let Some(calibration) = plan.design.calibration_csv() {
+        files.insert("calibration.csv".to_owned(), calibration.into_bytes());
+    }
     // After every file that a list or script names.
     flows::insert(plan, &hash, &mut files)?;
     let metadata = metadata::metadata(plan, &hash, &files)?;

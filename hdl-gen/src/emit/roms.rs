@@ -1,7 +1,9 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
 use crate::plan::Plan;
+use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;
+use crate::plan::reduced::SUM_ROWS;
 
 use super::{FileMap, lane_file};
 
@@ -9,29 +11,76 @@ use super::{FileMap, lane_file};
 pub fn insert(plan: &Plan, files: &mut FileMap) {
     let name = &plan.design.name;
     let coefficient_bits = plan.design.hardware.coefficient_bits;
-    let column_bits = address_bits(plan.taxels());
+    let column_bits = column_bits(plan);
     let schedule = &plan.schedule;
     for (lane, program) in schedule.lanes.iter().enumerate() {
-        let words = schedule.word_depth();
-        let values = program.words.iter().map(|&(_, value)| value as u32);
-        files.insert(lane_file(name, "values", lane), hex(values, words, coefficient_bits));
-        let columns = program.words.iter().map(|&(column, _)| column);
-        files.insert(lane_file(name, "columns", lane), hex(columns, words, column_bits));
-        let segments = program.segments.iter().map(|segment| (segment.kind as u32) << 14 | segment.macs);
+        let depth = schedule.word_depth();
+        let word = |ways: &[i32]| joined(&ways[..plan.ways()], coefficient_bits);
+        let values = program.words.iter().map(|(_, ways)| word(ways)).chain(std::iter::repeat(0)).take(depth);
+        let values = values.chain(program.rounds.iter().map(|ways| word(ways)));
+        let bits = coefficient_bits * plan.ways() as u32;
+        files.insert(lane_file(name, "values", lane), hex(values, schedule.value_depth(), bits));
+        let columns = program.words.iter().map(|&(column, _)| u128::from(column));
+        files.insert(lane_file(name, "columns", lane), hex(columns, depth, column_bits));
+        let segments = program.segments.iter().map(|segment| u128::from((segment.kind as u32) << 14 | segment.macs));
         files.insert(lane_file(name, "macs", lane), hex(segments, schedule.segment_depth(), 16));
     }
-    let product_bits = address_bits(plan.products.len());
-    let visits =
-        schedule.visits.iter().map(|visit| (visit.lane << product_bits | visit.product) << column_bits | visit.row);
-    let width = address_bits(schedule.lanes.len()) + product_bits + column_bits;
-    files.insert(format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), width));
+    let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
+    files.insert(format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
+    if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
+        let gains = counts.gains.iter().map(|&gain| u128::from(gain as u32));
+        files.insert(format!("rom/{name}_gains.mem"), hex(gains, counts.gains.len(), GAIN_BITS));
+        let offsets = counts.offsets.iter().map(|&offset| u128::from(offset as u64));
+        files.insert(format!("rom/{name}_offsets.mem"), hex(offsets, counts.offsets.len(), counts.offset_bits()));
+    }
+}
+
+/// Bits of a column number: of the largest number of vectors that one product reads.
+pub fn column_bits(plan: &Plan) -> u32 {
+    let vectors = plan.products.iter().map(|product| product.operands.len()).max().unwrap_or(1);
+    address_bits(vectors * plan.elements())
+}
+
+/// Bits of a result's row.
+pub fn row_bits(plan: &Plan) -> u32 {
+    address_bits(plan.elements().max(SUM_ROWS))
+}
+
+/// Bits of a product's number; rows of sums count as a product of their own, after the last.
+pub fn product_bits(plan: &Plan) -> u32 {
+    address_bits(plan.products.len() + usize::from(plan.ways() > 1))
+}
+
+/// Bits of a visit: last of its program, lane, product, row.
+pub fn visit_bits(plan: &Plan) -> u32 {
+    1 + address_bits(plan.walkers()) + product_bits(plan) + row_bits(plan)
+}
+
+fn visit(plan: &Plan, index: usize) -> u128 {
+    let schedule = &plan.schedule;
+    let visit = schedule.visits[index];
+    let last = index + 1 == schedule.visits.len() || schedule.programs.iter().any(|program| program.visit == index + 1);
+    let elements = plan.elements() as u32;
+    // Rows in front of a product's own are sums.
+    let (product, row) = match visit.row.checked_sub(elements) {
+        Some(sum) => (plan.products.len() as u32, sum),
+        None => (visit.product, visit.row),
+    };
+    let lane = u128::from(last) << address_bits(plan.walkers()) | u128::from(visit.lane);
+    (lane << product_bits(plan) | u128::from(product)) << row_bits(plan) | u128::from(row)
+}
+
+/// The coefficients of all ways in one word, that of way 0 lowest.
+fn joined(ways: &[i32], bits: u32) -> u128 {
+    let mask = (1_u32 << bits) - 1;
+    ways.iter().rev().fold(0, |word, &value| word << bits | u128::from(value as u32 & mask))
 }
 
 /// `depth` words of `bits` bits in two's complement.
-fn hex(words: impl Iterator<Item = u32>, depth: usize, bits: u32) -> Vec<u8> {
+fn hex(words: impl Iterator<Item = u128>, depth: usize, bits: u32) -> Vec<u8> {
     // Digit by digit rather than by the formatter: the largest designs have 30 million words.
     let digits = bits.div_ceil(4);
-    let mask = (1_u32 << bits) - 1;
+    let mask = (1_u128 << bits) - 1;
     let mut text = Vec::with_capacity(depth * (digits as usize + 1));
     for word in words.chain(std::iter::repeat(0)).take(depth) {
         let word = word & mask;
@@ -43,13 +92,13 @@ fn hex(words: impl Iterator<Item = u32>, depth: usize, bits: u32) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::hex;
+    use super::{hex, joined};
 
     #[test]
     fn words_are_masked_and_padded() {
-        let text = hex([-1_i32 as u32, 5].into_iter(), 3, 18);
+        let text = hex([joined(&[-1], 18), 5].into_iter(), 3, 18);
         assert_eq!(String::from_utf8(text).unwrap(), "3ffff\n00005\n00000\n");
-        let text = hex([0xdead_beef_u32, 0x0123].into_iter(), 2, 16);
+        let text = hex([0xdead_beef_u128, 0x0123].into_iter(), 2, 16);
         assert_eq!(String::from_utf8(text).unwrap(), "beef\n0123\n");
     }
 }

@@ -62,8 +62,9 @@ fn packets(plan: &Plan) -> Result<Vec<Vec<u32>>, SceneError> {
     let scene = Scene { sweep_deg: DIRECTIONS_DEG.to_vec(), ..Scene::standing(&plan.design.sensor) };
     // On a half-space stress has a closed form, so no layer is too thin.
     let frames = scene.frames().or_else(|_| Scene { medium: Medium::HalfSpace, ..scene }.frames())?;
+    let word = |(taxel, &pascal): (usize, &f64)| (plan.design.input.from_pa(taxel, pascal) as f32).to_bits();
     let mut packets: Vec<Vec<u32>> =
-        frames.iter().map(|frame| frame.stress.iter().map(|&pascal| (pascal as f32).to_bits()).collect()).collect();
+        frames.iter().map(|frame| frame.stress.iter().enumerate().map(word).collect()).collect();
     let taxels = plan.taxels();
     let mut not_a_number = packets[0].clone();
     not_a_number[taxels / 2] = f32::NAN.to_bits();

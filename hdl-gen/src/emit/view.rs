@@ -1,11 +1,14 @@
 //! Everything the templates print, computed: they contain text, this contains numbers and widths.
 
+use std::collections::BTreeSet;
+
 use golden::design::Filter;
 use serde::Serialize;
 
-use crate::cores::cordic;
-use crate::model::{SUMMARY_WORDS, inverse_gain};
+use crate::cores::{Multiplier, cordic, float_to_fixed};
+use crate::model::inverse_gain;
 use crate::plan::Plan;
+use crate::plan::counts::{CountsPlan, GAIN_BITS, input_stages};
 use crate::plan::format::{ACCUMULATOR_BITS, address_bits};
 use crate::plan::layout::Place;
 use crate::plan::optimum::{
@@ -13,7 +16,11 @@ use crate::plan::optimum::{
     SEARCH_STEPS,
 };
 use crate::plan::product::{Block, Epilogue, Product, Vector};
+use crate::plan::schedule::TURN_GAP;
 use crate::plan::timing::{DIRECTION_LATENCY, LINE_LATENCY, OUTPUT_DEPTH, SUMMARY_LATENCY};
+
+use super::folded_view::FoldedView;
+use super::roms;
 
 /// One sparse product as the templates see it.
 #[derive(Serialize)]
@@ -37,6 +44,9 @@ pub struct ProductView {
 #[derive(Serialize)]
 pub struct View {
     name: String,
+    /// Modules that multiply, as the part does it best.
+    mac: &'static str,
+    multiply: &'static str,
     columns: usize,
     rows: usize,
     taxels: usize,
@@ -56,13 +66,21 @@ pub struct View {
     macs: u64,
     busy_percent: String,
     overlap: bool,
+    reduced: bool,
+    ways: usize,
 
     products: Vec<ProductView>,
+    product_count: usize,
+    programs: Vec<ProgramView>,
+    program_count: usize,
+    /// Products whose matrix is read again, and those that read it again.
+    marks: Vec<usize>,
+    rewinds: Vec<usize>,
+    visit_width: u32,
     product_width: u32,
     co_first: usize,
     op_first: usize,
     last_product: usize,
-    mark_product: usize,
     /// Highest and lowest bit of the rounded accumulator that is in any result.
     greatest_bit: u32,
     least_bit: u32,
@@ -81,6 +99,8 @@ pub struct View {
     y_width: u32,
     word_depth: usize,
     word_address_width: u32,
+    value_depth: usize,
+    value_address_width: u32,
     segment_depth: usize,
     segment_address_width: u32,
     operand_depth: usize,
@@ -102,17 +122,27 @@ pub struct View {
     coefficient_extended: String,
     operand_extended: String,
     u_extended: String,
+    weight_extended: String,
+    g1_extended: String,
+    g2_extended: String,
     stress_data: String,
     beat_component: String,
     beat_unused: String,
 
     stress_lsb: i32,
-    stress_shift: String,
+    number_stages: u32,
+    input_stages: u64,
+    /// Of the number that the stream carries: stress or counts.
+    number_shift: String,
+    number_bound: i64,
+    counts: Option<CountsView>,
+    taxel_width: u32,
     stress_bound: i64,
     weight_lsb: i32,
     g_lsb: i32,
     f_lsb: i32,
     f_exponent: String,
+    sum_exponent: String,
     weight_base: String,
     g30_base: String,
     g31_base: String,
@@ -143,6 +173,8 @@ pub struct View {
     decision_cycles: u32,
     cells: usize,
     elements: usize,
+    cell_address_width: u32,
+    cell_depth: usize,
     element_width: u32,
     element_shift: u32,
     u_element: String,
@@ -155,6 +187,43 @@ pub struct View {
     angle_fraction: u32,
     summary_latency: u64,
     output_depth: u64,
+
+    field: bool,
+    #[serde(flatten)]
+    folded: FoldedView,
+}
+
+/// Conversion of counts in Bz.
+#[derive(Serialize)]
+struct CountsView {
+    per_taxel: bool,
+    /// Literal of the gain that all taxels share.
+    gain: String,
+    offset_bits: u32,
+    shift: u32,
+    half: u64,
+}
+
+impl CountsView {
+    fn new(counts: &CountsPlan) -> Self {
+        Self {
+            per_taxel: counts.per_taxel(),
+            gain: signed_literal(GAIN_BITS, counts.gains[0]),
+            offset_bits: counts.offset_bits(),
+            shift: counts.shift,
+            half: if counts.shift == 0 { 0 } else { half(counts.shift) },
+        }
+    }
+}
+
+/// A program as the sequencer sees it.
+#[derive(Serialize)]
+struct ProgramView {
+    first: usize,
+    end: usize,
+    word: usize,
+    segment: usize,
+    visit: usize,
 }
 
 impl View {
@@ -168,22 +237,30 @@ impl View {
         let data = hardware.data_bits;
         let taxels = plan.taxels();
         let field_depth = 3 * taxels;
-        let beats = SUMMARY_WORDS + field_depth;
-        let row_width = address_bits(taxels);
+        let beats = plan.beats_out();
+        let reduced = plan.ways() > 1;
+        let row_width = roms::row_bits(plan);
+        let folded = FoldedView::new(plan);
+        let number = plan.counts.as_ref().map_or(plan.formats.stress, |counts| counts.count);
         let operand_depth = plan.operands.words();
         let operand_width = address_bits(operand_depth);
         let field_width = address_bits(field_depth);
         let beat_width = address_bits(beats);
-        let f_lsb = plan.formats.g.lsb - FRICTION_FRACTION as i32;
-        let drain_cycles = schedule.drained - (schedule.issue_cycles() - 1);
+        let sum_lsb = plan.formats.g.lsb - FRICTION_FRACTION as i32;
+        let f_lsb = FoldedView::f_lsb(plan).unwrap_or(sum_lsb);
+        let drain_cycles = schedule.drained().saturating_sub(schedule.issue_cycles() - 1);
         let longest = schedule.windows.iter().map(|window| window.length.max(window.wait)).max().unwrap_or(1);
         let element_width = address_bits(optimum.elements);
-        let shifts = plan.products.iter().map(|product| product.shift);
+        let leads = plan.products.iter().filter_map(|product| product.lead).map(|lead| lead.shift);
+        let shifts = plan.products.iter().map(|product| product.shift).chain(leads);
         let greatest_bit = (shifts.clone().max().unwrap_or(0) + data - 1).min(ACCUMULATOR_BITS - 1);
         let least_bit = shifts.min().unwrap_or(0);
+        let multiplier = Multiplier::of_part(&hardware.part);
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
             name: design.name.clone(),
+            mac: multiplier.mac(),
+            multiply: multiplier.multiply(),
             columns: design.sensor.columns,
             rows: design.sensor.rows,
             taxels,
@@ -194,37 +271,46 @@ impl View {
             latency_us: microseconds(plan.timeline.latency_cycles),
             interval_cycles: plan.timeline.interval_cycles,
             interval_us: microseconds(plan.timeline.interval_cycles),
-            lanes: hardware.lanes,
+            lanes: plan.walkers(),
             coefficient_bits: hardware.coefficient_bits,
             data_bits: data,
             issue_cycles: schedule.issue_cycles(),
-            drained: schedule.drained,
+            drained: schedule.drained(),
             drain_cycles,
             macs: schedule.windows.iter().map(|window| window.macs).sum(),
             busy_percent: format!("{:.1}", 100.0 * schedule.busy_fraction()),
             overlap: plan.timeline.overlap,
+            reduced,
+            ways: plan.ways(),
 
-            products: (0..plan.products.len()).map(|index| product_view(plan, index)).collect(),
-            product_width: address_bits(plan.products.len()),
+            products: product_views(plan),
+            product_count: plan.products.len(),
+            programs: programs(plan),
+            program_count: schedule.programs.len(),
+            marks: reread(plan).into_iter().map(|(mark, _)| mark).collect::<BTreeSet<_>>().into_iter().collect(),
+            rewinds: reread(plan).into_iter().map(|(_, rewind)| rewind).collect(),
+            visit_width: roms::visit_bits(plan),
+            product_width: roms::product_bits(plan),
             co_first: plan.turn(Block::Co).0,
             op_first: plan.turn(Block::Op).0,
             last_product: plan.products.len() - 1,
-            mark_product: plan.turn(Block::Op).0,
             greatest_bit,
             least_bit,
             sum_unused: bits_outside("sum", ACCUMULATOR_BITS - 1, greatest_bit, least_bit),
-            count_width: address_bits(longest.max(drain_cycles) as usize + 1),
+            count_width: address_bits((longest + schedule.program_gap).max(drain_cycles) as usize + 1),
 
-            lane_width: address_bits(hardware.lanes),
-            lane_codes: 1 << address_bits(hardware.lanes),
-            pending_extended: zero_extend("pending", hardware.lanes as u32, 1 << address_bits(hardware.lanes)),
+            lane_width: address_bits(plan.walkers()),
+            lane_codes: 1 << address_bits(plan.walkers()),
+            pending_extended: zero_extend("pending", plan.walkers() as u32, 1 << address_bits(plan.walkers())),
             row_width,
-            column_width: row_width,
+            column_width: roms::column_bits(plan),
             index_width: address_bits(taxels + 1),
             x_width: address_bits(design.sensor.columns),
             y_width: address_bits(design.sensor.rows),
             word_depth: schedule.word_depth(),
             word_address_width: address_bits(schedule.word_depth()),
+            value_depth: schedule.value_depth(),
+            value_address_width: address_bits(schedule.value_depth()),
             segment_depth: schedule.segment_depth(),
             segment_address_width: address_bits(schedule.segment_depth()),
             operand_depth,
@@ -238,29 +324,39 @@ impl View {
             g_total: 9 * taxels,
             g_count_width: address_bits(9 * taxels + 1),
 
-            column_extended: zero_extend("column", row_width, operand_width),
+            column_extended: zero_extend("column", roms::column_bits(plan), operand_width),
             taxel_extended: zero_extend("taxel", row_width, operand_width),
             row_extended: zero_extend("result_row", row_width, operand_width),
             g_row_extended: zero_extend("g_row", row_width, operand_width),
             row_to_field: zero_extend("result_row", row_width, field_width),
-            coefficient_extended: sign_extend("coefficient", hardware.coefficient_bits, 18),
-            operand_extended: sign_extend("operand", data, 27),
+            coefficient_extended: sign_extend("way_coefficient", hardware.coefficient_bits, 18),
+            operand_extended: sign_extend("way_operand", data, 27),
             u_extended: sign_extend("result_value", data, 27),
+            weight_extended: sign_extend("weight_2", data, 27),
+            g1_extended: sign_extend("g1_2", data, 27),
+            g2_extended: sign_extend("g2_2", data, 27),
             stress_data: if data == 27 { "fixed".to_owned() } else { format!("fixed[{}:0]", data - 1) },
             beat_component: slice("beat_component", beat_width, field_width),
-            beat_unused: if beat_width > field_width {
+            // The reduced plan's field memory counts for itself.
+            beat_unused: if plan.ways() == 1 && beat_width > field_width {
                 format!(", beat_component[{}:{field_width}]", beat_width - 1)
             } else {
                 String::new()
             },
 
             stress_lsb: plan.formats.stress.lsb,
-            stress_shift: signed_literal(10, -plan.formats.stress.lsb),
+            number_stages: float_to_fixed::LATENCY,
+            input_stages: input_stages(plan.counts.is_some()),
+            number_shift: signed_literal(10, -number.lsb),
+            number_bound: number.bound,
+            counts: plan.counts.as_ref().map(CountsView::new),
+            taxel_width: address_bits(taxels),
             stress_bound: plan.formats.stress.bound,
             weight_lsb: plan.formats.weight.lsb,
             g_lsb: plan.formats.g.lsb,
             f_lsb,
             f_exponent: signed_literal(10, f_lsb),
+            sum_exponent: signed_literal(10, sum_lsb),
             weight_base: operand_base(plan, Vector::Weight),
             g30_base: operand_base(plan, Vector::G(3, 0)),
             g31_base: operand_base(plan, Vector::G(3, 1)),
@@ -290,10 +386,16 @@ impl View {
             decision_cycles: optimum.decision_cycles(),
             cells: optimum.cells,
             elements: optimum.elements,
+            cell_address_width: element_width + u32::from(reduced),
+            cell_depth: if reduced { 2 << element_width } else { optimum.elements },
             element_width,
             element_shift: optimum.elements.trailing_zeros(),
-            u_element: if optimum.elements == 1 { "1'b0".to_owned() } else { slice("u_row", row_width, element_width) },
-            last_count: taxels - (optimum.cells - 1) * optimum.elements,
+            u_element: if optimum.elements == 1 {
+                "1'b0".to_owned()
+            } else {
+                slice(if reduced { "u_quad" } else { "u_row" }, row_width, element_width)
+            },
+            last_count: plan.elements() - (optimum.cells / plan.ways() - 1) * optimum.elements,
             tree_levels: optimum.tree_levels(),
             tree_leaves: 1 << optimum.tree_levels(),
             margin: match optimum.level_shift {
@@ -305,7 +407,53 @@ impl View {
             angle_fraction: cordic::ANGLE_FRACTION_BITS,
             summary_latency: SUMMARY_LATENCY,
             output_depth: OUTPUT_DEPTH,
+
+            field: plan.field_words() > 0,
+            folded,
         }
+    }
+}
+
+/// Every product; the rows of sums count as one more.
+fn product_views(plan: &Plan) -> Vec<ProductView> {
+    let own = (0..plan.products.len()).map(|index| product_view(plan, index));
+    let lead = plan.products.iter().find_map(|product| product.lead).map(|lead| {
+        let (data, index) = (plan.design.hardware.data_bits, plan.products.len());
+        let slice = result_slice(lead.shift, data);
+        let half = if lead.shift == 0 { 0 } else { half(lead.shift) };
+        let text = "sums of the frame".to_owned();
+        let (operand, base) = (String::new(), String::new());
+        ProductView { index, text, operand, length: 0, wait: 0, base, shift: lead.shift, half, slice, role: None }
+    });
+    own.chain(lead).collect()
+}
+
+/// `(product whose matrix is read again, product that reads it again)`.
+fn reread(plan: &Plan) -> Vec<(usize, usize)> {
+    let first = |matrix| plan.products.iter().position(|product| product.matrix == matrix).unwrap_or(0);
+    let pairs = plan.products.iter().enumerate().map(|(index, product)| (first(product.matrix), index));
+    pairs.filter(|(mark, rewind)| mark < rewind).collect()
+}
+
+fn programs(plan: &Plan) -> Vec<ProgramView> {
+    let programs = plan.schedule.programs.iter();
+    programs
+        .map(|program| ProgramView {
+            first: program.first,
+            end: program.end,
+            word: program.word,
+            segment: program.segment,
+            visit: program.visit,
+        })
+        .collect()
+}
+
+/// Verilog slice of a 48-bit `value` that drops `shift` bits and keeps `data`.
+fn result_slice(shift: u32, data: u32) -> String {
+    // Few bits to drop: what remains is shorter than the result and takes copies of the sign.
+    match (shift + data - 1).checked_sub(47) {
+        Some(missing) if missing > 0 => format!("{{ {{{missing}{{value[47]}}}}, value[47:{shift}]}}"),
+        _ => format!("value[{}:{shift}]", shift + data - 1),
     }
 }
 
@@ -314,22 +462,20 @@ fn product_view(plan: &Plan, index: usize) -> ProductView {
     let window = plan.schedule.windows[index];
     let matrix = &plan.matrices[product.matrix].name;
     let data = plan.design.hardware.data_bits;
-    let high = product.shift + data - 1;
-    // Few bits to drop: what remains is shorter than the result and takes copies of the sign.
-    let slice = match high.checked_sub(47) {
-        Some(missing) if missing > 0 => format!("{{ {{{missing}{{value[47]}}}}, value[47:{}]}}", product.shift),
-        _ => format!("value[{high}:{}]", product.shift),
-    };
+    let mirror = if product.mirrored.is_some() { " mirrored" } else { "" };
+    // The paper's next frame waits for the last result of the one before.
+    let begins = plan.ways() > 1 && plan.schedule.programs.iter().any(|program| program.first == index);
     ProductView {
         index,
-        text: format!("{matrix} {} -> {}", product.operand.name(), product.result.name()),
-        operand: product.operand.name(),
-        length: window.length,
-        wait: window.wait,
-        base: operand_base(plan, product.operand),
+        text: format!("{matrix}{mirror} {} -> {}", product.operand().name(), product.result.name()),
+        operand: product.operand().name(),
+        // Rounds take as long as the data say; only what is in front of them is counted here.
+        length: window.rounds.map_or(window.length, |rounds| rounds.lead),
+        wait: window.wait + if begins { plan.schedule.program_gap - TURN_GAP } else { 0 },
+        base: operand_base(plan, product.operand()),
         shift: product.shift,
         half: if product.shift == 0 { 0 } else { half(product.shift) },
-        slice,
+        slice: result_slice(product.shift, data),
         role: role(product),
     }
 }
@@ -340,34 +486,34 @@ fn role(product: &Product) -> Option<String> {
     match product.result {
         Vector::Partial(p) => Some(format!("7'b100_{:02b}_00", p - 1)),
         Vector::G(p, q) => Some(format!("7'b01{adds}_{:02b}_{q:02b}", p - 1)),
-        Vector::Stress | Vector::Weight | Vector::U(_) => None,
+        _ => None,
     }
 }
 
 /// Verilog expression of a vector's first word in the operand memories; `bank` is that of the frame's stress.
-fn operand_base(plan: &Plan, vector: Vector) -> String {
+pub(super) fn operand_base(plan: &Plan, vector: Vector) -> String {
     let width = address_bits(plan.operands.words());
     match plan.operands.place(vector) {
         Some(Place::Fixed(word)) => format!("{width}'d{word}"),
-        Some(Place::StressBank) => format!("(bank ? {width}'d{} : {width}'d0)", plan.taxels()),
+        Some(Place::StressBank) => format!("(bank ? {width}'d{} : {width}'d0)", plan.elements()),
         // No product reads it, so nothing writes it either.
         None => format!("{width}'d0"),
     }
 }
 
-fn half(shift: u32) -> u64 {
+pub(super) fn half(shift: u32) -> u64 {
     1 << (shift - 1)
 }
 
-fn zero_extend(signal: &str, from: u32, to: u32) -> String {
+pub(super) fn zero_extend(signal: &str, from: u32, to: u32) -> String {
     if to > from { format!("{{{}'d0, {signal}}}", to - from) } else { signal.to_owned() }
 }
 
-fn sign_extend(signal: &str, from: u32, to: u32) -> String {
+pub(super) fn sign_extend(signal: &str, from: u32, to: u32) -> String {
     if to > from { format!("{{ {{{}{{{signal}[{}]}}}}, {signal}}}", to - from, from - 1) } else { signal.to_owned() }
 }
 
-fn slice(signal: &str, from: u32, to: u32) -> String {
+pub(super) fn slice(signal: &str, from: u32, to: u32) -> String {
     if from > to { format!("{signal}[{}:0]", to - 1) } else { signal.to_owned() }
 }
 

@@ -5,6 +5,7 @@
 
 mod direction;
 mod optimum;
+mod reduced;
 mod summary;
 #[cfg(test)]
 mod tests;
@@ -33,8 +34,7 @@ pub const NOT_FINITE: u32 = 1 << 4;
 /// Status bit: early or late TLAST.
 pub const BAD_LENGTH: u32 = 1 << 5;
 
-/// Words before the field: status, `F_x`, `F_y`, `F_z`, mu, phi, `mu_x`, `mu_y`.
-pub const SUMMARY_WORDS: usize = 8;
+pub use crate::plan::SUMMARY_WORDS;
 
 /// `g_pq` or `G_pq` by `[p - 1][q]`.
 type ByPq<T> = [[T; 3]; 3];
@@ -62,23 +62,31 @@ impl Vectors {
 
     fn get(&self, vector: Vector) -> &Vec<i64> {
         match vector {
-            Vector::Stress => &self.stress,
             Vector::Weight => &self.weight,
             Vector::Partial(p) => &self.partial[usize::from(p) - 1],
             Vector::G(p, q) => &self.g[usize::from(p) - 1][usize::from(q)],
             Vector::U(q) => &self.u[usize::from(q)],
+            // The paper's plan has no other vectors.
+            _ => &self.stress,
         }
     }
 
     fn get_mut(&mut self, vector: Vector) -> &mut Vec<i64> {
         match vector {
-            Vector::Stress => &mut self.stress,
             Vector::Weight => &mut self.weight,
             Vector::Partial(p) => &mut self.partial[usize::from(p) - 1],
             Vector::G(p, q) => &mut self.g[usize::from(p) - 1][usize::from(q)],
             Vector::U(q) => &mut self.u[usize::from(q)],
+            _ => &mut self.stress,
         }
     }
+}
+
+/// The stress of a taxel, and what is to be said of it.
+struct Stress {
+    steps: i64,
+    saturated: bool,
+    not_finite: bool,
 }
 
 /// Executes a plan, frame by frame.
@@ -99,9 +107,9 @@ impl<'plan> Model<'plan> {
         self.frames = 0;
     }
 
-    /// Words of every output frame: 8 + 3 m.
+    /// Words of every output frame: 8, and for the field 3 m more.
     pub fn output_words(&self) -> usize {
-        SUMMARY_WORDS + 3 * self.plan.taxels()
+        self.plan.beats_out()
     }
 
     /// The output frame for one packet: float32 words in Pa up to and including the one with TLAST.
@@ -109,10 +117,8 @@ impl<'plan> Model<'plan> {
         let counter = u32::from(self.frames) << 16;
         self.frames = self.frames.wrapping_add(1);
         let taxels = self.plan.taxels();
-        let stress_format = self.plan.formats.stress;
-        let limit = stress_format.bound as u32;
-        let converted: Vec<_> =
-            packet.iter().take(taxels).map(|&word| float_to_fixed::convert(word, -stress_format.lsb, limit)).collect();
+        let converted: Vec<Stress> =
+            packet.iter().take(taxels).enumerate().map(|(taxel, &word)| self.convert(taxel, word)).collect();
         let mut bad = 0;
         if packet.len() != taxels {
             bad |= BAD_LENGTH;
@@ -124,7 +130,7 @@ impl<'plan> Model<'plan> {
             return self.blank(counter | bad);
         }
         let saturated = converted.iter().any(|stress| stress.saturated);
-        let stress: Vec<i64> = converted.iter().map(|stress| i64::from(stress.fixed)).collect();
+        let stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
         let direction = Direction::new(&stress, self.plan);
         if direction.no_contact {
             return self.blank(counter | NO_CONTACT);
@@ -132,32 +138,30 @@ impl<'plan> Model<'plan> {
         self.answer(counter, stress, &direction, saturated)
     }
 
+    /// One input word as stress.
+    fn convert(&self, taxel: usize, word: u32) -> Stress {
+        let format = self.plan.formats.stress;
+        let number = self.plan.counts.as_ref().map_or(format, |counts| counts.count);
+        let converted = float_to_fixed::convert(word, -number.lsb, number.bound as u32);
+        let number = i64::from(converted.fixed);
+        let exact = self.plan.counts.as_ref().map_or(number, |counts| counts.to_stress(taxel, number));
+        let steps = exact.clamp(-format.bound, format.bound);
+        Stress { steps, saturated: converted.saturated || steps != exact, not_finite: converted.not_finite }
+    }
+
     fn answer(&self, counter: u32, stress: Vec<i64>, direction: &Direction, saturated: bool) -> Vec<u32> {
+        match self.plan.formats.folded {
+            Some(folded) => reduced::answer(self.plan, &folded, counter, &stress, direction, saturated),
+            None => self.paper_answer(counter, stress, direction, saturated),
+        }
+    }
+
+    fn paper_answer(&self, counter: u32, stress: Vec<i64>, direction: &Direction, saturated: bool) -> Vec<u32> {
         let plan = self.plan;
         let vectors = self.products(stress);
         let sums: ByPq<i64> = std::array::from_fn(|p| std::array::from_fn(|q| vectors.g[p][q].iter().sum()));
-        let line = Line::new(&sums, direction);
-        let optimum = optimum::search(&line, &vectors.u, direction.stress_sum, plan);
-        let summary = Summary::new(&sums, &line, optimum.t);
-
-        let mut status = counter;
-        if line.unknown {
-            status |= DIRECTION_UNKNOWN;
-        } else if optimum.at_bound || summary.dependent_clipped {
-            status |= AT_BOUND;
-        }
-        if saturated || optimum.saturated {
-            status |= SATURATED;
-        }
+        let (mut words, summary) = scalars(plan, counter, direction, saturated, &sums, &vectors.u);
         let force_exponent = plan.formats.g.lsb - FRICTION_FRACTION as i32;
-        let mut words = vec![status];
-        words.extend(summary.forces.map(|force| fixed_to_float::convert(force, force_exponent)));
-        words.push(fixed_to_float::convert(summary.friction_quotient as i64, summary.friction_exponent));
-        words.push(fixed_to_float::convert(
-            i64::from(summary.angle),
-            -(crate::cores::cordic::ANGLE_FRACTION_BITS as i32),
-        ));
-        words.extend(summary.friction.map(|mu| fixed_to_float::convert(mu, -(FRICTION_FRACTION as i32))));
         let [mu_x, mu_y] = summary.friction;
         for taxel in 0..plan.taxels() {
             for [g0, g1, g2] in &vectors.g {
@@ -173,14 +177,14 @@ impl<'plan> Model<'plan> {
         let mut vectors = Vectors::new(stress);
         for product in &self.plan.products {
             let matrix = &self.plan.matrices[product.matrix];
-            let operand = vectors.get(product.operand);
+            let operand = vectors.get(product.operand());
             let result: Vec<i64> = (0..operand.len())
                 .map(|row| {
-                    let rounded = round_shift(matrix.row_product(row, operand), product.shift);
+                    let rounded = round_shift(matrix.row_product(row, 0, operand), product.shift);
                     match product.epilogue {
                         Epilogue::ClipNegate => (-rounded).max(0),
-                        Epilogue::Keep => rounded,
                         Epilogue::Add(partial) => rounded + vectors.get(partial)[row],
+                        _ => rounded,
                     }
                 })
                 .collect();
@@ -194,4 +198,35 @@ impl<'plan> Model<'plan> {
         words[0] = status;
         words
     }
+}
+
+/// The eight words before the field, from the sums `G_pq` and the vectors `u_q` of a frame; what Op found goes with them.
+fn scalars(
+    plan: &Plan,
+    counter: u32,
+    direction: &Direction,
+    saturated: bool,
+    sums: &ByPq<i64>,
+    u: &[Vec<i64>; 3],
+) -> (Vec<u32>, Summary) {
+    let line = Line::new(sums, direction);
+    let optimum = optimum::search(&line, u, direction.stress_sum, plan);
+    let summary = Summary::new(sums, &line, optimum.t);
+
+    let mut status = counter;
+    if line.unknown {
+        status |= DIRECTION_UNKNOWN;
+    } else if optimum.at_bound || summary.dependent_clipped {
+        status |= AT_BOUND;
+    }
+    if saturated || optimum.saturated {
+        status |= SATURATED;
+    }
+    let force_exponent = plan.formats.g.lsb - FRICTION_FRACTION as i32;
+    let mut words = vec![status];
+    words.extend(summary.forces.map(|force| fixed_to_float::convert(force, force_exponent)));
+    words.push(fixed_to_float::convert(summary.friction_quotient as i64, summary.friction_exponent));
+    words.push(fixed_to_float::convert(i64::from(summary.angle), -(crate::cores::cordic::ANGLE_FRACTION_BITS as i32)));
+    words.extend(summary.friction.map(|mu| fixed_to_float::convert(mu, -(FRICTION_FRACTION as i32))));
+    (words, summary)
 }

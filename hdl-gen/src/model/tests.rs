@@ -1,4 +1,4 @@
-//! Frames made to be as bad as can be: every vector stays within the bound of its format.
+//! Frames made to be as bad as can be: every vector of the paper's plan stays within the bound of its format.
 
 use golden::design::Design;
 use proptest::prelude::*;
@@ -8,9 +8,10 @@ use crate::plan::Plan;
 use crate::plan::product::Vector;
 use crate::plan::quantise::QuantisedMatrix;
 
-fn plan(columns: usize, rows: usize, more: &str) -> Plan {
+fn plan(columns: usize, rows: usize, algorithm: &str, hardware: &str) -> Plan {
     let text = format!(
-        "name = \"bad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 2.5]\ndepth_mm = 3.0\n{more}"
+        "name = \"bad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 2.5]\ndepth_mm = 3.0\n\
+         [algorithm]\nplan = \"paper\"\n{algorithm}\n[hardware]\n{hardware}"
     );
     Plan::new(&Design::from_toml(&text, "bad.toml").unwrap()).unwrap()
 }
@@ -21,11 +22,11 @@ fn sign_patterns(matrix: &QuantisedMatrix, before: Option<&QuantisedMatrix>) -> 
     let mut patterns = Vec::with_capacity(size);
     for row in &matrix.rows {
         let mut sums = vec![0.0; size];
-        for &(middle, value) in row {
+        for &(middle, [value, ..]) in row {
             match before {
                 None => sums[middle as usize] += f64::from(value),
                 Some(before) => {
-                    for &(column, inner) in &before.rows[middle as usize] {
+                    for &(column, [inner, ..]) in &before.rows[middle as usize] {
                         sums[column as usize] -= f64::from(value) * f64::from(inner);
                     }
                 }
@@ -40,7 +41,7 @@ fn check(plan: &Plan, signs: &[i64]) {
     let bound = plan.formats.stress.bound;
     let vectors: Vectors = Model::new(plan).products(signs.iter().map(|sign| sign * bound).collect());
     for product in &plan.products {
-        for vector in [product.operand, product.result] {
+        for vector in [product.operand(), product.result] {
             let format = plan.formats.of(vector);
             let top = vectors.get(vector).iter().map(|value| value.abs()).max().unwrap();
             assert!(top <= format.bound, "{} reaches {top} of {}", vector.name(), format.bound);
@@ -53,7 +54,7 @@ fn check_worst_frames(plan: &Plan) {
     for product in &plan.products {
         let matrix = &plan.matrices[product.matrix];
         // Before a product of the weights comes the inverse of C33.
-        let before = (product.operand != Vector::Stress).then(|| &plan.matrices[0]);
+        let before = (product.operand() != Vector::Stress).then(|| &plan.matrices[0]);
         for pattern in sign_patterns(matrix, before) {
             let opposite: Vec<i64> = pattern.iter().map(|sign| -sign).collect();
             check(plan, &pattern);
@@ -64,15 +65,15 @@ fn check_worst_frames(plan: &Plan) {
 
 #[test]
 fn the_worst_frames_stay_within_the_bounds() {
-    check_worst_frames(&plan(4, 4, ""));
-    check_worst_frames(&plan(5, 3, "[algorithm]\nfilter = { kind = \"f1\", l = 7 }"));
-    check_worst_frames(&plan(4, 5, "[algorithm]\nfilter = { kind = \"f2\", p = 20 }\n[hardware]\ndata_bits = 20"));
-    check_worst_frames(&plan(2, 6, "[hardware]\ncoefficient_bits = 8\ndata_bits = 16"));
+    check_worst_frames(&plan(4, 4, "", ""));
+    check_worst_frames(&plan(5, 3, "filter = { kind = \"f1\", l = 7 }", ""));
+    check_worst_frames(&plan(4, 5, "filter = { kind = \"f2\", p = 20 }", "data_bits = 20"));
+    check_worst_frames(&plan(2, 6, "", "coefficient_bits = 8\ndata_bits = 16"));
 }
 
 #[test]
 fn the_bound_of_the_weights_is_reached_and_not_just_respected() {
-    let plan = plan(4, 4, "");
+    let plan = plan(4, 4, "", "");
     let reach = |signs: &[i64]| {
         let bound = plan.formats.stress.bound;
         let vectors = Model::new(&plan).products(signs.iter().map(|sign| sign * bound).collect());
@@ -89,7 +90,7 @@ proptest! {
     fn full_scale_of_any_signs_stays_within_the_bounds(
         columns in 2_usize..7, rows in 2_usize..7, signs in proptest::collection::vec(-1_i64..=1, 36),
     ) {
-        let plan = plan(columns, rows, "");
+        let plan = plan(columns, rows, "", "");
         check(&plan, &signs[..plan.taxels()]);
     }
 }

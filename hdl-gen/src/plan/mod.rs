@@ -3,112 +3,68 @@
 //! Everything else is derived from it: the integer model interprets it, the emitter prints it, the report
 //! describes it. Nothing here knows Verilog.
 
+mod build;
+mod control;
+pub mod counts;
+mod dealing;
+mod error;
 pub mod format;
 pub mod layout;
 pub mod optimum;
 pub mod paper;
 pub mod product;
 pub mod quantise;
+pub mod reduced;
 pub mod resources;
+pub mod savings;
 pub mod schedule;
 pub mod timing;
 
-use golden::design::Design;
-use golden::filter::{FilterError, FilteredMatrices};
-use golden::matrices::{Matrices, MatrixError, MatrixName};
+use golden::design::{Design, Outputs};
+use golden::matrices::MatrixName;
+use golden::parity::Quads;
 use serde::Serialize;
-use thiserror::Error;
 
-use format::{Format, pow2};
+use counts::CountsPlan;
+pub use error::PlanError;
+use format::Format;
 use layout::OperandLayout;
 use optimum::{DirectionPlan, OptimumPlan};
 use product::{Block, Product, Vector};
 use quantise::QuantisedMatrix;
+use reduced::FoldedFormats;
 use resources::Resources;
 use schedule::Schedule;
 use timing::Timeline;
 
-/// Why a checked design has no hardware plan.
-#[derive(Debug, Error)]
-pub enum PlanError {
-    /// The matrices of this geometry cannot be computed.
-    #[error(transparent)]
-    Matrix(#[from] MatrixError),
-    /// The filter leaves nothing to compute with.
-    #[error(transparent)]
-    Filter(#[from] FilterError),
-    /// The accumulator bound leaves too few coefficient bits.
-    #[error(
-        "[hardware] coefficient_bits = {bits}: matrix {matrix} keeps fewer than {needed} bits beside a 48-bit \
-         accumulator; lower data_bits or filter more"
-    )]
-    CoefficientWidth {
-        /// The matrix as stored.
-        matrix: String,
-        /// Coefficient width of the design.
-        bits: u32,
-        /// Fewest useful bits.
-        needed: u32,
-    },
-    /// The stress step is so coarse that the noise floor disappears in it.
-    #[error(
-        "[hardware] data_bits = {bits}: one step of stress is {step_pa} Pa, more than 16 times the noise floor of \
-         {floor_pa} Pa; raise data_bits, lower full_scale_pa, or state a higher [algorithm] noise_floor_pa"
-    )]
-    Resolution {
-        /// Vector width of the design.
-        bits: u32,
-        /// Worth of one step.
-        step_pa: f64,
-        /// Noise floor of the design.
-        floor_pa: f64,
-    },
-    /// The geometry amplifies so much that the worst case leaves the forces too few bits.
-    #[error(
-        "[hardware] data_bits = {bits}: the worst case of {vector} is {worst_n:.3e} N, so one step is {step_n:.3e} N, \
-         more than 1/{FEWEST_FORCE_STEPS} of a taxel's force at full scale ({taxel_n:.3e} N); the condition number of \
-         A A^T is {condition:.1e}: lower [sensor] depth_mm, raise the pitch, or raise data_bits"
-    )]
-    ForceResolution {
-        /// The vector.
-        vector: &'static str,
-        /// Vector width of the design.
-        bits: u32,
-        /// Largest magnitude that the format must hold.
-        worst_n: f64,
-        /// Worth of one step.
-        step_n: f64,
-        /// Full-scale stress times the area of a taxel.
-        taxel_n: f64,
-        /// 2-norm condition number of A Aᵀ.
-        condition: f64,
-    },
-}
+/// Words before the field: status, `F_x`, `F_y`, `F_z`, mu, phi, `mu_x`, `mu_y`.
+pub const SUMMARY_WORDS: usize = 8;
 
-/// Fewest steps of a force format that a taxel's force at full scale must span.
-const FEWEST_FORCE_STEPS: u32 = 64;
-
-/// Formats of the four kinds of vectors.
+/// Formats of the taxels' values in the four kinds of vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Formats {
     /// `b_z` in Pa; its bound is the full scale, to which larger inputs are clamped.
     pub stress: Format,
-    /// `|w_z|` in N.
+    /// `|w_z|` in N; in the reduced plan `y+` too.
     pub weight: Format,
-    /// All nine `g_pq`, and `A_p b_z`, in N.
+    /// All nine `g_pq`, and `A_p b_z`, in N; in the reduced plan their sums `G_pq`.
     pub g: Format,
     /// `u_q` in Pa.
     pub u: Format,
+    /// Reduced plan: formats of the folded vectors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub folded: Option<FoldedFormats>,
 }
 
 impl Formats {
-    /// The format of `vector`.
+    /// The format in which the lanes read or leave `vector`.
     pub fn of(&self, vector: Vector) -> Format {
-        match vector {
-            Vector::Stress => self.stress,
-            Vector::Weight => self.weight,
-            Vector::Partial(_) | Vector::G(..) => self.g,
-            Vector::U(_) => self.u,
+        match (&self.folded, vector) {
+            (Some(folded), _) => folded.of(vector),
+            (None, Vector::Stress) => self.stress,
+            (None, Vector::Weight | Vector::Pull) => self.weight,
+            (None, Vector::U(_) | Vector::Residual(_) | Vector::Explained) => self.u,
+            (None, Vector::Partial(_) | Vector::G(..) | Vector::Force(_)) => self.g,
         }
     }
 }
@@ -152,6 +108,8 @@ pub struct Plan {
     pub products: Vec<Product>,
     /// Vector formats.
     pub formats: Formats,
+    /// Conversion of counts, if the frames are not in pascals.
+    pub counts: Option<CountsPlan>,
     /// Status thresholds.
     pub thresholds: Thresholds,
     /// Constants of `CeAn`.
@@ -171,52 +129,51 @@ pub struct Plan {
 impl Plan {
     /// Plans the hardware of `design`.
     ///
-    /// # Errors
-    /// [`PlanError`] if the geometry is singular, the filter empties a matrix, or the widths are too small.
-    pub fn new(design: &Design) -> Result<Self, PlanError> {
-        let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)?;
-        let filtered = FilteredMatrices::new(&matrices, &design.algorithm.filter)?;
-        Self::from_parts(design, &matrices, &filtered)
-    }
-
-    /// Plans the hardware from matrices that are already there.
+    /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
     ///
     /// # Errors
-    /// [`PlanError`] if the widths are too small.
-    pub fn from_parts(design: &Design, matrices: &Matrices, filtered: &FilteredMatrices) -> Result<Self, PlanError> {
-        let hardware = &design.hardware;
-        let stress = Format::covering(hardware.full_scale_pa, hardware.data_bits);
-        let thresholds = thresholds(design, stress)?;
-        let paper = paper::build(matrices, filtered, stress, hardware.coefficient_bits, hardware.data_bits)?;
-        let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
-        check_force_resolution(design, &paper.formats, condition)?;
-        let schedule = Schedule::new(&paper.products, &paper.matrices, hardware.lanes);
-        let taxels = design.sensor.taxels();
-        let direction = DirectionPlan::new(design.sensor.pitch_mm);
-        let optimum = OptimumPlan::new(taxels, hardware.lanes, &paper.formats);
-        let operands = OperandLayout::new(&paper.products, taxels);
-        let timeline = Timeline::new(taxels, &paper.products, &schedule, &optimum);
-        let resources = Resources::new(design, &operands, &schedule, &optimum);
-        Ok(Self {
-            design: design.clone(),
-            condition,
-            nnz: Nnz(MatrixName::ALL.into_iter().map(|name| (name, filtered.nnz(name))).collect()),
-            matrices: paper.matrices,
-            products: paper.products,
-            formats: paper.formats,
-            thresholds,
-            direction,
-            optimum,
-            operands,
-            schedule,
-            timeline,
-            resources,
-        })
+    /// [`PlanError`] if the estimator has no hardware, the geometry is singular, the filter empties a matrix, the widths are
+    /// too small, or no number of lanes meets the target.
+    pub fn new(design: &Design) -> Result<Self, PlanError> {
+        build::plan(design)
+    }
+
+    /// Multiply-accumulates of a lane in a cycle: the parity classes of the reduced plan, else one.
+    pub fn ways(&self) -> usize {
+        build::ways(&self.design)
+    }
+
+    /// Lanes that walk MCSR data of their own: the design's lanes over the ways.
+    pub fn walkers(&self) -> usize {
+        self.schedule.lanes.len()
+    }
+
+    /// Elements of a vector as the lanes see it: taxels, or quads of the folded grid.
+    pub fn elements(&self) -> usize {
+        build::elements(&self.design)
+    }
+
+    /// The quads of the sensor's grid.
+    pub fn quads(&self) -> Quads {
+        build::quads(&self.design)
     }
 
     /// Number of taxels m.
     pub fn taxels(&self) -> usize {
         self.design.sensor.taxels()
+    }
+
+    /// Words of every output frame: 8, and for the field 3 m more.
+    pub fn beats_out(&self) -> usize {
+        SUMMARY_WORDS + self.field_words()
+    }
+
+    /// Words of the field in an output frame: 3 m, or none.
+    pub fn field_words(&self) -> usize {
+        match self.design.algorithm.outputs {
+            Outputs::Field => 3 * self.taxels(),
+            Outputs::Resultants => 0,
+        }
     }
 
     /// Index of the first product of `block`, and of the first after it.
@@ -225,32 +182,4 @@ impl Plan {
         let count = self.products.iter().filter(|product| product.block == block).count();
         (first, first + count)
     }
-}
-
-fn check_force_resolution(design: &Design, formats: &Formats, condition: Condition) -> Result<(), PlanError> {
-    let [x, y] = design.sensor.pitch_mm;
-    let taxel_n = design.hardware.full_scale_pa * x * y * 1e-6;
-    for (vector, format) in [("|w|", formats.weight), ("g", formats.g)] {
-        if format.step() * f64::from(FEWEST_FORCE_STEPS) > taxel_n {
-            return Err(PlanError::ForceResolution {
-                vector,
-                bits: format.bits,
-                worst_n: format.bound as f64 * format.step(),
-                step_n: format.step(),
-                taxel_n,
-                condition: condition.aat,
-            });
-        }
-    }
-    Ok(())
-}
-
-fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> {
-    let floor_pa = design.algorithm.noise_floor_pa;
-    if stress.step() > 16.0 * floor_pa {
-        return Err(PlanError::Resolution { bits: stress.bits, step_pa: stress.step(), floor_pa });
-    }
-    let taxel = ((floor_pa * pow2(-stress.lsb)).round() as i64).max(1);
-    let contact = ((floor_pa * design.sensor.taxels() as f64 * pow2(-stress.lsb)).round() as i64).max(1);
-    Ok(Thresholds { taxel, contact })
 }

@@ -47,18 +47,23 @@ impl DirectionPlan {
 pub struct OptimumPlan {
     /// Evaluation cells, one multiplier each.
     pub cells: usize,
-    /// Taxels per cell, a power of two; the last cell may have fewer.
+    /// Taxels per cell, a power of two; the last cells may have fewer.
     pub elements: usize,
     /// Left shift (negative: right) that turns `sum |b|` into the level above `B_min`.
     pub level_shift: i32,
 }
 
 impl OptimumPlan {
-    /// As many cells as lanes, at most 32, with a power of two of taxels each.
-    pub fn new(taxels: usize, lanes: usize, formats: &Formats) -> Self {
-        let elements = taxels.div_ceil(lanes.min(MOST_CELLS)).next_power_of_two();
+    /// As many cells as lanes, at most 32, with a power of two of taxels each. Where `ways` taxels arrive at a time (the
+    /// members of a quad, of which there are `elements`), they go to as many cells.
+    pub fn new(elements: usize, ways: usize, lanes: usize, formats: &Formats) -> Self {
+        let per_cell = elements.div_ceil((lanes.min(MOST_CELLS) / ways).max(1)).next_power_of_two();
         let hinge_lsb = formats.u.lsb - FRICTION_FRACTION as i32 + HINGE_DROP as i32;
-        Self { cells: taxels.div_ceil(elements), elements, level_shift: formats.stress.lsb - LEVEL_SHIFT - hinge_lsb }
+        Self {
+            cells: ways * elements.div_ceil(per_cell),
+            elements: per_cell,
+            level_shift: formats.stress.lsb - LEVEL_SHIFT - hinge_lsb,
+        }
     }
 
     /// Cycles from the last taxel's address in an evaluation to the decision.

@@ -5,8 +5,8 @@ use golden::matrices::{Matrices, MatrixName};
 use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
 use super::format::{Format, MOST_SHIFT, largest};
-use super::product::{Block, Epilogue, Product, Vector};
-use super::quantise::{ANY_LSB, QuantisedMatrix};
+use super::product::{Block, Coefficients, Epilogue, Product, Vector};
+use super::quantise::{ANY_LSB, QuantisedMatrix, one_way};
 use super::{Formats, PlanError};
 
 /// How the twelve products of Co follow each other. `A_p b` come first: they keep the lanes busy while the
@@ -58,7 +58,7 @@ pub fn build(
 ) -> Result<PaperPlan, PlanError> {
     let quantise = |name: MatrixName, bound, least_lsb| {
         let (label, stored) = stored_form(name, filtered.get(name));
-        QuantisedMatrix::new(&label, &stored, coefficient_bits, bound, least_lsb)
+        QuantisedMatrix::new(&label, &one_way(&stored), coefficient_bits, bound, least_lsb)
     };
     let inverse = quantise(MatrixName::C33inv, stress.bound, ANY_LSB)?;
     let weight = result_format(&[vec![(&inverse, stress)]], data_bits);
@@ -77,21 +77,33 @@ pub fn build(
     }
     // The last bits of the small ones have changed, and with them perhaps the bound.
     let g = g_format(&of_co, stress, weight, data_bits);
-    let base = QuantisedMatrix::new("C33", &CsrMatrix::from(&matrices.c33), coefficient_bits, g.bound, ANY_LSB)?;
+    let base = QuantisedMatrix::new(
+        "C33",
+        &one_way(&CsrMatrix::from(&matrices.c33.dense())),
+        coefficient_bits,
+        g.bound,
+        ANY_LSB,
+    )?;
     let u = result_format(&[vec![(&base, g)]], data_bits);
     let mut stored = vec![inverse];
     stored.append(&mut of_co);
     stored.push(base);
 
-    let formats = Formats { stress, weight, g, u };
+    let formats = Formats { stress, weight, g, u, folded: None };
     let products = drafts()
         .into_iter()
         .map(|(matrix, draft)| {
             let accumulator_lsb = stored[matrix].lsb + formats.of(draft.operand).lsb;
             Product {
                 matrix,
-                operand: draft.operand,
+                lead: None,
+                operands: vec![draft.operand],
                 block: draft.block,
+                program: 0,
+                coefficients: Coefficients::Rom,
+                parity: 0,
+                mirrored: None,
+                skips: false,
                 epilogue: draft.epilogue,
                 result: draft.result,
                 shift: (formats.of(draft.result).lsb - accumulator_lsb) as u32,

@@ -1,5 +1,6 @@
 //! Coefficients as integers: one power-of-two scale per matrix.
 
+use golden::parity::CLASSES;
 use nalgebra_sparse::CsrMatrix;
 
 use super::PlanError;
@@ -10,17 +11,33 @@ pub const ANY_LSB: i32 = -900;
 /// Coefficients with fewer significant bits than this reconstruct nothing worth having.
 const FEWEST_USEFUL_BITS: u32 = 6;
 
+/// A column and its coefficients, one a way. In the paper's plan there is one way; in the reduced plan the four ways are
+/// the parity classes of the operand.
+pub type Entry = (u32, [i32; CLASSES]);
+
+/// Rows of real coefficients, before they are quantised; the same shape as [`QuantisedMatrix::rows`].
+pub type RealRows = Vec<Vec<(u32, [f64; CLASSES])>>;
+
 /// A sparse matrix with integer coefficients, `value = coefficient * 2^lsb`, rows in order, columns ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct QuantisedMatrix {
     /// Name of the matrix as stored, for instance `A1` or `-(I + D30)`.
     pub name: String,
-    /// Per row, the `(column, coefficient)` pairs of the MCSR form. No row is empty.
-    pub rows: Vec<Vec<(u32, i32)>>,
+    /// Per row, the `(column, coefficients)` pairs of the MCSR form. No row is empty.
+    pub rows: Vec<Vec<Entry>>,
     /// Exponent of a coefficient's last bit.
     pub lsb: i32,
-    /// Largest row sum of coefficient magnitudes.
+    /// Largest row sum of coefficient magnitudes, of any way.
     pub row_sum: i64,
+}
+
+/// The one way of the paper's plan.
+pub fn one_way(matrix: &CsrMatrix<f64>) -> RealRows {
+    let row = |row: nalgebra_sparse::csr::CsrRow<f64>| {
+        let entries = row.col_indices().iter().zip(row.values());
+        entries.map(|(&column, &value)| (column as u32, [value, 0.0, 0.0, 0.0])).collect()
+    };
+    matrix.row_iter().map(row).collect()
 }
 
 impl QuantisedMatrix {
@@ -32,12 +49,13 @@ impl QuantisedMatrix {
     /// [`PlanError::CoefficientWidth`] when the accumulator leaves the coefficients less than six bits.
     pub fn new(
         name: &str,
-        matrix: &CsrMatrix<f64>,
+        matrix: &RealRows,
         bits: u32,
         operand_bound: i64,
         least_lsb: i32,
     ) -> Result<Self, PlanError> {
-        let largest_entry = matrix.values().iter().fold(0.0_f64, |top, value| top.max(value.abs()));
+        let values = || matrix.iter().flatten().flat_map(|(_, values)| values);
+        let largest_entry = values().fold(0.0_f64, |top, value| top.max(value.abs()));
         let top = largest(bits);
         // A filter may leave nothing but zeros, whose logarithm is minus infinity.
         let mut lsb = ((largest_entry / top as f64).log2().floor() - 1.0).max(f64::from(least_lsb)) as i32;
@@ -57,28 +75,46 @@ impl QuantisedMatrix {
         }
     }
 
-    fn at(name: &str, matrix: &CsrMatrix<f64>, lsb: i32) -> Self {
+    fn at(name: &str, matrix: &RealRows, lsb: i32) -> Self {
         let scale = pow2(-lsb);
-        let rows: Vec<Vec<(u32, i32)>> = matrix
-            .row_iter()
-            .map(|row| {
-                let entries = row.col_indices().iter().zip(row.values());
-                entries.map(|(&column, &value)| (column as u32, (value * scale).round() as i32)).collect()
-            })
-            .collect();
-        let row_sum =
-            rows.iter().map(|row| row.iter().map(|&(_, value)| i64::from(value.abs())).sum()).max().unwrap_or(0);
+        let integer = |&(column, values): &(u32, [f64; CLASSES])| -> Entry {
+            (column, values.map(|value| (value * scale).round() as i32))
+        };
+        let rows = matrix.iter().map(|row| row.iter().map(integer).collect()).collect();
+        Self::from_rows(name, rows, lsb)
+    }
+
+    /// From coefficients that are integers already.
+    pub fn from_rows(name: &str, rows: Vec<Vec<Entry>>, lsb: i32) -> Self {
+        let sum =
+            |row: &Vec<Entry>, way: usize| -> i64 { row.iter().map(|(_, ways)| i64::from(ways[way].abs())).sum() };
+        let row_sum = rows.iter().flat_map(|row| (0..CLASSES).map(|way| sum(row, way))).max().unwrap_or(0);
         Self { name: name.to_owned(), rows, lsb, row_sum }
     }
 
-    /// Number of stored coefficients: MACs per product.
+    /// Number of stored entries: cycles of a lane per product.
     pub fn nnz(&self) -> usize {
         self.rows.iter().map(Vec::len).sum()
     }
 
-    /// Row `row` times `operand` in the accumulator, exactly.
-    pub fn row_product(&self, row: usize, operand: &[i64]) -> i64 {
-        self.rows[row].iter().map(|&(column, value)| i64::from(value) * operand[column as usize]).sum()
+    /// Row `row` times one way's `operand` in the accumulator, exactly.
+    pub fn row_product(&self, row: usize, way: usize, operand: &[i64]) -> i64 {
+        self.rows[row].iter().map(|&(column, ways)| i64::from(ways[way]) * operand[column as usize]).sum()
+    }
+
+    /// Largest row sum of the magnitudes of the four-way matrix's unfolded coefficients, times four: with it, a bound
+    /// of the taxels' operands is one of the taxels' results.
+    pub fn unfolded_row_sum(&self) -> i64 {
+        let mirrored = |ways: &[i32; CLASSES], member: usize| -> i64 {
+            let signed = ways.iter().enumerate().map(|(class, &value)| {
+                if golden::parity::sign(class, member) < 0.0 { -i64::from(value) } else { i64::from(value) }
+            });
+            signed.sum::<i64>().abs()
+        };
+        let of_row = |row: &Vec<Entry>| -> i64 {
+            row.iter().map(|(_, ways)| (0..CLASSES).map(|member| mirrored(ways, member)).sum::<i64>()).sum()
+        };
+        self.rows.iter().map(of_row).max().unwrap_or(0)
     }
 }
 
@@ -87,19 +123,19 @@ mod tests {
     use super::*;
     use nalgebra_sparse::CooMatrix;
 
-    fn csr(entries: &[(usize, usize, f64)], size: usize) -> CsrMatrix<f64> {
+    fn csr(entries: &[(usize, usize, f64)], size: usize) -> RealRows {
         let mut coo = CooMatrix::new(size, size);
         for &(row, column, value) in entries {
             coo.push(row, column, value);
         }
-        CsrMatrix::from(&coo)
+        one_way(&CsrMatrix::from(&coo))
     }
 
     #[test]
     fn uses_the_whole_coefficient_width() {
         let matrix = csr(&[(0, 0, 0.75), (0, 1, -0.1), (1, 1, 0.2)], 2);
         let quantised = QuantisedMatrix::new("A1", &matrix, 18, 1 << 26, ANY_LSB).unwrap();
-        assert_eq!(quantised.rows[0][0].1, 98304);
+        assert_eq!(quantised.rows[0][0].1[0], 98304);
         assert_eq!(quantised.lsb, -17);
         assert_eq!(quantised.nnz(), 3);
     }
@@ -119,7 +155,7 @@ mod tests {
     fn is_no_finer_than_asked() {
         for (entry, expected) in [(1.0, 64), (0.001, 0), (0.0, 0)] {
             let quantised = QuantisedMatrix::new("D12", &csr(&[(0, 0, entry)], 1), 18, 1 << 26, -6).unwrap();
-            assert_eq!((quantised.lsb, quantised.rows[0][0].1), (-6, expected));
+            assert_eq!((quantised.lsb, quantised.rows[0][0].1[0]), (-6, expected));
         }
     }
 

@@ -1,30 +1,36 @@
 //! Who computes what, and when: the static schedule of the SpMV lanes.
 //!
-//! Nothing in the lanes' timing depends on data, so the whole frame is laid out here, cycle by cycle, and the
-//! hardware needs neither arbiter nor stall. The MACs of a product form one long stream, row after row, that is
+//! Unless zeros are passed over, nothing in the lanes' timing depends on data: a frame is laid out here, cycle by cycle,
+//! and the hardware needs neither arbiter nor stall. The MACs of a product form one long stream, row after row, that is
 //! cut into equal pieces, one per lane: all lanes finish together. A row cut in two leaves its end as a *tail*
 //! in the next lane, kept in that lane's carry register, and its beginning as a *head* that adds the carry.
 //! A collector takes one result a cycle, in the order in which they become ready. Where rows are so short that a
 //! lane would finish another before there is room for it, idle cycles are inserted.
+//!
+//! Products that always follow each other at the same distance form a *program*. The paper's plan is one program a
+//! frame; the reduced plan has up to three, which the hardware starts when their data and the lanes are there.
 
-use std::cmp::Reverse;
-use std::collections::{BinaryHeap, VecDeque};
-
+use golden::parity::CLASSES;
 use serde::Serialize;
 
-use super::product::{Block, Epilogue, Product, Vector};
-use super::quantise::QuantisedMatrix;
+use super::dealing::{Dealer, Stream, rounds_period};
+use super::product::{Epilogue, Product, Vector};
+use super::quantise::{Entry, QuantisedMatrix};
 
 /// Cycles from the issue of a row's last MAC to its sum standing in the lane's result register.
 pub const ISSUE_TO_RESULT: u64 = 7;
 /// Results that a lane holds until the collector comes.
 pub const RESULT_PLACES: usize = 2;
-/// Cycles from a collector visit to the first issue that may read the value as an operand.
-pub const VISIT_TO_OPERAND: u64 = 6;
-/// Cycles without issue when the lanes pass from one block to the next.
-pub const TURN_GAP: u64 = 1;
+/// Cycles without issue when the lanes pass from one block, or one program, to the next.
+pub const TURN_GAP: u64 = 2;
+/// Cycles from taking a program's last result to taking the next program's first: the order is read from a ROM.
+pub const COLLECTOR_JUMP: u64 = 4;
 /// Cycles from the last collector visit of a frame to the `drained` pulse.
 pub const VISIT_TO_DRAINED: u64 = 4;
+/// Cycles without issue in front of a product's rounds: the list's first entry is fetched.
+pub const ROUNDS_FETCH: u64 = 1;
+/// Cycles from the last operand being there to the list of those that are not zero.
+const WRITE_TO_LIST: u64 = 2;
 /// A count in the MACs-per-row ROM has 14 bits.
 pub const MAX_SEGMENT: u32 = (1 << 14) - 1;
 
@@ -53,13 +59,15 @@ pub struct Segment {
 /// The MCSR data of one lane, in the order in which it is read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LaneProgram {
-    /// `(column, coefficient)` pairs; a matrix that several products share stands here once.
-    pub words: Vec<(u32, i32)>,
+    /// `(column, coefficients)` pairs; a matrix that several products share stands here once.
+    pub words: Vec<Entry>,
     /// MACs per row, product after product.
     pub segments: Vec<Segment>,
+    /// Dense rows of the matrices whose products pass over zeros; they stand behind the words in the values ROM.
+    pub rounds: Vec<[i32; CLASSES]>,
 }
 
-/// When a product runs, in cycles from the first issue of the frame.
+/// When a product runs, in cycles from the first issue of its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Window {
     /// First issue cycle.
@@ -68,14 +76,30 @@ pub struct Window {
     pub length: u64,
     /// Idle cycles before `start`, beyond the turn gap, until the operand is complete.
     pub wait: u64,
-    /// MACs of all lanes in this window.
+    /// MACs of all lanes in this window; with four ways a lane counts once.
     pub macs: u64,
+    /// Of a product that passes over zeros.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rounds: Option<Rounds>,
+}
+
+/// How a product passes over zeros: whole rows are dealt to the lanes, one a lane and round, and all lanes multiply the
+/// same column at a time, from a list of the operand's quads that are not zero. The window's length is that of an operand
+/// without zeros; the hardware takes `count * max(nonzeros, lanes)` cycles after the rows of sums.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Rounds {
+    /// Issue cycles of the rows of sums in front.
+    pub lead: u64,
+    /// Rounds.
+    pub count: usize,
+    /// First word of the dense rows, from the first dense row of the ROM.
+    pub word: usize,
 }
 
 /// The collector takes a result from a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Visit {
-    /// Cycle, counted from the first issue of the frame.
+    /// Cycle, counted from the first issue of the program.
     pub cycle: u64,
     /// The lane that holds the result.
     pub lane: u32,
@@ -85,51 +109,102 @@ pub struct Visit {
     pub row: u32,
 }
 
+/// Products that follow each other at fixed distances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Program {
+    /// Its first product.
+    pub first: usize,
+    /// The one after its last.
+    pub end: usize,
+    /// Address of its first word in the values and columns ROMs, the same in every lane.
+    pub word: usize,
+    /// Address of its first word in the MACs-per-row ROMs, the same in every lane.
+    pub segment: usize,
+    /// Address of its first visit.
+    pub visit: usize,
+    /// Cycles from the first issue to the last, inclusive.
+    pub length: u64,
+    /// Cycle of its first visit.
+    pub first_visit: u64,
+    /// Cycle of its last visit.
+    pub last_visit: u64,
+}
+
 /// The lanes' work for one frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Schedule {
     /// Per lane.
     pub lanes: Vec<LaneProgram>,
+    /// Per program.
+    pub programs: Vec<Program>,
     /// Per product.
     pub windows: Vec<Window>,
-    /// Every result in the order in which the collector takes them.
+    /// Every result in the order in which the collector takes them, program after program.
     pub visits: Vec<Visit>,
-    /// Cycle of the `drained` pulse.
-    pub drained: u64,
+    /// Cycles without issue between the last issue of a program and the first of the next, at least.
+    pub program_gap: u64,
 }
 
 impl Schedule {
-    /// Lays out `products` on `lanes` lanes.
+    /// Lays out `products` on `lanes` lanes; the products of a program stand next to each other.
     pub fn new(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize) -> Self {
-        let mut builder = Builder::new(lanes, matrices.len());
-        let mut complete: Vec<(Vector, u64)> = Vec::new();
-        let mut block = products.first().map_or(Block::We, |product| product.block);
-        let mut next_start = 0;
+        let mut dealer = Dealer::new(lanes);
+        let mut stored = vec![false; matrices.len()];
+        let mut programs = Vec::new();
         let mut windows: Vec<Window> = Vec::with_capacity(products.len());
-        for (index, product) in products.iter().enumerate() {
-            if product.block != block {
-                next_start += TURN_GAP;
-                block = product.block;
+        let mut first = 0;
+        for chunk in products.chunk_by(|one, other| one.program == other.program) {
+            let (word, segment, visit) = dealer.begin();
+            let mut complete: Vec<(Vector, u64)> = Vec::new();
+            let mut next_start = 0;
+            for (offset, product) in chunk.iter().enumerate() {
+                if offset > 0 && chunk[offset - 1].hands_over_to(product) {
+                    next_start += TURN_GAP;
+                }
+                let start = earliest(product, chunk, &complete).max(next_start);
+                let main = &matrices[product.matrix];
+                let lead = product.lead.as_ref().map(|lead| &matrices[lead.matrix]);
+                let new = |matrix: usize| !std::mem::replace(&mut stored[matrix], true);
+                let index = (first + offset) as u32;
+                let work = Work { product, index, lead, main, start };
+                let (length, last_visit, macs, rounds) =
+                    if product.skips { work.in_rounds(&mut dealer, new) } else { work.in_pieces(&mut dealer, new) };
+                windows.push(Window { start, length, wait: start - next_start, macs, rounds });
+                complete.push((product.result, last_visit));
+                next_start = start + length;
             }
-            let visited = |vector| complete.iter().find(|&&(name, _)| name == vector).map_or(0, |&(_, visit)| visit);
-            let mut start = next_start;
-            if product.operand != Vector::Stress {
-                start = start.max(visited(product.operand) + VISIT_TO_OPERAND);
-            }
-            if let Epilogue::Add(partial) = product.epilogue {
-                start = start.max(visited(partial));
-            }
-            let (length, last_visit) = builder.deal(index, product.matrix, &matrices[product.matrix], start);
-            let macs = matrices[product.matrix].nnz() as u64;
-            windows.push(Window { start, length, wait: start - next_start, macs });
-            complete.push((product.result, last_visit));
-            next_start = start + length;
+            let cycles = |visit: Option<&Visit>| visit.map_or(0, |visit| visit.cycle);
+            programs.push(Program {
+                first,
+                end: first + chunk.len(),
+                word,
+                segment,
+                visit,
+                length: next_start,
+                // Where zeros are passed over, the first round may be as short as the lanes are many.
+                first_visit: match windows[first].rounds {
+                    Some(Rounds { lead: 0, .. }) => ROUNDS_FETCH + rounds_period(0, lanes) - 1 + ISSUE_TO_RESULT,
+                    _ => cycles(dealer.visits.get(visit)),
+                },
+                last_visit: cycles(dealer.visits.last()),
+            });
+            first += chunk.len();
         }
-        let last_visit = builder.visits.last().map_or(0, |visit| visit.cycle);
-        Self { lanes: builder.programs, windows, visits: builder.visits, drained: last_visit + VISIT_TO_DRAINED }
+        let program_gap = program_gap(&programs, &windows, lanes);
+        Self { lanes: dealer.programs, programs, windows, visits: dealer.visits, program_gap }
     }
 
-    /// Words in the values and columns ROMs: the longest lane's.
+    /// Cycle of the `drained` pulse that follows the only program's last visit, from its first issue.
+    pub fn drained(&self) -> u64 {
+        self.programs.iter().map(|program| program.last_visit).max().unwrap_or(0) + VISIT_TO_DRAINED
+    }
+
+    /// Words in the values ROMs: those with a column, then the dense rows.
+    pub fn value_depth(&self) -> usize {
+        self.word_depth() + self.lanes.first().map_or(0, |lane| lane.rounds.len())
+    }
+
+    /// Words in the columns ROMs: the longest lane's.
     pub fn word_depth(&self) -> usize {
         self.lanes.iter().map(|lane| lane.words.len()).max().unwrap_or(0).max(1)
     }
@@ -139,9 +214,9 @@ impl Schedule {
         self.lanes.iter().map(|lane| lane.segments.len()).max().unwrap_or(0).max(1)
     }
 
-    /// Cycles from the first issue to the last.
+    /// Cycles from a program's first issue to its last, all programs of a frame.
     pub fn issue_cycles(&self) -> u64 {
-        self.windows.last().map_or(0, |window| window.start + window.length)
+        self.programs.iter().map(|program| program.length).sum()
     }
 
     /// Share of the lane cycles between first and last issue that do a MAC, 0 to 1.
@@ -151,129 +226,80 @@ impl Schedule {
     }
 }
 
-/// A piece of a row as dealt to a lane, before its time is known.
-struct Piece {
-    kind: SegmentKind,
-    row: u32,
-    macs: u64,
+/// A product to be dealt.
+struct Work<'a> {
+    product: &'a Product,
+    index: u32,
+    lead: Option<&'a QuantisedMatrix>,
+    main: &'a QuantisedMatrix,
+    start: u64,
 }
 
-struct Builder {
-    programs: Vec<LaneProgram>,
-    /// Cycles in which the collector takes a lane's latest results, as many as the lane has places.
-    taken: Vec<VecDeque<u64>>,
-    visits: Vec<Visit>,
-    stored: Vec<bool>,
-}
+/// Length, cycle of the last visit, MACs, and the rounds if there are any.
+type Dealt = (u64, u64, u64, Option<Rounds>);
 
-impl Builder {
-    fn new(lanes: usize, matrices: usize) -> Self {
-        Self {
-            programs: vec![LaneProgram::default(); lanes],
-            taken: vec![VecDeque::with_capacity(RESULT_PLACES); lanes],
-            visits: Vec::new(),
-            stored: vec![false; matrices],
-        }
+impl<'a> Work<'a> {
+    fn stream(&self, mut rows: Vec<(u32, &'a [Entry])>, store: bool, start: u64) -> Stream<'a> {
+        self.product.relabel(&mut rows);
+        Stream { product: self.index, rows, store, start, spacing: self.product.epilogue.spacing() }
     }
 
-    /// Deals one product's rows; returns its length and the cycle in which its last result is taken.
-    fn deal(&mut self, product: usize, matrix_index: usize, matrix: &QuantisedMatrix, start: u64) -> (u64, u64) {
-        let store = !std::mem::replace(&mut self.stored[matrix_index], true);
-        let pieces = self.cut(matrix, store);
-        let used = self.place(product as u32, pieces, start);
-        let length = used.iter().copied().max().unwrap_or(0);
-        for (program, used) in self.programs.iter_mut().zip(used) {
-            push(&mut program.segments, SegmentKind::Idle, length - used);
-        }
-        (length, self.visits.last().map_or(start, |visit| visit.cycle))
+    fn in_pieces(&self, dealer: &mut Dealer, mut new: impl FnMut(usize) -> bool) -> Dealt {
+        let rows = Stream::rows_of(self.lead, self.main);
+        let macs = rows.iter().map(|(_, entries)| entries.len() as u64).sum();
+        let (length, last_visit) = dealer.deal(&self.stream(rows, new(self.product.matrix), self.start));
+        (length, last_visit, macs, None)
     }
 
-    /// Cuts the product's stream of MACs into equal shares; appends the words to the lanes' ROMs if `store`.
-    fn cut(&mut self, matrix: &QuantisedMatrix, store: bool) -> Vec<VecDeque<Piece>> {
-        let lanes = self.programs.len();
-        let total = matrix.nnz();
-        let longest_row = matrix.rows.iter().map(Vec::len).max().unwrap_or(1).max(1);
-        // No more lanes than leave each a share as long as the longest row: a row then spans two lanes at most.
-        let active = (total / longest_row).clamp(1, lanes);
-        let share = total.div_ceil(active);
-        let mut pieces: Vec<VecDeque<Piece>> = (0..lanes).map(|_| VecDeque::new()).collect();
-        let mut begin = 0;
-        for (row, entries) in matrix.rows.iter().enumerate() {
-            let end = begin + entries.len();
-            let mut at = begin;
-            while at < end {
-                let lane = at / share;
-                let stop = end.min((lane + 1) * share);
-                let kind = match (at == begin, stop == end) {
-                    (true, true) => SegmentKind::Row,
-                    (false, _) => SegmentKind::Tail,
-                    (true, false) => SegmentKind::Head,
-                };
-                if store {
-                    self.programs[lane].words.extend_from_slice(&entries[at - begin..stop - begin]);
-                }
-                pieces[lane].push_back(Piece { kind, row: row as u32, macs: (stop - at) as u64 });
-                at = stop;
-            }
-            begin = end;
-        }
-        pieces
-    }
-
-    /// Gives every piece its time, results in the order in which they become ready; returns the cycles that each
-    /// lane needs.
-    fn place(&mut self, product: u32, mut pieces: Vec<VecDeque<Piece>>, start: u64) -> Vec<u64> {
-        let mut used = vec![0_u64; pieces.len()];
-        let mut ready = BinaryHeap::new();
-        for lane in 0..pieces.len() {
-            if let Some(cycle) = self.next_result(lane, &mut pieces[lane], &mut used[lane], start) {
-                ready.push(Reverse((cycle, lane)));
-            }
-        }
-        while let Some(Reverse((cycle, lane))) = ready.pop() {
-            let room = match self.taken[lane].front() {
-                Some(&oldest) if self.taken[lane].len() == RESULT_PLACES => oldest + 1,
-                _ => 0,
-            };
-            if cycle < room {
-                push(&mut self.programs[lane].segments, SegmentKind::Idle, room - cycle);
-                used[lane] += room - cycle;
-                ready.push(Reverse((room, lane)));
-                continue;
-            }
-            if self.taken[lane].len() == RESULT_PLACES {
-                self.taken[lane].pop_front();
-            }
-            let visit = self.visits.last().map_or(cycle, |last| cycle.max(last.cycle + 1));
-            self.taken[lane].push_back(visit);
-            if let Some(piece) = pieces[lane].pop_front() {
-                self.visits.push(Visit { cycle: visit, lane: lane as u32, product, row: piece.row });
-                used[lane] += piece.macs;
-                push(&mut self.programs[lane].segments, piece.kind, piece.macs);
-            }
-            if let Some(cycle) = self.next_result(lane, &mut pieces[lane], &mut used[lane], start) {
-                ready.push(Reverse((cycle, lane)));
-            }
-        }
-        used
-    }
-
-    /// Passes over tails, which give no result; returns when the next piece's result would be ready.
-    fn next_result(&mut self, lane: usize, pieces: &mut VecDeque<Piece>, used: &mut u64, start: u64) -> Option<u64> {
-        while let Some(tail) = pieces.pop_front_if(|piece| piece.kind == SegmentKind::Tail) {
-            *used += tail.macs;
-            push(&mut self.programs[lane].segments, tail.kind, tail.macs);
-        }
-        pieces.front().map(|piece| start + *used + piece.macs - 1 + ISSUE_TO_RESULT)
+    fn in_rounds(&self, dealer: &mut Dealer, mut new: impl FnMut(usize) -> bool) -> Dealt {
+        let mut rows = Stream::rows_of(self.lead, self.main);
+        let main = rows.split_off(rows.len() - self.main.rows.len());
+        let macs = rows.iter().chain(&main).map(|(_, entries)| entries.len() as u64).sum();
+        let (lead, _) = if rows.is_empty() { (0, 0) } else { dealer.deal(&self.stream(rows, true, self.start)) };
+        let store = new(self.product.matrix);
+        // A matrix that is read again stands where its first product put it.
+        let end = dealer.round_words();
+        let word = *dealer.rounds_of.entry(self.product.matrix).or_insert(end);
+        let count = main.len().div_ceil(dealer.programs.len());
+        let (length, last_visit) = dealer.deal_rounds(&self.stream(main, store, self.start + lead + ROUNDS_FETCH));
+        (lead + ROUNDS_FETCH + length, last_visit, macs, Some(Rounds { lead, count, word }))
     }
 }
 
-/// Appends a segment, split where a count would not fit the ROM word.
-fn push(segments: &mut Vec<Segment>, kind: SegmentKind, macs: u64) {
-    let mut left = macs;
-    while left > 0 {
-        let part = left.min(u64::from(MAX_SEGMENT));
-        segments.push(Segment { kind, macs: part as u32 });
-        left -= part;
-    }
+/// When the operands and the addend of a product are there, as far as its own program makes them.
+fn earliest(product: &Product, program: &[Product], complete: &[(Vector, u64)]) -> u64 {
+    let made_by = |vector: Vector| {
+        let (_, visit) = complete.iter().find(|&&(result, _)| result.holds(vector))?;
+        let producer = program.iter().find(|other| other.result.holds(vector))?;
+        Some((producer, *visit))
+    };
+    let operands = product.operands.iter().filter_map(|&operand| made_by(operand)).map(|(producer, visit)| {
+        let list = if product.skips { WRITE_TO_LIST } else { 0 };
+        visit + producer.epilogue.visit_to_operand() + list
+    });
+    let addend = match product.epilogue {
+        Epilogue::Add(partial) => made_by(partial).map(|(_, visit)| visit),
+        _ => None,
+    };
+    operands.chain(addend).max().unwrap_or(0)
+}
+
+/// Results of one program must have left the lanes before the first of the next is ready, and the collector must have
+/// gone on to the next before the one after that is started: it remembers one. Whichever follow each other.
+fn program_gap(programs: &[Program], windows: &[Window], lanes: usize) -> u64 {
+    let longest_drain = programs.iter().map(|program| program.last_visit - program.length).max().unwrap_or(0);
+    let soonest_result = programs.iter().map(|program| program.first_visit).min().unwrap_or(0);
+    let saved = |window: &Window| {
+        // An operand of nothing but zeros.
+        let shortest = |rounds: Rounds| rounds.lead + ROUNDS_FETCH + rounds.count as u64 * rounds_period(0, lanes);
+        window.rounds.map_or(0, |rounds| window.length - shortest(rounds))
+    };
+    let shortest = programs
+        .iter()
+        .map(|program| program.length - windows[program.first..program.end].iter().map(saved).sum::<u64>())
+        .min()
+        .unwrap_or(0);
+    let before_result = (longest_drain + COLLECTOR_JUMP).saturating_sub(soonest_result);
+    let before_start = (longest_drain + 1).saturating_sub(shortest);
+    before_result.max(before_start).max(TURN_GAP)
 }

@@ -2,37 +2,45 @@
 
 use serde::Serialize;
 
+use super::counts::input_stages;
 use super::optimum::{OptimumPlan, SEARCH_STEPS};
 use super::product::{Product, Vector};
 use super::schedule::{Schedule, Visit};
 use crate::cores::{cordic, divider};
 
-/// From a beat at the input to its stress at the operand memories' write port: skid buffer and conversion.
-const BEAT_TO_WRITE: u64 = 4;
 /// From the last write of a frame to We's start pulse.
 const WRITE_TO_START: u64 = 2;
 /// From We's start pulse to the first issue.
-const START_TO_ISSUE: u64 = 1;
+pub(super) const START_TO_ISSUE: u64 = 2;
 /// From the last write of a frame to the next frame's first beat entering the conversion, `CeAn` permitting.
 const WRITE_TO_OPEN: u64 = 1;
 /// From the collector's visit to the last g, to the end of the frame sums.
 const VISIT_TO_SUMS: u64 = 7;
 /// From the frame sums to the line's start, the direction being there.
 const SUMS_TO_LINE: u64 = 1;
-/// From the line's start to its end: products, then two divisions.
-pub const LINE_LATENCY: u64 = 18 + 2 * divider::LATENCY as u64;
-/// From the last write of a frame to its direction: four divisions and two products.
-pub const DIRECTION_LATENCY: u64 = 10 + 4 * (divider::LATENCY as u64 + 1);
+/// From the line's start to its end: products, then both divisions at a time.
+pub const LINE_LATENCY: u64 = 18 + divider::LATENCY as u64;
+/// From the last write of a frame to its direction: two divisions, each for both axes, and two products.
+pub const DIRECTION_LATENCY: u64 = 10 + 2 * (divider::LATENCY as u64 + 1);
 /// From the end of the search to the end of the summary.
-pub const SUMMARY_LATENCY: u64 = 40 + cordic::LATENCY as u64 + divider::LATENCY as u64;
+pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY as u64;
 /// From `output_start` to the first beat leaving Op.
-pub const OUTPUT_DEPTH: u64 = 9;
+pub const OUTPUT_DEPTH: u64 = 13;
 /// One more for the skid buffer at the output.
-const OUTPUT_SKID: u64 = 1;
+pub(super) const OUTPUT_SKID: u64 = 1;
 /// Summary beats of an output frame.
 pub const SUMMARY_BEATS: u64 = 8;
-/// Frames after which the interval is steady.
-const SETTLED: usize = 24;
+/// Frames back to back that show the interval, between the two in the middle: every buffer is full by then, and there
+/// is still a next frame.
+pub const INTERVAL_FRAMES: usize = 14;
+
+/// Distance between the ends of the two frames in the middle.
+pub fn middle_interval(ends: &[u64]) -> u64 {
+    match ends.len() / 2 {
+        0 => 0,
+        middle => ends[middle] - ends[middle - 1],
+    }
+}
 
 /// Predicted times of one design, in clock cycles.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -57,6 +65,7 @@ struct Durations {
     sums: u64,
     search: u64,
     overlap: bool,
+    beat_to_write: u64,
 }
 
 /// Cycles at which a frame passes the stations.
@@ -71,7 +80,7 @@ struct Frame {
 
 impl Timeline {
     /// Predicts latency and interval.
-    pub fn new(taxels: usize, products: &[Product], schedule: &Schedule, optimum: &OptimumPlan) -> Self {
+    pub fn new(taxels: usize, counts: bool, products: &[Product], schedule: &Schedule, optimum: &OptimumPlan) -> Self {
         let search = search_cycles(optimum);
         let is_g = |visit: &&Visit| matches!(products[visit.product as usize].result, Vector::G(..));
         let sums = schedule.visits.iter().rfind(is_g).map_or(0, |visit| visit.cycle);
@@ -82,25 +91,27 @@ impl Timeline {
         let mut durations = Durations {
             taxels: taxels as u64,
             beats: SUMMARY_BEATS + 3 * taxels as u64,
-            drained: schedule.drained,
+            drained: schedule.drained(),
             sums: sums + VISIT_TO_SUMS,
             search,
             overlap: false,
+            // From a beat at the input to its stress at the operand memories' write port: skid buffer, conversion.
+            beat_to_write: 1 + input_stages(counts),
         };
         // Op is busy from drained to the hand-over of its results; the next frame needs it from its first u on,
         // and, for the sums, from its last g on.
         let line_in_time = durations.sums.max(DIRECTION_LATENCY) + SUMS_TO_LINE + LINE_LATENCY <= durations.drained;
         let busy = 1 + search + SUMMARY_LATENCY + 2;
         durations.overlap = line_in_time && busy < first_op_issue.min(durations.sums);
-        let mut frames: Vec<Frame> = Vec::with_capacity(SETTLED);
-        for _ in 0..SETTLED {
+        let mut frames: Vec<Frame> = Vec::with_capacity(INTERVAL_FRAMES);
+        for _ in 0..INTERVAL_FRAMES {
             frames.push(durations.next(&frames));
         }
         let last_beat = |frame: &Frame| frame.output_start + OUTPUT_DEPTH + OUTPUT_SKID + durations.beats - 1;
-        let first_beat = frames[0].first_write - BEAT_TO_WRITE;
+        let first_beat = frames[0].first_write - durations.beat_to_write;
         Self {
             latency_cycles: last_beat(&frames[0]) - first_beat + 1,
-            interval_cycles: last_beat(&frames[SETTLED - 1]) - last_beat(&frames[SETTLED - 2]),
+            interval_cycles: middle_interval(&frames.iter().map(last_beat).collect::<Vec<_>>()),
             spmv_cycles: schedule.issue_cycles(),
             search_cycles: search,
             overlap: durations.overlap,
@@ -121,7 +132,7 @@ impl Durations {
         if let Some(older) = back(2) {
             open = open.max(older.drained + 1);
         }
-        frame.first_write = open + BEAT_TO_WRITE - 1;
+        frame.first_write = open + self.beat_to_write - 1;
         frame.last_write = frame.first_write + self.taxels - 1;
         frame.start = frame.last_write + WRITE_TO_START;
         if let Some(previous) = back(1) {
@@ -139,16 +150,16 @@ impl Durations {
         let search_start = (frame.drained + 1).max(line_start + LINE_LATENCY);
         frame.output_start = search_start + self.search + SUMMARY_LATENCY + 1;
         if let Some(previous) = back(1) {
-            frame.output_start = frame.output_start.max(previous.output_start + self.beats + 3);
+            frame.output_start = frame.output_start.max(previous.output_start + self.beats + 4);
         }
         frame
     }
 }
 
-/// Start to end of the search: both passes, the slope bisections, the floor, the level bisections.
-fn search_cycles(optimum: &OptimumPlan) -> u64 {
+/// Start to end of the search: both passes, the slope bisections, the floor with a comparison, the level bisections.
+pub(super) fn search_cycles(optimum: &OptimumPlan) -> u64 {
     let elements = optimum.elements as u64;
     let decision = u64::from(optimum.decision_cycles());
     let steps = u64::from(SEARCH_STEPS);
-    2 * elements + 7 + steps * (elements + decision) + (steps + 1) * (2 * elements + decision)
+    2 * elements + 9 + steps * (elements + decision) + (steps + 1) * (2 * elements + decision)
 }

@@ -50,9 +50,13 @@ fn keys_are_known_and_complete() {
 
 #[test]
 fn sizes_make_sense() {
-    for columns in ["0", "1", "-4", "33", "4000"] {
-        check_design(&changed("columns = 4", &format!("columns = {columns}")), &["sensor.columns", columns, "2 to 32"]);
+    for columns in ["0", "1", "-4", "65", "4000"] {
+        check_design(&changed("columns = 4", &format!("columns = {columns}")), &["sensor.columns", columns, "2 to 64"]);
     }
+    let paper = |rows: &str| {
+        changed("depth_mm = 3.0", "depth_mm = 3.0\n[algorithm]\nplan = \"paper\"").replace("rows = 3", rows)
+    };
+    check_design(&paper("rows = 33"), &["sensor.rows", "33", "at most 32", "reduced"]);
     for columns in ["4.5", "\"4\"", "99999999999999999999", "nan"] {
         check_design(&changed("columns = 4", &format!("columns = {columns}")), &["line 3", "columns"]);
     }
@@ -84,6 +88,23 @@ fn sizes_make_sense() {
 }
 
 #[test]
+fn keys_fit_the_plan() {
+    let with = |algorithm: &str, hardware: &str| {
+        let more = format!("depth_mm = 3.0\n[algorithm]\n{algorithm}\n[hardware]\n{hardware}");
+        changed("depth_mm = 3.0", &more)
+    };
+    let reduced = "plan = \"reduced\"";
+    for lanes in ["1", "6", "63"] {
+        check_design(&with(reduced, &format!("lanes = {lanes}")), &["hardware.lanes", lanes, "multiple of 4"]);
+    }
+    check_design(&with("plan = \"quick\"", ""), &["algorithm.plan", "quick", "paper, reduced"]);
+    let paper = "plan = \"paper\"";
+    check_design(&with(&format!("{paper}\noutputs = \"resultants\""), ""), &["algorithm.outputs", "reduced"]);
+    check_design(&with(paper, "optimise = \"latency\""), &["hardware.optimise", "reduced"]);
+    check_design(&with(reduced, "optimise = \"area\""), &["hardware.optimise", "area", "latency"]);
+}
+
+#[test]
 fn names_are_verilog_identifiers() {
     for name in ["module", "../x", "a b", "", "4x3", "a-b", "a\\\"b", "p\\u00e4d", "a\\nb", "endmodule"] {
         check_design(&changed("\"pad\"", &format!("\"{name}\"")), &["name", "Verilog"]);
@@ -107,6 +128,12 @@ fn a_sensor_that_cannot_be_inverted_is_refused() {
     for depth in ["100.0", "900.0"] {
         check_design(&changed("depth_mm = 3.0", &format!("depth_mm = {depth}")), &["singular", "smaller depth"]);
     }
+}
+
+#[test]
+fn the_joint_estimator_has_no_hardware() {
+    let text = changed("depth_mm = 3.0", "depth_mm = 3.0\n[algorithm]\nestimator = \"joint\"\ngain = 1.1");
+    check_design(&text, &["hardware has the line estimator only", "estimator = \"line\""]);
 }
 
 #[test]

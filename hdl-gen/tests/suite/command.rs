@@ -72,8 +72,7 @@ fn the_new_designs_values_are_the_defaults() {
     let folder = tempfile::tempdir().unwrap();
     good(folder.path(), &["new", "full"]);
     let full = golden::design::Design::load(&folder.path().join("full.toml")).unwrap();
-    let with_filter = "[algorithm]\nfilter = { kind = \"f1\", l = 40 }";
-    let text = design_text("full", [10, 10], [4.0, 2.0], 3.0, with_filter);
+    let text = design_text("full", [10, 10], [4.0, 2.0], 3.0, "");
     assert_eq!(golden::design::Design::from_toml(&text, "full.toml").unwrap(), full);
 }
 
@@ -126,10 +125,11 @@ fn inspect_tells_people_the_same_figures() {
 #[test]
 fn inspect_warns_of_what_will_not_work_well() {
     let folder = tempfile::tempdir().unwrap();
-    let deep = design_text("deep", [10, 10], [4.0, 4.0], 12.0, "");
+    let paper = "[algorithm]\nplan = \"paper\"";
+    let deep = design_text("deep", [10, 10], [4.0, 4.0], 12.0, paper);
     fs::write(folder.path().join("deep.toml"), deep).unwrap();
     assert!(good(folder.path(), &["inspect", "deep.toml"]).contains("ill-conditioned: the depth is 3.00 pitches"));
-    let huge = design_text("huge", [20, 20], [4.0, 4.0], 3.0, "");
+    let huge = design_text("huge", [20, 20], [4.0, 4.0], 3.0, paper);
     fs::write(folder.path().join("huge.toml"), huge).unwrap();
     assert!(good(folder.path(), &["inspect", "huge.toml"]).contains("too much for xczu9eg-ffvb1156-2-e"));
 }

@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::support::{design_text, plan, small_plan};
 
 /// Longest module that a person still reads in one go.
-const MOST_LINES: usize = 330;
+const MOST_LINES: usize = 380;
 
 fn text_files(files: &FileMap) -> impl Iterator<Item = (&str, &str)> {
     files.iter().map(|(name, bytes)| (name.as_str(), std::str::from_utf8(bytes).expect("text")))

@@ -8,7 +8,7 @@ use hdl_gen::plan::product::{Epilogue, Vector};
 use hdl_gen::plan::{Plan, PlanError};
 use proptest::prelude::*;
 
-use crate::support::{any_design, design_text, plan, small_plan};
+use crate::support::{any_paper_design, design_text, plan, small_plan};
 
 /// For every row of every product the operand that makes its sum largest, through the product's arithmetic: the
 /// accumulator with its rounding fits 48 bits, the result its format's bound.
@@ -16,17 +16,17 @@ fn check_worst_cases(plan: &Plan) {
     let mut partial = vec![[0_i64; 3]; plan.taxels()];
     for product in &plan.products {
         let matrix = &plan.matrices[product.matrix];
-        let operand_format = plan.formats.of(product.operand);
+        let operand_format = plan.formats.of(product.operand());
         let result_format = plan.formats.of(product.result);
         let half = if product.shift == 0 { 0 } else { 1_i64 << (product.shift - 1) };
         assert!(product.shift <= MOST_SHIFT + 1, "{}: {} bits dropped", matrix.name, product.shift);
         assert_eq!(matrix.lsb + operand_format.lsb + product.shift as i32, result_format.lsb);
         for (row, entries) in matrix.rows.iter().enumerate() {
             let mut operand = vec![0; plan.taxels()];
-            for &(column, value) in entries {
-                operand[column as usize] = operand_format.bound * i64::from(value.signum());
+            for &(column, ways) in entries {
+                operand[column as usize] = operand_format.bound * i64::from(ways[0].signum());
             }
-            let accumulator = matrix.row_product(row, &operand);
+            let accumulator = matrix.row_product(row, 0, &operand);
             assert!(accumulator + half <= largest(ACCUMULATOR_BITS), "{} row {row}: {accumulator}", matrix.name);
             let result = round_shift(accumulator, product.shift);
             let mirrored = round_shift(-accumulator, product.shift);
@@ -43,19 +43,30 @@ fn check_worst_cases(plan: &Plan) {
     }
 }
 
-fn check_widths(plan: &Plan) {
+/// Widths of vectors and coefficients; each row in order, in as many ways as the plan has.
+pub fn check_widths(plan: &Plan) {
     let hardware = &plan.design.hardware;
-    for format in [plan.formats.stress, plan.formats.weight, plan.formats.g, plan.formats.u] {
+    let mut formats = vec![plan.formats.stress, plan.formats.weight, plan.formats.g, plan.formats.u];
+    if let Some(folded) = plan.formats.folded {
+        formats.extend([folded.stress, folded.y, folded.weight, folded.u, folded.residual, folded.explained]);
+        formats.extend([folded.force, folded.taxel_force]);
+    }
+    for format in formats {
         assert_eq!(format.bits, hardware.data_bits);
-        assert!(format.bound > 0 && format.bound <= largest(format.bits));
+        assert!(format.bound > 0 && format.bound <= largest(format.bits), "{format:?} of {:?}", plan.formats);
     }
     for matrix in &plan.matrices {
         let limit = largest(hardware.coefficient_bits);
         for row in &matrix.rows {
             assert!(!row.is_empty(), "{} has an empty row", matrix.name);
             assert!(row.is_sorted_by_key(|&(column, _)| column));
-            assert!(row.iter().all(|&(_, value)| i64::from(value).abs() <= limit), "{}", matrix.name);
-            assert!(row.iter().map(|&(_, value)| i64::from(value).abs()).sum::<i64>() <= matrix.row_sum);
+            let (used, unused) = (0..plan.ways(), plan.ways()..4);
+            assert!(row.iter().all(|(_, ways)| ways.iter().all(|&value| i64::from(value).abs() <= limit)));
+            assert!(row.iter().all(|(_, ways)| ways[unused.clone()].iter().all(|&value| value == 0)));
+            for way in used {
+                let sum: i64 = row.iter().map(|(_, ways)| i64::from(ways[way]).abs()).sum();
+                assert!(sum <= matrix.row_sum, "{}", matrix.name);
+            }
         }
     }
 }
@@ -63,18 +74,19 @@ fn check_widths(plan: &Plan) {
 /// Each coefficient is its matrix entry rounded to the nearest step.
 fn check_rounding(plan: &Plan) {
     let solver = Solver::new(&plan.design).unwrap();
+    let c33 = solver.matrices().c33.dense();
     for matrix in &plan.matrices {
         let plain = matrix.name.trim_matches(|c: char| !c.is_ascii_alphanumeric()).trim_start_matches("I + ");
         let sign = if matrix.name.starts_with('-') { -1.0 } else { 1.0 };
         let identity = if matrix.name.contains("I + ") { 1.0 } else { 0.0 };
-        let filtered = plain.parse::<MatrixName>().ok().map(|name| solver.filtered().get(name));
+        let filtered = plain.parse::<MatrixName>().ok().map(|name| solver.filtered().unwrap().get(name));
         let mut entries = 0;
         for (row, stored) in matrix.rows.iter().enumerate() {
-            for &(column, value) in stored {
+            for &(column, [value, ..]) in stored {
                 let column = column as usize;
                 let kept = match filtered {
                     Some(sparse) => sparse.get_entry(row, column).map_or(0.0, nalgebra_sparse::SparseEntry::into_value),
-                    None => solver.matrices().c33[(row, column)],
+                    None => c33[(row, column)],
                 };
                 let exact = sign * (kept + if row == column { identity } else { 0.0 });
                 let error = (f64::from(value) * pow2(matrix.lsb) - exact).abs();
@@ -94,7 +106,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn the_worst_case_fits(text in any_design()) {
+    fn the_worst_case_fits(text in any_paper_design()) {
         let plan = plan(&text);
         check_widths(&plan);
         check_worst_cases(&plan);
@@ -104,7 +116,8 @@ proptest! {
     #[test]
     fn depth_may_be_a_small_or_a_large_share_of_the_pitch(ratio in -2.0..0.4_f64, pitch in 1.0..9.0_f64) {
         // Where the layer is thin, A1 and D12 are smaller than A3 and D30 by many powers of ten.
-        let plan = plan(&design_text("thin", [4, 4], [pitch, pitch], pitch * 10_f64.powf(ratio), ""));
+        let paper = "[algorithm]\nplan = \"paper\"";
+        let plan = plan(&design_text("thin", [4, 4], [pitch, pitch], pitch * 10_f64.powf(ratio), paper));
         check_widths(&plan);
         check_worst_cases(&plan);
     }

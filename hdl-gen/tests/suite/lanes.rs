@@ -1,22 +1,27 @@
 //! Executes a schedule literally, cycle by cycle, with the registers that the lanes have.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use hdl_gen::plan::product::{Block, Product, Vector};
-use hdl_gen::plan::schedule::{ISSUE_TO_RESULT, RESULT_PLACES, Schedule, SegmentKind, VISIT_TO_OPERAND};
+use golden::parity::CLASSES;
+use hdl_gen::plan::product::{Epilogue, Product, Vector, mirror};
+use hdl_gen::plan::quantise::Entry;
+use hdl_gen::plan::schedule::{ISSUE_TO_RESULT, LaneProgram, Program, RESULT_PLACES, Schedule, SegmentKind, Visit};
+
+/// The sums of one row, a way each.
+pub type Sums = [i64; CLASSES];
 
 /// What a lane holds for the collector.
 struct Held {
     /// First cycle in which it stands in the register.
     from: u64,
-    sum: i64,
+    sums: Sums,
 }
 
 /// A tail's sum in the carry register.
 struct Carry {
     /// Issue of its last MAC.
     issued: u64,
-    sum: i64,
+    sums: Sums,
 }
 
 #[derive(Default)]
@@ -24,71 +29,135 @@ struct Lane {
     next_word: usize,
     marked_word: usize,
     segment: usize,
+    /// Words and segments that some program has read.
+    read: (BTreeSet<usize>, BTreeSet<usize>),
     results: VecDeque<Held>,
-    /// Every tail so far.
+    /// Every tail of the program so far.
     carries: Vec<Carry>,
     /// Heads whose sum waits for the next lane's carry, with the cycle of their last issue.
-    heads: Vec<(u64, i64)>,
+    heads: Vec<(u64, Sums)>,
 }
 
-/// The row sums that the collector takes, by `(product, row)`, before rounding.
-pub type RowSums = BTreeMap<(u32, u32), i64>;
+/// The row sums that the collector takes, by `(product, row)`, before rounding. Rows of a lead come after the others.
+pub type RowSums = BTreeMap<(u32, u32), Sums>;
 
-/// Runs the lanes' programs and the collector. `operands` gives the vector that a product reads.
+/// What the lanes read of their operand memories: `element` of vector `part` of the product's, by way.
+pub type Operands<'a> = dyn Fn(&Product, usize, usize) -> Sums + 'a;
+
+/// Runs the lanes' programs and the collector on vectors of `elements`.
 ///
 /// Panics where the hardware would go wrong: an operand is read before it is written, a result register
-/// overflows, a result is taken before it is there, two results are taken in one cycle.
-pub fn execute<'a>(schedule: &Schedule, products: &[Product], operands: impl Fn(Vector) -> &'a [i64]) -> RowSums {
-    let mut written: BTreeMap<(Vector, u32), u64> = BTreeMap::new();
-    for visit in &schedule.visits {
-        written.insert((products[visit.product as usize].result, visit.row), visit.cycle);
-    }
-    let first_of_op = products.iter().position(|product| product.block == Block::Op);
+/// overflows, a result is taken before it is there, two results are taken in one cycle, a word is never read.
+pub fn execute(schedule: &Schedule, products: &[Product], elements: usize, operands: &Operands) -> RowSums {
     let mut lanes: Vec<Lane> = schedule.lanes.iter().map(|_| Lane::default()).collect();
-    for (index, (product, window)) in products.iter().zip(&schedule.windows).enumerate() {
-        let vector = operands(product.operand);
-        for (lane, program) in lanes.iter_mut().zip(&schedule.lanes) {
-            if Some(index) == first_of_op {
-                lane.marked_word = lane.next_word;
-            } else if first_of_op.is_some_and(|first| index > first) {
-                lane.next_word = lane.marked_word;
-            }
-            let mut cycle = window.start;
-            while cycle < window.start + window.length {
-                let segment = program.segments[lane.segment];
-                lane.segment += 1;
-                let mut sum = 0;
-                for _ in 0..segment.macs {
-                    if segment.kind != SegmentKind::Idle {
-                        let (column, coefficient) = program.words[lane.next_word];
-                        lane.next_word += 1;
-                        if product.operand != Vector::Stress {
-                            let there = written[&(product.operand, column)] + VISIT_TO_OPERAND;
-                            assert!(cycle >= there, "product {index} reads row {column} at {cycle}, there at {there}");
-                        }
-                        sum += i64::from(coefficient) * vector[column as usize];
-                    }
-                    cycle += 1;
-                }
-                let issued = cycle - 1;
-                match segment.kind {
-                    SegmentKind::Row => lane.results.push_back(Held { from: issued + ISSUE_TO_RESULT, sum }),
-                    SegmentKind::Head => {
-                        lane.heads.push((issued, sum));
-                        lane.results.push_back(Held { from: issued + ISSUE_TO_RESULT, sum: i64::MIN });
-                    }
-                    SegmentKind::Tail => lane.carries.push(Carry { issued, sum }),
-                    SegmentKind::Idle => {}
-                }
-            }
-            assert_eq!(cycle, window.start + window.length, "segments end with the product");
+    let mut sums = RowSums::new();
+    let ends = schedule.programs.iter().skip(1).map(|next| next.visit).chain([schedule.visits.len()]);
+    for (program, end) in schedule.programs.iter().zip(ends) {
+        let visits = &schedule.visits[program.visit..end];
+        let run = Run { schedule, products, program, elements, operands };
+        run.issue(&mut lanes, visits);
+        complete_heads(&mut lanes);
+        collect(products, visits, &mut lanes, &mut sums);
+    }
+    let begin = schedule.programs.last().expect("a program");
+    for (lane, data) in lanes.iter().zip(&schedule.lanes) {
+        // What nobody reads fills up a lane that has less of a program than another, and is nothing.
+        let fills = |address: usize, end: usize, read: &BTreeSet<usize>| address < end || read.contains(&address);
+        let (words, segments) = &lane.read;
+        for (address, &word) in data.words.iter().enumerate() {
+            assert!(words.contains(&address) || word == Entry::default(), "word {address} is not read");
+            assert!(fills(address, begin.word, words), "word {address} is not read");
+        }
+        for (address, segment) in data.segments.iter().enumerate() {
+            assert!(segments.contains(&address) || segment.kind == SegmentKind::Idle, "segment {address} is not read");
+            assert!(fills(address, begin.segment, segments), "segment {address} is not read");
         }
     }
-    for (lane, program) in lanes.iter().zip(&schedule.lanes) {
-        assert_eq!((lane.next_word, lane.segment), (program.words.len(), program.segments.len()), "all is used");
+    sums
+}
+
+/// One program under way.
+struct Run<'a> {
+    schedule: &'a Schedule,
+    products: &'a [Product],
+    program: &'a Program,
+    elements: usize,
+    operands: &'a Operands<'a>,
+}
+
+impl Run<'_> {
+    /// Every issue of the program, in every lane.
+    fn issue(&self, lanes: &mut [Lane], visits: &[Visit]) {
+        let mut written: BTreeMap<(Vector, usize), u64> = BTreeMap::new();
+        for visit in visits {
+            let product = &self.products[visit.product as usize];
+            let there = visit.cycle + product.epilogue.visit_to_operand();
+            if (visit.row as usize) < self.elements {
+                written.insert((product.result, visit.row as usize), there);
+                if product.epilogue == Epilogue::Part {
+                    written.insert((Vector::Pull, visit.row as usize), there);
+                }
+            }
+        }
+        for lane in &mut *lanes {
+            (lane.next_word, lane.segment) = (self.program.word, self.program.segment);
+            lane.carries.clear();
+        }
+        let range = self.program.first..self.program.end;
+        for index in range.clone() {
+            let matrix = self.products[index].matrix;
+            // The hardware has one mark: a matrix that is read again is read again without another in between.
+            let again = self.products[range.start..index].iter().any(|before| before.matrix == matrix);
+            let later = self.products[index + 1..range.end].iter().any(|after| after.matrix == matrix);
+            for (lane, data) in lanes.iter_mut().zip(&self.schedule.lanes) {
+                if again {
+                    lane.next_word = lane.marked_word;
+                } else if later {
+                    lane.marked_word = lane.next_word;
+                }
+                self.product(index, lane, data, &written);
+            }
+        }
     }
-    complete_heads(&mut lanes);
-    collect(schedule, lanes)
+
+    fn product(&self, index: usize, lane: &mut Lane, data: &LaneProgram, written: &BTreeMap<(Vector, usize), u64>) {
+        let (product, window) = (&self.products[index], self.schedule.windows[index]);
+        let mut cycle = window.start;
+        while cycle < window.start + window.length {
+            let segment = data.segments[lane.segment];
+            lane.read.1.insert(lane.segment);
+            lane.segment += 1;
+            let mut sums = Sums::default();
+            for _ in 0..segment.macs {
+                if segment.kind != SegmentKind::Idle {
+                    let (column, ways) = data.words[lane.next_word];
+                    lane.read.0.insert(lane.next_word);
+                    lane.next_word += 1;
+                    let (part, element) = (column as usize / self.elements, column as usize % self.elements);
+                    let place = product.mirrored.map_or(element, |side| mirror(element, side));
+                    if let Some(&there) = written.get(&(product.operands[part], place)) {
+                        assert!(cycle >= there, "product {index} reads {place} of {part} at {cycle}, there at {there}");
+                    }
+                    let operand = (self.operands)(product, part, element);
+                    for (sum, (way, value)) in sums.iter_mut().zip(ways.into_iter().zip(operand)) {
+                        *sum += i64::from(way) * value;
+                    }
+                }
+                cycle += 1;
+            }
+            let issued = cycle - 1;
+            match segment.kind {
+                SegmentKind::Row => lane.results.push_back(Held { from: issued + ISSUE_TO_RESULT, sums }),
+                SegmentKind::Head => {
+                    lane.heads.push((issued, sums));
+                    lane.results.push_back(Held { from: issued + ISSUE_TO_RESULT, sums: [i64::MIN; CLASSES] });
+                }
+                SegmentKind::Tail => lane.carries.push(Carry { issued, sums }),
+                SegmentKind::Idle => {}
+            }
+        }
+        assert_eq!(cycle, window.start + window.length, "segments end with the product");
+    }
 }
 
 /// A head finds, one cycle before its sum stands in the register, the latest tail of the next lane.
@@ -99,26 +168,26 @@ fn complete_heads(lanes: &mut [Lane]) {
             let carries = &lanes[(lane + 1) % count].carries;
             // The carry register changes as late after a tail's last issue as the result register after a head's.
             let tail = carries.iter().rfind(|carry| carry.issued < issued).expect("a tail before the head's end");
-            let sum = head + tail.sum;
+            let sums = std::array::from_fn(|way| head[way] + tail.sums[way]);
             let waiting = |held: &&mut Held| held.from == issued + ISSUE_TO_RESULT;
-            lanes[lane].results.iter_mut().find(waiting).expect("the head's own place").sum = sum;
+            lanes[lane].results.iter_mut().find(waiting).expect("the head's own place").sums = sums;
         }
     }
 }
 
-/// Takes the results in the order of the visits.
-fn collect(schedule: &Schedule, mut lanes: Vec<Lane>) -> RowSums {
-    let mut sums = RowSums::new();
+/// Takes the results of a program in the order of its visits.
+fn collect(products: &[Product], visits: &[Visit], lanes: &mut [Lane], sums: &mut RowSums) {
     let mut taken: Vec<Vec<(u64, u64)>> = lanes.iter().map(|_| Vec::new()).collect();
-    let mut last = None;
-    for visit in &schedule.visits {
+    let mut free = 0;
+    for visit in visits {
         let held = lanes[visit.lane as usize].results.pop_front().expect("a result for every visit");
-        // As soon as it is there and the collector is free, which is what the hardware does.
-        let soonest = last.map_or(held.from, |last: u64| held.from.max(last + 1));
-        assert_eq!(visit.cycle, soonest, "product {} row {}", visit.product, visit.row);
-        last = Some(visit.cycle);
+        // As soon as it is there and the collector is free, which is what the hardware does. After a result that is
+        // parted the collector waits a cycle.
+        assert_eq!(visit.cycle, held.from.max(free), "product {} row {}", visit.product, visit.row);
+        let parted = products[visit.product as usize].epilogue == Epilogue::Part;
+        free = visit.cycle + if parted { 2 } else { 1 };
         taken[visit.lane as usize].push((held.from, visit.cycle));
-        assert!(sums.insert((visit.product, visit.row), held.sum).is_none(), "one result a row");
+        assert!(sums.insert((visit.product, visit.row), held.sums).is_none(), "one result a row");
     }
     assert!(lanes.iter().all(|lane| lane.results.is_empty()), "every result is taken");
     for times in taken {
@@ -127,5 +196,4 @@ fn collect(schedule: &Schedule, mut lanes: Vec<Lane>) -> RowSums {
             assert!(held <= RESULT_PLACES, "{held} results in a lane at cycle {from}");
         }
     }
-    sums
 }

@@ -3,9 +3,11 @@
 mod bad_input;
 mod command;
 mod emission;
+mod folded_formats;
 mod formats;
 mod lanes;
 mod model;
+mod reduced;
 mod roms;
 mod scale;
 mod schedule;

@@ -1,35 +1,41 @@
 //! The ROM files hold the matrices of the MCSR listings: both are read back as text and compared.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::ops::Range;
 
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::product::mirror;
+use hdl_gen::plan::quantise::{Entry, QuantisedMatrix};
+use hdl_gen::plan::reduced::SUM_ROWS;
 use proptest::prelude::*;
 use serde_json::Value;
 
 use crate::support::{any_design, design_text, plan};
 
-/// Rows of `(column, coefficient)`.
-type Rows = Vec<Vec<(u32, i32)>>;
+/// Rows of a column and its coefficients, one a way.
+type Rows = Vec<Vec<(u32, Vec<i32>)>>;
 
 fn text<'a>(files: &'a FileMap, name: &str) -> &'a str {
     std::str::from_utf8(files.get(name).unwrap_or_else(|| panic!("no {name}"))).unwrap()
 }
 
 /// The words of a ROM file, each of exactly the digits that its width needs.
-fn words(files: &FileMap, name: &str, bits: u32) -> Vec<u32> {
+fn words(files: &FileMap, name: &str, bits: u32) -> Vec<u128> {
     let digits = bits.div_ceil(4) as usize;
     let word = |line: &str| {
         assert_eq!(line.len(), digits, "{name}: {line}");
-        let word = u32::from_str_radix(line, 16).unwrap();
+        let word = u128::from_str_radix(line, 16).unwrap();
         assert!(word < 1 << bits, "{name}: {line}");
         word
     };
     text(files, name).lines().map(word).collect()
 }
 
-fn signed(word: u32, bits: u32) -> i32 {
-    ((word << (32 - bits)) as i32) >> (32 - bits)
+/// The coefficients in a word, that of way 0 lowest.
+fn ways(word: u128, ways: usize, bits: u32) -> Vec<i32> {
+    let field = |way: usize| (word >> (way as u32 * bits)) as u32 & ((1 << bits) - 1);
+    (0..ways).map(|way| ((field(way) << (32 - bits)) as i32) >> (32 - bits)).collect()
 }
 
 fn bits_for(count: usize) -> u32 {
@@ -37,88 +43,133 @@ fn bits_for(count: usize) -> u32 {
 }
 
 struct Reader {
-    values: Vec<u32>,
-    columns: Vec<u32>,
-    segments: Vec<u32>,
+    values: Vec<u128>,
+    columns: Vec<u128>,
+    segments: Vec<u128>,
+    /// Where each word was read.
+    read: Vec<bool>,
     word: usize,
     marked: usize,
     segment: usize,
+    /// `(product, row)` of each of its results.
+    visits: VecDeque<(usize, usize)>,
 }
 
-/// Every product's matrix, from the ROM files, the visits and the cycle counts of the metadata alone.
+impl Reader {
+    /// The ROMs of all lanes.
+    fn all(files: &FileMap, plan: &Plan) -> Vec<Self> {
+        let (name, lanes, elements) = (&plan.design.name, plan.walkers(), plan.elements());
+        let coefficient_bits = plan.design.hardware.coefficient_bits;
+        let most_vectors = plan.products.iter().map(|product| product.operands.len()).max().unwrap();
+        // In four ways, rows of sums have a product number of their own, the one after the last.
+        let numbers = plan.products.len() + usize::from(plan.ways() > 1);
+        let (row_bits, product_bits) = (bits_for(elements.max(SUM_ROWS)), bits_for(numbers));
+        let lane = |lane: usize| {
+            let file = |kind: &str, bits| words(files, &format!("rom/{name}_{kind}_lane{lane:02}.mem"), bits);
+            let values = file("values", plan.ways() as u32 * coefficient_bits);
+            Self {
+                read: vec![false; values.len()],
+                values,
+                columns: file("columns", bits_for(most_vectors * elements)),
+                segments: file("macs", 16),
+                word: 0,
+                marked: 0,
+                segment: 0,
+                visits: VecDeque::new(),
+            }
+        };
+        let mut readers: Vec<Self> = (0..lanes).map(lane).collect();
+        let below = product_bits + row_bits;
+        let visits = words(files, &format!("rom/{name}_visits.mem"), 1 + bits_for(lanes) + below);
+        let program_ends: Vec<usize> =
+            plan.schedule.programs.iter().skip(1).map(|next| next.visit - 1).chain([visits.len() - 1]).collect();
+        for (index, visit) in visits.into_iter().enumerate() {
+            let field = |from: u32, bits: u32| (visit >> from) as usize & ((1 << bits) - 1);
+            assert_eq!(visit >> (below + bits_for(lanes)) == 1, program_ends.contains(&index), "last of its program");
+            readers[field(below, bits_for(lanes))]
+                .visits
+                .push_back((field(row_bits, product_bits), field(0, row_bits)));
+        }
+        let depth = |get: fn(&Self) -> usize| readers.iter().all(|reader| get(reader) == get(&readers[0]));
+        assert!(depth(|reader| reader.values.len()) && depth(|reader| reader.columns.len()));
+        assert!(depth(|reader| reader.segments.len()));
+        readers
+    }
+}
+
+/// Every product's matrix, from the ROM files, the addresses of the programs and the cycle counts of the metadata; rows
+/// of sums follow the product's own. Of a product that mirrors its matrix, row by row as they are stored.
 fn matrices_in_roms(files: &FileMap, plan: &Plan) -> Vec<Rows> {
-    let name = &plan.design.name;
     let metadata: Value = serde_json::from_str(text(files, "metadata.json")).unwrap();
     let products = metadata["products"].as_array().unwrap();
-    let taxels = plan.design.sensor.columns * plan.design.sensor.rows;
-    let lanes = plan.design.hardware.lanes;
-    let coefficient_bits = plan.design.hardware.coefficient_bits;
-    let (row_bits, product_bits) = (bits_for(taxels), bits_for(products.len()));
-
-    let mut visits: Vec<VecDeque<(usize, usize)>> = vec![VecDeque::new(); lanes];
-    for visit in words(files, &format!("rom/{name}_visits.mem"), bits_for(lanes) + product_bits + row_bits) {
-        let lane = (visit >> (product_bits + row_bits)) as usize;
-        let product = (visit >> row_bits) as usize & ((1 << product_bits) - 1);
-        visits[lane].push_back((product, visit as usize & ((1 << row_bits) - 1)));
-    }
-    let mut readers: Vec<Reader> = (0..lanes)
-        .map(|lane| Reader {
-            values: words(files, &format!("rom/{name}_values_lane{lane:02}.mem"), coefficient_bits),
-            columns: words(files, &format!("rom/{name}_columns_lane{lane:02}.mem"), row_bits),
-            segments: words(files, &format!("rom/{name}_macs_lane{lane:02}.mem"), 16),
-            word: 0,
-            marked: 0,
-            segment: 0,
-        })
-        .collect();
-    let depth = |get: fn(&Reader) -> usize| readers.iter().all(|reader| get(reader) == get(&readers[0]));
-    assert!(depth(|reader| reader.values.len()) && depth(|reader| reader.columns.len()));
-    assert!(depth(|reader| reader.segments.len()));
-
-    let mut matrices: Vec<Rows> = vec![vec![Vec::new(); taxels]; products.len()];
-    let mut op_began = false;
-    for (index, product) in products.iter().enumerate() {
-        let cycles = product["issue_cycles"].as_u64().unwrap();
-        let mut open_head = None;
-        for lane in 0..lanes {
-            let reader = &mut readers[lane];
-            if product["block"] == "Op" {
-                *(if op_began { &mut reader.word } else { &mut reader.marked }) =
-                    if op_began { reader.marked } else { reader.word };
-            }
-            let mut issued = 0;
-            while issued < cycles {
-                let (kind, macs) = (reader.segments[reader.segment] >> 14, reader.segments[reader.segment] & 0x3fff);
-                reader.segment += 1;
-                issued += u64::from(macs);
-                if kind == 3 {
-                    continue;
-                }
-                let row = if kind == 1 {
-                    open_head.take().expect("the lane before has begun this row")
-                } else {
-                    let (of_product, row) = visits[lane].pop_front().expect("a visit for every result");
-                    assert_eq!(of_product, index);
-                    row
-                };
-                if kind == 2 {
-                    open_head = Some(row);
-                }
-                let range = reader.word..reader.word + macs as usize;
-                reader.word = range.end;
-                let entries = reader.columns[range.clone()].iter().zip(&reader.values[range]);
-                matrices[index][row].extend(entries.map(|(&column, &value)| (column, signed(value, coefficient_bits))));
-            }
-            assert_eq!(issued, cycles, "product {index}, lane {lane}");
+    assert_eq!(products.len(), plan.products.len());
+    let mut readers = Reader::all(files, plan);
+    let mut matrices = Vec::new();
+    for program in &plan.schedule.programs {
+        for reader in &mut readers {
+            (reader.word, reader.segment) = (program.word, program.segment);
         }
-        assert!(open_head.is_none());
-        op_began |= product["block"] == "Op";
+        for (index, product) in products.iter().enumerate().take(program.end).skip(program.first) {
+            let uses = |range: Range<usize>| {
+                plan.products[range].iter().any(|other| other.matrix == plan.products[index].matrix)
+            };
+            let (again, later) = (uses(program.first..index), uses(index + 1..program.end));
+            for reader in &mut readers {
+                if again {
+                    reader.word = reader.marked;
+                } else if later {
+                    reader.marked = reader.word;
+                }
+            }
+            let cycles = product["issue_cycles"].as_u64().unwrap();
+            matrices.push(product_in_roms(&mut readers, plan, index, cycles));
+        }
     }
-    assert!(visits.iter().all(VecDeque::is_empty));
     for reader in readers {
-        assert!(reader.values[reader.word..].iter().chain(&reader.columns[reader.word..]).all(|&word| word == 0));
+        assert!(reader.visits.is_empty());
+        let unread = reader.read.iter().zip(reader.values.iter().zip(&reader.columns)).filter(|(read, _)| !**read);
+        assert!(unread.into_iter().all(|(_, words)| words == (&0, &0)));
     }
     matrices
+}
+
+fn product_in_roms(readers: &mut [Reader], plan: &Plan, index: usize, cycles: u64) -> Rows {
+    let product = &plan.products[index];
+    let elements = plan.elements();
+    let mut rows: Rows = vec![Vec::new(); elements + product.lead.map_or(0, |_| SUM_ROWS)];
+    let mut open_head = None;
+    for (lane, reader) in readers.iter_mut().enumerate() {
+        let mut issued = 0;
+        while issued < cycles {
+            let segment = reader.segments[reader.segment];
+            let (kind, macs) = (segment >> 14, (segment & 0x3fff) as usize);
+            reader.segment += 1;
+            issued += macs as u64;
+            if kind == 3 {
+                continue;
+            }
+            let row = if kind == 1 {
+                open_head.take().expect("the lane before has begun this row")
+            } else {
+                let (of_product, row) = reader.visits.pop_front().expect("a visit for every result");
+                let sums = of_product == plan.products.len();
+                assert!(of_product == index || (sums && product.lead.is_some()));
+                if sums { elements + row } else { product.mirrored.map_or(row, |side| mirror(row, side)) }
+            };
+            if kind == 2 {
+                open_head = Some(row);
+            }
+            for word in reader.word..reader.word + macs {
+                reader.read[word] = true;
+                let coefficients = ways(reader.values[word], plan.ways(), plan.design.hardware.coefficient_bits);
+                rows[row].push((reader.columns[word] as u32, coefficients));
+            }
+            reader.word += macs;
+        }
+        assert_eq!(issued, cycles, "product {index}, lane {lane}");
+    }
+    assert!(open_head.is_none());
+    rows
 }
 
 /// The listings by the matrix's full name.
@@ -134,9 +185,9 @@ fn listings(files: &FileMap) -> BTreeMap<String, Rows> {
             assert_eq!(row.parse(), Ok(index));
             let pair = |entry: &str| {
                 let (column, value) = entry.split_once(':').unwrap();
-                (column.parse().unwrap(), value.parse().unwrap())
+                (column.parse().unwrap(), value.split(',').map(|way| way.parse().unwrap()).collect())
             };
-            let entries: Vec<(u32, i32)> = entries.split_whitespace().map(pair).collect();
+            let entries: Vec<(u32, Vec<i32>)> = entries.split_whitespace().map(pair).collect();
             assert_eq!(macs.parse(), Ok(entries.len()), "{name} row {index}");
             entries
         });
@@ -149,10 +200,17 @@ fn check(plan: &Plan) {
     let files = emit(plan).unwrap();
     let listings = listings(&files);
     assert_eq!(listings.len(), plan.matrices.len());
-    for (found, product) in matrices_in_roms(&files, plan).iter().zip(&plan.products) {
-        let name = &plan.matrices[product.matrix].name;
-        assert_eq!(found, &listings[name], "{name}");
-        assert_eq!(found, &plan.matrices[product.matrix].rows, "{name}");
+    let planned = |matrix: &QuantisedMatrix| -> Rows {
+        let entry = |&(column, ways): &Entry| (column, ways[..plan.ways()].to_vec());
+        matrix.rows.iter().map(|row| row.iter().map(entry).collect()).collect()
+    };
+    for (mut found, product) in matrices_in_roms(&files, plan).into_iter().zip(&plan.products) {
+        let lead = product.lead.map(|lead| (lead.matrix, found.split_off(plan.elements())));
+        for (matrix, found) in lead.into_iter().chain([(product.matrix, found)]) {
+            let matrix = &plan.matrices[matrix];
+            assert_eq!(found, listings[&matrix.name], "{}", matrix.name);
+            assert_eq!(found, planned(matrix), "{}", matrix.name);
+        }
     }
     let roms = files.iter().filter(|(name, _)| name.starts_with("rom/"));
     let lines: usize = roms.map(|(name, _)| text(&files, name).lines().count()).sum();
@@ -162,14 +220,28 @@ fn check(plan: &Plan) {
 
 #[test]
 fn roms_and_listings_agree_on_the_papers_sensor() {
-    for lanes in [1, 16, 64] {
-        let hardware = format!("[algorithm]\nfilter = {{ kind = \"f1\", l = 40 }}\n[hardware]\nlanes = {lanes}");
-        check(&plan(&design_text("sensor", [10, 10], [4.0, 2.0], 3.0, &hardware)));
+    let filter = "filter = { kind = \"f1\", l = 40 }";
+    for (kind, lanes) in [("paper", &[1, 16, 64][..]), ("reduced", &[4, 16, 64])] {
+        for lanes in lanes {
+            let more = format!("[algorithm]\nplan = \"{kind}\"\n{filter}\n[hardware]\nlanes = {lanes}");
+            check(&plan(&design_text("sensor", [10, 10], [4.0, 2.0], 3.0, &more)));
+        }
+    }
+}
+
+/// One matrix for both directions, in a field and without one.
+#[test]
+fn roms_and_listings_agree_where_matrices_are_mirrored() {
+    for outputs in ["field", "resultants"] {
+        let more = format!("[algorithm]\nplan = \"reduced\"\noutputs = \"{outputs}\"\n[hardware]\nlanes = 8");
+        let plan = plan(&design_text("square", [7, 7], [3.0, 3.0], 2.0, &more));
+        assert!(plan.products.iter().any(|product| product.mirrored.is_some()));
+        check(&plan);
     }
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
     #[test]
     fn roms_and_listings_agree(text in any_design()) {
         check(&plan(&text));

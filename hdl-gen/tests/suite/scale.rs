@@ -1,7 +1,6 @@
 //! The largest sensor: 32 by 32 taxels, nothing filtered.
 
 use golden::design::Design;
-use golden::solver::Solver;
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
 
@@ -17,12 +16,17 @@ fn lines(files: &FileMap, name: &str) -> usize {
 #[test]
 fn the_largest_sensor_has_hardware_with_one_lane_and_with_sixteen() {
     let design = |lanes: usize| {
-        let text = design_text("whole", [32, 32], [4.0, 2.0], 3.0, &format!("[hardware]\nlanes = {lanes}"));
+        let text = design_text(
+            "whole",
+            [32, 32],
+            [4.0, 2.0],
+            3.0,
+            &format!("[algorithm]\nplan = \"paper\"\n[hardware]\nlanes = {lanes}"),
+        );
         Design::from_toml(&text, "whole.toml").unwrap()
     };
-    let solver = Solver::new(&design(1)).unwrap();
     for lanes in [1, 16] {
-        let plan = Plan::from_parts(&design(lanes), solver.matrices(), solver.filtered()).unwrap();
+        let plan = Plan::new(&design(lanes)).unwrap();
         let cycles = (ENTRIES / lanes) as u64;
         for window in &plan.schedule.windows {
             assert!((cycles..cycles + 20).contains(&window.length), "{lanes} lanes: {}", window.length);

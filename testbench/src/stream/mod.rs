@@ -6,6 +6,7 @@
 mod check;
 mod pattern;
 
+use hdl_gen::plan::timing::middle_interval;
 use thiserror::Error;
 
 pub use check::{Checker, Violation};
@@ -115,13 +116,11 @@ impl Outcome {
         self.exchanges.iter().map(Exchange::latency).max()
     }
 
-    /// Distance between the ends of the last two packets: the interval of the core once its pipeline is full, if there
-    /// were enough packets and they were sent back to back.
+    /// Distance between the ends of the two packets in the middle: the interval of the core, full before and after them,
+    /// if there were enough packets and they were sent back to back.
     pub fn interval(&self) -> Option<u64> {
-        match self.exchanges.as_slice() {
-            [.., before, last] => Some(last.last_out - before.last_out),
-            _ => None,
-        }
+        let ends: Vec<u64> = self.exchanges.iter().map(|exchange| exchange.last_out).collect();
+        (ends.len() > 1).then(|| middle_interval(&ends))
     }
 }
 

@@ -52,6 +52,8 @@ pub fn float_to_fixed() -> Run {
     let stages = float_to_fixed::LATENCY as usize;
     let mut pipeline: VecDeque<(u32, i32)> = VecDeque::new();
     let mut shown: Option<float_to_fixed::Converted> = None;
+    // The limit stays while conversions are under way: after a change, those are not judged.
+    let mut settled = 0;
     for cycle in 0..45_000 {
         let enable = enabled(&mut rng, cycle);
         let (bits, shift) = if rng.random_bool(0.8) {
@@ -64,10 +66,14 @@ pub fn float_to_fixed() -> Run {
         } else {
             corners[rng.random_range(0..corners.len())]
         };
-        match rng.random_range(0..100) {
+        let before = limit;
+        match rng.random_range(0..200) {
             0 | 1 => limit = rng.random_range(0..1 << 26) >> rng.random_range(0..26),
             2 | 3 => limit = (1 << 26) - 1,
             _ => {}
+        }
+        if limit != before {
+            settled = 0;
         }
         run.push(
             &[u64::from(enable), u64::from(bits), shift as u64, u64::from(limit)],
@@ -82,8 +88,9 @@ pub fn float_to_fixed() -> Run {
             if pipeline.len() == stages
                 && let Some((bits, shift)) = pipeline.pop_front()
             {
-                shown = Some(float_to_fixed::convert(bits, shift, limit));
-                run.results += 1;
+                settled += 1;
+                shown = (settled > stages).then(|| float_to_fixed::convert(bits, shift, limit));
+                run.results += usize::from(shown.is_some());
             }
         }
     }

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use hdl_gen::cores::axis_skid::CAPACITY;
 use hdl_gen::cores::mac::{LATENCY, accumulate};
+use hdl_gen::cores::multiply::multiply as product;
 use hdl_gen::cores::row_sequencer::{Product, products, row_word};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -14,9 +15,10 @@ fn bits(flag: bool) -> u64 {
     u64::from(flag)
 }
 
-pub fn mac() -> Run {
+/// Both forms of the lane: they have the same reference and the same cycles.
+pub fn mac(module: &'static str) -> Run {
     let mut run = Run::new(
-        "sptfra_mac",
+        module,
         &[("reset", 1), ("valid", 1), ("first", 1), ("coefficient", 18), ("data", 27)],
         &[("accumulator", 48)],
     );
@@ -53,6 +55,41 @@ pub fn mac() -> Run {
         }
     }
     run
+}
+
+/// Both forms of the multiplier: the sum of its outputs is compared by [`check_products`].
+pub fn multiply(module: &'static str) -> Run {
+    let mut run = Run::new(module, &[("enable", 1), ("coefficient", 18), ("data", 27)], &[("low", 45), ("high", 45)]);
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    for _ in 0..20_000 {
+        let mut operand = |bits: u32| {
+            let corners = [0, 1, -1, i32::MAX, i32::MIN, 1 << 31 >> 9, 0x1_ffff << 5];
+            let value = if rng.random_bool(0.3) { corners[rng.random_range(0..7)] } else { rng.random::<i32>() };
+            (value >> (32 - bits)) as u64
+        };
+        let (coefficient, data) = (operand(18), operand(27));
+        run.push(&[bits(rng.random_bool(0.8)), coefficient, data], &[None, None]);
+    }
+    run
+}
+
+/// Both parts of every product together are the reference's, and hold while the multiplier does.
+pub fn check_products(played: &Played) {
+    let [enable, coefficient, data] = ["enable", "coefficient", "data"].map(|name| played.input(name));
+    let [low, high] = ["low", "high"].map(|name| played.output(name));
+    let signed = |value: u64, bits: u32| (value << (64 - bits)).cast_signed() >> (64 - bits);
+    let mut expected = None;
+    let mut compared = 0;
+    for i in 0..low.len() {
+        if let Some(expected) = expected {
+            assert_eq!(signed(low[i].wrapping_add(high[i]), 45), expected, "cycle {i}");
+            compared += 1;
+        }
+        if enable[i] == 1 {
+            expected = Some(product(signed(coefficient[i], 18) as i32, signed(data[i], 27) as i32));
+        }
+    }
+    assert!(compared > 15_000, "{compared}");
 }
 
 pub fn axis_skid() -> Run {
@@ -122,8 +159,8 @@ pub fn check_stream(played: &Played) {
 pub fn row_sequencer() -> Run {
     let mut run = Run::new(
         "sptfra_row_sequencer",
-        &[("reset", 1), ("restart", 1), ("issue", 1), ("row_word", 16)],
-        &[("row_address", 16), ("first", 1), ("last", 1), ("kind", 2)],
+        &[("restart", 1), ("start_address", 16), ("issue", 1), ("row_word", 16)],
+        &[("row_address", 16), ("row_fetch", 1), ("first", 1), ("last", 1), ("kind", 2)],
     );
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     for walk in 0..150 {
@@ -135,30 +172,35 @@ pub fn row_sequencer() -> Run {
             rows.extend(row_word(2, (1 << 14) - 1));
         }
         let pace = [1.0, 0.5, 0.15][walk % 3];
-        let started = walk_rows(&mut run, &mut rng, &rows, pace, walk == 0);
+        let started = walk_rows(&mut run, &mut rng, &rows, pace);
         assert!(started <= rows.len());
     }
     run
 }
 
-/// One walk from a restart (or a reset), to the end of the rows or to where it is given up; returns the rows started.
-fn walk_rows(run: &mut Run, rng: &mut ChaCha8Rng, rows: &[u16], pace: f64, reset: bool) -> usize {
+/// One walk from a restart to the end of the rows or to where it is given up; returns the rows started.
+fn walk_rows(run: &mut Run, rng: &mut ChaCha8Rng, rows: &[u16], pace: f64) -> usize {
     let mut expected = products(rows).peekable();
     let gives_up = rng.random_bool(0.3);
     let mut started = 0;
+    // Programs begin anywhere; addresses are as many as the port has.
+    let begin: u16 = [0, rng.random_range(0..50_000)][usize::from(rng.random::<bool>())];
+    let address = |started: usize| Some(u64::from(begin) + started as u64);
     // An issue in the cycle of restart does not count, and neither does the word then at the port.
     let issue = bits(rng.random());
-    run.push(&[bits(reset), bits(!reset), issue, rng.random()], &[Some(0), None, None, None]);
+    run.push(&[1, u64::from(begin), issue, rng.random()], &[None, None, None, None, None]);
+    run.push(&[0, rng.random(), 0, rng.random()], &[address(0), Some(1), None, None, None]);
     while expected.peek().is_some() && !(gives_up && rng.random_ratio(1, 200)) {
         // Past its end the ROM may hold anything.
         let word = rows.get(started).copied().unwrap_or_else(|| rng.random());
         if !rng.random_bool(pace) {
-            run.push(&[0, 0, 0, u64::from(word)], &[Some(started as u64), None, None, None]);
+            run.push(&[0, rng.random(), 0, u64::from(word)], &[address(started + 1), Some(0), None, None, None]);
         } else if let Some(Product { first, last, kind }) = expected.next() {
+            let address = address(started + 1);
             started += usize::from(first);
             run.push(
-                &[0, 0, 1, u64::from(word)],
-                &[Some(started as u64), Some(bits(first)), Some(bits(last)), Some(u64::from(kind))],
+                &[0, rng.random(), 1, u64::from(word)],
+                &[address, Some(bits(first)), Some(bits(first)), Some(bits(last)), Some(u64::from(kind))],
             );
             run.results += 1;
         }

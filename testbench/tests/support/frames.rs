@@ -1,7 +1,8 @@
 //! Input packets for tests: plausible ones, noise, and the ends of every range.
 
+use golden::parity::sign;
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::quantise::QuantisedMatrix;
+use hdl_gen::plan::product::Product;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use testbench::words::encode;
@@ -46,7 +47,9 @@ pub fn extremes(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     let floor = plan.thresholds.taxel as f64 * step;
     let each = |value: &dyn Fn(usize) -> f64| encode(&(0..taxels).map(value).collect::<Vec<_>>());
     let sign = |positive: bool| if positive { 1.0 } else { -1.0 };
-    let columns = plan.design.sensor.columns;
+    let contact = plan.thresholds.contact as f64 * step;
+    let (columns, rows) = (plan.design.sensor.columns, plan.design.sensor.rows);
+    let diagonal = (columns.min(rows) - 1) * (columns + 1);
     let chosen = random.random_range(0..taxels);
     let other = random.random_range(0..taxels);
     let mut packets = vec![
@@ -66,10 +69,19 @@ pub fn extremes(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
         each(&|taxel| if taxel == chosen { -step } else { 0.0 }),
         // Half a step: where rounding decides.
         each(&|taxel| 0.5 * step * (taxel as f64 - 0.5 * taxels as f64)),
-        // The thresholds of contact and of direction, and one step beyond.
+        // The noise floor of a taxel, of either sign, and one step beyond: whether there is a direction.
         each(&|_| -floor),
         each(&|taxel| (floor + step) * sign(taxel % 3 == 0)),
-        each(&|taxel| if taxel == chosen { floor + step } else { -floor }),
+        each(&|taxel| if taxel == chosen { floor } else { -9.0 * floor }),
+        each(&|taxel| if taxel == chosen { floor + step } else { -9.0 * floor }),
+        each(&|taxel| if taxel == chosen { -floor } else { 9.0 * floor }),
+        each(&|taxel| if taxel == chosen { -floor - step } else { 9.0 * floor }),
+        // The noise floor of the frame, and one step less: whether there is a contact.
+        each(&|taxel| if taxel == chosen { -contact } else { 0.0 }),
+        each(&|taxel| if taxel == chosen { step - contact } else { 0.0 }),
+        // A push along the diagonal of the grid: neither component is the larger one where the pitch is square.
+        each(&|taxel| if taxel == 0 { -full_scale } else { 0.9 * full_scale * f64::from(u8::from(taxel == diagonal)) }),
+        each(&|taxel| if taxel == diagonal { -step } else { step * f64::from(u8::from(taxel == 0)) }),
         // Beyond the full scale, up to the largest float, and down to the smallest.
         each(&|_| -1.5 * full_scale),
         each(&|taxel| 1e9 * full_scale * sign(taxel % 3 == 0)),
@@ -77,17 +89,28 @@ pub fn extremes(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
         each(&|taxel| f64::from(f32::from_bits(1)) * sign(taxel % 2 == 0)),
         each(&|taxel| if taxel == chosen { 1.001 * full_scale } else { -0.01 * full_scale }),
     ];
-    // The first thirteen matrices multiply stress or the weights that come of it: the signs of the longest row drive
-    // its sum to the bound from which the formats were chosen.
-    packets.extend(plan.matrices.iter().take(13).map(|matrix| worst_case(matrix, full_scale, taxels)));
+    // Most products multiply stress or the weights that come of it: the signs of the longest row drive its sum to the
+    // bound from which the formats were chosen.
+    packets.extend(plan.products.iter().take(13).map(|product| worst_case(plan, product)));
     packets
 }
 
-fn worst_case(matrix: &QuantisedMatrix, full_scale: f64, taxels: usize) -> Vec<u32> {
-    let weight = |row: &&Vec<(u32, i32)>| row.iter().map(|&(_, value)| i64::from(value).abs()).sum::<i64>();
-    let mut stress = vec![-full_scale; taxels];
-    for &(column, value) in matrix.rows.iter().max_by_key(weight).into_iter().flatten() {
-        stress[column as usize] = if value > 0 { -full_scale } else { full_scale };
+fn worst_case(plan: &Plan, product: &Product) -> Vec<u32> {
+    let full_scale = plan.design.hardware.full_scale_pa;
+    let rows = &plan.matrices[product.matrix].rows;
+    let weight = |row: &&Vec<(u32, [i32; 4])>| row.iter().map(|&(_, ways)| i64::from(ways[0]).abs()).sum::<i64>();
+    let mut stress = vec![-full_scale; plan.taxels()];
+    for &(column, ways) in rows.iter().max_by_key(weight).into_iter().flatten() {
+        let column = column as usize;
+        if plan.ways() == 1 {
+            stress[column] = if ways[0] > 0 { -full_scale } else { full_scale };
+            continue;
+        }
+        // The first taxel's row, unfolded.
+        for (s, taxel) in plan.quads().members(column % plan.elements()).into_iter().enumerate() {
+            let value: f64 = (0..4).map(|way| sign(way, s) * f64::from(ways[way])).sum();
+            stress[taxel] = if value > 0.0 { -full_scale } else { full_scale };
+        }
     }
     encode(&stress)
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use golden::design::Design;
+use golden::design::{Design, Outputs, PlanKind};
 use hdl_gen::plan::Plan;
 use testbench::run::{model_answers, rtl_sources, timeout};
 use testbench::simulate::{Job, Simulation, simulate};
@@ -29,6 +29,15 @@ pub fn shipped(file: &str) -> Design {
 pub fn with_lanes(mut design: Design, lanes: usize) -> Design {
     design.name = format!("{}_{lanes}_lanes", design.name);
     design.hardware.lanes = lanes;
+    design
+}
+
+/// The design under another name and by another plan.
+pub fn by_plan(mut design: Design, kind: PlanKind, outputs: Outputs) -> Design {
+    let plan = if kind == PlanKind::Paper { "paper" } else { "reduced" };
+    let of = if outputs == Outputs::Field { "field" } else { "resultants" };
+    design.name = format!("{}_{plan}_{of}", design.name);
+    (design.algorithm.plan, design.algorithm.outputs) = (kind, outputs);
     design
 }
 

@@ -19,8 +19,30 @@ pub fn seed() -> u64 {
     }
 }
 
+/// What only one of the plans has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Paper,
+    Field { latency: bool },
+    Resultants,
+}
+
+impl Kind {
+    /// The keys of `[algorithm]`, then those of `[hardware]`.
+    fn keys(self) -> [&'static str; 2] {
+        match self {
+            Self::Paper => ["plan = \"paper\"", ""],
+            Self::Field { latency: true } => ["plan = \"reduced\"", "optimise = \"latency\""],
+            Self::Field { latency: false } => ["plan = \"reduced\"", "optimise = \"interval\""],
+            Self::Resultants => ["plan = \"reduced\"\noutputs = \"resultants\"", ""],
+        }
+    }
+}
+
 /// What makes designs differ.
+#[derive(Clone)]
 pub struct Shape {
+    pub kind: Kind,
     pub columns: usize,
     pub rows: usize,
     pub pitch_mm: [f64; 2],
@@ -36,23 +58,35 @@ impl Shape {
     fn random(random: &mut ChaCha8Rng) -> Self {
         let mut side =
             || if random.random_bool(0.8) { random.random_range(2..=8) } else { random.random_range(9..=12) };
-        let (columns, rows) = (side(), side());
+        let (columns, mut rows) = (side(), side());
+        let mut pitch_mm = [0, 1].map(|_| (random.random_range(1.0..6.0_f64) * 100.0).round() / 100.0);
+        let kind = match random.random_range(0..7) {
+            0..3 => Kind::Paper,
+            3 | 4 => Kind::Field { latency: false },
+            5 => Kind::Field { latency: true },
+            _ => Kind::Resultants,
+        };
+        // Where everything is square, a matrix serves both directions.
+        if kind != Kind::Paper && random.random_bool(0.4) {
+            (rows, pitch_mm[1]) = (columns, pitch_mm[0]);
+        }
         let taxels = columns * rows;
-        let pitch_mm = [0, 1].map(|_| (random.random_range(1.0..6.0_f64) * 100.0).round() / 100.0);
         let spacing = (pitch_mm[0] * pitch_mm[1]).sqrt();
         let filter = match random.random_range(0..3) {
             0 => "{ kind = \"none\" }".to_owned(),
             1 => format!("{{ kind = \"f1\", l = {} }}", random.random_range(1..=taxels - 2)),
             _ => format!("{{ kind = \"f2\", p = {:.4} }}", 10_f64.powf(random.random_range(-2.0..2.0))),
         };
+        // Compiling takes longer the more lanes there are.
+        let lanes = if random.random_bool(0.7) { random.random_range(1..=16) } else { random.random_range(17..=64) };
         Self {
+            kind,
             columns,
             rows,
             pitch_mm,
             depth_mm: (spacing * random.random_range(0.3..1.5) * 1000.0).round() / 1000.0,
             filter,
-            // Compiling takes longer the more lanes there are.
-            lanes: if random.random_bool(0.7) { random.random_range(1..=16) } else { random.random_range(17..=64) },
+            lanes: if kind == Kind::Paper { lanes } else { 4 * usize::div_ceil(lanes, 4) },
             coefficient_bits: random.random_range(8..=18),
             data_bits: random.random_range(16..=27),
             full_scale_pa: 10_f64.powi(random.random_range(3..=6)) * random.random_range(1.0..9.0_f64).round(),
@@ -62,6 +96,7 @@ impl Shape {
     pub fn design(&self, name: &str) -> Design {
         let Self { columns, rows, pitch_mm: [x, y], depth_mm, filter, lanes, .. } = self;
         let Self { coefficient_bits, data_bits, full_scale_pa, .. } = self;
+        let [algorithm, hardware] = self.kind.keys();
         let text = format!(
             "name = \"{name}\"
 [sensor]
@@ -71,7 +106,9 @@ pitch_mm = [{x:?}, {y:?}]
 depth_mm = {depth_mm:?}
 [algorithm]
 filter = {filter}
+{algorithm}
 [hardware]
+{hardware}
 coefficient_bits = {coefficient_bits}
 data_bits = {data_bits}
 full_scale_pa = {full_scale_pa:?}

@@ -1,0 +1,148 @@
+//! Frames made to be as bad as can be: every vector of the reduced plan, folded or not, stays within the bound of its
+//! format, for any friction.
+
+use golden::design::Design;
+use golden::parity::sign;
+use proptest::prelude::*;
+
+use super::*;
+
+/// The ends of a friction component's range, which is [-2, 2).
+const STEEP: [i64; 2] = [-(2 << FRICTION_FRACTION), (2 << FRICTION_FRACTION) - 1];
+
+fn plan(size: [usize; 2], pitch_mm: [f64; 2], algorithm: &str, hardware: &str) -> Plan {
+    let [columns, rows] = size;
+    let text = format!(
+        "name = \"bad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = {pitch_mm:?}\ndepth_mm = 3.0\n\
+         [algorithm]\nplan = \"reduced\"\n{algorithm}\n[hardware]\n{hardware}"
+    );
+    Plan::new(&Design::from_toml(&text, "bad.toml").unwrap()).unwrap()
+}
+
+fn top(values: &[i64]) -> i64 {
+    values.iter().map(|value| value.abs()).max().unwrap_or(0)
+}
+
+/// Runs a frame with this friction, whatever the search would find, and holds everything against its bound. Returns
+/// the largest weight or y+.
+fn check(plan: &Plan, stress: &[i64], friction: [i64; 2]) -> i64 {
+    let folded = plan.formats.folded.unwrap();
+    let mut frame = Frame::new(plan, stress);
+    for product in &plan.products {
+        frame.multiply(product, friction, &folded);
+    }
+    let within = |what: &str, found: i64, bound: i64| assert!(found <= bound, "{what} reaches {found} of {bound}");
+    for (vector, classes) in &frame.vectors {
+        for class in classes {
+            within(&vector.name(), top(class), folded.of(*vector).bound);
+        }
+    }
+    let largest_weight = top(&frame.weight);
+    within("|w| of a taxel", largest_weight, plan.formats.weight.bound);
+    assert!(frame.weight.iter().all(|&weight| weight >= 0));
+    for (q, u) in frame.u.iter().enumerate() {
+        within(&format!("u{q} of a taxel"), top(u), plan.formats.u.bound);
+    }
+    for (p, force) in frame.force.iter().enumerate() {
+        within(&format!("A{} r of a taxel", p + 1), top(force), folded.taxel_force.bound);
+    }
+    for sums in frame.sums {
+        within("G", top(&sums), plan.formats.g.bound);
+    }
+    largest_weight
+}
+
+/// The matrix of one value a taxel that a product's blocks stand for, by rows; in units of its coefficients, times
+/// four.
+fn unfolded(plan: &Plan, product: &Product) -> Vec<Vec<f64>> {
+    let (quads, matrix) = (plan.quads(), &plan.matrices[product.matrix]);
+    let mut dense = vec![vec![0.0; plan.taxels()]; plan.taxels()];
+    for (quad, row) in matrix.rows.iter().enumerate() {
+        for (s, result) in quads.members(quad).into_iter().enumerate() {
+            let mut line = vec![0.0; plan.taxels()];
+            for &(column, ways) in row.iter().filter(|(column, _)| (*column as usize) < quads.count()) {
+                for (t, taxel) in quads.members(column as usize).into_iter().enumerate() {
+                    let of_way = |way: usize| sign(way ^ product.parity, s) * sign(way, t) * f64::from(ways[way]);
+                    line[taxel] += (0..CLASSES).map(of_way).sum::<f64>();
+                }
+            }
+            dense[result] = line;
+        }
+    }
+    dense
+}
+
+/// Full scale of the signs that make a taxel's result of each product largest; behind a product of the weights stands
+/// the inverse of C33.
+fn worst_frames(plan: &Plan) -> Vec<Vec<i64>> {
+    let bound = plan.formats.stress.bound;
+    let inverse = unfolded(plan, &plan.products[0]);
+    let mut frames = Vec::new();
+    for product in plan.products.iter().filter(|product| product.coefficients == Coefficients::Rom) {
+        for row in unfolded(plan, product) {
+            let through: Vec<f64> = if product.operand() == Vector::Stress {
+                row
+            } else {
+                let sum = |column: usize| row.iter().zip(&inverse).map(|(value, inner)| value * inner[column]).sum();
+                (0..plan.taxels()).map(sum).collect()
+            };
+            for direction in [1.0, -1.0] {
+                frames.push(through.iter().map(|&x| if direction * x < 0.0 { -bound } else { bound }).collect());
+            }
+        }
+    }
+    frames
+}
+
+fn check_worst_frames(plan: &Plan) {
+    for (index, frame) in worst_frames(plan).iter().enumerate() {
+        check(plan, frame, [STEEP[index % 2], STEEP[index / 2 % 2]]);
+        check(plan, frame, [STEEP[index / 2 % 2], 0]);
+    }
+}
+
+#[test]
+fn the_worst_frames_stay_within_the_bounds() {
+    check_worst_frames(&plan([4, 4], [4.0, 2.5], "", ""));
+    check_worst_frames(&plan([5, 5], [3.0, 3.0], "", ""));
+    check_worst_frames(&plan([2, 2], [3.0, 3.0], "", "data_bits = 18"));
+    check_worst_frames(&plan([5, 3], [4.0, 2.5], "filter = { kind = \"f1\", l = 7 }", ""));
+    check_worst_frames(&plan([4, 5], [4.0, 2.5], "filter = { kind = \"f2\", p = 20 }", "data_bits = 20"));
+    check_worst_frames(&plan([2, 6], [4.0, 2.5], "outputs = \"resultants\"", "coefficient_bits = 8\ndata_bits = 16"));
+}
+
+/// Rounding apart, one frame in each direction takes y to the end of its format.
+#[test]
+fn the_bound_of_the_weights_is_reached_and_not_just_respected() {
+    for size in [[4, 4], [5, 3]] {
+        let plan = plan(size, [4.0, 2.5], "", "");
+        let reached = worst_frames(&plan).iter().map(|frame| check(&plan, frame, [0, 0])).max().unwrap();
+        let bound = plan.formats.weight.bound;
+        assert!(reached as f64 >= 0.999 * bound as f64, "{reached} of {bound}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn full_scale_of_any_signs_stays_within_the_bounds(
+        columns in 2_usize..8, rows in 2_usize..8, square in any::<bool>(),
+        signs in proptest::collection::vec(-1_i64..=1, 49),
+        friction in proptest::array::uniform2(STEEP[0]..=STEEP[1]),
+    ) {
+        let plan = plan(if square { [columns, columns] } else { [columns, rows] }, [3.0, if square { 3.0 } else { 2.0 }], "", "");
+        let bound = plan.formats.stress.bound;
+        let stress: Vec<i64> = signs[..plan.taxels()].iter().map(|sign| sign * bound).collect();
+        check(&plan, &stress, friction);
+    }
+}
+
+#[test]
+fn folding_is_undone_but_for_a_factor_of_four() {
+    for [columns, rows] in [[2, 2], [3, 3], [2, 5], [6, 4]] {
+        let quads = Quads::new(columns, rows);
+        let values: Vec<i64> = (0..(columns * rows) as i64).map(|taxel| 1000 - 37 * taxel * taxel).collect();
+        let four_times: Vec<i64> = values.iter().map(|value| 4 * value).collect();
+        assert_eq!(unfold(&quads, &fold(&quads, &values, 0)), four_times);
+    }
+}

@@ -1,0 +1,174 @@
+//! From a checked design to its plan.
+
+use golden::design::{Design, Estimator, MAX_LANES, Outputs, PlanKind};
+use golden::filter::{FilterError, FilteredMatrices, nnz_of};
+use golden::matrices::{Matrices, MatrixName};
+use golden::parity::{CLASSES, Quads};
+
+use super::counts::CountsPlan;
+use super::error::{FEWEST_FORCE_STEPS, PlanError};
+use super::format::{Format, pow2};
+use super::layout::OperandLayout;
+use super::optimum::{DirectionPlan, OptimumPlan};
+use super::product::Product;
+use super::quantise::QuantisedMatrix;
+use super::resources::Resources;
+use super::schedule::Schedule;
+use super::timing::Timeline;
+use super::{Condition, Formats, Nnz, Plan, Thresholds, control, paper, reduced};
+
+/// Plans the hardware of `design`.
+pub(super) fn plan(design: &Design) -> Result<Plan, PlanError> {
+    if design.algorithm.estimator == Estimator::Joint {
+        return Err(PlanError::JointEstimator);
+    }
+    let work = Work::new(design)?;
+    let Some(target_us) = design.hardware.target_us else { return Ok(work.on_lanes(design)) };
+    let mut settled = design.clone();
+    settled.hardware.target_us = None;
+    let clock_mhz = design.hardware.clock_mhz;
+    let mut fastest: Option<Plan> = None;
+    for lanes in (CLASSES..=MAX_LANES).step_by(CLASSES) {
+        settled.hardware.lanes = lanes;
+        let plan = work.on_lanes(&settled);
+        if plan.timeline.latency_cycles as f64 <= target_us * clock_mhz {
+            return Ok(plan);
+        }
+        if fastest.as_ref().is_none_or(|best| plan.timeline.latency_cycles < best.timeline.latency_cycles) {
+            fastest = Some(plan);
+        }
+    }
+    let (lanes, cycles) =
+        fastest.map_or((MAX_LANES, 0), |plan| (plan.design.hardware.lanes, plan.timeline.latency_cycles));
+    let remedy = match design.algorithm.outputs {
+        Outputs::Field => "outputs = \"resultants\", fewer taxels",
+        Outputs::Resultants => "fewer taxels",
+    };
+    let (latency_us, needed_mhz) = (cycles as f64 / clock_mhz, (cycles as f64 / target_us).ceil());
+    Err(PlanError::Target { target_us, lanes, latency_us, clock_mhz, needed_mhz, remedy })
+}
+
+/// What does not depend on the number of lanes.
+struct Work {
+    condition: Condition,
+    nnz: Nnz,
+    matrices: Vec<QuantisedMatrix>,
+    products: Vec<Product>,
+    formats: Formats,
+    counts: Option<CountsPlan>,
+    thresholds: Thresholds,
+}
+
+impl Work {
+    fn new(design: &Design) -> Result<Self, PlanError> {
+        let hardware = &design.hardware;
+        let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)?;
+        let stress = Format::covering(hardware.full_scale_pa, hardware.data_bits);
+        let thresholds = thresholds(design, stress)?;
+        let counts = CountsPlan::new(design, stress)?;
+        let (stored, products, formats, nnz) = match design.algorithm.plan {
+            PlanKind::Paper => {
+                let filtered = FilteredMatrices::new(&matrices, &design.algorithm.filter)?;
+                let [bits, data_bits] = [hardware.coefficient_bits, hardware.data_bits];
+                let paper = paper::build(&matrices, &filtered, stress, bits, data_bits)?;
+                let nnz = MatrixName::ALL.map(|name| (name, filtered.nnz(name)));
+                (paper.matrices, paper.products, paper.formats, nnz)
+            }
+            PlanKind::Reduced => {
+                let reduced = reduced::build(design, &matrices, stress)?;
+                // One of the thirteen at a time: of a large sensor they do not fit into memory together.
+                let mut nnz = MatrixName::ALL.map(|name| (name, 0));
+                for (name, count) in &mut nnz {
+                    let filter = design.algorithm.filter.of(*name).ok_or(FilterError::Unresolved)?;
+                    *count = nnz_of(&matrices, *name, filter);
+                }
+                (reduced.matrices, reduced.products, reduced.formats, nnz)
+            }
+        };
+        let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
+        check_force_resolution(design, &formats, condition)?;
+        Ok(Self { condition, nnz: Nnz(nnz.to_vec()), matrices: stored, products, formats, counts, thresholds })
+    }
+
+    /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
+    fn on_lanes(&self, design: &Design) -> Plan {
+        let hardware = &design.hardware;
+        let (elements, ways) = (elements(design), ways(design));
+        let schedule = Schedule::new(&self.products, &self.matrices, hardware.lanes / ways);
+        let optimum = OptimumPlan::new(elements, ways, hardware.lanes, &self.formats);
+        let operands = OperandLayout::new(&self.products, elements);
+        let timeline = match design.algorithm.plan {
+            PlanKind::Paper => Timeline::new(elements, self.counts.is_some(), &self.products, &schedule, &optimum),
+            PlanKind::Reduced => control::timeline(design, &self.products, &schedule, &optimum),
+        };
+        let resources = Resources::new(design, &self.products, &operands, &schedule, &optimum, self.counts.as_ref());
+        Plan {
+            design: design.clone(),
+            condition: self.condition,
+            nnz: self.nnz.clone(),
+            matrices: self.matrices.clone(),
+            products: self.products.clone(),
+            formats: self.formats,
+            counts: self.counts.clone(),
+            thresholds: self.thresholds,
+            direction: DirectionPlan::new(design.sensor.pitch_mm),
+            optimum,
+            operands,
+            schedule,
+            timeline,
+            resources,
+        }
+    }
+}
+
+pub(super) fn ways(design: &Design) -> usize {
+    match design.algorithm.plan {
+        PlanKind::Paper => 1,
+        PlanKind::Reduced => CLASSES,
+    }
+}
+
+pub(super) fn quads(design: &Design) -> Quads {
+    Quads::new(design.sensor.columns, design.sensor.rows)
+}
+
+pub(super) fn elements(design: &Design) -> usize {
+    match design.algorithm.plan {
+        PlanKind::Paper => design.sensor.taxels(),
+        PlanKind::Reduced => quads(design).count(),
+    }
+}
+
+fn check_force_resolution(design: &Design, formats: &Formats, condition: Condition) -> Result<(), PlanError> {
+    let [x, y] = design.sensor.pitch_mm;
+    let taxel_n = design.hardware.full_scale_pa * x * y * 1e-6;
+    let force = match (formats.folded, design.algorithm.outputs) {
+        (Some(folded), Outputs::Field) => Some(("A+ r", folded.taxel_force)),
+        // Sums over the frame only, which are larger than a taxel's force.
+        (Some(_), Outputs::Resultants) => None,
+        (None, _) => Some(("g", formats.g)),
+    };
+    for (vector, format) in std::iter::once(("|w|", formats.weight)).chain(force) {
+        if format.step() * f64::from(FEWEST_FORCE_STEPS) > taxel_n {
+            return Err(PlanError::ForceResolution {
+                vector,
+                bits: format.bits,
+                worst_n: format.bound as f64 * format.step(),
+                step_n: format.step(),
+                taxel_n,
+                condition: condition.aat,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> {
+    let floor_pa = design.algorithm.noise_floor_pa;
+    if stress.step() > 16.0 * floor_pa {
+        return Err(PlanError::Resolution { bits: stress.bits, step_pa: stress.step(), floor_pa });
+    }
+    let taxel = ((floor_pa * pow2(-stress.lsb)).round() as i64).max(1);
+    let contact = ((floor_pa * design.sensor.taxels() as f64 * pow2(-stress.lsb)).round() as i64).max(1);
+    Ok(Thresholds { taxel, contact })
+}

@@ -1,0 +1,323 @@
+//! Predicted cycles of the reduced plan: its control, register by register, without the data.
+//!
+//! When a program starts depends on the frames under way, so latency and interval come from playing frames through
+//! what decides it. Every constant is a count of pipeline registers in the emitted modules; tests compare with simulation.
+
+use std::collections::VecDeque;
+
+use golden::design::{Design, Optimise, Outputs};
+
+use super::counts::input_stages;
+use super::optimum::OptimumPlan;
+use super::product::Product;
+use super::schedule::{Program, Schedule, TURN_GAP};
+use super::timing::{
+    DIRECTION_LATENCY, INTERVAL_FRAMES, LINE_LATENCY, OUTPUT_DEPTH, OUTPUT_SKID, START_TO_ISSUE, SUMMARY_BEATS,
+    SUMMARY_LATENCY, Timeline, middle_interval, search_cycles,
+};
+
+/// From a frame's last stress to the frame being ready for the lanes.
+const STRESS_TO_READY: u64 = 4;
+/// From a visit to its taxels having left the unfolding.
+const VISIT_TO_TAXELS: u64 = 8;
+/// From the visit to the last sum, to the sums being complete.
+const VISIT_TO_SUMS: u64 = 4;
+/// From the last visit of the residual, to the field's program being allowed.
+const VISIT_TO_RESIDUAL: u64 = 4;
+/// From the last visit of the field, to the output being allowed.
+const VISIT_TO_FIELD: u64 = VISIT_TO_TAXELS + 2;
+/// From the end of the search to the friction being known to the lanes.
+const SEARCH_TO_FRICTION: u64 = 9;
+/// Frames whose stress, whose search, and whose field have a place.
+const PLACES: u64 = 2;
+/// Frames whose weights have a place.
+const WEIGHT_PLACES: u64 = super::resources::WEIGHT_BANKS as u64;
+/// Cycles after which a frame is taken for lost: a defect.
+const FOREVER: u64 = 100_000_000;
+
+/// Predicts latency and interval.
+pub(super) fn timeline(design: &Design, products: &[Product], schedule: &Schedule, optimum: &OptimumPlan) -> Timeline {
+    let constants = Constants::new(design, products, schedule, optimum);
+    let ends = |frames| Control::new(&constants).play(frames);
+    Timeline {
+        latency_cycles: ends(1)[0],
+        interval_cycles: middle_interval(&ends(INTERVAL_FRAMES)),
+        spmv_cycles: schedule.issue_cycles(),
+        search_cycles: constants.search,
+        overlap: constants.interval,
+    }
+}
+
+/// Durations that do not depend on the frames under way.
+struct Constants {
+    taxels: u64,
+    beats: u64,
+    /// From a beat entering the conversion to its stress entering the fold.
+    beat_to_stress: u64,
+    field: bool,
+    interval: bool,
+    search: u64,
+    /// Cycles from a start pulse to the first issue.
+    start_to_issue: u64,
+    programs: Vec<Program>,
+    /// Visit of the last of the sums, in the first program.
+    last_sum: u64,
+}
+
+impl Constants {
+    fn new(design: &Design, products: &[Product], schedule: &Schedule, optimum: &OptimumPlan) -> Self {
+        let field = design.algorithm.outputs == Outputs::Field;
+        let taxels = design.sensor.taxels() as u64;
+        let elements = golden::parity::Quads::new(design.sensor.columns, design.sensor.rows).count() as u32;
+        let sums = schedule
+            .visits
+            .iter()
+            .filter(|visit| products[visit.product as usize].lead.is_some() && visit.row >= elements)
+            .map(|visit| visit.cycle);
+        Self {
+            taxels,
+            beats: SUMMARY_BEATS + if field { 3 * taxels } else { 0 },
+            beat_to_stress: input_stages(design.input.pa_per_count.is_some()),
+            field,
+            interval: design.hardware.optimise == Optimise::Interval,
+            search: search_cycles(optimum),
+            start_to_issue: START_TO_ISSUE + schedule.program_gap - TURN_GAP,
+            programs: schedule.programs.clone(),
+            last_sum: sums.max().unwrap_or(0),
+        }
+    }
+}
+
+/// The registers, as they stand in the current cycle. Times are cycles in which something happens or is first seen.
+struct Control<'a> {
+    of: &'a Constants,
+    now: u64,
+    // Bz and CeAn
+    next_open: u64,
+    stress_places: u64,
+    cean_idle: u64,
+    directions: VecDeque<u64>,
+    frames_ready: VecDeque<u64>,
+    // Turns
+    lanes_free: u64,
+    searches_due: u64,
+    residual_due: bool,
+    field_due: bool,
+    residual_there: u64,
+    frames_held: u64,
+    fields_held: u64,
+    // Op
+    sums_there: VecDeque<u64>,
+    line: Line,
+    u_there: VecDeque<u64>,
+    search_ends: Option<u64>,
+    search_free: u64,
+    summary_busy: bool,
+    summary_there: Option<u64>,
+    friction_known: Option<u64>,
+    field_there: VecDeque<u64>,
+    output_idle: u64,
+    /// Changes that registers show later: `(first cycle seen, what)`.
+    pending: Vec<(u64, Change)>,
+    ends: Vec<u64>,
+}
+
+/// Where the line is.
+enum Line {
+    Idle { from: u64 },
+    Waits { from: u64 },
+    There { from: u64 },
+}
+
+#[derive(Clone, Copy)]
+enum Change {
+    StressReleased,
+    SearchOver,
+    FrameReleased,
+    SummaryFree,
+}
+
+impl<'a> Control<'a> {
+    fn new(of: &'a Constants) -> Self {
+        Self {
+            of,
+            now: 0,
+            next_open: 1, // the beat leaves the skid buffer
+            stress_places: 0,
+            cean_idle: 0,
+            directions: VecDeque::new(),
+            frames_ready: VecDeque::new(),
+            lanes_free: 0,
+            searches_due: 0,
+            residual_due: false,
+            field_due: false,
+            residual_there: 0,
+            frames_held: 0,
+            fields_held: 0,
+            sums_there: VecDeque::new(),
+            line: Line::Idle { from: 0 },
+            u_there: VecDeque::new(),
+            search_ends: None,
+            search_free: 0,
+            summary_busy: false,
+            summary_there: None,
+            friction_known: None,
+            field_there: VecDeque::new(),
+            output_idle: 0,
+            pending: Vec::new(),
+            ends: Vec::new(),
+        }
+    }
+
+    /// Plays frames that wait at the door; returns the cycle after the last beat out of each, the first beat in being
+    /// in cycle 0.
+    fn play(mut self, frames: usize) -> Vec<u64> {
+        let mut left = frames;
+        while self.ends.len() < frames && self.now < FOREVER {
+            self.show_changes();
+            if left > 0 && self.opens() {
+                left -= 1;
+            }
+            self.give_turn();
+            self.find_line();
+            self.search();
+            self.send();
+            self.now += 1;
+        }
+        self.ends.resize(frames, FOREVER);
+        self.ends
+    }
+
+    fn show_changes(&mut self) {
+        let now = self.now;
+        let (due, later): (Vec<_>, Vec<_>) = self.pending.drain(..).partition(|&(cycle, _)| cycle <= now);
+        self.pending = later;
+        for (_, change) in due {
+            match change {
+                Change::StressReleased => self.stress_places -= 1,
+                Change::SearchOver => self.searches_due -= 1,
+                Change::FrameReleased => {
+                    self.frames_held -= 1;
+                    self.fields_held -= 1;
+                }
+                Change::SummaryFree => self.summary_busy = false,
+            }
+        }
+    }
+
+    /// Bz lets a frame in.
+    fn opens(&mut self) -> bool {
+        let room = self.directions.iter().filter(|&&there| there <= self.now).count() < PLACES as usize;
+        if self.now < self.next_open || self.now < self.cean_idle || self.stress_places == PLACES || !room {
+            return false;
+        }
+        let last_stress = self.now + self.of.taxels - 1 + self.of.beat_to_stress;
+        self.stress_places += 1;
+        self.next_open = last_stress + 1;
+        self.cean_idle = last_stress + DIRECTION_LATENCY;
+        self.directions.push_back(self.cean_idle);
+        self.frames_ready.push_back(last_stress + STRESS_TO_READY);
+        true
+    }
+
+    /// The lanes' next program.
+    fn give_turn(&mut self) {
+        if self.now < self.lanes_free {
+            return;
+        }
+        let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
+        let friction = self.friction_known.is_some_and(|cycle| cycle <= self.now);
+        let may_field = self.field_due && self.residual_there <= self.now && friction && self.fields_held < PLACES;
+        let may_residual = self.residual_due && !self.field_due;
+        let may_frame = there(&self.frames_ready)
+            && self.searches_due < PLACES
+            && (!self.of.field
+                || (!self.residual_due && self.frames_held < WEIGHT_PLACES && (self.of.interval || !self.field_due)));
+        if may_field {
+            let last_visit = self.start(2);
+            self.field_due = false;
+            self.friction_known = None;
+            self.fields_held += 1;
+            self.field_there.push_back(last_visit + VISIT_TO_FIELD);
+        } else if may_residual {
+            let last_visit = self.start(1);
+            self.residual_due = false;
+            self.field_due = true;
+            self.residual_there = last_visit + VISIT_TO_RESIDUAL;
+        } else if may_frame {
+            let first_issue = self.now + 1 + self.of.start_to_issue;
+            let last_visit = self.start(0);
+            self.frames_ready.pop_front();
+            self.searches_due += 1;
+            if self.of.field {
+                self.residual_due = true;
+                self.frames_held += 1;
+            }
+            self.sums_there.push_back(first_issue + self.of.last_sum + VISIT_TO_SUMS);
+            let complete = last_visit + VISIT_TO_TAXELS;
+            self.u_there.push_back(complete + 1);
+            self.pending.push((complete + 1, Change::StressReleased));
+        }
+    }
+
+    /// Starts a program, one cycle after the decision; returns the cycle of its last visit.
+    fn start(&mut self, index: usize) -> u64 {
+        let program = self.of.programs[index];
+        let first_issue = self.now + 1 + self.of.start_to_issue;
+        self.lanes_free = first_issue + program.length - 1;
+        first_issue + program.last_visit
+    }
+
+    fn find_line(&mut self) {
+        let there = |times: &VecDeque<u64>, now: u64| times.front().is_some_and(|&cycle| cycle <= now);
+        match self.line {
+            Line::Idle { from } if from <= self.now && there(&self.sums_there, self.now) => {
+                self.sums_there.pop_front();
+                self.line = Line::Waits { from: self.now + 1 };
+            }
+            Line::Waits { from } if from <= self.now && there(&self.directions, self.now) => {
+                self.directions.pop_front();
+                self.line = Line::There { from: self.now + LINE_LATENCY };
+            }
+            _ => {}
+        }
+    }
+
+    fn search(&mut self) {
+        if let Some(end) = self.search_ends
+            && end <= self.now
+            && !self.summary_busy
+        {
+            self.search_ends = None;
+            self.search_free = self.now + 1;
+            self.summary_busy = true;
+            self.pending.push((self.now + 1, Change::SearchOver));
+            self.summary_there = Some(self.now + SUMMARY_LATENCY + 1);
+            self.friction_known = self.of.field.then_some(self.now + SEARCH_TO_FRICTION);
+            return;
+        }
+        let line = matches!(self.line, Line::There { from } if from <= self.now);
+        let u = self.u_there.front().is_some_and(|&cycle| cycle <= self.now);
+        if line && u && self.search_ends.is_none() && self.search_free <= self.now {
+            self.u_there.pop_front();
+            self.line = Line::Idle { from: self.now + 1 };
+            self.search_ends = Some(self.now + self.of.search);
+        }
+    }
+
+    fn send(&mut self) {
+        let summary = self.summary_there.is_some_and(|cycle| cycle <= self.now);
+        let field = !self.of.field || self.field_there.front().is_some_and(|&cycle| cycle <= self.now);
+        if !summary || !field || self.output_idle > self.now {
+            return;
+        }
+        self.summary_there = None;
+        self.field_there.pop_front();
+        self.pending.push((self.now + 1, Change::SummaryFree));
+        self.output_idle = self.now + self.of.beats + 4;
+        if self.of.field {
+            self.pending.push((self.now + self.of.beats + 3, Change::FrameReleased));
+        }
+        self.ends.push(self.now + OUTPUT_DEPTH + OUTPUT_SKID + self.of.beats);
+    }
+}

@@ -1,0 +1,217 @@
+//! Deals the rows of a product to the lanes and gives each result its time.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap, VecDeque};
+
+use golden::parity::CLASSES;
+
+use super::quantise::{Entry, QuantisedMatrix};
+use super::schedule::{ISSUE_TO_RESULT, LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
+
+/// A piece of a row as dealt to a lane, before its time is known.
+struct Piece {
+    kind: SegmentKind,
+    row: u32,
+    macs: u64,
+}
+
+/// What the lanes shall work through: rows as they follow each other, each with the number of its result.
+pub(super) struct Stream<'a> {
+    /// Index of the product.
+    pub product: u32,
+    /// `(number of the result, entries)`.
+    pub rows: Vec<(u32, &'a [Entry])>,
+    /// Whether the entries go into the ROMs, rather than being there already.
+    pub store: bool,
+    /// Cycle of the first issue.
+    pub start: u64,
+    /// Fewest cycles from taking one of its results to taking the next one.
+    pub spacing: u64,
+}
+
+impl<'a> Stream<'a> {
+    /// The rows of `lead` as results `from..`, then those of `matrix` as results `0..`.
+    pub fn rows_of(lead: Option<&'a QuantisedMatrix>, matrix: &'a QuantisedMatrix) -> Vec<(u32, &'a [Entry])> {
+        let numbered = |first: usize, matrix: &'a QuantisedMatrix| {
+            matrix.rows.iter().enumerate().map(move |(row, entries)| ((first + row) as u32, entries.as_slice()))
+        };
+        let lead = lead.into_iter().flat_map(|lead| numbered(matrix.rows.len(), lead));
+        lead.chain(numbered(0, matrix)).collect()
+    }
+}
+
+/// The lanes' programs while they grow.
+pub(super) struct Dealer {
+    pub programs: Vec<LaneProgram>,
+    /// Cycles in which the collector takes a lane's latest results, as many as the lane has places.
+    taken: Vec<VecDeque<u64>>,
+    pub visits: Vec<Visit>,
+    /// When the collector may take the next result.
+    collector_free: u64,
+    /// Where the dense rows of a stored matrix begin.
+    pub rounds_of: BTreeMap<usize, usize>,
+}
+
+impl Dealer {
+    pub fn new(lanes: usize) -> Self {
+        Self {
+            programs: vec![LaneProgram::default(); lanes],
+            taken: vec![VecDeque::with_capacity(RESULT_PLACES); lanes],
+            visits: Vec::new(),
+            collector_free: 0,
+            rounds_of: BTreeMap::new(),
+        }
+    }
+
+    /// Starts a program that owes nothing to the one before: every lane's data begins at the same address, all places
+    /// for results are empty. Returns the addresses of `(words, segments, visits)`.
+    pub fn begin(&mut self) -> (usize, usize, usize) {
+        let words = self.programs.iter().map(|lane| lane.words.len()).max().unwrap_or(0);
+        let segments = self.programs.iter().map(|lane| lane.segments.len()).max().unwrap_or(0);
+        for lane in &mut self.programs {
+            lane.words.resize(words, Entry::default());
+            lane.segments.resize(segments, Segment { kind: SegmentKind::Idle, macs: 1 });
+        }
+        self.taken.iter_mut().for_each(VecDeque::clear);
+        self.collector_free = 0;
+        (words, segments, self.visits.len())
+    }
+
+    /// Deals one product; returns its length in issue cycles and the cycle in which its last result is taken.
+    pub fn deal(&mut self, stream: &Stream<'_>) -> (u64, u64) {
+        let pieces = self.cut(stream);
+        let used = self.place(stream, pieces);
+        let length = used.iter().copied().max().unwrap_or(0);
+        for (program, used) in self.programs.iter_mut().zip(used) {
+            push(&mut program.segments, SegmentKind::Idle, length - used);
+        }
+        (length, self.visits.last().map_or(stream.start, |visit| visit.cycle))
+    }
+
+    /// Deals the rows of a product that passes over zeros, whole rows in rounds of one a lane, `start` being the cycle of
+    /// the first issue. All lanes multiply the same column of their rows, so that one list of columns serves all.
+    /// Returns the length and the cycle in which the last result is taken, both for an operand without zeros.
+    pub fn deal_rounds(&mut self, stream: &Stream<'_>) -> (u64, u64) {
+        let (lanes, columns) = (self.programs.len(), stream.rows.len());
+        let period = rounds_period(columns, lanes);
+        for (round, rows) in stream.rows.chunks(lanes).enumerate() {
+            let ready = stream.start + (round as u64 + 1) * period - 1 + ISSUE_TO_RESULT;
+            for (lane, &(row, entries)) in rows.iter().enumerate() {
+                let visit = ready.max(self.collector_free);
+                self.collector_free = visit + stream.spacing;
+                self.visits.push(Visit { cycle: visit, lane: lane as u32, product: stream.product, row });
+                if stream.store {
+                    let dense = entries.iter().map(|&(_, ways)| ways);
+                    self.programs[lane].rounds.extend(dense);
+                }
+            }
+            if stream.store {
+                for program in &mut self.programs[rows.len()..] {
+                    program.rounds.extend(std::iter::repeat_n([0; CLASSES], columns));
+                }
+            }
+        }
+        let length = columns.div_ceil(lanes) as u64 * period;
+        (length, self.visits.last().map_or(stream.start, |visit| visit.cycle))
+    }
+
+    /// Words of every lane's dense rows so far.
+    pub fn round_words(&self) -> usize {
+        self.programs.first().map_or(0, |lane| lane.rounds.len())
+    }
+
+    /// Cuts the product's stream of MACs into equal shares; appends the words to the lanes' ROMs if they are new.
+    fn cut(&mut self, stream: &Stream<'_>) -> Vec<VecDeque<Piece>> {
+        let lanes = self.programs.len();
+        let total: usize = stream.rows.iter().map(|(_, entries)| entries.len()).sum();
+        let longest_row = stream.rows.iter().map(|(_, entries)| entries.len()).max().unwrap_or(1).max(1);
+        // No more lanes than leave each a share as long as the longest row: a row then spans two lanes at most.
+        let active = (total / longest_row).clamp(1, lanes);
+        let share = total.div_ceil(active);
+        let mut pieces: Vec<VecDeque<Piece>> = (0..lanes).map(|_| VecDeque::new()).collect();
+        let mut begin = 0;
+        for &(row, entries) in &stream.rows {
+            let end = begin + entries.len();
+            let mut at = begin;
+            while at < end {
+                let lane = at / share;
+                let stop = end.min((lane + 1) * share);
+                let kind = match (at == begin, stop == end) {
+                    (true, true) => SegmentKind::Row,
+                    (false, _) => SegmentKind::Tail,
+                    (true, false) => SegmentKind::Head,
+                };
+                if stream.store {
+                    self.programs[lane].words.extend_from_slice(&entries[at - begin..stop - begin]);
+                }
+                pieces[lane].push_back(Piece { kind, row, macs: (stop - at) as u64 });
+                at = stop;
+            }
+            begin = end;
+        }
+        pieces
+    }
+
+    /// Gives every piece its time, results in the order in which they become ready; returns the cycles that each
+    /// lane needs.
+    fn place(&mut self, stream: &Stream<'_>, mut pieces: Vec<VecDeque<Piece>>) -> Vec<u64> {
+        let mut used = vec![0_u64; pieces.len()];
+        let mut ready = BinaryHeap::new();
+        for lane in 0..pieces.len() {
+            if let Some(cycle) = self.next_result(lane, &mut pieces[lane], &mut used[lane], stream.start) {
+                ready.push(Reverse((cycle, lane)));
+            }
+        }
+        while let Some(Reverse((cycle, lane))) = ready.pop() {
+            let room = match self.taken[lane].front() {
+                Some(&oldest) if self.taken[lane].len() == RESULT_PLACES => oldest + 1,
+                _ => 0,
+            };
+            if cycle < room {
+                push(&mut self.programs[lane].segments, SegmentKind::Idle, room - cycle);
+                used[lane] += room - cycle;
+                ready.push(Reverse((room, lane)));
+                continue;
+            }
+            if self.taken[lane].len() == RESULT_PLACES {
+                self.taken[lane].pop_front();
+            }
+            let visit = cycle.max(self.collector_free);
+            self.collector_free = visit + stream.spacing;
+            self.taken[lane].push_back(visit);
+            if let Some(piece) = pieces[lane].pop_front() {
+                self.visits.push(Visit { cycle: visit, lane: lane as u32, product: stream.product, row: piece.row });
+                used[lane] += piece.macs;
+                push(&mut self.programs[lane].segments, piece.kind, piece.macs);
+            }
+            if let Some(cycle) = self.next_result(lane, &mut pieces[lane], &mut used[lane], stream.start) {
+                ready.push(Reverse((cycle, lane)));
+            }
+        }
+        used
+    }
+
+    /// Passes over tails, which give no result; returns when the next piece's result would be ready.
+    fn next_result(&mut self, lane: usize, pieces: &mut VecDeque<Piece>, used: &mut u64, start: u64) -> Option<u64> {
+        while let Some(tail) = pieces.pop_front_if(|piece| piece.kind == SegmentKind::Tail) {
+            *used += tail.macs;
+            push(&mut self.programs[lane].segments, tail.kind, tail.macs);
+        }
+        pieces.front().map(|piece| start + *used + piece.macs - 1 + ISSUE_TO_RESULT)
+    }
+}
+
+/// Cycles of a round for `columns` columns that are not zero: the collector takes one result a cycle.
+pub(super) fn rounds_period(columns: usize, lanes: usize) -> u64 {
+    columns.max(lanes).max(1) as u64
+}
+
+/// Appends a segment, split where a count would not fit the ROM word.
+fn push(segments: &mut Vec<Segment>, kind: SegmentKind, macs: u64) {
+    let mut left = macs;
+    while left > 0 {
+        let part = left.min(u64::from(MAX_SEGMENT));
+        segments.push(Segment { kind, macs: part as u32 });
+        left -= part;
+    }
+}

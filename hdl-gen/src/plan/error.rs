@@ -1,0 +1,103 @@
+//! Why a checked design has no hardware plan.
+
+use golden::filter::FilterError;
+use golden::matrices::MatrixError;
+use thiserror::Error;
+
+/// Fewest steps of a force format that a taxel's force at full scale must span.
+pub(super) const FEWEST_FORCE_STEPS: u32 = 64;
+
+/// Why a checked design has no hardware plan.
+#[derive(Debug, Error)]
+pub enum PlanError {
+    /// The estimator has no hardware.
+    #[error(
+        "[algorithm] estimator = \"joint\": the hardware has the line estimator only; write estimator = \"line\" and \
+         remove gain, tangential and correction, or solve the design with `golden solve`"
+    )]
+    JointEstimator,
+    /// The matrices of this geometry cannot be computed.
+    #[error(transparent)]
+    Matrix(#[from] MatrixError),
+    /// The filter leaves nothing to compute with.
+    #[error(transparent)]
+    Filter(#[from] FilterError),
+    /// The accumulator bound leaves too few coefficient bits.
+    #[error(
+        "[hardware] coefficient_bits = {bits}: matrix {matrix} keeps fewer than {needed} bits beside a 48-bit \
+         accumulator; lower data_bits or filter more"
+    )]
+    CoefficientWidth {
+        /// The matrix as stored.
+        matrix: String,
+        /// Coefficient width of the design.
+        bits: u32,
+        /// Fewest useful bits.
+        needed: u32,
+    },
+    /// The stress step is so coarse that the noise floor disappears in it.
+    #[error(
+        "[hardware] data_bits = {bits}: one step of stress is {step_pa} Pa, more than 16 times the noise floor of \
+         {floor_pa} Pa; raise data_bits, lower full_scale_pa, or state a higher [algorithm] noise_floor_pa"
+    )]
+    Resolution {
+        /// Vector width of the design.
+        bits: u32,
+        /// Worth of one step.
+        step_pa: f64,
+        /// Noise floor of the design.
+        floor_pa: f64,
+    },
+    /// An offset of the calibration that no full scale can hold.
+    #[error(
+        "[sensor] calibration: the offset of taxel {taxel} is {counts} counts where the full scale is {full_scale:.1} \
+         counts; correct the file, or state a full_scale_pa that fits the sensor"
+    )]
+    Offset {
+        /// The taxel, from 0.
+        taxel: usize,
+        /// Its offset.
+        counts: f64,
+        /// The full scale in counts.
+        full_scale: f64,
+    },
+    /// The geometry amplifies so much that the worst case leaves the forces too few bits.
+    #[error(
+        "[hardware] data_bits = {bits}: the worst case of {vector} is {worst_n:.3e} N, so one step is {step_n:.3e} N, \
+         more than 1/{FEWEST_FORCE_STEPS} of a taxel's force at full scale ({taxel_n:.3e} N); the condition number of \
+         A A^T is {condition:.1e}: lower [sensor] depth_mm, raise the pitch, or raise data_bits"
+    )]
+    ForceResolution {
+        /// The vector.
+        vector: &'static str,
+        /// Vector width of the design.
+        bits: u32,
+        /// Largest magnitude that the format must hold.
+        worst_n: f64,
+        /// Worth of one step.
+        step_n: f64,
+        /// Full-scale stress times the area of a taxel.
+        taxel_n: f64,
+        /// 2-norm condition number of A Aᵀ.
+        condition: f64,
+    },
+    /// No number of lanes is fast enough.
+    #[error(
+        "[hardware] target_us = {target_us}: the fastest plan has {lanes} lanes and takes {latency_us:.2} us at \
+         {clock_mhz} MHz; it would take a clock of {needed_mhz:.0} MHz, {remedy}, or a target of {latency_us:.2} us"
+    )]
+    Target {
+        /// What was asked for.
+        target_us: f64,
+        /// Lanes of the fastest plan.
+        lanes: usize,
+        /// Its latency at the design's clock.
+        latency_us: f64,
+        /// The design's clock.
+        clock_mhz: f64,
+        /// The clock at which it would meet the target.
+        needed_mhz: f64,
+        /// What else would help.
+        remedy: &'static str,
+    },
+}

@@ -1,0 +1,65 @@
+//! What each reduction of the reduced plan saves: multiply-accumulates a frame and coefficients in ROM.
+
+use golden::design::Outputs;
+use serde::Serialize;
+
+use super::Plan;
+use super::product::Coefficients;
+
+/// One step from the paper's plan to this one.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Saving {
+    /// The reduction.
+    pub step: &'static str,
+    /// Multiply-accumulates a frame from here on.
+    pub macs: usize,
+    /// Coefficients in ROM from here on.
+    pub coefficients: usize,
+}
+
+/// Products of a frame in the paper's plan, three of them with C33.
+const PAPER_PRODUCTS: usize = 16;
+/// Products of a frame in the reduced plan, with and without the field.
+const PRODUCTS: usize = 10;
+const RESULTANT_PRODUCTS: usize = 4;
+
+/// The steps in the order in which they are taken; empty for the paper's plan.
+pub fn savings(plan: &Plan) -> Vec<Saving> {
+    let ways = plan.ways();
+    if ways == 1 {
+        return Vec::new();
+    }
+    let all = plan.taxels() * plan.taxels();
+    let mut steps = vec![
+        Saving { step: "the paper's plan", macs: PAPER_PRODUCTS * all, coefficients: (PAPER_PRODUCTS - 2) * all },
+        Saving { step: "fewer products", macs: PRODUCTS * all, coefficients: PRODUCTS * all },
+    ];
+    if plan.design.algorithm.outputs == Outputs::Resultants {
+        let macs = RESULTANT_PRODUCTS * all;
+        steps.push(Saving { step: "resultants only", macs, coefficients: macs });
+    }
+    let of_products = || plan.products.iter().filter(|product| product.coefficients == Coefficients::Rom);
+    let of_matrix = |index: usize| ways * plan.matrices[index].nnz();
+    let block = ways * plan.elements() * plan.elements();
+    let sums: usize = of_products().filter_map(|product| product.lead).map(|lead| of_matrix(lead.matrix)).sum();
+    let whole = of_products().count() * block + sums;
+    let kept = of_products().map(|product| of_matrix(product.matrix)).sum::<usize>() + sums;
+    // The friction products have no coefficients of their own.
+    let friction: usize = plan.schedule.windows.iter().map(|window| ways * window.macs as usize).sum::<usize>() - kept;
+    steps.push(Saving { step: "parity fold", macs: whole + friction, coefficients: whole });
+    let mirrored = of_products().filter(|product| product.mirrored.is_some());
+    let saved: usize = mirrored.map(|product| of_matrix(product.matrix)).sum();
+    if saved > 0 {
+        steps.push(Saving { step: "diagonal mirror", macs: whole + friction, coefficients: whole - saved });
+    }
+    if kept < whole {
+        steps.push(Saving { step: "filter (not exact)", macs: kept + friction, coefficients: kept - saved });
+    }
+    if plan.design.hardware.skip_zeros {
+        // With one quad that is not zero in each vector, as few as a contact can have.
+        let passed: usize = of_products().filter(|product| product.skips).count() * (block - ways * plan.elements());
+        let coefficients = steps.last().map_or(0, |step| step.coefficients);
+        steps.push(Saving { step: "zeros skipped, at best", macs: kept + friction - passed, coefficients });
+    }
+    steps
+}

@@ -1,0 +1,210 @@
+//! Formats of the reduced plan: that the worst case fits, folded and unfolded.
+
+use golden::parity::{CLASSES, Quads, sign};
+use golden::reduced::ReducedName;
+use golden::solver::Solver;
+use hdl_gen::plan::Plan;
+use hdl_gen::plan::format::{ACCUMULATOR_BITS, MOST_SHIFT, largest, pow2, round_shift};
+use hdl_gen::plan::optimum::FRICTION_FRACTION;
+use hdl_gen::plan::product::{Coefficients, Epilogue, Product, Vector};
+use hdl_gen::plan::quantise::QuantisedMatrix;
+use hdl_gen::plan::reduced::{FOLD_BITS, FoldedFormats, SUM_ROWS, sum_way};
+use proptest::prelude::*;
+
+use crate::formats::check_widths;
+use crate::support::{any_reduced_design, design_text, plan};
+
+/// A friction component at its end, -2.
+const STEEPEST: i64 = 2 << FRICTION_FRACTION;
+
+fn half(shift: u32) -> i64 {
+    if shift == 0 { 0 } else { 1 << (shift - 1) }
+}
+
+/// The largest sum of a row in one way, rounded, for operands up to `bound`; the accumulator fits 48 bits.
+fn largest_result(matrix: &QuantisedMatrix, row: usize, way: usize, bound: i64, shift: u32) -> i64 {
+    let magnitudes = matrix.rows[row].iter().map(|(_, ways)| i64::from(ways[way]).abs());
+    let accumulator = magnitudes.map(|value| value * bound).sum::<i64>();
+    assert!(accumulator + half(shift) <= largest(ACCUMULATOR_BITS), "{} row {row}: {accumulator}", matrix.name);
+    round_shift(accumulator, shift)
+}
+
+/// The format in which the lanes leave a product's results.
+fn result_lsb_and_bound(product: &Product, folded: &FoldedFormats) -> (i32, i64) {
+    let format = if product.epilogue == Epilogue::Part { folded.y } else { folded.of(product.result) };
+    (format.lsb, format.bound)
+}
+
+/// For every row and way of every product the folded operand that makes its sum largest.
+fn check_folded(plan: &Plan, folded: &FoldedFormats) {
+    for product in &plan.products {
+        let matrix = &plan.matrices[product.matrix];
+        let operand = folded.of(product.operand());
+        assert!(product.operands.iter().all(|&vector| folded.of(vector) == operand), "read at one step");
+        let (lsb, bound) = result_lsb_and_bound(product, folded);
+        assert!(product.shift <= MOST_SHIFT + 3, "{}: {} bits dropped", matrix.name, product.shift);
+        assert_eq!(matrix.lsb + operand.lsb + product.shift as i32, lsb, "{}", matrix.name);
+        // With the stress added at the step of u, and its rounding.
+        let more = match product.epilogue {
+            Epilogue::AddStress => (folded.stress.bound as f64 * pow2(folded.stress.lsb - lsb)) as i64 + 1,
+            _ => 0,
+        };
+        for row in 0..matrix.rows.len() {
+            if product.coefficients == Coefficients::Friction {
+                let accumulator = ((1 << FRICTION_FRACTION) + 2 * STEEPEST) * operand.bound;
+                assert!(accumulator + half(product.shift) <= largest(ACCUMULATOR_BITS));
+                assert!(round_shift(accumulator, product.shift) <= bound);
+                continue;
+            }
+            for way in 0..CLASSES {
+                let result = largest_result(matrix, row, way, operand.bound, product.shift) + more;
+                assert!(result <= bound, "{} row {row} way {way}: {result} of {bound}", matrix.name);
+            }
+        }
+    }
+}
+
+/// The frame sums, and G30, which is one less another.
+fn check_sums(plan: &Plan, folded: &FoldedFormats) {
+    let product = plan.products.iter().find(|product| product.lead.is_some()).unwrap();
+    let lead = product.lead.unwrap();
+    let matrix = &plan.matrices[lead.matrix];
+    assert_eq!((matrix.rows.len(), product.result), (SUM_ROWS, Vector::U(0)));
+    assert_eq!(matrix.lsb + folded.weight.lsb + lead.shift as i32, plan.formats.g.lsb);
+    let sum = |q: usize, way: usize| largest_result(matrix, q, way, folded.weight.bound, lead.shift);
+    let total = sum(SUM_ROWS - 1, 0);
+    for (p, q) in (0..3).flat_map(|p| (0..3).map(move |q| (p, q))) {
+        let less = if (p, q) == (2, 0) { total } else { 0 };
+        let result = sum(q, sum_way(p, q));
+        assert!(result <= largest(plan.formats.g.bits) && result + less <= plan.formats.g.bound, "G{}{q}", p + 1);
+    }
+}
+
+/// What stands in the four classes of each quad, from the values of the taxels.
+fn fold(quads: &Quads, values: &[i64], shift: u32) -> Vec<[i64; CLASSES]> {
+    let signed = |class: usize, member: usize, value: i64| if sign(class, member) < 0.0 { -value } else { value };
+    (0..quads.count())
+        .map(|quad| {
+            let members = quads.members(quad);
+            std::array::from_fn(|class| round_shift((0..4).map(|s| signed(class, s, values[members[s]])).sum(), shift))
+        })
+        .collect()
+}
+
+/// For every taxel and every product that is unfolded the taxels' operand that makes the taxel's value largest: it has
+/// as many bits as any word.
+fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
+    let quads = plan.quads();
+    for product in &plan.products {
+        let matrix = &plan.matrices[product.matrix];
+        // Range of a taxel's operand, bits by which its fold is coarser, and the bound of a taxel's result.
+        let weight_shift = (folded.weight.lsb - plan.formats.weight.lsb) as u32;
+        let stress = plan.formats.stress.bound;
+        let (low, high, shift) = match product.operand() {
+            Vector::Stress => (-stress, stress, FOLD_BITS),
+            Vector::Weight | Vector::Pull => (0, plan.formats.weight.bound, weight_shift),
+            _ => continue, // what r can be has no bound of its own for a taxel: the frames of the model's tests do that
+        };
+        let bound = match product.epilogue {
+            Epilogue::Part => plan.formats.weight.bound,
+            Epilogue::Unfold | Epilogue::AddStress => plan.formats.u.bound,
+            _ => continue,
+        };
+        for (row, member) in (0..matrix.rows.len()).flat_map(|row| (0..4).map(move |member| (row, member))) {
+            let mut values = vec![0.0; plan.taxels()];
+            for &(column, ways) in &matrix.rows[row] {
+                for (s, taxel) in quads.members(column as usize).into_iter().enumerate() {
+                    let weight = |way: usize| {
+                        let result = sign(way ^ product.parity, member);
+                        f64::from(ways[way]) * result * sign(way, s)
+                    };
+                    values[taxel] += (0..CLASSES).map(weight).sum::<f64>();
+                }
+            }
+            for direction in [1.0, -1.0] {
+                let chosen = |&value: &f64| if direction * value > 0.0 { high } else { low };
+                let operand = fold(&quads, &values.iter().map(chosen).collect::<Vec<_>>(), shift);
+                let result = |way: usize| {
+                    let entries = matrix.rows[row].iter();
+                    let sum = entries.map(|&(column, ways)| i64::from(ways[way]) * operand[column as usize][way]).sum();
+                    let result = round_shift(sum, product.shift);
+                    if sign(way ^ product.parity, member) < 0.0 { -result } else { result }
+                };
+                let value = (0..CLASSES).map(result).sum::<i64>();
+                let more = match product.epilogue {
+                    // A taxel's value has a quarter of the step.
+                    Epilogue::AddStress => (stress as f64 * pow2(plan.formats.stress.lsb - plan.formats.u.lsb)) as i64,
+                    _ => 0,
+                };
+                let value = value.abs() + more;
+                assert!(value <= bound, "{} quad {row} member {member}: {value} of {bound}", matrix.name);
+            }
+        }
+    }
+}
+
+/// Each coefficient is its matrix entry rounded to the nearest step.
+fn check_rounding(plan: &Plan) {
+    let solver = Solver::new(&plan.design).unwrap();
+    let reduced = solver.reduced().unwrap();
+    let mut seen = 0;
+    for matrix in &plan.matrices {
+        let (sign, plain) = matrix.name.strip_prefix('-').map_or((1.0, matrix.name.as_str()), |plain| (-1.0, plain));
+        let Some(name) = ReducedName::ALL.into_iter().find(|name| name.as_str() == plain) else { continue };
+        seen += 1;
+        assert_eq!(matrix.rows.len(), reduced.get(name).rows.len());
+        for (row, (stored, exact)) in matrix.rows.iter().zip(&reduced.get(name).rows).enumerate() {
+            assert_eq!(stored.len(), exact.len(), "{name} row {row}");
+            for (&(column, ways), &(exact_column, values)) in stored.iter().zip(exact) {
+                assert_eq!(column, exact_column);
+                for (value, exact) in ways.into_iter().zip(values) {
+                    let error = (f64::from(value) * pow2(matrix.lsb) - sign * exact).abs();
+                    assert!(error <= 0.501 * pow2(matrix.lsb), "{name} [{row}, {column}]: off by {error:e}");
+                }
+            }
+        }
+    }
+    // Those that the mirror image of another stands in for are not stored.
+    let mirrored = plan.products.iter().filter(|product| product.mirrored.is_some()).count();
+    assert_eq!(seen + mirrored, if plan.field_words() > 0 { 10 } else { 4 });
+}
+
+fn check(plan: &Plan) {
+    let folded = plan.formats.folded.unwrap();
+    check_widths(plan);
+    check_folded(plan, &folded);
+    check_sums(plan, &folded);
+    check_unfolded(plan, &folded);
+    check_rounding(plan);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn the_worst_case_fits(text in any_reduced_design()) {
+        check(&plan(&text));
+    }
+
+    #[test]
+    fn depth_may_be_a_small_or_a_large_share_of_the_pitch(
+        // Beyond two pitches the worst case of A+ r leaves a force too few steps, and the plan is refused.
+        ratio in -2.0..0.3_f64, pitch in 1.0..9.0_f64, square in any::<bool>(),
+    ) {
+        let other = if square { pitch } else { 1.25 * pitch };
+        let reduced = "[algorithm]\nplan = \"reduced\"";
+        check(&plan(&design_text("thin", [4, 4], [pitch, other], pitch * 10_f64.powf(ratio), reduced)));
+    }
+}
+
+#[test]
+fn the_folded_stress_is_the_mean_of_four() {
+    let plan = plan(&design_text("pad", [4, 3], [4.0, 2.0], 3.0, "[algorithm]\nplan = \"reduced\""));
+    let folded = plan.formats.folded.unwrap();
+    assert_eq!(folded.stress.bound, plan.formats.stress.bound, "four at full scale, at four times the step");
+    assert_eq!(folded.stress.lsb, plan.formats.stress.lsb + 2);
+    // Weights give up as few bits as four of them need.
+    let shift = (folded.weight.lsb - plan.formats.weight.lsb) as u32;
+    assert!(shift <= 2 && round_shift(4 * plan.formats.weight.bound, shift) <= folded.weight.bound);
+    assert!(shift == 0 || round_shift(4 * plan.formats.weight.bound, shift - 1) > largest(27));
+}

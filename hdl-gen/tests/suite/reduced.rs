@@ -1,0 +1,309 @@
+//! The reduced plan: that its products are those of the matrices they stand for, and that its model agrees with the f64
+//! solver and with the paper's plan.
+
+use std::f64::consts::TAU;
+
+use golden::design::{Design, PlanKind};
+use golden::parity::{CLASSES, FoldedMatrix, Quads, sign};
+use hdl_gen::model::{AT_BOUND, Model, SUMMARY_WORDS};
+use hdl_gen::plan::Plan;
+use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, Vector, mirror};
+use hdl_gen::plan::quantise::{Entry, QuantisedMatrix};
+use hdl_gen::plan::schedule::Schedule;
+use nalgebra::DMatrix;
+use proptest::prelude::*;
+
+use crate::lanes::execute;
+use crate::model::{Contact, answer, any_contact, frame, full_width, line_ratio, prepare_as, reference, top};
+use crate::support::{any_reduced_design, design_text, plan};
+
+/// Largest difference of two plans' forces, of the largest normal force of the frame.
+const BETWEEN_PLANS: f64 = 2e-3;
+
+fn swapped(class: usize) -> usize {
+    [0, 2, 1, 3][class]
+}
+
+fn signed(class: usize, member: usize, value: i64) -> i64 {
+    if sign(class, member) < 0.0 { -value } else { value }
+}
+
+/// A matrix of whole numbers with the mirror symmetry `parity`, from numbers for its rows at member 0 of each quad.
+fn symmetric(quads: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64> {
+    let m = quads.taxels();
+    let mut dense = DMatrix::zeros(m, m);
+    for quad in 0..quads.count() {
+        let rows = quads.members(quad);
+        for column in 0..quads.count() {
+            let columns = quads.members(column);
+            for s in 0..4 {
+                // All that must be the same or the opposite by symmetry adds up: so it is, also on the centre lines.
+                let value = f64::from(numbers[(quad * m + columns[s]) % numbers.len()]);
+                for t in 0..4 {
+                    dense[(rows[t], columns[s ^ t])] += sign(parity, t) * value;
+                }
+            }
+        }
+    }
+    dense
+}
+
+/// A product of the lanes with four times the matrix: on centre lines its blocks have quarters.
+fn stored(quads: &Quads, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix {
+    let folded = FoldedMatrix::new(&(dense * 4.0), parity, quads);
+    let entry = |row: usize, column: usize| -> Entry {
+        let ways = folded.blocks.each_ref().map(|block| block[(row, column)]);
+        assert!(ways.iter().all(|value| value.fract() == 0.0));
+        (column as u32, ways.map(|value| value as i32))
+    };
+    let n = quads.count();
+    let rows = (0..n).map(|row| (0..n).map(|column| entry(row, column)).collect()).collect();
+    QuantisedMatrix::from_rows("M", rows, 0)
+}
+
+/// What the lanes make of a vector of one value a taxel: folded, through the schedule, unfolded. Sixteen times the
+/// product with the matrix.
+fn through_the_lanes(quads: &Quads, product: &Product, matrix: QuantisedMatrix, lanes: usize, x: &[i64]) -> Vec<i64> {
+    let n = quads.count();
+    let folded = |class: usize, quad: usize| -> i64 {
+        let members = quads.members(quad);
+        (0..4).map(|s| signed(class, s, x[members[s]])).sum()
+    };
+    let schedule = Schedule::new(std::slice::from_ref(product), &[matrix], lanes);
+    let sums = execute(&schedule, std::slice::from_ref(product), n, &|product, _, quad| {
+        std::array::from_fn(|way| match product.mirrored {
+            None => folded(way, quad),
+            Some(side) => folded(swapped(way), mirror(quad, side)),
+        })
+    });
+    let mut result = vec![0; quads.taxels()];
+    for quad in 0..n {
+        let row = sums[&(0, quad as u32)];
+        let classes = product.ways().map(|way| row[way]);
+        for (s, taxel) in quads.members(quad).into_iter().enumerate() {
+            result[taxel] = (0..CLASSES).map(|class| signed(class, s, classes[class])).sum();
+        }
+    }
+    result
+}
+
+fn product(parity: usize, mirrored: Option<usize>) -> Product {
+    Product {
+        matrix: 0,
+        lead: None,
+        operands: vec![Vector::Weight],
+        block: Block::Co,
+        program: 0,
+        coefficients: Coefficients::Rom,
+        parity,
+        mirrored,
+        skips: false,
+        epilogue: Epilogue::Unfold,
+        result: Vector::U(0),
+        shift: 0,
+    }
+}
+
+/// Sixteen times the product, in whole numbers.
+fn exactly(dense: &DMatrix<f64>, x: &[i64]) -> Vec<i64> {
+    dense.row_iter().map(|row| row.iter().zip(x).map(|(&value, &x)| 16 * value as i64 * x).sum()).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Fold, blocks, unfold: the product with the whole matrix, to the last digit, of any mirror symmetry.
+    #[test]
+    fn folded_products_are_the_products(
+        columns in 1_usize..8, rows in 1_usize..8, parity in 0_usize..4, lanes in 1_usize..=16,
+        numbers in proptest::collection::vec(-2_000..2_000_i32, 256),
+        x in proptest::collection::vec(-1_000_000..1_000_000_i64, 49),
+    ) {
+        let quads = Quads::new(columns, rows);
+        let dense = symmetric(&quads, parity, &numbers);
+        let x = &x[..quads.taxels()];
+        let matrix = stored(&quads, parity, &dense);
+        let found = through_the_lanes(&quads, &product(parity, None), matrix, lanes, x);
+        prop_assert_eq!(found, exactly(&dense, x));
+    }
+
+    /// On a square grid the diagonal mirror of what is odd in x is what is odd in y: one matrix serves both.
+    #[test]
+    fn mirrored_products_are_those_of_the_mirrored_matrix(
+        side in 1_usize..8, lanes in 1_usize..=16,
+        numbers in proptest::collection::vec(-2_000..2_000_i32, 256),
+        x in proptest::collection::vec(-1_000_000..1_000_000_i64, 49),
+    ) {
+        let quads = Quads::new(side, side);
+        let dense = symmetric(&quads, 1, &numbers);
+        let other = |taxel: usize| mirror(taxel, side);
+        let mirrored = DMatrix::from_fn(side * side, side * side, |row, column| dense[(other(row), other(column))]);
+        let x = &x[..quads.taxels()];
+        let along_y = through_the_lanes(
+            &quads, &product(1, Some(quads.columns())), stored(&quads, 1, &dense), lanes, x,
+        );
+        prop_assert_eq!(&along_y, &exactly(&mirrored, x));
+        let not_mirrored = through_the_lanes(&quads, &product(2, None), stored(&quads, 2, &mirrored), lanes, x);
+        prop_assert_eq!(along_y, not_mirrored);
+    }
+
+    #[test]
+    fn friction_and_status_agree_with_the_solver(
+        text in any_reduced_design(), contacts in proptest::collection::vec(any_contact(), 4),
+    ) {
+        let (design, solver, plan) = prepare_as(&full_width(&text), PlanKind::Reduced);
+        // The same line in every plan, but for the filter.
+        let (_, unfiltered, _) = prepare_as(&unfiltered(&text), PlanKind::Paper);
+        for contact in contacts {
+            let frame = frame(&contact, &design, &solver);
+            let near = |value: f64, limit: f64| (value / limit - 1.0).abs() < 0.02;
+            let floor = design.algorithm.noise_floor_pa;
+            if frame.iter().any(|&stress| near(f64::from(stress.abs()), floor))
+                || (3.0..5.0).contains(&line_ratio(&frame, &design, &unfiltered))
+            {
+                continue; // either answer is right
+            }
+            let found = answer(&plan, &frame);
+            let expected = reference(&solver, &frame);
+            prop_assert_eq!(found.status & !AT_BOUND, expected.status.0 & !AT_BOUND);
+            let error = (found.summary[5] - expected.mu_x).abs().max((found.summary[6] - expected.mu_y).abs());
+            prop_assert!(error <= 0.02, "friction off by {error}");
+            let scale = expected.resultant[2].abs();
+            for p in 0..3 {
+                let error = (found.summary[p] - expected.resultant[p]).abs();
+                prop_assert!(error <= 0.03 * scale, "F[{p}] off by {error} N of {scale} N");
+                let scale = top(&expected.field[2]);
+                prop_assert_eq!(found.field[p].len(), expected.field[p].len());
+                let error = found.field[p].iter().zip(&expected.field[p]).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
+                prop_assert!(error <= 0.03 * scale, "component {p} off by {error} N of {scale} N");
+            }
+        }
+    }
+}
+
+/// The design by the paper's plan without a filter, full widths and a field.
+fn unfiltered(text: &str) -> String {
+    let dropped = ["filter", "outputs", "optimise", "plan"];
+    let kept = text.lines().filter(|line| !dropped.iter().any(|key| line.starts_with(key)));
+    full_width(&kept.map(|line| line.to_owned() + "\n").collect::<String>())
+}
+
+/// Both sensors of the paper, and one with odd sides: the reduced plan is the paper's mathematics, so that both models
+/// and the solver agree in every direction of a push.
+#[test]
+fn the_plans_agree() {
+    for (size, pitch) in [([10, 10], [4.0, 2.0]), ([10, 10], [4.0, 4.0]), ([9, 7], [3.0, 4.0])] {
+        let text = design_text("sensor", size, pitch, 3.0, "");
+        let (design, solver, paper) = prepare_as(&text, PlanKind::Paper);
+        let (_, reduced_solver, reduced) = prepare_as(&text, PlanKind::Reduced);
+        for step in 0..36 {
+            let direction = f64::from(step * 10).to_radians();
+            let contact = Contact { centre: [0.48, 0.5], radius: 0.3, friction: 0.5, direction, strength: 0.3 };
+            let frame = frame(&contact, &design, &solver);
+            let expected = reference(&solver, &frame);
+            let in_f64 = reference(&reduced_solver, &frame);
+            let (first, second) = (answer(&paper, &frame), answer(&reduced, &frame));
+            assert_eq!((first.status, second.status), (expected.status.0, expected.status.0), "{size:?} at {step}0");
+            let scale = top(&expected.field[2]);
+            for p in 0..3 {
+                for (taxel, &expected) in expected.field[p].iter().enumerate() {
+                    let worst = (first.field[p][taxel] - second.field[p][taxel])
+                        .abs()
+                        .max((second.field[p][taxel] - expected).abs())
+                        .max((in_f64.field[p][taxel] - expected).abs());
+                    assert!(worst <= BETWEEN_PLANS * scale, "{size:?} {pitch:?} at {step}0 degrees: {worst}");
+                }
+                let error = (second.summary[p] - expected.resultant[p]).abs();
+                assert!(error <= BETWEEN_PLANS * expected.resultant[2].abs(), "F[{p}] off by {error} N");
+            }
+            assert!((second.summary[3] - expected.mu).abs() <= 2e-3);
+            let turn = (second.summary[4] - expected.phi).abs();
+            assert!(turn.min(TAU - turn) <= 4e-3, "phi off by {turn}");
+        }
+    }
+}
+
+fn words(plan: &Plan, frame: &[f32]) -> Vec<u32> {
+    Model::new(plan).process(&frame.iter().map(|stress| stress.to_bits()).collect::<Vec<_>>())
+}
+
+/// Without a field the eight words are the same, bit for bit.
+#[test]
+fn resultants_alone_are_those_of_the_field() {
+    for (size, pitch) in [([10, 10], [4.0, 2.0]), ([5, 5], [3.0, 3.0]), ([2, 7], [3.0, 2.0])] {
+        let of = |outputs: &str| {
+            let more = format!("[algorithm]\nplan = \"reduced\"\noutputs = \"{outputs}\"");
+            prepare_as(&design_text("pad", size, pitch, 2.0, &more), PlanKind::Reduced)
+        };
+        let ((design, solver, field), (_, _, alone)) = (of("field"), of("resultants"));
+        for step in 0..24 {
+            let direction = f64::from(step * 15).to_radians();
+            let contact = Contact { centre: [0.45, 0.55], radius: 0.4, friction: 0.4, direction, strength: 0.5 };
+            let frame = frame(&contact, &design, &solver);
+            assert_eq!(words(&alone, &frame), words(&field, &frame)[..SUMMARY_WORDS], "{size:?} at {direction}");
+        }
+    }
+}
+
+/// A pitch that differs in its last digit has all ten matrices, where a square one makes three from mirror images.
+#[test]
+fn mirrored_matrices_change_nothing() {
+    for side in [2, 3, 6, 7] {
+        let design = |y: f64| {
+            let text = design_text("pad", [side, side], [3.0, y], 2.0, "[algorithm]\nplan = \"reduced\"");
+            Design::from_toml(&text, "pad.toml").unwrap()
+        };
+        let square = Plan::new(&design(3.0)).unwrap();
+        let nearly = Plan::new(&design(3.0_f64.next_up())).unwrap();
+        let mirrored = |plan: &Plan| plan.products.iter().filter(|product| product.mirrored.is_some()).count();
+        assert_eq!((mirrored(&square), mirrored(&nearly)), (3, 0));
+        assert_eq!((square.matrices.len() + 3, square.formats), (nearly.matrices.len(), nearly.formats));
+        for step in 0..24 {
+            let stress = |taxel: usize| -4e4 * (1.0 + (0.7 * (taxel * (step + 1)) as f32).sin() * 1.2);
+            let frame: Vec<f32> = (0..side * side).map(stress).collect();
+            let (one, other) = (words(&square, &frame), words(&nearly, &frame));
+            let values = |words: &[u32]| words[1..].iter().map(|&word| f32::from_bits(word)).collect::<Vec<f32>>();
+            let (ones, others) = (values(&one), values(&other));
+            assert_eq!(one[0], other[0]);
+            let scale = ones.iter().fold(0.0_f32, |top, value| top.max(value.abs()));
+            for (one, other) in ones.iter().zip(&others) {
+                assert!((one - other).abs() <= 1e-5 * scale, "{side} x {side}: {one} {other}");
+            }
+        }
+    }
+}
+
+/// Push a square sensor along the other axis: the mirrored frame has the mirrored answer.
+#[test]
+fn a_mirrored_frame_has_the_mirrored_answer() {
+    let plan = plan(&design_text("pad", [6, 6], [3.0, 3.0], 2.0, "[algorithm]\nplan = \"reduced\""));
+    let (design, solver, _) = prepare_as(&design_text("pad", [6, 6], [3.0, 3.0], 2.0, ""), PlanKind::Paper);
+    let mut judged = 0;
+    for step in 0..24 {
+        let direction = f64::from(step).mul_add(15.0, 7.0).to_radians();
+        let contact = Contact { centre: [0.4, 0.5], radius: 0.4, friction: 0.4, direction, strength: 0.5 };
+        let stress = frame(&contact, &design, &solver);
+        let turned: Vec<f32> = (0..36).map(|taxel| stress[mirror(taxel, 6)]).collect();
+        let (one, other) = (answer(&plan, &stress), answer(&plan, &turned));
+        assert_eq!(one.status, other.status);
+        let scale = top(&one.field[2]);
+        for (p, of_mirror) in [1, 0, 2].into_iter().enumerate() {
+            for taxel in 0..36 {
+                let error = (one.field[p][taxel] - other.field[of_mirror][mirror(taxel, 6)]).abs();
+                assert!(error <= 1e-3 * scale, "at {direction}: off by {error} N of {scale} N");
+            }
+        }
+        judged += 1;
+    }
+    assert_eq!(judged, 24);
+}
+
+/// Where a filter cuts what a mirror image would need, nothing is mirrored.
+#[test]
+fn filtered_matrices_are_not_mirrored() {
+    for (filter, mirrored) in [("{ kind = \"none\" }", 3), ("{ kind = \"f1\", l = 9 }", 0)] {
+        let more = format!("[algorithm]\nplan = \"reduced\"\nfilter = {filter}");
+        let plan = plan(&design_text("pad", [4, 4], [3.0, 3.0], 2.0, &more));
+        assert_eq!(plan.products.iter().filter(|product| product.mirrored.is_some()).count(), mirrored);
+    }
+}

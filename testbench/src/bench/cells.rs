@@ -1,0 +1,227 @@
+//! Yosys' cell counts of a generated design, by block, beside the generator's prediction.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::{BenchError, read_json};
+
+/// Name of what is in no predicted block: stream buffers, turns, registers between the blocks.
+const REST: &str = "rest";
+
+/// Cells of a block or of a design.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Count {
+    /// DSP48E2.
+    pub dsp: u64,
+    /// RAMB36; a RAMB18 counts one half.
+    pub bram36: f64,
+    /// LUTs, those used as RAM and as shift register too.
+    pub lut: u64,
+    /// Flip-flops.
+    pub ff: u64,
+}
+
+/// A prediction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Expected {
+    /// DSP48E2.
+    pub dsp: u64,
+    /// RAMB36; a RAMB18 counts one half.
+    pub bram36: f64,
+}
+
+/// One block.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Block {
+    /// As `metadata.json` calls it.
+    pub name: String,
+    /// Found by Yosys.
+    pub yosys: Count,
+    /// Predicted.
+    pub predicted: Expected,
+}
+
+/// One design.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Cells {
+    /// The design file.
+    pub file: String,
+    /// The design's name.
+    pub design: String,
+    /// Block by block.
+    pub blocks: Vec<Block>,
+    /// All together.
+    pub total: Block,
+}
+
+/// Reads what [`count`] found before.
+///
+/// # Errors
+/// [`BenchError::Read`] and [`BenchError::Json`].
+pub fn read(path: &Path) -> Result<Cells, BenchError> {
+    read_json(path)
+}
+
+#[derive(Deserialize)]
+struct Metadata {
+    top: String,
+    predicted: MetadataPrediction,
+}
+
+#[derive(Deserialize)]
+struct MetadataPrediction {
+    dsp: u64,
+    bram36: f64,
+    blocks: Vec<MetadataBlock>,
+}
+
+#[derive(Deserialize)]
+struct MetadataBlock {
+    name: String,
+    modules: Vec<String>,
+    dsp: u64,
+    bram36: f64,
+}
+
+#[derive(Deserialize)]
+struct Statistics {
+    modules: BTreeMap<String, Module>,
+}
+
+#[derive(Deserialize)]
+struct Module {
+    num_cells_by_type: BTreeMap<String, u64>,
+}
+
+/// Sums, for the design of `file`, Yosys' `stat -json` of a synthesis that was not flattened by the blocks of its `metadata.json`.
+///
+/// # Errors
+/// [`BenchError::Read`] and [`BenchError::Json`]; [`BenchError::NoModule`] if the files are of different designs.
+pub fn count(file: &Path, metadata: &Path, statistics: &Path) -> Result<Cells, BenchError> {
+    let Metadata { top, predicted } = read_json(metadata)?;
+    let path = statistics;
+    let statistics: Statistics = read_json(path)?;
+    let mut blocks: Vec<Block> = predicted
+        .blocks
+        .iter()
+        .map(|block| Block {
+            name: block.name.clone(),
+            yosys: Count::default(),
+            predicted: Expected { dsp: block.dsp, bram36: block.bram36 },
+        })
+        .collect();
+    blocks.push(Block { name: REST.to_owned(), yosys: Count::default(), predicted: Expected::default() });
+    let rest = blocks.len() - 1;
+    let place = |module: &str| {
+        let suffix = module.strip_prefix(top.as_str())?.strip_prefix('_')?;
+        predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == suffix))
+    };
+    // A module with the block of the one that instantiates it, and how often it is there.
+    let mut waiting = vec![(top.clone(), rest, 1)];
+    while let Some((key, parent, times)) = waiting.pop() {
+        let Some(module) = statistics.module(&key) else {
+            return Err(BenchError::NoModule { path: path.to_owned(), module: key });
+        };
+        let block = place(base_name(&key)).unwrap_or(parent);
+        for (kind, &number) in &module.num_cells_by_type {
+            if statistics.module(kind).is_some() {
+                waiting.push((kind.clone(), block, times * number));
+            } else {
+                blocks[block].yosys.add(kind, times * number);
+            }
+        }
+    }
+    let mut total = Count::default();
+    for Block { yosys, .. } in &blocks {
+        total.dsp += yosys.dsp;
+        total.bram36 += yosys.bram36;
+        total.lut += yosys.lut;
+        total.ff += yosys.ff;
+    }
+    let predicted = Expected { dsp: predicted.dsp, bram36: predicted.bram36 };
+    let file = file.display().to_string();
+    Ok(Cells { file, design: top, blocks, total: Block { name: "all".to_owned(), yosys: total, predicted } })
+}
+
+impl Statistics {
+    /// A module by the name that a cell has as its type, or by its own.
+    fn module(&self, name: &str) -> Option<&Module> {
+        self.modules.get(name).or_else(|| self.modules.get(&format!("\\{name}")))
+    }
+}
+
+/// The module's name in the Verilog, without the parameters that Yosys adds: `$paramod$…\NAME`, `$paramod\NAME\P=…`.
+fn base_name(name: &str) -> &str {
+    name.split('\\').nth(1).unwrap_or(name)
+}
+
+impl Count {
+    fn add(&mut self, kind: &str, number: u64) {
+        match kind {
+            "DSP48E2" => self.dsp += number,
+            "RAMB36E2" => self.bram36 += number as f64,
+            "RAMB18E2" => self.bram36 += number as f64 / 2.0,
+            "RAM32M16" | "RAM64M8" | "RAM32X16DR8" | "RAM64X8SW" | "RAM512X1S" => self.lut += 8 * number,
+            "RAM256X1S" | "RAM256X1D" => self.lut += 4 * number,
+            _ if kind.starts_with("LUT") || kind.starts_with("SRL") || kind.starts_with("RAM") => self.lut += number,
+            _ if kind.starts_with("FD") => self.ff += number,
+            // Carry chains, wide multiplexers and inverters, which take no LUT of their own.
+            _ => {}
+        }
+    }
+}
+
+/// A table for people.
+pub fn render(cells: &Cells) -> String {
+    let mut text = format!(
+        "{:<18}{:>6}{:>11}{:>8}{:>11}{:>8}{:>8}\n",
+        cells.design, "DSP", "predicted", "RAMB36", "predicted", "LUT", "FF"
+    );
+    for Block { name, yosys, predicted } in cells.blocks.iter().chain([&cells.total]) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "  {name:<16}{:>6}{:>11}{:>8}{:>11}{:>8}{:>8}",
+            yosys.dsp, predicted.dsp, yosys.bram36, predicted.bram36, yosys.lut, yosys.ff
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const METADATA: &str = r#"{ "top": "t", "predicted": { "dsp": 3, "bram36": 1.0, "blocks": [
+        { "name": "lanes", "modules": ["spmv_array"], "dsp": 2, "bram36": 1.0 },
+        { "name": "field", "modules": ["field"], "dsp": 1, "bram36": 0.0 } ] } }"#;
+    const STATISTICS: &str = r#"{ "modules": {
+        "\\t": { "num_cells_by_type": { "LUT2": 3, "$paramod$1\\t_spmv_array": 1, "t_field": 1 } },
+        "$paramod$1\\t_spmv_array": { "num_cells_by_type": { "sptfra_mac": 2, "RAMB18E2": 3, "$paramod\\ram\\W=s'1": 1 } },
+        "$paramod\\ram\\W=s'1": { "num_cells_by_type": { "RAM64M8": 2 } },
+        "\\t_field": { "num_cells_by_type": { "sptfra_mac": 1 } },
+        "\\sptfra_mac": { "num_cells_by_type": { "DSP48E2": 1, "FDRE": 5, "CARRY4": 2 } } } }"#;
+
+    #[test]
+    fn cells_go_to_the_block_that_holds_them() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [metadata, statistics] = ["m.json", "s.json"].map(|name| folder.path().join(name));
+        std::fs::write(&metadata, METADATA).expect("written");
+        std::fs::write(&statistics, STATISTICS).expect("written");
+        let cells = count(Path::new("t.toml"), &metadata, &statistics).expect("counted");
+        let lanes = Count { dsp: 2, bram36: 1.5, lut: 16, ff: 10 };
+        let found: Vec<(&str, Count)> = cells.blocks.iter().map(|block| (block.name.as_str(), block.yosys)).collect();
+        assert_eq!(found[0], ("lanes", lanes));
+        assert_eq!(found[1], ("field", Count { dsp: 1, bram36: 0.0, lut: 0, ff: 5 }));
+        assert_eq!(found[2], (REST, Count { lut: 3, ..Count::default() }));
+        assert_eq!(cells.total.yosys, Count { dsp: 3, bram36: 1.5, lut: 19, ff: 15 });
+        assert!(render(&cells).contains("lanes"));
+        std::fs::write(&statistics, STATISTICS.replace("\\\\t\"", "\\\\u\"")).expect("written");
+        assert!(
+            count(Path::new("t.toml"), &metadata, &statistics).expect_err("another design").to_string().contains("`t`")
+        );
+    }
+}

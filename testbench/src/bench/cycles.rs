@@ -1,0 +1,145 @@
+//! Cycles of a frame against lanes and taxels: predicted for all, simulated for some.
+
+use golden::design::{Design, DesignError};
+use hdl_gen::plan::Plan;
+use hdl_gen::plan::timing::INTERVAL_FRAMES;
+use serde::Serialize;
+
+use super::BenchError;
+use crate::frame_set::FrameSet;
+use crate::progress::Progress;
+use crate::run::{rtl_sources, timeout};
+use crate::stream::{Pacing, Traffic, exchange};
+use crate::verilate::Verilate;
+use crate::words::encode;
+
+/// Sides of the square sensors.
+pub const SIDES: [usize; 8] = [4, 6, 8, 10, 12, 16, 24, 32];
+/// Numbers of lanes.
+pub const LANES: [usize; 5] = [4, 8, 16, 32, 64];
+/// What is simulated too: kind, side, lanes.
+const SIMULATED: [(Kind, usize, usize); 8] = [
+    (Kind::Reduced, 4, 16),
+    (Kind::Reduced, 10, 4),
+    (Kind::Reduced, 10, 16),
+    (Kind::Reduced, 10, 64),
+    (Kind::Reduced, 16, 16),
+    (Kind::Filtered, 10, 16),
+    (Kind::Filtered, 16, 16),
+    (Kind::Paper, 10, 16),
+];
+/// Frames sent one at a time.
+const LATENCY_FRAMES: usize = 2;
+const SEED: u32 = 1;
+
+/// What a design of the series computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// The reduced plan, no filter.
+    Reduced,
+    /// The reduced plan with F2, p = 1.
+    Filtered,
+    /// The paper's plan, no filter.
+    Paper,
+}
+
+impl Kind {
+    /// In the order of the page.
+    pub const ALL: [Self; 3] = [Self::Reduced, Self::Filtered, Self::Paper];
+
+    /// For people.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Reduced => "reduced plan, no filter",
+            Self::Filtered => "reduced plan, F2 with p = 1",
+            Self::Paper => "the paper's plan, no filter",
+        }
+    }
+
+    /// Keys of the design file.
+    fn keys(self) -> &'static str {
+        match self {
+            Self::Reduced => "plan = \"reduced\"",
+            Self::Filtered => "plan = \"reduced\"\nfilter = { kind = \"f2\", p = 1.0 }",
+            Self::Paper => "plan = \"paper\"",
+        }
+    }
+}
+
+/// Latency and interval in clock cycles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Cycles {
+    /// First beat in to last beat out of a frame alone, both counted.
+    pub latency: u64,
+    /// Between the last beats of consecutive frames.
+    pub interval: u64,
+}
+
+/// One design of the series.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// What it computes.
+    pub kind: Kind,
+    /// Columns and rows.
+    pub side: usize,
+    /// Lanes.
+    pub lanes: usize,
+    /// Multiply-accumulates of a frame, over all lanes.
+    pub macs: u64,
+    /// By the plan.
+    pub predicted: Cycles,
+    /// By simulation, where it was done.
+    pub simulated: Option<Cycles>,
+}
+
+/// A square sensor with the pitch and depth of the paper's sensor 1.
+///
+/// # Errors
+/// [`DesignError`] if side or lanes are out of range.
+pub fn square(kind: Kind, side: usize, lanes: usize) -> Result<Design, DesignError> {
+    let keys = kind.keys();
+    let text = format!(
+        "name = \"square_{side}\"\n[sensor]\ncolumns = {side}\nrows = {side}\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+         [algorithm]\n{keys}\n[hardware]\nlanes = {lanes}\n"
+    );
+    Design::from_toml(&text, "series of square sensors")
+}
+
+/// The whole series up to the `largest` side.
+pub(super) fn measure(largest: usize, progress: &Progress) -> Result<Vec<Point>, BenchError> {
+    let mut points = Vec::new();
+    for kind in Kind::ALL {
+        for side in SIDES.into_iter().filter(|&side| side <= largest) {
+            for lanes in LANES {
+                progress.stage(format!("planning {side} × {side}, {lanes} lanes, {}", kind.title()));
+                let plan = Plan::new(&square(kind, side, lanes)?)?;
+                let simulated = if SIMULATED.contains(&(kind, side, lanes)) {
+                    progress.stage(format!("simulating {side} × {side}, {lanes} lanes, {}", kind.title()));
+                    Some(simulate(&plan)?)
+                } else {
+                    None
+                };
+                let timeline = &plan.timeline;
+                let predicted = Cycles { latency: timeline.latency_cycles, interval: timeline.interval_cycles };
+                let macs = plan.schedule.windows.iter().map(|window| window.macs * plan.ways() as u64).sum();
+                points.push(Point { kind, side, lanes, macs, predicted, simulated });
+            }
+        }
+    }
+    Ok(points)
+}
+
+fn simulate(plan: &Plan) -> Result<Cycles, BenchError> {
+    let stress = FrameSet::standing(&plan.design.sensor)?.stress;
+    let packets: Vec<Vec<u32>> = stress.iter().map(|frame| encode(frame)).collect();
+    let mut core = Verilate::default().build(&rtl_sources(plan)?)?.load(SEED)?;
+    let mut run = |count, pacing| {
+        let packets: Vec<Vec<u32>> = packets.iter().cycle().take(count).cloned().collect();
+        exchange(&mut core, &Traffic::new(&packets, timeout(plan)).with_pacing(pacing), |_| {})
+    };
+    // Both are there: more than one frame was answered, or `run` had failed.
+    let latency = run(LATENCY_FRAMES, Pacing::OneAtATime)?.latency().unwrap_or_default();
+    let interval = run(INTERVAL_FRAMES, Pacing::BackToBack)?.interval().unwrap_or_default();
+    Ok(Cycles { latency, interval })
+}

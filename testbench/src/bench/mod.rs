@@ -1,0 +1,149 @@
+//! What `testbench bench` measures, and the page and plot it becomes.
+
+pub mod cells;
+pub mod cycles;
+pub mod generation;
+pub mod machine;
+pub mod page;
+pub mod plot;
+pub mod rate;
+pub mod solver;
+
+use std::path::PathBuf;
+
+use golden::design::{Design, DesignError};
+use golden::scene::SceneError;
+use hdl_gen::emit::EmitError;
+use hdl_gen::plan::PlanError;
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::dut::DutError;
+use crate::progress::Progress;
+use crate::stream::StreamError;
+use crate::verilate::BuildError;
+
+use cells::Cells;
+use cycles::Point;
+use generation::Generation;
+use machine::Machine;
+use rate::Rate;
+use solver::SolverRate;
+
+/// Why there are no figures.
+#[derive(Debug, Error)]
+pub enum BenchError {
+    /// A design is wrong.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// A design cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A plan cannot be printed.
+    #[error(transparent)]
+    Emit(#[from] EmitError),
+    /// The frames cannot be computed.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The simulation cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The simulation cannot be loaded.
+    #[error(transparent)]
+    Dut(#[from] DutError),
+    /// The simulation failed.
+    #[error(transparent)]
+    Stream(#[from] StreamError),
+    /// A file of figures cannot be read.
+    #[error("{}: cannot read the file: {source}; write it first, see --help", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: std::io::Error,
+    },
+    /// A file of figures is of another kind.
+    #[error("{}: {source}; write it anew with the command that --help names", path.display())]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: serde_json::Error,
+    },
+    /// Yosys' statistics do not hold the design's top module.
+    #[error("{}: no module `{module}`; are these statistics of this design, without -flatten?", path.display())]
+    NoModule {
+        /// The statistics.
+        path: PathBuf,
+        /// What is looked for.
+        module: String,
+    },
+}
+
+/// What to measure.
+#[derive(Clone, Debug)]
+pub struct Scope {
+    /// Designs generated and simulated, with the path that the page calls them by.
+    pub designs: Vec<(String, Design)>,
+    /// Largest side of the square sensors that are planned.
+    pub largest: usize,
+    /// Output of `golden bench --json`, if there is one.
+    pub solver: Option<PathBuf>,
+    /// Outputs of `testbench cells --json`.
+    pub cells: Vec<PathBuf>,
+}
+
+/// Everything measured, read and predicted.
+#[derive(Clone, Debug, Serialize)]
+pub struct Figures {
+    /// Where it was measured.
+    pub machine: Machine,
+    /// The f64 solver.
+    pub solver: Vec<SolverRate>,
+    /// Time to generate hardware.
+    pub generation: Vec<Generation>,
+    /// Speed of the simulation.
+    pub simulation: Vec<Rate>,
+    /// Latency and interval against lanes and taxels.
+    pub cycles: Vec<Point>,
+    /// Yosys' cell counts by block.
+    pub cells: Vec<Cells>,
+}
+
+/// Measures what `scope` asks for. Takes minutes for the shipped designs.
+///
+/// # Errors
+/// The first [`BenchError`].
+pub fn measure(scope: &Scope, progress: &Progress) -> Result<Figures, BenchError> {
+    let solver = scope.solver.as_deref().map(solver::read).transpose()?.unwrap_or_default();
+    let cells = scope.cells.iter().map(|path| cells::read(path)).collect::<Result<Vec<_>, _>>()?;
+    Ok(Figures {
+        machine: Machine::this(),
+        solver,
+        generation: generation::measure(scope, progress)?,
+        simulation: rate::measure(scope, progress)?,
+        cycles: cycles::measure(scope.largest, progress)?,
+        cells,
+    })
+}
+
+/// The middle of the values; of an even number the upper one. Zero if there are none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
+}
+
+fn read_json<T: serde::de::DeserializeOwned>(path: &std::path::Path) -> Result<T, BenchError> {
+    let bytes = std::fs::read(path).map_err(|source| BenchError::Read { path: path.to_owned(), source })?;
+    serde_json::from_slice(&bytes).map_err(|source| BenchError::Json { path: path.to_owned(), source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::median;
+
+    #[test]
+    fn the_median_is_in_the_middle() {
+        assert_eq!([median(vec![3.0, 9.0, 1.0]), median(vec![])].map(|value| value as i64), [3, 0]);
+    }
+}

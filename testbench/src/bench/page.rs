@@ -1,0 +1,249 @@
+//! The figures as a page of Markdown, with the command behind each.
+
+use std::fmt::Write;
+
+use super::cells::{Block, Cells};
+use super::cycles::{Cycles, Kind, LANES, Point};
+use super::generation::Generation;
+use super::rate::Rate;
+use super::solver::SolverRate;
+use super::{Figures, generation, rate};
+use crate::table::{decimals, grouped};
+
+/// Characters of a line of running text.
+const PAGE_WIDTH: usize = 120;
+
+/// The whole page. `command` is the `testbench bench` command that measured; `plot` is the picture's place, as seen
+/// from the page.
+pub fn render(figures: &Figures, command: &str, plot: Option<&str>) -> String {
+    let machine = &figures.machine;
+    let mut page = Page("# Benchmarks\n".to_owned());
+    page.line(&format!(
+        "Written by `make bench`; do not edit. Times and rates are of one run on {} {} cores, {} profile; each is the median of its \
+         repetitions, and other work on the machine makes it worse. Cycles and cells do not depend on the machine. The \
+         commands are in `target/release` after `cargo build --release`.",
+        machine.cores, machine.architecture, machine.profile
+    ));
+    solver(&mut page, &figures.solver);
+    generated(&mut page, &figures.generation, command);
+    simulated(&mut page, &figures.simulation, command);
+    cycles(&mut page, &figures.cycles, command, plot);
+    cells(&mut page, &figures.cells);
+    page.0
+}
+
+fn solver(page: &mut Page, rows: &[SolverRate]) {
+    let Some(first) = rows.first() else { return };
+    page.heading("Frames a second of the f64 solver");
+    page.line(&format!(
+        "On one core, for a user's PC: frame after frame, as a sensor delivers them, and in batches, as from a file. Median of {} \
+         repetitions; setting up (matrices, filter) happens once. The ratio is to the first line, frame after frame.",
+        first.repetitions
+    ));
+    page.table(
+        &["design", "plan", "taxels", "set up, s", "frame by frame, 1/s", "ratio", "in batches, 1/s", "ratio"],
+        rows.iter().map(|row| {
+            let ratio = |rate: f64| decimals(rate / first.one_by_one.frames_per_second, 2);
+            let [one, many] = [row.one_by_one.frames_per_second, row.in_batches.frames_per_second];
+            vec![
+                format!("`{}`", row.design),
+                row.plan.clone(),
+                grouped(row.taxels as u64),
+                decimals(row.setup_s, 2),
+                grouped(one.round() as u64),
+                ratio(one),
+                grouped(many.round() as u64),
+                ratio(many),
+            ]
+        }),
+    );
+    let files: Vec<&str> = rows.iter().map(|row| row.file.as_str()).collect();
+    page.command(&format!("golden bench {}", files.join(" ")));
+}
+
+fn generated(page: &mut Page, rows: &[Generation], command: &str) {
+    page.heading("Time to generate hardware");
+    page.line(&format!(
+        "From the checked design to its plan, and from the plan to all files, in memory. Median of {} repetitions. Square sensors \
+         have the pitch and depth of the paper's sensor 1.",
+        generation::REPETITIONS
+    ));
+    page.table(
+        &["design", "taxels", "plan, s", "files, s", "together, s", "files, MB"],
+        rows.iter().map(|row| {
+            vec![
+                row.design.clone(),
+                grouped(row.taxels as u64),
+                decimals(row.plan_s, 3),
+                decimals(row.emit_s, 3),
+                decimals(row.plan_s + row.emit_s, 3),
+                decimals(row.bytes as f64 / 1e6, 1),
+            ]
+        }),
+    );
+    page.command(command);
+}
+
+fn simulated(page: &mut Page, rows: &[Rate], command: &str) {
+    page.heading("Speed of the simulation");
+    page.line(&format!(
+        "Verilator's code with the streams' driver, free-running, on one core. Median of {} repetitions, slowest and fastest beside \
+         it. `testbench run` simulates its four stream modes on cores of their own.",
+        rate::REPETITIONS
+    ));
+    page.table(
+        &["design", "lanes", "cycles a second", "slowest", "fastest", "frames a second"],
+        rows.iter().map(|row| {
+            vec![
+                format!("`{}`", row.design),
+                row.lanes.to_string(),
+                grouped(row.cycles_per_second.round() as u64),
+                grouped(row.range[0].round() as u64),
+                grouped(row.range[1].round() as u64),
+                decimals(row.frames_per_second, 1),
+            ]
+        }),
+    );
+    page.command(command);
+}
+
+fn cycles(page: &mut Page, points: &[Point], command: &str, plot: Option<&str>) {
+    page.heading("Cycles of a frame");
+    let simulated: Vec<&Point> = points.iter().filter(|point| point.simulated.is_some()).collect();
+    let exact = simulated.iter().filter(|point| point.simulated == Some(point.predicted)).count();
+    page.line(&format!(
+        "Latency (first word in to last word out of a frame alone) and interval (between frames back to back) of square sensors \
+         with the pitch and depth of the paper's sensor 1, force field included. Predicted by the plan; those in **bold** were \
+         simulated too, and {exact} of {} gave exactly the predicted cycles. The tests demand that of every design they \
+         simulate, and no more than the predicted ones where zeros are passed over.",
+        simulated.len()
+    ));
+    if let Some(plot) = plot {
+        page.line(&format!("![Latency against the number of taxels]({plot})"));
+        page.line(
+            "Without a filter the work of a large sensor grows like m² / lanes; with F2 like the entries kept over the lanes. Small \
+             sensors take what the search, the input and the output take.",
+        );
+    }
+    for kind in Kind::ALL {
+        page.line(&format!("Latency / interval, {}:", kind.title()));
+        let mut header = vec!["taxels".to_owned(), "MACs a frame".to_owned()];
+        header.extend(LANES.map(|lanes| format!("{lanes} lanes")));
+        let header: Vec<&str> = header.iter().map(String::as_str).collect();
+        let of_kind: Vec<&Point> = points.iter().filter(|point| point.kind == kind).collect();
+        page.table(
+            &header,
+            of_kind.chunk_by(|one, other| one.side == other.side).map(|row| {
+                let first = row[0];
+                let mut cells = vec![format!("{0} × {0}", first.side), grouped(first.macs)];
+                cells.extend(row.iter().map(|point| cell(point)));
+                cells
+            }),
+        );
+    }
+    page.command(command);
+}
+
+/// The predicted cycles, bold if they were simulated, with what was simulated if that differs.
+fn cell(point: &Point) -> String {
+    let show = |cycles: Cycles| format!("{} / {}", grouped(cycles.latency), grouped(cycles.interval));
+    match point.simulated {
+        None => show(point.predicted),
+        Some(simulated) if simulated == point.predicted => format!("**{}**", show(simulated)),
+        Some(simulated) => format!("{}, simulated **{}**", show(point.predicted), show(simulated)),
+    }
+}
+
+fn cells(page: &mut Page, designs: &[Cells]) {
+    if designs.is_empty() {
+        return;
+    }
+    page.heading("Cells by Yosys");
+    page.line(
+        "`synth_xilinx -family xcup`, not flattened, beside the generator's prediction in `metadata.json`. No placement and no \
+         clock: Vivado has not been run. DSP48E2 and RAMB36 (a RAMB18 counts one half) are what the prediction is about. What \
+         to know about the rest:",
+    );
+    page.line(
+        "* **LUT and FF are too high.** For this family Yosys packs no register into a DSP48E2 or a block RAM, so that the \
+         pipeline registers around each multiplier, which the DSP has inside, stand in the fabric; and its 48-bit accumulator \
+         is an adder of LUTs.\n\
+         * **Small memories are LUTs**, where that is cheaper by Yosys' weights; the prediction uses the same weights. LUTs as RAM \
+         and as shift registers are in the LUT column. Vivado has weights of its own, so a memory near the limit may go the other \
+         way there, half a RAMB36 at a time.\n\
+         * **rest**: stream buffers, control, registers between the blocks, and blocks without multipliers and block RAM.",
+    );
+    for Cells { design, blocks, total, .. } in designs {
+        let differ = |block: &&Block| {
+            block.yosys.dsp != block.predicted.dsp || (block.yosys.bram36 - block.predicted.bram36).abs() > 1e-9
+        };
+        let verdict = match blocks.iter().filter(differ).map(|block| block.name.as_str()).collect::<Vec<_>>() {
+            names if names.is_empty() => "every block as predicted".to_owned(),
+            names => format!("not as predicted: {}", names.join(", ")),
+        };
+        page.line(&format!("`{design}`, {verdict}:"));
+        page.table(
+            &["block", "DSP", "predicted", "RAMB36", "predicted", "LUT", "FF"],
+            blocks.iter().chain([total]).map(|Block { name, yosys, predicted }| {
+                vec![
+                    name.clone(),
+                    grouped(yosys.dsp),
+                    grouped(predicted.dsp),
+                    decimals(yosys.bram36, 1),
+                    decimals(predicted.bram36, 1),
+                    grouped(yosys.lut),
+                    grouped(yosys.ff),
+                ]
+            }),
+        );
+    }
+    let commands: Vec<String> = designs.iter().map(|cells| format!("tools/synth.sh {}", cells.file)).collect();
+    page.command(&commands.join("\n"));
+}
+
+/// Text of a page. Writing to a String cannot fail.
+struct Page(String);
+
+impl Page {
+    fn heading(&mut self, title: &str) {
+        let _ = write!(self.0, "\n## {title}\n");
+    }
+
+    fn line(&mut self, text: &str) {
+        self.0.push('\n');
+        for line in text.lines() {
+            self.wrapped(line);
+        }
+    }
+
+    /// A paragraph or a point of a list, broken between words.
+    fn wrapped(&mut self, text: &str) {
+        let indent = if text.starts_with("* ") { "  " } else { "" };
+        let mut width = 0;
+        for word in text.split(' ') {
+            let length = word.chars().count();
+            if width > 0 && width + 1 + length > PAGE_WIDTH {
+                let _ = write!(self.0, "\n{indent}");
+                width = indent.len();
+            } else if width > 0 {
+                self.0.push(' ');
+                width += 1;
+            }
+            self.0.push_str(word);
+            width += length;
+        }
+        self.0.push('\n');
+    }
+
+    fn command(&mut self, command: &str) {
+        let _ = write!(self.0, "\n```sh\n{command}\n```\n");
+    }
+
+    /// The first column to the left, the others to the right.
+    fn table(&mut self, header: &[&str], rows: impl Iterator<Item = Vec<String>>) {
+        let _ = write!(self.0, "\n| {} |\n|---{}|\n", header.join(" | "), "|---:".repeat(header.len() - 1));
+        for row in rows {
+            let _ = writeln!(self.0, "| {} |", row.join(" | "));
+        }
+    }
+}
