@@ -9,7 +9,7 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 # `make run` and `make test` share one build. A release build would take minutes more to save under a second.
 BIN    := $(TARGET)/debug
 
-DESIGN ?= designs/sensor1-f1-l40.toml
+DESIGN ?= designs/sensor1-reduced.toml
 SCENE  ?= scenes/sensor1-hertz.toml
 FRAMES := $(TARGET)/run/$(basename $(notdir $(SCENE))).csv
 FORCES := $(FRAMES:.csv=.forces.csv)
@@ -29,6 +29,12 @@ run: tools build ## Design to Verilog to simulation: 36 frames through the RTL, 
 	@$(BIN)/golden scene $(SCENE) --out $(FRAMES)
 	@echo
 	@$(BIN)/testbench run $(DESIGN) --frames $(FRAMES) --reference $(FORCES)
+
+.PHONY: run-mat
+run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a lying person
+	@$(BIN)/hdl-gen generate designs/bed-mat.toml
+	@echo
+	@$(BIN)/testbench run designs/bed-mat.toml --frames data/bed_mat_64x27.csv --labels 2
 
 .PHONY: test
 test: tools lint ## Everything: formatting, lints, all tests of all crates
@@ -58,6 +64,27 @@ tools: ## Install Verilator, Yosys and Icarus Verilog where they are missing
 .PHONY: synth
 synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside the predicted ones (minutes)
 	@tools/synth.sh $(DESIGN)
+
+# Times are measured with a release build. Its page is docs/benchmarks.md.
+BENCH_BIN     := $(TARGET)/release
+BENCH_FOLDER  := $(TARGET)/bench
+BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml bed-mat.toml)
+BENCH_DESIGNS := designs/sensor1-reduced.toml designs/bed-mat.toml
+BENCH_CELLS   := sensor1-reduced sensor1-reduced-64 sensor1-resultants
+
+.PHONY: bench
+bench: tools ## Measure solver, generator, simulation, cycles and cells, and write docs/benchmarks.md (Yosys: a quarter of an hour)
+	@echo 'bench: a release build'
+	@$(CARGO) build --quiet --release --workspace --bins
+	@echo 'bench: Yosys, three designs'
+	@PROFILE=release tools/bench.sh $(BENCH_CELLS:%=designs/%.toml)
+	@mkdir -p $(BENCH_FOLDER)
+	@echo 'bench: the f64 solver (a minute)'
+	@$(BENCH_BIN)/golden bench --json $(BENCH_SOLVER) > $(BENCH_FOLDER)/solver.json
+	@echo 'bench: generator, simulation, cycles (some minutes)'
+	@$(BENCH_BIN)/testbench bench $(BENCH_DESIGNS) --solver $(BENCH_FOLDER)/solver.json \
+	    $(foreach design,$(BENCH_CELLS),--cells $(TARGET)/synth/$(subst -,_,$(design)).cells.json) \
+	    --page docs/benchmarks.md --plot docs/latency.svg
 
 .PHONY: timing
 timing: tools build ## Place and route for an ECP5-85, for a clock figure from an open flow (a quarter of an hour)
