@@ -253,11 +253,6 @@ proptest! {
         let [paper, reduced] = both(&design);
         let frame = &values[..columns * rows];
         let [one, other] = [&paper, &reduced].map(|solver| solver.solve(frame).unwrap());
-        // A line that is all but degenerate, or a minimum at the end, may be judged either way.
-        prop_assume!(one.status == other.status);
-        // Where the minimum is all but flat its place is less certain than its value; the forces must then agree for the
-        // same friction.
-        prop_assume!((one.mu_x - other.mu_x).abs() < 1e-9 && (one.mu_y - other.mu_y).abs() < 1e-9);
         assert_same(&one, &other);
     }
 }
