@@ -3,7 +3,8 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use hdl_gen::emit::{nnz, predicted};
+use golden::design::PlanKind;
+use hdl_gen::emit::{nnz, predicted, products};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::savings::savings;
 use serde_json::json;
@@ -35,6 +36,7 @@ fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
         "condition": plan.condition,
         "rom_bits": plan.resources.rom_bits,
         "predicted": predicted(plan),
+        "products": products(plan),
         "lanes": plan.design.hardware.lanes,
         "savings": savings(plan),
     });
@@ -47,6 +49,7 @@ fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
     sensor(&mut text, plan)?;
     matrices(&mut text, plan)?;
     reductions(&mut text, plan)?;
+    work(&mut text, plan)?;
     speed(&mut text, plan)?;
     resources(&mut text, plan)?;
     numbers(&mut text, plan)?;
@@ -84,7 +87,11 @@ fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
     // The filter as the design file writes it.
     let design = plan.design.to_toml();
     let filter = design.lines().find_map(|line| line.strip_prefix("filter = ")).unwrap_or("");
-    writeln!(out, "\nMatrices, filter = {filter}: {share:.1} % of {all} entries each")?;
+    let whose = match plan.design.algorithm.plan {
+        PlanKind::Paper => "Matrices",
+        PlanKind::Reduced => "Matrices of the paper's plan",
+    };
+    writeln!(out, "\n{whose}, filter = {filter}: {share:.1} % of {all} entries each")?;
     for chunk in plan.nnz.0.chunks(MATRICES_PER_LINE) {
         let names: String = chunk.iter().map(|(name, _)| format!("{:>9}", name.as_str())).collect();
         let counts: String = chunk.iter().map(|(_, count)| format!("{count:>9}")).collect();
@@ -103,6 +110,16 @@ fn reductions(out: &mut String, plan: &Plan) -> std::fmt::Result {
     }
     if plan.design.hardware.skip_zeros {
         writeln!(out, "  the cycles below are those of a frame without zeros, the worst case")?;
+    }
+    Ok(())
+}
+
+fn work(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    writeln!(out, "\n{:<25}{:>9}{:>8}{:>9}", "Products", "entries", "cycles", "busy")?;
+    for product in products(plan) {
+        let what = format!("{} of {}", product.matrix, product.operand);
+        let (entries, cycles, busy) = (product.nnz, product.issue_cycles, 100.0 * product.busy);
+        writeln!(out, "  {what:<23}{entries:>9}{cycles:>8}{busy:>7.1} %   {}", product.result)?;
     }
     Ok(())
 }

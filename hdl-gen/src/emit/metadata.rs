@@ -4,7 +4,8 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::plan::Plan;
-use crate::plan::product::Vector;
+use crate::plan::product::{Product, Vector};
+use crate::plan::schedule::Window;
 
 use super::{EmitError, FileMap, VERSION};
 
@@ -29,18 +30,50 @@ pub fn nnz(plan: &Plan) -> Map<String, Value> {
     plan.nnz.0.iter().map(|&(name, count)| (name.as_str().to_owned(), json!(count))).collect()
 }
 
+/// A product of the plan as `metadata.json` and `hdl-gen inspect` show it.
 #[derive(Serialize)]
-struct ProductEntry<'a> {
-    matrix: &'a str,
-    operand: String,
-    result: String,
-    block: String,
-    nnz: usize,
-    coefficient_lsb: i32,
-    shift: u32,
-    first_issue: u64,
-    issue_cycles: u64,
-    busy: f64,
+pub struct ProductEntry<'a> {
+    /// The stored matrix.
+    pub matrix: &'a str,
+    /// What it multiplies; of several vectors the first.
+    pub operand: String,
+    /// What comes out.
+    pub result: String,
+    /// We, Co or Op.
+    pub block: String,
+    /// Entries of the stored matrix that are not 0; of a folded one, words of four.
+    pub nnz: usize,
+    /// Exponent of the coefficients' step.
+    pub coefficient_lsb: i32,
+    /// Bits dropped from the accumulator.
+    pub shift: u32,
+    /// Cycle in its program.
+    pub first_issue: u64,
+    /// Cycles from there to its last issue.
+    pub issue_cycles: u64,
+    /// Share of the lanes' cycles that multiply, 0 to 1.
+    pub busy: f64,
+}
+
+/// The products in the order in which the lanes compute them.
+pub fn products(plan: &Plan) -> Vec<ProductEntry<'_>> {
+    let lanes = plan.walkers() as u64;
+    let entry = |(product, window): (&Product, &Window)| {
+        let matrix = &plan.matrices[product.matrix];
+        ProductEntry {
+            matrix: &matrix.name,
+            operand: product.operand().name(),
+            result: product.result.name(),
+            block: format!("{:?}", product.block),
+            nnz: matrix.nnz(),
+            coefficient_lsb: matrix.lsb,
+            shift: product.shift,
+            first_issue: window.start,
+            issue_cycles: window.length,
+            busy: window.macs as f64 / (window.length * lanes) as f64,
+        }
+    };
+    plan.products.iter().zip(&plan.schedule.windows).map(entry).collect()
 }
 
 /// The file's bytes. `files` are the others of the folder.
@@ -48,27 +81,6 @@ struct ProductEntry<'a> {
 /// # Errors
 /// [`EmitError::Metadata`] if a value has no JSON form.
 pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, EmitError> {
-    let lanes = plan.walkers() as u64;
-    let products: Vec<ProductEntry> = plan
-        .products
-        .iter()
-        .zip(&plan.schedule.windows)
-        .map(|(product, window)| {
-            let matrix = &plan.matrices[product.matrix];
-            ProductEntry {
-                matrix: &matrix.name,
-                operand: product.operand().name(),
-                result: product.result.name(),
-                block: format!("{:?}", product.block),
-                nnz: matrix.nnz(),
-                coefficient_lsb: matrix.lsb,
-                shift: product.shift,
-                first_issue: window.start,
-                issue_cycles: window.length,
-                busy: window.macs as f64 / (window.length * lanes) as f64,
-            }
-        })
-        .collect();
     let slots: Vec<Value> = plan
         .operands
         .slots()
@@ -100,7 +112,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
             "u_pa": plan.formats.u,
             "thresholds": plan.thresholds,
         },
-        "products": products,
+        "products": products(plan),
         "operand_memory": slots,
         "search": plan.optimum,
         "direction": plan.direction,

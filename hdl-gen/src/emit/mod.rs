@@ -18,7 +18,7 @@ use thiserror::Error;
 use crate::cores::{self, CoreError, Multiplier};
 use crate::plan::Plan;
 
-pub use metadata::{nnz, predicted};
+pub use metadata::{ProductEntry, nnz, predicted, products};
 
 /// Relative path, with forward slashes, to contents.
 pub type FileMap = BTreeMap<String, Vec<u8>>;

@@ -46,3 +46,22 @@ fn the_largest_sensor_has_hardware_with_one_lane_and_with_sixteen() {
         assert!(files.values().map(Vec::len).sum::<usize>() < 350_000_000);
     }
 }
+
+/// A mat beyond the size at which a dense matrix could be held thirteen times over: its files are written, and each lane
+/// has its share of the entries.
+#[test]
+fn a_mat_of_4096_taxels_has_hardware() {
+    let more = "[algorithm]\nplan = \"reduced\"\nkernel = \"cell\"\nfilter = { kind = \"f2\", p = 1.0 }\n[hardware]\nlanes = 64";
+    let text = design_text("mat", [64, 64], [28.0, 28.0], 8.0, more);
+    let plan = Plan::new(&Design::from_toml(&text, "mat.toml").unwrap()).unwrap();
+    let files = emit(&plan).unwrap();
+    let words: Vec<usize> = (0..16).map(|lane| lines(&files, &format!("rom/mat_values_lane{lane:02}.mem"))).collect();
+    let entries: usize = plan.matrices.iter().map(|matrix| matrix.nnz()).sum();
+    assert!(words.iter().all(|&count| count == plan.schedule.value_depth()), "{words:?}");
+    // A sixteenth each, but for the last rows of each product. The friction product's codes are shared.
+    assert!((0.95..1.2).contains(&(16.0 * words[0] as f64 / entries as f64)), "{} words, {entries} entries", words[0]);
+    // Ten matrices of 1024 folded rows, the sums, the friction's codes; a filter per row is not the mirror image of one
+    // per column, so that nothing is mirrored.
+    assert_eq!(plan.matrices.len(), 12);
+    assert!(entries < 10 * TAXELS * TAXELS / 4, "{entries}");
+}
