@@ -1,6 +1,6 @@
 //! How far a result is from the truth.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::SceneFrame;
 use crate::solver::Solution;
@@ -49,7 +49,7 @@ pub fn errors(truth: &Outcome, found: &Outcome) -> [f64; 5] {
 }
 
 /// One kind of error over many frames, in percent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Spread {
     /// The largest.
     pub max: f64,
@@ -72,7 +72,7 @@ impl Spread {
 }
 
 /// All errors over many frames, in percent.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ErrorSummary {
     /// Number of frames.
     pub frames: usize,

@@ -2,7 +2,7 @@
 
 use golden::metrics::{ErrorSummary, Outcome, field_error};
 use golden::solver::{Solution, Status};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::words::Answer;
 
@@ -35,7 +35,7 @@ fn resultant_error(reference: &[f64; 3], found: &[f64; 3]) -> f64 {
 }
 
 /// Number of frames by status; a frame with several bits set counts under each of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct StatusCounts {
     /// No bit set.
     pub good: usize,

@@ -1,5 +1,7 @@
 //! The `testbench` command.
 
+mod commands;
+
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -37,6 +39,12 @@ enum Command {
     /// With --solver and --cells the page has the figures of `golden bench` and of Yosys too; `make bench` does all of it.
     /// No figure decides the exit code.
     Bench(BenchArguments),
+    /// Speed against error: variants of designs on scenes with known forces, as JSON, CSV and a page to look at.
+    ///
+    /// Each point is a file in OUT/points, written whole; a sweep that was stopped goes on from there, and points that
+    /// are there are not computed again. Without axes: filters with plans, and widths and lanes one at a time around
+    /// each design. Axes that are named beside --filters, --plans or --full are combined.
+    Sweep(commands::sweep::Arguments),
     /// Sum Yosys' cell counts of a generated design by block, beside the predicted ones.
     ///
     /// STATISTICS is what `stat -json` prints after a synthesis without -flatten; `tools/synth.sh` does both.
@@ -109,6 +117,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => simulate(&arguments)
             .and_then(|report| print(&report_text(&report, arguments.json)?).map(|()| report.bit_exact)),
         Command::Bench(arguments) => bench(&arguments).map(|()| true),
+        Command::Sweep(arguments) => commands::sweep::run(&arguments).and_then(|text| print(&text)).map(|()| true),
         Command::Cells { design, folder, statistics, json } => {
             cells(&design, &folder, &statistics, json).map(|()| true)
         }

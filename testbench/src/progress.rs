@@ -31,9 +31,14 @@ impl Progress {
         self.bar.set_message(what);
     }
 
-    /// Work of known length begins.
+    /// Work of a known number of frames begins.
     pub fn counted(&self, what: impl Into<Cow<'static, str>>, steps: u64) {
-        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} frames, {eta} left") {
+        self.counted_in("frames", what, steps);
+    }
+
+    /// Work of a known number of `unit` begins.
+    pub fn counted_in(&self, unit: &str, what: impl Into<Cow<'static, str>>, steps: u64) {
+        if let Ok(style) = ProgressStyle::with_template(&format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {unit}, {{eta}} left")) {
             self.bar.set_style(style);
         }
         self.bar.set_length(steps);

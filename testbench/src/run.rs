@@ -125,7 +125,7 @@ pub fn run(design: &Design, frames: &FrameSet, options: &Options<'_>, progress: 
 
 /// The stresses as the core gets them. The solver is given the same ones, so that its difference to the core is the
 /// core's alone.
-fn as_received(packet: &[u32]) -> Vec<f64> {
+pub fn as_received(packet: &[u32]) -> Vec<f64> {
     packet.iter().map(|&word| f64::from(f32::from_bits(word))).collect()
 }
 

@@ -1,9 +1,8 @@
 //! The latency of a frame against the number of taxels, as an SVG: logarithmic axes, readable on light and dark pages.
 
-use std::fmt::Write;
-
 use super::cycles::{Kind, Point};
 use crate::report::PUBLISHED;
+use crate::svg::{Axis, INK, MARK, Svg, power};
 
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 500.0;
@@ -20,42 +19,8 @@ const LINES: [(Kind, usize, &str, &str); 4] = [
     (Kind::Filtered, 16, "#d9730d", ""),
     (Kind::Filtered, 64, "#d9730d", "7 4"),
 ];
-const MARK: &str = "#d63b5c";
-/// Neither black nor white, so that it can be read on both.
-const INK: &str = "#7d8590";
 /// Least distance of two labels at the right.
 const LABEL_STEP: f64 = 16.0;
-
-/// A logarithmic axis from one power of ten to another.
-#[derive(Clone, Copy)]
-struct Axis {
-    low: f64,
-    high: f64,
-    from: f64,
-    to: f64,
-}
-
-impl Axis {
-    /// Covers the values, from a power of ten to one or, if `tight`, to the largest; `from` and `to` are where they begin
-    /// and end on the page.
-    fn covering(values: impl Iterator<Item = f64>, tight: bool, from: f64, to: f64) -> Self {
-        let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
-        for value in values {
-            (low, high) = (low.min(value), high.max(value));
-        }
-        let (low, high) = if low.is_finite() { (low.log10().floor(), high.log10()) } else { (0.0, 1.0) };
-        let high = if tight { high } else { high.ceil() };
-        Self { low, high: high.max(low + 1.0), from, to }
-    }
-
-    fn place(self, value: f64) -> f64 {
-        self.from + (value.log10() - self.low) / (self.high - self.low) * (self.to - self.from)
-    }
-
-    fn decades(self) -> impl Iterator<Item = i32> {
-        self.low as i32..=self.high.floor() as i32
-    }
-}
 
 /// The picture.
 pub fn render(points: &[Point]) -> String {
@@ -65,7 +30,7 @@ pub fn render(points: &[Point]) -> String {
     let x = Axis::covering(m, true, LEFT, WIDTH - RIGHT);
     let cycles = points.iter().filter(drawn).map(|point| point.predicted.latency as f64);
     let y = Axis::covering(cycles.chain([PUBLISHED.latency_cycles as f64]), false, HEIGHT - BOTTOM, TOP);
-    let mut svg = Svg::new();
+    let mut svg = Svg::new(WIDTH, HEIGHT, "Latency of a frame against the number of taxels");
     axes(&mut svg, x, y);
     let mut labels = Vec::new();
     for (kind, lanes, colour, dashes) in LINES {
@@ -114,85 +79,10 @@ fn axes(svg: &mut Svg, x: Axis, y: Axis) {
     );
 }
 
-/// `1`, `10`, `1,000`, `10 M`.
-fn power(decade: i32) -> String {
-    let digits = 10_u64.pow(decade.max(0) as u32);
-    if decade < 3 {
-        digits.to_string()
-    } else if decade < 6 {
-        format!("{},000", digits / 1000)
-    } else {
-        format!("{} M", digits / 1_000_000)
-    }
-}
-
-/// Text of a picture. Writing to a String cannot fail.
-struct Svg(String);
-
-impl Svg {
-    fn new() -> Self {
-        Self(format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" font-family=\"sans-serif\" \
-             font-size=\"13\" role=\"img\" aria-label=\"Latency of a frame against the number of taxels\">\n"
-        ))
-    }
-
-    fn grid(&mut self, from: (f64, f64), to: (f64, f64)) {
-        let ((x1, y1), (x2, y2)) = (from, to);
-        let _ = writeln!(
-            self.0,
-            "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{INK}\" stroke-opacity=\"0.35\"/>"
-        );
-    }
-
-    fn line(&mut self, places: &[(f64, f64)], colour: &str, dashes: &str) {
-        let points: Vec<String> = places.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-        let _ = writeln!(
-            self.0,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" stroke-dasharray=\"{dashes}\"/>",
-            points.join(" ")
-        );
-    }
-
-    fn dot(&mut self, (x, y): (f64, f64), radius: f64, colour: &str) {
-        let _ = writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\"/>");
-    }
-
-    fn cross(&mut self, (x, y): (f64, f64)) {
-        let _ = writeln!(
-            self.0,
-            "<path d=\"M{:.1} {:.1}l12 12m0 -12l-12 12\" stroke=\"{MARK}\" stroke-width=\"3\"/>",
-            x - 6.0,
-            y - 6.0
-        );
-    }
-
-    fn text(&mut self, (x, y): (f64, f64), anchor: &str, colour: &str, text: &str) {
-        let _ = writeln!(
-            self.0,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" fill=\"{colour}\">{text}</text>"
-        );
-    }
-
-    fn finish(mut self) -> String {
-        self.0.push_str("</svg>\n");
-        self.0
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::bench::cycles::Cycles;
-
-    #[test]
-    fn axes_are_logarithmic() {
-        let axis = Axis::covering([20.0, 900.0].into_iter(), false, 0.0, 200.0);
-        assert_eq!([10.0, 100.0, 1000.0].map(|value| axis.place(value).round() as i64), [0, 100, 200]);
-        let tight = Axis::covering([20.0, 1000.0].into_iter(), true, 0.0, 200.0);
-        assert_eq!(tight.place(1000.0).round() as i64, 200);
-        assert_eq!([0, 3, 4, 6, 7].map(power), ["1", "1,000", "10,000", "1 M", "10 M"]);
-    }
 
     #[test]
     fn every_line_has_its_points_and_its_label() {

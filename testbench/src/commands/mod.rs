@@ -1,0 +1,3 @@
+//! Commands with many options, one file each.
+
+pub mod sweep;

@@ -1,0 +1,173 @@
+//! One point: its speed from the plan, its errors from the integer model, or from the RTL where that is asked for.
+
+use std::sync::{Mutex, PoisonError};
+
+use golden::design::{Design, Estimator, Kernel, PlanKind};
+use golden::filter::nnz_of;
+use golden::matrices::MatrixName;
+use golden::metrics::{ErrorSummary, Outcome};
+use golden::solver::{Solution, Solver};
+use hdl_gen::plan::Plan;
+
+use super::grid::{Job, filter_text};
+use super::point::{AgainstSolver, Geometry, Hardware, Point, Verified};
+use super::{SweepError, SweepScene};
+use crate::accuracy::{SolverError, StatusCounts, against_truth};
+use crate::frame_set::FrameSet;
+use crate::run::{RunError, as_received, model_answers, rtl_sources, timeout};
+use crate::simulate::{Job as Simulated, simulate};
+use crate::verilate::Verilate;
+use crate::words::{Answer, decode, encode};
+
+/// Decides the pauses of the streams and the registers' random start.
+const SEED: u32 = 1;
+
+/// Computes a point. Compilations take turns on `compiler`.
+///
+/// # Errors
+/// [`SweepError`] if the design has neither hardware nor a solution, or its RTL is not what the model says.
+pub fn evaluate(
+    job: &Job,
+    scene: &SweepScene,
+    wanted: Verified,
+    compiler: &Mutex<()>,
+) -> Result<Point, SweepError> {
+    let design = &job.design;
+    let frames = scene.frames.clone().as_delivered(design);
+    let truth = frames.truth.clone().unwrap_or_default();
+    let packets: Vec<Vec<u32>> = frames.stress.iter().map(|stress| encode(stress)).collect();
+    let refused = |source| SweepError::Solver { label: job.label(scene), source };
+    let solver = Solver::new(design).map_err(refused)?;
+    let solutions =
+        packets.iter().map(|packet| solver.solve(&as_received(packet))).collect::<Result<Vec<_>, _>>().map_err(refused)?;
+    let mut point = described(job, scene, &solver, &solutions, &truth);
+    let plan = match Plan::new(design) {
+        Ok(plan) => plan,
+        Err(refusal) => {
+            point.refusal = Some(refusal.to_string());
+            return Ok(point);
+        }
+    };
+    let expected = model_answers(&plan, &packets);
+    point.verified = Verified::Model;
+    if wanted == Verified::Rtl {
+        let turn = compiler.lock().unwrap_or_else(PoisonError::into_inner);
+        check_rtl(&plan, &packets, &expected, &job.label(scene))?;
+        drop(turn);
+        point.verified = Verified::Rtl;
+    }
+    let answers: Vec<Answer> = expected.iter().filter_map(|words| decode(words)).collect();
+    let error = SolverError::new(&answers, &solutions);
+    let bounded = |value: f64| value.is_finite().then_some(value);
+    point.against_solver =
+        Some(AgainstSolver { resultant_max: bounded(error.resultant_max), field_max: bounded(error.field_max) });
+    point.status_counts = StatusCounts::new(&answers);
+    point.errors = against_truth(&answers, &truth);
+    point.mean_mu = mean(answers.iter().map(|answer| answer.mu));
+    let clock = design.hardware.clock_mhz;
+    let timeline = &plan.timeline;
+    point.lanes = plan.design.hardware.lanes;
+    point.hardware = Some(Hardware {
+        latency_cycles: timeline.latency_cycles,
+        interval_cycles: timeline.interval_cycles,
+        latency_us: timeline.latency_cycles as f64 / clock,
+        interval_us: timeline.interval_cycles as f64 / clock,
+        dsp: plan.resources.dsp,
+        bram36: plan.resources.bram36,
+        rom_bits: plan.resources.rom_bits,
+        macs: plan.schedule.windows.iter().map(|window| window.macs * plan.ways() as u64).sum(),
+    });
+    Ok(point)
+}
+
+/// The point as the f64 solver sees it.
+fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Solution], truth: &[Outcome]) -> Point {
+    let Design { sensor, algorithm, hardware, .. } = &job.design;
+    let nnz = MatrixName::ALL.map(|name| {
+        // A solver exists, so F3 has its choices.
+        let kept = algorithm.filter.of(name).map_or(0, |filter| nnz_of(solver.matrices(), name, filter));
+        (name.as_str().to_owned(), kept)
+    });
+    let pairs: Vec<(Outcome, Outcome)> = truth.iter().copied().zip(solutions.iter().map(Outcome::from)).collect();
+    let errors = ErrorSummary::new(&pairs);
+    let answers: Vec<Answer> = solutions.iter().map(as_answer).collect();
+    Point {
+        key: job.key.clone(),
+        sensor: Geometry {
+            columns: sensor.columns,
+            rows: sensor.rows,
+            pitch_mm: sensor.pitch_mm,
+            depth_mm: sensor.depth_mm,
+        },
+        scene: scene.name.clone(),
+        plan: if algorithm.plan == PlanKind::Paper { "paper" } else { "reduced" }.to_owned(),
+        kernel: if algorithm.kernel == Kernel::Point { "point" } else { "cell" }.to_owned(),
+        filter: filter_text(&algorithm.filter),
+        estimator: if algorithm.estimator == Estimator::Line { "line" } else { "joint" }.to_owned(),
+        coefficient_bits: hardware.coefficient_bits,
+        data_bits: hardware.data_bits,
+        lanes: hardware.lanes,
+        verified: Verified::Golden,
+        refusal: None,
+        hardware: None,
+        nnz_total: nnz.iter().map(|(_, count)| count).sum(),
+        nnz: nnz.into_iter().collect(),
+        frames: solutions.len(),
+        mean_mu: mean(solutions.iter().map(|solution| solution.mu)),
+        errors,
+        solver_errors: errors,
+        against_solver: None,
+        status_counts: StatusCounts::new(&answers),
+    }
+}
+
+/// A solution in the form of an answer, for what is counted over answers.
+fn as_answer(solution: &Solution) -> Answer {
+    Answer {
+        status: solution.status.0,
+        counter: 0,
+        resultant: solution.resultant,
+        mu: solution.mu,
+        phi: solution.phi,
+        mu_xy: [solution.mu_x, solution.mu_y],
+        field: [const { Vec::new() }; 3],
+    }
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len().max(1) as f64;
+    values.sum::<f64>() / count
+}
+
+/// Simulates in all stream modes; every word must be the model's, and the cycles those of the plan.
+fn check_rtl(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>], label: &str) -> Result<(), SweepError> {
+    let failed = |source: RunError| SweepError::Run { label: label.to_owned(), source };
+    let sources = rtl_sources(plan).map_err(|error| failed(error.into()))?;
+    let built = Verilate::default().build(&sources).map_err(|error| failed(error.into()))?;
+    let columns = plan.design.sensor.columns;
+    let job = Simulated { built: &built, packets, expected, columns, timeout: timeout(plan), seed: SEED, trace: None };
+    let simulation = simulate(&job, &|| ()).map_err(|error| failed(error.into()))?;
+    let differs = |problem: String| Err(SweepError::NotExact { label: label.to_owned(), problem });
+    if let Some(first) = simulation.modes.iter().find_map(|mode| mode.comparison.first.first()) {
+        return differs(format!("{} words of the RTL differ from the model, the first: {first}", simulation.mismatches()));
+    }
+    let simulated = (simulation.latency_cycles, simulation.interval_cycles);
+    let predicted = (plan.timeline.latency_cycles, plan.timeline.interval_cycles);
+    let within = plan.design.hardware.skip_zeros && simulated.0 <= predicted.0 && simulated.1 <= predicted.1;
+    if simulated != predicted && !within {
+        return differs(format!("latency and interval are {simulated:?} cycles, predicted {predicted:?}"));
+    }
+    Ok(())
+}
+
+/// The answers of a design's integer model to frames in Pa, decoded; for pictures.
+///
+/// # Errors
+/// [`SweepError::Run`] if the design has no plan.
+pub fn answers(design: &Design, frames: &FrameSet) -> Result<Vec<Answer>, SweepError> {
+    let failed = |source| SweepError::Run { label: design.name.clone(), source: RunError::Plan(source) };
+    let plan = Plan::new(design).map_err(failed)?;
+    let packets: Vec<Vec<u32>> =
+        frames.clone().as_delivered(design).stress.iter().map(|stress| encode(stress)).collect();
+    Ok(model_answers(&plan, &packets).iter().filter_map(|words| decode(words)).collect())
+}

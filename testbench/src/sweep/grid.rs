@@ -1,0 +1,282 @@
+//! Which points a sweep has.
+
+use std::collections::BTreeSet;
+use std::str::FromStr;
+
+use golden::design::{Design, Estimator, Filter, Input, JointConstants, MatrixFilter, PlanKind};
+use hdl_gen::plan::Plan;
+use sha2::{Digest, Sha256};
+
+use super::point::{Geometry, Point};
+use super::{SweepError, SweepScene};
+
+/// Steps of L and p in the paper's sweep.
+const STEPS: [usize; 9] = [10, 20, 30, 40, 50, 60, 70, 80, 90];
+const COEFFICIENT_BITS: [u32; 6] = [8, 10, 12, 14, 16, 18];
+const DATA_BITS: [u32; 6] = [16, 18, 20, 22, 24, 27];
+const LANES: [usize; 5] = [4, 8, 16, 32, 64];
+/// Digits of a key.
+const KEY_DIGITS: usize = 20;
+/// The name of every design of a sweep: what a design is called changes nothing of it.
+const NAME: &str = "point";
+
+/// A filter as the command line names it: `none`, `f1` (all of its sweep), `f1-40`, `f3`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FilterAxis {
+    /// No filter.
+    None,
+    /// F1 with one L or all.
+    F1(Option<usize>),
+    /// F2 with one p or all.
+    F2(Option<f64>),
+    /// F3 of a design that has it.
+    F3,
+}
+
+impl FromStr for FilterAxis {
+    type Err = SweepError;
+
+    fn from_str(word: &str) -> Result<Self, SweepError> {
+        let unknown = || SweepError::Filter(word.to_owned());
+        Ok(match word {
+            "none" => Self::None,
+            "f1" => Self::F1(None),
+            "f2" => Self::F2(None),
+            "f3" => Self::F3,
+            _ => match word.split_once('-') {
+                Some(("f1", l)) => Self::F1(Some(l.parse().map_err(|_| unknown())?)),
+                Some(("f2", p)) => Self::F2(Some(p.parse().map_err(|_| unknown())?)),
+                _ => return Err(unknown()),
+            },
+        })
+    }
+}
+
+/// The values along each axis; without any, the usual ones.
+#[derive(Clone, Debug, Default)]
+pub struct Axes {
+    /// Filters.
+    pub filters: Vec<FilterAxis>,
+    /// Plans.
+    pub plans: Vec<PlanKind>,
+    /// Widths of the coefficients.
+    pub coefficient_bits: Vec<u32>,
+    /// Widths of the vectors.
+    pub data_bits: Vec<u32>,
+    /// Numbers of lanes.
+    pub lanes: Vec<usize>,
+    /// Every combination; otherwise filters with plans, and the other axes one at a time around each design.
+    pub full: bool,
+}
+
+/// One point to be computed.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// What the point is filed under: a digest of resolved design, scene and program.
+    pub key: String,
+    /// The variant.
+    pub design: Design,
+    /// Which of the sweep's scenes.
+    pub scene: usize,
+    /// Whether it is a design as it was given.
+    pub base: bool,
+}
+
+impl Job {
+    /// For messages.
+    pub fn label(&self, scene: &SweepScene) -> String {
+        let hardware = &self.design.hardware;
+        format!(
+            "point {} ({}, {:?} plan, {} lanes, {} x {} bits, scene {})",
+            self.key,
+            filter_text(&self.design.algorithm.filter),
+            self.design.algorithm.plan,
+            hardware.lanes,
+            hardware.coefficient_bits,
+            hardware.data_bits,
+            scene.name
+        )
+    }
+}
+
+/// A filter in a word or two.
+pub fn filter_text(filter: &Filter) -> String {
+    match filter {
+        Filter::None => MatrixFilter::None.to_string(),
+        Filter::F1 { l } => MatrixFilter::F1 { l: *l }.to_string(),
+        Filter::F2 { p } => MatrixFilter::F2 { p: *p }.to_string(),
+        Filter::F3 { .. } => "f3".to_owned(),
+    }
+}
+
+/// All points: the variants of each design, each on every scene of its sensor. A sensor without a scene gets its
+/// standing one, which is added to `scenes`. Variants that more than one design has are there once.
+///
+/// # Errors
+/// [`SweepError::OtherSensor`] for a scene of none of the designs, [`SweepError::NoPoints`] if no variant exists.
+pub fn jobs(designs: &[Design], axes: &Axes, scenes: &mut Vec<SweepScene>) -> Result<Vec<Job>, SweepError> {
+    if let Some(foreign) = scenes.iter().find(|scene| designs.iter().all(|design| design.sensor != scene.scene.sensor)) {
+        return Err(SweepError::OtherSensor(foreign.name.clone().into()));
+    }
+    let mut seen = BTreeSet::new();
+    let mut jobs = Vec::new();
+    for design in designs {
+        if scenes.iter().all(|scene| scene.scene.sensor != design.sensor) {
+            scenes.push(SweepScene::standing(&design.sensor)?);
+        }
+        let base = normal(design);
+        for variant in variants(&base, axes) {
+            let own = scenes.iter().enumerate().filter(|(_, scene)| scene.scene.sensor == design.sensor);
+            for (number, scene) in own {
+                let key = key(&variant, scene);
+                if seen.insert(key.clone()) {
+                    jobs.push(Job { key, base: variant == base, design: variant.clone(), scene: number });
+                }
+            }
+        }
+    }
+    // A variant of one design may be another design as given.
+    let bases: Vec<Design> = designs.iter().map(normal).collect();
+    for job in &mut jobs {
+        job.base = bases.contains(&job.design);
+    }
+    if jobs.is_empty() { Err(SweepError::NoPoints) } else { Ok(jobs) }
+}
+
+/// The design under the name of all points.
+fn normal(design: &Design) -> Design {
+    Design { name: NAME.to_owned(), ..design.clone() }
+}
+
+/// The digest that a point is filed under.
+fn key(design: &Design, scene: &SweepScene) -> String {
+    let calibration = design.calibration_csv().unwrap_or_default();
+    let parts = [hdl_gen::emit::VERSION, env!("SPTFRA_SOURCES"), &design.to_toml(), &calibration, &scene.name, &scene.text];
+    let mut digest = Sha256::new();
+    for part in parts {
+        // With the length, so that no two lists of parts are the same bytes.
+        digest.update((part.len() as u64).to_le_bytes());
+        digest.update(part.as_bytes());
+    }
+    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<String>()[..KEY_DIGITS].to_owned()
+}
+
+/// The designs that differ from `base` along the axes, and exist.
+fn variants(base: &Design, axes: &Axes) -> Vec<Design> {
+    let or = |given: &[usize], usual: &[usize]| if given.is_empty() { usual.to_vec() } else { given.to_vec() };
+    let bits = |given: &[u32], usual: &[u32]| if given.is_empty() { usual.to_vec() } else { given.to_vec() };
+    let lanes = or(&axes.lanes, &LANES);
+    let coefficient_bits = bits(&axes.coefficient_bits, &COEFFICIENT_BITS);
+    let data_bits = bits(&axes.data_bits, &DATA_BITS);
+    let mut plans = axes.plans.clone();
+    if plans.is_empty() {
+        plans = vec![PlanKind::Reduced, PlanKind::Paper];
+    }
+    // The design itself first, unless another grid was asked for.
+    let asked = axes.full || !axes.filters.is_empty() || !axes.plans.is_empty();
+    let mut variants = if asked { Vec::new() } else { vec![base.clone()] };
+    for filtered in with_filters(&line(base), &axes.filters) {
+        for &plan in &plans {
+            let mut variant = filtered.clone();
+            variant.algorithm.plan = plan;
+            variants.push(variant);
+        }
+    }
+    let coefficient = |design: &mut Design, bits| design.hardware.coefficient_bits = bits;
+    let data = |design: &mut Design, bits| design.hardware.data_bits = bits;
+    if asked {
+        // What was asked for by name is combined; everything if all is asked for.
+        if axes.full || !axes.lanes.is_empty() {
+            variants = product(&variants, &lanes, set_lanes);
+        }
+        if axes.full || !axes.coefficient_bits.is_empty() {
+            variants = product(&variants, &coefficient_bits, coefficient);
+        }
+        if axes.full || !axes.data_bits.is_empty() {
+            variants = product(&variants, &data_bits, data);
+        }
+    } else if Plan::new(base).is_ok() {
+        // A design without hardware has no axes of hardware.
+        let base = std::slice::from_ref(base);
+        variants.extend(product(base, &lanes, set_lanes));
+        variants.extend(product(base, &coefficient_bits, coefficient));
+        variants.extend(product(base, &data_bits, data));
+    }
+    variants.retain(exists);
+    variants
+}
+
+/// The design with the paper's estimator, for which the filters are.
+fn line(base: &Design) -> Design {
+    let mut design = base.clone();
+    design.algorithm.estimator = Estimator::Line;
+    *design.algorithm.joint = JointConstants::default();
+    design
+}
+
+fn set_lanes(design: &mut Design, lanes: usize) {
+    design.hardware.lanes = lanes;
+    design.hardware.target_us = None;
+}
+
+/// Each design with each value.
+fn product<T: Copy>(designs: &[Design], values: &[T], set: impl Fn(&mut Design, T)) -> Vec<Design> {
+    let with = |design: &Design, value| {
+        let mut design = design.clone();
+        set(&mut design, value);
+        design
+    };
+    designs.iter().flat_map(|design| values.iter().map(|&value| with(design, value)).collect::<Vec<_>>()).collect()
+}
+
+/// The design with each filter of the axis; all of the paper's without any.
+fn with_filters(base: &Design, axis: &[FilterAxis]) -> Vec<Design> {
+    let usual = [FilterAxis::None, FilterAxis::F1(None), FilterAxis::F2(None), FilterAxis::F3];
+    let axis = if axis.is_empty() { &usual[..] } else { axis };
+    let mut filters = Vec::new();
+    for &kind in axis {
+        match kind {
+            FilterAxis::None => filters.push(Filter::None),
+            FilterAxis::F1(Some(l)) => filters.push(Filter::F1 { l }),
+            FilterAxis::F1(None) => filters.extend(STEPS.map(|l| Filter::F1 { l })),
+            FilterAxis::F2(Some(p)) => filters.push(Filter::F2 { p }),
+            FilterAxis::F2(None) => filters.extend(STEPS.map(|p| Filter::F2 { p: p as f64 })),
+            FilterAxis::F3 => {
+                filters.extend(Some(&base.algorithm.filter).filter(|filter| matches!(filter, Filter::F3 { .. })).cloned());
+            }
+        }
+    }
+    let with = |filter| {
+        let mut design = base.clone();
+        design.algorithm.filter = filter;
+        design
+    };
+    filters.into_iter().map(with).collect()
+}
+
+/// Whether a design file could say this. What a file of its own holds cannot be read back here, and is as it was.
+fn exists(design: &Design) -> bool {
+    let plain = Design { input: Input::default(), ..design.clone() };
+    Design::from_toml(&plain.to_toml(), NAME).is_ok_and(|again| again == plain)
+}
+
+/// The paper's name of a sensor, or its geometry.
+pub fn sensor_title(sensor: &Geometry) -> String {
+    let Geometry { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
+    let geometry = format!("{columns} × {rows} taxels of {x} × {y} mm, {depth_mm} mm deep");
+    match super::point::paper_sensor(sensor) {
+        Some(number) => format!("Sensor {number}: {geometry}"),
+        None => geometry,
+    }
+}
+
+/// The sensors of points, each once, in order.
+pub fn sensors(points: &[Point]) -> Vec<Geometry> {
+    let mut sensors: Vec<Geometry> = Vec::new();
+    for point in points {
+        if !sensors.contains(&point.sensor) {
+            sensors.push(point.sensor.clone());
+        }
+    }
+    sensors
+}

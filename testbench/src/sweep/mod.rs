@@ -1,0 +1,236 @@
+//! `testbench sweep`: speed against error, one point a variant of a design and a scene.
+//!
+//! The way of the data: [`grid`] (which points) → [`evaluate`] (one point) → [`store`] (a file each) → [`table`].
+
+pub mod evaluate;
+pub mod grid;
+pub mod point;
+pub mod store;
+pub mod table;
+
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use golden::design::DesignError;
+use golden::metrics::Outcome;
+use golden::output::OutputError;
+use golden::scene::{Scene, SceneError};
+use golden::solver::SolverError;
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::frame_set::FrameSet;
+use crate::progress::Progress;
+use crate::run::RunError;
+
+use grid::Job;
+use point::{Point, Verified};
+use store::Store;
+
+/// Why a sweep has no result.
+#[derive(Debug, Error)]
+pub enum SweepError {
+    /// A design or scene file is wrong.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// A scene cannot be computed.
+    #[error("{}: {source}", path.display())]
+    Scene {
+        /// The scene file.
+        path: PathBuf,
+        /// Why.
+        source: SceneError,
+    },
+    /// The standing scene of a sensor cannot be computed.
+    #[error(transparent)]
+    StandingScene(#[from] SceneError),
+    /// A scene is that of no design.
+    #[error(
+        "scene {}: its [sensor] is that of none of the designs; add a design with the same columns, rows, pitch_mm and \
+         depth_mm, or leave the scene out", .0.display()
+    )]
+    OtherSensor(PathBuf),
+    /// A word that names no filter of a sweep.
+    #[error("\"{0}\" is no filter of a sweep; write none, f1, f2 or f3, or one of them as f1-40 or f2-50")]
+    Filter(String),
+    /// There is nothing to compute.
+    #[error("no point is left: no combination of these plans, filters and lanes exists; leave one of the options out")]
+    NoPoints,
+    /// A point that is not in the grid.
+    #[error("{0} is no point of this sweep; `testbench sweep --list` with the same options prints their keys")]
+    NoSuchPoint(String),
+    /// The f64 solver refused a design.
+    #[error("{label}: {source}")]
+    Solver {
+        /// The point.
+        label: String,
+        /// Why.
+        source: SolverError,
+    },
+    /// The RTL could not be simulated.
+    #[error("{label}: {source}")]
+    Run {
+        /// The point.
+        label: String,
+        /// Why.
+        source: RunError,
+    },
+    /// The RTL is not the model.
+    #[error("{label}: {problem}; please report this design")]
+    NotExact {
+        /// The point.
+        label: String,
+        /// What differs.
+        problem: String,
+    },
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] OutputError),
+    /// A file or folder cannot be used.
+    #[error("{}: cannot {action}: {source}; choose another folder with --out", path.display())]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// On what.
+        path: PathBuf,
+        /// Why not.
+        source: std::io::Error,
+    },
+    /// A value cannot be printed.
+    #[error("{}: {source}", path.display())]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: serde_json::Error,
+    },
+}
+
+/// Frames with known forces.
+#[derive(Clone, Debug)]
+pub struct SweepScene {
+    /// The file's name without its ending; `standing` for a sensor's own.
+    pub name: String,
+    /// The file's text, which is part of the points' keys.
+    pub text: String,
+    /// Contacts and sensor.
+    pub scene: Scene,
+    /// Stresses in Pa, and the true forces.
+    pub frames: FrameSet,
+}
+
+impl SweepScene {
+    /// Reads a scene file and computes its frames.
+    ///
+    /// # Errors
+    /// [`SweepError::Scene`] with the file.
+    pub fn load(path: &Path) -> Result<Self, SweepError> {
+        let failed = |source| SweepError::Scene { path: path.to_owned(), source };
+        let text =
+            std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_owned(), source })?;
+        let scene = Scene::from_toml(&text, &path.display().to_string())?;
+        let frames = scene.frames().map_err(failed)?;
+        let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        let truth = frames.iter().map(Outcome::from).collect();
+        let stress = frames.into_iter().map(|frame| frame.stress).collect();
+        Ok(Self { frames: FrameSet { origin: name.clone(), stress, truth: Some(truth) }, name, text, scene })
+    }
+
+    /// The standing scene of a sensor.
+    ///
+    /// # Errors
+    /// [`SceneError`] if it cannot be computed for this geometry.
+    pub fn standing(sensor: &golden::design::Sensor) -> Result<Self, SceneError> {
+        let name = "standing".to_owned();
+        Ok(Self {
+            text: name.clone(),
+            scene: Scene::standing(sensor),
+            frames: FrameSet::standing(sensor)?,
+            name,
+        })
+    }
+}
+
+/// How far the RTL itself is asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Simulate {
+    /// Nowhere: the integer model, bit-exact to the RTL, answers for it.
+    #[default]
+    None,
+    /// The designs as they were given.
+    Base,
+    /// Every point.
+    All,
+}
+
+/// What there is to do.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// The points in order.
+    pub jobs: Vec<Job>,
+    /// The scenes that they name by number.
+    pub scenes: Vec<SweepScene>,
+    /// Which of them go through the RTL.
+    pub simulate: Simulate,
+}
+
+/// What a sweep came to.
+#[derive(Clone, Debug)]
+pub struct Outcomes {
+    /// All points in order.
+    pub points: Vec<Point>,
+    /// How many of them were computed now; the others were there.
+    pub computed: usize,
+}
+
+impl Sweep {
+    /// How a point is to be verified at least.
+    fn wanted(&self, job: &Job) -> Verified {
+        match self.simulate {
+            Simulate::All => Verified::Rtl,
+            Simulate::Base if job.base => Verified::Rtl,
+            _ => Verified::Model,
+        }
+    }
+
+    /// Computes the points that the store does not have, on all cores, and reads all of them back.
+    ///
+    /// Every point is written as soon as it is there, so that a sweep that was stopped goes on from there.
+    ///
+    /// # Errors
+    /// The first [`SweepError`] in the order of the points, after all others were tried.
+    pub fn run(&self, store: &Store, progress: &Progress) -> Result<Outcomes, SweepError> {
+        let missing: Vec<&Job> = self.jobs.iter().filter(|job| !store.has(&job.key, self.wanted(job))).collect();
+        progress.counted_in("points", "sweeping", missing.len() as u64);
+        // Verilator uses all cores by itself.
+        let compiler = Mutex::new(());
+        let results: Vec<Result<(), SweepError>> = missing
+            .par_iter()
+            .map(|job| {
+                let point = self.compute(job, &compiler)?;
+                store.put(&point)?;
+                progress.step();
+                Ok(())
+            })
+            .collect();
+        results.into_iter().collect::<Result<Vec<()>, _>>()?;
+        let points = self.jobs.iter().map(|job| store.get(&job.key)).collect::<Result<_, _>>()?;
+        Ok(Outcomes { points, computed: missing.len() })
+    }
+
+    /// Computes one point, if the store does not have it.
+    ///
+    /// # Errors
+    /// [`SweepError::NoSuchPoint`] for a key that is not in the grid, others as [`Sweep::run`].
+    pub fn run_one(&self, key: &str, store: &Store) -> Result<Point, SweepError> {
+        let job = self.jobs.iter().find(|job| job.key == key).ok_or_else(|| SweepError::NoSuchPoint(key.to_owned()))?;
+        if !store.has(key, self.wanted(job)) {
+            store.put(&self.compute(job, &Mutex::new(()))?)?;
+        }
+        store.get(key)
+    }
+
+    fn compute(&self, job: &Job, compiler: &Mutex<()>) -> Result<Point, SweepError> {
+        evaluate::evaluate(job, &self.scenes[job.scene], self.wanted(job), compiler)
+    }
+}
