@@ -18,7 +18,7 @@ FORCES := $(FRAMES:.csv=.forces.csv)
 help: ## This menu
 	@echo 'make TARGET, for example `make run`:'
 	@echo
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-10s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-13s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 	@echo
 	@echo 'make run DESIGN=designs/sensor2-none.toml SCENE=scenes/sensor2-disc.toml  for another design and scene'
 
@@ -85,6 +85,30 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, and wri
 	@$(BENCH_BIN)/testbench bench $(BENCH_DESIGNS) --solver $(BENCH_FOLDER)/solver.json \
 	    $(foreach design,$(BENCH_CELLS),--cells $(TARGET)/synth/$(subst -,_,$(design)).cells.json) \
 	    --page docs/benchmarks.md --plot docs/latency.svg
+
+# One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
+SWEEP_FOLDER  := $(TARGET)/sweep
+SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1-l40 f2-p50 f3 joint,designs/$(sensor)-$(kind).toml))
+SWEEP_SCENES  ?= scenes/sensor1-hertz.toml scenes/sensor2-disc.toml scenes/two-contacts.toml scenes/sensor2-punch.toml
+SWEEP_OPTIONS ?= --simulate base
+SNAKEMAKE_OPTIONS ?= --cores all
+
+.PHONY: report
+report: tools build ## Speed against error: target/sweep/report.html, a page to look at (minutes; goes on where it stopped)
+	@$(BIN)/testbench sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) $(SWEEP_OPTIONS)
+
+.PHONY: report-full
+report-full: build ## The same over every combination of filters, plans, widths and lanes: thousands of points
+	@$(BIN)/testbench sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) --full
+
+.PHONY: sweep-tools
+sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one machine
+	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-sweep.txt
+
+.PHONY: sweep-cluster
+sweep-cluster: sweep-tools build ## The report by Snakemake, one job a point
+	@SWEEP_DESIGNS='$(SWEEP_DESIGNS)' SWEEP_SCENES='$(SWEEP_SCENES)' SWEEP_OPTIONS='$(SWEEP_OPTIONS)' SWEEP_FOLDER='$(SWEEP_FOLDER)' \
+	    TESTBENCH='$(BIN)/testbench' .venv/bin/snakemake --snakefile tools/sweep.smk $(SNAKEMAKE_OPTIONS)
 
 .PHONY: timing
 timing: tools build ## Place and route for an ECP5-85, for a clock figure from an open flow (a quarter of an hour)

@@ -38,7 +38,9 @@ impl Progress {
 
     /// Work of a known number of `unit` begins.
     pub fn counted_in(&self, unit: &str, what: impl Into<Cow<'static, str>>, steps: u64) {
-        if let Ok(style) = ProgressStyle::with_template(&format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {unit}, {{eta}} left")) {
+        if let Ok(style) =
+            ProgressStyle::with_template(&format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {unit}, {{eta}} left"))
+        {
             self.bar.set_style(style);
         }
         self.bar.set_length(steps);

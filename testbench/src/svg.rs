@@ -26,7 +26,8 @@ impl Svg {
         let ((x1, y1), (x2, y2)) = (from, to);
         let _ = writeln!(
             self.0,
-            "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{INK}\" stroke-opacity=\"0.35\"/>"
+            "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{INK}\" \
+             stroke-opacity=\"0.35\"/>"
         );
     }
 
@@ -35,7 +36,8 @@ impl Svg {
         let points: Vec<String> = places.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
         let _ = writeln!(
             self.0,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" stroke-dasharray=\"{dashes}\"/>",
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" \
+             stroke-dasharray=\"{dashes}\"/>",
             points.join(" ")
         );
     }
@@ -59,7 +61,8 @@ impl Svg {
     pub fn ring(&mut self, (x, y): (f64, f64), radius: f64, colour: &str) {
         let _ = writeln!(
             self.0,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.6\"/>"
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"none\" \
+             stroke=\"{colour}\" stroke-width=\"1.6\"/>"
         );
     }
 
@@ -74,16 +77,12 @@ impl Svg {
     }
 
     /// A full rectangle.
-    pub fn rectangle(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), colour: &str) {
+    pub fn rectangle(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), colour: &str, opacity: f64) {
+        let opacity = if opacity < 1.0 { format!(" fill-opacity=\"{opacity:.2}\"") } else { String::new() };
         let _ = writeln!(
             self.0,
-            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"/>"
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"{opacity}/>"
         );
-    }
-
-    /// A full shape by its path.
-    pub fn shape(&mut self, path: &str, colour: &str) {
-        let _ = writeln!(self.0, "<path d=\"{path}\" fill=\"{colour}\"/>");
     }
 
     /// A line with a head at its end.
@@ -98,7 +97,8 @@ impl Svg {
         let ((ax, ay), (bx, by)) = (wing(1.0), wing(-1.0));
         let _ = writeln!(
             self.0,
-            "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}M{ax:.1} {ay:.1}L{x2:.1} {y2:.1}L{bx:.1} {by:.1}\" fill=\"none\" \
+            "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}M{ax:.1} {ay:.1}L{x2:.1} {y2:.1}L{bx:.1} {by:.1}\" \
+             fill=\"none\" \
              stroke=\"{colour}\" stroke-width=\"1.6\"/>"
         );
     }
@@ -143,8 +143,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Covers the values, from a power of ten to one or, if `tight`, to the largest; `from` and `to` are where they begin
-    /// and end on the page.
+    /// Covers the values, from a power of ten to one or, if `tight`, to the largest; `from` and `to` are where they
+    /// begin and end on the page.
     pub fn covering(values: impl Iterator<Item = f64>, tight: bool, from: f64, to: f64) -> Self {
         let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
         for value in values {

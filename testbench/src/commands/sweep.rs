@@ -116,18 +116,17 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
 fn summary(outcomes: &Outcomes, out: &Path) -> String {
     let Outcomes { points, computed } = outcomes;
     let with = |verified| points.iter().filter(|point| point.verified == verified).count();
-    let mut text = format!("{} points, {computed} of them computed now\n", points.len());
+    let mut lines = vec![format!("{} points, {computed} of them computed now", points.len())];
     for verified in [Verified::Rtl, Verified::Model, Verified::Golden] {
         let count = with(verified);
         if count > 0 {
-            text += &format!("  {count:>6} {}\n", verified.title());
+            lines.push(format!("  {count:>6} {}", verified.title()));
         }
     }
-    for refusal in refusals(outcomes) {
-        text += &format!("         {refusal}\n");
-    }
+    lines.extend(refusals(outcomes).iter().map(|refusal| format!("         {refusal}")));
     let file = |name: &str| out.join(name).display().to_string();
-    text + &format!("written: {}, {}, {}\n", file("report.html"), file("sweep.json"), file("sweep.csv"))
+    lines.push(format!("written: {}, {}, {}", file("report.html"), file("sweep.json"), file("sweep.csv")));
+    lines.join("\n") + "\n"
 }
 
 /// Why points are not in hardware, each reason once.

@@ -26,20 +26,18 @@ const SEED: u32 = 1;
 ///
 /// # Errors
 /// [`SweepError`] if the design has neither hardware nor a solution, or its RTL is not what the model says.
-pub fn evaluate(
-    job: &Job,
-    scene: &SweepScene,
-    wanted: Verified,
-    compiler: &Mutex<()>,
-) -> Result<Point, SweepError> {
+pub fn evaluate(job: &Job, scene: &SweepScene, wanted: Verified, compiler: &Mutex<()>) -> Result<Point, SweepError> {
     let design = &job.design;
     let frames = scene.frames.clone().as_delivered(design);
     let truth = frames.truth.clone().unwrap_or_default();
     let packets: Vec<Vec<u32>> = frames.stress.iter().map(|stress| encode(stress)).collect();
     let refused = |source| SweepError::Solver { label: job.label(scene), source };
     let solver = Solver::new(design).map_err(refused)?;
-    let solutions =
-        packets.iter().map(|packet| solver.solve(&as_received(packet))).collect::<Result<Vec<_>, _>>().map_err(refused)?;
+    let solutions = packets
+        .iter()
+        .map(|packet| solver.solve(&as_received(packet)))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(refused)?;
     let mut point = described(job, scene, &solver, &solutions, &truth);
     let plan = match Plan::new(design) {
         Ok(plan) => plan,
@@ -93,12 +91,7 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
     let answers: Vec<Answer> = solutions.iter().map(as_answer).collect();
     Point {
         key: job.key.clone(),
-        sensor: Geometry {
-            columns: sensor.columns,
-            rows: sensor.rows,
-            pitch_mm: sensor.pitch_mm,
-            depth_mm: sensor.depth_mm,
-        },
+        sensor: Geometry::from(sensor),
         scene: scene.name.clone(),
         plan: if algorithm.plan == PlanKind::Paper { "paper" } else { "reduced" }.to_owned(),
         kernel: if algorithm.kernel == Kernel::Point { "point" } else { "cell" }.to_owned(),
@@ -141,7 +134,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 
 /// Simulates in all stream modes; every word must be the model's, and the cycles those of the plan.
 fn check_rtl(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>], label: &str) -> Result<(), SweepError> {
-    let failed = |source: RunError| SweepError::Run { label: label.to_owned(), source };
+    let failed = |source: RunError| SweepError::Run { label: label.to_owned(), source: Box::new(source) };
     let sources = rtl_sources(plan).map_err(|error| failed(error.into()))?;
     let built = Verilate::default().build(&sources).map_err(|error| failed(error.into()))?;
     let columns = plan.design.sensor.columns;
@@ -149,7 +142,10 @@ fn check_rtl(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>], label: &s
     let simulation = simulate(&job, &|| ()).map_err(|error| failed(error.into()))?;
     let differs = |problem: String| Err(SweepError::NotExact { label: label.to_owned(), problem });
     if let Some(first) = simulation.modes.iter().find_map(|mode| mode.comparison.first.first()) {
-        return differs(format!("{} words of the RTL differ from the model, the first: {first}", simulation.mismatches()));
+        return differs(format!(
+            "{} words of the RTL differ from the model, the first: {first}",
+            simulation.mismatches()
+        ));
     }
     let simulated = (simulation.latency_cycles, simulation.interval_cycles);
     let predicted = (plan.timeline.latency_cycles, plan.timeline.interval_cycles);
@@ -165,7 +161,7 @@ fn check_rtl(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>], label: &s
 /// # Errors
 /// [`SweepError::Run`] if the design has no plan.
 pub fn answers(design: &Design, frames: &FrameSet) -> Result<Vec<Answer>, SweepError> {
-    let failed = |source| SweepError::Run { label: design.name.clone(), source: RunError::Plan(source) };
+    let failed = |source| SweepError::Run { label: design.name.clone(), source: Box::new(RunError::Plan(source)) };
     let plan = Plan::new(design).map_err(failed)?;
     let packets: Vec<Vec<u32>> =
         frames.clone().as_delivered(design).stress.iter().map(|stress| encode(stress)).collect();

@@ -115,8 +115,9 @@ pub fn filter_text(filter: &Filter) -> String {
 /// # Errors
 /// [`SweepError::OtherSensor`] for a scene of none of the designs, [`SweepError::NoPoints`] if no variant exists.
 pub fn jobs(designs: &[Design], axes: &Axes, scenes: &mut Vec<SweepScene>) -> Result<Vec<Job>, SweepError> {
-    if let Some(foreign) = scenes.iter().find(|scene| designs.iter().all(|design| design.sensor != scene.scene.sensor)) {
-        return Err(SweepError::OtherSensor(foreign.name.clone().into()));
+    if let Some(foreign) = scenes.iter().find(|scene| designs.iter().all(|design| design.sensor != scene.scene.sensor))
+    {
+        return Err(SweepError::OtherSensor(foreign.frames.origin.clone().into()));
     }
     let mut seen = BTreeSet::new();
     let mut jobs = Vec::new();
@@ -151,7 +152,8 @@ fn normal(design: &Design) -> Design {
 /// The digest that a point is filed under.
 fn key(design: &Design, scene: &SweepScene) -> String {
     let calibration = design.calibration_csv().unwrap_or_default();
-    let parts = [hdl_gen::emit::VERSION, env!("SPTFRA_SOURCES"), &design.to_toml(), &calibration, &scene.name, &scene.text];
+    let parts =
+        [hdl_gen::emit::VERSION, env!("SPTFRA_SOURCES"), &design.to_toml(), &calibration, &scene.name, &scene.text];
     let mut digest = Sha256::new();
     for part in parts {
         // With the length, so that no two lists of parts are the same bytes.
@@ -242,7 +244,8 @@ fn with_filters(base: &Design, axis: &[FilterAxis]) -> Vec<Design> {
             FilterAxis::F2(Some(p)) => filters.push(Filter::F2 { p }),
             FilterAxis::F2(None) => filters.extend(STEPS.map(|p| Filter::F2 { p: p as f64 })),
             FilterAxis::F3 => {
-                filters.extend(Some(&base.algorithm.filter).filter(|filter| matches!(filter, Filter::F3 { .. })).cloned());
+                filters
+                    .extend(Some(&base.algorithm.filter).filter(|filter| matches!(filter, Filter::F3 { .. })).cloned());
             }
         }
     }

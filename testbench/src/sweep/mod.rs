@@ -73,7 +73,7 @@ pub enum SweepError {
         /// The point.
         label: String,
         /// Why.
-        source: RunError,
+        source: Box<RunError>,
     },
     /// The RTL is not the model.
     #[error("{label}: {problem}; please report this design")]
@@ -133,7 +133,12 @@ impl SweepScene {
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let truth = frames.iter().map(Outcome::from).collect();
         let stress = frames.into_iter().map(|frame| frame.stress).collect();
-        Ok(Self { frames: FrameSet { origin: name.clone(), stress, truth: Some(truth) }, name, text, scene })
+        Ok(Self {
+            frames: FrameSet { origin: path.display().to_string(), stress, truth: Some(truth) },
+            name,
+            text,
+            scene,
+        })
     }
 
     /// The standing scene of a sensor.
@@ -142,12 +147,7 @@ impl SweepScene {
     /// [`SceneError`] if it cannot be computed for this geometry.
     pub fn standing(sensor: &golden::design::Sensor) -> Result<Self, SceneError> {
         let name = "standing".to_owned();
-        Ok(Self {
-            text: name.clone(),
-            scene: Scene::standing(sensor),
-            frames: FrameSet::standing(sensor)?,
-            name,
-        })
+        Ok(Self { text: name.clone(), scene: Scene::standing(sensor), frames: FrameSet::standing(sensor)?, name })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use golden::design::Sensor;
 use golden::metrics::ErrorSummary;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,13 @@ pub struct Geometry {
     pub pitch_mm: [f64; 2],
     /// Thickness of the layer.
     pub depth_mm: f64,
+}
+
+impl From<&Sensor> for Geometry {
+    fn from(sensor: &Sensor) -> Self {
+        let Sensor { columns, rows, pitch_mm, depth_mm } = *sensor;
+        Self { columns, rows, pitch_mm, depth_mm }
+    }
 }
 
 /// What the plan predicts.

@@ -60,8 +60,11 @@ impl Store {
     /// [`SweepError::Io`] and [`SweepError::Json`] with the file.
     pub fn get(&self, key: &str) -> Result<Point, SweepError> {
         let path = self.path(key);
-        let bytes =
-            fs::read(&path).map_err(|source| SweepError::Io { action: "read the point", path: path.clone(), source })?;
+        let bytes = fs::read(&path).map_err(|source| SweepError::Io {
+            action: "read the point",
+            path: path.clone(),
+            source,
+        })?;
         serde_json::from_slice(&bytes).map_err(|source| SweepError::Json { path, source })
     }
 }

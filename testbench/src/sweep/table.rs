@@ -21,9 +21,9 @@ pub fn csv(points: &[Point]) -> Result<String, SweepError> {
 }
 
 fn header() -> Vec<String> {
-    let fixed = "key scene columns rows pitch_x_mm pitch_y_mm depth_mm plan kernel filter estimator coefficient_bits data_bits \
-                 lanes verified latency_cycles interval_cycles latency_us interval_us dsp bram36 rom_bits macs nnz_total \
-                 frames mean_mu";
+    let fixed = "key scene columns rows pitch_x_mm pitch_y_mm depth_mm plan kernel filter estimator \
+                 coefficient_bits data_bits lanes verified latency_cycles interval_cycles latency_us interval_us \
+                 dsp bram36 rom_bits macs nnz_total frames mean_mu";
     let mut names: Vec<String> = fixed.split_whitespace().map(str::to_owned).collect();
     for kind in ["max", "standard_error"] {
         names.extend(ERROR_NAMES.iter().map(|name| format!("{name}_{kind}")));

@@ -1,0 +1,157 @@
+//! Tables 1 and 3 of the paper beside the points of a sweep.
+
+use golden::matrices::MatrixName;
+use golden::metrics::ErrorSummary;
+use serde::Serialize;
+
+use super::matrices::symbol;
+use super::paper::{TABLE_1, TABLE_3};
+use crate::sweep::point::{Point, paper_sensor};
+use crate::table::grouped;
+
+/// Widths and lanes of the shipped designs, by which points are looked up.
+const BASE: (u32, u32, usize) = (18, 27, 16);
+
+/// A cell with its class of style.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cell {
+    /// What it says.
+    pub text: String,
+    /// Empty, `paper`, `same` or `ours`.
+    pub class: &'static str,
+}
+
+/// A table of a page.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Table {
+    /// Above the columns.
+    pub header: Vec<String>,
+    /// Row by row.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+pub(super) fn cell(text: impl Into<String>, class: &'static str) -> Cell {
+    Cell { text: text.into(), class }
+}
+
+/// The point of a filter and a plan, in the usual widths and lanes, on one scene.
+pub fn find<'a>(points: &[&'a Point], filter: &str, plan: &str) -> Option<&'a Point> {
+    points.iter().copied().find(|point| {
+        (point.filter.as_str(), point.plan.as_str(), point.estimator.as_str()) == (filter, plan, "line")
+            && (point.coefficient_bits, point.data_bits, point.lanes) == BASE
+    })
+}
+
+/// Table 1: entries by filter and matrix, the paper's and ours; `None` for a sensor that is not the paper's.
+pub fn table_1(points: &[&Point]) -> Option<Table> {
+    let number = paper_sensor(&points.first()?.sensor)?;
+    let mut header = vec!["filter".to_owned(), String::new()];
+    header.extend(MatrixName::ALL.map(symbol));
+    header.push("mean µ".to_owned());
+    let mut rows = Vec::new();
+    for row in TABLE_1.iter().filter(|row| row.sensor == number) {
+        let mut paper = vec![cell(row.name, "name"), cell("paper", "paper")];
+        paper.extend(row.nnz.map(|count| cell(grouped(count as u64), "paper")));
+        paper.push(cell(format!("{:.2}", row.mean_mu), "paper"));
+        rows.push(paper);
+        let Some(point) = find(points, row.filter, "paper") else { continue };
+        let mut ours = vec![cell("", "name"), cell("ours", "")];
+        for (name, printed) in MatrixName::ALL.into_iter().zip(row.nnz) {
+            let count = point.nnz.get(name.as_str()).copied().unwrap_or_default();
+            ours.push(cell(grouped(count as u64), if count == printed { "same" } else { "" }));
+        }
+        ours.push(cell(format!("{:.2}", point.mean_mu), ""));
+        rows.push(ours);
+    }
+    Some(Table { header, rows })
+}
+
+/// Table 3: errors and times, the paper's and ours; `None` for a sensor that is not the paper's.
+pub fn table_3(points: &[&Point]) -> Option<Table> {
+    let number = paper_sensor(&points.first()?.sensor)?;
+    let names = ["e_Fx", "e_Fy", "e_Fz", "e_µ", "e_φ"];
+    let mut header = vec!["hardware".to_owned()];
+    header.extend(names.map(|name| format!("max {name}")));
+    header.extend(names.map(|name| format!("SE {}", name.trim_start_matches("e_"))));
+    header.push("time".to_owned());
+    header.push("verified by".to_owned());
+    let mut rows = Vec::new();
+    for row in TABLE_3.iter().filter(|row| row.sensor == number) {
+        let mut paper = vec![cell(format!("{}, paper", row.name), "paper")];
+        paper.extend(row.max.iter().chain(&row.standard_error).map(|error| cell(format!("{error:.2}"), "paper")));
+        paper.push(cell(format!("{:.2} ms", row.milliseconds), "paper"));
+        paper.push(cell(if row.software { "software" } else { "" }, "paper"));
+        rows.push(paper);
+        if let Some(point) = find(points, row.filter, "paper") {
+            if row.software {
+                rows.push(errors("f64 solver, no filter", &point.solver_errors, "", "software"));
+            } else {
+                rows.push(of_point(&format!("paper's plan, {}", point.filter_title()), point, ""));
+            }
+        }
+    }
+    if let Some(point) = find(points, "none", "reduced") {
+        rows.push(of_point("reduced plan, no filter", point, "ours"));
+    }
+    if let Some(point) = points.iter().find(|point| point.estimator == "joint") {
+        rows.push(of_point("joint estimator", point, "ours"));
+    }
+    Some(Table { header, rows })
+}
+
+fn of_point(name: &str, point: &Point, class: &'static str) -> Vec<Cell> {
+    let mut row = errors(name, &point.errors, class, point.verified.title());
+    if let Some(hardware) = &point.hardware {
+        let time = row.len() - 2;
+        row[time] = cell(format!("{:.1} µs", hardware.latency_us), class);
+    }
+    row
+}
+
+fn errors(name: &str, errors: &ErrorSummary, class: &'static str, verified: &str) -> Vec<Cell> {
+    let spreads = errors.spreads();
+    let mut row = vec![cell(name, class)];
+    row.extend(spreads.iter().map(|spread| cell(format!("{:.2}", spread.max), class)));
+    row.extend(spreads.iter().map(|spread| cell(format!("{:.2}", spread.standard_error), class)));
+    row.push(cell("", class));
+    row.push(cell(verified, class));
+    row
+}
+
+/// Lanes against speed and size of one filter and plan.
+pub fn lanes(points: &[&Point]) -> Table {
+    let header =
+        ["plan", "filter", "lanes", "latency", "interval", "frames/s", "DSP", "RAMB36", "ROM, kbit", "entries"]
+            .map(str::to_owned)
+            .to_vec();
+    let mut rows: Vec<(&Point, Vec<Cell>)> = Vec::new();
+    for point in points.iter().filter(|point| (point.coefficient_bits, point.data_bits) == (BASE.0, BASE.1)) {
+        let Some(hardware) = &point.hardware else { continue };
+        let of_lanes = |other: &&&Point| (&other.plan, &other.filter) == (&point.plan, &point.filter);
+        let mut varied: Vec<usize> = points.iter().filter(of_lanes).map(|other| other.lanes).collect();
+        varied.sort_unstable();
+        varied.dedup();
+        if varied.len() < 2 {
+            continue;
+        }
+        let rate = 1e6 / hardware.interval_us;
+        let cells = [
+            point.plan.clone(),
+            point.filter_title(),
+            point.lanes.to_string(),
+            format!("{} ({:.1} µs)", grouped(hardware.latency_cycles), hardware.latency_us),
+            grouped(hardware.interval_cycles),
+            grouped(rate.round() as u64),
+            hardware.dsp.to_string(),
+            format!("{:.1}", hardware.bram36),
+            grouped(hardware.rom_bits / 1000),
+            grouped(point.nnz_total as u64),
+        ];
+        rows.push((*point, cells.into_iter().map(|text| cell(text, "")).collect()));
+    }
+    rows.sort_by(|(a, _), (b, _)| {
+        (std::cmp::Reverse(&a.plan), &a.filter, a.lanes).cmp(&(std::cmp::Reverse(&b.plan), &b.filter, b.lanes))
+    });
+    rows.dedup_by(|a, b| a.1 == b.1);
+    Table { header, rows: rows.into_iter().map(|(_, cells)| cells).collect() }
+}

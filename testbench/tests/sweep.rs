@@ -1,0 +1,283 @@
+//! `testbench sweep` on tiny sensors: its points, its resuming, its files.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use golden::design::{Design, PlanKind};
+use serde_json::Value;
+use testbench::sweep::grid::{Axes, FilterAxis, jobs};
+use testbench::sweep::{SweepError, SweepScene};
+
+const SCENE: &str = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+    [medium]\nkind = \"half_space\"\n\
+    [[contact]]\nshape = \"hertz\"\nsemi_axes_mm = [4.0, 3.0]\ncentre_mm = [6.0, 4.0]\n\
+    normal_force_n = 1.0\nfriction = 0.4\n\
+    [sweep]\ndirection_deg = { from = 0, to = 270, step = 90 }\n";
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").to_owned()
+}
+
+/// 4 by 3 taxels.
+fn small() -> String {
+    root().join("designs/small.toml").display().to_string()
+}
+
+fn testbench(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_testbench")).args(arguments).output().expect("starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+fn succeeds(arguments: &[&str]) -> String {
+    let output = testbench(arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(text(&output.stderr), "", "quiet off a terminal");
+    text(&output.stdout)
+}
+
+fn scene_in(folder: &Path) -> String {
+    let path = folder.join("push.toml");
+    fs::write(&path, SCENE).expect("written");
+    path.display().to_string()
+}
+
+fn points_in(out: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> =
+        fs::read_dir(out.join("points")).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn points_are_the_combinations_that_exist_each_once() {
+    let base = Design::load(Path::new(&small())).expect("a design");
+    let named = Design { name: "other_name".to_owned(), ..base.clone() };
+    let both = jobs(&[base.clone(), named], &Axes::default(), &mut Vec::new()).expect("points");
+    let one = jobs(std::slice::from_ref(&base), &Axes::default(), &mut Vec::new()).expect("points");
+    assert_eq!(both.len(), one.len(), "a name makes no other point");
+    let keys: BTreeSet<&String> = one.iter().map(|job| &job.key).collect();
+    assert_eq!(keys.len(), one.len());
+    assert_eq!(one.iter().filter(|job| job.base).count(), 1);
+    // 12 taxels: F1 has no band but L = 10.
+    let of_plan = |kind| one.iter().filter(|job| job.design.algorithm.plan == kind).count();
+    let filters = 1 + 1 + 9;
+    assert!(of_plan(PlanKind::Paper) >= filters && of_plan(PlanKind::Reduced) >= filters);
+    for job in &one {
+        assert!(job.design.algorithm.plan == PlanKind::Paper || job.design.hardware.lanes % 4 == 0);
+    }
+
+    let axes = Axes {
+        filters: vec![FilterAxis::None, FilterAxis::F2(Some(50.0))],
+        plans: vec![PlanKind::Reduced, PlanKind::Paper],
+        lanes: vec![2, 4],
+        coefficient_bits: vec![12, 18],
+        ..Axes::default()
+    };
+    let named = jobs(std::slice::from_ref(&base), &axes, &mut Vec::new()).expect("points");
+    // The reduced plan has no two lanes.
+    assert_eq!(named.len(), 2 * 2 * (2 + 1));
+    let full = jobs(std::slice::from_ref(&base), &Axes { full: true, ..Axes::default() }, &mut Vec::new());
+    assert_eq!(full.expect("points").len(), filters * 2 * 5 * 6 * 6);
+    let none = Axes { plans: vec![PlanKind::Reduced], lanes: vec![3], ..Axes::default() };
+    assert!(matches!(jobs(&[base], &none, &mut Vec::new()), Err(SweepError::NoPoints)));
+}
+
+#[test]
+fn the_key_follows_design_and_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = scene_in(folder.path());
+    let base = Design::load(Path::new(&small())).expect("a design");
+    let key = |design: &Design| {
+        let mut scenes = vec![SweepScene::load(Path::new(&path)).expect("a scene")];
+        jobs(std::slice::from_ref(design), &Axes::default(), &mut scenes).expect("points")[0].key.clone()
+    };
+    let first = key(&base);
+    assert_eq!(key(&base), first);
+    let mut other = base.clone();
+    other.hardware.clock_mhz += 1.0;
+    assert_ne!(key(&other), first);
+    fs::write(&path, SCENE.replace("0.4", "0.3")).expect("written");
+    assert_ne!(key(&base), first);
+}
+
+#[test]
+fn a_sweep_goes_on_where_it_stopped_and_gives_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = scene_in(folder.path());
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    let sweep = |out: &str| {
+        succeeds(&["sweep", &small(), "--scene", &scene, "--filters", "none,f2", "--lanes", "4,8", "--out", out])
+    };
+    let [one, two] = ["one", "two"].map(place);
+    assert!(sweep(&one).starts_with("40 points, 40 of them computed now\n"));
+    let files = ["report.html", "sweep.json", "sweep.csv"];
+    let read = |out: &str| files.map(|name| fs::read(Path::new(out).join(name)).expect("written"));
+    let first = read(&one);
+    assert!(sweep(&one).starts_with("40 points, 0 of them computed now\n"));
+    assert!(read(&one) == first, "a second run changes nothing");
+    // As if it had been killed: one point is not there, one is cut off by a full disk.
+    let points = points_in(Path::new(&one));
+    assert_eq!(points.len(), 40);
+    fs::remove_file(&points[3]).expect("removed");
+    fs::write(&points[7], "{ \"key\":").expect("written");
+    assert!(sweep(&one).starts_with("40 points, 2 of them computed now\n"));
+    assert!(read(&one) == first, "what was missing is as it was");
+    assert!(sweep(&two).starts_with("40 points, 40 of them computed now\n"));
+    assert!(read(&two) == first, "another folder, the same bytes");
+}
+
+#[test]
+fn json_and_csv_agree_and_errors_are_finite() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let json = succeeds(&["sweep", &small(), "--out", &out.display().to_string(), "--json"]);
+    let points: Vec<Value> = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(fs::read_to_string(out.join("sweep.json")).expect("written"), json);
+    let mut table = csv::Reader::from_path(out.join("sweep.csv")).expect("CSV");
+    let header = table.headers().expect("a header").clone();
+    let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
+    assert_eq!(rows.len(), points.len());
+    let column = |name: &str| header.iter().position(|column| column == name).unwrap_or_else(|| panic!("{name}"));
+    for (row, point) in rows.iter().zip(&points) {
+        assert_eq!(row[column("key")], *point["key"].as_str().expect("a key"));
+        for (name, value) in [
+            ("latency_cycles", &point["hardware"]["latency_cycles"]),
+            ("dsp", &point["hardware"]["dsp"]),
+            ("rom_bits", &point["hardware"]["rom_bits"]),
+            ("nnz_total", &point["nnz_total"]),
+            ("lanes", &point["lanes"]),
+            ("e_Fx_max", &point["errors"]["e_fx"]["max"]),
+            ("e_phi_standard_error", &point["errors"]["e_phi"]["standard_error"]),
+            ("f64_e_mu_max", &point["solver_errors"]["e_mu"]["max"]),
+            ("field_max", &point["against_solver"]["field_max"]),
+        ] {
+            let (cell, value): (f64, f64) = (row[column(name)].parse().expect(name), value.as_f64().expect(name));
+            assert!(cell.is_finite() && (cell - value).abs() <= 1e-12 * value.abs(), "{name} {cell} {value}");
+        }
+        let sum: u64 = point["nnz"].as_object().expect("counts").values().filter_map(Value::as_u64).sum();
+        assert_eq!(Some(sum), point["nnz_total"].as_u64());
+    }
+}
+
+#[test]
+fn the_page_needs_nothing_else() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = scene_in(folder.path());
+    let out = folder.path().join("out");
+    succeeds(&["sweep", &small(), "--scene", &scene, "--out", &out.display().to_string()]);
+    let page = fs::read_to_string(out.join("report.html")).expect("written");
+    let without_names = page.replace("http://www.w3.org/2000/svg", "");
+    for foreign in ["http:", "https:", "<script", "<link", "<img", "src=", "url(", "@import", "NaN", "inf"] {
+        assert!(!without_names.contains(foreign), "{foreign}");
+    }
+    assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
+    for part in
+        ["prefers-color-scheme: dark", "Figure 11", "Figure 5", "Figure 8", "Figure 9", "force field", "push, 4 frames"]
+    {
+        assert!(page.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn the_rtl_is_asked_where_that_is_wanted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = scene_in(folder.path());
+    let out = folder.path().join("out").display().to_string();
+    let sweep = |simulate: &str| {
+        let options =
+            ["sweep", &small(), "--scene", &scene, "--filters", "none", "--out", &out, "--json", "--simulate"];
+        let json = succeeds(&[&options[..], &[simulate]].concat());
+        let points: Vec<Value> = serde_json::from_str(&json).expect("JSON");
+        points
+    };
+    let model = sweep("none");
+    assert!(model.iter().all(|point| point["verified"] == "model"), "{model:#?}");
+    let simulated = sweep("base");
+    let by_rtl: Vec<&Value> = simulated.iter().filter(|point| point["verified"] == "rtl").collect();
+    assert_eq!(by_rtl.len(), 1);
+    let before = model.iter().find(|point| point["key"] == by_rtl[0]["key"]).expect("the same point");
+    assert_eq!(before["errors"], by_rtl[0]["errors"]);
+    // What went through the RTL stays.
+    assert_eq!(sweep("none"), simulated);
+}
+
+#[test]
+fn a_design_without_hardware_is_a_point_that_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let design = fs::read_to_string(small()).expect("read");
+    let path = folder.path().join("fine.toml");
+    let fine = design.replace("[hardware]", "noise_floor_pa = 1e-6\n\n[hardware]");
+    assert_ne!(fine, design);
+    fs::write(&path, fine).expect("written");
+    let (design, out) = (path.display().to_string(), folder.path().join("out").display().to_string());
+    let json = succeeds(&["sweep", &design, "--filters", "none", "--plans", "reduced", "--out", &out, "--json"]);
+    let points: Vec<Value> = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(points.len(), 1);
+    assert_eq!(points[0]["verified"], "golden");
+    assert!(points[0]["hardware"].is_null() && points[0]["refusal"].as_str().expect("why").contains("data_bits"));
+    assert_eq!(points[0]["errors"], points[0]["solver_errors"]);
+}
+
+#[test]
+fn one_point_is_a_job_of_its_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let place = out.display().to_string();
+    let options = ["sweep", &small(), "--filters", "none", "--out", &place];
+    let keys = succeeds(&[&options[..], &["--list"]].concat());
+    let keys: Vec<&str> = keys.lines().collect();
+    assert_eq!(keys.len(), 2, "both plans");
+    for key in &keys {
+        assert!(succeeds(&[&options[..], &["--point", key]].concat()).contains(key));
+    }
+    assert!(succeeds(&options).starts_with("2 points, 0 of them computed now\n"));
+    let output = testbench(&[&options[..], &["--point", "0123"]].concat());
+    assert!(!output.status.success() && text(&output.stderr).contains("0123 is no point"), "{output:?}");
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out").display().to_string();
+    let refused = |arguments: &[&str]| {
+        let output = testbench(&[&["sweep", &small(), "--out", &out], arguments].concat());
+        assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?}");
+        text(&output.stderr)
+    };
+    let foreign = root().join("scenes/sensor1-hertz.toml").display().to_string();
+    assert!(refused(&["--scene", &foreign]).contains("sensor1-hertz"));
+    assert!(refused(&["--filters", "f9"]).contains("f9"));
+    assert!(refused(&["--filters", "f1-x"]).contains("f1-x"));
+    assert!(refused(&["--lanes", "3", "--plans", "reduced"]).contains("no point is left"));
+    assert!(refused(&["--scene", "no-such.toml"]).contains("no-such.toml"));
+}
+
+/// With Snakemake's local executor; it is installed by `make sweep-tools`.
+#[test]
+#[ignore = "needs Snakemake: make sweep-tools"]
+fn the_workflow_makes_the_same_report() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [jobs, here] = ["jobs", "here"].map(|name| folder.path().join(name));
+    let snakemake = root().join(".venv/bin/snakemake");
+    let output = Command::new(&snakemake)
+        .args(["--snakefile", "tools/sweep.smk", "--cores", "2", "--quiet", "--directory"])
+        .arg(folder.path())
+        .env("TESTBENCH", env!("CARGO_BIN_EXE_testbench"))
+        .env("SWEEP_FOLDER", &jobs)
+        .env("SWEEP_DESIGNS", small())
+        .env("SWEEP_OPTIONS", "--filters none,f2-50")
+        .current_dir(root())
+        .output()
+        .expect("Snakemake starts");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    succeeds(&["sweep", &small(), "--filters", "none,f2-50", "--out", &here.display().to_string()]);
+    for file in ["report.html", "sweep.json", "sweep.csv"] {
+        let read = |folder: &Path| fs::read(folder.join(file)).expect("written");
+        assert!(read(&jobs) == read(&here), "{file}");
+    }
+}
