@@ -57,6 +57,12 @@ build: ## The three commands: golden, hdl-gen, testbench
 doc: ## The crates' documentation, in target/doc
 	$(CARGO) doc --workspace --no-deps
 
+.PHONY: registers
+registers: tools build ## C header and page of a register bank, by PeakRDL, for a design with control = true
+	@$(BIN)/hdl-gen generate $(DESIGN)
+	@name=$$(sed -n 's/^name *= *"\(.*\)".*/\1/p' $(DESIGN)); \
+	    tools/registers.sh "rtl-out/$$name/control/$$name.rdl" "$(TARGET)/registers/$$name"
+
 .PHONY: tools
 tools: ## Install Verilator, Yosys and Icarus Verilog where they are missing
 	@tools/install.sh

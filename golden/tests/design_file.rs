@@ -41,6 +41,16 @@ fn everything_but_name_and_sensor_has_a_default() {
 }
 
 #[test]
+fn a_register_bank_is_asked_for_and_leaves_no_word_where_it_is_not() {
+    let of = |text: &str| Design::from_toml(&format!("{MINIMAL}[hardware]\n{text}\n"), "pad.toml").unwrap();
+    let (without, with) = (of("control = false"), of("control = true"));
+    assert_eq!(without.to_toml(), Design::from_toml(MINIMAL, "pad.toml").unwrap().to_toml());
+    assert!(!without.to_toml().contains("control"));
+    assert!(with.hardware.control && with.to_toml().contains("\ncontrol = true\n"));
+    assert_eq!(Design::from_toml(&with.to_toml(), "pad.toml").unwrap(), with);
+}
+
+#[test]
 fn the_plan_is_the_reduced_one_where_that_changes_nothing_and_fits() {
     for (more, expected) in [
         ("[hardware]\nlanes = 4", PlanKind::Reduced),

@@ -37,6 +37,39 @@ pub struct Outputs {
     pub sink: Beat,
 }
 
+/// What drives the AXI4-Lite port of a core with a register bank during one clock cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PortInputs {
+    /// `awvalid` and `awaddr`.
+    pub write_address: Option<u32>,
+    /// `wvalid`, `wdata` and `wstrb`.
+    pub write_data: Option<(u32, u32)>,
+    /// `bready`.
+    pub take_response: bool,
+    /// `arvalid` and `araddr`.
+    pub read_address: Option<u32>,
+    /// `rready`.
+    pub take_data: bool,
+}
+
+/// What the AXI4-Lite port shows before the rising edge that ends the cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a wire")]
+pub struct PortOutputs {
+    /// `awready`.
+    pub write_address_ready: bool,
+    /// `wready`.
+    pub write_data_ready: bool,
+    /// `bvalid` and `bresp`.
+    pub response: Option<u32>,
+    /// `arready`.
+    pub read_address_ready: bool,
+    /// `rvalid`, `rdata` and `rresp`.
+    pub data: Option<(u32, u32)>,
+    /// The core's interrupt.
+    pub interrupt: bool,
+}
+
 /// Anything with the two streams of a core: the simulated RTL, or a stand-in in a test of the driver.
 pub trait Core {
     /// One clock cycle.
@@ -67,6 +100,8 @@ pub enum DutError {
 
 type New = unsafe extern "C" fn(seed: u32, text: *mut c_char, size: usize) -> *mut c_void;
 type Step = unsafe extern "C" fn(dut: *mut c_void, inputs: u64, text: *mut c_char, size: usize) -> u64;
+type DriveControl = unsafe extern "C" fn(dut: *mut c_void, addresses: u32, data: u32, flags: u32);
+type ReadControl = unsafe extern "C" fn(dut: *mut c_void) -> u64;
 type Delete = unsafe extern "C" fn(dut: *mut c_void);
 type OpenTrace = unsafe extern "C" fn(dut: *mut c_void, path: *const c_char) -> i32;
 
@@ -74,6 +109,8 @@ type OpenTrace = unsafe extern "C" fn(dut: *mut c_void, path: *const c_char) -> 
 pub struct Dut {
     handle: *mut c_void,
     step: Step,
+    drive_control: DriveControl,
+    read_control: ReadControl,
     delete: Delete,
     // Dropped after `delete` was called: the functions above live in it.
     library: Library,
@@ -91,12 +128,14 @@ impl Dut {
         let failed = |source| DutError::Load { path: path.to_owned(), source };
         // SAFETY: the library is our own wrapper, whose functions have exactly these signatures and whose
         // initialisers touch nothing outside it.
-        let (library, new, step, delete) = unsafe {
+        let (library, new, step, drive_control, read_control, delete) = unsafe {
             let library = Library::new(path).map_err(failed)?;
             let new: New = *library.get(b"dut_new").map_err(failed)?;
             let step: Step = *library.get(b"dut_step").map_err(failed)?;
+            let drive_control: DriveControl = *library.get(b"dut_drive_control").map_err(failed)?;
+            let read_control: ReadControl = *library.get(b"dut_read_control").map_err(failed)?;
             let delete: Delete = *library.get(b"dut_delete").map_err(failed)?;
-            (library, new, step, delete)
+            (library, new, step, drive_control, read_control, delete)
         };
         let mut text = [0u8; MESSAGE_SIZE];
         // SAFETY: `text` is writable for its whole size.
@@ -104,7 +143,37 @@ impl Dut {
         if handle.is_null() {
             return Err(DutError::Failed(message(&text)));
         }
-        Ok(Self { handle, step, delete, library })
+        Ok(Self { handle, step, drive_control, read_control, delete, library })
+    }
+
+    /// Drives the AXI4-Lite port from the next cycle on; no effect on a core without one.
+    pub fn drive_port(&mut self, inputs: &PortInputs) {
+        let addresses = inputs.write_address.unwrap_or(0) & 0xFFF | (inputs.read_address.unwrap_or(0) & 0xFFF) << 16;
+        let (data, strobes) = inputs.write_data.unwrap_or((0, 0));
+        let flags = u32::from(inputs.write_address.is_some())
+            | u32::from(inputs.write_data.is_some()) << 1
+            | u32::from(inputs.take_response) << 2
+            | u32::from(inputs.read_address.is_some()) << 3
+            | u32::from(inputs.take_data) << 4
+            | (strobes & 0xF) << 8;
+        // SAFETY: the handle is live.
+        unsafe { (self.drive_control)(self.handle, addresses, data, flags) }
+    }
+
+    /// What the AXI4-Lite port showed in the last cycle; nothing on a core without one.
+    pub fn port(&self) -> Option<PortOutputs> {
+        // SAFETY: the handle is live.
+        let word = unsafe { (self.read_control)(self.handle) };
+        let bit = |position: u32| word >> position & 1 != 0;
+        let pair = |position: u32| (word >> position) as u32 & 3;
+        (!bit(63)).then(|| PortOutputs {
+            write_address_ready: bit(32),
+            write_data_ready: bit(33),
+            response: bit(34).then(|| pair(40)),
+            read_address_ready: bit(35),
+            data: bit(36).then(|| (word as u32, pair(42))),
+            interrupt: bit(37),
+        })
     }
 
     /// Writes every signal to `path` from now on; the file is complete when the core is dropped.

@@ -8,6 +8,7 @@ pub mod dut;
 pub mod frame_set;
 pub mod page;
 pub mod progress;
+pub mod registers;
 pub mod report;
 pub mod run;
 pub mod simulate;

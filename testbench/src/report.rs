@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::accuracy::{SolverError, StatusCounts};
 use crate::compare::Mismatch;
+use crate::registers::RegisterReport;
 
 /// The published design of the method, for one frame of a 10 × 10 sensor (Pinto-Salamanca et al., Sensors 2024).
 pub const PUBLISHED: Published = Published { latency_cycles: 7_335_000, milliseconds: 58.68, dsp: 568, bram36: 849 };
@@ -100,6 +101,9 @@ pub struct Report {
     pub status_counts: StatusCounts,
     /// By stream mode.
     pub modes: Vec<ModeReport>,
+    /// The register bank; absent in a core without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub registers: Option<RegisterReport>,
     /// DSP48E2, as the plan counts them.
     pub dsp: usize,
     /// RAMB36, as the plan counts them.
@@ -119,6 +123,13 @@ pub struct Report {
     pub published: Option<Published>,
     /// The simulator.
     pub simulator: String,
+}
+
+impl Report {
+    /// Whether every word is the model's and every register has the value that it should have.
+    pub fn is_right(&self) -> bool {
+        self.bit_exact && self.registers.as_ref().is_none_or(|registers| registers.wrong.is_empty())
+    }
 }
 
 /// One line on what the design is.

@@ -14,6 +14,7 @@ use thiserror::Error;
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
+use crate::registers;
 use crate::report::{Microseconds, ModeReport, Predicted, Report, describe, published_for};
 use crate::simulate::{Job, Simulation, SimulationError, frames_to_simulate, simulate};
 use crate::verilate::{BuildError, RtlSources, Trace, Verilate, verilator_version};
@@ -109,6 +110,13 @@ pub fn run(design: &Design, frames: &FrameSet, options: &Options<'_>, progress: 
         trace: options.trace,
     };
     let simulation = simulate(&job, &|| progress.step())?;
+    let registers = if design.hardware.control {
+        progress.counted("simulating with register accesses", packets.len() as u64);
+        let seed = options.seed;
+        Some(registers::check(&plan, &built, &packets, &expected, job.timeout, seed, || progress.step())?)
+    } else {
+        None
+    };
 
     // Answers of another length are mismatches already; here they count as missing.
     let answers: Vec<Answer> = simulation.answers.iter().filter_map(|words| decode(words)).collect();
@@ -118,6 +126,7 @@ pub fn run(design: &Design, frames: &FrameSet, options: &Options<'_>, progress: 
     report.frames_from.clone_from(&frames.origin);
     report.frames = packets.len();
     report.error = error;
+    report.registers = registers;
     report.status_counts = StatusCounts::new(&answers);
     report.true_force_errors = frames.truth.as_ref().map(|truth| against_truth(&answers, truth));
     Ok(report)
@@ -177,6 +186,7 @@ fn summarise(plan: &Plan, simulation: &Simulation, simulator: String) -> Report 
         true_force_errors: None,
         status_counts: StatusCounts::default(),
         modes,
+        registers: None,
         dsp: plan.resources.dsp,
         bram36: plan.resources.bram36,
         rom_bits: plan.resources.rom_bits,

@@ -17,6 +17,7 @@ pub fn render(report: &Report) -> String {
     page.line(&format!("{} frames from {} · {}", report.frames, report.frames_from, report.simulator));
     speed(&mut page, report);
     streams(&mut page, report);
+    registers(&mut page, report);
     accuracy(&mut page, report);
     verdict(&mut page, report);
     page.text
@@ -69,6 +70,17 @@ fn streams(page: &mut Page, report: &Report) {
         for mismatch in &mode.first_mismatches {
             page.line(&format!("    {mismatch}"));
         }
+    }
+}
+
+fn registers(page: &mut Page, report: &Report) {
+    let Some(registers) = &report.registers else { return };
+    let wrong = registers.wrong.len();
+    let differ = if wrong == 0 { "0, all right".to_owned() } else { grouped(wrong as u64) };
+    page.heading("Register bank", &["accesses", "differ"]);
+    page.row("AXI4-Lite", &[grouped(registers.accesses as u64), differ]);
+    for line in &registers.wrong {
+        page.line(&format!("    {line}"));
     }
 }
 

@@ -7,6 +7,8 @@
 mod block_design;
 #[path = "flows/broken.rs"]
 mod broken;
+#[path = "flows/control.rs"]
+mod control;
 #[path = "flows/folder.rs"]
 mod folder;
 #[path = "flows/fusesoc.rs"]

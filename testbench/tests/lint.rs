@@ -31,6 +31,8 @@ fn designs() -> Vec<Design> {
         by_plan(shipped("small"), reduced, Outputs::Field),
         by_plan(shipped("small"), reduced, Outputs::Resultants),
         by_plan(with_lanes(shipped("odd"), 12), reduced, Outputs::Field),
+        shipped("small-control"),
+        by_plan(shipped("small-control"), paper, Outputs::Field),
         shipped("sensor1-reduced-64"),
         shipped("sensor1-resultants"),
         tiny,

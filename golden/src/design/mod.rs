@@ -174,6 +174,8 @@ pub struct Hardware {
     pub optimise: Optimise,
     /// Whether zeros of |w| are skipped; with the reduced plan and no filter.
     pub skip_zeros: bool,
+    /// Whether the core has a register bank on AXI4-Lite.
+    pub control: bool,
     /// Clock in megahertz, 1 to 1000.
     pub clock_mhz: f64,
     /// FPGA part name.

@@ -71,6 +71,7 @@ struct RawHardware {
     target_us: Option<f64>,
     optimise: Option<String>,
     skip_zeros: Option<bool>,
+    control: Option<bool>,
     clock_mhz: Option<f64>,
     part: Option<String>,
 }
@@ -175,6 +176,7 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         target_us: target_us.transpose()?,
         optimise,
         skip_zeros: raw.skip_zeros.unwrap_or(false),
+        control: raw.control.unwrap_or(false),
         clock_mhz: check.real("hardware.clock_mhz", raw.clock_mhz.unwrap_or(125.0), 1.0, 1000.0, "MHz")?,
         part,
     })

@@ -55,6 +55,8 @@ pub(super) fn to_toml(design: &Design) -> String {
         Some(target) => format!("target_us = {target:?}"),
         None => format!("lanes = {}", hardware.lanes),
     };
+    // Only where it is there: a design without it keeps the hash that it had before there was such a key.
+    let control = if hardware.control { "control = true\n" } else { "" };
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write!(
@@ -64,7 +66,7 @@ pub(super) fn to_toml(design: &Design) -> String {
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{filter}estimator = \"{estimator}\"\n\
          {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\nclock_mhz = {:?}\npart = \"{}\"\n",
+         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{control}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],

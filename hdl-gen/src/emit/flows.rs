@@ -57,6 +57,8 @@ struct View {
     /// Path of the self-checking testbench and names of its data files in `sim/`.
     testbench: Option<String>,
     sim_data: Vec<String>,
+    /// Whether there is a register bank.
+    control: bool,
 }
 
 impl View {
@@ -85,6 +87,7 @@ impl View {
             rom: names(files, "rom/", ".mem"),
             sim_data: names(files, "sim/", ".mem"),
             testbench: files.contains_key(&testbench).then_some(testbench),
+            control: design.hardware.control,
             name: design.name.clone(),
         }
     }

@@ -4,6 +4,7 @@ mod flows;
 mod folded_view;
 mod mcsr;
 mod metadata;
+mod registers;
 mod roms;
 mod sim;
 mod verilog;
@@ -11,6 +12,7 @@ mod view;
 
 use std::collections::BTreeMap;
 
+use golden::design::Design;
 use golden::scene::SceneError;
 use sha2::{Digest, Sha256};
 use thiserror::Error;
@@ -48,7 +50,7 @@ pub enum EmitError {
 /// Version of the generator, as printed into every file.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, file lists, `metadata.json`,
+/// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, `control/`, file lists, `metadata.json`,
 /// `design.toml`.
 ///
 /// # Errors
@@ -56,8 +58,7 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
-    // The calibration is a part of the design that stands in a file of its own.
-    let hash = design_hash(&(design.clone() + &plan.design.calibration_csv().unwrap_or_default()));
+    let hash = resolved_hash(&plan.design);
     for core in cores::emit_with(Multiplier::of_part(&plan.design.hardware.part))? {
         files.insert(format!("rtl/{}.v", core.module), core.verilog.into_bytes());
     }
@@ -67,6 +68,7 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     roms::insert(plan, &mut files);
     sim::insert(plan, &hash, &mut files)?;
     mcsr::insert(plan, &mut files);
+    registers::insert(plan, &hash, &mut files)?;
     files.insert("design.toml".to_owned(), design.into_bytes());
     if let Some(calibration) = plan.design.calibration_csv() {
         files.insert("calibration.csv".to_owned(), calibration.into_bytes());
@@ -82,6 +84,12 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
 pub fn design_hash(resolved_design: &str) -> String {
     let digest = Sha256::digest(format!("{VERSION}\n{resolved_design}"));
     digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The hash of a design, as its files, `metadata.json` and its registers have it.
+pub fn resolved_hash(design: &Design) -> String {
+    // The calibration is a part of the design that stands in a file of its own.
+    design_hash(&(design.to_toml() + &design.calibration_csv().unwrap_or_default()))
 }
 
 /// Name of a ROM file of one lane.

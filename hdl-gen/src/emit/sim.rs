@@ -27,6 +27,8 @@ struct View<'a> {
     /// Words of an output frame.
     beats: usize,
     timeout: u64,
+    /// Whether the core has a register bank.
+    control: bool,
 }
 
 /// Adds `sim/NAME_tb.v`, `sim/NAME_stimulus.mem` and `sim/NAME_expected.mem`.
@@ -46,6 +48,7 @@ pub fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitEr
         words_out: answers.iter().map(Vec::len).sum(),
         beats: model.output_words(),
         timeout: SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64,
+        control: plan.design.hardware.control,
     };
     let module = format!("{name}_tb");
     let context =

@@ -20,7 +20,7 @@ use crate::plan::schedule::TURN_GAP;
 use crate::plan::timing::{DIRECTION_LATENCY, LINE_LATENCY, OUTPUT_DEPTH, SUMMARY_LATENCY};
 
 use super::folded_view::FoldedView;
-use super::roms;
+use super::{registers, roms};
 
 /// One sparse product as the templates see it.
 #[derive(Serialize)]
@@ -42,8 +42,12 @@ pub struct ProductView {
 
 /// The data of all templates. Widths end in `_width`, counts of words in `_depth`.
 #[derive(Serialize)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a question that a template asks")]
 pub struct View {
     name: String,
+    /// Whether a register bank is around the core, and then the core's own module.
+    control: bool,
+    core_module: String,
     /// Modules that multiply, as the part does it best.
     mac: &'static str,
     multiply: &'static str,
@@ -259,6 +263,8 @@ impl View {
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
             name: design.name.clone(),
+            control: hardware.control,
+            core_module: registers::core_module(plan),
             mac: multiplier.mac(),
             multiply: multiplier.multiply(),
             columns: design.sensor.columns,

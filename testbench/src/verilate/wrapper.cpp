@@ -2,6 +2,11 @@
 //
 // Input word of dut_step: bits 31:0 s_axis_tdata, 32 s_axis_tvalid, 33 s_axis_tlast, 34 m_axis_tready, 35 aresetn.
 // Output word: bits 31:0 m_axis_tdata, 32 m_axis_tvalid, 33 m_axis_tlast, 34 s_axis_tready, 63 the simulation failed.
+//
+// A core with a register bank takes what its AXI4-Lite port is driven with from dut_drive_control, before dut_step, and
+// leaves what the port showed in that cycle to dut_read_control. Inputs: bits 11:0 and 27:16 of `addresses` awaddr and
+// araddr, `data` wdata, `flags` 0 awvalid, 1 wvalid, 2 bready, 3 arvalid, 4 rready, 11:8 wstrb. Outputs: bits 31:0 rdata,
+// 32 awready, 33 wready, 34 bvalid, 35 arready, 36 rvalid, 37 interrupt, 41:40 bresp, 43:42 rresp, 63 no such port.
 
 #include "Vdut.h"
 #include "verilated.h"
@@ -19,6 +24,8 @@ using Trace = VerilatedVcdC;
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #define DUT_API extern "C" __attribute__((visibility("default")))
 
@@ -34,6 +41,41 @@ namespace {
 
 constexpr uint64_t FAILED = uint64_t(1) << 63;
 constexpr uint64_t HALF_PERIOD = 1;
+constexpr uint64_t NO_CONTROL = uint64_t(1) << 63;
+
+// The AXI4-Lite port, on a model that has one.
+template <class Model, class = void>
+struct Control {
+    static void drive(Model&, uint32_t, uint32_t, uint32_t) {}
+    static uint64_t read(Model&) { return NO_CONTROL; }
+};
+
+template <class Model>
+struct Control<Model, std::void_t<decltype(std::declval<Model&>().s_axi_ctrl_awvalid)>> {
+    static void drive(Model& model, uint32_t addresses, uint32_t data, uint32_t flags) {
+        model.s_axi_ctrl_awaddr = addresses & 0xFFF;
+        model.s_axi_ctrl_araddr = (addresses >> 16) & 0xFFF;
+        model.s_axi_ctrl_awprot = 0;
+        model.s_axi_ctrl_arprot = 0;
+        model.s_axi_ctrl_wdata = data;
+        model.s_axi_ctrl_awvalid = flags & 1;
+        model.s_axi_ctrl_wvalid = (flags >> 1) & 1;
+        model.s_axi_ctrl_bready = (flags >> 2) & 1;
+        model.s_axi_ctrl_arvalid = (flags >> 3) & 1;
+        model.s_axi_ctrl_rready = (flags >> 4) & 1;
+        model.s_axi_ctrl_wstrb = (flags >> 8) & 0xF;
+    }
+
+    static uint64_t read(Model& model) {
+        const auto bit = [](uint64_t value, int position) { return value << position; };
+        // Verilator's name for a port whose own is a word of C++.
+        const uint64_t interrupt = model.__SYM__interrupt;
+        return uint64_t(model.s_axi_ctrl_rdata) | bit(model.s_axi_ctrl_awready, 32) | bit(model.s_axi_ctrl_wready, 33)
+               | bit(model.s_axi_ctrl_bvalid, 34) | bit(model.s_axi_ctrl_arready, 35)
+               | bit(model.s_axi_ctrl_rvalid, 36) | bit(interrupt, 37) | bit(model.s_axi_ctrl_bresp, 40)
+               | bit(model.s_axi_ctrl_rresp, 42);
+    }
+};
 
 struct Dut {
     VerilatedContext context;
@@ -42,6 +84,7 @@ struct Dut {
     std::unique_ptr<Trace> trace;
 #endif
     uint64_t time = 0;
+    uint64_t control = NO_CONTROL;  // what the port showed in the last cycle
 
     explicit Dut(uint32_t seed) {
         context.randReset(2);  // registers start with random bits, the same ones for the same seed
@@ -54,6 +97,7 @@ struct Dut {
         model->s_axis_tlast = 0;
         model->s_axis_tdata = 0;
         model->m_axis_tready = 0;
+        Control<Vdut>::drive(*model, 0, 0, 0);
         model->eval();
     }
 
@@ -111,6 +155,7 @@ DUT_API uint64_t dut_step(void* handle, uint64_t inputs, char* text, size_t size
         dut.settle(0);
         const uint64_t outputs = uint64_t(model.m_axis_tdata) | uint64_t(model.m_axis_tvalid) << 32
                                  | uint64_t(model.m_axis_tlast) << 33 | uint64_t(model.s_axis_tready) << 34;
+        dut.control = Control<Vdut>::read(model);
         dut.settle(1);
         return outputs;
     } catch (const std::exception& error) {
@@ -118,6 +163,14 @@ DUT_API uint64_t dut_step(void* handle, uint64_t inputs, char* text, size_t size
         return FAILED;
     }
 }
+
+// Drives the AXI4-Lite port from the next cycle on; nothing on a core without one.
+DUT_API void dut_drive_control(void* handle, uint32_t addresses, uint32_t data, uint32_t flags) {
+    Control<Vdut>::drive(*static_cast<Dut*>(handle)->model, addresses, data, flags);
+}
+
+// What the port showed in the last cycle.
+DUT_API uint64_t dut_read_control(void* handle) { return static_cast<Dut*>(handle)->control; }
 
 #if VM_TRACE
 // Writes every signal to `path` from now on. False if the file cannot be created.

@@ -5,7 +5,7 @@ namespace eval standin {
     variable boards {xilinx.com:zcu102:part0:3.10 xilinx.com:zcu102:part0:3.4 xilinx.com:zcu104:part0:1.1}
     variable catalogue {
         xilinx.com:ip:zynq_ultra_ps_e:3.3 xilinx.com:ip:zynq_ultra_ps_e:3.5 xilinx.com:ip:axi_dma:7.1
-        xilinx.com:ip:smartconnect:1.0 xilinx.com:ip:proc_sys_reset:5.0
+        xilinx.com:ip:smartconnect:1.0 xilinx.com:ip:proc_sys_reset:5.0 xilinx.com:ip:xlconcat:2.1
     }
 
     # Legal parameters and values, by IP.
@@ -25,6 +25,7 @@ namespace eval standin {
         }
         smartconnect {NUM_SI {[1-9]|1[0-6]} NUM_MI {[1-9]|1[0-6]} NUM_CLKS {[1-4]}}
         proc_sys_reset {}
+        xlconcat {NUM_PORTS {[1-9]|[12][0-9]|3[0-2]}}
         core {ROM_DIR {.*}}
     }
 
@@ -40,6 +41,7 @@ namespace eval standin {
         proc_sys_reset {
             slowest_sync_clk in clock ext_reset_in in reset peripheral_aresetn out reset interconnect_aresetn out reset
         }
+        xlconcat {dout out interrupt}
         core {aclk in clock aresetn in reset}
     }
 
@@ -60,6 +62,7 @@ namespace eval standin {
         }
         smartconnect {}
         proc_sys_reset {}
+        xlconcat {}
         core {}
     }
 
@@ -116,7 +119,20 @@ namespace eval standin {
         }
         switch $kind {
             axi_dma { lappend pins S_AXI_LITE slave aximm }
-            core { lappend pins s_axis slave axis m_axis master axis }
+            core {
+                # As packaged.
+                lappend pins s_axis slave axis m_axis master axis
+                foreach {interface side type} {s_axi_ctrl slave aximm interrupt out interrupt} {
+                    if {[info exists ::standin::interfaces($interface)]} {
+                        lappend pins $interface $side $type
+                    }
+                }
+            }
+            xlconcat {
+                for {set index 0} {$index < [value $cell NUM_PORTS 2]} {incr index} {
+                    lappend pins In$index in interrupt
+                }
+            }
             smartconnect {
                 foreach {prefix count side} [list S [value $cell NUM_SI 2] slave M [value $cell NUM_MI 1] master] {
                     for {set index 0} {$index < $count} {incr index} {

@@ -24,6 +24,10 @@ namespace eval standin {
         foreach port $ports {
             if {[regexp {^(\w+_axis|axis)_tvalid$} $port -> name]} {
                 set interfaces($name) xilinx.com:interface:axis_rtl:1.0
+            } elseif {[regexp {^(\w+)_awvalid$} $port -> name]} {
+                set interfaces($name) xilinx.com:interface:aximm_rtl:1.0
+            } elseif {$port eq "interrupt"} {
+                set interfaces(interrupt) xilinx.com:signal:interrupt_rtl:1.0
             } elseif {$port eq "aclk"} {
                 set interfaces(aclk) xilinx.com:signal:clock_rtl:1.0
             } elseif {$port eq "aresetn"} {
@@ -71,6 +75,15 @@ standin::command ipx::get_bus_interfaces {-of_objects=} 0 1 {
         }
     }
     return $found
+}
+# Each AXI slave has one, of its own name.
+standin::command ipx::get_memory_maps {-of_objects=} 1 1 {
+    standin::choice "core" $option(-of_objects) core:current
+    set name [lindex $words 0]
+    if {[info exists ::standin::interfaces($name)] && [string match *:aximm_rtl:* $::standin::interfaces($name)]} {
+        return map:$name
+    }
+    return {}
 }
 standin::command ipx::infer_bus_interface {} 3 3 {
     foreach {ports vlnv core} $words {}
@@ -135,12 +148,20 @@ standin::command ipx::update_checksums {} 1 1 {
 standin::command ipx::check_integrity {} 1 1 {
     standin::need ipx::update_checksums
     foreach name [standin::interface_names] {
-        if {![string match *:clock_rtl:* $::standin::interfaces($name)] && ![info exists ::standin::associated($name)]} {
+        if {[regexp {:(clock|interrupt)_rtl:} $::standin::interfaces($name)]} {
+            continue
+        }
+        if {![info exists ::standin::associated($name)]} {
             error "interface $name has no clock"
         }
     }
     foreach name {s_axis m_axis aresetn} {
         standin::has_interface $name
+    }
+    foreach name [standin::interface_names] {
+        if {[string match *:aximm_rtl:* $::standin::interfaces($name)] && $::standin::associated($name) ne "aclk"} {
+            error "interface $name is in another clock domain"
+        }
     }
     foreach name {name version core_revision display_name description} {
         get_property $name core:current
