@@ -17,7 +17,7 @@ use crate::plan::optimum::{
 };
 use crate::plan::product::{Block, Epilogue, Product, Vector};
 use crate::plan::schedule::TURN_GAP;
-use crate::plan::timing::{DIRECTION_LATENCY, LINE_LATENCY, OUTPUT_DEPTH, SUMMARY_LATENCY};
+use crate::plan::timing::{DIRECTION_LATENCY, LINE_LATENCY, OUTPUT_DEPTH, SEQUENCER_TO_LANES, SUMMARY_LATENCY};
 
 use super::folded_view::FoldedView;
 use super::{registers, roms};
@@ -252,7 +252,7 @@ impl View {
         let beat_width = address_bits(beats);
         let sum_lsb = plan.formats.g.lsb - FRICTION_FRACTION as i32;
         let f_lsb = FoldedView::f_lsb(plan).unwrap_or(sum_lsb);
-        let drain_cycles = schedule.drained().saturating_sub(schedule.issue_cycles() - 1);
+        let drain_cycles = (schedule.drained() + SEQUENCER_TO_LANES).saturating_sub(schedule.issue_cycles() - 1);
         let longest = schedule.windows.iter().map(|window| window.length.max(window.wait)).max().unwrap_or(1);
         let element_width = address_bits(optimum.elements);
         let leads = plan.products.iter().filter_map(|product| product.lead).map(|lead| lead.shift);

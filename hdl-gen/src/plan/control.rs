@@ -12,8 +12,8 @@ use super::optimum::OptimumPlan;
 use super::product::Product;
 use super::schedule::{Program, Schedule, TURN_GAP};
 use super::timing::{
-    DIRECTION_LATENCY, INTERVAL_FRAMES, LINE_LATENCY, OUTPUT_DEPTH, OUTPUT_SKID, START_TO_ISSUE, SUMMARY_BEATS,
-    SUMMARY_LATENCY, Timeline, middle_interval, search_cycles,
+    DIRECTION_LATENCY, INTERVAL_FRAMES, LINE_LATENCY, OUTPUT_DEPTH, OUTPUT_SKID, SEQUENCER_TO_LANES, START_TO_ISSUE,
+    SUMMARY_BEATS, SUMMARY_LATENCY, Timeline, middle_interval, search_cycles,
 };
 
 /// From a frame's last stress to the frame being ready for the lanes.
@@ -94,6 +94,7 @@ struct Control<'a> {
     now: u64,
     // Bz and CeAn
     next_open: u64,
+    idle_since: Option<u64>,
     stress_places: u64,
     cean_idle: u64,
     directions: VecDeque<u64>,
@@ -142,7 +143,8 @@ impl<'a> Control<'a> {
         Self {
             of,
             now: 0,
-            next_open: 1, // the beat leaves the skid buffer
+            next_open: 0,
+            idle_since: Some(0), // in cycle 1 the first beat has left the skid buffer
             stress_places: 0,
             cean_idle: 0,
             directions: VecDeque::new(),
@@ -205,12 +207,16 @@ impl<'a> Control<'a> {
         }
     }
 
-    /// Bz lets a frame in.
+    /// Bz lets a frame in: a register says so, one cycle after the conditions hold.
     fn opens(&mut self) -> bool {
         let room = self.directions.iter().filter(|&&there| there <= self.now).count() < PLACES as usize;
         if self.now < self.next_open || self.now < self.cean_idle || self.stress_places == PLACES || !room {
             return false;
         }
+        if *self.idle_since.get_or_insert(self.now) == self.now {
+            return false;
+        }
+        self.idle_since = None;
         let last_stress = self.now + self.of.taxels - 1 + self.of.beat_to_stress;
         self.stress_places += 1;
         self.next_open = last_stress + 1;
@@ -264,7 +270,7 @@ impl<'a> Control<'a> {
     fn start(&mut self, index: usize) -> u64 {
         let program = self.of.programs[index];
         let first_issue = self.now + 1 + self.of.start_to_issue;
-        self.lanes_free = first_issue + program.length - 1;
+        self.lanes_free = first_issue + program.length - 1 - SEQUENCER_TO_LANES;
         first_issue + program.last_visit
     }
 

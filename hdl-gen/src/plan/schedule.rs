@@ -16,6 +16,7 @@ use serde::Serialize;
 use super::dealing::{Dealer, Stream, rounds_period};
 use super::product::{Epilogue, Product, Vector};
 use super::quantise::{Entry, QuantisedMatrix};
+use super::timing::SEQUENCER_TO_LANES;
 
 /// Cycles from the issue of a row's last MAC to its sum standing in the lane's result register.
 pub const ISSUE_TO_RESULT: u64 = 7;
@@ -29,8 +30,9 @@ pub const COLLECTOR_JUMP: u64 = 4;
 pub const VISIT_TO_DRAINED: u64 = 4;
 /// Cycles without issue in front of a product's rounds: the list's first entry is fetched.
 pub const ROUNDS_FETCH: u64 = 1;
-/// Cycles from the last operand being there to the list of those that are not zero.
-const WRITE_TO_LIST: u64 = 2;
+/// Cycles from the last operand being there to the list of those that are not zero, as the lanes see it: the sequencer
+/// reads it before them.
+const WRITE_TO_LIST: u64 = 2 + SEQUENCER_TO_LANES;
 /// A count in the MACs-per-row ROM has 14 bits.
 pub const MAX_SEGMENT: u32 = (1 << 14) - 1;
 

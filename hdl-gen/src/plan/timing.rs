@@ -10,10 +10,12 @@ use crate::cores::{cordic, divider};
 
 /// From the last write of a frame to We's start pulse.
 const WRITE_TO_START: u64 = 2;
-/// From We's start pulse to the first issue.
-pub(super) const START_TO_ISSUE: u64 = 2;
-/// From the last write of a frame to the next frame's first beat entering the conversion, `CeAn` permitting.
-const WRITE_TO_OPEN: u64 = 1;
+/// From the sequencer's control to the lanes' and the collector's: the register on the way.
+pub const SEQUENCER_TO_LANES: u64 = 1;
+/// From We's start pulse to the first issue, in the lanes.
+pub(super) const START_TO_ISSUE: u64 = 2 + SEQUENCER_TO_LANES;
+/// From `CeAn` being idle and a bank being free, to the next frame's first beat entering the conversion.
+const IDLE_TO_OPEN: u64 = 1;
 /// From the collector's visit to the last g, to the end of the frame sums.
 const VISIT_TO_SUMS: u64 = 7;
 /// From the frame sums to the line's start, the direction being there.
@@ -127,10 +129,10 @@ impl Durations {
         let mut frame = Frame::default();
         let mut open = 1; // the beat leaves the skid buffer
         if let Some(previous) = back(1) {
-            open = open.max(previous.last_write + WRITE_TO_OPEN).max(previous.last_write + DIRECTION_LATENCY);
+            open = open.max(previous.last_write + DIRECTION_LATENCY + IDLE_TO_OPEN);
         }
         if let Some(older) = back(2) {
-            open = open.max(older.drained + 1);
+            open = open.max(older.drained + 1 + IDLE_TO_OPEN);
         }
         frame.first_write = open + self.beat_to_write - 1;
         frame.last_write = frame.first_write + self.taxels - 1;
