@@ -267,23 +267,16 @@ fn stores(plan: &Plan) -> Vec<Store> {
         .collect()
 }
 
+/// The stress at the step of u, and the bit below it that rounds.
 fn stress_to_u(shift: i32, data: u32) -> String {
     let scaled = format!("wire signed [{}:0] scaled", data - 1);
     match shift {
-        0 => format!("{scaled} = stress_wide;"),
-        1.. => {
-            let shift = shift as u32;
-            let copies = if shift > 1 { format!("{{{}{{stress_half[{data}]}}}}, ", shift - 1) } else { String::new() };
-            format!(
-                "wire signed [{data}:0] stress_half = {{stress_wide[{}], stress_wide}} + {}'sd{};\n            \
-                 {scaled} = {{ {copies}stress_half[{data}:{shift}]}};\n            \
-                 wire _unused = &{{1'b0, stress_half[{}:0]}};",
-                data - 1,
-                data + 1,
-                half(shift),
-                shift - 1
-            )
-        }
-        _ => format!("{scaled} = stress_wide <<< {};", -shift),
+        1.. => format!(
+            "{scaled} = stress_wide >>> {shift};\n            \
+             wire half = stress_wide[{}];",
+            shift - 1
+        ),
+        0 => format!("{scaled} = stress_wide;\n            wire half = 1'b0;"),
+        _ => format!("{scaled} = stress_wide <<< {};\n            wire half = 1'b0;", -shift),
     }
 }
