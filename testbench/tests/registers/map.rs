@@ -177,10 +177,12 @@ fn the_maps_special_fields_are_the_ones_that_other_tests_try() {
 fn addresses_are_the_same_everywhere() {
     let map = map(&subjects()[0]);
     let page = fs::read_to_string(workspace("docs/control.md")).expect("a page");
+    let python = fs::read_to_string(workspace("drivers/python/sptfra.py")).expect("a driver");
     let source = include_str!("../../src/registers/mod.rs");
     for Register { name, address, .. } in &map {
         assert!(source.contains(&format!("pub const {name}: u32 = 0x{address:03X};")), "{name} in the testbench");
         assert!(page.contains(&format!("| 0x{address:03X} | `{name}` |")), "{name} in docs/control.md");
+        assert!(python.contains(&format!("    {name} = 0x{address:03X}\n")), "{name} in the Python driver");
     }
     assert_eq!(map.len(), source.matches(": u32 = 0x").count());
 }

@@ -1,0 +1,172 @@
+/* Driver of a generated core behind an AXI DMA (direct register mode), bare metal or Linux UIO. C11, no allocation.
+ *
+ *   sptfra core;
+ *   sptfra_open(&core, &sptfra_memory_mapped, CORE_BASE, DMA_BASE);
+ *   memcpy(stress.data, frame, 4u * core.shape.words_in);
+ *   sptfra_process(&core, &stress, &forces, SPTFRA_FOREVER);
+ *   sptfra_decode(&core.shape, forces.data, &result);
+ *
+ * The caller owns the DMA buffers. Functions return SPTFRA_OK or one of the other codes, see sptfra_error(). */
+#ifndef SPTFRA_H
+#define SPTFRA_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "sptfra_registers.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    SPTFRA_OK = 0,
+    SPTFRA_NOT_A_CORE = -1, /* IDENTITY has another value */
+    SPTFRA_OTHER_MAP = -2,  /* the register map is of another version than this driver */
+    SPTFRA_NO_REGISTERS = -3,
+    SPTFRA_BAD_BUFFER = -4, /* too small, or not on a multiple of four bytes */
+    SPTFRA_TIMEOUT = -5,
+    SPTFRA_DMA_FAULT = -6,
+    SPTFRA_CUT_SHORT = -7, /* the packet of forces has another length than a frame's */
+    SPTFRA_SYSTEM = -8     /* errno says why */
+};
+
+/* What went wrong, in words. */
+const char *sptfra_error(int code);
+
+/* ---- How registers and memory are reached */
+
+/* Polls without an end. */
+#define SPTFRA_FOREVER UINT32_MAX
+
+typedef struct {
+    void *context;
+    uint32_t (*read)(void *context, uintptr_t address);
+    void (*write)(void *context, uintptr_t address, uint32_t value);
+    /* Data cache, where the DMA does not see it; NULL if it does or if buffers are uncached. */
+    void (*flush)(void *context, const void *start, size_t bytes);
+    void (*invalidate)(void *context, void *start, size_t bytes);
+} sptfra_platform;
+
+/* Registers at their addresses, coherent memory. */
+extern const sptfra_platform sptfra_memory_mapped;
+
+/* ---- The core */
+
+typedef struct {
+    uint16_t columns, rows;
+    uint16_t words_in, words_out; /* of a frame */
+    uint8_t has_field;            /* three forces of each taxel follow the eight words of the summary */
+    uint8_t has_counts;           /* frames hold counts, else pascals */
+} sptfra_shape;
+
+typedef struct {
+    sptfra_platform platform;
+    uintptr_t core; /* base of the registers; not used if has_registers is 0 */
+    uintptr_t dma;
+    int has_registers;
+    sptfra_shape shape;
+} sptfra;
+
+/* Looks for a core with registers at `core` and its DMA at `dma`, and resets and starts the DMA. */
+int sptfra_open(sptfra *device, const sptfra_platform *platform, uintptr_t core, uintptr_t dma);
+/* The same for a core without registers, whose shape the caller knows from metadata.json. */
+int sptfra_open_streams(sptfra *device, const sptfra_platform *platform, uintptr_t dma, const sptfra_shape *shape);
+
+typedef struct {
+    uint8_t map_version, major, minor, patch; /* of the generator */
+    uint64_t design_hash;
+    uint8_t lanes, reduced, skips_zeros;
+    uint32_t clock_khz, latency_cycles, interval_cycles; /* as predicted */
+    float full_scale_pa;
+} sptfra_identity;
+
+int sptfra_identify(const sptfra *device, sptfra_identity *identity);
+
+typedef struct {
+    uint32_t frames_in, frames_out, frames_bad;
+    uint32_t last_status, last_latency, last_interval;
+} sptfra_counters;
+
+int sptfra_count(const sptfra *device, sptfra_counters *counters);
+
+/* Resets the core without cutting a packet, see docs/control.md. Frames inside are lost; the packet going out still needs
+ * a transfer that takes it. */
+int sptfra_soft_reset(const sptfra *device, uint32_t polls);
+
+/* Events of the registers INTERRUPT_ENABLE and INTERRUPT_STATUS. */
+#define SPTFRA_FRAME_DONE SPTFRA__INTERRUPT_STATUS__FRAME_DONE_bm
+#define SPTFRA_FRAME_ERROR SPTFRA__INTERRUPT_STATUS__FRAME_ERROR_bm
+
+int sptfra_enable_interrupts(const sptfra *device, uint32_t events);
+/* The events since they were acknowledged last; acknowledges them. */
+int sptfra_take_interrupts(const sptfra *device, uint32_t *events);
+
+/* ---- Frames */
+
+/* Memory that the DMA reaches: where the processor sees it, and at which address the DMA does. */
+typedef struct {
+    void *data;
+    uint64_t address;
+    size_t bytes;
+} sptfra_buffer;
+
+/* Sends a frame of words_in float32 and takes words_out words. Returns at once; both buffers belong to the DMA until
+ * sptfra_wait says otherwise. */
+int sptfra_start(const sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces);
+/* The same for a packet of any length, of which the core makes an answer with the status BAD_LENGTH. */
+int sptfra_start_words(const sptfra *device, const sptfra_buffer *stress, size_t words, const sptfra_buffer *forces);
+/* Waits for the answer to sptfra_start, asking at most so many times. */
+int sptfra_wait(const sptfra *device, const sptfra_buffer *forces, uint32_t polls);
+/* Both. */
+int sptfra_process(const sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces, uint32_t polls);
+/* Stops a transfer and starts the DMA anew. */
+int sptfra_reset_dma(const sptfra *device, uint32_t polls);
+
+/* Status bits of a frame: those of the register LAST_STATUS. */
+enum {
+    SPTFRA_NO_CONTACT = SPTFRA__LAST_STATUS__NO_CONTACT_bm,
+    SPTFRA_DIRECTION_UNKNOWN = SPTFRA__LAST_STATUS__DIRECTION_UNKNOWN_bm,
+    SPTFRA_AT_BOUND = SPTFRA__LAST_STATUS__AT_BOUND_bm,
+    SPTFRA_SATURATED = SPTFRA__LAST_STATUS__SATURATED_bm,
+    SPTFRA_NOT_FINITE = SPTFRA__LAST_STATUS__NOT_FINITE_bm,
+    SPTFRA_BAD_LENGTH = SPTFRA__LAST_STATUS__BAD_LENGTH_bm
+};
+
+/* Name of a status bit, 0 to 5; NULL for any other. */
+const char *sptfra_status_name(unsigned bit);
+
+typedef struct {
+    uint16_t status; /* bits as above */
+    uint16_t number; /* of the frame since the core was reset, modulo 65536 */
+    float force[3];  /* F_x, F_y, F_z in N */
+    float friction;  /* mu */
+    float direction; /* phi in rad */
+    float friction_xy[2];
+    /* f_x, f_y, f_z in N of taxel iy * columns + ix, taxel after taxel, in the buffer; NULL without a field. */
+    const float *field;
+} sptfra_result;
+
+/* Reads the words of an answer; they are float32 as the processor has it. */
+void sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result);
+
+/* ---- Linux user space: a UIO device for each block of registers */
+
+#if defined(__linux__) && !defined(SPTFRA_NO_UIO)
+typedef struct {
+    int file;
+    size_t bytes;
+    uintptr_t base; /* for sptfra_open, with sptfra_memory_mapped */
+} sptfra_uio;
+
+int sptfra_uio_open(sptfra_uio *uio, const char *path, size_t bytes);
+void sptfra_uio_close(sptfra_uio *uio);
+/* Sleeps until the device's interrupt, at most so many milliseconds (-1: for ever), and unmasks it before. */
+int sptfra_uio_wait(const sptfra_uio *uio, int milliseconds);
+#endif
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,238 @@
+"""Driver of a generated core in PYNQ's style: numpy arrays in, numpy arrays out.
+
+    from pynq import Overlay, allocate
+    from sptfra import Sptfra
+
+    overlay = Overlay("system.bit")
+    sensor = Sptfra(overlay.core, overlay.dma, allocate)
+    forces = sensor.reconstruct(frames)          # frames: (n, rows, columns) or (rows, columns), pascals or counts
+    forces.resultant, forces.field, forces.status
+
+`core` is the IP with the register bank (`control = true` in the design): anything with `read(offset)` and
+`write(offset, value)`. `dma` is an AXI DMA without descriptors as PYNQ presents it.
+"""
+
+import enum
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+MAGIC = 0x54465241
+MAP_VERSION = 1
+SUMMARY_WORDS = 8
+
+
+class Register(enum.IntEnum):
+    """Offsets of the registers, as in control/NAME.rdl."""
+
+    IDENTITY = 0x000
+    VERSION = 0x004
+    HASH_LOW = 0x008
+    HASH_HIGH = 0x00C
+    GEOMETRY = 0x010
+    FRAME = 0x014
+    FEATURES = 0x018
+    CLOCK = 0x01C
+    FULL_SCALE = 0x020
+    PREDICTED_LATENCY = 0x024
+    PREDICTED_INTERVAL = 0x028
+    CONTROL = 0x040
+    STATUS = 0x044
+    INTERRUPT_ENABLE = 0x048
+    INTERRUPT_STATUS = 0x04C
+    FRAMES_IN = 0x050
+    FRAMES_OUT = 0x054
+    FRAMES_BAD = 0x058
+    LAST_STATUS = 0x05C
+    LAST_LATENCY = 0x060
+    LAST_INTERVAL = 0x064
+
+
+class Status(enum.IntFlag):
+    """Status bits of a frame."""
+
+    NO_CONTACT = 1
+    DIRECTION_UNKNOWN = 2
+    AT_BOUND = 4
+    SATURATED = 8
+    NOT_FINITE = 16
+    BAD_LENGTH = 32
+
+
+class Event(enum.IntFlag):
+    """Events that can interrupt."""
+
+    FRAME_DONE = 1
+    FRAME_ERROR = 2
+
+
+SOFT_RESET = 1
+RESETTING = 1
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What the core says of itself. Cycles are the predicted ones."""
+
+    version: str
+    design_hash: str
+    columns: int
+    rows: int
+    lanes: int
+    words_in: int
+    words_out: int
+    has_field: bool
+    reduced: bool
+    has_counts: bool
+    skips_zeros: bool
+    clock_mhz: float
+    full_scale_pa: float
+    latency_cycles: int
+    interval_cycles: int
+
+
+@dataclass(frozen=True)
+class Counters:
+    """Since the last reset, modulo 2**32; cycles are those of the last frame."""
+
+    frames_in: int
+    frames_out: int
+    frames_bad: int
+    last_status: Status
+    last_latency: int
+    last_interval: int
+
+
+@dataclass(frozen=True)
+class Forces:
+    """Answers to n frames; a frame whose status says NOT_FINITE, BAD_LENGTH or NO_CONTACT is all zeros."""
+
+    #: (n,) uint16: bits of `Status`.
+    status: np.ndarray
+    #: (n,) uint16: number of the frame since the core was reset, modulo 65536.
+    number: np.ndarray
+    #: (n, 3) float32: F_x, F_y, F_z in N.
+    resultant: np.ndarray
+    #: (n,) float32: friction coefficient.
+    friction: np.ndarray
+    #: (n,) float32: direction of the push in rad.
+    direction: np.ndarray
+    #: (n, 2) float32: friction along x and y.
+    friction_xy: np.ndarray
+    #: (n, rows, columns, 3) float32: f_x, f_y, f_z of each taxel in N; None if the design has resultants only.
+    field: np.ndarray | None
+
+    def names(self, index):
+        """Names of a frame's status bits."""
+        return [bit.name for bit in Status if int(self.status[index]) & bit]
+
+
+def decode(words, rows, columns, has_field):
+    """Forces from (n, words_out) words of uint32 as the core sends them."""
+    words = np.ascontiguousarray(words, dtype=np.uint32)
+    values = words.view(np.float32)
+    field = values[:, SUMMARY_WORDS:].reshape(len(words), rows, columns, 3) if has_field else None
+    return Forces(
+        status=(words[:, 0] & 0x3F).astype(np.uint16),
+        number=(words[:, 0] >> 16).astype(np.uint16),
+        resultant=values[:, 1:4],
+        friction=values[:, 4],
+        direction=values[:, 5],
+        friction_xy=values[:, 6:8],
+        field=field,
+    )
+
+
+class Sptfra:
+    """A core between the two channels of an AXI DMA."""
+
+    def __init__(self, core, dma, allocate):
+        """`allocate` is `pynq.allocate`. Raises RuntimeError if there is no core that this driver knows."""
+        self._core = core
+        self._dma = dma
+        magic = core.read(Register.IDENTITY)
+        if magic != MAGIC:
+            raise RuntimeError(f"no core here: IDENTITY is {magic:#010x}, expected {MAGIC:#010x}")
+        version = core.read(Register.VERSION) >> 24
+        if version != MAP_VERSION:
+            raise RuntimeError(f"the core's register map is version {version}, this driver knows {MAP_VERSION}")
+        self.identity = self._identify()
+        self._stress = allocate(shape=(self.identity.words_in,), dtype=np.float32)
+        self._forces = allocate(shape=(self.identity.words_out,), dtype=np.uint32)
+
+    def _identify(self):
+        read = self._core.read
+        version, geometry, frame, features = (
+            read(register) for register in (Register.VERSION, Register.GEOMETRY, Register.FRAME, Register.FEATURES)
+        )
+        full_scale = np.array([read(Register.FULL_SCALE)], dtype=np.uint32).view(np.float32)[0]
+        return Identity(
+            version=f"{version >> 16 & 0xFF}.{version >> 8 & 0xFF}.{version & 0xFF}",
+            design_hash=f"{read(Register.HASH_HIGH):08x}{read(Register.HASH_LOW):08x}",
+            columns=geometry & 0xFF,
+            rows=geometry >> 8 & 0xFF,
+            lanes=geometry >> 16 & 0xFF,
+            words_in=frame & 0xFFFF,
+            words_out=frame >> 16,
+            has_field=bool(features & 1),
+            reduced=bool(features & 2),
+            has_counts=bool(features & 4),
+            skips_zeros=bool(features & 8),
+            clock_mhz=read(Register.CLOCK) / 1e3,
+            full_scale_pa=float(full_scale),
+            latency_cycles=read(Register.PREDICTED_LATENCY),
+            interval_cycles=read(Register.PREDICTED_INTERVAL),
+        )
+
+    def counters(self):
+        """Frames, errors, and the cycles of the last frame."""
+        read = self._core.read
+        return Counters(
+            frames_in=read(Register.FRAMES_IN),
+            frames_out=read(Register.FRAMES_OUT),
+            frames_bad=read(Register.FRAMES_BAD),
+            last_status=Status(read(Register.LAST_STATUS) & 0x3F),
+            last_latency=read(Register.LAST_LATENCY),
+            last_interval=read(Register.LAST_INTERVAL),
+        )
+
+    def soft_reset(self, timeout=1.0):
+        """Resets the core without cutting a packet. Raises TimeoutError, in seconds, if nothing takes the last one."""
+        self._core.write(Register.CONTROL, SOFT_RESET)
+        end = time.monotonic() + timeout
+        while self._core.read(Register.STATUS) & RESETTING:
+            if time.monotonic() > end:
+                raise TimeoutError("the packet going out is not taken; start a receiving transfer or reset the DMA")
+
+    def enable_interrupts(self, events):
+        """Lets these events, a combination of `Event`, raise the core's interrupt; none of the others."""
+        self._core.write(Register.INTERRUPT_ENABLE, int(events))
+
+    def take_interrupts(self):
+        """The events since they were taken last, enabled or not."""
+        events = self._core.read(Register.INTERRUPT_STATUS)
+        self._core.write(Register.INTERRUPT_STATUS, events)
+        return Event(events)
+
+    def reconstruct(self, frames):
+        """Forces of frames (n, rows, columns), (n, taxels), (rows, columns) or (taxels,), in pascals or counts.
+
+        Returns `Forces` of n frames, in new arrays; a single frame is n = 1. Raises ValueError on another shape.
+        """
+        rows, columns, words = self.identity.rows, self.identity.columns, self.identity.words_in
+        frames = np.asarray(frames, dtype=np.float32)
+        if frames.shape[-2:] != (rows, columns) and frames.shape[-1:] != (words,) or frames.ndim > 3:
+            raise ValueError(f"frames of shape {frames.shape}: the core has {rows} rows of {columns} taxels")
+        frames = frames.reshape(-1, words)
+        answers = np.empty((len(frames), self.identity.words_out), dtype=np.uint32)
+        for frame, answer in zip(frames, answers):
+            self._stress[:] = frame
+            self._stress.flush()
+            self._dma.recvchannel.transfer(self._forces)
+            self._dma.sendchannel.transfer(self._stress)
+            self._dma.sendchannel.wait()
+            self._dma.recvchannel.wait()
+            self._forces.invalidate()
+            answer[:] = self._forces
+        return decode(answers, rows, columns, self.identity.has_field)

@@ -1,0 +1,198 @@
+/* The C driver on the host, against the simulated core: frames, names, counters, interrupts, soft reset, refusals.
+ *
+ *   host CORE.so REGISTERS FRAMES COLUMNS ROWS WORDS_OUT HAS_FIELD
+ *
+ * FRAMES is binary, little-endian: for each frame the number of words, the words, and words_out words of the answer.
+ * With REGISTERS 0 the core has no bank. */
+#include "machine.h"
+#include "sptfra.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define MOST_WORDS 16384
+#define POLLS 1000000u
+
+static uint32_t stress_words[MOST_WORDS], force_words[MOST_WORDS], expected[MOST_WORDS];
+static int flushed, invalidated;
+
+#define CHECK(condition)                                                      \
+    do {                                                                      \
+        if (!(condition)) {                                                   \
+            printf("FAIL: line %d: %s\n", __LINE__, #condition);              \
+            exit(1);                                                          \
+        }                                                                     \
+    } while (0)
+
+static void flush(void *context, const void *start, size_t bytes)
+{
+    (void)context;
+    (void)start;
+    flushed += bytes != 0;
+}
+
+static void invalidate(void *context, void *start, size_t bytes)
+{
+    (void)context;
+    (void)start;
+    invalidated += bytes != 0;
+}
+
+static int next_frame(FILE *file, uint32_t *words, size_t words_out)
+{
+    if (fread(words, 4, 1, file) != 1) {
+        return 0;
+    }
+    CHECK(*words < MOST_WORDS && fread(stress_words, 4, *words, file) == *words);
+    CHECK(fread(expected, 4, words_out, file) == words_out);
+    return 1;
+}
+
+static void check_result(const sptfra_shape *shape)
+{
+    sptfra_result result;
+    const float *values = (const float *)force_words;
+    unsigned bit;
+
+    sptfra_decode(shape, force_words, &result);
+    CHECK(result.number == force_words[0] >> 16 && result.status == (force_words[0] & 0x3F));
+    CHECK(memcmp(result.force, values + 1, 12) == 0 && memcmp(&result.friction, values + 4, 4) == 0);
+    CHECK(memcmp(&result.direction, values + 5, 4) == 0 && memcmp(result.friction_xy, values + 6, 8) == 0);
+    CHECK(result.field == (shape->has_field ? values + 8 : NULL));
+    for (bit = 0; bit < 16; bit++) {
+        CHECK((sptfra_status_name(bit) != NULL) == (bit < 6));
+    }
+    CHECK(strcmp(sptfra_status_name(4), "NaN or infinity in") == 0 && SPTFRA_NOT_FINITE == 1 << 4);
+}
+
+static void check_uio(void)
+{
+    char path[] = "/tmp/sptfra_uio_XXXXXX";
+    const int file = mkstemp(path);
+    const uint32_t words[1024] = {0x54465241u, 42u};
+    sptfra_uio uio;
+    sptfra device;
+
+    CHECK(file >= 0 && write(file, words, sizeof words) == (ssize_t)sizeof words);
+    CHECK(sptfra_uio_open(&uio, path, sizeof words) == SPTFRA_OK);
+    CHECK(sptfra_memory_mapped.read(NULL, uio.base + 4) == 42u);
+    sptfra_memory_mapped.write(NULL, uio.base + 8, 7u);
+    CHECK(sptfra_memory_mapped.read(NULL, uio.base + 8) == 7u);
+    /* A core of another map is refused before its DMA is touched. */
+    CHECK(sptfra_open(&device, &sptfra_memory_mapped, uio.base, 0) == SPTFRA_OTHER_MAP);
+    sptfra_uio_close(&uio);
+    close(file);
+    unlink(path);
+    CHECK(sptfra_uio_open(&uio, path, sizeof words) == SPTFRA_SYSTEM);
+}
+
+int main(int count, char **arguments)
+{
+    const sptfra_buffer stress = {stress_words, (uintptr_t)stress_words + MACHINE_BUS_OFFSET, sizeof stress_words};
+    const sptfra_buffer forces = {force_words, (uintptr_t)force_words + MACHINE_BUS_OFFSET, sizeof force_words};
+    sptfra_buffer wrong = stress;
+    sptfra_shape shape;
+    sptfra_platform platform = {NULL, machine_read, machine_write, flush, invalidate};
+    sptfra_counters counters;
+    sptfra_identity identity;
+    machine *system;
+    sptfra device;
+    FILE *file;
+    uint32_t words, frames = 0, bad = 0, last = 0, events = 0;
+
+    CHECK(count == 8);
+    const int has_registers = atoi(arguments[2]);
+    shape.columns = (uint16_t)atoi(arguments[4]);
+    shape.rows = (uint16_t)atoi(arguments[5]);
+    shape.words_in = (uint16_t)(shape.columns * shape.rows);
+    shape.words_out = (uint16_t)atoi(arguments[6]);
+    shape.has_field = (uint8_t)atoi(arguments[7]);
+    shape.has_counts = 0;
+    system = machine_open(arguments[1], 7, has_registers);
+    CHECK(system != NULL);
+    platform.context = system;
+    if (has_registers) {
+        CHECK(sptfra_open(&device, &platform, MACHINE_CORE + 4, MACHINE_DMA) == SPTFRA_NOT_A_CORE);
+        CHECK(sptfra_open(&device, &platform, MACHINE_CORE, MACHINE_DMA) == SPTFRA_OK);
+        CHECK(memcmp(&device.shape, &shape, sizeof shape) == 0);
+        CHECK(sptfra_identify(&device, &identity) == SPTFRA_OK);
+        printf("hash %016llx lanes %u clock %u latency %u interval %u full scale %g\n",
+            (unsigned long long)identity.design_hash, identity.lanes, identity.clock_khz, identity.latency_cycles,
+            identity.interval_cycles, (double)identity.full_scale_pa);
+        CHECK(sptfra_enable_interrupts(&device, SPTFRA_FRAME_ERROR) == SPTFRA_OK);
+    } else {
+        CHECK(sptfra_open_streams(&device, &platform, MACHINE_DMA, &shape) == SPTFRA_OK);
+        CHECK(sptfra_identify(&device, &identity) == SPTFRA_NO_REGISTERS);
+        CHECK(sptfra_soft_reset(&device, POLLS) == SPTFRA_NO_REGISTERS);
+    }
+
+    /* Every frame, good and bad, word by word. */
+    file = fopen(arguments[3], "rb");
+    CHECK(file != NULL);
+    while (next_frame(file, &words, shape.words_out)) {
+        if (words == shape.words_in) {
+            CHECK(sptfra_process(&device, &stress, &forces, POLLS) == SPTFRA_OK);
+        } else {
+            CHECK(sptfra_start_words(&device, &stress, words, &forces) == SPTFRA_OK);
+            CHECK(sptfra_wait(&device, &forces, POLLS) == SPTFRA_OK);
+        }
+        CHECK(memcmp(force_words, expected, 4u * shape.words_out) == 0);
+        check_result(&shape);
+        last = force_words[0];
+        frames++;
+        bad += (last & (SPTFRA_NOT_FINITE | SPTFRA_BAD_LENGTH)) != 0;
+        if (has_registers) {
+            const int faulty = (last & (SPTFRA_NOT_FINITE | SPTFRA_BAD_LENGTH)) != 0;
+
+            machine_run(system, 4);
+            CHECK(machine_interrupt(system) == faulty);
+            CHECK(sptfra_take_interrupts(&device, &events) == SPTFRA_OK);
+            CHECK(events == (SPTFRA_FRAME_DONE | (faulty ? SPTFRA_FRAME_ERROR : 0u)));
+            machine_run(system, 4);
+            CHECK(!machine_interrupt(system));
+        }
+    }
+    CHECK(frames > 10 && bad > 2 && flushed > 0 && invalidated > 0);
+    if (has_registers) {
+        CHECK(sptfra_count(&device, &counters) == SPTFRA_OK);
+        CHECK(counters.frames_in == frames && counters.frames_out == frames && counters.frames_bad == bad);
+        CHECK(counters.last_status == last && counters.last_latency >= identity.latency_cycles);
+        CHECK(counters.last_interval > 0);
+    }
+
+    /* What is refused before anything moves. */
+    wrong.bytes = 4u * shape.words_in - 4u;
+    CHECK(sptfra_start(&device, &wrong, &forces) == SPTFRA_BAD_BUFFER);
+    wrong = stress;
+    wrong.address += 2;
+    CHECK(sptfra_start(&device, &wrong, &forces) == SPTFRA_BAD_BUFFER);
+    CHECK(sptfra_start_words(&device, &stress, 0, &forces) == SPTFRA_BAD_BUFFER);
+    /* The patience of one call is no end of the transfer. */
+    CHECK(sptfra_process(&device, &stress, &forces, 0) == SPTFRA_TIMEOUT);
+    CHECK(sptfra_wait(&device, &forces, POLLS) == SPTFRA_OK);
+
+    /* A soft reset with a frame inside: the counters start anew, and the next frame is right again. */
+    if (has_registers) {
+        rewind(file);
+        CHECK(next_frame(file, &words, shape.words_out) && words == shape.words_in);
+        CHECK(sptfra_start(&device, &stress, &forces) == SPTFRA_OK);
+        machine_run(system, 40);
+        CHECK(sptfra_soft_reset(&device, POLLS) == SPTFRA_OK);
+        CHECK(sptfra_wait(&device, &forces, 1000u) == SPTFRA_TIMEOUT);
+        CHECK(sptfra_reset_dma(&device, POLLS) == SPTFRA_OK);
+        CHECK(sptfra_count(&device, &counters) == SPTFRA_OK && counters.frames_out == 0);
+        CHECK(sptfra_process(&device, &stress, &forces, POLLS) == SPTFRA_OK);
+        CHECK(memcmp(force_words, expected, 4u * shape.words_out) == 0 && force_words[0] >> 16 == 0);
+    }
+    CHECK(machine_faults(system) == 0);
+    fclose(file);
+    machine_close(system);
+    check_uio();
+    CHECK(strcmp(sptfra_error(SPTFRA_TIMEOUT), "no answer in the polls given") == 0);
+    CHECK(strcmp(sptfra_error(-99), "unknown code") == 0);
+    printf("PASS: %u frames, %u bad\n", frames, bad);
+    return 0;
+}

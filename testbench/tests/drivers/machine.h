@@ -1,0 +1,26 @@
+/* A processor's view of a simulated system: the core's registers, an AXI DMA and memory. Time passes only while
+ * registers are accessed, a few cycles each. */
+#ifndef MACHINE_H
+#define MACHINE_H
+
+#include <stdint.h>
+
+#define MACHINE_DMA 0xA0000000u
+#define MACHINE_CORE 0xA0010000u
+/* What the DMA's addresses lie above the processor's: they are not to be mixed up. */
+#define MACHINE_BUS_OFFSET 0x100000000000u
+
+typedef struct machine machine;
+
+/* Loads the simulated core; NULL and a message on standard error if that fails. `has_registers`: it has a bank. */
+machine *machine_open(const char *library, uint32_t seed, int has_registers);
+void machine_close(machine *system);
+uint32_t machine_read(void *system, uintptr_t address);
+void machine_write(void *system, uintptr_t address, uint32_t value);
+/* Lets cycles pass. */
+void machine_run(machine *system, uint64_t cycles);
+int machine_interrupt(const machine *system);
+/* Accesses that were answered by an error or hit nothing. */
+uint32_t machine_faults(const machine *system);
+
+#endif
