@@ -20,8 +20,10 @@ use super::timing::{
 const STRESS_TO_READY: u64 = 4;
 /// From a visit to its taxels having left the unfolding.
 const VISIT_TO_TAXELS: u64 = 8;
+/// From the last taxels having left the unfolding to their being in the search's cells.
+const TAXELS_TO_CELLS: u64 = 2;
 /// From the visit to the last sum, to the sums being complete.
-const VISIT_TO_SUMS: u64 = 4;
+const VISIT_TO_SUMS: u64 = 5;
 /// From the last visit of the residual, to the field's program being allowed.
 const VISIT_TO_RESIDUAL: u64 = 4;
 /// From the last visit of the field, to the output being allowed.
@@ -261,7 +263,7 @@ impl<'a> Control<'a> {
             }
             self.sums_there.push_back(first_issue + self.of.last_sum + VISIT_TO_SUMS);
             let complete = last_visit + VISIT_TO_TAXELS;
-            self.u_there.push_back(complete + 1);
+            self.u_there.push_back(complete + TAXELS_TO_CELLS);
             self.pending.push((complete + 1, Change::StressReleased));
         }
     }

@@ -158,10 +158,11 @@ impl Durations {
     }
 }
 
-/// Start to end of the search: both passes, the slope bisections, the floor with a comparison, the level bisections.
+/// Start to end of the search: both passes, the slope bisections, the floor with a comparison, the level bisections; a
+/// cycle between a bisection and the next evaluation, in which the new middle is computed.
 pub(super) fn search_cycles(optimum: &OptimumPlan) -> u64 {
     let elements = optimum.elements as u64;
     let decision = u64::from(optimum.decision_cycles());
     let steps = u64::from(SEARCH_STEPS);
-    2 * elements + 9 + steps * (elements + decision) + (steps + 1) * (2 * elements + decision)
+    2 * elements + 9 + steps * (elements + decision) + (steps + 1) * (2 * elements + decision) + 2 * steps - 1
 }
