@@ -57,6 +57,10 @@ build: ## The three commands: golden, hdl-gen, testbench
 doc: ## The crates' documentation, in target/doc
 	$(CARGO) doc --workspace --no-deps
 
+.PHONY: man
+man: build ## Manual pages of the three commands, in target/man
+	@for command in golden hdl-gen testbench; do $(BIN)/$$command man --out $(TARGET)/man; done
+
 .PHONY: registers
 registers: tools build ## C header and page of a register bank, by PeakRDL, for a design with control = true
 	@$(BIN)/hdl-gen generate $(DESIGN)

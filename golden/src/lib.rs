@@ -29,6 +29,7 @@ pub mod forces;
 pub mod frames;
 pub mod half_space;
 pub mod kernel;
+pub mod manual;
 pub mod matrices;
 pub mod metrics;
 pub mod output;

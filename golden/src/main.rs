@@ -12,9 +12,11 @@ mod commands;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use commands::solve::Recording;
 use golden::calibrate::Settings;
+use golden::manual::Manual;
+use golden::output::print_text;
 
 /// Reference solver and ground truth for three-axis tactile sensing from normal stress.
 #[derive(Parser)]
@@ -124,6 +126,8 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    #[command(flatten)]
+    Manual(Manual),
 }
 
 const SCENE_FILE: &str = r#"Scene file:
@@ -208,6 +212,7 @@ fn main() -> ExitCode {
             let settings = Settings { seed, hidden: hidden.map_or(work.hidden, usize::from), ..work };
             commands::calibrate::run(&design, &out, &settings, json)
         }
+        Command::Manual(manual) => manual.run(Arguments::command()).and_then(|text| Ok(print_text(&text)?)),
         Command::Bench { designs, json } => commands::bench::run(&designs, json),
         Command::Choose { design, out, csv, json } => commands::choose::run(&design, &out, csv.as_deref(), json),
     };

@@ -23,6 +23,18 @@ pub fn print_line(text: std::fmt::Arguments<'_>) -> io::Result<()> {
     }
 }
 
+/// Prints a text as it is to standard output, in the manner of [`print_line`].
+///
+/// # Errors
+///
+/// As [`print_line`].
+pub fn print_text(text: &str) -> io::Result<()> {
+    match io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}
+
 /// Writes `content` to `path`, in place of what was there.
 ///
 /// The content first goes to a temporary file in the same folder, so that a crash or a full disk leaves either the

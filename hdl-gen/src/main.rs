@@ -1,4 +1,4 @@
-//! The `hdl-gen` command: `new`, `inspect`, `generate`.
+//! The `hdl-gen` command: `new`, `inspect`, `generate`, and its manual.
 
 mod cli;
 

@@ -18,4 +18,6 @@ pub mod sweep;
 pub mod table;
 pub mod tools;
 pub mod verilate;
+pub mod view;
+pub mod waves;
 pub mod words;

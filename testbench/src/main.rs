@@ -7,8 +7,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use golden::design::Design;
+use golden::manual::Manual;
 use golden::output::write_whole;
 
 use testbench::bench::{self, BenchError, Scope};
@@ -18,6 +19,7 @@ use testbench::report::Report;
 use testbench::run::{Options, run};
 use testbench::table;
 use testbench::verilate::Trace;
+use testbench::view;
 
 /// Simulates generated hardware and compares it with software.
 #[derive(Parser)]
@@ -59,6 +61,29 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Show the forces of a frame in the terminal.
+    ///
+    /// One cell a taxel, y upwards: an arrow for the direction of the shear, a digit for its share of the largest force,
+    /// and a digit for that of the normal force. In colour on a terminal, unless `NO_COLOR` is set. The forces are the
+    /// hardware's, from the integer model.
+    View(ViewArguments),
+    #[command(flatten)]
+    Manual(Manual),
+}
+
+#[derive(Args)]
+struct ViewArguments {
+    /// Design file (TOML).
+    design: PathBuf,
+    /// Frames (CSV), as for `testbench run`.
+    #[arg(long)]
+    frames: Option<PathBuf>,
+    /// Columns of labels before the values of a frame; the file may then have a header.
+    #[arg(long, default_value_t = 0, requires = "frames")]
+    labels: usize,
+    /// Which frame, from 0.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    frame: usize,
 }
 
 #[derive(Args)]
@@ -100,7 +125,8 @@ struct RunArguments {
     #[arg(long, requires = "frames")]
     reference: Option<PathBuf>,
     /// Write all signals of the free-running mode, FST or (by its ending) VCD; without a name, NAME.fst or NAME.vcd
-    /// after the design, in the current folder.
+    /// after the design, in the current folder. Beside it go views of the streams and blocks: .gtkw for `GTKWave`,
+    /// .sucl for Surfer.
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     #[allow(clippy::option_option, reason = "absent, without a name, with one: how clap tells them apart")]
     trace: Option<Option<PathBuf>>,
@@ -118,6 +144,8 @@ fn main() -> ExitCode {
             .and_then(|report| print(&report_text(&report, arguments.json)?).map(|()| report.is_right())),
         Command::Bench(arguments) => bench(&arguments).map(|()| true),
         Command::Sweep(arguments) => commands::sweep::run(&arguments).and_then(|text| print(&text)).map(|()| true),
+        Command::View(arguments) => view(&arguments).map(|()| true),
+        Command::Manual(manual) => manual.run(Arguments::command()).and_then(|text| print(&text)).map(|()| true),
         Command::Cells { design, folder, statistics, json } => {
             cells(&design, &folder, &statistics, json).map(|()| true)
         }
@@ -173,15 +201,40 @@ fn cells(design: &Path, folder: &Path, statistics: &Path, json: bool) -> Result<
     print(&if json { serde_json::to_string_pretty(&cells)? + "\n" } else { bench::cells::render(&cells) })
 }
 
+/// Frames of a file, with so many columns of labels, or the standing ones.
+fn frames(
+    file: Option<(&Path, usize)>,
+    reference: Option<&Path>,
+    design: &Design,
+    progress: &Progress,
+) -> Result<FrameSet, Box<dyn Error>> {
+    if let Some((path, labels)) = file {
+        return Ok(FrameSet::load(path, labels, reference, &design.sensor)?);
+    }
+    progress.stage("making ground-truth frames");
+    Ok(FrameSet::standing(&design.sensor)?.as_delivered(design))
+}
+
+fn view(arguments: &ViewArguments) -> Result<(), Box<dyn Error>> {
+    let design = Design::load(&arguments.design)?;
+    let text = {
+        let progress = Progress::new();
+        let file = arguments.frames.as_deref().map(|path| (path, arguments.labels));
+        let frames = frames(file, None, &design, &progress)?;
+        view::frame(&design, &frames, arguments.frame, view::wants_colour(), &progress)?
+    };
+    print(&text)
+}
+
 fn simulate(arguments: &RunArguments) -> Result<Report, Box<dyn Error>> {
     let design = Design::load(&arguments.design)?;
     let progress = Progress::new();
-    let frames = if let Some(path) = &arguments.frames {
-        FrameSet::load(path, arguments.labels, arguments.reference.as_deref(), &design.sensor)?
-    } else {
-        progress.stage("making ground-truth frames");
-        FrameSet::standing(&design.sensor)?.as_delivered(&design)
-    };
+    let frames = frames(
+        arguments.frames.as_deref().map(|path| (path, arguments.labels)),
+        arguments.reference.as_deref(),
+        &design,
+        &progress,
+    )?;
     let trace = arguments.trace.as_ref().map(|file| match file {
         Some(file) => file.clone(),
         None => Path::new(&design.name).with_extension(Trace::best().extension()),

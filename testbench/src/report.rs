@@ -1,6 +1,7 @@
 //! Everything a run found out, for machines (JSON) and as the source of the table for people.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use golden::metrics::ErrorSummary;
 use hdl_gen::plan::Plan;
@@ -104,6 +105,9 @@ pub struct Report {
     /// The register bank; absent in a core without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub registers: Option<RegisterReport>,
+    /// The trace and its views, where one was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub traces: Vec<PathBuf>,
     /// DSP48E2, as the plan counts them.
     pub dsp: usize,
     /// RAMB36, as the plan counts them.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use golden::design::Design;
 use golden::frames::FrameError;
+use golden::output::OutputError;
 use golden::scene::SceneError;
 use golden::solver::{Solver, SolverError as SolveError};
 use hdl_gen::emit::{EmitError, emit};
@@ -18,6 +19,7 @@ use crate::registers;
 use crate::report::{Microseconds, ModeReport, Predicted, Report, describe, published_for};
 use crate::simulate::{Job, Simulation, SimulationError, frames_to_simulate, simulate};
 use crate::verilate::{BuildError, RtlSources, Trace, Verilate, verilator_version};
+use crate::waves;
 use crate::words::{Answer, decode, encode};
 
 /// Why a run has no report.
@@ -44,6 +46,9 @@ pub enum RunError {
     /// The standing scene cannot be computed.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A view of the trace cannot be written.
+    #[error(transparent)]
+    View(#[from] OutputError),
     /// A trace was asked for in a format that cannot be written here.
     #[error("{}: the headers of zlib and LZ4 are missing, which FST needs; run `make tools` or name a .vcd file", .0.display())]
     NoFst(PathBuf),
@@ -127,6 +132,9 @@ pub fn run(design: &Design, frames: &FrameSet, options: &Options<'_>, progress: 
     report.frames = packets.len();
     report.error = error;
     report.registers = registers;
+    if let Some(trace) = options.trace {
+        report.traces = [trace.to_owned()].into_iter().chain(waves::write(trace, &sources)?).collect();
+    }
     report.status_counts = StatusCounts::new(&answers);
     report.true_force_errors = frames.truth.as_ref().map(|truth| against_truth(&answers, truth));
     Ok(report)
@@ -187,6 +195,7 @@ fn summarise(plan: &Plan, simulation: &Simulation, simulator: String) -> Report 
         status_counts: StatusCounts::default(),
         modes,
         registers: None,
+        traces: Vec::new(),
         dsp: plan.resources.dsp,
         bram36: plan.resources.bram36,
         rom_bits: plan.resources.rom_bits,

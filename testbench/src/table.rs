@@ -111,6 +111,14 @@ fn verdict(page: &mut Page, report: &Report) {
     } else {
         page.line(&format!("NOT BIT-EXACT: {} words differ from the model.", grouped(report.mismatches)));
     }
+    if let [trace, gtkwave, surfer] = &report.traces[..] {
+        page.line(&format!(
+            "Waveforms in {}: gtkwave {}, or surfer --command-file {}",
+            trace.display(),
+            gtkwave.display(),
+            surfer.display()
+        ));
+    }
     let predicted = &report.predicted;
     let (measured, expected) =
         ((report.latency_cycles, report.interval_cycles), (predicted.latency_cycles, predicted.interval_cycles));

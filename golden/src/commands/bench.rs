@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use golden::design::{Design, PlanKind};
 use golden::solver::{Solution, Solver, SolverError, Status};
+use indicatif::ProgressBar;
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -43,7 +44,12 @@ struct Speed {
 
 /// Measures each of the designs.
 pub fn run(designs: &[PathBuf], json: bool) -> Result<(), Box<dyn Error>> {
-    let reports = designs.iter().map(|path| measure(path)).collect::<Result<Vec<_>, _>>()?;
+    // Draws on a terminal only, and nothing while time is measured.
+    let progress = ProgressBar::new(designs.len() as u64);
+    progress.tick();
+    let measured = designs.iter().map(|path| measure(path).inspect(|_| progress.inc(1))).collect::<Result<Vec<_>, _>>();
+    progress.finish_and_clear();
+    let reports = measured?;
     if json {
         say!("{}", serde_json::to_string_pretty(&reports)?);
         return Ok(());

@@ -8,8 +8,28 @@ pub mod solve;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use golden::design::{CALIBRATION_FILE, Design};
+use indicatif::ProgressBar;
+
+/// Says what is being done, on a terminal only, until it is dropped.
+pub struct Stage(ProgressBar);
+
+impl Stage {
+    /// Work of unknown length begins.
+    pub fn new(what: &'static str) -> Self {
+        let bar = ProgressBar::new_spinner().with_message(what);
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self(bar)
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
 
 /// Refuses an output that is one of the inputs.
 pub fn keep_apart(out: &Path, inputs: &[&Path]) -> Result<(), String> {

@@ -7,7 +7,7 @@ use golden::scene::Scene;
 use golden::{forces, frames};
 use serde::Serialize;
 
-use super::keep_apart;
+use super::{Stage, keep_apart};
 
 #[derive(Serialize)]
 struct SceneReport<'a> {
@@ -23,7 +23,10 @@ pub fn run(scene: &Path, out: &Path, json: bool) -> Result<(), Box<dyn Error>> {
     keep_apart(out, &[scene])?;
     keep_apart(&forces_file, &[scene])?;
     let scene = Scene::load(scene)?;
-    let made = scene.frames()?;
+    let made = {
+        let _stage = Stage::new("computing the stress");
+        scene.frames()?
+    };
     if forces_file == out {
         return Err(
             format!("{}: the true forces would overwrite the frames; choose another name", out.display()).into()

@@ -10,7 +10,7 @@ use golden::{forces, frames};
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::keep_apart;
+use super::{Stage, keep_apart};
 
 #[derive(Serialize)]
 struct StatusCount {
@@ -51,7 +51,10 @@ pub fn run(
     let design = Design::load(design)?;
     let frames = frames::read_labelled_frames(frames.file, design.sensor.taxels(), frames.labels)?;
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
-    let solver = Solver::new(&design)?;
+    let solver = {
+        let _stage = Stage::new("matrices");
+        Solver::new(&design)?
+    };
     // Draws on a terminal only.
     let progress = ProgressBar::new(frames.len() as u64);
     let mut workspace = solver.workspace();

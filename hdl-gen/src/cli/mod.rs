@@ -9,8 +9,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use golden::design::Design;
+use golden::manual::Manual;
 use hdl_gen::plan::Plan;
 
 use progress::Progress;
@@ -49,6 +50,8 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
+    #[command(flatten)]
+    Manual(Manual),
 }
 
 pub fn main() -> ExitCode {
@@ -70,6 +73,7 @@ fn run(command: Command) -> Result<String, Box<dyn Error>> {
             let plan = plan(&Design::load(&design)?, &design, &progress)?;
             inspect::report(&plan, json)
         }
+        Command::Manual(manual) => manual.run(Arguments::command()),
         Command::Generate { design, out } => generate::generate(&design, out, &progress),
     }
 }

@@ -1,0 +1,170 @@
+//! The forces of a frame as text: an arrow and digits for each taxel, in colour where there is a terminal.
+
+use std::fmt::Write;
+use std::io::IsTerminal;
+
+use golden::design::Design;
+use golden::solver::Status;
+use hdl_gen::model::Model;
+use hdl_gen::plan::{Plan, PlanError};
+use thiserror::Error;
+
+use crate::frame_set::FrameSet;
+use crate::progress::Progress;
+use crate::words::{Answer, decode, encode};
+
+/// Towards larger x, then a further eighth of a turn towards larger y each; y is up on the page.
+const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
+/// Shear below this share of the largest force has no direction worth an arrow.
+const LEAST_SHEAR: f64 = 0.02;
+/// Colours of the 256 of a terminal, from a small to a large normal force: pressing, pulling.
+const PRESSING: [u8; 5] = [17, 18, 19, 20, 21];
+const PULLING: [u8; 5] = [52, 88, 124, 160, 196];
+
+/// Why there is nothing to see.
+#[derive(Debug, Error)]
+pub enum ViewError {
+    /// The design cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// There is no such frame.
+    #[error("--frame {frame}: {origin} has {count} frames; choose 0 to {}", .count.saturating_sub(1))]
+    NoFrame {
+        /// The one asked for.
+        frame: usize,
+        /// How many there are.
+        count: usize,
+        /// Where they are.
+        origin: String,
+    },
+}
+
+/// Whether standard output is a terminal, and its user has nothing against colours.
+pub fn wants_colour() -> bool {
+    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// A frame as the hardware answers it.
+///
+/// # Errors
+/// [`ViewError`] if the design has no plan or the frame does not exist.
+pub fn frame(
+    design: &Design,
+    frames: &FrameSet,
+    frame: usize,
+    colour: bool,
+    progress: &Progress,
+) -> Result<String, ViewError> {
+    let Some(stress) = frames.stress.get(frame) else {
+        return Err(ViewError::NoFrame { frame, count: frames.stress.len(), origin: frames.origin.clone() });
+    };
+    progress.stage("planning");
+    let plan = Plan::new(design)?;
+    progress.stage("computing the forces");
+    let words = Model::new(&plan).process(&encode(stress));
+    let title = format!("{}, frame {frame} of {}", design.name, frames.origin);
+    // The model's answers have the length that it was made for.
+    let text = decode(&words).map(|answer| render(&title, &answer, design.sensor.columns, colour));
+    Ok(text.unwrap_or_default())
+}
+
+/// The page of an answer.
+pub fn render(title: &str, answer: &Answer, columns: usize, colour: bool) -> String {
+    let mut text = format!("{title}\n");
+    let [x, y, z] = answer.resultant;
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        text,
+        "F = ({x:.3}, {y:.3}, {z:.3}) N   mu = {:.3}   phi = {:.1}°   {}",
+        answer.mu,
+        answer.phi.to_degrees(),
+        Status(answer.status)
+    );
+    let [fx, fy, fz] = &answer.field;
+    if fx.is_empty() {
+        text.push_str("No field: the design puts out resultants only.\n");
+        return text;
+    }
+    let largest = fx.iter().chain(fy).chain(fz).fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let _ =
+        writeln!(text, "arrow and first digit: shear; second digit: |f_z|; 9 is {largest:.4} N, · next to nothing\n");
+    let rows = fx.len() / columns.max(1);
+    for row in (0..rows).rev() {
+        let _ = write!(text, "{row:>3} ");
+        for taxel in row * columns..(row + 1) * columns {
+            text.push_str(&cell([fx[taxel], fy[taxel], fz[taxel]], largest, colour));
+        }
+        text.push('\n');
+    }
+    text.push_str("    ");
+    for column in 0..columns {
+        let _ = write!(text, "{:>3} ", column % 100);
+    }
+    text.push('\n');
+    text
+}
+
+/// Four columns of the page: arrow, shear, normal force.
+fn cell([x, y, z]: [f64; 3], largest: f64, colour: bool) -> String {
+    let share = |value: f64| if largest > 0.0 { (value.abs() / largest).min(1.0) } else { 0.0 };
+    let shear = x.hypot(y);
+    let arrow = if share(shear) < LEAST_SHEAR {
+        '·'
+    } else {
+        let eighths = (y.atan2(x) / std::f64::consts::FRAC_PI_4).round() as i64;
+        ARROWS[eighths.rem_euclid(8) as usize]
+    };
+    let digit = |value: f64| char::from(b'0' + (9.0 * share(value)).round() as u8);
+    let plain = format!(" {arrow}{}{}", digit(shear), digit(z));
+    let strength = (share(z) * PRESSING.len() as f64) as usize;
+    if !colour || share(z) < LEAST_SHEAR && arrow == '·' {
+        return plain;
+    }
+    let ramp = if z < 0.0 { PRESSING } else { PULLING };
+    let background = ramp[strength.min(ramp.len() - 1)];
+    let weight = if share(shear) > 0.3 { "1;" } else { "" };
+    format!("\x1b[{weight}38;5;231;48;5;{background}m{plain}\x1b[0m")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer(forces: &[[f64; 3]]) -> Answer {
+        let field = [0, 1, 2].map(|axis| forces.iter().map(|force| force[axis]).collect());
+        Answer { status: 0, counter: 0, resultant: [1.0, 2.0, -3.0], mu: 0.5, phi: 1.0, mu_xy: [0.3, 0.4], field }
+    }
+
+    #[test]
+    fn arrows_point_where_the_shear_does() {
+        let turn = |eighths: f64| {
+            let (y, x) = (eighths * std::f64::consts::FRAC_PI_4).sin_cos();
+            cell([x, y, 0.0], 1.0, false).chars().nth(1).expect("an arrow")
+        };
+        let seen: Vec<char> = (0..8).map(|eighths| turn(f64::from(eighths))).collect();
+        assert_eq!(seen, ARROWS);
+        assert_eq!([turn(0.4), turn(7.6), turn(-1.0)], ['→', '→', '↘']);
+        assert_eq!(cell([0.0, 0.0, 0.0], 0.0, true), " ·00");
+    }
+
+    #[test]
+    fn y_is_up_and_digits_are_shares_of_the_largest_force() {
+        let page = render("t", &answer(&[[1.0, 0.0, -2.0], [0.0; 3], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]]), 2, false);
+        let lines: Vec<&str> = page.lines().collect();
+        assert_eq!(lines[4..], ["  1  ↓50 ·05", "  0  →59 ·00", "      0   1 "]);
+        assert!(lines[1].starts_with("F = (1.000, 2.000, -3.000) N   mu = 0.500   phi = 57.3°"), "{}", lines[1]);
+        assert!(!page.contains('\x1b'));
+    }
+
+    #[test]
+    fn colours_tell_pressing_from_pulling() {
+        let [press, pull] = [-1.0, 1.0].map(|z| cell([0.0, 0.0, z], 1.0, true));
+        assert!(press.contains("48;5;21m") && pull.contains("48;5;196m"), "{press} {pull}");
+        assert!(press.ends_with("\x1b[0m"));
+    }
+
+    #[test]
+    fn resultants_have_no_field() {
+        assert!(render("t", &answer(&[]), 2, true).contains("resultants only"));
+    }
+}
