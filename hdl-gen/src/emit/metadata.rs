@@ -7,7 +7,7 @@ use crate::plan::Plan;
 use crate::plan::product::{Product, Vector};
 use crate::plan::schedule::Window;
 
-use super::{EmitError, FileMap, VERSION};
+use super::{EmitError, FileMap, VERSION, registers};
 
 /// The predicted figures, under the names that `hdl-gen inspect --json` uses too.
 pub fn predicted(plan: &Plan) -> Value {
@@ -90,7 +90,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
             json!({ "first_word": first_word, "vectors": names })
         })
         .collect();
-    let value = json!({
+    let mut value = json!({
         "name": plan.design.name,
         "generator": format!("hdl-gen {VERSION}"),
         "design_hash": hash,
@@ -121,6 +121,9 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         "top": plan.design.name,
         "files": files.keys().collect::<Vec<_>>(),
     });
+    if plan.design.hardware.control {
+        value["registers"] = json!(registers::map_path(plan));
+    }
     let mut text = serde_json::to_vec_pretty(&value)?;
     text.push(b'\n');
     Ok(text)

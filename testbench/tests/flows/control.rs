@@ -126,6 +126,8 @@ fn the_register_map_is_in_the_folder() {
         .expect("a shell");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(folder.work().join("registers/sptfra_registers.h").is_file());
+    let metadata: serde_json::Value = serde_json::from_str(&folder.read("metadata.json")).expect("JSON");
+    assert_eq!(metadata["registers"], "control/small_control.rdl");
     let none =
         Command::new(workspace().join("tools/registers.sh")).args(["none.rdl", "out"]).output().expect("a shell");
     assert!(String::from_utf8_lossy(&none.stderr).contains("set control = true"), "{none:?}");
