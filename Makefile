@@ -100,7 +100,7 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, and wri
 SWEEP_FOLDER  := $(TARGET)/sweep
 SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1-l40 f2-p50 f3 joint,designs/$(sensor)-$(kind).toml))
 SWEEP_SCENES  ?= scenes/sensor1-hertz.toml scenes/sensor2-disc.toml scenes/two-contacts.toml scenes/sensor2-punch.toml
-SWEEP_OPTIONS ?= --simulate base
+SWEEP_OPTIONS ?= --simulate base --hard
 SNAKEMAKE_OPTIONS ?= --cores all
 
 .PHONY: report
@@ -110,6 +110,10 @@ report: tools build ## Speed against error: target/sweep/report.html, a page to 
 .PHONY: report-full
 report-full: build ## The same over every combination of filters, plans, widths and lanes: thousands of points
 	@$(BIN)/testbench sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) --full
+
+.PHONY: hard
+hard: build ## Sensors, contacts and frames at the limits: a table, also in docs/hard-cases.md
+	@$(BIN)/testbench hard --page docs/hard-cases.md
 
 .PHONY: sweep-tools
 sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one machine

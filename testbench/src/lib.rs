@@ -6,6 +6,8 @@ pub mod bench;
 pub mod compare;
 pub mod dut;
 pub mod frame_set;
+pub mod hard;
+pub mod markdown;
 pub mod page;
 pub mod progress;
 pub mod registers;

@@ -47,6 +47,11 @@ enum Command {
     /// are there are not computed again. Without axes: filters with plans, and widths and lanes one at a time around
     /// each design. Axes that are named beside --filters, --plans or --full are combined.
     Sweep(commands::sweep::Arguments),
+    /// Sensors, contacts and frames at the limits, in f64, float32 and the hardware's integers: condition numbers,
+    /// backward errors, errors, statuses.
+    ///
+    /// The exit code is 0 only if no answer is wrong in silence: no NaN, no force beyond reason without a status bit.
+    Hard(commands::hard::Arguments),
     /// Sum Yosys' cell counts of a generated design by block, beside the predicted ones.
     ///
     /// STATISTICS is what `stat -json` prints after a synthesis without -flatten; `tools/synth.sh` does both.
@@ -146,6 +151,9 @@ fn main() -> ExitCode {
         Command::Sweep(arguments) => commands::sweep::run(&arguments).and_then(|text| print(&text)).map(|()| true),
         Command::View(arguments) => view(&arguments).map(|()| true),
         Command::Manual(manual) => manual.run(Arguments::command()).and_then(|text| print(&text)).map(|()| true),
+        Command::Hard(arguments) => {
+            commands::hard::run(&arguments).and_then(|(text, sound)| print(&text).map(|()| sound))
+        }
         Command::Cells { design, folder, statistics, json } => {
             cells(&design, &folder, &statistics, json).map(|()| true)
         }

@@ -156,7 +156,7 @@ pub fn choose(design: &Design, frames: &[SceneFrame], tick: &(dyn Fn() + Sync)) 
     let mut design = Design { input: Input::default(), ..design.clone() };
     design.algorithm.estimator = Estimator::Line;
     let design = &design;
-    let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)?;
+    let matrices = Matrices::of(design)?;
     let trial = Trial::new(design, &matrices, frames)?;
     let filters = candidate_filters(design.sensor.taxels());
     let pairs: Vec<_> =

@@ -10,6 +10,7 @@ mod parse;
 mod parse_filter;
 mod parse_plan;
 mod print;
+mod regularisation;
 
 use std::path::{Path, PathBuf};
 
@@ -17,6 +18,7 @@ pub use filter::{Choices, Filter, MatrixFilter, UnknownMatrixFilter};
 pub use input::{Calibration, Input};
 pub use joint::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_BITS, WEIGHT_FRACTION};
 pub(crate) use parse::{RawSensor, syntax_position};
+pub use regularisation::Regularisation;
 
 /// Largest number of columns or rows of a sensor.
 pub const MAX_SIDE: usize = 64;
@@ -126,6 +128,8 @@ pub struct Algorithm {
     pub plan: PlanKind,
     /// Load model behind C31, C32 and C33.
     pub kernel: Kernel,
+    /// What C33 is made better conditioned by.
+    pub regularisation: Regularisation,
     /// Sparsity of the matrices.
     pub filter: Filter,
     /// Friction estimator.

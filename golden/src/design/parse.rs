@@ -8,6 +8,7 @@ use super::checks::{self, Check};
 use super::joint::{self, RawCorrection};
 use super::parse_filter::{self, RawFilter};
 use super::parse_plan::{self, PlanKeys};
+use super::regularisation;
 use super::{
     Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input,
     JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, Sensor,
@@ -51,6 +52,7 @@ struct RawDesignSensor {
 struct RawAlgorithm {
     plan: Option<String>,
     kernel: Option<String>,
+    regularisation: Option<toml::Value>,
     filter: Option<RawFilter>,
     estimator: Option<String>,
     gain: Option<f64>,
@@ -130,6 +132,7 @@ fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, hardware: &Hardw
     };
     check.choice("algorithm.kernel", raw.kernel.as_deref(), &["point", "cell"])?;
     let kernel = if raw.kernel.as_deref() == Some("cell") { Kernel::Cell } else { Kernel::Point };
+    let regularisation = regularisation::parse(check, raw.regularisation.as_ref())?;
     check.choice("algorithm.estimator", raw.estimator.as_deref(), &["line", "joint"])?;
     let (estimator, joint) = if raw.estimator.as_deref() == Some("joint") {
         let tangential = raw.tangential.as_deref();
@@ -146,7 +149,7 @@ fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, hardware: &Hardw
         None => full_scale_pa / NOISE_FLOOR_DIVISOR,
     };
     let plan = parse_plan::kind(check, raw.plan.as_deref(), &filter, hardware)?;
-    Ok(Algorithm { plan, kernel, filter, estimator, joint: Box::new(joint), outputs, noise_floor_pa })
+    Ok(Algorithm { plan, kernel, regularisation, filter, estimator, joint: Box::new(joint), outputs, noise_floor_pa })
 }
 
 fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {

@@ -6,6 +6,7 @@ use toml::Value;
 
 use super::{
     Arithmetic, CALIBRATION_FILE, Choices, Design, Estimator, Filter, Kernel, Optimise, Outputs, PlanKind, joint,
+    regularisation,
 };
 use crate::matrices::MatrixName;
 
@@ -21,6 +22,7 @@ pub(super) fn to_toml(design: &Design) -> String {
         Kernel::Point => "point",
         Kernel::Cell => "cell",
     };
+    let regularisation = regularisation::print(algorithm.regularisation);
     // A filter for each matrix is too long for one line, and a table can only follow the other keys.
     let (filter, filter_table) = match &algorithm.filter {
         Filter::None => ("filter = { kind = \"none\" }\n".to_owned(), String::new()),
@@ -63,7 +65,7 @@ pub(super) fn to_toml(design: &Design) -> String {
         text,
         "name = \"{name}\"\n\n\
          [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{counts}{calibration}\n\
-         [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{filter}estimator = \"{estimator}\"\n\
+         [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
          full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{control}clock_mhz = {:?}\npart = \"{}\"\n",

@@ -73,6 +73,12 @@ impl Factors {
         self.condition(|class| &class.c33)
     }
 
+    /// Largest singular value of C33.
+    pub(super) fn largest_c33(&self) -> f64 {
+        let values = self.classes.par_iter().map(|class| class.c33.singular_values().max());
+        values.reduce(|| 0.0, f64::max)
+    }
+
     /// Condition number of A in the 2-norm.
     pub(super) fn condition_a(&self) -> f64 {
         self.condition(|class| &class.r)

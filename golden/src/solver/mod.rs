@@ -136,12 +136,11 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// [`SolverError::Matrices`] for a sensor whose matrices are singular, [`SolverError::Filter`] for a filter that
+    /// [`SolverError::Matrices`] for a sensor whose matrices are singular or too ill-conditioned, [`SolverError::Filter`] for a filter that
     /// leaves nothing of a row.
     pub fn new(design: &Design) -> Result<Self, SolverError> {
         let name = || design.name.clone();
-        let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)
-            .map_err(|source| SolverError::Matrices { name: name(), source })?;
+        let matrices = Matrices::of(design).map_err(|source| SolverError::Matrices { name: name(), source })?;
         let filter = &design.algorithm.filter;
         match design.algorithm.plan {
             PlanKind::Paper => {

@@ -62,7 +62,7 @@ struct Work {
 impl Work {
     fn new(design: &Design) -> Result<Self, PlanError> {
         let hardware = &design.hardware;
-        let matrices = Matrices::new(&design.sensor, design.algorithm.kernel)?;
+        let matrices = Matrices::of(design)?;
         let stress = Format::covering(hardware.full_scale_pa, hardware.data_bits);
         let thresholds = thresholds(design, stress)?;
         let counts = CountsPlan::new(design, stress)?;

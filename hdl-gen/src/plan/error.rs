@@ -65,7 +65,8 @@ pub enum PlanError {
     #[error(
         "[hardware] data_bits = {bits}: the worst case of {vector} is {worst_n:.3e} N, so one step is {step_n:.3e} N, \
          more than 1/{FEWEST_FORCE_STEPS} of a taxel's force at full scale ({taxel_n:.3e} N); the condition number of \
-         A A^T is {condition:.1e}: lower [sensor] depth_mm, raise the pitch, or raise data_bits"
+         A A^T is {condition:.1e}: write a larger regularisation under [algorithm], lower [sensor] depth_mm, raise the \
+         pitch, or raise data_bits"
     )]
     ForceResolution {
         /// The vector.

@@ -1,17 +1,13 @@
 //! The figures as a page of Markdown, with the command behind each.
 
-use std::fmt::Write;
-
 use super::cells::{Block, Cells};
 use super::cycles::{Cycles, Kind, LANES, Point};
 use super::generation::Generation;
 use super::rate::Rate;
 use super::solver::SolverRate;
 use super::{Figures, generation, rate};
+use crate::markdown::Page;
 use crate::table::{decimals, grouped};
-
-/// Characters of a line of running text.
-const PAGE_WIDTH: usize = 120;
 
 /// The whole page. `command` is the `testbench bench` command that measured; `plot` is the picture's place, as seen
 /// from the page.
@@ -199,51 +195,4 @@ fn cells(page: &mut Page, designs: &[Cells]) {
     }
     let commands: Vec<String> = designs.iter().map(|cells| format!("tools/synth.sh {}", cells.file)).collect();
     page.command(&commands.join("\n"));
-}
-
-/// Text of a page. Writing to a String cannot fail.
-struct Page(String);
-
-impl Page {
-    fn heading(&mut self, title: &str) {
-        let _ = write!(self.0, "\n## {title}\n");
-    }
-
-    fn line(&mut self, text: &str) {
-        self.0.push('\n');
-        for line in text.lines() {
-            self.wrapped(line);
-        }
-    }
-
-    /// A paragraph or a point of a list, broken between words.
-    fn wrapped(&mut self, text: &str) {
-        let indent = if text.starts_with("* ") { "  " } else { "" };
-        let mut width = 0;
-        for word in text.split(' ') {
-            let length = word.chars().count();
-            if width > 0 && width + 1 + length > PAGE_WIDTH {
-                let _ = write!(self.0, "\n{indent}");
-                width = indent.len();
-            } else if width > 0 {
-                self.0.push(' ');
-                width += 1;
-            }
-            self.0.push_str(word);
-            width += length;
-        }
-        self.0.push('\n');
-    }
-
-    fn command(&mut self, command: &str) {
-        let _ = write!(self.0, "\n```sh\n{command}\n```\n");
-    }
-
-    /// The first column to the left, the others to the right.
-    fn table(&mut self, header: &[&str], rows: impl Iterator<Item = Vec<String>>) {
-        let _ = write!(self.0, "\n| {} |\n|---{}|\n", header.join(" | "), "|---:".repeat(header.len() - 1));
-        for row in rows {
-            let _ = writeln!(self.0, "| {} |", row.join(" | "));
-        }
-    }
 }

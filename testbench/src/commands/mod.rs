@@ -1,3 +1,4 @@
 //! Commands with many options, one file each.
 
+pub mod hard;
 pub mod sweep;

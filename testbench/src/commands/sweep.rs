@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use golden::design::{Design, PlanKind};
 use golden::output::write_whole;
 
+use testbench::hard;
 use testbench::page;
 use testbench::progress::Progress;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
@@ -46,6 +47,9 @@ pub struct Arguments {
     /// What to run through the RTL in Verilator too, word by word; `all` if nothing is said.
     #[arg(long, value_enum, default_value = "none", num_args = 0..=1, default_missing_value = "all")]
     simulate: Simulate,
+    /// Add the table of hard cases to the page, as `testbench hard` makes it.
+    #[arg(long)]
+    hard: bool,
     /// Folder for the points and for sweep.json, sweep.csv and report.html.
     #[arg(long, value_name = "FOLDER", default_value = OUT)]
     out: PathBuf,
@@ -107,8 +111,11 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
     let place = |name: &str| arguments.out.join(name);
     write_whole(&place("sweep.json"), json.as_bytes())?;
     write_whole(&place("sweep.csv"), table::csv(&outcomes.points)?.as_bytes())?;
-    let page = page::render(&page::Contents::new(&designs, &sweep, &outcomes.points)?)?;
-    write_whole(&place("report.html"), page.as_bytes())?;
+    let mut contents = page::Contents::new(&designs, &sweep, &outcomes.points)?;
+    if arguments.hard {
+        contents = contents.with_hard_cases(&hard::table(true, &progress)?);
+    }
+    write_whole(&place("report.html"), page::render(&contents)?.as_bytes())?;
     drop(progress);
     Ok(if arguments.json { json } else { summary(&outcomes, &arguments.out) })
 }

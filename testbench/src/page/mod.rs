@@ -2,6 +2,7 @@
 
 pub mod field;
 pub mod front;
+pub mod hard;
 pub mod matrices;
 pub mod paper;
 pub mod tables;
@@ -15,6 +16,7 @@ use serde::Serialize;
 use tera::{Context, Tera};
 use thiserror::Error;
 
+use crate::hard::judge::Row;
 use crate::sweep::evaluate::answers;
 use crate::sweep::grid::{sensor_title, sensors};
 use crate::sweep::point::{Geometry, Point, Verified};
@@ -51,6 +53,7 @@ pub struct Contents {
     legend: front::Legend,
     ramp: Vec<(String, &'static str)>,
     sensors: Vec<SensorSection>,
+    hard: Option<hard::Section>,
 }
 
 /// One sensor's part.
@@ -97,7 +100,17 @@ impl Contents {
             legend: front::legend(points),
             ramp: matrices::ramp_legend(),
             sensors: sections,
+            hard: None,
         })
+    }
+}
+
+impl Contents {
+    /// The same with the table of hard cases.
+    #[must_use]
+    pub fn with_hard_cases(mut self, rows: &[Row]) -> Self {
+        self.hard = Some(hard::section(rows));
+        self
     }
 }
 
@@ -131,7 +144,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
     let on_main = main.map(on).unwrap_or_default();
     let small = sensor.columns * sensor.rows <= MOST_TAXELS;
     let pictures = match designs.first().filter(|_| small) {
-        Some(design) => Matrices::new(&design.sensor, design.algorithm.kernel).ok(),
+        Some(design) => Matrices::of(design).ok(),
         None => None,
     };
     let (field, field_caption) = field_figures(sensor, &designs, main)?;

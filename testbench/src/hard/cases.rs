@@ -1,0 +1,250 @@
+//! What makes an estimator fail: deep sensors, contacts that fit no taxel, frames that are no contact, broken taxels.
+
+use golden::design::{Design, DesignError, Sensor};
+use golden::metrics::Outcome;
+use golden::scene::{Contact, Converter, Medium, Scene, SceneError, SensorErrors, Shape};
+
+use super::HardError;
+
+/// Frames for one design.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// What it is about.
+    pub group: &'static str,
+    /// The case.
+    pub name: String,
+    /// The design.
+    pub design: Design,
+    /// Stresses in Pa.
+    pub frames: Vec<Vec<f64>>,
+    /// True forces where there are any.
+    pub truth: Option<Vec<Outcome>>,
+}
+
+/// Depth over pitch of the deep sensors.
+pub const DEPTHS: [f64; 8] = [0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0];
+/// Noise of the deep sensors, as a share of the largest stress.
+pub const NOISE: f64 = 0.002;
+/// Group of the deep sensors as they are.
+pub const PLAIN: &str = "depth";
+/// Group of the deep sensors, regularised by [`NOISE`].
+pub const REGULARISED: &str = "depth, regularised";
+/// From this depth over pitch on a larger regularisation is tried too.
+const DEEP: f64 = 3.0;
+/// That one.
+const MORE: f64 = 0.03;
+const DIRECTIONS: usize = 12;
+const SEED: u64 = 7;
+const FORCE_N: f64 = 6.0;
+
+fn design(sensor: &Sensor, algorithm: &str) -> Result<Design, DesignError> {
+    let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
+    let text = format!(
+        "name = \"hard\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [{x:?}, {y:?}]\n\
+         depth_mm = {depth_mm:?}\n[algorithm]\nplan = \"reduced\"\n{algorithm}\n"
+    );
+    Design::from_toml(&text, "hard case")
+}
+
+fn square(side: usize, depth_mm: f64) -> Sensor {
+    Sensor { columns: side, rows: side, pitch_mm: [4.0, 4.0], depth_mm }
+}
+
+fn sensor_1() -> Sensor {
+    Sensor { columns: 10, rows: 10, pitch_mm: [4.0, 2.0], depth_mm: 3.0 }
+}
+
+/// A contact in the middle of the sensor.
+fn contact(sensor: &Sensor, radius_mm: f64) -> Contact {
+    let half = |count: usize, pitch: f64| 0.5e-3 * (count - 1) as f64 * pitch;
+    Contact {
+        shape: Shape::Hertz { semi_axes_m: [radius_mm * 1e-3; 2] },
+        centre_m: [half(sensor.columns, sensor.pitch_mm[0]), half(sensor.rows, sensor.pitch_mm[1])],
+        normal_force_n: FORCE_N,
+        friction: 0.5,
+        direction_deg: 0.0,
+    }
+}
+
+fn scene(sensor: &Sensor, contacts: Vec<Contact>, sweep_deg: Vec<f64>, sensor_errors: SensorErrors) -> Scene {
+    let medium = Medium::BondedLayer { poisson: 0.49 };
+    Scene { sensor: sensor.clone(), medium, contacts, sweep_deg, sensor_errors }
+}
+
+fn all_directions() -> Vec<f64> {
+    (0..DIRECTIONS).map(|step| step as f64 * 360.0 / DIRECTIONS as f64).collect()
+}
+
+fn noise(share: f64) -> SensorErrors {
+    SensorErrors { seed: SEED, noise: share, ..SensorErrors::default() }
+}
+
+/// The cases so far.
+struct Cases(Vec<Case>);
+
+impl Cases {
+    fn scene(
+        &mut self,
+        group: &'static str,
+        name: impl Into<String>,
+        algorithm: &str,
+        scene: &Scene,
+    ) -> Result<(), HardError> {
+        let frames = scene.frames().map_err(|source: SceneError| HardError::Scene(source))?;
+        let truth = frames.iter().map(Outcome::from).collect();
+        let frames = frames.into_iter().map(|frame| frame.stress).collect();
+        let design = design(&scene.sensor, algorithm)?;
+        self.0.push(Case { group, name: name.into(), design, frames, truth: Some(truth) });
+        Ok(())
+    }
+
+    fn frames(&mut self, group: &'static str, name: &str, frames: Vec<Vec<f64>>) -> Result<(), HardError> {
+        let design = design(&sensor_1(), "")?;
+        self.0.push(Case { group, name: name.to_owned(), design, frames, truth: None });
+        Ok(())
+    }
+}
+
+/// All cases; without the `large` ones those that take milliseconds.
+///
+/// # Errors
+/// [`HardError`] if a scene cannot be computed.
+pub fn all(large: bool) -> Result<Vec<Case>, HardError> {
+    let mut cases = Cases(Vec::new());
+    depths(&mut cases)?;
+    if large {
+        let sensor = square(32, 3.0);
+        let swept = scene(&sensor, vec![contact(&sensor, 20.0)], vec![0.0, 50.0, 220.0], SensorErrors::default());
+        cases.scene("size", "32 × 32 taxels", "", &swept)?;
+    }
+    contacts(&mut cases)?;
+    directions(&mut cases)?;
+    errors(&mut cases)?;
+    ends_of_range(&mut cases)?;
+    without_answer(&mut cases)?;
+    Ok(cases.0)
+}
+
+fn depths(cases: &mut Cases) -> Result<(), HardError> {
+    for share in [0.0, NOISE] {
+        for ratio in DEPTHS {
+            let sensor = square(10, 4.0 * ratio);
+            let swept = scene(&sensor, vec![contact(&sensor, 10.0)], all_directions(), noise(share));
+            let noise = if share > 0.0 { format!(", noise {} %", 100.0 * share) } else { String::new() };
+            cases.scene(PLAIN, format!("h/s = {ratio}{noise}"), "", &swept)?;
+            let by_noise = format!("regularisation = {{ noise = {NOISE} }}");
+            cases.scene(REGULARISED, format!("h/s = {ratio}{noise}, regularised by the noise"), &by_noise, &swept)?;
+            if ratio >= DEEP {
+                let more = format!("regularisation = {MORE}");
+                cases.scene("depth, more", format!("h/s = {ratio}{noise}, regularisation {MORE}"), &more, &swept)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn contacts(cases: &mut Cases) -> Result<(), HardError> {
+    let sensor = sensor_1();
+    let swept = |contacts| scene(&sensor, contacts, all_directions(), SensorErrors::default());
+    let needle = |x: f64, y: f64| Contact { centre_m: [x * 1e-3, y * 1e-3], ..contact(&sensor, 0.3) };
+    let light = |contact: Contact| Contact { normal_force_n: 0.5, ..contact };
+    cases.scene("contact", "needle on a taxel", "", &swept(vec![light(needle(16.0, 8.0))]))?;
+    cases.scene("contact", "needle between four taxels", "", &swept(vec![light(needle(18.0, 9.0))]))?;
+    cases.scene(
+        "contact",
+        "centre on the edge",
+        "",
+        &swept(vec![Contact { centre_m: [0.0, 9e-3], ..contact(&sensor, 7.0) }]),
+    )?;
+    cases.scene(
+        "contact",
+        "mostly beyond the corner",
+        "",
+        &swept(vec![Contact { centre_m: [-4e-3, -4e-3], ..contact(&sensor, 7.0) }]),
+    )?;
+    let apart = |x: f64, direction_deg| Contact {
+        centre_m: [x * 1e-3, 9e-3],
+        normal_force_n: 3.0,
+        direction_deg,
+        ..contact(&sensor, 5.0)
+    };
+    cases.scene("contact", "two contacts, opposed pushes", "", &swept(vec![apart(9.0, 0.0), apart(27.0, 180.0)]))?;
+    cases.scene("contact", "µ = 0", "", &swept(vec![Contact { friction: 0.0, ..contact(&sensor, 7.0) }]))?;
+    for friction in [0.2, 0.8, 1.5] {
+        let name = format!("µ = {friction}");
+        cases.scene("contact", name, "", &swept(vec![Contact { friction, ..contact(&sensor, 7.0) }]))?;
+    }
+    Ok(())
+}
+
+fn directions(cases: &mut Cases) -> Result<(), HardError> {
+    let sensor = sensor_1();
+    let swept = |sweep| scene(&sensor, vec![contact(&sensor, 7.0)], sweep, SensorErrors::default());
+    let every = |first: f64, step: f64| (0..4).map(move |quarter| first + step * f64::from(quarter));
+    let around = |first: f64, by: f64| every(first - by, 90.0).chain(every(first + by, 90.0)).collect::<Vec<f64>>();
+    cases.scene("direction", "on the axes", "", &swept(every(0.0, 90.0).collect()))?;
+    cases.scene("direction", "on the diagonals", "", &swept(every(45.0, 90.0).collect()))?;
+    for by in [1e-9, 1e-3, 0.5] {
+        cases.scene("direction", format!("{by}° off the axes"), "", &swept(around(0.0, by)))?;
+        cases.scene("direction", format!("{by}° off the diagonals"), "", &swept(around(45.0, by)))?;
+    }
+    Ok(())
+}
+
+fn errors(cases: &mut Cases) -> Result<(), HardError> {
+    let sensor = sensor_1();
+    let swept = |errors| scene(&sensor, vec![contact(&sensor, 7.0)], all_directions(), errors);
+    for percent in [0.05, 0.1, 0.2, 0.5, 1.0, 2.0] {
+        cases.scene("sensor", format!("noise {percent} %"), "", &swept(noise(percent / 100.0)))?;
+    }
+    let with = |dead: Vec<usize>, stuck: Vec<(usize, f64)>| SensorErrors { dead, stuck, ..SensorErrors::default() };
+    cases.scene("sensor", "a dead taxel in the middle", "", &swept(with(vec![44], vec![])))?;
+    cases.scene("sensor", "five dead taxels", "", &swept(with(vec![0, 33, 44, 55, 67], vec![])))?;
+    cases.scene("sensor", "a saturated taxel in the contact", "", &swept(with(vec![], vec![(44, -1e5)])))?;
+    cases.scene("sensor", "a saturated taxel far away", "", &swept(with(vec![], vec![(9, -1e5)])))?;
+    cases.scene("sensor", "a taxel beyond the full scale", "", &swept(with(vec![], vec![(44, -3e5)])))?;
+    let coarse = SensorErrors { converter: Some(Converter { bits: 8, full_scale_pa: 1e5 }), ..SensorErrors::default() };
+    cases.scene("sensor", "converter of 8 bits", "", &swept(coarse))?;
+    Ok(())
+}
+
+/// The same contact, louder and fainter.
+fn ends_of_range(cases: &mut Cases) -> Result<(), HardError> {
+    let sensor = sensor_1();
+    let swept = scene(&sensor, vec![contact(&sensor, 7.0)], all_directions(), SensorErrors::default());
+    let design = design(&sensor, "")?;
+    let full_scale = design.hardware.full_scale_pa;
+    let step = full_scale / f64::from(design.hardware.data_bits - 1).exp2();
+    let floor = design.algorithm.noise_floor_pa;
+    let peak = swept.frames()?.iter().flat_map(|frame| &frame.stress).fold(0.0_f64, |max, b| max.max(b.abs()));
+    for (name, to) in [
+        ("peak at the full scale", full_scale),
+        ("peak at twice the full scale", 2.0 * full_scale),
+        ("peak at 100 noise floors", 100.0 * floor),
+        ("peak at the noise floor", floor),
+        ("peak at one step", step),
+    ] {
+        let contacts = vec![Contact { normal_force_n: FORCE_N * to / peak, ..contact(&sensor, 7.0) }];
+        cases.scene("range", name, "", &Scene { contacts, ..swept.clone() })?;
+    }
+    let all = |value: f64| vec![value; sensor.taxels()];
+    let checkered = |value: f64| {
+        let sign = |taxel: usize| if (taxel % 10 + taxel / 10).is_multiple_of(2) { value } else { -value };
+        (0..sensor.taxels()).map(sign).collect::<Vec<f64>>()
+    };
+    cases.frames("range", "full scale everywhere", vec![all(-full_scale), all(full_scale)])?;
+    cases.frames("range", "full scale, signs alternating", vec![checkered(full_scale), checkered(-full_scale)])?;
+    cases.frames("range", "one step everywhere", vec![all(-step), all(step), checkered(step)])?;
+    let largest = f64::from(f32::MAX);
+    cases.frames("range", "the largest float32", vec![all(-largest), checkered(largest)])
+}
+
+fn without_answer(cases: &mut Cases) -> Result<(), HardError> {
+    let taxels = sensor_1().taxels();
+    let one = |value: f64| (0..taxels).map(|taxel| if taxel == 44 { value } else { 0.0 }).collect::<Vec<f64>>();
+    cases.frames("frame", "no contact", vec![vec![0.0; taxels], vec![-0.0; taxels], vec![-1e-3; taxels]])?;
+    cases.frames("frame", "no tension", vec![vec![-1000.0; taxels], one(-1000.0)])?;
+    cases.frames("frame", "no compression", vec![vec![1000.0; taxels]])?;
+    cases.frames("frame", "one taxel", vec![one(-50_000.0), one(50_000.0), one(-1e5)])?;
+    cases.frames("frame", "NaN and infinities", vec![one(f64::NAN), one(f64::INFINITY), one(f64::NEG_INFINITY)])
+}

@@ -1,0 +1,180 @@
+//! One case in three arithmetics.
+
+use golden::matrices::Matrices;
+use golden::metrics::field_error;
+use golden::solver::{Solution, Solver};
+use hdl_gen::plan::Plan;
+use serde::Serialize;
+
+use super::cases::Case;
+use super::single::Single;
+use crate::accuracy::{StatusCounts, against_truth};
+use crate::run::{as_received, model_answers};
+use crate::words::{Answer, decode, encode};
+
+/// A resultant beyond this times what the stress would mean as a pressure, `sum |b|` times a taxel's area, is beyond
+/// reason.
+const REASON: f64 = 4.0;
+
+/// What an arithmetic makes of a case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Judged {
+    /// Largest error of `F_x` and `F_y` against the truth in percent of the normal force.
+    pub tangential: Option<f64>,
+    /// The same of `F_z`.
+    pub normal: Option<f64>,
+    /// Largest difference of a taxel's force to that of f64, relative to the frame's largest `|f_z|`; frames that f64
+    /// answers.
+    pub against_f64: Option<f64>,
+    /// Largest backward error `|A f - b| / (|A| |f| + |b|)` in the maximum norm, frames with an answer.
+    pub backward: Option<f64>,
+    /// Frames with a NaN or an infinity, or with a force beyond reason, whose status is good.
+    pub silent: usize,
+    /// Status of the frames.
+    pub status: Vec<(String, usize)>,
+}
+
+/// One case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// What it is about.
+    pub group: &'static str,
+    /// The case.
+    pub case: String,
+    /// Frames.
+    pub frames: usize,
+    /// Condition number of C33.
+    pub condition_c33: Option<f64>,
+    /// Condition number of `A A^T`.
+    pub condition_aat: Option<f64>,
+    /// The f64 solver.
+    pub f64: Option<Judged>,
+    /// The same in float32.
+    pub f32: Option<Judged>,
+    /// The integer model of the hardware.
+    pub fixed: Option<Judged>,
+    /// Why there is no hardware, or no solver.
+    pub refusal: Option<String>,
+}
+
+/// Solves a case in f64, in float32 and in the hardware's integers.
+pub fn judge(case: &Case) -> Row {
+    let mut row = Row {
+        group: case.group,
+        case: case.name.clone(),
+        frames: case.frames.len(),
+        condition_c33: None,
+        condition_aat: None,
+        f64: None,
+        f32: None,
+        fixed: None,
+        refusal: None,
+    };
+    let solver = match Solver::new(&case.design) {
+        Ok(solver) => solver,
+        Err(refusal) => {
+            row.refusal = Some(refusal.to_string());
+            if let Ok(matrices) = Matrices::new(&case.design.sensor, case.design.algorithm.kernel) {
+                row.condition_c33 = Some(matrices.condition_c33());
+                row.condition_aat = Some(matrices.condition_aat());
+            }
+            return row;
+        }
+    };
+    row.condition_c33 = Some(solver.matrices().condition_c33());
+    row.condition_aat = Some(solver.matrices().condition_aat());
+    let packets: Vec<Vec<u32>> = case.frames.iter().map(|frame| encode(frame)).collect();
+    let frames: Vec<Vec<f64>> = packets.iter().map(|packet| as_received(packet)).collect();
+    // Frames have the sensor's length, the only thing that the solver refuses.
+    let reference: Vec<Answer> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).map(answer).collect();
+    let judged = |answers: &[Answer]| judged(case, &solver, &frames, &reference, answers);
+    row.f64 = Some(judged(&reference));
+    if let Some(single) = Single::new(&case.design, &solver) {
+        row.f32 = Some(judged(&frames.iter().map(|frame| single.solve(frame)).collect::<Vec<_>>()));
+    }
+    match Plan::new(&case.design) {
+        Ok(plan) => {
+            let words = model_answers(&plan, &packets);
+            row.fixed = Some(judged(&words.iter().filter_map(|words| decode(words)).collect::<Vec<_>>()));
+        }
+        Err(refusal) => row.refusal = Some(refusal.to_string()),
+    }
+    row
+}
+
+fn answer(solution: Solution) -> Answer {
+    Answer {
+        status: solution.status.0,
+        counter: 0,
+        resultant: solution.resultant,
+        mu: solution.mu,
+        phi: solution.phi,
+        mu_xy: [solution.mu_x, solution.mu_y],
+        field: solution.field,
+    }
+}
+
+fn judged(case: &Case, solver: &Solver, frames: &[Vec<f64>], reference: &[Answer], answers: &[Answer]) -> Judged {
+    let errors = case.truth.as_ref().map(|truth| against_truth(answers, truth));
+    let answered = || answers.iter().zip(frames).filter(|(answer, _)| has_field(answer));
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
+    let same = std::ptr::eq(answers, reference);
+    let mut differences = reference
+        .iter()
+        .zip(answers)
+        .filter(|(one, _)| !same && has_field(one))
+        .map(|(one, other)| field_error(&one.field, &other.field));
+    let full_scale = case.design.hardware.full_scale_pa;
+    let mut backward = answered().map(|(answer, frame)| backward_error(solver.matrices(), answer, frame, full_scale));
+    let silent = answers.iter().zip(frames).filter(|(answer, frame)| is_silent(case, answer, frame)).count();
+    let status = StatusCounts::new(answers).present();
+    Judged {
+        tangential: errors.map(|errors| errors.e_fx.max.max(errors.e_fy.max)),
+        normal: errors.map(|errors| errors.e_fz.max),
+        against_f64: largest(&mut differences),
+        backward: largest(&mut backward),
+        silent,
+        status: status.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(),
+    }
+}
+
+fn has_field(answer: &Answer) -> bool {
+    answer.field.iter().flatten().any(|&force| force != 0.0)
+}
+
+/// Whether an answer is no number or beyond reason, and says nothing of it.
+fn is_silent(case: &Case, answer: &Answer, frame: &[f64]) -> bool {
+    let summary = [answer.mu, answer.phi].into_iter().chain(answer.resultant).chain(answer.mu_xy);
+    let finite = summary.chain(answer.field.iter().flatten().copied()).all(f64::is_finite);
+    let [x, y] = case.design.sensor.pitch_mm;
+    let full_scale = case.design.hardware.full_scale_pa;
+    let stress: f64 = frame.iter().map(|b| b.abs().min(full_scale)).sum();
+    let reason = REASON * stress * x * y * 1e-6;
+    let wild = answer.resultant.iter().any(|force| force.abs() > reason);
+    // A NaN has no excuse.
+    !finite || (wild && answer.status == 0)
+}
+
+/// `|A f - b| / (|A| |f| + |b|)` in the maximum norm; b as it is after clipping.
+fn backward_error(matrices: &Matrices, answer: &Answer, frame: &[f64], full_scale: f64) -> f64 {
+    let quads = matrices.quads();
+    let folded = answer.field.each_ref().map(|force| quads.fold(force));
+    let parts = [&matrices.c31, &matrices.c32, &matrices.c33];
+    let products: Vec<Vec<f64>> =
+        parts.iter().zip(&folded).map(|(matrix, force)| quads.unfold(&matrix.apply(force))).collect();
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |max, value| max.max(value.abs()));
+    let b: Vec<f64> = frame.iter().map(|stress| stress.clamp(-full_scale, full_scale)).collect();
+    let residual =
+        largest(&mut b.iter().enumerate().map(|(i, b)| products.iter().map(|part| part[i]).sum::<f64>() - b));
+    // The maximum norm of A is at most the sum of those of its parts.
+    let norm: f64 = parts.iter().map(|matrix| row_sum(matrix)).sum();
+    let force = largest(&mut answer.field.iter().flatten().copied());
+    residual / (norm * force + largest(&mut b.iter().copied()))
+}
+
+/// Largest sum of magnitudes of a row, from the blocks: at most that of any of them.
+fn row_sum(matrix: &golden::parity::FoldedMatrix) -> f64 {
+    let rows =
+        |block: usize| matrix.blocks[block].row_iter().map(|row| row.iter().map(|entry| entry.abs()).sum::<f64>());
+    (0..matrix.blocks.len()).flat_map(rows).fold(0.0, f64::max)
+}

@@ -1,0 +1,249 @@
+//! The reduced plan in float32 throughout, as a processor without f64 would compute it. Matrices come from f64 and are
+//! rounded. Only for comparison: hardware has fixed point.
+
+use golden::design::Design;
+use golden::parity::{CLASSES, Quads};
+use golden::reduced::{FoldedRows, ReducedMatrices, ReducedName, SumRow};
+use golden::solver::op::{DEPENDENT_RANGE, LEVEL, MAX_LINE_RATIO};
+use golden::solver::{Solver, Status};
+
+use crate::words::Answer;
+
+/// Bisections of each search: as many as a float32 has bits.
+const STEPS: usize = 24;
+
+/// One value a quad and class.
+type Folded = [Vec<f32>; CLASSES];
+
+/// A solver in float32.
+#[derive(Debug)]
+pub struct Single<'a> {
+    design: &'a Design,
+    quads: &'a Quads,
+    matrices: &'a ReducedMatrices,
+}
+
+impl<'a> Single<'a> {
+    /// From the matrices of an f64 solver with the reduced plan; `None` for another plan.
+    pub fn new(design: &'a Design, solver: &'a Solver) -> Option<Self> {
+        Some(Self { design, quads: solver.matrices().quads(), matrices: solver.reduced()? })
+    }
+
+    /// The answer to one frame in Pa.
+    pub fn solve(&self, frame: &[f64]) -> Answer {
+        let m = self.quads.taxels();
+        let full_scale = self.design.hardware.full_scale_pa as f32;
+        let raw: Vec<f32> = frame.iter().map(|&stress| stress as f32).collect();
+        if raw.iter().any(|stress| !stress.is_finite()) {
+            return blank(Status::NOT_FINITE, m);
+        }
+        let saturated = raw.iter().any(|stress| stress.abs() > full_scale);
+        let b: Vec<f32> = raw.iter().map(|stress| stress.clamp(-full_scale, full_scale)).collect();
+        let floor = self.design.algorithm.noise_floor_pa as f32;
+        let stress_sum: f32 = b.iter().map(|stress| stress.abs()).sum();
+        if stress_sum < floor * m as f32 {
+            return blank(Status::NO_CONTACT, m);
+        }
+        let y = self.unfold(&times(self.matrices.get(ReducedName::C33inv), &self.fold(&b)));
+        let magnitude: Vec<f32> = y.iter().map(|force| (-force).max(0.0)).collect();
+        let w = self.fold(&magnitude);
+        let pull = self.fold(&y.iter().map(|force| force.max(0.0)).collect::<Vec<_>>());
+        let product = |name, operand: &Folded| self.unfold(&times(self.matrices.get(name), operand));
+        let [k0, k1, k2] = [(ReducedName::K0, &pull), (ReducedName::K1, &w), (ReducedName::K2, &w)]
+            .map(|(name, operand)| product(name, operand));
+        let u0: Vec<f32> = b.iter().zip(&k0).map(|(b, k)| b - k).collect();
+        let [u1, u2] = [k1, k2].map(|k| k.iter().map(|k| -k).collect::<Vec<f32>>());
+        let sums = self.sums(&pull, &w);
+        let mut status = Status::default();
+        let [mu_x, mu_y] = self.friction(&b, floor, &sums, [&u0, &u1, &u2], stress_sum, &mut status);
+        if saturated {
+            status.insert(Status::SATURATED);
+        }
+        let mut r = times(self.matrices.get(ReducedName::C33), &pull);
+        for (name, mu) in [(ReducedName::C31, mu_x), (ReducedName::C32, mu_y)] {
+            let part = times(self.matrices.get(name), &w);
+            r.iter_mut().flatten().zip(part.iter().flatten()).for_each(|(r, part)| *r -= mu * part);
+        }
+        let shares = [mu_x, mu_y, -1.0];
+        let field = [(ReducedName::A1, 0), (ReducedName::A2, 1), (ReducedName::A3, 2)].map(|(name, axis)| {
+            let force = product(name, &r);
+            force.iter().zip(&magnitude).map(|(force, w)| f64::from(force + shares[axis] * w)).collect::<Vec<f64>>()
+        });
+        let resultant = sums.map(|[g0, g1, g2]| g0 + mu_x * g1 + mu_y * g2);
+        let [x, y, z] = resultant;
+        let mu = if z == 0.0 { 0.0 } else { x.hypot(y) / z.abs() };
+        Answer {
+            status: status.0,
+            counter: 0,
+            resultant: resultant.map(f64::from),
+            mu: f64::from(mu),
+            phi: f64::from(y.atan2(x)),
+            mu_xy: [f64::from(mu_x), f64::from(mu_y)],
+            field,
+        }
+    }
+
+    fn fold(&self, x: &[f32]) -> Folded {
+        let quads = (0..self.quads.count()).map(|q| butterfly(self.quads.members(q).map(|taxel| x[taxel])));
+        let sums: Vec<[f32; CLASSES]> = quads.collect();
+        std::array::from_fn(|class| sums.iter().map(|sums| sums[class]).collect())
+    }
+
+    fn unfold(&self, folded: &Folded) -> Vec<f32> {
+        let mut x = vec![0.0; self.quads.taxels()];
+        for q in 0..self.quads.count() {
+            let values = butterfly([0, 1, 2, 3].map(|class| folded[class][q]));
+            for (member, taxel) in self.quads.distinct(q) {
+                x[taxel] = 0.25 * values[member];
+            }
+        }
+        x
+    }
+
+    /// The sums `G_pq` from the folded y+ and |w|.
+    fn sums(&self, pull: &Folded, w: &Folded) -> [[f32; 3]; 3] {
+        let dot = |row: &SumRow, x: &Folded| -> f32 {
+            row.weights.iter().zip(&x[row.class]).map(|(&weight, value)| weight as f32 * value).sum()
+        };
+        let mut sums =
+            [0, 1, 2].map(|p| [0, 1, 2].map(|q| dot(self.matrices.sums(p, q), if q == 0 { pull } else { w })));
+        sums[2][0] -= dot(self.matrices.weight_sum(), w);
+        sums
+    }
+
+    /// The paper's line estimator: the direction of push, the line, the middle of the level set on it.
+    fn friction(
+        &self,
+        b: &[f32],
+        floor: f32,
+        sums: &[[f32; 3]; 3],
+        u: [&[f32]; 3],
+        stress_sum: f32,
+        status: &mut Status,
+    ) -> [f32; 2] {
+        let line = self.direction(b, floor).and_then(|[dx, dy]| {
+            let a = sums[0][1] * dy - sums[1][1] * dx;
+            let e = sums[0][2] * dy - sums[1][2] * dx;
+            let k = sums[1][0] * dx - sums[0][0] * dy;
+            let (independent, numerator, denominator) = if dx.abs() >= dy.abs() { (0, a, e) } else { (1, e, a) };
+            let (offset, slope) = (k / denominator, -numerator / denominator);
+            let limit = MAX_LINE_RATIO as f32;
+            (offset.abs() < limit && slope.abs() < limit).then_some((independent, offset, slope))
+        });
+        let Some((independent, offset, slope)) = line else {
+            status.insert(Status::DIRECTION_UNKNOWN);
+            return [0.0; 2];
+        };
+        let dependent = 1 - independent;
+        let along = |from: &[f32], times: f32| -> Vec<f32> {
+            from.iter().zip(u[1 + dependent]).map(|(from, other)| from + other * times).collect()
+        };
+        let (alpha, beta) = (along(u[0], offset), along(u[1 + independent], slope));
+        let (t, at_bound) = search(&alpha, &beta, LEVEL as f32 * stress_sum);
+        let range = DEPENDENT_RANGE as f32;
+        let wanted = offset + slope * t;
+        if at_bound || !(-range..range).contains(&wanted) {
+            status.insert(Status::AT_BOUND);
+        }
+        let mut mu = [0.0; 2];
+        mu[independent] = t;
+        mu[dependent] = wanted.clamp(-range, range);
+        mu
+    }
+
+    /// Centroid of compression minus that of tension.
+    fn direction(&self, b: &[f32], floor: f32) -> Option<[f32; 2]> {
+        let centroid = |sign: f32| {
+            let mut sums = [0.0_f32; 3];
+            for (taxel, stress) in b.iter().enumerate() {
+                let weight = (sign * stress).max(0.0);
+                let [x, y] = self.design.sensor.position_m(taxel);
+                sums[0] += weight * x as f32;
+                sums[1] += weight * y as f32;
+                sums[2] += weight;
+            }
+            [sums[0] / sums[2], sums[1] / sums[2]]
+        };
+        let both = b.iter().any(|&stress| stress < -floor) && b.iter().any(|&stress| stress > floor);
+        let (c, t) = (centroid(-1.0), centroid(1.0));
+        both.then(|| [c[0] - t[0], c[1] - t[1]])
+    }
+}
+
+/// The middle of where the sum of hinges is within `allowance` of its least value on [-1, 1], and whether that is at an end.
+fn search(alpha: &[f32], beta: &[f32], allowance: f32) -> (f32, bool) {
+    let value = |t: f32| -> f32 { alpha.iter().zip(beta).map(|(a, b)| (a + t * b).max(0.0)).sum() };
+    let slope = |t: f32| -> f32 { alpha.iter().zip(beta).filter(|(a, b)| *a + t * *b > 0.0).map(|(_, b)| b).sum() };
+    let bisect = |mut from: f32, mut to: f32, is_before: &dyn Fn(f32) -> bool| {
+        for _ in 0..STEPS {
+            let middle = from.midpoint(to);
+            if is_before(middle) { from = middle } else { to = middle }
+        }
+        from.midpoint(to)
+    };
+    let optimum = bisect(-1.0, 1.0, &|t| slope(t) < 0.0);
+    let level = value(optimum) + allowance;
+    let left = bisect(-1.0, optimum, &|t| value(t) > level);
+    let right = bisect(optimum, 1.0, &|t| value(t) <= level);
+    (left.midpoint(right), slope(-1.0) >= 0.0 || slope(1.0) < 0.0)
+}
+
+/// The product with a folded vector.
+fn times(matrix: &FoldedRows, x: &Folded) -> Folded {
+    let mut result: Folded = std::array::from_fn(|_| Vec::with_capacity(matrix.rows.len()));
+    for row in &matrix.rows {
+        let mut sums = [0.0_f32; CLASSES];
+        for &(column, coefficients) in row {
+            for class in 0..CLASSES {
+                sums[class] += coefficients[class] as f32 * x[class][column as usize];
+            }
+        }
+        for (class, sum) in sums.into_iter().enumerate() {
+            result[class ^ matrix.parity].push(sum);
+        }
+    }
+    result
+}
+
+/// Sums and differences of the four members, by class; applied twice it multiplies by four.
+fn butterfly([a, b, c, d]: [f32; 4]) -> [f32; 4] {
+    [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d]
+}
+
+fn blank(status: Status, taxels: usize) -> Answer {
+    Answer {
+        status: status.0,
+        counter: 0,
+        resultant: [0.0; 3],
+        mu: 0.0,
+        phi: 0.0,
+        mu_xy: [0.0; 2],
+        field: std::array::from_fn(|_| vec![0.0; taxels]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use golden::metrics::field_error;
+
+    use super::*;
+    use crate::frame_set::FrameSet;
+
+    #[test]
+    fn it_is_the_f64_solver_but_for_rounding() {
+        for (columns, rows) in [(10, 10), (7, 5)] {
+            let text = format!(
+                "name = \"pad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
+            );
+            let design = Design::from_toml(&text, "pad").expect("a design");
+            let solver = Solver::new(&design).expect("a solver");
+            let single = Single::new(&design, &solver).expect("the reduced plan");
+            for stress in FrameSet::standing(&design.sensor).expect("frames").stress.iter().step_by(5) {
+                let (one, other) = (solver.solve(stress).expect("solved"), single.solve(stress));
+                assert_eq!(one.status.0, other.status);
+                let error = field_error(&one.field, &other.field);
+                assert!(error > 0.0 && error < 1e-3, "{error}");
+            }
+        }
+    }
+}
