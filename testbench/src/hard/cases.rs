@@ -133,7 +133,7 @@ fn depths(cases: &mut Cases) -> Result<(), HardError> {
             let noise = if share > 0.0 { format!(", noise {} %", 100.0 * share) } else { String::new() };
             cases.scene(PLAIN, format!("h/s = {ratio}{noise}"), "", &swept)?;
             let by_noise = format!("regularisation = {{ noise = {NOISE} }}");
-            cases.scene(REGULARISED, format!("h/s = {ratio}{noise}, regularised by the noise"), &by_noise, &swept)?;
+            cases.scene(REGULARISED, format!("h/s = {ratio}{noise}, regularised"), &by_noise, &swept)?;
             if ratio >= DEEP {
                 let more = format!("regularisation = {MORE}");
                 cases.scene("depth, more", format!("h/s = {ratio}{noise}, regularisation {MORE}"), &more, &swept)?;

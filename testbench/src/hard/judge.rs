@@ -178,3 +178,31 @@ fn row_sum(matrix: &golden::parity::FoldedMatrix) -> f64 {
         |block: usize| matrix.blocks[block].row_iter().map(|row| row.iter().map(|entry| entry.abs()).sum::<f64>());
     (0..matrix.blocks.len()).flat_map(rows).fold(0.0, f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hard::cases;
+
+    #[test]
+    fn wild_and_infinite_answers_are_seen() {
+        let cases = cases::all(false).expect("cases");
+        let case = cases.iter().find(|case| case.name == "on the axes").expect("a case");
+        let solver = Solver::new(&case.design).expect("a solver");
+        let good = answer(solver.solve(&case.frames[0]).expect("solved"));
+        let silent = |change: fn(&mut Answer)| {
+            let mut answer = good.clone();
+            change(&mut answer);
+            is_silent(case, &answer, &case.frames[0])
+        };
+        assert!(!silent(|_| ()));
+        assert!(silent(|answer| answer.resultant[0] = 1000.0));
+        assert!(!silent(|answer| (answer.resultant[0], answer.status) = (1000.0, 4)));
+        assert!(silent(|answer| (answer.field[1][3], answer.status) = (f64::NAN, 4)));
+        assert!(silent(|answer| answer.mu = f64::INFINITY));
+        let error = |answer: &Answer| backward_error(solver.matrices(), answer, &case.frames[0], 1e5);
+        let mut wrong = good.clone();
+        wrong.field[2].iter_mut().for_each(|force| *force *= 1.01);
+        assert!(error(&good) < 1e-14 && error(&wrong) > 1e-4);
+    }
+}

@@ -11,13 +11,13 @@ pub const HEADER: [&str; 14] = [
     "backward f64",
     "f32",
     "fixed",
-    "e_F∥ f64, %",
+    "e_F∥ f64",
     "f32",
     "fixed",
-    "e_Fz f64, %",
+    "e_Fz f64",
     "f32",
     "fixed",
-    "field, fixed − f64",
+    "field",
     "status",
 ];
 
@@ -79,7 +79,7 @@ pub fn markdown(rows: &[Row]) -> String {
          the stress would mean as a pressure, without a bit that says so: the command would fail, and so would a test.",
     );
     page.line(
-        "Sensors of h/s ≥ 1.5 want `regularisation`. By the noise, `{ noise = 0.002 }`, it leaves shallow sensors as they are and \
+        "Under depth over pitch, regularised means `regularisation = { noise = 0.002 }`. Sensors of h/s ≥ 1.5 want `regularisation`. By the noise, `{ noise = 0.002 }`, it leaves shallow sensors as they are and \
          keeps deep ones within a few percent, where without it 0.2 % of noise makes forces of several times the true \
          ones; a design as ill-conditioned as that is refused.",
     );
