@@ -40,6 +40,29 @@ run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a l
 test: tools lint ## Everything: formatting, lints, all tests of all crates
 	$(CARGO) test --workspace
 
+.PHONY: formal
+formal: tools ## Prove the stream rules and the frame handshake with Yosys and z3 (part of `make test`)
+	$(CARGO) test -p testbench --test formal -- --nocapture
+
+# The 4 x 3 design by either plan.
+SMALL_DESIGNS := $(addprefix $(TARGET)/trust/small-,paper.toml reduced.toml)
+FRAMES_COUNT  ?= 1000000
+MUTANTS_COUNT ?= 110
+
+$(TARGET)/trust/small-%.toml: designs/small.toml
+	@mkdir -p $(dir $@)
+	@sed 's/^name = .*/name = "small_$*"/; s/^\[algorithm\]/&\nplan = "$*"/' $< > $@
+
+.PHONY: stress
+stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan (half an hour)
+	@$(CARGO) build --quiet --release -p testbench
+	@for design in $(SMALL_DESIGNS); do $(TARGET)/release/testbench stress $$design --frames $(FRAMES_COUNT); done
+
+.PHONY: mutants
+mutants: tools $(SMALL_DESIGNS) ## 220 copies with a fault each: which does the comparison not notice? (a quarter of an hour)
+	@$(CARGO) build --quiet -p testbench
+	@for design in $(SMALL_DESIGNS); do $(BIN)/testbench mutants $$design --count $(MUTANTS_COUNT); done
+
 .PHONY: lint
 lint: ## Formatting and clippy, warnings are errors
 	$(CARGO) fmt --all --check

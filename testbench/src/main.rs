@@ -14,9 +14,11 @@ use golden::output::write_whole;
 
 use testbench::bench::{self, BenchError, Scope};
 use testbench::frame_set::FrameSet;
+use testbench::mutants;
 use testbench::progress::Progress;
 use testbench::report::Report;
 use testbench::run::{Options, run};
+use testbench::stress;
 use testbench::table;
 use testbench::verilate::Trace;
 use testbench::view;
@@ -52,6 +54,27 @@ enum Command {
     ///
     /// The exit code is 0 only if no answer is wrong in silence: no NaN, no force beyond reason without a status bit.
     Hard(commands::hard::Arguments),
+    /// Send very many frames, good, short, long and with NaN, through streams that pause at random and resets.
+    ///
+    /// The exit code is 0 only if each answer is the model's, each bad frame is flagged, and none is lost but to a
+    /// reset, doubled or out of order.
+    Stress {
+        #[command(flatten)]
+        common: SeededArguments,
+        /// Frames to send.
+        #[arg(long, default_value_t = 100_000)]
+        frames: u64,
+    },
+    /// Make copies of the RTL with one small fault each, and see whether the comparison catches them.
+    ///
+    /// Lists those that it does not catch. No figure decides the exit code.
+    Mutants {
+        #[command(flatten)]
+        common: SeededArguments,
+        /// Mutants to make.
+        #[arg(long, default_value_t = 50)]
+        count: usize,
+    },
     /// Sum Yosys' cell counts of a generated design by block, beside the predicted ones.
     ///
     /// STATISTICS is what `stat -json` prints after a synthesis without -flatten; `tools/synth.sh` does both.
@@ -89,6 +112,18 @@ struct ViewArguments {
     /// Which frame, from 0.
     #[arg(long, default_value_t = 0, value_name = "N")]
     frame: usize,
+}
+
+#[derive(Args)]
+struct SeededArguments {
+    /// Design file (TOML).
+    design: PathBuf,
+    /// Decides everything that is random.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Report as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Args)]
@@ -154,6 +189,8 @@ fn main() -> ExitCode {
         Command::Hard(arguments) => {
             commands::hard::run(&arguments).and_then(|(text, sound)| print(&text).map(|()| sound))
         }
+        Command::Stress { common, frames } => stress_design(&common, frames).map(|()| true),
+        Command::Mutants { common, count } => make_mutants(&common, count).map(|()| true),
         Command::Cells { design, folder, statistics, json } => {
             cells(&design, &folder, &statistics, json).map(|()| true)
         }
@@ -232,6 +269,18 @@ fn view(arguments: &ViewArguments) -> Result<(), Box<dyn Error>> {
         view::frame(&design, &frames, arguments.frame, view::wants_colour(), &progress)?
     };
     print(&text)
+}
+
+fn stress_design(arguments: &SeededArguments, frames: u64) -> Result<(), Box<dyn Error>> {
+    let design = Design::load(&arguments.design)?;
+    let report = stress::stress(&design, &stress::Options { frames, seed: arguments.seed }, &Progress::new())?;
+    print(&if arguments.json { serde_json::to_string_pretty(&report)? + "\n" } else { report.to_string() })
+}
+
+fn make_mutants(arguments: &SeededArguments, count: usize) -> Result<(), Box<dyn Error>> {
+    let design = Design::load(&arguments.design)?;
+    let report = mutants::mutants(&design, &mutants::Options { count, seed: arguments.seed }, &Progress::new())?;
+    print(&if arguments.json { serde_json::to_string_pretty(&report)? + "\n" } else { report.to_string() })
 }
 
 fn simulate(arguments: &RunArguments) -> Result<Report, Box<dyn Error>> {

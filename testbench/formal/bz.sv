@@ -1,0 +1,213 @@
+// The frame checker (Bz): every beat once and in order, every frame ended once and rightly judged, banks never overrun.
+//
+// A second pipeline beside it carries each beat with its place in its frame.
+module harness (
+    input wire clock,
+    input wire [31:0] s_tdata,
+    input wire s_tlast,
+    input wire s_tvalid,
+    input wire write_ready,
+    input wire cean_idle,
+    input wire direction_room,
+    input wire frame_start,
+    input wire frame_release
+);
+
+    localparam [4:0] TAXELS = 5'd12, MANY = 5'd31;
+
+    reg started = 1'b0;
+    wire reset = !started;
+    wire s_tready;
+    wire write_valid;
+    wire write_bank;
+    wire [1:0] write_quad;
+    wire stress_valid;
+    wire signed [26:0] stress;
+    wire frame_done;
+    wire frame_saturated;
+    wire frame_not_finite;
+    wire frame_bad_length;
+    wire frame_ready;
+    wire advance;
+    wire in_frame;
+    wire [3:0] index;
+    wire [1:0] banks_taken;
+    wire [1:0] frames_waiting;
+    wire [5:1] valid;
+    wire [5:1] stores;
+    wire [5:1] lasts;
+    wire [5:1] bad_lengths;
+    wire seen_saturated;
+    wire seen_not_finite;
+    wire [14:0] stages;
+    wire [3:1] fold_lasts;
+    wire frame_written;
+
+    subject_bz subject (
+        .clock            (clock),
+        .reset            (reset),
+        .s_tdata          (s_tdata),
+        .s_tlast          (s_tlast),
+        .s_tvalid         (s_tvalid),
+        .s_tready         (s_tready),
+        .write_valid      (write_valid),
+        .write_ready      (write_ready),
+        .write_bank       (write_bank),
+        .write_quad       (write_quad),
+        .cean_idle        (cean_idle),
+        .direction_room   (direction_room),
+        .stress_valid     (stress_valid),
+        .stress           (stress),
+        .frame_done       (frame_done),
+        .frame_saturated  (frame_saturated),
+        .frame_not_finite (frame_not_finite),
+        .frame_bad_length (frame_bad_length),
+        .frame_ready      (frame_ready),
+        .frame_start      (frame_start),
+        .frame_release    (frame_release),
+        // Inside
+        .advance          (advance),
+        .in_frame         (in_frame),
+        .index            (index),
+        .banks_taken      (banks_taken),
+        .frames_waiting   (frames_waiting),
+        .valid            (valid),
+        .stores           (stores),
+        .lasts            (lasts),
+        .bad_lengths      (bad_lengths),
+        .seen_saturated   (seen_saturated),
+        .seen_not_finite  (seen_not_finite),
+        .frame_written    (frame_written),
+        .\fold.lasts     (fold_lasts),
+        .\float_to_fixed.stages (stages)
+    );
+
+    // ---- Each beat with its place in its frame; a place of 31 is that or more
+    function [4:0] following(input [4:0] place, input last);
+        following = last ? 5'd0 : (place == MANY) ? MANY : place + 5'd1;
+    endfunction
+
+    wire taken = s_tvalid && s_tready;
+    reg [4:0] place_in;
+    reg [4:0] place_out; // of the next beat to come out
+    reg [5:1] there;
+    reg [24:0] places;
+    reg [5:1] ends;
+    reg [14:0] words;
+    reg any_saturated; // of the beats of the frame that have come out
+    reg any_not_finite;
+    wire comes_out = there[5] && advance;
+    wire counts = comes_out && (places[24:20] < TAXELS);
+
+    always @(posedge clock) begin
+        started <= 1'b1;
+        if (taken) begin
+            place_in <= following(place_in, s_tlast);
+        end
+        if (advance) begin
+            there <= {there[4:1], taken};
+            places <= {places[19:0], place_in};
+            ends <= {ends[4:1], s_tlast};
+            words <= {words[11:0], s_tdata[2:0]};
+        end
+        if (comes_out) begin
+            place_out <= following(place_out, ends[5]);
+            any_saturated <= !ends[5] && (any_saturated || (counts && words[13]));
+            any_not_finite <= !ends[5] && (any_not_finite || (counts && words[14]));
+        end
+        if (reset) begin
+            place_in <= 5'd0;
+            place_out <= 5'd0;
+            there <= 5'd0;
+            any_saturated <= 1'b0;
+            any_not_finite <= 1'b0;
+        end
+    end
+
+    // ---- Frames from their first beat to their release
+    reg [2:0] frames_inside;
+    reg [2:0] frames_in_work;
+
+    always @(posedge clock) begin
+        frames_inside <= frames_inside + {2'd0, taken && (place_in == 5'd0)} - {2'd0, frame_release};
+        frames_in_work <= frames_in_work + {2'd0, frame_start} - {2'd0, frame_release};
+        if (reset) begin
+            frames_inside <= 3'd0;
+            frames_in_work <= 3'd0;
+        end
+    end
+
+    // The lanes take a frame that is there, and release one that they have
+    always @(*) begin
+        assume (!frame_start || frame_ready);
+        assume (!frame_release || (frames_in_work != 3'd0));
+    end
+
+    reg waited = 1'b0;
+    reg [2:0] waiting;
+
+    always @(posedge clock) begin
+        waited <= write_valid && !write_ready && !reset;
+        waiting <= {write_bank, write_quad};
+    end
+
+    always @(posedge clock) begin
+        if (!reset) begin
+            // Every beat of a frame's first twelve comes out, once, in order, as it came in
+            assert (stress_valid == counts);
+            assert (!stress_valid || (stress[0] == words[12]));
+            assert (!comes_out || (places[24:20] == place_out));
+            // Every frame ends once, and its flags are those of its beats
+            assert (frame_done == (comes_out && ends[5]));
+            assert (!frame_done || (frame_bad_length == (places[24:20] != TAXELS - 5'd1)));
+            assert (!frame_done || (frame_saturated == (any_saturated || (counts && words[13]))));
+            assert (!frame_done || (frame_not_finite == (any_not_finite || (counts && words[14]))));
+            // Two banks: never more than two frames between the first beat and the release
+            assert (frames_inside <= 3'd2);
+            assert (!frame_written || (frames_waiting != 2'd2));
+            // What is to be written stays until it is
+            assert (!waited || (write_valid && ({write_bank, write_quad} == waiting)));
+            // Whoever waits is served: nothing stands still but for want of a bank, of CeAn or of the memories' port
+            assert (s_tready || !write_ready || (!in_frame && (!cean_idle || !direction_room || (frames_inside == 3'd2)
+                || (there != 5'd0))));
+        end
+    end
+
+`ifdef INVARIANTS
+    wire [4:0] next_4 = there[5] ? following(place_out, ends[5]) : place_out;
+    wire [4:0] next_3 = there[4] ? following(next_4, ends[4]) : next_4;
+    wire [4:0] next_2 = there[3] ? following(next_3, ends[3]) : next_3;
+    wire [4:0] next_1 = there[2] ? following(next_2, ends[2]) : next_2;
+    wire [4:0] next_0 = there[1] ? following(next_1, ends[1]) : next_1;
+    wire [5:1] frames = there & ends;
+    integer stage;
+
+    always @(posedge clock) begin
+        if (!reset) begin
+            assert (valid == there);
+            assert (in_frame == (place_in != 5'd0));
+            assert ({1'b0, index} == ((place_in > TAXELS) ? TAXELS : place_in));
+            for (stage = 1; stage <= 5; stage = stage + 1) begin
+                if (there[stage]) begin
+                    assert (stages[3*stage-3 +: 3] == words[3*stage-3 +: 3]);
+                    assert (lasts[stage] == ends[stage]);
+                    assert (stores[stage] == (places[5*stage-5 +: 5] < TAXELS));
+                    assert (bad_lengths[stage] == (places[5*stage-5 +: 5] != TAXELS - 5'd1));
+                end
+            end
+            assert (!there[5] || (places[20 +: 5] == place_out));
+            assert (!there[4] || (places[15 +: 5] == next_4));
+            assert (!there[3] || (places[10 +: 5] == next_3));
+            assert (!there[2] || (places[5 +: 5] == next_2));
+            assert (!there[1] || (places[0 +: 5] == next_1));
+            assert (place_in == next_0);
+            assert (seen_saturated == any_saturated);
+            assert (seen_not_finite == any_not_finite);
+            assert (frames_inside == {1'b0, banks_taken});
+            assert ({2'd0, frames_inside} == {4'd0, in_frame} + frames[1] + frames[2] + frames[3] + frames[4]
+                + frames[5] + fold_lasts[1] + fold_lasts[2] + fold_lasts[3] + {1'b0, frames_waiting} + frames_in_work);
+        end
+    end
+`endif
+
+endmodule

@@ -1,0 +1,267 @@
+// The frame handshake of the reduced plan: turns, Op and output, with up to four frames between them.
+//
+// The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
+// Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever.
+module harness (
+    input wire clock
+);
+
+    localparam [5:0] LAST_BEAT = 6'd43;
+
+    reg started = 1'b0;
+    wire reset = !started;
+    wire frame_ready;
+    wire [2:0] start;
+    wire issued;
+    wire sums_complete;
+    wire sums_take;
+    wire coefficients_complete;
+    wire field_complete;
+    wire field_release;
+    wire out_tready;
+    wire friction_known;
+    wire search_over;
+    wire [2:0] issuing;
+    wire turns_busy;
+    wire residual_due;
+    wire residual_written;
+    wire residual_there;
+    wire field_due;
+    wire [1:0] searches_due;
+    wire [2:0] frames_held;
+    wire [1:0] fields_held;
+    wire [1:0] u_waiting;
+    wire searching;
+    wire answer_waits;
+    wire search_start;
+    wire search_done;
+    wire summary_busy;
+    wire summary_there;
+    wire field_there;
+    wire friction_done;
+    wire summary_done;
+    wire output_start;
+    wire line_valid;
+    wire [2:0] line_state;
+    wire busy;
+    wire [5:0] beat;
+    wire beat_issued;
+    wire issued_last;
+    wire [11:1] valid;
+    wire [11:1] lasts;
+
+    subject subject (
+        .aclk          (clock),
+        .aresetn       (started),
+        .s_axis_tdata  (32'd0),
+        .s_axis_tvalid (1'b0),
+        .s_axis_tlast  (1'b0),
+        .m_axis_tready (1'b0),
+        // Inside
+        .frame_ready (frame_ready),
+        .start (start),
+        .issued (issued),
+        .sums_complete (sums_complete),
+        .sums_take (sums_take),
+        .coefficients_complete (coefficients_complete),
+        .field_complete (field_complete),
+        .field_release (field_release),
+        .out_tready (out_tready),
+        .friction_known (friction_known),
+        .search_over (search_over),
+        .\spmv_array.issuing_now (issuing),
+        .\turns.busy (turns_busy),
+        .\turns.residual_due (residual_due),
+        .\turns.residual_written (residual_written),
+        .\turns.residual_there (residual_there),
+        .\turns.field_due (field_due),
+        .\turns.searches_due (searches_due),
+        .\turns.frames_held (frames_held),
+        .\turns.fields_held (fields_held),
+        .\op.u_waiting (u_waiting),
+        .\op.searching (searching),
+        .\op.answer_waits (answer_waits),
+        .\op.search_start (search_start),
+        .\op.search_done (search_done),
+        .\op.summary_busy (summary_busy),
+        .\op.summary_there (summary_there),
+        .\op.field_there (field_there),
+        .\op.friction_done (friction_done),
+        .\op.summary_done (summary_done),
+        .\op.output_start (output_start),
+        .\op.line_valid (line_valid),
+        .\op.line.state (line_state),
+        .\op.frame_output.busy (busy),
+        .\op.frame_output.beat (beat),
+        .\op.frame_output.issued (beat_issued),
+        .\op.frame_output.issued_last (issued_last),
+        .\op.frame_output.valid (valid),
+        .\op.frame_output.lasts (lasts)
+    );
+
+    // ---- Where the frames are. A program is open from its start until its results are complete
+    reg [2:0] open;
+    reg [2:0] last; // the program started last
+    reg [2:0] before; // and the one before
+    reg summed; // the sums of program 0 are complete
+    reg sums_wait; // and not taken
+    reg friction_due;
+    reg summary_due;
+    reg field_started; // of the frame in the summary
+    reg at_output; // a frame whose field is still needed
+    wire sums_written = $anyseq;
+
+    always @(posedge clock) begin
+        started <= 1'b1;
+        open <= (open & ~{field_complete, residual_written, coefficients_complete}) | start;
+        if (start != 3'd0) begin
+            before <= last;
+            last <= start;
+        end
+        summed <= (summed || sums_written) && !coefficients_complete && !start[0];
+        sums_wait <= sums_written || (sums_wait && !sums_take);
+        friction_due <= search_over || (friction_due && !friction_done);
+        summary_due <= search_over || (summary_due && !summary_done);
+        field_started <= start[2] || (field_started && !output_start);
+        at_output <= output_start || (at_output && !field_release);
+        if (reset) begin
+            open <= 3'd0;
+            last <= 3'd0;
+            before <= 3'd0;
+            summed <= 1'b0;
+            sums_wait <= 1'b0;
+            friction_due <= 1'b0;
+            summary_due <= 1'b0;
+            field_started <= 1'b0;
+            at_output <= 1'b0;
+        end
+    end
+
+    // What was left out answers when it was asked, once. The schedule sees to it that a program's results are complete
+    // before the last issue of the program after it
+    always @(*) begin
+        if (!reset) begin
+            assume (sums_complete == sums_wait);
+            assume (!sums_written || (open[0] && !summed));
+            assume (!coefficients_complete || (open[0] && summed));
+            assume (!residual_written || open[1]);
+            assume (!field_complete || open[2]);
+            assume (!issued || ((open & ~issuing) == 3'd0));
+            assume (!search_done || (searching && !answer_waits));
+            assume (!friction_done || friction_due);
+            assume (!summary_done || (summary_due && !friction_due));
+        end
+    end
+
+    always @(posedge clock) begin
+        if (!reset) begin
+            // One program at a time, and none while one of its kind is open
+            assert ((start & (start - 3'd1)) == 3'd0);
+            assert ((start == 3'd0) || (issuing == 3'd0));
+            assert ((start & open) == 3'd0);
+            // Nothing is overwritten before it was used: sums, u, residual, friction, field
+            assert (!sums_written || !sums_wait);
+            assert (!coefficients_complete || (u_waiting < 2'd2));
+            assert (!residual_written || !residual_there);
+            assert (!friction_done || !friction_known);
+            assert (!field_complete || !field_there);
+            // A field has the friction of its own frame
+            assert (!start[2] || (friction_known && summary_busy));
+            // Places: two searches, two fields, four frames' weights, one output
+            assert (!start[0] || (searches_due < 2'd2));
+            assert (!search_over || (searches_due != 2'd0));
+            assert (!field_release || ((fields_held != 2'd0) && (frames_held != 3'd0)));
+            assert ((fields_held <= 2'd2) && (frames_held <= 3'd4));
+            assert (!output_start || !at_output);
+        end
+    end
+
+`ifdef INVARIANTS
+    always @(posedge clock) begin
+        if (!reset) begin
+            assert ({2'd0, searches_due} == {3'd0, open[0]} + u_waiting + searching);
+            assert ({1'b0, frames_held} == {2'd0, searches_due} + summary_busy + at_output);
+            assert ({2'd0, fields_held} == {3'd0, field_started} + at_output);
+            assert ({3'd0, residual_due} + field_due + start[2]
+                == {2'd0, searches_due} + (summary_busy && !field_started) + start[0]);
+            assert ({3'd0, sums_wait} + (line_state != 3'd0) == {3'd0, open[0] && summed} + u_waiting);
+            assert (line_state <= 3'd4);
+            assert (!summed || open[0]);
+            // The lanes
+            assert (turns_busy == ((start != 3'd0) || (issuing != 3'd0)));
+            assert ((issuing == 3'd0) || (issuing == last));
+            assert ((last & (last - 3'd1)) == 3'd0);
+            assert ((open & ~(last | ((issuing != 3'd0) ? before : 3'd0))) == 3'd0);
+            assert (!(last[0] && (start == 3'd0)) || residual_due);
+            assert (!(last[1] && (start == 3'd0)) || (field_due && !residual_due));
+            assert (!start[0] || residual_due);
+            assert (!start[1] || (field_due && !residual_due));
+            assert (!(issuing[2] || start[2]) || !field_due);
+            assert (!residual_there || field_due);
+            assert ((open[1] || start[1]) == (field_due && !residual_there));
+            // Op
+            assert (!answer_waits || searching);
+            assert (!friction_due || summary_due);
+            assert (!summary_due || summary_busy);
+            assert (summary_there == (summary_busy && !summary_due));
+            assert (friction_known == (summary_busy && !friction_due && !field_started));
+            assert (!field_started || (summary_busy && !friction_due));
+            assert (!field_there || field_started);
+            assert (open[2] == (field_started && !field_there));
+            // The beats of a frame pass the output's stages without a gap, the last one marked
+            assert (at_output == (busy || beat_issued || field_release));
+            assert (!field_release || !(busy || beat_issued));
+            assert (!beat_issued || (issued_last == !busy));
+            assert (!valid[1] || (lasts[1] == !beat_issued));
+            assert (!valid[2] || (lasts[2] == !valid[1]));
+            assert (beat_issued || !busy || !(valid[1] || valid[2]));
+            assert (valid[1] || !(busy || beat_issued) || !valid[2]);
+            assert (!busy || (beat <= LAST_BEAT));
+        end
+    end
+`endif
+
+    // ---- Progress: what is left to do for the frames inside. It never grows but by a new frame, and shrinks within
+    // three cycles in which those do something who may: so with a sink that is not for ever stalled, every frame ends
+    wire [9:0] left_of_turns = (residual_due ? 10'd30 : 10'd0)
+        + (field_due ? (residual_there ? 10'd15 : 10'd20) : 10'd0)
+        + (start[2] ? 10'd14 : (start != 3'd0) ? 10'd4 : (issuing != 3'd0) ? 10'd2 : 10'd0)
+        + (field_there ? 10'd5 : field_started ? 10'd10 : 10'd0);
+    wire [9:0] left_of_search = (open[0] ? (summed ? 10'd99 : 10'd100) : 10'd0) + 10'd90 * u_waiting
+        + (searching ? (answer_waits ? 10'd75 : 10'd80) : 10'd0)
+        + (friction_due ? 10'd60 : summary_due ? 10'd55 : summary_busy ? 10'd50 : 10'd0);
+    wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : {9'd0, field_release};
+    wire [9:0] left = left_of_turns + left_of_search + left_at_output;
+    wire asked = (issuing != 3'd0) || (open != 3'd0) || (searching && !answer_waits) || summary_due;
+    wire answered = issued || sums_written || coefficients_complete || residual_written || field_complete
+        || search_done || friction_done || summary_done;
+    wire line_willing = (u_waiting == 2'd0) || searching || line_valid;
+    reg [3:1] watched = 3'd0;
+    reg [3:1] willing = 3'd0;
+    reg [3:1] new_frame = 3'd0;
+    reg [3:1] waits = 3'd0; // a frame has waited for so many cycles
+    reg [9:0] left_1;
+    reg [9:0] left_2;
+    reg [9:0] left_3;
+
+    always @(posedge clock) begin
+        watched <= {watched[2:1], !reset};
+        willing <= {willing[2:1], out_tready && line_willing && (answered || !asked)};
+        new_frame <= {new_frame[2:1], start[0]};
+        waits <= {waits[2:1], frame_ready && !reset};
+        left_1 <= left;
+        left_2 <= left_1;
+        left_3 <= left_2;
+`ifdef INVARIANTS
+        if (watched[1] && !start[0] && !new_frame[1]) begin
+            assert (left <= left_1);
+        end
+        if ((watched == 3'd7) && (willing == 3'd7) && !start[0] && (new_frame == 3'd0)) begin
+            assert ((left_3 == 10'd0) || (left < left_3));
+        end
+        // A frame that waits is begun when nothing is in its way
+        assert ((waits != 3'd7) || (left != 10'd0));
+`endif
+    end
+
+endmodule

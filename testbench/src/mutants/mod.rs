@@ -1,0 +1,251 @@
+//! `testbench mutants`: does the testbench notice? Many copies of a design, each with one small fault, go through the
+//! comparison that every design goes through; those that pass it are listed.
+
+mod sites;
+
+use std::fmt;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use golden::design::Design;
+use golden::scene::SceneError;
+use hdl_gen::emit::EmitError;
+use hdl_gen::plan::{Plan, PlanError};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+use thiserror::Error;
+
+pub use sites::{Kind, Mutation, all};
+
+use crate::frame_set::FrameSet;
+use crate::progress::Progress;
+use crate::run::{model_answers, rtl_sources, timeout};
+use crate::simulate::{Job, simulate};
+use crate::stress::{BATCH, run_batch};
+use crate::verilate::{BuildError, RtlSources, Verilate};
+use crate::words::encode;
+
+/// Batches of `testbench stress` after the standing frames.
+const STRESS_BATCHES: u64 = 3;
+
+/// How many, and which.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Mutants to make; those that no tool accepts do not count.
+    pub count: usize,
+    /// Decides which.
+    pub seed: u64,
+}
+
+/// What became of a mutant.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fate {
+    /// Verilator does not accept it.
+    Rejected,
+    /// The comparison said so.
+    Caught(String),
+    /// Nobody noticed.
+    Survived,
+}
+
+/// A mutant and its fate.
+#[derive(Clone, Debug, Serialize)]
+pub struct Mutant {
+    /// What is wrong with it.
+    pub mutation: Mutation,
+    /// What became of it.
+    pub fate: Fate,
+}
+
+/// All mutants of a design.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The design's name.
+    pub design: String,
+    /// See [`Options`].
+    pub seed: u64,
+    /// In the order in which they were made.
+    pub mutants: Vec<Mutant>,
+}
+
+impl Report {
+    /// Those that were not caught.
+    pub fn survivors(&self) -> impl Iterator<Item = &Mutation> {
+        self.mutants.iter().filter(|mutant| mutant.fate == Fate::Survived).map(|mutant| &mutant.mutation)
+    }
+
+    /// How many of a kind were simulated, and how many of them survived.
+    pub fn of_kind(&self, kind: Kind) -> (usize, usize) {
+        let made = self.mutants.iter().filter(|m| m.mutation.kind == kind && m.fate != Fate::Rejected);
+        (made.count(), self.survivors().filter(|mutation| mutation.kind == kind).count())
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rejected = self.mutants.iter().filter(|mutant| mutant.fate == Fate::Rejected).count();
+        let made = self.mutants.len() - rejected;
+        let survived = self.survivors().count();
+        writeln!(
+            out,
+            "{}, seed {}: {made} mutants, {} caught, {survived} survived; {rejected} more did not build",
+            self.design,
+            self.seed,
+            made - survived
+        )?;
+        for kind in Kind::ALL {
+            let (made, survived) = self.of_kind(kind);
+            writeln!(out, "{:>12} {made:>4} made {survived:>4} survived", format!("{kind:?}").to_lowercase())?;
+        }
+        self.survivors().try_for_each(|mutation| writeln!(out, "survived: {mutation}"))
+    }
+}
+
+/// Why there is no report.
+#[derive(Debug, Error)]
+pub enum MutantsError {
+    /// The design cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The plan cannot be printed.
+    #[error(transparent)]
+    Emit(#[from] EmitError),
+    /// The standing frames cannot be made.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The design as generated cannot be built, or there is no place for the builds.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// There is no folder for the builds.
+    #[error("cannot make a temporary folder: {0}; set TMPDIR to a folder that can be written")]
+    Folder(std::io::Error),
+    /// The design as generated is wrong already.
+    #[error("the design fails without a fault: {0}")]
+    Unsound(String),
+}
+
+/// Makes mutants and tries each.
+///
+/// # Errors
+/// [`MutantsError`] if the design itself cannot be built, or fails.
+pub fn mutants(design: &Design, options: &Options, progress: &Progress) -> Result<Report, MutantsError> {
+    progress.stage("planning");
+    let plan = Plan::new(design)?;
+    let sources = rtl_sources(&plan)?;
+    let trial = Trial::new(&plan)?;
+    if let Some(reason) = trial.complaint(&sources, options.seed)? {
+        return Err(MutantsError::Unsound(reason));
+    }
+    let queue = drawn(&sources, options.seed);
+    progress.counted("mutants", options.count as u64);
+    let next = AtomicUsize::new(0);
+    let wanted = AtomicUsize::new(options.count);
+    let results = Mutex::new(Vec::new());
+    // A thread takes a mutant while some are wanted, and gives the wish back if its mutant does not build.
+    let worker = || {
+        while wanted.fetch_update(Ordering::AcqRel, Ordering::Acquire, |left| left.checked_sub(1)).is_ok() {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(mutation) = queue.get(index) else { return };
+            let fate = trial.fate(&mutation.apply(&sources), options.seed);
+            if fate == Fate::Rejected {
+                wanted.fetch_add(1, Ordering::AcqRel);
+            } else {
+                progress.step();
+            }
+            let mutant = Mutant { mutation: mutation.clone(), fate };
+            results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((index, mutant));
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(worker);
+        }
+    });
+    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    results.sort_by_key(|&(index, _)| index);
+    let mutants = results.into_iter().map(|(_, mutant)| mutant).collect();
+    Ok(Report { design: plan.design.name.clone(), seed: options.seed, mutants })
+}
+
+/// Every possible mutation, at random, the kinds in turn.
+fn drawn(sources: &RtlSources, seed: u64) -> Vec<Mutation> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut found = sites::all(sources);
+    found.shuffle(&mut random);
+    let mut turns: Vec<(usize, Mutation)> = Vec::with_capacity(found.len());
+    let mut counts = [0; Kind::ALL.len()];
+    for mutation in found {
+        let kind = mutation.kind as usize;
+        turns.push((counts[kind], mutation));
+        counts[kind] += 1;
+    }
+    turns.sort_by_key(|(turn, mutation)| (*turn, mutation.kind));
+    turns.into_iter().map(|(_, mutation)| mutation).collect()
+}
+
+/// The comparison that every mutant goes through.
+struct Trial<'a> {
+    plan: &'a Plan,
+    packets: Vec<Vec<u32>>,
+    expected: Vec<Vec<u32>>,
+    /// Where the mutants are built; away with them afterwards.
+    cache: tempfile::TempDir,
+}
+
+impl<'a> Trial<'a> {
+    fn new(plan: &'a Plan) -> Result<Self, MutantsError> {
+        let frames = FrameSet::standing(&plan.design.sensor)?.as_delivered(&plan.design);
+        let packets: Vec<Vec<u32>> = frames.stress.iter().map(|stress| encode(stress)).collect();
+        let expected = model_answers(plan, &packets);
+        let cache = tempfile::tempdir().map_err(MutantsError::Folder)?;
+        Ok(Self { plan, packets, expected, cache })
+    }
+
+    fn fate(&self, sources: &RtlSources, seed: u64) -> Fate {
+        match self.complaint(sources, seed) {
+            Err(_) => Fate::Rejected,
+            Ok(Some(reason)) => Fate::Caught(reason),
+            Ok(None) => Fate::Survived,
+        }
+    }
+
+    /// What the comparison says of a design; nothing if it passes.
+    fn complaint(&self, sources: &RtlSources, seed: u64) -> Result<Option<String>, BuildError> {
+        let built = Verilate::new(self.cache.path()).build(sources)?;
+        let job = Job {
+            built: &built,
+            packets: &self.packets,
+            expected: &self.expected,
+            columns: self.plan.design.sensor.columns,
+            timeout: timeout(self.plan),
+            seed: seed as u32,
+            trace: None,
+        };
+        let simulation = match simulate(&job, &|| ()) {
+            Ok(simulation) => simulation,
+            Err(error) => return Ok(Some(error.to_string())),
+        };
+        if let Some(mismatch) = simulation.modes.iter().find_map(|mode| mode.comparison.first.first()) {
+            return Ok(Some(mismatch.to_string()));
+        }
+        let measured = (simulation.latency_cycles, simulation.interval_cycles);
+        let predicted = (self.plan.timeline.latency_cycles, self.plan.timeline.interval_cycles);
+        if measured != predicted {
+            return Ok(Some(format!("(latency, interval) is {measured:?}, predicted {predicted:?}")));
+        }
+        for batch in 0..STRESS_BATCHES {
+            let mut core = match built.load((seed ^ batch) as u32) {
+                Ok(core) => core,
+                Err(error) => return Ok(Some(error.to_string())),
+            };
+            if let Err(error) = run_batch(self.plan, &mut core, batch, BATCH, seed, &|| ()) {
+                return Ok(Some(error.to_string()));
+            }
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,223 @@
+//! `testbench stress`: very many frames, good and bad, through streams that pause at random and resets at any moment.
+//!
+//! The frames go through in batches, each on a core of its own, with pauses and resets drawn from the seed and the
+//! batch's number: the same options give the same cycles on every machine, however many threads there are.
+
+mod judge;
+mod packets;
+
+use std::fmt;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread;
+
+use golden::design::Design;
+use hdl_gen::emit::EmitError;
+use hdl_gen::plan::{Plan, PlanError};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+use thiserror::Error;
+
+pub use packets::{Counts, Kind};
+
+use crate::dut::{Core, DutError};
+use crate::progress::Progress;
+use crate::run::{rtl_sources, timeout};
+use crate::stream::{Pattern, Reset, StreamError, Traffic, exchange};
+use judge::judge;
+use crate::verilate::{BuildError, Verilate};
+
+/// Frames of a batch.
+pub const BATCH: u64 = 1000;
+/// Frames between two resets, on average.
+const FRAMES_PER_RESET: u64 = 100;
+
+/// How much, and of what.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Frames to send.
+    pub frames: u64,
+    /// Decides everything that is random.
+    pub seed: u64,
+}
+
+/// What was sent and what became of it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Report {
+    /// The design's name.
+    pub design: String,
+    /// See [`Options`].
+    pub seed: u64,
+    /// Packets offered, whole or until a reset.
+    pub sent: Counts,
+    /// Packets answered: each with every word of the integer model, in the order in which they were sent.
+    pub answered: Counts,
+    /// Packets inside, or on their way in, when a reset came.
+    pub lost_to_resets: Counts,
+    /// Resets in the middle of the traffic.
+    pub resets: u64,
+    /// Cycles simulated.
+    pub cycles: u64,
+}
+
+impl Report {
+    fn add(&mut self, other: &Self) {
+        self.sent = self.sent.plus(other.sent);
+        self.answered = self.answered.plus(other.answered);
+        self.lost_to_resets = self.lost_to_resets.plus(other.lost_to_resets);
+        self.resets += other.resets;
+        self.cycles += other.cycles;
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            out,
+            "{}: {} frames, {} resets, {} cycles, seed {}; every answer is the model's, none doubled or out of order",
+            self.design,
+            self.sent.total(),
+            self.resets,
+            self.cycles,
+            self.seed
+        )?;
+        writeln!(out, "{:>16} {:>10} {:>10} {:>10} {:>10}", "", "good", "short", "long", "NaN")?;
+        for (name, counts) in
+            [("sent", self.sent), ("answered", self.answered), ("lost to resets", self.lost_to_resets)]
+        {
+            let Counts { good, short, long, not_finite } = counts;
+            writeln!(out, "{name:>16} {good:>10} {short:>10} {long:>10} {not_finite:>10}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Why there is no report.
+#[derive(Debug, Error)]
+pub enum StressError {
+    /// There is nothing to send.
+    #[error("--frames is 0: give the number of frames to send")]
+    NoFrames,
+    /// The design cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The plan cannot be printed.
+    #[error(transparent)]
+    Emit(#[from] EmitError),
+    /// The RTL cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The core cannot be loaded.
+    #[error(transparent)]
+    Dut(#[from] DutError),
+    /// The streams failed.
+    #[error("batch {batch}: {source}")]
+    Stream {
+        /// Which batch.
+        batch: u64,
+        /// How.
+        source: StreamError,
+    },
+    /// An answer is not what it should be.
+    #[error("batch {batch}: {what}")]
+    Wrong {
+        /// Which batch.
+        batch: u64,
+        /// Which packet, and how it is wrong.
+        what: String,
+    },
+}
+
+/// Plans, builds and stresses a design.
+///
+/// # Errors
+/// [`StressError`]: the design cannot be simulated, or the first batch that is wrong, by its number.
+pub fn stress(design: &Design, options: &Options, progress: &Progress) -> Result<Report, StressError> {
+    if options.frames == 0 {
+        return Err(StressError::NoFrames);
+    }
+    progress.stage("planning");
+    let plan = Plan::new(design)?;
+    progress.stage("building the simulation with Verilator");
+    let built = Verilate::default().build(&rtl_sources(&plan)?)?;
+    progress.counted("simulating", options.frames);
+    let batches = options.frames.div_ceil(BATCH);
+    let next = AtomicU64::new(0);
+    let results = Mutex::new(Vec::new());
+    let worker = || {
+        loop {
+            let batch = next.fetch_add(1, Ordering::Relaxed);
+            if batch >= batches {
+                return;
+            }
+            let frames = BATCH.min(options.frames - batch * BATCH);
+            let result = built
+                .load((options.seed ^ batch) as u32)
+                .map_err(StressError::Dut)
+                .and_then(|mut core| run_batch(&plan, &mut core, batch, frames, options.seed, &|| progress.step()));
+            if result.is_err() {
+                next.store(batches, Ordering::Relaxed);
+            }
+            results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((batch, result));
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(worker);
+        }
+    });
+    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    results.sort_by_key(|&(batch, _)| batch);
+    let mut report = Report { design: plan.design.name.clone(), seed: options.seed, ..Report::default() };
+    for (_, result) in results {
+        report.add(&result?);
+    }
+    Ok(report)
+}
+
+/// Sends the frames of a batch through a core and judges what comes out. `progress` is called once an answer.
+///
+/// # Errors
+/// [`StressError::Stream`] or [`StressError::Wrong`].
+pub fn run_batch(
+    plan: &Plan,
+    core: &mut impl Core,
+    batch: u64,
+    frames: u64,
+    seed: u64,
+    progress: &impl Fn(),
+) -> Result<Report, StressError> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(batch);
+    let (kinds, packets): (Vec<Kind>, Vec<Vec<u32>>) = (0..frames).map(|_| packets::packet(plan, &mut random)).unzip();
+    let resets = resets(plan, frames, &mut random);
+    let traffic = Traffic {
+        source: pattern(&mut random),
+        sink: pattern(&mut random),
+        ..Traffic::new(&packets, 20 * timeout(plan))
+    };
+    let outcome = exchange(core, &traffic.with_resets(&resets), |_| progress())
+        .map_err(|source| StressError::Stream { batch, source })?;
+    judge(plan, &kinds, &packets, &resets, &outcome).map_err(|what| StressError::Wrong { batch, what })
+}
+
+/// Moments anywhere in the batch, some of them close to each other.
+fn resets(plan: &Plan, frames: u64, random: &mut ChaCha8Rng) -> Vec<Reset> {
+    let end = frames * plan.timeline.interval_cycles;
+    let mut cycles: Vec<u64> = (0..frames / FRAMES_PER_RESET).map(|_| random.random_range(0..end)).collect();
+    cycles.sort_unstable();
+    cycles.into_iter().map(|cycle| Reset { cycle, length: random.random_range(1..=4) }).collect()
+}
+
+fn pattern(random: &mut ChaCha8Rng) -> Pattern {
+    let seed = random.random();
+    match random.random_range(0..4) {
+        0 => Pattern::Free,
+        1 => Pattern::Random { seed, willing: random.random_range(0.08..1.0) },
+        2 => {
+            Pattern::Bursts { seed, longest_run: random.random_range(1..12), longest_pause: random.random_range(1..12) }
+        }
+        _ => Pattern::Bursts { seed, longest_run: random.random_range(50..2000), longest_pause: 2000 },
+    }
+}

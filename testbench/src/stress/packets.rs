@@ -1,0 +1,140 @@
+//! Packets of every kind that a source can send, good and bad.
+
+use hdl_gen::model::{BAD_LENGTH, NOT_FINITE};
+use hdl_gen::plan::Plan;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+/// What is wrong with a packet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing.
+    Good,
+    /// TLAST too early.
+    Short,
+    /// TLAST too late.
+    Long,
+    /// A NaN or an infinity among the taxels.
+    NotFinite,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Good, Self::Short, Self::Long, Self::NotFinite];
+
+    /// The status bit that says so, known without asking the model.
+    pub fn status(self) -> u32 {
+        match self {
+            Self::Good => 0,
+            Self::Short | Self::Long => BAD_LENGTH,
+            Self::NotFinite => NOT_FINITE,
+        }
+    }
+}
+
+/// A number for each kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Nothing wrong.
+    pub good: u64,
+    /// TLAST too early.
+    pub short: u64,
+    /// TLAST too late.
+    pub long: u64,
+    /// NaN or infinity.
+    pub not_finite: u64,
+}
+
+impl Counts {
+    /// One more of a kind.
+    pub fn add(&mut self, kind: Kind) {
+        *match kind {
+            Kind::Good => &mut self.good,
+            Kind::Short => &mut self.short,
+            Kind::Long => &mut self.long,
+            Kind::NotFinite => &mut self.not_finite,
+        } += 1;
+    }
+
+    /// Of all kinds together.
+    pub fn total(&self) -> u64 {
+        self.good + self.short + self.long + self.not_finite
+    }
+
+    /// Kind by kind.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            good: self.good + other.good,
+            short: self.short + other.short,
+            long: self.long + other.long,
+            not_finite: self.not_finite + other.not_finite,
+        }
+    }
+}
+
+/// The next packet: in six of ten cases a good one.
+pub fn packet(plan: &Plan, random: &mut ChaCha8Rng) -> (Kind, Vec<u32>) {
+    let mut words = good(plan, random);
+    let taxels = words.len();
+    match random.random_range(0..10) {
+        0 => {
+            words.truncate(random.random_range(1..taxels));
+            (Kind::Short, words)
+        }
+        1 => {
+            let length = random.random_range(taxels + 1..=3 * taxels);
+            while words.len() < length {
+                words.push(random.random());
+            }
+            (Kind::Long, words)
+        }
+        2 | 3 => {
+            words[random.random_range(0..taxels)] = not_finite(random);
+            (Kind::NotFinite, words)
+        }
+        _ => (Kind::Good, words),
+    }
+}
+
+fn not_finite(random: &mut ChaCha8Rng) -> u32 {
+    let fraction = if random.random_bool(0.3) { 0 } else { random.random_range(0..1 << 23) };
+    u32::from(random.random_bool(0.5)) << 31 | 0xFF << 23 | fraction
+}
+
+/// A frame without a fault: a contact, noise, silence, single taxels, the ends of the range, any finite float at all.
+fn good(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {
+    let sensor = &plan.design.sensor;
+    let full_scale = plan.design.hardware.full_scale_pa;
+    let taxels = sensor.taxels();
+    let peak = full_scale * 10_f64.powf(random.random_range(-4.0..0.1));
+    let pascals: Vec<f64> = match random.random_range(0..10) {
+        0 => vec![0.0; taxels],
+        1 => (0..taxels).map(|_| random.random_range(-peak..=peak)).collect(),
+        2 => (0..taxels).map(|_| if random.random_bool(0.5) { full_scale } else { -full_scale }).collect(),
+        3 => {
+            let mut stress = vec![0.0; taxels];
+            stress[random.random_range(0..taxels)] = -peak;
+            stress
+        }
+        4 => {
+            let finite = |word: u32| if word >> 23 & 0xFF == 0xFF { word & !(1 << 30) } else { word };
+            return (0..taxels).map(|_| finite(random.random())).collect();
+        }
+        _ => {
+            let centre = [sensor.columns, sensor.rows].map(|side| random.random_range(0.0..side as f64));
+            let push = [0, 1].map(|_| random.random_range(-1.0..1.0));
+            let radius = random.random_range(0.5..0.6 * sensor.columns.max(sensor.rows) as f64);
+            (0..taxels)
+                .map(|taxel| {
+                    let x = ((taxel % sensor.columns) as f64 - centre[0]) / radius;
+                    let y = ((taxel / sensor.columns) as f64 - centre[1]) / radius;
+                    -peak * (1.0 + push[0] * x + push[1] * y) * (-(x * x + y * y)).exp()
+                })
+                .collect()
+        }
+    };
+    let word = |(taxel, &pascal): (usize, &f64)| (plan.design.input.from_pa(taxel, pascal) as f32).to_bits();
+    pascals.iter().enumerate().map(word).collect()
+}
