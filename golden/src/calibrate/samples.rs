@@ -74,7 +74,7 @@ pub(super) fn make(
         let Some(seen) = solver.see(&mut workspace, &frame)? else { continue };
         let found = joint::raw(&seen, &mut scratch);
         if !found.status.contains(Status::DIRECTION_UNKNOWN) {
-            joint::look(&seen, found.mu, design.sensor.columns, half_window, &mut scratch);
+            joint::look(&seen, found.mu, design.sensor.columns, half_window, 0.0, &mut scratch);
             let force = [force * x, force * y, -force];
             samples.push(Sample { mu: found.mu, look: scratch.look.clone(), sums: *seen.sums, force });
         }

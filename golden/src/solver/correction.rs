@@ -10,8 +10,12 @@ use crate::design::{Correction, WEIGHT_FRACTION};
 
 /// The correction of a component is at most this, so that an unforeseen contact is never made much worse.
 pub const LARGEST: f64 = 1.0 / 4.0;
+/// The middle between two taxels, in pitches, is taken for this much more: a contact right between them, as every even
+/// grid has one in its middle, would else be given to one of them by the last digit. The calibration's contacts lie
+/// anywhere, and there no tie is broken.
+pub const TIE: f64 = 1.0 / 1024.0;
 /// Stress in the window is taken as a share of `sum |b|`, times this.
-const STRESS_SCALE: f64 = 16.0;
+pub const STRESS_SCALE: f64 = 16.0;
 /// The mirror images of a look.
 pub(crate) const MIRRORS: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
 
@@ -26,7 +30,8 @@ pub(crate) struct Look {
 impl Look {
     /// Looks at the stress `normal` (pascals, taxel order, `columns` to a row) around the centre of its compression.
     ///
-    /// The window is centred at the taxel next to the centroid of the compressed taxels, and is 0 beyond the grid.
+    /// The window is centred at the taxel next to the centroid of the compressed taxels, and is 0 beyond the grid. A
+    /// centroid up to `tie` of a pitch from the middle between two taxels belongs to the second one.
     pub(crate) fn take(
         &mut self,
         normal: &[f64],
@@ -34,6 +39,7 @@ impl Look {
         half_window: [usize; 2],
         stress_sum: f64,
         mu: [f64; 2],
+        tie: f64,
     ) {
         let mut sums = [0.0; 3];
         for (taxel, stress) in normal.iter().enumerate() {
@@ -44,7 +50,7 @@ impl Look {
         }
         // Without compression any place does: there is nothing to see.
         let centroid = if sums[0] > 0.0 { [sums[1] / sums[0], sums[2] / sums[0]] } else { [0.0; 2] };
-        let centre = centroid.map(|at| (at + 0.5).floor());
+        let centre = centroid.map(|at| (at + (0.5 + tie)).floor());
         let [half_x, half_y] = half_window.map(|half| half as i64);
         let [centre_x, centre_y] = centre.map(|at| at as i64);
         let rows = (normal.len() / columns) as i64;
@@ -137,7 +143,7 @@ mod tests {
         let mut normal = vec![0.0; 12];
         (normal[2], normal[1], normal[3], normal[6]) = (-4.0, -1.0, -1.0, -0.5);
         let mut seen = Look::default();
-        seen.take(&normal, 4, [1, 1], 16.0, [0.3, -0.2]);
+        seen.take(&normal, 4, [1, 1], 16.0, [0.3, -0.2], 0.0);
         let window = [0.0, 0.0, 0.0, -1.0, -4.0, -1.0, 0.0, -0.5, 0.0];
         assert_eq!(seen.values[..9], window);
         assert_eq!(seen.values[9..11], [0.3, -0.2]);

@@ -4,8 +4,9 @@
 //! Here it is evaluated on a fixed grid by additions alone, and the estimate is the weighted centroid of a level set.
 //! `docs/estimators.md` gives the steps as hardware would take them.
 
-use super::correction::{Look, Network, NetworkScratch};
+use super::correction::{Look, Network, NetworkScratch, TIE};
 use super::friction::Seen;
+use super::op::DEPENDENT_RANGE;
 use super::status::Status;
 use crate::design::Design;
 
@@ -99,12 +100,19 @@ pub(crate) fn raw(seen: &Seen, scratch: &mut JointScratch) -> Found {
 }
 
 /// Looks at the stress that the normal forces alone would cause at the friction `mu`, in a grid of `columns`.
-pub(crate) fn look(seen: &Seen, mu: [f64; 2], columns: usize, half_window: [usize; 2], scratch: &mut JointScratch) {
+pub(crate) fn look(
+    seen: &Seen,
+    mu: [f64; 2],
+    columns: usize,
+    half_window: [usize; 2],
+    tie: f64,
+    scratch: &mut JointScratch,
+) {
     let JointScratch { normal, look, .. } = scratch;
     let [u0, u1, u2] = seen.u;
     normal.clear();
     normal.extend(u0.iter().zip(u1).zip(u2).map(|((u0, u1), u2)| u0 + u1 * mu[0] + u2 * mu[1]));
-    look.take(normal, columns, half_window, seen.contact.stress_sum, mu);
+    look.take(normal, columns, half_window, seen.contact.stress_sum, mu, tie);
 }
 
 /// The joint estimator with the constants of one design.
@@ -135,11 +143,20 @@ impl Joint {
             return (status, mu);
         }
         let scaled = scaled(mu, self.tangential);
-        let Some(network) = &self.network else { return (status, scaled) };
-        look(seen, mu, self.columns, network.half_window, scratch);
+        let Some(network) = &self.network else { return within(status, scaled) };
+        look(seen, mu, self.columns, network.half_window, TIE, scratch);
         let added = network.correct(&scratch.look, &mut scratch.network);
-        (status, [scaled[0] + added[0], scaled[1] + added[1]])
+        within(status, [scaled[0] + added[0], scaled[1] + added[1]])
     }
+}
+
+/// Keeps the components to their range, which no sensible constants let them leave.
+fn within(mut status: Status, mu: [f64; 2]) -> (Status, [f64; 2]) {
+    let clamped = mu.map(|component| component.clamp(-DEPENDENT_RANGE, DEPENDENT_RANGE));
+    if clamped.iter().zip(mu).any(|(clamped, component)| clamped.to_bits() != component.to_bits()) {
+        status.insert(Status::AT_BOUND);
+    }
+    (status, clamped)
 }
 
 /// `c1 mu + c3 mu |mu|^2`.

@@ -9,10 +9,10 @@
 mod batch;
 pub mod cean;
 pub mod co;
-pub(crate) mod correction;
+pub mod correction;
 mod fours;
 pub(crate) mod friction;
-pub(crate) mod joint;
+pub mod joint;
 pub(crate) mod line;
 pub mod op;
 mod paper;

@@ -99,10 +99,16 @@ pub fn pairs(sensor: &Sensor, medium: Medium, seed: u64, count: usize) -> Vec<Pr
         .collect()
 }
 
-/// Solves every contact in each of its directions, with noise as a share of the largest stress.
-pub fn worst(solver: &Solver, set: &[Pressed], friction: f64, noise: f64) -> Worst {
+/// A frame in pascals and the forces that are in it.
+pub struct Truth {
+    pub frame: Vec<f64>,
+    pub outcome: Outcome,
+}
+
+/// The frames of every contact in each of its directions, with noise as a share of the largest stress.
+pub fn frames(set: &[Pressed], friction: f64, noise: f64) -> Vec<Truth> {
     let mut random = ChaCha8Rng::seed_from_u64(0x0015_e000);
-    let (mut error, mut larger, mut flagged) = ([0.0_f64; 3], Vec::new(), 0);
+    let mut frames = Vec::new();
     for Pressed { loads: [normal, along_x, along_y], directions } in set {
         for direction in directions {
             let (sin, cos) = direction.sin_cos();
@@ -114,14 +120,29 @@ pub fn worst(solver: &Solver, set: &[Pressed], friction: f64, noise: f64) -> Wor
                 let sum: f64 = (0..12).map(|_| random.random::<f64>()).sum();
                 *stress += deviation * (sum - 6.0);
             }
-            let solution = solver.solve(&frame).unwrap();
-            flagged += usize::from(solution.status.0 != 0);
-            let truth = Outcome { force: [FORCE_N * x, FORCE_N * y, -FORCE_N], friction, direction: *direction };
-            let [x, y, z, ..] = errors(&truth, &Outcome::from(&solution));
-            larger.push(x.max(y));
-            for (worst, found) in error.iter_mut().zip([x, y, z]) {
-                *worst = worst.max(found);
-            }
+            let outcome = Outcome { force: [FORCE_N * x, FORCE_N * y, -FORCE_N], friction, direction: *direction };
+            frames.push(Truth { frame, outcome });
+        }
+    }
+    frames
+}
+
+/// Solves every contact in each of its directions, with noise as a share of the largest stress.
+pub fn worst(solver: &Solver, set: &[Pressed], friction: f64, noise: f64) -> Worst {
+    let frames = frames(set, friction, noise);
+    let solutions = frames.iter().map(|truth| solver.solve(&truth.frame).unwrap());
+    judged(&frames, solutions.map(|solution| (solution.status.0, Outcome::from(&solution))))
+}
+
+/// Judges answers to frames by the truth: a status and what was found.
+pub fn judged(frames: &[Truth], answers: impl Iterator<Item = (u32, Outcome)>) -> Worst {
+    let (mut error, mut larger, mut flagged) = ([0.0_f64; 3], Vec::new(), 0);
+    for (truth, (status, found)) in frames.iter().zip(answers) {
+        flagged += usize::from(status != 0);
+        let [x, y, z, ..] = errors(&truth.outcome, &found);
+        larger.push(x.max(y));
+        for (worst, found) in error.iter_mut().zip([x, y, z]) {
+            *worst = worst.max(found);
         }
     }
     larger.sort_by(f64::total_cmp);
