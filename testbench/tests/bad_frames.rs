@@ -4,7 +4,7 @@ mod support;
 
 use std::sync::OnceLock;
 
-use golden::design::{Design, Optimise, Outputs, PlanKind};
+use golden::design::{Correction, Design, Estimator, Optimise, Outputs, PlanKind};
 use hdl_gen::model::{AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, Model, NO_CONTACT, NOT_FINITE, SATURATED};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
@@ -41,6 +41,18 @@ fn subjects() -> &'static [Subject] {
                 design.algorithm.plan = PlanKind::Reduced;
                 design.hardware.optimise = Optimise::Latency;
                 (design.sensor.columns, design.sensor.rows) = (3, 3);
+            }),
+            small("small_joint", &|design| {
+                design.algorithm.plan = PlanKind::Reduced;
+                design.algorithm.estimator = Estimator::Joint;
+                let weights =
+                    |length: usize| (0..length as i32).map(|index| 700 * (index * index % 9) - 2000).collect();
+                let inputs = Correction::inputs([1, 1]);
+                design.algorithm.joint.correction = Some(Correction {
+                    half_window: [1, 1],
+                    hidden: vec![weights(inputs), weights(inputs), weights(inputs)],
+                    output: [weights(3), weights(3)],
+                });
             }),
             small("small_resultants", &|design| {
                 design.algorithm.plan = PlanKind::Reduced;
@@ -194,7 +206,9 @@ fn pressing_straight_down_has_no_direction() {
     for subject in subjects() {
         let taxels = subject.plan.taxels();
         let stress: Vec<f64> = (0..taxels).map(|taxel| -1000.0 - 100.0 * (taxel % 5) as f64).collect();
-        for sign in [1.0, -1.0] {
+        // The joint estimator does without the direction, unless nothing presses.
+        let signs = if subject.plan.joint.is_some() { &[-1.0][..] } else { &[1.0, -1.0] };
+        for sign in signs {
             let words = subject.answer(&encode(&stress.iter().map(|value| sign * value).collect::<Vec<_>>()));
             assert_eq!(words[0], DIRECTION_UNKNOWN, "one sign everywhere");
             let answer = read(&words);

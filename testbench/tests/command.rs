@@ -99,7 +99,9 @@ fn bad_files_are_refused_with_their_place() {
     assert!(refused(&["run", "no-such.toml"]).contains("no-such.toml"));
     let (_, unknown) = file(&folder, "unknown.toml", "name = \"x\"\nfrobnicate = 1\n");
     assert!(refused(&["run", &unknown]).contains("frobnicate"));
-    assert!(refused(&["run", &design("sensor1-joint.toml")]).contains("the line estimator only"));
+    let joint = fs::read_to_string(design("sensor1-joint.toml")).expect("a design");
+    let (_, paper) = file(&folder, "paper.toml", &joint.replace("plan = \"reduced\"", "plan = \"paper\""));
+    assert!(refused(&["run", &paper]).contains("plan = \"reduced\""));
     let (_, short) = file(&folder, "short.csv", "1,2,3\n");
     let message = refused(&["run", &design("small.toml"), "--frames", &short]);
     assert!(message.contains("short.csv") && message.contains('1'), "{message}");

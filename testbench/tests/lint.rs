@@ -5,7 +5,7 @@ mod support;
 use std::fs;
 use std::process::Command;
 
-use golden::design::{Design, Outputs, PlanKind};
+use golden::design::{Design, Estimator, Outputs, PlanKind};
 use hdl_gen::emit::emit;
 use support::random;
 use support::{by_plan, in_parallel, planned, shipped, with_lanes};
@@ -23,6 +23,8 @@ fn designs() -> Vec<Design> {
     "narrow".clone_into(&mut narrow.name);
     narrow.hardware.coefficient_bits = 8;
     narrow.hardware.data_bits = 16;
+    let mut uncorrected = by_plan(with_lanes(shipped("odd"), 12), reduced, Outputs::Resultants);
+    uncorrected.algorithm.estimator = Estimator::Joint;
     vec![
         by_plan(shipped("small"), paper, Outputs::Field),
         by_plan(shipped("odd"), paper, Outputs::Field),
@@ -36,6 +38,8 @@ fn designs() -> Vec<Design> {
         shipped("sensor1-reduced-64"),
         shipped("sensor1-resultants"),
         tiny,
+        shipped("sensor1-joint"),
+        uncorrected,
         with_lanes(shipped("sensor1-f1-l40"), 64),
         narrow,
     ]

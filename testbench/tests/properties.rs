@@ -141,6 +141,7 @@ fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
     };
     let square = |shape: Shape| Shape { pitch_mm: [3.0, 3.0], ..shape };
     let latency = Kind::Field { latency: true };
+    let joint = |field, correction| Kind::Joint { field, correction };
     let shapes = [
         ("one_quad", base(field, 2, 2, 4)),
         ("one_square_quad_for_latency", square(base(latency, 2, 2, 8))),
@@ -152,6 +153,11 @@ fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
         ("tall_resultants", base(Kind::Resultants, 3, 32, 16)),
         ("wide", base(field, 40, 2, 8)),
         ("narrow_words_reduced", Shape { coefficient_bits: 8, data_bits: 16, ..base(latency, 6, 4, 8) }),
+        ("one_quad_joint", base(joint(true, true), 2, 2, 4)),
+        ("uncorrected_joint", base(joint(true, false), 5, 3, 4)),
+        ("resultants_joint", base(joint(false, true), 9, 4, 16)),
+        ("wide_joint", base(joint(true, true), 40, 2, 8)),
+        ("narrow_joint", Shape { coefficient_bits: 8, data_bits: 16, ..base(joint(true, true), 6, 7, 8) }),
         ("band_reduced", Shape { filter: "{ kind = \"f1\", l = 22 }".to_owned(), ..base(field, 4, 6, 8) }),
     ];
     judge(&shapes.map(|(name, shape)| planned(&shape.design(name))));

@@ -2,6 +2,7 @@
 
 mod flows;
 mod folded_view;
+mod joint_view;
 mod mcsr;
 mod metadata;
 mod registers;

@@ -1,11 +1,13 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
+use golden::design::WEIGHT_BITS;
+
 use crate::plan::Plan;
 use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;
 use crate::plan::reduced::SUM_ROWS;
 
-use super::{FileMap, lane_file};
+use super::{FileMap, joint_view, lane_file};
 
 /// Adds every ROM file of the plan. All lanes' files have the same number of words; shorter ones end in zeros.
 pub fn insert(plan: &Plan, files: &mut FileMap) {
@@ -32,6 +34,9 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         files.insert(format!("rom/{name}_gains.mem"), hex(gains, counts.gains.len(), GAIN_BITS));
         let offsets = counts.offsets.iter().map(|&offset| u128::from(offset as u64));
         files.insert(format!("rom/{name}_offsets.mem"), hex(offsets, counts.offsets.len(), counts.offset_bits()));
+    }
+    for (contents, words) in plan.joint.iter().flat_map(joint_view::roms) {
+        files.insert(format!("rom/{name}_{contents}.mem"), network_file(&words));
     }
 }
 
@@ -74,6 +79,20 @@ fn visit(plan: &Plan, index: usize) -> u128 {
 fn joined(ways: &[i32], bits: u32) -> u128 {
     let mask = (1_u32 << bits) - 1;
     ways.iter().rev().fold(0, |word, &value| word << bits | u128::from(value as u32 & mask))
+}
+
+/// Words of several weights of 18 bits each, the first lowest: they are wider than any number, but for their digits.
+fn network_file(words: &[Vec<i32>]) -> Vec<u8> {
+    let mut text = Vec::new();
+    for word in words {
+        // Two weights are nine digits.
+        for pair in word.chunks(2).rev() {
+            let digits = hex(std::iter::once(joined(pair, WEIGHT_BITS)), 1, 2 * WEIGHT_BITS);
+            text.extend_from_slice(digits.trim_ascii_end());
+        }
+        text.push(b'\n');
+    }
+    text
 }
 
 /// `depth` words of `bits` bits in two's complement.

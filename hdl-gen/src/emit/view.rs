@@ -20,6 +20,7 @@ use crate::plan::schedule::TURN_GAP;
 use crate::plan::timing::{DIRECTION_LATENCY, LINE_LATENCY, OUTPUT_DEPTH, SEQUENCER_TO_LANES, SUMMARY_LATENCY};
 
 use super::folded_view::FoldedView;
+use super::joint_view::{JointView, NetworkView};
 use super::{registers, roms};
 
 /// One sparse product as the templates see it.
@@ -193,6 +194,8 @@ pub struct View {
     output_depth: u64,
 
     field: bool,
+    joint: Option<JointView>,
+    network: Option<NetworkView>,
     #[serde(flatten)]
     folded: FoldedView,
 }
@@ -415,6 +418,8 @@ impl View {
             output_depth: OUTPUT_DEPTH,
 
             field: plan.field_words() > 0,
+            joint: JointView::new(plan),
+            network: NetworkView::new(plan),
             folded,
         }
     }
@@ -529,6 +534,12 @@ fn shift_and_add(value: &str, index: &str, bits: u32) -> String {
     (0..bits).map(term).collect::<Vec<_>>().join("\n        + ")
 }
 
+/// `factor * index` as a sum of 16 bits, one term for each bit of the index.
+pub(super) fn shift_and_add_of(factor: usize, index: &str, bits: u32) -> String {
+    let term = |bit| format!("({index}[{bit}] ? 16'd{} : 16'd0)", factor << bit);
+    (0..bits).map(term).collect::<Vec<_>>().join(" + ")
+}
+
 /// The bits of `signal`, whose highest is `top`, that are not from `high` to `low`: `, signal[..], signal[..]`.
 fn bits_outside(signal: &str, top: u32, high: u32, low: u32) -> String {
     let above = if high < top { format!(", {signal}[{top}:{}]", high + 1) } else { String::new() };
@@ -536,7 +547,7 @@ fn bits_outside(signal: &str, top: u32, high: u32, low: u32) -> String {
     above + &below
 }
 
-fn signed_literal(bits: u32, value: i32) -> String {
+pub(super) fn signed_literal(bits: u32, value: i32) -> String {
     if value < 0 { format!("-{bits}'sd{}", -value) } else { format!("{bits}'sd{value}") }
 }
 

@@ -12,6 +12,8 @@ pub struct Direction {
     pub push: [i64; 2],
     /// `sum |b|` in steps of the stress.
     pub stress_sum: i64,
+    /// `max |b|` in steps of the stress.
+    pub largest: i64,
     /// `sum |b|` lies below the noise floor.
     pub no_contact: bool,
     /// No taxel above, or none below, the noise floor.
@@ -32,6 +34,7 @@ impl Direction {
         Self {
             push,
             stress_sum,
+            largest: stress.iter().map(|value| value.abs()).max().unwrap_or(0),
             no_contact: stress_sum < plan.thresholds.contact,
             unknown: !stress.iter().any(|&value| value > floor) || !stress.iter().any(|&value| value < -floor),
         }

@@ -4,6 +4,7 @@
 //! exact in its width, by the bounds of the plan.
 
 mod direction;
+mod joint;
 mod optimum;
 mod reduced;
 mod summary;
@@ -17,7 +18,6 @@ use crate::plan::optimum::FRICTION_FRACTION;
 use crate::plan::product::{Epilogue, Vector};
 
 use direction::Direction;
-use optimum::Line;
 use summary::Summary;
 pub use summary::inverse_gain;
 
@@ -80,6 +80,19 @@ impl Vectors {
             _ => &mut self.stress,
         }
     }
+}
+
+/// What an estimator finds of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Found {
+    /// Friction components, [`FRICTION_FRACTION`] fraction bits.
+    friction: [i64; 2],
+    /// Nothing tells the direction.
+    unknown: bool,
+    /// The optimum lies at the end of its range, or a component was clipped.
+    at_bound: bool,
+    /// An intermediate value was clipped.
+    saturated: bool,
 }
 
 /// The stress of a taxel, and what is to be said of it.
@@ -209,17 +222,19 @@ fn scalars(
     sums: &ByPq<i64>,
     u: &[Vec<i64>; 3],
 ) -> (Vec<u32>, Summary) {
-    let line = Line::new(sums, direction);
-    let optimum = optimum::search(&line, u, direction.stress_sum, plan);
-    let summary = Summary::new(sums, &line, optimum.t);
+    let found = match &plan.joint {
+        Some(joint) => joint::friction(plan, joint, u, direction),
+        None => optimum::friction(plan, sums, u, direction),
+    };
+    let summary = Summary::new(sums, found.friction);
 
     let mut status = counter;
-    if line.unknown {
+    if found.unknown {
         status |= DIRECTION_UNKNOWN;
-    } else if optimum.at_bound || summary.dependent_clipped {
+    } else if found.at_bound {
         status |= AT_BOUND;
     }
-    if saturated || optimum.saturated {
+    if saturated || found.saturated {
         status |= SATURATED;
     }
     let force_exponent = plan.formats.g.lsb - FRICTION_FRACTION as i32;

@@ -5,8 +5,8 @@ use crate::plan::Plan;
 use crate::plan::format::{largest, round_shift};
 use crate::plan::optimum::{FRICTION_FRACTION, HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, SEARCH_STEPS};
 
-use super::ByPq;
 use super::direction::Direction;
+use super::{ByPq, Found};
 
 /// Ratios of this magnitude (4.0) and more make the line meaningless.
 const WILD: u64 = 1 << (LINE_FRACTION + 2);
@@ -49,6 +49,20 @@ fn ratio(numerator: i64, denominator: i64) -> Option<i64> {
     let quotient = divider::divide(numerator.unsigned_abs() << LINE_FRACTION, denominator.unsigned_abs());
     let magnitude = (quotient < WILD).then_some(quotient as i64)?;
     Some(if (numerator < 0) == (denominator < 0) { magnitude } else { -magnitude })
+}
+
+/// Finds the friction on the line of the push.
+pub fn friction(plan: &Plan, sums: &ByPq<i64>, u: &[Vec<i64>; 3], direction: &Direction) -> Found {
+    let line = Line::new(sums, direction);
+    let Optimum { t, at_bound, saturated } = search(&line, u, direction.stress_sum, plan);
+    let exact = round_shift((line.c0 << FRICTION_FRACTION) + line.c1 * t, LINE_FRACTION);
+    let dependent = exact.clamp(-largest(18) - 1, largest(18));
+    let friction = match (line.unknown, line.x_is_free) {
+        (true, _) => [0, 0],
+        (false, true) => [t, dependent],
+        (false, false) => [dependent, t],
+    };
+    Found { friction, unknown: line.unknown, at_bound: at_bound || dependent != exact, saturated }
 }
 
 /// Where the search ended.

@@ -1,11 +1,9 @@
 //! Op's summary in integers: friction components, resultants, friction coefficient, angle.
 
 use crate::cores::{cordic, divider};
-use crate::plan::format::{largest, round_shift};
-use crate::plan::optimum::{FRICTION_FRACTION, LINE_FRACTION};
+use crate::plan::optimum::FRICTION_FRACTION;
 
 use super::ByPq;
-use super::optimum::Line;
 
 /// Fraction bits of the CORDIC's inverse gain.
 pub const GAIN_FRACTION: u32 = 26;
@@ -20,8 +18,6 @@ pub fn inverse_gain() -> i64 {
 pub struct Summary {
     /// `mu_x`, `mu_y` with [`FRICTION_FRACTION`] fraction bits.
     pub friction: [i64; 2],
-    /// The dependent component left [-2, 2).
-    pub dependent_clipped: bool,
     /// Resultants, [`FRICTION_FRACTION`] bits finer than g.
     pub forces: [i64; 3],
     /// `mu = quotient * 2^exponent`.
@@ -33,14 +29,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    pub fn new(sums: &ByPq<i64>, line: &Line, t: i64) -> Self {
-        let exact = round_shift((line.c0 << FRICTION_FRACTION) + line.c1 * t, LINE_FRACTION);
-        let dependent = exact.clamp(-largest(18) - 1, largest(18));
-        let friction = match (line.unknown, line.x_is_free) {
-            (true, _) => [0, 0],
-            (false, true) => [t, dependent],
-            (false, false) => [dependent, t],
-        };
+    pub fn new(sums: &ByPq<i64>, friction: [i64; 2]) -> Self {
         let forces = sums.map(|[g0, g1, g2]| (g0 << FRICTION_FRACTION) + friction[0] * g1 + friction[1] * g2);
         let tangential = Tangential::new(forces[0], forces[1]);
         let normal = forces[2].unsigned_abs();
@@ -53,7 +42,6 @@ impl Summary {
         };
         Self {
             friction,
-            dependent_clipped: !line.unknown && dependent != exact,
             forces,
             friction_quotient: quotient,
             friction_exponent: tangential.bits as i32 - normal_bits as i32 - 30,

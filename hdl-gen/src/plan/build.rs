@@ -8,6 +8,7 @@ use golden::parity::{CLASSES, Quads};
 use super::counts::CountsPlan;
 use super::error::{FEWEST_FORCE_STEPS, PlanError};
 use super::format::{Format, pow2};
+use super::joint::JointPlan;
 use super::layout::OperandLayout;
 use super::optimum::{DirectionPlan, OptimumPlan};
 use super::product::Product;
@@ -19,7 +20,7 @@ use super::{Condition, Formats, Nnz, Plan, Thresholds, control, paper, reduced};
 
 /// Plans the hardware of `design`.
 pub(super) fn plan(design: &Design) -> Result<Plan, PlanError> {
-    if design.algorithm.estimator == Estimator::Joint {
+    if design.algorithm.estimator == Estimator::Joint && design.algorithm.plan == PlanKind::Paper {
         return Err(PlanError::JointEstimator);
     }
     let work = Work::new(design)?;
@@ -95,13 +96,15 @@ impl Work {
         let hardware = &design.hardware;
         let (elements, ways) = (elements(design), ways(design));
         let schedule = Schedule::new(&self.products, &self.matrices, hardware.lanes / ways);
-        let optimum = OptimumPlan::new(elements, ways, hardware.lanes, &self.formats);
+        let joint = JointPlan::new(design, &self.formats);
+        let optimum = OptimumPlan::new(elements, ways, hardware.lanes, joint.is_some(), &self.formats);
         let operands = OperandLayout::new(&self.products, elements);
         let timeline = match design.algorithm.plan {
             PlanKind::Paper => Timeline::new(elements, self.counts.is_some(), &self.products, &schedule, &optimum),
-            PlanKind::Reduced => control::timeline(design, &self.products, &schedule, &optimum),
+            PlanKind::Reduced => control::timeline(design, &self.products, &schedule, &optimum, joint.as_ref()),
         };
-        let resources = Resources::new(design, &self.products, &operands, &schedule, &optimum, self.counts.as_ref());
+        let search = (&optimum, joint.as_ref());
+        let resources = Resources::new(design, &self.products, &operands, &schedule, search, self.counts.as_ref());
         Plan {
             design: design.clone(),
             condition: self.condition,
@@ -113,6 +116,7 @@ impl Work {
             thresholds: self.thresholds,
             direction: DirectionPlan::new(design.sensor.pitch_mm),
             optimum,
+            joint,
             operands,
             schedule,
             timeline,

@@ -8,6 +8,7 @@ use std::collections::VecDeque;
 use golden::design::{Design, Optimise, Outputs};
 
 use super::counts::input_stages;
+use super::joint::{self, JointPlan};
 use super::optimum::OptimumPlan;
 use super::product::Product;
 use super::schedule::{Program, Schedule, TURN_GAP};
@@ -38,8 +39,14 @@ const WEIGHT_PLACES: u64 = super::resources::WEIGHT_BANKS as u64;
 const FOREVER: u64 = 100_000_000;
 
 /// Predicts latency and interval.
-pub(super) fn timeline(design: &Design, products: &[Product], schedule: &Schedule, optimum: &OptimumPlan) -> Timeline {
-    let constants = Constants::new(design, products, schedule, optimum);
+pub(super) fn timeline(
+    design: &Design,
+    products: &[Product],
+    schedule: &Schedule,
+    optimum: &OptimumPlan,
+    joint: Option<&JointPlan>,
+) -> Timeline {
+    let constants = Constants::new(design, products, schedule, optimum, joint);
     let ends = |frames| Control::new(&constants).play(frames);
     Timeline {
         latency_cycles: ends(1)[0],
@@ -58,6 +65,10 @@ struct Constants {
     beat_to_stress: u64,
     field: bool,
     interval: bool,
+    /// Whether the estimator is the joint one, which waits for all that it needs at once.
+    joint: bool,
+    /// From the last stress to what `CeAn` knows of the frame.
+    direction: u64,
     search: u64,
     /// Cycles from a start pulse to the first issue.
     start_to_issue: u64,
@@ -67,7 +78,13 @@ struct Constants {
 }
 
 impl Constants {
-    fn new(design: &Design, products: &[Product], schedule: &Schedule, optimum: &OptimumPlan) -> Self {
+    fn new(
+        design: &Design,
+        products: &[Product],
+        schedule: &Schedule,
+        optimum: &OptimumPlan,
+        joint: Option<&JointPlan>,
+    ) -> Self {
         let field = design.algorithm.outputs == Outputs::Field;
         let taxels = design.sensor.taxels() as u64;
         let elements = golden::parity::Quads::new(design.sensor.columns, design.sensor.rows).count() as u32;
@@ -82,7 +99,12 @@ impl Constants {
             beat_to_stress: input_stages(design.input.pa_per_count.is_some()),
             field,
             interval: design.hardware.optimise == Optimise::Interval,
-            search: search_cycles(optimum),
+            joint: joint.is_some(),
+            direction: if joint.is_some() { joint::timing::CONTACT_LATENCY } else { DIRECTION_LATENCY },
+            search: match joint {
+                Some(joint) => joint::timing::search(design.sensor.taxels(), joint.network.as_ref(), optimum),
+                None => search_cycles(optimum),
+            },
             start_to_issue: START_TO_ISSUE + schedule.program_gap - TURN_GAP,
             programs: schedule.programs.clone(),
             last_sum: sums.max().unwrap_or(0),
@@ -183,7 +205,9 @@ impl<'a> Control<'a> {
                 left -= 1;
             }
             self.give_turn();
-            self.find_line();
+            if !self.of.joint {
+                self.find_line();
+            }
             self.search();
             self.send();
             self.now += 1;
@@ -222,7 +246,7 @@ impl<'a> Control<'a> {
         let last_stress = self.now + self.of.taxels - 1 + self.of.beat_to_stress;
         self.stress_places += 1;
         self.next_open = last_stress + 1;
-        self.cean_idle = last_stress + DIRECTION_LATENCY;
+        self.cean_idle = last_stress + self.of.direction;
         self.directions.push_back(self.cean_idle);
         self.frames_ready.push_back(last_stress + STRESS_TO_READY);
         true
@@ -304,11 +328,19 @@ impl<'a> Control<'a> {
             self.friction_known = self.of.field.then_some(self.now + SEARCH_TO_FRICTION);
             return;
         }
-        let line = matches!(self.line, Line::There { from } if from <= self.now);
-        let u = self.u_there.front().is_some_and(|&cycle| cycle <= self.now);
-        if line && u && self.search_ends.is_none() && self.search_free <= self.now {
+        let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
+        let line = match self.line {
+            _ if self.of.joint => there(&self.sums_there) && there(&self.directions),
+            Line::There { from } => from <= self.now,
+            _ => false,
+        };
+        if line && there(&self.u_there) && self.search_ends.is_none() && self.search_free <= self.now {
             self.u_there.pop_front();
             self.line = Line::Idle { from: self.now + 1 };
+            if self.of.joint {
+                self.sums_there.pop_front();
+                self.directions.pop_front();
+            }
             self.search_ends = Some(self.now + self.of.search);
         }
     }

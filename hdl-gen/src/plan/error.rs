@@ -10,10 +10,10 @@ pub(super) const FEWEST_FORCE_STEPS: u32 = 64;
 /// Why a checked design has no hardware plan.
 #[derive(Debug, Error)]
 pub enum PlanError {
-    /// The estimator has no hardware.
+    /// The estimator has no hardware in this plan.
     #[error(
-        "[algorithm] estimator = \"joint\": the hardware has the line estimator only; write estimator = \"line\" and \
-         remove gain, tangential and correction, or solve the design with `golden solve`"
+        "[algorithm] plan = \"paper\": the paper's plan has the line estimator only; write plan = \"reduced\", or \
+         estimator = \"line\" and remove gain, tangential and correction"
     )]
     JointEstimator,
     /// The matrices of this geometry cannot be computed.

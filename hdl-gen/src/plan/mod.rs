@@ -9,6 +9,7 @@ pub mod counts;
 mod dealing;
 mod error;
 pub mod format;
+pub mod joint;
 pub mod layout;
 pub mod optimum;
 pub mod paper;
@@ -28,6 +29,7 @@ use serde::Serialize;
 use counts::CountsPlan;
 pub use error::PlanError;
 use format::Format;
+use joint::JointPlan;
 use layout::OperandLayout;
 use optimum::{DirectionPlan, OptimumPlan};
 use product::{Block, Product, Vector};
@@ -116,6 +118,8 @@ pub struct Plan {
     pub direction: DirectionPlan,
     /// Constants of Op.
     pub optimum: OptimumPlan,
+    /// Constants of the joint estimator, if the design has it.
+    pub joint: Option<JointPlan>,
     /// Vectors in each lane's operand memory.
     pub operands: OperandLayout,
     /// The lanes' work, cycle by cycle.
@@ -132,7 +136,7 @@ impl Plan {
     /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
     ///
     /// # Errors
-    /// [`PlanError`] if the estimator has no hardware, the geometry is singular, the filter empties a matrix, the widths are
+    /// [`PlanError`] if the plan has no hardware for the estimator, the geometry is singular, the filter empties a matrix, the widths are
     /// too small, or no number of lanes meets the target.
     pub fn new(design: &Design) -> Result<Self, PlanError> {
         build::plan(design)

@@ -56,14 +56,14 @@ pub struct OptimumPlan {
 impl OptimumPlan {
     /// As many cells as lanes, at most 32, with a power of two of taxels each. Where `ways` taxels arrive at a time (the
     /// members of a quad, of which there are `elements`), they go to as many cells.
-    pub fn new(elements: usize, ways: usize, lanes: usize, formats: &Formats) -> Self {
+    ///
+    /// The joint estimator's cells have adders only, and so their number does not follow the lanes'.
+    pub fn new(elements: usize, ways: usize, lanes: usize, joint: bool, formats: &Formats) -> Self {
         let per_cell = elements.div_ceil((lanes.min(MOST_CELLS) / ways).max(1)).next_power_of_two();
         let hinge_lsb = formats.u.lsb - FRICTION_FRACTION as i32 + HINGE_DROP as i32;
-        Self {
-            cells: ways * elements.div_ceil(per_cell),
-            elements: per_cell,
-            level_shift: formats.stress.lsb - LEVEL_SHIFT - hinge_lsb,
-        }
+        let (cells, each) =
+            if joint { super::joint::cells(elements, ways) } else { (ways * elements.div_ceil(per_cell), per_cell) };
+        Self { cells, elements: each, level_shift: formats.stress.lsb - LEVEL_SHIFT - hinge_lsb }
     }
 
     /// Cycles from the last taxel's address in an evaluation to the decision.

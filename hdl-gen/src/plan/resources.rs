@@ -1,11 +1,12 @@
 //! Predicted resources: multipliers and block memories of an UltraScale+ device.
 
-use golden::design::{Design, Outputs, PlanKind};
+use golden::design::{Design, Outputs, PlanKind, WEIGHT_BITS};
 use golden::parity::CLASSES;
 use serde::Serialize;
 
 use super::counts::{CountsPlan, GAIN_BITS};
 use super::format::address_bits;
+use super::joint::{INPUT_BITS, JointPlan, POINTS, STRESS_BITS, UNITS};
 use super::layout::OperandLayout;
 use super::optimum::OptimumPlan;
 use super::product::Product;
@@ -24,7 +25,7 @@ const LUT_DEPTH: usize = 32;
 /// Frames whose weights are kept for the output, reduced plan.
 pub const WEIGHT_BANKS: usize = 4;
 /// The blocks with multipliers or memories and their modules.
-const BLOCKS: [(&str, &[&str]); 10] = [
+const BLOCKS: [(&str, &[&str]); 14] = [
     (BZ, &["bz", "fold"]),
     (CEAN, &["cean"]),
     (LANES, &["spmv_array"]),
@@ -33,6 +34,10 @@ const BLOCKS: [(&str, &[&str]); 10] = [
     (FIELD, &["field"]),
     (LINE, &["op_line"]),
     (CELLS, &["op_search"]),
+    (PLANE, &["op_plane"]),
+    (LOOK, &["op_look"]),
+    (NETWORK, &["op_network"]),
+    (FRICTION, &["op_friction"]),
     (SUMMARY, &["op_summary"]),
     (OUTPUT, &["op_output"]),
 ];
@@ -44,6 +49,10 @@ const CO: &str = "Co";
 const FIELD: &str = "field";
 const LINE: &str = "line";
 const CELLS: &str = "cells";
+const PLANE: &str = "plane";
+const LOOK: &str = "look";
+const NETWORK: &str = "network";
+const FRICTION: &str = "friction";
 const SUMMARY: &str = "summary";
 const OUTPUT: &str = "output";
 /// Shapes of half a RAMB36 as `(depth, width)`.
@@ -103,7 +112,7 @@ impl Resources {
         products: &[Product],
         operands: &OperandLayout,
         schedule: &Schedule,
-        optimum: &OptimumPlan,
+        (optimum, joint): (&OptimumPlan, Option<&JointPlan>),
         counts: Option<&CountsPlan>,
     ) -> Self {
         let mut memories = lane_memories(design, products, operands, schedule);
@@ -113,12 +122,13 @@ impl Resources {
             memories.push(memory(BZ, "gains", 1, taxels, GAIN_BITS, true));
             memories.push(memory(BZ, "offsets", 1, taxels, counts.offset_bits(), true));
         }
+        memories.extend(joint.iter().flat_map(|joint| joint_memories(design, joint)));
         let blocks: Vec<BlockResources> = BLOCKS
             .iter()
             .map(|&(name, modules)| BlockResources {
                 name,
                 modules,
-                dsp: multipliers(name, design, optimum, counts),
+                dsp: multipliers(name, design, optimum, joint, counts),
                 // From a positive zero, which the sum of nothing is not.
                 bram36: memories
                     .iter()
@@ -145,8 +155,23 @@ impl Memory {
 }
 
 /// DSP48E2 of a block: one for each product that it forms in a cycle.
-fn multipliers(block: &str, design: &Design, optimum: &OptimumPlan, counts: Option<&CountsPlan>) -> usize {
+fn multipliers(
+    block: &str,
+    design: &Design,
+    optimum: &OptimumPlan,
+    joint: Option<&JointPlan>,
+    counts: Option<&CountsPlan>,
+) -> usize {
+    let network = joint.is_some_and(|joint| joint.network.is_some());
     match block {
+        // The square of a depth, both moments.
+        PLANE if joint.is_some() => 3,
+        FRICTION if joint.is_some() => 1,
+        // The stress of a taxel, its share of all.
+        LOOK if network => 2,
+        // The hidden units' four classes, both components.
+        NETWORK if network => CLASSES * UNITS + 2,
+        CEAN | LINE | CELLS if joint.is_some() => 0,
         BZ => usize::from(counts.is_some()),
         LANES => design.hardware.lanes,
         CELLS => optimum.cells,
@@ -197,6 +222,21 @@ fn frame_memories(design: &Design, elements: usize) -> Vec<Memory> {
         let weights = WEIGHT_BANKS * elements.next_power_of_two();
         memories.push(memory(FIELD, "weights", CLASSES, weights, data, false));
         memories.push(memory(FIELD, "field", CLASSES, 6 * elements, data, false));
+    }
+    memories
+}
+
+/// Those of the joint estimator.
+fn joint_memories(design: &Design, joint: &JointPlan) -> Vec<Memory> {
+    let mut memories = vec![memory(PLANE, "values", 1, POINTS, joint.value_bits, false)];
+    if let Some(network) = &joint.network {
+        let seen = design.sensor.rows << address_bits(design.sensor.columns);
+        let classes = CLASSES as u32;
+        memories.push(memory(LOOK, "window", 1, seen, STRESS_BITS, false));
+        memories.push(memory(NETWORK, "inputs", 1, network.length, classes * INPUT_BITS, false));
+        let width = WEIGHT_BITS * classes * UNITS as u32;
+        memories.push(memory(NETWORK, "weights", 1, network.weights.len(), width, true));
+        memories.push(memory(NETWORK, "readout", 1, network.units(), 2 * WEIGHT_BITS, true));
     }
     memories
 }

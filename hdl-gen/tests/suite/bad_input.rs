@@ -131,9 +131,9 @@ fn a_sensor_that_cannot_be_inverted_is_refused() {
 }
 
 #[test]
-fn the_joint_estimator_has_no_hardware() {
-    let text = changed("depth_mm = 3.0", "depth_mm = 3.0\n[algorithm]\nestimator = \"joint\"\ngain = 1.1");
-    check_design(&text, &["hardware has the line estimator only", "estimator = \"line\""]);
+fn the_papers_plan_has_no_joint_estimator() {
+    let keys = "depth_mm = 3.0\n[algorithm]\nplan = \"paper\"\nestimator = \"joint\"\ngain = 1.1";
+    check_design(&changed("depth_mm = 3.0", keys), &["paper's plan has the line estimator only", "plan = \"reduced\""]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::env;
 
-use golden::design::Design;
+use golden::design::{Correction, Design, JointConstants, Sensor};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -23,8 +23,15 @@ pub fn seed() -> u64 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Paper,
-    Field { latency: bool },
+    Field {
+        latency: bool,
+    },
     Resultants,
+    /// The joint estimator, with or without a correction.
+    Joint {
+        field: bool,
+        correction: bool,
+    },
 }
 
 impl Kind {
@@ -35,6 +42,10 @@ impl Kind {
             Self::Field { latency: true } => ["plan = \"reduced\"", "optimise = \"latency\""],
             Self::Field { latency: false } => ["plan = \"reduced\"", "optimise = \"interval\""],
             Self::Resultants => ["plan = \"reduced\"\noutputs = \"resultants\"", ""],
+            Self::Joint { field: true, .. } => ["plan = \"reduced\"\nestimator = \"joint\"", ""],
+            Self::Joint { field: false, .. } => {
+                ["plan = \"reduced\"\nestimator = \"joint\"\noutputs = \"resultants\"", ""]
+            }
         }
     }
 }
@@ -60,11 +71,12 @@ impl Shape {
             || if random.random_bool(0.8) { random.random_range(2..=8) } else { random.random_range(9..=12) };
         let (columns, mut rows) = (side(), side());
         let mut pitch_mm = [0, 1].map(|_| (random.random_range(1.0..6.0_f64) * 100.0).round() / 100.0);
-        let kind = match random.random_range(0..7) {
+        let kind = match random.random_range(0..10) {
             0..3 => Kind::Paper,
             3 | 4 => Kind::Field { latency: false },
             5 => Kind::Field { latency: true },
-            _ => Kind::Resultants,
+            6 => Kind::Resultants,
+            joint => Kind::Joint { field: joint != 8, correction: joint != 7 },
         };
         // Where everything is square, a matrix serves both directions.
         if kind != Kind::Paper && random.random_bool(0.4) {
@@ -115,8 +127,35 @@ full_scale_pa = {full_scale_pa:?}
 lanes = {lanes}
 "
         );
-        Design::from_toml(&text, name).unwrap_or_else(|error| panic!("{error}\n{text}"))
+        let mut design = Design::from_toml(&text, name).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        if let Kind::Joint { correction, .. } = self.kind {
+            *design.algorithm.joint = constants(&design.sensor, correction);
+        }
+        design
     }
+}
+
+/// Constants of the joint estimator as no calibration finds them: a window from nothing to the whole grid, few units or
+/// a number that does not fill the last pass, weights from nothing to the largest.
+fn constants(sensor: &Sensor, correction: bool) -> JointConstants {
+    let mut random = ChaCha8Rng::seed_from_u64((64 * sensor.columns + sensor.rows) as u64);
+    let mut constants = JointConstants {
+        gain: random.random_range(0.5..2.0),
+        tangential: [random.random_range(0.5..1.5), random.random_range(-0.3..0.3)],
+        correction: None,
+    };
+    if correction {
+        let half_window = [sensor.columns, sensor.rows].map(|side| random.random_range(0..side.min(6)));
+        let largest = 1 << random.random_range(6..17);
+        let units = random.random_range(1..11);
+        let mut row =
+            |length: usize, largest: i32| (0..length).map(|_| random.random_range(-largest..=largest)).collect();
+        let inputs = Correction::inputs(half_window);
+        let hidden = (0..units).map(|_| row(inputs, largest)).collect();
+        let output = [row(units, 4096), row(units, 131_071)];
+        constants.correction = Some(Correction { half_window, hidden, output });
+    }
+    constants
 }
 
 /// The design with this number among those of the seed, and the generator as its draws left it.

@@ -109,7 +109,7 @@ pub fn build(design: &Design, matrices: &Matrices, stress: Format) -> Result<Red
     let reduced = ReducedMatrices::new(matrices, &quads, &design.algorithm.filter)?;
     let widths = [design.hardware.coefficient_bits, design.hardware.data_bits];
     let field = design.algorithm.outputs == Outputs::Field;
-    let mut steps = Steps::new(&reduced, widths, design.hardware.skip_zeros);
+    let mut steps = Steps::new(&reduced, widths, design.algorithm.joint.gain, design.hardware.skip_zeros);
 
     let base = Operand {
         folded: Format { bits: stress.bits, lsb: stress.lsb + FOLD_BITS as i32, bound: stress.bound },

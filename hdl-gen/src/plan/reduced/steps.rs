@@ -19,6 +19,8 @@ pub(super) struct Steps<'a> {
     reduced: &'a ReducedMatrices,
     coefficient_bits: u32,
     data_bits: u32,
+    /// Factor on all forces: the weights are taken times it, and what makes stress of them again divided by it.
+    gain: f64,
     /// Whether products of the weights and of y+ pass over zeros.
     skips: bool,
     pub matrices: Vec<QuantisedMatrix>,
@@ -26,13 +28,13 @@ pub(super) struct Steps<'a> {
 }
 
 impl<'a> Steps<'a> {
-    pub fn new(reduced: &'a ReducedMatrices, [coefficient_bits, data_bits]: [u32; 2], skips: bool) -> Self {
-        Self { reduced, coefficient_bits, data_bits, skips, matrices: Vec::new(), products: Vec::new() }
+    pub fn new(reduced: &'a ReducedMatrices, [coefficient_bits, data_bits]: [u32; 2], gain: f64, skips: bool) -> Self {
+        Self { reduced, coefficient_bits, data_bits, gain, skips, matrices: Vec::new(), products: Vec::new() }
     }
 
     /// `C33inv b`, parted. Returns the operand that weights and `y+` are.
     pub fn weights(&mut self, base: Operand) -> Result<Operand, PlanError> {
-        let matrix = self.quantise(ReducedName::C33inv, 1.0, base, ANY_LSB)?;
+        let matrix = self.quantise(ReducedName::C33inv, self.gain, base, ANY_LSB)?;
         let y = bounds::unfolding(&[(&matrix, base)], None, self.data_bits);
         let taxel = Format { lsb: y.lsb - FOLD_BITS as i32, ..y };
         // Four weights of one sign add up; the folded ones give up as many bits as that takes.
@@ -49,11 +51,11 @@ impl<'a> Steps<'a> {
     /// `u1, u0, u2`; returns their folded format.
     pub fn coefficients(&mut self, base: Operand, weights: Operand, side: Option<usize>) -> Result<Format, PlanError> {
         let names = [ReducedName::K1, ReducedName::K0, ReducedName::K2];
-        let first = |least| self.quantise_all(names, &[-1.0; 3], weights, least);
+        let first = |least| self.quantise_all(names, &[-1.0 / self.gain; 3], weights, least);
         let terms = first(ANY_LSB)?;
         let alone = bounds::unfolding(&bounds::with(&terms, weights), Some(base), self.data_bits);
         let least = alone.lsb - weights.folded.lsb - MOST_SHIFT as i32;
-        let terms = self.quantise_all(names, &[-1.0; 3], weights, least)?;
+        let terms = self.quantise_all(names, &[-1.0 / self.gain; 3], weights, least)?;
         let u = bounds::unfolding(&bounds::with(&terms, weights), Some(base), self.data_bits);
         let turn = (Block::Co, 0);
         let [k1, k0, k2] = <[QuantisedMatrix; 3]>::try_from(terms).unwrap_or_else(|_| unreachable!("three names"));
