@@ -4,12 +4,12 @@ mod support;
 
 use std::sync::OnceLock;
 
-use golden::design::{Correction, Design, Estimator, Optimise, Outputs, PlanKind};
+use golden::design::{Design, Optimise, Outputs, PlanKind};
 use hdl_gen::model::{AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, Model, NO_CONTACT, NOT_FINITE, SATURATED};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use support::{built, frames, in_parallel, planned, shipped};
+use support::{built, frames, in_parallel, planned, shipped, with_joint};
 use testbench::compare::Comparison;
 use testbench::run::timeout;
 use testbench::stream::{INITIAL_RESET, Mode, Outcome, Pacing, Pattern, Reset, Traffic, exchange};
@@ -42,18 +42,7 @@ fn subjects() -> &'static [Subject] {
                 design.hardware.optimise = Optimise::Latency;
                 (design.sensor.columns, design.sensor.rows) = (3, 3);
             }),
-            small("small_joint", &|design| {
-                design.algorithm.plan = PlanKind::Reduced;
-                design.algorithm.estimator = Estimator::Joint;
-                let weights =
-                    |length: usize| (0..length as i32).map(|index| 700 * (index * index % 9) - 2000).collect();
-                let inputs = Correction::inputs([1, 1]);
-                design.algorithm.joint.correction = Some(Correction {
-                    half_window: [1, 1],
-                    hidden: vec![weights(inputs), weights(inputs), weights(inputs)],
-                    output: [weights(3), weights(3)],
-                });
-            }),
+            small("small_joint", &|design| *design = with_joint(design.clone())),
             small("small_resultants", &|design| {
                 design.algorithm.plan = PlanKind::Reduced;
                 design.algorithm.outputs = Outputs::Resultants;

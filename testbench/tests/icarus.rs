@@ -8,7 +8,7 @@ use std::fs;
 
 use golden::design::{Design, Outputs, PlanKind};
 use hdl_gen::emit::emit;
-use support::{by_plan, in_parallel, planned, shipped, with_lanes};
+use support::{by_plan, in_parallel, planned, shipped, with_joint, with_lanes};
 use testbench::tools;
 
 type Files = BTreeMap<String, Vec<u8>>;
@@ -73,6 +73,7 @@ fn icarus_gives_every_word_of_the_model() {
         by_plan(tiny.clone(), paper, Outputs::Field),
         by_plan(shipped("small"), reduced, Outputs::Field),
         by_plan(odd, reduced, Outputs::Resultants),
+        with_joint(Design { name: "joint".to_owned(), ..square.clone() }),
         by_plan(square, reduced, Outputs::Field),
         by_plan(tiny, reduced, Outputs::Field),
     ];

@@ -3,9 +3,10 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use golden::design::PlanKind;
+use golden::design::{Correction, PlanKind};
 use hdl_gen::emit::{nnz, predicted, products};
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::joint::{POINTS, UNITS};
 use hdl_gen::plan::savings::savings;
 use serde_json::json;
 
@@ -23,7 +24,7 @@ pub fn report(plan: &Plan, as_json: bool) -> Result<String, Box<dyn Error>> {
 
 fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
     let sensor = &plan.design.sensor;
-    let value = json!({
+    let mut value = json!({
         "name": plan.design.name,
         "geometry": {
             "columns": sensor.columns,
@@ -40,6 +41,9 @@ fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
         "lanes": plan.design.hardware.lanes,
         "savings": savings(plan),
     });
+    if let Some(joint) = &plan.joint {
+        value["joint"] = json!(joint);
+    }
     Ok(serde_json::to_string_pretty(&value)? + "\n")
 }
 
@@ -51,6 +55,7 @@ fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
     reductions(&mut text, plan)?;
     work(&mut text, plan)?;
     speed(&mut text, plan)?;
+    friction(&mut text, plan)?;
     resources(&mut text, plan)?;
     numbers(&mut text, plan)?;
     Ok(text)
@@ -139,6 +144,33 @@ fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
         writeln!(out, "  {what:<9} {cycles:>10} cycles {:>11.2} us   {remark}", cycles as f64 / clock)?;
     }
     Ok(())
+}
+
+/// What the joint estimator is made of.
+fn friction(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let Some(joint) = &plan.joint else { return Ok(()) };
+    let [c1, c3] = plan.design.algorithm.joint.tangential;
+    writeln!(out, "\nFriction, joint estimator")?;
+    writeln!(
+        out,
+        "  walk         {POINTS} points, {} taxels a cell; gain {} (in the matrices)",
+        plan.optimum.elements,
+        short(plan.design.algorithm.joint.gain)
+    )?;
+    writeln!(out, "  friction     c1 {c1:.4}, c3 {c3:.4}")?;
+    match (&joint.network, &plan.design.algorithm.joint.correction) {
+        (Some(network), Some(correction)) => writeln!(
+            out,
+            "  correction   {} hidden units, {} inputs, weights in steps of 2^{}; {} passes of {} words, {} MACs",
+            correction.hidden.len(),
+            Correction::inputs(correction.half_window),
+            network.weight_lsb,
+            network.passes,
+            network.length,
+            plan.ways() * UNITS
+        ),
+        _ => writeln!(out, "  correction   none: `golden calibrate` trains one"),
+    }
 }
 
 fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {

@@ -124,6 +124,12 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
     if plan.design.hardware.control {
         value["registers"] = json!(registers::map_path(plan));
     }
+    if let Some(joint) = &plan.joint {
+        // Of the line estimator there is nothing but the cells' number.
+        value["search"] = json!({ "cells": plan.optimum.cells, "elements": plan.optimum.elements });
+        value["direction"] = Value::Null;
+        value["joint"] = json!(joint);
+    }
     let mut text = serde_json::to_vec_pretty(&value)?;
     text.push(b'\n');
     Ok(text)

@@ -228,14 +228,14 @@ fn frame_memories(design: &Design, elements: usize) -> Vec<Memory> {
 
 /// Those of the joint estimator.
 fn joint_memories(design: &Design, joint: &JointPlan) -> Vec<Memory> {
-    let mut memories = vec![memory(PLANE, "values", 1, POINTS, joint.value_bits, false)];
+    let mut memories = vec![memory(PLANE, "grid values", 1, POINTS, joint.value_bits, false)];
     if let Some(network) = &joint.network {
         let seen = design.sensor.rows << address_bits(design.sensor.columns);
         let classes = CLASSES as u32;
-        memories.push(memory(LOOK, "window", 1, seen, STRESS_BITS, false));
-        memories.push(memory(NETWORK, "inputs", 1, network.length, classes * INPUT_BITS, false));
+        memories.push(memory(LOOK, "look", 1, seen, STRESS_BITS, false));
+        memories.push(memory(NETWORK, "look, folded", 1, network.length, classes * INPUT_BITS, false));
         let width = WEIGHT_BITS * classes * UNITS as u32;
-        memories.push(memory(NETWORK, "weights", 1, network.weights.len(), width, true));
+        memories.push(memory(NETWORK, "hinge weights", 1, network.weights.len(), width, true));
         memories.push(memory(NETWORK, "readout", 1, network.units(), 2 * WEIGHT_BITS, true));
     }
     memories

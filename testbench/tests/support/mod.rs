@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use golden::design::{Design, Outputs, PlanKind};
+use golden::design::{Correction, Design, Estimator, Outputs, PlanKind};
 use hdl_gen::plan::Plan;
 use testbench::run::{model_answers, rtl_sources, timeout};
 use testbench::simulate::{Job, Simulation, simulate};
@@ -38,6 +38,20 @@ pub fn by_plan(mut design: Design, kind: PlanKind, outputs: Outputs) -> Design {
     let of = if outputs == Outputs::Field { "field" } else { "resultants" };
     design.name = format!("{}_{plan}_{of}", design.name);
     (design.algorithm.plan, design.algorithm.outputs) = (kind, outputs);
+    design
+}
+
+/// The design by the reduced plan with the joint estimator, and a correction of a few units that nobody trained.
+pub fn with_joint(mut design: Design) -> Design {
+    design.algorithm.plan = PlanKind::Reduced;
+    design.algorithm.estimator = Estimator::Joint;
+    let weights = |length: usize| (0..length as i32).map(|index| 700 * (index * index % 9) - 2000).collect();
+    let inputs = Correction::inputs([1, 1]);
+    design.algorithm.joint.correction = Some(Correction {
+        half_window: [1, 1],
+        hidden: vec![weights(inputs), weights(inputs), weights(inputs)],
+        output: [weights(3), weights(3)],
+    });
     design
 }
 

@@ -1,0 +1,165 @@
+//! The joint estimator's plan: formats that no frame can leave, ROMs that hold what the plan says.
+
+use golden::design::{Correction, Design, Estimator};
+use hdl_gen::emit::emit;
+use hdl_gen::model::{Model, SATURATED};
+use hdl_gen::plan::Plan;
+use hdl_gen::plan::joint::{CORRECTION_LIMIT, INPUT_BITS, NetworkPlan, POINT_BITS, STRESS_BITS, UNIT_BITS, UNITS};
+
+use super::support::{design_text, plan};
+
+const FRICTION_STEP: f32 = 1.0 / 65_536.0;
+
+/// A design with a correction of one weight all over, of either sign in turn if it alternates.
+fn with_weights(half_window: [usize; 2], units: usize, hidden: i32, output: i32, alternating: bool) -> Plan {
+    let text = design_text("pad", [10, 10], [4.0, 2.0], 3.0, "");
+    let mut design = Design::from_toml(&text, "test.toml").unwrap();
+    design.algorithm.estimator = Estimator::Joint;
+    let inputs = Correction::inputs(half_window);
+    let sign = |index: usize| if alternating && index % 2 == 1 { -1 } else { 1 };
+    let row = |shift: usize| (0..inputs).map(|index| sign(index + shift) * hidden).collect();
+    let readout = |shift: usize| (0..units).map(|index| sign(index + shift) * output).collect();
+    design.algorithm.joint.correction =
+        Some(Correction { half_window, hidden: (0..units).map(row).collect(), output: [readout(0), readout(1)] });
+    Plan::new(&design).unwrap()
+}
+
+fn network(plan: &Plan) -> &NetworkPlan {
+    plan.joint.as_ref().and_then(|joint| joint.network.as_ref()).unwrap()
+}
+
+#[test]
+fn no_sum_of_the_network_can_overflow() {
+    for (half_window, units, hidden, output) in [
+        ([0, 0], 1, 1, 1),
+        ([1, 0], 5, -131_072, 131_071),
+        ([4, 7], 128, 4096, -300),
+        ([9, 9], 256, 131_071, -131_072),
+        ([9, 9], 3, 0, 0),
+    ] {
+        for alternating in [false, true] {
+            let plan = with_weights(half_window, units, hidden, output, alternating);
+            let network = network(&plan);
+            assert_eq!(
+                (network.passes, network.weights.len()),
+                (units.div_ceil(UNITS), network.passes * network.length)
+            );
+            for pass in network.weights.chunks(network.length) {
+                for unit in 0..UNITS {
+                    let class =
+                        |class: usize| -> i64 { pass.iter().map(|word| i64::from(word[unit][class].abs())).sum() };
+                    let sums = [0, 1, 2, 3].map(class);
+                    let most = 1_i64 << (INPUT_BITS - 1);
+                    assert!(sums.iter().all(|&sum| sum * most < 1 << 47), "a class fits the accumulator");
+                    let narrow = pass.iter().all(|word| word[unit].iter().all(|weight| weight.abs() < 1 << 17));
+                    assert!(narrow, "18 bits");
+                }
+            }
+            let total: i64 = network.readout.iter().map(|weights| i64::from(weights[0].abs())).sum();
+            assert!(total << (UNIT_BITS) < 1 << 47, "the output fits the accumulator");
+            // The worst look: every value of the window at its limit, with the signs of the weights.
+            let inputs = Correction::inputs(half_window) as i64;
+            let unit = i128::from(inputs * i64::from(hidden.abs())) << (STRESS_BITS - 1);
+            let left = -12 - network.weight_lsb - network.unit_shift as i32;
+            let unit = if left >= 0 { unit << left } else { unit >> -left };
+            assert!(unit + 4 < 1 << (UNIT_BITS - 1), "{half_window:?}, {hidden}: a unit fits its width");
+        }
+    }
+}
+
+#[test]
+fn values_on_the_grid_have_room_for_every_frame() {
+    for (size, data_bits) in [([2, 2], 27), ([10, 10], 27), ([10, 10], 16), ([64, 9], 27)] {
+        let more = format!("[algorithm]\nestimator = \"joint\"\n[hardware]\ndata_bits = {data_bits}");
+        let plan = plan(&design_text("pad", size, [4.0, 3.0], 2.0, &more));
+        let (joint, formats) = (plan.joint.as_ref().unwrap(), &plan.formats);
+        // 8 u0 and, at the farthest point and one step beyond, 10 u1 and 11 u2; and the dead zone.
+        let point = 29 * formats.u.bound + joint.share(formats.stress.bound);
+        assert!(point < 1 << (POINT_BITS - 1), "{size:?}");
+        let most = plan.taxels() as i64 * point;
+        assert!(most < 1 << joint.value_bits && joint.share(formats.stress.bound * plan.taxels() as i64) < most);
+        // A dead zone and a level of the shares that they are meant to be.
+        let share = joint.share(formats.stress.bound) as f64 * formats.u.step() / 8.0;
+        assert!((share / (formats.stress.bound as f64 * formats.stress.step()) * 256.0 - 1.0).abs() < 0.01, "{size:?}");
+    }
+}
+
+/// The gain is in the matrices, so forces have it and friction does not.
+#[test]
+fn the_gain_scales_forces_and_nothing_else() {
+    let text = |gain: f64| {
+        let more = format!("[algorithm]\nestimator = \"joint\"\ngain = {gain:?}");
+        plan(&design_text("pad", [10, 10], [4.0, 4.0], 3.0, &more))
+    };
+    let frame: Vec<u32> = (0..100)
+        .map(|taxel| {
+            let [x, y] = [taxel % 10, taxel / 10].map(|at| (at as f32 - 4.3) / 2.0);
+            (-2e4 * (1.0 + 0.5 * x) * (-x * x - y * y).exp()).to_bits()
+        })
+        .collect();
+    let answer = |plan: &Plan| Model::new(plan).process(&frame).into_iter().map(f32::from_bits).collect::<Vec<f32>>();
+    let (one, more) = (answer(&text(1.0)), answer(&text(1.3)));
+    assert!(one[3] < -0.1 && one[6] > 0.05, "{:?}", &one[..8]);
+    let near = |found: f32, wanted: f32, scale: f32| (found - wanted).abs() < 2e-3 * scale;
+    assert!((1..4).all(|word| near(more[word], 1.3 * one[word], one[3].abs())), "{:?} {:?}", &one[..8], &more[..8]);
+    assert!(
+        (6..8).all(|word| (more[word] - one[word]).abs() < 20.0 * FRICTION_STEP),
+        "{:?} {:?}",
+        &one[..8],
+        &more[..8]
+    );
+    let largest = one[8..].iter().fold(0.0_f32, |most, force| most.max(force.abs()));
+    assert!(one.iter().zip(&more).skip(8).all(|(one, more)| near(*more, 1.3 * one, largest)));
+}
+
+#[test]
+fn the_correction_is_bounded_and_says_when_it_saw_too_much() {
+    // A large constant unit that pushes along x: only its odd part is left, which a look to the side has.
+    let plan = with_weights([2, 2], 4, 131_071, 131_071, true);
+    let uncorrected = with_weights([2, 2], 4, 0, 0, false);
+    let frame: Vec<u32> = (0..100).map(|taxel| if taxel % 10 < 4 { -3e4_f32 } else { 1e2 }.to_bits()).collect();
+    let [with, without] = [&plan, &uncorrected].map(|plan| Model::new(plan).process(&frame));
+    let limit = CORRECTION_LIMIT as f32 * FRICTION_STEP;
+    let change = [6, 7].map(|word| (f32::from_bits(with[word]) - f32::from_bits(without[word])).abs());
+    assert!(change.iter().all(|&change| change <= limit + FRICTION_STEP), "{change:?}");
+    assert!(change.iter().any(|&change| change > 0.9 * limit), "{change:?}");
+    // Stresses that all but cancel in their sum of magnitudes do not exist: nothing is clipped here.
+    assert_eq!(with[0] & SATURATED, 0);
+}
+
+#[test]
+fn the_roms_hold_the_weights() {
+    let plan = with_weights([1, 2], 6, 1234, -77, true);
+    let network = network(&plan);
+    let files = emit(&plan).unwrap();
+    let lines = |name: &str| -> Vec<String> {
+        String::from_utf8(files[&format!("rom/pad_{name}.mem")].clone()).unwrap().lines().map(str::to_owned).collect()
+    };
+    // Weight `index` from the right, of 18 bits.
+    let weight = |line: &str, index: usize| -> i32 {
+        let bits: Vec<bool> = line
+            .chars()
+            .rev()
+            .flat_map(|digit| (0..4).map(move |bit| digit.to_digit(16).unwrap() >> bit & 1 == 1))
+            .collect();
+        let value = (0..18).fold(0, |value, bit| value | i32::from(bits[18 * index + bit]) << bit);
+        value << 14 >> 14
+    };
+    let weights = lines("weights");
+    assert_eq!(weights.len(), network.weights.len());
+    for (line, units) in weights.iter().zip(&network.weights) {
+        assert_eq!(line.len(), 72);
+        for (index, wanted) in units.iter().flatten().enumerate() {
+            assert_eq!(weight(line, index), *wanted);
+        }
+    }
+    let readout = lines("readout");
+    assert_eq!(readout.len(), 8, "filled up to whole passes");
+    for (index, line) in readout.iter().enumerate() {
+        let wanted = network.readout.get(index).copied().unwrap_or_default();
+        assert_eq!([weight(line, 0), weight(line, 1)], wanted);
+    }
+    assert!(files.contains_key("rtl/pad_op_plane.v") && !files.contains_key("rtl/pad_op_line.v"));
+    let metadata: serde_json::Value = serde_json::from_slice(&files["metadata.json"]).unwrap();
+    assert_eq!(metadata["joint"]["network"]["length"], network.length);
+}
