@@ -44,6 +44,7 @@ impl Progress {
             self.bar.set_style(style);
         }
         self.bar.set_length(steps);
+        self.bar.set_position(0);
         self.bar.set_message(what);
     }
 

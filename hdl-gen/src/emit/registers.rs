@@ -27,7 +27,7 @@ const SHARED_MODULES: [(&str, &str); 3] = [
 ];
 
 /// `(signal, output, bits)` of the AXI4-Lite port, in the order of the bus standard.
-pub(super) const AXI_SIGNALS: [(&str, bool, u32); 19] = [
+const AXI_SIGNALS: [(&str, bool, u32); 19] = [
     ("awaddr", false, 12),
     ("awprot", false, 3),
     ("awvalid", false, 1),

@@ -69,8 +69,11 @@ fn interrupts_come_when_enabled_and_go_when_cleared() {
         let mut core = Controlled::new(subject.built.load(5).expect("loads"), 5).expect("has a port");
         core.plan(0, Access::Write { address: address::INTERRUPT_ENABLE, data: enabled, strobes: 0xF });
         let packets = [packet.clone()];
-        exchange(&mut core, &Traffic::new(&packets, timeout(plan)), |_| ()).expect("no rule is broken");
+        let outcome = exchange(&mut core, &Traffic::new(&packets, timeout(plan)), |_| ()).expect("no rule is broken");
         let case = format!("enabled {enabled}, pending {pending}");
+        // Three cycles after the last beat, and no earlier; the exchange ends some cycles later.
+        let after = outcome.cycles - (outcome.exchanges[0].last_out + 3);
+        assert_eq!(core.interrupts(), if rises { after } else { 0 }, "{case}");
         assert_eq!(core.read(address::INTERRUPT_STATUS).unwrap(), pending, "{case}");
         assert_eq!(core.interrupt(), rises, "{case}");
         // Zeros and strobes that are off clear nothing.
