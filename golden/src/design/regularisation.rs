@@ -10,12 +10,12 @@ const MAX_FACTOR: f64 = 1.0;
 /// Factor for each unit of noise, from the table of hard cases: least error over depths of 1 to 4 pitches.
 const FACTOR_PER_NOISE: f64 = 4.0;
 
-/// What is added to the diagonal of C33, as a share of its largest singular value (Tikhonov's regularisation in the form
-/// of Lavrentiev, for a matrix that is symmetric and positive definite).
+/// What is added to the diagonal of C33, as a share of its largest singular value (Tikhonov's regularisation in the
+/// form of Lavrentiev, for a matrix that is symmetric and positive definite).
 ///
 /// In effect each taxel is a little stiffer for a force straight above it than the layer says. Small singular values,
-/// which would multiply noise, are lifted to this share of the largest; large ones stay as good as they are. Since it is
-/// the same C33 everywhere, all of the method stays as it is: A f = b, the parities, the reduced plan.
+/// which would multiply noise, are lifted to this share of the largest; large ones stay as good as they are. Since it
+/// is the same C33 everywhere, all of the method stays as it is: A f = b, the parities, the reduced plan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Regularisation {
     /// Nothing.

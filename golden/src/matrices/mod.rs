@@ -19,8 +19,8 @@ pub enum MatrixError {
     /// A matrix to be inverted is singular to working precision.
     #[error(
         "{matrix} is singular to working precision (condition number {condition:.1e}): a depth of {depth_mm} mm \
-         blurs a pitch of {} x {} mm beyond recovery; use a smaller depth or a larger pitch, depth/pitch below about 3, \
-         or write regularisation = 0.01 under [algorithm]",
+         blurs a pitch of {} x {} mm beyond recovery; use a smaller depth or a larger pitch, depth/pitch below about \
+         3, or write regularisation = 0.01 under [algorithm]",
         pitch_mm[0], pitch_mm[1]
     )]
     Singular {
@@ -35,8 +35,8 @@ pub enum MatrixError {
     },
     /// The inverses exist, and multiply the faintest noise beyond reason.
     #[error(
-        "A A^T has the condition number {condition:.1e}: at a depth of {depth_mm} mm and a pitch of {} x {} mm the noise of \
-         any sensor becomes a wild force; write regularisation = {{ noise = 0.002 }} under [algorithm], with the noise \
+        "A A^T has the condition number {condition:.1e}: at a depth of {depth_mm} mm and a pitch of {} x {} mm the \
+         noise of any sensor becomes a wild force; write regularisation = {{ noise = 0.002 }} under [algorithm], with the noise \
          of the sensor, or use a smaller depth or a larger pitch",
         pitch_mm[0], pitch_mm[1]
     )]
@@ -72,8 +72,8 @@ pub struct Matrices {
 /// Largest condition number that leaves a digit of the result, `1 / f64::EPSILON`.
 const SINGULAR: f64 = 1.0 / f64::EPSILON;
 
-/// Condition number of `A A^T` beyond which 0.2 % of noise, as good as tactile sensors are, makes forces of several times
-/// the true ones: between depths of 3 and 4 pitches.
+/// Condition number of `A A^T` beyond which 0.2 % of noise, as good as tactile sensors are, makes forces of several
+/// times the true ones: between depths of 3 and 4 pitches.
 const ILL_CONDITIONED: f64 = 1e9;
 
 impl Matrices {

@@ -19,6 +19,7 @@ use testbench::sweep::{Outcomes, Simulate, Sweep, SweepScene, table};
 const OUT: &str = "target/sweep";
 
 #[derive(Args)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Arguments {
     /// Design files (TOML) to vary.
     #[arg(required = true)]

@@ -64,24 +64,31 @@ pub fn refusals(rows: &[Row]) -> Vec<String> {
 pub fn markdown(rows: &[Row]) -> String {
     let mut page = Page("# Hard cases\n".to_owned());
     page.line(
-        "Written by `testbench hard --page docs/hard-cases.md`; do not edit. Sensors, contacts and frames at the limits, solved \
-         in f64, in float32, and by the integer model of the hardware (18 × 27 bits; the tests run these frames through the \
-         RTL too). The estimator is the line estimator, without a filter. If nothing else is said: sensor 1, a Hertz contact \
-         of 7 mm and 6 N in its middle, µ = 0.5, on a bonded layer of ν = 0.49, in 12 directions.",
+        "Written by `testbench hard --page docs/hard-cases.md`; do not edit. Sensors, contacts and frames at the limits, \
+         solved in f64, in float32, and by the integer model of the hardware (18 × 27 bits; the tests run \
+         frames of every case of sensor 1, and of a deep sensor, through the RTL too). The estimator is the line \
+         estimator, without a filter. If nothing else is said: sensor 1, a Hertz contact of 7 mm and 6 N in its middle, \
+         µ = 0.5, on a bonded layer of ν = 0.49, in 12 directions; under depth over pitch 10 × 10 taxels of 4 × 4 mm and \
+         a contact of 10 mm.",
     );
     page.line(
         "* **cond**: 2-norm condition numbers of C33 and A Aᵀ.\n\
          * **backward**: `|A f − b| / (|A| |f| + |b|)`, the largest.\n\
-         * **e_F∥, e_Fz**: largest errors of the tangential and the normal resultant in % of the true normal force. They are \
-         those of the estimator and the kernel where f64 has them too.\n\
+         * **e_F∥, e_Fz**: largest errors of the tangential and the normal resultant in % of the true normal force. \
+         They are those of the estimator and the kernel where f64 has them too.\n\
          * **field**: largest difference of a taxel's force, fixed point to f64, relative to the largest |f_z|.\n\
          * **status**: of the hardware's frames. No case has a NaN, an overflow, or a resultant beyond four times what \
          the stress would mean as a pressure, without a bit that says so: the command would fail, and so would a test.",
     );
     page.line(
-        "Under depth over pitch, regularised means `regularisation = { noise = 0.002 }`. Sensors of h/s ≥ 1.5 want `regularisation`. By the noise, `{ noise = 0.002 }`, it leaves shallow sensors as they are and \
+        "Sensors of h/s ≥ 1.5 want `regularisation`; here `{ noise = 0.002 }`. It leaves shallow sensors as they are and \
          keeps deep ones within a few percent, where without it 0.2 % of noise makes forces of several times the true \
          ones; a design as ill-conditioned as that is refused.",
+    );
+    page.line(
+        "Two things no status tells: a taxel that reads exactly the full scale is within it, so that a converter that \
+         clips is seen only if `full_scale_pa` is at least one of its steps below its end; and dead taxels look like \
+         taxels without stress.",
     );
     for group in rows.chunk_by(|one, other| title(one) == title(other)) {
         page.heading(title(&group[0]));
@@ -118,7 +125,8 @@ pub fn text(rows: &[Row]) -> String {
         for (column, (cell, &width)) in line.iter().zip(&widths).enumerate() {
             let padding = " ".repeat(width - cell.chars().count());
             let left = column == 0 || column == HEADER.len() - 1;
-            row += &if left { format!("{cell}{padding}  ") } else { format!("{padding}{cell}  ") };
+            let [first, second] = if left { [cell.as_str(), &padding] } else { [padding.as_str(), cell] };
+            row.extend([first, second, "  "]);
         }
         text += row.trim_end();
         text.push('\n');

@@ -91,8 +91,9 @@ impl<'a> Single<'a> {
 
     fn unfold(&self, folded: &Folded) -> Vec<f32> {
         let mut x = vec![0.0; self.quads.taxels()];
-        for q in 0..self.quads.count() {
-            let values = butterfly([0, 1, 2, 3].map(|class| folded[class][q]));
+        let [even, odd_x, odd_y, odd] = folded;
+        for (q, ((even, odd_x), (odd_y, odd))) in even.iter().zip(odd_x).zip(odd_y.iter().zip(odd)).enumerate() {
+            let values = butterfly([*even, *odd_x, *odd_y, *odd]);
             for (member, taxel) in self.quads.distinct(q) {
                 x[taxel] = 0.25 * values[member];
             }
@@ -170,7 +171,8 @@ impl<'a> Single<'a> {
     }
 }
 
-/// The middle of where the sum of hinges is within `allowance` of its least value on [-1, 1], and whether that is at an end.
+/// The middle of where the sum of hinges is within `allowance` of its least value on [-1, 1], and whether that value is
+/// at an end.
 fn search(alpha: &[f32], beta: &[f32], allowance: f32) -> (f32, bool) {
     let value = |t: f32| -> f32 { alpha.iter().zip(beta).map(|(a, b)| (a + t * b).max(0.0)).sum() };
     let slope = |t: f32| -> f32 { alpha.iter().zip(beta).filter(|(a, b)| *a + t * *b > 0.0).map(|(_, b)| b).sum() };

@@ -49,8 +49,8 @@ pub fn section(rows: &[Row]) -> Section {
         .map(|(what, value)| Figure {
             svg: depths(rows, value, what),
             caption: format!(
-                "largest error of the {what} in f64 over depth / pitch, with {} % of noise; a line ends where the design \
-                 is refused",
+                "largest error of the {what} in f64 over depth / pitch, with {} % of noise; a line ends where the \
+                 design is refused",
                 100.0 * NOISE
             ),
         })
