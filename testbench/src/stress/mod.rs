@@ -25,8 +25,8 @@ use crate::dut::{Core, DutError};
 use crate::progress::Progress;
 use crate::run::{rtl_sources, timeout};
 use crate::stream::{Pattern, Reset, StreamError, Traffic, exchange};
-use judge::judge;
 use crate::verilate::{BuildError, Verilate};
+use judge::judge;
 
 /// Frames of a batch.
 pub const BATCH: u64 = 1000;
