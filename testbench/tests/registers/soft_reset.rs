@@ -12,7 +12,7 @@ use testbench::stream::{Checker, Mode};
 use testbench::verilate::{Built, Verilate};
 
 use crate::support::{frames, in_parallel};
-use crate::{Subject, subjects};
+use crate::{Subject, mixed, subjects};
 
 /// Frames that may be lost: those inside the core, see the test of resets, and the one that is being sent.
 const MOST_LOST: usize = 9;
@@ -122,6 +122,33 @@ fn a_soft_reset_in_any_cycle_cuts_no_packet() {
         let told = send(subject, &subject.built, &packets, &mode, &[cycle + 9])
             .and_then(|story| judge(subject, &packets, 1, &story));
         told.unwrap_or_else(|error| panic!("{}, cycle {cycle}, {}: {error}", subject.plan.design.name, mode.name));
+    });
+}
+
+/// Short, long and broken packets too. What comes before the reset answers the first packets, what comes after it the
+/// last ones.
+#[test]
+fn a_soft_reset_among_bad_frames_costs_the_frames_inside() {
+    let cases: Vec<_> = subjects().iter().flat_map(|subject| (0..40).map(move |case| (subject, case))).collect();
+    in_parallel(&cases, |&(subject, case)| {
+        let packets = mixed(&subject.plan, 30, &mut ChaCha8Rng::seed_from_u64(case));
+        let cycle = 9 + case * subject.plan.timeline.interval_cycles / 4;
+        let mode = Mode::all(case)[case as usize % 4];
+        let at = format!("{}, cycle {cycle}, {}", subject.plan.design.name, mode.name);
+        let story =
+            send(subject, &subject.built, &packets, &mode, &[cycle]).unwrap_or_else(|error| panic!("{at}: {error}"));
+        let after = story.frames_out as usize;
+        let before = story.answers.len() - after;
+        let lost = packets.len() - story.answers.len();
+        assert!(lost <= MOST_LOST && after > 0, "{at}: {before} answers, {lost} lost, {after} answers");
+        for (sent, seen) in
+            [(&packets[..before], &story.answers[..before]), (&packets[before + lost..], &story.answers[before..])]
+        {
+            let mut model = Model::new(&subject.plan);
+            for (packet, words) in sent.iter().zip(seen) {
+                assert_eq!(*words, model.process(packet), "{at}");
+            }
+        }
     });
 }
 
