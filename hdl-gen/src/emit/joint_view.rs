@@ -24,7 +24,9 @@ pub struct JointView {
     /// Whether there is a correction.
     network: bool,
     contact_latency: u64,
-    plane_latency: u64,
+    /// From the start to the first value, and from the last value to the centroid.
+    first_value: u64,
+    level_latency: u64,
     friction_latency: u64,
     side: usize,
     points: usize,
@@ -67,7 +69,8 @@ impl JointView {
         Some(Self {
             network: joint.network.is_some(),
             contact_latency: timing::CONTACT_LATENCY,
-            plane_latency: timing::plane(optimum),
+            first_value: timing::first_value(optimum),
+            level_latency: timing::LEVEL,
             friction_latency: timing::FRICTION,
             side: SIDE,
             points: POINTS,

@@ -28,9 +28,10 @@ const LINE_MODULES: [(&str, &str); 4] = [
 ];
 
 /// Those of the joint estimator.
-const JOINT_MODULES: [(&str, &str); 4] = [
+const JOINT_MODULES: [(&str, &str); 5] = [
     ("_cean", include_str!("../../templates/rtl/reduced/joint/cean.v.tera")),
     ("_op_plane", include_str!("../../templates/rtl/reduced/joint/plane.v.tera")),
+    ("_op_level", include_str!("../../templates/rtl/reduced/joint/level.v.tera")),
     ("_op_hinges", include_str!("../../templates/rtl/reduced/joint/hinges.v.tera")),
     ("_op_friction", include_str!("../../templates/rtl/reduced/joint/friction.v.tera")),
 ];
@@ -89,7 +90,7 @@ pub fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, EmitErro
     let of_plan = if reduced { &REDUCED_MODULES[..] } else { &PAPER_MODULES[..] };
     let field = (reduced && plan.field_words() > 0).then_some(FIELD_MODULE);
     let nonzeros = plan.design.hardware.skip_zeros.then_some(NONZEROS_MODULE);
-    let of_estimator = if plan.joint.is_some() { &JOINT_MODULES } else { &LINE_MODULES };
+    let of_estimator = if plan.joint.is_some() { &JOINT_MODULES[..] } else { &LINE_MODULES };
     let corrects = plan.joint.as_ref().is_some_and(|joint| joint.network.is_some());
     let of_correction = if corrects { &CORRECTION_MODULES[..] } else { &[] };
     let fixed = DESIGN_MODULES.iter().chain(of_estimator).chain(of_correction).chain(of_plan).copied();

@@ -34,7 +34,7 @@ const BLOCKS: [(&str, &[&str]); 14] = [
     (FIELD, &["field"]),
     (LINE, &["op_line"]),
     (CELLS, &["op_search"]),
-    (PLANE, &["op_plane"]),
+    (PLANE, &["op_plane", "op_level"]),
     (LOOK, &["op_look"]),
     (NETWORK, &["op_network"]),
     (FRICTION, &["op_friction"]),

@@ -11,10 +11,17 @@ pub const FRICTION: u64 = 20;
 /// A division, with the start that it waits for.
 const DIVISION: u64 = divider::LATENCY as u64 + 1;
 
-/// Start to end of the walk and the level set: two starts and the points, the last sum, the depths, two divisions.
-pub fn plane(optimum: &OptimumPlan) -> u64 {
-    let points = POINTS as u64;
-    (points + 2) * optimum.elements as u64 + u64::from(optimum.tree_levels()) + 7 + points + 11 + 2 * DIVISION
+/// From the last value on the grid to the centroid: the level, the depths below it, two divisions.
+pub const LEVEL: u64 = POINTS as u64 + 15 + 2 * DIVISION;
+
+/// From the start of the walk to its first value: two starts and a point, then the sums.
+pub fn first_value(optimum: &OptimumPlan) -> u64 {
+    3 * optimum.elements as u64 + 3 + u64::from(optimum.tree_levels())
+}
+
+/// From the start of the walk to its last value.
+fn last_value(optimum: &OptimumPlan) -> u64 {
+    first_value(optimum) + (POINTS as u64 - 1) * optimum.elements as u64
 }
 
 /// Centroid to the last input of the network: three cycles a taxel, two divisions, four cycles a place.
@@ -31,5 +38,5 @@ pub fn network(network: &NetworkPlan) -> u64 {
 /// Start to end of the search, all modules in turn.
 pub fn search(taxels: usize, network: Option<&NetworkPlan>, optimum: &OptimumPlan) -> u64 {
     let correction = network.map_or(0, |of| look(taxels, of) + self::network(of));
-    plane(optimum) + correction + FRICTION
+    last_value(optimum) + LEVEL + correction + FRICTION
 }
