@@ -161,31 +161,32 @@ impl<'a> Steps<'a> {
         Ok((residual, explained, force))
     }
 
+    /// A matrix times `factor`, as stored. Its label has the sign.
     fn quantise(
         &self,
         name: ReducedName,
-        sign: f64,
+        factor: f64,
         operand: Operand,
         least_lsb: i32,
     ) -> Result<QuantisedMatrix, PlanError> {
         let bits = self.coefficient_bits;
         let rows = &self.reduced.get(name).rows;
-        let signed = |row: &Vec<(u32, [f64; CLASSES])>| {
-            row.iter().map(|&(column, ways)| (column, ways.map(|value| sign * value))).collect()
+        let scaled = |row: &Vec<(u32, [f64; CLASSES])>| {
+            row.iter().map(|&(column, ways)| (column, ways.map(|value| factor * value))).collect()
         };
-        let label = if sign < 0.0 { format!("-{}", name.as_str()) } else { name.as_str().to_owned() };
-        let rows: RealRows = rows.iter().map(signed).collect();
+        let label = if factor < 0.0 { format!("-{}", name.as_str()) } else { name.as_str().to_owned() };
+        let rows: RealRows = rows.iter().map(scaled).collect();
         QuantisedMatrix::new(&label, &rows, bits, operand.folded.bound, least_lsb)
     }
 
     fn quantise_all(
         &self,
         names: [ReducedName; 3],
-        signs: &[f64; 3],
+        factors: &[f64; 3],
         operand: Operand,
         least_lsb: i32,
     ) -> Result<Vec<QuantisedMatrix>, PlanError> {
-        names.into_iter().zip(signs).map(|(name, &sign)| self.quantise(name, sign, operand, least_lsb)).collect()
+        names.into_iter().zip(factors).map(|(name, &factor)| self.quantise(name, factor, operand, least_lsb)).collect()
     }
 
     /// Stores a matrix and adds its product; returns the matrix's index.
