@@ -1,7 +1,7 @@
 //! Puts an emitted design on disk: the whole folder or nothing, and nothing of the user's is touched.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +9,8 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 use crate::emit::FileMap;
+
+mod swap;
 
 /// Lists what the generator wrote into a folder, so that it can tell its own files from the user's: a SHA-256 and a
 /// path a line, as `sha256sum --check` reads it.
@@ -62,21 +64,22 @@ fn io_error(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Writ
 /// Writes `files` as the whole contents of `folder`.
 ///
 /// Everything goes into a new folder beside it first, which then takes its place: whoever looks sees the old
-/// design or the new one, never a mixture. An existing folder is replaced only if each of its files is as the
-/// generator wrote it.
+/// design or the new one, never a mixture, and on Linux at no moment none. Of several that write at once, one comes
+/// last. An existing folder is replaced only if each of its files is as the generator wrote it.
 ///
 /// # Errors
 /// [`WriteError`]; the folder then is unchanged.
 pub fn write_folder(folder: &Path, files: &FileMap) -> Result<(), WriteError> {
-    check_folder(folder)?;
     // A link keeps pointing where it does.
     let target = if folder.exists() {
         folder.canonicalize().map_err(io_error(folder, "follow the path"))?
     } else {
         folder.to_owned()
     };
-    let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let parent = parent_of(&target);
     fs::create_dir_all(parent).map_err(io_error(parent, "create the folder"))?;
+    let _lock = lock(parent, File::lock);
+    check(folder)?;
     let staging = tempfile::Builder::new()
         .prefix(".hdl-gen-")
         .tempdir_in(parent)
@@ -92,19 +95,7 @@ pub fn write_folder(folder: &Path, files: &FileMap) -> Result<(), WriteError> {
         manifest += &(digest(contents) + "  " + name + "\n");
     }
     fs::write(fresh.join(MANIFEST), manifest).map_err(io_error(&target.join(MANIFEST), "write the file"))?;
-    let old = staging.path().join("old");
-    let replaces = target.exists();
-    if replaces {
-        fs::rename(&target, &old).map_err(io_error(folder, "replace the folder"))?;
-    }
-    if let Err(source) = fs::rename(&fresh, &target) {
-        if replaces && fs::rename(&old, &target).is_err() {
-            let kept = staging.keep().join("old");
-            return Err(WriteError::Displaced { folder: folder.to_owned(), kept, source });
-        }
-        return Err(io_error(folder, "create the folder")(source));
-    }
-    Ok(())
+    swap::into_place(&fresh, &target, staging)
 }
 
 /// Whether [`write_folder`] would replace `folder`: it is not there, or each file in it is as the generator wrote it.
@@ -112,6 +103,23 @@ pub fn write_folder(folder: &Path, files: &FileMap) -> Result<(), WriteError> {
 /// # Errors
 /// [`WriteError`] if not.
 pub fn check_folder(folder: &Path) -> Result<(), WriteError> {
+    let _lock = lock(parent_of(folder), File::lock_shared);
+    check(folder)
+}
+
+fn parent_of(folder: &Path) -> &Path {
+    folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Keeps other generators out of a folder until it is dropped, or the process ends: one that looks while another
+/// swaps would take one's manifest for a list of the other's files. Where a folder cannot be locked, nothing is kept.
+fn lock(parent: &Path, lock: impl Fn(&File) -> io::Result<()>) -> Option<File> {
+    let folder = File::open(parent).ok()?;
+    lock(&folder).ok()?;
+    Some(folder)
+}
+
+fn check(folder: &Path) -> Result<(), WriteError> {
     if !folder.exists() {
         return Ok(());
     }
@@ -244,6 +252,75 @@ mod tests {
         assert!(error.contains("rtl/c.v"), "{error}");
         assert!(folder.join("rtl/a.v").exists() && !folder.join("rtl/c.v").exists());
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1, "nothing is left beside the folder");
+    }
+
+    /// A reader looks all the time while the folder changes hands.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn there_is_no_moment_without_a_folder() {
+        use std::sync::atomic::{AtomicBool, Ordering};
+
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("out");
+        write_folder(&folder, &files(&["id", "old"])).unwrap();
+        let over = AtomicBool::new(false);
+        let looks = std::thread::scope(|scope| {
+            let reader = scope.spawn(|| {
+                let mut looks = 0;
+                while !over.load(Ordering::Relaxed) {
+                    assert_eq!(fs::read_to_string(folder.join("id")).ok().as_deref(), Some("id"), "look {looks}");
+                    looks += 1;
+                }
+                looks
+            });
+            for round in 0..200 {
+                write_folder(&folder, &files(&["id", if round % 2 == 0 { "new" } else { "old" }])).unwrap();
+            }
+            over.store(true, Ordering::Relaxed);
+            reader.join().unwrap()
+        });
+        assert!(looks > 100, "{looks}");
+    }
+
+    #[test]
+    fn several_at_once_do_not_mix() {
+        let place = tempfile::tempdir().unwrap();
+        for round in 0..30 {
+            let folder = place.path().join(format!("out{}", round % 3));
+            let sets: Vec<FileMap> =
+                (0..4).map(|writer| files(&[&format!("a/{writer}"), &format!("b/{writer}")])).collect();
+            std::thread::scope(|scope| {
+                for set in &sets {
+                    scope.spawn(|| write_folder(&folder, set).unwrap());
+                }
+            });
+            let found: Vec<String> = ["a", "b"]
+                .map(|part| {
+                    let mut names = fs::read_dir(folder.join(part)).unwrap();
+                    let name = names.next().unwrap().unwrap().file_name().into_string().unwrap();
+                    assert!(names.next().is_none());
+                    name
+                })
+                .to_vec();
+            assert_eq!(found[0], found[1], "files of one writer");
+            check_folder(&folder).unwrap();
+        }
+        assert_eq!(fs::read_dir(place.path()).unwrap().count(), 3, "nothing is left beside the folders");
+    }
+
+    #[test]
+    fn a_file_that_came_in_meanwhile_is_given_back() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("out");
+        write_folder(&folder, &files(&["rtl/a.v"])).unwrap();
+        let staging = tempfile::tempdir_in(place.path()).unwrap();
+        let fresh = staging.path().join("new");
+        fs::create_dir(&fresh).unwrap();
+        // After the check and before the swap.
+        fs::write(folder.join("mine"), "mine").unwrap();
+        let error = swap::into_place(&fresh, &folder, staging).unwrap_err().to_string();
+        assert!(error.contains("mine, which hdl-gen did not write"), "{error}");
+        assert!(folder.join("mine").exists() && folder.join("rtl/a.v").exists());
     }
 
     #[test]

@@ -5,6 +5,7 @@ mod command;
 mod emission;
 mod folded_formats;
 mod formats;
+mod hostile;
 mod joint;
 mod lanes;
 mod model;

@@ -1,0 +1,179 @@
+//! Readers on damaged files: each gives a value or one line of message, and never panics.
+//!
+//! The files are good ones with a few bytes or lines changed, and any bytes at all, a fixed number in every run.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use golden::design::Design;
+use golden::forces::read_outcomes;
+use golden::frames::read_labelled_frames;
+use golden::scene::Scene;
+use proptest::prelude::*;
+
+const CASES: u32 = 600;
+/// Words that a number, a key or a separator may turn into.
+const WORDS: [&str; 24] = [
+    "nan",
+    "inf",
+    "-inf",
+    "1e999",
+    "-0",
+    "0",
+    "-1",
+    "99999999999999999999",
+    "9223372036854775807",
+    "0x7f",
+    "1e-320",
+    "\"",
+    "'",
+    "[",
+    "]",
+    "{",
+    "}",
+    "=",
+    ",",
+    "\n",
+    "\r",
+    "\0",
+    "true",
+    "\u{feff}",
+];
+
+/// The files of a folder of the workspace with this ending.
+fn texts(folder: &str, ending: &str) -> Vec<String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join(folder);
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(root).expect("a folder").map(|entry| entry.expect("there").path()).collect();
+    paths.sort();
+    let right = |path: &PathBuf| path.extension().is_some_and(|found| found == ending);
+    paths.into_iter().filter(right).map(|path| fs::read_to_string(path).expect("text")).collect()
+}
+
+fn designs() -> &'static [String] {
+    static TEXTS: OnceLock<Vec<String>> = OnceLock::new();
+    TEXTS.get_or_init(|| texts("designs", "toml"))
+}
+
+fn scenes() -> &'static [String] {
+    static TEXTS: OnceLock<Vec<String>> = OnceLock::new();
+    TEXTS.get_or_init(|| texts("scenes", "toml"))
+}
+
+/// A change at a place, given as a share of the text's length.
+#[derive(Clone, Debug)]
+enum Change {
+    Cut(f64, usize),
+    Insert(f64, String),
+    Replace(f64, usize, String),
+    RepeatLine(f64),
+}
+
+fn changes() -> impl Strategy<Value = Vec<Change>> {
+    let words =
+        || prop_oneof![prop::sample::select(&WORDS[..]).prop_map(str::to_owned), any::<char>().prop_map(String::from)];
+    let change = prop_oneof![
+        (0.0..1.0, 1..12_usize).prop_map(|(place, length)| Change::Cut(place, length)),
+        (0.0..1.0, words()).prop_map(|(place, word)| Change::Insert(place, word)),
+        (0.0..1.0, 1..6_usize, words()).prop_map(|(place, length, word)| Change::Replace(place, length, word)),
+        (0.0..1.0).prop_map(Change::RepeatLine),
+    ];
+    prop::collection::vec(change, 1..4)
+}
+
+fn changed(text: &str, changes: &[Change]) -> String {
+    changes.iter().fold(text.to_owned(), |text, change| {
+        let letters: Vec<char> = text.chars().collect();
+        let at = |share: &f64| (share * letters.len() as f64) as usize;
+        let (from, to, word) = match change {
+            Change::Cut(place, length) => (at(place), at(place) + length, String::new()),
+            Change::Insert(place, word) => (at(place), at(place), word.clone()),
+            Change::Replace(place, length, word) => (at(place), at(place) + length, word.clone()),
+            Change::RepeatLine(place) => {
+                let lines: Vec<&str> = text.lines().collect();
+                let line = lines.get((place * lines.len() as f64) as usize).copied().unwrap_or_default();
+                return format!("{text}\n{line}\n");
+            }
+        };
+        let head: String = letters[..from].iter().collect();
+        let tail: String = letters[to.min(letters.len())..].iter().collect();
+        head + &word + &tail
+    })
+}
+
+/// One line that names the file.
+fn is_a_message(message: &str) -> bool {
+    message.contains("fuzzed") && !message.is_empty() && message.lines().count() == 1
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: CASES, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_damaged_design_is_read_or_refused(which in any::<prop::sample::Index>(), changes in changes()) {
+        let text = changed(&designs()[which.index(designs().len())], &changes);
+        match Design::from_toml(&text, "fuzzed.toml") {
+            // What is accepted can be written down and read again.
+            Ok(design) => {
+                let again = Design::from_toml(&design.to_toml(), "fuzzed.toml");
+                prop_assert_eq!(again.map(|again| again.to_toml()).ok(), Some(design.to_toml()));
+            }
+            Err(error) => prop_assert!(is_a_message(&error.to_string()), "{}", error),
+        }
+    }
+
+    #[test]
+    fn a_damaged_scene_is_read_or_refused(which in any::<prop::sample::Index>(), changes in changes()) {
+        let text = changed(&scenes()[which.index(scenes().len())], &changes);
+        if let Err(error) = Scene::from_toml(&text, "fuzzed.toml") {
+            prop_assert!(is_a_message(&error.to_string()), "{}", error);
+        }
+    }
+
+    #[test]
+    fn damaged_frames_are_read_or_refused(
+        rows in prop::collection::vec(prop::collection::vec(-1e6..1e6_f64, 4), 1..5),
+        changes in changes(),
+        labels in 0..3_usize,
+    ) {
+        let lines: Vec<String> =
+            rows.iter().map(|row| row.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")).collect();
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("fuzzed.csv");
+        fs::write(&path, changed(&lines.join("\n"), &changes)).expect("writable");
+        match read_labelled_frames(&path, 4, labels) {
+            Ok(frames) => {
+                prop_assert!(frames.iter().all(|frame| frame.len() == 4 && frame.iter().all(|value| value.is_finite())));
+            }
+            Err(error) => prop_assert!(is_a_message(&error.to_string()), "{}", error),
+        }
+    }
+
+    #[test]
+    fn damaged_forces_are_read_or_refused(changes in changes(), frames in 1..3_usize) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("fuzzed.csv");
+        fs::write(&path, changed("0,1.5,-2.0,-6.0,0.4,1.0,0.2,0.3\n0,1.5,-2.0,-6.0,0.4,1.0,0.2,0.3\n", &changes))
+            .expect("writable");
+        if let Err(error) = read_outcomes(&path, frames) {
+            prop_assert!(is_a_message(&error.to_string()), "{}", error);
+        }
+    }
+
+    #[test]
+    fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("fuzzed");
+        fs::write(&path, &bytes).expect("writable");
+        let errors = [
+            Design::load(&path).err().map(|error| error.to_string()),
+            Scene::load(&path).err().map(|error| error.to_string()),
+            read_labelled_frames(&path, 4, 0).err().map(|error| error.to_string()),
+            read_outcomes(&path, 1).err().map(|error| error.to_string()),
+        ];
+        for error in errors.into_iter().flatten() {
+            prop_assert!(is_a_message(&error), "{error}");
+        }
+    }
+}
