@@ -2,11 +2,13 @@
 
 use std::time::Instant;
 
+use golden::design::{Design, DesignError};
 use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use super::cycles::{Kind, SIDES, square};
+use super::machine::{forget_peak_memory, peak_memory};
 use super::{BenchError, Scope, median};
 use crate::progress::Progress;
 
@@ -14,6 +16,8 @@ use crate::progress::Progress;
 pub const REPETITIONS: usize = 3;
 /// Lanes of the square sensors.
 pub const LANES: usize = 16;
+/// Largest side of the squares from which on the largest grid is generated too, which takes a minute.
+const MAT_FROM: usize = 32;
 
 /// One design's times.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,6 +32,8 @@ pub struct Generation {
     pub emit_s: f64,
     /// Size of the files in bytes.
     pub bytes: usize,
+    /// The most memory of the process meanwhile, in bytes, with the files; where the system tells.
+    pub memory: Option<u64>,
 }
 
 /// Times square sensors up to the scope's largest side, and the scope's designs.
@@ -37,11 +43,15 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Generati
         designs
             .push((format!("{side} × {side}, reduced, no filter, {LANES} lanes"), square(Kind::Reduced, side, LANES)?));
     }
+    if scope.largest >= MAT_FROM {
+        designs.push(("64 × 64, reduced, cell kernel, F2 with p = 1, 64 lanes".to_owned(), mat()?));
+    }
     designs.extend(scope.designs.iter().map(|(path, design)| (format!("`{path}`"), design.clone())));
     let mut rows = Vec::new();
     for (name, design) in designs {
         progress.stage(format!("generating {name}"));
         let (mut plans, mut emits, mut bytes) = (Vec::new(), Vec::new(), 0);
+        forget_peak_memory();
         for _ in 0..REPETITIONS {
             let start = Instant::now();
             let plan = Plan::new(&design)?;
@@ -52,7 +62,16 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Generati
             bytes = files.values().map(Vec::len).sum();
         }
         let taxels = design.sensor.taxels();
-        rows.push(Generation { design: name, taxels, plan_s: median(plans), emit_s: median(emits), bytes });
+        let (plan_s, emit_s, memory) = (median(plans), median(emits), peak_memory());
+        rows.push(Generation { design: name, taxels, plan_s, emit_s, bytes, memory });
     }
     Ok(rows)
+}
+
+/// The largest grid, with the pitch and depth of the mat in `designs/bed-mat.toml`.
+fn mat() -> Result<Design, DesignError> {
+    let text = "name = \"mat\"\n[sensor]\ncolumns = 64\nrows = 64\npitch_mm = [28.0, 28.0]\ndepth_mm = 8.0\n\
+                [algorithm]\nplan = \"reduced\"\nkernel = \"cell\"\nfilter = { kind = \"f2\", p = 1.0 }\n\
+                [hardware]\nlanes = 64\n";
+    Design::from_toml(text, "largest grid")
 }

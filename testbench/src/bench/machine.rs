@@ -1,6 +1,6 @@
 //! What the figures were measured on. No names and no paths: a page of figures goes into a repository.
 
-use std::thread;
+use std::{fs, thread};
 
 use serde::Serialize;
 
@@ -24,4 +24,17 @@ impl Machine {
             profile: if cfg!(debug_assertions) { "dev" } else { "release" },
         }
     }
+}
+
+/// The most memory that this process had since [`forget_peak_memory`], in bytes; only Linux tells.
+pub(super) fn peak_memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = peak.trim().trim_end_matches("kB").trim_end().parse().ok()?;
+    Some(1024 * kilobytes)
+}
+
+/// Begins anew with the present memory. Where the system refuses, the peak stays that of the whole process.
+pub(super) fn forget_peak_memory() {
+    let _ = fs::write("/proc/self/clear_refs", "5");
 }

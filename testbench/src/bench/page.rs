@@ -61,11 +61,12 @@ fn generated(page: &mut Page, rows: &[Generation], command: &str) {
     page.heading("Time to generate hardware");
     page.line(&format!(
         "From the checked design to its plan, and from the plan to all files, in memory. Median of {} repetitions. Square sensors \
-         have the pitch and depth of the paper's sensor 1.",
+         have the pitch and depth of the paper's sensor 1, the largest grid those of the mat. Memory is the most that the \
+         process had meanwhile, files included.",
         generation::REPETITIONS
     ));
     page.table(
-        &["design", "taxels", "plan, s", "files, s", "together, s", "files, MB"],
+        &["design", "taxels", "plan, s", "files, s", "together, s", "files, MB", "memory, MB"],
         rows.iter().map(|row| {
             vec![
                 row.design.clone(),
@@ -74,6 +75,7 @@ fn generated(page: &mut Page, rows: &[Generation], command: &str) {
                 decimals(row.emit_s, 3),
                 decimals(row.plan_s + row.emit_s, 3),
                 decimals(row.bytes as f64 / 1e6, 1),
+                row.memory.map_or_else(|| "–".to_owned(), |bytes| decimals(bytes as f64 / 1e6, 0)),
             ]
         }),
     );
