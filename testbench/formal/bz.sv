@@ -30,6 +30,7 @@ module harness (
     wire frame_ready;
     wire advance;
     wire in_frame;
+    wire may_open;
     wire [3:0] index;
     wire [1:0] banks_taken;
     wire [1:0] frames_waiting;
@@ -68,6 +69,7 @@ module harness (
         // Inside
         .advance          (advance),
         .in_frame         (in_frame),
+        .may_open         (may_open),
         .index            (index),
         .banks_taken      (banks_taken),
         .frames_waiting   (frames_waiting),
@@ -145,10 +147,15 @@ module harness (
 
     reg waited = 1'b0;
     reg [2:0] waiting;
+    reg nothing_missing; // for a new frame, a cycle ago
 
     always @(posedge clock) begin
         waited <= write_valid && !write_ready && !reset;
         waiting <= {write_bank, write_quad};
+        nothing_missing <= !taken && cean_idle && direction_room && (frames_inside != 3'd2) && (there == 5'd0);
+        if (reset) begin
+            nothing_missing <= 1'b1;
+        end
     end
 
     always @(posedge clock) begin
@@ -168,8 +175,7 @@ module harness (
             // What is to be written stays until it is
             assert (!waited || (write_valid && ({write_bank, write_quad} == waiting)));
             // Whoever waits is served: nothing stands still but for want of a bank, of CeAn or of the memories' port
-            assert (s_tready || !write_ready || (!in_frame && (!cean_idle || !direction_room || (frames_inside == 3'd2)
-                || (there != 5'd0))));
+            assert (s_tready || !write_ready || (!in_frame && !nothing_missing));
         end
     end
 
@@ -204,6 +210,8 @@ module harness (
             assert (seen_saturated == any_saturated);
             assert (seen_not_finite == any_not_finite);
             assert (frames_inside == {1'b0, banks_taken});
+            assert (may_open == nothing_missing);
+            assert (!may_open || (banks_taken != 2'd2));
             assert ({2'd0, frames_inside} == {4'd0, in_frame} + frames[1] + frames[2] + frames[3] + frames[4]
                 + frames[5] + fold_lasts[1] + fold_lasts[2] + fold_lasts[3] + {1'b0, frames_waiting} + frames_in_work);
         end

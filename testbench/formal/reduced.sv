@@ -30,6 +30,7 @@ module harness (
     wire [1:0] searches_due;
     wire [2:0] frames_held;
     wire [1:0] fields_held;
+    wire u_complete;
     wire [1:0] u_waiting;
     wire searching;
     wire answer_waits;
@@ -78,6 +79,7 @@ module harness (
         .\turns.searches_due (searches_due),
         .\turns.frames_held (frames_held),
         .\turns.fields_held (fields_held),
+        .\op.u_complete (u_complete),
         .\op.u_waiting (u_waiting),
         .\op.searching (searching),
         .\op.answer_waits (answer_waits),
@@ -98,6 +100,10 @@ module harness (
         .\op.frame_output.valid (valid),
         .\op.frame_output.lasts (lasts)
     );
+
+    // Frames whose u is there, the register on its way counted; and sums whose taking has not been said yet
+    wire [2:0] u_there = {1'b0, u_waiting} + {2'd0, u_complete};
+    wire sums_stand = sums_wait && !sums_take;
 
     // ---- Where the frames are. A program is open from its start until its results are complete
     reg [2:0] open;
@@ -161,7 +167,7 @@ module harness (
             assert ((start & open) == 3'd0);
             // Nothing is overwritten before it was used: sums, u, residual, friction, field
             assert (!sums_written || !sums_wait);
-            assert (!coefficients_complete || (u_waiting < 2'd2));
+            assert (!coefficients_complete || (u_there < 3'd2));
             assert (!residual_written || !residual_there);
             assert (!friction_done || !friction_known);
             assert (!field_complete || !field_there);
@@ -179,12 +185,13 @@ module harness (
 `ifdef INVARIANTS
     always @(posedge clock) begin
         if (!reset) begin
-            assert ({2'd0, searches_due} == {3'd0, open[0]} + u_waiting + searching);
+            assert ({2'd0, searches_due} == {3'd0, open[0]} + u_there + searching);
             assert ({1'b0, frames_held} == {2'd0, searches_due} + summary_busy + at_output);
             assert ({2'd0, fields_held} == {3'd0, field_started} + at_output);
             assert ({3'd0, residual_due} + field_due + start[2]
                 == {2'd0, searches_due} + (summary_busy && !field_started) + start[0]);
-            assert ({3'd0, sums_wait} + (line_state != 3'd0) == {3'd0, open[0] && summed} + u_waiting);
+            assert ({3'd0, sums_stand} + (line_state != 3'd0) == {3'd0, open[0] && summed} + u_there);
+            assert (!sums_take || (sums_wait && (line_state != 3'd0)));
             assert (line_state <= 3'd4);
             assert (!summed || open[0]);
             // The lanes
@@ -227,7 +234,7 @@ module harness (
         + (field_due ? (residual_there ? 10'd15 : 10'd20) : 10'd0)
         + (start[2] ? 10'd14 : (start != 3'd0) ? 10'd4 : (issuing != 3'd0) ? 10'd2 : 10'd0)
         + (field_there ? 10'd5 : field_started ? 10'd10 : 10'd0);
-    wire [9:0] left_of_search = (open[0] ? (summed ? 10'd99 : 10'd100) : 10'd0) + 10'd90 * u_waiting
+    wire [9:0] left_of_search = (open[0] ? (summed ? 10'd99 : 10'd100) : 10'd0) + 10'd90 * u_there
         + (searching ? (answer_waits ? 10'd75 : 10'd80) : 10'd0)
         + (friction_due ? 10'd60 : summary_due ? 10'd55 : summary_busy ? 10'd50 : 10'd0);
     wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : {9'd0, field_release};
