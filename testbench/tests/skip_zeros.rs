@@ -72,7 +72,7 @@ fn zeros_cost_time_only_where_there_are_none() {
                 if mode.is_free() && pacing == Pacing::BackToBack {
                     let ends: Vec<u64> = outcome.exchanges.iter().map(|exchange| exchange.last_out).collect();
                     let longest = ends.windows(2).map(|pair| pair[1] - pair[0]).max();
-                    if longest > Some(worst.1) {
+                    if longest.is_none_or(|longest| longest > worst.1) {
                         wrong.push(format!("{name}: {longest:?} cycles between frames, predicted {worst:?}"));
                     }
                 }

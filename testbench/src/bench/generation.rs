@@ -43,10 +43,11 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Generati
         designs
             .push((format!("{side} × {side}, reduced, no filter, {LANES} lanes"), square(Kind::Reduced, side, LANES)?));
     }
+    designs.extend(scope.designs.iter().map(|(path, design)| (format!("`{path}`"), design.clone())));
+    // Last: what it leaves allocated would count as memory of the next.
     if scope.largest >= MAT_FROM {
         designs.push(("64 × 64, reduced, cell kernel, F2 with p = 1, 64 lanes".to_owned(), mat()?));
     }
-    designs.extend(scope.designs.iter().map(|(path, design)| (format!("`{path}`"), design.clone())));
     let mut rows = Vec::new();
     for (name, design) in designs {
         progress.stage(format!("generating {name}"));
