@@ -9,8 +9,8 @@ use crate::plan::product::{Coefficients, Epilogue, Vector, mirror};
 use crate::plan::reduced::{SUM_ROWS, field_shifts, sum_way};
 use crate::plan::schedule::Rounds;
 
+use super::expressions::{half, operand_base, sign_extend, slice, zero_extend};
 use super::roms;
-use super::view::{half, operand_base, sign_extend, slice, zero_extend};
 
 /// Products whose results take their classes from the ways in the same order.
 #[derive(Serialize)]

@@ -12,8 +12,8 @@ use crate::plan::joint::{
 };
 use crate::plan::optimum::{FRICTION_FRACTION, SUM_BITS};
 
+use super::expressions::{half, shift_and_add_of, signed_literal, slice, zero_extend};
 use super::roms;
-use super::view::{half, shift_and_add_of, signed_literal, slice, zero_extend};
 
 /// Bits of a stress times the reciprocal.
 const PRODUCT_BITS: u32 = 45;

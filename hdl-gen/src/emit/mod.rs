@@ -1,10 +1,13 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
+mod counts_view;
+mod expressions;
 mod flows;
 mod folded_view;
 mod joint_view;
 mod mcsr;
 mod metadata;
+mod product_view;
 mod registers;
 mod roms;
 mod sim;

@@ -50,6 +50,14 @@ const PAPER_MODULES: [(&str, &str); 4] = [
     ("_op", include_str!("../../templates/rtl/paper/op.v.tera")),
 ];
 
+/// Op of the reduced plan, along a frame's way: the search is the joint estimator's or the line's.
+const REDUCED_OP: &str = concat!(
+    include_str!("../../templates/rtl/reduced/op/ports.v.tera"),
+    include_str!("../../templates/rtl/reduced/op/plane.v.tera"),
+    include_str!("../../templates/rtl/reduced/op/line.v.tera"),
+    include_str!("../../templates/rtl/reduced/op/answer.v.tera"),
+);
+
 /// Those of the reduced plan.
 const REDUCED_MODULES: [(&str, &str); 7] = [
     ("", include_str!("../../templates/rtl/reduced/top.v.tera")),
@@ -58,7 +66,7 @@ const REDUCED_MODULES: [(&str, &str); 7] = [
     ("_unfold", include_str!("../../templates/rtl/reduced/unfold.v.tera")),
     ("_we", include_str!("../../templates/rtl/reduced/we.v.tera")),
     ("_co", include_str!("../../templates/rtl/reduced/co.v.tera")),
-    ("_op", include_str!("../../templates/rtl/reduced/op.v.tera")),
+    ("_op", REDUCED_OP),
 ];
 
 /// The field memory of the reduced plan.

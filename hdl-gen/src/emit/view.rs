@@ -8,38 +8,23 @@ use serde::Serialize;
 use crate::cores::{Multiplier, cordic, float_to_fixed};
 use crate::model::inverse_gain;
 use crate::plan::Plan;
-use crate::plan::counts::{CountsPlan, GAIN_BITS, input_stages};
+use crate::plan::counts::input_stages;
 use crate::plan::format::{ACCUMULATOR_BITS, address_bits};
-use crate::plan::layout::Place;
 use crate::plan::optimum::{
     CENTROID_FRACTION, FRICTION_FRACTION, HINGE_DROP, LEVEL_SHIFT, LINE_FRACTION, LINE_SUM_BITS, PITCH_FRACTION,
     SEARCH_STEPS,
 };
-use crate::plan::product::{Block, Epilogue, Product, Vector};
-use crate::plan::schedule::TURN_GAP;
+use crate::plan::product::{Block, Vector};
 use crate::plan::timing::{DIRECTION_LATENCY, LINE_LATENCY, OUTPUT_DEPTH, SEQUENCER_TO_LANES, SUMMARY_LATENCY};
 
+use super::counts_view::CountsView;
+use super::expressions::{
+    bits_outside, half, operand_base, shift_and_add, sign_extend, signed_literal, slice, zero_extend,
+};
 use super::folded_view::FoldedView;
 use super::joint_view::{JointView, NetworkView};
+use super::product_view::{ProductView, ProgramView, product_views, programs, reread};
 use super::{registers, roms};
-
-/// One sparse product as the templates see it.
-#[derive(Serialize)]
-pub struct ProductView {
-    index: usize,
-    text: String,
-    operand: String,
-    length: u64,
-    wait: u64,
-    /// Verilog expression of the operand's first word in the lanes' memories.
-    base: String,
-    shift: u32,
-    half: u64,
-    /// Verilog slice that drops `shift` bits.
-    slice: String,
-    /// Co's role bits, where the result is Co's.
-    role: Option<String>,
-}
 
 /// The data of all templates. Widths end in `_width`, counts of words in `_depth`.
 #[derive(Serialize)]
@@ -198,39 +183,6 @@ pub struct View {
     network: Option<NetworkView>,
     #[serde(flatten)]
     folded: FoldedView,
-}
-
-/// Conversion of counts in Bz.
-#[derive(Serialize)]
-struct CountsView {
-    per_taxel: bool,
-    /// Literal of the gain that all taxels share.
-    gain: String,
-    offset_bits: u32,
-    shift: u32,
-    half: u64,
-}
-
-impl CountsView {
-    fn new(counts: &CountsPlan) -> Self {
-        Self {
-            per_taxel: counts.per_taxel(),
-            gain: signed_literal(GAIN_BITS, counts.gains[0]),
-            offset_bits: counts.offset_bits(),
-            shift: counts.shift,
-            half: if counts.shift == 0 { 0 } else { half(counts.shift) },
-        }
-    }
-}
-
-/// A program as the sequencer sees it.
-#[derive(Serialize)]
-struct ProgramView {
-    first: usize,
-    end: usize,
-    word: usize,
-    segment: usize,
-    visit: usize,
 }
 
 impl View {
@@ -423,132 +375,6 @@ impl View {
             folded,
         }
     }
-}
-
-/// Every product; the rows of sums count as one more.
-fn product_views(plan: &Plan) -> Vec<ProductView> {
-    let own = (0..plan.products.len()).map(|index| product_view(plan, index));
-    let lead = plan.products.iter().find_map(|product| product.lead).map(|lead| {
-        let (data, index) = (plan.design.hardware.data_bits, plan.products.len());
-        let slice = result_slice(lead.shift, data);
-        let half = if lead.shift == 0 { 0 } else { half(lead.shift) };
-        let text = "sums of the frame".to_owned();
-        let (operand, base) = (String::new(), String::new());
-        ProductView { index, text, operand, length: 0, wait: 0, base, shift: lead.shift, half, slice, role: None }
-    });
-    own.chain(lead).collect()
-}
-
-/// `(product whose matrix is read again, product that reads it again)`.
-fn reread(plan: &Plan) -> Vec<(usize, usize)> {
-    let first = |matrix| plan.products.iter().position(|product| product.matrix == matrix).unwrap_or(0);
-    let pairs = plan.products.iter().enumerate().map(|(index, product)| (first(product.matrix), index));
-    pairs.filter(|(mark, rewind)| mark < rewind).collect()
-}
-
-fn programs(plan: &Plan) -> Vec<ProgramView> {
-    let programs = plan.schedule.programs.iter();
-    programs
-        .map(|program| ProgramView {
-            first: program.first,
-            end: program.end,
-            word: program.word,
-            segment: program.segment,
-            visit: program.visit,
-        })
-        .collect()
-}
-
-/// Verilog slice of a 48-bit `value` that drops `shift` bits and keeps `data`.
-fn result_slice(shift: u32, data: u32) -> String {
-    // Few bits to drop: what remains is shorter than the result and takes copies of the sign.
-    match (shift + data - 1).checked_sub(47) {
-        Some(missing) if missing > 0 => format!("{{ {{{missing}{{value[47]}}}}, value[47:{shift}]}}"),
-        _ => format!("value[{}:{shift}]", shift + data - 1),
-    }
-}
-
-fn product_view(plan: &Plan, index: usize) -> ProductView {
-    let product = &plan.products[index];
-    let window = plan.schedule.windows[index];
-    let matrix = &plan.matrices[product.matrix].name;
-    let data = plan.design.hardware.data_bits;
-    let mirror = if product.mirrored.is_some() { " mirrored" } else { "" };
-    // The paper's next frame waits for the last result of the one before.
-    let begins = plan.ways() > 1 && plan.schedule.programs.iter().any(|program| program.first == index);
-    ProductView {
-        index,
-        text: format!("{matrix}{mirror} {} -> {}", product.operand().name(), product.result.name()),
-        operand: product.operand().name(),
-        // Rounds take as long as the data say; only what is in front of them is counted here.
-        length: window.rounds.map_or(window.length, |rounds| rounds.lead),
-        wait: window.wait + if begins { plan.schedule.program_gap - TURN_GAP } else { 0 },
-        base: operand_base(plan, product.operand()),
-        shift: product.shift,
-        half: if product.shift == 0 { 0 } else { half(product.shift) },
-        slice: result_slice(product.shift, data),
-        role: role(product),
-    }
-}
-
-/// `{is A_p b, is g, add A_p b, p - 1, q}`.
-fn role(product: &Product) -> Option<String> {
-    let adds = u8::from(matches!(product.epilogue, Epilogue::Add(_)));
-    match product.result {
-        Vector::Partial(p) => Some(format!("7'b100_{:02b}_00", p - 1)),
-        Vector::G(p, q) => Some(format!("7'b01{adds}_{:02b}_{q:02b}", p - 1)),
-        _ => None,
-    }
-}
-
-/// Verilog expression of a vector's first word in the operand memories; `bank` is that of the frame's stress.
-pub(super) fn operand_base(plan: &Plan, vector: Vector) -> String {
-    let width = address_bits(plan.operands.words());
-    match plan.operands.place(vector) {
-        Some(Place::Fixed(word)) => format!("{width}'d{word}"),
-        Some(Place::StressBank) => format!("(bank ? {width}'d{} : {width}'d0)", plan.elements()),
-        // No product reads it, so nothing writes it either.
-        None => format!("{width}'d0"),
-    }
-}
-
-pub(super) fn half(shift: u32) -> u64 {
-    1 << (shift - 1)
-}
-
-pub(super) fn zero_extend(signal: &str, from: u32, to: u32) -> String {
-    if to > from { format!("{{{}'d0, {signal}}}", to - from) } else { signal.to_owned() }
-}
-
-pub(super) fn sign_extend(signal: &str, from: u32, to: u32) -> String {
-    if to > from { format!("{{ {{{}{{{signal}[{}]}}}}, {signal}}}", to - from, from - 1) } else { signal.to_owned() }
-}
-
-pub(super) fn slice(signal: &str, from: u32, to: u32) -> String {
-    if from > to { format!("{signal}[{}:0]", to - 1) } else { signal.to_owned() }
-}
-
-/// `value * index` as a sum of shifted copies, one for each bit of the index.
-fn shift_and_add(value: &str, index: &str, bits: u32) -> String {
-    let term = |bit| format!("(({value} << {bit}) & {{48{{{index}[{bit}]}}}})");
-    (0..bits).map(term).collect::<Vec<_>>().join("\n        + ")
-}
-
-/// `factor * index` as a sum of 16 bits, one term for each bit of the index.
-pub(super) fn shift_and_add_of(factor: usize, index: &str, bits: u32) -> String {
-    let term = |bit| format!("({index}[{bit}] ? 16'd{} : 16'd0)", factor << bit);
-    (0..bits).map(term).collect::<Vec<_>>().join(" + ")
-}
-
-/// The bits of `signal`, whose highest is `top`, that are not from `high` to `low`: `, signal[..], signal[..]`.
-fn bits_outside(signal: &str, top: u32, high: u32, low: u32) -> String {
-    let above = if high < top { format!(", {signal}[{top}:{}]", high + 1) } else { String::new() };
-    let below = if low > 0 { format!(", {signal}[{}:0]", low - 1) } else { String::new() };
-    above + &below
-}
-
-pub(super) fn signed_literal(bits: u32, value: i32) -> String {
-    if value < 0 { format!("-{bits}'sd{}", -value) } else { format!("{bits}'sd{value}") }
 }
 
 fn filter_text(filter: &Filter) -> String {
