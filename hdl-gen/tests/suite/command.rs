@@ -101,6 +101,15 @@ fn inspect_tells_machines_what_is_promised() {
         assert!(report["predicted"][key].as_u64().is_some_and(|value| value > 0), "predicted.{key}");
     }
     assert!(report["predicted"]["bram36"].is_number());
+    // One block after the other: the products' cycles are those of the frame, but for gaps and waits.
+    let products = report["products"].as_array().unwrap();
+    assert_eq!(products.len(), 16);
+    assert!(
+        products.iter().all(|product| product["nnz"] == 144 && product["busy"].as_f64().is_some_and(|busy| busy > 0.9))
+    );
+    let cycles: u64 = products.iter().map(|product| product["issue_cycles"].as_u64().unwrap()).sum();
+    let all = report["predicted"]["spmv_cycles"].as_u64().unwrap();
+    assert!(cycles <= all && all < cycles + 100, "{cycles} of {all}");
     assert!(report["rom_bits"].as_u64().is_some_and(|bits| bits > 10_000));
     assert_eq!(report["geometry"]["taxels"], 12);
 }
