@@ -102,7 +102,7 @@ synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside t
 BENCH_BIN     := $(TARGET)/release
 BENCH_FOLDER  := $(TARGET)/bench
 BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml bed-mat.toml)
-BENCH_DESIGNS := designs/sensor1-reduced.toml designs/bed-mat.toml
+BENCH_DESIGNS := designs/sensor1-reduced.toml designs/sensor2-reduced.toml designs/bed-mat.toml
 BENCH_CELLS   := sensor1-reduced sensor1-reduced-64 sensor1-resultants
 
 .PHONY: bench

@@ -114,7 +114,9 @@ pub struct Report {
     pub bram36: f64,
     /// Bits in ROM files.
     pub rom_bits: u64,
-    /// Entries of the 13 matrices after the filter.
+    /// Multiply-accumulates of a frame in the lanes.
+    pub macs: u64,
+    /// Entries of the paper's 13 matrices after the filter, whichever the plan makes of them.
     pub nnz: BTreeMap<&'static str, usize>,
     /// `SpMV` lanes.
     pub lanes: usize,

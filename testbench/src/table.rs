@@ -54,8 +54,7 @@ fn speed(page: &mut Page, report: &Report) {
     page.row("DSP48E2", &[String::new(), grouped(predicted.dsp as u64), other(&|them| them.dsp.to_string())]);
     page.row("BRAM36", &[String::new(), decimals(predicted.bram36, 1), other(&|them| them.bram36.to_string())]);
     page.row("ROM, bits", &[String::new(), grouped(report.rom_bits)]);
-    let entries: usize = report.nnz.values().sum();
-    page.row("matrix entries", &[String::new(), grouped(entries as u64)]);
+    page.row("MACs a frame", &[String::new(), grouped(report.macs)]);
 }
 
 fn streams(page: &mut Page, report: &Report) {

@@ -22,8 +22,9 @@ pub fn generate(path: &Path, out: Option<PathBuf>, progress: &Progress) -> Resul
     progress.stage(format!("writing {kibibytes} KiB"));
     write_folder(&folder, &files)?;
     let timeline = &plan.timeline;
+    let excess = super::inspect::excess(&plan).map_or_else(String::new, |excess| format!("warning: {excess}\n"));
     Ok(format!(
-        "{}: {} files, {kibibytes} KiB\n{} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n",
+        "{}: {} files, {kibibytes} KiB\n{} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{excess}",
         folder.display(),
         files.len(),
         plan.taxels(),

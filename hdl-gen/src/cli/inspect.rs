@@ -73,6 +73,16 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         plan.taxels(),
         sensor.depth_mm
     )?;
+    // As the design file writes them; those that it does not state are decided by filter and lanes.
+    let design = plan.design.to_toml();
+    let key = |name: &str| design.lines().find_map(|line| line.strip_prefix(name)).unwrap_or("").replace('"', "");
+    writeln!(
+        out,
+        "  design       plan {}, estimator {}, outputs {}",
+        key("plan = "),
+        key("estimator = "),
+        key("outputs = ")
+    )?;
     let condition = &plan.condition;
     let verdict = if condition.aat > ILL_CONDITIONED {
         format!(
@@ -173,16 +183,25 @@ fn friction(out: &mut String, plan: &Plan) -> std::fmt::Result {
     }
 }
 
+/// What to tell whose design does not fit its part, if that is one whose size is known.
+pub fn excess(plan: &Plan) -> Option<String> {
+    let (resources, part) = (&plan.resources, &plan.design.hardware.part);
+    let (known, dsp, bram36) = KNOWN_PART;
+    let fits = resources.dsp <= dsp && resources.bram36 <= bram36;
+    (part.starts_with(known) && !fits)
+        .then(|| format!("too much for {part}, which has {dsp} DSP48E2 and {bram36} RAMB36; filter more entries"))
+}
+
 fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
     let resources = &plan.resources;
     let part = &plan.design.hardware.part;
     let (known, dsp, bram36) = KNOWN_PART;
     writeln!(out, "\nResources, predicted")?;
     write!(out, "  {} DSP48E2, {} RAMB36, {} bits of ROM", resources.dsp, resources.bram36, resources.rom_bits)?;
-    if !part.starts_with(known) {
+    if let Some(excess) = excess(plan) {
+        writeln!(out, "\n  {excess}")?;
+    } else if !part.starts_with(known) {
         writeln!(out)?;
-    } else if resources.dsp > dsp || resources.bram36 > bram36 {
-        writeln!(out, "\n  too much for {part}, which has {dsp} DSP48E2 and {bram36} RAMB36; filter more entries")?;
     } else {
         let used = |of: f64, all: f64| 100.0 * of / all;
         writeln!(

@@ -23,30 +23,72 @@ pub(super) fn plan(design: &Design) -> Result<Plan, PlanError> {
     if design.algorithm.estimator == Estimator::Joint && design.algorithm.plan == PlanKind::Paper {
         return Err(PlanError::JointEstimator);
     }
+    let Some(target_us) = design.hardware.target_us else { return Ok(Work::new(design)?.on_lanes(design)) };
+    let fastest = match fewest_lanes(design, target_us)? {
+        Lanes::Enough(plan) => return Ok(*plan),
+        Lanes::TooSlow(fastest) => fastest,
+    };
+    let (clock_mhz, cycles) = (design.hardware.clock_mhz, fastest.timeline.latency_cycles as f64);
+    Err(PlanError::Target {
+        target_us,
+        lanes: fastest.design.hardware.lanes,
+        latency_us: cycles / clock_mhz,
+        clock_mhz,
+        needed_mhz: (cycles / target_us).ceil(),
+        remedies: remedies(design, target_us),
+    })
+}
+
+/// What the search for the number of lanes finds.
+enum Lanes {
+    /// The plan with the fewest lanes that meets the target.
+    Enough(Box<Plan>),
+    /// The fastest plan; none meets the target.
+    TooSlow(Box<Plan>),
+}
+
+fn fewest_lanes(design: &Design, target_us: f64) -> Result<Lanes, PlanError> {
     let work = Work::new(design)?;
-    let Some(target_us) = design.hardware.target_us else { return Ok(work.on_lanes(design)) };
     let mut settled = design.clone();
     settled.hardware.target_us = None;
-    let clock_mhz = design.hardware.clock_mhz;
-    let mut fastest: Option<Plan> = None;
-    for lanes in (CLASSES..=MAX_LANES).step_by(CLASSES) {
+    let mut on_lanes = |lanes| {
         settled.hardware.lanes = lanes;
-        let plan = work.on_lanes(&settled);
-        if plan.timeline.latency_cycles as f64 <= target_us * clock_mhz {
-            return Ok(plan);
+        work.on_lanes(&settled)
+    };
+    let mut fastest = on_lanes(CLASSES);
+    let mut lanes = CLASSES;
+    while fastest.timeline.latency_cycles as f64 > target_us * design.hardware.clock_mhz {
+        lanes += CLASSES;
+        if lanes > MAX_LANES {
+            return Ok(Lanes::TooSlow(Box::new(fastest)));
         }
-        if fastest.as_ref().is_none_or(|best| plan.timeline.latency_cycles < best.timeline.latency_cycles) {
-            fastest = Some(plan);
+        let plan = on_lanes(lanes);
+        if plan.timeline.latency_cycles < fastest.timeline.latency_cycles {
+            fastest = plan;
         }
     }
-    let (lanes, cycles) =
-        fastest.map_or((MAX_LANES, 0), |plan| (plan.design.hardware.lanes, plan.timeline.latency_cycles));
-    let remedy = match design.algorithm.outputs {
-        Outputs::Field => "outputs = \"resultants\", fewer taxels",
-        Outputs::Resultants => "fewer taxels",
+    Ok(Lanes::Enough(Box::new(fastest)))
+}
+
+/// Keys of the design file that would meet the target, the smallest change first; each was planned.
+fn remedies(design: &Design, target_us: f64) -> String {
+    let (line, resultants) = ("estimator = \"line\"", "outputs = \"resultants\"");
+    let changes: &[(&str, Estimator, Outputs)] = match (design.algorithm.estimator, design.algorithm.outputs) {
+        (Estimator::Joint, Outputs::Field) => &[
+            (line, Estimator::Line, Outputs::Field),
+            (resultants, Estimator::Joint, Outputs::Resultants),
+            ("estimator = \"line\" with outputs = \"resultants\"", Estimator::Line, Outputs::Resultants),
+        ],
+        (Estimator::Joint, Outputs::Resultants) => &[(line, Estimator::Line, Outputs::Resultants)],
+        (Estimator::Line, Outputs::Field) => &[(resultants, Estimator::Line, Outputs::Resultants)],
+        (Estimator::Line, Outputs::Resultants) => &[],
     };
-    let (latency_us, needed_mhz) = (cycles as f64 / clock_mhz, (cycles as f64 / target_us).ceil());
-    Err(PlanError::Target { target_us, lanes, latency_us, clock_mhz, needed_mhz, remedy })
+    let meets = |&&(_, estimator, outputs): &&(&str, Estimator, Outputs)| {
+        let mut changed = design.clone();
+        (changed.algorithm.estimator, changed.algorithm.outputs) = (estimator, outputs);
+        matches!(fewest_lanes(&changed, target_us), Ok(Lanes::Enough(_)))
+    };
+    changes.iter().find(meets).map_or_else(String::new, |(key, ..)| format!("{key}, "))
 }
 
 /// What does not depend on the number of lanes.

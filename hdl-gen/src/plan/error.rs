@@ -85,7 +85,7 @@ pub enum PlanError {
     /// No number of lanes is fast enough.
     #[error(
         "[hardware] target_us = {target_us}: the fastest plan has {lanes} lanes and takes {latency_us:.2} us at \
-         {clock_mhz} MHz; it would take a clock of {needed_mhz:.0} MHz, {remedy}, or a target of {latency_us:.2} us"
+         {clock_mhz} MHz; it would take a clock of {needed_mhz:.0} MHz, {remedies}fewer taxels, or a target of {latency_us:.2} us"
     )]
     Target {
         /// What was asked for.
@@ -98,7 +98,7 @@ pub enum PlanError {
         clock_mhz: f64,
         /// The clock at which it would meet the target.
         needed_mhz: f64,
-        /// What else would help.
-        remedy: &'static str,
+        /// Another estimator or output with which it was found to meet the target, as `"key = value, "`, or nothing.
+        remedies: String,
     },
 }

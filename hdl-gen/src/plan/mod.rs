@@ -142,6 +142,11 @@ impl Plan {
         build::plan(design)
     }
 
+    /// Multiply-accumulates of a frame in the lanes, all ways counted.
+    pub fn macs(&self) -> u64 {
+        self.schedule.windows.iter().map(|window| window.macs * self.ways() as u64).sum()
+    }
+
     /// Multiply-accumulates of a lane in a cycle: the parity classes of the reduced plan, else one.
     pub fn ways(&self) -> usize {
         build::ways(&self.design)

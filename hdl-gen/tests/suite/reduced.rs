@@ -20,16 +20,16 @@ use crate::support::{any_reduced_design, design_text, plan};
 /// Largest difference of two plans' forces, of the largest normal force of the frame.
 const BETWEEN_PLANS: f64 = 2e-3;
 
-fn swapped(class: usize) -> usize {
+pub fn swapped(class: usize) -> usize {
     [0, 2, 1, 3][class]
 }
 
-fn signed(class: usize, member: usize, value: i64) -> i64 {
+pub fn signed(class: usize, member: usize, value: i64) -> i64 {
     if sign(class, member) < 0.0 { -value } else { value }
 }
 
 /// A matrix of whole numbers with the mirror symmetry `parity`, from numbers for its rows at member 0 of each quad.
-fn symmetric(quads: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64> {
+pub fn symmetric(quads: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64> {
     let m = quads.taxels();
     let mut dense = DMatrix::zeros(m, m);
     for quad in 0..quads.count() {
@@ -49,7 +49,7 @@ fn symmetric(quads: &Quads, parity: usize, numbers: &[i32]) -> DMatrix<f64> {
 }
 
 /// A product of the lanes with four times the matrix: on centre lines its blocks have quarters.
-fn stored(quads: &Quads, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix {
+pub fn stored(quads: &Quads, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix {
     let folded = FoldedMatrix::new(&(dense * 4.0), parity, quads);
     let entry = |row: usize, column: usize| -> Entry {
         let ways = folded.blocks.each_ref().map(|block| block[(row, column)]);
@@ -61,14 +61,17 @@ fn stored(quads: &Quads, parity: usize, dense: &DMatrix<f64>) -> QuantisedMatrix
     QuantisedMatrix::from_rows("M", rows, 0)
 }
 
+/// A class of one quad of a vector of one value a taxel.
+pub fn folded(quads: &Quads, class: usize, quad: usize, x: &[i64]) -> i64 {
+    let members = quads.members(quad);
+    (0..4).map(|s| signed(class, s, x[members[s]])).sum()
+}
+
 /// What the lanes make of a vector of one value a taxel: folded, through the schedule, unfolded. Sixteen times the
 /// product with the matrix.
 fn through_the_lanes(quads: &Quads, product: &Product, matrix: QuantisedMatrix, lanes: usize, x: &[i64]) -> Vec<i64> {
     let n = quads.count();
-    let folded = |class: usize, quad: usize| -> i64 {
-        let members = quads.members(quad);
-        (0..4).map(|s| signed(class, s, x[members[s]])).sum()
-    };
+    let folded = |class: usize, quad: usize| folded(quads, class, quad, x);
     let schedule = Schedule::new(std::slice::from_ref(product), &[matrix], lanes);
     let sums = execute(&schedule, std::slice::from_ref(product), n, &|product, _, quad| {
         std::array::from_fn(|way| match product.mirrored {
@@ -76,10 +79,14 @@ fn through_the_lanes(quads: &Quads, product: &Product, matrix: QuantisedMatrix, 
             Some(side) => folded(swapped(way), mirror(quad, side)),
         })
     });
+    unfolded(quads, |quad| product.ways().map(|way| sums[&(0, quad as u32)][way]))
+}
+
+/// The values at the taxels, from the classes of each quad.
+pub fn unfolded(quads: &Quads, classes: impl Fn(usize) -> [i64; CLASSES]) -> Vec<i64> {
     let mut result = vec![0; quads.taxels()];
-    for quad in 0..n {
-        let row = sums[&(0, quad as u32)];
-        let classes = product.ways().map(|way| row[way]);
+    for quad in 0..quads.count() {
+        let classes = classes(quad);
         for (s, taxel) in quads.members(quad).into_iter().enumerate() {
             result[taxel] = (0..CLASSES).map(|class| signed(class, s, classes[class])).sum();
         }
@@ -87,7 +94,7 @@ fn through_the_lanes(quads: &Quads, product: &Product, matrix: QuantisedMatrix, 
     result
 }
 
-fn product(parity: usize, mirrored: Option<usize>) -> Product {
+pub fn product(parity: usize, mirrored: Option<usize>) -> Product {
     Product {
         matrix: 0,
         lead: None,
@@ -105,7 +112,7 @@ fn product(parity: usize, mirrored: Option<usize>) -> Product {
 }
 
 /// Sixteen times the product, in whole numbers.
-fn exactly(dense: &DMatrix<f64>, x: &[i64]) -> Vec<i64> {
+pub fn exactly(dense: &DMatrix<f64>, x: &[i64]) -> Vec<i64> {
     dense.row_iter().map(|row| row.iter().zip(x).map(|(&value, &x)| 16 * value as i64 * x).sum()).collect()
 }
 

@@ -122,8 +122,7 @@ pub(super) fn measure(largest: usize, progress: &Progress) -> Result<Vec<Point>,
                 };
                 let timeline = &plan.timeline;
                 let predicted = Cycles { latency: timeline.latency_cycles, interval: timeline.interval_cycles };
-                let macs = plan.schedule.windows.iter().map(|window| window.macs * plan.ways() as u64).sum();
-                points.push(Point { kind, side, lanes, macs, predicted, simulated });
+                points.push(Point { kind, side, lanes, macs: plan.macs(), predicted, simulated });
             }
         }
     }

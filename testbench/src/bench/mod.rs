@@ -2,17 +2,20 @@
 
 pub mod cells;
 pub mod cycles;
+pub mod filters;
 pub mod generation;
 pub mod machine;
 pub mod page;
 pub mod plot;
 pub mod rate;
 pub mod solver;
+pub mod zeros;
 
 use std::path::PathBuf;
 
 use golden::design::{Design, DesignError};
 use golden::scene::SceneError;
+use golden::solver::SolverError;
 use hdl_gen::emit::EmitError;
 use hdl_gen::plan::PlanError;
 use serde::Serialize;
@@ -25,10 +28,12 @@ use crate::verilate::BuildError;
 
 use cells::Cells;
 use cycles::Point;
+use filters::Filtered;
 use generation::Generation;
 use machine::Machine;
 use rate::Rate;
 use solver::SolverRate;
+use zeros::Zeros;
 
 /// Why there are no figures.
 #[derive(Debug, Error)]
@@ -39,6 +44,9 @@ pub enum BenchError {
     /// A design cannot be planned.
     #[error(transparent)]
     Plan(#[from] PlanError),
+    /// A frame cannot be solved.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
     /// A plan cannot be printed.
     #[error(transparent)]
     Emit(#[from] EmitError),
@@ -106,6 +114,10 @@ pub struct Figures {
     pub simulation: Vec<Rate>,
     /// Latency and interval against lanes and taxels.
     pub cycles: Vec<Point>,
+    /// What filters save of folded blocks, and their error.
+    pub filters: Vec<Filtered>,
+    /// What passing over zeros saves.
+    pub zeros: Vec<Zeros>,
     /// Yosys' cell counts by block.
     pub cells: Vec<Cells>,
 }
@@ -123,6 +135,8 @@ pub fn measure(scope: &Scope, progress: &Progress) -> Result<Figures, BenchError
         generation: generation::measure(scope, progress)?,
         simulation: rate::measure(scope, progress)?,
         cycles: cycles::measure(scope.largest, progress)?,
+        filters: filters::measure(scope, progress)?,
+        zeros: zeros::measure(scope.largest, progress)?,
         cells,
     })
 }

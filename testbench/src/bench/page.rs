@@ -2,9 +2,11 @@
 
 use super::cells::{Block, Cells};
 use super::cycles::{Cycles, Kind, LANES, Point};
+use super::filters::Filtered;
 use super::generation::Generation;
 use super::rate::Rate;
 use super::solver::SolverRate;
+use super::zeros::Zeros;
 use super::{Figures, generation, rate};
 use crate::markdown::Page;
 use crate::table::{decimals, grouped};
@@ -24,6 +26,8 @@ pub fn render(figures: &Figures, command: &str, plot: Option<&str>) -> String {
     generated(&mut page, &figures.generation, command);
     simulated(&mut page, &figures.simulation, command);
     cycles(&mut page, &figures.cycles, command, plot);
+    filters(&mut page, &figures.filters, command);
+    zeros(&mut page, &figures.zeros, command);
     cells(&mut page, &figures.cells);
     page.0
 }
@@ -119,8 +123,8 @@ fn cycles(page: &mut Page, points: &[Point], command: &str, plot: Option<&str>) 
     if let Some(plot) = plot {
         page.line(&format!("![Latency against the number of taxels]({plot})"));
         page.line(
-            "Without a filter the work of a large sensor grows like m² / lanes; with F2 like the entries kept over the lanes. Small \
-             sensors take what the search, the input and the output take.",
+            "Without a filter the work of a large sensor grows like m² / lanes; with F2 like the entries kept over the lanes: the dotted \
+             lines, multiply-accumulates over lanes. Small sensors take what the search, the input and the output take.",
         );
     }
     for kind in Kind::ALL {
@@ -142,13 +146,68 @@ fn cycles(page: &mut Page, points: &[Point], command: &str, plot: Option<&str>) 
     page.command(command);
 }
 
+fn filters(page: &mut Page, rows: &[Filtered], command: &str) {
+    if rows.is_empty() {
+        return;
+    }
+    page.heading("Filters on folded blocks");
+    page.line(
+        "The reductions are exact, a filter is not. Largest differences from the same plan without one, in f64, over the sensor's \
+         standing scene: of a taxel's force, over the frame's largest normal force; of the friction vector. The resultants do \
+         not depend on the filter but through the friction. Cycles and RAMB36 by the plan.",
+    );
+    page.table(
+        &["design", "filter", "MACs a frame", "latency", "interval", "RAMB36", "force, %", "friction"],
+        rows.iter().map(|row| {
+            vec![
+                format!("`{}`", row.design),
+                row.filter.clone(),
+                grouped(row.macs),
+                grouped(row.latency),
+                grouped(row.interval),
+                decimals(row.bram36, 1),
+                decimals(100.0 * row.field_error, 2),
+                decimals(row.friction_error, 4),
+            ]
+        }),
+    );
+    page.command(command);
+}
+
+fn zeros(page: &mut Page, rows: &[Zeros], command: &str) {
+    let Some(first) = rows.first() else { return };
+    page.heading("Zeros passed over");
+    page.line(
+        "Latency / interval with `skip_zeros`, simulated, for a round contact of three pitches in a corner of the grid (half-space, \
+         the most over six directions), beside the bound for any frame and the cycles of the same design without `skip_zeros`. \
+         `C33⁻¹ b` has faint ripples of either sign around any contact, and one that is dragged pulls and presses all over the \
+         grid; so does noise. Nothing of that is zero, a quad is passed over only if all its four taxels are, and the last \
+         products multiply r, which never is: little is gained on real contacts.",
+    );
+    let mut header = vec!["taxels".to_owned(), "without".to_owned(), "bound".to_owned()];
+    header.extend(first.contacts.iter().map(|(friction, _)| format!("µ = {friction}")));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    page.table(
+        &header,
+        rows.iter().map(|row| {
+            let mut cells = vec![format!("{0} × {0}", row.side), both(row.without), both(row.worst)];
+            cells.extend(row.contacts.iter().map(|&(_, cycles)| both(cycles)));
+            cells
+        }),
+    );
+    page.command(command);
+}
+
+fn both(cycles: Cycles) -> String {
+    format!("{} / {}", grouped(cycles.latency), grouped(cycles.interval))
+}
+
 /// The predicted cycles, bold if they were simulated, with what was simulated if that differs.
 fn cell(point: &Point) -> String {
-    let show = |cycles: Cycles| format!("{} / {}", grouped(cycles.latency), grouped(cycles.interval));
     match point.simulated {
-        None => show(point.predicted),
-        Some(simulated) if simulated == point.predicted => format!("**{}**", show(simulated)),
-        Some(simulated) => format!("{}, simulated **{}**", show(point.predicted), show(simulated)),
+        None => both(point.predicted),
+        Some(simulated) if simulated == point.predicted => format!("**{}**", both(simulated)),
+        Some(simulated) => format!("{}, simulated **{}**", both(point.predicted), both(simulated)),
     }
 }
 

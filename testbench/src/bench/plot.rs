@@ -10,6 +10,8 @@ const LEFT: f64 = 74.0;
 const RIGHT: f64 = 170.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 54.0;
+/// Of the lines of the work alone.
+const WORK_DASHES: &str = "1 4";
 /// Taxels of the published sensor.
 const PUBLISHED_TAXELS: usize = 100;
 /// Lines drawn: kind, lanes, colour, dashes. The colours have contrast with white and with black.
@@ -19,6 +21,8 @@ const LINES: [(Kind, usize, &str, &str); 4] = [
     (Kind::Filtered, 16, "#d9730d", ""),
     (Kind::Filtered, 64, "#d9730d", "7 4"),
 ];
+/// The line of the work alone is drawn from where it is this share of the latency.
+const WORK_SHARE: f64 = 0.4;
 /// Least distance of two labels at the right.
 const LABEL_STEP: f64 = 16.0;
 
@@ -38,6 +42,13 @@ pub fn render(points: &[Point]) -> String {
         let places: Vec<(f64, f64)> =
             series.iter().map(|point| (x.place(taxels(point)), y.place(point.predicted.latency as f64))).collect();
         svg.line(&places, colour, dashes);
+        // What the latency of a large sensor tends to: its multiply-accumulates over the lanes.
+        let work = series.iter().map(|point| (point, point.macs as f64 / point.lanes as f64));
+        let dominant = work.filter(|(point, work)| *work > WORK_SHARE * point.predicted.latency as f64);
+        let work: Vec<(f64, f64)> = dominant.map(|(point, work)| (x.place(taxels(point)), y.place(work))).collect();
+        if work.len() > 1 {
+            svg.line(&work, colour, WORK_DASHES);
+        }
         for (point, &place) in series.iter().zip(&places) {
             svg.dot(place, if point.simulated.is_some() { 4.5 } else { 2.5 }, colour);
         }
@@ -75,7 +86,7 @@ fn axes(svg: &mut Svg, x: Axis, y: Axis) {
         (12.0, 22.0),
         "start",
         INK,
-        "cycles from the first word in to the last word out; large dots: simulated too",
+        "cycles from the first word in to the last word out; large dots: simulated too; dotted: multiply-accumulates / lanes",
     );
 }
 
@@ -97,6 +108,9 @@ mod tests {
         let svg = render(&[point(4, 900), point(10, 2400)]);
         assert_eq!(svg.matches("<circle").count(), 2);
         assert!(svg.contains("no filter, 16 lanes") && !svg.contains("F2"), "{svg}");
+        assert!(!svg.contains(WORK_DASHES), "no work");
+        let busy = |side, latency| Point { macs: 16 * latency / 2, ..point(side, latency) };
+        assert!(render(&[busy(4, 900), busy(10, 2400)]).contains(WORK_DASHES));
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
         assert!(!render(&[]).contains("NaN"));
     }
