@@ -64,7 +64,8 @@ impl Work {
     fn new(design: &Design) -> Result<Self, PlanError> {
         let hardware = &design.hardware;
         let matrices = Matrices::of(design)?;
-        let stress = Format::covering(hardware.full_scale_pa, hardware.data_bits);
+        // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
+        let stress = Format::covering(hardware.full_scale_in_frames(), hardware.data_bits);
         let thresholds = thresholds(design, stress)?;
         let counts = CountsPlan::new(design, stress)?;
         let (stored, products, formats, nnz) = match design.algorithm.plan {
