@@ -31,6 +31,25 @@ pub fn cell(offset: [f64; 2], depth: f64, pitch: [f64; 2]) -> [f64; 3] {
     [-along_x, -along_y, -normal]
 }
 
+/// Stress of equal forces on all places of an endless grid, relative to the pressure that they mean: what the normal
+/// force of a wide contact is divided by. 1 is right; point forces have more, the more the shallower the sensor is.
+pub fn gain(sensor: &Sensor, kernel: Kernel) -> f64 {
+    /// So many depths away nothing is felt but a thousandth.
+    const REACH: f64 = 12.0;
+    let depth = sensor.depth_m();
+    let pitch = sensor.pitch_mm.map(|side| side * 1e-3);
+    let [x, y] = pitch.map(|side| (REACH * depth / side).ceil() as i32);
+    let at = |ix: i32, iy: i32| {
+        let offset = [f64::from(ix) * pitch[0], f64::from(iy) * pitch[1]];
+        match kernel {
+            Kernel::Point => point(offset, depth)[2],
+            Kernel::Cell => cell(offset, depth, pitch)[2],
+        }
+    };
+    let sum: f64 = (-y..=y).flat_map(|iy| (-x..=x).map(move |ix| (ix, iy))).map(|(ix, iy)| at(ix, iy)).sum();
+    pitch[0] * pitch[1] * sum
+}
+
 /// C31, C32, C33 of a sensor, each `m` by `m` in Pa/N: row = taxel, column = place of the force.
 pub fn matrices(sensor: &Sensor, kernel: Kernel) -> [DMatrix<f64>; 3] {
     let entries = Entries::new(sensor, kernel);

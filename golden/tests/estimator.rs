@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use golden::design::{Design, Kernel};
+use golden::kernel;
 use golden::metrics::{ErrorSummary, Outcome, errors};
 use golden::scene::{Scene, SceneFrame};
 use golden::solver::{Solution, Solver, Status, cean, co, op, we};
@@ -68,16 +69,22 @@ fn the_kernel_gain_is_that_of_the_normal_force() {
         let [sx, sy] = design.sensor.pitch_mm;
         let gain = sx * sy * 1e-6 * solver.matrices().c33.dense().row(55).sum();
         assert!((gain - expected).abs() < 5e-4, "{name}: {gain}");
+        // An endless grid has a little more.
+        let endless = kernel::gain(&design.sensor, Kernel::Point);
+        assert!(endless > gain && endless < gain + 0.02, "{name}: {endless}");
+        let cell = kernel::gain(&design.sensor, Kernel::Cell);
+        assert!((0.998..1.0).contains(&cell), "{name}: {cell}");
     }
 }
 
-/// Errors of sensor 1 in 36 directions, by the stages and with a level of choice.
-fn summary_at_level(level: f64) -> ErrorSummary {
-    let design = design("sensor1-none");
+/// True outcomes and estimates, by the stages and with a level of choice, of every so many directions.
+fn pairs_at_level(name: &str, scene: &str, level: f64, every: usize) -> Vec<(Outcome, Outcome)> {
+    let design = design(name);
     let solver = Solver::new(&design).unwrap();
     let positions: Vec<[f64; 2]> = (0..100).map(|i| design.sensor.position_m(i)).collect();
-    let pairs: Vec<(Outcome, Outcome)> = frames("sensor1-hertz")
+    frames(scene)
         .iter()
+        .step_by(every)
         .map(|frame| {
             let b = DVector::from_vec(frame.stress.clone());
             let contact = cean::cean(&b, &positions, design.algorithm.noise_floor_pa);
@@ -88,8 +95,28 @@ fn summary_at_level(level: f64) -> ErrorSummary {
             let found = Outcome { force: forces.resultant, friction: forces.mu, direction: forces.phi };
             (Outcome::from(frame), found)
         })
-        .collect();
-    ErrorSummary::new(&pairs)
+        .collect()
+}
+
+/// Errors of sensor 1 in 36 directions.
+fn summary_at_level(level: f64) -> ErrorSummary {
+    ErrorSummary::new(&pairs_at_level("sensor1-none", "sensor1-hertz", level, 1))
+}
+
+#[test]
+fn the_second_sensors_tangential_error_hangs_on_the_level() {
+    // The independent implementation has 1.7, without saying its level, where the solver has 1.59: a level that is a few
+    // percent of this one lower makes that difference.
+    let at = |level: f64| {
+        let mut pairs = pairs_at_level("sensor2-none", "sensor2-disc", level, 3);
+        for (_, found) in &mut pairs {
+            found.force = found.force.map(|force| 1.248 * force);
+        }
+        ErrorSummary::new(&pairs).e_fx.max
+    };
+    assert_near(&[at(op::LEVEL), at(0.5 * op::LEVEL)], &[1.59, 2.62], 0.01);
+    let lower = at(0.93 * op::LEVEL);
+    assert!((1.6..1.8).contains(&lower), "{lower}");
 }
 
 #[test]
@@ -193,18 +220,17 @@ fn frames_without_an_answer_have_a_status() {
 }
 
 #[test]
-fn stress_beyond_full_scale_is_clamped() {
+fn stress_at_full_scale_is_flagged_and_beyond_it_clamped() {
     let solver = small_solver();
     let mut frame = [-2000.0; 12];
     frame[0] = 3000.0;
+    frame[5] = -99_999.9;
+    assert!(!solve(&solver, &frame).status.contains(Status::SATURATED));
     frame[5] = -100_000.0;
     let full = solve(&solver, &frame);
-    assert!(!full.status.contains(Status::SATURATED));
+    assert!(full.status.contains(Status::SATURATED));
     frame[5] = -4e9;
-    let mut clamped = solve(&solver, &frame);
-    assert!(clamped.status.contains(Status::SATURATED));
-    clamped.status = full.status;
-    assert_eq!(clamped, full);
+    assert_eq!(solve(&solver, &frame), full);
 }
 
 #[test]

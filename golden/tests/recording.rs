@@ -55,11 +55,18 @@ fn the_solver_takes_counts() {
     let solver = Solver::new(&design).unwrap();
     assert_eq!(found, solver.solve(&stress).unwrap());
     assert_ne!(found.resultant, solver.solve(&counts).unwrap().resultant);
-    // Full scale is that of the stress: 8001 counts are more than 100 kPa.
+    // Full scale is that of the stress: 8000 counts are 100 kPa, which may be a clipped reading.
     design.input.pa_per_count = Some(-12.5);
     let solver = Solver::new(&design).unwrap();
     let status = |count: f64| solver.solve(&[count; 6]).unwrap().status;
-    assert!(!status(8000.0).contains(Status::SATURATED) && status(8001.0).contains(Status::SATURATED));
+    assert!(!status(7999.0).contains(Status::SATURATED) && status(8000.0).contains(Status::SATURATED));
+    // A product that f64 rounds below the full scale is that full scale all the same.
+    (design.input.pa_per_count, design.hardware.full_scale_pa) = (Some(0.1), 0.3);
+    design.algorithm.noise_floor_pa = 1e-6;
+    let solver = Solver::new(&design).unwrap();
+    let status = |count: f64| solver.solve(&[count; 6]).unwrap().status;
+    assert!(status(3.0).contains(Status::SATURATED) && status(-3.0).contains(Status::SATURATED));
+    assert!(!status(2.999).contains(Status::SATURATED));
 }
 
 #[test]

@@ -214,7 +214,7 @@ fn pressing_straight_down_has_no_direction() {
 }
 
 #[test]
-fn beyond_the_full_scale_is_the_full_scale_and_is_said() {
+fn the_full_scale_and_beyond_are_the_full_scale_and_are_said() {
     for subject in subjects() {
         let full_scale = subject.plan.design.hardware.full_scale_pa;
         let mut clamped = vec![-0.3 * full_scale; subject.plan.taxels()];
@@ -223,10 +223,13 @@ fn beyond_the_full_scale_is_the_full_scale_and_is_said() {
         let mut beyond = clamped.clone();
         beyond[2] = 1.5 * full_scale;
         beyond[5] = -f64::from(f32::MAX);
-        let (clamped, beyond) = (subject.answer(&encode(&clamped)), subject.answer(&encode(&beyond)));
-        assert_eq!(clamped[0] & SATURATED, 0);
-        assert_eq!(beyond[0], clamped[0] | SATURATED);
-        assert_eq!(beyond[1..], clamped[1..]);
+        let mut within = clamped.clone();
+        within[2] = 0.9999 * full_scale;
+        within[5] = -0.9999 * full_scale;
+        let [within, clamped, beyond] = [within, clamped, beyond].map(|frame| subject.answer(&encode(&frame)));
+        assert_eq!(within[0] & SATURATED, 0);
+        assert_eq!(clamped[0], within[0] | SATURATED);
+        assert_eq!(beyond, clamped);
     }
 }
 

@@ -167,7 +167,7 @@ pub struct Hardware {
     pub coefficient_bits: u32,
     /// Width of vector entries, 16 to 27 bits.
     pub data_bits: u32,
-    /// Largest stress magnitude in pascals; larger input is clamped and reported.
+    /// Largest stress magnitude in pascals; input of that and more is reported, and clamped.
     pub full_scale_pa: f64,
     /// `SpMV` lanes, 1 to [`MAX_LANES`]; with the reduced plan a multiple of 4. With a target time the generator
     /// chooses, and this is the default until then.
@@ -184,6 +184,15 @@ pub struct Hardware {
     pub clock_mhz: f64,
     /// FPGA part name.
     pub part: String,
+}
+
+impl Hardware {
+    /// The largest float32 that is no more than the full scale, in pascals: a frame cannot bring more of it. From here
+    /// on a stress counts as saturated.
+    pub fn full_scale_in_frames(&self) -> f64 {
+        let nearest = self.full_scale_pa as f32;
+        f64::from(if f64::from(nearest) > self.full_scale_pa { nearest.next_down() } else { nearest })
+    }
 }
 
 /// What is wrong with a design or scene file.

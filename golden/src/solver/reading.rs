@@ -13,6 +13,7 @@ pub(crate) struct Reader {
     positions: Vec<[f64; 2]>,
     noise_floor: f64,
     full_scale: f64,
+    flagged: f64,
 }
 
 /// A frame as the solver takes it.
@@ -36,6 +37,7 @@ impl Reader {
             positions: (0..sensor.taxels()).map(|i| sensor.position_m(i)).collect(),
             noise_floor: design.algorithm.noise_floor_pa,
             full_scale: design.hardware.full_scale_pa,
+            flagged: design.hardware.full_scale_in_frames(),
         }
     }
 
@@ -57,7 +59,8 @@ impl Reader {
         for (taxel, (stress, &value)) in b.iter_mut().zip(frame).enumerate() {
             *stress = self.input.to_pa(taxel, value);
         }
-        if b.iter().any(|stress| stress.abs() > self.full_scale) {
+        // What reads full scale may have been clipped by the converter: nobody can tell.
+        if b.iter().any(|stress| stress.abs() >= self.flagged) {
             status.insert(Status::SATURATED);
         }
         b.apply(|stress| *stress = stress.clamp(-self.full_scale, self.full_scale));

@@ -13,7 +13,7 @@ impl Status {
     pub const DIRECTION_UNKNOWN: Self = Self(1 << 1);
     /// A friction component is at the end of its range.
     pub const AT_BOUND: Self = Self(1 << 2);
-    /// A stress beyond full scale was clamped.
+    /// A stress was at full scale, where no sensor tells it from a clipped one, or beyond and was clamped.
     pub const SATURATED: Self = Self(1 << 3);
     /// A NaN or an infinity in the frame: all results are zero.
     pub const NOT_FINITE: Self = Self(1 << 4);

@@ -3,7 +3,8 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use golden::design::{Correction, PlanKind};
+use golden::design::{Correction, Estimator, Kernel, PlanKind};
+use golden::kernel;
 use hdl_gen::emit::{nnz, predicted, products};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::joint::{POINTS, UNITS};
@@ -14,6 +15,8 @@ use serde_json::json;
 const ILL_CONDITIONED: f64 = 1e4;
 /// `(beginning of the part's name, DSP48E2, RAMB36)` of the default part.
 const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
+/// Second lines stand under the values of the first.
+const INDENT: &str = "               ";
 /// Matrix names in one line of the table.
 const MATRICES_PER_LINE: usize = 7;
 
@@ -40,6 +43,7 @@ fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
         "products": products(plan),
         "lanes": plan.design.hardware.lanes,
         "savings": savings(plan),
+        "kernel_gain": kernel::gain(sensor, plan.design.algorithm.kernel),
     });
     if let Some(joint) = &plan.joint {
         value["joint"] = json!(joint);
@@ -92,7 +96,32 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
     } else {
         "well conditioned".to_owned()
     };
-    writeln!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat))
+    writeln!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat))?;
+    writeln!(out, "  kernel       {}", kernel_advice(plan))
+}
+
+/// What the load kernel makes of a wide contact, and when the other one is better.
+fn kernel_advice(plan: &Plan) -> String {
+    let algorithm = &plan.design.algorithm;
+    let gain = |of| kernel::gain(&plan.design.sensor, of);
+    // Forces are divided by the gain, so that they are found too small or too large by this share.
+    let off = |of| 100.0 * (1.0 / gain(of) - 1.0);
+    let lost = 100.0 * (1.0 - gain(Kernel::Cell) / gain(Kernel::Point));
+    match (algorithm.kernel, algorithm.estimator) {
+        (_, Estimator::Joint) => {
+            format!("the joint estimator's own makes good for its gain of {:.3}", gain(algorithm.kernel))
+        }
+        (Kernel::Point, Estimator::Line) => format!(
+            "point: F_z of a wide contact is off by {:+.1} %;\n{INDENT}\"cell\" makes it right, with mu about \
+             {lost:.0} % lower and phi the same",
+            off(Kernel::Point)
+        ),
+        (Kernel::Cell, Estimator::Line) => format!(
+            "cell: F_z of a wide contact is off by {:+.1} %;\n{INDENT}mu is about {lost:.0} % lower than with \
+             \"point\", phi the same",
+            off(Kernel::Cell)
+        ),
+    }
 }
 
 fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {

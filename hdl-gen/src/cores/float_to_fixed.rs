@@ -29,9 +29,11 @@ pub struct Converted {
 
 /// `x * 2^shift` rounded half away from zero and clipped to `±limit`, with `x` the float32 of the given bits.
 ///
-/// Denormals count as zero. NaN gives 0 and `not_finite`; an infinity gives `±limit`, `saturated` and `not_finite`.
-/// The port takes `shift` in -512 ..= 511 and 27 bits of `limit`, which must stay below 2^26 for `±limit` to fit the
-/// result (a larger one wraps, here as in the hardware).
+/// What is rounded to `±limit`, too, is `saturated`: where the limit is the end of a sensor's range, nobody can tell it
+/// from a clipped value. Denormals count as zero. NaN gives 0 and `not_finite`; an infinity gives `±limit`, `saturated`
+/// and `not_finite`.
+/// The port takes `shift` in -512 ..= 511 and 27 bits of `limit`, from 1 to 2^26 - 1, so that `±limit` fits the result
+/// (others wrap, here as in the hardware).
 pub fn convert(bits: u32, shift: i32, limit: u32) -> Converted {
     let negative = bits >> 31 == 1;
     let exponent = ((bits >> 23) & 0xff) as i32;
@@ -48,11 +50,16 @@ pub fn convert(bits: u32, shift: i32, limit: u32) -> Converted {
     let right = OVERFLOW_SHIFT - 1 - left;
     let doubled =
         if exponent == 0 || overflows || right > 27 { 0 } else { ((0x80_0000 | fraction) << OVERFLOW_SHIFT) >> right };
-    let saturated = overflows || doubled > 2 * limit;
+    let saturated = overflows || doubled >= threshold(limit);
     let magnitude = if saturated { limit } else { doubled.div_ceil(2) };
     let signed = if negative { magnitude.wrapping_neg() } else { magnitude };
     let unused = 32 - FIXED_BITS;
     Converted { fixed: (signed << unused).cast_signed() >> unused, saturated, not_finite }
+}
+
+/// The least magnitude, in half steps, that is rounded to the limit: 28 bits.
+fn threshold(limit: u32) -> u32 {
+    (limit << 1).wrapping_sub(1) & ((1 << (FIXED_BITS + 1)) - 1)
 }
 
 #[derive(LogicBlock, Default)]
@@ -90,6 +97,7 @@ struct FloatToFixed {
     shift_wide: Signal<Local, Sint<12>>,
     too_large: Signal<Local, Bit>,
     too_small: Signal<Local, Bit>,
+    threshold: Signal<Local, Bits<28>>,
     magnitude: Signal<Local, Bits<27>>,
     positive: Signal<Local, Sint<27>>,
 }
@@ -140,12 +148,12 @@ impl Logic for FloatToFixed {
             self.doubled.d.next = (bit_cast::<28, 24>(self.significand.q.val()) << 4) >> self.right.q.val();
         }
 
-        comment!("round half away from zero; the comparison does not wait for the rounding");
+        comment!("round half away from zero; the comparison with what is rounded to limit does not wait for that");
+        self.threshold.next = (bit_cast::<28, 27>(self.limit.val()) << 1) - 1;
         if self.enable.val() {
             self.negative_r.d.next = self.negative_s.q.val();
             self.not_finite_r.d.next = self.not_finite_s.q.val();
-            self.over.d.next =
-                self.overflow_s.q.val() | (self.doubled.q.val() > (bit_cast::<28, 27>(self.limit.val()) << 1));
+            self.over.d.next = self.overflow_s.q.val() | (self.doubled.q.val() >= self.threshold.val());
             self.rounded.d.next =
                 self.doubled.q.val().get_bits::<27>(1) + bit_cast::<27, 1>(self.doubled.q.val().get_bits::<1>(0));
         }
@@ -178,7 +186,8 @@ const DESCRIPTION: Description = Description {
 float32 to 27-bit fixed point: fixed = float_bits * 2^shift, rounded half away from zero, clipped to +-limit.
 
 Latency 5 enabled cycles (distance, unpack, shift, round, clip), one value an enabled cycle. Denormals count as zero.
-NaN gives 0 with not_finite; an infinity gives +-limit with saturated and not_finite.",
+saturated: the rounded magnitude is limit or more. NaN gives 0 with not_finite; an infinity gives +-limit with
+saturated and not_finite.",
     ports: &[
         ("clock", "rising edge"),
         ("enable", "every stage advances; else all hold"),
@@ -186,7 +195,7 @@ NaN gives 0 with not_finite; an infinity gives +-limit with saturated and not_fi
         ("shift", "the result's binary point; sampled with float_bits"),
         ("limit", "largest magnitude, below 2^26; constant while conversions are under way"),
         ("fixed", "the value"),
-        ("saturated", "the rounded magnitude exceeded limit"),
+        ("saturated", "the rounded magnitude reached limit"),
         ("not_finite", "float_bits was NaN or an infinity"),
     ],
     unused: &[],
@@ -224,7 +233,7 @@ mod tests {
             let rounded = (x * f64::from(shift).exp2()).round();
             let limit = (1 << 26) - 1;
             let clipped = rounded.clamp(-f64::from(limit), f64::from(limit));
-            let expected = (clipped as i32, clipped.to_bits() != rounded.to_bits(), false);
+            let expected = (clipped as i32, rounded.abs() >= f64::from(limit), false);
             assert_eq!(fixed(f32::from_bits(bits), shift, limit as u32), expected, "{x} {shift}");
         }
     }
@@ -237,6 +246,8 @@ mod tests {
         assert_eq!(fixed(f32::MAX, 511, 99), (99, true, false));
         assert_eq!(fixed(f32::from_bits(1), 511, 99), (0, false, false));
         assert_eq!(fixed(-99.5, 0, 99), (-99, true, false));
-        assert_eq!(fixed(-99.49, 0, 99), (-99, false, false));
+        assert_eq!(fixed(-99.0, 0, 99), (-99, true, false));
+        assert_eq!(fixed(98.5, 0, 99), (99, true, false));
+        assert_eq!(fixed(-98.49, 0, 99), (-98, false, false));
     }
 }

@@ -15,6 +15,7 @@ pub struct CountsView {
     offset_bits: u32,
     shift: u32,
     half: u64,
+    full_scale: i64,
 }
 
 impl CountsView {
@@ -26,6 +27,7 @@ impl CountsView {
             offset_bits: counts.offset_bits(),
             shift: counts.shift,
             half: if counts.shift == 0 { 0 } else { half(counts.shift) },
+            full_scale: counts.full_scale,
         }
     }
 }

@@ -157,9 +157,14 @@ impl<'plan> Model<'plan> {
         let number = self.plan.counts.as_ref().map_or(format, |counts| counts.count);
         let converted = float_to_fixed::convert(word, -number.lsb, number.bound as u32);
         let number = i64::from(converted.fixed);
-        let exact = self.plan.counts.as_ref().map_or(number, |counts| counts.to_stress(taxel, number));
-        let steps = exact.clamp(-format.bound, format.bound);
-        Stress { steps, saturated: converted.saturated || steps != exact, not_finite: converted.not_finite }
+        let (mut steps, mut saturated) = (number, converted.saturated);
+        if let Some(counts) = &self.plan.counts {
+            steps = counts.to_stress(taxel, number);
+            if steps.abs() >= counts.full_scale {
+                (steps, saturated) = (steps.signum() * format.bound, true);
+            }
+        }
+        Stress { steps, saturated, not_finite: converted.not_finite }
     }
 
     fn answer(&self, counter: u32, stress: Vec<i64>, direction: &Direction, saturated: bool) -> Vec<u32> {

@@ -6,7 +6,7 @@ use golden::matrices::{Matrices, MatrixName};
 use golden::parity::{CLASSES, Quads};
 
 use super::counts::CountsPlan;
-use super::error::{FEWEST_FORCE_STEPS, PlanError};
+use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::format::{Format, pow2};
 use super::joint::JointPlan;
 use super::layout::OperandLayout;
@@ -106,9 +106,11 @@ impl Work {
     fn new(design: &Design) -> Result<Self, PlanError> {
         let hardware = &design.hardware;
         let matrices = Matrices::of(design)?;
-        let stress = Format::covering(hardware.full_scale_pa, hardware.data_bits);
+        // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
+        let stress = Format::covering(hardware.full_scale_in_frames(), hardware.data_bits);
         let thresholds = thresholds(design, stress)?;
         let counts = CountsPlan::new(design, stress)?;
+        let mut rounding_n = 0.0;
         let (stored, products, formats, nnz) = match design.algorithm.plan {
             PlanKind::Paper => {
                 let filtered = FilteredMatrices::new(&matrices, &design.algorithm.filter)?;
@@ -125,11 +127,12 @@ impl Work {
                     let filter = design.algorithm.filter.of(*name).ok_or(FilterError::Unresolved)?;
                     *count = nnz_of(&matrices, *name, filter);
                 }
+                rounding_n = reduced.rounding_n;
                 (reduced.matrices, reduced.products, reduced.formats, nnz)
             }
         };
         let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
-        check_force_resolution(design, &formats, condition)?;
+        check_force_resolution(design, &formats, condition, rounding_n)?;
         Ok(Self { condition, nnz: Nnz(nnz.to_vec()), matrices: stored, products, formats, counts, thresholds })
     }
 
@@ -185,9 +188,17 @@ pub(super) fn elements(design: &Design) -> usize {
     }
 }
 
-fn check_force_resolution(design: &Design, formats: &Formats, condition: Condition) -> Result<(), PlanError> {
-    let [x, y] = design.sensor.pitch_mm;
-    let taxel_n = design.hardware.full_scale_pa * x * y * 1e-6;
+fn check_force_resolution(
+    design: &Design,
+    formats: &Formats,
+    condition: Condition,
+    rounding_n: f64,
+) -> Result<(), PlanError> {
+    let taxel_n = reduced::taxel_force_n(design);
+    if rounding_n * MOST_ROUNDING > taxel_n {
+        let (bits, condition) = (design.hardware.data_bits, condition.aat);
+        return Err(PlanError::ForceRounding { bits, rounding_n, taxel_n, condition });
+    }
     let force = match (formats.folded, design.algorithm.outputs) {
         (Some(folded), Outputs::Field) => Some(("A+ r", folded.taxel_force)),
         // Sums over the frame only, which are larger than a taxel's force.

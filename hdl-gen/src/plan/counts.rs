@@ -27,6 +27,8 @@ pub struct CountsPlan {
     pub offsets: Vec<i64>,
     /// Bits dropped, with rounding, after the product.
     pub shift: u32,
+    /// Stress from which on a value counts as full scale, in steps: what the rounding of gains leaves of that.
+    pub full_scale: i64,
 }
 
 impl CountsPlan {
@@ -56,13 +58,29 @@ impl CountsPlan {
         {
             return Err(PlanError::Offset { taxel, counts: offsets[taxel], full_scale });
         }
-        Ok(Some(Self {
+        let mut plan = Self {
             count,
             gain_lsb,
             gains: gains.iter().map(|gain| (gain * pa_per_count * pow2(-gain_lsb)).round() as i32).collect(),
             offsets: offsets.iter().map(|&offset| in_steps(offset).round() as i64).collect(),
             shift: (stress.lsb - count.lsb - gain_lsb).max(0) as u32,
-        }))
+            full_scale: stress.bound,
+        };
+        plan.full_scale = plan.least_full_scale(design, stress);
+        Ok(Some(plan))
+    }
+
+    /// The least stress that a taxel's reading of just the full scale, of either sign, becomes.
+    fn least_full_scale(&self, design: &Design, stress: Format) -> i64 {
+        let full_scale = design.hardware.full_scale_pa;
+        (0..self.gains.len())
+            .flat_map(|taxel| [full_scale, -full_scale].map(|stress| (taxel, design.input.from_pa(taxel, stress))))
+            .map(|(taxel, count)| {
+                let bits = (count as f32).to_bits();
+                let converted = float_to_fixed::convert(bits, -self.count.lsb, self.count.bound as u32);
+                self.to_stress(taxel, i64::from(converted.fixed)).abs()
+            })
+            .fold(stress.bound, i64::min)
     }
 
     /// Whether each taxel has a gain and an offset of its own.

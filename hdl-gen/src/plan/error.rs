@@ -7,6 +7,10 @@ use thiserror::Error;
 /// Fewest steps of a force format that a taxel's force at full scale must span.
 pub(super) const FEWEST_FORCE_STEPS: u32 = 64;
 
+/// The roundings of a frame may add at most this part of a taxel's force at full scale to it, if all of them add up;
+/// as they come they make less than a tenth of that.
+pub(super) const MOST_ROUNDING: f64 = 4.0;
+
 /// Why a checked design has no hardware plan.
 #[derive(Debug, Error)]
 pub enum PlanError {
@@ -77,6 +81,22 @@ pub enum PlanError {
         worst_n: f64,
         /// Worth of one step.
         step_n: f64,
+        /// Full-scale stress times the area of a taxel.
+        taxel_n: f64,
+        /// 2-norm condition number of A Aᵀ.
+        condition: f64,
+    },
+    /// The geometry amplifies so much that rounding alone moves the forces.
+    #[error(
+        "[hardware] data_bits = {bits}: rounding alone could move the force of a taxel by {rounding_n:.1e} N, more \
+         than 1/{MOST_ROUNDING} of that at full scale ({taxel_n:.3e} N); the condition number of A A^T is {condition:.1e}: \
+         write a larger regularisation under [algorithm], lower [sensor] depth_mm, raise the pitch, or raise data_bits"
+    )]
+    ForceRounding {
+        /// Vector width of the design.
+        bits: u32,
+        /// Most that roundings can add up to.
+        rounding_n: f64,
         /// Full-scale stress times the area of a taxel.
         taxel_n: f64,
         /// 2-norm condition number of A Aᵀ.

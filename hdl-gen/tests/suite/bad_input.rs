@@ -145,7 +145,7 @@ fn widths_resolve_the_noise_floor() {
 #[test]
 fn a_geometry_that_amplifies_beyond_the_widths_is_refused() {
     let text = design_text("deep", [10, 10], [4.0, 4.0], 12.0, "");
-    check_design(&text, &["data_bits = 27", "worst case of", "condition number", "depth_mm", "regularisation"]);
+    check_design(&text, &["data_bits = 27", "rounding alone", "condition number", "depth_mm", "regularisation"]);
     let text = design_text("deeper", [10, 10], [4.0, 4.0], 16.0, "");
     check_design(&text, &["condition number", "16 mm", "regularisation = { noise = 0.002 }"]);
 }

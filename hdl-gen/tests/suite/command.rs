@@ -127,6 +127,8 @@ fn inspect_tells_people_the_same_figures() {
     {
         assert!(text.contains(words), "no {words:?} in:\n{text}");
     }
+    assert!(text.contains("point: F_z of a wide contact is off by -") && text.contains("phi the same"), "{text}");
+    assert!(report["kernel_gain"].as_f64().is_some_and(|gain| gain > 1.0));
     assert!(text.contains(&format!("{} bits of ROM", report["rom_bits"])), "{text}");
     assert!(text.lines().all(|line| line.len() <= 110 && line.trim_end() == line), "{text}");
 }

@@ -135,12 +135,15 @@ fn a_band_that_leaves_only_zeros_of_a_matrix_has_a_plan() {
 
 #[test]
 fn the_stress_uses_its_whole_width() {
-    for (full_scale, bits, lsb) in [(100_000.0, 27, -9), (100_000.0, 16, 2), (67_108_863.0, 27, 0), (0.5, 20, -19)] {
+    for (full_scale, bits, lsb) in [(100_000.0, 27, -9), (100_000.0, 16, 2), (67_108_860.0, 27, 0), (0.5, 20, -19)] {
         let plan = small_plan(&format!("full_scale_pa = {full_scale:?}\ndata_bits = {bits}"));
         assert_eq!(plan.formats.stress, Format::covering(full_scale, bits));
         assert_eq!(plan.formats.stress.lsb, lsb, "{full_scale} Pa in {bits} bits");
         assert_eq!(plan.formats.stress.bound, (full_scale * pow2(-lsb)).round() as i64);
     }
+    // No float32 lies between these two: a frame cannot bring the second one.
+    let odd = small_plan("full_scale_pa = 67108863.0").formats.stress;
+    assert_eq!((odd.lsb, odd.bound), (0, 67_108_860));
 }
 
 #[test]

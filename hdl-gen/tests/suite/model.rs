@@ -325,9 +325,12 @@ fn check_beyond_full_scale(plan: &Plan) {
         frame[6] = peak;
         answer(plan, &frame)
     };
-    let (at, beyond, far) = (contact(-2000.0), contact(-2001.0), contact(f32::MIN));
-    assert_eq!(at.status & SATURATED, 0);
-    assert_eq!(beyond.status, at.status | SATURATED);
+    let (within, at) = (contact(-1999.9), contact(-2000.0));
+    let (beyond, far) = (contact(-2001.0), contact(f32::MIN));
+    // A reading of full scale may be a clipped one.
+    assert_eq!(within.status & SATURATED, 0);
+    assert_eq!(at.status, within.status | SATURATED);
+    assert_eq!((beyond.status, far.status), (at.status, at.status));
     for clipped in [&beyond, &far] {
         assert_eq!((&clipped.summary, &clipped.field), (&at.summary, &at.field));
     }

@@ -1,7 +1,7 @@
 //! The reduced plan in float32 throughout, as a processor without f64 would compute it. Matrices come from f64 and are
 //! rounded. Only for comparison: hardware has fixed point.
 
-use golden::design::Design;
+use golden::design::{Design, Estimator};
 use golden::parity::{CLASSES, Quads};
 use golden::reduced::{FoldedRows, ReducedMatrices, ReducedName, SumRow};
 use golden::solver::op::{DEPENDENT_RANGE, LEVEL, MAX_LINE_RATIO};
@@ -24,20 +24,22 @@ pub struct Single<'a> {
 }
 
 impl<'a> Single<'a> {
-    /// From the matrices of an f64 solver with the reduced plan; `None` for another plan.
+    /// From the matrices of an f64 solver with the reduced plan; `None` for another plan or estimator.
     pub fn new(design: &'a Design, solver: &'a Solver) -> Option<Self> {
+        let line = design.algorithm.estimator == Estimator::Line;
+        line.then_some(())?;
         Some(Self { design, quads: solver.matrices().quads(), matrices: solver.reduced()? })
     }
 
     /// The answer to one frame in Pa.
     pub fn solve(&self, frame: &[f64]) -> Answer {
         let m = self.quads.taxels();
-        let full_scale = self.design.hardware.full_scale_pa as f32;
+        let full_scale = self.design.hardware.full_scale_in_frames() as f32;
         let raw: Vec<f32> = frame.iter().map(|&stress| stress as f32).collect();
         if raw.iter().any(|stress| !stress.is_finite()) {
             return blank(Status::NOT_FINITE, m);
         }
-        let saturated = raw.iter().any(|stress| stress.abs() > full_scale);
+        let saturated = raw.iter().any(|stress| stress.abs() >= full_scale);
         let b: Vec<f32> = raw.iter().map(|stress| stress.clamp(-full_scale, full_scale)).collect();
         let floor = self.design.algorithm.noise_floor_pa as f32;
         let stress_sum: f32 = b.iter().map(|stress| stress.abs()).sum();

@@ -72,6 +72,12 @@ fn unfolded(plan: &Plan, product: &Product) -> Vec<Vec<f64>> {
     dense
 }
 
+/// A row times a matrix.
+fn times(row: &[f64], matrix: &[Vec<f64>]) -> Vec<f64> {
+    let sum = |column: usize| row.iter().zip(matrix).map(|(value, inner)| value * inner[column]).sum();
+    (0..row.len()).map(sum).collect()
+}
+
 /// Full scale of the signs that make a taxel's result of each product largest; behind a product of the weights stands
 /// the inverse of C33.
 fn worst_frames(plan: &Plan) -> Vec<Vec<i64>> {
@@ -79,13 +85,18 @@ fn worst_frames(plan: &Plan) -> Vec<Vec<i64>> {
     let inverse = unfolded(plan, &plan.products[0]);
     let mut frames = Vec::new();
     for product in plan.products.iter().filter(|product| product.coefficients == Coefficients::Rom) {
-        for row in unfolded(plan, product) {
-            let through: Vec<f64> = if product.operand() == Vector::Stress {
-                row
-            } else {
-                let sum = |column: usize| row.iter().zip(&inverse).map(|(value, inner)| value * inner[column]).sum();
-                (0..plan.taxels()).map(sum).collect()
-            };
+        let rows = unfolded(plan, product);
+        let mut all = match product.operand() {
+            Vector::Stress => rows.clone(),
+            _ => rows.iter().map(|row| times(row, &inverse)).collect(),
+        };
+        if matches!(product.result, Vector::Force(_)) {
+            for residual in plan.products.iter().filter(|product| matches!(product.result, Vector::Residual(_))) {
+                let residual = unfolded(plan, residual);
+                all.extend(rows.iter().map(|row| times(&times(row, &residual), &inverse)));
+            }
+        }
+        for through in all {
             for direction in [1.0, -1.0] {
                 frames.push(through.iter().map(|&x| if direction * x < 0.0 { -bound } else { bound }).collect());
             }
@@ -108,6 +119,9 @@ fn the_worst_frames_stay_within_the_bounds() {
     check_worst_frames(&plan([2, 2], [3.0, 3.0], "", "data_bits = 18"));
     check_worst_frames(&plan([5, 3], [4.0, 2.5], "filter = { kind = \"f1\", l = 7 }", ""));
     check_worst_frames(&plan([4, 5], [4.0, 2.5], "filter = { kind = \"f2\", p = 20 }", "data_bits = 20"));
+    // Deep sensors, whose forces have a bound through residual and inverse together.
+    check_worst_frames(&plan([4, 4], [1.0, 1.0], "regularisation = 0.01", ""));
+    check_worst_frames(&plan([5, 4], [1.0, 1.5], "regularisation = 0.03", "data_bits = 24"));
     check_worst_frames(&plan([2, 6], [4.0, 2.5], "outputs = \"resultants\"", "coefficient_bits = 8\ndata_bits = 16"));
 }
 

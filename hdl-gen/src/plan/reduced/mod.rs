@@ -13,6 +13,7 @@
 //! `outputs = "resultants"` there is nothing else.
 
 mod bounds;
+mod composed;
 mod steps;
 
 use golden::design::{Design, Outputs};
@@ -97,6 +98,8 @@ pub struct ReducedPlan {
     pub products: Vec<Product>,
     /// Formats of the taxels' values; `g` is that of the sums.
     pub formats: Formats,
+    /// Most that the roundings of a frame's vectors can add to a taxel's force, in newtons; 0 where it is little.
+    pub rounding_n: f64,
 }
 
 /// Quantises the folded matrices and chooses, from worst-case row sums, formats that no input within the full scale
@@ -118,8 +121,8 @@ pub fn build(design: &Design, matrices: &Matrices, stress: Format) -> Result<Red
     let weights = steps.weights(base)?;
     let u = steps.coefficients(base, weights, mirrored_side(design, &quads))?;
     let sums = steps.sums(weights)?;
-    let (residual, explained, force) =
-        if field { steps.field(weights, mirrored_side(design, &quads))? } else { (u, u, u) };
+    let ([residual, explained, force], rounding_n) =
+        if field { steps.field(weights, mirrored_side(design, &quads), taxel_force_n(design))? } else { ([u; 3], 0.0) };
     let taxel = |folded: Format| Format { lsb: folded.lsb - FOLD_BITS as i32, ..folded };
     let folded = FoldedFormats {
         stress: base.folded,
@@ -133,7 +136,13 @@ pub fn build(design: &Design, matrices: &Matrices, stress: Format) -> Result<Red
     };
     let formats = Formats { stress, weight: weights.taxel, g: sums, u: taxel(u), folded: Some(folded) };
     steps.finish(&formats);
-    Ok(ReducedPlan { matrices: steps.matrices, products: steps.products, formats })
+    Ok(ReducedPlan { matrices: steps.matrices, products: steps.products, formats, rounding_n })
+}
+
+/// The force of a taxel whose cell is pressed with the full scale.
+pub(super) fn taxel_force_n(design: &Design) -> f64 {
+    let [x, y] = design.sensor.pitch_mm;
+    design.hardware.full_scale_pa * x * y * 1e-6
 }
 
 /// On a square grid with a square pitch, what is wanted along y is what is there along x, mirrored at the diagonal.

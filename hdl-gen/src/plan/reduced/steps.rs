@@ -9,10 +9,11 @@ use super::super::product::{Block, Coefficients, Epilogue, Lead, Product, Vector
 use super::super::quantise::{ANY_LSB, QuantisedMatrix, RealRows};
 use super::super::{Formats, PlanError};
 use super::bounds::{self, Operand};
+use super::composed;
 use super::{FOLD_BITS, SELECT_MU_X, SELECT_MU_Y, SELECT_ONE, sum_way};
 
 /// A friction component lies in [-2, 2).
-const LARGEST_FRICTION: i64 = 2;
+pub(super) const LARGEST_FRICTION: i64 = 2;
 
 /// The plan while it grows.
 pub(super) struct Steps<'a> {
@@ -105,8 +106,15 @@ impl<'a> Steps<'a> {
         Ok(format)
     }
 
-    /// Residual and field; returns the formats of the residual's parts, of r and of `A_p r`, all folded.
-    pub fn field(&mut self, weights: Operand, side: Option<usize>) -> Result<(Format, Format, Format), PlanError> {
+    /// Residual and field; returns the formats of the residual's parts, of r and of `A_p r`, all folded, and what
+    /// rounding can make of a taxel's force, in newtons, if that is much. `taxel_n` is the force of a taxel at full
+    /// scale.
+    pub fn field(
+        &mut self,
+        weights: Operand,
+        side: Option<usize>,
+        taxel_n: f64,
+    ) -> Result<([Format; 3], f64), PlanError> {
         let names = [ReducedName::C33, ReducedName::C31, ReducedName::C32];
         let signs = [1.0, -1.0, -1.0];
         let terms = self.quantise_all(names, &signs, weights, ANY_LSB)?;
@@ -128,6 +136,8 @@ impl<'a> Steps<'a> {
         let taxel_bound = round_shift((1 + 2 * LARGEST_FRICTION) * parts_bound.unwrap_or(0), shift) + CLASSES as i64;
         let taxel = Format { lsb: explained.lsb - FOLD_BITS as i32, bound: taxel_bound, ..explained };
         let operand = Operand { folded: explained, taxel };
+        let (inverse, force, rounding) =
+            self.inverse(&terms, operand, composed::Way { weights, residual, explained }, taxel_n)?;
 
         let [c33, c31, c32] = <[QuantisedMatrix; 3]>::try_from(terms).unwrap_or_else(|_| unreachable!("three names"));
         let count = c33.rows.len();
@@ -145,20 +155,38 @@ impl<'a> Steps<'a> {
         if let Some(product) = self.products.last_mut() {
             product.coefficients = Coefficients::Friction;
         }
-        let names = [ReducedName::A1, ReducedName::A2, ReducedName::A3];
-        let terms = self.quantise_all(names, &[1.0; 3], operand, ANY_LSB)?;
-        let alone = bounds::unfolding(&bounds::with(&terms, operand), None, self.data_bits);
-        let least = alone.lsb - operand.folded.lsb - MOST_SHIFT as i32;
-        let terms = self.quantise_all(names, &[1.0; 3], operand, least)?;
-        let force = bounds::unfolding(&bounds::with(&terms, operand), None, self.data_bits);
-        let [a1, a2, a3] = <[QuantisedMatrix; 3]>::try_from(terms).unwrap_or_else(|_| unreachable!("three names"));
+        let [a1, a2, a3] = inverse;
         let stored = self.push(a1, &[Vector::Explained], turn, Epilogue::Unfold, Vector::Force(1));
         match side {
             Some(_) => self.again(stored, side, &[Vector::Explained], turn, Epilogue::Unfold, Vector::Force(2)),
             None => drop(self.push(a2, &[Vector::Explained], turn, Epilogue::Unfold, Vector::Force(2))),
         }
         self.push(a3, &[Vector::Explained], turn, Epilogue::Unfold, Vector::Force(3));
-        Ok((residual, explained, force))
+        Ok(([residual, explained, force], rounding))
+    }
+
+    /// The three parts of A+ behind the `terms` of r, the format of `A_p r`, and what rounding can make of it.
+    fn inverse(
+        &self,
+        terms: &[QuantisedMatrix],
+        operand: Operand,
+        way: composed::Way,
+        taxel_n: f64,
+    ) -> Result<([QuantisedMatrix; 3], Format, f64), PlanError> {
+        let names = [ReducedName::A1, ReducedName::A2, ReducedName::A3];
+        let quantise = |least| self.quantise_all(names, &[1.0; 3], operand, least);
+        let alone = bounds::unfolding(&bounds::with(&quantise(ANY_LSB)?, operand), None, self.data_bits);
+        let least = alone.lsb - operand.folded.lsb - MOST_SHIFT as i32;
+        let inverse = quantise(least)?;
+        let mut force = bounds::unfolding(&bounds::with(&inverse, operand), None, self.data_bits);
+        let mut rounding = 0.0;
+        if composed::is_coarse(force, taxel_n) {
+            let lsb = inverse.iter().map(|matrix| matrix.lsb + operand.folded.lsb).max().unwrap_or(force.lsb);
+            let worst = composed::worst(terms, &inverse, way);
+            (force, rounding) = (composed::format(worst, lsb, self.data_bits), worst.rounding);
+        }
+        let inverse = <[QuantisedMatrix; 3]>::try_from(inverse).unwrap_or_else(|_| unreachable!("three names"));
+        Ok((inverse, force, rounding))
     }
 
     /// A matrix times `factor`, as stored. Its label has the sign.

@@ -1,0 +1,134 @@
+//! Worst case of the forces of deep sensors, through residual and pseudo-inverse together.
+//!
+//! The bound of `A_p r` from the bound of r alone supposes the worst r for every force. Of a deep sensor that is
+//! thousands of times more than any frame can cause: where A+ amplifies, C33, C31 and C32 have damped before. So here
+//! the products `A_p C33`, `A_p C31` and `A_p C32` of the stored coefficients are bounded, with what each rounding on
+//! the way can add.
+
+use golden::parity::CLASSES;
+use nalgebra::DMatrix;
+
+use super::super::format::{Format, largest};
+use super::super::quantise::QuantisedMatrix;
+use super::FOLD_BITS;
+use super::bounds::Operand;
+use super::steps::LARGEST_FRICTION;
+
+/// Factor for the rounding of sums in f64.
+const SLACK: f64 = 1.0 + 1e-9;
+
+/// The vectors between weights and forces.
+#[derive(Clone, Copy)]
+pub(super) struct Way {
+    pub weights: Operand,
+    pub residual: Format,
+    pub explained: Format,
+}
+
+/// Largest magnitudes, in newtons.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Worst {
+    /// Of a folded force.
+    folded: f64,
+    /// Of four times a taxel's force: the sum over the classes.
+    unfolded: f64,
+    /// Of a taxel's force, the part that the roundings on the way to it can make.
+    pub rounding: f64,
+}
+
+/// The worst case of `A_p (C33 y+ + mu_x C31 |w| + mu_y C32 |w|)`, all p, for matrices as stored.
+pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], way: Way) -> Worst {
+    let count = c.first().map_or(0, |matrix| matrix.rows.len());
+    let c: Vec<[DMatrix<f64>; CLASSES]> = c.iter().map(|matrix| blocks(matrix, count)).collect();
+    let steep = LARGEST_FRICTION as f64;
+    // |w| and y+ are rounded as they are folded, the parts of r as they are stored, and r again.
+    let friction = [1.0, steep, steep];
+    let folding: f64 = c.iter().zip(friction).map(|(blocks, by)| by * row_sum(blocks)).sum();
+    let rounding = 0.5
+        * (folding * way.weights.folded.step()
+            + friction.iter().sum::<f64>() * way.residual.step()
+            + way.explained.step());
+    let of_component = |a: &QuantisedMatrix| {
+        let a = blocks(a, count);
+        let mut exact = [DMatrix::zeros(count, 1), DMatrix::zeros(count, 1)];
+        for ((parity, c), by) in c.iter().enumerate().zip(friction) {
+            let product: [DMatrix<f64>; CLASSES] = std::array::from_fn(|class| &a[class ^ parity] * &c[class]);
+            let [folded, unfolded] = sums(&product);
+            exact[0] += by * way.weights.folded.bound as f64 * way.weights.folded.step() * folded;
+            exact[1] += by * way.weights.taxel.bound as f64 * way.weights.taxel.step() * unfolded;
+        }
+        let rounded = row_sum(&a) * rounding;
+        Worst {
+            folded: exact[0].max() + rounded,
+            unfolded: exact[1].max() + CLASSES as f64 * rounded,
+            rounding: rounded,
+        }
+    };
+    let all: Vec<Worst> = a.iter().map(of_component).collect();
+    let most = |value: fn(&Worst) -> f64| all.iter().map(value).fold(0.0, f64::max) * SLACK;
+    Worst {
+        folded: most(|worst| worst.folded),
+        unfolded: most(|worst| worst.unfolded),
+        rounding: most(|worst| worst.rounding),
+    }
+}
+
+/// The finest format for these results, which are unfolded afterwards, of products with a last bit worth `2^lsb`.
+pub(super) fn format(worst: Worst, mut lsb: i32, bits: u32) -> Format {
+    // Rounding of a result, and of the four of a taxel.
+    let bound = |lsb: i32| {
+        let steps = |value: f64, more: f64| (value / f64::from(lsb).exp2()).ceil() + more;
+        steps(worst.folded, 1.0).max(steps(worst.unfolded, CLASSES as f64))
+    };
+    while bound(lsb) > largest(bits) as f64 {
+        lsb += 1;
+    }
+    Format { bits, lsb, bound: bound(lsb) as i64 }
+}
+
+/// Whether a taxel's force at full scale, in newtons, has fewer steps in this folded format than a good sensor can use.
+pub(super) fn is_coarse(folded: Format, taxel_n: f64) -> bool {
+    const ENOUGH: f64 = 65536.0;
+    Format { lsb: folded.lsb - FOLD_BITS as i32, ..folded }.step() * ENOUGH > taxel_n
+}
+
+/// The blocks of a matrix by class of the operand, in its unit.
+fn blocks(matrix: &QuantisedMatrix, count: usize) -> [DMatrix<f64>; CLASSES] {
+    let step = f64::from(matrix.lsb).exp2();
+    std::array::from_fn(|class| {
+        let mut block = DMatrix::zeros(count, count);
+        for (row, entries) in matrix.rows.iter().enumerate() {
+            for &(column, ways) in entries {
+                block[(row, column as usize)] = f64::from(ways[class]) * step;
+            }
+        }
+        block
+    })
+}
+
+/// Largest sum of magnitudes of a row of any block.
+fn row_sum(blocks: &[DMatrix<f64>; CLASSES]) -> f64 {
+    let rows = |block: &DMatrix<f64>| block.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);
+    blocks.iter().map(rows).fold(0.0, f64::max)
+}
+
+/// For each row of quads the largest sum of magnitudes of a block, and that of the unfolded matrix times four.
+fn sums(blocks: &[DMatrix<f64>; CLASSES]) -> [DMatrix<f64>; 2] {
+    let count = blocks[0].nrows();
+    let folded =
+        DMatrix::from_fn(count, 1, |row, _| blocks.iter().map(|block| block.row(row).lp_norm(1)).fold(0.0, f64::max));
+    let unfolded = DMatrix::from_fn(count, 1, |row, _| {
+        let of = |member: usize| {
+            let signed = |column: usize| -> f64 {
+                blocks
+                    .iter()
+                    .enumerate()
+                    .map(|(class, block)| golden::parity::sign(class, member) * block[(row, column)])
+                    .sum()
+            };
+            (0..count).map(|column| signed(column).abs()).sum::<f64>()
+        };
+        (0..CLASSES).map(of).sum()
+    });
+    [folded, unfolded]
+}
