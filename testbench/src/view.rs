@@ -82,9 +82,12 @@ struct Json<'a> {
 
 #[derive(Serialize)]
 struct Field<'a> {
-    f_x: &'a [f64],
-    f_y: &'a [f64],
-    f_z: &'a [f64],
+    #[serde(rename = "f_x")]
+    x: &'a [f64],
+    #[serde(rename = "f_y")]
+    y: &'a [f64],
+    #[serde(rename = "f_z")]
+    z: &'a [f64],
 }
 
 impl View {
@@ -100,7 +103,7 @@ impl View {
     /// That of the JSON writer.
     pub fn json(&self) -> Result<String, serde_json::Error> {
         let Answer { status, resultant: [force_x, force_y, force_z], mu, phi, mu_xy: [mu_x, mu_y], .. } = self.answer;
-        let [f_x, f_y, f_z] = &self.answer.field;
+        let [x, y, z] = &self.answer.field;
         let json = Json {
             design: &self.design,
             origin: &self.origin,
@@ -115,7 +118,7 @@ impl View {
             phi,
             mu_x,
             mu_y,
-            field: (!f_z.is_empty()).then_some(Field { f_x, f_y, f_z }),
+            field: (!z.is_empty()).then_some(Field { x, y, z }),
         };
         Ok(serde_json::to_string_pretty(&json)? + "\n")
     }
