@@ -1,7 +1,8 @@
 // The frame handshake of the reduced plan: turns, Op and output, with up to four frames between them.
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
-// Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever.
+// Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever. With JOINT the
+// search is that of the joint estimator, which has no line before it; with LATENCY frames wait for fields.
 module harness (
     input wire clock
 );
@@ -42,8 +43,14 @@ module harness (
     wire friction_done;
     wire summary_done;
     wire output_start;
+`ifdef JOINT
+    wire line_valid = 1'b1;
+    wire [2:0] line_state = 3'd0;
+    wire direction_valid;
+`else
     wire line_valid;
     wire [2:0] line_state;
+`endif
     wire busy;
     wire [5:0] beat;
     wire beat_issued;
@@ -91,8 +98,12 @@ module harness (
         .\op.friction_done (friction_done),
         .\op.summary_done (summary_done),
         .\op.output_start (output_start),
+`ifdef JOINT
+        .direction_valid (direction_valid),
+`else
         .\op.line_valid (line_valid),
         .\op.line.state (line_state),
+`endif
         .\op.frame_output.busy (busy),
         .\op.frame_output.beat (beat),
         .\op.frame_output.issued (beat_issued),
@@ -115,6 +126,7 @@ module harness (
     reg summary_due;
     reg field_started; // of the frame in the summary
     reg at_output; // a frame whose field is still needed
+    reg [2:0] young; // program 0 began in one of the last cycles
     wire sums_written = $anyseq;
 
     always @(posedge clock) begin
@@ -124,6 +136,7 @@ module harness (
             before <= last;
             last <= start;
         end
+        young <= {young[1:0], start[0]};
         summed <= (summed || sums_written) && !coefficients_complete && !start[0];
         sums_wait <= sums_written || (sums_wait && !sums_take);
         friction_due <= search_over || (friction_due && !friction_done);
@@ -134,6 +147,7 @@ module harness (
             open <= 3'd0;
             last <= 3'd0;
             before <= 3'd0;
+            young <= 3'd0;
             summed <= 1'b0;
             sums_wait <= 1'b0;
             friction_due <= 1'b0;
@@ -149,6 +163,12 @@ module harness (
         if (!reset) begin
             assume (sums_complete == sums_wait);
             assume (!sums_written || (open[0] && !summed));
+`ifdef JOINT
+            // Sums stand in Co until the search takes them. By then the direction is there, and the next ones are not
+            // written in the first cycles of their program
+            assume (direction_valid || (u_waiting == 2'd0));
+            assume (!sums_written || (young == 3'd0));
+`endif
             assume (!coefficients_complete || (open[0] && summed));
             assume (!residual_written || open[1]);
             assume (!field_complete || open[2]);
@@ -173,6 +193,10 @@ module harness (
             assert (!field_complete || !field_there);
             // A field has the friction of its own frame
             assert (!start[2] || (friction_known && summary_busy));
+`ifdef LATENCY
+            // No frame goes ahead of a field
+            assert (!start[0] || !field_due);
+`endif
             // Places: two searches, two fields, four frames' weights, one output
             assert (!start[0] || (searches_due < 2'd2));
             assert (!search_over || (searches_due != 2'd0));
@@ -190,8 +214,15 @@ module harness (
             assert ({2'd0, fields_held} == {3'd0, field_started} + at_output);
             assert ({3'd0, residual_due} + field_due + start[2]
                 == {2'd0, searches_due} + (summary_busy && !field_started) + start[0]);
+`ifdef JOINT
+            assert ({3'd0, sums_wait} == {3'd0, open[0] && summed} + u_there);
+            assert (!sums_take || sums_wait);
+            // The frame before is searched at once
+            assert (!open[0] || (u_there == 3'd0) || searching || (young != 3'd0));
+`else
             assert ({3'd0, sums_stand} + (line_state != 3'd0) == {3'd0, open[0] && summed} + u_there);
             assert (!sums_take || (sums_wait && (line_state != 3'd0)));
+`endif
             assert (line_state <= 3'd4);
             assert (!summed || open[0]);
             // The lanes

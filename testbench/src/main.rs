@@ -112,6 +112,9 @@ struct ViewArguments {
     /// Which frame, from 0.
     #[arg(long, default_value_t = 0, value_name = "N")]
     frame: usize,
+    /// All values as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Args)]
@@ -262,13 +265,13 @@ fn frames(
 
 fn view(arguments: &ViewArguments) -> Result<(), Box<dyn Error>> {
     let design = Design::load(&arguments.design)?;
-    let text = {
+    let view = {
         let progress = Progress::new();
         let file = arguments.frames.as_deref().map(|path| (path, arguments.labels));
         let frames = frames(file, None, &design, &progress)?;
-        view::frame(&design, &frames, arguments.frame, view::wants_colour(), &progress)?
+        view::frame(&design, &frames, arguments.frame, &progress)?
     };
-    print(&text)
+    print(&if arguments.json { view.json()? } else { view.page(view::wants_colour()) })
 }
 
 fn stress_design(arguments: &SeededArguments, frames: u64) -> Result<(), Box<dyn Error>> {

@@ -7,6 +7,7 @@ use golden::design::Design;
 use golden::solver::Status;
 use hdl_gen::model::Model;
 use hdl_gen::plan::{Plan, PlanError};
+use serde::Serialize;
 use thiserror::Error;
 
 use crate::frame_set::FrameSet;
@@ -44,17 +45,90 @@ pub fn wants_colour() -> bool {
     std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
 
+/// A frame with what the hardware answers to it.
+pub struct View {
+    design: String,
+    origin: String,
+    frame: usize,
+    columns: usize,
+    answer: Answer,
+}
+
+/// A view for machines; values have the names of the output stream, fields go in taxel order.
+#[derive(Serialize)]
+struct Json<'a> {
+    design: &'a str,
+    /// Where the frames come from.
+    origin: &'a str,
+    frame: usize,
+    columns: usize,
+    status: u32,
+    /// The status in words.
+    meaning: String,
+    #[serde(rename = "F_x")]
+    force_x: f64,
+    #[serde(rename = "F_y")]
+    force_y: f64,
+    #[serde(rename = "F_z")]
+    force_z: f64,
+    mu: f64,
+    phi: f64,
+    mu_x: f64,
+    mu_y: f64,
+    /// Not there if the design puts out resultants only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    field: Option<Field<'a>>,
+}
+
+#[derive(Serialize)]
+struct Field<'a> {
+    #[serde(rename = "f_x")]
+    x: &'a [f64],
+    #[serde(rename = "f_y")]
+    y: &'a [f64],
+    #[serde(rename = "f_z")]
+    z: &'a [f64],
+}
+
+impl View {
+    /// The page for a terminal.
+    pub fn page(&self, colour: bool) -> String {
+        let title = format!("{}, frame {} of {}", self.design, self.frame, self.origin);
+        render(&title, &self.answer, self.columns, colour)
+    }
+
+    /// The same for machines: all values of the answer, forces in N, angles in rad.
+    ///
+    /// # Errors
+    /// That of the JSON writer.
+    pub fn json(&self) -> Result<String, serde_json::Error> {
+        let Answer { status, resultant: [force_x, force_y, force_z], mu, phi, mu_xy: [mu_x, mu_y], .. } = self.answer;
+        let [x, y, z] = &self.answer.field;
+        let json = Json {
+            design: &self.design,
+            origin: &self.origin,
+            frame: self.frame,
+            columns: self.columns,
+            status,
+            meaning: Status(status).to_string(),
+            force_x,
+            force_y,
+            force_z,
+            mu,
+            phi,
+            mu_x,
+            mu_y,
+            field: (!z.is_empty()).then_some(Field { x, y, z }),
+        };
+        Ok(serde_json::to_string_pretty(&json)? + "\n")
+    }
+}
+
 /// A frame as the hardware answers it.
 ///
 /// # Errors
 /// [`ViewError`] if the design has no plan or the frame does not exist.
-pub fn frame(
-    design: &Design,
-    frames: &FrameSet,
-    frame: usize,
-    colour: bool,
-    progress: &Progress,
-) -> Result<String, ViewError> {
+pub fn frame(design: &Design, frames: &FrameSet, frame: usize, progress: &Progress) -> Result<View, ViewError> {
     let Some(stress) = frames.stress.get(frame) else {
         return Err(ViewError::NoFrame { frame, count: frames.stress.len(), origin: frames.origin.clone() });
     };
@@ -62,10 +136,14 @@ pub fn frame(
     let plan = Plan::new(design)?;
     progress.stage("computing the forces");
     let words = Model::new(&plan).process(&encode(stress));
-    let title = format!("{}, frame {frame} of {}", design.name, frames.origin);
-    // The model's answers have the length that it was made for.
-    let text = decode(&words).map(|answer| render(&title, &answer, design.sensor.columns, colour));
-    Ok(text.unwrap_or_default())
+    Ok(View {
+        design: design.name.clone(),
+        origin: frames.origin.clone(),
+        frame,
+        columns: design.sensor.columns,
+        // The model's answers have the length that it was made for.
+        answer: decode(&words).unwrap_or_default(),
+    })
 }
 
 /// The page of an answer.
@@ -166,5 +244,10 @@ mod tests {
     #[test]
     fn resultants_have_no_field() {
         assert!(render("t", &answer(&[]), 2, true).contains("resultants only"));
+        let view = |answer| View { design: "d".to_owned(), origin: "o".to_owned(), frame: 3, columns: 2, answer };
+        let json: serde_json::Value = serde_json::from_str(&view(answer(&[])).json().unwrap()).unwrap();
+        assert!(json.get("field").is_none() && json["F_z"] == -3.0 && json["mu_y"] == 0.4, "{json}");
+        let json: serde_json::Value = serde_json::from_str(&view(answer(&[[1.0, 2.0, 3.0]])).json().unwrap()).unwrap();
+        assert_eq!(json["field"]["f_y"], serde_json::json!([2.0]));
     }
 }

@@ -24,7 +24,7 @@ pub fn beat_name(beat: usize, columns: usize) -> String {
 }
 
 /// An output frame in numbers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Answer {
     /// Status bits.
     pub status: u32,

@@ -17,5 +17,7 @@ mod fusesoc;
 mod lists;
 #[path = "flows/scripts.rs"]
 mod scripts;
+#[path = "flows/simulation.rs"]
+mod simulation;
 #[path = "flows/workflow.rs"]
 mod workflow;

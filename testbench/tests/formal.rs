@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use golden::design::{Design, Optimise, PlanKind};
+use golden::design::{Design, Estimator, Optimise, Outputs, PlanKind};
 use hdl_gen::emit::{FileMap, emit};
 use support::{in_parallel, planned, shipped, workspace};
 use tempfile::TempDir;
@@ -27,6 +27,8 @@ struct Proof {
     harness: &'static str,
     /// The 4 × 3 design, changed.
     design: fn(&mut Design),
+    /// What is defined for the harness, which may have other ways for other designs.
+    defines: &'static [&'static str],
     /// The module that the harness instantiates.
     top: &'static str,
     /// Files of `formal/` that take the place of generated modules.
@@ -56,6 +58,21 @@ fn reduced_for_latency(design: &mut Design) {
     design.hardware.optimise = Optimise::Latency;
 }
 
+fn reduced_with_zeros_skipped(design: &mut Design) {
+    reduced(design);
+    design.hardware.skip_zeros = true;
+}
+
+fn joint(design: &mut Design) {
+    reduced(design);
+    design.algorithm.estimator = Estimator::Joint;
+}
+
+fn resultants(design: &mut Design) {
+    reduced(design);
+    design.algorithm.outputs = Outputs::Resultants;
+}
+
 const ARITHMETIC: [&str; 5] = ["*sptfra_*", "*_bz*", "*_cean*", "*_op_search*", "*_op_summary*"];
 const REDUCED_FREE: &[&str] = &[
     ARITHMETIC[0],
@@ -76,12 +93,57 @@ const REDUCED_BROKEN: &[Broken] = &[
     ("op", "(search_done || answer_waits) && !summary_busy", "search_done || answer_waits"),
     ("op", "summary_there && output_idle && field_there", "summary_there && field_there"),
 ];
+const LATENCY_BROKEN: &[Broken] = &[
+    ("turns", "(frames_held != 3'd4) && !field_due", "(frames_held != 3'd4)"),
+    ("turns", "field_due && residual_there && friction_known", "field_due && friction_known"),
+    ("op", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
+    ("op", "(search_done || answer_waits) && !summary_busy", "search_done || answer_waits"),
+    ("op", "summary_there && output_idle && field_there", "summary_there && output_idle"),
+    ("op_output", "issued && issued_last && advance", "issued && issued_last"),
+];
+const JOINT_FREE: &[&str] = &[
+    ARITHMETIC[0],
+    ARITHMETIC[1],
+    ARITHMETIC[2],
+    "*_op_plane*",
+    "*_op_level*",
+    "*_op_friction*",
+    ARITHMETIC[4],
+    "subject_we",
+    "subject_co",
+    "subject_field",
+    "subject_unfold",
+];
+const JOINT_BROKEN: &[Broken] = &[
+    ("turns", "field_due && residual_there && friction_known", "field_due && residual_there"),
+    ("op", "assign sums_take = search_start;", "assign sums_take = search_over;"),
+    ("op", "(u_waiting != 2'd0) && !searching", "!searching"),
+    ("op", "(search_done || answer_waits) && !summary_busy", "search_done || answer_waits"),
+];
+const RESULTANTS_FREE: &[&str] = &[
+    ARITHMETIC[0],
+    ARITHMETIC[1],
+    ARITHMETIC[2],
+    ARITHMETIC[3],
+    ARITHMETIC[4],
+    "subject_we",
+    "subject_co",
+    "subject_unfold",
+];
+const RESULTANTS_BROKEN: &[Broken] = &[
+    ("turns", "frame_ready && (searches_due != 2'd2)", "frame_ready"),
+    ("turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
+    ("op", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
+    ("op", "(search_done || answer_waits) && !summary_busy", "search_done || answer_waits"),
+    ("op", "summary_there && output_idle", "summary_there"),
+];
 
 const PROOFS: &[Proof] = &[
     Proof {
         name: "stream rules of the skid buffer",
         harness: "skid",
         design: reduced,
+        defines: &[],
         top: "sptfra_axis_skid",
         models: &[],
         free: &[],
@@ -102,6 +164,7 @@ const PROOFS: &[Proof] = &[
         name: "frame checker",
         harness: "bz",
         design: reduced,
+        defines: &[],
         top: "subject_bz",
         models: &[("sptfra_float_to_fixed", "float_model")],
         free: &["*sptfra_ram*"],
@@ -124,6 +187,7 @@ const PROOFS: &[Proof] = &[
         name: "frame handshake, paper plan",
         harness: "paper",
         design: paper,
+        defines: &[],
         top: "subject",
         models: &[("subject_spmv_array", "paper_lanes")],
         free: &ARITHMETIC,
@@ -144,6 +208,7 @@ const PROOFS: &[Proof] = &[
         name: "frame handshake, reduced plan, for the interval",
         harness: "reduced",
         design: reduced,
+        defines: &[],
         top: "subject",
         models: &[("subject_spmv_array", "reduced_lanes")],
         free: REDUCED_FREE,
@@ -155,12 +220,49 @@ const PROOFS: &[Proof] = &[
         name: "frame handshake, reduced plan, for the latency",
         harness: "reduced",
         design: reduced_for_latency,
+        defines: &["LATENCY"],
         top: "subject",
         models: &[("subject_spmv_array", "reduced_lanes")],
         free: REDUCED_FREE,
         free_wires: &["turns.residual_written"],
         induction: "5",
-        broken: &[],
+        broken: LATENCY_BROKEN,
+    },
+    Proof {
+        name: "frame handshake, reduced plan, zeros skipped",
+        harness: "reduced",
+        design: reduced_with_zeros_skipped,
+        defines: &[],
+        top: "subject",
+        models: &[("subject_spmv_array", "reduced_lanes")],
+        free: REDUCED_FREE,
+        free_wires: &["turns.residual_written"],
+        induction: "5",
+        broken: &[("turns", "residual_there && friction_known", "friction_known")],
+    },
+    Proof {
+        name: "frame handshake, joint estimator",
+        harness: "reduced",
+        design: joint,
+        defines: &["JOINT"],
+        top: "subject",
+        models: &[("subject_spmv_array", "reduced_lanes")],
+        free: JOINT_FREE,
+        free_wires: &["turns.residual_written"],
+        induction: "5",
+        broken: JOINT_BROKEN,
+    },
+    Proof {
+        name: "frame handshake, resultants only",
+        harness: "resultants",
+        design: resultants,
+        defines: &[],
+        top: "subject",
+        models: &[("subject_spmv_array", "resultants_lanes")],
+        free: RESULTANTS_FREE,
+        free_wires: &[],
+        induction: "5",
+        broken: RESULTANTS_BROKEN,
     },
 ];
 
@@ -215,8 +317,9 @@ impl Proof {
         script.extend(self.free_wires.iter().map(|wire| format!("cutpoint w:{wire}")));
         script.push("setundef -undriven -anyseq".to_owned());
         // What the harness looks at inside the subject becomes a port of it.
-        script.push(format!("expose {}", inside(&harness)));
-        script.push(format!("read_verilog -formal -DINVARIANTS {}.sv", self.harness));
+        script.push(format!("expose {}", inside(&harness, self.defines)));
+        let defines: String = self.defines.iter().map(|name| format!(" -D{name}")).collect();
+        script.push(format!("read_verilog -formal -DINVARIANTS{defines} {}.sv", self.harness));
         script.push("prep -flatten -top harness; memory_map; async2sync; dffunmap".to_owned());
         script.push("write_smt2 -wires proof.smt2".to_owned());
         fs::write(folder.path().join("proof.ys"), script.join("\n")).expect("writable");
@@ -242,11 +345,23 @@ impl Proof {
     }
 }
 
-/// The wires that the harness's instance names below its line `// Inside`.
-fn inside(harness: &str) -> String {
+/// The wires that the harness's instance names below its line `// Inside`, those in the other way of an `ifdef` left
+/// out.
+fn inside(harness: &str, defines: &[&str]) -> String {
     let (_, rest) = harness.split_once("// Inside\n").expect("a mark");
     let (ports, _) = rest.split_once(");").expect("an end");
-    let names = ports.lines().filter_map(|line| line.trim().strip_prefix('.')?.split_whitespace().next());
+    let mut taken = true;
+    let mut there = |line: &&str| {
+        match line.trim().split_once(' ').unwrap_or((line.trim(), "")) {
+            ("`ifdef", name) => taken = defines.contains(&name),
+            ("`else", _) => taken = !taken,
+            ("`endif", _) => taken = true,
+            _ => return taken,
+        }
+        false
+    };
+    let lines = ports.lines().filter(|line| there(line));
+    let names = lines.filter_map(|line| line.trim().strip_prefix('.')?.split_whitespace().next());
     names.map(|name| format!("w:{}", name.trim_start_matches('\\'))).collect::<Vec<_>>().join(" ")
 }
 

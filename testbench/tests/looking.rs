@@ -1,9 +1,13 @@
 //! What people look at: waveforms with their views, a frame in the terminal, completions, manual pages.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+use fst_reader::{FstHierarchyEntry, FstReader};
+use testbench::verilate::Trace;
 
 fn workspace(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join(path)
@@ -34,11 +38,64 @@ fn signals(vcd: &str) -> BTreeMap<String, String> {
     found
 }
 
+/// Path and range of every signal in an FST file.
+fn signals_of_fst(file: &Path) -> BTreeMap<String, String> {
+    let mut reader = FstReader::open(BufReader::new(File::open(file).expect("written"))).expect("an FST file");
+    let mut scopes = Vec::new();
+    let mut found = BTreeMap::new();
+    reader
+        .read_hierarchy(|entry| match entry {
+            FstHierarchyEntry::Scope { name, .. } => scopes.push(name),
+            FstHierarchyEntry::UpScope => drop(scopes.pop()),
+            FstHierarchyEntry::Var { name, length, .. } => {
+                let range = if length == 1 { String::new() } else { format!("[{}:0]", length - 1) };
+                // The range stands behind the name too.
+                let name = name.split(' ').next().unwrap_or_default();
+                found.insert(format!("{}.{name}", scopes.join(".")), range);
+            }
+            _ => {}
+        })
+        .expect("a hierarchy");
+    found
+}
+
+/// Two frames for the 4 by 3 designs.
+fn two_frames(folder: &Path) {
+    fs::write(folder.join("frames.csv"), [["-10.5"; 12].join(","), ["-20,0,7"; 4].join(",")].join("\n")).unwrap();
+}
+
+/// The signals that the `GTKWave` view names, each of which must be in the trace.
+fn named_by_gtkwave<'a>(view: &'a str, there: &BTreeMap<String, String>) -> Vec<&'a str> {
+    let named: Vec<&str> = view.lines().filter(|line| line.starts_with("top.")).collect();
+    for signal in &named {
+        let (path, range) = signal.find('[').map_or((*signal, ""), |at| signal.split_at(at));
+        assert_eq!(there.get(path).map(String::as_str), Some(range), "{signal}");
+    }
+    named
+}
+
+#[test]
+fn a_trace_is_fst_unless_its_name_says_otherwise_and_has_every_signal_of_the_views() {
+    assert_eq!(Trace::best(), Trace::Fst, "FST needs the headers of zlib and LZ4: run `make tools`");
+    let folder = tempfile::tempdir().expect("a folder");
+    two_frames(folder.path());
+    let design = workspace("designs/small-control.toml").display().to_string();
+    let ran = testbench(folder.path(), &["run", &design, "--frames", "frames.csv", "--trace"]);
+    assert!(ran.status.success(), "{}{}", text(&ran.stdout), text(&ran.stderr));
+    let there = signals_of_fst(&folder.path().join("small_control.fst"));
+    let gtkwave = fs::read_to_string(folder.path().join("small_control.gtkw")).expect("written");
+    assert!(gtkwave.starts_with("[dumpfile] \"small_control.fst\"\n"), "{gtkwave}");
+    let named = named_by_gtkwave(&gtkwave, &there);
+    assert!(named.len() >= 45, "{named:?}");
+    let surfer = fs::read_to_string(folder.path().join("small_control.sucl")).expect("written");
+    let added: Vec<&str> = surfer.lines().filter_map(|line| line.strip_prefix("variable_add ")).collect();
+    assert!(added.len() == named.len() && added.iter().all(|path| there.contains_key(*path)), "{added:?}");
+}
+
 #[test]
 fn every_signal_of_the_views_is_in_the_trace() {
     let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("frames.csv"), [["-10.5"; 12].join(","), ["-20,0,7"; 4].join(",")].join("\n"))
-        .unwrap();
+    two_frames(folder.path());
     let reduced = fs::read_to_string(workspace("designs/small-control.toml")).expect("a design");
     let paper =
         reduced.replace("control = true\n", "").replace("kernel = \"point\"", "kernel = \"point\"\nplan = \"paper\"");
@@ -53,11 +110,7 @@ fn every_signal_of_the_views_is_in_the_trace() {
         let there = signals(&read("vcd"));
         let gtkwave = read("gtkw");
         assert!(gtkwave.starts_with(&format!("[dumpfile] \"{trace}\"\n")), "{gtkwave}");
-        let named: Vec<&str> = gtkwave.lines().filter(|line| line.starts_with("top.")).collect();
-        for signal in &named {
-            let (path, range) = signal.find('[').map_or((*signal, ""), |at| signal.split_at(at));
-            assert_eq!(there.get(path).map(String::as_str), Some(range), "{signal}");
-        }
+        let named = named_by_gtkwave(&gtkwave, &there);
         assert!(named.len() >= least, "{named:?}");
         let surfer = read("sucl");
         assert!(surfer.starts_with(&format!("load_file {trace}\n")) && surfer.ends_with("zoom_fit\n"), "{surfer}");
@@ -91,6 +144,13 @@ fn a_frame_is_shown_plainly_where_there_is_no_terminal() {
         page.replace("frame 9", ""),
         text(&testbench(folder.path(), &["view", &design]).stdout).replace("frame 0", "")
     );
+    let machine = testbench(folder.path(), &["view", &design, "--frame", "9", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&machine.stdout).expect("JSON");
+    assert_eq!((&json["design"], &json["frame"], &json["meaning"]), (&"small_4x3".into(), &9.into(), &"good".into()));
+    let field = json["field"]["f_z"].as_array().expect("a field");
+    assert!(field.len() == 12 && field.iter().all(serde_json::Value::is_f64), "{json}");
+    let shown = format!("{:.3}", json["F_z"].as_f64().expect("a force"));
+    assert!(page.contains(&format!(", {shown}) N")), "{shown} in {page}");
     let refused = testbench(folder.path(), &["view", &design, "--frame", "36"]);
     let message = text(&refused.stderr);
     assert!(!refused.status.success() && refused.stdout.is_empty());

@@ -3,10 +3,12 @@
 mod support;
 
 use golden::design::{Outputs, PlanKind};
-use support::{by_plan, in_parallel, shipped};
+use support::{by_plan, in_parallel, planned, shipped};
 use testbench::mutants::{self, Fate, Kind, mutants};
 use testbench::progress::Progress;
+use testbench::run::rtl_sources;
 use testbench::stress::{self, StressError, stress};
+use testbench::verilate::Verilate;
 
 const FRAMES: u64 = 3000;
 
@@ -40,6 +42,48 @@ fn the_seed_decides_everything() {
     assert_ne!(run(1).cycles, run(2).cycles);
     let none = stress(&design, &stress::Options { frames: 0, seed: 1 }, &Progress::hidden());
     assert!(matches!(none, Err(StressError::NoFrames)));
+}
+
+/// Faults that a run of `make mutants` once did not notice, because no frame and no pause reached them.
+#[test]
+fn faults_at_rare_moments_are_noticed() {
+    let [paper, reduced] =
+        [PlanKind::Paper, PlanKind::Reduced].map(|kind| by_plan(shipped("small"), kind, Outputs::Field));
+    let cases = [
+        // No quotient although there is no force along z.
+        (&reduced, "op_summary", "(bits_z == 7'd0) || (bits_xy == 7'd0)", "(bits_z == 7'd0) && (bits_xy == 7'd0)"),
+        // A direction that comes in the cycle in which the one before is taken is lost.
+        (
+            &paper,
+            "cean",
+            "if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin",
+            "if (push && (waiting == 2'd0)) begin",
+        ),
+        (
+            &reduced,
+            "cean",
+            "if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin",
+            "if (push && (waiting == 2'd0)) begin",
+        ),
+    ];
+    let noticed = in_parallel(&cases, |&(design, module, from, to)| {
+        let plan = planned(design);
+        let mut sources = rtl_sources(&plan).expect("emitted");
+        let file = format!("rtl/{}_{module}.v", design.name);
+        let text = String::from_utf8(sources.files[&file].clone()).expect("UTF-8");
+        assert_eq!(text.matches(from).count(), 1, "{file}: {from:?} stands there once");
+        sources.files.insert(file, text.replace(from, to).into());
+        let built = Verilate::default().build(&sources).expect("Verilator accepts it");
+        let wrong = |batch: u64| {
+            let mut core = built.load(batch as u32).expect("loaded");
+            stress::run_batch(&plan, &mut core, batch, stress::BATCH, 1, &|| ()).is_err()
+        };
+        // As many batches as a mutant goes through.
+        (0..3).any(wrong)
+    });
+    let names = cases.iter().map(|(design, module, ..)| format!("{}_{module}", design.name));
+    let missed: Vec<String> = names.zip(noticed).filter(|(_, noticed)| !noticed).map(|(name, _)| name).collect();
+    assert!(missed.is_empty(), "{missed:?}");
 }
 
 /// A sample of `make mutants`: one of each kind. The survivors among 220 are explained in docs/trust.md.

@@ -211,8 +211,8 @@ const DESCRIPTION: Description = Description {
 64-bit fixed point to float32: float_bits = fixed * 2^exponent, rounded to nearest even.
 
 Latency 7 enabled cycles (magnitude, four of normalisation, rounding, zeros and infinities), one value an enabled
-cycle. Zero gives +0;
-what rounds to less than 2^-126 becomes a zero of its sign, what exceeds the largest finite number an infinity.",
+cycle. Zero gives +0; what rounds to less than 2^-126 becomes a zero of its sign, what exceeds the largest finite
+number an infinity.",
     ports: &[
         ("clock", "rising edge"),
         ("enable", "every stage advances; else all hold"),

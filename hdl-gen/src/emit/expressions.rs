@@ -43,7 +43,8 @@ pub(super) fn slice(signal: &str, from: u32, to: u32) -> String {
 
 /// `value * index` as a sum of shifted copies, one for each bit of the index.
 pub(super) fn shift_and_add(value: &str, index: &str, bits: u32) -> String {
-    let term = |bit| format!("(({value} << {bit}) & {{48{{{index}[{bit}]}}}})");
+    let shifted = |bit| if bit == 0 { value.to_owned() } else { format!("({value} << {bit})") };
+    let term = |bit| format!("({} & {{48{{{index}[{bit}]}}}})", shifted(bit));
     (0..bits).map(term).collect::<Vec<_>>().join("\n        + ")
 }
 

@@ -14,11 +14,15 @@ const BEAT_BYTES: usize = 4;
 /// Width of the DMA's length register unless frames are longer, in bits.
 const LEAST_LENGTH_BITS: u32 = 14;
 
+/// Only where there is a testbench to run.
+const SIMULATION: &str = "vivado/simulate.tcl";
+
 /// `(path, template)`; `NAME` stands for the design's name.
-const FILES: [(&str, &str); 9] = [
+const FILES: [(&str, &str); 10] = [
     ("vivado/files.tcl", include_str!("../../templates/vivado/files.tcl.tera")),
     ("vivado/NAME.xdc", include_str!("../../templates/vivado/constraints.xdc.tera")),
     ("vivado/synth.tcl", include_str!("../../templates/vivado/synth.tcl.tera")),
+    (SIMULATION, include_str!("../../templates/vivado/simulate.tcl.tera")),
     ("vivado/package_ip.tcl", include_str!("../../templates/vivado/package_ip.tcl.tera")),
     ("vivado/block_design.tcl", include_str!("../../templates/vivado/block_design.tcl.tera")),
     ("vivado/out_of_context.tcl", include_str!("../../templates/vivado/out_of_context.tcl.tera")),
@@ -105,6 +109,9 @@ pub fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitEr
     };
     let context = Context::from_serialize(&view).map_err(failed("view"))?;
     for (path, template) in FILES {
+        if path == SIMULATION && view.testbench.is_none() {
+            continue;
+        }
         let text = Tera::one_off(template, &context, false).map_err(failed(path))?;
         files.insert(path.replace("NAME", &view.name), text.into_bytes());
     }
@@ -158,11 +165,14 @@ mod tests {
         let text = |files: &FileMap, path: &str| String::from_utf8(files[path].clone()).unwrap();
         assert!(!text(&files, "d.core").contains("d_tb"));
         assert_eq!(text(&files, "d.f"), "rtl/d.v\n");
+        assert!(!files.contains_key(SIMULATION) && !text(&files, "vivado/files.tcl").contains("testbench"));
         files.insert("sim/d_tb.v".to_owned(), Vec::new());
         files.insert("sim/d_stimulus.mem".to_owned(), Vec::new());
         insert(&plan, "0123456789abcdef", &mut files).unwrap();
         assert!(text(&files, "d.core").contains("sim/d_stimulus.mem: {copyto: d_stimulus.mem}"));
         assert!(text(&files, "d.core").contains("toplevel: d_tb"));
         assert!(text(&files, "Bender.yml").contains("sim/d_tb.v"));
+        assert!(text(&files, "vivado/files.tcl").contains("[file join $root sim/d_tb.v]"));
+        assert!(text(&files, SIMULATION).contains("testbench of d in"));
     }
 }

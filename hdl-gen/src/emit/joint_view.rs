@@ -112,7 +112,9 @@ impl JointView {
 
 fn times_reach() -> String {
     let bits = (0..POINT_BITS).filter(|bit| REACH >> bit & 1 == 1);
-    bits.map(|bit| format!("(u_wide <<< {bit})")).collect::<Vec<_>>().join(" + ")
+    bits.map(|bit| if bit == 0 { "u_wide".to_owned() } else { format!("(u_wide <<< {bit})") })
+        .collect::<Vec<_>>()
+        .join(" + ")
 }
 
 /// Constants of the correction.

@@ -1,5 +1,6 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
+mod columns;
 mod counts_view;
 mod expressions;
 mod flows;
@@ -54,8 +55,8 @@ pub enum EmitError {
 /// Version of the generator, as printed into every file.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, `control/`, file lists, `metadata.json`,
-/// `design.toml`.
+/// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, `control/`, file lists,
+/// `metadata.json`, `design.toml`.
 ///
 /// # Errors
 /// [`EmitError`] if a template and its data do not fit each other.

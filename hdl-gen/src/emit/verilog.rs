@@ -4,6 +4,7 @@ use tera::{Context, Tera};
 
 use crate::plan::Plan;
 
+use super::columns::wrap;
 use super::registers;
 use super::view::View;
 use super::{EmitError, VERSION};
@@ -138,9 +139,11 @@ pub(super) fn one(module: &str, template: &str, context: &Context) -> Result<Str
         .map_err(|source| EmitError::Template { template: module.to_owned(), source })
 }
 
-/// Puts the leading comment of `body` first, then the origin, then the directives that no module should miss.
+/// Puts the leading comment of `body` first, then the origin, then the directives that no module should miss; breaks
+/// long lines.
 pub(super) fn framed(origin: &str, body: &str) -> String {
     let comment_end = body.find("\nmodule ").map_or(0, |position| position + 1);
     let (comment, code) = body.split_at(comment_end);
-    format!("{comment}//\n{origin}\n`default_nettype none\n\n{}\n\n`default_nettype wire\n", code.trim_end())
+    let code = code.trim_end();
+    wrap(&format!("{comment}//\n{origin}\n`default_nettype none\n\n{code}\n\n`default_nettype wire\n"))
 }

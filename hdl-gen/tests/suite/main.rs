@@ -1,6 +1,7 @@
 //! Tests of the generator through its public interface, one module a topic.
 
 mod bad_input;
+mod columns;
 mod command;
 mod emission;
 mod folded_formats;

@@ -90,7 +90,17 @@ pub fn all(sources: &RtlSources) -> Vec<Mutation> {
     for (file, contents) in &sources.files {
         let text = String::from_utf8_lossy(contents);
         let verilog = Path::new(file).extension().is_some_and(|ending| ending == "v");
+        // Checks that only simulation has are no part of the hardware.
+        let mut hardware = true;
         for (index, line) in text.lines().enumerate() {
+            match line.trim() {
+                "// synthesis translate_off" => hardware = false,
+                "// synthesis translate_on" => hardware = true,
+                _ => {}
+            }
+            if !hardware {
+                continue;
+            }
             let changes = if verilog { verilog_changes(line) } else { rom_changes(line, index) };
             found.extend(changes.into_iter().map(|(kind, after)| Mutation {
                 kind,
@@ -231,6 +241,15 @@ mod tests {
         for line in ["// a && b", "input wire [3:0] a, // 4'd3", "wire _unused = &{1'b0, a && b};", ".WIDTH (4'd3),"] {
             assert!(changes(line).is_empty(), "{line}");
         }
+    }
+
+    #[test]
+    fn checks_of_the_simulation_are_left_alone() {
+        let text = "a <= b + c;\n// synthesis translate_off\nif (d) begin\n// synthesis translate_on\ne <= f;\n";
+        let files = [("rtl/t.v".to_owned(), text.as_bytes().to_vec())].into_iter().collect();
+        let found = all(&RtlSources { top: "t".to_owned(), files });
+        let lines: Vec<usize> = found.iter().map(|mutation| mutation.line).collect();
+        assert_eq!(lines, [1, 1, 5]);
     }
 
     #[test]

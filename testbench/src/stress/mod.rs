@@ -19,6 +19,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 use thiserror::Error;
 
+use packets::Packets;
 pub use packets::{Counts, Kind};
 
 use crate::dut::{Core, DutError};
@@ -190,10 +191,11 @@ pub fn run_batch(
 ) -> Result<Report, StressError> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     random.set_stream(batch);
-    let (kinds, packets): (Vec<Kind>, Vec<Vec<u32>>) = (0..frames).map(|_| packets::packet(plan, &mut random)).unzip();
+    let mixed = Packets::new(plan, &mut random);
+    let (kinds, packets): (Vec<Kind>, Vec<Vec<u32>>) = (0..frames).map(|_| mixed.next(&mut random)).unzip();
     let resets = resets(plan, frames, &mut random);
     let traffic = Traffic {
-        source: pattern(&mut random),
+        source: if batch % 3 == 1 { paced(plan, &mut random) } else { pattern(&mut random) },
         sink: pattern(&mut random),
         ..Traffic::new(&packets, 20 * timeout(plan))
     };
@@ -202,12 +204,20 @@ pub fn run_batch(
     judge(plan, &kinds, &packets, &resets, &outcome).map_err(|what| StressError::Wrong { batch, what })
 }
 
-/// Moments anywhere in the batch, some of them close to each other.
+/// Moments anywhere in the batch, some of them close to each other. Not in its last tenth: resets lose frames, and the
+/// batch ends the sooner.
 fn resets(plan: &Plan, frames: u64, random: &mut ChaCha8Rng) -> Vec<Reset> {
-    let end = frames * plan.timeline.interval_cycles;
+    let end = frames * plan.timeline.interval_cycles * 9 / 10;
     let mut cycles: Vec<u64> = (0..frames / FRAMES_PER_RESET).map(|_| random.random_range(0..end)).collect();
     cycles.sort_unstable();
     cycles.into_iter().map(|cycle| Reset { cycle, length: random.random_range(1..=4) }).collect()
+}
+
+/// A source that pauses about once a frame, for up to as long as the core has a frame: so frames meet each other
+/// everywhere inside.
+fn paced(plan: &Plan, random: &mut ChaCha8Rng) -> Pattern {
+    let longest_run = 2 * plan.taxels() as u32;
+    Pattern::Bursts { seed: random.random(), longest_run, longest_pause: plan.timeline.interval_cycles as u32 }
 }
 
 fn pattern(random: &mut ChaCha8Rng) -> Pattern {

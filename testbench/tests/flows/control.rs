@@ -12,7 +12,8 @@ use crate::folder::{Folder, run, workspace, yaml};
 
 const NAME: &str = "small_control";
 
-fn control() -> FileMap {
+/// The small design with a register bank.
+pub fn control() -> FileMap {
     let design = Design::load(&workspace().join("designs/small-control.toml")).expect("is right");
     emit(&Plan::new(&design).expect("can be planned")).expect("is printed")
 }

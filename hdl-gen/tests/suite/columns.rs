@@ -1,0 +1,69 @@
+//! No emitted line is longer than a person reads without scrolling.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use golden::design::Design;
+use hdl_gen::emit::emit;
+use hdl_gen::plan::Plan;
+
+use crate::support::{design_text, plan};
+
+/// Columns of a line, as in the project's own sources.
+const MOST_COLUMNS: usize = 120;
+
+/// Data, not text: words of memories, rows of matrices, and the joint estimator's weights in the resolved design.
+fn is_data(path: &str, line: &str) -> bool {
+    let memory = Path::new(path).extension().is_some_and(|ending| ending == "mem");
+    memory || path.starts_with("mcsr/") || (path == "design.toml" && line.trim_start().starts_with('['))
+}
+
+/// The designs that come with the project but the mat, whose text differs from theirs by widths only, and those that
+/// take ways of the templates which none of these takes.
+fn standing() -> Vec<Plan> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join("designs");
+    let mut files: Vec<_> = fs::read_dir(folder).expect("readable").map(|entry| entry.expect("there").path()).collect();
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "toml"));
+    files.sort();
+    assert!(files.len() > 20);
+    let shipped = files.iter().filter(|file| file.file_stem().is_some_and(|name| name != "bed-mat"));
+    let mut plans: Vec<Plan> =
+        shipped.map(|file| Plan::new(&Design::load(file).expect("right")).expect("a plan")).collect();
+    for (columns, rows, keys) in [
+        (4, 3, "plan = \"paper\"\n[hardware]\ncontrol = true"),
+        (7, 5, "plan = \"paper\"\n[hardware]\nlanes = 1"),
+        (7, 5, "plan = \"reduced\"\n[hardware]\noptimise = \"latency\""),
+        (7, 5, "plan = \"reduced\"\noutputs = \"resultants\"\n[hardware]\noptimise = \"latency\""),
+        (8, 8, "plan = \"reduced\"\n[hardware]\nskip_zeros = true"),
+        (8, 8, "plan = \"reduced\"\noutputs = \"resultants\"\n[hardware]\nskip_zeros = true"),
+        (8, 8, "plan = \"reduced\"\nestimator = \"joint\""),
+        (8, 8, "plan = \"reduced\"\nestimator = \"joint\"\noutputs = \"resultants\""),
+        (64, 27, "plan = \"reduced\"\n[hardware]\nlanes = 64"),
+        (5, 9, "plan = \"paper\"\n[hardware]\nlanes = 64\npart = \"LFE5U-85F-6BG381C\""),
+    ] {
+        let more = format!("[algorithm]\n{keys}");
+        plans.push(plan(&design_text("array", [columns, rows], [4.0, 4.0], 3.0, &more)));
+    }
+    let counts = design_text("counts", [6, 4], [4.0, 4.0], 3.0, "pa_per_count = -12.5\n[algorithm]\nplan = \"paper\"");
+    plans.push(plan(&counts));
+    plans
+}
+
+#[test]
+fn no_line_is_long() {
+    let mut long: BTreeMap<String, String> = BTreeMap::new();
+    for plan in standing() {
+        for (path, bytes) in emit(&plan).expect("emitted") {
+            let text = std::str::from_utf8(&bytes).expect("text");
+            let lines = text.lines().enumerate().filter(|(_, line)| line.chars().count() > MOST_COLUMNS);
+            for (number, line) in lines.filter(|(_, line)| !is_data(&path, line)) {
+                let path = path.replace(&plan.design.name, "NAME");
+                let columns = line.chars().count();
+                long.insert(format!("{path}:{}", number + 1), format!("{columns} columns: {line}"));
+            }
+        }
+    }
+    let long: Vec<String> = long.into_iter().map(|(place, line)| format!("{place}: {line}")).collect();
+    assert!(long.is_empty(), "{}", long.join("\n"));
+}

@@ -1,0 +1,207 @@
+// The frame handshake of a design that puts out resultants only: one program a frame, with up to three frames between
+// it and the output.
+//
+// The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
+// Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever.
+module harness (
+    input wire clock
+);
+
+    localparam [2:0] LAST_BEAT = 3'd7;
+
+    reg started = 1'b0;
+    wire reset = !started;
+    wire frame_ready;
+    wire start;
+    wire issued;
+    wire sums_complete;
+    wire sums_take;
+    wire coefficients_complete;
+    wire out_tready;
+    wire search_over;
+    wire issuing;
+    wire turns_busy;
+    wire [1:0] searches_due;
+    wire u_complete;
+    wire [1:0] u_waiting;
+    wire searching;
+    wire answer_waits;
+    wire search_done;
+    wire summary_busy;
+    wire summary_there;
+    wire summary_done;
+    wire output_start;
+    wire line_valid;
+    wire [2:0] line_state;
+    wire busy;
+    wire [2:0] beat;
+    wire beat_issued;
+    wire issued_last;
+    wire [11:1] valid;
+    wire [11:1] lasts;
+
+    subject subject (
+        .aclk          (clock),
+        .aresetn       (started),
+        .s_axis_tdata  (32'd0),
+        .s_axis_tvalid (1'b0),
+        .s_axis_tlast  (1'b0),
+        .m_axis_tready (1'b0),
+        // Inside
+        .frame_ready (frame_ready),
+        .start (start),
+        .issued (issued),
+        .sums_complete (sums_complete),
+        .sums_take (sums_take),
+        .coefficients_complete (coefficients_complete),
+        .out_tready (out_tready),
+        .search_over (search_over),
+        .\spmv_array.issuing_now (issuing),
+        .\turns.busy (turns_busy),
+        .\turns.searches_due (searches_due),
+        .\op.u_complete (u_complete),
+        .\op.u_waiting (u_waiting),
+        .\op.searching (searching),
+        .\op.answer_waits (answer_waits),
+        .\op.search_done (search_done),
+        .\op.summary_busy (summary_busy),
+        .\op.summary_there (summary_there),
+        .\op.summary_done (summary_done),
+        .\op.output_start (output_start),
+        .\op.line_valid (line_valid),
+        .\op.line.state (line_state),
+        .\op.frame_output.busy (busy),
+        .\op.frame_output.beat (beat),
+        .\op.frame_output.issued (beat_issued),
+        .\op.frame_output.issued_last (issued_last),
+        .\op.frame_output.valid (valid),
+        .\op.frame_output.lasts (lasts)
+    );
+
+    // Frames whose u is there, the register on its way counted; and sums whose taking has not been said yet
+    wire [2:0] u_there = {1'b0, u_waiting} + {2'd0, u_complete};
+    wire sums_stand = sums_wait && !sums_take;
+
+    // ---- Where the frames are: in the lanes, then with their last results on the way. A frame's program may begin
+    // while the results of the one before come out
+    reg arriving; // the last issue is over, the last result is not there
+    reg summed; // the sums of the frame whose results come out are complete
+    reg sums_wait; // and not taken
+    reg summary_due;
+    reg [3:0] recent; // sums were written in one of the last cycles
+    wire sums_written = $anyseq;
+
+    always @(posedge clock) begin
+        started <= 1'b1;
+        arriving <= issued || (arriving && !coefficients_complete);
+        summed <= (summed || sums_written) && !coefficients_complete;
+        sums_wait <= sums_written || (sums_wait && !sums_take);
+        recent <= {recent[2:0], sums_written};
+        summary_due <= search_over || (summary_due && !summary_done);
+        if (reset) begin
+            arriving <= 1'b0;
+            summed <= 1'b0;
+            sums_wait <= 1'b0;
+            recent <= 4'd0;
+            summary_due <= 1'b0;
+        end
+    end
+
+    // What was left out answers when it was asked, once. The schedule sees to it that a program's results are complete
+    // before the last issue of the next one, and that its sums come before them; a frame's sums do not come in the first
+    // cycles after those of the frame before
+    always @(*) begin
+        if (!reset) begin
+            assume (sums_complete == sums_wait);
+            assume (!sums_written || ((arriving || issuing) && !summed));
+            assume (!sums_written || (recent == 4'd0));
+            assume (!coefficients_complete || (arriving && summed));
+            assume (!issued || !arriving);
+            assume (!search_done || (searching && !answer_waits));
+            assume (!summary_done || summary_due);
+        end
+    end
+
+    always @(posedge clock) begin
+        if (!reset) begin
+            // One program at a time
+            assert (!start || !issuing);
+            // Nothing is overwritten before it was used: sums, u, the summary, the frame at the output
+            assert (!sums_written || !sums_wait);
+            assert (!coefficients_complete || (u_there < 3'd2));
+            assert (!search_over || !summary_busy);
+            assert (!output_start || !(busy || beat_issued || valid[1] || valid[2]));
+            // Places: two searches
+            assert (!start || (searches_due < 2'd2));
+            assert (!search_over || (searches_due != 2'd0));
+        end
+    end
+
+`ifdef INVARIANTS
+    always @(posedge clock) begin
+        if (!reset) begin
+            assert ({2'd0, searches_due} == {3'd0, issuing} + arriving + u_there + searching);
+            assert ((searches_due <= 2'd2) && !(start && (searches_due == 2'd2)));
+            assert ({3'd0, sums_stand} + (line_state != 3'd0) == {3'd0, summed} + u_there);
+            assert (!sums_take || (sums_wait && (line_state != 3'd0)));
+            assert (line_state <= 3'd4);
+            // A line that is free takes sums at once
+            assert (!sums_stand || (line_state != 3'd0) || searching || (recent != 4'd0));
+            assert (!sums_take || searching || !issuing || summed || (recent != 4'd0));
+            assert (!summed || issuing || arriving);
+            assert (turns_busy == (start || issuing));
+            // Op
+            assert (!answer_waits || searching);
+            assert (!summary_due || summary_busy);
+            assert (summary_there == (summary_busy && !summary_due));
+            // The beats of a frame pass the output's stages without a gap, the last one marked
+            assert (!beat_issued || (issued_last == !busy));
+            assert (!valid[1] || (lasts[1] == !beat_issued));
+            assert (!valid[2] || (lasts[2] == !valid[1]));
+            assert (beat_issued || !busy || !(valid[1] || valid[2]));
+            assert (valid[1] || !(busy || beat_issued) || !valid[2]);
+        end
+    end
+`endif
+
+    // ---- Progress: what is left to do for the frames inside. It never grows but by a new frame, and shrinks within
+    // three cycles in which those do something who may: so with a sink that is not for ever stalled, every frame ends
+    wire [9:0] left_in_lanes = (start ? 10'd110 : 10'd0) + (issuing ? 10'd107 : 10'd0) + (arriving ? 10'd102 : 10'd0)
+        - {9'd0, summed};
+    wire [9:0] left_of_search = 10'd90 * u_there + (searching ? (answer_waits ? 10'd75 : 10'd80) : 10'd0)
+        + (summary_due ? 10'd55 : summary_busy ? 10'd50 : 10'd0);
+    wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : valid[1] ? 10'd2
+        : {9'd0, valid[2]};
+    wire [9:0] left = left_in_lanes + left_of_search + left_at_output;
+    wire asked = issuing || arriving || (searching && !answer_waits) || summary_due;
+    wire answered = issued || sums_written || coefficients_complete || search_done || summary_done;
+    wire line_willing = (u_waiting == 2'd0) || searching || line_valid;
+    reg [3:1] watched = 3'd0;
+    reg [3:1] willing = 3'd0;
+    reg [3:1] new_frame = 3'd0;
+    reg [3:1] waits = 3'd0; // a frame has waited for so many cycles
+    reg [9:0] left_1;
+    reg [9:0] left_2;
+    reg [9:0] left_3;
+
+    always @(posedge clock) begin
+        watched <= {watched[2:1], !reset};
+        willing <= {willing[2:1], out_tready && line_willing && (answered || !asked)};
+        new_frame <= {new_frame[2:1], start};
+        waits <= {waits[2:1], frame_ready && !reset};
+        left_1 <= left;
+        left_2 <= left_1;
+        left_3 <= left_2;
+`ifdef INVARIANTS
+        if (watched[1] && !start && !new_frame[1]) begin
+            assert (left <= left_1);
+        end
+        if ((watched == 3'd7) && (willing == 3'd7) && !start && (new_frame == 3'd0)) begin
+            assert ((left_3 == 10'd0) || (left < left_3));
+        end
+        // A frame that waits is begun when nothing is in its way
+        assert ((waits != 3'd7) || (left != 10'd0));
+`endif
+    end
+
+endmodule
