@@ -135,7 +135,7 @@ report-full: build ## The same over every combination of filters, plans, widths 
 	@$(BIN)/testbench sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) --full
 
 .PHONY: hard
-hard: build ## Sensors, contacts and frames at the limits: a table, also in docs/hard-cases.md
+hard: tools build ## Sensors, contacts and frames at the limits, all through the RTL (minutes): docs/hard-cases.md
 	@$(BIN)/testbench hard --page docs/hard-cases.md
 
 .PHONY: sweep-tools

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use golden::design::{Design, PlanKind};
 use golden::output::write_whole;
 
-use testbench::hard;
+use testbench::hard::{self, Scope};
 use testbench::page;
 use testbench::progress::Progress;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
@@ -48,7 +48,7 @@ pub struct Arguments {
     /// What to run through the RTL in Verilator too, word by word; `all` if nothing is said.
     #[arg(long, value_enum, default_value = "none", num_args = 0..=1, default_missing_value = "all")]
     simulate: Simulate,
-    /// Add the table of hard cases to the page, as `testbench hard` makes it.
+    /// Add the table of hard cases to the page, as `testbench hard` makes it; through the RTL too with --simulate.
     #[arg(long)]
     hard: bool,
     /// Folder for the points and for sweep.json, sweep.csv and report.html.
@@ -114,7 +114,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
     write_whole(&place("sweep.csv"), table::csv(&outcomes.points)?.as_bytes())?;
     let mut contents = page::Contents::new(&designs, &sweep, &outcomes.points)?;
     if arguments.hard {
-        contents = contents.with_hard_cases(&hard::table(true, &progress)?);
+        contents = contents.with_hard_cases(&hard::table(
+            Scope { large: true, rtl: arguments.simulate != Simulate::None },
+            &progress,
+        )?);
     }
     write_whole(&place("report.html"), page::render(&contents)?.as_bytes())?;
     drop(progress);
