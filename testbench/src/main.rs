@@ -47,7 +47,7 @@ enum Command {
     ///
     /// Each point is a file in OUT/points, written whole; a sweep that was stopped goes on from there, and points that
     /// are there are not computed again. Without axes: filters with plans, and widths and lanes one at a time around
-    /// each design. Axes that are named beside --filters, --plans or --full are combined.
+    /// each design. Axes that are named beside --filters, --plans, --estimators or --full are combined.
     Sweep(commands::sweep::Arguments),
     /// Sensors, contacts and frames at the limits, in f64, float32, the hardware's integers and the simulated RTL:
     /// condition numbers, backward errors, errors, statuses.
