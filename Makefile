@@ -37,7 +37,7 @@ run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a l
 	@$(BIN)/testbench run designs/bed-mat.toml --frames data/bed_mat_64x27.csv --labels 2
 
 .PHONY: test
-test: tools lint ## Everything: formatting, lints, all tests of all crates
+test: tools sweep-tools lint ## Everything: formatting, lints, all tests of all crates
 	$(CARGO) test --workspace
 
 .PHONY: formal
@@ -131,11 +131,11 @@ report: tools build ## Speed against error: target/sweep/report.html, a page to 
 	@$(BIN)/testbench sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) $(SWEEP_OPTIONS)
 
 .PHONY: report-full
-report-full: build ## The same over every combination of filters, plans, widths and lanes: thousands of points
+report-full: tools build ## The same over every combination of filters, plans, widths and lanes: thousands of points
 	@$(BIN)/testbench sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) --full
 
 .PHONY: hard
-hard: build ## Sensors, contacts and frames at the limits: a table, also in docs/hard-cases.md
+hard: tools build ## Sensors, contacts and frames at the limits, all through the RTL (minutes): docs/hard-cases.md
 	@$(BIN)/testbench hard --page docs/hard-cases.md
 
 .PHONY: sweep-tools
@@ -143,7 +143,7 @@ sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one 
 	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-sweep.txt
 
 .PHONY: sweep-cluster
-sweep-cluster: sweep-tools build ## The report by Snakemake, one job a point
+sweep-cluster: sweep-tools build ## The report by Snakemake, one `testbench run --json` a job
 	@SWEEP_DESIGNS='$(SWEEP_DESIGNS)' SWEEP_SCENES='$(SWEEP_SCENES)' SWEEP_OPTIONS='$(SWEEP_OPTIONS)' SWEEP_FOLDER='$(SWEEP_FOLDER)' \
 	    TESTBENCH='$(BIN)/testbench' .venv/bin/snakemake --snakefile tools/sweep.smk $(SNAKEMAKE_OPTIONS)
 

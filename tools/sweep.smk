@@ -1,8 +1,8 @@
-# Snakemake workflow of `testbench sweep`: one job a point, then the report. Started by `make sweep-cluster`; the
-# machines of a cluster need the same folder and the same program. Points that are there are not computed again, whoever
-# made them.
+# Snakemake workflow of `testbench sweep`: `testbench run --json` for each point, one a job, then the report. Started by
+# `make sweep-cluster`; the machines of a cluster need the same folder and the same program. Runs that are there are not
+# made again.
 import os
-import subprocess
+from pathlib import Path
 
 TESTBENCH = os.environ.get("TESTBENCH", "target/debug/testbench")
 FOLDER = os.environ.get("SWEEP_FOLDER", "target/sweep")
@@ -10,36 +10,60 @@ DESIGNS = os.environ["SWEEP_DESIGNS"].split()
 SCENES = os.environ.get("SWEEP_SCENES", "").split()
 OPTIONS = os.environ.get("SWEEP_OPTIONS", "").split()
 
+JOBS = f"{FOLDER}/jobs"
 SWEEP = [TESTBENCH, "sweep", *DESIGNS, *(["--scene", *SCENES] if SCENES else []), *OPTIONS, "--out", FOLDER]
-# The keys change with designs, scenes and program: results of others stay where they are and are not asked for.
-KEYS = subprocess.run([*SWEEP, "--list"], check=True, stdout=subprocess.PIPE, text=True).stdout.split()
 
 
-# Snakemake knows only whether a file is there. With --simulate a point that is there without the RTL has to be made
-# anew, which `testbench sweep` does in the last rule.
+def reports(wildcards):
+    """A report for each point that has hardware: known once they are prepared."""
+    jobs = Path(checkpoints.prepare.get().output[0])
+    return sorted(f"{FOLDER}/runs/{design.parent.name}.json" for design in jobs.glob("*/design.toml"))
+
+
+# Points without hardware have no job; the f64 solver answers for them here.
 rule report:
     input:
-        points=expand(FOLDER + "/points/{key}.json", key=KEYS),
+        runs=reports,
         scenes=SCENES,
         designs=DESIGNS,
     output:
-        page=FOLDER + "/report.html",
-        table=FOLDER + "/sweep.csv",
-        points=FOLDER + "/sweep.json",
+        page=f"{FOLDER}/report.html",
+        table=f"{FOLDER}/sweep.csv",
+        points=f"{FOLDER}/sweep.json",
+    params:
+        command=SWEEP,
+        runs=f"{FOLDER}/runs",
+    shell:
+        "{params.command:q} --runs {params.runs:q}"
+
+
+# Keys, and so the names of the jobs, change with designs, scenes and program.
+checkpoint prepare:
+    input:
+        scenes=SCENES,
+        designs=DESIGNS,
+        program=TESTBENCH,
+    output:
+        directory(JOBS),
     params:
         command=SWEEP,
     shell:
-        "{params.command:q}"
+        "{params.command:q} --prepare"
 
 
-rule point:
+rule run:
+    input:
+        design=JOBS + "/{key}/design.toml",
+        frames=JOBS + "/{key}/frames.csv",
+        forces=JOBS + "/{key}/frames.forces.csv",
     output:
-        FOLDER + "/points/{key}.json",
+        FOLDER + "/runs/{key}.json",
     params:
-        command=SWEEP,
+        testbench=TESTBENCH,
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=2000,
+        runtime=30,
     shell:
-        "RAYON_NUM_THREADS={threads} {params.command:q} --point {wildcards.key}"
+        "{params.testbench:q} run {input.design:q} --frames {input.frames:q} --reference {input.forces:q} --json"
+        " > {output:q}"

@@ -47,12 +47,13 @@ enum Command {
     ///
     /// Each point is a file in OUT/points, written whole; a sweep that was stopped goes on from there, and points that
     /// are there are not computed again. Without axes: filters with plans, and widths and lanes one at a time around
-    /// each design. Axes that are named beside --filters, --plans or --full are combined.
+    /// each design. Axes that are named beside --filters, --plans, --estimators or --full are combined.
     Sweep(commands::sweep::Arguments),
-    /// Sensors, contacts and frames at the limits, in f64, float32 and the hardware's integers: condition numbers,
-    /// backward errors, errors, statuses.
+    /// Sensors, contacts and frames at the limits, in f64, float32, the hardware's integers and the simulated RTL:
+    /// condition numbers, backward errors, errors, statuses.
     ///
-    /// The exit code is 0 only if no answer is wrong in silence: no NaN, no force beyond reason without a status bit.
+    /// The exit code is 0 only if no answer is wrong in silence, a NaN or a force beyond reason without a status bit,
+    /// and every word of the RTL is the model's.
     Hard(commands::hard::Arguments),
     /// Send very many frames, good, short, long and with NaN, through streams that pause at random and resets.
     ///

@@ -1,19 +1,15 @@
 //! Hard cases: nothing wrong in silence, and the RTL on the same frames.
 
-mod support;
-
 use std::process::Command;
 
-use golden::design::Design;
 use serde_json::Value;
 use testbench::hard::cases::{self, Case};
-use testbench::hard::judge::Row;
-use testbench::hard::{is_sound, table};
+use testbench::hard::judge::{Judged, Row};
+use testbench::hard::{Scope, is_sound, rtl, table};
 use testbench::progress::Progress;
-use testbench::words::encode;
 
 fn rows() -> Vec<Row> {
-    table(false, &Progress::hidden()).expect("a table")
+    table(Scope { large: false, rtl: false }, &Progress::hidden()).expect("a table")
 }
 
 fn row<'a>(rows: &'a [Row], case: &str) -> &'a Row {
@@ -31,7 +27,12 @@ fn no_answer_is_wrong_in_silence() {
             assert!(why.contains("regularisation") && why.contains("condition number"), "{why}");
             continue;
         };
-        let [f64, f32] = [&row.f64, &row.f32].map(|judged| judged.as_ref().expect("solved"));
+        let f64 = row.f64.as_ref().expect("solved");
+        if row.estimator == "joint" {
+            check_joint(row, f64, fixed);
+            continue;
+        }
+        let f32 = row.f32.as_ref().expect("solved");
         // Where two pushes cancel, the direction is that of rounding, and f64 has more of it.
         if row.case != "two contacts, opposed pushes" {
             assert_eq!(fixed.status, f64.status, "{}", row.case);
@@ -51,9 +52,27 @@ fn no_answer_is_wrong_in_silence() {
     }
 }
 
+/// Matrices are those of the line estimator; there is no float32.
+fn check_joint(row: &Row, f64: &Judged, fixed: &Judged) {
+    assert!(row.f32.is_none());
+    assert_eq!(fixed.status, f64.status, "{}", row.case);
+    for (reference, found) in [(f64.tangential, fixed.tangential), (f64.normal, fixed.normal)] {
+        let difference = reference.zip(found).map_or(0.0, |(reference, found)| (reference - found).abs());
+        assert!(difference < 0.5, "{}: {difference}", row.case);
+    }
+    // With its gain A f is not b; so much the hardware says too.
+    let difference = f64.backward.zip(fixed.backward).map_or(0.0, |(reference, found)| (reference - found).abs());
+    assert!(difference < 1e-2, "{row:?}");
+}
+
 #[test]
 fn a_single_silent_frame_is_not_sound() {
     let mut rows = rows();
+    assert!(rows.iter().all(|row| row.rtl_is_model.is_none()), "none was asked");
+    rows[0].rtl_is_model = Some(false);
+    assert!(!is_sound(&rows));
+    rows[0].rtl_is_model = Some(true);
+    assert!(is_sound(&rows));
     rows[0].fixed.as_mut().expect("hardware").silent = 1;
     assert!(!is_sound(&rows));
 }
@@ -94,22 +113,23 @@ fn regularisation_keeps_deep_sensors_and_leaves_shallow_ones() {
     }
 }
 
-/// One frame of each case of a design.
-fn packets(cases: &[Case], design: &Design) -> Vec<Vec<u32>> {
-    let own = cases.iter().filter(|case| case.design == *design);
-    own.flat_map(|case| case.frames.iter().take(3)).map(|frame| encode(frame)).collect()
-}
-
+/// All cases go through the RTL in `make hard`; here three frames of those of three designs.
 #[test]
 fn the_rtl_answers_hard_frames_as_the_model_does() {
-    let cases = cases::all(false).expect("cases");
-    for (case, fewest) in [("no contact", 60), ("h/s = 3, regularised", 3)] {
-        let design = &cases.iter().find(|other| other.name == case).expect("a case").design;
-        let packets = packets(&cases, design);
-        assert!(packets.len() >= fewest, "{case}: {}", packets.len());
-        let plan = support::planned(design);
-        support::simulate_exactly(&plan, &support::built(&plan), &packets, 3)
-            .unwrap_or_else(|error| panic!("{case}: {error}"));
+    let line = cases::all(false).expect("cases");
+    let joint = cases::by_joint(&line).expect("cases");
+    let design = |cases: &[Case], name: &str| {
+        cases.iter().find(|case| case.name == name).unwrap_or_else(|| panic!("{name}")).design.clone()
+    };
+    let wanted = [design(&line, "no contact"), design(&joint, "no contact"), design(&line, "h/s = 4, regularised")];
+    let mut cases: Vec<Case> = line.into_iter().chain(joint).filter(|case| wanted.contains(&case.design)).collect();
+    for case in &mut cases {
+        case.frames.truncate(3);
+    }
+    assert!(wanted.iter().all(|design| cases.iter().any(|case| case.design == *design)) && cases.len() > 60);
+    let exact = rtl::check(&cases, &Progress::hidden()).expect("simulated");
+    for (case, exact) in cases.iter().zip(exact) {
+        assert_eq!(exact, Some(true), "{}, {:?}", case.name, case.design.algorithm.estimator);
     }
 }
 
@@ -133,7 +153,9 @@ fn the_command_prints_a_table_and_writes_a_page() {
     for row in &json {
         let case = row["case"].as_str().expect("a name");
         assert!(text.contains(case) && written.contains(case), "{case}");
+        assert!(row["rtl_is_model"].is_null(), "--quick simulates nothing");
         assert_eq!(row["f64"].as_object().map_or(0, |judged| judged["silent"].as_u64().expect("a count") as usize), 0);
     }
-    assert!(written.contains("## Depth over pitch") && written.contains("| h/s = 4 |"));
+    assert!(written.contains("## Depth over pitch\n") && written.contains("| h/s = 4 |"));
+    assert!(written.contains("## Contacts, joint estimator\n"));
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use golden::design::{Design, PlanKind};
+use golden::design::{Design, Estimator, PlanKind};
 use serde_json::Value;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
 use testbench::sweep::{SweepError, SweepScene};
@@ -85,6 +85,43 @@ fn points_are_the_combinations_that_exist_each_once() {
     assert_eq!(full.expect("points").len(), filters * 2 * 5 * 6 * 6);
     let none = Axes { plans: vec![PlanKind::Reduced], lanes: vec![3], ..Axes::default() };
     assert!(matches!(jobs(&[base], &none, &mut Vec::new()), Err(SweepError::NoPoints)));
+}
+
+#[test]
+fn the_joint_estimator_is_an_axis_with_the_constants_of_a_design_that_has_it() {
+    let line = Design::load(Path::new(&small())).expect("a design");
+    let mut joint = line.clone();
+    (joint.algorithm.plan, joint.algorithm.estimator) = (PlanKind::Reduced, Estimator::Joint);
+    joint.algorithm.joint.gain = 1.125;
+    let axes = |estimators: &[Estimator]| Axes {
+        filters: vec![FilterAxis::None, FilterAxis::F2(Some(50.0))],
+        estimators: estimators.to_vec(),
+        ..Axes::default()
+    };
+    let points = |designs: &[Design], estimators: &[Estimator]| {
+        jobs(designs, &axes(estimators), &mut Vec::new()).expect("points")
+    };
+    let by = |jobs: &[testbench::sweep::grid::Job], estimator| {
+        jobs.iter().filter(|job| job.design.algorithm.estimator == estimator).count()
+    };
+    let both = [line.clone(), joint.clone()];
+    let swept = points(&both, &[Estimator::Line, Estimator::Joint]);
+    // The paper's plan has the line estimator only.
+    assert_eq!((by(&swept, Estimator::Line), by(&swept, Estimator::Joint)), (4, 2));
+    for job in &swept {
+        let (algorithm, is_joint) = (&job.design.algorithm, job.design.algorithm.estimator == Estimator::Joint);
+        assert_eq!(algorithm.joint.gain.to_bits(), if is_joint { 1.125_f64 } else { 1.0 }.to_bits());
+    }
+    assert_eq!(by(&points(&both, &[]), Estimator::Joint), 0, "filters are judged with the line estimator");
+    let alone = jobs(std::slice::from_ref(&line), &axes(&[Estimator::Joint]), &mut Vec::new());
+    assert!(matches!(alone, Err(SweepError::NoPoints)), "no constants");
+    // Constants are a part of the key.
+    let mut other = joint.clone();
+    other.algorithm.joint.gain = 1.25;
+    let keys = |joint: &Design| {
+        points(&[line.clone(), joint.clone()], &[Estimator::Joint]).into_iter().map(|job| job.key).collect::<Vec<_>>()
+    };
+    assert!(keys(&joint).iter().all(|key| !keys(&other).contains(key)));
 }
 
 #[test]
@@ -223,21 +260,39 @@ fn a_design_without_hardware_is_a_point_that_says_so() {
     assert_eq!(points[0]["errors"], points[0]["solver_errors"]);
 }
 
+/// `testbench run` on a prepared point; the report goes to `runs`.
+fn run_prepared(job: &Path, runs: &Path) {
+    let file = |name: &str| job.join(name).display().to_string();
+    let (design, frames, forces) = (file("design.toml"), file("frames.csv"), file("frames.forces.csv"));
+    let report = succeeds(&["run", &design, "--frames", &frames, "--reference", &forces, "--json"]);
+    fs::create_dir_all(runs).expect("a folder");
+    let key = job.file_name().expect("a key").to_str().expect("UTF-8");
+    fs::write(runs.join(format!("{key}.json")), report).expect("written");
+}
+
 #[test]
-fn one_point_is_a_job_of_its_own() {
+fn a_point_can_be_a_run_of_its_own() {
     let folder = tempfile::tempdir().expect("a folder");
-    let out = folder.path().join("out");
-    let place = out.display().to_string();
-    let options = ["sweep", &small(), "--filters", "none", "--out", &place];
-    let keys = succeeds(&[&options[..], &["--list"]].concat());
-    let keys: Vec<&str> = keys.lines().collect();
-    assert_eq!(keys.len(), 2, "both plans");
-    for key in &keys {
-        assert!(succeeds(&[&options[..], &["--point", key]].concat()).contains(key));
+    let [out, runs] = ["out", "runs"].map(|name| folder.path().join(name));
+    let (place, reports) = (out.display().to_string(), runs.display().to_string());
+    let options = ["sweep", &small(), "--filters", "none", "--plans", "reduced", "--out", &place];
+    assert!(succeeds(&[&options[..], &["--prepare"]].concat()).starts_with("1 of 1 points to run"));
+    let job = fs::read_dir(out.join("jobs")).expect("a folder").next().expect("a job").expect("an entry").path();
+    run_prepared(&job, &runs);
+    let with_runs = [&options[..], &["--runs", &reports, "--json"]].concat();
+    let points: Vec<Value> = serde_json::from_str(&succeeds(&with_runs)).expect("JSON");
+    assert_eq!((points.len(), &points[0]["verified"]), (1, &Value::from("rtl")));
+    // A report of something else proves nothing.
+    let key = points[0]["key"].as_str().expect("a key").to_owned();
+    let report = runs.join(key.clone() + ".json");
+    let text = fs::read_to_string(&report).expect("read");
+    for (from, to) in [("\"bit_exact\": true", "\"bit_exact\": false"), ("\"frames\":", "\"images\":")] {
+        fs::write(&report, text.replace(from, to)).expect("written");
+        fs::remove_file(out.join(format!("points/{key}.json"))).ok();
+        let output = testbench(&with_runs);
+        assert!(!output.status.success() && output.stdout.is_empty(), "{output:?}");
+        assert!(["point ", &key, "run the point again"].iter().all(|word| self::text(&output.stderr).contains(word)));
     }
-    assert!(succeeds(&options).starts_with("2 points, 0 of them computed now\n"));
-    let output = testbench(&[&options[..], &["--point", "0123"]].concat());
-    assert!(!output.status.success() && text(&output.stderr).contains("0123 is no point"), "{output:?}");
 }
 
 #[test]
@@ -257,25 +312,26 @@ fn what_does_not_fit_is_refused() {
     assert!(refused(&["--scene", "no-such.toml"]).contains("no-such.toml"));
 }
 
-/// With Snakemake's local executor; it is installed by `make sweep-tools`.
+/// With Snakemake's local executor, two points: `testbench run` for each, then the report of both.
 #[test]
-#[ignore = "needs Snakemake: make sweep-tools"]
 fn the_workflow_makes_the_same_report() {
     let folder = tempfile::tempdir().expect("a folder");
     let [jobs, here] = ["jobs", "here"].map(|name| folder.path().join(name));
     let snakemake = root().join(".venv/bin/snakemake");
+    assert!(snakemake.exists(), "Snakemake is missing: make sweep-tools");
     let output = Command::new(&snakemake)
         .args(["--snakefile", "tools/sweep.smk", "--cores", "2", "--quiet", "--directory"])
         .arg(folder.path())
         .env("TESTBENCH", env!("CARGO_BIN_EXE_testbench"))
         .env("SWEEP_FOLDER", &jobs)
         .env("SWEEP_DESIGNS", small())
-        .env("SWEEP_OPTIONS", "--filters none,f2-50")
+        .env("SWEEP_OPTIONS", "--filters none")
         .current_dir(root())
         .output()
         .expect("Snakemake starts");
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    succeeds(&["sweep", &small(), "--filters", "none,f2-50", "--out", &here.display().to_string()]);
+    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
+    assert_eq!(fs::read_dir(jobs.join("runs")).expect("reports").count(), 2, "both plans");
+    succeeds(&["sweep", &small(), "--filters", "none", "--simulate", "--out", &here.display().to_string()]);
     for file in ["report.html", "sweep.json", "sweep.csv"] {
         let read = |folder: &Path| fs::read(folder.join(file)).expect("written");
         assert!(read(&jobs) == read(&here), "{file}");

@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use clap::Args;
 use golden::output::write_whole;
 
-use testbench::hard;
+use testbench::hard::{self, Scope};
 use testbench::progress::Progress;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Leave out what takes more than a second.
+    /// Leave out what takes more than a second: large sensors, and the RTL of all.
     #[arg(long)]
     quick: bool,
     /// Where to write the table as a page (Markdown).
@@ -24,7 +24,7 @@ pub struct Arguments {
 
 /// Judges the hard cases; returns what to print, and whether all is as it must be.
 pub fn run(arguments: &Arguments) -> Result<(String, bool), Box<dyn Error>> {
-    let rows = hard::table(!arguments.quick, &Progress::new())?;
+    let rows = hard::table(Scope { large: !arguments.quick, rtl: !arguments.quick }, &Progress::new())?;
     let sound = hard::is_sound(&rows);
     if let Some(path) = &arguments.page {
         write_whole(path, hard::render::markdown(&rows).as_bytes())?;

@@ -4,10 +4,10 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use golden::design::{Design, PlanKind};
+use golden::design::{Design, Estimator, PlanKind};
 use golden::output::write_whole;
 
-use testbench::hard;
+use testbench::hard::{self, Scope};
 use testbench::page;
 use testbench::progress::Progress;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
@@ -42,24 +42,29 @@ pub struct Arguments {
     /// Numbers of lanes.
     #[arg(long, value_delimiter = ',')]
     lanes: Vec<usize>,
+    /// Estimators; the joint one, with the reduced plan, has the constants of a design given that has it, on the same
+    /// sensor.
+    #[arg(long, value_delimiter = ',')]
+    estimators: Vec<EstimatorWord>,
     /// Every combination: thousands of points.
     #[arg(long)]
     full: bool,
     /// What to run through the RTL in Verilator too, word by word; `all` if nothing is said.
     #[arg(long, value_enum, default_value = "none", num_args = 0..=1, default_missing_value = "all")]
     simulate: Simulate,
-    /// Add the table of hard cases to the page, as `testbench hard` makes it.
+    /// Add the table of hard cases to the page, as `testbench hard` makes it; through the RTL too with --simulate.
     #[arg(long)]
     hard: bool,
     /// Folder for the points and for sweep.json, sweep.csv and report.html.
     #[arg(long, value_name = "FOLDER", default_value = OUT)]
     out: PathBuf,
-    /// Print the points' keys, one a line, and compute nothing.
-    #[arg(long, conflicts_with_all = ["point", "json"])]
-    list: bool,
-    /// Compute this point alone, if it is not there.
-    #[arg(long, value_name = "KEY")]
-    point: Option<String>,
+    /// Write OUT/jobs/KEY for each point that has hardware, with what `testbench run` needs: design.toml, frames.csv
+    /// and frames.forces.csv; compute nothing.
+    #[arg(long, conflicts_with = "json")]
+    prepare: bool,
+    /// Folder with reports of such runs (`testbench run --json`), KEY.json each: they stand for the simulation.
+    #[arg(long, value_name = "FOLDER")]
+    runs: Option<PathBuf>,
     /// Print the points as JSON.
     #[arg(long)]
     json: bool,
@@ -69,6 +74,12 @@ pub struct Arguments {
 enum PlanWord {
     Paper,
     Reduced,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum EstimatorWord {
+    Line,
+    Joint,
 }
 
 fn filter(word: &str) -> Result<FilterAxis, String> {
@@ -83,28 +94,30 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
         PlanWord::Paper => PlanKind::Paper,
         PlanWord::Reduced => PlanKind::Reduced,
     };
+    let estimator = |word: &EstimatorWord| match word {
+        EstimatorWord::Line => Estimator::Line,
+        EstimatorWord::Joint => Estimator::Joint,
+    };
     let axes = Axes {
         filters: arguments.filters.clone(),
         plans: arguments.plans.iter().map(plan).collect(),
         coefficient_bits: arguments.coefficient_bits.clone(),
         data_bits: arguments.data_bits.clone(),
         lanes: arguments.lanes.clone(),
+        estimators: arguments.estimators.iter().map(estimator).collect(),
         full: arguments.full,
     };
     let jobs = jobs(&designs, &axes, &mut scenes)?;
-    if arguments.list {
-        return Ok(jobs.iter().map(|job| job.key.clone() + "\n").collect());
+    let sweep = Sweep { jobs, scenes, simulate: arguments.simulate, runs: arguments.runs.clone() };
+    if arguments.prepare {
+        let count = sweep.prepare(&arguments.out)?;
+        return Ok(format!(
+            "{count} of {} points to run in {}\n",
+            sweep.jobs.len(),
+            arguments.out.join("jobs").display()
+        ));
     }
-    let sweep = Sweep { jobs, scenes, simulate: arguments.simulate };
     let store = Store::open(&arguments.out)?;
-    if let Some(key) = &arguments.point {
-        let point = sweep.run_one(key, &store)?;
-        return Ok(if arguments.json {
-            serde_json::to_string_pretty(&point)? + "\n"
-        } else {
-            format!("{}: {}\n", store.path(key).display(), point.label())
-        });
-    }
     let progress = Progress::new();
     let outcomes = sweep.run(&store, &progress)?;
     progress.stage("drawing the report");
@@ -114,7 +127,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
     write_whole(&place("sweep.csv"), table::csv(&outcomes.points)?.as_bytes())?;
     let mut contents = page::Contents::new(&designs, &sweep, &outcomes.points)?;
     if arguments.hard {
-        contents = contents.with_hard_cases(&hard::table(true, &progress)?);
+        contents = contents.with_hard_cases(&hard::table(
+            Scope { large: true, rtl: arguments.simulate != Simulate::None },
+            &progress,
+        )?);
     }
     write_whole(&place("report.html"), page::render(&contents)?.as_bytes())?;
     drop(progress);

@@ -1,6 +1,6 @@
 //! What makes an estimator fail: deep sensors, contacts that fit no taxel, frames that are no contact, broken taxels.
 
-use golden::design::{Design, DesignError, Sensor};
+use golden::design::{Design, DesignError, Estimator, Sensor};
 use golden::metrics::Outcome;
 use golden::scene::{Contact, Converter, Medium, Scene, SceneError, SensorErrors, Shape};
 
@@ -20,6 +20,10 @@ pub struct Case {
     /// True forces where there are any.
     pub truth: Option<Vec<Outcome>>,
 }
+
+/// Designs with constants of the joint estimator for their sensors.
+const CALIBRATED: [&str; 2] =
+    [include_str!("../../../designs/sensor1-joint.toml"), include_str!("../../../designs/sensor2-joint.toml")];
 
 /// Depth over pitch of the deep sensors.
 pub const DEPTHS: [f64; 8] = [0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0];
@@ -123,6 +127,29 @@ pub fn all(large: bool) -> Result<Vec<Case>, HardError> {
     ends_of_range(&mut cases)?;
     without_answer(&mut cases)?;
     Ok(cases.0)
+}
+
+/// The same cases by the joint estimator: with the constants of the shipped designs where the sensor and its
+/// regularisation are theirs, else with none, as a user has it who did not calibrate.
+///
+/// # Errors
+/// [`HardError::Design`] if a shipped design cannot be read.
+pub fn by_joint(cases: &[Case]) -> Result<Vec<Case>, HardError> {
+    let calibrated =
+        CALIBRATED.map(|text| Design::from_toml(text, "joint")).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let of = |case: &Case| {
+        let mut case = case.clone();
+        let algorithm = &mut case.design.algorithm;
+        algorithm.estimator = Estimator::Joint;
+        let shipped = calibrated.iter().find(|shipped| {
+            shipped.sensor == case.design.sensor && shipped.algorithm.regularisation == algorithm.regularisation
+        });
+        if let Some(shipped) = shipped {
+            algorithm.joint.clone_from(&shipped.algorithm.joint);
+        }
+        case
+    };
+    Ok(cases.iter().map(of).collect())
 }
 
 fn depths(cases: &mut Cases) -> Result<(), HardError> {

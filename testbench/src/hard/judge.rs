@@ -1,5 +1,6 @@
 //! One case in three arithmetics.
 
+use golden::design::Estimator;
 use golden::matrices::Matrices;
 use golden::metrics::field_error;
 use golden::solver::{Solution, Solver};
@@ -41,6 +42,8 @@ pub struct Row {
     pub group: &'static str,
     /// The case.
     pub case: String,
+    /// `line` or `joint`.
+    pub estimator: &'static str,
     /// Frames.
     pub frames: usize,
     /// Condition number of C33.
@@ -49,10 +52,12 @@ pub struct Row {
     pub condition_aat: Option<f64>,
     /// The f64 solver.
     pub f64: Option<Judged>,
-    /// The same in float32.
+    /// The same in float32; the line estimator only.
     pub f32: Option<Judged>,
     /// The integer model of the hardware.
     pub fixed: Option<Judged>,
+    /// Whether the simulated RTL gave the integer model's words; nothing if it was not asked, or there is none.
+    pub rtl_is_model: Option<bool>,
     /// Why there is no hardware, or no solver.
     pub refusal: Option<String>,
 }
@@ -62,12 +67,14 @@ pub fn judge(case: &Case) -> Row {
     let mut row = Row {
         group: case.group,
         case: case.name.clone(),
+        estimator: if case.design.algorithm.estimator == Estimator::Joint { "joint" } else { "line" },
         frames: case.frames.len(),
         condition_c33: None,
         condition_aat: None,
         f64: None,
         f32: None,
         fixed: None,
+        rtl_is_model: None,
         refusal: None,
     };
     let solver = match Solver::new(&case.design) {

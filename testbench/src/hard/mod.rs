@@ -3,6 +3,7 @@
 pub mod cases;
 pub mod judge;
 pub mod render;
+pub mod rtl;
 pub mod single;
 
 use golden::design::DesignError;
@@ -11,6 +12,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::progress::Progress;
+use crate::run::RunError;
 use cases::Case;
 use judge::Row;
 
@@ -23,26 +25,47 @@ pub enum HardError {
     /// A case's scene cannot be computed; a defect of the table.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A design's RTL cannot be built or simulated.
+    #[error(transparent)]
+    Run(#[from] RunError),
 }
 
-/// Judges all cases, on all cores.
+/// How much of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scope {
+    /// What takes more than a second too.
+    pub large: bool,
+    /// All frames through the RTL: a build for each design.
+    pub rtl: bool,
+}
+
+/// Judges all cases, on all cores: by the line estimator, then by the joint one.
 ///
 /// # Errors
-/// [`HardError`] if a case cannot be made.
-pub fn table(large: bool, progress: &Progress) -> Result<Vec<Row>, HardError> {
-    let cases: Vec<Case> = cases::all(large)?;
+/// [`HardError`] if a case cannot be made, or its RTL not be simulated.
+pub fn table(scope: Scope, progress: &Progress) -> Result<Vec<Row>, HardError> {
+    let mut cases: Vec<Case> = cases::all(scope.large)?;
+    cases.extend(cases::by_joint(&cases)?);
     progress.counted_in("cases", "hard cases", cases.len() as u64);
-    Ok(cases
+    let mut rows: Vec<Row> = cases
         .par_iter()
         .map(|case| {
             let row = judge::judge(case);
             progress.step();
             row
         })
-        .collect())
+        .collect();
+    if scope.rtl {
+        for (row, exact) in rows.iter_mut().zip(rtl::check(&cases, progress)?) {
+            row.rtl_is_model = exact;
+        }
+    }
+    Ok(rows)
 }
 
-/// Whether no case had a result that nothing warned of: a NaN, or a force beyond reason without a status bit.
+/// Whether no case had a result that nothing warned of, a NaN, or a force beyond reason without a status bit; and no
+/// RTL a word that is not the model's.
 pub fn is_sound(rows: &[Row]) -> bool {
-    rows.iter().all(|row| [&row.f64, &row.fixed].into_iter().flatten().all(|judged| judged.silent == 0))
+    let loud = |row: &Row| [&row.f64, &row.fixed].into_iter().flatten().all(|judged| judged.silent == 0);
+    rows.iter().all(|row| loud(row) && row.rtl_is_model != Some(false))
 }

@@ -3,8 +3,21 @@
 use super::judge::{Judged, Row};
 use crate::markdown::Page;
 
-/// Names of the columns of [`cells`].
-pub const HEADER: [&str; 14] = [
+/// The rows of one table.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Its heading.
+    pub title: String,
+    /// Names of the columns.
+    pub header: Vec<&'static str>,
+    /// Cells, row by row.
+    pub rows: Vec<Vec<String>>,
+    /// Why rows have no hardware.
+    pub refusals: Vec<String>,
+}
+
+/// Names of the columns of the line estimator's tables.
+const LINE_HEADER: [&str; 15] = [
     "case",
     "cond C33",
     "cond AAᵀ",
@@ -18,22 +31,75 @@ pub const HEADER: [&str; 14] = [
     "f32",
     "fixed",
     "field",
+    "RTL",
     "status",
 ];
+/// Names of the columns of the joint estimator's: its matrices are those of the line estimator, and so are its backward
+/// errors, but for the gain.
+const JOINT_HEADER: [&str; 8] = ["case", "e_F∥ f64", "fixed", "e_Fz f64", "fixed", "field", "RTL", "status"];
 
-/// A row's cells.
-pub fn cells(row: &Row) -> [String; HEADER.len()] {
+/// The tables: by what the cases are about, and for each estimator one.
+pub fn groups(rows: &[Row]) -> Vec<Group> {
+    let mut titles: Vec<&str> = rows.iter().map(title).collect();
+    let mut seen = Vec::new();
+    titles.retain(|title| {
+        !seen.contains(title) && {
+            seen.push(*title);
+            true
+        }
+    });
+    let of = |wanted: &'static str, estimator: &str| {
+        let own: Vec<&Row> = rows.iter().filter(|row| title(row) == wanted && row.estimator == estimator).collect();
+        let is_line = estimator == "line";
+        (!own.is_empty()).then(|| Group {
+            title: if is_line { wanted.to_owned() } else { format!("{wanted}, {estimator} estimator") },
+            header: if is_line { LINE_HEADER.to_vec() } else { JOINT_HEADER.to_vec() },
+            rows: own.iter().map(|row| if is_line { line_cells(row) } else { joint_cells(row) }).collect(),
+            // The joint estimator needs the same matrices: it is refused for the same reason.
+            refusals: if is_line { refusals(&own) } else { Vec::new() },
+        })
+    };
+    titles.into_iter().flat_map(|title| ["line", "joint"].map(|estimator| of(title, estimator))).flatten().collect()
+}
+
+fn or_dash(value: Option<f64>, show: fn(f64) -> String) -> String {
+    value.map_or_else(|| "–".to_owned(), show)
+}
+
+fn line_cells(row: &Row) -> Vec<String> {
     let all = [&row.f64, &row.f32, &row.fixed];
     let each = |value: fn(&Judged) -> Option<f64>, show: fn(f64) -> String| {
-        all.map(|judged| judged.as_ref().and_then(value).map_or_else(|| "–".to_owned(), show))
+        all.map(|judged| or_dash(judged.as_ref().and_then(value), show))
     };
-    let [b64, b32, b_fixed] = each(|judged| judged.backward, scientific);
-    let [t64, t32, t_fixed] = each(|judged| judged.tangential, percent);
-    let [n64, n32, n_fixed] = each(|judged| judged.normal, percent);
-    let condition = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), scientific);
-    let field = row.fixed.as_ref().and_then(|judged| judged.against_f64).map_or_else(|| "–".to_owned(), scientific);
-    let [c33, aat] = [row.condition_c33, row.condition_aat].map(condition);
-    [row.case.clone(), c33, aat, b64, b32, b_fixed, t64, t32, t_fixed, n64, n32, n_fixed, field, status(row)]
+    let mut cells = vec![row.case.clone()];
+    cells.extend([row.condition_c33, row.condition_aat].map(|condition| or_dash(condition, scientific)));
+    cells.extend(each(|judged| judged.backward, scientific));
+    cells.extend(each(|judged| judged.tangential, percent));
+    cells.extend(each(|judged| judged.normal, percent));
+    cells.extend(hardware_cells(row));
+    cells
+}
+
+fn joint_cells(row: &Row) -> Vec<String> {
+    let each = |value: fn(&Judged) -> Option<f64>| {
+        [&row.f64, &row.fixed].map(|judged| or_dash(judged.as_ref().and_then(value), percent))
+    };
+    let mut cells = vec![row.case.clone()];
+    cells.extend(each(|judged| judged.tangential));
+    cells.extend(each(|judged| judged.normal));
+    cells.extend(hardware_cells(row));
+    cells
+}
+
+/// Error of the field, RTL, status.
+fn hardware_cells(row: &Row) -> [String; 3] {
+    let field = or_dash(row.fixed.as_ref().and_then(|judged| judged.against_f64), scientific);
+    let rtl = match row.rtl_is_model {
+        Some(true) => "= model",
+        Some(false) => "DIFFERS",
+        None => "–",
+    };
+    [field, rtl.to_owned(), status(row)]
 }
 
 /// The status of the hardware's frames, or why there is none.
@@ -52,8 +118,8 @@ fn status(row: &Row) -> String {
     }
 }
 
-/// The refusals of a table, each once.
-pub fn refusals(rows: &[Row]) -> Vec<String> {
+/// The refusals of rows, each once.
+fn refusals(rows: &[&Row]) -> Vec<String> {
     let mut reasons: Vec<String> =
         rows.iter().filter_map(|row| Some(format!("{}: {}", row.case, row.refusal.as_ref()?))).collect();
     reasons.dedup();
@@ -64,12 +130,11 @@ pub fn refusals(rows: &[Row]) -> Vec<String> {
 pub fn markdown(rows: &[Row]) -> String {
     let mut page = Page("# Hard cases\n".to_owned());
     page.line(
-        "Written by `testbench hard --page docs/hard-cases.md`; do not edit. Sensors, contacts and frames at the limits, \
-         solved in f64, in float32, and by the integer model of the hardware (18 × 27 bits; the tests run \
-         frames of every case of sensor 1, and of a deep sensor, through the RTL too). The estimator is the line \
-         estimator, without a filter. If nothing else is said: sensor 1, a Hertz contact of 7 mm and 6 N in its middle, \
-         µ = 0.5, on a bonded layer of ν = 0.49, in 12 directions; under depth over pitch 10 × 10 taxels of 4 × 4 mm and \
-         a contact of 10 mm.",
+        "Written by `testbench hard --page docs/hard-cases.md`; do not edit. Sensors, contacts and frames at the \
+         limits, solved in f64, in float32, and by the hardware of 18 × 27 bits, without a filter; by the line \
+         estimator and, in tables of their own, by the joint one. If nothing else is said: sensor 1, a Hertz contact \
+         of 7 mm and 6 N in its middle, µ = 0.5, on a bonded layer of ν = 0.49, in 12 directions; under depth over \
+         pitch 10 × 10 taxels of 4 × 4 mm and a contact of 10 mm.",
     );
     page.line(
         "* **cond**: 2-norm condition numbers of C33 and A Aᵀ.\n\
@@ -77,23 +142,30 @@ pub fn markdown(rows: &[Row]) -> String {
          * **e_F∥, e_Fz**: largest errors of the tangential and the normal resultant in % of the true normal force. \
          They are those of the estimator and the kernel where f64 has them too.\n\
          * **field**: largest difference of a taxel's force, fixed point to f64, relative to the largest |f_z|.\n\
+         * **RTL**: whether the RTL, all frames of the case simulated in all stream modes, gives the integer model's \
+         words, from which the figures of the hardware are, in the cycles of the plan. The command would fail else.\n\
          * **status**: of the hardware's frames. No case has a NaN, an overflow, or a resultant beyond four times what \
          the stress would mean as a pressure, without a bit that says so: the command would fail, and so would a test.",
     );
     page.line(
-        "Sensors of h/s ≥ 1.5 want `regularisation`; here `{ noise = 0.002 }`. It leaves shallow sensors as they are and \
-         keeps deep ones within a few percent, where without it 0.2 % of noise makes forces of several times the true \
-         ones; a design as ill-conditioned as that is refused.",
+        "Sensors of h/s ≥ 1.5 want `regularisation`; here `{ noise = 0.002 }`. It leaves shallow sensors as they are \
+         and keeps deep ones within a few percent, where without it 0.2 % of noise makes forces of several times the \
+         true ones; a design as ill-conditioned as that is refused.",
     );
     page.line(
-        "Two things no status tells: a taxel that reads exactly the full scale is within it, so that a converter that \
-         clips is seen only if `full_scale_pa` is at least one of its steps below its end; and dead taxels look like \
-         taxels without stress.",
+        "A reading of the full scale is \"saturated\": nobody can tell it from a clipped one. So a converter that \
+         clips is seen if `full_scale_pa` is its last value. What no status tells: dead taxels, which look like taxels \
+         without stress.",
     );
-    for group in rows.chunk_by(|one, other| title(one) == title(other)) {
-        page.heading(title(&group[0]));
-        page.table(&HEADER, group.iter().map(|row| cells(row).to_vec()));
-        for refusal in refusals(group) {
+    page.line(
+        "The joint estimator has the constants of the shipped designs where the sensor is theirs: sensor 1, and \
+         h/s = 0.75, which is sensor 2. The other sensors have none, as before `golden calibrate`: their errors are \
+         larger than need be.",
+    );
+    for group in groups(rows) {
+        page.heading(&group.title);
+        page.table(&group.header, group.rows.into_iter());
+        for refusal in group.refusals {
             page.line(&format!("Refused, {refusal}."));
         }
     }
@@ -101,7 +173,7 @@ pub fn markdown(rows: &[Row]) -> String {
 }
 
 /// What a row is about, for a heading.
-pub fn title(row: &Row) -> &'static str {
+fn title(row: &Row) -> &'static str {
     match row.group {
         "size" => "Size",
         "contact" => "Contacts",
@@ -113,26 +185,32 @@ pub fn title(row: &Row) -> &'static str {
     }
 }
 
-/// The table for people.
+/// The tables for people.
 pub fn text(rows: &[Row]) -> String {
-    let lines: Vec<[String; HEADER.len()]> =
-        std::iter::once(HEADER.map(str::to_owned)).chain(rows.iter().map(cells)).collect();
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or_default();
-    let widths: Vec<usize> = (0..HEADER.len()).map(width).collect();
     let mut text = String::new();
-    for line in &lines {
-        let mut row = String::new();
-        for (column, (cell, &width)) in line.iter().zip(&widths).enumerate() {
-            let padding = " ".repeat(width - cell.chars().count());
-            let left = column == 0 || column == HEADER.len() - 1;
-            let [first, second] = if left { [cell.as_str(), &padding] } else { [padding.as_str(), cell] };
-            row.extend([first, second, "  "]);
+    for Group { title, header, rows, refusals } in groups(rows) {
+        let header: Vec<String> = header.into_iter().map(str::to_owned).collect();
+        let lines: Vec<&Vec<String>> = std::iter::once(&header).chain(&rows).collect();
+        let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or_default();
+        let widths: Vec<usize> = (0..header.len()).map(width).collect();
+        if !text.is_empty() {
+            text.push('\n');
         }
-        text += row.trim_end();
-        text.push('\n');
-    }
-    for refusal in refusals(rows) {
-        text += &("\nrefused, ".to_owned() + &refusal + "\n");
+        text += &(title + "\n\n");
+        for line in &lines {
+            let mut row = String::new();
+            for (column, (cell, &width)) in line.iter().zip(&widths).enumerate() {
+                let padding = " ".repeat(width - cell.chars().count());
+                let left = column == 0 || column == header.len() - 1;
+                let [first, second] = if left { [cell.as_str(), &padding] } else { [padding.as_str(), cell] };
+                row.extend([first, second, "  "]);
+            }
+            text += row.trim_end();
+            text.push('\n');
+        }
+        for refusal in refusals {
+            text += &("\nrefused, ".to_owned() + &refusal + "\n");
+        }
     }
     text
 }

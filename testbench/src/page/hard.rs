@@ -6,7 +6,7 @@ use super::matrices::Figure;
 use super::tables::{Cell, Table, cell};
 use crate::hard::cases::{DEPTHS, NOISE, PLAIN, REGULARISED};
 use crate::hard::judge::{Judged, Row};
-use crate::hard::render::{HEADER, cells, refusals, title};
+use crate::hard::render;
 use crate::svg::{Axis, INK, Svg, power};
 
 const WIDTH: f64 = 480.0;
@@ -30,17 +30,22 @@ pub struct Section {
 
 #[derive(Clone, Debug, Serialize)]
 struct Group {
-    title: &'static str,
+    title: String,
     table: Table,
 }
 
 /// The section of rows.
 pub fn section(rows: &[Row]) -> Section {
-    let groups = rows
-        .chunk_by(|one, other| title(one) == title(other))
+    let tables = render::groups(rows);
+    let refusals = tables.iter().flat_map(|group| group.refusals.clone()).collect();
+    let groups = tables
+        .into_iter()
         .map(|group| Group {
-            title: title(&group[0]),
-            table: Table { header: HEADER.map(str::to_owned).to_vec(), rows: group.iter().map(styled).collect() },
+            title: group.title,
+            table: Table {
+                header: group.header.into_iter().map(str::to_owned).collect(),
+                rows: group.rows.into_iter().map(styled).collect(),
+            },
         })
         .collect();
     let tangential: fn(&Judged) -> Option<f64> = |judged| judged.tangential;
@@ -55,27 +60,24 @@ pub fn section(rows: &[Row]) -> Section {
             ),
         })
         .to_vec();
-    Section { depths, groups, refusals: refusals(rows) }
+    Section { depths, groups, refusals }
 }
 
-fn styled(row: &Row) -> Vec<Cell> {
-    let last = HEADER.len() - 1;
-    cells(row)
-        .into_iter()
+fn styled(row: Vec<String>) -> Vec<Cell> {
+    let last = row.len() - 1;
+    let class = |column: usize, text: &str| {
+        if text.contains("SILENTLY") || text == "DIFFERS" || text == "refused" {
+            "bad"
+        } else if column == last {
+            "left"
+        } else {
+            ""
+        }
+    };
+    row.into_iter()
         .enumerate()
-        .map(|(column, text)| {
-            let bad = text.contains("SILENTLY") || text == "refused";
-            cell(
-                text,
-                if bad {
-                    "bad"
-                } else if column == last {
-                    "left"
-                } else {
-                    ""
-                },
-            )
-        })
+        .map(|(column, text)| (class(column, &text), text))
+        .map(|(c, text)| cell(text, c))
         .collect()
 }
 
@@ -95,7 +97,8 @@ fn depths(rows: &[Row], value: fn(&Judged) -> Option<f64>, what: &str) -> String
         svg.text((x.from - 8.0, place + 4.0), "end", INK, &power(decade));
     }
     for (number, (name, group, colour, dashes)) in LINES.into_iter().enumerate() {
-        let of_group = rows.iter().filter(|row| row.group == group && row.case.contains(&noisy));
+        let of_group =
+            rows.iter().filter(|row| row.estimator == "line" && row.group == group && row.case.contains(&noisy));
         let places: Vec<(f64, f64)> = DEPTHS
             .into_iter()
             .zip(of_group)

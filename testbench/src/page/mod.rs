@@ -235,7 +235,8 @@ fn widths(points: &[&Point]) -> Vec<Figure> {
         let mut series: Vec<(String, Vec<(u32, f64)>)> = Vec::new();
         for point in points.iter().filter(|point| other(point) == usual && point.lanes == 16) {
             let Some(error) = point.against_solver.and_then(|error| error.field_max) else { continue };
-            let name = format!("{}, {}", point.plan, point.filter_title());
+            let estimator = if point.estimator == "line" { "" } else { ", joint estimator" };
+            let name = format!("{}, {}{estimator}", point.plan, point.filter_title());
             match series.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, values)) => values.push((bits(point), error)),
                 None => series.push((name, vec![(bits(point), error)])),

@@ -34,10 +34,14 @@ pub(super) fn cell(text: impl Into<String>, class: &'static str) -> Cell {
     Cell { text: text.into(), class }
 }
 
-/// The point of a filter and a plan, in the usual widths and lanes, on one scene.
+/// The line estimator's point of a filter and a plan, in the usual widths and lanes, on one scene.
 pub fn find<'a>(points: &[&'a Point], filter: &str, plan: &str) -> Option<&'a Point> {
+    find_by(points, filter, plan, "line")
+}
+
+fn find_by<'a>(points: &[&'a Point], filter: &str, plan: &str, estimator: &str) -> Option<&'a Point> {
     points.iter().copied().find(|point| {
-        (point.filter.as_str(), point.plan.as_str(), point.estimator.as_str()) == (filter, plan, "line")
+        (point.filter.as_str(), point.plan.as_str(), point.estimator.as_str()) == (filter, plan, estimator)
             && (point.coefficient_bits, point.data_bits, point.lanes) == BASE
     })
 }
@@ -93,8 +97,8 @@ pub fn table_3(points: &[&Point]) -> Option<Table> {
     if let Some(point) = find(points, "none", "reduced") {
         rows.push(of_point("reduced plan, no filter", point, "ours"));
     }
-    if let Some(point) = points.iter().find(|point| point.estimator == "joint") {
-        rows.push(of_point("joint estimator", point, "ours"));
+    if let Some(point) = find_by(points, "none", "reduced", "joint") {
+        rows.push(of_point("reduced plan, joint estimator", point, "ours"));
     }
     Some(Table { header, rows })
 }
@@ -120,14 +124,27 @@ fn errors(name: &str, errors: &ErrorSummary, class: &'static str, verified: &str
 
 /// Lanes against speed and size of one filter and plan.
 pub fn lanes(points: &[&Point]) -> Table {
-    let header =
-        ["plan", "filter", "lanes", "latency", "interval", "frames/s", "DSP", "RAMB36", "ROM, kbit", "entries"]
-            .map(str::to_owned)
-            .to_vec();
+    let header = [
+        "plan",
+        "filter",
+        "estimator",
+        "lanes",
+        "latency",
+        "interval",
+        "frames/s",
+        "DSP",
+        "RAMB36",
+        "ROM, kbit",
+        "entries",
+    ]
+    .map(str::to_owned)
+    .to_vec();
     let mut rows: Vec<(&Point, Vec<Cell>)> = Vec::new();
     for point in points.iter().filter(|point| (point.coefficient_bits, point.data_bits) == (BASE.0, BASE.1)) {
         let Some(hardware) = &point.hardware else { continue };
-        let of_lanes = |other: &&&Point| (&other.plan, &other.filter) == (&point.plan, &point.filter);
+        let of_lanes = |other: &&&Point| {
+            (&other.plan, &other.filter, &other.estimator) == (&point.plan, &point.filter, &point.estimator)
+        };
         let mut varied: Vec<usize> = points.iter().filter(of_lanes).map(|other| other.lanes).collect();
         varied.sort_unstable();
         varied.dedup();
@@ -138,6 +155,7 @@ pub fn lanes(points: &[&Point]) -> Table {
         let cells = [
             point.plan.clone(),
             point.filter_title(),
+            point.estimator.clone(),
             point.lanes.to_string(),
             format!("{} ({:.1} µs)", grouped(hardware.latency_cycles), hardware.latency_us),
             grouped(hardware.interval_cycles),
@@ -150,7 +168,11 @@ pub fn lanes(points: &[&Point]) -> Table {
         rows.push((*point, cells.into_iter().map(|text| cell(text, "")).collect()));
     }
     rows.sort_by(|(a, _), (b, _)| {
-        (std::cmp::Reverse(&a.plan), &a.filter, a.lanes).cmp(&(std::cmp::Reverse(&b.plan), &b.filter, b.lanes))
+        let of = |point: &Point| {
+            let Point { plan, filter, estimator, lanes, .. } = point.clone();
+            (std::cmp::Reverse(plan), filter, std::cmp::Reverse(estimator), lanes)
+        };
+        of(a).cmp(&of(b))
     });
     rows.dedup_by(|a, b| a.1 == b.1);
     Table { header, rows: rows.into_iter().map(|(_, cells)| cells).collect() }

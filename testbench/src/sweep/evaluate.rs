@@ -1,5 +1,6 @@
 //! One point: its speed from the plan, its errors from the integer model, or from the RTL where that is asked for.
 
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use golden::design::{Design, Estimator, Kernel, PlanKind};
@@ -11,6 +12,7 @@ use hdl_gen::plan::Plan;
 
 use super::grid::{Job, filter_text};
 use super::point::{AgainstSolver, Geometry, Hardware, Point, Verified};
+use super::runs::RunReport;
 use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
@@ -22,11 +24,22 @@ use crate::words::{Answer, decode, encode};
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;
 
-/// Computes a point. Compilations take turns on `compiler`.
+/// What says that the RTL of a point is its model.
+#[derive(Clone, Debug)]
+pub enum Proof<'a> {
+    /// Nothing but the tests.
+    None,
+    /// A simulation now; compilations take turns.
+    Simulation(&'a Mutex<()>),
+    /// A report of `testbench run --json`.
+    Report(PathBuf),
+}
+
+/// Computes a point.
 ///
 /// # Errors
 /// [`SweepError`] if the design has neither hardware nor a solution, or its RTL is not what the model says.
-pub fn evaluate(job: &Job, scene: &SweepScene, wanted: Verified, compiler: &Mutex<()>) -> Result<Point, SweepError> {
+pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Point, SweepError> {
     let design = &job.design;
     let frames = scene.frames.clone().as_delivered(design);
     let truth = frames.truth.clone().unwrap_or_default();
@@ -48,7 +61,7 @@ pub fn evaluate(job: &Job, scene: &SweepScene, wanted: Verified, compiler: &Mute
     };
     let expected = model_answers(&plan, &packets);
     point.verified = Verified::Model;
-    if wanted == Verified::Rtl {
+    if let Proof::Simulation(compiler) = proof {
         let turn = compiler.lock().unwrap_or_else(PoisonError::into_inner);
         check_rtl(&plan, &packets, &expected, &job.label(scene))?;
         drop(turn);
@@ -62,6 +75,12 @@ pub fn evaluate(job: &Job, scene: &SweepScene, wanted: Verified, compiler: &Mute
     point.status_counts = StatusCounts::new(&answers);
     point.errors = against_truth(&answers, &truth);
     point.mean_mu = mean(answers.iter().map(|answer| answer.mu));
+    if let Proof::Report(path) = proof {
+        RunReport::read(path)
+            .and_then(|report| report.check(&plan, packets.len(), &point.errors, &point.status_counts))
+            .map_err(|problem| SweepError::Report { label: job.label(scene), path: path.clone(), problem })?;
+        point.verified = Verified::Rtl;
+    }
     let clock = design.hardware.clock_mhz;
     let timeline = &plan.timeline;
     point.lanes = plan.design.hardware.lanes;

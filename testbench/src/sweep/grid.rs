@@ -65,6 +65,8 @@ pub struct Axes {
     pub data_bits: Vec<u32>,
     /// Numbers of lanes.
     pub lanes: Vec<usize>,
+    /// Estimators; the joint one with the constants of a design that has it, on the same sensor.
+    pub estimators: Vec<Estimator>,
     /// Every combination; otherwise filters with plans, and the other axes one at a time around each design.
     pub full: bool,
 }
@@ -87,10 +89,11 @@ impl Job {
     pub fn label(&self, scene: &SweepScene) -> String {
         let hardware = &self.design.hardware;
         format!(
-            "point {} ({}, {:?} plan, {} lanes, {} x {} bits, scene {})",
+            "point {} ({}, {:?} plan, {:?} estimator, {} lanes, {} x {} bits, scene {})",
             self.key,
             filter_text(&self.design.algorithm.filter),
             self.design.algorithm.plan,
+            self.design.algorithm.estimator,
             hardware.lanes,
             hardware.coefficient_bits,
             hardware.data_bits,
@@ -126,7 +129,7 @@ pub fn jobs(designs: &[Design], axes: &Axes, scenes: &mut Vec<SweepScene>) -> Re
             scenes.push(SweepScene::standing(&design.sensor)?);
         }
         let base = normal(design);
-        for variant in variants(&base, axes) {
+        for variant in variants(&base, designs, axes) {
             let own = scenes.iter().enumerate().filter(|(_, scene)| scene.scene.sensor == design.sensor);
             for (number, scene) in own {
                 let key = key(&variant, scene);
@@ -163,8 +166,8 @@ fn key(design: &Design, scene: &SweepScene) -> String {
     digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<String>()[..KEY_DIGITS].to_owned()
 }
 
-/// The designs that differ from `base` along the axes, and exist.
-fn variants(base: &Design, axes: &Axes) -> Vec<Design> {
+/// The designs that differ from `base`, one of `designs`, along the axes, and exist.
+fn variants(base: &Design, designs: &[Design], axes: &Axes) -> Vec<Design> {
     let or = |given: &[usize], usual: &[usize]| if given.is_empty() { usual.to_vec() } else { given.to_vec() };
     let bits = |given: &[u32], usual: &[u32]| if given.is_empty() { usual.to_vec() } else { given.to_vec() };
     let lanes = or(&axes.lanes, &LANES);
@@ -175,10 +178,13 @@ fn variants(base: &Design, axes: &Axes) -> Vec<Design> {
         plans = vec![PlanKind::Reduced, PlanKind::Paper];
     }
     // The design itself first, unless another grid was asked for.
-    let asked = axes.full || !axes.filters.is_empty() || !axes.plans.is_empty();
+    let asked = axes.full || !axes.filters.is_empty() || !axes.plans.is_empty() || !axes.estimators.is_empty();
     let mut variants = if asked { Vec::new() } else { vec![base.clone()] };
-    for filtered in with_filters(&line(base), &axes.filters) {
-        for &plan in &plans {
+    let estimated = with_estimators(base, designs, axes);
+    for filtered in estimated.iter().flat_map(|base| with_filters(base, &axes.filters)) {
+        // The paper's plan has no joint estimator in hardware.
+        let joint = filtered.algorithm.estimator == Estimator::Joint;
+        for &plan in plans.iter().filter(|&&plan| !joint || plan == PlanKind::Reduced) {
             let mut variant = filtered.clone();
             variant.algorithm.plan = plan;
             variants.push(variant);
@@ -208,7 +214,35 @@ fn variants(base: &Design, axes: &Axes) -> Vec<Design> {
     variants
 }
 
-/// The design with the paper's estimator, for which the filters are.
+/// The design with each estimator of the axis: the paper's, for which the filters are, unless others are asked for.
+/// The joint one has the constants that it needs from a design of the same sensor, else it is left out.
+fn with_estimators(base: &Design, designs: &[Design], axes: &Axes) -> Vec<Design> {
+    let usual: &[Estimator] = if axes.full { &[Estimator::Line, Estimator::Joint] } else { &[Estimator::Line] };
+    let axis = if axes.estimators.is_empty() { usual } else { &axes.estimators };
+    axis.iter()
+        .filter_map(|estimator| match estimator {
+            Estimator::Line => Some(line(base)),
+            Estimator::Joint => joint(base, designs),
+        })
+        .collect()
+}
+
+/// The design with the joint estimator.
+fn joint(base: &Design, designs: &[Design]) -> Option<Design> {
+    // What the constants make good for: the sensor, the load kernel and what is added to it.
+    let fits = |design: &&Design| {
+        let (one, other) = (&design.algorithm, &base.algorithm);
+        one.estimator == Estimator::Joint
+            && (&design.sensor, one.kernel, one.regularisation) == (&base.sensor, other.kernel, other.regularisation)
+    };
+    let calibrated = std::iter::once(base).chain(designs).find(fits)?;
+    let mut design = base.clone();
+    design.algorithm.estimator = Estimator::Joint;
+    design.algorithm.joint.clone_from(&calibrated.algorithm.joint);
+    Some(design)
+}
+
+/// The design with the paper's estimator.
 fn line(base: &Design) -> Design {
     let mut design = base.clone();
     design.algorithm.estimator = Estimator::Line;

@@ -5,6 +5,7 @@
 pub mod evaluate;
 pub mod grid;
 pub mod point;
+pub mod runs;
 pub mod store;
 pub mod table;
 
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use golden::design::DesignError;
+use golden::frames::FrameError;
 use golden::metrics::Outcome;
 use golden::output::OutputError;
 use golden::scene::{Scene, SceneError};
@@ -23,6 +25,7 @@ use crate::frame_set::FrameSet;
 use crate::progress::Progress;
 use crate::run::RunError;
 
+use evaluate::Proof;
 use grid::Job;
 use point::{Point, Verified};
 use store::Store;
@@ -54,11 +57,11 @@ pub enum SweepError {
     #[error("\"{0}\" is no filter of a sweep; write none, f1, f2 or f3, or one of them as f1-40 or f2-50")]
     Filter(String),
     /// There is nothing to compute.
-    #[error("no point is left: no combination of these plans, filters and lanes exists; leave one of the options out")]
+    #[error(
+        "no point is left: no combination of these plans, filters, lanes and estimators exists (the joint estimator needs \
+         the reduced plan, and a design that has it); leave one of the options out"
+    )]
     NoPoints,
-    /// A point that is not in the grid.
-    #[error("{0} is no point of this sweep; `testbench sweep --list` with the same options prints their keys")]
-    NoSuchPoint(String),
     /// The f64 solver refused a design.
     #[error("{label}: {source}")]
     Solver {
@@ -83,6 +86,19 @@ pub enum SweepError {
         /// What differs.
         problem: String,
     },
+    /// A report that cannot be that of the point.
+    #[error("{label}: {} {problem}; remove it, or run the point again", path.display())]
+    Report {
+        /// The point.
+        label: String,
+        /// The report's file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// Frames or forces cannot be written.
+    #[error(transparent)]
+    Frames(#[from] FrameError),
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] OutputError),
@@ -172,6 +188,8 @@ pub struct Sweep {
     pub scenes: Vec<SweepScene>,
     /// Which of them go through the RTL.
     pub simulate: Simulate,
+    /// Folder with reports of `testbench run --json`, `KEY.json` each, that stand for the simulation of their points.
+    pub runs: Option<PathBuf>,
 }
 
 /// What a sweep came to.
@@ -189,6 +207,7 @@ impl Sweep {
         match self.simulate {
             Simulate::All => Verified::Rtl,
             Simulate::Base if job.base => Verified::Rtl,
+            _ if self.report_of(&job.key).is_some() => Verified::Rtl,
             _ => Verified::Model,
         }
     }
@@ -218,19 +237,12 @@ impl Sweep {
         Ok(Outcomes { points, computed: missing.len() })
     }
 
-    /// Computes one point, if the store does not have it.
-    ///
-    /// # Errors
-    /// [`SweepError::NoSuchPoint`] for a key that is not in the grid, others as [`Sweep::run`].
-    pub fn run_one(&self, key: &str, store: &Store) -> Result<Point, SweepError> {
-        let job = self.jobs.iter().find(|job| job.key == key).ok_or_else(|| SweepError::NoSuchPoint(key.to_owned()))?;
-        if !store.has(key, self.wanted(job)) {
-            store.put(&self.compute(job, &Mutex::new(()))?)?;
-        }
-        store.get(key)
-    }
-
     fn compute(&self, job: &Job, compiler: &Mutex<()>) -> Result<Point, SweepError> {
-        evaluate::evaluate(job, &self.scenes[job.scene], self.wanted(job), compiler)
+        let proof = match self.report_of(&job.key) {
+            Some(report) => Proof::Report(report),
+            None if self.wanted(job) == Verified::Rtl => Proof::Simulation(compiler),
+            None => Proof::None,
+        };
+        evaluate::evaluate(job, &self.scenes[job.scene], &proof)
     }
 }
