@@ -90,8 +90,8 @@ typedef struct {
 
 int sptfra_count(const sptfra *device, sptfra_counters *counters);
 
-/* Resets the core without cutting a packet, see docs/control.md. Frames inside are lost; the packet going out still needs
- * a transfer that takes it. */
+/* Resets the core without cutting a packet, see docs/control.md. Frames inside are lost; the packet going out still
+ * needs a transfer that takes it. */
 int sptfra_soft_reset(const sptfra *device, uint32_t polls);
 
 /* Events of the registers INTERRUPT_ENABLE and INTERRUPT_STATUS. */

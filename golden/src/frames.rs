@@ -18,7 +18,10 @@ pub enum FrameError {
         source: std::io::Error,
     },
     /// The file has no frame in it.
-    #[error("{}: no frame in the file; write one line of {expected} comma-separated stresses for each frame", path.display())]
+    #[error(
+        "{}: no frame in the file; write one line of {expected} comma-separated stresses for each frame",
+        path.display()
+    )]
     Empty {
         /// The file.
         path: PathBuf,
@@ -82,8 +85,8 @@ pub fn read_frames(path: &Path, taxels: usize) -> Result<Vec<Vec<f64>>, FrameErr
     read_labelled_frames(path, taxels, 0)
 }
 
-/// As [`read_frames`], of a file whose lines begin with `labels` columns of any text, which are skipped. Such a file may
-/// have a header: a first line without any number after the labels.
+/// As [`read_frames`], of a file whose lines begin with `labels` columns of any text, which are skipped. Such a file
+/// may have a header: a first line without any number after the labels.
 ///
 /// # Errors
 ///

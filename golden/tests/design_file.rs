@@ -128,7 +128,8 @@ fn whole_numbers_do_where_reals_are_asked_for() {
 fn the_resolved_design_reads_back_the_same() {
     for filter in ["{ kind = \"none\" }", "{ kind = \"f1\", l = 7 }", "{ kind = \"f2\", p = 0.3 }"] {
         let text = format!(
-            "{MINIMAL}[algorithm]\nkernel = \"cell\"\nfilter = {filter}\n[hardware]\nfull_scale_pa = 12345.678\nlanes = 3\n"
+            "{MINIMAL}[algorithm]\nkernel = \"cell\"\nfilter = {filter}\n\
+             [hardware]\nfull_scale_pa = 12345.678\nlanes = 3\n"
         );
         let design = Design::from_toml(&text, "pad.toml").unwrap();
         let resolved = design.to_toml();

@@ -1,6 +1,7 @@
 // The frame checker (Bz): every beat once and in order, every frame ended once and rightly judged, banks never overrun.
 //
-// A second pipeline beside it carries each beat with its place in its frame.
+// A second pipeline beside it carries each beat with its place in its frame. With PAPER it is that of the paper's plan,
+// which writes each stress as it comes, without a fold, and has a place for every direction.
 module harness (
     input wire clock,
     input wire [31:0] s_tdata,
@@ -8,19 +9,33 @@ module harness (
     input wire s_tvalid,
     input wire write_ready,
     input wire cean_idle,
+`ifndef PAPER
     input wire direction_room,
+`endif
     input wire frame_start,
     input wire frame_release
 );
 
     localparam [4:0] TAXELS = 5'd12, MANY = 5'd31;
+`ifdef PAPER
+    localparam ADDRESS_BITS = 6;
+`else
+    localparam ADDRESS_BITS = 3;
+`endif
 
     reg started = 1'b0;
     wire reset = !started;
     wire s_tready;
     wire write_valid;
+`ifdef PAPER
+    wire direction_room = 1'b1;
+    wire [ADDRESS_BITS-1:0] write_address;
+    wire fill_bank;
+    wire [3:0] taxel;
+`else
     wire write_bank;
     wire [1:0] write_quad;
+`endif
     wire stress_valid;
     wire signed [26:0] stress;
     wire frame_done;
@@ -41,8 +56,13 @@ module harness (
     wire seen_saturated;
     wire seen_not_finite;
     wire [14:0] stages;
+`ifdef PAPER
+    wire [3:1] fold_lasts = 3'd0;
+    wire frame_written = frame_done;
+`else
     wire [3:1] fold_lasts;
     wire frame_written;
+`endif
 
     subject_bz subject (
         .clock            (clock),
@@ -53,10 +73,14 @@ module harness (
         .s_tready         (s_tready),
         .write_valid      (write_valid),
         .write_ready      (write_ready),
+`ifdef PAPER
+        .write_address    (write_address),
+`else
         .write_bank       (write_bank),
         .write_quad       (write_quad),
-        .cean_idle        (cean_idle),
         .direction_room   (direction_room),
+`endif
+        .cean_idle        (cean_idle),
         .stress_valid     (stress_valid),
         .stress           (stress),
         .frame_done       (frame_done),
@@ -79,8 +103,13 @@ module harness (
         .bad_lengths      (bad_lengths),
         .seen_saturated   (seen_saturated),
         .seen_not_finite  (seen_not_finite),
+`ifdef PAPER
+        .fill_bank        (fill_bank),
+        .taxel            (taxel),
+`else
         .frame_written    (frame_written),
         .\fold.lasts     (fold_lasts),
+`endif
         .\float_to_fixed.stages (stages)
     );
 
@@ -146,15 +175,27 @@ module harness (
     end
 
     reg waited = 1'b0;
-    reg [2:0] waiting;
+`ifdef PAPER
+    wire [ADDRESS_BITS-1:0] to_write = write_address;
+    reg bank_out; // of the frame that comes out
+`else
+    wire [2:0] to_write = {write_bank, write_quad};
+`endif
+    reg [ADDRESS_BITS-1:0] waiting;
     reg nothing_missing; // for a new frame, a cycle ago
 
     always @(posedge clock) begin
         waited <= write_valid && !write_ready && !reset;
-        waiting <= {write_bank, write_quad};
+        waiting <= to_write;
         nothing_missing <= !taken && cean_idle && direction_room && (frames_inside != 3'd2) && (there == 5'd0);
+`ifdef PAPER
+        bank_out <= bank_out ^ frame_done;
+`endif
         if (reset) begin
             nothing_missing <= 1'b1;
+`ifdef PAPER
+            bank_out <= 1'b0;
+`endif
         end
     end
 
@@ -173,7 +214,11 @@ module harness (
             assert (frames_inside <= 3'd2);
             assert (!frame_written || (frames_waiting != 2'd2));
             // What is to be written stays until it is
-            assert (!waited || (write_valid && ({write_bank, write_quad} == waiting)));
+            assert (!waited || (write_valid && (to_write == waiting)));
+`ifdef PAPER
+            // Each stress goes to its place in its frame's bank
+            assert (!write_valid || (write_address == (bank_out ? TAXELS : 5'd0) + places[24:20]));
+`endif
             // Whoever waits is served: nothing stands still but for want of a bank, of CeAn or of the memories' port
             assert (s_tready || !write_ready || (!in_frame && !nothing_missing));
         end
@@ -191,6 +236,10 @@ module harness (
     always @(posedge clock) begin
         if (!reset) begin
             assert (valid == there);
+`ifdef PAPER
+            assert (fill_bank == bank_out);
+            assert ({1'b0, taxel} == ((place_out > TAXELS) ? TAXELS : place_out));
+`endif
             assert (in_frame == (place_in != 5'd0));
             assert ({1'b0, index} == ((place_in > TAXELS) ? TAXELS : place_in));
             for (stage = 1; stage <= 5; stage = stage + 1) begin

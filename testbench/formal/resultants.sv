@@ -108,8 +108,8 @@ module harness (
     end
 
     // What was left out answers when it was asked, once. The schedule sees to it that a program's results are complete
-    // before the last issue of the next one, and that its sums come before them; a frame's sums do not come in the first
-    // cycles after those of the frame before
+    // before the last issue of the next one, and that its sums come before them; a frame's sums do not come in the
+    // first cycles after those of the frame before
     always @(*) begin
         if (!reset) begin
             assume (sums_complete == sums_wait);

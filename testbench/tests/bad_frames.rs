@@ -282,8 +282,9 @@ fn mixed_in_every_mode(subject: &Subject) {
 /// Judges traffic with resets: between two of them the core is a new one, and only packets that were on the way when
 /// one came have no answer.
 fn judge(plan: &Plan, packets: &[Vec<u32>], resets: &[Reset], outcome: &Outcome) {
-    // One in each of two banks, one being put out, one being sent, one between the search and the output. In the reduced
-    // plan one whose search waits for that, one behind it, and eight beats alone fit into the output's registers.
+    // One in each of two banks, one being put out, one being sent, one between the search and the output. In the
+    // reduced plan one whose search waits for that, one behind it, and eight beats alone fit into the output's
+    // registers.
     let most_inside = if plan.ways() > 1 { 8 } else { 5 };
     let mut exchanges = outcome.exchanges.iter().peekable();
     let (mut next, mut lost) = (0, 0);

@@ -1,7 +1,7 @@
 //! What a generated folder offers to other tools: Vivado scripts, file lists, `FuseSoC`, Bender, a CI workflow.
 //!
-//! Vivado itself is not here. Its scripts run in `tclsh` against a stand-in (`flows/vivado.tcl`) that knows the commands,
-//! their flags and their files and refuses everything else; broken copies of the scripts show that it does.
+//! Vivado itself is not here. Its scripts run in `tclsh` against a stand-in (`flows/vivado.tcl`) that knows the
+//! commands, their flags and their files and refuses everything else; broken copies of the scripts show that it does.
 
 #[path = "flows/block_design.rs"]
 mod block_design;

@@ -21,7 +21,7 @@ fn emitted(design: &Design) -> Files {
 fn simulate(name: &str, files: &Files) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let mut compiler = tools::icarus().expect("installed");
-    compiler.args(["-Wall", "-g2005", "-o", "simulation", "-s", &format!("{name}_tb")]);
+    compiler.args(["-Wall", "-g2005", "-DSIMULATION", "-o", "simulation", "-s", &format!("{name}_tb")]);
     // Strings go in with their quotes.
     let data =
         [("ROM_DIR", "rom/".to_owned()), ("STIMULUS", file(name, "stimulus")), ("EXPECTED", file(name, "expected"))];

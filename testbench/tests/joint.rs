@@ -30,8 +30,8 @@ const DISC: Shape = Shape::Disc { radius_m: 10e-3 };
 /// Of contacts; those of the solver's tests.
 const SEED: u64 = 0x5eed_0ff0;
 const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.8];
-/// Of the largest `|f_z|` of a frame. Most of it is the field's own rounding, which the line estimator has too; the rest
-/// is a friction component off by a few of its steps, 2^-16.
+/// Of the largest `|f_z|` of a frame. Most of it is the field's own rounding, which the line estimator has too; the
+/// rest is a friction component off by a few of its steps, 2^-16.
 const MOST_FIELD_ERROR: f64 = 5e-4;
 /// A joint design may take so many cycles more than one with the line, and so many times its multipliers.
 const MOST_CYCLES_MORE: u64 = 6_000;

@@ -163,7 +163,8 @@ fn slang_has_nothing_to_say() {
     assert_silent(in_parallel(&designs(), |design| vec![slang(&Written::new(design))]));
 }
 
-/// Widths that no design above has: the whole hierarchy below the top, as it is instantiated.
+/// Widths that no design above has: the whole hierarchy below the top, as it is instantiated, with the checks that only
+/// simulations make.
 #[test]
 fn random_designs_are_clean() {
     let numbers: Vec<u64> = (0..RANDOM_DESIGNS).collect();
@@ -171,10 +172,10 @@ fn random_designs_are_clean() {
         let plan = random::plan(number).expect("a plan").0;
         let written = Written::new(&plan.design);
         let mut verilator = tools::verilator().expect("installed");
-        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", &written.name]);
+        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "-DSIMULATION", "--top-module", &written.name]);
         verilator.args(written.sources());
         let mut icarus = tools::icarus().expect("installed");
-        icarus.args(["-Wall", "-g2005", "-t", "null", "-s", &written.name]).args(written.sources());
+        icarus.args(["-Wall", "-g2005", "-DSIMULATION", "-t", "null", "-s", &written.name]).args(written.sources());
         [verilator, icarus].map(|tool| written.run(tool)).into_iter().chain([slang(&written)]).collect()
     }));
 }

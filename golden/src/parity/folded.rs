@@ -8,8 +8,8 @@ use super::{CLASSES, Quads, butterfly, sign};
 
 /// A matrix of m by m entries that keeps or changes parity, as its four blocks of n by n.
 ///
-/// For `y = M x`, `fold(y)[c ^ parity] = blocks[c] * fold(x)[c]`. Rows and columns of quads that do not exist in a class
-/// are exactly zero.
+/// For `y = M x`, `fold(y)[c ^ parity] = blocks[c] * fold(x)[c]`. Rows and columns of quads that do not exist in a
+/// class are exactly zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoldedMatrix {
     /// What the matrix does to a class: bit 0 changes even and odd in x, bit 1 in y.
@@ -21,7 +21,8 @@ pub struct FoldedMatrix {
 }
 
 impl FoldedMatrix {
-    /// Folds a matrix of m by m entries with the mirror symmetry `parity`; its rows at member 0 of each quad are enough.
+    /// Folds a matrix of m by m entries with the mirror symmetry `parity`; its rows at member 0 of each quad are
+    /// enough.
     pub fn new(matrix: &DMatrix<f64>, parity: usize, quads: &Quads) -> Self {
         Self::from_fn(parity, quads, |row, column| matrix[(row, column)])
     }

@@ -1,7 +1,7 @@
 //! Several frames at once by the reduced plan: products of matrices in place of products with vectors.
 //!
-//! On a large sensor a frame alone has to fetch every coefficient from memory to use it once. Frames together use it once
-//! each, and the blocks that share an operand are stacked, so that a few large products do all the work.
+//! On a large sensor a frame alone has to fetch every coefficient from memory to use it once. Frames together use it
+//! once each, and the blocks that share an operand are stacked, so that a few large products do all the work.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -136,8 +136,8 @@ impl Solver {
     ///
     /// # Errors
     ///
-    /// [`SolverError::Matrices`] for a sensor whose matrices are singular or too ill-conditioned, [`SolverError::Filter`] for a filter that
-    /// leaves nothing of a row.
+    /// [`SolverError::Matrices`] for a sensor whose matrices are singular or too ill-conditioned,
+    /// [`SolverError::Filter`] for a filter that leaves nothing of a row.
     pub fn new(design: &Design) -> Result<Self, SolverError> {
         let name = || design.name.clone();
         let matrices = Matrices::of(design).map_err(|source| SolverError::Matrices { name: name(), source })?;

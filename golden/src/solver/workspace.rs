@@ -89,8 +89,8 @@ impl Solver {
         })
     }
 
-    /// Solves many frames. With the reduced plan and no strong filter they share the products, which is faster the larger
-    /// the sensor; the results then differ from those of [`Solver::solve`] by rounding.
+    /// Solves many frames. With the reduced plan and no strong filter they share the products, which is faster the
+    /// larger the sensor; the results then differ from those of [`Solver::solve`] by rounding.
     ///
     /// # Errors
     ///

@@ -24,7 +24,8 @@ pub fn generate(path: &Path, out: Option<PathBuf>, progress: &Progress) -> Resul
     let timeline = &plan.timeline;
     let excess = super::inspect::excess(&plan).map_or_else(String::new, |excess| format!("warning: {excess}\n"));
     Ok(format!(
-        "{}: {} files, {kibibytes} KiB\n{} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{excess}",
+        "{}: {} files, {kibibytes} KiB\n\
+         {} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{excess}",
         folder.display(),
         files.len(),
         plan.taxels(),

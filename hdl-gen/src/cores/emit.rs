@@ -201,7 +201,8 @@ fn range(kind: Type) -> String {
     if kind.width == 1 { sign.to_owned() } else { format!("{sign}[{}:0] ", kind.width - 1) }
 }
 
-/// What a kernel's `comment!` says. `hdl_gen` leaves the macro's own text around a long comment, with a line break in it.
+/// What a kernel's `comment!` says. `hdl_gen` leaves the macro's own text around a long comment, with a line break in
+/// it.
 fn comment_words(text: &str) -> Result<String, String> {
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let inner = words.split_once("(\"").filter(|(before, _)| before.starts_with("comment"));

@@ -37,11 +37,16 @@ const JOINT_MODULES: [(&str, &str); 5] = [
     ("_op_friction", include_str!("../../templates/rtl/reduced/joint/friction.v.tera")),
 ];
 
+/// What the correction looks at, along its way: the scale, the stress at the centroid, the window.
+const LOOK: &str = concat!(
+    include_str!("../../templates/rtl/reduced/joint/look/scale.v.tera"),
+    include_str!("../../templates/rtl/reduced/joint/look/stress.v.tera"),
+    include_str!("../../templates/rtl/reduced/joint/look/window.v.tera"),
+);
+
 /// Those of its correction.
-const CORRECTION_MODULES: [(&str, &str); 2] = [
-    ("_op_look", include_str!("../../templates/rtl/reduced/joint/look.v.tera")),
-    ("_op_network", include_str!("../../templates/rtl/reduced/joint/network.v.tera")),
-];
+const CORRECTION_MODULES: [(&str, &str); 2] =
+    [("_op_look", LOOK), ("_op_network", include_str!("../../templates/rtl/reduced/joint/network.v.tera"))];
 
 /// Those of the paper's plan.
 const PAPER_MODULES: [(&str, &str); 4] = [
@@ -50,6 +55,14 @@ const PAPER_MODULES: [(&str, &str); 4] = [
     ("_co", include_str!("../../templates/rtl/paper/co.v.tera")),
     ("_op", include_str!("../../templates/rtl/paper/op.v.tera")),
 ];
+
+/// The top of the reduced plan, along the data's way.
+const REDUCED_TOP: &str = concat!(
+    include_str!("../../templates/rtl/reduced/top/streams.v.tera"),
+    include_str!("../../templates/rtl/reduced/top/input.v.tera"),
+    include_str!("../../templates/rtl/reduced/top/lanes.v.tera"),
+    include_str!("../../templates/rtl/reduced/top/output.v.tera"),
+);
 
 /// Op of the reduced plan, along a frame's way: the search is the joint estimator's or the line's.
 const REDUCED_OP: &str = concat!(
@@ -61,7 +74,7 @@ const REDUCED_OP: &str = concat!(
 
 /// Those of the reduced plan.
 const REDUCED_MODULES: [(&str, &str); 7] = [
-    ("", include_str!("../../templates/rtl/reduced/top.v.tera")),
+    ("", REDUCED_TOP),
     ("_fold", include_str!("../../templates/rtl/reduced/fold.v.tera")),
     ("_turns", include_str!("../../templates/rtl/reduced/turns.v.tera")),
     ("_unfold", include_str!("../../templates/rtl/reduced/unfold.v.tera")),

@@ -218,7 +218,8 @@ impl<'plan> Model<'plan> {
     }
 }
 
-/// The eight words before the field, from the sums `G_pq` and the vectors `u_q` of a frame; what Op found goes with them.
+/// The eight words before the field, from the sums `G_pq` and the vectors `u_q` of a frame; what Op found goes with
+/// them.
 fn scalars(
     plan: &Plan,
     counter: u32,

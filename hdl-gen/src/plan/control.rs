@@ -1,7 +1,8 @@
 //! Predicted cycles of the reduced plan: its control, register by register, without the data.
 //!
 //! When a program starts depends on the frames under way, so latency and interval come from playing frames through
-//! what decides it. Every constant is a count of pipeline registers in the emitted modules; tests compare with simulation.
+//! what decides it. Every constant is a count of pipeline registers in the emitted modules; tests compare with
+//! simulation.
 
 use std::collections::VecDeque;
 

@@ -88,8 +88,8 @@ impl Dealer {
         (length, self.visits.last().map_or(stream.start, |visit| visit.cycle))
     }
 
-    /// Deals the rows of a product that passes over zeros, whole rows in rounds of one a lane, `start` being the cycle of
-    /// the first issue. All lanes multiply the same column of their rows, so that one list of columns serves all.
+    /// Deals the rows of a product that passes over zeros, whole rows in rounds of one a lane, `start` being the cycle
+    /// of the first issue. All lanes multiply the same column of their rows, so that one list of columns serves all.
     /// Returns the length and the cycle in which the last result is taken, both for an operand without zeros.
     pub fn deal_rounds(&mut self, stream: &Stream<'_>) -> (u64, u64) {
         let (lanes, columns) = (self.programs.len(), stream.rows.len());

@@ -54,8 +54,8 @@ pub struct OptimumPlan {
 }
 
 impl OptimumPlan {
-    /// As many cells as lanes, at most 32, with a power of two of taxels each. Where `ways` taxels arrive at a time (the
-    /// members of a quad, of which there are `elements`), they go to as many cells.
+    /// As many cells as lanes, at most 32, with a power of two of taxels each. Where `ways` taxels arrive at a time
+    /// (the members of a quad, of which there are `elements`), they go to as many cells.
     ///
     /// The joint estimator's cells have adders only, and so their number does not follow the lanes'.
     pub fn new(elements: usize, ways: usize, lanes: usize, joint: bool, formats: &Formats) -> Self {

@@ -160,8 +160,8 @@ impl Product {
         self.operands[0]
     }
 
-    /// Whether the lanes pass from this product's block to that of `next` by a start pulse: so in the paper's plan; in the
-    /// reduced plan a program runs through.
+    /// Whether the lanes pass from this product's block to that of `next` by a start pulse: so in the paper's plan; in
+    /// the reduced plan a program runs through.
     pub fn hands_over_to(&self, next: &Self) -> bool {
         self.block != next.block && self.epilogue != Epilogue::Part
     }

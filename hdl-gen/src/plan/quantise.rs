@@ -11,8 +11,8 @@ pub const ANY_LSB: i32 = -900;
 /// Coefficients with fewer significant bits than this reconstruct nothing worth having.
 const FEWEST_USEFUL_BITS: u32 = 6;
 
-/// A column and its coefficients, one a way. In the paper's plan there is one way; in the reduced plan the four ways are
-/// the parity classes of the operand.
+/// A column and its coefficients, one a way. In the paper's plan there is one way; in the reduced plan the four ways
+/// are the parity classes of the operand.
 pub type Entry = (u32, [i32; CLASSES]);
 
 /// Rows of real coefficients, before they are quantised; the same shape as [`QuantisedMatrix::rows`].

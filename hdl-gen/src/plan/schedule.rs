@@ -1,8 +1,8 @@
 //! Who computes what, and when: the static schedule of the SpMV lanes.
 //!
-//! Unless zeros are passed over, nothing in the lanes' timing depends on data: a frame is laid out here, cycle by cycle,
-//! and the hardware needs neither arbiter nor stall. The MACs of a product form one long stream, row after row, that is
-//! cut into equal pieces, one per lane: all lanes finish together. A row cut in two leaves its end as a *tail*
+//! Unless zeros are passed over, nothing in the lanes' timing depends on data: a frame is laid out here, cycle by
+//! cycle, and the hardware needs neither arbiter nor stall. The MACs of a product form one long stream, row after row,
+//! that is cut into equal pieces, one per lane: all lanes finish together. A row cut in two leaves its end as a *tail*
 //! in the next lane, kept in that lane's carry register, and its beginning as a *head* that adds the carry.
 //! A collector takes one result a cycle, in the order in which they become ready. Where rows are so short that a
 //! lane would finish another before there is room for it, idle cycles are inserted.
@@ -86,8 +86,8 @@ pub struct Window {
 }
 
 /// How a product passes over zeros: whole rows are dealt to the lanes, one a lane and round, and all lanes multiply the
-/// same column at a time, from a list of the operand's quads that are not zero. The window's length is that of an operand
-/// without zeros; the hardware takes `count * max(nonzeros, lanes)` cycles after the rows of sums.
+/// same column at a time, from a list of the operand's quads that are not zero. The window's length is that of an
+/// operand without zeros; the hardware takes `count * max(nonzeros, lanes)` cycles after the rows of sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rounds {
     /// Issue cycles of the rows of sums in front.

@@ -181,7 +181,8 @@ proptest! {
                 prop_assert!(error <= 0.03 * scale, "F[{p}] off by {error} N of {scale} N");
                 let scale = top(&expected.field[2]);
                 prop_assert_eq!(found.field[p].len(), expected.field[p].len());
-                let error = found.field[p].iter().zip(&expected.field[p]).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
+                let pairs = found.field[p].iter().zip(&expected.field[p]);
+                let error = pairs.map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
                 prop_assert!(error <= 0.03 * scale, "component {p} off by {error} N of {scale} N");
             }
         }

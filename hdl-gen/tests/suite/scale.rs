@@ -48,11 +48,12 @@ fn the_largest_sensor_has_hardware_with_one_lane_and_with_sixteen() {
     }
 }
 
-/// A mat beyond the size at which a dense matrix could be held thirteen times over: its files are written, and each lane
-/// has its share of the entries.
+/// A mat beyond the size at which a dense matrix could be held thirteen times over: its files are written, and each
+/// lane has its share of the entries.
 #[test]
 fn a_mat_of_4096_taxels_has_hardware() {
-    let more = "[algorithm]\nplan = \"reduced\"\nkernel = \"cell\"\nfilter = { kind = \"f2\", p = 1.0 }\n[hardware]\nlanes = 64";
+    let more = "[algorithm]\nplan = \"reduced\"\nkernel = \"cell\"\nfilter = { kind = \"f2\", p = 1.0 }\n\
+                [hardware]\nlanes = 64";
     let text = design_text("mat", [64, 64], [28.0, 28.0], 8.0, more);
     let plan = Plan::new(&Design::from_toml(&text, "mat.toml").unwrap()).unwrap();
     let files = emit(&plan).unwrap();

@@ -96,7 +96,8 @@ struct Module {
     num_cells_by_type: BTreeMap<String, u64>,
 }
 
-/// Sums, for the design of `file`, Yosys' `stat -json` of a synthesis that was not flattened by the blocks of its `metadata.json`.
+/// Sums, for the design of `file`, Yosys' `stat -json` of a synthesis that was not flattened by the blocks of its
+/// `metadata.json`.
 ///
 /// # Errors
 /// [`BenchError::Read`] and [`BenchError::Json`]; [`BenchError::NoModule`] if the files are of different designs.

@@ -17,9 +17,9 @@ pub fn render(figures: &Figures, command: &str, plot: Option<&str>) -> String {
     let machine = &figures.machine;
     let mut page = Page("# Benchmarks\n".to_owned());
     page.line(&format!(
-        "Written by `make bench`; do not edit. Times and rates are of one run on {} {} cores, {} profile; each is the median of its \
-         repetitions, and other work on the machine makes it worse. Cycles and cells do not depend on the machine. The \
-         commands are in `target/release` after `cargo build --release`.",
+        "Written by `make bench`; do not edit. Times and rates are of one run on {} {} cores, {} profile; each is the \
+         median of its repetitions, and other work on the machine makes it worse. Cycles and cells do not depend on \
+         the machine. The commands are in `target/release` after `cargo build --release`.",
         machine.cores, machine.architecture, machine.profile
     ));
     solver(&mut page, &figures.solver);
@@ -36,8 +36,9 @@ fn solver(page: &mut Page, rows: &[SolverRate]) {
     let Some(first) = rows.first() else { return };
     page.heading("Frames a second of the f64 solver");
     page.line(&format!(
-        "On one core, for a user's PC: frame after frame, as a sensor delivers them, and in batches, as from a file. Median of {} \
-         repetitions; setting up (matrices, filter) happens once. The ratio is to the first line, frame after frame.",
+        "On one core, for a user's PC: frame after frame, as a sensor delivers them, and in batches, as from a file. \
+         Median of {} repetitions; setting up (matrices, filter) happens once. The ratio is to the first line, frame \
+         after frame.",
         first.repetitions
     ));
     page.table(
@@ -64,9 +65,9 @@ fn solver(page: &mut Page, rows: &[SolverRate]) {
 fn generated(page: &mut Page, rows: &[Generation], command: &str) {
     page.heading("Time to generate hardware");
     page.line(&format!(
-        "From the checked design to its plan, and from the plan to all files, in memory. Median of {} repetitions. Square sensors \
-         have the pitch and depth of the paper's sensor 1, the largest grid those of the mat. Memory is the most that the \
-         process had meanwhile, files included.",
+        "From the checked design to its plan, and from the plan to all files, in memory. Median of {} repetitions. \
+         Square sensors have the pitch and depth of the paper's sensor 1, the largest grid those of the mat. Memory \
+         is the most that the process had meanwhile, files included.",
         generation::REPETITIONS
     ));
     page.table(
@@ -89,8 +90,8 @@ fn generated(page: &mut Page, rows: &[Generation], command: &str) {
 fn simulated(page: &mut Page, rows: &[Rate], command: &str) {
     page.heading("Speed of the simulation");
     page.line(&format!(
-        "Verilator's code with the streams' driver, free-running, on one core. Median of {} repetitions, slowest and fastest beside \
-         it. `testbench run` simulates its four stream modes on cores of their own.",
+        "Verilator's code with the streams' driver, free-running, on one core. Median of {} repetitions, slowest and \
+         fastest beside it. `testbench run` simulates its four stream modes on cores of their own.",
         rate::REPETITIONS
     ));
     page.table(
@@ -114,17 +115,18 @@ fn cycles(page: &mut Page, points: &[Point], command: &str, plot: Option<&str>) 
     let simulated: Vec<&Point> = points.iter().filter(|point| point.simulated.is_some()).collect();
     let exact = simulated.iter().filter(|point| point.simulated == Some(point.predicted)).count();
     page.line(&format!(
-        "Latency (first word in to last word out of a frame alone) and interval (between frames back to back) of square sensors \
-         with the pitch and depth of the paper's sensor 1, force field included. Predicted by the plan; those in **bold** were \
-         simulated too, and {exact} of {} gave exactly the predicted cycles. The tests demand that of every design they \
-         simulate, and no more than the predicted ones where zeros are passed over.",
+        "Latency (first word in to last word out of a frame alone) and interval (between frames back to back) of \
+         square sensors with the pitch and depth of the paper's sensor 1, force field included. Predicted by the \
+         plan; those in **bold** were simulated too, and {exact} of {} gave exactly the predicted cycles. The tests \
+         demand that of every design they simulate, and no more than the predicted ones where zeros are passed over.",
         simulated.len()
     ));
     if let Some(plot) = plot {
         page.line(&format!("![Latency against the number of taxels]({plot})"));
         page.line(
-            "Without a filter the work of a large sensor grows like m² / lanes; with F2 like the entries kept over the lanes: the dotted \
-             lines, multiply-accumulates over lanes. Small sensors take what the search, the input and the output take.",
+            "Without a filter the work of a large sensor grows like m² / lanes; with F2 like the entries kept over \
+             the lanes: the dotted lines, multiply-accumulates over lanes. Small sensors take what the search, the \
+             input and the output take.",
         );
     }
     for kind in Kind::ALL {
@@ -152,9 +154,9 @@ fn filters(page: &mut Page, rows: &[Filtered], command: &str) {
     }
     page.heading("Filters on folded blocks");
     page.line(
-        "The reductions are exact, a filter is not. Largest differences from the same plan without one, in f64, over the sensor's \
-         standing scene: of a taxel's force, over the frame's largest normal force; of the friction vector. The resultants do \
-         not depend on the filter but through the friction. Cycles and RAMB36 by the plan.",
+        "The reductions are exact, a filter is not. Largest differences from the same plan without one, in f64, over \
+         the sensor's standing scene: of a taxel's force, over the frame's largest normal force; of the friction \
+         vector. The resultants do not depend on the filter but through the friction. Cycles and RAMB36 by the plan.",
     );
     page.table(
         &["design", "filter", "MACs a frame", "latency", "interval", "RAMB36", "force, %", "friction"],
@@ -178,11 +180,12 @@ fn zeros(page: &mut Page, rows: &[Zeros], command: &str) {
     let Some(first) = rows.first() else { return };
     page.heading("Zeros passed over");
     page.line(
-        "Latency / interval with `skip_zeros`, simulated, for a round contact of three pitches in a corner of the grid (half-space, \
-         the most over six directions), beside the bound for any frame and the cycles of the same design without `skip_zeros`. \
-         `C33⁻¹ b` has faint ripples of either sign around any contact, and one that is dragged pulls and presses all over the \
-         grid; so does noise. Nothing of that is zero, a quad is passed over only if all its four taxels are, and the last \
-         products multiply r, which never is: little is gained on real contacts.",
+        "Latency / interval with `skip_zeros`, simulated, for a round contact of three pitches in a corner of the \
+         grid (half-space, the most over six directions), beside the bound for any frame and the cycles of the same \
+         design without `skip_zeros`. `C33⁻¹ b` has faint ripples of either sign around any contact, and one that is \
+         dragged pulls and presses all over the grid; so does noise. Nothing of that is zero, a quad is passed over \
+         only if all its four taxels are, and the last products multiply r, which never is: little is gained on real \
+         contacts.",
     );
     let mut header = vec!["taxels".to_owned(), "without".to_owned(), "bound".to_owned()];
     header.extend(first.contacts.iter().map(|(friction, _)| format!("µ = {friction}")));
@@ -217,18 +220,19 @@ fn cells(page: &mut Page, designs: &[Cells]) {
     }
     page.heading("Cells by Yosys");
     page.line(
-        "`synth_xilinx -family xcup`, not flattened, beside the generator's prediction in `metadata.json`. No placement and no \
-         clock: Vivado has not been run. DSP48E2 and RAMB36 (a RAMB18 counts one half) are what the prediction is about. What \
-         to know about the rest:",
+        "`synth_xilinx -family xcup`, not flattened, beside the generator's prediction in `metadata.json`. No \
+         placement and no clock: Vivado has not been run. DSP48E2 and RAMB36 (a RAMB18 counts one half) are what the \
+         prediction is about. What to know about the rest:",
     );
     page.line(
-        "* **LUT and FF are too high.** For this family Yosys packs no register into a DSP48E2 or a block RAM, so that the \
-         pipeline registers around each multiplier, which the DSP has inside, stand in the fabric; and its 48-bit accumulator \
-         is an adder of LUTs.\n\
-         * **Small memories are LUTs**, where that is cheaper by Yosys' weights; the prediction uses the same weights. LUTs as RAM \
-         and as shift registers are in the LUT column. Vivado has weights of its own, so a memory near the limit may go the other \
-         way there, half a RAMB36 at a time.\n\
-         * **rest**: stream buffers, control, registers between the blocks, and blocks without multipliers and block RAM.",
+        "* **LUT and FF are too high.** For this family Yosys packs no register into a DSP48E2 or a block RAM, so \
+         that the pipeline registers around each multiplier, which the DSP has inside, stand in the fabric; and its \
+         48-bit accumulator is an adder of LUTs.\n\
+         * **Small memories are LUTs**, where that is cheaper by Yosys' weights; the prediction uses the same \
+         weights. LUTs as RAM and as shift registers are in the LUT column. Vivado has weights of its own, so a \
+         memory near the limit may go the other way there, half a RAMB36 at a time.\n\
+         * **rest**: stream buffers, control, registers between the blocks, and blocks without multipliers and block \
+         RAM.",
     );
     for Cells { design, blocks, total, .. } in designs {
         let differ = |block: &&Block| {

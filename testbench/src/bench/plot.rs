@@ -86,7 +86,7 @@ fn axes(svg: &mut Svg, x: Axis, y: Axis) {
         (12.0, 22.0),
         "start",
         INK,
-        "cycles from the first word in to the last word out; large dots: simulated too; dotted: multiply-accumulates / lanes",
+        "cycles from the first word in to the last word out; large dots: simulated too; dotted: MACs / lanes",
     );
 }
 

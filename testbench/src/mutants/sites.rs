@@ -94,8 +94,8 @@ pub fn all(sources: &RtlSources) -> Vec<Mutation> {
         let mut hardware = true;
         for (index, line) in text.lines().enumerate() {
             match line.trim() {
-                "// synthesis translate_off" => hardware = false,
-                "// synthesis translate_on" => hardware = true,
+                "`ifdef SIMULATION" => hardware = false,
+                "`endif" => hardware = true,
                 _ => {}
             }
             if !hardware {
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn checks_of_the_simulation_are_left_alone() {
-        let text = "a <= b + c;\n// synthesis translate_off\nif (d) begin\n// synthesis translate_on\ne <= f;\n";
+        let text = "a <= b + c;\n`ifdef SIMULATION\nif (d) begin\n`endif\ne <= f;\n";
         let files = [("rtl/t.v".to_owned(), text.as_bytes().to_vec())].into_iter().collect();
         let found = all(&RtlSources { top: "t".to_owned(), files });
         let lines: Vec<usize> = found.iter().map(|mutation| mutation.line).collect();

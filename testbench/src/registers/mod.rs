@@ -1,4 +1,5 @@
-//! The register bank of a simulated core, driven as a processor would drive it: AXI4-Lite with pauses, beside the streams.
+//! The register bank of a simulated core, driven as a processor would drive it: AXI4-Lite with pauses, beside the
+//! streams.
 
 mod check;
 mod master;

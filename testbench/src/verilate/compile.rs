@@ -21,7 +21,8 @@ const HEADER: &str = "runtime.h";
 const WRAPPER: &str = include_str!("wrapper.cpp");
 
 /// Registers and `x` literals become run-time random bits, so that logic that relies on an unwritten register fails.
-const VERILATOR_FLAGS: [&str; 6] = ["--cc", "--x-assign", "unique", "--x-initial", "unique", "-Wno-fatal"];
+const VERILATOR_FLAGS: [&str; 7] =
+    ["--cc", "--x-assign", "unique", "--x-initial", "unique", "-Wno-fatal", "-DSIMULATION"];
 /// Symbols stay inside their shared object, so that several simulated designs live in one process. The wrapper turns
 /// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning. With `-Og` the compiler
 /// takes about half as long as with `-O1`, and the simulation hardly longer.

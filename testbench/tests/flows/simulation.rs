@@ -1,5 +1,5 @@
-//! The self-checking testbench by its script for Vivado's simulator. Stand-ins of the three programs check what they are
-//! asked for and let Icarus Verilog do it, so that the verdict is a real one.
+//! The self-checking testbench by its script for Vivado's simulator. Stand-ins of the three programs check what they
+//! are asked for and let Icarus Verilog do it, so that the verdict is a real one.
 
 use std::env;
 use std::fs;
@@ -119,7 +119,7 @@ fn every_fault_is_refused_for_its_reason() {
         (" -runall", "", "xsim failed"),
         (" -snapshot ", " -snap ", "xelab failed"),
         (" -timescale 1ns/1ps", "", "xelab failed"),
-        ("call xvlog {*}$rtl $testbench", "", "xelab failed"),
+        ("call xvlog -define SIMULATION {*}$rtl $testbench", "", "xelab failed"),
         ("{*}$rtl $testbench", "{*}$rtl", "xelab failed"),
         ("xsim ${design}_tb", "xsim $design", "xsim failed"),
         // Without its ROMs the core's words are unknown, without its frames the testbench's.

@@ -61,6 +61,7 @@ switch $program {
         file mkdir [file join xsim.dir work]
         set library [open [file join xsim.dir work sources] w]
         puts $library $words
+        puts $library [expr {[info exists option(-define)] ? "-D$option(-define)" : ""}]
         close $library
     }
     xelab {
@@ -74,9 +75,10 @@ switch $program {
             fail "nothing was compiled into library work"
         }
         set sources [gets $library]
+        set defines [gets $library]
         file mkdir [file join xsim.dir $option(-snapshot)]
         set program_file [file join xsim.dir $option(-snapshot) simulation]
-        if {[catch {exec iverilog -g2005 -s $top -o $program_file {*}$sources 2>@1} said]} {
+        if {[catch {exec iverilog -g2005 {*}$defines -s $top -o $program_file {*}$sources 2>@1} said]} {
             fail $said
         }
     }

@@ -1,4 +1,4 @@
-//! The workflow in `docs/ci`: its steps, run here in the order in which a runner would.
+//! The workflow in `docs/ci`: its steps, run here in the order in which a runner would. And the project's own.
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -56,4 +56,15 @@ fn its_steps_generate_lint_and_simulate_a_design() {
     let report = fs::read(place.path().join("report.json")).expect("written");
     let report: Value = serde_json::from_slice(&report).expect("JSON");
     assert_eq!(report["bit_exact"], true);
+}
+
+/// What it runs is this test and all others; here only that it is a workflow and that the target exists.
+#[test]
+fn the_projects_own_workflow_runs_all_tests() {
+    let workflow = yaml(&workspace().join(".github/workflows/test.yml"));
+    let steps = workflow["jobs"]["test"]["steps"].as_array().expect("steps");
+    let commands: Vec<&str> = steps.iter().filter_map(|step| text(step, "run")).collect();
+    assert_eq!(commands.last(), Some(&"make test"));
+    let menu = fs::read_to_string(workspace().join("Makefile")).expect("there");
+    assert!(menu.contains("\n.PHONY: test\n"), "{menu}");
 }

@@ -144,7 +144,8 @@ proptest! {
         signs in proptest::collection::vec(-1_i64..=1, 49),
         friction in proptest::array::uniform2(STEEP[0]..=STEEP[1]),
     ) {
-        let plan = plan(if square { [columns, columns] } else { [columns, rows] }, [3.0, if square { 3.0 } else { 2.0 }], "", "");
+        let (rows, pitch_y) = if square { (columns, 3.0) } else { (rows, 2.0) };
+        let plan = plan([columns, rows], [3.0, pitch_y], "", "");
         let bound = plan.formats.stress.bound;
         let stress: Vec<i64> = signs[..plan.taxels()].iter().map(|sign| sign * bound).collect();
         check(&plan, &stress, friction);
