@@ -112,13 +112,13 @@ fn kernel_advice(plan: &Plan) -> String {
             format!("the joint estimator's own makes good for its gain of {:.3}", gain(algorithm.kernel))
         }
         (Kernel::Point, Estimator::Line) => format!(
-            "point: F_z of a wide contact is off by {:+.1} %;\n{INDENT}\"cell\" makes it right, with mu about \
-             {lost:.0} % lower and phi the same",
+            "point: F_z of a wide contact is off by {:+.1} %;\n{INDENT}\"cell\" makes it right, with mu {lost:.0} % \
+             lower or a little more, and phi the same",
             off(Kernel::Point)
         ),
         (Kernel::Cell, Estimator::Line) => format!(
-            "cell: F_z of a wide contact is off by {:+.1} %;\n{INDENT}mu is about {lost:.0} % lower than with \
-             \"point\", phi the same",
+            "cell: F_z of a wide contact is off by {:+.1} %;\n{INDENT}mu is {lost:.0} % lower than with \
+             \"point\" or a little more, phi the same",
             off(Kernel::Cell)
         ),
     }
