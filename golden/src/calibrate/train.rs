@@ -99,8 +99,8 @@ impl Learner {
         for ((sums, layer), batch) in self.images.iter_mut().zip(&self.hidden).zip(batch) {
             layer.weights.mul_to(batch, sums);
         }
-        let [a, b, c, d] = self.images.each_mut().map(|image| image.as_mut_slice());
-        let [odd_x, odd_y] = self.odd.each_mut().map(|odd| odd.as_mut_slice());
+        let [a, b, c, d] = self.images.each_mut().map(DMatrix::as_mut_slice);
+        let [odd_x, odd_y] = self.odd.each_mut().map(DMatrix::as_mut_slice);
         let images = a.iter_mut().zip(b).zip(c.iter_mut().zip(d));
         for (((a, b), (c, d)), (odd_x, odd_y)) in images.zip(odd_x.iter_mut().zip(odd_y)) {
             let units = butterfly([*a, *b, *c, *d]).map(|sum| sum.max(0.0));

@@ -77,15 +77,16 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     let mut file = builder.tempfile_in(folder).map_err(failed)?;
     file.write_all(text.as_bytes()).map_err(failed)?;
     file.persist_noclobber(&path).map_err(|error| failed(error.error))?;
-    let mut said = format!("{}: edit it, then run hdl-gen inspect {0} and hdl-gen generate {0}\n", path.display());
-    if new.estimator == Friction::Joint {
-        said += &format!(
-            "its gain and friction are fitted to this sensor; golden calibrate {} --out {} also trains the correction\n",
-            path.display(),
-            folder.join(format!("{name}-calibrated.toml")).display()
-        );
+    let said = format!("{}: edit it, then run hdl-gen inspect {0} and hdl-gen generate {0}\n", path.display());
+    if new.estimator == Friction::Line {
+        return Ok(said);
     }
-    Ok(said)
+    let calibrated = folder.join(format!("{name}-calibrated.toml"));
+    Ok(format!(
+        "{said}its gain and friction are fitted to this sensor; golden calibrate {} --out {} also trains the correction\n",
+        path.display(),
+        calibrated.display()
+    ))
 }
 
 /// The design file, checked.
@@ -130,7 +131,8 @@ fn constants(&JointConstants { gain, tangential: [c1, c3], .. }: &JointConstants
 fn with(text: &str, key: &str, value: &str) -> String {
     let line = |line: &str| match (line.split_once(" = "), line.split_once(" # ")) {
         (Some((found, _)), Some((_, comment))) if found == key => {
-            format!("{:<COMMENTS$}# {comment}\n", format!("{key} = {value} "))
+            let pair = format!("{key} = {value} ");
+            format!("{pair:<COMMENTS$}# {comment}\n")
         }
         _ => format!("{line}\n"),
     };
