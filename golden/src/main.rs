@@ -119,7 +119,7 @@ enum Command {
         /// Hidden units of the correction, 0 to 256; 128 unless given, 24 with --quick; 0 for none.
         #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256))]
         hidden: Option<u16>,
-        /// Take a tenth of the time, for constants that are about half as good.
+        /// Take a tenth of the time, for constants that are half as good.
         #[arg(long)]
         quick: bool,
         /// Report as JSON.

@@ -32,10 +32,10 @@ fn small(algorithm: &str) -> Design {
     Design::from_toml(&format!("{sensor}[algorithm]\n{algorithm}\n"), "pad.toml").unwrap()
 }
 
-/// Asserts limits in percent on the tangential errors at each friction, without and with noise, and on `e_Fz`.
+/// Asserts limits in percent on the tangential errors at each friction, without and with noise, and on `e_Fz` likewise.
 #[track_caller]
-fn within(solver: &Solver, set: &[Pressed], clean: [f64; 3], noisy: [f64; 3], normal: f64) {
-    for (noise, limits) in [(0.0, clean), (0.002, noisy)] {
+fn within(solver: &Solver, set: &[Pressed], clean: [f64; 3], noisy: [f64; 3], normal: [f64; 2]) {
+    for (noise, limits, normal) in [(0.0, clean, normal[0]), (0.002, noisy, normal[1])] {
         for (friction, limit) in FRICTIONS.into_iter().zip(limits) {
             let Worst { error: [x, y, z], flagged, .. } = worst(solver, set, friction, noise);
             assert!(x <= limit && y <= limit, "friction {friction}, noise {noise}: {x:.2} {y:.2} over {limit}");
@@ -52,20 +52,22 @@ fn contacts_in_the_middle() {
         let solver = Solver::new(&design).unwrap();
         for shape in [HERTZ, DISC] {
             let set = centred(&design.sensor, LAYER, shape);
-            within(&solver, &set, [6.0, 3.0, 6.0], [8.0; 3], 2.1);
+            within(&solver, &set, [6.0, 3.0, 6.0], [8.0; 3], [2.1; 2]);
             let set = centred(&design.sensor, SOFTER, shape);
-            within(&solver, &set, [9.0, 4.5, 9.0], [12.0; 3], 3.0);
+            within(&solver, &set, [9.0, 4.5, 9.0], [12.0; 3], [3.0; 2]);
         }
     }
 }
 
 #[test]
 fn contacts_anywhere_inside() {
-    // On the coarser grid the goals of 5 % at 0.5 and 7 % at 0.8 are missed without noise.
-    for (name, clean) in [("sensor1-joint", [7.0, 5.0, 7.0]), ("sensor2-joint", [7.0, 6.5, 8.5])] {
+    for name in ["sensor1-joint", "sensor2-joint"] {
         let design = design(name);
         let solver = Solver::new(&design).unwrap();
-        within(&solver, &inside(&design.sensor, LAYER, SEED, 200), clean, [8.0; 3], 3.1);
+        // The others hold what nothing was chosen on; of their normal force more is missing on the coarser grid.
+        for (seed, normal) in [(SEED, [3.0, 3.1]), (OTHER_SEED, [3.5; 2])] {
+            within(&solver, &inside(&design.sensor, LAYER, seed, 200), [7.0, 5.0, 7.0], [8.0; 3], normal);
+        }
     }
 }
 
@@ -100,7 +102,7 @@ fn two_contacts_are_not_taken_for_one() {
             [&design, &uncorrected].map(|design| worst(&Solver::new(design).unwrap(), &set, 0.5, 0.002));
         assert!(corrected.median < uncorrected.median, "{name}: {} {}", corrected.median, uncorrected.median);
         let [x, y, z] = corrected.error;
-        assert!(x.max(y) < 15.0 && z < 3.0, "{name}: {x:.1} {y:.1} {z:.1}");
+        assert!(x.max(y) < 12.0 && z < 3.0, "{name}: {x:.1} {y:.1} {z:.1}");
     }
 }
 
@@ -114,7 +116,7 @@ fn shapes_that_it_never_saw_are_solved_too() {
             let Worst { error, .. } = worst(&Solver::new(&design).unwrap(), &set, 0.5, 0.002);
             error[0].max(error[1])
         });
-        assert!(joint < line && joint < 8.0, "{name}: {joint:.1} {line:.1}");
+        assert!(joint < 0.7 * line && joint < 6.0, "{name}: {joint:.1} {line:.1}");
     }
 }
 

@@ -4,6 +4,7 @@
 //! before it is calibrated, then a gain, two constants for the friction, and the weights of the correction.
 
 mod contacts;
+mod looks;
 mod samples;
 mod train;
 
@@ -30,15 +31,20 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// A tenth of the work, for a first look: errors are about twice as large.
+    /// A tenth of the work, for a first look: errors are up to twice as large.
     pub fn quick() -> Self {
-        Self { contacts: 800, samples: 4000, hidden: 24, steps: 4000, ..Self::default() }
+        Self { contacts: 2000, samples: 10_000, hidden: 24, steps: 3000, ..Self::default() }
+    }
+
+    /// The gain and the constants of friction alone, without a correction: about a second.
+    pub fn constants() -> Self {
+        Self { contacts: 400, samples: 2000, hidden: 0, steps: 0, ..Self::default() }
     }
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { seed: 1, contacts: 8000, samples: 50_000, hidden: 128, steps: 40_000 }
+        Self { seed: 1, contacts: 20_000, samples: 100_000, hidden: 128, steps: 40_000 }
     }
 }
 

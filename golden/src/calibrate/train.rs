@@ -1,23 +1,32 @@
-//! Training of the correction: gradient descent with momentum, on samples and their mirror images.
+//! Training of the correction: gradient descent with momentum, on the mean over each sample's mirror images.
 
 use nalgebra::DMatrix;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::looks::Basis;
 use super::samples::Sample;
 use super::{Settings, Stage};
 use crate::design::{Correction, WEIGHT_BITS, WEIGHT_FRACTION};
+use crate::parity::{CLASSES, butterfly};
 use crate::scene::normal;
-use crate::solver::correction::MIRRORS;
 use crate::solver::joint;
 
 /// Samples of a step.
 const BATCH: usize = 256;
 /// Length of the first steps; it falls to 0 along a cosine.
-const RATE: f64 = 3e-3;
+const RATE: f32 = 3e-3;
 /// Share of every weight that is forgotten for each unit of a step's length: it keeps the network from learning single
 /// contacts by heart.
-const DECAY: f64 = 0.03;
+const DECAY: f32 = 0.1;
+/// The largest weight of a hidden unit. Up to here a parity class's share of a weight, a quarter of four's sum, is exact
+/// in the hardware's 18 bits.
+const LARGEST_WEIGHT: f64 = 7.9;
+/// The largest sum of a hidden unit's weights. The hardware rounds all units alike, as the largest sum demands, so all
+/// are brought to about the same one; a factor on a unit goes out of its weights in the output, which changes nothing.
+const LARGEST_SUM: f64 = 64.0;
+/// Share of each mirror image in the mean.
+const QUARTER: f32 = 0.25;
 
 /// Trains the network to add what the scaled estimates lack of their targets.
 pub(super) fn train(
@@ -28,74 +37,148 @@ pub(super) fn train(
     settings: &Settings,
     tick: &mut dyn FnMut(Stage),
 ) -> Correction {
-    let inputs = Correction::inputs(half_window);
-    let units = settings.hidden;
-    let missing: Vec<[f64; 2]> = samples
+    let missing: Vec<[f32; 2]> = samples
         .iter()
         .zip(targets)
         .map(|(sample, target)| {
             let scaled = joint::scaled(sample.mu, tangential);
-            [target[0] - scaled[0], target[1] - scaled[1]]
+            [0, 1].map(|axis| (target[axis] - scaled[axis]) as f32)
         })
         .collect();
+    let basis = Basis::new(samples, half_window);
+    let looks = basis.looks(samples);
     let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
     // Streams 0 and 1 of the seed made the samples.
     random.set_stream(2);
-    let spread = 3.0 * (2.0 / inputs as f64).sqrt();
-    let mut hidden = Layer::new(DMatrix::from_fn(units, inputs, |_, _| spread * normal(&mut random)));
-    let spread = 0.03 / (units as f64).sqrt();
-    let mut output = Layer::new(DMatrix::from_fn(2, units, |_, _| spread * normal(&mut random)));
-
-    let mut looks = DMatrix::zeros(inputs, BATCH);
-    let mut errors = DMatrix::zeros(2, BATCH);
+    let mut learner = Learner::new(&basis, settings.hidden, &mut random);
+    let mut batch = [0, 1, 2, 3].map(|class| DMatrix::zeros(basis.size(class), BATCH));
+    let mut wanted = DMatrix::zeros(BATCH, 2);
     for step in 1..=settings.steps {
-        let mut wanted = DMatrix::zeros(2, BATCH);
         for column in 0..BATCH {
             let index = random.random_range(0..samples.len());
-            let [sign_x, sign_y] = MIRRORS[random.random_range(0..MIRRORS.len())];
-            samples[index].look.mirrored([sign_x, sign_y], looks.column_mut(column).as_mut_slice());
-            wanted[(0, column)] = sign_x * missing[index][0];
-            wanted[(1, column)] = sign_y * missing[index][1];
-        }
-        let units = (&hidden.weights * &looks).map(|sum| sum.max(0.0));
-        (&output.weights * &units).sub_to(&wanted, &mut errors);
-        let mut back = output.weights.tr_mul(&errors);
-        back.zip_apply(&units, |slope, unit| {
-            if unit <= 0.0 {
-                *slope = 0.0;
+            for (batch, looks) in batch.iter_mut().zip(&looks) {
+                batch.set_column(column, &looks.column(index));
             }
-        });
-        let rate = 0.5 * RATE * (1.0 + (std::f64::consts::PI * step as f64 / settings.steps as f64).cos());
-        let share = 1.0 / BATCH as f64;
-        output.descend(&((&errors * units.transpose()) * share), rate, step);
-        hidden.descend(&((back * looks.transpose()) * share), rate, step);
+            wanted[(column, 0)] = missing[index][0];
+            wanted[(column, 1)] = missing[index][1];
+        }
+        let rate = 0.5 * RATE * (1.0 + (std::f32::consts::PI * step as f32 / settings.steps as f32).cos());
+        learner.descend(&batch, &wanted, rate, step);
         tick(Stage::Step);
     }
-    Correction {
-        half_window,
-        hidden: hidden.quantised(),
-        output: {
-            let mut rows = output.quantised().into_iter();
-            [0, 1].map(|_| rows.next().unwrap_or_default())
-        },
+    learner.correction(&basis, half_window)
+}
+
+/// The network while it learns.
+struct Learner {
+    /// Weights of the hidden units (rows) on the whitened inputs of each class.
+    hidden: [Layer; CLASSES],
+    /// Weights of the hidden units (rows) in both components.
+    output: Layer,
+    /// The hidden units (rows) of each mirror image of each sample of a step.
+    images: [DMatrix<f32>; CLASSES],
+    /// Their part odd in x and odd in y.
+    odd: [DMatrix<f32>; 2],
+}
+
+impl Learner {
+    fn new(basis: &Basis, units: usize, random: &mut ChaCha8Rng) -> Self {
+        let inputs: usize = (0..CLASSES).map(|class| basis.size(class)).sum();
+        let spread = (2.0 / inputs as f64).sqrt();
+        let hidden = [0, 1, 2, 3].map(|class| {
+            Layer::new(DMatrix::from_fn(units, basis.size(class), |_, _| (spread * normal(random)) as f32))
+        });
+        let spread = 0.03 / (units as f64).sqrt();
+        let output = Layer::new(DMatrix::from_fn(units, 2, |_, _| (spread * normal(random)) as f32));
+        let zeros = || DMatrix::zeros(units, BATCH);
+        Self { hidden, output, images: [0, 1, 2, 3].map(|_| zeros()), odd: [zeros(), zeros()] }
+    }
+
+    /// The correction of each sample (rows) in a batch of whitened looks by class.
+    fn correct(&mut self, batch: &[DMatrix<f32>; CLASSES]) -> DMatrix<f32> {
+        for ((sums, layer), batch) in self.images.iter_mut().zip(&self.hidden).zip(batch) {
+            layer.weights.mul_to(batch, sums);
+        }
+        let [a, b, c, d] = self.images.each_mut().map(DMatrix::as_mut_slice);
+        let [odd_x, odd_y] = self.odd.each_mut().map(DMatrix::as_mut_slice);
+        let images = a.iter_mut().zip(b).zip(c.iter_mut().zip(d));
+        for (((a, b), (c, d)), (odd_x, odd_y)) in images.zip(odd_x.iter_mut().zip(odd_y)) {
+            let units = butterfly([*a, *b, *c, *d]).map(|sum| sum.max(0.0));
+            [*a, *b, *c, *d] = units;
+            [_, *odd_x, *odd_y, _] = butterfly(units);
+        }
+        let mut found = DMatrix::zeros(BATCH, 2);
+        for (axis, odd) in self.odd.iter().enumerate() {
+            found.column_mut(axis).gemv_tr(QUARTER, odd, &self.output.weights.column(axis), 0.0);
+        }
+        found
+    }
+
+    /// One step of length `rate` towards the corrections `wanted`, a row for each sample of the batch.
+    fn descend(&mut self, batch: &[DMatrix<f32>; CLASSES], wanted: &DMatrix<f32>, rate: f32, step: usize) {
+        let errors = (self.correct(batch) - wanted) * (QUARTER / BATCH as f32);
+        let mut slope = DMatrix::zeros(self.output.weights.nrows(), 2);
+        for (axis, odd) in self.odd.iter().enumerate() {
+            slope.column_mut(axis).gemv(1.0, odd, &errors.column(axis), 0.0);
+        }
+        // Back through the hinges: the units give way to the slopes of the classes' sums.
+        let units = self.output.weights.nrows();
+        let [along_x, along_y] = [0, 1].map(|axis| self.output.weights.column(axis));
+        for sample in 0..BATCH {
+            let [error_x, error_y] = [errors[(sample, 0)], errors[(sample, 1)]];
+            let column = sample * units..(sample + 1) * units;
+            let [a, b, c, d] = self.images.each_mut().map(|image| &mut image.as_mut_slice()[column.clone()]);
+            let images = a.iter_mut().zip(b).zip(c.iter_mut().zip(d));
+            for (((a, b), (c, d)), (along_x, along_y)) in images.zip(along_x.iter().zip(along_y.iter())) {
+                let mut slopes = butterfly([0.0, along_x * error_x, along_y * error_y, 0.0]);
+                for (slope, unit) in slopes.iter_mut().zip([*a, *b, *c, *d]) {
+                    *slope = if unit > 0.0 { *slope } else { 0.0 };
+                }
+                [*a, *b, *c, *d] = butterfly(slopes);
+            }
+        }
+        for ((slopes, layer), batch) in self.images.iter().zip(&mut self.hidden).zip(batch) {
+            layer.descend(&(slopes * batch.transpose()), rate, step);
+        }
+        self.output.descend(&slope, rate, step);
+    }
+
+    /// The weights of the inputs themselves, in whole steps.
+    fn correction(&self, basis: &Basis, half_window: [usize; 2]) -> Correction {
+        let mut hidden = basis.weights(self.hidden.each_ref().map(|layer| &layer.weights));
+        let mut output = self.output.weights.map(f64::from);
+        for (mut unit, mut output) in hidden.row_iter_mut().zip(output.row_iter_mut()) {
+            let sum: f64 = unit.iter().map(|weight| weight.abs()).sum();
+            let most = (LARGEST_SUM / sum).min(LARGEST_WEIGHT / unit.amax());
+            // A power of two; of a unit without weights none.
+            let factor = if most.is_finite() { most.log2().floor().exp2() } else { 1.0 };
+            unit *= factor;
+            output /= factor;
+        }
+        let mut output = quantised(&output.transpose()).into_iter();
+        Correction {
+            half_window,
+            hidden: quantised(&hidden),
+            output: [0, 1].map(|_| output.next().unwrap_or_default()),
+        }
     }
 }
 
 /// Weights with what the descent remembers of their gradients (Adam: Kingma and Ba, 2015).
 struct Layer {
-    weights: DMatrix<f64>,
-    mean: DMatrix<f64>,
-    square: DMatrix<f64>,
+    weights: DMatrix<f32>,
+    mean: DMatrix<f32>,
+    square: DMatrix<f32>,
 }
 
 impl Layer {
-    fn new(weights: DMatrix<f64>) -> Self {
+    fn new(weights: DMatrix<f32>) -> Self {
         let zero = DMatrix::zeros(weights.nrows(), weights.ncols());
         Self { weights, mean: zero.clone(), square: zero }
     }
 
-    fn descend(&mut self, gradient: &DMatrix<f64>, rate: f64, step: usize) {
-        const KEPT: [f64; 2] = [0.9, 0.999];
+    fn descend(&mut self, gradient: &DMatrix<f32>, rate: f32, step: usize) {
+        const KEPT: [f32; 2] = [0.9, 0.999];
         let [mean_share, square_share] = KEPT.map(|kept| 1.0 - kept.powi(step as i32));
         let state = self.weights.iter_mut().zip(self.mean.iter_mut()).zip(self.square.iter_mut());
         for (((weight, mean), square), slope) in state.zip(gradient.iter()) {
@@ -105,18 +188,83 @@ impl Layer {
             *weight -= rate * (*mean / mean_share) / ((*square / square_share).sqrt() + 1e-9);
         }
     }
+}
 
-    /// The weights row by row in steps of `2^-WEIGHT_FRACTION`.
-    fn quantised(&self) -> Vec<Vec<i32>> {
-        let limit = f64::from(1 << (WEIGHT_BITS - 1));
-        let steps = f64::from(1 << WEIGHT_FRACTION);
-        let row = |row: usize| {
-            self.weights
-                .row(row)
-                .iter()
-                .map(|weight| (weight * steps).round().clamp(-limit, limit - 1.0) as i32)
-                .collect()
-        };
-        (0..self.weights.nrows()).map(row).collect()
+/// Weights row by row in steps of `2^-WEIGHT_FRACTION`.
+fn quantised(weights: &DMatrix<f64>) -> Vec<Vec<i32>> {
+    let limit = f64::from(1 << (WEIGHT_BITS - 1));
+    let steps = f64::from(1 << WEIGHT_FRACTION);
+    let whole = |weight: &f64| (weight * steps).round().clamp(-limit, limit - 1.0) as i32;
+    weights.row_iter().map(|row| row.iter().map(whole).collect()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::samples;
+    use crate::design::Design;
+    use crate::solver::correction::{Network, NetworkScratch};
+
+    const HALF_WINDOW: [usize; 2] = [2, 3];
+
+    /// A batch of samples of a small sensor, and a learner that has learned nothing yet.
+    fn beginner(units: usize) -> (Vec<Sample>, Basis, Learner) {
+        let pad = "name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
+                   [algorithm]\nestimator = \"joint\"\n";
+        let design = Design::from_toml(pad, "pad.toml").unwrap();
+        let settings = Settings { contacts: 40, samples: BATCH, ..Settings::default() };
+        let samples = samples::make(&design, &settings, HALF_WINDOW, &mut |_| ()).unwrap();
+        let basis = Basis::new(&samples, HALF_WINDOW);
+        let learner = Learner::new(&basis, units, &mut ChaCha8Rng::seed_from_u64(1));
+        (samples, basis, learner)
+    }
+
+    fn batch(samples: &[Sample], basis: &Basis) -> [DMatrix<f32>; CLASSES] {
+        basis.looks(samples).map(|looks| looks.resize_horizontally(BATCH, 0.0))
+    }
+
+    /// What is trained by parity class, whitened, is what the solver makes of the weights.
+    #[test]
+    fn the_learner_is_the_network() {
+        let (samples, basis, mut learner) = beginner(7);
+        let found = learner.correct(&batch(&samples, &basis));
+        let network = Network::new(&learner.correction(&basis, HALF_WINDOW));
+        let mut largest = 0.0_f64;
+        for (index, sample) in samples.iter().enumerate() {
+            let wanted = network.correct(&sample.look, &mut NetworkScratch::default());
+            for (axis, wanted) in wanted.into_iter().enumerate() {
+                largest = largest.max(wanted.abs());
+                // Rounding to steps of 2^-12 is all that is between them.
+                assert!((f64::from(found[(index, axis)]) - wanted).abs() < 2e-3, "{index}: {wanted}");
+            }
+        }
+        assert!(largest > 0.02, "{largest}");
+    }
+
+    /// The slopes are those of the squared error, by finite differences.
+    #[test]
+    fn a_step_goes_downhill() {
+        const BY: f32 = 2e-3;
+        let (samples, basis, mut learner) = beginner(5);
+        let batch = batch(&samples, &basis);
+        let wanted = DMatrix::from_fn(BATCH, 2, |sample, axis| 0.1 * ((sample + axis) % 5) as f32 - 0.2);
+        // A step of length 0 leaves the weights and keeps a tenth of the slopes; layer 4 is the output.
+        learner.descend(&batch, &wanted, 0.0, 1);
+        for (layer, at) in [(0, (0, 0)), (0, (4, 3)), (1, (2, 1)), (2, (3, 2)), (3, (1, 0)), (4, (0, 0)), (4, (3, 1))] {
+            let mut loss = |by: f32| {
+                let weight = |learner: &mut Learner| match layer {
+                    4 => learner.output.weights[at] += by,
+                    class => learner.hidden[class].weights[at] += by,
+                };
+                weight(&mut learner);
+                let errors = learner.correct(&batch) - &wanted;
+                f64::from(errors.norm_squared()) / (2 * BATCH) as f64
+            };
+            let difference = (loss(BY) - loss(-2.0 * BY)) / f64::from(2.0 * BY);
+            loss(BY);
+            let of = if layer == 4 { &learner.output } else { &learner.hidden[layer] };
+            let slope = 10.0 * f64::from(of.mean[at]);
+            assert!((slope - difference).abs() < 0.05 * slope.abs() + 5e-6, "{layer} {at:?}: {slope} {difference}");
+        }
     }
 }

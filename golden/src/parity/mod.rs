@@ -10,6 +10,8 @@
 
 mod folded;
 
+use std::ops::{Add, Sub};
+
 pub use folded::FoldedMatrix;
 
 /// Number of classes: even or odd in x, times even or odd in y. Class `c = odd_x + 2 * odd_y`.
@@ -111,7 +113,7 @@ impl Quads {
 }
 
 /// `out[c]` is the sum over s of `sign(c, s) * x[s]`; on a centre line the differences are zero to the bit.
-pub(crate) fn butterfly([a, b, c, d]: [f64; 4]) -> [f64; 4] {
+pub(crate) fn butterfly<T: Copy + Add<Output = T> + Sub<Output = T>>([a, b, c, d]: [T; 4]) -> [T; 4] {
     let (even, odd) = ([a + b, c + d], [a - b, c - d]);
     [even[0] + even[1], odd[0] + odd[1], even[0] - even[1], odd[0] - odd[1]]
 }

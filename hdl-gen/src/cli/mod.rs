@@ -27,13 +27,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Writes a commented design file NAME.toml to start from
-    New {
-        /// Name of the design: a Verilog identifier
-        name: String,
-        /// Folder for the file
-        #[arg(long, default_value = ".")]
-        dir: PathBuf,
-    },
+    New(new::New),
     /// Shows geometry, condition numbers, Nnz per matrix, ROM bits, predicted cycles, DSP and BRAM
     Inspect {
         /// Design file (TOML)
@@ -68,7 +62,7 @@ pub fn main() -> ExitCode {
 fn run(command: Command) -> Result<String, Box<dyn Error>> {
     let progress = Progress::new();
     match command {
-        Command::New { name, dir } => new::write(&name, &dir),
+        Command::New(new) => new::write(&new, &progress),
         Command::Inspect { design, json } => {
             let plan = plan(&Design::load(&design)?, &design, &progress)?;
             inspect::report(&plan, json)

@@ -2,17 +2,57 @@
 
 use std::error::Error;
 use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::path::PathBuf;
 
-use golden::design::Design;
+use clap::{Args, ValueEnum};
+use golden::calibrate::{Settings, calibrate};
+use golden::design::{Design, JointConstants};
+
+use super::progress::Progress;
 
 const TEMPLATE: &str = include_str!("../../templates/design.toml");
+/// The line of the template where the joint estimator's constants go.
+const CONSTANTS: &str = "@CONSTANTS@\n";
+/// Where the comments of the template begin.
+const COMMENTS: usize = 33;
 
-/// Writes `NAME.toml` into `folder`, the whole file or none, never over an existing one; returns what to do next.
-pub fn write(name: &str, folder: &Path) -> Result<String, Box<dyn Error>> {
-    // Quoted, so that whatever the name holds reaches the check of names; a JSON string is a TOML string.
-    let text = TEMPLATE.replace("\"@NAME@\"", &serde_json::to_string(name)?);
-    Design::from_toml(&text, "hdl-gen new")?;
+/// What the command line says of the new design.
+#[derive(Args)]
+pub struct New {
+    /// Name of the design: a Verilog identifier
+    name: String,
+    /// Folder for the file
+    #[arg(long, default_value = ".")]
+    dir: PathBuf,
+    /// How friction is found
+    #[arg(long, value_enum, default_value_t = Friction::Joint)]
+    estimator: Friction,
+    /// Taxels in x
+    #[arg(long, default_value_t = 10)]
+    columns: usize,
+    /// Taxels in y
+    #[arg(long, default_value_t = 10)]
+    rows: usize,
+    /// Distance of neighbouring taxels in x and in y
+    #[arg(long, num_args = 2, value_names = ["X", "Y"], default_values_t = [4.0, 2.0])]
+    pitch_mm: Vec<f64>,
+    /// Thickness of the layer above the taxels
+    #[arg(long, default_value_t = 3.0)]
+    depth_mm: f64,
+}
+
+/// The estimators.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Friction {
+    /// Both components at once; its constants are fitted to the sensor
+    Joint,
+    /// Along the direction of push, as in the paper
+    Line,
+}
+
+/// Writes `NAME.toml` into the folder, the whole file or none, never over an existing one; returns what to do next.
+pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
+    let New { name, dir: folder, .. } = new;
     let path = folder.join(format!("{name}.toml"));
     let failed = |error: std::io::Error| match error.kind() {
         ErrorKind::AlreadyExists => format!("{}: is there already; choose another name", path.display()),
@@ -21,6 +61,11 @@ pub fn write(name: &str, folder: &Path) -> Result<String, Box<dyn Error>> {
     if !folder.is_dir() {
         return Err(format!("{}: is no folder; make it first or choose another with --dir", folder.display()).into());
     }
+    // Before the work rather than after it.
+    if path.exists() {
+        return Err(failed(ErrorKind::AlreadyExists.into()).into());
+    }
+    let text = text(new, progress)?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hdl-gen-");
     #[cfg(unix)]
@@ -32,5 +77,64 @@ pub fn write(name: &str, folder: &Path) -> Result<String, Box<dyn Error>> {
     let mut file = builder.tempfile_in(folder).map_err(failed)?;
     file.write_all(text.as_bytes()).map_err(failed)?;
     file.persist_noclobber(&path).map_err(|error| failed(error.error))?;
-    Ok(format!("{}: edit it, then run hdl-gen inspect {0} and hdl-gen generate {0}\n", path.display()))
+    let said = format!("{}: edit it, then run hdl-gen inspect {0} and hdl-gen generate {0}\n", path.display());
+    if new.estimator == Friction::Line {
+        return Ok(said);
+    }
+    let calibrated = folder.join(format!("{name}-calibrated.toml"));
+    Ok(format!(
+        "{said}its gain and friction are fitted to this sensor; golden calibrate {} --out {} also trains the correction\n",
+        path.display(),
+        calibrated.display()
+    ))
+}
+
+/// The design file, checked.
+fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
+    // Quoted, so that whatever the name holds reaches the check of names; a JSON string is a TOML string.
+    let mut text = with(TEMPLATE, "name", &serde_json::to_string(&new.name)?);
+    for (key, value) in [
+        ("columns", new.columns.to_string()),
+        ("rows", new.rows.to_string()),
+        ("pitch_mm", format!("{:?}", new.pitch_mm)),
+        ("depth_mm", format!("{:?}", new.depth_mm)),
+    ] {
+        text = with(&text, key, &value);
+    }
+    let bare = text.replace(CONSTANTS, "");
+    if new.estimator == Friction::Line {
+        let text = with(&bare, "estimator", "\"line\"");
+        Design::from_toml(&text, "hdl-gen new")?;
+        return Ok(text);
+    }
+    let design = Design::from_toml(&bare, "hdl-gen new")?;
+    progress.stage("fitting gain and friction to contacts with known forces".to_owned());
+    let found = calibrate(&design, &Settings::constants(), &mut |_| ())
+        .map_err(|error| format!("{error}; or choose --estimator line, which needs no constants"))?;
+    let text = text.replace(CONSTANTS, &constants(&found));
+    Design::from_toml(&text, "hdl-gen new")?;
+    Ok(text)
+}
+
+/// The lines of the joint estimator's constants; four digits, which no processor rounds otherwise and no contact shows.
+fn constants(&JointConstants { gain, tangential: [c1, c3], .. }: &JointConstants) -> String {
+    let remarks = [
+        "factor on all forces, fitted to the sensor above",
+        "friction c1 mu + c3 mu |mu|^2, likewise: for another sensor, and for the",
+        "  correction that halves the error, run golden calibrate",
+    ];
+    let keys = [format!("gain = {gain:.4}"), format!("tangential = [{c1:.4}, {c3:.4}]"), String::new()];
+    keys.iter().zip(remarks).map(|(key, remark)| format!("{key:<COMMENTS$}# {remark}\n")).collect()
+}
+
+/// The text with another value of a key, its comment where it was.
+fn with(text: &str, key: &str, value: &str) -> String {
+    let line = |line: &str| match (line.split_once(" = "), line.split_once(" # ")) {
+        (Some((found, _)), Some((_, comment))) if found == key => {
+            let pair = format!("{key} = {value} ");
+            format!("{pair:<COMMENTS$}# {comment}\n")
+        }
+        _ => format!("{line}\n"),
+    };
+    text.lines().map(line).collect()
 }

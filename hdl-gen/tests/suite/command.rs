@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use golden::design::Estimator;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -67,13 +68,44 @@ fn from_a_new_design_to_a_folder() {
     assert_eq!(beside.len(), 1, "nothing is left beside the folder");
 }
 
+/// What `hdl-gen new` writes with some options.
+fn new_design(options: &[&str]) -> golden::design::Design {
+    let folder = tempfile::tempdir().unwrap();
+    good(folder.path(), &[&["new", "full"], options].concat());
+    golden::design::Design::load(&folder.path().join("full.toml")).unwrap()
+}
+
 #[test]
 fn the_new_designs_values_are_the_defaults() {
-    let folder = tempfile::tempdir().unwrap();
-    good(folder.path(), &["new", "full"]);
-    let full = golden::design::Design::load(&folder.path().join("full.toml")).unwrap();
     let text = design_text("full", [10, 10], [4.0, 2.0], 3.0, "");
-    assert_eq!(golden::design::Design::from_toml(&text, "full.toml").unwrap(), full);
+    let defaults = golden::design::Design::from_toml(&text, "full.toml").unwrap();
+    assert_eq!(new_design(&["--estimator", "line"]), defaults);
+    // But for the estimator, which is the better one.
+    let mut joint = new_design(&[]);
+    assert_eq!(joint.algorithm.estimator, Estimator::Joint);
+    (joint.algorithm.estimator, joint.algorithm.joint) = (Estimator::Line, defaults.algorithm.joint.clone());
+    assert_eq!(joint, defaults);
+}
+
+#[test]
+fn a_new_designs_constants_are_those_of_its_sensor() {
+    let shipped = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(name);
+        golden::design::Design::load(&path).unwrap().algorithm.joint
+    };
+    for (pitch_y, name) in [("2", "sensor1-joint.toml"), ("4", "sensor2-joint.toml")] {
+        let options = ["--columns", "10", "--rows", "10", "--pitch-mm", "4", pitch_y, "--depth-mm", "3"];
+        let (found, shipped) = (new_design(&options).algorithm.joint, shipped(name));
+        assert_eq!(found.correction, None);
+        assert!((found.gain / shipped.gain - 1.0).abs() < 5e-3, "{name}: {} {}", found.gain, shipped.gain);
+        for (found, shipped) in found.tangential.into_iter().zip(shipped.tangential) {
+            assert!((found - shipped).abs() < 0.02, "{name}: {found} {shipped}");
+        }
+    }
+    let other = new_design(&["--columns", "6", "--rows", "5", "--pitch-mm", "3.5", "3", "--depth-mm", "2.5"]);
+    assert_eq!((other.sensor.columns, other.sensor.rows, other.sensor.pitch_mm), (6, 5, [3.5, 3.0]));
+    // The estimator's gain on half the depth of a pitch is far from one.
+    assert!(other.algorithm.joint.gain > 1.05, "{}", other.algorithm.joint.gain);
 }
 
 #[test]
