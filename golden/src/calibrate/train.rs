@@ -19,8 +19,8 @@ const RATE: f32 = 3e-3;
 /// Share of every weight that is forgotten for each unit of a step's length: it keeps the network from learning single
 /// contacts by heart.
 const DECAY: f32 = 0.1;
-/// The largest weight of a hidden unit. Up to here a parity class's share of a weight, a quarter of four's sum, is exact
-/// in the hardware's 18 bits.
+/// The largest weight of a hidden unit. Up to here a parity class's share of a weight, a quarter of four's sum,
+/// is exact in the hardware's 18 bits.
 const LARGEST_WEIGHT: f64 = 7.9;
 /// The largest sum of a hidden unit's weights. The hardware rounds all units alike, as the largest sum demands, so all
 /// are brought to about the same one; a factor on a unit goes out of its weights in the output, which changes nothing.

@@ -83,7 +83,7 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     }
     let calibrated = folder.join(format!("{name}-calibrated.toml"));
     Ok(format!(
-        "{said}its gain and friction are fitted to this sensor; golden calibrate {} --out {} also trains the correction\n",
+        "{said}gain and friction are fitted to this sensor; golden calibrate {} --out {} also trains the correction\n",
         path.display(),
         calibrated.display()
     ))
