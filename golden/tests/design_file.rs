@@ -248,6 +248,8 @@ fn names_that_are_no_identifiers() {
 fn options_are_refused_with_the_list_of_allowed_ones() {
     for (line, parts) in [
         ("kernel = \"line\"", ["algorithm.kernel", "line", "point, cell"]),
+        ("fitted_to = \"x\"", ["algorithm.fitted_to", "joint estimator", "remove it"]),
+        ("estimator = \"joint\"\nfitted_to = \"x\"", ["algorithm.fitted_to", "\"x\"", "golden calibrate"]),
         ("estimator = \"point\"", ["algorithm.estimator", "point", "line, joint"]),
         ("outputs = \"forces\"", ["algorithm.outputs", "forces", "field, resultants"]),
         ("plan = \"fast\"", ["algorithm.plan", "fast", "paper, reduced"]),
@@ -289,6 +291,28 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
     ] {
         refused(&format!("{MINIMAL}[hardware]\n{line}\n"), &parts);
     }
+}
+
+/// Constants of the joint estimator stay with the sensor, the kernel and the regularisation that they were fitted to.
+#[test]
+fn constants_of_another_sensor_are_refused() {
+    let text = include_str!("../../designs/sensor2-joint.toml");
+    assert!(Design::from_toml(text, "joint.toml").is_ok());
+    for (key, value) in [
+        ("pitch_mm = [4.0, 4.0]", "pitch_mm = [4.0, 2.0]"),
+        ("depth_mm = 3.0", "depth_mm = 3.5"),
+        ("kernel = \"point\"", "kernel = \"cell\""),
+        ("kernel = \"point\"", "kernel = \"point\"\nregularisation = 0.01"),
+    ] {
+        let changed = text.replace(key, value);
+        assert_ne!(changed, text, "{key}");
+        refused(
+            &changed,
+            &["algorithm.fitted_to", "10 x 10 taxels of 4 x 4 mm, 3 mm deep, point, 0", "golden calibrate"],
+        );
+    }
+    // What the constants do not depend on may change.
+    assert!(Design::from_toml(&text.replace("lanes = 16", "lanes = 32"), "joint.toml").is_ok());
 }
 
 #[test]

@@ -152,6 +152,31 @@ proptest! {
     }
 
     #[test]
+    fn a_damaged_calibration_is_read_or_refused(
+        rows in prop::collection::vec((0.5..2.0_f64, -100.0..100.0_f64), 12),
+        changes in changes(),
+    ) {
+        let lines: Vec<String> = rows.iter().map(|(gain, offset)| format!("{gain},{offset}")).collect();
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("fuzzed.csv"), changed(&lines.join("\n"), &changes)).expect("writable");
+        let design = folder.path().join("pad.toml");
+        let text = "name = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+                    pa_per_count = 10.0\ncalibration = \"fuzzed.csv\"\n";
+        fs::write(&design, text).expect("writable");
+        match Design::load(&design) {
+            Ok(design) => {
+                let calibration = design.input.calibration.expect("as the file says");
+                prop_assert!(calibration.gain.iter().all(|gain| gain.is_finite() && *gain > 0.0));
+                prop_assert_eq!((calibration.gain.len(), calibration.offset.len()), (12, 12));
+            }
+            Err(error) => {
+                prop_assert!(is_a_message(&error.to_string()), "{}", error);
+                prop_assert!(!error.to_string().contains(char::is_control), "{:?}", error.to_string());
+            }
+        }
+    }
+
+    #[test]
     fn damaged_forces_are_read_or_refused(changes in changes(), frames in 1..3_usize) {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("fuzzed.csv");

@@ -10,7 +10,8 @@ use golden::calibrate::{CalibrateError, Settings, calibrate};
 use golden::design::{Design, Input, Outputs, PlanKind};
 use golden::scene::{Medium, Shape};
 use golden::solver::{Solution, Solver, Status};
-use proptest::prelude::*;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use support::{Pressed, Worst, anywhere, centred, inside, pairs, worst};
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
@@ -53,6 +54,8 @@ fn contacts_in_the_middle() {
         for shape in [HERTZ, DISC] {
             let set = centred(&design.sensor, LAYER, shape);
             within(&solver, &set, [6.0, 3.0, 6.0], [8.0; 3], [2.1; 2]);
+            let normal = worst(&solver, &set, 0.5, 0.0).error[2];
+            assert!(normal <= 2.0, "{name}: e_Fz {normal:.2}");
             let set = centred(&design.sensor, SOFTER, shape);
             within(&solver, &set, [9.0, 4.5, 9.0], [12.0; 3], [3.0; 2]);
         }
@@ -243,20 +246,29 @@ static ROUGH: LazyLock<Solver> = LazyLock::new(|| {
     Solver::new(&design).unwrap()
 });
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-    #[test]
-    fn a_mirrored_frame_has_mirrored_forces(frame in proptest::collection::vec(-90_000.0..20_000.0_f64, 30)) {
-        let solver = &*ROUGH;
-        let mirrored: Vec<f64> = (0..30).map(|i| frame[i / 6 * 6 + 5 - i % 6]).collect();
-        let (one, other) = (solver.solve(&frame).unwrap(), solver.solve(&mirrored).unwrap());
-        prop_assert!(one.mu.is_finite() && one.phi.is_finite());
-        // Two points of the grid with the same least value may be told apart by rounding only.
-        prop_assume!(one.status == other.status);
-        let scale = 1e-6 * (1.0 + one.resultant[2].abs());
-        prop_assert!((one.resultant[0] + other.resultant[0]).abs() < scale, "{one:?} {other:?}");
-        prop_assert!((one.resultant[1] - other.resultant[1]).abs() < scale);
-        prop_assert!((one.resultant[2] - other.resultant[2]).abs() < scale);
+/// Whether the x-mirrored frame has the mirrored answer.
+fn is_mirrored(frame: &[f64]) -> bool {
+    let mirrored: Vec<f64> = (0..30).map(|i| frame[i / 6 * 6 + 5 - i % 6]).collect();
+    let [one, other] = [frame, &mirrored].map(|frame| ROUGH.solve(frame).unwrap());
+    assert!(one.mu.is_finite() && one.phi.is_finite());
+    let scale = 1e-6 * (1.0 + one.resultant[2].abs());
+    let [x, y, z] = other.resultant;
+    one.status == other.status && one.resultant.iter().zip([-x, y, z]).all(|(a, b)| (a - b).abs() < scale)
+}
+
+/// But for contacts within 2^-10 of a pitch of the middle between two columns, which go to the second one on either
+/// side, and for two points of the grid with the same least value: a few frames in a thousand. A little more stress
+/// at an edge, and they are mirrored too.
+#[test]
+fn a_mirrored_frame_has_mirrored_forces() {
+    const FRAMES: usize = 512;
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let frames = (0..FRAMES).map(|_| (0..30).map(|_| random.random_range(-90_000.0..20_000.0)).collect());
+    let undecided: Vec<Vec<f64>> = frames.filter(|frame: &Vec<f64>| !is_mirrored(frame)).collect();
+    assert!(undecided.len() <= 4, "{} of {FRAMES} frames are not mirrored", undecided.len());
+    for mut frame in undecided {
+        frame[12] -= 20_000.0;
+        assert!(is_mirrored(&frame), "{frame:?}");
     }
 }
 

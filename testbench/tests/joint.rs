@@ -171,8 +171,14 @@ fn the_rtl_reaches_what_the_solver_reaches() {
             let part = first..first + length;
             first += length;
             let Worst { error: [x, y, z], flagged, .. } = judged(&all[part.clone()], answers[part].iter().map(outcome));
+            // The goals for the normal force are those without noise, in the middle at a friction of 0.5.
+            let normal = match *name {
+                "200 inside" if noise == 0.0 => 3.0,
+                "Hertz" | "disc" if noise == 0.0 && friction == 0.5 => 2.0,
+                _ => *normal,
+            };
             let case = format!("{} {name}, friction {friction}, noise {noise}", design.name);
-            assert!(x <= limit && y <= limit && z <= *normal, "{case}: {x:.2} {y:.2} over {limit}, {z:.2}");
+            assert!(x <= limit && y <= limit && z <= normal, "{case}: {x:.2} {y:.2} over {limit}, {z:.2}");
             assert_eq!(flagged, 0, "{case}");
             // Writing to a String cannot fail.
             let _ = write!(line, "{:>7.1}", x.max(y));

@@ -94,6 +94,6 @@ fn faults_in_the_rtl_are_noticed() {
     let report = mutants(&design, &options, &Progress::hidden()).expect("runs");
     let built = report.mutants.iter().filter(|mutant| mutant.fate != Fate::Rejected).count();
     assert_eq!(built, Kind::ALL.len());
-    // Some faults change nothing: among 220 one in ten.
-    assert!(report.survivors().count() <= 3, "{report}");
+    // Some faults change nothing: among 220 one in ten, of these as listed in docs/trust.md.
+    assert!(report.survivors().count() <= 2, "{report}");
 }

@@ -10,7 +10,7 @@ mod train;
 
 pub use contacts::random_contacts;
 
-use crate::design::{Design, Estimator, Input, JointConstants};
+use crate::design::{Design, Estimator, Input, JointConstants, conditions};
 use crate::scene::SceneError;
 use crate::solver::SolverError;
 use samples::Sample;
@@ -138,7 +138,9 @@ pub fn calibrate(
     }
     let correction =
         (settings.hidden > 0).then(|| train::train(&samples, &targets, tangential, half_window, settings, tick));
-    Ok(JointConstants { gain, tangential, correction })
+    let algorithm = &design.algorithm;
+    let fitted_to = Some(conditions(&design.sensor, algorithm.kernel, algorithm.regularisation));
+    Ok(JointConstants { gain, tangential, correction, fitted_to })
 }
 
 /// The constants `c1, c3` that bring `c1 mu + c3 mu |mu|^2` closest to the targets, by least squares.

@@ -102,7 +102,7 @@ impl Calibration {
             let [Some(g), Some(o)] = values[..] else {
                 let shown: String = content.trim().chars().take(40).collect();
                 let remedy = "write gain,offset, such as 1.02,-0.5, and no header line".to_owned();
-                return Err(wrong(line, format!("\"{shown}\" is no pair of numbers"), remedy));
+                return Err(wrong(line, format!("{shown:?} is no pair of numbers"), remedy));
             };
             // A NaN is in no range.
             if !(g > 0.0 && g <= MAX_GAIN) {

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Deserialize;
 
 use super::checks::Check;
-use super::{DesignError, Sensor};
+use super::{DesignError, Kernel, Regularisation, Sensor};
 
 /// Weights of a correction are whole numbers of `2^-WEIGHT_FRACTION`.
 pub const WEIGHT_FRACTION: u32 = 12;
@@ -25,11 +25,24 @@ pub struct JointConstants {
     pub tangential: [f64; 2],
     /// What a small network adds to that; nothing unless trained.
     pub correction: Option<Correction>,
+    /// What they were fitted to, as [`conditions`] states it; a design of other conditions is refused. `None` for
+    /// constants of unknown origin.
+    pub fitted_to: Option<String>,
+}
+
+/// What the constants depend on, for people and for comparison.
+pub fn conditions(sensor: &Sensor, kernel: Kernel, regularisation: Regularisation) -> String {
+    let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
+    let kernel = match kernel {
+        Kernel::Point => "point",
+        Kernel::Cell => "cell",
+    };
+    format!("{columns} x {rows} taxels of {x} x {y} mm, {depth_mm} mm deep, {kernel}, {}", regularisation.factor())
 }
 
 impl Default for JointConstants {
     fn default() -> Self {
-        Self { gain: 1.0, tangential: [1.0, 0.0], correction: None }
+        Self { gain: 1.0, tangential: [1.0, 0.0], correction: None, fitted_to: None }
     }
 }
 
@@ -63,27 +76,41 @@ pub(super) struct RawCorrection {
     output: Vec<Vec<i64>>,
 }
 
-/// Checks the constants; a design without any has the default ones.
+/// The constants as a file has them.
+pub(super) struct Raw<'a> {
+    pub gain: Option<f64>,
+    pub tangential: Option<&'a [f64]>,
+    pub correction: Option<&'a RawCorrection>,
+    pub fitted_to: Option<String>,
+}
+
+/// Checks the constants; a design without any has the default ones. `conditions` are those of the design.
 pub(super) fn constants(
     check: &Check,
-    gain: Option<f64>,
-    tangential: Option<&[f64]>,
-    raw: Option<&RawCorrection>,
+    raw: Raw<'_>,
     sensor: &Sensor,
+    conditions: &str,
 ) -> Result<JointConstants, DesignError> {
-    let gain = check.real("algorithm.gain", gain.unwrap_or(1.0), 0.1, 10.0, "")?;
-    let [c1, c3] = two(check, "algorithm.tangential", tangential.unwrap_or(&[1.0, 0.0]), "c1 and c3")?;
+    if let Some(other) = raw.fitted_to.as_ref().filter(|&fitted_to| fitted_to != conditions) {
+        return Err(check.value(
+            "algorithm.fitted_to",
+            format!("says that the constants belong to \"{other}\", but the design is \"{conditions}\""),
+            "remove fitted_to, gain, tangential and [algorithm.correction], and run `golden calibrate`".to_owned(),
+        ));
+    }
+    let gain = check.real("algorithm.gain", raw.gain.unwrap_or(1.0), 0.1, 10.0, "")?;
+    let [c1, c3] = two(check, "algorithm.tangential", raw.tangential.unwrap_or(&[1.0, 0.0]), "c1 and c3")?;
     let tangential = [
         check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
         check.real("algorithm.tangential[1]", c3, -2.0, 2.0, "")?,
     ];
-    let correction = raw.map(|raw| correction(check, raw, sensor)).transpose()?;
-    Ok(JointConstants { gain, tangential, correction })
+    let correction = raw.correction.map(|raw| correction(check, raw, sensor)).transpose()?;
+    Ok(JointConstants { gain, tangential, correction, fitted_to: raw.fitted_to })
 }
 
 /// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
-pub(super) fn refuse(check: &Check, given: [bool; 3]) -> Result<(), DesignError> {
-    match ["gain", "tangential", "correction"].into_iter().zip(given).find(|(_, given)| *given) {
+pub(super) fn refuse(check: &Check, given: [bool; 4]) -> Result<(), DesignError> {
+    match ["gain", "tangential", "correction", "fitted_to"].into_iter().zip(given).find(|(_, given)| *given) {
         Some((key, _)) => Err(check.value(
             &format!("algorithm.{key}"),
             "belongs to the joint estimator".to_owned(),
@@ -132,8 +159,9 @@ fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<
 
 /// The keys of `[algorithm]`, and the table that follows all of them.
 pub(super) fn print(constants: &JointConstants) -> [String; 2] {
-    let JointConstants { gain, tangential: [c1, c3], correction } = constants;
-    let keys = format!("gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
+    let JointConstants { gain, tangential: [c1, c3], correction, fitted_to } = constants;
+    let fitted_to = fitted_to.as_ref().map_or_else(String::new, |conditions| format!("fitted_to = {conditions:?}\n"));
+    let keys = format!("{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
     let mut table = String::new();
     if let Some(Correction { half_window: [x, y], hidden, output }) = correction {
         let rows = |rows: &[Vec<i32>]| -> String { rows.iter().map(|row| format!("    {row:?},\n")).collect() };

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 pub use filter::{Choices, Filter, MatrixFilter, UnknownMatrixFilter};
 pub use input::{Calibration, Input};
-pub use joint::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_BITS, WEIGHT_FRACTION};
+pub use joint::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_BITS, WEIGHT_FRACTION, conditions};
 pub(crate) use parse::{RawSensor, syntax_position};
 pub use regularisation::Regularisation;
 

@@ -58,6 +58,7 @@ struct RawAlgorithm {
     gain: Option<f64>,
     tangential: Option<Vec<f64>>,
     correction: Option<RawCorrection>,
+    fitted_to: Option<String>,
     outputs: Option<String>,
     noise_floor_pa: Option<f64>,
 }
@@ -135,10 +136,16 @@ fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, hardware: &Hardw
     let regularisation = regularisation::parse(check, raw.regularisation.as_ref())?;
     check.choice("algorithm.estimator", raw.estimator.as_deref(), &["line", "joint"])?;
     let (estimator, joint) = if raw.estimator.as_deref() == Some("joint") {
-        let tangential = raw.tangential.as_deref();
-        (Estimator::Joint, joint::constants(check, raw.gain, tangential, raw.correction.as_ref(), sensor)?)
+        let conditions = joint::conditions(sensor, kernel, regularisation);
+        let constants = joint::Raw {
+            gain: raw.gain,
+            tangential: raw.tangential.as_deref(),
+            correction: raw.correction.as_ref(),
+            fitted_to: raw.fitted_to,
+        };
+        (Estimator::Joint, joint::constants(check, constants, sensor, &conditions)?)
     } else {
-        let given = [raw.gain.is_some(), raw.tangential.is_some(), raw.correction.is_some()];
+        let given = [raw.gain.is_some(), raw.tangential.is_some(), raw.correction.is_some(), raw.fitted_to.is_some()];
         joint::refuse(check, given)?;
         (Estimator::Line, JointConstants::default())
     };

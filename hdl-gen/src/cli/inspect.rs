@@ -13,6 +13,8 @@ use serde_json::json;
 
 /// Condition number of A Aᵀ above which noise of a thousandth of the stress is no longer a small error of the force.
 const ILL_CONDITIONED: f64 = 1e4;
+/// Share by which the joint estimator's gain may differ from what the kernel lacks under a wide contact.
+const STALE_GAIN: f64 = 0.1;
 /// `(beginning of the part's name, DSP48E2, RAMB36)` of the default part.
 const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
 /// Second lines stand under the values of the first.
@@ -108,8 +110,18 @@ fn kernel_advice(plan: &Plan) -> String {
     let off = |of| 100.0 * (1.0 / gain(of) - 1.0);
     let lost = 100.0 * (1.0 - gain(Kernel::Cell) / gain(Kernel::Point));
     match (algorithm.kernel, algorithm.estimator) {
-        (_, Estimator::Joint) => {
-            format!("the joint estimator's own makes good for its gain of {:.3}", gain(algorithm.kernel))
+        (of, Estimator::Joint) => {
+            let (wants, has) = (gain(of), algorithm.joint.gain);
+            let verdict = match (of, (has / wants - 1.0).abs() > STALE_GAIN) {
+                (_, true) => "they differ:\n{INDENT}run golden calibrate, or F_z is off by about as much",
+                (Kernel::Point, false) => "so F_z\n{INDENT}is right, and mu comes out better than with \"cell\"",
+                (Kernel::Cell, false) => {
+                    "so F_z\n{INDENT}is right; mu comes out better with \"point\", calibrated anew"
+                }
+            };
+            let verdict = verdict.replace("{INDENT}", INDENT);
+            let name = if of == Kernel::Point { "point" } else { "cell" };
+            format!("{name}: wants a gain of {wants:.3}, the joint estimator has {has:.3}, {verdict}")
         }
         (Kernel::Point, Estimator::Line) => format!(
             "point: F_z of a wide contact is off by {:+.1} %;\n{INDENT}\"cell\" makes it right, with mu {lost:.0} % \

@@ -13,6 +13,8 @@ use super::progress::Progress;
 const TEMPLATE: &str = include_str!("../../templates/design.toml");
 /// The line of the template where the joint estimator's constants go.
 const CONSTANTS: &str = "@CONSTANTS@\n";
+/// Depth in pitches beyond which a new design is regularised.
+const DEEP: f64 = 1.5;
 /// Where the comments of the template begin.
 const COMMENTS: usize = 33;
 
@@ -83,7 +85,8 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     }
     let calibrated = folder.join(format!("{name}-calibrated.toml"));
     Ok(format!(
-        "{said}gain and friction are fitted to this sensor; golden calibrate {} --out {} also trains the correction\n",
+        "{said}gain and friction are fitted to this sensor, which leaves errors of up to 10 % of the normal force where\n\
+         the contact's edge lies between taxels; golden calibrate {} --out {} trains the correction, which halves them\n",
         path.display(),
         calibrated.display()
     ))
@@ -101,6 +104,11 @@ fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     ] {
         text = with(&text, key, &value);
     }
+    // Where noise would become force, and no plan might be possible without.
+    let [x, y] = [new.pitch_mm[0], new.pitch_mm[1]];
+    if new.depth_mm > DEEP * x.min(y) {
+        text = text.replace("# regularisation = ", "regularisation = ");
+    }
     let bare = text.replace(CONSTANTS, "");
     if new.estimator == Friction::Line {
         let text = with(&bare, "estimator", "\"line\"");
@@ -117,14 +125,25 @@ fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
 }
 
 /// The lines of the joint estimator's constants; four digits, which no processor rounds otherwise and no contact shows.
-fn constants(&JointConstants { gain, tangential: [c1, c3], .. }: &JointConstants) -> String {
+fn constants(JointConstants { gain, tangential: [c1, c3], fitted_to, .. }: &JointConstants) -> String {
     let remarks = [
         "factor on all forces, fitted to the sensor above",
-        "friction c1 mu + c3 mu |mu|^2, likewise: for another sensor, and for the",
-        "  correction that halves the error, run golden calibrate",
+        "friction c1 mu + c3 mu |mu|^2, likewise; the correction, which",
+        "  halves the error, is trained by golden calibrate",
+        "what they belong to: for another sensor, kernel or regularisation remove",
+        "  these lines, and run golden calibrate",
     ];
-    let keys = [format!("gain = {gain:.4}"), format!("tangential = [{c1:.4}, {c3:.4}]"), String::new()];
-    keys.iter().zip(remarks).map(|(key, remark)| format!("{key:<COMMENTS$}# {remark}\n")).collect()
+    let keys = [
+        format!("gain = {gain:.4}"),
+        format!("tangential = [{c1:.4}, {c3:.4}]"),
+        String::new(),
+        String::new(),
+        String::new(),
+    ];
+    let fitted_to = format!("fitted_to = {:?}\n", fitted_to.as_deref().unwrap_or_default());
+    let constants: String =
+        keys.iter().zip(remarks).map(|(key, remark)| format!("{key:<COMMENTS$}# {remark}\n")).collect();
+    constants + &fitted_to
 }
 
 /// The text with another value of a key, its comment where it was.

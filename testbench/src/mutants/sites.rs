@@ -23,6 +23,10 @@ pub enum Kind {
     Condition,
     /// The two sides of a choice swapped: a clipping, a multiplexer.
     Choice,
+    /// Always the same side of a choice: a clipping that is dropped.
+    Side,
+    /// The operands of a subtraction swapped.
+    Operands,
     /// An assignment in a clocked block left out: a clear, a step, a hold.
     Assignment,
     /// A ready or valid that never changes.
@@ -33,13 +37,15 @@ pub enum Kind {
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Number,
         Self::Sum,
         Self::Comparison,
         Self::Logic,
         Self::Condition,
         Self::Choice,
+        Self::Side,
+        Self::Operands,
         Self::Assignment,
         Self::Stuck,
         Self::Rom,
@@ -145,18 +151,26 @@ fn verilog_changes(line: &str) -> Vec<(Kind, String)> {
         (Kind::Comparison, " >= ", " > "),
         (Kind::Logic, " && ", " || "),
         (Kind::Logic, " || ", " && "),
+        (Kind::Logic, " & ", " | "),
+        (Kind::Logic, " | ", " & "),
     ] {
         changes.extend(code.match_indices(from).map(|(at, _)| {
             let (head, tail) = (&code[..at], &code[at + from.len()..]);
             (kind, format!("{head}{to}{tail}"))
         }));
     }
+    changes.extend(code.match_indices(" - ").filter_map(|(at, minus)| swapped(code, at, minus.len())));
     if let Some(condition) = trimmed.strip_prefix("if (").and_then(|rest| rest.strip_suffix(") begin")) {
         changes.push((Kind::Condition, format!("if (!({condition})) begin")));
     }
     if let (Some((target, expression)), true) = (assignment(trimmed), trimmed.ends_with(';')) {
         if let Some((question, sides)) = expression.split_once(" ? ").filter(|(question, _)| balanced(question)) {
             changes.push((Kind::Choice, format!("{target}!({question}) ? {sides}")));
+            let plain = |side: &&str| balanced(side) && !side.contains('?');
+            if let Some((yes, no)) = sides.split_once(" : ").filter(|(yes, no)| plain(yes) && plain(no)) {
+                changes.push((Kind::Side, format!("{target}{yes};")));
+                changes.push((Kind::Side, format!("{target}{no}")));
+            }
         }
         if target.ends_with(" <= ") {
             changes.push((Kind::Assignment, "// left out".to_owned()));
@@ -168,6 +182,18 @@ fn verilog_changes(line: &str) -> Vec<(Kind, String)> {
         }
     }
     changes
+}
+
+/// The line with the operands of the subtraction at `at` swapped, where both are plain names or bits of them.
+fn swapped(code: &str, at: usize, length: usize) -> Option<(Kind, String)> {
+    let part = |letter: char| !(letter.is_ascii_alphanumeric() || "_[]:".contains(letter));
+    let from = code[..at].rfind(part).map_or(0, |before| before + 1);
+    let rest = &code[at + length..];
+    let end = rest.find(part).unwrap_or(rest.len());
+    let (left, right) = (&code[from..at], &rest[..end]);
+    let name = |text: &str| text.starts_with(|letter: char| letter.is_ascii_alphabetic()) && balanced(text);
+    (name(left) && name(right) && left != right)
+        .then(|| (Kind::Operands, format!("{}{right} - {left}{}", &code[..from], &rest[end..])))
 }
 
 /// An assignment's target with its sign, and its expression.
@@ -232,8 +258,16 @@ mod tests {
 
     #[test]
     fn sides_of_a_choice_are_swapped() {
-        assert_eq!(changes("y <= above ? top : sum;"), ["y <= !(above) ? top : sum;", "// left out"]);
+        let found = changes("y <= above ? top : sum;");
+        assert_eq!(found, ["y <= !(above) ? top : sum;", "y <= top;", "y <= sum;", "// left out"]);
         assert_eq!(changes("if (go) begin"), ["if (!(go)) begin"]);
+    }
+
+    #[test]
+    fn operands_of_a_subtraction_are_swapped() {
+        assert!(changes("d = sum[7:0] - part;").contains(&"d = part - sum[7:0];".to_owned()));
+        let expected = ["d = a + {1'b0, b};", "d = a - {1'd0, b};"];
+        assert!(changes("d = a - {1'b0, b};").iter().all(|change| expected.contains(&change.as_str())));
     }
 
     #[test]

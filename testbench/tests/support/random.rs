@@ -151,6 +151,7 @@ fn constants(sensor: &Sensor, correction: bool) -> JointConstants {
         gain: random.random_range(0.5..2.0),
         tangential: [random.random_range(0.5..1.5), random.random_range(-0.3..0.3)],
         correction: None,
+        fitted_to: None,
     };
     if correction {
         let half_window = [sensor.columns, sensor.rows].map(|side| random.random_range(0..side.min(6)));
