@@ -68,6 +68,16 @@ fn from_a_new_design_to_a_folder() {
     assert_eq!(beside.len(), 1, "nothing is left beside the folder");
 }
 
+/// Deeper than 1.5 pitches a new design is regularised: without it there would be no hardware.
+#[test]
+fn a_new_design_of_a_deep_sensor_has_hardware() {
+    for depth in ["12", "16"] {
+        let design = new_design(&["--pitch-mm", "4", "4", "--depth-mm", depth]);
+        assert!(design.algorithm.regularisation.factor() > 0.0, "{depth} mm");
+        hdl_gen::plan::Plan::new(&design).unwrap();
+    }
+}
+
 /// What `hdl-gen new` writes with some options.
 fn new_design(options: &[&str]) -> golden::design::Design {
     let folder = tempfile::tempdir().unwrap();
@@ -102,6 +112,7 @@ fn a_new_designs_constants_are_those_of_its_sensor() {
             assert!((found - shipped).abs() < 0.02, "{name}: {found} {shipped}");
         }
     }
+    assert!(new_design(&[]).algorithm.joint.fitted_to.is_some_and(|sensor| sensor.contains("4 x 2 mm, 3 mm deep")));
     let other = new_design(&["--columns", "6", "--rows", "5", "--pitch-mm", "3.5", "3", "--depth-mm", "2.5"]);
     assert_eq!((other.sensor.columns, other.sensor.rows, other.sensor.pitch_mm), (6, 5, [3.5, 3.0]));
     // The estimator's gain on half the depth of a pitch is far from one.
