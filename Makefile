@@ -54,7 +54,7 @@ $(TARGET)/trust/small-%.toml: designs/small.toml
 	@sed 's/^name = .*/name = "small_$*"/; s/^\[algorithm\]/&\nplan = "$*"/' $< > $@
 
 .PHONY: stress
-stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan (an hour)
+stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan (half an hour)
 	@$(CARGO) build --quiet --release -p testbench
 	@set -e; for design in $(SMALL_DESIGNS); do $(TARGET)/release/testbench stress $$design --frames $(FRAMES_COUNT); done
 
