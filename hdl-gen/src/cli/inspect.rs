@@ -113,15 +113,12 @@ fn kernel_advice(plan: &Plan) -> String {
         (of, Estimator::Joint) => {
             let (wants, has) = (gain(of), algorithm.joint.gain);
             let verdict = match (of, (has / wants - 1.0).abs() > STALE_GAIN) {
-                (_, true) => "they differ:\n{INDENT}run golden calibrate, or F_z is off by about as much",
-                (Kernel::Point, false) => "so F_z\n{INDENT}is right, and mu comes out better than with \"cell\"",
-                (Kernel::Cell, false) => {
-                    "so F_z\n{INDENT}is right; mu comes out better with \"point\", calibrated anew"
-                }
+                (_, true) => "run golden calibrate, or F_z is off by as much as they differ",
+                (Kernel::Point, false) => "so F_z is right, and mu comes out better than with \"cell\"",
+                (Kernel::Cell, false) => "so F_z is right; mu comes out better with \"point\", calibrated anew",
             };
-            let verdict = verdict.replace("{INDENT}", INDENT);
             let name = if of == Kernel::Point { "point" } else { "cell" };
-            format!("{name}: wants a gain of {wants:.3}, the joint estimator has {has:.3}, {verdict}")
+            format!("{name}: wants a gain of {wants:.3}, the joint estimator has {has:.3}:\n{INDENT}{verdict}")
         }
         (Kernel::Point, Estimator::Line) => format!(
             "point: F_z of a wide contact is off by {:+.1} %;\n{INDENT}\"cell\" makes it right, with mu {lost:.0} % \

@@ -176,6 +176,21 @@ fn inspect_tells_people_the_same_figures() {
     assert!(text.lines().all(|line| line.len() <= 110 && line.trim_end() == line), "{text}");
 }
 
+/// The joint estimator's gain belongs to a kernel.
+#[test]
+fn inspect_compares_the_gain_with_what_the_kernel_lacks() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    good(here, &["new", "pad", "--pitch-mm", "4", "4"]);
+    assert!(good(here, &["inspect", "pad.toml"]).contains("has 1.254:\n               so F_z is right"));
+    let text = fs::read_to_string(here.join("pad.toml")).unwrap();
+    // Without a word of what the constants belong to, which would refuse the design.
+    let kept = text.lines().filter(|line| !line.starts_with("fitted_to")).collect::<Vec<_>>().join("\n");
+    fs::write(here.join("cell.toml"), kept.replace("kernel = \"point\"", "kernel = \"cell\"")).unwrap();
+    let said = good(here, &["inspect", "cell.toml"]);
+    assert!(said.contains("wants a gain of 1.000") && said.contains("run golden calibrate"), "{said}");
+}
+
 #[test]
 fn inspect_warns_of_what_will_not_work_well() {
     let folder = tempfile::tempdir().unwrap();
