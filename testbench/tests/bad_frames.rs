@@ -11,8 +11,8 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{built, frames, in_parallel, planned, shipped, with_joint};
 use testbench::compare::Comparison;
-use testbench::run::timeout;
 use testbench::stream::{INITIAL_RESET, Mode, Outcome, Pacing, Pattern, Reset, Traffic, exchange};
+use testbench::trial::timeout;
 use testbench::verilate::Built;
 use testbench::words::{Answer, decode, encode};
 

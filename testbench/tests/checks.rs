@@ -5,8 +5,8 @@ mod support;
 
 use golden::design::{Design, Outputs, PlanKind};
 use support::{by_plan, in_parallel, planned, shipped, with_lanes};
-use testbench::run::{rtl_sources, timeout};
 use testbench::stream::{Traffic, exchange};
+use testbench::trial::{rtl_sources, timeout};
 use testbench::verilate::Verilate;
 
 /// Frames that are sent.

@@ -14,8 +14,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use support::{built, by_plan, frames, planned, shipped, workspace};
 use tempfile::TempDir;
-use testbench::run::model_answers;
 use testbench::tools;
+use testbench::trial::model_answers;
 use testbench::verilate::Built;
 
 /// A design, simulated, with frames of every kind in a file.

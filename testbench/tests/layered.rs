@@ -11,7 +11,7 @@ use golden::scene::Scene;
 use golden::solver::Solver;
 use support::{built, in_parallel, planned, shipped, simulate_exactly, workspace};
 use testbench::accuracy::against_truth;
-use testbench::run::as_received;
+use testbench::words::as_received;
 use testbench::words::{Answer, decode, encode};
 
 /// Percentage points between an error of the RTL and that of f64.

@@ -13,7 +13,7 @@ use hdl_gen::plan::schedule::Schedule;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use support::{built, frames, planned, shipped, simulate_exactly};
-use testbench::run::model_answers;
+use testbench::trial::model_answers;
 use testbench::words::{Answer, decode};
 
 /// The small design with another plan.
