@@ -8,8 +8,7 @@ use golden::parity::{CLASSES, sign};
 use golden::solver::correction::STRESS_SCALE;
 use serde::Serialize;
 
-use super::super::format::{largest, pow2, round_shift};
-use super::super::optimum::FRICTION_FRACTION;
+use crate::plan::format::{FRICTION_FRACTION, largest, pow2, round_shift};
 
 /// Fraction bits of an input.
 pub const INPUT_FRACTION: u32 = 19;
