@@ -24,6 +24,7 @@
 pub mod calibrate;
 pub mod choose;
 pub mod design;
+pub mod estimators;
 pub mod filter;
 pub mod forces;
 pub mod frames;
@@ -39,3 +40,4 @@ pub mod reduced;
 pub mod scene;
 pub mod sensor;
 pub mod solver;
+pub mod status;

@@ -1,17 +1,9 @@
 //! The `[algorithm]` table: choices that change the result.
 
-use super::{Filter, JointConstants, Regularisation};
+use super::{Filter, Regularisation};
+use crate::estimators::Estimator;
+use crate::estimators::joint::JointConstants;
 use crate::kernel::Kernel;
-
-/// How the friction components are found once the optimisation problem is set up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Estimator {
-    /// Along the line that the direction of push fixes in the plane of the friction components.
-    Line,
-    /// Over the whole plane of the friction components at once, without a direction: the centroid of a level set of
-    /// Condition 1, calibrated on scenes.
-    Joint,
-}
 
 /// What a frame yields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

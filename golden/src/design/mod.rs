@@ -17,14 +17,16 @@ mod regularisation;
 
 use std::path::Path;
 
+pub use crate::estimators::Estimator;
+pub use crate::estimators::joint::{Correction, JointConstants};
 pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
-pub use algorithm::{Algorithm, Estimator, Outputs, PlanKind};
+pub use algorithm::{Algorithm, Outputs, PlanKind};
 pub use error::DesignError;
 pub use filter::{Choices, Filter, MatrixFilter, UnknownMatrixFilter};
 pub use hardware::{Arithmetic, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise};
 pub use input::{Calibration, Input};
-pub use joint::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_BITS, WEIGHT_FRACTION, conditions};
+pub use joint::conditions;
 pub(crate) use parse::{RawSensor, syntax_position};
 pub use regularisation::Regularisation;
 
