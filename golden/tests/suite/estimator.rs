@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use golden::design::{Design, Kernel};
+use golden::estimators::line;
 use golden::kernel;
 use golden::metrics::{ErrorSummary, Outcome, errors};
 use golden::scene::{Scene, SceneFrame};
@@ -114,8 +115,8 @@ fn the_second_sensors_tangential_error_hangs_on_the_level() {
         }
         ErrorSummary::new(&pairs).e_fx.max
     };
-    assert_near(&[at(op::LEVEL), at(0.5 * op::LEVEL)], &[1.59, 2.62], 0.01);
-    let lower = at(0.93 * op::LEVEL);
+    assert_near(&[at(line::LEVEL), at(0.5 * line::LEVEL)], &[1.59, 2.62], 0.01);
+    let lower = at(0.93 * line::LEVEL);
     assert!((1.6..1.8).contains(&lower), "{lower}");
 }
 
@@ -126,7 +127,7 @@ fn accuracy_in_36_directions_without_gain() {
     let lower = summary_at_level(3e-4).spreads().map(|spread| spread.max);
     assert_near(&lower, &[4.5, 7.9, 10.8, 3.4, 2.2], 0.1);
     // At the solver's own level, as measured here: tangential forces a little worse, friction better.
-    let ours = summary_at_level(op::LEVEL).spreads().map(|spread| spread.max);
+    let ours = summary_at_level(line::LEVEL).spreads().map(|spread| spread.max);
     assert_near(&ours, &[6.1, 8.2, 10.8, 2.2, 2.2], 0.1);
 }
 
@@ -237,7 +238,7 @@ fn stress_at_full_scale_is_flagged_and_beyond_it_clamped() {
 fn the_line_is_where_the_tangential_force_has_the_direction() {
     let sums = [[1.0, 6.0, 0.2], [-0.5, 0.1, 5.0], [-6.0, 0.3, 0.4]];
     for direction in [[2.0, 1.0], [1.0, -2.0]] {
-        let line = op::line(direction, &sums).unwrap();
+        let line = line::line(direction, &sums).unwrap();
         assert_eq!(line.independent, usize::from(direction[0] < 1.5));
         let mut mu = [0.0; 2];
         mu[line.independent] = 0.3;
@@ -246,11 +247,11 @@ fn the_line_is_where_the_tangential_force_has_the_direction() {
         let cross: f64 = force[0] * direction[1] - force[1] * direction[0];
         assert!(cross.abs() < 1e-12, "{cross}");
     }
-    assert_eq!(op::line([0.0, 0.0], &sums), None);
-    assert_eq!(op::line([1.0, 0.0], &[[0.0; 3]; 3]), None);
+    assert_eq!(line::line([0.0, 0.0], &sums), None);
+    assert_eq!(line::line([1.0, 0.0], &[[0.0; 3]; 3]), None);
     // Offset 4.1: beyond the limit.
     let steep = [[0.0, 1.0, 0.0], [4.1, 0.0, -1.0], [0.0; 3]];
-    assert_eq!(op::line([1.0, 0.0], &steep), None);
+    assert_eq!(line::line([1.0, 0.0], &steep), None);
 }
 
 proptest! {

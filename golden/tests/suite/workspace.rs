@@ -4,6 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use golden::design::{Correction, Design, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind};
+use golden::estimators::line;
 use golden::solver::{Solution, Solver, Status, co, op, we};
 use nalgebra::DVector;
 
@@ -199,7 +200,7 @@ fn the_papers_plan_is_its_stages() {
         let b = DVector::from_vec(frame.clone());
         let contact = golden::solver::cean::cean(&b, &positions, design.algorithm.noise_floor_pa);
         let coefficients = co::co(&b, &we::we(&b, filtered), filtered);
-        let forces = op::op(&contact, &coefficients, solver.matrices(), op::LEVEL);
+        let forces = op::op(&contact, &coefficients, solver.matrices(), line::LEVEL);
         assert!((forces.mu_x - solution.mu_x).abs() < 1e-10 && (forces.mu_y - solution.mu_y).abs() < 1e-10);
         for (p, component) in solution.field.iter().enumerate() {
             let error = (DVector::from_vec(component.clone()) - &forces.field[p]).amax();

@@ -1,14 +1,6 @@
-//! The joint estimator: both friction components at once, without the direction of push.
-//!
-//! Condition 1, `B(mu_x, mu_y) = sum_i max(0, u0_i + mu_x u1_i + mu_y u2_i)`, is convex in both components together.
-//! Here it is evaluated on a fixed grid by additions alone, and the estimate is the weighted centroid of a level set.
-//! `docs/estimators.md` gives the steps as the hardware takes them.
+//! Condition 1 on a grid over the plane of both friction components, and the centroid of its level set.
 
-use super::correction::{Look, Network, NetworkScratch, TIE};
-use super::friction::Seen;
-use super::op::DEPENDENT_RANGE;
-use super::status::Status;
-use crate::design::Design;
+use crate::status::Status;
 
 /// Distance of neighbouring points of the grid.
 pub const STEP: f64 = 1.0 / 8.0;
@@ -16,11 +8,6 @@ pub const STEP: f64 = 1.0 / 8.0;
 pub const REACH: i32 = 10;
 /// Points of the grid along one axis.
 const SIDE: usize = 2 * REACH as usize + 1;
-/// The level set holds every point whose value exceeds the least one by less than this times the sum of |b|.
-pub const LEVEL: f64 = 1.0 / 256.0;
-/// Tension up to this times the largest |b| does not count: below it noise would be taken for tension.
-pub const DEAD_ZONE: f64 = 1.0 / 256.0;
-
 /// What the search over the grid finds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Found {
@@ -30,24 +17,19 @@ pub(crate) struct Found {
     pub(crate) mu: [f64; 2],
 }
 
-/// Memory of the estimator, to be used again for the next frame.
+/// Memory of the search, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct JointScratch {
+pub(super) struct GridScratch {
     /// The hinges at the first point of a row of the grid and at the point itself.
     row: Vec<f64>,
     point: Vec<f64>,
     /// Their sums at all points.
     values: Vec<f64>,
-    /// Stress of the normal forces at the centroid, in pascals.
-    normal: Vec<f64>,
-    /// The contact as the correction sees it.
-    pub(crate) look: Look,
-    network: NetworkScratch,
 }
 
 /// Searches the grid for `u_q` in pascals, the dead zone in pascals and the allowance above the least value.
-fn search(u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &mut JointScratch) -> Found {
-    let JointScratch { row, point, values, .. } = scratch;
+pub(super) fn search(u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &mut GridScratch) -> Found {
+    let GridScratch { row, point, values } = scratch;
     let reach = f64::from(REACH);
     // The corner with the least components; from here on there are additions only.
     let terms = u[0].iter().zip(u[1]).zip(u[2]);
@@ -93,78 +75,6 @@ fn search(u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &mut JointScr
     Found { status, mu }
 }
 
-/// The estimate before it is calibrated.
-pub(crate) fn raw(seen: &Seen, scratch: &mut JointScratch) -> Found {
-    let largest = seen.b.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
-    search(seen.u, DEAD_ZONE * largest, LEVEL * seen.contact.stress_sum, scratch)
-}
-
-/// Looks at the stress that the normal forces alone would cause at the friction `mu`, in a grid of `columns`.
-pub(crate) fn look(
-    seen: &Seen,
-    mu: [f64; 2],
-    columns: usize,
-    half_window: [usize; 2],
-    tie: f64,
-    scratch: &mut JointScratch,
-) {
-    let JointScratch { normal, look, .. } = scratch;
-    let [u0, u1, u2] = seen.u;
-    normal.clear();
-    normal.extend(u0.iter().zip(u1).zip(u2).map(|((u0, u1), u2)| u0 + u1 * mu[0] + u2 * mu[1]));
-    look.take(normal, columns, half_window, seen.contact.stress_sum, mu, tie);
-}
-
-/// The joint estimator with the constants of one design.
-#[derive(Clone, Debug)]
-pub(crate) struct Joint {
-    /// Factor on all forces.
-    pub(crate) gain: f64,
-    tangential: [f64; 2],
-    columns: usize,
-    network: Option<Network>,
-}
-
-impl Joint {
-    pub(crate) fn new(design: &Design) -> Self {
-        let constants = &design.algorithm.joint;
-        Self {
-            gain: constants.gain,
-            tangential: constants.tangential,
-            columns: design.sensor.columns,
-            network: constants.correction.as_ref().map(Network::new),
-        }
-    }
-
-    /// Finds the friction components.
-    pub(crate) fn find(&self, seen: &Seen, scratch: &mut JointScratch) -> (Status, [f64; 2]) {
-        let Found { status, mu } = raw(seen, scratch);
-        if status.contains(Status::DIRECTION_UNKNOWN) {
-            return (status, mu);
-        }
-        let scaled = scaled(mu, self.tangential);
-        let Some(network) = &self.network else { return within(status, scaled) };
-        look(seen, mu, self.columns, network.half_window, TIE, scratch);
-        let added = network.correct(&scratch.look, &mut scratch.network);
-        within(status, [scaled[0] + added[0], scaled[1] + added[1]])
-    }
-}
-
-/// Keeps the components to their range, which no sensible constants let them leave.
-fn within(mut status: Status, mu: [f64; 2]) -> (Status, [f64; 2]) {
-    let clamped = mu.map(|component| component.clamp(-DEPENDENT_RANGE, DEPENDENT_RANGE));
-    if clamped.iter().zip(mu).any(|(clamped, component)| clamped.to_bits() != component.to_bits()) {
-        status.insert(Status::AT_BOUND);
-    }
-    (status, clamped)
-}
-
-/// `c1 mu + c3 mu |mu|^2`.
-pub(crate) fn scaled(mu: [f64; 2], [c1, c3]: [f64; 2]) -> [f64; 2] {
-    let factor = c1 + c3 * (mu[0] * mu[0] + mu[1] * mu[1]);
-    mu.map(|component| factor * component)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,7 +84,7 @@ mod tests {
     }
 
     fn search(u: &[Vec<f64>; 3], dead_zone: f64, allowance: f64) -> Found {
-        super::search(u.each_ref().map(Vec::as_slice), dead_zone, allowance, &mut JointScratch::default())
+        super::search(u.each_ref().map(Vec::as_slice), dead_zone, allowance, &mut GridScratch::default())
     }
 
     #[test]
