@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::matrices::MatrixName;
+use crate::names::MatrixName;
 
 /// Which entries of the 13 matrices are kept.
 #[derive(Clone, Debug, PartialEq)]

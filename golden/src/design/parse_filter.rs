@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::checks::Check;
 use super::{Choices, DesignError, Filter, MatrixFilter, Sensor};
-use crate::matrices::MatrixName;
+use crate::names::MatrixName;
 
 // Not a tagged enum: those lose the position of an error and cannot say which key belongs to which kind.
 #[derive(Deserialize)]

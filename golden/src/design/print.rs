@@ -8,7 +8,7 @@ use super::{
     Arithmetic, CALIBRATION_FILE, Choices, Design, Estimator, Filter, Kernel, Optimise, Outputs, PlanKind, joint,
     regularisation,
 };
-use crate::matrices::MatrixName;
+use crate::names::MatrixName;
 
 // Written by hand, not by serde, so that the order and the layout are those of the documentation. `{:?}` of an f64
 // always has a point or an exponent, so it reads back as the same float.

@@ -1,6 +1,7 @@
 //! What every estimator tells the rest of the generator, and what it is given.
 
-use golden::design::{Design, Sensor};
+use golden::design::Design;
+use golden::sensor::Sensor;
 use serde_json::Value;
 
 use crate::plan::format::{Format, address_bits};
@@ -141,7 +142,7 @@ pub trait Slot {
         Vec::new()
     }
 
-    /// `(contents, words)` of its ROM files: words of several weights of [`golden::design::WEIGHT_BITS`].
+    /// `(contents, words)` of its ROM files: words of several weights of [`golden::estimators::joint::WEIGHT_BITS`].
     fn roms(&self) -> Vec<(&'static str, Vec<Vec<i32>>)> {
         Vec::new()
     }

@@ -8,10 +8,10 @@ mod network;
 mod report;
 pub mod timing;
 
-use golden::design::{Design, Sensor, WEIGHT_BITS};
+use golden::design::Design;
+use golden::estimators::joint::{DEAD_ZONE, LARGEST, LEVEL, REACH, STEP, TIE, WEIGHT_BITS};
 use golden::parity::CLASSES;
-use golden::solver::correction::{LARGEST, TIE};
-use golden::solver::joint::{DEAD_ZONE, LEVEL, REACH, STEP};
+use golden::sensor::Sensor;
 use serde::Serialize;
 use serde_json::{Value, json};
 
