@@ -41,3 +41,4 @@ pub mod scene;
 pub mod sensor;
 pub mod solver;
 pub mod status;
+mod words;

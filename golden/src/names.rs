@@ -1,10 +1,13 @@
 //! Names of the matrices, of the paper's plan and of the reduced one.
 
-use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
+
+use crate::words::{self, print_as_words};
+
 /// Names of the 13 matrices, in the order of Table 1 of the paper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum MatrixName {
     /// Inverse of C33.
     C33inv,
@@ -52,25 +55,6 @@ impl MatrixName {
         Self::D32,
     ];
 
-    /// The name as written in files, reports and JSON.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::C33inv => "C33inv",
-            Self::A1 => "A1",
-            Self::A2 => "A2",
-            Self::A3 => "A3",
-            Self::D10 => "D10",
-            Self::D11 => "D11",
-            Self::D12 => "D12",
-            Self::D20 => "D20",
-            Self::D21 => "D21",
-            Self::D22 => "D22",
-            Self::D30 => "D30",
-            Self::D31 => "D31",
-            Self::D32 => "D32",
-        }
-    }
-
     /// Position in [`MatrixName::ALL`].
     pub fn index(self) -> usize {
         self as usize
@@ -83,27 +67,24 @@ impl MatrixName {
     }
 }
 
-impl fmt::Display for MatrixName {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.as_str())
-    }
-}
-
 /// A word that names none of the 13 matrices.
 #[derive(Debug, thiserror::Error)]
-#[error("\"{0}\" is no matrix; the names are C33inv A1 A2 A3 D10 D11 D12 D20 D21 D22 D30 D31 D32")]
-pub struct UnknownMatrix(String);
+#[error("\"{word}\" is no matrix; the names are {}", names.join(" "))]
+pub struct UnknownMatrix {
+    word: String,
+    names: &'static [&'static str],
+}
 
 impl FromStr for MatrixName {
     type Err = UnknownMatrix;
 
     fn from_str(word: &str) -> Result<Self, Self::Err> {
-        Self::ALL.into_iter().find(|name| name.as_str() == word).ok_or_else(|| UnknownMatrix(word.to_owned()))
+        words::read(word).map_err(|unknown| UnknownMatrix { word: word.to_owned(), names: unknown.allowed })
     }
 }
 
 /// Names of the ten matrices of the reduced plan, in the order in which a frame meets them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub enum ReducedName {
     /// Inverse of C33, in N/Pa.
     C33inv,
@@ -132,22 +113,6 @@ impl ReducedName {
     pub const ALL: [Self; 10] =
         [Self::C33inv, Self::K0, Self::K1, Self::K2, Self::C33, Self::C31, Self::C32, Self::A1, Self::A2, Self::A3];
 
-    /// The name as written in files, reports and JSON.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::C33inv => "C33inv",
-            Self::K0 => "K0",
-            Self::K1 => "K1",
-            Self::K2 => "K2",
-            Self::C33 => "C33",
-            Self::C31 => "C31",
-            Self::C32 => "C32",
-            Self::A1 => "A1",
-            Self::A2 => "A2",
-            Self::A3 => "A3",
-        }
-    }
-
     /// Position in [`ReducedName::ALL`].
     pub fn index(self) -> usize {
         self as usize
@@ -163,8 +128,4 @@ impl ReducedName {
     }
 }
 
-impl fmt::Display for ReducedName {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.pad(self.as_str())
-    }
-}
+print_as_words!(MatrixName, ReducedName);

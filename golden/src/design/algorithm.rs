@@ -1,21 +1,27 @@
 //! The `[algorithm]` table: choices that change the result.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Filter, Regularisation};
 use crate::estimators::Estimator;
 use crate::estimators::joint::JointConstants;
 use crate::kernel::Kernel;
+use crate::words::print_as_words;
 
 /// What a frame yields.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Outputs {
     /// The summary and three force components for each taxel.
+    #[default]
     Field,
     /// The summary only; with the reduced plan.
     Resultants,
 }
 
 /// How the mathematics is put into products.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum PlanKind {
     /// As in the paper: thirteen matrices of m by m, then three products with C33.
     Paper,
@@ -43,3 +49,5 @@ pub struct Algorithm {
     /// Stress in pascals below which a taxel tells nothing; full scale / 65536 unless given.
     pub noise_floor_pa: f64,
 }
+
+print_as_words!(Outputs, PlanKind);

@@ -1,21 +1,29 @@
 //! The `[hardware]` table: choices that change only speed, size and rounding.
 
+use serde::{Deserialize, Serialize};
+
+use crate::words::print_as_words;
+
 /// Largest number of `SpMV` lanes.
 pub const MAX_LANES: usize = 64;
 /// Key `hardware.full_scale_pa` when absent.
 pub const DEFAULT_FULL_SCALE_PA: f64 = 100_000.0;
 
 /// Number system of the hardware.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Arithmetic {
     /// Two's complement with one power-of-two scale for each matrix and vector.
+    #[default]
     Fixed,
 }
 
 /// What the hardware spends its area on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Optimise {
     /// Frames a second.
+    #[default]
     Interval,
     /// Time from the last value of a frame to its result; with the reduced plan.
     Latency,
@@ -57,3 +65,5 @@ impl Hardware {
         f64::from(if f64::from(nearest) > self.full_scale_pa { nearest.next_down() } else { nearest })
     }
 }
+
+print_as_words!(Arithmetic, Optimise);

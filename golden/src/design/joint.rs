@@ -11,10 +11,6 @@ use crate::estimators::joint::{Correction, JointConstants, MAX_HIDDEN, WEIGHT_BI
 /// What the constants depend on, for people and for comparison.
 pub fn conditions(sensor: &Sensor, kernel: Kernel, regularisation: Regularisation) -> String {
     let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
-    let kernel = match kernel {
-        Kernel::Point => "point",
-        Kernel::Cell => "cell",
-    };
     format!("{columns} x {rows} taxels of {x} x {y} mm, {depth_mm} mm deep, {kernel}, {}", regularisation.factor())
 }
 

@@ -23,7 +23,7 @@ pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
 pub use algorithm::{Algorithm, Outputs, PlanKind};
 pub use error::DesignError;
-pub use filter::{Choices, Filter, MatrixFilter, UnknownMatrixFilter};
+pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
 pub use hardware::{Arithmetic, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise};
 pub use input::{Calibration, Input};
 pub use joint::conditions;

@@ -8,22 +8,29 @@ pub mod joint;
 pub mod line;
 mod seen;
 
+use serde::{Deserialize, Serialize};
+
 use crate::sensor::Sensor;
 use crate::status::Status;
+use crate::words::print_as_words;
 use joint::{Joint, JointConstants, JointScratch};
 use line::LineScratch;
 pub(crate) use seen::Seen;
 pub use seen::{Contact, RANGE};
 
 /// How the friction components are found once the optimisation problem is set up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Estimator {
     /// Along the line that the direction of push fixes in the plane of the friction components.
+    #[default]
     Line,
     /// Over the whole plane of the friction components at once, without a direction: the centroid of a level set of
     /// Condition 1, calibrated on scenes.
     Joint,
 }
+
+print_as_words!(Estimator);
 
 /// An estimator with its constants.
 #[derive(Clone, Debug)]

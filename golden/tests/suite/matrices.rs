@@ -220,10 +220,10 @@ fn a_sensor_too_deep_to_invert_is_refused() {
 
 #[test]
 fn names_are_those_of_the_table() {
-    let names = MatrixName::ALL.map(MatrixName::as_str).join(" ");
+    let names = MatrixName::ALL.map(|name| name.to_string()).join(" ");
     assert_eq!(names, "C33inv A1 A2 A3 D10 D11 D12 D20 D21 D22 D30 D31 D32");
     for name in MatrixName::ALL {
-        assert_eq!(name.as_str().parse::<MatrixName>().unwrap(), name);
+        assert_eq!(name.to_string().parse::<MatrixName>().unwrap(), name);
     }
     assert!("D40".parse::<MatrixName>().is_err());
 }

@@ -113,7 +113,7 @@ fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
     };
     writeln!(out, "\n{whose}, filter = {filter}: {share:.1} % of {all} entries each")?;
     for chunk in plan.nnz.0.chunks(MATRICES_PER_LINE) {
-        let names: String = chunk.iter().map(|(name, _)| format!("{:>9}", name.as_str())).collect();
+        let names: String = chunk.iter().map(|(name, _)| format!("{name:>9}")).collect();
         let counts: String = chunk.iter().map(|(_, count)| format!("{count:>9}")).collect();
         writeln!(out, "  {names}\n  {counts}")?;
     }

@@ -43,6 +43,5 @@ pub fn kernel_advice(design: &Design, indent: &str) -> String {
         (Kernel::Point, false) => "so F_z is right, and mu comes out better than with \"cell\"",
         (Kernel::Cell, false) => "so F_z is right; mu comes out better with \"point\", calibrated anew",
     };
-    let name = if algorithm.kernel == Kernel::Point { "point" } else { "cell" };
-    format!("{name}: wants a gain of {wants:.3}, the joint estimator has {has:.3}:\n{indent}{verdict}")
+    format!("{}: wants a gain of {wants:.3}, the joint estimator has {has:.3}:\n{indent}{verdict}", algorithm.kernel)
 }
