@@ -4,8 +4,10 @@
 //! where and when; [`emit::emit`] prints it as files; [`write::write_folder`] puts them on disk, all or none.
 //! [`model::Model`] executes the plan in integers, bit for bit as the emitted hardware does.
 
+pub mod blocks;
 pub mod cores;
 pub mod emit;
+pub mod estimators;
 pub mod model;
 pub mod plan;
 pub mod write;

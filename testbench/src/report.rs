@@ -136,7 +136,7 @@ pub struct Report {
     /// Multiply-accumulates of a frame in the lanes.
     pub macs: u64,
     /// Entries of the paper's 13 matrices after the filter, whichever the plan makes of them.
-    pub nnz: BTreeMap<&'static str, usize>,
+    pub nnz: BTreeMap<String, usize>,
     /// `SpMV` lanes.
     pub lanes: usize,
     /// Fraction of lane cycles that multiply, while an `SpMV` phase runs.
@@ -194,7 +194,7 @@ impl Report {
             bram36: plan.resources.bram36,
             rom_bits: plan.resources.rom_bits,
             macs: plan.macs(),
-            nnz: plan.nnz.0.iter().map(|&(name, count)| (name.as_str(), count)).collect(),
+            nnz: plan.nnz.0.iter().map(|&(name, count)| (name.to_string(), count)).collect(),
             lanes: plan.design.hardware.lanes,
             lanes_busy: plan.schedule.busy_fraction(),
             clock_mhz: plan.design.hardware.clock_mhz,
