@@ -251,6 +251,7 @@ impl fmt::Display for Fault {
 
 #[cfg(test)]
 mod tests {
+    use super::Timing::{AsPredicted, WithinBound, Wrong};
     use super::*;
 
     #[test]
@@ -267,7 +268,6 @@ mod tests {
                 Timing::of(&plan, Cycles { latency, interval })
             })
         };
-        use Timing::{AsPredicted, WithinBound, Wrong};
         assert_eq!(timings(true), [AsPredicted, WithinBound, WithinBound, Wrong, Wrong, Wrong]);
         assert_eq!(timings(false), [AsPredicted, Wrong, Wrong, Wrong, Wrong, Wrong]);
     }

@@ -61,9 +61,9 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
     point.verified = Verified::Model;
     if let Proof::Simulation(compiler) = proof {
         let turn = compiler.lock().unwrap_or_else(PoisonError::into_inner);
-        let verdict = trial.run().map_err(|source| SweepError::Run { label: job.label(scene), source })?;
+        let verdict = trial.run().map_err(|error| SweepError::Run { label: job.label(scene), source: error.into() })?;
         drop(turn);
-        verdict.right().map_err(|fault| SweepError::NotExact { label: job.label(scene), fault })?;
+        verdict.right().map_err(|fault| SweepError::NotExact { label: job.label(scene), fault: fault.into() })?;
         point.verified = Verified::Rtl;
     }
     let answers: Vec<Answer> = trial.expected.iter().filter_map(|words| decode(words)).collect();
@@ -155,7 +155,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 /// # Errors
 /// [`SweepError::Run`] if the design has no plan.
 pub fn answers(design: &Design, frames: &FrameSet) -> Result<Vec<Answer>, SweepError> {
-    let plan = planned(design).map_err(|source| SweepError::Run { label: design.name.clone(), source })?;
+    let plan = planned(design).map_err(|error| SweepError::Run { label: design.name.clone(), source: error.into() })?;
     let packets = packets(&frames.clone().as_delivered(design).stress);
     Ok(model_answers(&plan, &packets).iter().filter_map(|words| decode(words)).collect())
 }

@@ -76,7 +76,7 @@ pub enum SweepError {
         /// The point.
         label: String,
         /// Why.
-        source: TrialError,
+        source: Box<TrialError>,
     },
     /// The RTL is not the model.
     #[error("{label}: {fault}; please report this design")]
@@ -84,7 +84,7 @@ pub enum SweepError {
         /// The point.
         label: String,
         /// What differs.
-        fault: Fault,
+        fault: Box<Fault>,
     },
     /// A report that cannot be that of the point.
     #[error("{label}: {} {problem}; remove it, or run the point again", path.display())]
