@@ -11,6 +11,9 @@ use super::{BenchError, read_json};
 /// Name of what is in no predicted block: stream buffers, turns, registers between the blocks.
 const REST: &str = "rest";
 
+/// Modules that are the same in every design are called so and their name; others by the design's name.
+const LIBRARY: &str = "sptfra";
+
 /// Cells of a block or of a design.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Count {
@@ -117,8 +120,8 @@ pub fn count(file: &Path, metadata: &Path, statistics: &Path) -> Result<Cells, B
     blocks.push(Block { name: REST.to_owned(), yosys: Count::default(), predicted: Expected::default() });
     let rest = blocks.len() - 1;
     let place = |module: &str| {
-        let suffix = module.strip_prefix(top.as_str())?.strip_prefix('_')?;
-        predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == suffix))
+        let own = [top.as_str(), LIBRARY].into_iter().find_map(|of| module.strip_prefix(of)?.strip_prefix('_'))?;
+        predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == own))
     };
     // A module with the block of the one that instantiates it, and how often it is there.
     let mut waiting = vec![(top.clone(), rest, 1)];
@@ -154,7 +157,8 @@ impl Statistics {
     }
 }
 
-/// The module's name in the Verilog, without the parameters that Yosys adds: `$paramod$…\NAME`, `$paramod\NAME\P=…`.
+/// The module's name in the Verilog. With parameters that are not its own it is called `$paramod$HASH\NAME`, or
+/// `$paramod\NAME\P=…` where that is short, once for each set of values.
 fn base_name(name: &str) -> &str {
     name.split('\\').nth(1).unwrap_or(name)
 }
