@@ -41,4 +41,4 @@ pub mod scene;
 pub mod sensor;
 pub mod solver;
 pub mod status;
-mod words;
+pub mod words;

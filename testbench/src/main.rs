@@ -16,10 +16,9 @@ use testbench::bench::{self, BenchError, Scope};
 use testbench::frame_set::FrameSet;
 use testbench::mutants;
 use testbench::progress::Progress;
-use testbench::report::Report;
-use testbench::run::{Options, run};
+use testbench::run::report::Report;
+use testbench::run::{Options, page, run};
 use testbench::stress;
-use testbench::table;
 use testbench::verilate::Trace;
 use testbench::view;
 
@@ -248,7 +247,7 @@ fn file_name(path: &Path) -> Option<&str> {
 
 fn cells(design: &Path, folder: &Path, statistics: &Path, json: bool) -> Result<(), Box<dyn Error>> {
     let cells = bench::cells::count(design, &folder.join("metadata.json"), statistics)?;
-    print(&if json { serde_json::to_string_pretty(&cells)? + "\n" } else { bench::cells::render(&cells) })
+    print(&if json { serde_json::to_string_pretty(&cells)? + "\n" } else { cells.table(&cells.design).text(0, 0) })
 }
 
 /// Frames of a file, with so many columns of labels, or the standing ones.
@@ -306,7 +305,7 @@ fn simulate(arguments: &RunArguments) -> Result<Report, Box<dyn Error>> {
 }
 
 fn report_text(report: &Report, json: bool) -> Result<String, serde_json::Error> {
-    if json { Ok(serde_json::to_string_pretty(report)? + "\n") } else { Ok(table::render(report)) }
+    if json { Ok(serde_json::to_string_pretty(report)? + "\n") } else { Ok(page::render(report)) }
 }
 
 /// Says on standard error what is wrong; whether nothing is.

@@ -27,8 +27,8 @@ pub fn run(arguments: &Arguments) -> Result<(String, bool), Box<dyn Error>> {
     let rows = hard::table(Scope { large: !arguments.quick, rtl: !arguments.quick }, &Progress::new())?;
     let sound = hard::is_sound(&rows);
     if let Some(path) = &arguments.page {
-        write_whole(path, hard::render::markdown(&rows).as_bytes())?;
+        write_whole(path, hard::tables::markdown(&rows).as_bytes())?;
     }
-    let text = if arguments.json { serde_json::to_string_pretty(&rows)? + "\n" } else { hard::render::text(&rows) };
+    let text = if arguments.json { serde_json::to_string_pretty(&rows)? + "\n" } else { hard::tables::text(&rows) };
     Ok((text, sound))
 }

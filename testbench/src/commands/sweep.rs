@@ -3,9 +3,10 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use golden::design::{Design, Estimator, PlanKind};
 use golden::output::write_whole;
+use golden::words::parser;
 
 use testbench::hard::{self, Scope};
 use testbench::page;
@@ -13,7 +14,7 @@ use testbench::progress::Progress;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
 use testbench::sweep::point::Verified;
 use testbench::sweep::store::Store;
-use testbench::sweep::{Outcomes, Simulate, Sweep, SweepScene, table};
+use testbench::sweep::{Outcomes, Simulate, Sweep, SweepScene, csv_file};
 
 /// Where results go.
 const OUT: &str = "target/sweep";
@@ -31,8 +32,8 @@ pub struct Arguments {
     #[arg(long, value_delimiter = ',', value_parser = filter)]
     filters: Vec<FilterAxis>,
     /// Plans.
-    #[arg(long, value_delimiter = ',')]
-    plans: Vec<PlanWord>,
+    #[arg(long, value_delimiter = ',', value_parser = parser::<PlanKind>())]
+    plans: Vec<PlanKind>,
     /// Widths of the coefficients in bits.
     #[arg(long, value_delimiter = ',')]
     coefficient_bits: Vec<u32>,
@@ -44,8 +45,8 @@ pub struct Arguments {
     lanes: Vec<usize>,
     /// Estimators; the joint one, with the reduced plan, has the constants of a design given that has it, on the same
     /// sensor.
-    #[arg(long, value_delimiter = ',')]
-    estimators: Vec<EstimatorWord>,
+    #[arg(long, value_delimiter = ',', value_parser = parser::<Estimator>())]
+    estimators: Vec<Estimator>,
     /// Every combination: thousands of points.
     #[arg(long)]
     full: bool,
@@ -70,18 +71,6 @@ pub struct Arguments {
     json: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum PlanWord {
-    Paper,
-    Reduced,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum EstimatorWord {
-    Line,
-    Joint,
-}
-
 fn filter(word: &str) -> Result<FilterAxis, String> {
     word.parse().map_err(|error: testbench::sweep::SweepError| error.to_string())
 }
@@ -90,21 +79,13 @@ fn filter(word: &str) -> Result<FilterAxis, String> {
 pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
     let designs = arguments.designs.iter().map(|path| Design::load(path)).collect::<Result<Vec<_>, _>>()?;
     let mut scenes = arguments.scenes.iter().map(|path| SweepScene::load(path)).collect::<Result<Vec<_>, _>>()?;
-    let plan = |word: &PlanWord| match word {
-        PlanWord::Paper => PlanKind::Paper,
-        PlanWord::Reduced => PlanKind::Reduced,
-    };
-    let estimator = |word: &EstimatorWord| match word {
-        EstimatorWord::Line => Estimator::Line,
-        EstimatorWord::Joint => Estimator::Joint,
-    };
     let axes = Axes {
         filters: arguments.filters.clone(),
-        plans: arguments.plans.iter().map(plan).collect(),
+        plans: arguments.plans.clone(),
         coefficient_bits: arguments.coefficient_bits.clone(),
         data_bits: arguments.data_bits.clone(),
         lanes: arguments.lanes.clone(),
-        estimators: arguments.estimators.iter().map(estimator).collect(),
+        estimators: arguments.estimators.clone(),
         full: arguments.full,
     };
     let jobs = jobs(&designs, &axes, &mut scenes)?;
@@ -124,7 +105,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
     let json = serde_json::to_string_pretty(&outcomes.points)? + "\n";
     let place = |name: &str| arguments.out.join(name);
     write_whole(&place("sweep.json"), json.as_bytes())?;
-    write_whole(&place("sweep.csv"), table::csv(&outcomes.points)?.as_bytes())?;
+    write_whole(&place("sweep.csv"), csv_file::csv(&outcomes.points)?.as_bytes())?;
     let mut contents = page::Contents::new(&designs, &sweep, &outcomes.points)?;
     if arguments.hard {
         contents = contents.with_hard_cases(&hard::table(

@@ -8,7 +8,7 @@ use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use super::cases::Case;
-use super::single::Single;
+use super::float32::Single;
 use crate::accuracy::{StatusCounts, against_truth};
 use crate::trial::model_answers;
 use crate::words::{Answer, as_received, decode, packets};
@@ -42,8 +42,8 @@ pub struct Row {
     pub group: &'static str,
     /// The case.
     pub case: String,
-    /// `line` or `joint`.
-    pub estimator: &'static str,
+    /// The estimator.
+    pub estimator: Estimator,
     /// Frames.
     pub frames: usize,
     /// Condition number of C33.
@@ -67,7 +67,7 @@ pub fn judge(case: &Case) -> Row {
     let mut row = Row {
         group: case.group,
         case: case.name.clone(),
-        estimator: if case.design.algorithm.estimator == Estimator::Joint { "joint" } else { "line" },
+        estimator: case.design.algorithm.estimator,
         frames: case.frames.len(),
         condition_c33: None,
         condition_aat: None,

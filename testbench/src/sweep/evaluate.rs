@@ -10,9 +10,9 @@ use golden::metrics::{ErrorSummary, Outcome};
 use golden::solver::{Solution, Solver};
 use hdl_gen::plan::Plan;
 
+use super::distributed::RunReport;
 use super::grid::{Job, filter_text};
 use super::point::{AgainstSolver, Geometry, Hardware, Point, Verified};
-use super::runs::RunReport;
 use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
@@ -111,10 +111,10 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
         key: job.key.clone(),
         sensor: Geometry::from(sensor),
         scene: scene.name.clone(),
-        plan: algorithm.plan.to_string(),
-        kernel: algorithm.kernel.to_string(),
+        plan: algorithm.plan,
+        kernel: algorithm.kernel,
         filter: filter_text(&algorithm.filter),
-        estimator: algorithm.estimator.to_string(),
+        estimator: algorithm.estimator,
         coefficient_bits: hardware.coefficient_bits,
         data_bits: hardware.data_bits,
         lanes: hardware.lanes,

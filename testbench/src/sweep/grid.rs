@@ -89,7 +89,7 @@ impl Job {
     pub fn label(&self, scene: &SweepScene) -> String {
         let hardware = &self.design.hardware;
         format!(
-            "point {} ({}, {:?} plan, {:?} estimator, {} lanes, {} x {} bits, scene {})",
+            "point {} ({}, {} plan, {} estimator, {} lanes, {} x {} bits, scene {})",
             self.key,
             filter_text(&self.design.algorithm.filter),
             self.design.algorithm.plan,

@@ -1,13 +1,13 @@
 //! `testbench sweep`: speed against error, one point a variant of a design and a scene.
 //!
-//! The way of the data: [`grid`] (which points) → [`evaluate`] (one point) → [`store`] (a file each) → [`table`].
+//! The way of the data: [`grid`] (which points) → [`evaluate`] (one point) → [`store`] (a file each) → [`csv_file`].
 
+pub mod csv_file;
+pub mod distributed;
 pub mod evaluate;
 pub mod grid;
 pub mod point;
-pub mod runs;
 pub mod store;
-pub mod table;
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use golden::design::Sensor;
+use golden::design::{Estimator, Kernel, PlanKind, Sensor};
 use golden::metrics::ErrorSummary;
 use serde::{Deserialize, Serialize};
 
@@ -90,14 +90,14 @@ pub struct Point {
     pub sensor: Geometry,
     /// Name of the scene.
     pub scene: String,
-    /// `paper` or `reduced`.
-    pub plan: String,
-    /// `point` or `cell`.
-    pub kernel: String,
+    /// The plan.
+    pub plan: PlanKind,
+    /// What each force loads.
+    pub kernel: Kernel,
     /// `none`, `f1 l=40`, `f2 p=50` or `f3`.
     pub filter: String,
-    /// `line` or `joint`.
-    pub estimator: String,
+    /// The estimator.
+    pub estimator: Estimator,
     /// Width of the coefficients.
     pub coefficient_bits: u32,
     /// Width of the vectors.
