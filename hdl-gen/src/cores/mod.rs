@@ -1,14 +1,8 @@
-//! The leaf cores: hardware whose widths do not depend on the geometry, described in rust-hdl and emitted once.
+//! The leaf cores: hardware whose widths do not depend on the geometry, the same in every design.
 //!
-//! Every core has its bit-exact Rust reference beside it, free of rust-hdl types; the integer model computes with these
-//! references, and a test compares each emitted text with its reference in Verilator.
-
-use thiserror::Error;
-
-mod emit;
-mod printer;
-mod register;
-mod sint;
+//! Each file states what a core computes, bit for bit, and when; the integer model computes with these references, and
+//! a test compares each core's Verilog with its reference. The Verilog lies in `hdl-gen/rtl`; the package `hdl-cores`
+//! prints it from descriptions in rust-hdl.
 
 pub mod axis_skid;
 pub mod cordic;
@@ -16,38 +10,16 @@ pub mod divider;
 pub mod fixed_to_float;
 pub mod float_to_fixed;
 pub mod mac;
-pub mod mac_split;
 pub mod multiply;
 pub mod row_sequencer;
 
-/// One emitted core.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// One leaf core's Verilog.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CoreFile {
     /// The module's name, which is also the file's, without `.v`.
     pub module: &'static str,
     /// The whole file: Verilog-2005, one module.
-    pub verilog: String,
-}
-
-/// A core that cannot be emitted: a fault of its description, not of any design.
-#[derive(Debug, Error)]
-pub enum CoreError {
-    /// rust-hdl's own checks failed.
-    #[error("core {module}: rust-hdl found {problem}; connect or reorder the named signals in its kernel")]
-    Check {
-        /// The core's module name.
-        module: &'static str,
-        /// rust-hdl's finding.
-        problem: String,
-    },
-    /// The kernel has a construct that could mean another thing in Verilog than in Rust.
-    #[error("core {module}: {problem}; rewrite its kernel with one operation per signal of exact width")]
-    Kernel {
-        /// The core's module name.
-        module: &'static str,
-        /// The construct and what is wrong with it.
-        problem: String,
-    },
+    pub verilog: &'static str,
 }
 
 /// How a fabric multiplies 18 by 27 bits.
@@ -64,56 +36,38 @@ impl Multiplier {
     pub fn of_part(part: &str) -> Self {
         if part.starts_with("LFE5") { Self::Split } else { Self::Whole }
     }
-
-    /// The module that multiplies and accumulates.
-    pub fn mac(self) -> &'static str {
-        match self {
-            Self::Whole => "sptfra_mac",
-            Self::Split => "sptfra_mac_split",
-        }
-    }
-
-    /// The module that multiplies alone.
-    pub fn multiply(self) -> &'static str {
-        match self {
-            Self::Whole => "sptfra_multiply",
-            Self::Split => "sptfra_multiply_split",
-        }
-    }
 }
 
-/// Emits the cores of a design with multipliers of this form, always in the same order.
-///
-/// # Errors
-/// As [`emit_all`].
-pub fn emit_with(multiplier: Multiplier) -> Result<Vec<CoreFile>, CoreError> {
-    let other = if multiplier == Multiplier::Whole { Multiplier::Split } else { Multiplier::Whole };
-    let mut cores = emit_all()?;
-    cores.retain(|core| core.module != other.mac() && core.module != other.multiply());
-    Ok(cores)
+/// The core whose file, below `hdl-gen/rtl`, is named.
+macro_rules! core_file {
+    ($module: literal, $file: literal) => {
+        CoreFile { module: $module, verilog: include_str!(concat!("../../rtl/", $file)) }
+    };
 }
 
-/// Emits every core, always in the same order.
-///
-/// # Errors
-/// [`CoreError`] if a description does not translate; a test sees to it that none is released like that.
-pub fn emit_all() -> Result<Vec<CoreFile>, CoreError> {
-    [
-        mac::core,
-        mac_split::core,
-        multiply::whole,
-        multiply::split,
-        axis_skid::core,
-        row_sequencer::core,
-        divider::core,
-        cordic::core,
-        float_to_fixed::core,
-        fixed_to_float::core,
-    ]
-    .into_iter()
-    .map(|core| core())
-    .collect()
-}
+/// The cores that multiply, in one piece.
+const WHOLE: [CoreFile; 2] =
+    [core_file!("sptfra_mac", "sptfra_mac.v"), core_file!("sptfra_multiply", "sptfra_multiply.v")];
 
-#[cfg(test)]
-mod tests;
+/// The same in two pieces: other implementations of the same modules.
+const SPLIT: [CoreFile; 2] =
+    [core_file!("sptfra_mac", "ecp5/sptfra_mac.v"), core_file!("sptfra_multiply", "ecp5/sptfra_multiply.v")];
+
+/// The cores that are the same on every fabric.
+const COMMON: [CoreFile; 6] = [
+    core_file!("sptfra_axis_skid", "sptfra_axis_skid.v"),
+    core_file!("sptfra_row_sequencer", "sptfra_row_sequencer.v"),
+    core_file!("sptfra_divider", "sptfra_divider.v"),
+    core_file!("sptfra_cordic", "sptfra_cordic.v"),
+    core_file!("sptfra_float_to_fixed", "sptfra_float_to_fixed.v"),
+    core_file!("sptfra_fixed_to_float", "sptfra_fixed_to_float.v"),
+];
+
+/// The cores of a design with multipliers of this form, always in the same order.
+pub fn files(multiplier: Multiplier) -> impl Iterator<Item = CoreFile> {
+    let multipliers = match multiplier {
+        Multiplier::Whole => WHOLE,
+        Multiplier::Split => SPLIT,
+    };
+    multipliers.into_iter().chain(COMMON)
+}

@@ -3,11 +3,11 @@
 use rust_hdl_core::ast::{VerilogExpression as Expression, VerilogOp, VerilogOpUnary};
 use rust_hdl_core::prelude::*;
 
-use super::emit::{Description, emit};
-use super::printer::{Symbol, Symbols, Type, print};
-use super::register::{Register, comment, dff_setup};
-use super::sint::Sint;
-use super::{CoreError, emit_all};
+use crate::emit::{Description, emit};
+use crate::printer::{Symbol, Symbols, Type, print};
+use crate::register::{Register, comment, dff_setup};
+use crate::sint::Sint;
+use crate::{CoreError, emit_all};
 
 const NAMES: [&str; 10] = [
     "sptfra_mac",
