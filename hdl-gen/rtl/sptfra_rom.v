@@ -1,6 +1,12 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
 // Read-only memory with a registered output, filled from FILE by $readmemh; zeros without a FILE.
 //
 // Latency: 1 cycle, held while enable is low. One read a cycle.
+
+`default_nettype none
+
 module sptfra_rom #(
     // Bits of a word
     parameter WIDTH = 18,
@@ -45,3 +51,5 @@ module sptfra_rom #(
     end
 
 endmodule
+
+`default_nettype wire

@@ -1,6 +1,12 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
 // Sums and differences of four numbers: out 0 = a + b + c + d, 1 = a - b + c - d, 2 = a + b - c - d, 3 = a - b - c + d.
 //
 // Folds the taxels of a quad into parity classes, and unfolds the classes into four times the taxels. Two cycles.
+
+`default_nettype none
+
 module sptfra_butterfly #(
     // Bits of a number
     parameter WIDTH = 27
@@ -37,3 +43,5 @@ module sptfra_butterfly #(
     assign sums = {sum_3, sum_2, sum_1, sum_0};
 
 endmodule
+
+`default_nettype wire

@@ -1,7 +1,13 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
 // Memory with one write port and one read port, both synchronous.
 //
 // Latency: 1 cycle from read_address to read_data, held while read_enable is low. A word read in the cycle in
 // which it is written is the old one.
+
+`default_nettype none
+
 module sptfra_ram #(
     // Bits of a word
     parameter WIDTH = 27,
@@ -31,3 +37,5 @@ module sptfra_ram #(
     end
 
 endmodule
+
+`default_nettype wire
