@@ -75,8 +75,8 @@ const DESCRIPTION: Description = Description {
     banner: "\
 AXI-Stream skid buffer: a register in every wire of a stream, tready included.
 
-Latency 1 cycle, one word a cycle, two words of storage. Both tvalid and tready are low from the first
-clock edge in reset; tready rises one cycle after reset ends.",
+Latency 1 cycle, one word of 32 bits a cycle, two words of storage. Both tvalid and tready are low from the
+first clock edge in reset; tready rises one cycle after reset ends.",
     ports: &[
         ("clock", "rising edge"),
         ("reset", "synchronous, high: drops what is stored"),

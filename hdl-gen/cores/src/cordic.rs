@@ -126,9 +126,12 @@ impl Logic for Cordic {
             _ => self.arc_tangent.d.next = self.arc_tangents[29].val(),
         }
 
-        comment!("a vector in the left half plane first turns by a quarter: the micro-rotations reach 1.74 rad");
+        comment!("components with guard bits");
         self.x_wide.next = signed_bit_cast::<39, 32>(self.x.val()) << 5;
         self.y_wide.next = signed_bit_cast::<39, 32>(self.y.val()) << 5;
+
+        comment!("a micro-rotation, second cycle: towards angle 0");
+        comment!("at the start a vector in the left half plane turns by a quarter: the rest reaches 1.74 rad");
         if self.rotating.q.val() & self.shifted.q.val() {
             if self.across.q.val().get_bit(38) {
                 self.along.d.next = self.along.q.val() - self.across_part.q.val();
@@ -192,7 +195,7 @@ impl Logic for Cordic {
 const DESCRIPTION: Description = Description {
     path: "sptfra_cordic.v",
     banner: "\
-Vectoring CORDIC: magnitude and angle of (x, y).
+Vectoring CORDIC: magnitude (34 bits) and angle (32 bits) of (x, y), components within +-2^30.
 
 30 micro-rotations, two cycles each: start in cycle 0 gives done, for one cycle, in cycle 62; a new start is taken
 from that cycle on. The angle is atan2(y, x) in radians with 29 fraction bits, the magnitude 1.6467602581210654

@@ -73,7 +73,7 @@ impl Logic for Divider {
 const DESCRIPTION: Description = Description {
     path: "sptfra_divider.v",
     banner: "\
-Unsigned restoring divider: quotient = numerator / denominator, rounded down.
+Unsigned restoring divider: quotient (64 bits) = numerator (64 bits) / denominator (48 bits), rounded down.
 
 One quotient bit a cycle: start in cycle 0 gives done, for one cycle, in cycle 65; a new start is taken
 from that cycle on. Plain unsigned integers. A denominator of zero gives all ones.",

@@ -24,10 +24,9 @@ pub(super) fn flatten(block: &[Statement]) -> Result<Vec<Statement>, String> {
             | Statement::If(_)
             | Statement::Match(_)
             | Statement::Comment(_) => flat.push(statement.clone()),
-            Statement::Assignment(..)
-            | Statement::SliceAssignment { .. }
-            | Statement::Loop(_)
-            | Statement::Link(_) => return Err(format!("{statement:?} has no safe translation")),
+            Statement::Assignment(..) | Statement::SliceAssignment { .. } | Statement::Loop(_) | Statement::Link(_) => {
+                return Err(format!("{statement:?} has no safe translation"));
+            }
         }
     }
     Ok(flat)

@@ -64,9 +64,9 @@ const DESCRIPTION: Description = Description {
     banner: "\
 Multiply-accumulate lane: sums coefficient * data in one DSP block of 27 by 18 bits.
 
-Latency 3 cycles (operands, product, accumulator), one product a cycle. Operands of 18 and 27 bits and the accumulator
-of 48 are two's complement integers; the binary point is the user's. The accumulator wraps; a sum of up to 15 products,
-and any sum whose coefficients add up to less than 2^21 in magnitude, never does.",
+Latency 3 cycles (operands, product, accumulator), one product a cycle. Operands of 18 and 27 bits and the
+accumulator of 48 are two's complement integers; the binary point is the user's. The accumulator wraps; a sum of up
+to 15 products, and any sum whose coefficients add up to less than 2^21 in magnitude, never does.",
     ports: &[
         ("clock", "rising edge"),
         ("reset", "synchronous, high: discards products under way, keeps the accumulator"),

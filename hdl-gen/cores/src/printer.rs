@@ -193,7 +193,9 @@ fn product(symbols: &Symbols, left: &Expression, right: &Expression, wanted: Typ
     let [a, b] = [known(symbols, left)?, known(symbols, right)?];
     if !(a.signed && b.signed && wanted.signed && a.width + b.width == wanted.width) {
         let (a, b, wanted) = (a.words(), b.words(), wanted.words());
-        return Err(format!("a product of {a} and {b} in {wanted}: multiply signed numbers into the sum of their widths"));
+        return Err(format!(
+            "a product of {a} and {b} in {wanted}: multiply signed numbers into the sum of their widths"
+        ));
     }
     Ok(format!("{} * {}", bare(symbols, left, a)?, bare(symbols, right, b)?))
 }
@@ -248,7 +250,8 @@ fn resize(symbols: &Symbols, inner: &Expression, wanted: Type) -> Result<String,
         let signs = if more == 1 { sign } else { format!("{{{more}{{{sign}}}}}") };
         return Ok(format!("$signed({{{signs}, {text}}})"));
     }
-    Ok(format!("{{{more}'d0, {text}}}"))
+    let zeros = if more == 1 { "1'b0".to_owned() } else { format!("{more}'d0") };
+    Ok(format!("{{{zeros}, {text}}}"))
 }
 
 fn strip(expression: &Expression) -> &Expression {

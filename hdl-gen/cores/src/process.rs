@@ -4,6 +4,7 @@
 //! same of the register. The wires and the clocked process of a section stand together under its comment.
 
 use std::collections::BTreeSet;
+use std::slice;
 
 use rust_hdl_core::ast::{
     VerilogBlockOrConditional as Otherwise, VerilogExpression as Expression, VerilogStatement as Statement,
@@ -35,19 +36,25 @@ pub(super) fn processes(
     for index in 0..sections.len() {
         let section = &sections[index];
         let mut part = Body { symbols, sign: "=", lines: Vec::new() };
-        for statement in &section.body {
-            let Some(name) = driven(statement).filter(|name| wires.contains(*name)) else { continue };
-            if outputs.contains(name) {
-                assigns.push(format!("    assign {}", part.assignment(statement)?));
-            } else {
-                let range = range(symbol(symbols, name)?.kind);
+        // A process stands where the kernel has the last of its statements: behind what it reads, before what reads it.
+        let of_process = |name: &str| !is_register(name) && !wires.contains(name);
+        let last = section.body.iter().rposition(|statement| !kept(slice::from_ref(statement), &of_process).is_empty());
+        for (place, statement) in section.body.iter().enumerate() {
+            if let Some(name) = driven(statement).filter(|name| wires.contains(*name)) {
                 let assignment = part.assignment(statement)?;
-                part.line(1, &format!("wire {range}{assignment}"));
+                if outputs.contains(name) {
+                    assigns.push(format!("    assign {assignment}"));
+                } else {
+                    part.line(1, &format!("wire {}{assignment}", range(symbol(symbols, name)?.kind)));
+                }
+            }
+            if last == Some(place) {
+                part.process("@(*)", [(&[][..], kept(&section.body, &of_process))])?;
+                part.lines.push(String::new());
             }
         }
-        let rest = kept(&section.body, &|name| !is_register(name) && !wires.contains(name));
-        if !rest.is_empty() {
-            part.process("@(*)", [(None, rest)])?;
+        if part.lines.last().is_some_and(String::is_empty) {
+            part.lines.pop();
         }
         if !part.lines.is_empty() {
             let section = &mut sections[index];
@@ -59,8 +66,8 @@ pub(super) fn processes(
         let mut inside = Vec::new();
         let alone = members.len() == 1;
         for &member in members {
-            let section = &mut sections[member];
-            let comment = if alone || section.told { None } else { section.comment.clone() };
+            let section = &sections[member];
+            let comment = if alone || section.told { &[][..] } else { &section.comment };
             inside.push((comment, kept(&section.body, &is_register)));
         }
         part.process("@(posedge clock)", inside)?;
@@ -82,7 +89,7 @@ impl Section {
     /// A blank line and the comment, if there is one.
     fn open(&mut self, lines: &mut Vec<String>) -> Result<(), String> {
         lines.push(String::new());
-        if let Some(comment) = &self.comment {
+        for comment in &self.comment {
             lines.push(format!("    // {}", comment_words(comment)?));
         }
         self.told = true;
@@ -114,21 +121,21 @@ impl Body<'_> {
     }
 
     /// A process whose statements are those of sections, each with its comment.
-    fn process(
+    fn process<'s>(
         &mut self,
         event: &str,
-        sections: impl IntoIterator<Item = (Option<String>, Vec<Statement>)>,
+        sections: impl IntoIterator<Item = (&'s [String], Vec<Statement>)>,
     ) -> Result<(), String> {
         if !self.lines.is_empty() {
             self.lines.push(String::new());
         }
         self.line(1, &format!("always {event} begin"));
-        for (comment, body) in sections {
-            if let Some(comment) = comment {
-                if self.lines.last().is_some_and(|line| !line.ends_with("begin")) {
-                    self.lines.push(String::new());
-                }
-                self.line(2, &format!("// {}", comment_words(&comment)?));
+        for (comments, body) in sections {
+            if !comments.is_empty() && self.lines.last().is_some_and(|line| !line.ends_with("begin")) {
+                self.lines.push(String::new());
+            }
+            for comment in comments {
+                self.line(2, &format!("// {}", comment_words(comment)?));
             }
             self.block(&body, 2)?;
         }
@@ -146,7 +153,6 @@ impl Body<'_> {
         };
         let target = symbol(self.symbols, name)?;
         let value = print(self.symbols, value, target.kind).map_err(|problem| format!("`{name}`: {problem}"))?;
-        // A wire and an output are assigned once, whatever the process.
         Ok(format!("{} {} {value};", target.name, self.sign))
     }
 

@@ -15,7 +15,7 @@ use crate::flow::driven;
 /// What stands under one comment.
 #[derive(Default)]
 pub(super) struct Section {
-    pub(super) comment: Option<String>,
+    pub(super) comment: Vec<String>,
     pub(super) body: Vec<Statement>,
     /// Whether the comment has been printed.
     pub(super) told: bool,
@@ -32,7 +32,10 @@ pub(super) fn sections(kernel: Vec<Statement>) -> Result<Vec<Section>, String> {
     let mut assigned = BTreeSet::new();
     for statement in kernel {
         if let Statement::Comment(words) = &statement {
-            sections.push(Section { comment: Some(words.clone()), ..Section::default() });
+            match sections.last_mut().filter(|section| section.body.is_empty() && !section.comment.is_empty()) {
+                Some(section) => section.comment.push(words.clone()),
+                None => sections.push(Section { comment: vec![words.clone()], ..Section::default() }),
+            }
             continue;
         }
         let mut names = Vec::new();
@@ -124,7 +127,9 @@ fn keep(statement: &Statement, wanted: &dyn Fn(&str) -> bool) -> Option<Statemen
         Statement::If(choice) => {
             let then = kept(&choice.then, wanted);
             let otherwise = match &choice.otherwise {
-                Otherwise::Block(block) => Some(kept(block, wanted)).filter(|block| !block.is_empty()).map(Otherwise::Block),
+                Otherwise::Block(block) => {
+                    Some(kept(block, wanted)).filter(|block| !block.is_empty()).map(Otherwise::Block)
+                }
                 Otherwise::Conditional(next) => keep(next, wanted).map(|next| Otherwise::Conditional(Box::new(next))),
                 Otherwise::None => None,
             };

@@ -1,5 +1,8 @@
 //! The emitter: what it prints, and what it refuses because Verilog would read it differently.
 
+use std::collections::BTreeSet;
+
+use hdl_gen::cores::{axis_skid, cordic, divider, fixed_to_float, float_to_fixed, mac, multiply, row_sequencer};
 use rust_hdl_core::ast::{VerilogExpression as Expression, VerilogOp, VerilogOpUnary};
 use rust_hdl_core::prelude::*;
 
@@ -7,39 +10,57 @@ use crate::emit::{Description, emit};
 use crate::printer::{Symbol, Symbols, Type, print};
 use crate::register::{Register, comment, dff_setup};
 use crate::sint::Sint;
-use crate::{CoreError, emit_all};
-
-const NAMES: [&str; 10] = [
-    "sptfra_mac",
-    "sptfra_mac_split",
-    "sptfra_multiply",
-    "sptfra_multiply_split",
-    "sptfra_axis_skid",
-    "sptfra_row_sequencer",
-    "sptfra_divider",
-    "sptfra_cordic",
-    "sptfra_float_to_fixed",
-    "sptfra_fixed_to_float",
-];
+use crate::{CoreError, print_all};
 
 #[test]
-fn emits_every_core_the_same_each_time() -> Result<(), CoreError> {
-    let (once, again) = (emit_all()?, emit_all()?);
+fn prints_every_core_the_same_each_time() -> Result<(), CoreError> {
+    let (once, again) = (print_all()?, print_all()?);
     assert_eq!(once, again);
-    assert_eq!(once.iter().map(|core| core.module).collect::<Vec<_>>(), NAMES);
+    let paths: BTreeSet<&str> = once.iter().map(|core| core.path).collect();
+    assert_eq!((paths.len(), once.len()), (10, 10));
     Ok(())
 }
 
 #[test]
-fn emits_plain_verilog() -> Result<(), CoreError> {
-    for core in emit_all()? {
+fn prints_plain_verilog() -> Result<(), CoreError> {
+    for core in print_all()? {
         let text = core.verilog;
-        assert!(text.starts_with("// ") && text.ends_with("`default_nettype wire\n"), "{text}");
+        assert!(
+            text.starts_with("// SPDX-License-Identifier: ") && text.ends_with("`default_nettype wire\n"),
+            "{text}"
+        );
         assert_eq!(text.matches("\nmodule ").count(), 1, "{text}");
-        assert!(!text.contains("initial"), "{text}");
+        assert!(!text.contains("initial") && !text.contains("_next"), "{text}");
         let calls = text.matches("$signed(").count() + text.matches("$unsigned(").count();
         assert_eq!(text.matches('$').count(), calls, "{text}");
         assert!(text.lines().all(|line| line.len() <= 120 && line == line.trim_end()), "{text}");
+    }
+    Ok(())
+}
+
+/// The numbers in the files' comments are those that the plan and the model compute with.
+#[test]
+fn says_what_the_references_say() -> Result<(), CoreError> {
+    let cores = print_all()?;
+    for (path, said) in [
+        ("sptfra_mac.v", format!("Latency {} cycles", mac::LATENCY)),
+        ("ecp5/sptfra_mac.v", format!("Latency {} cycles", mac::LATENCY)),
+        ("sptfra_multiply.v", format!("Latency {} enabled cycle,", multiply::LATENCY)),
+        ("ecp5/sptfra_multiply.v", format!("Latency {} enabled cycle,", multiply::LATENCY)),
+        ("sptfra_axis_skid.v", format!("Latency {} cycle,", axis_skid::LATENCY)),
+        ("sptfra_row_sequencer.v", format!("macs[{}:0]", row_sequencer::MACS_BITS - 1)),
+        ("sptfra_divider.v", format!("in cycle {};", divider::LATENCY)),
+        ("sptfra_cordic.v", format!("in cycle {};", cordic::LATENCY)),
+        ("sptfra_cordic.v", format!("{} fraction bits", cordic::ANGLE_FRACTION_BITS)),
+        ("sptfra_cordic.v", format!("{} micro-rotations", cordic::ITERATIONS)),
+        ("sptfra_cordic.v", format!("the magnitude {}", cordic::CORDIC_GAIN)),
+        ("sptfra_float_to_fixed.v", format!("Latency {} enabled cycles", float_to_fixed::LATENCY)),
+        ("sptfra_float_to_fixed.v", format!("to {}-bit fixed point", float_to_fixed::FIXED_BITS)),
+        ("sptfra_fixed_to_float.v", format!("Latency {} enabled cycles", fixed_to_float::LATENCY)),
+    ] {
+        let core = cores.iter().find(|core| core.path == path).expect("printed");
+        let comment = core.verilog.split("\n`default_nettype").next().unwrap_or_default();
+        assert!(comment.contains(&said), "no `{said}` in {comment}");
     }
     Ok(())
 }
@@ -71,7 +92,7 @@ impl Logic for Idioms {
 }
 
 const IDIOMS: Description = Description {
-    module: "idioms",
+    path: "idioms.v",
     banner: "Idioms.",
     ports: &[("clock", ""), ("a", ""), ("b", ""), ("s", ""), ("masked", ""), ("negative", ""), ("count", "")],
     unused: &[],
@@ -81,13 +102,11 @@ const IDIOMS: Description = Description {
 fn keeps_grouping_width_and_sign() -> Result<(), CoreError> {
     let text = emit(Idioms::default(), &IDIOMS)?.verilog;
     for line in [
-        "    reg [3:0] counter, counter_next;",
-        "        counter_next = counter;",
-        "        // grouping that Verilog's precedence would change, and signs that its literals would",
-        "        masked = (a & b) == 4'd9;",
-        "        negative = s < 8'sd0;",
-        "            counter_next = (counter + 4'd1) >> b;",
-        "        counter <= counter_next;",
+        "    reg [3:0] counter;",
+        "    // grouping that Verilog's precedence would change, and signs that its literals would",
+        "    assign masked = (a & b) == 4'd9;",
+        "    assign negative = s < 8'sd0;",
+        "            counter <= (counter + 4'd1) >> b;",
     ] {
         assert!(text.lines().any(|found| found == line), "no `{line}` in\n{text}");
     }
@@ -181,6 +200,159 @@ impl Logic for Undriven {
 #[test]
 fn passes_on_what_rust_hdl_finds() {
     let ports = &[("a", ""), ("out", ""), ("other", "")];
-    let refused = emit(Undriven::default(), &Description { module: "undriven", banner: "", ports, unused: &[] });
+    let refused = emit(Undriven::default(), &Description { path: "undriven.v", banner: "", ports, unused: &[] });
     assert!(matches!(&refused, Err(CoreError::Check { problem, .. }) if problem.contains("other")), "{refused:?}");
+}
+
+#[derive(LogicBlock, Default)]
+struct Stages {
+    clock: Signal<In, Clock>,
+    a: Signal<In, Bit>,
+    b: Signal<In, Bit>,
+    out: Signal<Out, Bit>,
+    first: Register<Bit>,
+    other: Register<Bit>,
+    second: Register<Bit>,
+    chosen: Signal<Local, Bit>,
+    both: Signal<Local, Bit>,
+}
+
+impl Logic for Stages {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, first, second);
+        clock!(self, clock, other);
+        comment!("one");
+        self.first.d.next = self.a.val();
+        self.other.d.next = self.b.val();
+
+        comment!("two");
+        self.chosen.next = self.first.q.val();
+        self.both.next = self.chosen.val() & self.other.q.val();
+        if self.b.val() {
+            self.second.d.next = self.both.val();
+        }
+
+        comment!("three");
+        if self.a.val() {
+            self.second.d.next = false;
+        } else {
+            self.first.d.next = true;
+        }
+        self.out.next = self.second.q.val();
+    }
+}
+
+/// A register that two sections assign has one clocked process, the last assignment counts, and holding is no statement.
+#[test]
+fn takes_a_kernel_apart() -> Result<(), CoreError> {
+    let ports = &[("clock", ""), ("a", ""), ("b", ""), ("out", "")];
+    let text = emit(Stages::default(), &Description { path: "stages.v", banner: "", ports, unused: &[] })?.verilog;
+    let body = text.split("    reg second;\n").nth(1).unwrap_or_default();
+    let expected = "
+    // two
+    wire chosen = first;
+    wire both = chosen && other;
+
+    always @(posedge clock) begin
+        // one
+        first <= a;
+        other <= b;
+        if (b) begin
+            second <= both;
+        end
+
+        // three
+        if (a) begin
+            second <= 1'b0;
+        end else begin
+            first <= 1'b1;
+        end
+    end
+
+    assign out = second;
+
+endmodule
+";
+    assert!(body.starts_with(expected), "{text}");
+    Ok(())
+}
+
+#[derive(LogicBlock, Default)]
+struct TooEarly {
+    a: Signal<In, Bit>,
+    out: Signal<Out, Bit>,
+    seen: Signal<Local, Bit>,
+}
+
+impl Logic for TooEarly {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.seen.next = self.a.val();
+        self.out.next = self.seen.val();
+        self.seen.next = !self.a.val();
+    }
+}
+
+#[derive(LogicBlock, Default)]
+struct Latch {
+    a: Signal<In, Bit>,
+    out: Signal<Out, Bit>,
+    kept: Signal<Local, Bit>,
+}
+
+impl Logic for Latch {
+    #[hdl_gen]
+    fn update(&mut self) {
+        if self.a.val() {
+            self.kept.next = true;
+        }
+        self.out.next = self.kept.val();
+    }
+}
+
+#[derive(LogicBlock, Default)]
+struct Sometimes {
+    clock: Signal<In, Clock>,
+    a: Signal<In, Bit>,
+    out: Signal<Out, Bit>,
+    state: Register<Bit>,
+}
+
+impl Logic for Sometimes {
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, state);
+        if self.a.val() {
+            self.state.d.next = true;
+        }
+        self.out.next = self.state.q.val();
+    }
+}
+
+/// In Rust a kernel runs from top to bottom; in Verilog its parts run at once.
+#[test]
+fn refuses_what_depends_on_the_order_or_on_what_was_before() {
+    let description = |ports| Description { path: "refused.v", banner: "", ports, unused: &[] };
+    let plain = &[("a", ""), ("out", "")];
+    let clocked = &[("clock", ""), ("a", ""), ("out", "")];
+    for (refused, why) in [
+        (emit(TooEarly::default(), &description(plain)), "changes after it has been read"),
+        (emit(Latch::default(), &description(plain)), "before it has a value"),
+        (emit(Sometimes::default(), &description(clocked)), "no value on some path"),
+    ] {
+        let said = refused.map(|core| core.verilog).map_err(|error| error.to_string());
+        assert!(said.as_ref().is_err_and(|said| said.contains(why)), "{said:?}");
+    }
+}
+
+#[test]
+fn multiplies_signed_numbers_into_their_sum_of_widths() {
+    let product = |left: &str, right: &str| binary(signal(left), VerilogOp::Mul, signal(right));
+    assert_eq!(printed(&product("s", "s"), 16, true).as_deref(), Ok("s * s"));
+    for (expression, width, signed) in
+        [(product("s", "s"), 15, true), (product("s", "s"), 16, false), (product("s", "a"), 12, true)]
+    {
+        assert!(printed(&expression, width, signed).is_err(), "{expression:?}");
+    }
 }

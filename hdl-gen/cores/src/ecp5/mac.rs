@@ -80,8 +80,8 @@ Multiply-accumulate lane: sums coefficient * data with two multipliers of 18 by 
 fabrics have an sptfra_mac with one of 27 by 18, with the same sums in the same cycles.
 
 Latency 3 cycles (operands, two products, accumulator), one product a cycle. Operands of 18 and 27 bits and the
-accumulator of 48 are two's complement integers; the binary point is the user's. The accumulator wraps; a sum of up to
-15 products, and any sum whose coefficients add up to less than 2^21 in magnitude, never does.",
+accumulator of 48 are two's complement integers; the binary point is the user's. The accumulator wraps; a sum of up
+to 15 products, and any sum whose coefficients add up to less than 2^21 in magnitude, never does.",
     ports: &[
         ("clock", "rising edge"),
         ("reset", "synchronous, high: discards products under way, keeps the accumulator"),
