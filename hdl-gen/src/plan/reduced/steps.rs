@@ -3,8 +3,7 @@
 use golden::parity::CLASSES;
 use golden::reduced::{ReducedMatrices, ReducedName};
 
-use super::super::format::{Format, MOST_SHIFT, largest, round_shift};
-use super::super::optimum::FRICTION_FRACTION;
+use super::super::format::{FRICTION_FRACTION, Format, MOST_SHIFT, largest, round_shift};
 use super::super::product::{Block, Coefficients, Epilogue, Lead, Product, Vector};
 use super::super::quantise::{ANY_LSB, QuantisedMatrix, RealRows};
 use super::super::{Formats, PlanError};
@@ -202,7 +201,7 @@ impl<'a> Steps<'a> {
         let scaled = |row: &Vec<(u32, [f64; CLASSES])>| {
             row.iter().map(|&(column, ways)| (column, ways.map(|value| factor * value))).collect()
         };
-        let label = if factor < 0.0 { format!("-{}", name.as_str()) } else { name.as_str().to_owned() };
+        let label = if factor < 0.0 { format!("-{name}") } else { name.to_string() };
         let rows: RealRows = rows.iter().map(scaled).collect();
         QuantisedMatrix::new(&label, &rows, bits, operand.folded.bound, least_lsb)
     }

@@ -1,0 +1,33 @@
+//! The network of hinges in integers.
+
+use golden::parity::CLASSES;
+
+use super::super::{CORRECTION_LIMIT, NetworkPlan, UNITS};
+use crate::plan::format::round_shift;
+
+/// The correction of both friction components for a look's inputs by word and class.
+pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> [i64; 2] {
+    let mut sums = [0; 2];
+    for (pass, weights) in network.weights.chunks(network.length).enumerate() {
+        for (unit, readout) in network.readout.iter().skip(pass * UNITS).take(UNITS).enumerate() {
+            let class = |class: usize| -> i64 {
+                let terms = weights.iter().zip(inputs);
+                let sum = terms.map(|(weights, inputs)| i64::from(weights[unit][class]) * inputs[class]).sum();
+                round_shift(sum, network.unit_shift)
+            };
+            let [a, b, c, d] = std::array::from_fn(class);
+            // Of the four mirror images, then their hinges, mirrored back.
+            let looks = [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d];
+            let [a, b, c, d] = looks.map(|sum| sum.max(0));
+            sums[0] += i64::from(readout[0]) * (a - b + c - d);
+            sums[1] += i64::from(readout[1]) * (a + b - c - d);
+        }
+    }
+    sums.map(|sum| {
+        let exact = match network.correction_shift {
+            shift if shift >= 0 => round_shift(sum, shift as u32),
+            shift => sum << -shift,
+        };
+        exact.clamp(-CORRECTION_LIMIT, CORRECTION_LIMIT)
+    })
+}

@@ -1,0 +1,243 @@
+//! The network of the correction in integers: weights by parity, formats that its sums cannot leave.
+//!
+//! A mirrored look changes the signs of what is odd in x or y. So the window is folded into parity classes, the
+//! weights too, and one pass over the weights gives the four sums from which the hidden units of all four looks follow.
+
+use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION};
+use golden::parity::{CLASSES, sign};
+use serde::Serialize;
+
+use crate::plan::format::{FRICTION_FRACTION, largest, pow2, round_shift};
+
+/// Fraction bits of an input.
+pub const INPUT_FRACTION: u32 = 19;
+/// Width of a value of the window: what is beyond is clipped, with a status bit.
+pub const STRESS_BITS: u32 = 25;
+/// Width of an input, a folded value of the window: four of them added.
+pub const INPUT_BITS: u32 = STRESS_BITS + 2;
+/// Width of a hidden unit's sum before the hinge.
+pub const UNIT_BITS: u32 = 26;
+/// Hidden units, and so sums of each class, at a time.
+pub const UNITS: usize = 4;
+/// Fewest words of a pass: while it lasts, the units of the pass before are read out one by one.
+const LEAST_LENGTH: usize = 8;
+const COEFFICIENT_BITS: u32 = 18;
+/// Sum of the coefficients' magnitudes below which products with 27 bits do not overflow 48.
+const SUM_LIMIT: i64 = 1 << 21;
+/// Bits that the stress at the centroid is coarser than `u`: three of them are added with factors up to 1.25.
+pub const NORMAL_DROP: u32 = 2;
+/// Fraction bits of the reciprocal of the normalised `sum |b|`.
+pub const RECIPROCAL_BITS: u32 = 16;
+
+/// A hidden unit's weights of one word of inputs, by class.
+type ByClass = [i32; CLASSES];
+
+/// The network of a design.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NetworkPlan {
+    /// Taxels on either side of the centre of the window.
+    pub half_window: [usize; 2],
+    /// Words of inputs, four classes each: places of a quarter of the window, then the other inputs, then zeros.
+    pub length: usize,
+    /// Passes over the inputs, each for [`UNITS`] hidden units.
+    pub passes: usize,
+    /// One step of a weight is worth `2^weight_lsb`.
+    pub weight_lsb: i32,
+    /// One step of a weight in the output is worth `2^readout_lsb`.
+    pub readout_lsb: i32,
+    /// Left shift of a stress times the reciprocal, before the shift by the bits of `sum |b|`.
+    pub stress_left: u32,
+    /// Bits dropped from a class's sum.
+    pub unit_shift: u32,
+    /// Bits dropped from the sum of the output; negative: added.
+    pub correction_shift: i32,
+    /// Weights by pass and word.
+    #[serde(skip)]
+    pub weights: Vec<[ByClass; UNITS]>,
+    /// Weights of each hidden unit in the x and the y component.
+    #[serde(skip)]
+    pub readout: Vec<[i32; 2]>,
+}
+
+impl NetworkPlan {
+    /// Splits and quantises the weights of a correction, for stresses `u` with steps `2^coarser` times those of `b`.
+    pub(super) fn new(correction: &Correction, coarser: i32) -> Self {
+        let half_window = correction.half_window;
+        let units: Vec<Vec<[f64; CLASSES]>> = correction.hidden.iter().map(|row| by_parity(row, half_window)).collect();
+        let length = units.first().map_or(0, Vec::len).max(LEAST_LENGTH);
+        let passes = units.len().div_ceil(UNITS);
+
+        // Two bits finer than the weights as they were found: a parity's share of one is a quarter of four's sum.
+        let mut weight_lsb = -(WEIGHT_FRACTION as i32) - 2;
+        let fixed = |weight: f64, lsb: i32| (weight * pow2(-lsb)).round() as i64;
+        let fits = |lsb: i32| {
+            let sum = |unit: &Vec<ByRealClass>, class: usize| -> i64 {
+                unit.iter().map(|weights| fixed(weights[class], lsb).abs()).sum()
+            };
+            let narrow = |weight: &f64| fixed(*weight, lsb).abs() <= largest(COEFFICIENT_BITS);
+            units.iter().flatten().flatten().all(narrow)
+                && units.iter().all(|unit| (0..CLASSES).all(|class| sum(unit, class) < SUM_LIMIT))
+        };
+        while !fits(weight_lsb) {
+            weight_lsb += 1;
+        }
+        let mut weights = vec![[[0; CLASSES]; UNITS]; passes * length];
+        for (index, unit) in units.iter().enumerate() {
+            for (word, of_class) in unit.iter().enumerate() {
+                weights[index / UNITS * length + word][index % UNITS] =
+                    of_class.map(|weight| fixed(weight, weight_lsb) as i32);
+            }
+        }
+
+        // A unit is a sum of weights times values of the window, each below 2^24; a class's sum is the mean of four
+        // units but for signs. One bit less than the width, so that two units may be added.
+        let row = |row: &Vec<i32>| row.iter().map(|weight| i64::from(weight.abs())).sum::<i64>();
+        let most = correction.hidden.iter().map(row).max().unwrap_or(0);
+        let slack = i128::from(length as u32) << (INPUT_BITS + 2); // what rounding the weights adds, at most
+        let bound = scaled(i128::from(most) << (STRESS_BITS - 1), -(WEIGHT_FRACTION as i32) - weight_lsb) + slack;
+        let mut unit_shift = 0;
+        while (bound >> unit_shift) + CLASSES as i128 >= 1 << (UNIT_BITS - 1) {
+            unit_shift += 1;
+        }
+
+        let mut drop = 0;
+        let readout = |drop: u32| correction.output.each_ref().map(|of| of.iter().map(|&v| dropped(v, drop)).collect());
+        let sums = |readout: &[Vec<i32>; 2]| readout.iter().map(row).max().unwrap_or(0);
+        let mut chosen: [Vec<i32>; 2] = readout(drop);
+        while sums(&chosen) >= SUM_LIMIT {
+            drop += 1;
+            chosen = readout(drop);
+        }
+        let readout_lsb = drop as i32 - WEIGHT_FRACTION as i32;
+        let [along_x, along_y] = chosen;
+        let readout: Vec<[i32; 2]> = along_x.into_iter().zip(along_y).map(|(x, y)| [x, y]).collect();
+
+        // Of the output: the mean over four looks.
+        let fraction = INPUT_FRACTION as i32 - weight_lsb - unit_shift as i32 - readout_lsb + 2;
+        Self {
+            half_window,
+            length,
+            passes,
+            weight_lsb,
+            readout_lsb,
+            stress_left: stress_left(coarser),
+            unit_shift,
+            correction_shift: fraction - FRICTION_FRACTION as i32,
+            weights,
+            readout,
+        }
+    }
+
+    /// Places of a quarter of the window, its middle row and column with it.
+    pub fn places(&self) -> usize {
+        (self.half_window[0] + 1) * (self.half_window[1] + 1)
+    }
+
+    /// Hidden units, those included that fill up the last pass.
+    pub fn units(&self) -> usize {
+        self.passes * UNITS
+    }
+}
+
+/// The same in f64.
+type ByRealClass = [f64; CLASSES];
+
+/// One hidden unit's weights by word and class. A place on the middle row or column has fewer members than four, and
+/// classes without a weight: what is odd vanishes there.
+fn by_parity(row: &[i32], half_window: [usize; 2]) -> Vec<ByRealClass> {
+    let [half_x, half_y] = half_window;
+    let width = 2 * half_x + 1;
+    let window = width * (2 * half_y + 1);
+    let real = |index: usize| pow2(-(WEIGHT_FRACTION as i32)) * f64::from(row[index]);
+    let mut words = Vec::new();
+    for y in 0..=half_y {
+        for x in 0..=half_x {
+            let vanishes = |bits: usize| (x == 0 && bits & 1 == 1) || (y == 0 && bits & 2 == 2);
+            let members: Vec<usize> = (0..CLASSES).filter(|&member| !vanishes(member)).collect();
+            let at = |member: usize| {
+                let column = if member & 1 == 1 { half_x - x } else { half_x + x };
+                let line = if member & 2 == 2 { half_y - y } else { half_y + y };
+                real(line * width + column)
+            };
+            let class = |class: usize| {
+                if vanishes(class) {
+                    return 0.0;
+                }
+                let sum: f64 = members.iter().map(|&member| sign(class, member) * at(member)).sum();
+                sum / members.len() as f64
+            };
+            words.push(std::array::from_fn(class));
+        }
+    }
+    let extra: [f64; EXTRA_INPUTS] = std::array::from_fn(|index| real(window + index));
+    let [mu_x, mu_y, fraction_x, fraction_y, one] = extra;
+    words.push([one, mu_x, mu_y, 0.0]);
+    words.push([0.0, fraction_x, fraction_y, 0.0]);
+    words
+}
+
+fn dropped(value: i32, drop: u32) -> i32 {
+    round_shift(i64::from(value), drop).clamp(-largest(COEFFICIENT_BITS), largest(COEFFICIENT_BITS)) as i32
+}
+
+fn scaled(value: i128, left: i32) -> i128 {
+    if left >= 0 { value << left } else { (value >> -left) + 1 }
+}
+
+/// `STRESS_SCALE n / sum |b|` from `n r` with n coarser than u by [`NORMAL_DROP`] bits and `1 / sum |b|` as
+/// `r 2^-(RECIPROCAL_BITS + bits of the sum)`: left shift, before a right shift by the bits of the sum.
+fn stress_left(coarser: i32) -> u32 {
+    let scale = STRESS_SCALE.log2().round() as i32;
+    let left = scale + NORMAL_DROP as i32 + coarser + INPUT_FRACTION as i32 - RECIPROCAL_BITS as i32;
+    // The steps of u, which holds the stress, are never so much finer than those of the stress.
+    left.max(0) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A hidden unit of a mirrored look, from the look itself and the weights by parity.
+    #[test]
+    fn the_parities_give_the_units_of_every_mirror_image() {
+        let row: Vec<i32> = (0..20).map(|index| 37 * index * index - 501 * index + 100).collect();
+        let look: Vec<f64> = (0..20).map(|index| f64::from(index * 7 % 11) - 4.5).collect();
+        let words = by_parity(&row, [1, 2]);
+        for signs in 0..CLASSES {
+            let mut direct = 0.0;
+            let mut folded = 0.0;
+            for y in 0..5 {
+                for x in 0..3 {
+                    let from_x = if signs & 1 == 1 { 2 - x } else { x };
+                    let from_y = if signs & 2 == 2 { 4 - y } else { y };
+                    direct += f64::from(row[y * 3 + x]) * look[from_y * 3 + from_x];
+                }
+            }
+            let sign_x = if signs & 1 == 1 { -1.0 } else { 1.0 };
+            let sign_y = if signs & 2 == 2 { -1.0 } else { 1.0 };
+            for (index, sign) in [sign_x, sign_y, sign_x, sign_y, 1.0].into_iter().enumerate() {
+                direct += f64::from(row[15 + index]) * sign * look[15 + index];
+            }
+            for class in 0..CLASSES {
+                let of_class = sign(class, signs);
+                for y in 0..3 {
+                    for x in 0..2 {
+                        let mut input = 0.0;
+                        for member in 0..CLASSES {
+                            if (x == 0 && member & 1 == 1) || (y == 0 && member & 2 == 2) {
+                                continue;
+                            }
+                            let column = if member & 1 == 1 { 1 - x } else { 1 + x };
+                            let line = if member & 2 == 2 { 2 - y } else { 2 + y };
+                            input += sign(class, member) * look[line * 3 + column];
+                        }
+                        folded += of_class * words[y * 2 + x][class] * input;
+                    }
+                }
+                let extras = [[look[19], look[15], look[16], 0.0], [0.0, look[17], look[18], 0.0]];
+                folded += of_class * (words[6][class] * extras[0][class] + words[7][class] * extras[1][class]);
+            }
+            assert!((direct / 4096.0 - folded).abs() < 1e-9, "{signs}: {direct} {folded}");
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Op's line and search in integers.
+
+use super::super::{ByPq, Found, Seen};
+use super::direction::Direction;
+use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, SEARCH_STEPS};
+use crate::cores::divider;
+use crate::plan::format::{FRICTION_FRACTION, largest, round_shift};
+
+/// Ratios of this magnitude (4.0) and more make the line meaningless.
+const WILD: u64 = 1 << (LINE_FRACTION + 2);
+const ONE: i64 = 1 << FRICTION_FRACTION;
+
+/// The line in the (`mu_x`, `mu_y`) plane: the dependent component is `c0 + c1 t` (Eqs. 22 and 23).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Whether t is `mu_x` (rather than `mu_y`).
+    pub x_is_free: bool,
+    /// No direction, or a line without sense.
+    pub unknown: bool,
+    /// Offset, [`LINE_FRACTION`] fraction bits.
+    pub c0: i64,
+    /// Slope, [`LINE_FRACTION`] fraction bits.
+    pub c1: i64,
+}
+
+impl Line {
+    pub fn new(sums: &ByPq<i64>, direction: &Direction) -> Self {
+        let spread = sums[..2].iter().flatten().fold(0, |spread, &sum| spread | (sum ^ (sum >> 63)));
+        let shift = (64 - spread.leading_zeros()).saturating_sub(LINE_SUM_BITS);
+        let scaled: [[i64; 3]; 2] = std::array::from_fn(|p| sums[p].map(|sum| sum >> shift));
+        let [g1, g2] = scaled;
+        let [push_x, push_y] = direction.push;
+        let a = g1[1] * push_y - g2[1] * push_x;
+        let e = g1[2] * push_y - g2[2] * push_x;
+        let k = g2[0] * push_x - g1[0] * push_y;
+        let x_is_free = push_x.abs() >= push_y.abs() || direction.unknown;
+        let (denominator, other) = if x_is_free { (e, a) } else { (a, e) };
+        match (direction.unknown, ratio(-other, denominator), ratio(k, denominator)) {
+            (false, Some(c1), Some(c0)) => Self { x_is_free, unknown: false, c0, c1 },
+            _ => Self { x_is_free: true, unknown: true, c0: 0, c1: 0 },
+        }
+    }
+}
+
+/// `numerator / denominator` towards zero, with [`LINE_FRACTION`] fraction bits; none if it is 4 or more.
+fn ratio(numerator: i64, denominator: i64) -> Option<i64> {
+    let quotient = divider::divide(numerator.unsigned_abs() << LINE_FRACTION, denominator.unsigned_abs());
+    let magnitude = (quotient < WILD).then_some(quotient as i64)?;
+    Some(if (numerator < 0) == (denominator < 0) { magnitude } else { -magnitude })
+}
+
+/// Finds the friction on the line of the push.
+pub fn friction(plan: &LinePlan, seen: &Seen) -> Found {
+    let line = Line::new(seen.sums, &Direction::new(seen, plan.pitch));
+    let Optimum { t, at_bound, saturated } = search(&line, seen, plan.level_shift);
+    let exact = round_shift((line.c0 << FRICTION_FRACTION) + line.c1 * t, LINE_FRACTION);
+    let dependent = exact.clamp(-largest(18) - 1, largest(18));
+    let friction = match (line.unknown, line.x_is_free) {
+        (true, _) => [0, 0],
+        (false, true) => [t, dependent],
+        (false, false) => [dependent, t],
+    };
+    Found { friction, unknown: line.unknown, at_bound: at_bound || dependent != exact, saturated }
+}
+
+/// Where the search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Optimum {
+    /// Midpoint of the level set, [`FRICTION_FRACTION`] fraction bits.
+    pub t: i64,
+    /// The minimum lies at an end of [-1, 1].
+    pub at_bound: bool,
+    /// An `alpha` or `beta` was clipped.
+    pub saturated: bool,
+}
+
+/// Bisects for the minimum of `B(t)` and for both ends of its level set, in the hardware's steps.
+fn search(line: &Line, seen: &Seen, level_shift: i32) -> Optimum {
+    let hinges = Hinges::new(line, seen.u);
+    let (mut low, mut high) = (-ONE, ONE);
+    for _ in 0..SEARCH_STEPS {
+        let middle = (low + high) >> 1;
+        if hinges.slope(middle) < 0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let (at_low, at_high) = (hinges.value(low), hinges.value(high));
+    let (lowest, floor) = if at_high < at_low { (high, at_high) } else { (low, at_low) };
+    let margin = match level_shift {
+        shift if shift >= 0 => seen.contact.stress_sum << shift,
+        shift => seen.contact.stress_sum >> -shift,
+    };
+    let below = |t| hinges.value(t) <= floor + margin;
+    let (mut left_out, mut left_in, mut right_in, mut right_out) = (-ONE, lowest, lowest, ONE);
+    for _ in 0..SEARCH_STEPS {
+        let left = (left_out + left_in) >> 1;
+        *(if below(left) { &mut left_in } else { &mut left_out }) = left;
+        let right = (right_in + right_out) >> 1;
+        *(if below(right) { &mut right_in } else { &mut right_out }) = right;
+    }
+    Optimum { t: (left_in + right_in) >> 1, at_bound: low == -ONE || high == ONE, saturated: hinges.saturated }
+}
+
+/// `alpha_i + t beta_i` for every taxel.
+struct Hinges {
+    lines: Vec<(i64, i64)>,
+    saturated: bool,
+}
+
+impl Hinges {
+    fn new(line: &Line, u: &[Vec<i64>; 3]) -> Self {
+        let [fixed, x, y] = u;
+        let (free, dependent) = if line.x_is_free { (x, y) } else { (y, x) };
+        let mut saturated = false;
+        let mut mixed = |addend: i64, factor: i64, value: i64| {
+            let exact = round_shift((addend << LINE_FRACTION) + factor * value, LINE_FRACTION);
+            let clipped = exact.clamp(-largest(27) - 1, largest(27));
+            saturated |= clipped != exact;
+            clipped
+        };
+        let lines = (0..fixed.len())
+            .map(|i| (mixed(fixed[i], line.c0, dependent[i]), mixed(free[i], line.c1, dependent[i])))
+            .collect();
+        Self { lines, saturated }
+    }
+
+    fn positive(&self, t: i64) -> impl Iterator<Item = (i64, i64)> + '_ {
+        let hinge = move |&(alpha, beta): &(i64, i64)| ((alpha << FRICTION_FRACTION) + t * beta, beta);
+        self.lines.iter().map(hinge).filter(|&(hinge, _)| hinge > 0)
+    }
+
+    fn slope(&self, t: i64) -> i64 {
+        self.positive(t).map(|(_, beta)| beta).sum()
+    }
+
+    fn value(&self, t: i64) -> i64 {
+        self.positive(t).map(|(hinge, _)| hinge >> HINGE_DROP).sum()
+    }
+}
