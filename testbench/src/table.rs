@@ -78,17 +78,19 @@ impl Table {
                 cells(column).map(|text| before + text.chars().count()).fold(head.max(least), usize::max)
             })
             .collect();
-        let line = |indent: &str, row: &[&str]| {
-            let mut line = String::new();
-            for (column, (text, &width)) in row.iter().zip(&widths).enumerate() {
-                let text = if column == 0 { format!("{indent}{text}") } else { (*text).to_owned() };
-                line += &match self.is_left(column) {
-                    true if column > 0 => format!("{:GAP$}{text:<1$}", "", width - GAP),
-                    true => format!("{text:<width$}"),
-                    false => format!("{text:>width$}"),
-                };
+        let cell = |column: usize, text: &str| {
+            let width = widths[column];
+            match (column, self.is_left(column)) {
+                (0, _) => format!("{text:<width$}"),
+                (_, true) => format!("{:GAP$}{text:<1$}", "", width - GAP),
+                (_, false) => format!("{text:>width$}"),
             }
-            line.trim_end().to_owned() + "\n"
+        };
+        let line = |indent: &str, row: &[&str]| {
+            let first = row.first().map(|name| format!("{indent}{name}")).unwrap_or_default();
+            let others = row.iter().enumerate().skip(1).map(|(column, text)| cell(column, text));
+            let line: String = [cell(0, &first)].into_iter().chain(others).collect();
+            format!("{}\n", line.trim_end())
         };
         let header: Vec<&str> = self.header.iter().map(String::as_str).collect();
         let mut text = line("", &header) + &rule(widths.iter().sum());
@@ -102,12 +104,10 @@ impl Table {
     pub fn markdown(&self) -> String {
         let alignment = |column| if self.is_left(column) { "---|" } else { "---:|" };
         let alignments: String = (0..self.header.len()).map(alignment).collect();
-        let mut text = format!("| {} |\n|{alignments}\n", self.header.join(" | "));
-        for row in &self.rows {
-            let cells: Vec<&str> = row.iter().map(|cell| cell.text.as_str()).collect();
-            text += &format!("| {} |\n", cells.join(" | "));
-        }
-        text
+        let line = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
+        let header: Vec<&str> = self.header.iter().map(String::as_str).collect();
+        let rows = self.rows.iter().map(|row| line(&row.iter().map(|cell| cell.text.as_str()).collect::<Vec<_>>()));
+        [line(&header), format!("|{alignments}\n")].into_iter().chain(rows).collect()
     }
 }
 
