@@ -56,9 +56,14 @@ pub struct StatusCounts {
 impl StatusCounts {
     /// Counts the answers.
     pub fn new(answers: &[Answer]) -> Self {
-        let with = |bit: Status| answers.iter().filter(|answer| Status(answer.status).contains(bit)).count();
+        Self::of(answers.iter().map(|answer| Status(answer.status)))
+    }
+
+    /// Counts statuses.
+    pub fn of(statuses: impl Iterator<Item = Status> + Clone) -> Self {
+        let with = |bit: Status| statuses.clone().filter(|status| status.contains(bit)).count();
         Self {
-            good: answers.iter().filter(|answer| answer.status == 0).count(),
+            good: statuses.clone().filter(|status| status.0 == 0).count(),
             no_contact: with(Status::NO_CONTACT),
             direction_unknown: with(Status::DIRECTION_UNKNOWN),
             at_bound: with(Status::AT_BOUND),

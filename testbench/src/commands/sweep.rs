@@ -1,6 +1,5 @@
 //! `testbench sweep`.
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -75,8 +74,8 @@ fn filter(word: &str) -> Result<FilterAxis, String> {
     word.parse().map_err(|error: testbench::sweep::SweepError| error.to_string())
 }
 
-/// Sweeps; returns what to print.
-pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
+/// Sweeps.
+pub fn run(arguments: &Arguments) -> super::Result {
     let designs = arguments.designs.iter().map(|path| Design::load(path)).collect::<Result<Vec<_>, _>>()?;
     let mut scenes = arguments.scenes.iter().map(|path| SweepScene::load(path)).collect::<Result<Vec<_>, _>>()?;
     let axes = Axes {
@@ -96,7 +95,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
             "{count} of {} points to run in {}\n",
             sweep.jobs.len(),
             arguments.out.join("jobs").display()
-        ));
+        )
+        .into());
     }
     let store = Store::open(&arguments.out)?;
     let progress = Progress::new();
@@ -115,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
     }
     write_whole(&place("report.html"), page::render(&contents)?.as_bytes())?;
     drop(progress);
-    Ok(if arguments.json { json } else { summary(&outcomes, &arguments.out) })
+    Ok(if arguments.json { json } else { summary(&outcomes, &arguments.out) }.into())
 }
 
 fn summary(outcomes: &Outcomes, out: &Path) -> String {

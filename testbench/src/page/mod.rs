@@ -18,8 +18,7 @@ use thiserror::Error;
 
 use crate::hard::judge::Row;
 use crate::sweep::evaluate::answers;
-use crate::sweep::grid::{sensor_title, sensors};
-use crate::sweep::point::{Geometry, Point, Verified};
+use crate::sweep::point::{Geometry, Point, Verified, sensor_title, sensors};
 use crate::sweep::{Sweep, SweepError, SweepScene};
 use crate::table::Table;
 use matrices::Figure;

@@ -106,7 +106,6 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
     });
     let pairs: Vec<(Outcome, Outcome)> = truth.iter().copied().zip(solutions.iter().map(Outcome::from)).collect();
     let errors = ErrorSummary::new(&pairs);
-    let answers: Vec<Answer> = solutions.iter().map(as_answer).collect();
     Point {
         key: job.key.clone(),
         sensor: Geometry::from(sensor),
@@ -128,20 +127,7 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
         errors,
         solver_errors: errors,
         against_solver: None,
-        status_counts: StatusCounts::new(&answers),
-    }
-}
-
-/// A solution in the form of an answer, for what is counted over answers.
-fn as_answer(solution: &Solution) -> Answer {
-    Answer {
-        status: solution.status.0,
-        counter: 0,
-        resultant: solution.resultant,
-        mu: solution.mu,
-        phi: solution.phi,
-        mu_xy: [solution.mu_x, solution.mu_y],
-        field: [const { Vec::new() }; 3],
+        status_counts: StatusCounts::of(solutions.iter().map(|solution| solution.status)),
     }
 }
 
