@@ -1,10 +1,9 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
-use golden::estimators::joint::WEIGHT_BITS;
-
 use crate::plan::Plan;
 use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;
+use crate::plan::joint::WEIGHT_BITS;
 use crate::plan::reduced::SUM_ROWS;
 
 use super::{FileMap, joint_view, lane_file};

@@ -1,13 +1,12 @@
 //! Predicted resources: multipliers and block memories of an UltraScale+ device.
 
 use golden::design::{Design, Outputs, PlanKind};
-use golden::estimators::joint::WEIGHT_BITS;
 use golden::parity::CLASSES;
 use serde::Serialize;
 
 use super::counts::{CountsPlan, GAIN_BITS};
 use super::format::address_bits;
-use super::joint::{INPUT_BITS, JointPlan, POINTS, STRESS_BITS, UNITS};
+use super::joint::{INPUT_BITS, JointPlan, POINTS, STRESS_BITS, UNITS, WEIGHT_BITS};
 use super::layout::OperandLayout;
 use super::optimum::OptimumPlan;
 use super::product::Product;

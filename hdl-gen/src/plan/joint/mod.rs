@@ -14,7 +14,7 @@ use super::Formats;
 use super::format::{address_bits, pow2};
 use super::optimum::FRICTION_FRACTION;
 pub use network::{
-    INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS, UNITS,
+    INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS, UNITS, WEIGHT_BITS,
 };
 
 /// A step of the grid is `2^-STEP_SHIFT`.
