@@ -7,8 +7,8 @@ use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_F
 use golden::parity::{CLASSES, sign};
 use serde::Serialize;
 
-use super::super::format::{largest, pow2, round_shift};
-use super::super::optimum::FRICTION_FRACTION;
+use crate::estimators::slot::WEIGHT_BITS;
+use crate::plan::format::{FRICTION_FRACTION, largest, pow2, round_shift};
 
 /// Fraction bits of an input.
 pub const INPUT_FRACTION: u32 = 19;
@@ -22,12 +22,10 @@ pub const UNIT_BITS: u32 = 26;
 pub const UNITS: usize = 4;
 /// Fewest words of a pass: while it lasts, the units of the pass before are read out one by one.
 const LEAST_LENGTH: usize = 8;
-/// Width of a stored weight, of a class of a hidden unit and of the readout.
-pub const WEIGHT_BITS: u32 = 18;
-// A weight of a design file, as it is, fits the readout.
-const _: () = assert!(WEIGHT_LIMIT <= 1 << (WEIGHT_BITS - 1));
 /// Sum of the coefficients' magnitudes below which products with 27 bits do not overflow 48.
 const SUM_LIMIT: i64 = 1 << 21;
+// A weight of a design file, as it is, fits the readout.
+const _: () = assert!(WEIGHT_LIMIT <= 1 << (WEIGHT_BITS - 1));
 /// Bits that the stress at the centroid is coarser than `u`: three of them are added with factors up to 1.25.
 pub const NORMAL_DROP: u32 = 2;
 /// Fraction bits of the reciprocal of the normalised `sum |b|`.
