@@ -8,9 +8,9 @@ use golden::output::write_whole;
 use golden::words::parser;
 
 use testbench::hard::{self, Scope};
-use testbench::page;
 use testbench::progress::Progress;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
+use testbench::sweep::page;
 use testbench::sweep::point::Verified;
 use testbench::sweep::store::Store;
 use testbench::sweep::{Outcomes, Simulate, Sweep, SweepScene, csv_file};

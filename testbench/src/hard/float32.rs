@@ -8,7 +8,7 @@ use golden::parity::{CLASSES, Quads};
 use golden::reduced::{FoldedRows, ReducedMatrices, ReducedName, SumRow};
 use golden::solver::{Solver, Status};
 
-use crate::words::Answer;
+use crate::stream_words::Answer;
 
 /// Bisections of each search: as many as a float32 has bits.
 const STEPS: usize = 24;

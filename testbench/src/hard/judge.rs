@@ -10,8 +10,8 @@ use serde::Serialize;
 use super::cases::Case;
 use super::float32::Single;
 use crate::accuracy::{StatusCounts, against_truth};
+use crate::stream_words::{Answer, as_received, decode, packets};
 use crate::trial::model_answers;
-use crate::words::{Answer, as_received, decode, packets};
 
 /// A resultant beyond this times what the stress would mean as a pressure, `sum |b|` times a taxel's area, is beyond
 /// reason.

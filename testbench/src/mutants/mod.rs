@@ -21,10 +21,10 @@ pub use sites::{Kind, Mutation, all};
 
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
+use crate::stream_words::packets;
 use crate::stress::{BATCH, run_batch};
 use crate::trial::{Trial, TrialError, planned, rtl_sources};
 use crate::verilate::{BuildError, Built, RtlSources, Verilate, elaborated_lines};
-use crate::words::packets;
 
 /// Batches of `testbench stress` after the standing frames.
 const STRESS_BATCHES: u64 = 3;

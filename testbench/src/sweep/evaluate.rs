@@ -16,8 +16,8 @@ use super::point::{AgainstSolver, Geometry, Hardware, Point, Verified};
 use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
+use crate::stream_words::{Answer, as_received, decode, packets};
 use crate::trial::{Trial, model_answers, planned};
-use crate::words::{Answer, as_received, decode, packets};
 
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;
@@ -127,7 +127,7 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
         errors,
         solver_errors: errors,
         against_solver: None,
-        status_counts: StatusCounts::of(solutions.iter().map(|solution| solution.status)),
+        status_counts: StatusCounts::of(&solutions.iter().map(|solution| solution.status).collect::<Vec<_>>()),
     }
 }
 

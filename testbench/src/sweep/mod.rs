@@ -6,6 +6,7 @@ pub mod csv_file;
 pub mod distributed;
 pub mod evaluate;
 pub mod grid;
+pub mod page;
 pub mod point;
 pub mod store;
 

@@ -23,7 +23,7 @@ use crate::sweep::{Sweep, SweepError, SweepScene};
 use crate::table::Table;
 use matrices::Figure;
 
-const TEMPLATE: &str = include_str!("../../templates/report.html.tera");
+const TEMPLATE: &str = include_str!("../../../templates/report.html.tera");
 /// The name ends so that text is escaped.
 const NAME: &str = "report.html";
 /// Larger sensors have too many entries for a picture of each.
