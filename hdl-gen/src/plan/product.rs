@@ -46,11 +46,30 @@ impl Vector {
         }
     }
 
+    /// What becomes of a result, as the visit ROM and the collector (`sptfra_spmv_collector`) have it.
+    pub fn destination(self) -> usize {
+        match self {
+            Self::Stress | Self::Weight | Self::Pull => 0,
+            Self::U(q) => 1 + usize::from(q),
+            Self::Residual(q) => 5 + usize::from(q),
+            Self::Explained => 8,
+            Self::Force(p) => 8 + usize::from(p),
+            Self::Partial(p) => 3 + usize::from(p),
+            Self::G(p, q) => 7 + 3 * usize::from(p - 1) + usize::from(q),
+        }
+    }
+
+    /// The destination of sums over the frame.
+    pub const SUMS_DESTINATION: usize = 4;
+
     /// Whether a product with this result makes `vector`: weights and `y+` come together.
     pub fn holds(self, vector: Self) -> bool {
         self == vector || (self == Self::Weight && vector == Self::Pull)
     }
 }
+
+/// Numbers that a destination can have.
+pub const DESTINATIONS: usize = 16;
 
 /// The block that owns the lanes while a product runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

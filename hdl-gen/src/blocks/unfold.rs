@@ -1,0 +1,14 @@
+//! Results to taxels: `sptfra_unfold`.
+
+use crate::plan::Plan;
+
+use super::Parameters;
+
+/// The instance's parameters.
+pub fn parameters(plan: &Plan) -> Parameters {
+    Parameters::new()
+        .count("WAYS", plan.ways())
+        .count("ELEMENTS", plan.elements())
+        .number("DATA_BITS", plan.design.hardware.data_bits.into())
+        .number("U_SHIFT", plan.formats.folded.map_or(0, |folded| folded.u.lsb - folded.stress.lsb).into())
+}
