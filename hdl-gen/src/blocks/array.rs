@@ -8,6 +8,16 @@ use crate::plan::schedule::TURN_GAP;
 
 use super::Parameters;
 
+/// From the sequencer's control to the lanes' and the collector's, in cycles: the register on the way.
+pub const SEQUENCER_TO_LANES: u64 = 1;
+/// From a program's start pulse to its first issue, in the lanes.
+pub const START_TO_ISSUE: u64 = 2 + SEQUENCER_TO_LANES;
+/// From the collector taking a result to its standing on the result bus.
+pub const VISIT_TO_BUS: u64 = 3;
+/// From a write at the array's port to the first issue that may read the word: the write passes a register and enters the
+/// memory; the operand is read two cycles after its issue.
+pub const WRITE_TO_ISSUE: u64 = 0;
+
 /// Bits of a destination in the visit ROM: the first eight are all there is without a field.
 pub fn destination_bits(plan: &Plan) -> u32 {
     if plan.field_words() > 0 { 4 } else { 3 }

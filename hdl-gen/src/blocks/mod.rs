@@ -16,8 +16,10 @@ use std::fmt::Write;
 use serde::{Serialize, Serializer};
 
 use crate::plan::Plan;
+use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
 use crate::plan::product::Vector;
+use crate::plan::reduced::SUM_ROWS;
 
 /// Where a vector stands in the lanes' operand memories: its first word, and whether that is in the stress's bank. One
 /// that no product reads is at 0.
@@ -27,6 +29,11 @@ fn place(plan: &Plan, vector: Vector) -> (usize, bool) {
         Some(Place::StressBank) => (0, true),
         None => (0, false),
     }
+}
+
+/// Bits of the number of an element, or of a row of sums.
+pub fn row_width(plan: &Plan) -> u32 {
+    address_bits(plan.elements().max(SUM_ROWS))
 }
 
 /// Parameters of an instance: names and Verilog expressions, in the order of the module's declaration.
