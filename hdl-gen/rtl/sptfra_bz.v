@@ -179,6 +179,8 @@ module sptfra_bz #(
             assign fixed = number;
             assign saturated = number_saturated;
             assign not_finite = number_not_finite;
+            wire _unused = (PER_TAXEL != 0) || (GAIN != 0) || (OFFSET_BITS != 0) || (COUNT_SHIFT != 0) || (FULL_SCALE != 0)
+                || (STRESS_BOUND != 0) || (ROM_DIR != "") || (ROM_NAME != "");
         end
     endgenerate
 

@@ -78,7 +78,12 @@ module sptfra_field #(
     end
 
     // ---- Read: which taxel, of which quad
-    localparam [X_WIDTH-1:0] LAST_COLUMN = COLUMNS - 1;
+    localparam [31:0] LAST_X = COLUMNS - 1;
+    localparam [31:0] LEFT_X = QUAD_COLUMNS - 1;
+    localparam [31:0] UPPER_Y = QUAD_ROWS - 1;
+    localparam [X_WIDTH-1:0] LAST_COLUMN = LAST_X[X_WIDTH-1:0];
+    localparam [X_WIDTH-1:0] LAST_LEFT = LEFT_X[X_WIDTH-1:0];
+    localparam [Y_WIDTH-1:0] LAST_UPPER = UPPER_Y[Y_WIDTH-1:0];
     reg read_bank;
     reg [1:0] weight_read_bank;
     reg [1:0] p; // component: 0 x, 1 y, 2 z
@@ -94,8 +99,8 @@ module sptfra_field #(
     reg [FORCE_WIDTH-1:0] force_address_1;
     reg [ROW_WIDTH+1:0] weight_address_1;
     wire [X_WIDTH-1:0] next_column = last_column ? {X_WIDTH{1'b0}} : column + 1;
-    wire mirrored_x = (column > QUAD_COLUMNS - 1);
-    wire mirrored_y = (row > QUAD_ROWS - 1);
+    wire mirrored_x = (column > LAST_LEFT);
+    wire mirrored_y = (row > LAST_UPPER);
     wire [X_WIDTH-1:0] quad_x = mirrored_x ? LAST_COLUMN - column : column;
     wire [ROW_WIDTH-1:0] row_base; // first quad of the row
     wire [31:0] quad_x_wide = {{(32-X_WIDTH){1'b0}}, quad_x};

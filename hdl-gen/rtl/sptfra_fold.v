@@ -42,16 +42,22 @@ module sptfra_fold #(
     localparam Y_WIDTH = $clog2(ROWS);
     localparam QUAD_X_WIDTH = (QUAD_COLUMNS > 2) ? $clog2(QUAD_COLUMNS) : 1;
     localparam UPPER_DEPTH = (QUADS > 4) ? QUADS : 4;
-    localparam [X_WIDTH-1:0] LAST_COLUMN = COLUMNS - 1;
-    localparam [Y_WIDTH-1:0] LAST_ROW = ROWS - 1;
+    localparam [31:0] LAST_X = COLUMNS - 1;
+    localparam [31:0] LAST_Y = ROWS - 1;
+    localparam [31:0] FIRST_X = COLUMNS - QUAD_COLUMNS;
+    localparam [31:0] FIRST_Y = ROWS - QUAD_ROWS;
+    localparam [X_WIDTH-1:0] LAST_COLUMN = LAST_X[X_WIDTH-1:0];
+    localparam [Y_WIDTH-1:0] LAST_ROW = LAST_Y[Y_WIDTH-1:0];
+    localparam [X_WIDTH-1:0] FIRST_RIGHT = FIRST_X[X_WIDTH-1:0]; // that completes a pair
+    localparam [Y_WIDTH-1:0] FIRST_LOWER = FIRST_Y[Y_WIDTH-1:0];
 
     // ---- Place of the taxel: its column, its mirror image, and the quads' row
     reg [X_WIDTH-1:0] column;
     reg [Y_WIDTH-1:0] row;
     wire [X_WIDTH-1:0] opposite = LAST_COLUMN - column;
-    wire right_half = (column >= COLUMNS - QUAD_COLUMNS);
+    wire right_half = (column >= FIRST_RIGHT);
     wire centre_column = (column == opposite);
-    wire lower_half = (row >= ROWS - QUAD_ROWS);
+    wire lower_half = (row >= FIRST_LOWER);
     wire centre_row = (row == LAST_ROW - row);
     wire taken = in_valid && in_store && advance;
     wire frame_ends = in_valid && in_last && advance;

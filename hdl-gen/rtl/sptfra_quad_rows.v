@@ -23,15 +23,16 @@ module sptfra_quad_rows #(
 );
 
     localparam [31:0] QUAD_COLUMNS = (COLUMNS + 1) / 2;
-    localparam QUAD_ROWS = (ROWS + 1) / 2;
+    localparam [31:0] MIDDLE_WIDE = (ROWS + 1) / 2 - 1;
+    localparam [Y_WIDTH-1:0] MIDDLE = MIDDLE_WIDE[Y_WIDTH-1:0]; // the last of the quads' rows
 
     reg [ROW_WIDTH-1:0] next_base; // there a cycle after row and row_base
 
     always @(posedge clock) begin
         next_base <= row_base;
-        if (row < QUAD_ROWS - 1) begin
+        if (row < MIDDLE) begin
             next_base <= row_base + QUAD_COLUMNS[ROW_WIDTH-1:0];
-        end else if ((ROWS % 2 == 1) || (row != QUAD_ROWS - 1)) begin
+        end else if ((ROWS % 2 == 1) || (row != MIDDLE)) begin
             next_base <= row_base - QUAD_COLUMNS[ROW_WIDTH-1:0];
         end
         if (next_row) begin

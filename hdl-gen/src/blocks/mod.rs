@@ -5,8 +5,10 @@
 
 pub mod array;
 pub mod bz;
+pub mod cean;
 pub mod co;
 pub mod field;
+pub mod op;
 pub mod turns;
 pub mod unfold;
 pub mod we;
@@ -55,6 +57,12 @@ impl Parameters {
     /// A count or a width.
     #[must_use]
     pub fn count(self, name: &'static str, value: usize) -> Self {
+        self.expression(name, value.to_string())
+    }
+
+    /// A latency.
+    #[must_use]
+    pub fn cycles(self, name: &'static str, value: u64) -> Self {
         self.expression(name, value.to_string())
     }
 

@@ -11,10 +11,9 @@ use golden::design::{Design, Optimise, Outputs, PlanKind};
 use super::counts::input_stages;
 use super::product::{Product, Vector};
 use super::schedule::{Program, Schedule, TURN_GAP, Visit};
-use super::timing::{
-    INTERVAL_FRAMES, OUTPUT_DEPTH, OUTPUT_SKID, SUMMARY_BEATS, SUMMARY_LATENCY, Timeline, middle_interval,
-};
+use super::timing::{INTERVAL_FRAMES, OUTPUT_SKID, Timeline, middle_interval};
 use crate::blocks::array::{SEQUENCER_TO_LANES, START_TO_ISSUE, VISIT_TO_BUS};
+use crate::blocks::op::{OUTPUT_LATENCY, SUMMARY_BEATS, SUMMARY_LATENCY};
 use crate::blocks::{bz, co, turns, unfold};
 use crate::estimators::Slot;
 
@@ -366,6 +365,6 @@ impl<'a> Control<'a> {
         if self.of.field {
             self.pending.push((self.now + self.of.beats + 3, Change::FrameReleased));
         }
-        self.ends.push(self.now + OUTPUT_DEPTH + OUTPUT_SKID + self.of.beats);
+        self.ends.push(self.now + OUTPUT_LATENCY + OUTPUT_SKID + self.of.beats);
     }
 }

@@ -2,16 +2,9 @@
 
 use serde::Serialize;
 
-use crate::cores::{cordic, divider};
 
-/// From the end of the search to the end of the summary.
-pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY as u64;
-/// From `output_start` to the first beat leaving Op.
-pub const OUTPUT_DEPTH: u64 = 13;
 /// One more for the skid buffer at the output.
 pub(super) const OUTPUT_SKID: u64 = 1;
-/// Summary beats of an output frame.
-pub const SUMMARY_BEATS: u64 = 8;
 /// Frames back to back that show the interval, between the two in the middle: every buffer is full by then, and there
 /// is still a next frame.
 pub const INTERVAL_FRAMES: usize = 14;
