@@ -42,7 +42,7 @@ test: tools sweep-tools lint ## Everything: formatting, lints, all tests of all 
 
 .PHONY: formal
 formal: tools ## Prove the stream rules and the frame handshake with Yosys and z3 (part of `make test`)
-	$(CARGO) test -p testbench --test formal -- --nocapture
+	$(CARGO) test -p testbench --test suite formal:: -- --nocapture
 
 # The 4 x 3 design by either plan.
 SMALL_DESIGNS := $(addprefix $(TARGET)/trust/small-,paper.toml reduced.toml)

@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
 use crate::design::{Filter, MatrixFilter};
-use crate::matrices::{Matrices, MatrixName};
+use crate::matrices::Matrices;
+use crate::names::{MatrixName, ReducedName};
 use crate::parity::{FoldedMatrix, sign};
-use crate::reduced::ReducedName;
 
 /// Why a filter cannot be used.
 #[derive(Debug, thiserror::Error)]

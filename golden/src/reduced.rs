@@ -11,81 +11,14 @@
 //! and for the line the sums `G_pq`, which are dot products. All this is the paper's mathematics (Eqs. 8 to 16) put
 //! together otherwise: without a filter the results are the same but for rounding.
 
-use std::fmt;
-
 use nalgebra::{DMatrix, RowDVector};
 
 use crate::design::{Filter, MatrixFilter};
 use crate::filter::FilterError;
-use crate::matrices::{Matrices, MatrixName};
+use crate::matrices::Matrices;
+use crate::names::MatrixName;
+pub use crate::names::ReducedName;
 use crate::parity::{CLASSES, FoldedMatrix, Quads};
-
-/// Names of the ten matrices of the reduced plan, in the order in which a frame meets them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum ReducedName {
-    /// Inverse of C33, in N/Pa.
-    C33inv,
-    /// `(I - C33 A3) C33`, in Pa/N.
-    K0,
-    /// `C33 A3 C31`, in Pa/N.
-    K1,
-    /// `C33 A3 C32`, in Pa/N.
-    K2,
-    /// Stress for forces along z, in Pa/N.
-    C33,
-    /// Stress for forces along x, in Pa/N.
-    C31,
-    /// Stress for forces along y, in Pa/N.
-    C32,
-    /// First block row of the pseudo-inverse A+, in N/Pa.
-    A1,
-    /// Second block row of A+.
-    A2,
-    /// Third block row of A+.
-    A3,
-}
-
-impl ReducedName {
-    /// All names, in order.
-    pub const ALL: [Self; 10] =
-        [Self::C33inv, Self::K0, Self::K1, Self::K2, Self::C33, Self::C31, Self::C32, Self::A1, Self::A2, Self::A3];
-
-    /// The name as written in files, reports and JSON.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::C33inv => "C33inv",
-            Self::K0 => "K0",
-            Self::K1 => "K1",
-            Self::K2 => "K2",
-            Self::C33 => "C33",
-            Self::C31 => "C31",
-            Self::C32 => "C32",
-            Self::A1 => "A1",
-            Self::A2 => "A2",
-            Self::A3 => "A3",
-        }
-    }
-
-    /// Position in [`ReducedName::ALL`].
-    pub fn index(self) -> usize {
-        self as usize
-    }
-
-    /// What the matrix does to the class of a vector: bit 0 changes even and odd in x, bit 1 in y.
-    pub fn parity(self) -> usize {
-        match self {
-            Self::C33inv | Self::K0 | Self::C33 | Self::A3 => 0,
-            Self::K1 | Self::C31 | Self::A1 => 1,
-            Self::K2 | Self::C32 | Self::A2 => 2,
-        }
-    }
-}
-
-impl fmt::Display for ReducedName {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.pad(self.as_str())
-    }
-}
 
 /// The four blocks of a matrix, sparse, row by row.
 ///

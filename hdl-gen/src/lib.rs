@@ -4,6 +4,7 @@
 //! where and when; [`emit::emit`] prints it as files; [`write::write_folder`] puts them on disk, all or none.
 //! [`model::Model`] executes the plan in integers, bit for bit as the emitted hardware does.
 
+pub mod blocks;
 pub mod cores;
 pub mod emit;
 pub mod model;

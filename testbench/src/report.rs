@@ -117,7 +117,7 @@ pub struct Report {
     /// Multiply-accumulates of a frame in the lanes.
     pub macs: u64,
     /// Entries of the paper's 13 matrices after the filter, whichever the plan makes of them.
-    pub nnz: BTreeMap<&'static str, usize>,
+    pub nnz: BTreeMap<String, usize>,
     /// `SpMV` lanes.
     pub lanes: usize,
     /// Fraction of lane cycles that multiply, while an `SpMV` phase runs.

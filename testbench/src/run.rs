@@ -203,7 +203,7 @@ fn summarise(plan: &Plan, simulation: &Simulation, simulator: String) -> Report 
         bram36: plan.resources.bram36,
         rom_bits: plan.resources.rom_bits,
         macs: plan.macs(),
-        nnz: plan.nnz.0.iter().map(|&(name, count)| (name.as_str(), count)).collect(),
+        nnz: plan.nnz.0.iter().map(|&(name, count)| (name.to_string(), count)).collect(),
         lanes: plan.design.hardware.lanes,
         lanes_busy: plan.schedule.busy_fraction(),
         clock_mhz: plan.design.hardware.clock_mhz,

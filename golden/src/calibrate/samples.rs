@@ -5,9 +5,8 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{CalibrateError, Settings, Stage, random_contacts};
 use crate::design::Design;
+use crate::estimators::joint::{self, JointScratch, Look};
 use crate::scene::{Contact, Medium, Shape, normal, unit_responses};
-use crate::solver::correction::Look;
-use crate::solver::joint::{self, JointScratch};
 use crate::solver::{Solver, Status};
 
 /// Poisson's ratio of the layers, from and to: rubber, give or take.

@@ -7,10 +7,9 @@ use rand_chacha::ChaCha8Rng;
 use super::looks::Basis;
 use super::samples::Sample;
 use super::{Settings, Stage};
-use crate::design::{Correction, WEIGHT_BITS, WEIGHT_FRACTION};
+use crate::estimators::joint::{self, Correction, WEIGHT_BITS, WEIGHT_FRACTION};
 use crate::parity::{CLASSES, butterfly};
 use crate::scene::normal;
-use crate::solver::joint;
 
 /// Samples of a step.
 const BATCH: usize = 256;
@@ -203,7 +202,7 @@ mod tests {
     use super::*;
     use crate::calibrate::samples;
     use crate::design::Design;
-    use crate::solver::correction::{Network, NetworkScratch};
+    use crate::estimators::joint::{Network, NetworkScratch};
 
     const HALF_WINDOW: [usize; 2] = [2, 3];
 

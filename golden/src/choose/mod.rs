@@ -84,7 +84,6 @@ fn in_scene(path: &Path, error: &SceneError) -> String {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Candidate {
     /// The matrix.
-    #[serde(serialize_with = "as_text")]
     pub matrix: MatrixName,
     /// Its filter.
     #[serde(serialize_with = "as_text")]

@@ -3,12 +3,12 @@
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use crate::design::{Design, MatrixFilter};
+use crate::estimators::line::{self, LineScratch};
 use crate::filter;
 use crate::matrices::{Matrices, MatrixName};
 use crate::scene::SceneFrame;
 use crate::solver::SolverError;
 use crate::solver::cean::Contact;
-use crate::solver::line::LineScratch;
 use crate::solver::op;
 use crate::solver::reading::{Reader, Reading};
 
@@ -202,7 +202,7 @@ impl Trial {
         let m = self.stress.nrows();
         for (index, ((contact, sums), truth)) in self.contacts.iter().zip(sums).zip(&self.truth).enumerate() {
             let stresses = u.map(|u| &u.as_slice()[index * m..(index + 1) * m]);
-            let (_, [mu_x, mu_y]) = op::friction(contact, sums, stresses, op::LEVEL, &mut scratch);
+            let (_, [mu_x, mu_y]) = line::friction(contact, sums, stresses, line::LEVEL, &mut scratch);
             let resultant = sums.map(|[g0, g1, g2]| g0 + g1 * mu_x + g2 * mu_y);
             total += 100.0 * (truth - op::quotient(resultant)).abs();
         }

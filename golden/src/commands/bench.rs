@@ -24,7 +24,7 @@ struct Report {
     /// The design file, as it was named.
     file: String,
     design: String,
-    plan: &'static str,
+    plan: PlanKind,
     taxels: usize,
     /// Seconds for matrices and filter.
     setup_s: f64,
@@ -81,10 +81,7 @@ fn measure(path: &Path) -> Result<Report, Box<dyn Error>> {
         speed(|| frames.iter().try_for_each(|frame| solver.solve_into(&mut workspace, frame, &mut solution)))?;
     let mut solutions = Vec::new();
     let in_batches = speed(|| solver.solve_batch(&mut workspace, &frames, &mut solutions))?;
-    let plan = match design.algorithm.plan {
-        PlanKind::Paper => "paper",
-        PlanKind::Reduced => "reduced",
-    };
+    let plan = design.algorithm.plan;
     let taxels = solver.taxels();
     let file = path.display().to_string();
     Ok(Report { file, design: design.name, plan, taxels, setup_s, repetitions: REPETITIONS, one_by_one, in_batches })

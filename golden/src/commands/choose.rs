@@ -91,7 +91,7 @@ fn print_report(name: &str, out: &Path, choice: &Choice) -> std::io::Result<()> 
     for candidate in choice.candidates.iter().filter(|candidate| candidate.chosen) {
         say!(
             "  {:<7} {:<8} {:>8}  {:>8.4}  {:>12.1}",
-            candidate.matrix.as_str(),
+            candidate.matrix,
             candidate.filter,
             candidate.nnz,
             candidate.e_mu,

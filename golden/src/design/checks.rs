@@ -1,6 +1,9 @@
 //! Range and spelling checks, each with a message that says what to do.
 
+use serde::de::DeserializeOwned;
+
 use super::DesignError;
+use crate::words;
 
 /// Makes errors that name the file.
 pub(crate) struct Check<'a> {
@@ -49,21 +52,23 @@ impl Check<'_> {
         }
     }
 
-    pub(crate) fn choice(
+    /// The variant that a word of the file means.
+    pub(crate) fn word<T: DeserializeOwned>(&self, key: &str, found: &str) -> Result<T, DesignError> {
+        words::read(found).map_err(|unknown| DesignError::Choice {
+            origin: self.origin.to_owned(),
+            key: key.to_owned(),
+            found: found.to_owned(),
+            allowed: unknown.allowed,
+        })
+    }
+
+    /// As [`Check::word`], for a key that may be absent.
+    pub(crate) fn optional_word<T: DeserializeOwned>(
         &self,
         key: &str,
         found: Option<&str>,
-        allowed: &'static [&'static str],
-    ) -> Result<(), DesignError> {
-        match found {
-            Some(word) if !allowed.contains(&word) => Err(DesignError::Choice {
-                origin: self.origin.to_owned(),
-                key: key.to_owned(),
-                found: word.to_owned(),
-                allowed,
-            }),
-            _ => Ok(()),
-        }
+    ) -> Result<Option<T>, DesignError> {
+        found.map(|found| self.word(key, found)).transpose()
     }
 }
 

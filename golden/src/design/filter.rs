@@ -3,7 +3,26 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::matrices::MatrixName;
+use serde::{Deserialize, Serialize};
+
+use crate::names::MatrixName;
+use crate::words::{self, print_as_words};
+
+/// The kinds of filters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FilterKind {
+    /// All entries are kept.
+    None,
+    /// A band around the diagonal.
+    F1,
+    /// Entries that are large within their row.
+    F2,
+    /// For each matrix its own filter.
+    F3,
+}
+
+print_as_words!(FilterKind);
 
 /// Which entries of the 13 matrices are kept.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +50,16 @@ pub enum Filter {
 }
 
 impl Filter {
+    /// Which of the filters it is.
+    pub fn kind(&self) -> FilterKind {
+        match self {
+            Self::None => FilterKind::None,
+            Self::F1 { .. } => FilterKind::F1,
+            Self::F2 { .. } => FilterKind::F2,
+            Self::F3 { .. } => FilterKind::F3,
+        }
+    }
+
     /// The filter of one matrix, or `None` for F3 without choices.
     pub fn of(&self, matrix: MatrixName) -> Option<MatrixFilter> {
         match self {
@@ -64,9 +93,9 @@ pub enum MatrixFilter {
 impl fmt::Display for MatrixFilter {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::None => formatter.pad("none"),
-            Self::F1 { l } => formatter.pad(&format!("f1 l={l}")),
-            Self::F2 { p } => formatter.pad(&format!("f2 p={p}")),
+            Self::None => FilterKind::None.fmt(formatter),
+            Self::F1 { l } => formatter.pad(&format!("{} l={l}", FilterKind::F1)),
+            Self::F2 { p } => formatter.pad(&format!("{} p={p}", FilterKind::F2)),
         }
     }
 }
@@ -80,11 +109,16 @@ impl FromStr for MatrixFilter {
     type Err = UnknownMatrixFilter;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let words: Vec<&str> = text.split_whitespace().collect();
-        let parsed = match words.as_slice() {
-            ["none"] => Some(Self::None),
-            ["f1", l] => l.strip_prefix("l=").and_then(|l| l.parse().ok()).map(|l| Self::F1 { l }),
-            ["f2", p] => p.strip_prefix("p=").and_then(|p| p.parse().ok()).map(|p| Self::F2 { p }),
+        let mut words = text.split_whitespace();
+        let kind = words.next().and_then(|kind| words::read(kind).ok());
+        let parsed = match (kind, words.next(), words.next()) {
+            (Some(FilterKind::None), None, _) => Some(Self::None),
+            (Some(FilterKind::F1), Some(l), None) => {
+                l.strip_prefix("l=").and_then(|l| l.parse().ok()).map(|l| Self::F1 { l })
+            }
+            (Some(FilterKind::F2), Some(p), None) => {
+                p.strip_prefix("p=").and_then(|p| p.parse().ok()).map(|p| Self::F2 { p })
+            }
             _ => None,
         };
         parsed.ok_or_else(|| UnknownMatrixFilter(text.to_owned()))

@@ -1,4 +1,4 @@
-//! What `golden calibrate` finds for the joint estimator, as a part of a design.
+//! The constants of the joint estimator as keys of a design.
 
 use std::fmt::Write;
 
@@ -6,65 +6,12 @@ use serde::Deserialize;
 
 use super::checks::Check;
 use super::{DesignError, Kernel, Regularisation, Sensor};
-
-/// Weights of a correction are whole numbers of `2^-WEIGHT_FRACTION`.
-pub const WEIGHT_FRACTION: u32 = 12;
-/// Width of a weight in bits.
-pub const WEIGHT_BITS: u32 = 18;
-/// Most hidden units of a correction.
-pub const MAX_HIDDEN: usize = 256;
-/// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.
-pub const EXTRA_INPUTS: usize = 5;
-
-/// Constants of the joint estimator for one design.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JointConstants {
-    /// Factor on all forces; what a kernel of point forces lacks at long waves.
-    pub gain: f64,
-    /// `[c1, c3]`: the friction vector is `c1 mu + c3 mu |mu|^2` of the centroid of the level set.
-    pub tangential: [f64; 2],
-    /// What a small network adds to that; nothing unless trained.
-    pub correction: Option<Correction>,
-    /// What they were fitted to, as [`conditions`] states it; a design of other conditions is refused. `None` for
-    /// constants of unknown origin.
-    pub fitted_to: Option<String>,
-}
+use crate::estimators::joint::{Correction, JointConstants, MAX_HIDDEN, WEIGHT_BITS};
 
 /// What the constants depend on, for people and for comparison.
 pub fn conditions(sensor: &Sensor, kernel: Kernel, regularisation: Regularisation) -> String {
     let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
-    let kernel = match kernel {
-        Kernel::Point => "point",
-        Kernel::Cell => "cell",
-    };
     format!("{columns} x {rows} taxels of {x} x {y} mm, {depth_mm} mm deep, {kernel}, {}", regularisation.factor())
-}
-
-impl Default for JointConstants {
-    fn default() -> Self {
-        Self { gain: 1.0, tangential: [1.0, 0.0], correction: None, fitted_to: None }
-    }
-}
-
-/// Weights of the network that corrects the friction vector, in steps of `2^-WEIGHT_FRACTION`.
-///
-/// It sees a window of `2 half + 1` taxels along each axis around the centre of the contact, row by row, and then
-/// [`EXTRA_INPUTS`] more values.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Correction {
-    /// Taxels on either side of the centre of the window, along x and y.
-    pub half_window: [usize; 2],
-    /// One row of weights for each hidden unit: the window, then the other inputs.
-    pub hidden: Vec<Vec<i32>>,
-    /// Weights of the hidden units in the x and the y component of the correction.
-    pub output: [Vec<i32>; 2],
-}
-
-impl Correction {
-    /// Number of inputs of a hidden unit.
-    pub fn inputs(half_window: [usize; 2]) -> usize {
-        (2 * half_window[0] + 1) * (2 * half_window[1] + 1) + EXTRA_INPUTS
-    }
 }
 
 /// The `[algorithm.correction]` table.

@@ -131,11 +131,11 @@ fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, hardware: &Hardw
         Some(raw) => parse_filter::filter(check, &raw, sensor)?,
         None => Filter::None,
     };
-    check.choice("algorithm.kernel", raw.kernel.as_deref(), &["point", "cell"])?;
-    let kernel = if raw.kernel.as_deref() == Some("cell") { Kernel::Cell } else { Kernel::Point };
+    let kernel: Kernel = check.optional_word("algorithm.kernel", raw.kernel.as_deref())?.unwrap_or_default();
     let regularisation = regularisation::parse(check, raw.regularisation.as_ref())?;
-    check.choice("algorithm.estimator", raw.estimator.as_deref(), &["line", "joint"])?;
-    let (estimator, joint) = if raw.estimator.as_deref() == Some("joint") {
+    let estimator: Estimator =
+        check.optional_word("algorithm.estimator", raw.estimator.as_deref())?.unwrap_or_default();
+    let joint = if estimator == Estimator::Joint {
         let conditions = joint::conditions(sensor, kernel, regularisation);
         let constants = joint::Raw {
             gain: raw.gain,
@@ -143,14 +143,13 @@ fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, hardware: &Hardw
             correction: raw.correction.as_ref(),
             fitted_to: raw.fitted_to,
         };
-        (Estimator::Joint, joint::constants(check, constants, sensor, &conditions)?)
+        joint::constants(check, constants, sensor, &conditions)?
     } else {
         let given = [raw.gain.is_some(), raw.tangential.is_some(), raw.correction.is_some(), raw.fitted_to.is_some()];
         joint::refuse(check, given)?;
-        (Estimator::Line, JointConstants::default())
+        JointConstants::default()
     };
-    check.choice("algorithm.outputs", raw.outputs.as_deref(), &["field", "resultants"])?;
-    let outputs = if raw.outputs.as_deref() == Some("resultants") { Outputs::Resultants } else { Outputs::Field };
+    let outputs: Outputs = check.optional_word("algorithm.outputs", raw.outputs.as_deref())?.unwrap_or_default();
     let noise_floor_pa = match raw.noise_floor_pa {
         Some(value) => check.above_zero("algorithm.noise_floor_pa", value, full_scale_pa, "Pa")?,
         None => full_scale_pa / NOISE_FLOOR_DIVISOR,
@@ -164,14 +163,14 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         Some(value) => check.integer(key, value, low, high),
         None => Ok(default),
     };
-    check.choice("hardware.arithmetic", raw.arithmetic.as_deref(), &["fixed"])?;
-    check.choice("hardware.optimise", raw.optimise.as_deref(), &["interval", "latency"])?;
-    let optimise = if raw.optimise.as_deref() == Some("latency") { Optimise::Latency } else { Optimise::Interval };
+    let arithmetic: Arithmetic =
+        check.optional_word("hardware.arithmetic", raw.arithmetic.as_deref())?.unwrap_or_default();
+    let optimise: Optimise = check.optional_word("hardware.optimise", raw.optimise.as_deref())?.unwrap_or_default();
     let target_us = raw.target_us.map(|target| check.above_zero("hardware.target_us", target, f64::MAX, ""));
     let part = raw.part.unwrap_or_else(|| "xczu9eg-ffvb1156-2-e".to_owned());
     checks::part(check, &part)?;
     Ok(Hardware {
-        arithmetic: Arithmetic::Fixed,
+        arithmetic,
         coefficient_bits: integer("hardware.coefficient_bits", raw.coefficient_bits, 18, 8, 18)? as u32,
         data_bits: integer("hardware.data_bits", raw.data_bits, 27, 16, 27)? as u32,
         // Far above the smallest float32, so that a stress or a force of one step has no denormal.

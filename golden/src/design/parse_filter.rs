@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::checks::Check;
-use super::{Choices, DesignError, Filter, MatrixFilter, Sensor};
-use crate::matrices::MatrixName;
+use super::{Choices, DesignError, Filter, FilterKind, MatrixFilter, Sensor};
+use crate::names::MatrixName;
 
 // Not a tagged enum: those lose the position of an error and cannot say which key belongs to which kind.
 #[derive(Deserialize)]
@@ -20,19 +20,12 @@ pub(super) struct RawFilter {
 }
 
 pub(super) fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<Filter, DesignError> {
-    let own: &[&str] = match raw.kind.as_str() {
-        "none" => &[],
-        "f1" => &["l"],
-        "f2" => &["p"],
-        "f3" => &["scenes", "choices"],
-        other => {
-            return Err(DesignError::Choice {
-                origin: check.origin.to_owned(),
-                key: "algorithm.filter.kind".to_owned(),
-                found: other.to_owned(),
-                allowed: &["none", "f1", "f2", "f3"],
-            });
-        }
+    let kind: FilterKind = check.word("algorithm.filter.kind", &raw.kind)?;
+    let own: &[&str] = match kind {
+        FilterKind::None => &[],
+        FilterKind::F1 => &["l"],
+        FilterKind::F2 => &["p"],
+        FilterKind::F3 => &["scenes", "choices"],
     };
     let given = [
         ("l", raw.l.is_some()),
@@ -43,7 +36,7 @@ pub(super) fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<
     if let Some((foreign, _)) = given.into_iter().find(|&(key, given)| given && !own.contains(&key)) {
         return Err(check.value(
             &format!("algorithm.filter.{foreign}"),
-            format!("does not belong to a filter of kind \"{}\"", raw.kind),
+            format!("does not belong to a filter of kind \"{kind}\""),
             "remove it or choose another kind".to_owned(),
         ));
     }
@@ -51,19 +44,19 @@ pub(super) fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<
         check.value(
             &format!("algorithm.filter.{key}"),
             "is missing".to_owned(),
-            format!("write filter = {{ kind = \"{}\", {example} }}", raw.kind),
+            format!("write filter = {{ kind = \"{kind}\", {example} }}"),
         )
     };
-    match raw.kind.as_str() {
-        "f1" => {
+    match kind {
+        FilterKind::F1 => {
             let l = band(check, "algorithm.filter.l", raw.l.ok_or_else(|| missing("l", "l = 40"))?, sensor)?;
             Ok(Filter::F1 { l })
         }
-        "f2" => {
+        FilterKind::F2 => {
             let value = raw.p.ok_or_else(|| missing("p", "p = 30"))?;
             Ok(Filter::F2 { p: check.above_zero("algorithm.filter.p", value, f64::MAX, "")? })
         }
-        "f3" => {
+        FilterKind::F3 => {
             let scenes = raw.scenes.clone().unwrap_or_default();
             if scenes.is_empty() && raw.choices.is_none() {
                 return Err(missing("scenes", "scenes = [\"../scenes/sensor1-hertz.toml\"]"));
@@ -71,7 +64,7 @@ pub(super) fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<
             let choices = raw.choices.as_ref().map(|raw| choices(check, raw, sensor)).transpose()?;
             Ok(Filter::F3 { scenes, choices: choices.map(Box::new) })
         }
-        _ => Ok(Filter::None),
+        FilterKind::None => Ok(Filter::None),
     }
 }
 
@@ -93,7 +86,7 @@ fn choices(check: &Check, raw: &BTreeMap<String, String>, sensor: &Sensor) -> Re
     let mut filters = [MatrixFilter::None; MatrixName::ALL.len()];
     for (name, filter) in MatrixName::ALL.into_iter().zip(&mut filters) {
         let key = format!("algorithm.filter.choices.{name}");
-        let text = raw.get(name.as_str()).ok_or_else(|| {
+        let text = raw.get(&name.to_string()).ok_or_else(|| {
             check.value(
                 &key,
                 "is missing".to_owned(),

@@ -14,14 +14,10 @@ pub(super) fn kind(
     filter: &Filter,
     hardware: &Hardware,
 ) -> Result<PlanKind, DesignError> {
-    check.choice("algorithm.plan", word, &["paper", "reduced"])?;
+    let given = check.optional_word("algorithm.plan", word)?;
     let fits = hardware.lanes.is_multiple_of(LANES_MULTIPLE);
-    Ok(match word {
-        Some("paper") => PlanKind::Paper,
-        Some(_) => PlanKind::Reduced,
-        None if *filter == Filter::None && fits => PlanKind::Reduced,
-        None => PlanKind::Paper,
-    })
+    let default = if *filter == Filter::None && fits { PlanKind::Reduced } else { PlanKind::Paper };
+    Ok(given.unwrap_or(default))
 }
 
 /// What is checked against the plan.

@@ -5,45 +5,28 @@ use std::fmt::Write;
 use toml::Value;
 
 use super::{
-    Arithmetic, CALIBRATION_FILE, Choices, Design, Estimator, Filter, Kernel, Optimise, Outputs, PlanKind, joint,
-    regularisation,
+    Algorithm, CALIBRATION_FILE, Choices, Design, Estimator, Filter, FilterKind, Hardware, joint, regularisation,
 };
-use crate::matrices::MatrixName;
+use crate::names::MatrixName;
 
 // Written by hand, not by serde, so that the order and the layout are those of the documentation. `{:?}` of an f64
 // always has a point or an exponent, so it reads back as the same float.
 pub(super) fn to_toml(design: &Design) -> String {
     let Design { name, sensor, input, algorithm, hardware } = design;
-    let plan = match algorithm.plan {
-        PlanKind::Paper => "paper",
-        PlanKind::Reduced => "reduced",
-    };
-    let kernel = match algorithm.kernel {
-        Kernel::Point => "point",
-        Kernel::Cell => "cell",
-    };
     let regularisation = regularisation::print(algorithm.regularisation);
+    let Algorithm { plan, kernel, estimator, outputs, .. } = algorithm;
+    let Hardware { arithmetic, optimise, .. } = hardware;
+    let kind = algorithm.filter.kind();
     // A filter for each matrix is too long for one line, and a table can only follow the other keys.
     let (filter, filter_table) = match &algorithm.filter {
-        Filter::None => ("filter = { kind = \"none\" }\n".to_owned(), String::new()),
-        Filter::F1 { l } => (format!("filter = {{ kind = \"f1\", l = {l} }}\n"), String::new()),
-        Filter::F2 { p } => (format!("filter = {{ kind = \"f2\", p = {p:?} }}\n"), String::new()),
+        Filter::None => (format!("filter = {{ kind = \"{kind}\" }}\n"), String::new()),
+        Filter::F1 { l } => (format!("filter = {{ kind = \"{kind}\", l = {l} }}\n"), String::new()),
+        Filter::F2 { p } => (format!("filter = {{ kind = \"{kind}\", p = {p:?} }}\n"), String::new()),
         Filter::F3 { scenes, choices } => (String::new(), f3(scenes, choices.as_deref())),
     };
-    let (estimator, [constants, correction]) = match algorithm.estimator {
-        Estimator::Line => ("line", [String::new(), String::new()]),
-        Estimator::Joint => ("joint", joint::print(&algorithm.joint)),
-    };
-    let outputs = match algorithm.outputs {
-        Outputs::Field => "field",
-        Outputs::Resultants => "resultants",
-    };
-    let arithmetic = match hardware.arithmetic {
-        Arithmetic::Fixed => "fixed",
-    };
-    let optimise = match hardware.optimise {
-        Optimise::Interval => "interval",
-        Optimise::Latency => "latency",
+    let [constants, correction] = match algorithm.estimator {
+        Estimator::Line => [String::new(), String::new()],
+        Estimator::Joint => joint::print(&algorithm.joint),
     };
     let counts = match input.pa_per_count {
         Some(value) => format!("pa_per_count = {value:?}\n"),
@@ -88,7 +71,8 @@ pub(super) fn to_toml(design: &Design) -> String {
 /// The `[algorithm.filter]` table of F3.
 fn f3(scenes: &[String], choices: Option<&Choices>) -> String {
     let scenes = Value::Array(scenes.iter().cloned().map(Value::String).collect());
-    let mut text = format!("\n[algorithm.filter]\nkind = \"f3\"\nscenes = {scenes}\n");
+    let kind = FilterKind::F3;
+    let mut text = format!("\n[algorithm.filter]\nkind = \"{kind}\"\nscenes = {scenes}\n");
     if let Some(choices) = choices {
         text.push_str("\n[algorithm.filter.choices]\n");
         for matrix in MatrixName::ALL {

@@ -1,17 +1,17 @@
 //! The 13 matrices of the method, unfiltered.
 
 mod factor;
-mod name;
 
 use std::borrow::Cow;
 
 use nalgebra::DMatrix;
 
-use crate::design::{Design, Kernel, Sensor};
-use crate::kernel;
+use crate::design::Design;
+use crate::kernel::{self, Kernel};
+pub use crate::names::{MatrixName, UnknownMatrix};
 use crate::parity::{FoldedMatrix, Quads};
+use crate::sensor::Sensor;
 use factor::Factors;
-pub use name::{MatrixName, UnknownMatrix};
 
 /// Why the matrices of a sensor cannot be computed.
 #[derive(Debug, thiserror::Error)]

@@ -28,6 +28,22 @@ struct RawMedium {
 }
 
 #[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum MediumKind {
+    BondedLayer,
+    HalfSpace,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum ShapeKind {
+    Hertz,
+    Rectangle,
+    Disc,
+    Punch,
+}
+
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawContact {
     shape: String,
@@ -91,18 +107,17 @@ pub(super) fn scene(text: &str, origin: &str) -> Result<Scene, DesignError> {
 }
 
 fn medium(check: &Check, raw: &RawMedium) -> Result<Medium, DesignError> {
-    check.choice("medium.kind", Some(&raw.kind), &["bonded_layer", "half_space"])?;
-    match (raw.kind == "half_space", raw.poisson) {
-        (true, None) => Ok(Medium::HalfSpace),
-        (true, Some(_)) => Err(check.value(
+    match (check.word("medium.kind", &raw.kind)?, raw.poisson) {
+        (MediumKind::HalfSpace, None) => Ok(Medium::HalfSpace),
+        (MediumKind::HalfSpace, Some(_)) => Err(check.value(
             "medium.poisson",
             "does not change the stress in a half-space".to_owned(),
             "remove it".to_owned(),
         )),
-        (false, Some(poisson)) => {
+        (MediumKind::BondedLayer, Some(poisson)) => {
             Ok(Medium::BondedLayer { poisson: check.real("medium.poisson", poisson, 0.0, 0.5, "")? })
         }
-        (false, None) => Err(check.value(
+        (MediumKind::BondedLayer, None) => Err(check.value(
             "medium.poisson",
             "is missing".to_owned(),
             "write Poisson's ratio of the layer, such as 0.49".to_owned(),
@@ -140,11 +155,11 @@ fn contact(
 }
 
 fn shape(check: &Check, raw: &RawContact, key: &impl Fn(&str) -> String) -> Result<Shape, DesignError> {
-    check.choice(&key("shape"), Some(&raw.shape), &["hertz", "rectangle", "disc", "punch"])?;
-    let (wanted, example) = match raw.shape.as_str() {
-        "hertz" => ("semi_axes_mm", "both semi-axes of the ellipse, such as [7.0, 7.0]"),
-        "rectangle" => ("sides_mm", "the lengths of both sides, such as [10.0, 6.0]"),
-        _ => ("radius_mm", "the radius, such as 10.0"),
+    let shape = check.word(&key("shape"), &raw.shape)?;
+    let (wanted, example) = match shape {
+        ShapeKind::Hertz => ("semi_axes_mm", "both semi-axes of the ellipse, such as [7.0, 7.0]"),
+        ShapeKind::Rectangle => ("sides_mm", "the lengths of both sides, such as [10.0, 6.0]"),
+        ShapeKind::Disc | ShapeKind::Punch => ("radius_mm", "the radius, such as 10.0"),
     };
     let given = [
         ("semi_axes_mm", raw.semi_axes_mm.is_some()),
@@ -165,11 +180,11 @@ fn shape(check: &Check, raw: &RawContact, key: &impl Fn(&str) -> String) -> Resu
         Ok([metres(&format!("{wanted}[0]"), x)?, metres(&format!("{wanted}[1]"), y)?])
     };
     let radius = || metres(wanted, raw.radius_mm.ok_or_else(missing)?);
-    Ok(match raw.shape.as_str() {
-        "hertz" => Shape::Hertz { semi_axes_m: pair(&raw.semi_axes_mm)? },
-        "rectangle" => Shape::Rectangle { sides_m: pair(&raw.sides_mm)? },
-        "disc" => Shape::Disc { radius_m: radius()? },
-        _ => Shape::Punch { radius_m: radius()? },
+    Ok(match shape {
+        ShapeKind::Hertz => Shape::Hertz { semi_axes_m: pair(&raw.semi_axes_mm)? },
+        ShapeKind::Rectangle => Shape::Rectangle { sides_m: pair(&raw.sides_mm)? },
+        ShapeKind::Disc => Shape::Disc { radius_m: radius()? },
+        ShapeKind::Punch => Shape::Punch { radius_m: radius()? },
     })
 }
 

@@ -6,11 +6,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::cean::Contact;
-use super::friction::{Friction, FrictionScratch, Seen};
 use super::reading::{Reader, Reading};
 use super::reduced::{FrameScratch, Reduced, optimum, split};
 use super::{Solution, SolverError};
 use crate::design::Outputs;
+use crate::estimators::{Friction, FrictionScratch, Seen};
 use crate::parity::CLASSES;
 use crate::reduced::{ReducedMatrices, ReducedName as Name};
 

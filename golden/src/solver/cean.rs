@@ -2,17 +2,7 @@
 
 use nalgebra::DVector;
 
-/// What the contact analysis finds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// Sum of |b| over all taxels in pascals.
-    pub stress_sum: f64,
-    /// Whether that sum reaches the noise floor of `m` taxels.
-    pub touched: bool,
-    /// Centroid of the compressed taxels minus that of the taxels in tension, in metres; its direction is the
-    /// direction of push. `None` where no taxel reaches the noise floor on one of the two sides.
-    pub direction: Option<[f64; 2]>,
-}
+pub use crate::estimators::Contact;
 
 /// Analyses the stress `b` (pascals, length m) at `positions` (metres).
 ///

@@ -9,28 +9,23 @@
 mod batch;
 pub mod cean;
 pub mod co;
-pub mod correction;
 mod fours;
-pub(crate) mod friction;
-pub mod joint;
-pub(crate) mod line;
 pub mod op;
 mod paper;
 pub(crate) mod reading;
 mod reduced;
-pub mod status;
 pub mod we;
 mod workspace;
 
-pub use status::Status;
+pub use crate::status::Status;
 pub use workspace::Workspace;
 
 use crate::design::{Design, Outputs, PlanKind};
+use crate::estimators::Friction;
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
 use crate::parity::Quads;
 use crate::reduced::ReducedMatrices;
-use friction::Friction;
 use paper::Paper;
 use reading::Reader;
 use reduced::Reduced;
@@ -107,6 +102,11 @@ impl Solution {
         *self = Self { field, ..Self::zeros(status, 0) };
     }
 
+    /// Multiplies all forces by a gain.
+    fn scale(&mut self, gain: f64) {
+        self.field.iter_mut().flatten().chain(&mut self.resultant).for_each(|force| *force *= gain);
+    }
+
     /// Puts the friction components and the resultant in place, and what follows from that.
     fn put_friction(&mut self, [mu_x, mu_y]: [f64; 2], resultant: [f64; 3]) {
         let [x, y, _] = resultant;
@@ -122,6 +122,11 @@ pub struct Solver {
     matrices: Matrices,
     products: Products,
     friction: Friction,
+}
+
+/// The estimator of a design.
+fn friction(design: &Design) -> Friction {
+    Friction::new(design.algorithm.estimator, &design.algorithm.joint, &design.sensor)
 }
 
 /// The products of the design's plan.
@@ -151,7 +156,7 @@ impl Solver {
                 ReducedMatrices::new(&matrices, &quads, filter).map(|reduced| {
                     let outputs = design.algorithm.outputs;
                     let products = Products::Reduced(Box::new(Reduced::new(&quads, reduced, outputs)));
-                    Self { reader: Reader::new(design), matrices, products, friction: Friction::new(design) }
+                    Self { reader: Reader::new(design), matrices, products, friction: friction(design) }
                 })
             }
         }
@@ -161,7 +166,7 @@ impl Solver {
     /// A solver by the paper's plan from matrices already computed for the same design, whatever plan that names.
     pub fn from_parts(design: &Design, matrices: Matrices, filtered: FilteredMatrices) -> Self {
         let products = Products::Paper(Box::new(Paper::new(&matrices, filtered)));
-        Self { reader: Reader::new(design), matrices, products, friction: Friction::new(design) }
+        Self { reader: Reader::new(design), matrices, products, friction: friction(design) }
     }
 
     /// The unfiltered matrices.

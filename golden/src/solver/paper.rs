@@ -6,7 +6,7 @@ use nalgebra_sparse::CsrMatrix;
 use super::Solution;
 use super::cean::Contact;
 use super::fours::{Fours, Members, times};
-use super::friction::{Friction, FrictionScratch, Seen};
+use crate::estimators::{Friction, FrictionScratch, Seen};
 use crate::filter::FilteredMatrices;
 use crate::matrices::{Matrices, MatrixName as Name};
 use crate::parity::CLASSES;

@@ -6,8 +6,8 @@ use super::Solution;
 use super::batch::Stacks;
 use super::cean::Contact;
 use super::fours::{Fours, Members, times};
-use super::friction::{Friction, FrictionScratch, Seen};
 use crate::design::Outputs;
+use crate::estimators::{Friction, FrictionScratch, Seen};
 use crate::parity::{CLASSES, Quads, butterfly};
 use crate::reduced::{ReducedMatrices, ReducedName as Name};
 

@@ -2,9 +2,9 @@
 
 use nalgebra::DVector;
 
-use super::friction::Seen;
 use super::reading::Reading;
 use super::{Products, Solution, Solver, SolverError, Status, batch, paper, reduced};
+use crate::estimators::Seen;
 use crate::parity::Quads;
 
 /// Memory for solving frames with one solver; see [`Solver::workspace`].
@@ -63,7 +63,7 @@ impl Solver {
                     // `fit` has seen to it that there is no other case.
                     _ => {}
                 }
-                self.friction.scale(solution);
+                self.scale(solution);
             }
         }
         Ok(())
@@ -116,10 +116,17 @@ impl Solver {
         for (frames, solutions) in frames.chunks(batch::FRAMES).zip(solutions.chunks_mut(batch::FRAMES)) {
             reduced.solve_batch(&self.reader, &self.friction, frames, solutions, b, scratch)?;
             for solution in solutions {
-                self.friction.scale(solution);
+                self.scale(solution);
             }
         }
         Ok(())
+    }
+
+    /// Multiplies the forces by the estimator's gain, if it has one.
+    fn scale(&self, solution: &mut Solution) {
+        if let Some(gain) = self.friction.gain() {
+            solution.scale(gain);
+        }
     }
 
     /// Replaces a workspace made for another sensor or plan.

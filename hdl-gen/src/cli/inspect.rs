@@ -117,8 +117,7 @@ fn kernel_advice(plan: &Plan) -> String {
                 (Kernel::Point, false) => "so F_z is right, and mu comes out better than with \"cell\"",
                 (Kernel::Cell, false) => "so F_z is right; mu comes out better with \"point\", calibrated anew",
             };
-            let name = if of == Kernel::Point { "point" } else { "cell" };
-            format!("{name}: wants a gain of {wants:.3}, the joint estimator has {has:.3}:\n{INDENT}{verdict}")
+            format!("{of}: wants a gain of {wants:.3}, the joint estimator has {has:.3}:\n{INDENT}{verdict}")
         }
         (Kernel::Point, Estimator::Line) => format!(
             "point: F_z of a wide contact is off by {:+.1} %;\n{INDENT}\"cell\" makes it right, with mu {lost:.0} % \
@@ -146,7 +145,7 @@ fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
     };
     writeln!(out, "\n{whose}, filter = {filter}: {share:.1} % of {all} entries each")?;
     for chunk in plan.nnz.0.chunks(MATRICES_PER_LINE) {
-        let names: String = chunk.iter().map(|(name, _)| format!("{:>9}", name.as_str())).collect();
+        let names: String = chunk.iter().map(|(name, _)| format!("{name:>9}")).collect();
         let counts: String = chunk.iter().map(|(_, count)| format!("{count:>9}")).collect();
         writeln!(out, "  {names}\n  {counts}")?;
     }

@@ -1,6 +1,6 @@
 //! What only the templates of the joint estimator print.
 
-use golden::solver::joint::REACH;
+use golden::estimators::joint::REACH;
 use serde::Serialize;
 
 use crate::plan::Plan;

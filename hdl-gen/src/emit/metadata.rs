@@ -27,7 +27,7 @@ pub fn predicted(plan: &Plan) -> Value {
 
 /// Nnz of the 13 matrices by name, in the order of the paper's Table 1.
 pub fn nnz(plan: &Plan) -> Map<String, Value> {
-    plan.nnz.0.iter().map(|&(name, count)| (name.as_str().to_owned(), json!(count))).collect()
+    plan.nnz.0.iter().map(|&(name, count)| (name.to_string(), json!(count))).collect()
 }
 
 /// A product of the plan as `metadata.json` and `hdl-gen inspect` show it.

@@ -11,6 +11,7 @@ mod metadata;
 mod product_view;
 mod registers;
 mod roms;
+mod rtl;
 mod sim;
 mod verilog;
 mod view;

@@ -1,6 +1,6 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
-use golden::design::WEIGHT_BITS;
+use golden::estimators::joint::WEIGHT_BITS;
 
 use crate::plan::Plan;
 use crate::plan::counts::GAIN_BITS;

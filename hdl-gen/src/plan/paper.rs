@@ -171,10 +171,10 @@ fn is_pseudo_inverse(name: MatrixName) -> bool {
 /// and `w` of `g30` become ones on the diagonal.
 fn stored_form(name: MatrixName, matrix: &CsrMatrix<f64>) -> (String, CsrMatrix<f64>) {
     let (label, sign, diagonal) = match name {
-        MatrixName::D10 | MatrixName::D20 => (format!("-{}", name.as_str()), -1.0, 0.0),
-        MatrixName::D11 | MatrixName::D22 => (format!("(I + {})", name.as_str()), 1.0, 1.0),
-        MatrixName::D30 => (format!("-(I + {})", name.as_str()), -1.0, -1.0),
-        _ => (name.as_str().to_owned(), 1.0, 0.0),
+        MatrixName::D10 | MatrixName::D20 => (format!("-{name}"), -1.0, 0.0),
+        MatrixName::D11 | MatrixName::D22 => (format!("(I + {name})"), 1.0, 1.0),
+        MatrixName::D30 => (format!("-(I + {name})"), -1.0, -1.0),
+        _ => (name.to_string(), 1.0, 0.0),
     };
     let mut coo = CooMatrix::new(matrix.nrows(), matrix.ncols());
     for (row, column, value) in matrix.triplet_iter() {

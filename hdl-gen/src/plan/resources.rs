@@ -1,6 +1,7 @@
 //! Predicted resources: multipliers and block memories of an UltraScale+ device.
 
-use golden::design::{Design, Outputs, PlanKind, WEIGHT_BITS};
+use golden::design::{Design, Outputs, PlanKind};
+use golden::estimators::joint::WEIGHT_BITS;
 use golden::parity::CLASSES;
 use serde::Serialize;
 

@@ -152,7 +152,7 @@ fn check_rounding(plan: &Plan) {
     let mut seen = 0;
     for matrix in &plan.matrices {
         let (sign, plain) = matrix.name.strip_prefix('-').map_or((1.0, matrix.name.as_str()), |plain| (-1.0, plain));
-        let Some(name) = ReducedName::ALL.into_iter().find(|name| name.as_str() == plain) else { continue };
+        let Some(name) = ReducedName::ALL.into_iter().find(|name| name.to_string() == plain) else { continue };
         seen += 1;
         assert_eq!(matrix.rows.len(), reduced.get(name).rows.len());
         for (row, (stored, exact)) in matrix.rows.iter().zip(&reduced.get(name).rows).enumerate() {

@@ -2,9 +2,10 @@
 //! rounded. Only for comparison: hardware has fixed point.
 
 use golden::design::{Design, Estimator};
+use golden::estimators::RANGE;
+use golden::estimators::line::{LEVEL, MAX_LINE_RATIO};
 use golden::parity::{CLASSES, Quads};
 use golden::reduced::{FoldedRows, ReducedMatrices, ReducedName, SumRow};
-use golden::solver::op::{DEPENDENT_RANGE, LEVEL, MAX_LINE_RATIO};
 use golden::solver::{Solver, Status};
 
 use crate::words::Answer;
@@ -143,7 +144,7 @@ impl<'a> Single<'a> {
         };
         let (alpha, beta) = (along(u[0], offset), along(u[1 + independent], slope));
         let (t, at_bound) = search(&alpha, &beta, LEVEL as f32 * stress_sum);
-        let range = DEPENDENT_RANGE as f32;
+        let range = RANGE as f32;
         let wanted = offset + slope * t;
         if at_bound || !(-range..range).contains(&wanted) {
             status.insert(Status::AT_BOUND);

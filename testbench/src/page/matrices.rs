@@ -180,7 +180,7 @@ pub fn symbol(name: MatrixName) -> String {
     if name == MatrixName::C33inv {
         return "C₃₃⁻¹".to_owned();
     }
-    name.as_str().chars().map(|c| c.to_digit(10).map_or(c, |d| char::from_u32(0x2080 + d).unwrap_or(c))).collect()
+    name.to_string().chars().map(|c| c.to_digit(10).map_or(c, |d| char::from_u32(0x2080 + d).unwrap_or(c))).collect()
 }
 
 fn scientific(value: f64) -> String {

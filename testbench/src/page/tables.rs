@@ -61,7 +61,7 @@ pub fn table_1(points: &[&Point]) -> Option<Table> {
         let Some(point) = find(points, row.filter, "paper") else { continue };
         let mut ours = vec![cell("", "name"), cell("ours", "")];
         for (name, printed) in MatrixName::ALL.into_iter().zip(row.nnz) {
-            let count = point.nnz.get(name.as_str()).copied().unwrap_or_default();
+            let count = point.nnz.get(&name.to_string()).copied().unwrap_or_default();
             ours.push(cell(grouped(count as u64), if count == printed { "same" } else { "" }));
         }
         ours.push(cell(format!("{:.2}", point.mean_mu), ""));

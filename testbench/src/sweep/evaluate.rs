@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use golden::design::{Design, Estimator, Kernel, PlanKind};
+use golden::design::Design;
 use golden::filter::nnz_of;
 use golden::matrices::MatrixName;
 use golden::metrics::{ErrorSummary, Outcome};
@@ -103,7 +103,7 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
     let nnz = MatrixName::ALL.map(|name| {
         // A solver exists, so F3 has its choices.
         let kept = algorithm.filter.of(name).map_or(0, |filter| nnz_of(solver.matrices(), name, filter));
-        (name.as_str().to_owned(), kept)
+        (name.to_string(), kept)
     });
     let pairs: Vec<(Outcome, Outcome)> = truth.iter().copied().zip(solutions.iter().map(Outcome::from)).collect();
     let errors = ErrorSummary::new(&pairs);
@@ -112,10 +112,10 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
         key: job.key.clone(),
         sensor: Geometry::from(sensor),
         scene: scene.name.clone(),
-        plan: if algorithm.plan == PlanKind::Paper { "paper" } else { "reduced" }.to_owned(),
-        kernel: if algorithm.kernel == Kernel::Point { "point" } else { "cell" }.to_owned(),
+        plan: algorithm.plan.to_string(),
+        kernel: algorithm.kernel.to_string(),
         filter: filter_text(&algorithm.filter),
-        estimator: if algorithm.estimator == Estimator::Line { "line" } else { "joint" }.to_owned(),
+        estimator: algorithm.estimator.to_string(),
         coefficient_bits: hardware.coefficient_bits,
         data_bits: hardware.data_bits,
         lanes: hardware.lanes,

@@ -7,8 +7,7 @@ mod network;
 pub mod timing;
 
 use golden::design::{Design, Estimator};
-use golden::solver::correction::{LARGEST, TIE};
-use golden::solver::joint::{DEAD_ZONE, LEVEL, REACH, STEP};
+use golden::estimators::joint::{DEAD_ZONE, LARGEST, LEVEL, REACH, STEP, TIE};
 use serde::Serialize;
 
 use super::Formats;

@@ -3,9 +3,8 @@
 //! A mirrored look changes the signs of what is odd in x or y. So the window is folded into parity classes, the
 //! weights too, and one pass over the weights gives the four sums from which the hidden units of all four looks follow.
 
-use golden::design::{Correction, EXTRA_INPUTS, WEIGHT_FRACTION};
+use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION};
 use golden::parity::{CLASSES, sign};
-use golden::solver::correction::STRESS_SCALE;
 use serde::Serialize;
 
 use super::super::format::{largest, pow2, round_shift};

@@ -202,7 +202,7 @@ impl<'a> Steps<'a> {
         let scaled = |row: &Vec<(u32, [f64; CLASSES])>| {
             row.iter().map(|&(column, ways)| (column, ways.map(|value| factor * value))).collect()
         };
-        let label = if factor < 0.0 { format!("-{}", name.as_str()) } else { name.as_str().to_owned() };
+        let label = if factor < 0.0 { format!("-{name}") } else { name.to_string() };
         let rows: RealRows = rows.iter().map(scaled).collect();
         QuantisedMatrix::new(&label, &rows, bits, operand.folded.bound, least_lsb)
     }

@@ -1,0 +1,53 @@
+//! The `[algorithm]` table: choices that change the result.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Filter, Regularisation};
+use crate::estimators::Estimator;
+use crate::estimators::joint::JointConstants;
+use crate::kernel::Kernel;
+use crate::words::print_as_words;
+
+/// What a frame yields.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outputs {
+    /// The summary and three force components for each taxel.
+    #[default]
+    Field,
+    /// The summary only; with the reduced plan.
+    Resultants,
+}
+
+/// How the mathematics is put into products.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PlanKind {
+    /// As in the paper: thirteen matrices of m by m, then three products with C33.
+    Paper,
+    /// The same result from ten matrices in four mirror-symmetric blocks of m/4 by m/4, see [`crate::reduced`].
+    Reduced,
+}
+
+/// The `[algorithm]` table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Algorithm {
+    /// Products behind the result; [`PlanKind::Reduced`] unless there is a filter or the lanes are no multiple of 4.
+    pub plan: PlanKind,
+    /// Load model behind C31, C32 and C33.
+    pub kernel: Kernel,
+    /// What C33 is made better conditioned by.
+    pub regularisation: Regularisation,
+    /// Sparsity of the matrices.
+    pub filter: Filter,
+    /// Friction estimator.
+    pub estimator: Estimator,
+    /// Constants of the joint estimator; the line estimator has none and leaves them at their default.
+    pub joint: Box<JointConstants>,
+    /// Contents of the output.
+    pub outputs: Outputs,
+    /// Stress in pascals below which a taxel tells nothing; full scale / 65536 unless given.
+    pub noise_floor_pa: f64,
+}
+
+print_as_words!(Outputs, PlanKind);

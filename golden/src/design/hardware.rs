@@ -1,0 +1,69 @@
+//! The `[hardware]` table: choices that change only speed, size and rounding.
+
+use serde::{Deserialize, Serialize};
+
+use crate::words::print_as_words;
+
+/// Largest number of `SpMV` lanes.
+pub const MAX_LANES: usize = 64;
+/// Key `hardware.full_scale_pa` when absent.
+pub const DEFAULT_FULL_SCALE_PA: f64 = 100_000.0;
+
+/// Number system of the hardware.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Arithmetic {
+    /// Two's complement with one power-of-two scale for each matrix and vector.
+    #[default]
+    Fixed,
+}
+
+/// What the hardware spends its area on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Optimise {
+    /// Frames a second.
+    #[default]
+    Interval,
+    /// Time from the last value of a frame to its result; with the reduced plan.
+    Latency,
+}
+
+/// The `[hardware]` table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hardware {
+    /// Number system.
+    pub arithmetic: Arithmetic,
+    /// Width of matrix entries, 8 to 18 bits.
+    pub coefficient_bits: u32,
+    /// Width of vector entries, 16 to 27 bits.
+    pub data_bits: u32,
+    /// Largest stress magnitude in pascals; input of that and more is reported, and clamped.
+    pub full_scale_pa: f64,
+    /// `SpMV` lanes, 1 to [`MAX_LANES`]; with the reduced plan a multiple of 4. With a target time the generator
+    /// chooses, and this is the default until then.
+    pub lanes: usize,
+    /// Time in microseconds a frame may take; with the reduced plan, in place of the lanes.
+    pub target_us: Option<f64>,
+    /// What the area is spent on.
+    pub optimise: Optimise,
+    /// Whether zeros of |w| are skipped; with the reduced plan and no filter.
+    pub skip_zeros: bool,
+    /// Whether the core has a register bank on AXI4-Lite.
+    pub control: bool,
+    /// Clock in megahertz, 1 to 1000.
+    pub clock_mhz: f64,
+    /// FPGA part name.
+    pub part: String,
+}
+
+impl Hardware {
+    /// The largest float32 that is no more than the full scale, in pascals: a frame cannot bring more of it. From here
+    /// on a stress counts as saturated.
+    pub fn full_scale_in_frames(&self) -> f64 {
+        let nearest = self.full_scale_pa as f32;
+        f64::from(if f64::from(nearest) > self.full_scale_pa { nearest.next_down() } else { nearest })
+    }
+}
+
+print_as_words!(Arithmetic, Optimise);

@@ -1,0 +1,182 @@
+//! Condition 1 on a grid over the plane of both friction components, and the centroid of its level set.
+
+use crate::status::Status;
+
+/// Distance of neighbouring points of the grid.
+pub const STEP: f64 = 1.0 / 8.0;
+/// The grid reaches from `-REACH` to `REACH` steps along both axes.
+pub const REACH: i32 = 10;
+/// Points of the grid along one axis.
+const SIDE: usize = 2 * REACH as usize + 1;
+/// What the search over the grid finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Found {
+    /// Bits raised.
+    pub(crate) status: Status,
+    /// Weighted centroid of the level set.
+    pub(crate) mu: [f64; 2],
+}
+
+/// Memory of the search, to be used again for the next frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct GridScratch {
+    /// The hinges at the first point of a row of the grid and at the point itself.
+    row: Vec<f64>,
+    point: Vec<f64>,
+    /// Their sums at all points.
+    values: Vec<f64>,
+}
+
+/// Searches the grid for `u_q` in pascals, the dead zone in pascals and the allowance above the least value.
+pub(super) fn search(u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &mut GridScratch) -> Found {
+    let GridScratch { row, point, values } = scratch;
+    let reach = f64::from(REACH);
+    // The corner with the least components; from here on there are additions only.
+    let terms = u[0].iter().zip(u[1]).zip(u[2]);
+    row.clear();
+    row.extend(terms.map(|((u0, u1), u2)| u0 - (u1 * STEP + u2 * STEP) * reach - dead_zone));
+    values.clear();
+    for _ in 0..SIDE {
+        point.clone_from(row);
+        for _ in 0..SIDE {
+            values.push(point.iter().map(|stress| stress.max(0.0)).sum());
+            point.iter_mut().zip(u[1]).for_each(|(stress, u1)| *stress += u1 * STEP);
+        }
+        row.iter_mut().zip(u[2]).for_each(|(stress, u2)| *stress += u2 * STEP);
+    }
+
+    // The least value inside the grid and on its border.
+    let mut least = [f64::INFINITY; 2];
+    for (index, value) in values.iter().enumerate() {
+        let on_border = [index % SIDE, index / SIDE].iter().any(|&at| at == 0 || at == SIDE - 1);
+        let least = &mut least[usize::from(on_border)];
+        *least = least.min(*value);
+    }
+    let [inside, on_border] = least;
+    let level = inside.min(on_border) + allowance;
+    let mut status = Status::default();
+    if [0, SIDE - 1, SIDE * (SIDE - 1), SIDE * SIDE - 1].iter().all(|&corner| values[corner] < level) {
+        status.insert(Status::DIRECTION_UNKNOWN);
+        return Found { status, mu: [0.0; 2] };
+    }
+    if on_border < inside {
+        status.insert(Status::AT_BOUND);
+    }
+    let mut sums = [0.0; 3];
+    for (index, value) in values.iter().enumerate() {
+        // A point at the edge of the level set weighs nothing, so that the grid can be coarse.
+        let weight = (level - value).max(0.0).powi(2);
+        sums[0] += weight;
+        sums[1] += weight * ((index % SIDE) as f64 - reach);
+        sums[2] += weight * ((index / SIDE) as f64 - reach);
+    }
+    // With an allowance above 0 the best point has a weight.
+    let mu = if sums[0] > 0.0 { [sums[1], sums[2]].map(|sum| STEP * sum / sums[0]) } else { [0.0; 2] };
+    Found { status, mu }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vectors(rows: [[f64; 3]; 4]) -> [Vec<f64>; 3] {
+        [0, 1, 2].map(|q| rows.iter().map(|row| row[q]).collect())
+    }
+
+    fn search(u: &[Vec<f64>; 3], dead_zone: f64, allowance: f64) -> Found {
+        super::search(u.each_ref().map(Vec::as_slice), dead_zone, allowance, &mut GridScratch::default())
+    }
+
+    #[test]
+    fn a_symmetric_valley_has_its_centre_on_the_grid() {
+        // Hinges that rise away from (0.25, -0.5) along both axes.
+        let u = vectors([[-0.25, 1.0, 0.0], [0.25, -1.0, 0.0], [0.5, 0.0, 1.0], [-0.5, 0.0, -1.0]]);
+        let found = search(&u, 0.0, 0.5);
+        assert_eq!(found.status, Status::default());
+        assert!((found.mu[0] - 0.25).abs() < 1e-12 && (found.mu[1] + 0.5).abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn the_dead_zone_widens_the_valley_evenly() {
+        let u = vectors([[-0.25, 1.0, 0.0], [0.25, -1.0, 0.0], [0.5, 0.0, 1.0], [-0.5, 0.0, -1.0]]);
+        let found = search(&u, 0.2, 0.1);
+        assert!((found.mu[0] - 0.25).abs() < 1e-12 && (found.mu[1] + 0.5).abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn between_grid_points_the_weights_interpolate() {
+        // The valley moves by a quarter of a step at a time, and the estimate with it.
+        for quarter in 0..8 {
+            let at = STEP * f64::from(quarter) / 4.0;
+            let u = vectors([[-at, 1.0, 0.0], [at, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]);
+            let found = search(&u, 0.0, 0.5);
+            assert!((found.mu[0] - at).abs() < 0.02 * STEP, "{at} {found:?}");
+        }
+    }
+
+    /// The steps of `docs/estimators.md` in integers: `u_q` of 27 bits, weights of 18.
+    fn search_in_integers(u: &[Vec<i64>; 3], dead_zone: i64, allowance: i64) -> [f64; 2] {
+        let mut values = Vec::new();
+        // Times 8, so that a step of the grid adds `u_1` or `u_2` as they are.
+        let reach = i64::from(REACH);
+        let terms = u[0].iter().zip(&u[1]).zip(&u[2]);
+        let mut row: Vec<i64> = terms.map(|((u0, u1), u2)| 8 * (u0 - dead_zone) - reach * (u1 + u2)).collect();
+        for _ in 0..SIDE {
+            let mut point = row.clone();
+            for _ in 0..SIDE {
+                values.push(point.iter().map(|&stress| stress.max(0)).sum::<i64>());
+                point.iter_mut().zip(&u[1]).for_each(|(stress, step)| *stress += step);
+            }
+            row.iter_mut().zip(&u[2]).for_each(|(stress, step)| *stress += step);
+        }
+        let allowance = 8 * allowance;
+        let level = values.iter().min().unwrap() + allowance;
+        // The weights keep the 18 leading bits of the allowance.
+        let shift = (64 - allowance.leading_zeros()).saturating_sub(18);
+        let mut sums = [0_i64; 3];
+        for (index, value) in values.iter().enumerate() {
+            let weight = ((level - value).max(0) >> shift).pow(2);
+            sums[0] += weight;
+            sums[1] += weight * ((index % SIDE) as i64 - reach);
+            sums[2] += weight * ((index / SIDE) as i64 - reach);
+        }
+        [sums[1], sums[2]].map(|sum| STEP * sum as f64 / sums[0] as f64)
+    }
+
+    #[test]
+    fn integers_find_the_same() {
+        // A contact pushed along x and y: compression, with tension behind it, and u_1, u_2 of either sign.
+        let taxel = |i: usize| [(i % 10) as f64 - 4.6, (i / 10) as f64 - 4.3];
+        let bell = |i: usize| (-taxel(i).iter().map(|x| x * x).sum::<f64>() / 8.0).exp();
+        let tilt = |i: usize, axis: usize| 0.4 * taxel(i)[axis] * bell(i);
+        let u: [Vec<f64>; 3] = [
+            (0..100).map(|i| -50_000.0 * (bell(i) + 0.3 * tilt(i, 0) - 0.2 * tilt(i, 1))).collect(),
+            (0..100).map(|i| 50_000.0 * tilt(i, 0)).collect(),
+            (0..100).map(|i| 50_000.0 * tilt(i, 1)).collect(),
+        ];
+        // The full scale of 10^5 Pa in 27 bits.
+        let steps = 26_f64.exp2() / 1e5;
+        let whole = u.each_ref().map(|u| u.iter().map(|stress| (stress * steps).round() as i64).collect());
+        let found = search(&u, 150.0, 2000.0);
+        let integers = search_in_integers(&whole, (150.0 * steps) as i64, (2000.0 * steps) as i64);
+        assert!(found.mu[0] > 0.2 && found.mu[1] < -0.1, "{found:?}");
+        for (found, integer) in found.mu.iter().zip(integers) {
+            assert!((found - integer).abs() < 1e-5, "{found} {integer}");
+        }
+    }
+
+    #[test]
+    fn nothing_that_limits_friction_means_no_direction() {
+        let u = vectors([[-1.0, 0.0, 0.0]; 4]);
+        let found = search(&u, 0.0, 0.5);
+        assert_eq!(found, Found { status: Status::DIRECTION_UNKNOWN, mu: [0.0; 2] });
+    }
+
+    #[test]
+    fn a_slope_across_the_grid_ends_at_its_bound() {
+        let u = vectors([[5.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0; 3]]);
+        let found = search(&u, 0.0, 0.5);
+        assert_eq!(found.status, Status::AT_BOUND);
+        assert!(found.mu[0] < -1.0 && found.mu[1].abs() < 1e-12, "{found:?}");
+    }
+}

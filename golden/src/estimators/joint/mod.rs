@@ -1,0 +1,108 @@
+//! The joint estimator: both friction components at once, without the direction of push.
+//!
+//! Condition 1, `B(mu_x, mu_y) = sum_i max(0, u0_i + mu_x u1_i + mu_y u2_i)`, is convex in both components together.
+//! Here it is evaluated on a fixed grid by additions alone, and the estimate is the weighted centroid of a level set.
+//! `docs/estimators.md` gives the steps as the hardware takes them.
+
+mod constants;
+mod level_set;
+mod look;
+mod network;
+
+use super::seen::{RANGE, Seen};
+use crate::status::Status;
+pub use constants::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_BITS, WEIGHT_FRACTION};
+pub(crate) use level_set::Found;
+use level_set::{GridScratch, search};
+pub use level_set::{REACH, STEP};
+pub(crate) use look::Look;
+pub use look::{STRESS_SCALE, TIE};
+pub use network::LARGEST;
+pub(crate) use network::{Network, NetworkScratch};
+
+/// The level set holds every point whose value exceeds the least one by less than this times the sum of |b|.
+pub const LEVEL: f64 = 1.0 / 256.0;
+/// Tension up to this times the largest |b| does not count: below it noise would be taken for tension.
+pub const DEAD_ZONE: f64 = 1.0 / 256.0;
+
+/// Memory of the estimator, to be used again for the next frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct JointScratch {
+    grid: GridScratch,
+    /// Stress of the normal forces at the centroid, in pascals.
+    normal: Vec<f64>,
+    /// The contact as the correction sees it.
+    pub(crate) look: Look,
+    network: NetworkScratch,
+}
+
+/// The estimate before it is calibrated.
+pub(crate) fn raw(seen: &Seen, scratch: &mut JointScratch) -> Found {
+    let largest = seen.b.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
+    search(seen.u, DEAD_ZONE * largest, LEVEL * seen.contact.stress_sum, &mut scratch.grid)
+}
+
+/// Looks at the stress that the normal forces alone would cause at the friction `mu`, in a grid of `columns`.
+pub(crate) fn look(
+    seen: &Seen,
+    mu: [f64; 2],
+    columns: usize,
+    half_window: [usize; 2],
+    tie: f64,
+    scratch: &mut JointScratch,
+) {
+    let JointScratch { normal, look, .. } = scratch;
+    let [u0, u1, u2] = seen.u;
+    normal.clear();
+    normal.extend(u0.iter().zip(u1).zip(u2).map(|((u0, u1), u2)| u0 + u1 * mu[0] + u2 * mu[1]));
+    look.take(normal, columns, half_window, seen.contact.stress_sum, mu, tie);
+}
+
+/// The joint estimator with the constants of one design.
+#[derive(Clone, Debug)]
+pub(crate) struct Joint {
+    /// Factor on all forces.
+    pub(crate) gain: f64,
+    tangential: [f64; 2],
+    columns: usize,
+    network: Option<Network>,
+}
+
+impl Joint {
+    pub(crate) fn new(constants: &JointConstants, columns: usize) -> Self {
+        Self {
+            gain: constants.gain,
+            tangential: constants.tangential,
+            columns,
+            network: constants.correction.as_ref().map(Network::new),
+        }
+    }
+
+    /// Finds the friction components.
+    pub(crate) fn find(&self, seen: &Seen, scratch: &mut JointScratch) -> (Status, [f64; 2]) {
+        let Found { status, mu } = raw(seen, scratch);
+        if status.contains(Status::DIRECTION_UNKNOWN) {
+            return (status, mu);
+        }
+        let scaled = scaled(mu, self.tangential);
+        let Some(network) = &self.network else { return within(status, scaled) };
+        look(seen, mu, self.columns, network.half_window, TIE, scratch);
+        let added = network.correct(&scratch.look, &mut scratch.network);
+        within(status, [scaled[0] + added[0], scaled[1] + added[1]])
+    }
+}
+
+/// Keeps the components to their range, which no sensible constants let them leave.
+fn within(mut status: Status, mu: [f64; 2]) -> (Status, [f64; 2]) {
+    let clamped = mu.map(|component| component.clamp(-RANGE, RANGE));
+    if clamped.iter().zip(mu).any(|(clamped, component)| clamped.to_bits() != component.to_bits()) {
+        status.insert(Status::AT_BOUND);
+    }
+    (status, clamped)
+}
+
+/// `c1 mu + c3 mu |mu|^2`.
+pub(crate) fn scaled(mu: [f64; 2], [c1, c3]: [f64; 2]) -> [f64; 2] {
+    let factor = c1 + c3 * (mu[0] * mu[0] + mu[1] * mu[1]);
+    mu.map(|component| factor * component)
+}

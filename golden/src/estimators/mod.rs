@@ -1,0 +1,73 @@
+//! The friction estimators, and what all of them have in common.
+//!
+//! An estimator finds the friction components of a frame from what either plan knows of it, [`Seen`]. Each has a folder of
+//! its own; outside of it only the registry here and the design file's parser know its name. `docs/estimators.md` compares
+//! them.
+
+pub mod joint;
+pub mod line;
+mod seen;
+
+use serde::{Deserialize, Serialize};
+
+use crate::sensor::Sensor;
+use crate::status::Status;
+use crate::words::print_as_words;
+use joint::{Joint, JointConstants, JointScratch};
+use line::LineScratch;
+pub(crate) use seen::Seen;
+pub use seen::{Contact, RANGE};
+
+/// How the friction components are found once the optimisation problem is set up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Estimator {
+    /// Along the line that the direction of push fixes in the plane of the friction components.
+    #[default]
+    Line,
+    /// Over the whole plane of the friction components at once, without a direction: the centroid of a level set of
+    /// Condition 1, calibrated on scenes.
+    Joint,
+}
+
+print_as_words!(Estimator);
+
+/// An estimator with its constants.
+#[derive(Clone, Debug)]
+pub(crate) enum Friction {
+    Line,
+    Joint(Box<Joint>),
+}
+
+/// Memory of an estimator, to be used again for the next frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FrictionScratch {
+    line: LineScratch,
+    joint: JointScratch,
+}
+
+impl Friction {
+    /// The estimator of a design; constants of another one are left aside.
+    pub(crate) fn new(estimator: Estimator, joint: &JointConstants, sensor: &Sensor) -> Self {
+        match estimator {
+            Estimator::Line => Self::Line,
+            Estimator::Joint => Self::Joint(Box::new(Joint::new(joint, sensor.columns))),
+        }
+    }
+
+    /// Finds the components `[mu_x, mu_y]`, and the status bits to raise.
+    pub(crate) fn find(&self, seen: &Seen, scratch: &mut FrictionScratch) -> (Status, [f64; 2]) {
+        match self {
+            Self::Line => line::friction(&seen.contact, seen.sums, seen.u, line::LEVEL, &mut scratch.line),
+            Self::Joint(joint) => joint.find(seen, &mut scratch.joint),
+        }
+    }
+
+    /// What all forces are multiplied by, if the estimator has a gain.
+    pub(crate) fn gain(&self) -> Option<f64> {
+        match self {
+            Self::Line => None,
+            Self::Joint(joint) => Some(joint.gain),
+        }
+    }
+}

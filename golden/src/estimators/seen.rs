@@ -1,0 +1,28 @@
+//! What every estimator sees of a frame, and the range of what it finds.
+
+/// A friction component found is within this on either side of 0.
+pub const RANGE: f64 = 2.0;
+
+/// What the contact analysis finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Sum of |b| over all taxels in pascals.
+    pub stress_sum: f64,
+    /// Whether that sum reaches the noise floor of `m` taxels.
+    pub touched: bool,
+    /// Centroid of the compressed taxels minus that of the taxels in tension, in metres; its direction is the
+    /// direction of push. `None` where no taxel reaches the noise floor on one of the two sides.
+    pub direction: Option<[f64; 2]>,
+}
+
+/// What an estimator sees of a frame; either plan has all of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen<'a> {
+    /// Stress in pascals, m values.
+    pub(crate) b: &'a [f64],
+    pub(crate) contact: Contact,
+    /// Sums `G_pq` in newtons, at `[p - 1][q]`.
+    pub(crate) sums: &'a [[f64; 3]; 3],
+    /// Stresses `u_q = C33 g_3q` in pascals, m values each.
+    pub(crate) u: [&'a [f64]; 3],
+}

@@ -1,0 +1,17 @@
+//! Tests of the solver through its public interface, one module a topic.
+
+mod choose;
+mod command;
+mod contacts;
+mod design_file;
+mod estimator;
+mod fuzz;
+mod half_space;
+mod joint;
+mod large;
+mod matrices;
+mod recording;
+mod reduced;
+mod regularisation;
+mod scene_file;
+mod workspace;

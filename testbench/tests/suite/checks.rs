@@ -1,0 +1,54 @@
+//! What the emitted Verilog checks of itself in simulation: the schedule's promises. A broken schedule is noticed where
+//! it breaks, not only by the words that come out.
+
+use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
+use golden::design::{Design, Outputs, PlanKind};
+use testbench::run::{rtl_sources, timeout};
+use testbench::stream::{Traffic, exchange};
+use testbench::verilate::Verilate;
+
+/// Frames that are sent.
+const FRAMES: usize = 8;
+
+/// A design whose text `from` in one of its modules became `to`: what the simulation says.
+fn broken(design: &Design, module: &str, from: &str, to: &str) -> String {
+    let plan = planned(design);
+    let mut sources = rtl_sources(&plan).expect("emitted");
+    let file = format!("rtl/{}_{module}.v", design.name);
+    let text = String::from_utf8(sources.files[&file].clone()).expect("UTF-8");
+    assert_eq!(text.matches(from).count(), 1, "{file}: {from:?} stands there once");
+    sources.files.insert(file, text.replace(from, to).into());
+    let built = Verilate::default().build(&sources).expect("Verilator accepts it");
+    let taxels = plan.taxels();
+    let packet =
+        |frame: usize| (0..taxels).map(|taxel| (-1e4 - 50.0 * ((taxel * frame) % 7) as f32).to_bits()).collect();
+    let packets: Vec<Vec<u32>> = (0..FRAMES).map(packet).collect();
+    let traffic = Traffic::new(&packets, timeout(&plan));
+    let mut core = built.load(1).expect("loaded");
+    exchange(&mut core, &traffic, |_| ()).err().map_or_else(String::new, |error| error.to_string())
+}
+
+#[test]
+fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
+    let paper = || by_plan(shipped("small"), PlanKind::Paper, Outputs::Field);
+    let reduced = || by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
+    let resultants = || by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants);
+    let cases = [
+        // The collector does not keep up with the lanes.
+        (paper(), "spmv_collector", "wire may_take = visit_known;", "wire may_take = 1'b0;", "spmv_lane.v"),
+        (reduced(), "spmv_collector", "visit_known && !parted", "visit_known && parted", "spmv_lane.v"),
+        // A program begins before the one before has put out its results.
+        (reduced(), "turns", "wire free = !busy || issued;", "wire free = 1'b1;", "spmv_collector.v"),
+        // The line does not take the sums.
+        (reduced(), "op_line", "sums_take <= (state == SUMS) && sums_complete;", "sums_take <= 1'b0;", "_co.v"),
+        // More frames are begun than Op has places for.
+        (resultants(), "turns", "frame_ready && (searches_due != 2'd2)", "frame_ready", "_co.v"),
+        // Op is still busy when the next frame's results come. With two lanes it works on one while they have the next.
+        (with_lanes(paper(), 2), "op", "SUMMARY: if (summary_done) state", "SUMMARY: if (1'b0) state", "_op.v"),
+    ];
+    let said = in_parallel(&cases, |(design, module, from, to, _)| broken(design, module, from, to));
+    for ((design, module, from, _, place), said) in cases.iter().zip(said) {
+        let stopped = said.contains(place) && said.contains("$finish");
+        assert!(stopped, "{}, {module} without {from:?}: {said:?}", design.name);
+    }
+}

@@ -1,0 +1,209 @@
+//! Runs of the cores that work every cycle: multiply-accumulate lane, skid buffer, row sequencer.
+
+use std::collections::VecDeque;
+
+use hdl_gen::cores::axis_skid::CAPACITY;
+use hdl_gen::cores::mac::{LATENCY, accumulate};
+use hdl_gen::cores::multiply::multiply as product;
+use hdl_gen::cores::row_sequencer::{Product, products, row_word};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::bench::{Played, Run};
+
+fn bits(flag: bool) -> u64 {
+    u64::from(flag)
+}
+
+/// Both forms of the lane: they have the same reference and the same cycles.
+pub fn mac(module: &'static str) -> Run {
+    let mut run = Run::new(
+        module,
+        &[("reset", 1), ("valid", 1), ("first", 1), ("coefficient", 18), ("data", 27)],
+        &[("accumulator", 48)],
+    );
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    // Products on their way; the accumulator shows one after LATENCY cycles.
+    let mut pipeline: VecDeque<Option<(bool, i32, i32)>> = vec![None; LATENCY as usize - 1].into();
+    let mut accumulator: Option<i64> = None;
+    for cycle in 0..40_000 {
+        let reset = cycle < 3 || rng.random_ratio(1, 2_000);
+        let phase = cycle / 1_000;
+        let valid = rng.random_bool([1.0, 0.6, 0.1][phase % 3]);
+        // In some phases no sum ever starts anew, so that the accumulator wraps.
+        let first = phase % 4 != 3 && rng.random_bool([0.1, 0.5, 1.0, 0.0][phase % 4]);
+        let (coefficient, data) = match rng.random_range(0..4) {
+            0 => (-(1 << 17), -(1 << 26)),
+            1 => {
+                let corners = [0, 1, -1, i32::MAX, i32::MIN];
+                (corners[rng.random_range(0..5)] >> 14, corners[rng.random_range(0..5)] >> 5)
+            }
+            _ => (rng.random::<i32>() >> 14, rng.random::<i32>() >> 5),
+        };
+        let inputs = [bits(reset), bits(valid), bits(first), coefficient as u64, data as u64];
+        run.push(&inputs, &[accumulator.map(|value| value as u64)]);
+        pipeline.push_back((valid && !reset).then_some((first, coefficient, data)));
+        if let Some((first, coefficient, data)) = pipeline.pop_front().flatten()
+            && (first || accumulator.is_some())
+        {
+            accumulator = Some(accumulate(accumulator.unwrap_or(0), first, coefficient, data));
+            run.results += 1;
+        }
+        if reset {
+            // The product that was one stage from the accumulator has arrived; the ones behind it are discarded.
+            pipeline.make_contiguous().fill(None);
+        }
+    }
+    run
+}
+
+/// Both forms of the multiplier: the sum of its outputs is compared by [`check_products`].
+pub fn multiply(module: &'static str) -> Run {
+    let mut run = Run::new(module, &[("enable", 1), ("coefficient", 18), ("data", 27)], &[("low", 45), ("high", 45)]);
+    let mut rng = ChaCha8Rng::seed_from_u64(4);
+    for _ in 0..20_000 {
+        let mut operand = |bits: u32| {
+            let corners = [0, 1, -1, i32::MAX, i32::MIN, 1 << 31 >> 9, 0x1_ffff << 5];
+            let value = if rng.random_bool(0.3) { corners[rng.random_range(0..7)] } else { rng.random::<i32>() };
+            (value >> (32 - bits)) as u64
+        };
+        let (coefficient, data) = (operand(18), operand(27));
+        run.push(&[bits(rng.random_bool(0.8)), coefficient, data], &[None, None]);
+    }
+    run
+}
+
+/// Both parts of every product together are the reference's, and hold while the multiplier does.
+pub fn check_products(played: &Played) {
+    let [enable, coefficient, data] = ["enable", "coefficient", "data"].map(|name| played.input(name));
+    let [low, high] = ["low", "high"].map(|name| played.output(name));
+    let signed = |value: u64, bits: u32| (value << (64 - bits)).cast_signed() >> (64 - bits);
+    let mut expected = None;
+    let mut compared = 0;
+    for i in 0..low.len() {
+        if let Some(expected) = expected {
+            assert_eq!(signed(low[i].wrapping_add(high[i]), 45), expected, "cycle {i}");
+            compared += 1;
+        }
+        if enable[i] == 1 {
+            expected = Some(product(signed(coefficient[i], 18) as i32, signed(data[i], 27) as i32));
+        }
+    }
+    assert!(compared > 15_000, "{compared}");
+}
+
+pub fn axis_skid() -> Run {
+    let mut run = Run::new(
+        "sptfra_axis_skid",
+        &[("reset", 1), ("s_tdata", 32), ("s_tlast", 1), ("s_tvalid", 1), ("m_tready", 1)],
+        &[("s_tready", 1), ("m_tdata", 32), ("m_tlast", 1), ("m_tvalid", 1)],
+    );
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    let mut stored: VecDeque<(u32, bool)> = VecDeque::new();
+    let mut offered: Option<(u32, bool)> = None;
+    let mut ready = false;
+    for cycle in 0..80_000 {
+        let reset = cycle < 3;
+        let phase = cycle / 500;
+        let (source, sink) = ([1.0, 0.5, 0.1][phase % 3], [1.0, 0.5, 0.1][phase / 3 % 3]);
+        if !reset && offered.is_none() && rng.random_bool(source) {
+            offered = Some((rng.random(), rng.random()));
+        }
+        let given = !reset && rng.random_bool(sink);
+        // Nothing is promised of the wires before the first edge, nor of data that is not offered.
+        let known = cycle > 0;
+        let (data, last) = offered.unwrap_or((rng.random(), rng.random()));
+        let front = stored.front();
+        run.push(
+            &[bits(reset), u64::from(data), bits(last), bits(offered.is_some()), bits(given)],
+            &[
+                known.then_some(bits(ready)),
+                front.map(|word| u64::from(word.0)),
+                front.map(|word| bits(word.1)),
+                known.then_some(bits(front.is_some())),
+            ],
+        );
+        if given && stored.pop_front().is_some() {
+            run.results += 1;
+        }
+        if ready && let Some(word) = offered.take() {
+            stored.push_back(word);
+        }
+        ready = !reset && stored.len() < CAPACITY;
+    }
+    run
+}
+
+/// The stream's rules, from what the simulation did and without the cycle model.
+pub fn check_stream(played: &Played) {
+    let [s_data, s_last, s_valid, m_ready] = ["s_tdata", "s_tlast", "s_tvalid", "m_tready"].map(|n| played.input(n));
+    let [m_data, m_last, m_valid, s_ready] = ["m_tdata", "m_tlast", "m_tvalid", "s_tready"].map(|n| played.output(n));
+    let transfers = |valid: &[u64], ready: &[u64], data: &[u64], last: &[u64]| -> Vec<(u64, u64)> {
+        (1..valid.len()).filter(|&i| valid[i] & ready[i] == 1).map(|i| (data[i], last[i])).collect()
+    };
+    let taken = transfers(&s_valid, &s_ready, &s_data, &s_last);
+    let given = transfers(&m_valid, &m_ready, &m_data, &m_last);
+    assert!(given.len() > 20_000 && taken.len() - given.len() <= CAPACITY, "{} of {}", given.len(), taken.len());
+    assert!(taken.starts_with(&given), "words lost, doubled or out of order");
+    for i in 1..m_valid.len() - 1 {
+        if m_valid[i] == 1 && m_ready[i] == 0 {
+            let waiting = (m_valid[i + 1], m_data[i + 1], m_last[i + 1]);
+            assert_eq!(waiting, (1, m_data[i], m_last[i]), "the offer of cycle {i} changed before it was taken");
+        }
+    }
+    let full_speed = 10..490;
+    assert!(full_speed.clone().all(|i| s_valid[i] & m_ready[i] == 1), "the first phase runs at full speed");
+    assert!(full_speed.clone().all(|i| s_ready[i] & m_valid[i] == 1), "the buffer takes and gives a word every cycle");
+}
+
+pub fn row_sequencer() -> Run {
+    let mut run = Run::new(
+        "sptfra_row_sequencer",
+        &[("restart", 1), ("start_address", 16), ("issue", 1), ("row_word", 16)],
+        &[("row_address", 16), ("row_fetch", 1), ("first", 1), ("last", 1), ("kind", 2)],
+    );
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    for walk in 0..150 {
+        let longest = [1, 2, 6, 40][walk % 4];
+        let mut rows: Vec<u16> = (0..rng.random_range(1..300))
+            .filter_map(|_| row_word(rng.random_range(0..4), rng.random_range(1..=longest)))
+            .collect();
+        if walk == 7 {
+            rows.extend(row_word(2, (1 << 14) - 1));
+        }
+        let pace = [1.0, 0.5, 0.15][walk % 3];
+        let started = walk_rows(&mut run, &mut rng, &rows, pace);
+        assert!(started <= rows.len());
+    }
+    run
+}
+
+/// One walk from a restart to the end of the rows or to where it is given up; returns the rows started.
+fn walk_rows(run: &mut Run, rng: &mut ChaCha8Rng, rows: &[u16], pace: f64) -> usize {
+    let mut expected = products(rows).peekable();
+    let gives_up = rng.random_bool(0.3);
+    let mut started = 0;
+    // Programs begin anywhere; addresses are as many as the port has.
+    let begin: u16 = [0, rng.random_range(0..50_000)][usize::from(rng.random::<bool>())];
+    let address = |started: usize| Some(u64::from(begin) + started as u64);
+    // An issue in the cycle of restart does not count, and neither does the word then at the port.
+    let issue = bits(rng.random());
+    run.push(&[1, u64::from(begin), issue, rng.random()], &[None, None, None, None, None]);
+    run.push(&[0, rng.random(), 0, rng.random()], &[address(0), Some(1), None, None, None]);
+    while expected.peek().is_some() && !(gives_up && rng.random_ratio(1, 200)) {
+        // Past its end the ROM may hold anything.
+        let word = rows.get(started).copied().unwrap_or_else(|| rng.random());
+        if !rng.random_bool(pace) {
+            run.push(&[0, rng.random(), 0, u64::from(word)], &[address(started + 1), Some(0), None, None, None]);
+        } else if let Some(Product { first, last, kind }) = expected.next() {
+            let address = address(started + 1);
+            started += usize::from(first);
+            run.push(
+                &[0, rng.random(), 1, u64::from(word)],
+                &[address, Some(bits(first)), Some(bits(first)), Some(bits(last)), Some(u64::from(kind))],
+            );
+            run.results += 1;
+        }
+    }
+    started
+}

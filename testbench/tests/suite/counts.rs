@@ -1,0 +1,102 @@
+//! Sensors that count: gain, offset and sign of each taxel in front of the fixed point, in either plan.
+
+use std::fs;
+use std::path::Path;
+
+use golden::design::Design;
+use golden::frames::read_labelled_frames;
+use hdl_gen::model::SATURATED;
+use hdl_gen::plan::Plan;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use testbench::compare::Comparison;
+use testbench::run::{model_answers, timeout};
+use testbench::stream::{Mode, Pacing, Traffic, exchange};
+use testbench::words::{decode, encode};
+
+use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, workspace};
+
+const SIDES: [usize; 2] = [5, 4];
+
+/// A design in counts; with `spread`, each taxel has a gain and an offset of its own.
+fn design(folder: &Path, name: &str, plan: &str, pa_per_count: f64, spread: bool) -> Design {
+    let [columns, rows] = SIDES;
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let calibration = if spread {
+        let line = |_| format!("{:?},{:?}\n", random.random_range(0.3..2.5), random.random_range(-40.0..40.0));
+        fs::write(folder.join("gains.csv"), (0..columns * rows).map(line).collect::<String>()).expect("writable");
+        "calibration = \"gains.csv\"\n"
+    } else {
+        ""
+    };
+    let text = format!(
+        "name = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
+         pa_per_count = {pa_per_count:?}\n{calibration}[algorithm]\nplan = \"{plan}\"\n\
+         [hardware]\nlanes = 8\nfull_scale_pa = 50000.0\n"
+    );
+    let path = folder.join(format!("{name}.toml"));
+    fs::write(&path, text).expect("writable");
+    Design::load(&path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Counts within the full scale and far beyond it, fractions, bad values, short and long frames.
+fn packets(plan: &Plan) -> Vec<Vec<u32>> {
+    let taxels = plan.taxels();
+    let mut random = ChaCha8Rng::seed_from_u64(9);
+    let full_scale = 50_000.0 / plan.design.input.pa_per_count.expect("counts").abs();
+    let mut frame = |share: f64| -> Vec<f64> {
+        (0..taxels).map(|_| share * full_scale * random.random_range(-1.0..1.0_f64)).collect()
+    };
+    let mut frames: Vec<Vec<u32>> = [0.3, 0.9, 1.1, 4.0, 1e6, 1e-5].map(&mut frame).iter().map(|f| encode(f)).collect();
+    frames.push(vec![0; taxels]);
+    let mut bad = encode(&frame(0.5));
+    bad[taxels / 3] = f32::NAN.to_bits();
+    frames.push(bad);
+    frames.push(encode(&frame(0.5))[1..].to_vec());
+    frames.push([encode(&frame(0.5)), vec![1.0_f32.to_bits(); 3]].concat());
+    frames.push(encode(&frame(0.4)));
+    frames
+}
+
+#[test]
+fn counts_become_stress_bit_for_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let kinds = [
+        ("counts_reduced", "reduced", -25.0, true),
+        ("counts_paper", "paper", 12.5, true),
+        ("counts_one_gain", "reduced", -3.7, false),
+    ];
+    let designs = kinds.map(|(name, plan, pascals, spread)| design(folder.path(), name, plan, pascals, spread));
+    let failures: Vec<String> = in_parallel(&designs, |design| {
+        let plan = planned(design);
+        let packets = packets(&plan);
+        let saturated = model_answers(&plan, &packets).iter().filter(|words| words[0] & SATURATED != 0).count();
+        assert!(saturated >= 2 && saturated < packets.len() - 4, "{}: {saturated} saturated", design.name);
+        simulate_exactly(&plan, &built(&plan), &packets, 4).err().map(|error| format!("{}: {error}", design.name))
+    })
+    .into_iter()
+    .flatten()
+    .collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn every_frame_of_the_mat_is_the_models() {
+    let plan = planned(&shipped("bed-mat"));
+    let frames = read_labelled_frames(&workspace("data/bed_mat_64x27.csv"), plan.taxels(), 2).expect("the recording");
+    let packets: Vec<Vec<u32>> = frames.iter().map(|frame| encode(frame)).collect();
+    assert_eq!(packets.len(), 24);
+    let (expected, built) = (model_answers(&plan, &packets), built(&plan));
+    assert!(
+        expected.iter().filter(|words| decode(words).is_some_and(|answer| answer.resultant[2] < 0.0)).count() >= 20
+    );
+    let [free, .., both] = Mode::all(3);
+    for (mode, count) in [(free, packets.len()), (both, 3)] {
+        let traffic = Traffic::new(&packets[..count], timeout(&plan)).with_mode(&mode).with_pacing(Pacing::BackToBack);
+        let outcome = exchange(&mut built.load(1).expect("loads"), &traffic, |_| ()).expect(mode.name);
+        let words = outcome.exchanges.iter().map(|exchange| exchange.words.as_slice());
+        let comparison = Comparison::new(&expected[..count], words, plan.design.sensor.columns);
+        assert!(comparison.is_exact(), "{}: {:?}", mode.name, comparison.first.first());
+    }
+    assert!(plan.resources.dsp <= 2520 && plan.resources.bram36 <= 912.0, "fits the ZCU102");
+}

@@ -1,0 +1,173 @@
+"""The Python driver against the simulated core: an overlay, a DMA and memory as PYNQ presents them, all made up.
+
+    host.py MACHINE.so CORE.so FRAMES
+
+FRAMES as in host.c. Prints what the core is, and PASS.
+"""
+
+import ctypes
+import pathlib
+import struct
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[4] / "drivers" / "python"))
+from sptfra import Event, Sptfra, Status  # noqa: E402
+
+DMA, CORE, BUS_OFFSET = 0xA0000000, 0xA0010000, 0x100000000000
+
+
+class Machine:
+    """The shared object of machine.c."""
+
+    def __init__(self, library, core):
+        self.calls = ctypes.CDLL(library)
+        self.calls.machine_open.restype = ctypes.c_void_p
+        self.calls.machine_open.argtypes = [ctypes.c_char_p, ctypes.c_uint32, ctypes.c_int]
+        self.calls.machine_read.restype = ctypes.c_uint32
+        self.calls.machine_read.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
+        self.calls.machine_write.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint32]
+        self.calls.machine_run.argtypes = [ctypes.c_void_p, ctypes.c_uint64]
+        self.calls.machine_interrupt.argtypes = [ctypes.c_void_p]
+        self.calls.machine_faults.restype = ctypes.c_uint32
+        self.calls.machine_faults.argtypes = [ctypes.c_void_p]
+        self.handle = self.calls.machine_open(core.encode(), 3, 1)
+        assert self.handle
+
+    def read(self, address):
+        return self.calls.machine_read(self.handle, address)
+
+    def write(self, address, value):
+        self.calls.machine_write(self.handle, address, value)
+
+
+class Block:
+    """Registers at a base address, as PYNQ's DefaultIP."""
+
+    def __init__(self, machine, base):
+        self.machine, self.base = machine, base
+
+    def read(self, offset=0):
+        return self.machine.read(self.base + offset)
+
+    def write(self, offset, value):
+        self.machine.write(self.base + offset, value)
+
+
+class Buffer(np.ndarray):
+    """Memory for the DMA, as PYNQ's PynqBuffer: what is not flushed or invalidated is not seen by the other side."""
+
+    def flush(self):
+        self.memory[:] = self
+
+    def invalidate(self):
+        self[:] = self.memory
+
+
+def allocate(shape, dtype):
+    """As pynq.allocate."""
+    buffer = np.zeros(shape, dtype).view(Buffer)
+    buffer.memory = np.zeros(shape, dtype)
+    buffer.device_address = buffer.memory.ctypes.data + BUS_OFFSET
+    return buffer
+
+
+class Channel:
+    """One channel of the DMA, as PYNQ's."""
+
+    def __init__(self, machine, base):
+        self.registers = Block(machine, base)
+        self.registers.write(0x00, 1)
+
+    def transfer(self, buffer):
+        self.registers.write(0x18, buffer.device_address & 0xFFFFFFFF)
+        self.registers.write(0x1C, buffer.device_address >> 32)
+        self.registers.write(0x28, buffer.nbytes)
+
+    def wait(self):
+        while not self.registers.read(0x04) & 2:
+            assert not self.registers.read(0x04) & 0x70, "the DMA stopped"
+
+
+class Overlay:
+    """A bitstream with the core and its DMA."""
+
+    def __init__(self, machine):
+        self.core = Block(machine, CORE)
+        self.dma = type("Dma", (), {})()
+        self.dma.sendchannel = Channel(machine, DMA)
+        self.dma.recvchannel = Channel(machine, DMA + 0x30)
+
+
+def load(path, words_out):
+    """Frames and answers of the file."""
+    data, frames, answers, place = pathlib.Path(path).read_bytes(), [], [], 0
+    while place < len(data):
+        (words,) = struct.unpack_from("<I", data, place)
+        frames.append(np.frombuffer(data, "<u4", words, place + 4).view("<f4"))
+        answers.append(np.frombuffer(data, "<u4", words_out, place + 4 + 4 * words))
+        place += 4 * (1 + words + words_out)
+    return frames, answers
+
+
+def refused(kind, action):
+    """The message of the exception that the action must raise."""
+    try:
+        action()
+    except kind as error:
+        return str(error)
+    raise AssertionError(f"no {kind.__name__}")
+
+
+def main():
+    library, core, path = sys.argv[1:]
+    machine = Machine(library, core)
+    overlay = Overlay(machine)
+    wrong = Block(machine, CORE + 4)
+    assert "IDENTITY" in refused(RuntimeError, lambda: Sptfra(wrong, overlay.dma, allocate))
+    sensor = Sptfra(overlay.core, overlay.dma, allocate)
+    identity = sensor.identity
+    print(identity)
+    rows, columns = identity.rows, identity.columns
+    frames, answers = load(path, identity.words_out)
+    whole = [index for index, frame in enumerate(frames) if len(frame) == identity.words_in]
+    stress = np.array([frames[index] for index in whole]).reshape(-1, rows, columns)
+    expected = np.array([answers[index] for index in whole])
+    assert len(whole) > 8
+
+    sensor.enable_interrupts(Event.FRAME_DONE)
+    forces = sensor.reconstruct(stress)
+    assert sensor.take_interrupts() & Event.FRAME_DONE
+    count = len(whole)
+    assert list(forces.number) == list(range(count))
+    assert np.array_equal(forces.status, expected[:, 0] & 0x3F)
+    seen = np.column_stack([forces.resultant, forces.friction, forces.direction, forces.friction_xy])
+    assert np.array_equal(seen.view(np.uint32), expected[:, 1:8])
+    assert seen.dtype == np.float32
+    if identity.has_field:
+        assert forces.field.shape == (count, rows, columns, 3)
+        assert np.array_equal(forces.field.reshape(count, -1).view(np.uint32), expected[:, 8:])
+    else:
+        assert forces.field is None
+    bad = [index for index in range(count) if forces.status[index] & Status.NOT_FINITE]
+    assert bad and all("NOT_FINITE" in forces.names(index) for index in bad)
+    assert "NOT_FINITE" not in forces.names(0)
+    counters = sensor.counters()
+    assert (counters.frames_in, counters.frames_out, counters.frames_bad) == (count, count, len(bad))
+    assert counters.last_status == Status(int(forces.status[-1]))
+    assert counters.last_latency >= identity.latency_cycles
+
+    # One frame in each of the other shapes; a reset starts the numbers anew.
+    sensor.soft_reset()
+    assert sensor.counters().frames_out == 0
+    for number, frame in enumerate([stress[0], stress[0].ravel(), stress[:1].reshape(1, -1)]):
+        forces = sensor.reconstruct(frame)
+        assert forces.number.tolist() == [number]
+        assert np.array_equal(forces.resultant.view(np.uint32), expected[:1, 1:4])
+    assert "rows" in refused(ValueError, lambda: sensor.reconstruct(np.zeros((3, rows + 1, columns))))
+    assert machine.calls.machine_faults(machine.handle) == 0
+    print(f"PASS: {count} frames, {len(bad)} bad")
+
+
+main()

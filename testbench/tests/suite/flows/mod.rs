@@ -1,0 +1,14 @@
+//! What a generated folder offers to other tools: Vivado scripts, file lists, `FuseSoC`, Bender, a CI workflow.
+//!
+//! Vivado itself is not here. Its scripts run in `tclsh` against a stand-in (`flows/vivado.tcl`) that knows the
+//! commands, their flags and their files and refuses everything else; broken copies of the scripts show that it does.
+
+mod block_design;
+mod broken;
+mod control;
+mod folder;
+mod fusesoc;
+mod lists;
+mod scripts;
+mod simulation;
+mod workflow;

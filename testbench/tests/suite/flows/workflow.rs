@@ -1,0 +1,70 @@
+//! The workflow in `docs/ci`: its steps, run here in the order in which a runner would. And the project's own.
+
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+use super::folder::{environment, run, workspace, yaml};
+
+/// Steps that fetch or install, which the checkout that runs this test has done already.
+const DONE_BEFORE: [&str; 4] = ["Design", "Generator", "Earlier builds", "Tools"];
+/// Steps that only a runner can take.
+const RUNNER_ONLY: [&str; 1] = ["Keep the results"];
+
+fn text<'a>(step: &'a Value, key: &str) -> Option<&'a str> {
+    step[key].as_str()
+}
+
+/// The programs as `make build` makes them, in the target folder that this test was built in.
+fn build(target: &Path) {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let arguments = ["build", "--quiet", "--workspace", "--bins", "--target-dir"];
+    run(cargo.args(arguments).arg(target).current_dir(workspace())).succeeded();
+}
+
+#[test]
+fn its_steps_generate_lint_and_simulate_a_design() {
+    let workflow = yaml(&workspace().join("docs/ci/tactile-design.yml"));
+    let place = tempfile::tempdir().expect("a folder");
+    let target = Path::new(env!("CARGO_BIN_EXE_testbench")).ancestors().nth(2).expect("a target folder");
+    build(target);
+    let generator = place.path().join("generator");
+    fs::create_dir(&generator).expect("can be made");
+    symlink(target, generator.join("target")).expect("can be linked");
+    symlink(environment(), generator.join(".venv")).expect("can be linked");
+    let design = workflow["env"]["DESIGN"].as_str().expect("a design");
+    fs::copy(workspace().join("designs/small.toml"), place.path().join(design)).expect("can be copied");
+
+    let mut taken = Vec::new();
+    for step in workflow["jobs"]["hardware"]["steps"].as_array().expect("steps") {
+        let name = text(step, "name").expect("a name");
+        if DONE_BEFORE.contains(&name) || RUNNER_ONLY.contains(&name) {
+            continue;
+        }
+        let script = text(step, "run").unwrap_or_else(|| panic!("step {name} has nothing to run"));
+        let folder = place.path().join(text(step, "working-directory").unwrap_or("."));
+        let mut shell = Command::new("bash");
+        shell.args(["--noprofile", "--norc", "-eo", "pipefail", "-c", script]).env("DESIGN", design);
+        run(shell.current_dir(folder)).succeeded();
+        taken.push(name);
+    }
+    assert_eq!(taken, ["Inspect", "Generate", "Lint with Verilator", "Lint with Icarus Verilog", "Simulate"]);
+    assert!(place.path().join("hardware/small_4x3.core").exists());
+    let report = fs::read(place.path().join("report.json")).expect("written");
+    let report: Value = serde_json::from_slice(&report).expect("JSON");
+    assert_eq!(report["bit_exact"], true);
+}
+
+/// What it runs is this test and all others; here only that it is a workflow and that the target exists.
+#[test]
+fn the_projects_own_workflow_runs_all_tests() {
+    let workflow = yaml(&workspace().join(".github/workflows/test.yml"));
+    let steps = workflow["jobs"]["test"]["steps"].as_array().expect("steps");
+    let commands: Vec<&str> = steps.iter().filter_map(|step| text(step, "run")).collect();
+    assert_eq!(commands.last(), Some(&"make test"));
+    let menu = fs::read_to_string(workspace().join("Makefile")).expect("there");
+    assert!(menu.contains("\n.PHONY: test\n"), "{menu}");
+}

@@ -1,0 +1,414 @@
+//! Proofs by Yosys and z3 on the generated Verilog: the rules of the streams, and the handshake between the blocks.
+//!
+//! Each harness in `formal/` states properties and, under `INVARIANTS`, what makes them inductive. A proof holds if the
+//! first cycles after reset satisfy both and no cycle can break them. Each has broken copies, whose proof must fail.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::{in_parallel, planned, shipped, workspace};
+use golden::design::{Design, Estimator, Optimise, Outputs, PlanKind};
+use hdl_gen::emit::{FileMap, emit};
+use tempfile::TempDir;
+use testbench::tools;
+
+/// Cycles after reset that are checked: more than the longest induction assumes.
+const FIRST_CYCLES: &str = "6";
+
+/// A module, a text in it, and what takes its place.
+type Broken = (&'static str, &'static str, &'static str);
+
+/// What is proved of which part of which design.
+struct Proof {
+    name: &'static str,
+    harness: &'static str,
+    /// The 4 × 3 design, changed.
+    design: fn(&mut Design),
+    /// What is defined for the harness, which may have other ways for other designs.
+    defines: &'static [&'static str],
+    /// The module that the harness instantiates.
+    top: &'static str,
+    /// Files of `formal/` that take the place of generated modules.
+    models: &'static [(&'static str, &'static str)],
+    /// Whose outputs may be anything in any cycle: instances by the pattern of their module, then wires by name.
+    free: &'static [&'static str],
+    free_wires: &'static [&'static str],
+    /// Cycles that an induction step assumes to be right, at most.
+    induction: &'static str,
+    /// Copies that break a property.
+    broken: &'static [Broken],
+}
+
+fn paper(design: &mut Design) {
+    design.algorithm.plan = PlanKind::Paper;
+    // With two lanes, Op still works on a frame while the lanes have the next one.
+    design.hardware.lanes = 2;
+    assert!(planned(design).timeline.overlap);
+}
+
+fn reduced(design: &mut Design) {
+    design.algorithm.plan = PlanKind::Reduced;
+}
+
+fn reduced_for_latency(design: &mut Design) {
+    reduced(design);
+    design.hardware.optimise = Optimise::Latency;
+}
+
+fn reduced_with_zeros_skipped(design: &mut Design) {
+    reduced(design);
+    design.hardware.skip_zeros = true;
+}
+
+fn joint(design: &mut Design) {
+    reduced(design);
+    design.algorithm.estimator = Estimator::Joint;
+}
+
+fn resultants(design: &mut Design) {
+    reduced(design);
+    design.algorithm.outputs = Outputs::Resultants;
+}
+
+const ARITHMETIC: [&str; 5] = ["*sptfra_*", "*_bz*", "*_cean*", "*_op_search*", "*_op_summary*"];
+const REDUCED_FREE: &[&str] = &[
+    ARITHMETIC[0],
+    ARITHMETIC[1],
+    ARITHMETIC[2],
+    ARITHMETIC[3],
+    ARITHMETIC[4],
+    "subject_we",
+    "subject_co",
+    "subject_field",
+    "subject_unfold",
+];
+const REDUCED_BROKEN: &[Broken] = &[
+    ("turns", "!residual_due && ", ""),
+    ("turns", "field_due && residual_there && friction_known", "field_due && residual_there"),
+    ("turns", "friction_known && (fields", "friction_known && frame_ready && (fields"),
+    ("op", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
+    ("op", "(search_done || answer_waits) && !summary_busy", "search_done || answer_waits"),
+    ("op", "summary_there && output_idle && field_there", "summary_there && field_there"),
+];
+const LATENCY_BROKEN: &[Broken] = &[
+    ("turns", "(frames_held != 3'd4) && !field_due", "(frames_held != 3'd4)"),
+    ("turns", "field_due && residual_there && friction_known", "field_due && friction_known"),
+    ("op", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
+    ("op", "(search_done || answer_waits) && !summary_busy", "search_done || answer_waits"),
+    ("op", "summary_there && output_idle && field_there", "summary_there && output_idle"),
+    ("op_output", "issued && issued_last && advance", "issued && issued_last"),
+];
+const JOINT_FREE: &[&str] = &[
+    ARITHMETIC[0],
+    ARITHMETIC[1],
+    ARITHMETIC[2],
+    "*_op_plane*",
+    "*_op_level*",
+    "*_op_friction*",
+    ARITHMETIC[4],
+    "subject_we",
+    "subject_co",
+    "subject_field",
+    "subject_unfold",
+];
+const JOINT_BROKEN: &[Broken] = &[
+    ("turns", "field_due && residual_there && friction_known", "field_due && residual_there"),
+    ("op", "assign sums_take = search_start;", "assign sums_take = search_over;"),
+    ("op", "(u_waiting != 2'd0) && !searching", "!searching"),
+    ("op", "(search_done || answer_waits) && !summary_busy", "search_done || answer_waits"),
+];
+const RESULTANTS_FREE: &[&str] = &[
+    ARITHMETIC[0],
+    ARITHMETIC[1],
+    ARITHMETIC[2],
+    ARITHMETIC[3],
+    ARITHMETIC[4],
+    "subject_we",
+    "subject_co",
+    "subject_unfold",
+];
+const RESULTANTS_BROKEN: &[Broken] = &[
+    ("turns", "frame_ready && (searches_due != 2'd2)", "frame_ready"),
+    ("turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
+    ("op", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
+    ("op", "(search_done || answer_waits) && !summary_busy", "search_done || answer_waits"),
+    ("op", "summary_there && output_idle", "summary_there"),
+];
+
+const PROOFS: &[Proof] = &[
+    Proof {
+        name: "stream rules of the skid buffer",
+        harness: "skid",
+        design: reduced,
+        defines: &[],
+        top: "sptfra_axis_skid",
+        models: &[],
+        free: &[],
+        free_wires: &[],
+        induction: "3",
+        broken: &[
+            ("sptfra_axis_skid", "blocked & (spare_full | taken)", "blocked & taken"),
+            ("sptfra_axis_skid", "if (spare_full) begin", "if (~spare_full) begin"),
+            ("sptfra_axis_skid", "taken = s_tvalid & ready", "taken = s_tvalid"),
+            ("sptfra_axis_skid", "                last_next = spare_last;", "                last_next = s_tlast;"),
+            ("sptfra_axis_skid", "if (~blocked) begin", "if (m_tready) begin"),
+            ("sptfra_axis_skid", "if (~blocked) begin", "if (1'b1) begin"),
+            ("sptfra_axis_skid", "~(spare_needed | reset)", "~reset"),
+            ("sptfra_axis_skid", "if (ready) begin", "if (~blocked) begin"),
+        ],
+    },
+    Proof {
+        name: "frame checker",
+        harness: "bz",
+        design: reduced,
+        defines: &[],
+        top: "subject_bz",
+        models: &[("sptfra_float_to_fixed", "float_model")],
+        free: &["*sptfra_ram*"],
+        free_wires: &[],
+        induction: "3",
+        broken: &[
+            ("bz", "index != TAXELS - ", "index < TAXELS - "),
+            ("bz", "(banks_taken != 2'd2)", "(banks_taken != 2'd3)"),
+            ("bz", "if (reset || frame_done)", "if (reset)"),
+            ("bz", "wire store = (index != TAXELS);", "wire store = 1'b1;"),
+            ("bz", "in_frame <= !s_tlast;", "in_frame <= 1'b1;"),
+            ("bz", "advance && (in_frame || may_open)", "(in_frame || may_open)"),
+            ("bz", "index <= s_tlast ? ", "index <= (s_tlast && !store) ? "),
+            ("bz", "frame_not_finite = seen_not_finite || ", "frame_not_finite = "),
+            ("fold", "assign in_ready = advance;", "assign in_ready = 1'b1;"),
+            ("fold", "assign frame_written = lasts[3] && advance;", "assign frame_written = lasts[3];"),
+        ],
+    },
+    Proof {
+        name: "frame checker, paper plan",
+        harness: "bz",
+        design: paper,
+        defines: &["PAPER"],
+        top: "subject_bz",
+        models: &[("sptfra_float_to_fixed", "float_model")],
+        free: &[],
+        free_wires: &[],
+        induction: "3",
+        broken: &[
+            ("bz", "(banks_taken != 2'd2)", "(banks_taken != 2'd3)"),
+            ("bz", "assign advance = !write_valid || write_ready;", "assign advance = 1'b1;"),
+            ("bz", "fill_bank <= !fill_bank;", "fill_bank <= frame_ready;"),
+            ("bz", "assign stress_valid = write_valid && advance;", "assign stress_valid = write_valid;"),
+            ("bz", "if (reset || frame_done)", "if (reset)"),
+        ],
+    },
+    Proof {
+        name: "frame handshake, paper plan",
+        harness: "paper",
+        design: paper,
+        defines: &[],
+        top: "subject",
+        models: &[("subject_spmv_array", "paper_lanes")],
+        free: &ARITHMETIC,
+        free_wires: &["sums_complete"],
+        induction: "4",
+        broken: &[
+            // The place was given back while the output was not yet idle: a third frame came in behind a stalled sink.
+            ("op_output", "valid[2] && lasts[2] && advance", "issued && issued_last && advance"),
+            ("co", "(frames_held != 2'd2)", "(frames_held != 2'd3)"),
+            ("we", "frame_ready && array_idle && ", "frame_ready && "),
+            ("we", "&& field_free", ""),
+            ("op", "default: if (output_idle)", "default: if (output_idle && drained)"),
+            ("op", "(state == WAIT_OUTPUT) && output_idle", "(state == WAIT_OUTPUT)"),
+            ("op", ".line_take       (output_start)", ".line_take       (search_done)"),
+        ],
+    },
+    Proof {
+        name: "frame handshake, reduced plan, for the interval",
+        harness: "reduced",
+        design: reduced,
+        defines: &[],
+        top: "subject",
+        models: &[("subject_spmv_array", "reduced_lanes")],
+        free: REDUCED_FREE,
+        free_wires: &["turns.residual_written"],
+        induction: "5",
+        broken: REDUCED_BROKEN,
+    },
+    Proof {
+        name: "frame handshake, reduced plan, for the latency",
+        harness: "reduced",
+        design: reduced_for_latency,
+        defines: &["LATENCY"],
+        top: "subject",
+        models: &[("subject_spmv_array", "reduced_lanes")],
+        free: REDUCED_FREE,
+        free_wires: &["turns.residual_written"],
+        induction: "5",
+        broken: LATENCY_BROKEN,
+    },
+    Proof {
+        name: "frame handshake, reduced plan, zeros skipped",
+        harness: "reduced",
+        design: reduced_with_zeros_skipped,
+        defines: &[],
+        top: "subject",
+        models: &[("subject_spmv_array", "reduced_lanes")],
+        free: REDUCED_FREE,
+        free_wires: &["turns.residual_written"],
+        induction: "5",
+        broken: &[("turns", "residual_there && friction_known", "friction_known")],
+    },
+    Proof {
+        name: "frame handshake, joint estimator",
+        harness: "reduced",
+        design: joint,
+        defines: &["JOINT"],
+        top: "subject",
+        models: &[("subject_spmv_array", "reduced_lanes")],
+        free: JOINT_FREE,
+        free_wires: &["turns.residual_written"],
+        induction: "5",
+        broken: JOINT_BROKEN,
+    },
+    Proof {
+        name: "frame handshake, resultants only",
+        harness: "resultants",
+        design: resultants,
+        defines: &[],
+        top: "subject",
+        models: &[("subject_spmv_array", "resultants_lanes")],
+        free: RESULTANTS_FREE,
+        free_wires: &[],
+        induction: "5",
+        broken: RESULTANTS_BROKEN,
+    },
+];
+
+/// How a proof ended.
+#[derive(Debug, PartialEq)]
+enum Verdict {
+    Proved,
+    /// What the solver said of the property that fails.
+    Refuted(String),
+}
+
+impl Proof {
+    fn files(&self) -> FileMap {
+        let mut design = shipped("small");
+        "subject".clone_into(&mut design.name);
+        (self.design)(&mut design);
+        emit(&planned(&design)).expect("emitted")
+    }
+
+    /// The design's Verilog, broken if asked, and the harness, as SMT-LIB in a folder.
+    fn translate(&self, files: &FileMap, broken: Option<&Broken>) -> TempDir {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut read = vec!["read_verilog -formal -defer".to_owned()];
+        for (path, contents) in files {
+            let Some(module) = path.strip_prefix("rtl/").and_then(|name| name.strip_suffix(".v")) else { continue };
+            if self.models.iter().any(|&(replaced, _)| replaced == module) {
+                continue;
+            }
+            let mut text = String::from_utf8(contents.clone()).expect("UTF-8");
+            if let Some((_, from, to)) =
+                broken.filter(|(place, ..)| module == *place || module == format!("subject_{place}"))
+            {
+                assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
+                text = text.replace(from, to);
+            }
+            fs::write(folder.path().join(format!("{module}.v")), text).expect("writable");
+            read.push(format!("{module}.v"));
+        }
+        for file in self.models.iter().map(|&(_, model)| model).chain([self.harness]) {
+            let name = format!("{file}.sv");
+            fs::copy(workspace("testbench/formal").join(&name), folder.path().join(&name)).expect("a file of formal/");
+            if file != self.harness {
+                read.push(name);
+            }
+        }
+        let harness = fs::read_to_string(folder.path().join(format!("{}.sv", self.harness))).expect("there");
+        let mut script = vec![read.join(" "), format!("hierarchy -top {}", self.top), "proc".to_owned()];
+        if !self.free.is_empty() {
+            script.push(format!("cutpoint t:{}", self.free.join(" t:")));
+        }
+        script.push("flatten".to_owned());
+        script.extend(self.free_wires.iter().map(|wire| format!("cutpoint w:{wire}")));
+        script.push("setundef -undriven -anyseq".to_owned());
+        // What the harness looks at inside the subject becomes a port of it.
+        script.push(format!("expose {}", inside(&harness, self.defines)));
+        let defines: String = self.defines.iter().map(|name| format!(" -D{name}")).collect();
+        script.push(format!("read_verilog -formal -DINVARIANTS{defines} {}.sv", self.harness));
+        script.push("prep -flatten -top harness; memory_map; async2sync; dffunmap".to_owned());
+        script.push("write_smt2 -wires proof.smt2".to_owned());
+        fs::write(folder.path().join("proof.ys"), script.join("\n")).expect("writable");
+        let said = run(tools::yosys().expect("installed").args(["-q", "proof.ys"]), folder.path());
+        assert!(folder.path().join("proof.smt2").is_file(), "{}: {said}", self.name);
+        folder
+    }
+
+    fn check(&self, files: &FileMap, broken: Option<&Broken>) -> Verdict {
+        let folder = self.translate(files, broken);
+        let parts: [&[&str]; 2] = [&["-t", FIRST_CYCLES], &["-i", "-t", self.induction]];
+        for part in parts {
+            let mut solver = tools::yosys_smtbmc().expect("installed");
+            let said = run(solver.args(["-s", "z3"]).args(part).arg("proof.smt2"), folder.path());
+            if said.contains("Status: PASSED") {
+                continue;
+            }
+            assert!(said.contains("Status: FAILED"), "{}: {said}", self.name);
+            let reason = said.lines().find_map(|line| Some(line.split_once("Assert failed in ")?.1.to_owned()));
+            return Verdict::Refuted(reason.unwrap_or_else(|| panic!("{}: no property failed:\n{said}", self.name)));
+        }
+        Verdict::Proved
+    }
+}
+
+/// The wires that the harness's instance names below its line `// Inside`, those in the other way of an `ifdef` left
+/// out.
+fn inside(harness: &str, defines: &[&str]) -> String {
+    let (_, rest) = harness.split_once("// Inside\n").expect("a mark");
+    let (ports, _) = rest.split_once(");").expect("an end");
+    let mut taken = true;
+    let mut there = |line: &&str| {
+        match line.trim().split_once(' ').unwrap_or((line.trim(), "")) {
+            ("`ifdef", name) => taken = defines.contains(&name),
+            ("`else", _) => taken = !taken,
+            ("`endif", _) => taken = true,
+            _ => return taken,
+        }
+        false
+    };
+    let lines = ports.lines().filter(|line| there(line));
+    let names = lines.filter_map(|line| line.trim().strip_prefix('.')?.split_whitespace().next());
+    names.map(|name| format!("w:{}", name.trim_start_matches('\\'))).collect::<Vec<_>>().join(" ")
+}
+
+fn run(command: &mut Command, folder: &Path) -> String {
+    let output = command.current_dir(folder).output().expect("starts");
+    (String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr)).into_owned()
+}
+
+#[test]
+fn every_proof_holds_and_every_broken_copy_is_found() {
+    let cases: Vec<(&Proof, Option<&Broken>)> = PROOFS
+        .iter()
+        .flat_map(|proof| {
+            std::iter::once((proof, None)).chain(proof.broken.iter().map(move |copy| (proof, Some(copy))))
+        })
+        .collect();
+    let files: Vec<(&str, FileMap)> = PROOFS.iter().map(|proof| (proof.name, proof.files())).collect();
+    let verdicts = in_parallel(&cases, |&(proof, broken)| {
+        let (_, files) = files.iter().find(|(name, _)| *name == proof.name).expect("emitted above");
+        proof.check(files, broken)
+    });
+    let mut wrong = Vec::new();
+    for ((proof, broken), verdict) in cases.iter().zip(&verdicts) {
+        println!(
+            "{}: {}: {verdict:?}",
+            proof.name,
+            broken.map_or("as generated".to_owned(), |copy| format!("{copy:?}"))
+        );
+        if (*verdict == Verdict::Proved) != broken.is_none() {
+            wrong.push(format!("{}, {broken:?}: {verdict:?}", proof.name));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -1,0 +1,224 @@
+//! The joint estimator in hardware: every word and cycle by the model, the model by the solver, the RTL by the truth.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+use crate::contacts::{Pressed, Truth, Worst, centred, frames, inside, judged};
+use crate::support::{built, in_parallel, planned, shipped, simulate_exactly};
+use golden::design::{Design, Outputs};
+use golden::metrics::Outcome;
+use golden::scene::{Medium, Shape};
+use golden::solver::Solver;
+use hdl_gen::model::{AT_BOUND, DIRECTION_UNKNOWN, NO_CONTACT, SATURATED};
+use hdl_gen::plan::Plan;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use testbench::accuracy::SolverError;
+use testbench::run::{model_answers, timeout};
+use testbench::stream::{Traffic, exchange};
+use testbench::words::{Answer, decode, encode};
+
+const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
+const SOFTER: Medium = Medium::BondedLayer { poisson: 0.45 };
+const HERTZ: Shape = Shape::Hertz { semi_axes_m: [7e-3; 2] };
+const DISC: Shape = Shape::Disc { radius_m: 10e-3 };
+/// Of contacts; those of the solver's tests.
+const SEED: u64 = 0x5eed_0ff0;
+const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.8];
+/// Of the largest `|f_z|` of a frame. Most of it is the field's own rounding, which the line estimator has too; the
+/// rest is a friction component off by a few of its steps, 2^-16.
+const MOST_FIELD_ERROR: f64 = 5e-4;
+/// A joint design may take so many cycles more than one with the line, and so many times its multipliers.
+const MOST_CYCLES_MORE: u64 = 6_000;
+const MOST_TIMES_DSP: usize = 2;
+
+fn designs() -> Vec<Design> {
+    ["sensor1-joint", "sensor2-joint"].map(shipped).to_vec()
+}
+
+fn uncorrected(mut design: Design) -> Design {
+    design.name += "_uncorrected";
+    design.algorithm.joint.correction = None;
+    design
+}
+
+fn as_received(packet: &[u32]) -> Vec<f64> {
+    packet.iter().map(|&word| f64::from(f32::from_bits(word))).collect()
+}
+
+/// Shows a table even of a test that passes.
+fn show(table: &str) {
+    std::io::stdout().write_all(table.as_bytes()).expect("standard output is open");
+}
+
+#[test]
+fn cycles_and_multipliers_keep_to_their_limits() {
+    let mut resultants = shipped("sensor1-joint");
+    resultants.name += "_resultants";
+    resultants.algorithm.outputs = Outputs::Resultants;
+    let rows = [
+        (shipped("sensor1-joint"), "sensor1-reduced"),
+        (shipped("sensor2-joint"), "sensor2-reduced"),
+        (uncorrected(shipped("sensor1-joint")), "sensor1-reduced"),
+        (resultants, "sensor1-resultants"),
+    ];
+    let lines = in_parallel(&rows, |(design, line)| {
+        let (plan, line) = (planned(design), planned(&shipped(line)));
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut packets = crate::support::frames::extremes(&plan, &mut random);
+        packets.extend((0..12).map(|_| crate::support::frames::contact(&plan, &mut random)));
+        packets.push(crate::support::frames::noise(&plan, 1.0, &mut random));
+        // Latency and interval as predicted is part of what is judged here, and so is every word in every mode.
+        let simulation = simulate_exactly(&plan, &built(&plan), &packets, 1)
+            .unwrap_or_else(|error| panic!("{}: {error}", design.name));
+        let more = simulation.latency_cycles - line.timeline.latency_cycles;
+        assert!(more <= MOST_CYCLES_MORE, "{}: {more} more", design.name);
+        assert!(plan.resources.dsp <= MOST_TIMES_DSP * line.resources.dsp, "{}", design.name);
+        let (dsp, bram36) = (plan.resources.dsp, plan.resources.bram36);
+        let (latency, interval) = (simulation.latency_cycles, simulation.interval_cycles);
+        format!("{:<30}{latency:>10}{more:>10}{interval:>10}{dsp:>6}{bram36:>8}\n", design.name)
+    });
+    let heads = ["simulated = predicted", "latency", "more", "interval", "DSP", "BRAM"];
+    let [name, latency, more, interval, dsp, bram36] = heads;
+    show(&format!("\n{name:<30}{latency:>10}{more:>10}{interval:>10}{dsp:>6}{bram36:>8}\n{}\n", lines.concat()));
+}
+
+/// Contacts in the middle, right between four taxels, and anywhere; with all their directions, frictions, noise.
+fn seeded(design: &Design) -> Vec<Truth> {
+    let sensor = &design.sensor;
+    let sets = [centred(sensor, LAYER, HERTZ), centred(sensor, LAYER, DISC), inside(sensor, LAYER, SEED, 60)];
+    let of = |set: &Vec<Pressed>| -> Vec<Truth> {
+        let each = FRICTIONS.into_iter().flat_map(|friction| [(friction, 0.0), (friction, 0.002)]);
+        each.flat_map(|(friction, noise)| frames(set, friction, noise)).collect()
+    };
+    sets.iter().flat_map(of).collect()
+}
+
+#[test]
+fn the_model_is_close_to_the_solver() {
+    let all: Vec<Design> = designs().into_iter().flat_map(|design| [uncorrected(design.clone()), design]).collect();
+    let lines = in_parallel(&all, |design| {
+        let (plan, solver) = (planned(design), Solver::new(design).expect("a solver"));
+        let packets: Vec<Vec<u32>> = seeded(design).iter().map(|truth| encode(&truth.frame)).collect();
+        let (mut field, mut friction) = (0.0_f64, 0.0_f64);
+        for (index, (packet, words)) in packets.iter().zip(model_answers(&plan, &packets)).enumerate() {
+            let solution = solver.solve(&as_received(packet)).expect("a frame of the right length");
+            let answer = decode(&words).expect("a whole frame");
+            assert_eq!(answer.status, solution.status.0, "{}, frame {index}: status", design.name);
+            let [x, y] = answer.mu_xy;
+            friction = friction.max((x - solution.mu_x).abs()).max((y - solution.mu_y).abs());
+            let error = SolverError::new(&[answer], &[solution]);
+            assert!(error.field_max <= MOST_FIELD_ERROR, "{}, frame {index}: {error:?}", design.name);
+            field = field.max(error.field_max);
+        }
+        format!("{:<28}{:>8}{field:>12.2e}{friction:>12.2e}\n", design.name, packets.len())
+    });
+    let [name, count, field, friction] = ["against f64", "frames", "field", "friction"];
+    show(&format!("\n{name:<28}{count:>8}{field:>12}{friction:>12}\n{}\n", lines.concat()));
+}
+
+/// What the RTL answers to frames sent back to back, each word compared with the model's.
+fn simulated(plan: &Plan, frames: &[Truth]) -> Vec<Answer> {
+    let packets: Vec<Vec<u32>> = frames.iter().map(|truth| encode(&truth.frame)).collect();
+    let mut core = built(plan).load(1).expect("loaded");
+    let outcome = exchange(&mut core, &Traffic::new(&packets, timeout(plan)), |_| ()).expect("answered");
+    let words: Vec<Vec<u32>> = outcome.exchanges.into_iter().map(|exchange| exchange.words).collect();
+    assert_eq!(words, model_answers(plan, &packets), "{}", plan.design.name);
+    words.iter().map(|words| decode(words).expect("a whole frame")).collect()
+}
+
+fn outcome(answer: &Answer) -> (u32, Outcome) {
+    (answer.status, Outcome { force: answer.resultant, friction: answer.mu, direction: answer.phi })
+}
+
+/// The goals of the estimator, in RTL, cycle by cycle: the limits are those of the solver's tests.
+#[test]
+fn the_rtl_reaches_what_the_solver_reaches() {
+    // Sensor, set, largest tangential error in percent at each friction, with noise, and the largest e_Fz.
+    let cases: Vec<_> = designs()
+        .into_iter()
+        .flat_map(|design| {
+            let sensor = design.sensor.clone();
+            let middle = |medium, shape| centred(&sensor, medium, shape);
+            [
+                ("Hertz", middle(LAYER, HERTZ), [6.0, 3.0, 6.0], 8.0, 2.1),
+                ("disc", middle(LAYER, DISC), [6.0, 3.0, 6.0], 8.0, 2.1),
+                ("Hertz, nu 0.45", middle(SOFTER, HERTZ), [9.0, 4.5, 9.0], 12.0, 3.0),
+                ("disc, nu 0.45", middle(SOFTER, DISC), [9.0, 4.5, 9.0], 12.0, 3.0),
+                ("200 inside", inside(&sensor, LAYER, SEED, 200), [7.0, 5.0, 7.0], 8.0, 3.1),
+            ]
+            .map(|(name, set, clean, noisy, normal)| (design.clone(), name, set, clean, noisy, normal))
+        })
+        .collect();
+    let lines = in_parallel(&cases, |(design, name, set, clean, noisy, normal)| {
+        let plan = planned(design);
+        let runs: Vec<(f64, f64, f64)> = [(0.0, *clean), (0.002, [*noisy; 3])]
+            .into_iter()
+            .flat_map(|(noise, limits)| FRICTIONS.into_iter().zip(limits).map(move |(mu, limit)| (noise, mu, limit)))
+            .collect();
+        let sets: Vec<Vec<Truth>> = runs.iter().map(|&(noise, friction, _)| frames(set, friction, noise)).collect();
+        let lengths: Vec<usize> = sets.iter().map(Vec::len).collect();
+        let all: Vec<Truth> = sets.into_iter().flatten().collect();
+        let answers = simulated(&plan, &all);
+        let mut line = format!("{:<16}{name:<16}", design.name);
+        let mut first = 0;
+        for ((noise, friction, limit), length) in runs.into_iter().zip(lengths) {
+            let part = first..first + length;
+            first += length;
+            let Worst { error: [x, y, z], flagged, .. } = judged(&all[part.clone()], answers[part].iter().map(outcome));
+            // The goals for the normal force are those without noise, in the middle at a friction of 0.5.
+            let normal = match *name {
+                "200 inside" if noise == 0.0 => 3.0,
+                "Hertz" | "disc" if noise == 0.0 && (0.4..0.6).contains(&friction) => 2.0,
+                _ => *normal,
+            };
+            let case = format!("{} {name}, friction {friction}, noise {noise}", design.name);
+            assert!(x <= limit && y <= limit && z <= normal, "{case}: {x:.2} {y:.2} over {limit}, {z:.2}");
+            assert_eq!(flagged, 0, "{case}");
+            // Writing to a String cannot fail.
+            let _ = write!(line, "{:>7.1}", x.max(y));
+        }
+        line + "\n"
+    });
+    show(&format!(
+        "\nlargest tangential error in %, simulated; without and with 0.2 % noise at 0.2, 0.5, 0.8\n{}\n",
+        lines.concat()
+    ));
+}
+
+/// Frames at the ends of what there is to find; RTL and model agree on them in the tests above.
+#[test]
+fn frames_without_a_plain_answer_say_so() {
+    let design = shipped("sensor1-joint");
+    let plan = planned(&design);
+    let taxels = plan.taxels();
+    let full_scale = design.hardware.full_scale_pa;
+    let step = plan.formats.stress.step();
+    let answer = |frame: Vec<f64>| decode(&model_answers(&plan, &[encode(&frame)])[0]).expect("a whole frame");
+    let with = |taxel: usize, value: f64, rest: f64| {
+        let mut frame = vec![rest; taxels];
+        frame[taxel] = value;
+        answer(frame)
+    };
+    assert_eq!(answer(vec![0.0; taxels]).status, NO_CONTACT);
+    assert_eq!(with(44, -step, 0.0).status, NO_CONTACT, "one step of one taxel is below the floor");
+    // Nothing presses, so nothing limits the friction.
+    let pulled = answer(vec![500.0; taxels]);
+    assert_eq!((pulled.status, pulled.mu_xy), (DIRECTION_UNKNOWN, [0.0, 0.0]));
+    let clipped = with(44, -2.0 * full_scale, 0.0);
+    assert_eq!(clipped.status & SATURATED, SATURATED);
+    // One taxel alone is a contact in its middle: no push.
+    let alone = with(44, -0.1 * full_scale, 0.0);
+    assert_eq!(alone.status & (NO_CONTACT | DIRECTION_UNKNOWN | SATURATED), 0);
+    // Tension on one side only, far more than friction explains.
+    let dragged = answer((0..taxels).map(|taxel| if taxel % 10 < 5 { 3e4 } else { -3e4 }).collect());
+    assert_eq!(dragged.status & AT_BOUND, AT_BOUND, "{dragged:?}");
+    // The least stress that is a contact: the grid's values are then a few steps each.
+    let mut faint = design.clone();
+    faint.algorithm.noise_floor_pa = 1e-3;
+    let faint = planned(&faint);
+    let mut frame = vec![0.0; taxels];
+    frame[44] = -(faint.thresholds.contact as f64) * step;
+    let answer = decode(&model_answers(&faint, &[encode(&frame)])[0]).expect("a whole frame");
+    assert!(answer.status & (NO_CONTACT | SATURATED) == 0 && answer.mu_xy.iter().all(|mu| mu.abs() <= 1.5));
+}

@@ -1,0 +1,209 @@
+//! What other tools say of the emitted Verilog: not one warning.
+
+use std::fs;
+use std::process::Command;
+
+use crate::support::random;
+use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
+use golden::design::{Design, Estimator, Outputs, PlanKind};
+use hdl_gen::emit::emit;
+use tempfile::TempDir;
+use testbench::tools;
+
+const RANDOM_DESIGNS: u64 = 20;
+
+/// One of each kind: square and not, filtered and not, fewest and most lanes, narrowest words, every plan.
+fn designs() -> Vec<Design> {
+    let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
+    let mut narrow = by_plan(shipped("odd"), paper, Outputs::Field);
+    let mut tiny = by_plan(shipped("small"), reduced, Outputs::Field);
+    (tiny.sensor.columns, tiny.sensor.rows) = (2, 2);
+    "narrow".clone_into(&mut narrow.name);
+    narrow.hardware.coefficient_bits = 8;
+    narrow.hardware.data_bits = 16;
+    let mut uncorrected = by_plan(with_lanes(shipped("odd"), 12), reduced, Outputs::Resultants);
+    uncorrected.algorithm.estimator = Estimator::Joint;
+    vec![
+        by_plan(shipped("small"), paper, Outputs::Field),
+        by_plan(shipped("odd"), paper, Outputs::Field),
+        shipped("sensor1-f1-l40"),
+        with_lanes(by_plan(shipped("small"), paper, Outputs::Field), 1),
+        by_plan(shipped("small"), reduced, Outputs::Field),
+        by_plan(shipped("small"), reduced, Outputs::Resultants),
+        by_plan(with_lanes(shipped("odd"), 12), reduced, Outputs::Field),
+        shipped("small-control"),
+        by_plan(shipped("small-control"), paper, Outputs::Field),
+        shipped("sensor1-reduced-64"),
+        shipped("sensor1-resultants"),
+        tiny,
+        shipped("sensor1-joint"),
+        uncorrected,
+        with_lanes(shipped("sensor1-f1-l40"), 64),
+        narrow,
+    ]
+}
+
+/// A design's folder, as `hdl-gen generate` writes it.
+struct Written {
+    name: String,
+    folder: TempDir,
+    /// The modules, one in a file of its name.
+    modules: Vec<String>,
+}
+
+impl Written {
+    fn new(design: &Design) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let files = emit(&planned(design)).expect("emitted");
+        for (path, contents) in &files {
+            let file = folder.path().join(path);
+            fs::create_dir_all(file.parent().expect("a file has a folder")).expect("writable");
+            fs::write(file, contents).expect("writable");
+        }
+        let module = |path: &String| Some(path.strip_prefix("rtl/")?.strip_suffix(".v")?.to_owned());
+        Self { name: design.name.clone(), folder, modules: files.keys().filter_map(module).collect() }
+    }
+
+    fn sources(&self) -> impl Iterator<Item = String> {
+        self.modules.iter().map(|module| format!("../rtl/{module}.v"))
+    }
+
+    /// Runs a tool beside the ROM files, where the parameter `ROM_DIR` looks for them unless it is set; what the tool
+    /// had to say, or its complaint.
+    fn run(&self, mut command: Command) -> String {
+        let output = command.current_dir(self.folder.path().join("rom")).output().expect("the tool starts");
+        let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+        if output.status.success() { said.into_owned() } else { format!("{}\n{said}", output.status) }
+    }
+}
+
+/// Asserts that the complaints of all designs are none.
+fn assert_silent(complaints: Vec<Vec<String>>) {
+    let all: Vec<String> = complaints.into_iter().flatten().filter(|text| !text.trim().is_empty()).collect();
+    assert!(all.is_empty(), "{}", all.join("\n"));
+}
+
+#[test]
+fn verilator_accepts_every_module_as_a_top() {
+    assert_silent(in_parallel(&designs(), |design| {
+        let written = Written::new(design);
+        assert!(written.modules.len() >= 20 && written.modules.contains(&written.name), "{:?}", written.modules);
+        let lint = |module: &String| {
+            let mut verilator = tools::verilator().expect("installed");
+            verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(written.sources());
+            written.run(verilator)
+        };
+        written.modules.iter().map(lint).collect()
+    }));
+}
+
+#[test]
+fn icarus_accepts_every_module_as_a_top() {
+    assert_silent(in_parallel(&designs(), |design| {
+        let written = Written::new(design);
+        let lint = |module: &String| {
+            let mut icarus = tools::icarus().expect("installed");
+            icarus.args(["-Wall", "-g2005", "-t", "null", "-s", module]).args(written.sources());
+            written.run(icarus)
+        };
+        written.modules.iter().map(lint).collect()
+    }));
+}
+
+#[test]
+fn yosys_elaborates_the_top_without_latches_and_loose_wires() {
+    assert_silent(in_parallel(&designs(), |design| {
+        let written = Written::new(design);
+        let script = format!(
+            "read_verilog -sv -defer {}; hierarchy -check -top {}; proc; check -assert; \
+             select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr; select -assert-min 1000 t:*",
+            written.sources().collect::<Vec<_>>().join(" "),
+            written.name
+        );
+        let mut yosys = tools::yosys().expect("installed");
+        yosys.args(["-q", "-p", &script]);
+        vec![written.run(yosys)]
+    }));
+}
+
+/// Rules of Verible that are not for this Verilog, each with its reason.
+const WAIVED: [(&str, &str); 8] = [
+    ("explicit-parameter-storage-type", "SystemVerilog: Verilog-2005 has no type of a parameter that is a string"),
+    ("explicit-function-task-parameter-type", "SystemVerilog: an argument's type is reg in Verilog-2005"),
+    ("explicit-function-lifetime", "the functions here have no state; `automatic` would add nothing"),
+    ("always-comb", "SystemVerilog: always_comb"),
+    ("unpacked-dimensions-range-ordering", "SystemVerilog: [0:N-1] is how Verilog-2005 declares a memory"),
+    ("generate-label-prefix", "wants g_; the labels here begin with gen_"),
+    ("parameter-name-style", "constants are in capitals with underscores, such as LAST_COLUMN"),
+    ("line-length", "100 columns; the generator's own limit is wider, and widths decide how long a line becomes"),
+];
+
+#[test]
+fn verible_has_nothing_to_say() {
+    let rules: Vec<String> = WAIVED.iter().map(|(rule, _)| format!("-{rule}")).collect();
+    assert_silent(in_parallel(&designs(), |design| {
+        let written = Written::new(design);
+        let mut verible = tools::verible_lint().expect("installed");
+        verible.arg(format!("--rules={}", rules.join(","))).args(written.sources());
+        vec![written.run(verible)]
+    }));
+}
+
+/// slang reads the files as Verilog-2005, with its extra and pedantic warnings and without any waiver.
+fn slang(written: &Written) -> String {
+    let mut python = tools::python().expect("installed");
+    python
+        .arg(crate::support::workspace("testbench/tests/suite/lint/slang.py"))
+        .arg(&written.name)
+        .args(written.sources());
+    written.run(python)
+}
+
+#[test]
+fn slang_has_nothing_to_say() {
+    assert_silent(in_parallel(&designs(), |design| vec![slang(&Written::new(design))]));
+}
+
+/// Widths that no design above has: the whole hierarchy below the top, as it is instantiated, with the checks that only
+/// simulations make.
+#[test]
+fn random_designs_are_clean() {
+    let numbers: Vec<u64> = (0..RANDOM_DESIGNS).collect();
+    assert_silent(in_parallel(&numbers, |&number| {
+        let plan = random::plan(number).expect("a plan").0;
+        let written = Written::new(&plan.design);
+        let mut verilator = tools::verilator().expect("installed");
+        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "-DSIMULATION", "--top-module", &written.name]);
+        verilator.args(written.sources());
+        let mut icarus = tools::icarus().expect("installed");
+        icarus.args(["-Wall", "-g2005", "-DSIMULATION", "-t", "null", "-s", &written.name]).args(written.sources());
+        [verilator, icarus].map(|tool| written.run(tool)).into_iter().chain([slang(&written)]).collect()
+    }));
+}
+
+/// The checks above can fail: each tool says something of a module with a latch and an unused input.
+#[test]
+fn a_latch_is_found() {
+    let mut written = Written::new(&shipped("small"));
+    let text = "module latch(input wire [1:0] a, output reg b);\n\
+                \x20   always @(*) if (a[0]) b = 1'b1;\nendmodule\n";
+    fs::write(written.folder.path().join("rtl").join("latch.v"), text).expect("writable");
+    written.modules = vec!["latch".to_owned()];
+    let mut verilator = tools::verilator().expect("installed");
+    verilator.args(["--lint-only", "-Wall"]).args(written.sources());
+    let said = written.run(verilator);
+    assert!(said.contains("LATCH") && said.contains("UNUSED"), "{said}");
+    let mut yosys = tools::yosys().expect("installed");
+    yosys.args(["-q", "-p", "read_verilog -sv ../rtl/latch.v; proc; select -assert-none t:$dlatch"]);
+    let said = written.run(yosys);
+    assert!(said.contains("ERROR") || said.contains("Latch"), "{said}");
+    written.name = "latch".to_owned();
+    let text = "module latch(input wire a, output wire b);\n  assign b = later;\n  wire later = a;\t\nendmodule\n";
+    fs::write(written.folder.path().join("rtl").join("latch.v"), text).expect("writable");
+    let said = slang(&written);
+    assert!(said.contains("used before its declaration"), "{said}");
+    let mut verible = tools::verible_lint().expect("installed");
+    verible.args(written.sources());
+    let said = written.run(verible);
+    assert!(said.contains("no-tabs"), "{said}");
+}

@@ -1,0 +1,34 @@
+//! Tests of the emitted RTL and of what runs it, one module a topic.
+
+mod bad_frames;
+mod bench;
+mod build_cache;
+mod checks;
+mod command;
+#[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
+#[path = "../../../golden/tests/suite/contacts.rs"]
+mod contacts;
+mod cores;
+mod counts;
+mod drivers;
+mod figures;
+mod flows;
+mod formal;
+mod hard;
+mod icarus;
+mod joint;
+mod layered;
+mod lint;
+mod looking;
+mod netlist;
+mod properties;
+mod registers;
+mod simulate;
+mod skip_zeros;
+mod standin;
+mod stream_faults;
+mod stream_modes;
+mod stress;
+mod support;
+mod sweep;
+mod unreal_matrices;

@@ -1,0 +1,188 @@
+//! RTL against model on random designs and frames: every word in every stream mode, and the predicted cycles.
+//!
+//! A failure names the seed of the random designs and shows the design file.
+
+use hdl_gen::plan::Plan;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use testbench::compare::Comparison;
+use testbench::run::{model_answers, timeout};
+use testbench::stream::{Mode, Outcome, Pacing, Pattern, Traffic, exchange};
+use testbench::verilate::Built;
+
+use crate::support::random::{self, Kind, Shape, seed};
+use crate::support::{built, frames, in_parallel, planned, simulate_exactly};
+
+const RANDOM_DESIGNS: u64 = 18;
+/// Cycles to simulate in each stream mode of one design, roughly.
+const MOST_CYCLES: u64 = 150_000;
+/// Frames to send to a sink that is slower than the core: more than there are places inside.
+const PILED_UP: usize = 14;
+
+fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
+    let mut packets = frames::extremes(plan, random);
+    packets.extend((0..6).map(|_| frames::contact(plan, random)));
+    packets.extend([1e-4, 1e-3, 0.03, 1.0, 1.2].map(|share| frames::noise(plan, share, random)));
+    // An input that settles for a frame hides what it takes over from the frame before.
+    for index in (1..packets.len()).rev() {
+        packets.swap(index, random.random_range(0..=index));
+    }
+    packets.truncate((MOST_CYCLES / plan.timeline.interval_cycles) as usize);
+    packets
+}
+
+/// Frames in a row through the RTL, judged by the model.
+fn agrees(plan: &Plan, built: &Built, packets: &[Vec<u32>], mode: &Mode, pacing: Pacing) -> Result<Outcome, String> {
+    let failed = |error: &dyn std::fmt::Display| format!("{}: {error}", mode.name);
+    let traffic = Traffic::new(packets, 8 * timeout(plan)).with_mode(mode).with_pacing(pacing);
+    let mut core = built.load(1).map_err(|error| failed(&error))?;
+    let outcome = exchange(&mut core, &traffic, |_| ()).map_err(|error| failed(&error))?;
+    let expected = model_answers(plan, packets);
+    let answers = outcome.exchanges.iter().map(|exchange| exchange.words.as_slice());
+    let comparison = Comparison::new(&expected, answers, plan.design.sensor.columns);
+    match comparison.first.first() {
+        Some(first) => Err(failed(first)),
+        None => Ok(outcome),
+    }
+}
+
+/// A sink that takes a frame in twice the time in which the core makes one: they pile up to the last place.
+fn slow_sink(plan: &Plan) -> Mode {
+    let willing = plan.beats_out() as f64 / (2 * plan.timeline.interval_cycles) as f64;
+    Mode { name: "slow sink", source: Pattern::Free, sink: Pattern::Random { seed: 1, willing } }
+}
+
+/// A sink that stands still until every place inside is taken, then takes several frames at full speed.
+fn stuck_sink(plan: &Plan) -> Mode {
+    let longest_run = 3 * plan.beats_out() as u32;
+    let longest_pause = (12 * plan.timeline.interval_cycles) as u32;
+    let sink = Pattern::Bursts { seed: 2, longest_run, longest_pause };
+    Mode { name: "sink that stands still for long", source: Pattern::Free, sink }
+}
+
+fn check(plan: &Plan, random: &mut ChaCha8Rng) -> Result<(), String> {
+    let packets = packets(plan, random);
+    let built = built(plan);
+    let few = &packets[..packets.len().min(PILED_UP)];
+    simulate_exactly(plan, &built, &packets, random.random())
+        .and_then(|_| agrees(plan, &built, few, &slow_sink(plan), Pacing::BackToBack))
+        .and_then(|_| agrees(plan, &built, few, &stuck_sink(plan), Pacing::BackToBack))
+        .map(drop)
+        .map_err(|error| format!("{error}\nin the design\n{}", plan.design.to_toml()))
+}
+
+#[test]
+fn random_designs_agree_with_the_model() {
+    let numbers: Vec<u64> = (0..RANDOM_DESIGNS).collect();
+    let results = in_parallel(&numbers, |&number| {
+        let (plan, mut random) = random::plan(number)?;
+        check(&plan, &mut random)
+    });
+    let failures: Vec<String> = results.into_iter().filter_map(Result::err).collect();
+    assert!(failures.is_empty(), "SPTFRA_TEST_SEED={}: {}", seed(), failures.join("\n\n"));
+}
+
+fn judge(plans: &[Plan]) {
+    let results = in_parallel(plans, |plan| check(plan, &mut ChaCha8Rng::seed_from_u64(seed())));
+    let failures: Vec<String> = results.into_iter().filter_map(Result::err).collect();
+    assert!(failures.is_empty(), "SPTFRA_TEST_SEED={}: {}", seed(), failures.join("\n\n"));
+}
+
+/// Sizes that a random draw hardly ever hits, each at an end of some range.
+#[test]
+fn corner_designs_agree_with_the_model() {
+    let base = |columns, rows, lanes| Shape {
+        kind: Kind::Paper,
+        columns,
+        rows,
+        pitch_mm: [3.0, 4.0],
+        depth_mm: 2.5,
+        filter: "{ kind = \"none\" }".to_owned(),
+        lanes,
+        coefficient_bits: 18,
+        data_bits: 27,
+        full_scale_pa: 1e5,
+    };
+    let narrow = Shape { coefficient_bits: 8, data_bits: 16, ..base(6, 4, 3) };
+    let diagonal = Shape { filter: "{ kind = \"f1\", l = 22 }".to_owned(), ..base(4, 6, 2) };
+    let shapes = [
+        ("more_lanes_than_taxels", base(2, 2, 64)),
+        ("lanes_not_used_evenly", base(9, 2, 33)),
+        ("one_lane", base(2, 5, 1)),
+        ("tall", base(3, 32, 16)),
+        ("wide", base(32, 2, 7)),
+        ("narrow_words", narrow),
+        ("three_diagonals", diagonal),
+    ];
+    let plans: Vec<Plan> = shapes.iter().map(|(name, shape)| planned(&shape.design(name))).collect();
+    let overlaps = |wanted: bool| plans.iter().any(|plan| plan.timeline.overlap == wanted);
+    assert!(overlaps(true) && overlaps(false), "designs whose frames overlap in the lanes and in Op, and others");
+    judge(&plans);
+}
+
+/// The same for the reduced plan: one quad, whose programs are shorter than the pipelines; sides of which the middle
+/// column or row is its own mirror image; one group of four lanes, and as many as there can be.
+#[test]
+fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
+    let field = Kind::Field { latency: false };
+    let base = |kind, columns, rows, lanes| Shape {
+        kind,
+        columns,
+        rows,
+        pitch_mm: [3.0, 4.0],
+        depth_mm: 2.5,
+        filter: "{ kind = \"none\" }".to_owned(),
+        lanes,
+        coefficient_bits: 18,
+        data_bits: 27,
+        full_scale_pa: 1e5,
+    };
+    let square = |shape: Shape| Shape { pitch_mm: [3.0, 3.0], ..shape };
+    let latency = Kind::Field { latency: true };
+    let joint = |field, correction| Kind::Joint { field, correction };
+    let shapes = [
+        ("one_quad", base(field, 2, 2, 4)),
+        ("one_square_quad_for_latency", square(base(latency, 2, 2, 8))),
+        ("one_quad_resultants", base(Kind::Resultants, 2, 2, 64)),
+        ("square_and_odd", square(base(field, 3, 3, 4))),
+        ("even_and_odd", base(latency, 2, 7, 4)),
+        ("odd_and_even", base(field, 7, 2, 12)),
+        ("most_lanes", square(base(field, 9, 9, 64))),
+        ("tall_resultants", base(Kind::Resultants, 3, 32, 16)),
+        ("wide", base(field, 40, 2, 8)),
+        ("narrow_words_reduced", Shape { coefficient_bits: 8, data_bits: 16, ..base(latency, 6, 4, 8) }),
+        ("one_quad_joint", base(joint(true, true), 2, 2, 4)),
+        ("uncorrected_joint", base(joint(true, false), 5, 3, 4)),
+        ("resultants_joint", base(joint(false, true), 9, 4, 16)),
+        ("wide_joint", base(joint(true, true), 40, 2, 8)),
+        ("narrow_joint", Shape { coefficient_bits: 8, data_bits: 16, ..base(joint(true, true), 6, 7, 8) }),
+        ("band_reduced", Shape { filter: "{ kind = \"f1\", l = 22 }".to_owned(), ..base(field, 4, 6, 8) }),
+    ];
+    judge(&shapes.map(|(name, shape)| planned(&shape.design(name))));
+}
+
+/// The largest sensor on the most lanes, its matrices filtered to seven diagonals. Two frames are long enough to
+/// simulate: each of its memories is used to the end.
+#[test]
+fn the_largest_sensor_agrees_with_the_model() {
+    let shape = Shape {
+        kind: Kind::Paper,
+        columns: 32,
+        rows: 32,
+        pitch_mm: [4.0, 2.0],
+        depth_mm: 3.0,
+        filter: "{ kind = \"f1\", l = 1020 }".to_owned(),
+        lanes: 64,
+        coefficient_bits: 18,
+        data_bits: 27,
+        full_scale_pa: 1e5,
+    };
+    let plan = planned(&shape.design("largest"));
+    let mut random = ChaCha8Rng::seed_from_u64(seed());
+    let packets = [frames::contact(&plan, &mut random), frames::noise(&plan, 1.0, &mut random)];
+    let built = built(&plan);
+    let [free, .., both] = Mode::all(1);
+    let alone = agrees(&plan, &built, &packets, &free, Pacing::OneAtATime).expect("bit for bit");
+    assert_eq!(alone.latency(), Some(plan.timeline.latency_cycles));
+    agrees(&plan, &built, &packets, &both, Pacing::BackToBack).expect("bit for bit");
+}

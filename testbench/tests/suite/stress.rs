@@ -1,0 +1,97 @@
+//! Thousands of frames, good and bad, with pauses and resets; and faults in the RTL, which the testbench must notice.
+
+use crate::support::{by_plan, in_parallel, planned, shipped};
+use golden::design::{Outputs, PlanKind};
+use testbench::mutants::{self, Fate, Kind, mutants};
+use testbench::progress::Progress;
+use testbench::run::rtl_sources;
+use testbench::stress::{self, StressError, stress};
+use testbench::verilate::Verilate;
+
+const FRAMES: u64 = 3000;
+
+#[test]
+fn every_answer_is_right_and_none_is_lost() {
+    let designs = [
+        by_plan(shipped("small"), PlanKind::Paper, Outputs::Field),
+        by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field),
+        by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants),
+    ];
+    let options = stress::Options { frames: FRAMES, seed: 5 };
+    in_parallel(&designs, |design| {
+        let report = stress(design, &options, &Progress::hidden()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(report.sent.total(), FRAMES);
+        assert_eq!(report.sent, report.answered.plus(report.lost_to_resets));
+        assert_eq!(report.resets, FRAMES / 100);
+        let counts = report.answered;
+        for count in [counts.good, counts.short, counts.long, counts.not_finite] {
+            assert!(count > FRAMES / 20, "{report}");
+        }
+        // A reset costs the frames inside, eight at most.
+        assert!(report.lost_to_resets.total() <= 8 * report.resets, "{report}");
+    });
+}
+
+#[test]
+fn the_seed_decides_everything() {
+    let design = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
+    let run = |seed| stress(&design, &stress::Options { frames: 300, seed }, &Progress::hidden()).expect("runs");
+    assert_eq!(run(1), run(1));
+    assert_ne!(run(1).cycles, run(2).cycles);
+    let none = stress(&design, &stress::Options { frames: 0, seed: 1 }, &Progress::hidden());
+    assert!(matches!(none, Err(StressError::NoFrames)));
+}
+
+/// Faults that a run of `make mutants` once did not notice, because no frame and no pause reached them.
+#[test]
+fn faults_at_rare_moments_are_noticed() {
+    let [paper, reduced] =
+        [PlanKind::Paper, PlanKind::Reduced].map(|kind| by_plan(shipped("small"), kind, Outputs::Field));
+    let cases = [
+        // No quotient although there is no force along z.
+        (&reduced, "op_summary", "(bits_z == 7'd0) || (bits_xy == 7'd0)", "(bits_z == 7'd0) && (bits_xy == 7'd0)"),
+        // A direction that comes in the cycle in which the one before is taken is lost.
+        (
+            &paper,
+            "cean",
+            "if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin",
+            "if (push && (waiting == 2'd0)) begin",
+        ),
+        (
+            &reduced,
+            "cean",
+            "if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin",
+            "if (push && (waiting == 2'd0)) begin",
+        ),
+    ];
+    let noticed = in_parallel(&cases, |&(design, module, from, to)| {
+        let plan = planned(design);
+        let mut sources = rtl_sources(&plan).expect("emitted");
+        let file = format!("rtl/{}_{module}.v", design.name);
+        let text = String::from_utf8(sources.files[&file].clone()).expect("UTF-8");
+        assert_eq!(text.matches(from).count(), 1, "{file}: {from:?} stands there once");
+        sources.files.insert(file, text.replace(from, to).into());
+        let built = Verilate::default().build(&sources).expect("Verilator accepts it");
+        let wrong = |batch: u64| {
+            let mut core = built.load(batch as u32).expect("loaded");
+            stress::run_batch(&plan, &mut core, batch, stress::BATCH, 1, &|| ()).is_err()
+        };
+        // As many batches as a mutant goes through.
+        (0..3).any(wrong)
+    });
+    let names = cases.iter().map(|(design, module, ..)| format!("{}_{module}", design.name));
+    let missed: Vec<String> = names.zip(noticed).filter(|(_, noticed)| !noticed).map(|(name, _)| name).collect();
+    assert!(missed.is_empty(), "{missed:?}");
+}
+
+/// A sample of `make mutants`: one of each kind. The survivors among 220 are explained in docs/trust.md.
+#[test]
+fn faults_in_the_rtl_are_noticed() {
+    let design = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
+    let options = mutants::Options { count: Kind::ALL.len(), seed: 1 };
+    let report = mutants(&design, &options, &Progress::hidden()).expect("runs");
+    let built = report.mutants.iter().filter(|mutant| mutant.fate != Fate::Rejected).count();
+    assert_eq!(built, Kind::ALL.len());
+    // Some faults change nothing: among 220 one in ten, of these as listed in docs/trust.md.
+    assert!(report.survivors().count() <= 2, "{report}");
+}

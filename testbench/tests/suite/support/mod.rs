@@ -1,0 +1,116 @@
+//! Designs for tests of the emitted RTL: planned, built through the shared cache, simulated, judged.
+
+pub mod frames;
+pub mod random;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use golden::design::{Correction, Design, Estimator, Outputs, PlanKind};
+use hdl_gen::plan::Plan;
+use testbench::run::{model_answers, rtl_sources, timeout};
+use testbench::simulate::{Job, Simulation, simulate};
+use testbench::verilate::{Built, Verilate};
+
+/// A file of the workspace.
+pub fn workspace(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join(path)
+}
+
+/// One of the designs that come with the project, by its file name without the ending.
+pub fn shipped(file: &str) -> Design {
+    Design::load(&workspace(&format!("designs/{file}.toml"))).expect("a good design")
+}
+
+/// The design under another name and with another number of lanes.
+pub fn with_lanes(mut design: Design, lanes: usize) -> Design {
+    design.name = format!("{}_{lanes}_lanes", design.name);
+    design.hardware.lanes = lanes;
+    design
+}
+
+/// The design under another name and by another plan.
+pub fn by_plan(mut design: Design, kind: PlanKind, outputs: Outputs) -> Design {
+    let plan = if kind == PlanKind::Paper { "paper" } else { "reduced" };
+    let of = if outputs == Outputs::Field { "field" } else { "resultants" };
+    design.name = format!("{}_{plan}_{of}", design.name);
+    (design.algorithm.plan, design.algorithm.outputs) = (kind, outputs);
+    design
+}
+
+/// The design by the reduced plan with the joint estimator, and a correction of a few units that nobody trained.
+pub fn with_joint(mut design: Design) -> Design {
+    design.algorithm.plan = PlanKind::Reduced;
+    design.algorithm.estimator = Estimator::Joint;
+    let weights = |length: usize| (0..length as i32).map(|index| 700 * (index * index % 9) - 2000).collect();
+    let inputs = Correction::inputs([1, 1]);
+    design.algorithm.joint.correction = Some(Correction {
+        half_window: [1, 1],
+        hidden: vec![weights(inputs), weights(inputs), weights(inputs)],
+        output: [weights(3), weights(3)],
+    });
+    design
+}
+
+/// The plan of a design that has one.
+pub fn planned(design: &Design) -> Plan {
+    Plan::new(design).expect("a plan")
+}
+
+/// The plan's RTL, compiled.
+pub fn built(plan: &Plan) -> Built {
+    Verilate::default().build(&rtl_sources(plan).expect("emitted")).expect("Verilator accepts it")
+}
+
+/// Plans nothing and compiles nothing twice: sends `packets` through the RTL in all four stream modes, and judges
+/// every word by the model and the cycles by the prediction.
+///
+/// # Errors
+/// What is wrong, with the first words that differ.
+pub fn simulate_exactly(plan: &Plan, built: &Built, packets: &[Vec<u32>], seed: u32) -> Result<Simulation, String> {
+    let expected = model_answers(plan, packets);
+    let columns = plan.design.sensor.columns;
+    let job = Job { built, packets, expected: &expected, columns, timeout: timeout(plan), seed, trace: None };
+    let simulation = simulate(&job, &|| ()).map_err(|error| error.to_string())?;
+    for result in &simulation.modes {
+        let words: u64 = expected.iter().map(|words| words.len() as u64).sum();
+        if !result.comparison.is_exact() || result.comparison.words != words {
+            let first: Vec<String> = result.comparison.first.iter().map(ToString::to_string).collect();
+            let count = result.comparison.mismatches;
+            return Err(format!("{}: {count} of {words} words differ\n{}", result.mode.name, first.join("\n")));
+        }
+    }
+    let measured = (simulation.latency_cycles, simulation.interval_cycles);
+    let predicted = (plan.timeline.latency_cycles, plan.timeline.interval_cycles);
+    // Where zeros are passed over the prediction is a bound.
+    let kept = measured.0 <= predicted.0 && measured.1 <= predicted.1;
+    if !(if plan.design.hardware.skip_zeros { kept } else { measured == predicted }) {
+        return Err(format!("(latency, interval): simulated {measured:?}, predicted {predicted:?}"));
+    }
+    Ok(simulation)
+}
+
+/// Runs `work` on every item, on as many threads as there are processors; the results in the items' order.
+pub fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        let mut done = Vec::new();
+        while let Some((index, item)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|index| Some((index, items.get(index)?)))
+        {
+            done.push((index, work(item)));
+        }
+        done
+    };
+    let mut results: Vec<(usize, R)> = thread::scope(|scope| {
+        let threads = thread::available_parallelism().map_or(1, usize::from);
+        let running: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
+        running
+            .into_iter()
+            .flat_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    });
+    results.sort_by_key(|&(index, _)| index);
+    results.into_iter().map(|(_, result)| result).collect()
+}
