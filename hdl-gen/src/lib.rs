@@ -7,6 +7,7 @@
 pub mod blocks;
 pub mod cores;
 pub mod emit;
+pub mod estimators;
 pub mod model;
 pub mod plan;
 pub mod write;

@@ -3,18 +3,16 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use golden::design::{Correction, Estimator, Kernel, PlanKind};
+use golden::design::PlanKind;
 use golden::kernel;
 use hdl_gen::emit::{nnz, predicted, products};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::joint::{POINTS, UNITS};
+use hdl_gen::plan::format::short;
 use hdl_gen::plan::savings::savings;
 use serde_json::json;
 
 /// Condition number of A Aᵀ above which noise of a thousandth of the stress is no longer a small error of the force.
 const ILL_CONDITIONED: f64 = 1e4;
-/// Share by which the joint estimator's gain may differ from what the kernel lacks under a wide contact.
-const STALE_GAIN: f64 = 0.1;
 /// `(beginning of the part's name, DSP48E2, RAMB36)` of the default part.
 const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
 /// Second lines stand under the values of the first.
@@ -47,8 +45,8 @@ fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
         "savings": savings(plan),
         "kernel_gain": kernel::gain(sensor, plan.design.algorithm.kernel),
     });
-    if let Some(joint) = &plan.joint {
-        value["joint"] = json!(joint);
+    if let Some((key, own)) = plan.estimator.slot().metadata().own {
+        value[key] = own;
     }
     Ok(serde_json::to_string_pretty(&value)? + "\n")
 }
@@ -61,7 +59,7 @@ fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
     reductions(&mut text, plan)?;
     work(&mut text, plan)?;
     speed(&mut text, plan)?;
-    friction(&mut text, plan)?;
+    text += &plan.estimator.slot().report(&plan.design);
     resources(&mut text, plan)?;
     numbers(&mut text, plan)?;
     Ok(text)
@@ -99,37 +97,7 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         "well conditioned".to_owned()
     };
     writeln!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat))?;
-    writeln!(out, "  kernel       {}", kernel_advice(plan))
-}
-
-/// What the load kernel makes of a wide contact, and when the other one is better.
-fn kernel_advice(plan: &Plan) -> String {
-    let algorithm = &plan.design.algorithm;
-    let gain = |of| kernel::gain(&plan.design.sensor, of);
-    // Forces are divided by the gain, so that they are found too small or too large by this share.
-    let off = |of| 100.0 * (1.0 / gain(of) - 1.0);
-    let lost = 100.0 * (1.0 - gain(Kernel::Cell) / gain(Kernel::Point));
-    match (algorithm.kernel, algorithm.estimator) {
-        (of, Estimator::Joint) => {
-            let (wants, has) = (gain(of), algorithm.joint.gain);
-            let verdict = match (of, (has / wants - 1.0).abs() > STALE_GAIN) {
-                (_, true) => "run golden calibrate, or F_z is off by as much as they differ",
-                (Kernel::Point, false) => "so F_z is right, and mu comes out better than with \"cell\"",
-                (Kernel::Cell, false) => "so F_z is right; mu comes out better with \"point\", calibrated anew",
-            };
-            format!("{of}: wants a gain of {wants:.3}, the joint estimator has {has:.3}:\n{INDENT}{verdict}")
-        }
-        (Kernel::Point, Estimator::Line) => format!(
-            "point: F_z of a wide contact is off by {:+.1} %;\n{INDENT}\"cell\" makes it right, with mu {lost:.0} % \
-             lower or a little more, and phi the same",
-            off(Kernel::Point)
-        ),
-        (Kernel::Cell, Estimator::Line) => format!(
-            "cell: F_z of a wide contact is off by {:+.1} %;\n{INDENT}mu is {lost:.0} % lower than with \
-             \"point\" or a little more, phi the same",
-            off(Kernel::Cell)
-        ),
-    }
+    writeln!(out, "  kernel       {}", plan.estimator.slot().kernel_advice(&plan.design, INDENT))
 }
 
 fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
@@ -186,38 +154,11 @@ fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
         ("latency", timeline.latency_cycles, "first beat in to last beat out".to_owned()),
         ("interval", timeline.interval_cycles, format!("between frames, {rate:.0} frames a second")),
         ("products", timeline.spmv_cycles, format!("{} busy {busy:.1} %", count(plan.design.hardware.lanes, "lane"))),
-        ("search", timeline.search_cycles, count(plan.optimum.cells, "evaluation cell")),
+        ("search", timeline.search_cycles, count(plan.estimator.slot().cells().cells, "evaluation cell")),
     ] {
         writeln!(out, "  {what:<9} {cycles:>10} cycles {:>11.2} us   {remark}", cycles as f64 / clock)?;
     }
     Ok(())
-}
-
-/// What the joint estimator is made of.
-fn friction(out: &mut String, plan: &Plan) -> std::fmt::Result {
-    let Some(joint) = &plan.joint else { return Ok(()) };
-    let [c1, c3] = plan.design.algorithm.joint.tangential;
-    writeln!(out, "\nFriction, joint estimator")?;
-    writeln!(
-        out,
-        "  walk         {POINTS} points, {} taxels a cell; gain {} (in the matrices)",
-        plan.optimum.elements,
-        short(plan.design.algorithm.joint.gain)
-    )?;
-    writeln!(out, "  friction     c1 {c1:.4}, c3 {c3:.4}")?;
-    match (&joint.network, &plan.design.algorithm.joint.correction) {
-        (Some(network), Some(correction)) => writeln!(
-            out,
-            "  correction   {} hidden units, {} inputs, weights in steps of 2^{}; {} passes of {} words, {} MACs",
-            correction.hidden.len(),
-            Correction::inputs(correction.half_window),
-            network.weight_lsb,
-            network.passes,
-            network.length,
-            plan.ways() * UNITS
-        ),
-        _ => writeln!(out, "  correction   none: `golden calibrate` trains one"),
-    }
 }
 
 /// What to tell whose design does not fit its part, if that is one whose size is known.
@@ -283,30 +224,7 @@ fn numbers(out: &mut String, plan: &Plan) -> std::fmt::Result {
     Ok(())
 }
 
-/// Four significant digits, or all before the point.
-fn short(value: f64) -> String {
-    let magnitude = value.abs();
-    if magnitude != 0.0 && !(1e-3..1e7).contains(&magnitude) {
-        return format!("{value:.3e}");
-    }
-    let digits_before = if magnitude < 1.0 { 1.0 } else { magnitude.log10().floor() + 1.0 };
-    format!("{value:.*}", (4.0 - digits_before).max(0.0) as usize)
-}
-
 /// `1 lane`, `2 lanes`.
 pub fn count(count: usize, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short;
-
-    #[test]
-    fn numbers_are_short() {
-        let cases = [(0.0, "0.000"), (0.5, "0.500"), (7.1989, "7.199"), (52.303, "52.30"), (100_000.0, "100000")];
-        for (value, text) in cases.into_iter().chain([(3.845e10, "3.845e10"), (0.0005, "5.000e-4")]) {
-            assert_eq!(short(value), text);
-        }
-    }
 }

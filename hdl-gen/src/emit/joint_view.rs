@@ -3,14 +3,14 @@
 use golden::estimators::joint::REACH;
 use serde::Serialize;
 
-use crate::plan::Plan;
-use crate::plan::format::address_bits;
-use crate::plan::joint::{
-    CENTRE_HALF, CORRECTION_LIMIT, CUBIC_FRACTION, DEPTH_BITS, FACTOR_FRACTION, INPUT_BITS, INPUT_FRACTION, JointPlan,
+use crate::estimators::joint::{
+    CENTRE_HALF, CORRECTION_LIMIT, CUBIC_FRACTION, DEPTH_BITS, FACTOR_FRACTION, INPUT_BITS, INPUT_FRACTION,
     LINEAR_FRACTION, NORMAL_DROP, NetworkPlan, POINT_BITS, POINTS, RECIPROCAL_BITS, SIDE, STEP_SHIFT, STRESS_BITS,
     UNIT_BITS, UNITS, WEIGHT_DROP, timing,
 };
-use crate::plan::optimum::{FRICTION_FRACTION, SUM_BITS};
+use crate::plan::Plan;
+use crate::plan::format::address_bits;
+use crate::plan::format::{FRICTION_FRACTION, SUM_BITS};
 
 use super::expressions::{half, shift_and_add_of, signed_literal, slice, zero_extend};
 use super::roms;
@@ -61,15 +61,15 @@ pub struct JointView {
 
 impl JointView {
     pub fn new(plan: &Plan) -> Option<Self> {
-        let joint = plan.joint.as_ref()?;
-        let optimum = &plan.optimum;
+        let joint = plan.estimator.joint()?;
+        let cells = joint.cells;
         let row_width = roms::row_bits(plan);
-        let group_width = address_bits(optimum.cells / plan.ways());
+        let group_width = address_bits(cells.cells / plan.ways());
         let margin_top = (joint.value_bits + joint.share_shift).min(SUM_BITS);
         Some(Self {
             network: joint.network.is_some(),
             contact_latency: timing::CONTACT_LATENCY,
-            first_value: timing::first_value(optimum),
+            first_value: timing::first_value(cells),
             level_latency: timing::LEVEL,
             friction_latency: timing::FRICTION,
             side: SIDE,
@@ -92,8 +92,8 @@ impl JointView {
             } else {
                 String::new()
             },
-            total_depth: 3 + optimum.tree_levels(),
-            look_element: slice("look_quad", row_width, address_bits(optimum.elements)),
+            total_depth: 3 + cells.tree_levels(),
+            look_element: slice("look_quad", row_width, address_bits(cells.elements)),
             look_cell: format!("{{look_group[{}:0], look_member}}", group_width - 1),
             group_width,
             cell_width: group_width + 2,
@@ -163,7 +163,7 @@ pub struct NetworkView {
 
 impl NetworkView {
     pub fn new(plan: &Plan) -> Option<Self> {
-        let network = plan.joint.as_ref()?.network.as_ref()?;
+        let network = plan.estimator.joint()?.network.as_ref()?;
         let sensor = &plan.design.sensor;
         let [half_x, half_y] = network.half_window;
         let normal_shift = FRICTION_FRACTION + NORMAL_DROP;
@@ -219,13 +219,4 @@ fn exact(network: &NetworkPlan, sum: &str) -> String {
         shift if shift > 0 => format!("({sum} + 64'sd{}) >>> {shift}", half(shift as u32)),
         shift => format!("{sum} <<< {}", -shift),
     }
-}
-
-/// The ROM files of the network: `(name, words, bits)`.
-pub fn roms(joint: &JointPlan) -> Vec<(&'static str, Vec<Vec<i32>>)> {
-    let Some(network) = &joint.network else { return Vec::new() };
-    let weights = network.weights.iter().map(|units| units.iter().flatten().copied().collect());
-    let mut readout: Vec<Vec<i32>> = network.readout.iter().map(|weights| weights.to_vec()).collect();
-    readout.resize(network.units(), vec![0; 2]);
-    vec![("weights", weights.collect()), ("readout", readout)]
 }

@@ -90,6 +90,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
             json!({ "first_word": first_word, "vectors": names })
         })
         .collect();
+    let estimator = plan.estimator.slot().metadata();
     let mut value = json!({
         "name": plan.design.name,
         "generator": format!("hdl-gen {VERSION}"),
@@ -114,8 +115,8 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         },
         "products": products(plan),
         "operand_memory": slots,
-        "search": plan.optimum,
-        "direction": plan.direction,
+        "search": estimator.search,
+        "direction": estimator.direction,
         "memories": plan.resources.memories,
         "predicted": predicted(plan),
         "top": plan.design.name,
@@ -124,11 +125,8 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
     if plan.design.hardware.control {
         value["registers"] = json!(registers::map_path(plan));
     }
-    if let Some(joint) = &plan.joint {
-        // Of the line estimator there is nothing but the cells' number.
-        value["search"] = json!({ "cells": plan.optimum.cells, "elements": plan.optimum.elements });
-        value["direction"] = Value::Null;
-        value["joint"] = json!(joint);
+    if let Some((key, own)) = estimator.own {
+        value[key] = own;
     }
     let mut text = serde_json::to_vec_pretty(&value)?;
     text.push(b'\n');

@@ -7,7 +7,7 @@ use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;
 use crate::plan::reduced::SUM_ROWS;
 
-use super::{FileMap, joint_view, lane_file};
+use super::{FileMap, lane_file};
 
 /// Adds every ROM file of the plan. All lanes' files have the same number of words; shorter ones end in zeros.
 pub fn insert(plan: &Plan, files: &mut FileMap) {
@@ -35,7 +35,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         let offsets = counts.offsets.iter().map(|&offset| u128::from(offset as u64));
         files.insert(format!("rom/{name}_offsets.mem"), hex(offsets, counts.offsets.len(), counts.offset_bits()));
     }
-    for (contents, words) in plan.joint.iter().flat_map(joint_view::roms) {
+    for (contents, words) in plan.estimator.slot().roms() {
         files.insert(format!("rom/{name}_{contents}.mem"), network_file(&words));
     }
 }

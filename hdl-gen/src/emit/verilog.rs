@@ -20,34 +20,6 @@ const DESIGN_MODULES: [(&str, &str); 7] = [
     ("_spmv_collector", include_str!("../../templates/rtl/spmv_collector.v.tera")),
 ];
 
-/// Those of the line estimator.
-const LINE_MODULES: [(&str, &str); 4] = [
-    ("_cean", include_str!("../../templates/rtl/cean.v.tera")),
-    ("_op_line", include_str!("../../templates/rtl/op_line.v.tera")),
-    ("_op_search", include_str!("../../templates/rtl/op_search.v.tera")),
-    ("_op_cell", include_str!("../../templates/rtl/op_cell.v.tera")),
-];
-
-/// Those of the joint estimator.
-const JOINT_MODULES: [(&str, &str); 5] = [
-    ("_cean", include_str!("../../templates/rtl/reduced/joint/cean.v.tera")),
-    ("_op_plane", include_str!("../../templates/rtl/reduced/joint/plane.v.tera")),
-    ("_op_level", include_str!("../../templates/rtl/reduced/joint/level.v.tera")),
-    ("_op_hinges", include_str!("../../templates/rtl/reduced/joint/hinges.v.tera")),
-    ("_op_friction", include_str!("../../templates/rtl/reduced/joint/friction.v.tera")),
-];
-
-/// What the correction looks at, along its way: the scale, the stress at the centroid, the window.
-const LOOK: &str = concat!(
-    include_str!("../../templates/rtl/reduced/joint/look/scale.v.tera"),
-    include_str!("../../templates/rtl/reduced/joint/look/stress.v.tera"),
-    include_str!("../../templates/rtl/reduced/joint/look/window.v.tera"),
-);
-
-/// Those of its correction.
-const CORRECTION_MODULES: [(&str, &str); 2] =
-    [("_op_look", LOOK), ("_op_network", include_str!("../../templates/rtl/reduced/joint/network.v.tera"))];
-
 /// Those of the paper's plan.
 const PAPER_MODULES: [(&str, &str); 4] = [
     ("", include_str!("../../templates/rtl/paper/top.v.tera")),
@@ -103,10 +75,8 @@ pub fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, EmitErro
     let of_plan = if reduced { &REDUCED_MODULES[..] } else { &PAPER_MODULES[..] };
     let field = (reduced && plan.field_words() > 0).then_some(FIELD_MODULE);
     let nonzeros = plan.design.hardware.skip_zeros.then_some(NONZEROS_MODULE);
-    let of_estimator = if plan.joint.is_some() { &JOINT_MODULES[..] } else { &LINE_MODULES };
-    let corrects = plan.joint.as_ref().is_some_and(|joint| joint.network.is_some());
-    let of_correction = if corrects { &CORRECTION_MODULES[..] } else { &[] };
-    let fixed = DESIGN_MODULES.iter().chain(of_estimator).chain(of_correction).chain(of_plan).copied();
+    let of_estimator = plan.estimator.slot().modules();
+    let fixed = DESIGN_MODULES.iter().chain(&of_estimator).chain(of_plan).copied();
     for (suffix, template) in fixed.chain(field).chain(nonzeros) {
         let module = if suffix.is_empty() { registers::core_module(plan) } else { format!("{name}{suffix}") };
         let text = design_module(plan, hash, &module, template, &context)?;

@@ -6,16 +6,16 @@ use golden::design::Filter;
 use serde::Serialize;
 
 use crate::cores::{Multiplier, cordic, float_to_fixed};
+use crate::estimators::line::timing::{DIRECTION_LATENCY, LINE_LATENCY, decision};
+use crate::estimators::line::{
+    CENTROID_FRACTION, HINGE_DROP, LEVEL_SHIFT, LINE_FRACTION, LINE_SUM_BITS, PITCH_FRACTION, SEARCH_STEPS,
+};
 use crate::model::inverse_gain;
 use crate::plan::Plan;
 use crate::plan::counts::input_stages;
-use crate::plan::format::{ACCUMULATOR_BITS, address_bits};
-use crate::plan::optimum::{
-    CENTROID_FRACTION, FRICTION_FRACTION, HINGE_DROP, LEVEL_SHIFT, LINE_FRACTION, LINE_SUM_BITS, PITCH_FRACTION,
-    SEARCH_STEPS,
-};
+use crate::plan::format::{ACCUMULATOR_BITS, FRICTION_FRACTION, address_bits};
 use crate::plan::product::{Block, Vector};
-use crate::plan::timing::{DIRECTION_LATENCY, LINE_LATENCY, OUTPUT_DEPTH, SEQUENCER_TO_LANES, SUMMARY_LATENCY};
+use crate::plan::timing::{OUTPUT_DEPTH, SEQUENCER_TO_LANES, SUMMARY_LATENCY};
 
 use super::counts_view::CountsView;
 use super::expressions::{
@@ -192,7 +192,8 @@ impl View {
         let design = &plan.design;
         let hardware = &design.hardware;
         let schedule = &plan.schedule;
-        let optimum = &plan.optimum;
+        let optimum = plan.estimator.slot().cells();
+        let line = plan.estimator.line();
         let data = hardware.data_bits;
         let taxels = plan.taxels();
         let field_depth = 3 * taxels;
@@ -327,8 +328,8 @@ impl View {
             moment_y: shift_and_add("weight_1", "row_1", address_bits(design.sensor.rows)),
             taxel_floor: plan.thresholds.taxel,
             contact_floor: plan.thresholds.contact,
-            pitch_x: plan.direction.pitch[0],
-            pitch_y: plan.direction.pitch[1],
+            pitch_x: line.map_or(0, |line| line.pitch[0]),
+            pitch_y: line.map_or(0, |line| line.pitch[1]),
             pitch_fraction: PITCH_FRACTION,
             pitch_half: half(PITCH_FRACTION),
             centroid_fraction: CENTROID_FRACTION,
@@ -344,7 +345,7 @@ impl View {
             level_exponent: LEVEL_SHIFT,
             search_steps: SEARCH_STEPS,
             search_latency: plan.timeline.search_cycles,
-            decision_cycles: optimum.decision_cycles(),
+            decision_cycles: decision(optimum),
             cells: optimum.cells,
             elements: optimum.elements,
             cell_address_width: element_width + u32::from(reduced),
@@ -359,7 +360,7 @@ impl View {
             last_count: plan.elements() - (optimum.cells / plan.ways() - 1) * optimum.elements,
             tree_levels: optimum.tree_levels(),
             tree_leaves: 1 << optimum.tree_levels(),
-            margin: match optimum.level_shift {
+            margin: match line.map_or(0, |line| line.level_shift) {
                 shift if shift >= 0 => format!("{{8'd0, stress_sum}} << {shift}"),
                 shift => format!("{{8'd0, stress_sum}} >> {}", -shift),
             },

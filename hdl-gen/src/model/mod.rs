@@ -3,21 +3,17 @@
 //! One packet of input words in, one frame of output words out. Order of summation does not matter: every sum is
 //! exact in its width, by the bounds of the plan.
 
-mod direction;
-mod joint;
-mod optimum;
 mod reduced;
 mod summary;
 #[cfg(test)]
 mod tests;
 
 use crate::cores::{fixed_to_float, float_to_fixed};
+use crate::estimators::{ByPq, Contact, Seen};
 use crate::plan::Plan;
-use crate::plan::format::round_shift;
-use crate::plan::optimum::FRICTION_FRACTION;
+use crate::plan::format::{FRICTION_FRACTION, round_shift};
 use crate::plan::product::{Epilogue, Vector};
 
-use direction::Direction;
 use summary::Summary;
 pub use summary::inverse_gain;
 
@@ -35,9 +31,6 @@ pub const NOT_FINITE: u32 = 1 << 4;
 pub const BAD_LENGTH: u32 = 1 << 5;
 
 pub use crate::plan::SUMMARY_WORDS;
-
-/// `g_pq` or `G_pq` by `[p - 1][q]`.
-type ByPq<T> = [[T; 3]; 3];
 
 /// The vectors of one frame, as the plan's products fill them.
 struct Vectors {
@@ -80,19 +73,6 @@ impl Vectors {
             _ => &mut self.stress,
         }
     }
-}
-
-/// What an estimator finds of a frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Found {
-    /// Friction components, [`FRICTION_FRACTION`] fraction bits.
-    friction: [i64; 2],
-    /// Nothing tells the direction.
-    unknown: bool,
-    /// The optimum lies at the end of its range, or a component was clipped.
-    at_bound: bool,
-    /// An intermediate value was clipped.
-    saturated: bool,
 }
 
 /// The stress of a taxel, and what is to be said of it.
@@ -144,11 +124,10 @@ impl<'plan> Model<'plan> {
         }
         let saturated = converted.iter().any(|stress| stress.saturated);
         let stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
-        let direction = Direction::new(&stress, self.plan);
-        if direction.no_contact {
+        if Contact::new(&stress).stress_sum < self.plan.thresholds.contact {
             return self.blank(counter | NO_CONTACT);
         }
-        self.answer(counter, stress, &direction, saturated)
+        self.answer(counter, &stress, saturated)
     }
 
     /// One input word as stress.
@@ -167,18 +146,18 @@ impl<'plan> Model<'plan> {
         Stress { steps, saturated, not_finite: converted.not_finite }
     }
 
-    fn answer(&self, counter: u32, stress: Vec<i64>, direction: &Direction, saturated: bool) -> Vec<u32> {
+    fn answer(&self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
         match self.plan.formats.folded {
-            Some(folded) => reduced::answer(self.plan, &folded, counter, &stress, direction, saturated),
-            None => self.paper_answer(counter, stress, direction, saturated),
+            Some(folded) => reduced::answer(self.plan, &folded, counter, stress, saturated),
+            None => self.paper_answer(counter, stress, saturated),
         }
     }
 
-    fn paper_answer(&self, counter: u32, stress: Vec<i64>, direction: &Direction, saturated: bool) -> Vec<u32> {
+    fn paper_answer(&self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
         let plan = self.plan;
-        let vectors = self.products(stress);
+        let vectors = self.products(stress.to_vec());
         let sums: ByPq<i64> = std::array::from_fn(|p| std::array::from_fn(|q| vectors.g[p][q].iter().sum()));
-        let (mut words, summary) = scalars(plan, counter, direction, saturated, &sums, &vectors.u);
+        let (mut words, summary) = scalars(plan, counter, stress, saturated, &sums, &vectors.u);
         let force_exponent = plan.formats.g.lsb - FRICTION_FRACTION as i32;
         let [mu_x, mu_y] = summary.friction;
         for taxel in 0..plan.taxels() {
@@ -223,15 +202,14 @@ impl<'plan> Model<'plan> {
 fn scalars(
     plan: &Plan,
     counter: u32,
-    direction: &Direction,
+    stress: &[i64],
     saturated: bool,
     sums: &ByPq<i64>,
     u: &[Vec<i64>; 3],
 ) -> (Vec<u32>, Summary) {
-    let found = match &plan.joint {
-        Some(joint) => joint::friction(plan, joint, u, direction),
-        None => optimum::friction(plan, sums, u, direction),
-    };
+    let (sensor, noise_floor) = (&plan.design.sensor, plan.thresholds.taxel);
+    let found =
+        plan.estimator.slot().find(&Seen { sensor, stress, contact: Contact::new(stress), noise_floor, sums, u });
     let summary = Summary::new(sums, found.friction);
 
     let mut status = counter;

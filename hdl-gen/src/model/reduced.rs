@@ -5,36 +5,26 @@ use std::collections::BTreeMap;
 use golden::parity::{CLASSES, Quads};
 
 use crate::cores::fixed_to_float;
+use crate::estimators::ByPq;
 use crate::plan::Plan;
-use crate::plan::format::round_shift;
-use crate::plan::optimum::FRICTION_FRACTION;
+use crate::plan::format::{FRICTION_FRACTION, round_shift};
 use crate::plan::product::{Coefficients, Epilogue, Product, Vector, mirror};
 use crate::plan::reduced::{
     FOLD_BITS, FoldedFormats, SELECT_MU_X, SELECT_MU_Y, SELECT_ONE, SUM_ROWS, field_shifts, sum_way,
 };
 
-use super::ByPq;
-use super::direction::Direction;
-
 /// One value a quad and class.
 type Folded = [Vec<i64>; CLASSES];
 
 /// The output frame of a frame with contact.
-pub fn answer(
-    plan: &Plan,
-    folded: &FoldedFormats,
-    counter: u32,
-    stress: &[i64],
-    direction: &Direction,
-    saturated: bool,
-) -> Vec<u32> {
+pub fn answer(plan: &Plan, folded: &FoldedFormats, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
     let mut frame = Frame::new(plan, stress);
     let programs =
         |first: usize, end: usize| plan.products.iter().filter(move |product| (first..end).contains(&product.program));
     for product in programs(0, 2) {
         frame.multiply(product, [0, 0], folded);
     }
-    let (mut words, summary) = super::scalars(plan, counter, direction, saturated, &frame.sums, &frame.u);
+    let (mut words, summary) = super::scalars(plan, counter, stress, saturated, &frame.sums, &frame.u);
     for product in programs(2, 3) {
         frame.multiply(product, summary.friction, folded);
     }

@@ -1,6 +1,6 @@
 //! From a checked design to its plan.
 
-use golden::design::{Design, Estimator, MAX_LANES, Outputs, PlanKind};
+use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, PlanKind};
 use golden::filter::{FilterError, FilteredMatrices, nnz_of};
 use golden::matrices::{Matrices, MatrixName};
 use golden::parity::{CLASSES, Quads};
@@ -8,19 +8,18 @@ use golden::parity::{CLASSES, Quads};
 use super::counts::CountsPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::format::{Format, pow2};
-use super::joint::JointPlan;
 use super::layout::OperandLayout;
-use super::optimum::{DirectionPlan, OptimumPlan};
 use super::product::Product;
 use super::quantise::QuantisedMatrix;
 use super::resources::Resources;
 use super::schedule::Schedule;
 use super::timing::Timeline;
 use super::{Condition, Formats, Nnz, Plan, Thresholds, control, paper, reduced};
+use crate::estimators::{self, EstimatorPlan, Given};
 
 /// Plans the hardware of `design`.
 pub(super) fn plan(design: &Design) -> Result<Plan, PlanError> {
-    if design.algorithm.estimator == Estimator::Joint && design.algorithm.plan == PlanKind::Paper {
+    if !estimators::has_hardware(design) {
         return Err(PlanError::JointEstimator);
     }
     let Some(target_us) = design.hardware.target_us else { return Ok(Work::new(design)?.on_lanes(design)) };
@@ -72,23 +71,21 @@ fn fewest_lanes(design: &Design, target_us: f64) -> Result<Lanes, PlanError> {
 
 /// Keys of the design file that would meet the target, the smallest change first; each was planned.
 fn remedies(design: &Design, target_us: f64) -> String {
-    let (line, resultants) = ("estimator = \"line\"", "outputs = \"resultants\"");
-    let changes: &[(&str, Estimator, Outputs)] = match (design.algorithm.estimator, design.algorithm.outputs) {
-        (Estimator::Joint, Outputs::Field) => &[
-            (line, Estimator::Line, Outputs::Field),
-            (resultants, Estimator::Joint, Outputs::Resultants),
-            ("estimator = \"line\" with outputs = \"resultants\"", Estimator::Line, Outputs::Resultants),
-        ],
-        (Estimator::Joint, Outputs::Resultants) => &[(line, Estimator::Line, Outputs::Resultants)],
-        (Estimator::Line, Outputs::Field) => &[(resultants, Estimator::Line, Outputs::Resultants)],
-        (Estimator::Line, Outputs::Resultants) => &[],
-    };
-    let meets = |&&(_, estimator, outputs): &&(&str, Estimator, Outputs)| {
+    let Algorithm { estimator, outputs, .. } = design.algorithm;
+    let resultants = "outputs = \"resultants\"";
+    let fewer = (outputs == Outputs::Field).then_some(Outputs::Resultants);
+    let quicker = estimators::quicker(estimator);
+    let changes = [
+        quicker.map(|(quicker, key)| (key.to_owned(), quicker, outputs)),
+        fewer.map(|fewer| (resultants.to_owned(), estimator, fewer)),
+        quicker.zip(fewer).map(|((quicker, key), fewer)| (format!("{key} with {resultants}"), quicker, fewer)),
+    ];
+    let meets = |&(_, estimator, outputs): &(String, Estimator, Outputs)| {
         let mut changed = design.clone();
         (changed.algorithm.estimator, changed.algorithm.outputs) = (estimator, outputs);
         matches!(fewest_lanes(&changed, target_us), Ok(Lanes::Enough(_)))
     };
-    changes.iter().find(meets).map_or_else(String::new, |(key, ..)| format!("{key}, "))
+    changes.into_iter().flatten().find(meets).map_or_else(String::new, |(key, ..)| format!("{key}, "))
 }
 
 /// What does not depend on the number of lanes.
@@ -141,15 +138,15 @@ impl Work {
         let hardware = &design.hardware;
         let (elements, ways) = (elements(design), ways(design));
         let schedule = Schedule::new(&self.products, &self.matrices, hardware.lanes / ways);
-        let joint = JointPlan::new(design, &self.formats);
-        let optimum = OptimumPlan::new(elements, ways, hardware.lanes, joint.is_some(), &self.formats);
+        let Formats { stress, u, .. } = self.formats;
+        let estimator = EstimatorPlan::new(&Given { design, elements, ways, stress, u });
+        let slot = estimator.slot();
         let operands = OperandLayout::new(&self.products, elements);
         let timeline = match design.algorithm.plan {
-            PlanKind::Paper => Timeline::new(elements, self.counts.is_some(), &self.products, &schedule, &optimum),
-            PlanKind::Reduced => control::timeline(design, &self.products, &schedule, &optimum, joint.as_ref()),
+            PlanKind::Paper => Timeline::new(elements, self.counts.is_some(), &self.products, &schedule, slot),
+            PlanKind::Reduced => control::timeline(design, &self.products, &schedule, slot),
         };
-        let search = (&optimum, joint.as_ref());
-        let resources = Resources::new(design, &self.products, &operands, &schedule, search, self.counts.as_ref());
+        let resources = Resources::new(design, &self.products, &operands, &schedule, slot, self.counts.as_ref());
         Plan {
             design: design.clone(),
             condition: self.condition,
@@ -159,9 +156,7 @@ impl Work {
             formats: self.formats,
             counts: self.counts.clone(),
             thresholds: self.thresholds,
-            direction: DirectionPlan::new(design.sensor.pitch_mm),
-            optimum,
-            joint,
+            estimator,
             operands,
             schedule,
             timeline,

@@ -9,14 +9,13 @@ use std::collections::VecDeque;
 use golden::design::{Design, Optimise, Outputs};
 
 use super::counts::input_stages;
-use super::joint::{self, JointPlan};
-use super::optimum::OptimumPlan;
 use super::product::Product;
 use super::schedule::{Program, Schedule, TURN_GAP};
 use super::timing::{
-    DIRECTION_LATENCY, INTERVAL_FRAMES, LINE_LATENCY, OUTPUT_DEPTH, OUTPUT_SKID, SEQUENCER_TO_LANES, START_TO_ISSUE,
-    SUMMARY_BEATS, SUMMARY_LATENCY, Timeline, middle_interval, search_cycles,
+    INTERVAL_FRAMES, OUTPUT_DEPTH, OUTPUT_SKID, SEQUENCER_TO_LANES, START_TO_ISSUE, SUMMARY_BEATS, SUMMARY_LATENCY,
+    Timeline, middle_interval,
 };
+use crate::estimators::Slot;
 
 /// From a frame's last stress to the frame being ready for the lanes.
 const STRESS_TO_READY: u64 = 4;
@@ -40,14 +39,8 @@ const WEIGHT_PLACES: u64 = super::resources::WEIGHT_BANKS as u64;
 const FOREVER: u64 = 100_000_000;
 
 /// Predicts latency and interval.
-pub(super) fn timeline(
-    design: &Design,
-    products: &[Product],
-    schedule: &Schedule,
-    optimum: &OptimumPlan,
-    joint: Option<&JointPlan>,
-) -> Timeline {
-    let constants = Constants::new(design, products, schedule, optimum, joint);
+pub(super) fn timeline(design: &Design, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Timeline {
+    let constants = Constants::new(design, products, schedule, estimator);
     let ends = |frames| Control::new(&constants).play(frames);
     Timeline {
         latency_cycles: ends(1)[0],
@@ -66,8 +59,8 @@ struct Constants {
     beat_to_stress: u64,
     field: bool,
     interval: bool,
-    /// Whether the estimator is the joint one, which waits for all that it needs at once.
-    joint: bool,
+    /// Of the stage before the search, if there is one: without it the search waits for all that it needs at once.
+    line: Option<u64>,
     /// From the last stress to what `CeAn` knows of the frame.
     direction: u64,
     search: u64,
@@ -79,13 +72,7 @@ struct Constants {
 }
 
 impl Constants {
-    fn new(
-        design: &Design,
-        products: &[Product],
-        schedule: &Schedule,
-        optimum: &OptimumPlan,
-        joint: Option<&JointPlan>,
-    ) -> Self {
+    fn new(design: &Design, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Self {
         let field = design.algorithm.outputs == Outputs::Field;
         let taxels = design.sensor.taxels() as u64;
         let elements = golden::parity::Quads::new(design.sensor.columns, design.sensor.rows).count() as u32;
@@ -100,12 +87,9 @@ impl Constants {
             beat_to_stress: input_stages(design.input.pa_per_count.is_some()),
             field,
             interval: design.hardware.optimise == Optimise::Interval,
-            joint: joint.is_some(),
-            direction: if joint.is_some() { joint::timing::CONTACT_LATENCY } else { DIRECTION_LATENCY },
-            search: match joint {
-                Some(joint) => joint::timing::search(design.sensor.taxels(), joint.network.as_ref(), optimum),
-                None => search_cycles(optimum),
-            },
+            line: estimator.line_latency(),
+            direction: estimator.contact_latency(),
+            search: estimator.search_latency(design.sensor.taxels()),
             start_to_issue: START_TO_ISSUE + schedule.program_gap - TURN_GAP,
             programs: schedule.programs.clone(),
             last_sum: sums.max().unwrap_or(0),
@@ -206,8 +190,8 @@ impl<'a> Control<'a> {
                 left -= 1;
             }
             self.give_turn();
-            if !self.of.joint {
-                self.find_line();
+            if let Some(latency) = self.of.line {
+                self.find_line(latency);
             }
             self.search();
             self.send();
@@ -301,7 +285,7 @@ impl<'a> Control<'a> {
         first_issue + program.last_visit
     }
 
-    fn find_line(&mut self) {
+    fn find_line(&mut self, latency: u64) {
         let there = |times: &VecDeque<u64>, now: u64| times.front().is_some_and(|&cycle| cycle <= now);
         match self.line {
             Line::Idle { from } if from <= self.now && there(&self.sums_there, self.now) => {
@@ -310,7 +294,7 @@ impl<'a> Control<'a> {
             }
             Line::Waits { from } if from <= self.now && there(&self.directions, self.now) => {
                 self.directions.pop_front();
-                self.line = Line::There { from: self.now + LINE_LATENCY };
+                self.line = Line::There { from: self.now + latency };
             }
             _ => {}
         }
@@ -331,14 +315,14 @@ impl<'a> Control<'a> {
         }
         let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
         let line = match self.line {
-            _ if self.of.joint => there(&self.sums_there) && there(&self.directions),
+            _ if self.of.line.is_none() => there(&self.sums_there) && there(&self.directions),
             Line::There { from } => from <= self.now,
             _ => false,
         };
         if line && there(&self.u_there) && self.search_ends.is_none() && self.search_free <= self.now {
             self.u_there.pop_front();
             self.line = Line::Idle { from: self.now + 1 };
-            if self.of.joint {
+            if self.of.line.is_none() {
                 self.sums_there.pop_front();
                 self.directions.pop_front();
             }

@@ -5,6 +5,15 @@ use serde::Serialize;
 /// Width of one SpMV lane's accumulator in bits: that of a DSP48E2.
 pub const ACCUMULATOR_BITS: u32 = 48;
 
+/// Fraction bits of the friction components; one integer bit and a sign go with them.
+pub const FRICTION_FRACTION: u32 = 16;
+
+/// Width of the frame sums `G_pq` and `sum |b|`.
+pub const SUM_BITS: u32 = 40;
+
+/// Most cells of an estimator's search that are worth their adders.
+pub const MOST_CELLS: usize = 32;
+
 /// Most bits that a product drops between accumulator and result. A matrix whose results are so small beside the
 /// others' that it would drop more is stored with fewer bits instead: they would be lost in the rounding.
 pub const MOST_SHIFT: u32 = 40;
@@ -64,6 +73,16 @@ pub const fn round_shift(value: i64, shift: u32) -> i64 {
     if shift == 0 { value } else { (value + (1 << (shift - 1))) >> shift }
 }
 
+/// Four significant digits, or all before the point.
+pub fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude != 0.0 && !(1e-3..1e7).contains(&magnitude) {
+        return format!("{value:.3e}");
+    }
+    let digits_before = if magnitude < 1.0 { 1.0 } else { magnitude.log10().floor() + 1.0 };
+    format!("{value:.*}", (4.0 - digits_before).max(0.0) as usize)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -84,6 +103,14 @@ mod tests {
         assert_eq!(round_shift(-5, 1), -2);
         assert_eq!(round_shift(-7, 2), -2);
         assert_eq!(round_shift(9, 0), 9);
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let cases = [(0.0, "0.000"), (0.5, "0.500"), (7.1989, "7.199"), (52.303, "52.30"), (100_000.0, "100000")];
+        for (value, text) in cases.into_iter().chain([(3.845e10, "3.845e10"), (0.0005, "5.000e-4")]) {
+            assert_eq!(short(value), text);
+        }
     }
 
     #[test]

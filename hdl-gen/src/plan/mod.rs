@@ -9,9 +9,8 @@ pub mod counts;
 mod dealing;
 mod error;
 pub mod format;
-pub mod joint;
 pub mod layout;
-pub mod optimum;
+pub mod memory;
 pub mod paper;
 pub mod product;
 pub mod quantise;
@@ -26,12 +25,11 @@ use golden::matrices::MatrixName;
 use golden::parity::Quads;
 use serde::Serialize;
 
+use crate::estimators::EstimatorPlan;
 use counts::CountsPlan;
 pub use error::PlanError;
 use format::Format;
-use joint::JointPlan;
 use layout::OperandLayout;
-use optimum::{DirectionPlan, OptimumPlan};
 use product::{Block, Product, Vector};
 use quantise::QuantisedMatrix;
 use reduced::FoldedFormats;
@@ -114,12 +112,8 @@ pub struct Plan {
     pub counts: Option<CountsPlan>,
     /// Status thresholds.
     pub thresholds: Thresholds,
-    /// Constants of `CeAn`.
-    pub direction: DirectionPlan,
-    /// Constants of Op.
-    pub optimum: OptimumPlan,
-    /// Constants of the joint estimator, if the design has it.
-    pub joint: Option<JointPlan>,
+    /// The estimator of friction: `CeAn`, and the search in Op.
+    pub estimator: EstimatorPlan,
     /// Vectors in each lane's operand memory.
     pub operands: OperandLayout,
     /// The lanes' work, cycle by cycle.

@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::counts::input_stages;
-use super::optimum::{OptimumPlan, SEARCH_STEPS};
 use super::product::{Product, Vector};
 use super::schedule::{Schedule, Visit};
 use crate::cores::{cordic, divider};
+use crate::estimators::Slot;
 
 /// From the last write of a frame to We's start pulse.
 const WRITE_TO_START: u64 = 2;
@@ -20,10 +20,6 @@ const IDLE_TO_OPEN: u64 = 1;
 const VISIT_TO_SUMS: u64 = 7;
 /// From the frame sums to the line's start, the direction being there.
 const SUMS_TO_LINE: u64 = 1;
-/// From the line's start to its end: products, then both divisions at a time.
-pub const LINE_LATENCY: u64 = 18 + divider::LATENCY as u64;
-/// From the last write of a frame to its direction: two divisions, each for both axes, and two products.
-pub const DIRECTION_LATENCY: u64 = 10 + 2 * (divider::LATENCY as u64 + 1);
 /// From the end of the search to the end of the summary.
 pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY as u64;
 /// From `output_start` to the first beat leaving Op.
@@ -65,6 +61,8 @@ struct Durations {
     beats: u64,
     drained: u64,
     sums: u64,
+    direction: u64,
+    line: u64,
     search: u64,
     overlap: bool,
     beat_to_write: u64,
@@ -82,8 +80,8 @@ struct Frame {
 
 impl Timeline {
     /// Predicts latency and interval.
-    pub fn new(taxels: usize, counts: bool, products: &[Product], schedule: &Schedule, optimum: &OptimumPlan) -> Self {
-        let search = search_cycles(optimum);
+    pub fn new(taxels: usize, counts: bool, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Self {
+        let search = estimator.search_latency(taxels);
         let is_g = |visit: &&Visit| matches!(products[visit.product as usize].result, Vector::G(..));
         let sums = schedule.visits.iter().rfind(is_g).map_or(0, |visit| visit.cycle);
         let first_op_issue = products
@@ -95,6 +93,8 @@ impl Timeline {
             beats: SUMMARY_BEATS + 3 * taxels as u64,
             drained: schedule.drained(),
             sums: sums + VISIT_TO_SUMS,
+            direction: estimator.contact_latency(),
+            line: estimator.line_latency().unwrap_or(0),
             search,
             overlap: false,
             // From a beat at the input to its stress at the operand memories' write port: skid buffer, conversion.
@@ -102,7 +102,7 @@ impl Timeline {
         };
         // Op is busy from drained to the hand-over of its results; the next frame needs it from its first u on,
         // and, for the sums, from its last g on.
-        let line_in_time = durations.sums.max(DIRECTION_LATENCY) + SUMS_TO_LINE + LINE_LATENCY <= durations.drained;
+        let line_in_time = durations.sums.max(durations.direction) + SUMS_TO_LINE + durations.line <= durations.drained;
         let busy = 1 + search + SUMMARY_LATENCY + 2;
         durations.overlap = line_in_time && busy < first_op_issue.min(durations.sums);
         let mut frames: Vec<Frame> = Vec::with_capacity(INTERVAL_FRAMES);
@@ -129,7 +129,7 @@ impl Durations {
         let mut frame = Frame::default();
         let mut open = 1; // the beat leaves the skid buffer
         if let Some(previous) = back(1) {
-            open = open.max(previous.last_write + DIRECTION_LATENCY + IDLE_TO_OPEN);
+            open = open.max(previous.last_write + self.direction + IDLE_TO_OPEN);
         }
         if let Some(older) = back(2) {
             open = open.max(older.drained + 1 + IDLE_TO_OPEN);
@@ -148,21 +148,12 @@ impl Durations {
         }
         let first_issue = frame.start + START_TO_ISSUE;
         frame.drained = first_issue + self.drained;
-        let line_start = (first_issue + self.sums + SUMS_TO_LINE).max(frame.last_write + DIRECTION_LATENCY);
-        let search_start = (frame.drained + 1).max(line_start + LINE_LATENCY);
+        let line_start = (first_issue + self.sums + SUMS_TO_LINE).max(frame.last_write + self.direction);
+        let search_start = (frame.drained + 1).max(line_start + self.line);
         frame.output_start = search_start + self.search + SUMMARY_LATENCY + 1;
         if let Some(previous) = back(1) {
             frame.output_start = frame.output_start.max(previous.output_start + self.beats + 4);
         }
         frame
     }
-}
-
-/// Start to end of the search: both passes, the slope bisections, the floor with a comparison, the level bisections; a
-/// cycle between a bisection and the next evaluation, in which the new middle is computed.
-pub(super) fn search_cycles(optimum: &OptimumPlan) -> u64 {
-    let elements = optimum.elements as u64;
-    let decision = u64::from(optimum.decision_cycles());
-    let steps = u64::from(SEARCH_STEPS);
-    2 * elements + 9 + steps * (elements + decision) + (steps + 1) * (2 * elements + decision) + 2 * steps - 1
 }

@@ -2,9 +2,11 @@
 
 use golden::design::{Correction, Design, Estimator};
 use hdl_gen::emit::emit;
+use hdl_gen::estimators::joint::{
+    CORRECTION_LIMIT, INPUT_BITS, NetworkPlan, POINT_BITS, STRESS_BITS, UNIT_BITS, UNITS,
+};
 use hdl_gen::model::{Model, SATURATED};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::joint::{CORRECTION_LIMIT, INPUT_BITS, NetworkPlan, POINT_BITS, STRESS_BITS, UNIT_BITS, UNITS};
 
 use super::support::{design_text, plan};
 
@@ -25,7 +27,7 @@ fn with_weights(half_window: [usize; 2], units: usize, hidden: i32, output: i32,
 }
 
 fn network(plan: &Plan) -> &NetworkPlan {
-    plan.joint.as_ref().and_then(|joint| joint.network.as_ref()).unwrap()
+    plan.estimator.joint().and_then(|joint| joint.network.as_ref()).unwrap()
 }
 
 #[test]
@@ -72,7 +74,7 @@ fn values_on_the_grid_have_room_for_every_frame() {
     for (size, data_bits) in [([2, 2], 27), ([10, 10], 27), ([10, 10], 16), ([64, 9], 27)] {
         let more = format!("[algorithm]\nestimator = \"joint\"\n[hardware]\ndata_bits = {data_bits}");
         let plan = plan(&design_text("pad", size, [4.0, 3.0], 2.0, &more));
-        let (joint, formats) = (plan.joint.as_ref().unwrap(), &plan.formats);
+        let (joint, formats) = (plan.estimator.joint().unwrap(), &plan.formats);
         // 8 u0 and, at the farthest point and one step beyond, 10 u1 and 11 u2; and the dead zone.
         let point = 29 * formats.u.bound + joint.share(formats.stress.bound);
         assert!(point < 1 << (POINT_BITS - 1), "{size:?}");

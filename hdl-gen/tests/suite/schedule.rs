@@ -1,8 +1,8 @@
 //! The schedule: who computes what, and when.
 
 use golden::parity::CLASSES;
+use hdl_gen::estimators::Cells;
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::optimum::OptimumPlan;
 use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, VISIT_TO_OPERAND, Vector};
 use hdl_gen::plan::quantise::{Entry, QuantisedMatrix};
 use hdl_gen::plan::reduced::SUM_ROWS;
@@ -356,10 +356,10 @@ fn more_lanes_are_never_slower_on_the_papers_sensor() {
             assert!(timeline.latency_cycles < before && timeline.interval_cycles <= timeline.latency_cycles);
             before = timeline.latency_cycles;
             if kind == "paper" {
-                let again = Timeline::new(plan.taxels(), false, &plan.products, &plan.schedule, &plan.optimum);
+                let again = Timeline::new(plan.taxels(), false, &plan.products, &plan.schedule, plan.estimator.slot());
                 assert_eq!(&again, timeline);
             }
-            let OptimumPlan { cells, elements, .. } = plan.optimum;
+            let Cells { cells, elements } = plan.estimator.slot().cells();
             let (groups, of_group) = (cells / plan.ways(), plan.elements());
             assert!(groups * elements >= of_group && (groups - 1) * elements < of_group);
         }

@@ -198,7 +198,7 @@ fn pressing_straight_down_has_no_direction() {
         let taxels = subject.plan.taxels();
         let stress: Vec<f64> = (0..taxels).map(|taxel| -1000.0 - 100.0 * (taxel % 5) as f64).collect();
         // The joint estimator does without the direction, unless nothing presses.
-        let signs = if subject.plan.joint.is_some() { &[-1.0][..] } else { &[1.0, -1.0] };
+        let signs = if subject.plan.estimator.joint().is_some() { &[-1.0][..] } else { &[1.0, -1.0] };
         for sign in signs {
             let words = subject.answer(&encode(&stress.iter().map(|value| sign * value).collect::<Vec<_>>()));
             assert_eq!(words[0], DIRECTION_UNKNOWN, "one sign everywhere");

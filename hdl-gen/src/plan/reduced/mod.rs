@@ -21,8 +21,7 @@ use golden::matrices::Matrices;
 use golden::parity::Quads;
 use golden::reduced::ReducedMatrices;
 
-use super::format::Format;
-use super::optimum::FRICTION_FRACTION;
+use super::format::{FRICTION_FRACTION, Format};
 use super::product::{Product, Vector};
 use super::quantise::QuantisedMatrix;
 use super::{Formats, PlanError};

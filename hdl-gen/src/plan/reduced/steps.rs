@@ -3,8 +3,7 @@
 use golden::parity::CLASSES;
 use golden::reduced::{ReducedMatrices, ReducedName};
 
-use super::super::format::{Format, MOST_SHIFT, largest, round_shift};
-use super::super::optimum::FRICTION_FRACTION;
+use super::super::format::{FRICTION_FRACTION, Format, MOST_SHIFT, largest, round_shift};
 use super::super::product::{Block, Coefficients, Epilogue, Lead, Product, Vector};
 use super::super::quantise::{ANY_LSB, QuantisedMatrix, RealRows};
 use super::super::{Formats, PlanError};

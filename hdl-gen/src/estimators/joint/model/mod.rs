@@ -3,27 +3,23 @@
 mod look;
 mod network;
 
-use crate::cores::divider;
-use crate::plan::Plan;
-use crate::plan::format::{largest, round_shift};
-use crate::plan::joint::{
+use super::super::{Found, Seen};
+use super::{
     CUBIC_FRACTION, DEPTH_BITS, FACTOR_FRACTION, JointPlan, LINEAR_FRACTION, POINTS, SIDE, STEP_SHIFT, WEIGHT_DROP,
 };
-use crate::plan::optimum::FRICTION_FRACTION;
-
-use super::Found;
-use super::direction::Direction;
+use crate::cores::divider;
+use crate::plan::format::{FRICTION_FRACTION, largest, round_shift};
 
 /// Steps of the grid from its middle to its border.
 const REACH: i64 = SIDE as i64 / 2;
 
-/// Finds the friction from the stresses `u_q` of a frame.
-pub fn friction(plan: &Plan, joint: &JointPlan, u: &[Vec<i64>; 3], direction: &Direction) -> Found {
-    let centroid = level_set(joint, &values(joint, u, direction.largest), direction.stress_sum);
+/// Finds the friction of a frame.
+pub fn friction(joint: &JointPlan, seen: &Seen) -> Found {
+    let centroid = level_set(joint, &values(joint, seen.u, seen.contact.largest), seen.contact.stress_sum);
     let mut found = Found { unknown: centroid.unknown, at_bound: centroid.on_border, ..Found::default() };
     let mut correction = [0; 2];
     if let Some(network) = &joint.network {
-        let look = look::take(plan, network, u, centroid.mu, direction.stress_sum);
+        let look = look::take(network, seen, centroid.mu);
         found.saturated = look.saturated && !centroid.unknown;
         correction = network::correction(network, &look.inputs);
     }

@@ -1,12 +1,10 @@
 //! Op's line and search in integers.
 
-use crate::cores::divider;
-use crate::plan::Plan;
-use crate::plan::format::{largest, round_shift};
-use crate::plan::optimum::{FRICTION_FRACTION, HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, SEARCH_STEPS};
-
+use super::super::{ByPq, Found, Seen};
 use super::direction::Direction;
-use super::{ByPq, Found};
+use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, SEARCH_STEPS};
+use crate::cores::divider;
+use crate::plan::format::{FRICTION_FRACTION, largest, round_shift};
 
 /// Ratios of this magnitude (4.0) and more make the line meaningless.
 const WILD: u64 = 1 << (LINE_FRACTION + 2);
@@ -52,9 +50,9 @@ fn ratio(numerator: i64, denominator: i64) -> Option<i64> {
 }
 
 /// Finds the friction on the line of the push.
-pub fn friction(plan: &Plan, sums: &ByPq<i64>, u: &[Vec<i64>; 3], direction: &Direction) -> Found {
-    let line = Line::new(sums, direction);
-    let Optimum { t, at_bound, saturated } = search(&line, u, direction.stress_sum, plan);
+pub fn friction(plan: &LinePlan, seen: &Seen) -> Found {
+    let line = Line::new(seen.sums, &Direction::new(seen, plan.pitch));
+    let Optimum { t, at_bound, saturated } = search(&line, seen, plan.level_shift);
     let exact = round_shift((line.c0 << FRICTION_FRACTION) + line.c1 * t, LINE_FRACTION);
     let dependent = exact.clamp(-largest(18) - 1, largest(18));
     let friction = match (line.unknown, line.x_is_free) {
@@ -77,8 +75,8 @@ pub struct Optimum {
 }
 
 /// Bisects for the minimum of `B(t)` and for both ends of its level set, in the hardware's steps.
-pub fn search(line: &Line, u: &[Vec<i64>; 3], stress_sum: i64, plan: &Plan) -> Optimum {
-    let hinges = Hinges::new(line, u);
+fn search(line: &Line, seen: &Seen, level_shift: i32) -> Optimum {
+    let hinges = Hinges::new(line, seen.u);
     let (mut low, mut high) = (-ONE, ONE);
     for _ in 0..SEARCH_STEPS {
         let middle = (low + high) >> 1;
@@ -90,9 +88,9 @@ pub fn search(line: &Line, u: &[Vec<i64>; 3], stress_sum: i64, plan: &Plan) -> O
     }
     let (at_low, at_high) = (hinges.value(low), hinges.value(high));
     let (lowest, floor) = if at_high < at_low { (high, at_high) } else { (low, at_low) };
-    let margin = match plan.optimum.level_shift {
-        shift if shift >= 0 => stress_sum << shift,
-        shift => stress_sum >> -shift,
+    let margin = match level_shift {
+        shift if shift >= 0 => seen.contact.stress_sum << shift,
+        shift => seen.contact.stress_sum >> -shift,
     };
     let below = |t| hinges.value(t) <= floor + margin;
     let (mut left_out, mut left_in, mut right_in, mut right_out) = (-ONE, lowest, lowest, ONE);

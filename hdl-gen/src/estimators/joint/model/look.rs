@@ -2,11 +2,10 @@
 
 use golden::parity::CLASSES;
 
+use super::super::super::Seen;
+use super::super::{CENTRE_HALF, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS};
 use crate::cores::divider;
-use crate::plan::Plan;
-use crate::plan::format::{largest, round_shift};
-use crate::plan::joint::{CENTRE_HALF, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS};
-use crate::plan::optimum::{FRICTION_FRACTION, SUM_BITS};
+use crate::plan::format::{FRICTION_FRACTION, SUM_BITS, largest, round_shift};
 
 /// Fraction bits of the contact's centre.
 const CENTRE_FRACTION: u32 = FRICTION_FRACTION;
@@ -20,14 +19,14 @@ pub struct Look {
 }
 
 /// Takes the look at the friction `mu`.
-pub fn take(plan: &Plan, network: &NetworkPlan, u: &[Vec<i64>; 3], mu: [i64; 2], stress_sum: i64) -> Look {
-    let sensor = &plan.design.sensor;
-    let (columns, rows) = (sensor.columns, sensor.rows);
+pub fn take(network: &NetworkPlan, seen: &Seen, mu: [i64; 2]) -> Look {
+    let (columns, rows) = (seen.sensor.columns, seen.sensor.rows);
+    let (u, stress_sum) = (seen.u, seen.contact.stress_sum);
     let sum_bits = 64 - stress_sum.leading_zeros();
     let reciprocal = reciprocal(stress_sum, sum_bits);
     let mut saturated = false;
     let mut moments = [0; 3];
-    let mut seen = Vec::with_capacity(columns * rows);
+    let mut shares = Vec::with_capacity(columns * rows);
     for (taxel, ((u0, u1), u2)) in u[0].iter().zip(&u[1]).zip(&u[2]).enumerate() {
         let exact = (u0 << FRICTION_FRACTION) + mu[0] * u1 + mu[1] * u2;
         let normal = round_shift(exact, FRICTION_FRACTION + NORMAL_DROP);
@@ -38,7 +37,7 @@ pub fn take(plan: &Plan, network: &NetworkPlan, u: &[Vec<i64>; 3], mu: [i64; 2],
         let share = (wide >> sum_bits) as i64;
         let clipped = share.clamp(-largest(STRESS_BITS), largest(STRESS_BITS));
         saturated |= clipped != share;
-        seen.push(clipped);
+        shares.push(clipped);
     }
     let [sum, along_x, along_y] = moments;
     // Without compression any place does: there is nothing to see.
@@ -49,7 +48,7 @@ pub fn take(plan: &Plan, network: &NetworkPlan, u: &[Vec<i64>; 3], mu: [i64; 2],
     let centre = centroid.map(|at| (at + CENTRE_HALF) >> CENTRE_FRACTION);
     let at = |[x, y]: [i64; 2]| {
         let inside = (0..columns as i64).contains(&x) && (0..rows as i64).contains(&y);
-        if inside { seen[y as usize * columns + x as usize] } else { 0 }
+        if inside { shares[y as usize * columns + x as usize] } else { 0 }
     };
     let mut inputs = Vec::with_capacity(network.length);
     for y in 0..=network.half_window[1] as i64 {

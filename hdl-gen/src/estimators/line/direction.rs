@@ -1,43 +1,31 @@
-//! `CeAn` in integers: centroids of compression and tension, direction of the push (Eq. 24, as a vector).
+//! `CeAn` of the line estimator in integers: centroids of compression and tension, direction of the push (Eq. 24, as a vector).
 
+use super::super::Seen;
+use super::{CENTROID_FRACTION, PITCH_FRACTION};
 use crate::cores::divider;
-use crate::plan::Plan;
 use crate::plan::format::round_shift;
-use crate::plan::optimum::{CENTROID_FRACTION, PITCH_FRACTION};
 
-/// What `CeAn` tells Op about a frame.
+/// The direction of push of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Direction {
     /// `d = c - t`, in units of the larger pitch with [`CENTROID_FRACTION`] fraction bits.
     pub push: [i64; 2],
-    /// `sum |b|` in steps of the stress.
-    pub stress_sum: i64,
-    /// `max |b|` in steps of the stress.
-    pub largest: i64,
-    /// `sum |b|` lies below the noise floor.
-    pub no_contact: bool,
     /// No taxel above, or none below, the noise floor.
     pub unknown: bool,
 }
 
 impl Direction {
-    pub fn new(stress: &[i64], plan: &Plan) -> Self {
-        let columns = plan.design.sensor.columns;
-        let compression = Moments::of(stress, columns, |value| (value < 0).then_some(-value));
-        let tension = Moments::of(stress, columns, |value| (value >= 0).then_some(value));
+    /// Of the frame `seen`; `pitch` is that of [`super::LinePlan`].
+    pub fn new(seen: &Seen, pitch: [i64; 2]) -> Self {
+        let columns = seen.sensor.columns;
+        let compression = Moments::of(seen.stress, columns, |value| (value < 0).then_some(-value));
+        let tension = Moments::of(seen.stress, columns, |value| (value >= 0).then_some(value));
         let push = std::array::from_fn(|axis| {
             let difference = compression.centroid(axis) - tension.centroid(axis);
-            round_shift(difference * plan.direction.pitch[axis], PITCH_FRACTION)
+            round_shift(difference * pitch[axis], PITCH_FRACTION)
         });
-        let floor = plan.thresholds.taxel;
-        let stress_sum = compression.sum + tension.sum;
-        Self {
-            push,
-            stress_sum,
-            largest: stress.iter().map(|value| value.abs()).max().unwrap_or(0),
-            no_contact: stress_sum < plan.thresholds.contact,
-            unknown: !stress.iter().any(|&value| value > floor) || !stress.iter().any(|&value| value < -floor),
-        }
+        let beyond = |sign: i64| seen.stress.iter().any(|&value| sign * value > seen.noise_floor);
+        Self { push, unknown: !beyond(1) || !beyond(-1) }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use golden::parity::CLASSES;
 
+use super::super::{CORRECTION_LIMIT, NetworkPlan, UNITS};
 use crate::plan::format::round_shift;
-use crate::plan::joint::{CORRECTION_LIMIT, NetworkPlan, UNITS};
 
 /// The correction of both friction components for a look's inputs by word and class.
 pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> [i64; 2] {

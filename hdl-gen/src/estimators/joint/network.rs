@@ -7,8 +7,7 @@ use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_F
 use golden::parity::{CLASSES, sign};
 use serde::Serialize;
 
-use super::super::format::{largest, pow2, round_shift};
-use super::super::optimum::FRICTION_FRACTION;
+use crate::plan::format::{FRICTION_FRACTION, largest, pow2, round_shift};
 
 /// Fraction bits of an input.
 pub const INPUT_FRACTION: u32 = 19;

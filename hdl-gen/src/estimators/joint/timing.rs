@@ -1,6 +1,6 @@
 //! Cycles of the joint estimator's modules: counts of the emitted pipelines, exact.
 
-use super::super::optimum::OptimumPlan;
+use super::super::Cells;
 use super::{NetworkPlan, POINTS};
 use crate::cores::divider;
 
@@ -15,13 +15,13 @@ const DIVISION: u64 = divider::LATENCY as u64 + 1;
 pub const LEVEL: u64 = POINTS as u64 + 15 + 2 * DIVISION;
 
 /// From the start of the walk to its first value: two starts and a point, then the sums.
-pub fn first_value(optimum: &OptimumPlan) -> u64 {
-    3 * optimum.elements as u64 + 3 + u64::from(optimum.tree_levels())
+pub fn first_value(cells: Cells) -> u64 {
+    3 * cells.elements as u64 + 3 + u64::from(cells.tree_levels())
 }
 
 /// From the start of the walk to its last value.
-fn last_value(optimum: &OptimumPlan) -> u64 {
-    first_value(optimum) + (POINTS as u64 - 1) * optimum.elements as u64
+fn last_value(cells: Cells) -> u64 {
+    first_value(cells) + (POINTS as u64 - 1) * cells.elements as u64
 }
 
 /// Centroid to the last input of the network: three cycles a taxel, two divisions, four cycles a place.
@@ -36,7 +36,7 @@ pub fn network(network: &NetworkPlan) -> u64 {
 }
 
 /// Start to end of the search, all modules in turn.
-pub fn search(taxels: usize, network: Option<&NetworkPlan>, optimum: &OptimumPlan) -> u64 {
+pub fn search(taxels: usize, network: Option<&NetworkPlan>, cells: Cells) -> u64 {
     let correction = network.map_or(0, |of| look(taxels, of) + self::network(of));
-    last_value(optimum) + LEVEL + correction + FRICTION
+    last_value(cells) + LEVEL + correction + FRICTION
 }

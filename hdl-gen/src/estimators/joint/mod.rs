@@ -1,0 +1,210 @@
+//! The joint estimator in integers: formats and constants of its grid, its friction and its network.
+//!
+//! The steps are those of `docs/estimators.md`. Stresses `u_q` come as the taxels have them; the values on the grid are
+//! 8 times finer, so that a step of the grid adds `u_1` or `u_2` as they are.
+
+mod model;
+mod network;
+mod report;
+pub mod timing;
+
+use golden::design::Design;
+use golden::estimators::joint::{DEAD_ZONE, LARGEST, LEVEL, REACH, STEP, TIE, WEIGHT_BITS};
+use golden::parity::CLASSES;
+use golden::sensor::Sensor;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot};
+use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
+use crate::plan::memory::{Memory, memory};
+pub use network::{
+    INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS, UNITS,
+};
+
+/// A step of the grid is `2^-STEP_SHIFT`.
+pub const STEP_SHIFT: u32 = 3;
+/// Points of the grid along one axis.
+pub const SIDE: usize = 2 * REACH as usize + 1;
+/// Points of the grid.
+pub const POINTS: usize = SIDE * SIDE;
+/// Both the dead zone and the level are `2^-SHARE_SHIFT`, of the largest and of the sum of |b|.
+const SHARE_SHIFT: i32 = 8;
+/// Width of a taxel's stress on the grid, `8 (u0 - dead zone) + i u1 + j u2`: the last two up to `REACH` times 27 bits.
+pub const POINT_BITS: u32 = 32;
+/// Leading bits of the level that a weight is the square of.
+pub const DEPTH_BITS: u32 = 17;
+/// Bits dropped from the square.
+pub const WEIGHT_DROP: u32 = 8;
+/// Fraction bits of c3.
+pub const CUBIC_FRACTION: u32 = 15;
+/// Fraction bits of c1 and of `|mu|^2`.
+pub const LINEAR_FRACTION: u32 = 22;
+/// Fraction bits of `c1 + c3 |mu|^2`.
+pub const FACTOR_FRACTION: u32 = 21;
+/// The largest correction, as a friction component.
+pub const CORRECTION_LIMIT: i64 = (LARGEST * ONE) as i64;
+/// Left of a pitch from where a contact's centre belongs to the second of two taxels, in the steps of the friction.
+pub const CENTRE_HALF: i64 = (ONE / 2.0 + TIE * ONE) as i64;
+/// One, in the steps of the friction.
+const ONE: f64 = (1_u32 << FRICTION_FRACTION) as f64;
+/// Taxels of a cell are visited anew after this many cycles at the earliest: the depth of its pipeline.
+const LEAST_ELEMENTS: usize = 4;
+
+// The shifts above are those of the solver.
+const _: () = assert!((1.0 / STEP) as u32 == 1 << STEP_SHIFT);
+const _: () = assert!((1.0 / LEVEL) as u32 == 1 << SHARE_SHIFT && (1.0 / DEAD_ZONE) as u32 == 1 << SHARE_SHIFT);
+
+/// Formats and constants of the joint estimator of a design.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JointPlan {
+    /// Cells of the grid's values. They have adders only, and so their number does not follow the lanes'.
+    #[serde(skip)]
+    pub cells: Cells,
+    /// Bits dropped from `max |b|` for the dead zone, and from `sum |b|` for the level above the least value, both in
+    /// steps of the grid's values.
+    pub share_shift: u32,
+    /// Width of a value on the grid, unsigned: a sum over the taxels.
+    pub value_bits: u32,
+    /// `c1` of the friction, [`LINEAR_FRACTION`] fraction bits.
+    pub linear: i64,
+    /// `c3` of the friction, [`CUBIC_FRACTION`] fraction bits.
+    pub cubic: i64,
+    /// The correction, if the design has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub network: Option<NetworkPlan>,
+}
+
+impl JointPlan {
+    /// As many cells as are worth their adders.
+    pub fn new(given: &Given) -> Self {
+        let per_cell = given.elements.div_ceil(MOST_CELLS / given.ways).next_power_of_two().max(LEAST_ELEMENTS);
+        let constants = &given.design.algorithm.joint;
+        let [c1, c3] = constants.tangential;
+        let finer = given.stress.lsb - given.u.lsb;
+        let fixed = |value: f64, fraction: u32| (value * pow2(fraction as i32)).round() as i64;
+        Self {
+            cells: Cells::new(given.elements, given.ways, per_cell),
+            // `u` holds the stress itself and more: its steps are hardly ever finer, and never by a factor of 8.
+            share_shift: (SHARE_SHIFT - STEP_SHIFT as i32 - finer).max(0) as u32,
+            value_bits: POINT_BITS - 1 + address_bits(given.design.sensor.taxels()),
+            linear: fixed(c1, LINEAR_FRACTION),
+            cubic: fixed(c3, CUBIC_FRACTION),
+            network: constants.correction.as_ref().map(|correction| NetworkPlan::new(correction, -finer)),
+        }
+    }
+
+    /// `value * 2^-share_shift`, rounded down.
+    pub fn share(&self, value: i64) -> i64 {
+        value >> self.share_shift
+    }
+}
+
+const PLANE: &str = "plane";
+const LOOK: &str = "look";
+const NETWORK: &str = "network";
+
+impl Slot for JointPlan {
+    fn cells(&self) -> Cells {
+        self.cells
+    }
+
+    fn contact_latency(&self) -> u64 {
+        timing::CONTACT_LATENCY
+    }
+
+    fn line_latency(&self) -> Option<u64> {
+        None
+    }
+
+    fn search_latency(&self, taxels: usize) -> u64 {
+        timing::search(taxels, self.network.as_ref(), self.cells)
+    }
+
+    fn contact_block(&self) -> BlockCost {
+        BlockCost { name: "CeAn", modules: &["cean"], dsp: 0 }
+    }
+
+    fn search_blocks(&self) -> Vec<BlockCost> {
+        let network = self.network.is_some();
+        // The square of a depth and both moments; the stress of a taxel and its share of all; the hidden units' four
+        // classes and both components; one after the other.
+        vec![
+            BlockCost { name: PLANE, modules: &["op_plane", "op_level"], dsp: 3 },
+            BlockCost { name: LOOK, modules: &["op_look"], dsp: if network { 2 } else { 0 } },
+            BlockCost { name: NETWORK, modules: &["op_network"], dsp: if network { CLASSES * UNITS + 2 } else { 0 } },
+            BlockCost { name: "friction", modules: &["op_friction"], dsp: 1 },
+        ]
+    }
+
+    fn memories(&self, sensor: &Sensor) -> Vec<Memory> {
+        let mut memories = vec![memory(PLANE, "grid values", 1, POINTS, self.value_bits, false)];
+        if let Some(network) = &self.network {
+            let seen = sensor.rows << address_bits(sensor.columns);
+            let classes = CLASSES as u32;
+            memories.push(memory(LOOK, "look", 1, seen, STRESS_BITS, false));
+            memories.push(memory(NETWORK, "look, folded", 1, network.length, classes * INPUT_BITS, false));
+            let width = WEIGHT_BITS * classes * UNITS as u32;
+            memories.push(memory(NETWORK, "hinge weights", 1, network.weights.len(), width, true));
+            memories.push(memory(NETWORK, "readout", 1, network.units(), 2 * WEIGHT_BITS, true));
+        }
+        memories
+    }
+
+    fn roms(&self) -> Vec<(&'static str, Vec<Vec<i32>>)> {
+        let Some(network) = &self.network else { return Vec::new() };
+        let weights = network.weights.iter().map(|units| units.iter().flatten().copied().collect());
+        let mut readout: Vec<Vec<i32>> = network.readout.iter().map(|weights| weights.to_vec()).collect();
+        readout.resize(network.units(), vec![0; 2]);
+        vec![("weights", weights.collect()), ("readout", readout)]
+    }
+
+    fn modules(&self) -> Vec<(&'static str, &'static str)> {
+        let mut modules = MODULES.to_vec();
+        if self.network.is_some() {
+            modules.extend(CORRECTION_MODULES);
+        }
+        modules
+    }
+
+    fn metadata(&self) -> Metadata {
+        let Cells { cells, elements } = self.cells;
+        Metadata {
+            search: json!({ "cells": cells, "elements": elements }),
+            direction: Value::Null,
+            own: Some(("joint", json!(self))),
+        }
+    }
+
+    fn report(&self, design: &Design) -> String {
+        report::report(self, design)
+    }
+
+    fn kernel_advice(&self, design: &Design, indent: &str) -> String {
+        report::kernel_advice(design, indent)
+    }
+
+    fn find(&self, seen: &Seen) -> Found {
+        model::friction(self, seen)
+    }
+}
+
+/// `(suffix, template)` of the modules that there are with and without a correction.
+const MODULES: [(&str, &str); 5] = [
+    ("_cean", include_str!("../../../templates/rtl/reduced/joint/cean.v.tera")),
+    ("_op_plane", include_str!("../../../templates/rtl/reduced/joint/plane.v.tera")),
+    ("_op_level", include_str!("../../../templates/rtl/reduced/joint/level.v.tera")),
+    ("_op_hinges", include_str!("../../../templates/rtl/reduced/joint/hinges.v.tera")),
+    ("_op_friction", include_str!("../../../templates/rtl/reduced/joint/friction.v.tera")),
+];
+
+/// What the correction looks at, along its way: the scale, the stress at the centroid, the window.
+const LOOK_MODULE: &str = concat!(
+    include_str!("../../../templates/rtl/reduced/joint/look/scale.v.tera"),
+    include_str!("../../../templates/rtl/reduced/joint/look/stress.v.tera"),
+    include_str!("../../../templates/rtl/reduced/joint/look/window.v.tera"),
+);
+
+/// Those of the correction.
+const CORRECTION_MODULES: [(&str, &str); 2] =
+    [("_op_look", LOOK_MODULE), ("_op_network", include_str!("../../../templates/rtl/reduced/joint/network.v.tera"))];

@@ -1,0 +1,47 @@
+//! The joint estimator in the words of `hdl-gen inspect`.
+
+use golden::design::{Correction, Design, Kernel};
+use golden::kernel::gain;
+use golden::parity::CLASSES;
+
+use super::{JointPlan, POINTS, UNITS};
+use crate::plan::format::short;
+
+/// Share by which the gain may differ from what the kernel lacks under a wide contact.
+const STALE_GAIN: f64 = 0.1;
+
+/// What the estimator is made of.
+pub fn report(plan: &JointPlan, design: &Design) -> String {
+    let constants = &design.algorithm.joint;
+    let [c1, c3] = constants.tangential;
+    let correction = match (&plan.network, &constants.correction) {
+        (Some(network), Some(correction)) => format!(
+            "{} hidden units, {} inputs, weights in steps of 2^{}; {} passes of {} words, {} MACs",
+            correction.hidden.len(),
+            Correction::inputs(correction.half_window),
+            network.weight_lsb,
+            network.passes,
+            network.length,
+            CLASSES * UNITS
+        ),
+        _ => "none: `golden calibrate` trains one".to_owned(),
+    };
+    format!(
+        "\nFriction, joint estimator\n  walk         {POINTS} points, {} taxels a cell; gain {} (in the matrices)\n  \
+         friction     c1 {c1:.4}, c3 {c3:.4}\n  correction   {correction}\n",
+        plan.cells.elements,
+        short(constants.gain)
+    )
+}
+
+/// Forces are divided by the gain, which should be the kernel's.
+pub fn kernel_advice(design: &Design, indent: &str) -> String {
+    let algorithm = &design.algorithm;
+    let (wants, has) = (gain(&design.sensor, algorithm.kernel), algorithm.joint.gain);
+    let verdict = match (algorithm.kernel, (has / wants - 1.0).abs() > STALE_GAIN) {
+        (_, true) => "run golden calibrate, or F_z is off by as much as they differ",
+        (Kernel::Point, false) => "so F_z is right, and mu comes out better than with \"cell\"",
+        (Kernel::Cell, false) => "so F_z is right; mu comes out better with \"point\", calibrated anew",
+    };
+    format!("{}: wants a gain of {wants:.3}, the joint estimator has {has:.3}:\n{indent}{verdict}", algorithm.kernel)
+}

@@ -1,0 +1,111 @@
+//! The estimator of the paper: the direction of push allows a line in the (`mu_x`, `mu_y`) plane, and on it the optimum
+//! is searched (Eqs. 20 to 24).
+
+mod direction;
+mod report;
+mod search;
+pub mod timing;
+
+use golden::design::Design;
+use serde_json::json;
+
+use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot};
+use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS};
+
+/// Fraction bits of a centroid, in units of the taxel index.
+pub const CENTROID_FRACTION: u32 = 20;
+/// Fraction bits of the pitch ratios that turn index differences into lengths.
+pub const PITCH_FRACTION: u32 = 16;
+/// Fraction bits of the line's offset c0 and slope c1; two integer bits and a sign go with them.
+pub const LINE_FRACTION: u32 = 15;
+/// Significant bits of the sums `G_pq` in the line equation.
+pub const LINE_SUM_BITS: u32 = 17;
+/// Bits dropped from `alpha + t beta` before summing, where `B(t)` is wanted.
+pub const HINGE_DROP: u32 = 8;
+/// The level set lies below `B_min + 2^-LEVEL_SHIFT sum |b|`.
+pub const LEVEL_SHIFT: i32 = 9;
+/// Bisections of an interval of the search variable.
+pub const SEARCH_STEPS: u32 = 17;
+
+/// Constants of the direction of push and of the search on its line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LinePlan {
+    /// Evaluation cells, one multiplier each.
+    pub cells: Cells,
+    /// Left shift (negative: right) that turns `sum |b|` into the level above `B_min`.
+    pub level_shift: i32,
+    /// Pitch in x and y over the larger of the two, with [`PITCH_FRACTION`] fraction bits.
+    pub pitch: [i64; 2],
+}
+
+impl LinePlan {
+    /// As many cells as lanes, at most [`MOST_CELLS`], with a power of two of taxels each.
+    pub fn new(given: &Given) -> Self {
+        let groups = (given.design.hardware.lanes.min(MOST_CELLS) / given.ways).max(1);
+        let per_cell = given.elements.div_ceil(groups).next_power_of_two();
+        let hinge_lsb = given.u.lsb - FRICTION_FRACTION as i32 + HINGE_DROP as i32;
+        let pitch_mm = given.design.sensor.pitch_mm;
+        let larger = pitch_mm[0].max(pitch_mm[1]);
+        let one = f64::from(1_u32 << PITCH_FRACTION);
+        Self {
+            cells: Cells::new(given.elements, given.ways, per_cell),
+            level_shift: given.stress.lsb - LEVEL_SHIFT - hinge_lsb,
+            pitch: pitch_mm.map(|pitch| (pitch / larger * one).round() as i64),
+        }
+    }
+}
+
+impl Slot for LinePlan {
+    fn cells(&self) -> Cells {
+        self.cells
+    }
+
+    fn contact_latency(&self) -> u64 {
+        timing::DIRECTION_LATENCY
+    }
+
+    fn line_latency(&self) -> Option<u64> {
+        Some(timing::LINE_LATENCY)
+    }
+
+    fn search_latency(&self, _taxels: usize) -> u64 {
+        timing::search(self.cells)
+    }
+
+    fn contact_block(&self) -> BlockCost {
+        BlockCost { name: "CeAn", modules: &["cean"], dsp: 1 }
+    }
+
+    fn search_blocks(&self) -> Vec<BlockCost> {
+        vec![
+            BlockCost { name: "line", modules: &["op_line"], dsp: 1 },
+            BlockCost { name: "cells", modules: &["op_search"], dsp: self.cells.cells },
+        ]
+    }
+
+    fn modules(&self) -> Vec<(&'static str, &'static str)> {
+        vec![
+            ("_cean", include_str!("../../../templates/rtl/cean.v.tera")),
+            ("_op_line", include_str!("../../../templates/rtl/op_line.v.tera")),
+            ("_op_search", include_str!("../../../templates/rtl/op_search.v.tera")),
+            ("_op_cell", include_str!("../../../templates/rtl/op_cell.v.tera")),
+        ]
+    }
+
+    fn metadata(&self) -> Metadata {
+        let Cells { cells, elements } = self.cells;
+        Metadata {
+            search: json!({ "cells": cells, "elements": elements, "level_shift": self.level_shift }),
+            direction: json!({ "pitch": self.pitch }),
+            own: None,
+        }
+    }
+
+    fn kernel_advice(&self, design: &Design, indent: &str) -> String {
+        report::kernel_advice(design, indent)
+    }
+
+    fn find(&self, seen: &Seen) -> Found {
+        search::friction(self, seen)
+    }
+}

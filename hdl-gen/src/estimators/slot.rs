@@ -1,0 +1,167 @@
+//! What every estimator tells the rest of the generator, and what it is given.
+
+use golden::design::Design;
+use golden::sensor::Sensor;
+use serde_json::Value;
+
+use crate::plan::format::{Format, address_bits};
+use crate::plan::memory::Memory;
+
+/// `g_pq` or `G_pq` by `[p - 1][q]`.
+pub type ByPq<T> = [[T; 3]; 3];
+
+/// What an estimator's constants are made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<'a> {
+    /// The checked design.
+    pub design: &'a Design,
+    /// Elements of a vector as the lanes see it: taxels, or quads of the folded grid.
+    pub elements: usize,
+    /// Values of an element: 1, or the members of a quad, which arrive at a time.
+    pub ways: usize,
+    /// Format of a taxel's stress.
+    pub stress: Format,
+    /// Format of a taxel's `u_q`.
+    pub u: Format,
+}
+
+/// What an estimator sees of a frame, in steps of the plan's formats.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// The sensor.
+    pub sensor: &'a Sensor,
+    /// Stress of each taxel.
+    pub stress: &'a [i64],
+    /// What is known of all of it.
+    pub contact: Contact,
+    /// A taxel counts as compressed or tensile beyond this magnitude of stress.
+    pub noise_floor: i64,
+    /// Sums `G_pq`.
+    pub sums: &'a ByPq<i64>,
+    /// `u_q` of each taxel.
+    pub u: &'a [Vec<i64>; 3],
+}
+
+/// The stress of a frame in two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Contact {
+    /// `sum |b|`.
+    pub stress_sum: i64,
+    /// `max |b|`.
+    pub largest: i64,
+}
+
+impl Contact {
+    /// Of the stress of each taxel.
+    pub fn new(stress: &[i64]) -> Self {
+        let magnitudes = || stress.iter().map(|value| value.abs());
+        Self { stress_sum: magnitudes().sum(), largest: magnitudes().max().unwrap_or(0) }
+    }
+}
+
+/// What an estimator finds of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Found {
+    /// Friction components, [`crate::plan::format::FRICTION_FRACTION`] fraction bits.
+    pub friction: [i64; 2],
+    /// Nothing tells the direction.
+    pub unknown: bool,
+    /// The optimum lies at the end of its range, or a component was clipped.
+    pub at_bound: bool,
+    /// An intermediate value was clipped.
+    pub saturated: bool,
+}
+
+/// The cells that hold a frame's `u_q` for the search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cells {
+    /// How many.
+    pub cells: usize,
+    /// Taxels per cell, a power of two; the last cells may have fewer.
+    pub elements: usize,
+}
+
+impl Cells {
+    /// Of `per_cell` taxels each. Where `ways` taxels arrive at a time (the members of a quad, of which there are
+    /// `elements`), they go to as many cells.
+    pub fn new(elements: usize, ways: usize, per_cell: usize) -> Self {
+        Self { cells: ways * elements.div_ceil(per_cell), elements: per_cell }
+    }
+
+    /// Levels of the adder tree over the cells.
+    pub fn tree_levels(&self) -> u32 {
+        if self.cells == 1 { 0 } else { address_bits(self.cells) }
+    }
+}
+
+/// A block and its multipliers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BlockCost {
+    /// What the block is called.
+    pub name: &'static str,
+    /// Its modules: the emitted module is `NAME_` and this.
+    pub modules: &'static [&'static str],
+    /// DSP48E2: one for each product that it forms in a cycle.
+    pub dsp: usize,
+}
+
+/// An estimator's part of `metadata.json`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Metadata {
+    /// The search.
+    pub search: Value,
+    /// The direction of push.
+    pub direction: Value,
+    /// Whatever else there is of it, and the key it stands under.
+    pub own: Option<(&'static str, Value)>,
+}
+
+/// An estimator as the rest of the generator knows it. Latencies are counts of registers in the emitted modules.
+pub trait Slot {
+    /// The cells of its search.
+    fn cells(&self) -> Cells;
+
+    /// Cycles from the last stress of a frame to what `CeAn` knows of it.
+    fn contact_latency(&self) -> u64;
+
+    /// Cycles from the sums and the contact being there to the start of the search, in a stage of its own; `None` where
+    /// the search waits for all that it needs at once.
+    fn line_latency(&self) -> Option<u64>;
+
+    /// Start to end of the search, in cycles.
+    fn search_latency(&self, taxels: usize) -> u64;
+
+    /// `CeAn`.
+    fn contact_block(&self) -> BlockCost;
+
+    /// The blocks of the search, in the data's order.
+    fn search_blocks(&self) -> Vec<BlockCost>;
+
+    /// Its memories.
+    fn memories(&self, _sensor: &Sensor) -> Vec<Memory> {
+        Vec::new()
+    }
+
+    /// `(contents, words)` of its ROM files: words of several weights of [`golden::estimators::joint::WEIGHT_BITS`].
+    fn roms(&self) -> Vec<(&'static str, Vec<Vec<i32>>)> {
+        Vec::new()
+    }
+
+    /// `(suffix, template)` of its modules.
+    fn modules(&self) -> Vec<(&'static str, &'static str)>;
+
+    /// What `metadata.json` says of it.
+    fn metadata(&self) -> Metadata;
+
+    /// What `hdl-gen inspect` says of it: a paragraph, or nothing.
+    fn report(&self, _design: &Design) -> String {
+        String::new()
+    }
+
+    /// What the load kernel of the design makes of a wide contact, and when the other one is better; further lines
+    /// begin with `indent`.
+    fn kernel_advice(&self, design: &Design, indent: &str) -> String;
+
+    /// Its steps in integers, bit for bit those of the hardware.
+    fn find(&self, seen: &Seen) -> Found;
+}
