@@ -18,8 +18,6 @@ module sptfra_estimator_joint #(
     parameter integer WAYS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Bits of the number of a quad
-    parameter integer ROW_WIDTH = 5,
     // Cells of the walk, as many for each way
     parameter integer CELLS = 28,
     // Taxels of a cell, a power of two, at least 4
@@ -54,7 +52,10 @@ module sptfra_estimator_joint #(
     // ... from there to the correction
     parameter integer EXPECTED_NETWORK_LATENCY = 0,
     // ... from the centroid or the correction to the friction
-    parameter integer EXPECTED_FRICTION_LATENCY = 0
+    parameter integer EXPECTED_FRICTION_LATENCY = 0,
+    // Derived: quads, and the bits of their number
+    parameter integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter integer ROW_WIDTH = (QUADS > 4) ? $clog2(QUADS) : 2
 ) (
     input  wire clock,
     input  wire reset,

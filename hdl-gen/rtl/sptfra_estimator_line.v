@@ -18,8 +18,6 @@ module sptfra_estimator_line #(
     parameter integer WAYS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Bits of the number of a quad or taxel
-    parameter integer ROW_WIDTH = 5,
     // Cells of the search, a multiplier each; as many for each way
     parameter integer CELLS = 16,
     // Taxels of a cell, a power of two
@@ -29,7 +27,10 @@ module sptfra_estimator_line #(
     // From the direction to the line, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LINE_LATENCY = 0,
     // From the start of a search to its end, checked in simulation; 0: unchecked
-    parameter integer EXPECTED_SEARCH_LATENCY = 0
+    parameter integer EXPECTED_SEARCH_LATENCY = 0,
+    // Derived: quads, or taxels, and the bits of their number
+    parameter integer ELEMENTS = (WAYS == 4) ? ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2) : COLUMNS * ROWS,
+    parameter integer ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2
 ) (
     input  wire clock,
     input  wire reset,

@@ -3,6 +3,9 @@
 //! The Verilog of a block is the same in every design (`hdl-gen/rtl`). Its file here states the parameters of its
 //! instance, and whatever else the plan has to know of it: latencies, memories, multipliers.
 
+pub mod cean;
+pub mod op;
+
 use std::fmt::Write;
 
 use serde::{Serialize, Serializer};
@@ -26,6 +29,12 @@ impl Parameters {
     /// A count or a width.
     #[must_use]
     pub fn count(self, name: &'static str, value: usize) -> Self {
+        self.expression(name, value.to_string())
+    }
+
+    /// A latency.
+    #[must_use]
+    pub fn cycles(self, name: &'static str, value: u64) -> Self {
         self.expression(name, value.to_string())
     }
 

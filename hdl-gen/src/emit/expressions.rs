@@ -48,12 +48,6 @@ pub(super) fn shift_and_add(value: &str, index: &str, bits: u32) -> String {
     (0..bits).map(term).collect::<Vec<_>>().join("\n        + ")
 }
 
-/// `factor * index` as a sum of 16 bits, one term for each bit of the index.
-pub(super) fn shift_and_add_of(factor: usize, index: &str, bits: u32) -> String {
-    let term = |bit| format!("({index}[{bit}] ? 16'd{} : 16'd0)", factor << bit);
-    (0..bits).map(term).collect::<Vec<_>>().join(" + ")
-}
-
 /// The bits of `signal`, whose highest is `top`, that are not from `high` to `low`: `, signal[..], signal[..]`.
 pub(super) fn bits_outside(signal: &str, top: u32, high: u32, low: u32) -> String {
     let above = if high < top { format!(", {signal}[{top}:{}]", high + 1) } else { String::new() };

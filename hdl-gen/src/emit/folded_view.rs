@@ -213,11 +213,6 @@ impl FoldedView {
             u_member_extended: sign_extend("u_member", data, 27),
         }
     }
-
-    /// Exponent of a taxel's force as the output puts it together.
-    pub fn f_lsb(plan: &Plan) -> Option<i32> {
-        plan.formats.folded.map(|folded| field_shifts(&plan.formats, &folded).2)
-    }
 }
 
 /// A number of another width: cut, or extended by zeros.

@@ -5,7 +5,6 @@ mod counts_view;
 mod expressions;
 mod flows;
 mod folded_view;
-mod joint_view;
 mod mcsr;
 mod metadata;
 mod product_view;

@@ -7,7 +7,37 @@ macro_rules! library {
     ($($module:literal),* $(,)?) => { [$(($module, include_str!(concat!("../../rtl/", $module, ".v")))),*] };
 }
 
-const LIBRARY: [(&str, &str); 3] = library!["sptfra_butterfly", "sptfra_ram", "sptfra_rom"];
+const LIBRARY: [(&str, &str); 29] = library![
+    "sptfra_adder_tree",
+    "sptfra_butterfly",
+    "sptfra_cean",
+    "sptfra_check_latency",
+    "sptfra_direction",
+    "sptfra_estimator_joint",
+    "sptfra_estimator_line",
+    "sptfra_friction",
+    "sptfra_grid_centroid",
+    "sptfra_leading_bit",
+    "sptfra_level_set",
+    "sptfra_line",
+    "sptfra_look",
+    "sptfra_look_scale",
+    "sptfra_look_stress",
+    "sptfra_look_window",
+    "sptfra_members",
+    "sptfra_network",
+    "sptfra_op",
+    "sptfra_output",
+    "sptfra_plane",
+    "sptfra_plane_cell",
+    "sptfra_ram",
+    "sptfra_rom",
+    "sptfra_search",
+    "sptfra_search_cell",
+    "sptfra_search_cells",
+    "sptfra_summary",
+    "sptfra_times_index",
+];
 
 /// The modules of the library that `texts` instantiate, and those that these do, but for what stands only in a
 /// `generate if` that the design does not take, which `without` names: every tool passes over a module that is missing

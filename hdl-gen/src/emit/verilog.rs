@@ -10,10 +10,8 @@ use super::{EmitError, VERSION};
 use super::{registers, rtl};
 
 /// `(suffix, template)` of the modules that carry the design's name, in either plan.
-const DESIGN_MODULES: [(&str, &str); 7] = [
+const DESIGN_MODULES: [(&str, &str); 5] = [
     ("_bz", include_str!("../../templates/rtl/bz.v.tera")),
-    ("_op_summary", include_str!("../../templates/rtl/op_summary.v.tera")),
-    ("_op_output", include_str!("../../templates/rtl/op_output.v.tera")),
     ("_spmv_array", include_str!("../../templates/rtl/spmv_array.v.tera")),
     ("_spmv_sequencer", include_str!("../../templates/rtl/spmv_sequencer.v.tera")),
     ("_spmv_lane", include_str!("../../templates/rtl/spmv_lane.v.tera")),
@@ -21,11 +19,17 @@ const DESIGN_MODULES: [(&str, &str); 7] = [
 ];
 
 /// Those of the paper's plan.
-const PAPER_MODULES: [(&str, &str); 4] = [
+const PAPER_MODULES: [(&str, &str); 10] = [
     ("", include_str!("../../templates/rtl/paper/top.v.tera")),
     ("_we", include_str!("../../templates/rtl/paper/we.v.tera")),
     ("_co", include_str!("../../templates/rtl/paper/co.v.tera")),
     ("_op", include_str!("../../templates/rtl/paper/op.v.tera")),
+    ("_op_summary", include_str!("../../templates/rtl/op_summary.v.tera")),
+    ("_op_output", include_str!("../../templates/rtl/op_output.v.tera")),
+    ("_cean", include_str!("../../templates/rtl/cean.v.tera")),
+    ("_op_line", include_str!("../../templates/rtl/op_line.v.tera")),
+    ("_op_search", include_str!("../../templates/rtl/op_search.v.tera")),
+    ("_op_cell", include_str!("../../templates/rtl/op_cell.v.tera")),
 ];
 
 /// The top of the reduced plan, along the data's way.
@@ -36,23 +40,14 @@ const REDUCED_TOP: &str = concat!(
     include_str!("../../templates/rtl/reduced/top/output.v.tera"),
 );
 
-/// Op of the reduced plan, along a frame's way: the search is the joint estimator's or the line's.
-const REDUCED_OP: &str = concat!(
-    include_str!("../../templates/rtl/reduced/op/ports.v.tera"),
-    include_str!("../../templates/rtl/reduced/op/plane.v.tera"),
-    include_str!("../../templates/rtl/reduced/op/line.v.tera"),
-    include_str!("../../templates/rtl/reduced/op/answer.v.tera"),
-);
-
 /// Those of the reduced plan.
-const REDUCED_MODULES: [(&str, &str); 7] = [
+const REDUCED_MODULES: [(&str, &str); 6] = [
     ("", REDUCED_TOP),
     ("_fold", include_str!("../../templates/rtl/reduced/fold.v.tera")),
     ("_turns", include_str!("../../templates/rtl/reduced/turns.v.tera")),
     ("_unfold", include_str!("../../templates/rtl/reduced/unfold.v.tera")),
     ("_we", include_str!("../../templates/rtl/reduced/we.v.tera")),
     ("_co", include_str!("../../templates/rtl/reduced/co.v.tera")),
-    ("_op", REDUCED_OP),
 ];
 
 /// The field memory of the reduced plan.
@@ -75,17 +70,26 @@ pub fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, EmitErro
     let of_plan = if reduced { &REDUCED_MODULES[..] } else { &PAPER_MODULES[..] };
     let field = (reduced && plan.field_words() > 0).then_some(FIELD_MODULE);
     let nonzeros = plan.design.hardware.skip_zeros.then_some(NONZEROS_MODULE);
-    let of_estimator = plan.estimator.slot().modules();
-    let fixed = DESIGN_MODULES.iter().chain(&of_estimator).chain(of_plan).copied();
+    let fixed = DESIGN_MODULES.iter().chain(of_plan).copied();
     for (suffix, template) in fixed.chain(field).chain(nonzeros) {
         let module = if suffix.is_empty() { registers::core_module(plan) } else { format!("{name}{suffix}") };
         let text = design_module(plan, hash, &module, template, &context)?;
         modules.push((module, text));
     }
     modules.extend(registers::render(plan, hash)?);
-    let library = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &[]);
+    let library = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &without(plan));
     modules.extend(library.into_iter().map(|(module, text)| (module.to_owned(), text.to_owned())));
     Ok(modules)
+}
+
+/// Modules of the library that stand only in a `generate if` that the design does not take.
+fn without(plan: &Plan) -> Vec<&'static str> {
+    let slot = plan.estimator.slot();
+    let mut without = slot.without();
+    if slot.pitch().is_none() {
+        without.push("sptfra_direction");
+    }
+    without
 }
 
 /// The text of one module of the design, with a comment on where it comes from.

@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use golden::design::Filter;
 use serde::Serialize;
 
+use crate::blocks::op::{OUTPUT_LATENCY, SUMMARY_LATENCY};
+use crate::blocks::{Parameters, cean, op};
 use crate::cores::{Multiplier, cordic, float_to_fixed};
 use crate::estimators::line::timing::{DIRECTION_LATENCY, LINE_LATENCY, decision};
 use crate::estimators::line::{
@@ -15,14 +17,13 @@ use crate::plan::Plan;
 use crate::plan::counts::input_stages;
 use crate::plan::format::{ACCUMULATOR_BITS, FRICTION_FRACTION, address_bits};
 use crate::plan::product::{Block, Vector};
-use crate::plan::timing::{OUTPUT_DEPTH, SEQUENCER_TO_LANES, SUMMARY_LATENCY};
+use crate::plan::timing::SEQUENCER_TO_LANES;
 
 use super::counts_view::CountsView;
 use super::expressions::{
     bits_outside, half, operand_base, shift_and_add, sign_extend, signed_literal, slice, zero_extend,
 };
 use super::folded_view::FoldedView;
-use super::joint_view::{JointView, NetworkView};
 use super::product_view::{ProductView, ProgramView, product_views, programs, reread};
 use super::{registers, roms};
 
@@ -113,6 +114,7 @@ pub struct View {
     operand_extended: String,
     u_extended: String,
     weight_extended: String,
+    weight_4_extended: String,
     g1_extended: String,
     g2_extended: String,
     stress_data: String,
@@ -179,8 +181,11 @@ pub struct View {
     output_depth: u64,
 
     field: bool,
-    joint: Option<JointView>,
-    network: Option<NetworkView>,
+    /// Parameters of the blocks' instances.
+    cean: Parameters,
+    estimator_module: &'static str,
+    estimator: Parameters,
+    op: Parameters,
     #[serde(flatten)]
     folded: FoldedView,
 }
@@ -207,7 +212,7 @@ impl View {
         let field_width = address_bits(field_depth);
         let beat_width = address_bits(beats);
         let sum_lsb = plan.formats.g.lsb - FRICTION_FRACTION as i32;
-        let f_lsb = FoldedView::f_lsb(plan).unwrap_or(sum_lsb);
+        let f_lsb = op::field_lsb(plan);
         let drain_cycles = (schedule.drained() + SEQUENCER_TO_LANES).saturating_sub(schedule.issue_cycles() - 1);
         let longest = schedule.windows.iter().map(|window| window.length.max(window.wait)).max().unwrap_or(1);
         let element_width = address_bits(optimum.elements);
@@ -295,6 +300,7 @@ impl View {
             operand_extended: sign_extend("way_operand", data, 27),
             u_extended: sign_extend("result_value", data, 27),
             weight_extended: sign_extend("weight_2", data, 27),
+            weight_4_extended: sign_extend("weight_4", data, 27),
             g1_extended: sign_extend("g1_2", data, 27),
             g2_extended: sign_extend("g2_2", data, 27),
             stress_data: if data == 27 { "fixed".to_owned() } else { format!("fixed[{}:0]", data - 1) },
@@ -368,11 +374,13 @@ impl View {
             inverse_gain: inverse_gain(),
             angle_fraction: cordic::ANGLE_FRACTION_BITS,
             summary_latency: SUMMARY_LATENCY,
-            output_depth: OUTPUT_DEPTH,
+            output_depth: OUTPUT_LATENCY,
 
             field: plan.field_words() > 0,
-            joint: JointView::new(plan),
-            network: NetworkView::new(plan),
+            cean: cean::parameters(plan),
+            estimator_module: plan.estimator.slot().module(),
+            estimator: plan.estimator.slot().parameters(design, plan.ways()),
+            op: op::parameters(plan),
             folded,
         }
     }

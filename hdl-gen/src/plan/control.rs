@@ -12,9 +12,10 @@ use super::counts::input_stages;
 use super::product::Product;
 use super::schedule::{Program, Schedule, TURN_GAP};
 use super::timing::{
-    INTERVAL_FRAMES, OUTPUT_DEPTH, OUTPUT_SKID, SEQUENCER_TO_LANES, START_TO_ISSUE, SUMMARY_BEATS, SUMMARY_LATENCY,
+    INTERVAL_FRAMES, OUTPUT_SKID, SEQUENCER_TO_LANES, START_TO_ISSUE,
     Timeline, middle_interval,
 };
+use crate::blocks::op::{OUTPUT_LATENCY, SUMMARY_BEATS, SUMMARY_LATENCY};
 use crate::estimators::Slot;
 
 /// From a frame's last stress to the frame being ready for the lanes.
@@ -343,6 +344,6 @@ impl<'a> Control<'a> {
         if self.of.field {
             self.pending.push((self.now + self.of.beats + 3, Change::FrameReleased));
         }
-        self.ends.push(self.now + OUTPUT_DEPTH + OUTPUT_SKID + self.of.beats);
+        self.ends.push(self.now + OUTPUT_LATENCY + OUTPUT_SKID + self.of.beats);
     }
 }

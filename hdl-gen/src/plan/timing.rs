@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::counts::input_stages;
 use super::product::{Product, Vector};
 use super::schedule::{Schedule, Visit};
-use crate::cores::{cordic, divider};
+use crate::blocks::op::{OUTPUT_LATENCY, SUMMARY_BEATS, SUMMARY_LATENCY};
 use crate::estimators::Slot;
 
 /// From the last write of a frame to We's start pulse.
@@ -20,14 +20,8 @@ const IDLE_TO_OPEN: u64 = 1;
 const VISIT_TO_SUMS: u64 = 7;
 /// From the frame sums to the line's start, the direction being there.
 const SUMS_TO_LINE: u64 = 1;
-/// From the end of the search to the end of the summary.
-pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY as u64;
-/// From `output_start` to the first beat leaving Op.
-pub const OUTPUT_DEPTH: u64 = 13;
 /// One more for the skid buffer at the output.
 pub(super) const OUTPUT_SKID: u64 = 1;
-/// Summary beats of an output frame.
-pub const SUMMARY_BEATS: u64 = 8;
 /// Frames back to back that show the interval, between the two in the middle: every buffer is full by then, and there
 /// is still a next frame.
 pub const INTERVAL_FRAMES: usize = 14;
@@ -109,7 +103,7 @@ impl Timeline {
         for _ in 0..INTERVAL_FRAMES {
             frames.push(durations.next(&frames));
         }
-        let last_beat = |frame: &Frame| frame.output_start + OUTPUT_DEPTH + OUTPUT_SKID + durations.beats - 1;
+        let last_beat = |frame: &Frame| frame.output_start + OUTPUT_LATENCY + OUTPUT_SKID + durations.beats - 1;
         let first_beat = frames[0].first_write - durations.beat_to_write;
         Self {
             latency_cycles: last_beat(&frames[0]) - first_beat + 1,
