@@ -11,10 +11,7 @@ use golden::design::{Design, Optimise, Outputs};
 use super::counts::input_stages;
 use super::product::Product;
 use super::schedule::{Program, Schedule, TURN_GAP};
-use super::timing::{
-    INTERVAL_FRAMES, OUTPUT_SKID, SEQUENCER_TO_LANES, START_TO_ISSUE,
-    Timeline, middle_interval,
-};
+use super::timing::{INTERVAL_FRAMES, OUTPUT_SKID, SEQUENCER_TO_LANES, START_TO_ISSUE, Timeline, middle_interval};
 use crate::blocks::op::{OUTPUT_LATENCY, SUMMARY_BEATS, SUMMARY_LATENCY};
 use crate::estimators::Slot;
 
