@@ -190,8 +190,9 @@ module sptfra_network #(
     generate
         for (index = 0; index < 4; index = index + 1) begin : gen_hinges
             wire [UNIT_BITS+1:0] image = images_3[(UNIT_BITS+2)*index +: UNIT_BITS+2];
+            wire negative = image[UNIT_BITS+1];
 
-            assign hinges_3[UNIT_BITS*index +: UNIT_BITS] = image[UNIT_BITS+1] ? {UNIT_BITS{1'b0}} : image[UNIT_BITS-1:0];
+            assign hinges_3[UNIT_BITS*index +: UNIT_BITS] = negative ? {UNIT_BITS{1'b0}} : image[UNIT_BITS-1:0];
 
             wire _unused = &{1'b0, image[UNIT_BITS]};
         end

@@ -76,7 +76,8 @@ module sptfra_summary #(
     reg mac_first;
     reg signed [17:0] mac_coefficient;
     reg signed [26:0] mac_data;
-    wire issue = ((DEPENDENT != 0) && (state == FORCES) && (step <= 6'd1)) || forces_2 || ((state == GAIN) && (step <= 6'd1));
+    wire dependent_steps = (DEPENDENT != 0) && (state == FORCES) && (step <= 6'd1);
+    wire issue = dependent_steps || forces_2 || ((state == GAIN) && (step <= 6'd1));
     wire signed [47:0] accumulator;
     wire [33:0] magnitude;
 

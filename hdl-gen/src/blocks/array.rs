@@ -65,13 +65,19 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
     let (products, windows, programs) = (&plan.products, &plan.schedule.windows, &plan.schedule.programs);
     let begins = |index| programs.iter().any(|program| program.first == index);
     let length = |index: usize| windows[index].rounds.map_or(windows[index].length, |rounds| rounds.lead).max(1);
-    let wait = |index: usize| windows[index].wait + if begins(index) { plan.schedule.program_gap - TURN_GAP } else { 0 };
+    let wait =
+        |index: usize| windows[index].wait + if begins(index) { plan.schedule.program_gap - TURN_GAP } else { 0 };
     let longest = (0..products.len()).map(|index| length(index).max(wait(index))).max().unwrap_or(1);
     let bits = address_bits(longest as usize + 1);
     let name = |index: usize| {
         let product = &products[index];
         let mirror = if product.mirrored.is_some() { " mirrored" } else { "" };
-        format!("{}{mirror} {} -> {}", plan.matrices[product.matrix].name, product.operand().name(), product.result.name())
+        format!(
+            "{}{mirror} {} -> {}",
+            plan.matrices[product.matrix].name,
+            product.operand().name(),
+            product.result.name()
+        )
     };
     let of_each = |value: &dyn Fn(usize) -> u64, name: &dyn Fn(usize) -> String| -> Vec<(u64, String)> {
         (0..products.len()).map(|index| (value(index), name(index))).collect()
@@ -82,8 +88,7 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
         Some(Place::StressBank) | None => 0,
     };
     let rereads = |index: usize| products[..index].iter().position(|other| other.matrix == products[index].matrix);
-    let is_read_again =
-        |index: usize| (index + 1..products.len()).any(|later| rereads(later) == Some(index));
+    let is_read_again = |index: usize| (index + 1..products.len()).any(|later| rereads(later) == Some(index));
     let mask = |condition: &dyn Fn(usize) -> bool| -> Vec<bool> { (0..products.len()).map(condition).collect() };
     let parameters = parameters
         .count("PRODUCTS", products.len())
@@ -100,9 +105,8 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
     if windows.iter().all(|window| window.rounds.is_none()) {
         return parameters;
     }
-    let word = |index: usize| {
-        windows[index].rounds.map_or(0, |rounds| (plan.schedule.word_depth() + rounds.word) as u64)
-    };
+    let word =
+        |index: usize| windows[index].rounds.map_or(0, |rounds| (plan.schedule.word_depth() + rounds.word) as u64);
     parameters
         .flag("SKIPS", true)
         .mask("IN_ROUNDS", &mask(&|index| windows[index].rounds.is_some()))

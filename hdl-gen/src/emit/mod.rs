@@ -6,7 +6,7 @@ mod mcsr;
 mod metadata;
 mod registers;
 mod roms;
-mod rtl;
+pub mod rtl;
 mod sim;
 mod top;
 mod verilog;
@@ -18,7 +18,6 @@ use golden::scene::SceneError;
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
-use crate::cores::{self, CoreError, Multiplier};
 use crate::plan::Plan;
 
 pub use metadata::{ProductEntry, nnz, predicted, products};
@@ -29,9 +28,6 @@ pub type FileMap = BTreeMap<String, Vec<u8>>;
 /// Why a plan could not be printed. Each is a defect of the generator, not of the design.
 #[derive(Debug, Error)]
 pub enum EmitError {
-    /// A leaf core's Verilog did not come out in the form expected.
-    #[error(transparent)]
-    Core(#[from] CoreError),
     /// A template does not fit its data.
     #[error("template {template}: {source}; please report this design")]
     Template {
@@ -60,9 +56,6 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
     let hash = resolved_hash(&plan.design);
-    for core in cores::emit_with(Multiplier::of_part(&plan.design.hardware.part))? {
-        files.insert(format!("rtl/{}.v", core.module), core.verilog.into_bytes());
-    }
     for (module, text) in verilog::render(plan, &hash)? {
         files.insert(format!("rtl/{module}.v"), text.into_bytes());
     }

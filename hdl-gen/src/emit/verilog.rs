@@ -2,6 +2,7 @@
 
 use tera::{Context, Tera};
 
+use crate::cores::Multiplier;
 use crate::plan::Plan;
 
 use super::columns::wrap;
@@ -16,7 +17,8 @@ use super::{registers, rtl, top};
 pub fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, EmitError> {
     let mut modules = vec![top::render(plan, hash)?];
     modules.extend(registers::render(plan, hash)?);
-    let library = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &top::without(plan));
+    let multiplier = Multiplier::of_part(&plan.design.hardware.part);
+    let library = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &top::without(plan), multiplier);
     modules.extend(library.into_iter().map(|(module, text)| (module.to_owned(), text.to_owned())));
     Ok(modules)
 }

@@ -77,13 +77,7 @@ struct Constants {
 }
 
 impl Constants {
-    fn new(
-        design: &Design,
-        elements: usize,
-        products: &[Product],
-        schedule: &Schedule,
-        estimator: &dyn Slot,
-    ) -> Self {
+    fn new(design: &Design, elements: usize, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Self {
         let field = design.algorithm.outputs == Outputs::Field;
         let taxels = design.sensor.taxels() as u64;
         let folded = design.algorithm.plan == PlanKind::Reduced;

@@ -108,7 +108,8 @@ fn blocks(design: &Design, estimator: &dyn Slot, counts: Option<&CountsPlan>) ->
         block(FIELD, &["field"], field),
     ];
     blocks.extend(estimator.search_blocks());
-    blocks.extend([block("summary", &["op_summary", "sptfra_summary"], 1),
+    blocks.extend([
+        block("summary", &["op_summary", "sptfra_summary"], 1),
         block("output", &["op_output", "sptfra_output"], output),
     ]);
     blocks

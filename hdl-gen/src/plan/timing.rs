@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-
 /// One more for the skid buffer at the output.
 pub(super) const OUTPUT_SKID: u64 = 1;
 /// Frames back to back that show the interval, between the two in the middle: every buffer is full by then, and there

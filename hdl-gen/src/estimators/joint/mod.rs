@@ -133,7 +133,11 @@ impl Slot for JointPlan {
         vec![
             BlockCost { name: PLANE, modules: &["sptfra_plane", "sptfra_level_set"], dsp: 3 },
             BlockCost { name: LOOK, modules: &["sptfra_look"], dsp: if network { 2 } else { 0 } },
-            BlockCost { name: NETWORK, modules: &["sptfra_network"], dsp: if network { CLASSES * UNITS + 2 } else { 0 } },
+            BlockCost {
+                name: NETWORK,
+                modules: &["sptfra_network"],
+                dsp: if network { CLASSES * UNITS + 2 } else { 0 },
+            },
             BlockCost { name: "friction", modules: &["sptfra_friction"], dsp: 1 },
         ]
     }
