@@ -121,8 +121,9 @@ pub fn count(file: &Path, metadata: &Path, statistics: &Path) -> Result<Cells, B
     blocks.push(Block { name: REST.to_owned(), yosys: Count::default(), predicted: Expected::default() });
     let rest = blocks.len() - 1;
     let place = |module: &str| {
-        let own = [top.as_str(), LIBRARY].into_iter().find_map(|of| module.strip_prefix(of)?.strip_prefix('_'))?;
-        predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == own))
+        let own = [top.as_str(), LIBRARY].into_iter().find_map(|of| module.strip_prefix(of)?.strip_prefix('_'));
+        let is = |name: &String| name == module || Some(name.as_str()) == own;
+        predicted.blocks.iter().position(|block| block.modules.iter().any(is))
     };
     // A module with the block of the one that instantiates it, and how often it is there.
     let mut waiting = vec![(top.clone(), rest, 1)];

@@ -37,7 +37,7 @@ endmodule
 ";
 
 const METADATA: &str = r#"{ "top": "small", "predicted": { "dsp": 1, "bram36": 0.0, "blocks": [
-    { "name": "Bz", "modules": ["bz", "fold"], "dsp": 0, "bram36": 0.0 },
+    { "name": "Bz", "modules": ["sptfra_bz", "sptfra_fold"], "dsp": 0, "bram36": 0.0 },
     { "name": "We", "modules": ["we"], "dsp": 1, "bram36": 0.0 } ] } }"#;
 
 #[test]
