@@ -132,8 +132,8 @@ module sptfra_cordic (
         rounding <= 1'b0;
         finished <= rounding;
 
-        // second cycle of a micro-rotation: turn towards angle 0
-        // at the start a vector in the left half plane turns by a quarter, for the rest reaches 1.74 rad
+        // a micro-rotation, second cycle: towards angle 0
+        // at the start a vector in the left half plane turns by a quarter: the rest reaches 1.74 rad
         if (rotating && shifted) begin
             if (across[38]) begin
                 along <= along - across_part;

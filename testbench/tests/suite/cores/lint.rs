@@ -69,7 +69,10 @@ fn a_product_becomes_one_dsp_block_without_being_narrowed() -> Result<(), Box<dy
     let (folder, _) = written()?;
     for module in ["sptfra_mac", "sptfra_multiply"] {
         let synth = format!("synth_xilinx -family xcup -noiopad -noclkbuf -flatten -top {module}");
-        let ways = [synth.clone(), format!("{synth} -run :prepare; {WITHOUT_NARROWING}; {synth} -run map_dsp:coarse")];
+        let ways = [
+            format!("{synth} -run :coarse"),
+            format!("{synth} -run :prepare; {WITHOUT_NARROWING}; {synth} -run map_dsp:coarse"),
+        ];
         for way in ways {
             let script = format!(
                 "read_verilog {module}.v; {way}; select -assert-count 1 t:DSP48E2; \
@@ -79,7 +82,9 @@ fn a_product_becomes_one_dsp_block_without_being_narrowed() -> Result<(), Box<dy
         }
     }
     for module in ["sptfra_mac_ecp5", "sptfra_multiply_ecp5"] {
-        let script = format!("read_verilog {module}.v; synth_ecp5 -top {module}; select -assert-count 2 t:MULT18X18D");
+        let script = format!(
+            "read_verilog {module}.v; synth_ecp5 -top {module} -run :map_ram; select -assert-count 2 t:MULT18X18D"
+        );
         succeed(tools::yosys()?.args(["-q", "-p", &script]).current_dir(&folder))?;
     }
     Ok(())
