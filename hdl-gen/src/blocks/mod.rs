@@ -3,12 +3,40 @@
 //! The Verilog of a block is the same in every design (`hdl-gen/rtl`). Its file here states the parameters of its
 //! instance, and whatever else the plan has to know of it: latencies, memories, multipliers.
 
+pub mod array;
+pub mod bz;
 pub mod cean;
+pub mod co;
+pub mod field;
 pub mod op;
+pub mod turns;
+pub mod unfold;
+pub mod we;
 
 use std::fmt::Write;
 
 use serde::{Serialize, Serializer};
+
+use crate::plan::Plan;
+use crate::plan::format::address_bits;
+use crate::plan::layout::Place;
+use crate::plan::product::Vector;
+use crate::plan::reduced::SUM_ROWS;
+
+/// Where a vector stands in the lanes' operand memories: its first word, and whether that is in the stress's bank. One
+/// that no product reads is at 0.
+fn place(plan: &Plan, vector: Vector) -> (usize, bool) {
+    match plan.operands.place(vector) {
+        Some(Place::Fixed(word)) => (word, false),
+        Some(Place::StressBank) => (0, true),
+        None => (0, false),
+    }
+}
+
+/// Bits of the number of an element, or of a row of sums.
+pub fn row_width(plan: &Plan) -> u32 {
+    address_bits(plan.elements().max(SUM_ROWS))
+}
 
 /// Parameters of an instance: names and Verilog expressions, in the order of the module's declaration.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -62,6 +90,13 @@ impl Parameters {
             let _ = write!(text, "\n            {bits}'d{value}{comma}{comment}");
         }
         self.expression(name, text + "\n        }")
+    }
+
+    /// One bit each, the first lowest.
+    #[must_use]
+    pub fn mask(self, name: &'static str, bits: &[bool]) -> Self {
+        let digits: String = bits.iter().rev().map(|&bit| if bit { '1' } else { '0' }).collect();
+        self.expression(name, format!("{}'b{digits}", bits.len()))
     }
 
     /// Any expression, for instance a parameter of the module around it.
