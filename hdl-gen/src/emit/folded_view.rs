@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
-use crate::plan::product::{Coefficients, Epilogue, Vector, mirror};
-use crate::plan::reduced::{SUM_ROWS, field_shifts, sum_way};
+use crate::plan::formats::field_shifts;
+use crate::plan::product::{Coefficients, Epilogue, SUM_ROWS, Vector, mirror, sum_way};
 use crate::plan::schedule::Rounds;
 
 use super::expressions::{half, operand_base, sign_extend, slice, zero_extend};

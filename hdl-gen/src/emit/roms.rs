@@ -5,7 +5,7 @@ use golden::estimators::joint::WEIGHT_BITS;
 use crate::plan::Plan;
 use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;
-use crate::plan::reduced::SUM_ROWS;
+use crate::plan::product::SUM_ROWS;
 
 use super::{FileMap, lane_file};
 

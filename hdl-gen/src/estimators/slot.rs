@@ -1,14 +1,12 @@
 //! What every estimator tells the rest of the generator, and what it is given.
 
 use golden::design::Design;
+use golden::products::ByPq;
 use golden::sensor::Sensor;
 use serde_json::Value;
 
 use crate::plan::format::{Format, address_bits};
 use crate::plan::memory::Memory;
-
-/// `g_pq` or `G_pq` by `[p - 1][q]`.
-pub type ByPq<T> = [[T; 3]; 3];
 
 /// What an estimator's constants are made from.
 #[derive(Clone, Copy, Debug)]
