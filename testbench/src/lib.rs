@@ -21,6 +21,7 @@ pub mod svg;
 pub mod sweep;
 pub mod table;
 pub mod tools;
+pub mod trial;
 pub mod verilate;
 pub mod view;
 pub mod waves;

@@ -36,7 +36,8 @@ enum Command {
     /// Run frames through a design's RTL, word by word against the integer model and the f64 solver.
     ///
     /// The streams run free, with an idle source, with a stalled sink, and with both. The exit code is 0 only if every
-    /// word is the model's, and every register of a design with `control = true` has the value that it should have.
+    /// word is the model's, latency and interval are the predicted ones (with `skip_zeros`: no more), and every
+    /// register of a design with `control = true` has the value that it should have.
     Run(RunArguments),
     /// Measure: time to generate, speed of the simulation, cycles against lanes and taxels.
     ///
@@ -185,7 +186,7 @@ struct RunArguments {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(arguments) => simulate(&arguments)
-            .and_then(|report| print(&report_text(&report, arguments.json)?).map(|()| report.is_right())),
+            .and_then(|report| print(&report_text(&report, arguments.json)?).map(|()| complain(&report))),
         Command::Bench(arguments) => bench(&arguments).map(|()| true),
         Command::Sweep(arguments) => commands::sweep::run(&arguments).and_then(|text| print(&text)).map(|()| true),
         Command::View(arguments) => view(&arguments).map(|()| true),
@@ -306,6 +307,14 @@ fn simulate(arguments: &RunArguments) -> Result<Report, Box<dyn Error>> {
 
 fn report_text(report: &Report, json: bool) -> Result<String, serde_json::Error> {
     if json { Ok(serde_json::to_string_pretty(report)? + "\n") } else { Ok(table::render(report)) }
+}
+
+/// Says on standard error what is wrong; whether nothing is.
+fn complain(report: &Report) -> bool {
+    for fault in &report.faults {
+        eprintln!("error: {}: {fault}", report.design);
+    }
+    report.is_right()
 }
 
 fn print(text: &str) -> Result<(), Box<dyn Error>> {

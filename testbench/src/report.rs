@@ -10,6 +10,8 @@ use serde::Serialize;
 use crate::accuracy::{SolverError, StatusCounts};
 use crate::compare::Mismatch;
 use crate::registers::RegisterReport;
+use crate::simulate::ModeResult;
+use crate::trial::{Timing, Verdict};
 
 /// The published design of the method, for one frame of a 10 × 10 sensor (Pinto-Salamanca et al., Sensors 2024).
 pub const PUBLISHED: Published = Published { latency_cycles: 7_335_000, milliseconds: 58.68, dsp: 568, bram36: 849 };
@@ -69,6 +71,19 @@ pub struct ModeReport {
     pub first_mismatches: Vec<Mismatch>,
 }
 
+impl From<&ModeResult> for ModeReport {
+    fn from(result: &ModeResult) -> Self {
+        Self {
+            mode: result.mode.name,
+            bit_exact: result.comparison.is_exact(),
+            words: result.comparison.words,
+            mismatches: result.comparison.mismatches,
+            cycles: result.cycles,
+            first_mismatches: result.comparison.first.clone(),
+        }
+    }
+}
+
 /// The result of `testbench run`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -100,6 +115,10 @@ pub struct Report {
     pub true_force_errors: Option<ErrorSummary>,
     /// Frames by status bit.
     pub status_counts: StatusCounts,
+    /// The cycles beside the predicted ones.
+    pub timing: Timing,
+    /// All that is wrong, in words; nothing if the hardware is right.
+    pub faults: Vec<String>,
     /// By stream mode.
     pub modes: Vec<ModeReport>,
     /// The register bank; absent in a core without one.
@@ -132,14 +151,66 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether every word is the model's and every register has the value that it should have.
+    /// What the plan and the simulation say; nothing of frames and accuracy yet.
+    pub fn new(plan: &Plan, verdict: &Verdict, registers: Option<RegisterReport>, simulator: String) -> Self {
+        let Verdict { simulation, timing, predicted } = verdict;
+        let microseconds = |cycles: u64| cycles as f64 / plan.design.hardware.clock_mhz;
+        let wrong_registers = registers.iter().flat_map(|registers| &registers.wrong);
+        let faults = verdict
+            .faults()
+            .iter()
+            .map(ToString::to_string)
+            .chain(wrong_registers.map(|wrong| format!("register bank: {wrong}")))
+            .collect();
+        Self {
+            design: plan.design.name.clone(),
+            description: describe(plan),
+            frames_from: String::new(),
+            frames: simulation.answers.len(),
+            bit_exact: simulation.is_exact(),
+            mismatches: simulation.mismatches(),
+            latency_cycles: simulation.cycles.latency,
+            interval_cycles: simulation.cycles.interval,
+            predicted: Predicted {
+                latency_cycles: predicted.latency,
+                interval_cycles: predicted.interval,
+                dsp: plan.resources.dsp,
+                bram36: plan.resources.bram36,
+                worst_case: plan.design.hardware.skip_zeros,
+            },
+            microseconds: Microseconds {
+                latency: microseconds(simulation.cycles.latency),
+                interval: microseconds(simulation.cycles.interval),
+            },
+            timing: *timing,
+            faults,
+            error: SolverError::default(),
+            true_force_errors: None,
+            status_counts: StatusCounts::default(),
+            modes: simulation.modes.iter().map(ModeReport::from).collect(),
+            registers,
+            traces: Vec::new(),
+            dsp: plan.resources.dsp,
+            bram36: plan.resources.bram36,
+            rom_bits: plan.resources.rom_bits,
+            macs: plan.macs(),
+            nnz: plan.nnz.0.iter().map(|&(name, count)| (name.to_string(), count)).collect(),
+            lanes: plan.design.hardware.lanes,
+            lanes_busy: plan.schedule.busy_fraction(),
+            clock_mhz: plan.design.hardware.clock_mhz,
+            published: published_for(plan),
+            simulator,
+        }
+    }
+
+    /// Whether every word is the model's, the cycles are right, and every register has the value that it should have.
     pub fn is_right(&self) -> bool {
-        self.bit_exact && self.registers.as_ref().is_none_or(|registers| registers.wrong.is_empty())
+        self.faults.is_empty()
     }
 }
 
 /// One line on what the design is.
-pub fn describe(plan: &Plan) -> String {
+fn describe(plan: &Plan) -> String {
     use golden::design::Filter;
     let (sensor, hardware) = (&plan.design.sensor, &plan.design.hardware);
     let filter = match &plan.design.algorithm.filter {
@@ -163,7 +234,7 @@ pub fn describe(plan: &Plan) -> String {
 }
 
 /// The published figures, if the sensor has the size they were published for.
-pub fn published_for(plan: &Plan) -> Option<Published> {
+fn published_for(plan: &Plan) -> Option<Published> {
     let sensor = &plan.design.sensor;
     ((sensor.columns, sensor.rows) == (10, 10)).then_some(PUBLISHED)
 }

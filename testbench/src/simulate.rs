@@ -1,9 +1,11 @@
 //! One design's frames through the simulated core: all stream modes, then the timing.
 
+use std::fmt;
 use std::path::Path;
 use std::thread;
 
 use hdl_gen::plan::timing::INTERVAL_FRAMES;
+use serde::Serialize;
 
 use crate::compare::Comparison;
 use crate::dut::{Dut, DutError};
@@ -43,6 +45,21 @@ pub struct ModeResult {
     pub comparison: Comparison,
 }
 
+/// Latency and interval in clock cycles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Cycles {
+    /// First beat in to last beat out of a frame alone, both counted.
+    pub latency: u64,
+    /// Distance of the frames' last beats, back to back.
+    pub interval: u64,
+}
+
+impl fmt::Display for Cycles {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{} / {}", self.latency, self.interval)
+    }
+}
+
 /// What the simulation showed.
 #[derive(Clone, Debug)]
 pub struct Simulation {
@@ -50,10 +67,8 @@ pub struct Simulation {
     pub modes: Vec<ModeResult>,
     /// The core's answers in the free-running mode.
     pub answers: Vec<Vec<u32>>,
-    /// First beat in to last beat out of a frame alone, both counted.
-    pub latency_cycles: u64,
-    /// Distance of the frames' last beats, back to back.
-    pub interval_cycles: u64,
+    /// Of a frame.
+    pub cycles: Cycles,
 }
 
 impl Simulation {
@@ -108,14 +123,13 @@ pub fn simulate(job: &Job<'_>, progress: &(impl Fn() + Sync)) -> Result<Simulati
             }
             modes.push(result);
         }
-        let (latency_cycles, interval_cycles) = join(timing)?;
-        Ok(Simulation { modes, answers, latency_cycles, interval_cycles })
+        Ok(Simulation { modes, answers, cycles: join(timing)? })
     })
 }
 
 /// How many frames [`simulate`] sends for a set of `frames`.
 pub fn frames_to_simulate(frames: usize) -> u64 {
-    (4 * frames + LATENCY_FRAMES + INTERVAL_FRAMES) as u64
+    (Mode::COUNT * frames + LATENCY_FRAMES + INTERVAL_FRAMES) as u64
 }
 
 fn join<T>(thread: thread::ScopedJoinHandle<'_, T>) -> T {
@@ -136,7 +150,7 @@ fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResu
 }
 
 /// Latency and interval, on frames repeated as often as needed.
-fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<(u64, u64), SimulationError> {
+fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<Cycles, SimulationError> {
     let failed = |source| SimulationError::Stream { mode: "timing", source };
     let mut core: Dut = job.built.load(job.seed)?;
     let mut run = |count, pacing| {
@@ -144,8 +158,8 @@ fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<(u64, u64), Simulation
         let traffic = Traffic::new(&packets, job.timeout).with_pacing(pacing);
         exchange(&mut core, &traffic, |_| progress()).map_err(failed)
     };
-    let alone = run(LATENCY_FRAMES, Pacing::OneAtATime)?.latency();
-    let together = run(INTERVAL_FRAMES, Pacing::BackToBack)?.interval();
     // Both are there: more than one frame was answered, or `run` had failed.
-    Ok((alone.unwrap_or_default(), together.unwrap_or_default()))
+    let latency = run(LATENCY_FRAMES, Pacing::OneAtATime)?.latency().unwrap_or_default();
+    let interval = run(INTERVAL_FRAMES, Pacing::BackToBack)?.interval().unwrap_or_default();
+    Ok(Cycles { latency, interval })
 }

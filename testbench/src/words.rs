@@ -13,6 +13,17 @@ pub fn encode(stress: &[f64]) -> Vec<u32> {
     stress.iter().map(|&value| (value as f32).to_bits()).collect()
 }
 
+/// The input packets of frames.
+pub fn packets(frames: &[Vec<f64>]) -> Vec<Vec<u32>> {
+    frames.iter().map(|stress| encode(stress)).collect()
+}
+
+/// The stresses as the core gets them. The f64 solver is given the same ones, so that its difference to the core is
+/// the core's alone.
+pub fn as_received(packet: &[u32]) -> Vec<f64> {
+    packet.iter().map(|&word| f64::from(f32::from_bits(word))).collect()
+}
+
 /// What a beat of an output frame is, such as `F_z`, or `f_x of taxel 12 (2, 1)` with column and row.
 pub fn beat_name(beat: usize, columns: usize) -> String {
     if let Some(name) = SUMMARY_NAMES.get(beat) {

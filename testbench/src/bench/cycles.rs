@@ -2,16 +2,14 @@
 
 use golden::design::{Design, DesignError};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::timing::INTERVAL_FRAMES;
 use serde::Serialize;
 
 use super::BenchError;
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
-use crate::run::{rtl_sources, timeout};
-use crate::stream::{Pacing, Traffic, exchange};
-use crate::verilate::Verilate;
-use crate::words::encode;
+use crate::simulate::Cycles;
+use crate::trial::{Trial, planned};
+use crate::words::packets;
 
 /// Sides of the square sensors.
 pub const SIDES: [usize; 8] = [4, 6, 8, 10, 12, 16, 24, 32];
@@ -28,8 +26,6 @@ const SIMULATED: [(Kind, usize, usize); 8] = [
     (Kind::Filtered, 16, 16),
     (Kind::Paper, 10, 16),
 ];
-/// Frames sent one at a time.
-const LATENCY_FRAMES: usize = 2;
 const SEED: u32 = 1;
 
 /// What a design of the series computes.
@@ -65,15 +61,6 @@ impl Kind {
             Self::Paper => "plan = \"paper\"",
         }
     }
-}
-
-/// Latency and interval in clock cycles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Cycles {
-    /// First beat in to last beat out of a frame alone, both counted.
-    pub latency: u64,
-    /// Between the last beats of consecutive frames.
-    pub interval: u64,
 }
 
 /// One design of the series.
@@ -113,15 +100,14 @@ pub(super) fn measure(largest: usize, progress: &Progress) -> Result<Vec<Point>,
         for side in SIDES.into_iter().filter(|&side| side <= largest) {
             for lanes in LANES {
                 progress.stage(format!("planning {side} × {side}, {lanes} lanes, {}", kind.title()));
-                let plan = Plan::new(&square(kind, side, lanes)?)?;
+                let plan = planned(&square(kind, side, lanes)?)?;
                 let simulated = if SIMULATED.contains(&(kind, side, lanes)) {
                     progress.stage(format!("simulating {side} × {side}, {lanes} lanes, {}", kind.title()));
                     Some(simulate(&plan)?)
                 } else {
                     None
                 };
-                let timeline = &plan.timeline;
-                let predicted = Cycles { latency: timeline.latency_cycles, interval: timeline.interval_cycles };
+                let predicted = Cycles::predicted(&plan);
                 points.push(Point { kind, side, lanes, macs: plan.macs(), predicted, simulated });
             }
         }
@@ -129,16 +115,10 @@ pub(super) fn measure(largest: usize, progress: &Progress) -> Result<Vec<Point>,
     Ok(points)
 }
 
+/// The cycles of the sensor's standing frames, if the words are right too.
 fn simulate(plan: &Plan) -> Result<Cycles, BenchError> {
-    let stress = FrameSet::standing(&plan.design.sensor)?.stress;
-    let packets: Vec<Vec<u32>> = stress.iter().map(|frame| encode(frame)).collect();
-    let mut core = Verilate::default().build(&rtl_sources(plan)?)?.load(SEED)?;
-    let mut run = |count, pacing| {
-        let packets: Vec<Vec<u32>> = packets.iter().cycle().take(count).cloned().collect();
-        exchange(&mut core, &Traffic::new(&packets, timeout(plan)).with_pacing(pacing), |_| {})
-    };
-    // Both are there: more than one frame was answered, or `run` had failed.
-    let latency = run(LATENCY_FRAMES, Pacing::OneAtATime)?.latency().unwrap_or_default();
-    let interval = run(INTERVAL_FRAMES, Pacing::BackToBack)?.interval().unwrap_or_default();
-    Ok(Cycles { latency, interval })
+    let frames = FrameSet::standing(&plan.design.sensor)?.stress;
+    let verdict = Trial::new(plan, packets(&frames), SEED).run()?;
+    let wrong = |fault| BenchError::Wrong { design: plan.design.name.clone(), fault };
+    Ok(verdict.right().map_err(wrong)?.cycles)
 }

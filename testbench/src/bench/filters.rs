@@ -3,12 +3,12 @@
 use golden::design::{Design, Filter, PlanKind};
 use golden::metrics::field_error;
 use golden::solver::{Solution, Solver};
-use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use super::{BenchError, Scope};
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
+use crate::trial::planned;
 
 /// F1: outermost diagonals removed, in percent of the block's side. F2: p.
 const F1_PERCENT: [usize; 3] = [10, 40, 70];
@@ -52,7 +52,7 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Filtered
         for (filter, text) in filters(design.sensor.taxels()) {
             let mut design = design.clone();
             design.algorithm.filter = filter;
-            let plan = Plan::new(&design)?;
+            let plan = planned(&design)?;
             let found = solve(&design)?;
             let worst = |error: &dyn Fn(&Solution, &Solution) -> f64| {
                 reference.iter().zip(&found).map(|(reference, found)| error(reference, found)).fold(0.0, f64::max)

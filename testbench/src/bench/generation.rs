@@ -4,13 +4,13 @@ use std::time::Instant;
 
 use golden::design::{Design, DesignError};
 use hdl_gen::emit::emit;
-use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use super::cycles::{Kind, SIDES, square};
 use super::machine::{forget_peak_memory, peak_memory};
 use super::{BenchError, Scope, median};
 use crate::progress::Progress;
+use crate::trial::{TrialError, planned};
 
 /// Repetitions behind a median.
 pub const REPETITIONS: usize = 3;
@@ -55,10 +55,10 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Generati
         forget_peak_memory();
         for _ in 0..REPETITIONS {
             let start = Instant::now();
-            let plan = Plan::new(&design)?;
+            let plan = planned(&design)?;
             plans.push(start.elapsed().as_secs_f64());
             let start = Instant::now();
-            let files = emit(&plan)?;
+            let files = emit(&plan).map_err(TrialError::from)?;
             emits.push(start.elapsed().as_secs_f64());
             bytes = files.values().map(Vec::len).sum();
         }

@@ -16,15 +16,11 @@ use std::path::PathBuf;
 use golden::design::{Design, DesignError};
 use golden::scene::SceneError;
 use golden::solver::SolverError;
-use hdl_gen::emit::EmitError;
-use hdl_gen::plan::PlanError;
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::dut::DutError;
 use crate::progress::Progress;
-use crate::stream::StreamError;
-use crate::verilate::BuildError;
+use crate::trial::{Fault, TrialError};
 
 use cells::Cells;
 use cycles::Point;
@@ -41,27 +37,23 @@ pub enum BenchError {
     /// A design is wrong.
     #[error(transparent)]
     Design(#[from] DesignError),
-    /// A design cannot be planned.
+    /// A design cannot be planned, built or simulated.
     #[error(transparent)]
-    Plan(#[from] PlanError),
+    Trial(#[from] TrialError),
+    /// A design's words or cycles are wrong: it has no figures.
+    #[error("{design}: {fault}; please report this design")]
+    Wrong {
+        /// Which.
+        design: String,
+        /// What is wrong.
+        fault: Fault,
+    },
     /// A frame cannot be solved.
     #[error(transparent)]
     Solver(#[from] SolverError),
-    /// A plan cannot be printed.
-    #[error(transparent)]
-    Emit(#[from] EmitError),
     /// The frames cannot be computed.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The simulation cannot be built.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// The simulation cannot be loaded.
-    #[error(transparent)]
-    Dut(#[from] DutError),
-    /// The simulation failed.
-    #[error(transparent)]
-    Stream(#[from] StreamError),
     /// A file of figures cannot be read.
     #[error("{}: cannot read the file: {source}; write it first, see --help", path.display())]
     Read {

@@ -1,7 +1,7 @@
 //! The figures as a page of Markdown, with the command behind each.
 
 use super::cells::{Block, Cells};
-use super::cycles::{Cycles, Kind, LANES, Point};
+use super::cycles::{Kind, LANES, Point};
 use super::filters::Filtered;
 use super::generation::Generation;
 use super::rate::Rate;
@@ -9,6 +9,7 @@ use super::solver::SolverRate;
 use super::zeros::Zeros;
 use super::{Figures, generation, rate};
 use crate::markdown::Page;
+use crate::simulate::Cycles;
 use crate::table::{decimals, grouped};
 
 /// The whole page. `command` is the `testbench bench` command that measured; `plot` is the picture's place, as seen
@@ -205,13 +206,9 @@ fn both(cycles: Cycles) -> String {
     format!("{} / {}", grouped(cycles.latency), grouped(cycles.interval))
 }
 
-/// The predicted cycles, bold if they were simulated, with what was simulated if that differs.
+/// The predicted cycles, bold if they were simulated: then they were the same.
 fn cell(point: &Point) -> String {
-    match point.simulated {
-        None => both(point.predicted),
-        Some(simulated) if simulated == point.predicted => format!("**{}**", both(simulated)),
-        Some(simulated) => format!("{}, simulated **{}**", both(point.predicted), both(simulated)),
-    }
+    point.simulated.map_or_else(|| both(point.predicted), |simulated| format!("**{}**", both(simulated)))
 }
 
 fn cells(page: &mut Page, designs: &[Cells]) {

@@ -93,7 +93,7 @@ fn axes(svg: &mut Svg, x: Axis, y: Axis) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::cycles::Cycles;
+    use crate::simulate::Cycles;
 
     #[test]
     fn every_line_has_its_points_and_its_label() {

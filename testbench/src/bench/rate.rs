@@ -2,16 +2,14 @@
 
 use std::time::{Duration, Instant};
 
-use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use super::{BenchError, Scope, median};
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
-use crate::run::{rtl_sources, timeout};
-use crate::stream::{Traffic, exchange};
-use crate::verilate::Verilate;
-use crate::words::encode;
+use crate::stream::Pacing;
+use crate::trial::{self, TrialError, planned};
+use crate::words::packets;
 
 /// Repetitions behind a median.
 pub const REPETITIONS: usize = 5;
@@ -44,15 +42,16 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Rate>, B
     let mut rows = Vec::new();
     for (path, design) in &scope.designs {
         progress.stage(format!("building the simulation of {path}"));
-        let plan = Plan::new(design)?;
+        let plan = planned(design)?;
         let set = FrameSet::standing(&design.sensor)?.as_delivered(design);
-        let packets: Vec<Vec<u32>> = set.stress.iter().map(|frame| encode(frame)).collect();
-        let mut core = Verilate::default().build(&rtl_sources(&plan)?)?.load(SEED)?;
+        let packets = packets(&set.stress);
+        let built = trial::build(&plan, trial::cycles_of(&plan, (REPETITIONS * MOST_FRAMES) as u64))?;
+        let mut core = built.load(SEED).map_err(TrialError::from)?;
         progress.stage(format!("simulating {path}"));
         let mut run = |count: usize| -> Result<(u64, f64), BenchError> {
             let packets: Vec<Vec<u32>> = packets.iter().cycle().take(count).cloned().collect();
             let start = Instant::now();
-            let outcome = exchange(&mut core, &Traffic::new(&packets, timeout(&plan)), |_| {})?;
+            let outcome = trial::send(&mut core, &plan, &packets, Pacing::BackToBack)?;
             Ok((outcome.cycles, start.elapsed().as_secs_f64()))
         };
         let (_, seconds) = run(TRIAL_FRAMES)?;

@@ -6,11 +6,10 @@ use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use super::BenchError;
-use super::cycles::Cycles;
 use crate::progress::Progress;
-use crate::run::{rtl_sources, timeout};
-use crate::stream::{Exchange, Pacing, Traffic, exchange};
-use crate::verilate::Verilate;
+use crate::simulate::Cycles;
+use crate::stream::{Exchange, Pacing};
+use crate::trial::{self, TrialError, planned};
 use crate::words::encode;
 
 /// Sides of the square sensors.
@@ -42,28 +41,25 @@ pub(super) fn measure(largest: usize, progress: &Progress) -> Result<Vec<Zeros>,
     let mut rows = Vec::new();
     for side in SIDES.into_iter().filter(|&side| side <= largest) {
         progress.stage(format!("simulating {side} × {side} with zeros passed over"));
-        let plain = Plan::new(&square(side, false)?)?;
-        let plan = Plan::new(&square(side, true)?)?;
-        let mut core = Verilate::default().build(&rtl_sources(&plan)?)?.load(SEED)?;
+        let plain = planned(&square(side, false)?)?;
+        let plan = planned(&square(side, true)?)?;
+        let frames = (2 * FRICTIONS.len() * SWEEP_DEG.len()) as u64;
+        let built = trial::build(&plan, trial::cycles_of(&plan, frames))?;
+        let mut core = built.load(SEED).map_err(TrialError::from)?;
         let mut contacts = Vec::new();
         for friction in FRICTIONS {
             let frames = scene(&plan, friction).frames()?;
             let packets: Vec<Vec<u32>> = frames.iter().map(|frame| encode(&frame.stress)).collect();
-            let mut run =
-                |pacing| exchange(&mut core, &Traffic::new(&packets, timeout(&plan)).with_pacing(pacing), |_| {});
-            let alone = run(Pacing::OneAtATime)?.exchanges;
-            let ends: Vec<u64> = run(Pacing::BackToBack)?.exchanges.iter().map(|exchange| exchange.last_out).collect();
+            let mut run = |pacing| trial::send(&mut core, &plan, &packets, pacing).map(|outcome| outcome.exchanges);
+            let alone = run(Pacing::OneAtATime)?;
+            let ends: Vec<u64> = run(Pacing::BackToBack)?.iter().map(|exchange| exchange.last_out).collect();
             let latency = alone.iter().map(Exchange::latency).max().unwrap_or_default();
             let interval = ends.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or_default();
             contacts.push((friction, Cycles { latency, interval }));
         }
-        rows.push(Zeros { side, without: predicted(&plain), worst: predicted(&plan), contacts });
+        rows.push(Zeros { side, without: Cycles::predicted(&plain), worst: Cycles::predicted(&plan), contacts });
     }
     Ok(rows)
-}
-
-fn predicted(plan: &Plan) -> Cycles {
-    Cycles { latency: plan.timeline.latency_cycles, interval: plan.timeline.interval_cycles }
 }
 
 fn square(side: usize, skip_zeros: bool) -> Result<Design, BenchError> {

@@ -10,8 +10,8 @@ use serde::Serialize;
 use super::cases::Case;
 use super::single::Single;
 use crate::accuracy::{StatusCounts, against_truth};
-use crate::run::{as_received, model_answers};
-use crate::words::{Answer, decode, encode};
+use crate::trial::model_answers;
+use crate::words::{Answer, as_received, decode, packets};
 
 /// A resultant beyond this times what the stress would mean as a pressure, `sum |b|` times a taxel's area, is beyond
 /// reason.
@@ -90,7 +90,7 @@ pub fn judge(case: &Case) -> Row {
     };
     row.condition_c33 = Some(solver.matrices().condition_c33());
     row.condition_aat = Some(solver.matrices().condition_aat());
-    let packets: Vec<Vec<u32>> = case.frames.iter().map(|frame| encode(frame)).collect();
+    let packets = packets(&case.frames);
     let frames: Vec<Vec<f64>> = packets.iter().map(|packet| as_received(packet)).collect();
     // Frames have the sensor's length, the only thing that the solver refuses.
     let reference: Vec<Answer> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).map(answer).collect();

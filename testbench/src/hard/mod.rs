@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::progress::Progress;
-use crate::run::RunError;
+use crate::trial::TrialError;
 use cases::Case;
 use judge::Row;
 
@@ -27,7 +27,7 @@ pub enum HardError {
     Scene(#[from] SceneError),
     /// A design's RTL cannot be built or simulated.
     #[error(transparent)]
-    Run(#[from] RunError),
+    Trial(#[from] TrialError),
 }
 
 /// How much of the table.

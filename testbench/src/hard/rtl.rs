@@ -5,10 +5,8 @@ use hdl_gen::plan::Plan;
 
 use super::cases::Case;
 use crate::progress::Progress;
-use crate::run::{RunError, model_answers, rtl_sources, timeout};
-use crate::simulate::{Job, simulate};
-use crate::verilate::Verilate;
-use crate::words::encode;
+use crate::trial::{Timing, Trial, TrialError, Verdict};
+use crate::words::packets;
 
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;
@@ -17,8 +15,8 @@ const SEED: u32 = 1;
 /// the plan; `None` where there is no hardware.
 ///
 /// # Errors
-/// [`RunError`] if a design's RTL cannot be built or simulated.
-pub fn check(cases: &[Case], progress: &Progress) -> Result<Vec<Option<bool>>, RunError> {
+/// [`TrialError`] if a design's RTL cannot be built or simulated.
+pub fn check(cases: &[Case], progress: &Progress) -> Result<Vec<Option<bool>>, TrialError> {
     let mut designs: Vec<(&Design, Vec<usize>)> = Vec::new();
     for (index, case) in cases.iter().enumerate() {
         match designs.iter_mut().find(|(design, _)| **design == case.design) {
@@ -41,25 +39,20 @@ pub fn check(cases: &[Case], progress: &Progress) -> Result<Vec<Option<bool>>, R
     Ok(exact)
 }
 
-fn of_design(plan: &Plan, cases: &[&Case]) -> Result<Vec<bool>, RunError> {
-    let packets: Vec<Vec<u32>> = cases.iter().flat_map(|case| &case.frames).map(|frame| encode(frame)).collect();
-    let expected = model_answers(plan, &packets);
-    let built = Verilate::default().build(&rtl_sources(plan)?)?;
-    let (packets, expected, columns) = (&packets[..], &expected[..], plan.design.sensor.columns);
-    let job = Job { built: &built, packets, expected, columns, timeout: timeout(plan), seed: SEED, trace: None };
-    let simulation = simulate(&job, &|| ())?;
-    let timely = (simulation.latency_cycles, simulation.interval_cycles)
-        == (plan.timeline.latency_cycles, plan.timeline.interval_cycles);
+fn of_design(plan: &Plan, cases: &[&Case]) -> Result<Vec<bool>, TrialError> {
+    let frames: Vec<Vec<f64>> = cases.iter().flat_map(|case| &case.frames).cloned().collect();
+    let trial = Trial::new(plan, packets(&frames), SEED);
+    let Verdict { simulation, timing, .. } = trial.run()?;
     let mut first = 0;
     let free: Vec<bool> = cases
         .iter()
         .map(|case| {
             let frames = first..first + case.frames.len();
             first = frames.end;
-            simulation.answers.get(frames.clone()) == Some(&expected[frames])
+            simulation.answers.get(frames.clone()) == Some(&trial.expected[frames])
         })
         .collect();
     // A difference that only another mode has is not known by case: it counts against all of them.
     let others = simulation.is_exact() || !free.iter().all(|&exact| exact);
-    Ok(free.into_iter().map(|exact| exact && others && timely).collect())
+    Ok(free.into_iter().map(|exact| exact && others && timing != Timing::Wrong).collect())
 }

@@ -10,8 +10,7 @@ use std::thread;
 
 use golden::design::Design;
 use golden::scene::SceneError;
-use hdl_gen::emit::EmitError;
-use hdl_gen::plan::{Plan, PlanError};
+use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -22,11 +21,10 @@ pub use sites::{Kind, Mutation, all};
 
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
-use crate::run::{model_answers, rtl_sources, timeout};
-use crate::simulate::{Job, simulate};
 use crate::stress::{BATCH, run_batch};
-use crate::verilate::{BuildError, RtlSources, Verilate};
-use crate::words::encode;
+use crate::trial::{Trial, TrialError, planned, rtl_sources};
+use crate::verilate::{BuildError, Built, RtlSources, Verilate};
+use crate::words::packets;
 
 /// Batches of `testbench stress` after the standing frames.
 const STRESS_BATCHES: u64 = 3;
@@ -108,18 +106,12 @@ impl fmt::Display for Report {
 /// Why there is no report.
 #[derive(Debug, Error)]
 pub enum MutantsError {
-    /// The design cannot be planned.
+    /// The design as generated cannot be planned or built.
     #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// The plan cannot be printed.
-    #[error(transparent)]
-    Emit(#[from] EmitError),
+    Trial(#[from] TrialError),
     /// The standing frames cannot be made.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The design as generated cannot be built, or there is no place for the builds.
-    #[error(transparent)]
-    Build(#[from] BuildError),
     /// There is no folder for the builds.
     #[error("cannot make a temporary folder: {0}; set TMPDIR to a folder that can be written")]
     Folder(std::io::Error),
@@ -134,10 +126,10 @@ pub enum MutantsError {
 /// [`MutantsError`] if the design itself cannot be built, or fails.
 pub fn mutants(design: &Design, options: &Options, progress: &Progress) -> Result<Report, MutantsError> {
     progress.stage("planning");
-    let plan = Plan::new(design)?;
+    let plan = planned(design)?;
     let sources = rtl_sources(&plan)?;
-    let trial = Trial::new(&plan)?;
-    if let Some(reason) = trial.complaint(&sources, options.seed)? {
+    let ordeal = Ordeal::new(&plan, options.seed)?;
+    if let Some(reason) = ordeal.complaint(&sources).map_err(TrialError::from)? {
         return Err(MutantsError::Unsound(reason));
     }
     let queue = drawn(&sources, options.seed);
@@ -150,7 +142,7 @@ pub fn mutants(design: &Design, options: &Options, progress: &Progress) -> Resul
         while wanted.fetch_update(Ordering::AcqRel, Ordering::Acquire, |left| left.checked_sub(1)).is_ok() {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(mutation) = queue.get(index) else { return };
-            let fate = trial.fate(&mutation.apply(&sources), options.seed);
+            let fate = ordeal.fate(&mutation.apply(&sources));
             if fate == Fate::Rejected {
                 wanted.fetch_add(1, Ordering::AcqRel);
             } else {
@@ -187,65 +179,42 @@ fn drawn(sources: &RtlSources, seed: u64) -> Vec<Mutation> {
     turns.into_iter().map(|(_, mutation)| mutation).collect()
 }
 
-/// The comparison that every mutant goes through.
-struct Trial<'a> {
-    plan: &'a Plan,
-    packets: Vec<Vec<u32>>,
-    expected: Vec<Vec<u32>>,
+/// What every mutant goes through: the trial that every design goes through, then stress.
+struct Ordeal<'a> {
+    trial: Trial<'a>,
+    seed: u64,
     /// Where the mutants are built; away with them afterwards.
     cache: tempfile::TempDir,
 }
 
-impl<'a> Trial<'a> {
-    fn new(plan: &'a Plan) -> Result<Self, MutantsError> {
+impl<'a> Ordeal<'a> {
+    fn new(plan: &'a Plan, seed: u64) -> Result<Self, MutantsError> {
         let frames = FrameSet::standing(&plan.design.sensor)?.as_delivered(&plan.design);
-        let packets: Vec<Vec<u32>> = frames.stress.iter().map(|stress| encode(stress)).collect();
-        let expected = model_answers(plan, &packets);
         let cache = tempfile::tempdir().map_err(MutantsError::Folder)?;
-        Ok(Self { plan, packets, expected, cache })
+        Ok(Self { trial: Trial::new(plan, packets(&frames.stress), seed as u32), seed, cache })
     }
 
-    fn fate(&self, sources: &RtlSources, seed: u64) -> Fate {
-        match self.complaint(sources, seed) {
+    fn fate(&self, sources: &RtlSources) -> Fate {
+        match self.complaint(sources) {
             Err(_) => Fate::Rejected,
             Ok(Some(reason)) => Fate::Caught(reason),
             Ok(None) => Fate::Survived,
         }
     }
 
-    /// What the comparison says of a design; nothing if it passes.
-    fn complaint(&self, sources: &RtlSources, seed: u64) -> Result<Option<String>, BuildError> {
+    /// What is wrong with a design; nothing if it passes.
+    fn complaint(&self, sources: &RtlSources) -> Result<Option<String>, BuildError> {
         let built = Verilate::new(self.cache.path()).build(sources)?;
-        let job = Job {
-            built: &built,
-            packets: &self.packets,
-            expected: &self.expected,
-            columns: self.plan.design.sensor.columns,
-            timeout: timeout(self.plan),
-            seed: seed as u32,
-            trace: None,
-        };
-        let simulation = match simulate(&job, &|| ()) {
-            Ok(simulation) => simulation,
-            Err(error) => return Ok(Some(error.to_string())),
-        };
-        if let Some(mismatch) = simulation.modes.iter().find_map(|mode| mode.comparison.first.first()) {
-            return Ok(Some(mismatch.to_string()));
-        }
-        let measured = (simulation.latency_cycles, simulation.interval_cycles);
-        let predicted = (self.plan.timeline.latency_cycles, self.plan.timeline.interval_cycles);
-        if measured != predicted {
-            return Ok(Some(format!("(latency, interval) is {measured:?}, predicted {predicted:?}")));
-        }
-        for batch in 0..STRESS_BATCHES {
-            let mut core = match built.load((seed ^ batch) as u32) {
-                Ok(core) => core,
-                Err(error) => return Ok(Some(error.to_string())),
-            };
-            if let Err(error) = run_batch(self.plan, &mut core, batch, BATCH, seed, &|| ()) {
-                return Ok(Some(error.to_string()));
-            }
-        }
-        Ok(None)
+        let judged = self.trial.simulate(&built, None, &|| ()).map_err(|error| error.to_string());
+        let passed = judged.and_then(|verdict| verdict.right().map_err(|fault| fault.to_string()));
+        let stressed = passed.and_then(|_| (0..STRESS_BATCHES).try_for_each(|batch| self.stress(&built, batch)));
+        Ok(stressed.err())
+    }
+
+    fn stress(&self, built: &Built, batch: u64) -> Result<(), String> {
+        let mut core = built.load((self.seed ^ batch) as u32).map_err(|error| error.to_string())?;
+        run_batch(self.trial.plan, &mut core, batch, BATCH, self.seed, &|| ())
+            .map(drop)
+            .map_err(|error| error.to_string())
     }
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::simulate::SimulationError;
 use crate::stream::{Mode, Traffic, exchange};
+use crate::trial::{Trial, timeout};
 use crate::verilate::Built;
 
 use super::{Access, Controlled, address};
@@ -23,29 +24,22 @@ pub struct RegisterReport {
     pub wrong: Vec<String>,
 }
 
-/// Runs packets with pauses on all sides, reads counters meanwhile and every register afterwards. `expected` has the
-/// integer model's answers; `progress` is called once a frame answered.
+/// Runs a trial's packets with pauses on all sides, reads counters meanwhile and every register afterwards. `progress`
+/// is called once a frame answered.
 ///
 /// # Errors
 /// [`SimulationError`] if a stream or the register port breaks a rule.
-pub fn check(
-    plan: &Plan,
-    built: &Built,
-    packets: &[Vec<u32>],
-    expected: &[Vec<u32>],
-    timeout: u64,
-    seed: u32,
-    progress: impl Fn(),
-) -> Result<RegisterReport, SimulationError> {
-    let mut core = Controlled::new(built.load(seed)?, u64::from(seed))?;
-    let [.., mode] = Mode::all(u64::from(seed));
+pub fn check(trial: &Trial<'_>, built: &Built, progress: impl Fn()) -> Result<RegisterReport, SimulationError> {
+    let Trial { plan, packets, expected, seed } = trial;
+    let mut core = Controlled::new(built.load(*seed)?, u64::from(*seed))?;
+    let [.., mode] = Mode::all(u64::from(*seed));
     let enable = Access::Write { address: address::INTERRUPT_ENABLE, data: 3, strobes: 0xF };
     core.plan(0, enable);
     let cycles = packets.len() as u64 * plan.timeline.interval_cycles;
     for cycle in (0..cycles).step_by(READ_EVERY as usize) {
         core.plan(cycle, Access::Read { address: address::FRAMES_OUT });
     }
-    let traffic = Traffic::new(packets, timeout).with_mode(&mode);
+    let traffic = Traffic::new(packets, timeout(plan)).with_mode(&mode);
     let outcome = exchange(&mut core, &traffic, |_| progress())
         .map_err(|source| SimulationError::Stream { mode: "with register accesses", source })?;
 

@@ -79,13 +79,16 @@ pub struct Mode {
 }
 
 impl Mode {
+    /// How many there are.
+    pub const COUNT: usize = 4;
+
     /// True if neither end ever pauses.
     pub fn is_free(&self) -> bool {
         (self.source, self.sink) == (Pattern::Free, Pattern::Free)
     }
 
     /// Free, idle source, stalled sink, both.
-    pub fn all(seed: u64) -> [Self; 4] {
+    pub fn all(seed: u64) -> [Self; Self::COUNT] {
         let idle = Pattern::Bursts { seed: seed ^ 0x1D1E, longest_run: 9, longest_pause: 5 };
         let stall = Pattern::Random { seed: seed ^ 0x57A1, willing: 0.6 };
         [

@@ -12,8 +12,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
 use golden::design::Design;
-use hdl_gen::emit::EmitError;
-use hdl_gen::plan::{Plan, PlanError};
+use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -22,11 +21,10 @@ use thiserror::Error;
 use packets::Packets;
 pub use packets::{Counts, Kind};
 
-use crate::dut::{Core, DutError};
+use crate::dut::Core;
 use crate::progress::Progress;
-use crate::run::{rtl_sources, timeout};
 use crate::stream::{Pattern, Reset, StreamError, Traffic, exchange};
-use crate::verilate::{BuildError, Verilate};
+use crate::trial::{self, TrialError, planned, timeout};
 use judge::judge;
 
 /// Frames of a batch.
@@ -100,18 +98,9 @@ pub enum StressError {
     /// There is nothing to send.
     #[error("--frames is 0: give the number of frames to send")]
     NoFrames,
-    /// The design cannot be planned.
+    /// The design cannot be planned, built or loaded.
     #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// The plan cannot be printed.
-    #[error(transparent)]
-    Emit(#[from] EmitError),
-    /// The RTL cannot be built.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// The core cannot be loaded.
-    #[error(transparent)]
-    Dut(#[from] DutError),
+    Trial(#[from] TrialError),
     /// The streams failed.
     #[error("batch {batch}: {source}")]
     Stream {
@@ -139,9 +128,9 @@ pub fn stress(design: &Design, options: &Options, progress: &Progress) -> Result
         return Err(StressError::NoFrames);
     }
     progress.stage("planning");
-    let plan = Plan::new(design)?;
+    let plan = planned(design)?;
     progress.stage("building the simulation with Verilator");
-    let built = Verilate::default().build(&rtl_sources(&plan)?)?;
+    let built = trial::build(&plan, trial::cycles_of(&plan, options.frames))?;
     progress.counted("simulating", options.frames);
     let batches = options.frames.div_ceil(BATCH);
     let next = AtomicU64::new(0);
@@ -155,7 +144,7 @@ pub fn stress(design: &Design, options: &Options, progress: &Progress) -> Result
             let frames = BATCH.min(options.frames - batch * BATCH);
             let result = built
                 .load((options.seed ^ batch) as u32)
-                .map_err(StressError::Dut)
+                .map_err(|error| StressError::Trial(error.into()))
                 .and_then(|mut core| run_batch(&plan, &mut core, batch, frames, options.seed, &|| progress.step()));
             if result.is_err() {
                 next.store(batches, Ordering::Relaxed);

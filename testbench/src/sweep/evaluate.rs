@@ -16,10 +16,8 @@ use super::runs::RunReport;
 use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
-use crate::run::{RunError, as_received, model_answers, rtl_sources, timeout};
-use crate::simulate::{Job as Simulated, simulate};
-use crate::verilate::Verilate;
-use crate::words::{Answer, decode, encode};
+use crate::trial::{Trial, model_answers, planned};
+use crate::words::{Answer, as_received, decode, packets};
 
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;
@@ -43,7 +41,7 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
     let design = &job.design;
     let frames = scene.frames.clone().as_delivered(design);
     let truth = frames.truth.clone().unwrap_or_default();
-    let packets: Vec<Vec<u32>> = frames.stress.iter().map(|stress| encode(stress)).collect();
+    let packets = packets(&frames.stress);
     let refused = |source| SweepError::Solver { label: job.label(scene), source };
     let solver = Solver::new(design).map_err(refused)?;
     let solutions = packets
@@ -59,15 +57,16 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
             return Ok(point);
         }
     };
-    let expected = model_answers(&plan, &packets);
+    let trial = Trial::new(&plan, packets, SEED);
     point.verified = Verified::Model;
     if let Proof::Simulation(compiler) = proof {
         let turn = compiler.lock().unwrap_or_else(PoisonError::into_inner);
-        check_rtl(&plan, &packets, &expected, &job.label(scene))?;
+        let verdict = trial.run().map_err(|error| SweepError::Run { label: job.label(scene), source: error.into() })?;
         drop(turn);
+        verdict.right().map_err(|fault| SweepError::NotExact { label: job.label(scene), fault: fault.into() })?;
         point.verified = Verified::Rtl;
     }
-    let answers: Vec<Answer> = expected.iter().filter_map(|words| decode(words)).collect();
+    let answers: Vec<Answer> = trial.expected.iter().filter_map(|words| decode(words)).collect();
     let error = SolverError::new(&answers, &solutions);
     let bounded = |value: f64| value.is_finite().then_some(value);
     point.against_solver =
@@ -77,7 +76,7 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
     point.mean_mu = mean(answers.iter().map(|answer| answer.mu));
     if let Proof::Report(path) = proof {
         RunReport::read(path)
-            .and_then(|report| report.check(&plan, packets.len(), &point.errors, &point.status_counts))
+            .and_then(|report| report.check(&plan, trial.packets.len(), &point.errors, &point.status_counts))
             .map_err(|problem| SweepError::Report { label: job.label(scene), path: path.clone(), problem })?;
         point.verified = Verified::Rtl;
     }
@@ -151,38 +150,12 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.sum::<f64>() / count
 }
 
-/// Simulates in all stream modes; every word must be the model's, and the cycles those of the plan.
-fn check_rtl(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>], label: &str) -> Result<(), SweepError> {
-    let failed = |source: RunError| SweepError::Run { label: label.to_owned(), source: Box::new(source) };
-    let sources = rtl_sources(plan).map_err(|error| failed(error.into()))?;
-    let built = Verilate::default().build(&sources).map_err(|error| failed(error.into()))?;
-    let columns = plan.design.sensor.columns;
-    let job = Simulated { built: &built, packets, expected, columns, timeout: timeout(plan), seed: SEED, trace: None };
-    let simulation = simulate(&job, &|| ()).map_err(|error| failed(error.into()))?;
-    let differs = |problem: String| Err(SweepError::NotExact { label: label.to_owned(), problem });
-    if let Some(first) = simulation.modes.iter().find_map(|mode| mode.comparison.first.first()) {
-        return differs(format!(
-            "{} words of the RTL differ from the model, the first: {first}",
-            simulation.mismatches()
-        ));
-    }
-    let simulated = (simulation.latency_cycles, simulation.interval_cycles);
-    let predicted = (plan.timeline.latency_cycles, plan.timeline.interval_cycles);
-    let within = plan.design.hardware.skip_zeros && simulated.0 <= predicted.0 && simulated.1 <= predicted.1;
-    if simulated != predicted && !within {
-        return differs(format!("latency and interval are {simulated:?} cycles, predicted {predicted:?}"));
-    }
-    Ok(())
-}
-
 /// The answers of a design's integer model to frames in Pa, decoded; for pictures.
 ///
 /// # Errors
 /// [`SweepError::Run`] if the design has no plan.
 pub fn answers(design: &Design, frames: &FrameSet) -> Result<Vec<Answer>, SweepError> {
-    let failed = |source| SweepError::Run { label: design.name.clone(), source: Box::new(RunError::Plan(source)) };
-    let plan = Plan::new(design).map_err(failed)?;
-    let packets: Vec<Vec<u32>> =
-        frames.clone().as_delivered(design).stress.iter().map(|stress| encode(stress)).collect();
+    let plan = planned(design).map_err(|error| SweepError::Run { label: design.name.clone(), source: error.into() })?;
+    let packets = packets(&frames.clone().as_delivered(design).stress);
     Ok(model_answers(&plan, &packets).iter().filter_map(|words| decode(words)).collect())
 }

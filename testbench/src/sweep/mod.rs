@@ -23,7 +23,7 @@ use thiserror::Error;
 
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
-use crate::run::RunError;
+use crate::trial::{Fault, TrialError};
 
 use evaluate::Proof;
 use grid::Job;
@@ -76,15 +76,15 @@ pub enum SweepError {
         /// The point.
         label: String,
         /// Why.
-        source: Box<RunError>,
+        source: Box<TrialError>,
     },
     /// The RTL is not the model.
-    #[error("{label}: {problem}; please report this design")]
+    #[error("{label}: {fault}; please report this design")]
     NotExact {
         /// The point.
         label: String,
         /// What differs.
-        problem: String,
+        fault: Box<Fault>,
     },
     /// A report that cannot be that of the point.
     #[error("{label}: {} {problem}; remove it, or run the point again", path.display())]

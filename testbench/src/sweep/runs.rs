@@ -16,6 +16,8 @@ use serde::Deserialize;
 use super::grid::Job;
 use super::{Sweep, SweepError, SweepScene};
 use crate::accuracy::StatusCounts;
+use crate::simulate::Cycles;
+use crate::trial::Timing;
 
 /// Folder of the jobs in that of a sweep, one folder a point.
 const JOBS: &str = "jobs";
@@ -57,10 +59,8 @@ impl RunReport {
         if !self.bit_exact {
             return Err("says that the RTL is not the model".to_owned());
         }
-        let predicted = (plan.timeline.latency_cycles, plan.timeline.interval_cycles);
-        let simulated = (self.latency_cycles, self.interval_cycles);
-        let skips = plan.design.hardware.skip_zeros;
-        let timely = simulated == predicted || skips && simulated.0 <= predicted.0 && simulated.1 <= predicted.1;
+        let simulated = Cycles { latency: self.latency_cycles, interval: self.interval_cycles };
+        let timely = Timing::of(plan, simulated) != Timing::Wrong;
         let near = |found: &ErrorSummary| {
             let pairs = found.spreads().into_iter().zip(errors.spreads());
             found.frames == errors.frames && pairs.into_iter().all(|(one, other)| (one.max - other.max).abs() < SAME)

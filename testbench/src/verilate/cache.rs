@@ -1,4 +1,4 @@
-//! The folder of finished builds: look up, publish atomically, forget what was not used for long.
+//! The folder of finished builds: look up, publish atomically, forget what is broken, abandoned or long unused.
 
 use std::env;
 use std::fs::{self, File};
@@ -6,14 +6,23 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use super::BuildError;
+use sha2::{Digest, Sha256};
+use tempfile::TempDir;
+
+use super::{BuildError, hex};
 
 /// More entries than this and the ones longest unused go: random designs in tests would fill the disk.
 const MOST_ENTRIES: usize = 400;
+/// Held while folders of builders come or go.
+const BUILDERS: &str = "builders";
 /// An entry this young is never removed: another process may be about to load it.
 const SAFE_AGE: Duration = Duration::from_hours(1);
-/// Changes its modification time with each use of the entry.
+/// Changes its modification time with each use of the entry; whoever builds an entry holds a lock on it.
 const USED: &str = "used";
+/// Digest of all other files of an entry, written last.
+const SEAL: &str = "seal";
+/// Folders whose entry is not finished yet.
+const UNFINISHED: &str = "building-";
 
 /// `verilated` in cargo's target folder.
 pub fn default_cache() -> PathBuf {
@@ -44,12 +53,31 @@ impl Cache {
         self.folder.join(key)
     }
 
-    /// The entry's folder, if there is one. Being there means being complete.
+    /// The entry's folder, if there is one and it is whole. One that is not, after a full disk or a crash of the
+    /// machine, is removed: to load it would end the process.
     pub fn get(&self, key: &str) -> Option<PathBuf> {
         let place = self.place(key);
+        if !is_whole(&place) {
+            // Whole by now if another process has built it meanwhile.
+            self.exclusive(BUILDERS, || if is_whole(&place) { Ok(()) } else { self.discard(&place) }).ok()?;
+        }
         // Only the age of the entry hangs on this, so a read-only cache is no reason to stop.
         File::create(place.join(USED)).ok();
         place.is_dir().then_some(place)
+    }
+
+    /// Out of the way at once, then gone.
+    fn discard(&self, place: &Path) -> Result<(), BuildError> {
+        if place.is_dir() {
+            let grave = self.unfinished()?;
+            fs::rename(place, grave.path().join("entry")).map_err(BuildError::io("remove", place))?;
+        }
+        Ok(())
+    }
+
+    fn unfinished(&self) -> Result<TempDir, BuildError> {
+        let folder = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(&self.folder);
+        folder.map_err(BuildError::io("create a folder in", &self.folder))
     }
 
     /// Lets `fill` build the entry in a folder of its own, then moves that into place.
@@ -58,24 +86,44 @@ impl Cache {
         key: &str,
         fill: impl FnOnce(&Path) -> Result<(), BuildError>,
     ) -> Result<PathBuf, BuildError> {
-        let unfinished = tempfile::Builder::new()
-            .prefix("building-")
-            .tempdir_in(&self.folder)
-            .map_err(BuildError::io("create a folder in", &self.folder))?;
-        fill(unfinished.path())?;
-        File::create(unfinished.path().join(USED)).map_err(BuildError::io("write to", unfinished.path()))?;
+        // The lock ends with the process, however that ends.
+        let (unfinished, _lock) = self.exclusive(BUILDERS, || {
+            self.remove_abandoned();
+            let folder = self.unfinished()?;
+            let file = File::create(folder.path().join(USED)).map_err(BuildError::io("write to", folder.path()))?;
+            file.lock().map_err(BuildError::io("lock a file in", folder.path()))?;
+            Ok((folder, file))
+        })?;
+        let path = unfinished.path();
+        fill(path)?;
+        let seal = digest(path).and_then(|digest| fs::write(path.join(SEAL), digest));
+        seal.map_err(BuildError::io("write to", path))?;
         let place = self.place(key);
-        match fs::rename(unfinished.path(), &place) {
+        match fs::rename(path, &place) {
             Ok(()) => {
                 // Gone under its old name: there is nothing left to clean up.
                 let _ = unfinished.keep();
             }
             // Another process was faster. Same key, same contents: use its entry.
-            Err(_) if place.is_dir() => {}
+            Err(_) if is_whole(&place) => {}
             Err(error) => return Err(BuildError::io("publish", &place)(error)),
         }
         self.prune();
         Ok(place)
+    }
+
+    /// Removes what interrupted builders left: folders on which nobody has a lock. To be called by one at a time.
+    fn remove_abandoned(&self) {
+        for path in self.entries().filter(|path| is_unfinished(path)) {
+            let abandoned = match File::open(path.join(USED)) {
+                Ok(file) => file.try_lock().is_ok(),
+                // By a version that had no lock, or published just now.
+                Err(_) => age(&path).is_some_and(|age| age > SAFE_AGE),
+            };
+            if abandoned {
+                fs::remove_dir_all(path).ok();
+            }
+        }
     }
 
     /// Runs one caller at a time across processes.
@@ -86,19 +134,15 @@ impl Cache {
         work()
     }
 
+    fn entries(&self) -> impl Iterator<Item = PathBuf> {
+        let paths = fs::read_dir(&self.folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
+        paths.filter(|path| path.is_dir())
+    }
+
     /// A failure to tidy up is no failure to build.
     fn prune(&self) {
-        let Ok(entries) = fs::read_dir(&self.folder) else {
-            return;
-        };
-        let now = SystemTime::now();
-        let mut aged: Vec<(Duration, PathBuf)> = entries
-            .filter_map(|entry| {
-                let path = entry.ok()?.path();
-                let age = last_use(&path).ok().and_then(|time| now.duration_since(time).ok())?;
-                (path.is_dir()).then_some((age, path))
-            })
-            .collect();
+        let finished = self.entries().filter(|path| !is_unfinished(path));
+        let mut aged: Vec<(Duration, PathBuf)> = finished.filter_map(|path| Some((age(&path)?, path))).collect();
         aged.sort();
         for (_, path) in aged.into_iter().skip(MOST_ENTRIES).filter(|(age, _)| *age > SAFE_AGE) {
             fs::remove_dir_all(path).ok();
@@ -106,7 +150,41 @@ impl Cache {
     }
 }
 
-fn last_use(entry: &Path) -> io::Result<SystemTime> {
-    // A build that was interrupted has no such file; its folder's own time serves.
-    fs::metadata(entry.join(USED)).or_else(|_| fs::metadata(entry))?.modified()
+fn is_unfinished(entry: &Path) -> bool {
+    entry.file_name().is_some_and(|name| name.to_string_lossy().starts_with(UNFINISHED))
+}
+
+/// Time since the last use of an entry.
+fn age(entry: &Path) -> Option<Duration> {
+    // A build that was interrupted early has no such file; its folder's own time serves.
+    let used = fs::metadata(entry.join(USED)).or_else(|_| fs::metadata(entry)).ok()?;
+    SystemTime::now().duration_since(used.modified().ok()?).ok()
+}
+
+/// Whether an entry is there with all its files as they were when it was published.
+fn is_whole(entry: &Path) -> bool {
+    let seal = fs::read_to_string(entry.join(SEAL));
+    seal.is_ok_and(|seal| digest(entry).is_ok_and(|digest| digest == seal))
+}
+
+/// Of names and contents of an entry's files.
+fn digest(entry: &Path) -> io::Result<String> {
+    let mut files = Vec::new();
+    let mut folders = vec![entry.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for found in fs::read_dir(folder)? {
+            let path = found?.path();
+            (if path.is_dir() { &mut folders } else { &mut files }).push(path);
+        }
+    }
+    files.retain(|path| ![USED, SEAL].iter().any(|name| *path == entry.join(name)));
+    files.sort();
+    let mut digest = Sha256::new();
+    for path in files {
+        digest.update(path.strip_prefix(entry).unwrap_or(&path).as_os_str().as_encoded_bytes());
+        let contents = fs::read(&path)?;
+        digest.update(contents.len().to_le_bytes());
+        digest.update(contents);
+    }
+    Ok(hex(&digest.finalize()))
 }

@@ -14,6 +14,13 @@ use crate::tools;
 
 use sha2::{Digest, Sha256};
 
+/// From so many cycles on a build is worth [`Effort::Long`]: for sensor 1 on 16 lanes `-O1` takes some 5 s of CPU more
+/// than `-Og` to compile and saves 0.33 s in a million cycles.
+const LONG_CYCLES: u64 = 20_000_000;
+
+/// Of the runtime: a design's code spends little time in it, and its header serves builds of either effort.
+const RUNTIME_EFFORT: Effort = Effort::Brief;
+
 /// The shared object's name in its entry.
 pub const LIBRARY: &str = "dut.so";
 const ARCHIVE: &str = "libverilated.a";
@@ -24,11 +31,9 @@ const WRAPPER: &str = include_str!("wrapper.cpp");
 const VERILATOR_FLAGS: [&str; 7] =
     ["--cc", "--x-assign", "unique", "--x-initial", "unique", "-Wno-fatal", "-DSIMULATION"];
 /// Symbols stay inside their shared object, so that several simulated designs live in one process. The wrapper turns
-/// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning. With `-Og` the compiler
-/// takes about half as long as with `-O1`, and the simulation hardly longer.
-const CXX_FLAGS: [&str; 9] = [
+/// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning.
+const CXX_FLAGS: [&str; 8] = [
     "-std=c++17",
-    "-Og",
     "-fPIC",
     "-fvisibility=hidden",
     "-w",
@@ -37,6 +42,30 @@ const CXX_FLAGS: [&str; 9] = [
     "-DVL_USER_FINISH",
     "-DVL_USER_WARN",
 ];
+
+/// How much the C++ compiler does for the speed of the simulation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effort {
+    /// Little: for a build that simulates for seconds.
+    #[default]
+    Brief,
+    /// More: for one that simulates for minutes.
+    Long,
+}
+
+impl Effort {
+    /// For a simulation of so many cycles.
+    pub fn for_cycles(cycles: u64) -> Self {
+        if cycles < LONG_CYCLES { Self::Brief } else { Self::Long }
+    }
+
+    fn flag(self) -> &'static str {
+        match self {
+            Self::Brief => "-Og",
+            Self::Long => "-O1",
+        }
+    }
+}
 
 /// The tools and flags of a build.
 pub struct Toolchain {
@@ -48,22 +77,20 @@ pub struct Toolchain {
 
 impl Toolchain {
     pub fn find(trace: Trace) -> Result<Self, BuildError> {
-        let mut cxx = tools::cxx()?;
-        cxx.arg("--version");
-        let compiler = output(cxx, "the C++ compiler", "")?;
+        let compiler = version(tools::cxx()?, "the C++ compiler", "set CXX to one that runs, such as g++")?;
         let include = tools::verilator_root()?.join("include");
         Ok(Self { trace, include, version: super::verilator_version()?, compiler })
     }
 
     /// All that can change the result, the sources apart.
-    pub fn identity(&self) -> String {
+    pub fn identity(&self, effort: Effort) -> String {
         let parts = [self.version.as_str(), self.compiler.as_str(), WRAPPER, &VERILATOR_FLAGS.join(" ")];
-        format!("{}\n{}", parts.join("\n"), self.cxx_flags().join(" "))
+        format!("{}\n{}", parts.join("\n"), self.cxx_flags(effort).join(" "))
     }
 
-    fn cxx_flags(&self) -> Vec<String> {
+    fn cxx_flags(&self, effort: Effort) -> Vec<String> {
         let traced = |format| u8::from(self.trace == format);
-        let mut flags: Vec<String> = CXX_FLAGS.iter().map(ToString::to_string).collect();
+        let mut flags: Vec<String> = CXX_FLAGS.iter().chain([&effort.flag()]).map(ToString::to_string).collect();
         for off in ["COVERAGE", "SC", "TIMING", "TRACE_SAIF"] {
             flags.push(format!("-DVM_{off}=0"));
         }
@@ -73,9 +100,9 @@ impl Toolchain {
         flags
     }
 
-    fn compile(&self) -> Result<Command, BuildError> {
+    fn compile(&self, effort: Effort) -> Result<Command, BuildError> {
         let mut command = tools::cxx()?;
-        command.args(self.cxx_flags()).arg("-I").arg(&self.include).arg("-I").arg(self.include.join("vltstd"));
+        command.args(self.cxx_flags(effort)).arg("-I").arg(&self.include).arg("-I").arg(self.include.join("vltstd"));
         Ok(command)
     }
 
@@ -95,7 +122,7 @@ impl Toolchain {
 
 /// Folder with the compiled runtime and its precompiled header; built on first use, which takes about 6 s.
 pub fn runtime(toolchain: &Toolchain, cache: &Cache) -> Result<PathBuf, BuildError> {
-    let key = format!("runtime-{}", &hex(&Sha256::digest(toolchain.identity()))[..16]);
+    let key = format!("runtime-{}", &hex(&Sha256::digest(toolchain.identity(RUNTIME_EFFORT)))[..16]);
     // Every test of a fresh checkout wants it at the same moment.
     cache.exclusive(&key, || match cache.get(&key) {
         Some(folder) => Ok(folder),
@@ -106,13 +133,13 @@ pub fn runtime(toolchain: &Toolchain, cache: &Cache) -> Result<PathBuf, BuildErr
 fn build_runtime(toolchain: &Toolchain, folder: &Path) -> Result<(), BuildError> {
     let header = folder.join(HEADER);
     fs::write(&header, "#include \"verilated.h\"\n").map_err(BuildError::io("write", &header))?;
-    let mut precompile = toolchain.compile()?;
+    let mut precompile = toolchain.compile(RUNTIME_EFFORT)?;
     precompile.args(["-x", "c++-header"]).arg(&header).arg("-o").arg(folder.join(format!("{HEADER}.gch")));
     let mut jobs = vec![precompile];
     let mut objects = Vec::new();
     for (index, source) in toolchain.runtime_sources().into_iter().enumerate() {
         let object = folder.join(format!("runtime{index}.o"));
-        let mut job = toolchain.compile()?;
+        let mut job = toolchain.compile(RUNTIME_EFFORT)?;
         job.arg("-c").arg(source).arg("-o").arg(&object);
         jobs.push(job);
         objects.push(object);
@@ -138,7 +165,7 @@ fn build_runtime(toolchain: &Toolchain, folder: &Path) -> Result<(), BuildError>
 
 /// Translates and compiles the sources in `folder`; the ROM files are looked for in `rom_folder` at run time.
 pub fn design(
-    toolchain: &Toolchain,
+    (toolchain, effort): (&Toolchain, Effort),
     runtime: &Path,
     sources: &RtlSources,
     folder: &Path,
@@ -153,7 +180,7 @@ pub fn design(
     let unit = generated.join("everything.cc");
     fs::write(&unit, everything).map_err(BuildError::io("write", &unit))?;
 
-    let mut compile = toolchain.compile()?;
+    let mut compile = toolchain.compile(effort)?;
     // The precompiled header works only as the first include; without one (another compiler) the plain one is read.
     compile.arg("-include").arg(runtime.join(HEADER)).arg("-I").arg(&generated);
     compile.args(["-shared", "-o"]).arg(folder.join(LIBRARY)).arg(&unit).arg(runtime.join(ARCHIVE));
@@ -208,14 +235,28 @@ pub fn fst_libraries_present() -> bool {
     matches!(written, Some(Ok(()))) && child.wait().is_ok_and(|status| status.success())
 }
 
-/// Runs a command to its end; its standard output if it succeeded, all it said if not.
-pub fn output(mut command: Command, step: &'static str, top: &str) -> Result<String, BuildError> {
+/// What a program says of its version, if it runs; `remedy` is for a user whose program does not.
+pub fn version(mut program: Command, tool: &'static str, remedy: &'static str) -> Result<String, BuildError> {
+    program.arg("--version");
+    let path = PathBuf::from(program.get_program());
+    said(program)?.map_err(|output| BuildError::Version { tool, path, remedy, output })
+}
+
+/// Runs a command to its end; its standard output.
+fn output(command: Command, step: &'static str, top: &str) -> Result<String, BuildError> {
+    said(command)?.map_err(|output| BuildError::Step { step, top: top.to_owned(), output })
+}
+
+/// A command's standard output if it succeeded, all it said if not.
+fn said(mut command: Command) -> Result<Result<String, String>, BuildError> {
     let program = PathBuf::from(command.get_program());
     let result = command.stdin(Stdio::null()).output().map_err(BuildError::io("run", &program))?;
     let said = String::from_utf8_lossy(&result.stdout).into_owned();
-    if result.status.success() {
-        return Ok(said);
-    }
     let complaint = String::from_utf8_lossy(&result.stderr);
-    Err(BuildError::Step { step, top: top.to_owned(), output: format!("{said}{complaint}").trim_end().to_owned() })
+    Ok(if result.status.success() {
+        Ok(said)
+    } else {
+        let all = format!("{said}{complaint}").trim_end().to_owned();
+        Err(if all.is_empty() { format!("it said nothing; {}", result.status) } else { all })
+    })
 }

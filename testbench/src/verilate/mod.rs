@@ -15,6 +15,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 pub use cache::default_cache;
+pub use compile::Effort;
 
 use crate::dut::{Dut, DutError};
 use crate::tools::{self, ToolError};
@@ -98,6 +99,18 @@ pub enum BuildError {
         /// What the tool said.
         output: String,
     },
+    /// A tool does not even say its version.
+    #[error("{tool} ({}) does not run: {output}\n{remedy}", .path.display())]
+    Version {
+        /// Which tool.
+        tool: &'static str,
+        /// Its program.
+        path: PathBuf,
+        /// What to do.
+        remedy: &'static str,
+        /// What the tool said.
+        output: String,
+    },
     /// A file or folder could not be used.
     #[error("cannot {action} {}: {source}", .path.display())]
     Io {
@@ -146,6 +159,7 @@ impl Built {
 pub struct Verilate {
     cache: PathBuf,
     trace: Trace,
+    effort: Effort,
 }
 
 impl Default for Verilate {
@@ -157,13 +171,19 @@ impl Default for Verilate {
 impl Verilate {
     /// With its cache in the given folder, which is created when needed.
     pub fn new(cache: impl Into<PathBuf>) -> Self {
-        Self { cache: cache.into(), trace: Trace::Off }
+        Self { cache: cache.into(), trace: Trace::Off, effort: Effort::default() }
     }
 
     /// With signals traced.
     #[must_use]
     pub fn with_trace(self, trace: Trace) -> Self {
         Self { trace, ..self }
+    }
+
+    /// With the compiler's effort for the length of the simulation.
+    #[must_use]
+    pub fn with_effort(self, effort: Effort) -> Self {
+        Self { effort, ..self }
     }
 
     /// Builds the design, unless the cache has it.
@@ -174,7 +194,7 @@ impl Verilate {
         check(sources)?;
         let cache = cache::Cache::open(&self.cache)?;
         let toolchain = Toolchain::find(self.trace)?;
-        let key = key(sources, &toolchain, cache.folder());
+        let key = key(sources, &toolchain.identity(self.effort), cache.folder());
         let library = |entry: &Path| entry.join(compile::LIBRARY);
         if let Some(entry) = cache.get(&key) {
             return Ok(Built { library: library(&entry), compiled: false, trace: self.trace });
@@ -183,7 +203,7 @@ impl Verilate {
         let place = cache.place(&key);
         let entry = cache.publish(&key, |folder| {
             write_sources(sources, folder)?;
-            compile::design(&toolchain, &runtime, sources, folder, &place.join(ROM_FOLDER))
+            compile::design((&toolchain, self.effort), &runtime, sources, folder, &place.join(ROM_FOLDER))
         })?;
         Ok(Built { library: library(&entry), compiled: true, trace: self.trace })
     }
@@ -201,13 +221,13 @@ fn check(sources: &RtlSources) -> Result<(), BuildError> {
 }
 
 /// The cache folder is part of the key because the ROM files' absolute path is compiled in.
-fn key(sources: &RtlSources, toolchain: &Toolchain, cache: &Path) -> String {
+fn key(sources: &RtlSources, toolchain: &str, cache: &Path) -> String {
     let mut hash = Sha256::new();
     let mut add = |bytes: &[u8]| {
         hash.update((bytes.len() as u64).to_le_bytes());
         hash.update(bytes);
     };
-    add(toolchain.identity().as_bytes());
+    add(toolchain.as_bytes());
     add(cache.as_os_str().as_encoded_bytes());
     add(sources.top.as_bytes());
     for (path, bytes) in &sources.files {
@@ -246,7 +266,6 @@ pub fn verilator_version() -> Result<String, BuildError> {
     if let Some(release) = tools::verilator_release()? {
         return Ok(format!("Verilator {release}"));
     }
-    let mut command = tools::verilator()?;
-    command.arg("--version");
-    compile::output(command, "verilator --version", "").map(|text| text.trim().to_owned())
+    let said = compile::version(tools::verilator()?, "Verilator", "run `make tools` to install it anew")?;
+    Ok(said.trim().to_owned())
 }

@@ -9,8 +9,8 @@ use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::compare::Comparison;
-use testbench::run::timeout;
 use testbench::stream::{INITIAL_RESET, Mode, Outcome, Pacing, Pattern, Reset, Traffic, exchange};
+use testbench::trial::timeout;
 use testbench::verilate::Built;
 use testbench::words::{Answer, decode, encode};
 

@@ -149,3 +149,40 @@ fn a_trace_is_written_by_a_build_with_tracing_only() {
     assert!(text.contains("$var") && text.contains("m_axis_tdata") && text.contains("\n#10\n"));
     assert!(matches!(Trace::best(), Trace::Vcd | Trace::Fst));
 }
+
+#[test]
+fn a_broken_entry_is_built_again() {
+    let cache = fresh_cache();
+    let verilate = Verilate::new(cache.path());
+    let first = verilate.build(&packet_sum(0)).expect("builds");
+    let rom = first.library.with_file_name("rom").join("addend.mem");
+    let library = fs::read(&first.library).expect("readable");
+    for (file, broken) in [(&first.library, &library[..library.len() / 3]), (&first.library, b""), (&rom, b"1\n2\n")] {
+        // Another file of that name: the one that this process has loaded stays mapped.
+        fs::remove_file(file).expect("writable");
+        fs::write(file, broken).expect("writable");
+        let again = verilate.build(&packet_sum(0)).expect("builds");
+        assert!(again.compiled && again.library == first.library);
+        let outcome = exchange(&mut again.load(1).expect("loads"), &Traffic::new(&[vec![5]], 100), |_| ());
+        assert_eq!(outcome.expect("runs").exchanges[0].words, answer(0, &[5]));
+    }
+    assert_eq!(fs::read(&first.library).map(|bytes| bytes.len()).ok(), Some(library.len()));
+    assert!(!verilate.build(&packet_sum(0)).expect("builds").compiled);
+}
+
+#[test]
+fn what_an_interrupted_build_left_is_removed_and_a_running_one_is_not() {
+    let cache = fresh_cache();
+    let unfinished = |name: &str| {
+        let folder = cache.path().join(name);
+        fs::create_dir(&folder).expect("writable");
+        fs::write(folder.join("dut.so"), "half").expect("writable");
+        fs::File::create(folder.join("used")).expect("writable")
+    };
+    let running = unfinished("building-running");
+    running.lock().expect("locked");
+    drop(unfinished("building-abandoned"));
+    Verilate::new(cache.path()).build(&packet_sum(0)).expect("builds");
+    assert!(!cache.path().join("building-abandoned").exists());
+    assert!(cache.path().join("building-running/dut.so").exists());
+}

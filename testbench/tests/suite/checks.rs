@@ -3,8 +3,8 @@
 
 use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
 use golden::design::{Design, Outputs, PlanKind};
-use testbench::run::{rtl_sources, timeout};
 use testbench::stream::{Traffic, exchange};
+use testbench::trial::{rtl_sources, timeout};
 use testbench::verilate::Verilate;
 
 /// Frames that are sent.

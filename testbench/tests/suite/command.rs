@@ -4,7 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use golden::design::Design;
+use hdl_gen::plan::Plan;
 use serde_json::Value;
+use testbench::frame_set::FrameSet;
+use testbench::progress::Progress;
+use testbench::run::{Options, run_plan};
+use testbench::table;
+use testbench::trial::Timing;
 
 fn testbench(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_testbench")).args(arguments).output().expect("starts")
@@ -72,6 +79,31 @@ fn the_table_has_no_control_codes_off_a_terminal() {
     assert!(width < Some(120), "{width:?}");
 }
 
+/// As if the hardware took a cycle more, or two fewer, than the plan says.
+#[test]
+fn other_cycles_than_predicted_are_wrong() {
+    let mut plan = Plan::new(&Design::load(Path::new(&design("small.toml"))).expect("a design")).expect("a plan");
+    let frames = FrameSet::standing(&plan.design.sensor).expect("frames");
+    let report = |plan: &Plan| run_plan(plan, &frames, &Options::default(), &Progress::hidden()).expect("runs");
+    let right = report(&plan);
+    assert!(right.is_right() && right.timing == Timing::AsPredicted && right.faults.is_empty());
+    let page = table::render(&right);
+    assert!(!page.contains("Zeros") && !page.contains("WRONG"), "{page}");
+    plan.timeline.latency_cycles -= 1;
+    plan.timeline.interval_cycles += 2;
+    let wrong = report(&plan);
+    assert!(!wrong.is_right() && wrong.bit_exact && wrong.timing == Timing::Wrong);
+    let [fault] = &wrong.faults[..] else { panic!("{:?}", wrong.faults) };
+    let (found, predicted) = (right.predicted, wrong.predicted);
+    for figures in [found, predicted] {
+        let cycles = format!("{} / {}", figures.latency_cycles, figures.interval_cycles);
+        assert!(fault.contains(&cycles), "{fault}");
+    }
+    assert!(table::render(&wrong).contains("WRONG CYCLES"));
+    let json = serde_json::to_value(&wrong).expect("JSON");
+    assert_eq!((&json["timing"], &json["faults"]), (&Value::from("wrong"), &Value::from(vec![fault.clone()])));
+}
+
 #[test]
 fn frames_and_reference_come_from_files() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -127,4 +159,17 @@ fn missing_tools_are_named_with_the_remedy() {
     let message = text(&output.stderr);
     assert!(!output.status.success());
     assert!(message.contains("verilator not found in") && message.contains("make tools"), "{message}");
+}
+
+#[test]
+fn a_compiler_that_does_not_run_is_named_with_the_remedy() {
+    let output = Command::new(env!("CARGO_BIN_EXE_testbench"))
+        .args(["run", &design("small.toml")])
+        .env("CXX", "false")
+        .output()
+        .expect("starts");
+    let message = text(&output.stderr);
+    assert!(!output.status.success() && text(&output.stdout).is_empty());
+    assert!(message.starts_with("error: the C++ compiler (false) does not run: "), "{message}");
+    assert!(message.contains("set CXX"), "{message}");
 }

@@ -10,8 +10,8 @@ use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::compare::Comparison;
-use testbench::run::{model_answers, timeout};
 use testbench::stream::{Mode, Pacing, Traffic, exchange};
+use testbench::trial::{model_answers, timeout};
 use testbench::words::{decode, encode};
 
 use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, workspace};

@@ -13,7 +13,7 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::product::{Coefficients, Product};
 use testbench::accuracy::SolverError;
 use testbench::frame_set::FrameSet;
-use testbench::run::model_answers;
+use testbench::trial::model_answers;
 use testbench::words::{decode, encode};
 
 /// Of the largest `|f_z|` of a frame; of resultants, of `|F_z|`.
@@ -68,7 +68,7 @@ fn the_reduced_plan_keeps_to_its_limits() {
         let plan = planned(design);
         let simulation = simulate_exactly(&plan, &built(&plan), &some_packets(design), 1)
             .unwrap_or_else(|error| panic!("{name}: {error}"));
-        let (latency, interval) = (simulation.latency_cycles, simulation.interval_cycles);
+        let (latency, interval) = (simulation.cycles.latency, simulation.cycles.interval);
         let (dsp, bram36) = (plan.resources.dsp, plan.resources.bram36);
         if let Some(limits) = limits {
             assert!(latency <= limits.latency && interval <= limits.interval, "{name}: {latency}, {interval} cycles");
@@ -111,13 +111,13 @@ fn sensor_1_answers_in_time_and_its_lanes_are_busy() {
         // Latency and interval as predicted is part of what is judged here.
         let simulation = simulate_exactly(&plan, &built(&plan), &some_packets(design), 1)
             .unwrap_or_else(|error| panic!("{}: {error}", design.name));
-        let (latency, lanes) = (simulation.latency_cycles, design.hardware.lanes);
+        let (latency, lanes) = (simulation.cycles.latency, design.hardware.lanes);
         assert!(most.is_none_or(|most| latency <= most), "{}: {latency} cycles", design.name);
         let (busy, least) = (plan.schedule.busy_fraction(), least_busy_product(&plan));
         assert!(busy >= LEAST_BUSY, "{}: lanes busy {busy}", design.name);
         assert!(lanes > 16 || least >= LEAST_BUSY, "{}: lanes busy {least} in a product", design.name);
         let most = most.map_or_else(String::new, |most| most.to_string());
-        let interval = simulation.interval_cycles;
+        let interval = simulation.cycles.interval;
         let (busy, least) = (100.0 * busy, 100.0 * least);
         format!("{:<24}{lanes:>5}{latency:>10}{most:>10}{interval:>10}{busy:>9.1} %{least:>9.1} %\n", design.name)
     });

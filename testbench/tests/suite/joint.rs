@@ -14,8 +14,8 @@ use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::accuracy::SolverError;
-use testbench::run::{model_answers, timeout};
 use testbench::stream::{Traffic, exchange};
+use testbench::trial::{model_answers, timeout};
 use testbench::words::{Answer, decode, encode};
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
@@ -71,11 +71,11 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         // Latency and interval as predicted is part of what is judged here, and so is every word in every mode.
         let simulation = simulate_exactly(&plan, &built(&plan), &packets, 1)
             .unwrap_or_else(|error| panic!("{}: {error}", design.name));
-        let more = simulation.latency_cycles - line.timeline.latency_cycles;
+        let more = simulation.cycles.latency - line.timeline.latency_cycles;
         assert!(more <= MOST_CYCLES_MORE, "{}: {more} more", design.name);
         assert!(plan.resources.dsp <= MOST_TIMES_DSP * line.resources.dsp, "{}", design.name);
         let (dsp, bram36) = (plan.resources.dsp, plan.resources.bram36);
-        let (latency, interval) = (simulation.latency_cycles, simulation.interval_cycles);
+        let (latency, interval) = (simulation.cycles.latency, simulation.cycles.interval);
         format!("{:<30}{latency:>10}{more:>10}{interval:>10}{dsp:>6}{bram36:>8}\n", design.name)
     });
     let heads = ["simulated = predicted", "latency", "more", "interval", "DSP", "BRAM"];

@@ -9,7 +9,7 @@ use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
 use golden::scene::Scene;
 use golden::solver::Solver;
 use testbench::accuracy::against_truth;
-use testbench::run::as_received;
+use testbench::words::as_received;
 use testbench::words::{Answer, decode, encode};
 
 /// Percentage points between an error of the RTL and that of f64.

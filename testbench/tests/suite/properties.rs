@@ -6,8 +6,8 @@ use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::compare::Comparison;
-use testbench::run::{model_answers, timeout};
 use testbench::stream::{Mode, Outcome, Pacing, Pattern, Traffic, exchange};
+use testbench::trial::{model_answers, timeout};
 use testbench::verilate::Built;
 
 use crate::support::random::{self, Kind, Shape, seed};

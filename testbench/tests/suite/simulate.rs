@@ -31,7 +31,7 @@ fn a_right_core_is_exact_in_all_modes() {
     assert!(simulation.modes.iter().all(|result| result.comparison.words == 40));
     assert_eq!(simulation.answers, expected);
     let cycles = 3 + DELAY + 1 + 4;
-    assert_eq!((simulation.latency_cycles, simulation.interval_cycles), (cycles, cycles));
+    assert_eq!((simulation.cycles.latency, simulation.cycles.interval), (cycles, cycles));
     assert_eq!(answered.into_inner(), frames_to_simulate(packets.len()));
     let [free, idle, stalled, both] = [0, 1, 2, 3].map(|mode| simulation.modes[mode].cycles);
     assert!(free < idle && free < stalled && free < both, "{free} {idle} {stalled} {both}");

@@ -5,8 +5,8 @@ use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::compare::Comparison;
-use testbench::run::{model_answers, timeout};
 use testbench::stream::{Exchange, Mode, Pacing, Traffic, exchange};
+use testbench::trial::{model_answers, timeout};
 
 use crate::support::{built, frames, in_parallel, planned};
 

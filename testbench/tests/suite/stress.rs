@@ -1,11 +1,14 @@
 //! Thousands of frames, good and bad, with pauses and resets; and faults in the RTL, which the testbench must notice.
 
 use crate::support::{by_plan, in_parallel, planned, shipped};
-use golden::design::{Outputs, PlanKind};
+use golden::design::{Design, Outputs, PlanKind};
+use testbench::frame_set::FrameSet;
 use testbench::mutants::{self, Fate, Kind, mutants};
 use testbench::progress::Progress;
-use testbench::run::rtl_sources;
+use testbench::run::{self, run};
 use testbench::stress::{self, StressError, stress};
+use testbench::table;
+use testbench::trial::{Timing, rtl_sources};
 use testbench::verilate::Verilate;
 
 const FRAMES: u64 = 3000;
@@ -94,4 +97,19 @@ fn faults_in_the_rtl_are_noticed() {
     assert_eq!(built, Kind::ALL.len());
     // Some faults change nothing: among 220 one in ten, of these as listed in docs/trust.md.
     assert!(report.survivors().count() <= 2, "{report}");
+}
+
+/// A contact in a corner of a shallow sensor leaves quads out: fewer cycles than predicted, and nothing is wrong.
+#[test]
+fn a_design_that_passes_over_zeros_is_sound() {
+    let text = "name = \"shallow\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 1.2\n\
+                [algorithm]\nplan = \"reduced\"\noutputs = \"resultants\"\n[hardware]\nlanes = 4\nskip_zeros = true\n";
+    let design = Design::from_toml(text, "shallow").expect("a design");
+    let frames = FrameSet::standing(&design.sensor).expect("frames");
+    let report = run(&design, &frames, &run::Options::default(), &Progress::hidden()).expect("runs");
+    assert_eq!(report.timing, Timing::WithinBound, "{report:#?}");
+    assert!(report.latency_cycles < report.predicted.latency_cycles && report.is_right());
+    assert!(table::render(&report).contains("Zeros were passed over"));
+    let none = mutants(&design, &mutants::Options { count: 0, seed: 1 }, &Progress::hidden()).expect("sound");
+    assert!(none.mutants.is_empty());
 }

@@ -11,7 +11,7 @@ use hdl_gen::plan::product::Vector;
 use hdl_gen::plan::schedule::Schedule;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use testbench::run::model_answers;
+use testbench::trial::model_answers;
 use testbench::words::{Answer, decode};
 
 /// The small design with another plan.

@@ -12,8 +12,8 @@ use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tempfile::TempDir;
-use testbench::run::model_answers;
 use testbench::tools;
+use testbench::trial::model_answers;
 use testbench::verilate::Built;
 
 /// A design, simulated, with frames of every kind in a file.

@@ -5,8 +5,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, Controlled, address, check};
-use testbench::run::{model_answers, rtl_sources, timeout};
 use testbench::stream::{Pacing, Traffic, exchange};
+use testbench::trial::{Trial, rtl_sources, timeout};
 use testbench::verilate::Verilate;
 
 use super::{mixed, subjects};
@@ -18,11 +18,10 @@ fn frames_and_errors_are_counted() {
     in_parallel(&cases, |&(subject, seed)| {
         let plan = &subject.plan;
         let packets = mixed(plan, 150, &mut ChaCha8Rng::seed_from_u64(u64::from(seed)));
-        let expected = model_answers(plan, &packets);
-        let bad = expected.iter().filter(|words| words[0] & (NOT_FINITE | BAD_LENGTH) != 0).count();
+        let trial = Trial::new(plan, packets, seed);
+        let bad = trial.expected.iter().filter(|words| words[0] & (NOT_FINITE | BAD_LENGTH) != 0).count();
         assert!((20..130).contains(&bad), "{bad} bad frames");
-        let report =
-            check(plan, &subject.built, &packets, &expected, timeout(plan), seed, || ()).expect("no rule broken");
+        let report = check(&trial, &subject.built, || ()).expect("no rule broken");
         assert_eq!(report.wrong, Vec::<String>::new(), "{}, seed {seed}", plan.design.name);
         assert!(report.accesses > 100, "{}", report.accesses);
     });
@@ -97,7 +96,7 @@ fn a_wrong_count_is_noticed() {
     let subject = &subjects()[0];
     let plan = &subject.plan;
     let packets = mixed(plan, 40, &mut ChaCha8Rng::seed_from_u64(8));
-    let expected = model_answers(plan, &packets);
+    let trial = Trial::new(plan, packets, 1);
     for (text, broken) in [
         ("(status[5:4] != 2'd0)", "(status[4] != 1'd0)"),
         ("now - beginnings[oldest] + 32'd1", "now - beginnings[oldest]"),
@@ -110,7 +109,7 @@ fn a_wrong_count_is_noticed() {
         assert_eq!(right.matches(text).count(), 1, "{text}");
         sources.files.insert("rtl/sptfra_frame_meter.v".to_owned(), right.replace(text, broken).into_bytes());
         let built = Verilate::default().build(&sources).expect("builds");
-        let report = check(plan, &built, &packets, &expected, timeout(plan), 1, || ()).expect("no rule broken");
+        let report = check(&trial, &built, || ()).expect("no rule broken");
         assert_ne!(report.wrong, Vec::<String>::new(), "{broken}");
     }
 }

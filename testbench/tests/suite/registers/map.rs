@@ -7,8 +7,8 @@ use hdl_gen::emit::emit;
 use serde::Deserialize;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, Controlled, address};
-use testbench::run::rtl_sources;
 use testbench::tools;
+use testbench::trial::rtl_sources;
 use testbench::verilate::{Built, Verilate};
 
 use super::{Subject, subjects};

@@ -7,8 +7,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::dut::{Beat, Core, Inputs};
 use testbench::registers::{Access, Controlled, address};
-use testbench::run::{rtl_sources, timeout};
 use testbench::stream::{Checker, Mode};
+use testbench::trial::{rtl_sources, timeout};
 use testbench::verilate::{Built, Verilate};
 
 use super::{Subject, mixed, subjects};

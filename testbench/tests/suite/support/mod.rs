@@ -9,8 +9,8 @@ use std::thread;
 
 use golden::design::{Correction, Design, Estimator, Outputs, PlanKind};
 use hdl_gen::plan::Plan;
-use testbench::run::{model_answers, rtl_sources, timeout};
-use testbench::simulate::{Job, Simulation, simulate};
+use testbench::simulate::Simulation;
+use testbench::trial::{Trial, rtl_sources};
 use testbench::verilate::{Built, Verilate};
 
 /// A file of the workspace.
@@ -69,26 +69,11 @@ pub fn built(plan: &Plan) -> Built {
 /// # Errors
 /// What is wrong, with the first words that differ.
 pub fn simulate_exactly(plan: &Plan, built: &Built, packets: &[Vec<u32>], seed: u32) -> Result<Simulation, String> {
-    let expected = model_answers(plan, packets);
-    let columns = plan.design.sensor.columns;
-    let job = Job { built, packets, expected: &expected, columns, timeout: timeout(plan), seed, trace: None };
-    let simulation = simulate(&job, &|| ()).map_err(|error| error.to_string())?;
-    for result in &simulation.modes {
-        let words: u64 = expected.iter().map(|words| words.len() as u64).sum();
-        if !result.comparison.is_exact() || result.comparison.words != words {
-            let first: Vec<String> = result.comparison.first.iter().map(ToString::to_string).collect();
-            let count = result.comparison.mismatches;
-            return Err(format!("{}: {count} of {words} words differ\n{}", result.mode.name, first.join("\n")));
-        }
-    }
-    let measured = (simulation.latency_cycles, simulation.interval_cycles);
-    let predicted = (plan.timeline.latency_cycles, plan.timeline.interval_cycles);
-    // Where zeros are passed over the prediction is a bound.
-    let kept = measured.0 <= predicted.0 && measured.1 <= predicted.1;
-    if !(if plan.design.hardware.skip_zeros { kept } else { measured == predicted }) {
-        return Err(format!("(latency, interval): simulated {measured:?}, predicted {predicted:?}"));
-    }
-    Ok(simulation)
+    let trial = Trial::new(plan, packets.to_vec(), seed);
+    let verdict = trial.simulate(built, None, &|| ()).map_err(|error| error.to_string())?;
+    let words: u64 = trial.expected.iter().map(|words| words.len() as u64).sum();
+    assert!(verdict.simulation.modes.iter().all(|mode| mode.comparison.words >= words), "every word is compared");
+    verdict.right().map_err(|fault| fault.to_string())
 }
 
 /// Runs `work` on every item, on as many threads as there are processors; the results in the items' order.
