@@ -19,6 +19,16 @@ pub trait Stored<const W: usize> {
     fn sums<T: Float>(&self, pull: &[[T; W]], weight: &[[T; W]]) -> ByPq<T>;
 }
 
+impl<S: Stored<W>, const W: usize> Stored<W> for &S {
+    fn times<T: Float>(&self, source: Source, x: &[[T; W]], result: &mut [[T; W]], scratch: &mut Quarters<T>) {
+        (*self).times(source, x, result, scratch);
+    }
+
+    fn sums<T: Float>(&self, pull: &[[T; W]], weight: &[[T; W]]) -> ByPq<T> {
+        (*self).sums(pull, weight)
+    }
+}
+
 /// Two folded vectors.
 pub type Quarters<T> = [Vec<[T; CLASSES]>; 2];
 
@@ -71,19 +81,17 @@ impl PaperMatrices {
 impl Stored<1> for PaperMatrices {
     fn times<T: Float>(&self, source: Source, x: &[[T; 1]], result: &mut [[T; 1]], scratch: &mut Quarters<T>) {
         let (x, result) = (x.as_flattened(), result.as_flattened_mut());
-        match source {
-            Source::Thirteen(name) => row_by_row(self.filtered.get(name), x, result),
-            _ => {
-                let [folded, product] = scratch;
-                folded.clear();
-                folded.extend(self.members.iter().map(|taxels| butterfly(taxels.map(|taxel| x[taxel]))));
-                product.resize(folded.len(), Default::default());
-                times(&self.c33, folded, product);
-                for (taxels, product) in self.members.iter().zip(product) {
-                    for (&taxel, sum) in taxels.iter().zip(butterfly(*product)) {
-                        result[taxel] = T::of(0.25) * sum;
-                    }
-                }
+        if let Source::Thirteen(name) = source {
+            return row_by_row(self.filtered.get(name), x, result);
+        }
+        let [folded, product] = scratch;
+        folded.clear();
+        folded.extend(self.members.iter().map(|taxels| butterfly(taxels.map(|taxel| x[taxel]))));
+        product.resize(folded.len(), Default::default());
+        times(&self.c33, folded, product);
+        for (taxels, product) in self.members.iter().zip(product) {
+            for (&taxel, sum) in taxels.iter().zip(butterfly(*product)) {
+                result[taxel] = T::of(0.25) * sum;
             }
         }
     }

@@ -140,7 +140,9 @@ impl Solver {
                 }
             }
             batch.solve(&self.friction, scratch, solutions);
-            solutions.iter_mut().for_each(|solution| self.scale(solution));
+            for solution in solutions {
+                self.scale(solution);
+            }
         }
         Ok(())
     }

@@ -59,7 +59,7 @@ pub enum Filtered<'a> {
     /// The paper's thirteen, and C33, which no filter touches.
     Thirteen(FilteredMatrices, &'a Matrices),
     /// The ten of the reduced plan, folded.
-    Ten(ReducedMatrices, &'a Matrices),
+    Ten(Box<ReducedMatrices>, &'a Matrices),
 }
 
 impl<'a> Filtered<'a> {
@@ -71,7 +71,9 @@ impl<'a> Filtered<'a> {
         let filter = &design.algorithm.filter;
         Ok(match design.algorithm.plan {
             PlanKind::Paper => Self::Thirteen(FilteredMatrices::new(matrices, filter)?, matrices),
-            PlanKind::Reduced => Self::Ten(ReducedMatrices::new(matrices, matrices.quads(), filter)?, matrices),
+            PlanKind::Reduced => {
+                Self::Ten(Box::new(ReducedMatrices::new(matrices, matrices.quads(), filter)?), matrices)
+            }
         })
     }
 
