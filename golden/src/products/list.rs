@@ -145,7 +145,8 @@ impl ProductList {
         list
     }
 
-    /// The parity fold: vectors by quad and class, matrices of a quarter of the size, see [`crate::parity`].
+    /// The parity fold: vectors by quad and class, matrices of a quarter of the size, see [`crate::parity`]. For a list
+    /// with forces and sums of its own, as fewer products have them.
     #[must_use]
     pub fn folded(mut self) -> Self {
         for step in &mut self.steps {

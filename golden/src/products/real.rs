@@ -1,34 +1,13 @@
 //! Products in real numbers.
 
-use std::fmt::Debug;
 use std::marker::PhantomData;
-use std::ops::{Add, Mul, Neg, Sub};
 
+use super::float::Float;
 use super::interpreter::{ByPq, Frame};
 use super::list::ProductList;
 use super::scalar::{Number, Scalar};
 use super::step::{Step, Vector};
 use super::stored::{Quarters, Stored};
-
-/// f64 or f32.
-pub trait Float:
-    Copy + Debug + Default + PartialOrd + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
-{
-    /// The nearest number.
-    fn of(value: f64) -> Self;
-}
-
-impl Float for f64 {
-    fn of(value: f64) -> Self {
-        value
-    }
-}
-
-impl Float for f32 {
-    fn of(value: f64) -> Self {
-        value as Self
-    }
-}
 
 /// Products with stored matrices in floating point.
 #[derive(Clone, Debug)]

@@ -2,9 +2,9 @@
 
 use nalgebra_sparse::CsrMatrix;
 
+use super::float::Float;
 use super::interpreter::ByPq;
 use super::list::Source;
-use super::real::Float;
 use crate::filter::FilteredMatrices;
 use crate::matrices::Matrices;
 use crate::parity::{CLASSES, butterfly};
