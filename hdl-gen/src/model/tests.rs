@@ -7,8 +7,8 @@ use proptest::prelude::*;
 
 use super::{Integers, frame, integer, run};
 use crate::plan::Plan;
+use crate::plan::matrix::QuantisedMatrix;
 use crate::plan::product::Vector;
-use crate::plan::quantise::QuantisedMatrix;
 
 fn plan(columns: usize, rows: usize, algorithm: &str, hardware: &str) -> Plan {
     let text = format!(

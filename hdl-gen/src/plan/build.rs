@@ -6,12 +6,14 @@ use golden::parity::{CLASSES, Quads};
 
 use super::counts::CountsPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
+use super::filtered::Filtered;
 use super::format::{Format, pow2};
 use super::formats::Formats;
 use super::layout::OperandLayout;
-use super::passes::{self, Filtered};
+use super::matrix::QuantisedMatrix;
+use super::passes;
 use super::product::Product;
-use super::quantise::{Quantised, QuantisedMatrix, quantise};
+use super::quantise::{Quantised, quantise, taxel_force_n};
 use super::resources::Resources;
 use super::schedule::Schedule;
 use super::timing::Timeline;
@@ -167,12 +169,6 @@ pub(super) fn elements(design: &Design) -> usize {
         PlanKind::Paper => design.sensor.taxels(),
         PlanKind::Reduced => quads(design).count(),
     }
-}
-
-/// The force of a taxel whose cell is pressed with the full scale.
-pub(super) fn taxel_force_n(design: &Design) -> f64 {
-    let [x, y] = design.sensor.pitch_mm;
-    design.hardware.full_scale_pa * x * y * 1e-6
 }
 
 fn check_force_resolution(

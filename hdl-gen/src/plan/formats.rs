@@ -1,9 +1,9 @@
 //! Formats of a plan's vectors.
 
+use golden::products::Vector;
 use serde::Serialize;
 
 use super::format::{FRICTION_FRACTION, Format};
-use super::product::Vector;
 
 /// Bits by which four taxels' sum is wider than a taxel's value.
 pub const FOLD_BITS: u32 = 2;

@@ -7,7 +7,7 @@ pub use golden::products::{Coefficients, Epilogue, Step, Vector, mirror, swapped
 use serde::Serialize;
 
 use super::format::round_shift;
-use super::quantise::{Entry, QuantisedMatrix};
+use super::matrix::{Entry, QuantisedMatrix};
 
 /// The block that owns the lanes while a product runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -14,8 +14,8 @@ use golden::parity::CLASSES;
 use serde::Serialize;
 
 use super::dealing::{Dealer, Stream, rounds_period};
+use super::matrix::{Entry, QuantisedMatrix};
 use super::product::{Epilogue, Product, Vector, spacing, visit_to_operand};
-use super::quantise::{Entry, QuantisedMatrix};
 use super::timing::SEQUENCER_TO_LANES;
 
 /// Cycles from the issue of a row's last MAC to its sum standing in the lane's result register.

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use golden::parity::CLASSES;
+use hdl_gen::plan::matrix::Entry;
 use hdl_gen::plan::product::{Epilogue, Product, Vector, mirror, visit_to_operand};
-use hdl_gen::plan::quantise::Entry;
 use hdl_gen::plan::schedule::{ISSUE_TO_RESULT, LaneProgram, Program, RESULT_PLACES, Schedule, SegmentKind, Visit};
 
 /// The sums of one row, a way each.

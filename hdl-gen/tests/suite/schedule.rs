@@ -3,11 +3,11 @@
 use golden::parity::CLASSES;
 use hdl_gen::estimators::Cells;
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
 use hdl_gen::plan::product::SUM_ROWS;
 use hdl_gen::plan::product::{
     Block, Coefficients, Epilogue, Product, Step, VISIT_TO_OPERAND, Vector, visit_to_operand,
 };
-use hdl_gen::plan::quantise::{Entry, QuantisedMatrix};
 use hdl_gen::plan::schedule::{COLLECTOR_JUMP, ISSUE_TO_RESULT, Schedule, SegmentKind, VISIT_TO_DRAINED, Visit};
 use hdl_gen::plan::timing::Timeline;
 use proptest::prelude::*;

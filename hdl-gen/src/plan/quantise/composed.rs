@@ -10,9 +10,9 @@ use nalgebra::DMatrix;
 
 use super::super::format::{Format, largest};
 use super::super::formats::FOLD_BITS;
+use super::super::matrix::QuantisedMatrix;
 use super::LARGEST_FRICTION;
 use super::bounds::Operand;
-use super::matrix::QuantisedMatrix;
 
 /// Factor for the rounding of sums in f64.
 const SLACK: f64 = 1.0 + 1e-9;

@@ -5,7 +5,6 @@
 
 mod bounds;
 mod composed;
-mod matrix;
 mod sums;
 
 use std::collections::BTreeMap;
@@ -16,12 +15,12 @@ use golden::parity::CLASSES;
 use golden::products::{Epilogue, Form, ProductList, Source, Step, Vector};
 
 use super::PlanError;
+use super::filtered::Filtered;
 use super::format::{FRICTION_FRACTION, Format, MOST_SHIFT, largest, round_shift};
 use super::formats::{FOLD_BITS, FoldedFormats, Formats};
-use super::passes::Filtered;
+use super::matrix::{ANY_LSB, QuantisedMatrix};
 use super::product::{SELECT_MU_X, SELECT_MU_Y, SELECT_ONE};
 use bounds::{Operand, Term};
-pub use matrix::{ANY_LSB, Entry, QuantisedMatrix, RealRows, one_way};
 
 /// A friction component lies in [-2, 2).
 const LARGEST_FRICTION: i64 = 2;
@@ -68,8 +67,7 @@ pub fn quantise(
     let (rows, g) = sums::quantise(ten, pass.coefficient_bits, pass.data_bits, weights)?;
     pass.sums = Some(pass.matrices.len());
     pass.matrices.push(rows);
-    let field =
-        if list.has_forces() { pass.field(weights, super::build::taxel_force_n(design))? } else { Field::none(u) };
+    let field = if list.has_forces() { pass.field(weights, taxel_force_n(design))? } else { Field::none(u) };
     let taxel = |folded: Format| Format { lsb: folded.lsb - FOLD_BITS as i32, ..folded };
     let Field { residual, explained, force, rounding_n } = field;
     let folded = FoldedFormats {
@@ -83,6 +81,12 @@ pub fn quantise(
         taxel_force: taxel(force),
     };
     Ok(pass.finish(Formats { stress, weight: weights.taxel, g, u: taxel(u), folded: Some(folded) }, rounding_n))
+}
+
+/// The force of a taxel whose cell is pressed with the full scale.
+pub fn taxel_force_n(design: &Design) -> f64 {
+    let [x, y] = design.sensor.pitch_mm;
+    design.hardware.full_scale_pa * x * y * 1e-6
 }
 
 /// The formats behind the weights, folded.

@@ -5,9 +5,9 @@ use golden::reduced::ReducedMatrices;
 
 use super::super::PlanError;
 use super::super::format::{Format, largest};
+use super::super::matrix::{ANY_LSB, QuantisedMatrix, RealRows};
 use super::super::product::sum_way;
 use super::bounds::{self, Operand};
-use super::matrix::{ANY_LSB, QuantisedMatrix, RealRows};
 
 /// The rows of all sums of `y+` and the weights, and their format.
 pub(super) fn quantise(

@@ -4,8 +4,8 @@ use golden::parity::CLASSES;
 use golden::products::{mirror, swapped};
 use nalgebra_sparse::CsrMatrix;
 
-use super::super::PlanError;
-use super::super::format::{ACCUMULATOR_LIMIT, largest, pow2};
+use super::PlanError;
+use super::format::{ACCUMULATOR_LIMIT, largest, pow2};
 
 /// As [`QuantisedMatrix::new`] takes it where the matrix alone decides; its reciprocal is still a normal f64.
 pub const ANY_LSB: i32 = -900;
