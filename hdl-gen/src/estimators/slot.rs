@@ -8,6 +8,9 @@ use serde_json::Value;
 use crate::plan::format::{Format, address_bits};
 use crate::plan::memory::Memory;
 
+/// Width of a weight in the ROM files of an estimator.
+pub const WEIGHT_BITS: u32 = 18;
+
 /// What an estimator's constants are made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<'a> {
@@ -140,7 +143,7 @@ pub trait Slot {
         Vec::new()
     }
 
-    /// `(contents, words)` of its ROM files: words of several weights of [`golden::estimators::joint::WEIGHT_BITS`].
+    /// `(contents, words)` of its ROM files: words of several weights of [`WEIGHT_BITS`].
     fn roms(&self) -> Vec<(&'static str, Vec<Vec<i32>>)> {
         Vec::new()
     }
