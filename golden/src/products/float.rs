@@ -5,7 +5,15 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// f64 or f32.
 pub trait Float:
-    Copy + Debug + Default + PartialOrd + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+    Copy
+    + Debug
+    + Default
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + Into<f64>
 {
     /// The nearest number.
     fn of(value: f64) -> Self;
