@@ -8,6 +8,26 @@ use serde::Serialize;
 
 use super::format::round_shift;
 use super::matrix::{Entry, QuantisedMatrix};
+use crate::blocks::{array, co, unfold, we};
+
+/// What becomes of a result, as the visit ROM and the collector (`sptfra_spmv_collector`) have it.
+pub fn destination(result: Vector) -> usize {
+    match result {
+        Vector::Stress | Vector::Weight | Vector::Pull => 0,
+        Vector::U(q) => 1 + usize::from(q),
+        Vector::Residual(q) => 5 + usize::from(q),
+        Vector::Explained => 8,
+        Vector::Force(p) => 8 + usize::from(p),
+        Vector::Partial(p) => 3 + usize::from(p),
+        Vector::G(p, q) => 7 + 3 * usize::from(p - 1) + usize::from(q),
+    }
+}
+
+/// The destination of sums over the frame.
+pub const SUMS_DESTINATION: usize = 4;
+
+/// Numbers that a destination can have.
+pub const DESTINATIONS: usize = 16;
 
 /// The block that owns the lanes while a product runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -27,21 +47,14 @@ pub fn spacing(epilogue: Epilogue) -> u64 {
 
 /// Cycles from the collector's visit to the first issue that may read the value as an operand.
 pub fn visit_to_operand(epilogue: Epilogue) -> u64 {
-    match epilogue {
-        Epilogue::Part => PARTED_VISIT_TO_OPERAND,
-        Epilogue::Store => STORED_VISIT_TO_OPERAND,
-        Epilogue::ClipNegate | Epilogue::Keep | Epilogue::Add(_) | Epilogue::Unfold | Epilogue::AddStress => {
-            VISIT_TO_OPERAND
-        }
-    }
+    let after_bus = match epilogue {
+        Epilogue::Part => unfold::latency(true) + we::latency(true),
+        Epilogue::Store | Epilogue::Unfold | Epilogue::AddStress => co::latency(true),
+        Epilogue::ClipNegate => unfold::latency(false) + we::latency(false),
+        Epilogue::Keep | Epilogue::Add(_) => co::latency(false),
+    };
+    array::VISIT_TO_BUS + after_bus + array::WRITE_TO_ISSUE
 }
-
-/// Cycles from a collector visit to the first issue that may read the value as an operand.
-pub const VISIT_TO_OPERAND: u64 = 6;
-/// The same where results are written as they come.
-const STORED_VISIT_TO_OPERAND: u64 = 4;
-/// The same where they are unfolded, parted and folded again; the second half is a cycle later than the first.
-const PARTED_VISIT_TO_OPERAND: u64 = 13;
 
 /// Rows in front of a product's own, whose results are sums over the frame and go to Co.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -96,12 +109,6 @@ impl Deref for Product {
 }
 
 impl Product {
-    /// Whether the lanes pass from this product's block to that of `next` by a start pulse: so in the paper's plan; in
-    /// the reduced plan a program runs through.
-    pub fn hands_over_to(&self, next: &Self) -> bool {
-        self.block != next.block && self.epilogue != Epilogue::Part
-    }
-
     /// Largest magnitude of a rounded result before the epilogue, for operands up to `operand_bound`.
     pub fn result_bound(matrix: &QuantisedMatrix, operand_bound: i64, shift: u32) -> i64 {
         // An accumulator has 48 bits: beyond that, and well within the 64 of this word, nothing is left.
