@@ -182,8 +182,7 @@ impl Solver {
     }
 
     fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
-        let algorithm = &design.algorithm;
-        let friction = Friction::new(algorithm.estimator, &algorithm.joint, &design.sensor);
+        let friction = Friction::new(design.algorithm.constants(), &design.sensor);
         Self { reader: Reader::new(design), matrices, products, friction }
     }
 
