@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::product::{Vector, mirror};
-use hdl_gen::plan::quantise::{Entry, QuantisedMatrix};
-use hdl_gen::plan::reduced::SUM_ROWS;
+use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
+use hdl_gen::plan::product::SUM_ROWS;
+use hdl_gen::plan::product::mirror;
 use proptest::prelude::*;
 use serde_json::Value;
 
@@ -42,23 +42,6 @@ fn bits_for(count: usize) -> u32 {
     count.next_power_of_two().trailing_zeros().max(1)
 }
 
-/// The destination of sums over the frame.
-const SUMS: usize = 4;
-
-/// What the collector's table says becomes of a result.
-fn destination_of(result: Vector) -> usize {
-    match result {
-        Vector::Weight => 0,
-        Vector::U(q) => [1, 2, 3][usize::from(q)],
-        Vector::Residual(q) => [5, 6, 7][usize::from(q)],
-        Vector::Explained => 8,
-        Vector::Force(p) => [9, 10, 11][usize::from(p) - 1],
-        Vector::Partial(p) => [4, 5, 6][usize::from(p) - 1],
-        Vector::G(p, q) => [[7, 8, 9], [10, 11, 12], [13, 14, 15]][usize::from(p) - 1][usize::from(q)],
-        Vector::Stress | Vector::Pull => unreachable!("no product leaves them"),
-    }
-}
-
 struct Reader {
     values: Vec<u128>,
     columns: Vec<u128>,
@@ -68,7 +51,7 @@ struct Reader {
     word: usize,
     marked: usize,
     segment: usize,
-    /// `(destination, row)` of each of its results.
+    /// `(product, row)` of each of its results.
     visits: VecDeque<(usize, usize)>,
 }
 
@@ -78,8 +61,9 @@ impl Reader {
         let (name, lanes, elements) = (&plan.design.name, plan.walkers(), plan.elements());
         let coefficient_bits = plan.design.hardware.coefficient_bits;
         let most_vectors = plan.products.iter().map(|product| product.operands.len()).max().unwrap();
-        let destination_bits = if plan.field_words() > 0 { 4 } else { 3 };
-        let row_bits = bits_for(elements.max(SUM_ROWS));
+        // In four ways, rows of sums have a product number of their own, the one after the last.
+        let numbers = plan.products.len() + usize::from(plan.ways() > 1);
+        let (row_bits, product_bits) = (bits_for(elements.max(SUM_ROWS)), bits_for(numbers));
         let lane = |lane: usize| {
             let file = |kind: &str, bits| words(files, &format!("rom/{name}_{kind}_lane{lane:02}.mem"), bits);
             let values = file("values", plan.ways() as u32 * coefficient_bits);
@@ -95,7 +79,7 @@ impl Reader {
             }
         };
         let mut readers: Vec<Self> = (0..lanes).map(lane).collect();
-        let below = destination_bits + row_bits;
+        let below = product_bits + row_bits;
         let visits = words(files, &format!("rom/{name}_visits.mem"), 1 + bits_for(lanes) + below);
         let program_ends: Vec<usize> =
             plan.schedule.programs.iter().skip(1).map(|next| next.visit - 1).chain([visits.len() - 1]).collect();
@@ -104,7 +88,7 @@ impl Reader {
             assert_eq!(visit >> (below + bits_for(lanes)) == 1, program_ends.contains(&index), "last of its program");
             readers[field(below, bits_for(lanes))]
                 .visits
-                .push_back((field(row_bits, destination_bits), field(0, row_bits)));
+                .push_back((field(row_bits, product_bits), field(0, row_bits)));
         }
         let depth = |get: fn(&Self) -> usize| readers.iter().all(|reader| get(reader) == get(&readers[0]));
         assert!(depth(|reader| reader.values.len()) && depth(|reader| reader.columns.len()));
@@ -167,9 +151,9 @@ fn product_in_roms(readers: &mut [Reader], plan: &Plan, index: usize, cycles: u6
             let row = if kind == 1 {
                 open_head.take().expect("the lane before has begun this row")
             } else {
-                let (destination, row) = reader.visits.pop_front().expect("a visit for every result");
-                let sums = product.lead.is_some() && destination == SUMS;
-                assert!(sums || destination == destination_of(product.result), "product {index}");
+                let (of_product, row) = reader.visits.pop_front().expect("a visit for every result");
+                let sums = of_product == plan.products.len();
+                assert!(of_product == index || (sums && product.lead.is_some()));
                 if sums { elements + row } else { product.mirrored.map_or(row, |side| mirror(row, side)) }
             };
             if kind == 2 {
