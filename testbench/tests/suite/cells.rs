@@ -38,7 +38,7 @@ endmodule
 
 const METADATA: &str = r#"{ "top": "small", "predicted": { "dsp": 1, "bram36": 0.0, "blocks": [
     { "name": "Bz", "modules": ["sptfra_bz", "sptfra_fold"], "dsp": 0, "bram36": 0.0 },
-    { "name": "We", "modules": ["we"], "dsp": 1, "bram36": 0.0 } ] } }"#;
+    { "name": "We", "modules": ["sptfra_we"], "dsp": 1, "bram36": 0.0 } ] } }"#;
 
 #[test]
 fn modules_of_the_library_count_for_their_block_whatever_their_parameters() {
