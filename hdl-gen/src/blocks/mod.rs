@@ -3,6 +3,8 @@
 //! The Verilog of a block is the same in every design (`hdl-gen/rtl`). Its file here states the parameters of its
 //! instance, and whatever else the plan has to know of it: latencies, memories, multipliers.
 
+pub mod registers;
+
 use std::fmt::Write;
 
 use serde::{Serialize, Serializer};

@@ -13,17 +13,21 @@ macro_rules! library {
 
 const LIBRARY: &[(&str, &str)] = library![
     "rtl":
+    "sptfra_axi_lite",
     "sptfra_axis_skid",
     "sptfra_butterfly",
     "sptfra_cordic",
     "sptfra_divider",
     "sptfra_fixed_to_float",
     "sptfra_float_to_fixed",
+    "sptfra_frame_meter",
     "sptfra_mac",
     "sptfra_multiply",
     "sptfra_ram",
+    "sptfra_registers",
     "sptfra_rom",
     "sptfra_row_sequencer",
+    "sptfra_stream_gate",
 ];
 
 /// Other implementations of some of them, for ECP5.
