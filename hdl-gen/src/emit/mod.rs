@@ -54,7 +54,7 @@ pub enum EmitError {
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, `control/`, file lists,
-/// `metadata.json`, `design.toml`.
+/// `metadata.json`, `design.toml` and the files that it names.
 ///
 /// # Errors
 /// [`EmitError`] if a template and its data do not fit each other.
@@ -70,8 +70,8 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     mcsr::insert(plan, &mut files);
     registers::insert(plan, &hash, &mut files)?;
     files.insert("design.toml".to_owned(), design.into_bytes());
-    if let Some(calibration) = plan.design.calibration_csv() {
-        files.insert("calibration.csv".to_owned(), calibration.into_bytes());
+    for (name, content) in plan.design.files() {
+        files.insert(name.to_owned(), content.into_bytes());
     }
     // After every file that a list or script names.
     flows::insert(plan, &hash, &mut files)?;
@@ -89,8 +89,9 @@ pub fn design_hash(resolved_design: &str) -> String {
 
 /// The hash of a design, as its files, `metadata.json` and its registers have it.
 pub fn resolved_hash(design: &Design) -> String {
-    // The calibration is a part of the design that stands in a file of its own.
-    design_hash(&(design.to_toml() + &design.calibration_csv().unwrap_or_default()))
+    // What stands in files of their own, calibration and weights, is a part of the design.
+    let files = design.files().into_iter().map(|(_, content)| content);
+    design_hash(&files.fold(design.to_toml(), |text, content| text + &content))
 }
 
 /// Name of a ROM file of one lane.
