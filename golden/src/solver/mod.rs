@@ -126,7 +126,7 @@ pub struct Solver {
 
 /// The estimator of a design.
 fn friction(design: &Design) -> Friction {
-    Friction::new(design.algorithm.estimator, &design.algorithm.joint, &design.sensor)
+    Friction::new(design.algorithm.constants(), &design.sensor)
 }
 
 /// The products of the design's plan.

@@ -16,7 +16,7 @@ use crate::support::{design_text, plan};
 const MOST_COLUMNS: usize = 120;
 
 /// Lines of a module, header and comments included.
-const MOST_LINES: usize = 460;
+const MOST_LINES: usize = 335;
 
 /// Data, not text: words of memories, rows of matrices, and the joint estimator's weights.
 fn is_data(path: &str) -> bool {
