@@ -17,6 +17,8 @@ const MOST_COLUMNS: usize = 120;
 
 /// Lines of a module, header and comments included.
 const MOST_LINES: usize = 335;
+/// Of the top, which has no logic: parameters, pins and wires, one a line.
+const MOST_LINES_OF_TOP: usize = 600;
 
 /// Data, not text: words of memories, rows of matrices, and the joint estimator's weights.
 fn is_data(path: &str) -> bool {
@@ -74,7 +76,8 @@ fn no_line_and_no_module_is_long() {
             if path.starts_with("rtl/") {
                 kinds.insert(path.replace(&plan.design.name, "NAME"));
                 let lines = text.lines().count();
-                if lines > MOST_LINES {
+                let most = if path.starts_with("rtl/sptfra_") { MOST_LINES } else { MOST_LINES_OF_TOP };
+                if lines > most {
                     long.insert(path.replace(&plan.design.name, "NAME"), format!("{lines} lines"));
                 }
             }
