@@ -60,7 +60,7 @@ fn standing() -> Vec<Plan> {
         let folder = tempfile::tempdir().expect("a folder");
         fs::write(folder.path().join("gains.csv"), "1.01,-0.5\n".repeat(24)).expect("writable");
         let file = folder.path().join("counts.toml");
-        fs::write(&file, design_text("counts", [6, 4], [4.0, 4.0], 3.0, &more)).expect("writable");
+        fs::write(&file, design_text("counting_pad", [6, 4], [4.0, 4.0], 3.0, &more)).expect("writable");
         plans.push(Plan::new(&Design::load(&file).expect("right")).expect("a plan"));
     }
     plans
