@@ -105,7 +105,8 @@ enum Command {
     /// Find the constants of the joint estimator for a design with estimator "joint".
     ///
     /// Makes contacts at random on a bonded layer, from the seed alone, and fits to their known forces a gain, two
-    /// constants of the friction, and the weights of the correction. The design with the constants goes to RESOLVED.toml.
+    /// constants of the friction, and the weights of the correction. The design with the constants goes to RESOLVED.toml, the
+    /// weights to RESOLVED.weights.csv beside it: both or none.
     #[command(after_long_help = CALIBRATE_FILES)]
     Calibrate {
         /// Design file (TOML).
@@ -196,10 +197,11 @@ const CALIBRATE_FILES: &str = r#"In the design file:
 In RESOLVED.toml, besides:
   gain = 1.1                        # factor on all forces
   tangential = [1.0, 0.0]           # friction vector c1 mu + c3 mu |mu|^2
-  [algorithm.correction]            # weights of the correction, in steps of 2^-12
+  [algorithm.correction]            # of the friction vector, by a small network
   half_window = [3, 7]              # taxels either side of the contact's centre, along x and y
-  hidden = [[...], ...]             # a row for each hidden unit
-  output = [[...], [...]]"#;
+  file = "RESOLVED.weights.csv"     # its weights in steps of 2^-12, written beside RESOLVED.toml: a line for each
+                                    # hidden unit, under a header
+  sha256 = "..."                    # of that file"#;
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {

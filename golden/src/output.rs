@@ -3,6 +3,8 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
+
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: cannot write the file: {source}; choose another place or make room", path.display())]
@@ -47,7 +49,54 @@ pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), OutputError> {
     replace(path, content).map_err(|source| OutputError { path: path.to_path_buf(), source })
 }
 
+/// Writes several files, each in place of what was there: all of them or none.
+///
+/// Every content goes to a temporary file first; where the last step of one fails, those before it get their old content
+/// back. Put a file that names others last: a crash between two files then leaves one that is whole, if not that of the
+/// others.
+///
+/// # Errors
+///
+/// As [`write_whole`], for any of them.
+pub fn write_together(files: &[(PathBuf, String)]) -> Result<(), OutputError> {
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        |source| OutputError { path, source }
+    };
+    let staged = files
+        .iter()
+        .map(|(path, content)| stage(path, content.as_bytes()).map_err(failed(path)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut replaced: Vec<(PathBuf, Option<Vec<u8>>)> = Vec::new();
+    for ((path, _), (file, target)) in files.iter().zip(staged) {
+        let before = if target.exists() { std::fs::read(&target).map(Some) } else { Ok(None) };
+        let done = before.and_then(|before| {
+            file.persist(&target)?;
+            replaced.push((target, before));
+            Ok(())
+        });
+        if let Err(source) = done {
+            for (target, before) in replaced {
+                // What fails now failed while there was something to save; the first failure is the one to report.
+                let _ = match before {
+                    Some(before) => replace(&target, &before),
+                    None => std::fs::remove_file(&target),
+                };
+            }
+            return Err(failed(path)(source));
+        }
+    }
+    Ok(())
+}
+
 fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
+    let (file, target) = stage(path, content)?;
+    file.persist(target)?;
+    Ok(())
+}
+
+/// Writes a temporary file that is ready to take the place of the target.
+fn stage(path: &Path, content: &[u8]) -> io::Result<(NamedTempFile, PathBuf)> {
     let target = if path.exists() {
         // A link keeps pointing where it does, and a device is not replaced by a file.
         let target = path.canonicalize()?;
@@ -72,6 +121,31 @@ fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     }
     let mut file = builder.tempfile_in(folder)?;
     file.write_all(content)?;
-    file.persist(target)?;
-    Ok(())
+    Ok((file, target))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn together_or_not_at_all() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [weights, new, design] = ["weights", "new", "design"].map(|name| folder.path().join(name));
+        std::fs::write(&weights, "old").expect("writable");
+        let files = |last: &Path| {
+            [(&weights, "a"), (&new, "b"), (&last.to_path_buf(), "c")]
+                .map(|(path, content)| (path.clone(), content.to_owned()))
+        };
+        // A folder is found out before anything is replaced, a name that is too long only when all before it is done.
+        for last in [folder.path().to_path_buf(), folder.path().join("n".repeat(300))] {
+            let error = write_together(&files(&last)).expect_err("no such file can be").to_string();
+            assert!(error.contains(&last.display().to_string()), "{error}");
+            assert_eq!(std::fs::read_to_string(&weights).expect("there"), "old");
+            assert!(!new.exists());
+        }
+        write_together(&files(&design)).expect("all can be written");
+        assert_eq!([weights, new, design].map(|path| std::fs::read_to_string(path).expect("there")), ["a", "b", "c"]);
+        assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 3, "no temporary file is left");
+    }
 }

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use super::looks::Basis;
 use super::samples::Sample;
 use super::{Settings, Stage};
-use crate::estimators::joint::{self, Correction, WEIGHT_BITS, WEIGHT_FRACTION};
+use crate::estimators::joint::{self, Correction, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use crate::parity::{CLASSES, butterfly};
 use crate::scene::normal;
 
@@ -191,7 +191,7 @@ impl Layer {
 
 /// Weights row by row in steps of `2^-WEIGHT_FRACTION`.
 fn quantised(weights: &DMatrix<f64>) -> Vec<Vec<i32>> {
-    let limit = f64::from(1 << (WEIGHT_BITS - 1));
+    let limit = f64::from(WEIGHT_LIMIT);
     let steps = f64::from(1 << WEIGHT_FRACTION);
     let whole = |weight: &f64| (weight * steps).round().clamp(-limit, limit - 1.0) as i32;
     weights.row_iter().map(|row| row.iter().map(whole).collect()).collect()

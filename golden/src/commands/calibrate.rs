@@ -6,11 +6,11 @@ use std::path::Path;
 use golden::calibrate::{Settings, calibrate};
 use golden::choose::rebase_scenes;
 use golden::design::{Design, Filter};
-use golden::output::write_whole;
+use golden::output::write_together;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::{calibration_beside, folder, keep_apart};
+use super::{Resolved, folder};
 
 #[derive(Serialize)]
 struct Report<'a> {
@@ -24,9 +24,8 @@ struct Report<'a> {
 
 /// Calibrates the design in `path` and writes the resolved design to `out`.
 pub fn run(path: &Path, out: &Path, settings: &Settings, json: bool) -> Result<(), Box<dyn Error>> {
-    keep_apart(out, &[path])?;
     let mut design = Design::load(path)?;
-    let counts = calibration_beside(&design, out)?;
+    let resolved = Resolved::new(&design, path, out)?;
     // Draws on a terminal only.
     let progress = ProgressBar::new((settings.contacts + settings.samples + settings.steps) as u64);
     let found = calibrate(&design, settings, &mut |_| progress.inc(1));
@@ -35,13 +34,9 @@ pub fn run(path: &Path, out: &Path, settings: &Settings, json: bool) -> Result<(
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
         *scenes = rebase_scenes(scenes, folder(path), folder(out));
     }
-    let mut text =
-        format!("# Resolved by `golden calibrate`, seed {}: the constants of the joint estimator.\n", settings.seed);
-    text.push_str(&design.to_toml());
-    if let Some((file, content)) = counts {
-        write_whole(&file, content.as_bytes())?;
-    }
-    write_whole(out, text.as_bytes())?;
+    let remark =
+        format!("Resolved by `golden calibrate`, seed {}: the constants of the joint estimator.", settings.seed);
+    write_together(&resolved.contents(&design, &remark))?;
 
     let constants = &design.algorithm.joint;
     let correction = constants.correction.as_ref();

@@ -6,11 +6,11 @@ use std::path::Path;
 
 use golden::choose::{Choice, candidate_count, choose, rebase_scenes, reference_frames};
 use golden::design::{Design, Filter};
-use golden::output::write_whole;
+use golden::output::write_together;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::{calibration_beside, folder, keep_apart};
+use super::{Resolved, folder, keep_apart};
 
 #[derive(Serialize)]
 struct Report<'a> {
@@ -34,10 +34,10 @@ pub fn run(path: &Path, out: &Path, csv: Option<&Path>, json: bool) -> Result<()
     for output in [Some(out), csv].into_iter().flatten() {
         keep_apart(output, &inputs)?;
     }
+    let resolved = Resolved::new(&design, path, out)?;
     if csv == Some(out) {
         return Err(format!("{}: named for both the design and the table; choose two names", out.display()).into());
     }
-    let calibration = calibration_beside(&design, out)?;
     let frames = reference_frames(&design, from)?;
     // Draws on a terminal only.
     let progress = ProgressBar::new(candidate_count(design.sensor.taxels()) as u64);
@@ -47,16 +47,12 @@ pub fn run(path: &Path, out: &Path, csv: Option<&Path>, json: bool) -> Result<()
 
     design.algorithm.filter =
         Filter::F3 { scenes: rebase_scenes(&scenes, from, folder(out)), choices: Some(Box::new(choice.choices())) };
-    let mut text =
-        "# Resolved by `golden choose`: the filter of each matrix is chosen by the scenes named here.\n".to_owned();
-    text.push_str(&design.to_toml());
+    let remark = "Resolved by `golden choose`: the filter of each matrix is chosen by the scenes named here.";
+    let mut contents = resolved.contents(&design, remark);
     if let Some(csv) = csv {
-        write_whole(csv, table(&choice).as_bytes())?;
+        contents.insert(0, (csv.to_path_buf(), table(&choice)));
     }
-    if let Some((file, content)) = calibration {
-        write_whole(&file, content.as_bytes())?;
-    }
-    write_whole(out, text.as_bytes())?;
+    write_together(&contents)?;
 
     if json {
         let report = Report { design: &design.name, resolved: out, choice: &choice };

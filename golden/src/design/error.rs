@@ -39,9 +39,9 @@ pub enum DesignError {
         /// What to do.
         remedy: String,
     },
-    /// A calibration file that does not fit the sensor.
+    /// A table beside the design that does not fit it: gains and offsets, or weights.
     #[error("{}, line {line}: {problem}; {remedy}", path.display())]
-    Calibration {
+    Table {
         /// The file.
         path: PathBuf,
         /// Line, from 1.

@@ -1,10 +1,10 @@
 //! What the values of a frame are: pascals, or the counts of a real sensor.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use super::DesignError;
 use super::checks::Check;
+use super::files::Beside;
 
 /// Largest gain of a taxel.
 const MAX_GAIN: f64 = 16.0;
@@ -50,12 +50,12 @@ impl Input {
         }
     }
 
-    /// Checks the keys of `[sensor]`; `calibration` is relative to `folder`.
+    /// Checks the keys of `[sensor]`; a calibration is one of the files `beside` the design.
     pub(super) fn new(
         check: &Check,
         pa_per_count: Option<f64>,
         calibration: Option<&str>,
-        folder: Option<&Path>,
+        beside: Beside<'_>,
         taxels: usize,
     ) -> Result<Self, DesignError> {
         let [low, high] = PA_PER_COUNT;
@@ -75,24 +75,17 @@ impl Input {
                 "add pa_per_count, the pascals of one count: gains and offsets are those of counts".to_owned(),
             ));
         }
-        let calibration = calibration
-            .map(|file| Calibration::load(&folder.unwrap_or(Path::new("")).join(file), taxels))
-            .transpose()?;
+        let calibration = calibration.map(|file| Calibration::load(file, beside, taxels)).transpose()?;
         Ok(Self { pa_per_count, calibration })
     }
 }
 
 impl Calibration {
     /// Reads one line `gain,offset` for each of the taxels. Blank lines and a byte order mark are skipped.
-    fn load(path: &Path, taxels: usize) -> Result<Self, DesignError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })?;
-        let wrong = |line, problem, remedy: String| DesignError::Calibration {
-            path: path.to_path_buf(),
-            line,
-            problem,
-            remedy,
-        };
+    fn load(file: &str, beside: Beside<'_>, taxels: usize) -> Result<Self, DesignError> {
+        let path = beside.path(file);
+        let text = beside.read(file).map_err(|source| DesignError::Read { path: path.clone(), source })?;
+        let wrong = |line, problem, remedy: String| DesignError::Table { path: path.clone(), line, problem, remedy };
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let (mut gain, mut offset) = (Vec::with_capacity(taxels), Vec::with_capacity(taxels));
         let mut last = 1;

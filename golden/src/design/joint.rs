@@ -1,12 +1,11 @@
 //! The constants of the joint estimator as keys of a design.
 
-use std::fmt::Write;
-
 use serde::Deserialize;
 
 use super::checks::Check;
+use super::files::{Beside, sha256};
 use super::{DesignError, Kernel, Regularisation, Sensor};
-use crate::estimators::joint::{Correction, JointConstants, MAX_HIDDEN, WEIGHT_BITS};
+use crate::estimators::joint::{Correction, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT};
 
 /// What the constants depend on, for people and for comparison.
 pub fn conditions(sensor: &Sensor, kernel: Kernel, regularisation: Regularisation) -> String {
@@ -14,30 +13,26 @@ pub fn conditions(sensor: &Sensor, kernel: Kernel, regularisation: Regularisatio
     format!("{columns} x {rows} taxels of {x} x {y} mm, {depth_mm} mm deep, {kernel}, {}", regularisation.factor())
 }
 
-/// The `[algorithm.correction]` table.
+/// The `[algorithm.correction]` table: the weights in a file with its hash, or in the table itself.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawCorrection {
     half_window: Vec<i64>,
-    hidden: Vec<Vec<i64>>,
-    output: Vec<Vec<i64>>,
+    pub(super) file: Option<String>,
+    sha256: Option<String>,
+    hidden: Option<Vec<Vec<i64>>>,
+    output: Option<Vec<Vec<i64>>>,
 }
 
-/// The constants as a file has them.
+/// The constants as a file has them, without the correction.
 pub(super) struct Raw<'a> {
     pub gain: Option<f64>,
     pub tangential: Option<&'a [f64]>,
-    pub correction: Option<&'a RawCorrection>,
     pub fitted_to: Option<String>,
 }
 
 /// Checks the constants; a design without any has the default ones. `conditions` are those of the design.
-pub(super) fn constants(
-    check: &Check,
-    raw: Raw<'_>,
-    sensor: &Sensor,
-    conditions: &str,
-) -> Result<JointConstants, DesignError> {
+pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result<JointConstants, DesignError> {
     if let Some(other) = raw.fitted_to.as_ref().filter(|&fitted_to| fitted_to != conditions) {
         return Err(check.value(
             "algorithm.fitted_to",
@@ -51,8 +46,7 @@ pub(super) fn constants(
         check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
         check.real("algorithm.tangential[1]", c3, -2.0, 2.0, "")?,
     ];
-    let correction = raw.correction.map(|raw| correction(check, raw, sensor)).transpose()?;
-    Ok(JointConstants { gain, tangential, correction, fitted_to: raw.fitted_to })
+    Ok(JointConstants { gain, tangential, correction: None, fitted_to: raw.fitted_to })
 }
 
 /// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
@@ -67,30 +61,90 @@ pub(super) fn refuse(check: &Check, given: [bool; 4]) -> Result<(), DesignError>
     }
 }
 
-fn correction(check: &Check, raw: &RawCorrection, sensor: &Sensor) -> Result<Correction, DesignError> {
-    let key = |name: &str| format!("algorithm.correction.{name}");
-    let again = || "run `golden calibrate` again".to_owned();
+fn key(name: &str) -> String {
+    format!("algorithm.correction.{name}")
+}
+
+/// What to do about weights that are not there, or others than those of the design.
+const RESTORE: &str = "copy the file that was written with the design to its side, or run `golden calibrate` again";
+
+/// Checks the correction, and reads its file if it has one.
+pub(super) fn correction(
+    check: &Check,
+    raw: RawCorrection,
+    sensor: &Sensor,
+    beside: Beside<'_>,
+) -> Result<Correction, DesignError> {
     let [x, y] = two(check, &key("half_window"), &raw.half_window, "for x and y")?;
     let half = |name: &str, value, side: usize| check.integer(&key(name), value, 0, side as i64 - 1);
     let half_window =
         [half("half_window[0]", x, sensor.columns)? as usize, half("half_window[1]", y, sensor.rows)? as usize];
-    let inputs = Correction::inputs(half_window);
-    check.integer(&key("hidden (number of rows)"), raw.hidden.len() as i64, 1, MAX_HIDDEN as i64)?;
+    let refuse = |name: &str, problem: &str, remedy: String| Err(check.value(&key(name), problem.to_owned(), remedy));
+    match (raw.file, raw.sha256, raw.hidden, raw.output) {
+        (Some(file), Some(hash), None, None) => from_file(check, &file, &hash, half_window, beside),
+        (None, None, Some(hidden), Some(output)) => from_table(check, half_window, &hidden, &output),
+        (Some(file), None, None, None) => {
+            refuse("sha256", "is missing", format!("write what `sha256sum {file}` prints, or run `golden calibrate`"))
+        }
+        (None, Some(_), ..) => refuse("sha256", "is given without a file", "add the key file".to_owned()),
+        (Some(_), ..) => refuse("file", "is given beside weights", "remove hidden and output, or file".to_owned()),
+        (None, None, ..) => {
+            refuse("file", "is missing", "name the file of weights, or run `golden calibrate`".to_owned())
+        }
+    }
+}
+
+/// The weights of a file, which must be those that the design was written with.
+fn from_file(
+    check: &Check,
+    file: &str,
+    hash: &str,
+    half_window: [usize; 2],
+    beside: Beside<'_>,
+) -> Result<Correction, DesignError> {
+    let path = beside.path(file);
+    let text = beside.read(file).map_err(|source| {
+        let problem = format!("names {}, which cannot be read: {source}", path.display());
+        check.value(&key("file"), problem, RESTORE.to_owned())
+    })?;
+    let found = sha256(&text);
+    if found != hash {
+        let shown: String = hash.chars().take(found.len()).collect();
+        let problem = format!("is {shown:?}, but {} has {found}: it holds other weights", path.display());
+        return Err(check.value(&key("sha256"), problem, RESTORE.to_owned()));
+    }
+    Correction::read_csv(&text, half_window).map_err(|error| DesignError::Table {
+        path,
+        line: error.line,
+        problem: error.problem,
+        remedy: error.remedy,
+    })
+}
+
+/// The weights of the table itself.
+fn from_table(
+    check: &Check,
+    half_window: [usize; 2],
+    hidden: &[Vec<i64>],
+    output: &[Vec<i64>],
+) -> Result<Correction, DesignError> {
+    let again = || "run `golden calibrate` again".to_owned();
+    check.integer(&key("hidden (number of rows)"), hidden.len() as i64, 1, MAX_HIDDEN as i64)?;
     let row = |name: String, row: &[i64], length: usize| -> Result<Vec<i32>, DesignError> {
         if row.len() != length {
             return Err(check.value(&key(&name), format!("has {} weights, not {length}", row.len()), again()));
         }
-        let limit = 1_i64 << (WEIGHT_BITS - 1);
+        let limit = i64::from(WEIGHT_LIMIT);
         let checked = row.iter().map(|&weight| check.integer(&key(&name), weight, -limit, limit - 1));
         checked.map(|weight| weight.map(|weight| weight as i32)).collect()
     };
-    let hidden: Vec<Vec<i32>> = raw
-        .hidden
+    let inputs = Correction::inputs(half_window);
+    let hidden: Vec<Vec<i32>> = hidden
         .iter()
         .enumerate()
         .map(|(index, weights)| row(format!("hidden[{index}]"), weights, inputs))
         .collect::<Result<_, _>>()?;
-    let [along_x, along_y] = two(check, &key("output"), &raw.output, "for x and y")?;
+    let [along_x, along_y] = two(check, &key("output"), output, "for x and y")?;
     let output =
         [row("output[0]".to_owned(), &along_x, hidden.len())?, row("output[1]".to_owned(), &along_y, hidden.len())?];
     Ok(Correction { half_window, hidden, output })
@@ -104,21 +158,15 @@ fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<
     }
 }
 
-/// The keys of `[algorithm]`, and the table that follows all of them.
-pub(super) fn print(constants: &JointConstants) -> [String; 2] {
+/// The keys of `[algorithm]`, and the table that follows all of them, with the weights in the file named `weights`.
+pub(super) fn print(constants: &JointConstants, weights: &str) -> [String; 2] {
     let JointConstants { gain, tangential: [c1, c3], correction, fitted_to } = constants;
     let fitted_to = fitted_to.as_ref().map_or_else(String::new, |conditions| format!("fitted_to = {conditions:?}\n"));
     let keys = format!("{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
-    let mut table = String::new();
-    if let Some(Correction { half_window: [x, y], hidden, output }) = correction {
-        let rows = |rows: &[Vec<i32>]| -> String { rows.iter().map(|row| format!("    {row:?},\n")).collect() };
-        // Writing to a String cannot fail.
-        let _ = write!(
-            table,
-            "\n[algorithm.correction]\nhalf_window = [{x}, {y}]\nhidden = [\n{}]\noutput = [\n{}]\n",
-            rows(hidden),
-            rows(output)
-        );
-    }
+    let table = correction.as_ref().map_or_else(String::new, |correction| {
+        let ([x, y], hash) = (correction.half_window, sha256(&correction.to_csv()));
+        let file = toml::Value::from(weights);
+        format!("\n[algorithm.correction]\nhalf_window = [{x}, {y}]\nfile = {file}\nsha256 = \"{hash}\"\n")
+    });
     [keys, table]
 }

@@ -5,6 +5,7 @@
 mod algorithm;
 pub(crate) mod checks;
 mod error;
+mod files;
 mod filter;
 mod hardware;
 mod input;
@@ -15,7 +16,7 @@ mod parse_plan;
 mod print;
 mod regularisation;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use crate::estimators::Estimator;
 pub use crate::estimators::joint::{Correction, JointConstants};
@@ -23,6 +24,8 @@ pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
 pub use algorithm::{Algorithm, Outputs, PlanKind};
 pub use error::DesignError;
+pub(crate) use files::Beside;
+pub use files::{CALIBRATION_FILE, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
 pub use hardware::{Arithmetic, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise};
 pub use input::{Calibration, Input};
@@ -32,8 +35,6 @@ pub use regularisation::Regularisation;
 
 /// Largest number of columns or rows with the paper's plan, whose matrices are four times as large.
 pub const MAX_SIDE_PAPER: usize = 32;
-/// Name of the calibration file beside a resolved design.
-pub const CALIBRATION_FILE: &str = "calibration.csv";
 /// Key `algorithm.noise_floor_pa`, when absent, is the full scale divided by this.
 pub const NOISE_FLOOR_DIVISOR: f64 = 65536.0;
 
@@ -59,29 +60,50 @@ impl Design {
     ///
     /// Every way a file can be wrong, see [`DesignError`]; the message names the file, the key and the remedy.
     pub fn load(path: &Path) -> Result<Self, DesignError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })?;
-        parse::design(&text, &path.display().to_string(), path.parent())
+        parse::design(&read(path)?, &path.display().to_string(), Beside::folder_of(path))
     }
 
-    /// Checks the text of a design file; `origin` is the name to use in messages, and a calibration file is looked for
-    /// in its folder.
+    /// Checks the text of a design file; `origin` is the name to use in messages, and files that the design names are
+    /// looked for in its folder.
     ///
     /// # Errors
     ///
     /// As [`Design::load`], without the reading.
     pub fn from_toml(text: &str, origin: &str) -> Result<Self, DesignError> {
-        parse::design(text, origin, Path::new(origin).parent())
+        parse::design(text, origin, Beside::folder_of(Path::new(origin)))
     }
 
-    /// The resolved design as TOML: every key, in a fixed order; parsing it gives this design back. A calibration is
-    /// named [`CALIBRATION_FILE`]; write [`Design::calibration_csv`] beside the design under that name.
+    /// As [`Design::from_toml`], with the files that the design names as pairs of name and content, as
+    /// [`Design::files`] has them.
+    ///
+    /// # Errors
+    ///
+    /// As [`Design::from_toml`]; a file that is not among them is one that cannot be read.
+    pub fn from_parts(text: &str, origin: &str, files: &[(&str, String)]) -> Result<Self, DesignError> {
+        parse::design(text, origin, Beside::Memory(files))
+    }
+
+    /// The files that a design file names, none of which is read.
+    ///
+    /// # Errors
+    ///
+    /// [`DesignError::Read`] and [`DesignError::Syntax`].
+    pub fn files_named_in(path: &Path) -> Result<Vec<PathBuf>, DesignError> {
+        parse::files_named_in(&read(path)?, &path.display().to_string(), Beside::folder_of(path))
+    }
+
+    /// The resolved design as TOML: every key, in a fixed order; parsing it gives this design back. The files that it
+    /// names are [`Design::files`]; write them beside it.
     pub fn to_toml(&self) -> String {
-        print::to_toml(self)
+        print::to_toml(self, WEIGHTS_FILE)
     }
 
-    /// The calibration as the CSV file that [`Design::to_toml`] names, if there is one.
-    pub fn calibration_csv(&self) -> Option<String> {
-        self.input.calibration.as_ref().map(Calibration::to_csv)
+    /// As [`Design::to_toml`], with another name than [`WEIGHTS_FILE`]: several designs of a folder each have weights.
+    pub fn to_toml_naming(&self, weights: &str) -> String {
+        print::to_toml(self, weights)
     }
+}
+
+fn read(path: &Path) -> Result<String, DesignError> {
+    std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })
 }

@@ -1,10 +1,11 @@
 //! From TOML text to a checked [`Design`].
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use serde::Deserialize;
 
 use super::checks::{self, Check};
+use super::files::Beside;
 use super::joint::{self, RawCorrection};
 use super::parse_filter::{self, RawFilter};
 use super::parse_plan::{self, PlanKeys};
@@ -79,19 +80,31 @@ struct RawHardware {
     part: Option<String>,
 }
 
-/// `folder` is where relative paths of files start.
-pub(super) fn design(text: &str, origin: &str, folder: Option<&Path>) -> Result<Design, DesignError> {
-    let raw: RawDesign = toml::from_str(text).map_err(|error| syntax_position(&error, text, origin))?;
+fn raw(text: &str, origin: &str) -> Result<RawDesign, DesignError> {
+    toml::from_str(text).map_err(|error| syntax_position(&error, text, origin))
+}
+
+/// The files that a design names.
+pub(super) fn files_named_in(text: &str, origin: &str, beside: Beside<'_>) -> Result<Vec<PathBuf>, DesignError> {
+    let RawDesign { sensor, algorithm, .. } = raw(text, origin)?;
+    let weights = algorithm.correction.and_then(|correction| correction.file);
+    Ok([sensor.calibration, weights].into_iter().flatten().map(|name| beside.path(&name)).collect())
+}
+
+/// `beside` are the files that the design names.
+pub(super) fn design(text: &str, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
+    let raw = raw(text, origin)?;
     let check = Check { origin };
     checks::name(&check, &raw.name)?;
     let RawDesignSensor { columns, rows, pitch_mm, depth_mm, pa_per_count, calibration } = raw.sensor;
     let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
     let lanes_given = raw.hardware.lanes.is_some();
     let hardware = hardware(&check, raw.hardware)?;
-    let algorithm = algorithm(&check, raw.algorithm, &sensor, &hardware)?;
+    let (mut algorithm, correction) = algorithm(&check, raw.algorithm, &sensor, &hardware)?;
     parse_plan::check(&check, &PlanKeys { sensor: &sensor, algorithm: &algorithm, hardware: &hardware, lanes_given })?;
     // Last, so that what is wrong with the design itself is said before its files are read.
-    let input = Input::new(&check, pa_per_count, calibration.as_deref(), folder, sensor.taxels())?;
+    let input = Input::new(&check, pa_per_count, calibration.as_deref(), beside, sensor.taxels())?;
+    algorithm.joint.correction = correction.map(|raw| joint::correction(&check, raw, &sensor, beside)).transpose()?;
     Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }
 
@@ -125,7 +138,13 @@ impl RawSensor {
     }
 }
 
-fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, hardware: &Hardware) -> Result<Algorithm, DesignError> {
+/// The table, and the correction, whose file is not read yet.
+fn algorithm(
+    check: &Check,
+    raw: RawAlgorithm,
+    sensor: &Sensor,
+    hardware: &Hardware,
+) -> Result<(Algorithm, Option<RawCorrection>), DesignError> {
     let full_scale_pa = hardware.full_scale_pa;
     let filter = match raw.filter {
         Some(raw) => parse_filter::filter(check, &raw, sensor)?,
@@ -137,13 +156,8 @@ fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, hardware: &Hardw
         check.optional_word("algorithm.estimator", raw.estimator.as_deref())?.unwrap_or_default();
     let joint = if estimator == Estimator::Joint {
         let conditions = joint::conditions(sensor, kernel, regularisation);
-        let constants = joint::Raw {
-            gain: raw.gain,
-            tangential: raw.tangential.as_deref(),
-            correction: raw.correction.as_ref(),
-            fitted_to: raw.fitted_to,
-        };
-        joint::constants(check, constants, sensor, &conditions)?
+        let constants = joint::Raw { gain: raw.gain, tangential: raw.tangential.as_deref(), fitted_to: raw.fitted_to };
+        joint::constants(check, constants, &conditions)?
     } else {
         let given = [raw.gain.is_some(), raw.tangential.is_some(), raw.correction.is_some(), raw.fitted_to.is_some()];
         joint::refuse(check, given)?;
@@ -155,7 +169,9 @@ fn algorithm(check: &Check, raw: RawAlgorithm, sensor: &Sensor, hardware: &Hardw
         None => full_scale_pa / NOISE_FLOOR_DIVISOR,
     };
     let plan = parse_plan::kind(check, raw.plan.as_deref(), &filter, hardware)?;
-    Ok(Algorithm { plan, kernel, regularisation, filter, estimator, joint: Box::new(joint), outputs, noise_floor_pa })
+    let algorithm =
+        Algorithm { plan, kernel, regularisation, filter, estimator, joint: Box::new(joint), outputs, noise_floor_pa };
+    Ok((algorithm, raw.correction))
 }
 
 fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {

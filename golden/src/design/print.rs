@@ -11,7 +11,7 @@ use crate::names::MatrixName;
 
 // Written by hand, not by serde, so that the order and the layout are those of the documentation. `{:?}` of an f64
 // always has a point or an exponent, so it reads back as the same float.
-pub(super) fn to_toml(design: &Design) -> String {
+pub(super) fn to_toml(design: &Design, weights: &str) -> String {
     let Design { name, sensor, input, algorithm, hardware } = design;
     let regularisation = regularisation::print(algorithm.regularisation);
     let Algorithm { plan, kernel, estimator, outputs, .. } = algorithm;
@@ -26,7 +26,7 @@ pub(super) fn to_toml(design: &Design) -> String {
     };
     let [constants, correction] = match algorithm.estimator {
         Estimator::Line => [String::new(), String::new()],
-        Estimator::Joint => joint::print(&algorithm.joint),
+        Estimator::Joint => joint::print(&algorithm.joint, weights),
     };
     let counts = match input.pa_per_count {
         Some(value) => format!("pa_per_count = {value:?}\n"),

@@ -369,7 +369,9 @@ fn calibrate_then_solve() {
     assert!(output.stderr.is_empty(), "progress belongs on a terminal");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let written = fs::read_to_string(&resolved).unwrap();
-    assert!(written.contains("seed 9") && written.contains("[algorithm.correction]"), "{written}");
+    assert!(written.contains("seed 9") && written.contains("\nfile = \"resolved.weights.csv\"\n"), "{written}");
+    let weights = resolved.with_file_name("resolved.weights.csv");
+    assert_eq!(fs::read_to_string(&weights).unwrap().lines().count(), 4, "a header and three hidden units");
     let before = Design::load(&design).unwrap();
     let Design { algorithm, input, .. } = Design::load(&resolved).unwrap();
     assert_eq!(input, before.input, "the file of gains is there too");
@@ -386,7 +388,12 @@ fn calibrate_then_solve() {
 
     let said = String::from_utf8(calibrate(&[]).stdout).unwrap();
     assert!(said.contains("gain") && said.contains("mu |mu|^2") && said.contains("weights"), "{said}");
+    // Another design's weights are not written over.
+    let other = resolved.with_file_name("other.toml");
+    fs::rename(&weights, resolved.with_file_name("other.weights.csv")).unwrap();
+    fs::write(&resolved, fs::read_to_string(&resolved).unwrap().replace("resolved.w", "other.w")).unwrap();
     for (arguments, part) in [
+        (vec!["calibrate", text(&resolved), "--out", text(&other)], "overwrite the input"),
         (vec!["calibrate", text(&design), "--out", text(&design)], "overwrite the input"),
         (vec!["calibrate", text(&repository("designs/small.toml")), "--out", text(&out)], "nothing to calibrate"),
     ] {

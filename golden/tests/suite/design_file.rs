@@ -4,7 +4,8 @@
 
 use std::path::Path;
 
-use golden::design::{Design, Filter, Optimise, Outputs, PlanKind};
+use golden::design::{Design, Estimator, Filter, Optimise, Outputs, PlanKind, WEIGHTS_FILE};
+use sha2::{Digest, Sha256};
 
 const MINIMAL: &str = "name = \"pad\"\n[sensor]\ncolumns = 10\nrows = 8\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
 
@@ -187,6 +188,10 @@ fn every_design_of_the_repository_loads() {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
+        // Weights stand beside the designs that name them.
+        if path.extension().is_none_or(|ending| ending != "toml") {
+            continue;
+        }
         let design = Design::load(&path).unwrap_or_else(|error| panic!("{error}"));
         let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
         let name = stem.replace('-', "_");
@@ -297,7 +302,9 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
 #[test]
 fn constants_of_another_sensor_are_refused() {
     let text = include_str!("../../../designs/sensor2-joint.toml");
-    assert!(Design::from_toml(text, "joint.toml").is_ok());
+    let weights = ("sensor2-joint.weights.csv", include_str!("../../../designs/sensor2-joint.weights.csv").to_owned());
+    let reads = |text: &str| Design::from_parts(text, "joint.toml", std::slice::from_ref(&weights)).is_ok();
+    assert!(reads(text));
     for (key, value) in [
         ("pitch_mm = [4.0, 4.0]", "pitch_mm = [4.0, 2.0]"),
         ("depth_mm = 3.0", "depth_mm = 3.5"),
@@ -312,7 +319,79 @@ fn constants_of_another_sensor_are_refused() {
         );
     }
     // What the constants do not depend on may change.
-    assert!(Design::from_toml(&text.replace("lanes = 16", "lanes = 32"), "joint.toml").is_ok());
+    assert!(reads(&text.replace("lanes = 16", "lanes = 32")));
+}
+
+/// A correction whose two hidden units see one taxel.
+const INLINE: &str = "half_window = [0, 0]\nhidden = [[1, 2, 3, 4, 5, 6], [-7, 8, -9, 10, -11, 12]]\n\
+                      output = [[13, 14], [-15, 131071]]\n";
+
+fn corrected(keys: &str) -> String {
+    format!("{MINIMAL}[algorithm]\nestimator = \"joint\"\n[algorithm.correction]\n{keys}")
+}
+
+#[test]
+fn weights_stand_in_a_file_of_their_own() {
+    let inline = Design::from_toml(&corrected(INLINE), "pad.toml").unwrap();
+    let (resolved, files) = (inline.to_toml(), inline.files());
+    let [(name, weights)] = &files[..] else { panic!("one file, not {files:?}") };
+    assert_eq!(
+        (*name, weights.as_str()),
+        (
+            WEIGHTS_FILE,
+            "x+0y+0,mu_x,mu_y,centre_x,centre_y,one,to_x,to_y\n1,2,3,4,5,6,13,-15\n-7,8,-9,10,-11,12,14,131071\n"
+        )
+    );
+    assert!(resolved.contains("half_window = [0, 0]\nfile = \"weights.csv\"\nsha256 = \""), "{resolved}");
+    assert!(!resolved.contains("hidden"), "{resolved}");
+    assert_eq!(Design::from_parts(&resolved, "resolved", &files).unwrap(), inline);
+    let renamed = inline.to_toml_naming("a \"b\".csv");
+    assert_eq!(Design::from_parts(&renamed, "resolved", &[("a \"b\".csv", weights.clone())]).unwrap(), inline);
+    // The line estimator has no weights to write.
+    let mut line = inline.clone();
+    line.algorithm.estimator = Estimator::Line;
+    assert!(line.files().is_empty() && !line.to_toml().contains("correction"));
+}
+
+#[test]
+fn weights_that_are_not_those_of_the_design() {
+    let inline = Design::from_toml(&corrected(INLINE), "pad.toml").unwrap();
+    let resolved = inline.to_toml();
+    let weights = &inline.files()[0].1;
+    let said = |content: Option<String>| {
+        let files: Vec<_> = content.into_iter().map(|content| (WEIGHTS_FILE, content)).collect();
+        Design::from_parts(&resolved, "pad.toml", &files).unwrap_err().to_string()
+    };
+    for (message, parts) in [
+        (said(None), ["pad.toml", "algorithm.correction.file", "weights.csv", "cannot be read", "golden calibrate"]),
+        (
+            said(Some(weights.replace("131071", "131070"))),
+            ["pad.toml", "algorithm.correction.sha256", "weights.csv", "other weights", "golden calibrate"],
+        ),
+    ] {
+        assert!(parts.iter().all(|part| message.contains(part)) && !message.contains('\n'), "{message}");
+    }
+    // With the right hash of a wrong table, as somebody who edits both could have it.
+    let wrong = weights.replace("131071", "131072");
+    let hash: String = Sha256::digest(&wrong).iter().map(|byte| format!("{byte:02x}")).collect();
+    let keys = format!("half_window = [0, 0]\nfile = \"w.csv\"\nsha256 = \"{hash}\"\n");
+    let error = Design::from_parts(&corrected(&keys), "pad.toml", &[("w.csv", wrong)]).unwrap_err().to_string();
+    assert!(["w.csv", "line 3", "131072", "131071"].iter().all(|part| error.contains(part)), "{error}");
+}
+
+#[test]
+fn corrections_that_contradict_themselves() {
+    let file = "file = \"w.csv\"\n";
+    for (keys, parts) in [
+        ("half_window = [0, 0]\n".to_owned(), ["algorithm.correction.file", "missing", "golden calibrate"]),
+        (format!("{INLINE}{file}"), ["algorithm.correction.file", "beside weights", "remove"]),
+        (format!("half_window = [0, 0]\n{file}"), ["algorithm.correction.sha256", "missing", "sha256sum w.csv"]),
+        (format!("{INLINE}sha256 = \"0\"\n"), ["algorithm.correction.sha256", "without a file", "file"]),
+        (format!("half_window = [0, 9]\n{file}sha256 = \"0\"\n"), ["half_window[1]", "is 9", "0 to 7"]),
+        (format!("half_window = [0, 0]\n{file}sha256 = \"0\"\nhash = 1\n"), ["hash", "unknown field", "sha256"]),
+    ] {
+        refused(&corrected(&keys), &parts);
+    }
 }
 
 #[test]

@@ -41,7 +41,7 @@ fn counts_become_pascals() {
     assert_eq!((plain.input.to_pa(0, 3.0), plain.input.from_pa(0, 3.0)), (6.0, 1.5));
     let none = Design::from_toml(PAD, "pad.toml").unwrap();
     assert_eq!((none.input.to_pa(0, 3.0), none.input.from_pa(0, 3.0)), (3.0, 3.0));
-    assert!(!none.to_toml().contains("count") && none.calibration_csv().is_none());
+    assert!(!none.to_toml().contains("count") && none.files().is_empty());
 }
 
 #[test]
@@ -75,7 +75,10 @@ fn the_resolved_design_has_its_calibration_beside_it() {
     let design = Design::load(&path).unwrap();
     let resolved = folder.path().join("resolved.toml");
     fs::write(&resolved, design.to_toml()).unwrap();
-    fs::write(folder.path().join(CALIBRATION_FILE), design.calibration_csv().unwrap()).unwrap();
+    for (name, content) in design.files() {
+        assert_eq!(name, CALIBRATION_FILE);
+        fs::write(folder.path().join(name), content).unwrap();
+    }
     let again = Design::load(&resolved).unwrap();
     assert_eq!(again, design);
     assert_eq!(again.to_toml(), design.to_toml());

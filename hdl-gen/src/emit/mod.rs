@@ -11,7 +11,7 @@ mod metadata;
 mod product_view;
 mod registers;
 mod roms;
-mod rtl;
+pub mod rtl;
 mod sim;
 mod verilog;
 mod view;
@@ -23,7 +23,6 @@ use golden::scene::SceneError;
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
-use crate::cores::{self, CoreError, Multiplier};
 use crate::plan::Plan;
 
 pub use metadata::{ProductEntry, nnz, predicted, products};
@@ -34,9 +33,6 @@ pub type FileMap = BTreeMap<String, Vec<u8>>;
 /// Why a plan could not be printed. Each is a defect of the generator, not of the design.
 #[derive(Debug, Error)]
 pub enum EmitError {
-    /// A leaf core's Verilog did not come out in the form expected.
-    #[error(transparent)]
-    Core(#[from] CoreError),
     /// A template does not fit its data.
     #[error("template {template}: {source}; please report this design")]
     Template {
@@ -57,7 +53,7 @@ pub enum EmitError {
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, `control/`, file lists,
-/// `metadata.json`, `design.toml`.
+/// `metadata.json`, `design.toml` and the files that it names.
 ///
 /// # Errors
 /// [`EmitError`] if a template and its data do not fit each other.
@@ -65,9 +61,6 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
     let hash = resolved_hash(&plan.design);
-    for core in cores::emit_with(Multiplier::of_part(&plan.design.hardware.part))? {
-        files.insert(format!("rtl/{}.v", core.module), core.verilog.into_bytes());
-    }
     for (module, text) in verilog::render(plan, &hash)? {
         files.insert(format!("rtl/{module}.v"), text.into_bytes());
     }
@@ -76,8 +69,8 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     mcsr::insert(plan, &mut files);
     registers::insert(plan, &hash, &mut files)?;
     files.insert("design.toml".to_owned(), design.into_bytes());
-    if let Some(calibration) = plan.design.calibration_csv() {
-        files.insert("calibration.csv".to_owned(), calibration.into_bytes());
+    for (name, content) in plan.design.files() {
+        files.insert(name.to_owned(), content.into_bytes());
     }
     // After every file that a list or script names.
     flows::insert(plan, &hash, &mut files)?;
@@ -94,8 +87,9 @@ pub fn design_hash(resolved_design: &str) -> String {
 
 /// The hash of a design, as its files, `metadata.json` and its registers have it.
 pub fn resolved_hash(design: &Design) -> String {
-    // The calibration is a part of the design that stands in a file of its own.
-    design_hash(&(design.to_toml() + &design.calibration_csv().unwrap_or_default()))
+    // What stands in files of their own, calibration and weights, is a part of the design.
+    let files = design.files().into_iter().map(|(_, content)| content);
+    design_hash(&files.fold(design.to_toml(), |text, content| text + &content))
 }
 
 /// Name of a ROM file of one lane.

@@ -1,7 +1,6 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
-use golden::estimators::joint::WEIGHT_BITS;
-
+use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
 use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;

@@ -1,19 +1,52 @@
-//! The library of hand-written modules in `hdl-gen/rtl`: what of it a design's folder needs.
+//! The library of modules in `hdl-gen/rtl`, the same in every design: what of it a design's folder needs.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// `(module, text)` of every file in `hdl-gen/rtl`.
+use crate::cores::Multiplier;
+
+/// `(module, text)` of every file in a folder.
 macro_rules! library {
-    ($($module:literal),* $(,)?) => { [$(($module, include_str!(concat!("../../rtl/", $module, ".v")))),*] };
+    ($folder:literal: $($module:literal),* $(,)?) => {
+        &[$(($module, include_str!(concat!("../../", $folder, "/", $module, ".v")))),*]
+    };
 }
 
-const LIBRARY: [(&str, &str); 3] = library!["sptfra_butterfly", "sptfra_ram", "sptfra_rom"];
+const LIBRARY: &[(&str, &str)] = library![
+    "rtl":
+    "sptfra_axis_skid",
+    "sptfra_butterfly",
+    "sptfra_cordic",
+    "sptfra_divider",
+    "sptfra_fixed_to_float",
+    "sptfra_float_to_fixed",
+    "sptfra_mac",
+    "sptfra_multiply",
+    "sptfra_ram",
+    "sptfra_rom",
+    "sptfra_row_sequencer",
+];
+
+/// Other implementations of some of them, for ECP5.
+const ECP5: &[(&str, &str)] = library!["rtl/ecp5": "sptfra_mac", "sptfra_multiply"];
+
+/// Every module of the library and its text, for fabrics that multiply like that.
+pub fn library(multiplier: Multiplier) -> BTreeMap<&'static str, &'static str> {
+    let other = match multiplier {
+        Multiplier::Whole => &[],
+        Multiplier::Split => ECP5,
+    };
+    LIBRARY.iter().chain(other).copied().collect()
+}
 
 /// The modules of the library that `texts` instantiate, and those that these do, but for what stands only in a
 /// `generate if` that the design does not take, which `without` names: every tool passes over a module that is missing
 /// there.
-pub fn used_by<'a>(texts: impl Iterator<Item = &'a str>, without: &[&str]) -> BTreeMap<&'static str, &'static str> {
-    let library: BTreeMap<&str, &str> = LIBRARY.into_iter().collect();
+pub fn used_by<'a>(
+    texts: impl Iterator<Item = &'a str>,
+    without: &[&str],
+    multiplier: Multiplier,
+) -> BTreeMap<&'static str, &'static str> {
+    let library = library(multiplier);
     let mut used = BTreeMap::new();
     let mut open: Vec<&str> = texts.collect();
     while let Some(text) = open.pop() {
@@ -38,16 +71,26 @@ fn words(text: &str) -> BTreeSet<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{LIBRARY, used_by, words};
+    use std::fs;
+
+    use super::{ECP5, LIBRARY, used_by, words};
+    use crate::cores::Multiplier;
+
+    /// The names of the Verilog files in a folder.
+    fn modules(folder: &str) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut modules: Vec<String> = entries.filter_map(|name| name.strip_suffix(".v").map(str::to_owned)).collect();
+        modules.sort();
+        modules
+    }
 
     #[test]
     fn the_library_is_the_folder() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/rtl");
-        let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
-        let mut files: Vec<String> = entries.filter_map(|name| name.strip_suffix(".v").map(str::to_owned)).collect();
-        files.sort();
-        assert_eq!(files, LIBRARY.map(|(module, _)| module.to_owned()));
-        for (module, text) in LIBRARY {
+        for (folder, library) in [(folder.to_owned(), LIBRARY), (format!("{folder}/ecp5"), ECP5)] {
+            assert_eq!(modules(&folder), library.iter().map(|(module, _)| *module).collect::<Vec<_>>());
+        }
+        for (module, text) in LIBRARY.iter().chain(ECP5) {
             assert!(text.contains(&format!("\nmodule {module} ")), "{module}: the file holds another module");
             assert!(text.starts_with("// SPDX-License-Identifier: MIT OR Apache-2.0\n// Part of "), "{module}");
             assert!(text.lines().all(|line| line.chars().count() <= 120), "{module}: a line is too long");
@@ -60,7 +103,7 @@ mod tests {
             words("sptfra_rom #( // sptfra_ram\n) x_sptfra_ram").into_iter().collect::<Vec<_>>(),
             ["sptfra_rom"]
         );
-        let used = used_by(["sptfra_ram a (); sptfra_rom b ();"].into_iter(), &["sptfra_rom"]);
+        let used = used_by(["sptfra_ram a (); sptfra_rom b ();"].into_iter(), &["sptfra_rom"], Multiplier::Whole);
         assert_eq!(used.into_keys().collect::<Vec<_>>(), ["sptfra_ram"]);
     }
 }

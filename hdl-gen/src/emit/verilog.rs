@@ -2,6 +2,7 @@
 
 use tera::{Context, Tera};
 
+use crate::cores::Multiplier;
 use crate::plan::Plan;
 
 use super::columns::wrap;
@@ -83,7 +84,8 @@ pub fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, EmitErro
         modules.push((module, text));
     }
     modules.extend(registers::render(plan, hash)?);
-    let library = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &[]);
+    let multiplier = Multiplier::of_part(&plan.design.hardware.part);
+    let library = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &[], multiplier);
     modules.extend(library.into_iter().map(|(module, text)| (module.to_owned(), text.to_owned())));
     Ok(modules)
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use golden::design::Filter;
 use serde::Serialize;
 
-use crate::cores::{Multiplier, cordic, float_to_fixed};
+use crate::cores::{cordic, float_to_fixed};
 use crate::estimators::line::timing::{DIRECTION_LATENCY, LINE_LATENCY, decision};
 use crate::estimators::line::{
     CENTROID_FRACTION, HINGE_DROP, LEVEL_SHIFT, LINE_FRACTION, LINE_SUM_BITS, PITCH_FRACTION, SEARCH_STEPS,
@@ -34,7 +34,7 @@ pub struct View {
     /// Whether a register bank is around the core, and then the core's own module.
     control: bool,
     core_module: String,
-    /// Modules that multiply, as the part does it best.
+    /// Modules that multiply.
     mac: &'static str,
     multiply: &'static str,
     columns: usize,
@@ -215,14 +215,13 @@ impl View {
         let shifts = plan.products.iter().map(|product| product.shift).chain(leads);
         let greatest_bit = (shifts.clone().max().unwrap_or(0) + data - 1).min(ACCUMULATOR_BITS - 1);
         let least_bit = shifts.min().unwrap_or(0);
-        let multiplier = Multiplier::of_part(&hardware.part);
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
             name: design.name.clone(),
             control: hardware.control,
             core_module: registers::core_module(plan),
-            mac: multiplier.mac(),
-            multiply: multiplier.multiply(),
+            mac: "sptfra_mac",
+            multiply: "sptfra_multiply",
             columns: design.sensor.columns,
             rows: design.sensor.rows,
             taxels,

@@ -7,6 +7,9 @@ use serde_json::Value;
 use crate::plan::format::{Format, address_bits};
 use crate::plan::memory::Memory;
 
+/// Width of a weight in the ROM files of an estimator.
+pub const WEIGHT_BITS: u32 = 18;
+
 /// `g_pq` or `G_pq` by `[p - 1][q]`.
 pub type ByPq<T> = [[T; 3]; 3];
 
@@ -142,7 +145,7 @@ pub trait Slot {
         Vec::new()
     }
 
-    /// `(contents, words)` of its ROM files: words of several weights of [`golden::estimators::joint::WEIGHT_BITS`].
+    /// `(contents, words)` of its ROM files: words of several weights of [`WEIGHT_BITS`].
     fn roms(&self) -> Vec<(&'static str, Vec<Vec<i32>>)> {
         Vec::new()
     }

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use golden::design::Design;
+use golden::design::{Design, WEIGHTS_FILE};
 use hdl_gen::emit::{FileMap, emit};
+use hdl_gen::plan::Plan;
 use serde_json::Value;
 
 use crate::support::{design_text, plan, small_plan};
@@ -113,4 +114,28 @@ fn a_design_that_differs_differs_in_its_hash() {
     };
     assert_eq!(hash("lanes = 4"), hash("lanes = 4\nclock_mhz = 125.0"));
     assert_ne!(hash("lanes = 4"), hash("lanes = 5"));
+}
+
+#[test]
+fn a_generated_design_has_its_weights_beside_it_and_in_its_hash() {
+    let emitted = |weight: i32| {
+        let keys = format!(
+            "[algorithm]\nestimator = \"joint\"\n[algorithm.correction]\nhalf_window = [0, 0]\n\
+             hidden = [[1, 2, 3, 4, 5, {weight}]]\noutput = [[7], [8]]"
+        );
+        emit(&plan(&design_text("pad", [4, 3], [4.0, 2.0], 3.0, &keys))).unwrap()
+    };
+    let files = emitted(6);
+    // The folder's design can be used as it stands.
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["design.toml", WEIGHTS_FILE] {
+        std::fs::write(folder.path().join(name), &files[name]).unwrap();
+    }
+    let design = Design::load(&folder.path().join("design.toml")).unwrap();
+    assert_eq!(emit(&Plan::new(&design).unwrap()).unwrap(), files);
+    let hash = |files: &FileMap| {
+        let metadata: Value = serde_json::from_slice(&files["metadata.json"]).unwrap();
+        metadata["design_hash"].as_str().unwrap().to_owned()
+    };
+    assert_ne!(hash(&files), hash(&emitted(7)));
 }

@@ -22,9 +22,19 @@ pub struct Case {
     pub truth: Option<Vec<Outcome>>,
 }
 
-/// Designs with constants of the joint estimator for their sensors.
-const CALIBRATED: [&str; 2] =
-    [include_str!("../../../designs/sensor1-joint.toml"), include_str!("../../../designs/sensor2-joint.toml")];
+/// Designs with constants of the joint estimator for their sensors, and the names and contents of their weights.
+const CALIBRATED: [[&str; 3]; 2] = [
+    [
+        include_str!("../../../designs/sensor1-joint.toml"),
+        "sensor1-joint.weights.csv",
+        include_str!("../../../designs/sensor1-joint.weights.csv"),
+    ],
+    [
+        include_str!("../../../designs/sensor2-joint.toml"),
+        "sensor2-joint.weights.csv",
+        include_str!("../../../designs/sensor2-joint.weights.csv"),
+    ],
+];
 
 /// Depth over pitch of the deep sensors.
 pub const DEPTHS: [f64; 8] = [0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0];
@@ -136,8 +146,8 @@ pub fn all(large: bool) -> Result<Vec<Case>, HardError> {
 /// # Errors
 /// [`HardError::Design`] if a shipped design cannot be read.
 pub fn by_joint(cases: &[Case]) -> Result<Vec<Case>, HardError> {
-    let calibrated =
-        CALIBRATED.map(|text| Design::from_toml(text, "joint")).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let shipped = |[text, file, weights]: [&str; 3]| Design::from_parts(text, "joint", &[(file, weights.to_owned())]);
+    let calibrated = CALIBRATED.map(shipped).into_iter().collect::<Result<Vec<_>, _>>()?;
     // One fit serves all the cases of a design.
     let mut fitted: Vec<(Design, JointConstants)> = Vec::new();
     let of = |case: &Case| {

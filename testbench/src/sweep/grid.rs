@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::str::FromStr;
 
-use golden::design::{Design, Estimator, Filter, Input, JointConstants, MatrixFilter, PlanKind};
+use golden::design::{Design, Estimator, Filter, JointConstants, MatrixFilter, PlanKind};
 use hdl_gen::plan::Plan;
 use sha2::{Digest, Sha256};
 
@@ -154,11 +154,10 @@ fn normal(design: &Design) -> Design {
 
 /// The digest that a point is filed under.
 fn key(design: &Design, scene: &SweepScene) -> String {
-    let calibration = design.calibration_csv().unwrap_or_default();
-    let parts =
-        [hdl_gen::emit::VERSION, env!("SPTFRA_SOURCES"), &design.to_toml(), &calibration, &scene.name, &scene.text];
+    let (text, files) = (design.to_toml(), design.files());
+    let parts = [hdl_gen::emit::VERSION, env!("SPTFRA_SOURCES"), &text, &scene.name, &scene.text];
     let mut digest = Sha256::new();
-    for part in parts {
+    for part in parts.into_iter().chain(files.iter().map(|(_, content)| content.as_str())) {
         // With the length, so that no two lists of parts are the same bytes.
         digest.update((part.len() as u64).to_le_bytes());
         digest.update(part.as_bytes());
@@ -291,10 +290,9 @@ fn with_filters(base: &Design, axis: &[FilterAxis]) -> Vec<Design> {
     filters.into_iter().map(with).collect()
 }
 
-/// Whether a design file could say this. What a file of its own holds cannot be read back here, and is as it was.
+/// Whether a design file could say this.
 fn exists(design: &Design) -> bool {
-    let plain = Design { input: Input::default(), ..design.clone() };
-    Design::from_toml(&plain.to_toml(), NAME).is_ok_and(|again| again == plain)
+    Design::from_parts(&design.to_toml(), NAME, &design.files()).is_ok_and(|again| again == *design)
 }
 
 /// The paper's name of a sensor, or its geometry.

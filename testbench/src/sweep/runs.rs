@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use golden::design::CALIBRATION_FILE;
 use golden::forces::{reference_path, write_reference};
 use golden::frames::write_frames;
 use golden::metrics::ErrorSummary;
@@ -106,8 +105,8 @@ fn write_job(job: &Job, scene: &SweepScene, made: &[SceneFrame], folder: &Path) 
     let frames = folder.join("frames.csv");
     write_reference(&reference_path(&frames), made)?;
     write_frames(&frames, &scene.frames.clone().as_delivered(&job.design).stress)?;
-    if let Some(calibration) = job.design.calibration_csv() {
-        write_whole(&folder.join(CALIBRATION_FILE), calibration.as_bytes())?;
+    for (name, content) in job.design.files() {
+        write_whole(&folder.join(name), content.as_bytes())?;
     }
     // The design last: where it is, all is.
     Ok(write_whole(&folder.join("design.toml"), job.design.to_toml().as_bytes())?)

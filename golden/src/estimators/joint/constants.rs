@@ -2,8 +2,8 @@
 
 /// Weights of a correction are whole numbers of `2^-WEIGHT_FRACTION`.
 pub const WEIGHT_FRACTION: u32 = 12;
-/// Width of a weight in bits.
-pub const WEIGHT_BITS: u32 = 18;
+/// A weight is at least minus this many steps and less than this many, 32 either way.
+pub const WEIGHT_LIMIT: i32 = 32 << WEIGHT_FRACTION;
 /// Most hidden units of a correction.
 pub const MAX_HIDDEN: usize = 256;
 /// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.

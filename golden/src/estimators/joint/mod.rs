@@ -8,10 +8,11 @@ mod constants;
 mod level_set;
 mod look;
 mod network;
+mod weights;
 
 use super::seen::{RANGE, Seen};
 use crate::status::Status;
-pub use constants::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_BITS, WEIGHT_FRACTION};
+pub use constants::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION, WEIGHT_LIMIT};
 pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};
 pub use level_set::{REACH, STEP};

@@ -9,13 +9,13 @@ mod report;
 pub mod timing;
 
 use golden::design::Design;
-use golden::estimators::joint::{DEAD_ZONE, LARGEST, LEVEL, REACH, STEP, TIE, WEIGHT_BITS};
+use golden::estimators::joint::{DEAD_ZONE, LARGEST, LEVEL, REACH, STEP, TIE};
 use golden::parity::CLASSES;
 use golden::sensor::Sensor;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot};
+use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
 use crate::plan::memory::{Memory, memory};
 pub use network::{

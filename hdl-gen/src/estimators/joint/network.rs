@@ -3,10 +3,11 @@
 //! A mirrored look changes the signs of what is odd in x or y. So the window is folded into parity classes, the
 //! weights too, and one pass over the weights gives the four sums from which the hidden units of all four looks follow.
 
-use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION};
+use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use golden::parity::{CLASSES, sign};
 use serde::Serialize;
 
+use crate::estimators::slot::WEIGHT_BITS;
 use crate::plan::format::{FRICTION_FRACTION, largest, pow2, round_shift};
 
 /// Fraction bits of an input.
@@ -21,9 +22,10 @@ pub const UNIT_BITS: u32 = 26;
 pub const UNITS: usize = 4;
 /// Fewest words of a pass: while it lasts, the units of the pass before are read out one by one.
 const LEAST_LENGTH: usize = 8;
-const COEFFICIENT_BITS: u32 = 18;
 /// Sum of the coefficients' magnitudes below which products with 27 bits do not overflow 48.
 const SUM_LIMIT: i64 = 1 << 21;
+// A weight of a design file, as it is, fits the readout.
+const _: () = assert!(WEIGHT_LIMIT <= 1 << (WEIGHT_BITS - 1));
 /// Bits that the stress at the centroid is coarser than `u`: three of them are added with factors up to 1.25.
 pub const NORMAL_DROP: u32 = 2;
 /// Fraction bits of the reciprocal of the normalised `sum |b|`.
@@ -74,7 +76,7 @@ impl NetworkPlan {
             let sum = |unit: &Vec<ByRealClass>, class: usize| -> i64 {
                 unit.iter().map(|weights| fixed(weights[class], lsb).abs()).sum()
             };
-            let narrow = |weight: &f64| fixed(*weight, lsb).abs() <= largest(COEFFICIENT_BITS);
+            let narrow = |weight: &f64| fixed(*weight, lsb).abs() <= largest(WEIGHT_BITS);
             units.iter().flatten().flatten().all(narrow)
                 && units.iter().all(|unit| (0..CLASSES).all(|class| sum(unit, class) < SUM_LIMIT))
         };
@@ -177,7 +179,7 @@ fn by_parity(row: &[i32], half_window: [usize; 2]) -> Vec<ByRealClass> {
 }
 
 fn dropped(value: i32, drop: u32) -> i32 {
-    round_shift(i64::from(value), drop).clamp(-largest(COEFFICIENT_BITS), largest(COEFFICIENT_BITS)) as i32
+    round_shift(i64::from(value), drop).clamp(-largest(WEIGHT_BITS), largest(WEIGHT_BITS)) as i32
 }
 
 fn scaled(value: i128, left: i32) -> i128 {

@@ -3,19 +3,18 @@
 use std::error::Error;
 use std::fs;
 
-use hdl_gen::cores::emit_all;
 use tempfile::TempDir;
 use testbench::tools;
 
-use super::bench::succeed;
+use super::bench::{cores, succeed};
 
-/// The cores as files, and their names in the order of emission.
+/// The cores as files, and their names.
 fn written() -> Result<(TempDir, Vec<String>), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let mut names = Vec::new();
-    for core in emit_all()? {
-        let name = format!("{}.v", core.module);
-        fs::write(folder.path().join(&name), core.verilog)?;
+    for (module, text) in cores() {
+        let name = format!("{module}.v");
+        fs::write(folder.path().join(&name), text)?;
         names.push(name);
     }
     Ok((folder, names))
@@ -57,5 +56,54 @@ fn mac_becomes_one_dsp_block() -> Result<(), Box<dyn Error>> {
     let script = "read_verilog sptfra_mac.v; synth_xilinx -family xcup -noiopad -flatten -top sptfra_mac;
         select -assert-count 1 t:DSP48E2";
     succeed(tools::yosys()?.args(["-q", "-p", script]).current_dir(&folder))?;
+    Ok(())
+}
+
+/// Yosys' passes up to its search for DSP blocks, but for those that narrow what was widened: other tools have none.
+const WITHOUT_NARROWING: &str = "proc; flatten; tribuf -logic; deminout; opt_expr; opt_clean; opt -nodffe -nosdff; \
+                                 fsm; opt; opt_clean";
+
+/// A product is one block for a tool that takes it as it is written.
+#[test]
+fn a_product_becomes_one_dsp_block_without_being_narrowed() -> Result<(), Box<dyn Error>> {
+    let (folder, _) = written()?;
+    for module in ["sptfra_mac", "sptfra_multiply"] {
+        let synth = format!("synth_xilinx -family xcup -noiopad -noclkbuf -flatten -top {module}");
+        let ways = [
+            format!("{synth} -run :coarse"),
+            format!("{synth} -run :prepare; {WITHOUT_NARROWING}; {synth} -run map_dsp:coarse"),
+        ];
+        for way in ways {
+            let script = format!(
+                "read_verilog {module}.v; {way}; select -assert-count 1 t:DSP48E2; \
+                                  select -assert-none t:$mul t:$__soft_mul t:$macc_v2"
+            );
+            succeed(tools::yosys()?.args(["-q", "-p", &script]).current_dir(&folder))?;
+        }
+    }
+    for module in ["sptfra_mac_ecp5", "sptfra_multiply_ecp5"] {
+        let script = format!(
+            "read_verilog {module}.v; synth_ecp5 -top {module} -run :map_ram; select -assert-count 2 t:MULT18X18D"
+        );
+        succeed(tools::yosys()?.args(["-q", "-p", &script]).current_dir(&folder))?;
+    }
+    Ok(())
+}
+
+/// The test above can fail: widened to 45 bits by concatenation, the product is many blocks until it is narrowed.
+#[test]
+fn a_widened_product_becomes_many_dsp_blocks() -> Result<(), Box<dyn Error>> {
+    let (folder, _) = written()?;
+    let text = fs::read_to_string(folder.path().join("sptfra_multiply.v"))?;
+    let plain = "coefficient * data;";
+    assert!(text.contains(plain), "{text}");
+    let wide = "$signed({{27{coefficient[17]}}, coefficient}) * $signed({{18{data[26]}}, data});";
+    fs::write(folder.path().join("sptfra_multiply.v"), text.replace(plain, wide))?;
+    let synth = "synth_xilinx -family xcup -noiopad -noclkbuf -flatten -top sptfra_multiply";
+    let script = format!(
+        "read_verilog sptfra_multiply.v; {synth} -run :prepare; {WITHOUT_NARROWING}; \
+                          {synth} -run map_dsp:coarse; select -assert-min 2 t:DSP48E2"
+    );
+    succeed(tools::yosys()?.args(["-q", "-p", &script]).current_dir(&folder))?;
     Ok(())
 }

@@ -1,13 +1,11 @@
-//! The multiply-accumulate lane for fabrics whose multipliers are smaller than 18 by 27 bits.
-//!
-//! The same numbers at the same time as [`super::mac`], whose reference is its own, too.
+//! The multiply-accumulate lane of two products of 18 by 18 bits.
 
 use rust_hdl_core::prelude::*;
 
-use super::emit::{Description, emit};
-use super::register::{Register, comment, dff_setup};
-use super::sint::{Sint, signed_bit_cast, signed_cast, unsigned_cast};
-use super::{CoreError, CoreFile};
+use crate::emit::{Description, emit};
+use crate::register::{Register, comment, dff_setup};
+use crate::sint::{Sint, signed_bit_cast, signed_cast, unsigned_cast};
+use crate::{CoreError, CoreFile};
 
 #[derive(LogicBlock, Default)]
 struct MacSplit {
@@ -28,15 +26,11 @@ struct MacSplit {
     high: Register<Sint<28>>,
     sum: Register<Sint<48>>,
     data_bits: Signal<Local, Bits<27>>,
-    lower: Signal<Local, Bits<17>>,
-    lower_wide: Signal<Local, Bits<36>>,
+    lower: Signal<Local, Bits<18>>,
     upper: Signal<Local, Bits<10>>,
-    upper_signed: Signal<Local, Sint<10>>,
+    data_low: Signal<Local, Sint<18>>,
+    data_high: Signal<Local, Sint<10>>,
     high_wide: Signal<Local, Sint<48>>,
-    data_low: Signal<Local, Sint<36>>,
-    data_high: Signal<Local, Sint<28>>,
-    coefficient_low: Signal<Local, Sint<36>>,
-    coefficient_high: Signal<Local, Sint<28>>,
     addend_low: Signal<Local, Sint<48>>,
     addend_high: Signal<Local, Sint<48>>,
     base: Signal<Local, Sint<48>>,
@@ -57,16 +51,12 @@ impl Logic for MacSplit {
         self.valid_m.d.next = self.valid_a.q.val() & !self.reset.val();
         self.first_m.d.next = self.first_a.q.val();
         self.data_bits.next = unsigned_cast(self.data_a.q.val());
-        self.lower.next = self.data_bits.val().get_bits::<17>(0);
-        self.lower_wide.next = bit_cast::<36, 17>(self.lower.val());
-        self.data_low.next = signed_cast(self.lower_wide.val());
+        self.lower.next = bit_cast::<18, 17>(self.data_bits.val().get_bits::<17>(0));
         self.upper.next = self.data_bits.val().get_bits::<10>(17);
-        self.upper_signed.next = signed_cast(self.upper.val());
-        self.data_high.next = signed_bit_cast(self.upper_signed.val());
-        self.coefficient_low.next = signed_bit_cast(self.coefficient_a.q.val());
-        self.coefficient_high.next = signed_bit_cast(self.coefficient_a.q.val());
-        self.low.d.next = self.coefficient_low.val() * self.data_low.val();
-        self.high.d.next = self.coefficient_high.val() * self.data_high.val();
+        self.data_low.next = signed_cast(self.lower.val());
+        self.data_high.next = signed_cast(self.upper.val());
+        self.low.d.next = (self.coefficient_a.q.val() * self.data_low.val()).into();
+        self.high.d.next = (self.coefficient_a.q.val() * self.data_high.val()).into();
 
         comment!("sum of three: no adder stands between the products and the accumulator's");
         self.addend_low.next = signed_bit_cast(self.low.q.val());
@@ -84,14 +74,14 @@ impl Logic for MacSplit {
 }
 
 const DESCRIPTION: Description = Description {
-    module: "sptfra_mac_split",
+    path: "ecp5/sptfra_mac.v",
     banner: "\
-Multiply-accumulate lane: sums coefficient * data with two multipliers of 18 by 18 bits, cycle for cycle as
-sptfra_mac does with one of 27 by 18.
+Multiply-accumulate lane: sums coefficient * data with two multipliers of 18 by 18 bits, for Lattice ECP5. Other
+fabrics have an sptfra_mac with one of 27 by 18, with the same sums in the same cycles.
 
-Latency 3 cycles (operands, two products, accumulator), one product a cycle. Operands and accumulator are
-two's complement integers; the binary point is the user's. The accumulator wraps at 48 bits; a sum of up to 15
-products, and any sum whose coefficients add up to less than 2^21 in magnitude, never does.",
+Latency 3 cycles (operands, two products, accumulator), one product a cycle. Operands of 18 and 27 bits and the
+accumulator of 48 are two's complement integers; the binary point is the user's. The accumulator wraps; a sum of up
+to 15 products, and any sum whose coefficients add up to less than 2^21 in magnitude, never does.",
     ports: &[
         ("clock", "rising edge"),
         ("reset", "synchronous, high: discards products under way, keeps the accumulator"),
@@ -104,6 +94,6 @@ products, and any sum whose coefficients add up to less than 2^21 in magnitude, 
     unused: &[],
 };
 
-pub(super) fn core() -> Result<CoreFile, CoreError> {
+pub(crate) fn core() -> Result<CoreFile, CoreError> {
     emit(MacSplit::default(), &DESCRIPTION)
 }

@@ -2,8 +2,9 @@
 //!
 //! rust-hdl's own printer drops the parentheses of the Rust expression, widens literals to 32 bits and turns signed
 //! comparisons unsigned without a word. This one keeps the grouping of the syntax tree, gives every literal the width
-//! of its partner, and refuses any expression whose meaning in Verilog could differ from the Rust one: operands of
-//! different width or sign, casts and slices of anything but a bare signal.
+//! of its partner, leaves the operands of a product as narrow as they are, and refuses any expression whose meaning in
+//! Verilog could differ from the Rust one: operands of different width or sign, casts and slices of anything but a bare
+//! signal.
 
 use std::collections::BTreeMap;
 
@@ -38,6 +39,12 @@ pub(super) struct Symbol {
 /// The names a kernel may use, by their rust-hdl spelling.
 pub(super) type Symbols = BTreeMap<String, Symbol>;
 
+/// The range of a declaration, with the space behind it.
+pub(super) fn range(kind: Type) -> String {
+    let sign = if kind.signed { "signed " } else { "" };
+    if kind.width == 1 { sign.to_owned() } else { format!("{sign}[{}:0] ", kind.width - 1) }
+}
+
 /// Looks up a rust-hdl name: `next` is rust-hdl's mark of a write, `a[3]` its spelling of `a$3`.
 pub(super) fn symbol<'a>(symbols: &'a Symbols, name: &str) -> Result<&'a Symbol, String> {
     let plain = name.strip_suffix("$next").unwrap_or(name).replace('[', "$").replace(']', "");
@@ -51,6 +58,9 @@ pub(super) fn constant(literal: &VerilogLiteral, kind: Type) -> Result<String, S
         return Err(format!("constant {value} does not fit {}", kind.words()));
     }
     let (sign, width) = (if kind.signed { "s" } else { "" }, kind.width);
+    if kind == Type::BIT {
+        return Ok(format!("1'b{value}"));
+    }
     Ok(if value < 1024 { format!("{width}'{sign}d{value}") } else { format!("{width}'{sign}h{value:x}") })
 }
 
@@ -80,6 +90,8 @@ pub(super) fn type_of(symbols: &Symbols, expression: &Expression) -> Result<Opti
         Expression::Signed(inner) => type_of(symbols, inner)?
             .filter(|inner| !inner.signed)
             .map(|inner| Type { width: inner.width, signed: true }),
+        // As wide as its place, which `product` compares with the operands.
+        Expression::Binary(_, Op::Mul, _) => None,
         Expression::Binary(left, op, right) => match op {
             Op::Eq | Op::Ne | Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::LogicalAnd | Op::LogicalOr => Some(Type::BIT),
             Op::Shl | Op::Shr => type_of(symbols, left)?,
@@ -111,6 +123,7 @@ pub(super) fn print(symbols: &Symbols, expression: &Expression, wanted: Type) ->
         }
         Expression::Unary(op, inner) => {
             let (sign, kind) = match op {
+                UnaryOp::Not if wanted == Type::BIT => ("!", wanted),
                 UnaryOp::Not => ("~", wanted),
                 UnaryOp::Neg => ("-", wanted),
                 UnaryOp::All => ("&", known(symbols, inner)?),
@@ -147,8 +160,10 @@ fn binary(symbols: &Symbols, left: &Expression, op: &Op, right: &Expression, wan
     let (sign, kind) = match op {
         Op::Add => ("+", wanted),
         Op::Sub => ("-", wanted),
-        Op::Mul => ("*", wanted),
+        Op::Mul => return product(symbols, left, right, wanted),
         Op::BitXor => ("^", wanted),
+        Op::BitAnd if wanted == Type::BIT => ("&&", wanted),
+        Op::BitOr if wanted == Type::BIT => ("||", wanted),
         Op::BitAnd => ("&", wanted),
         Op::BitOr => ("|", wanted),
         Op::LogicalAnd => ("&&", Type::BIT),
@@ -170,6 +185,19 @@ fn binary(symbols: &Symbols, left: &Expression, op: &Op, right: &Expression, wan
         _ => operand(symbols, right, kind)?,
     };
     Ok(format!("{left} {sign} {right}"))
+}
+
+/// A product as synthesis looks for it: two signed names, neither widened, and as wide as both together. The place it
+/// is assigned to widens them by their signs.
+fn product(symbols: &Symbols, left: &Expression, right: &Expression, wanted: Type) -> Result<String, String> {
+    let [a, b] = [known(symbols, left)?, known(symbols, right)?];
+    if !(a.signed && b.signed && wanted.signed && a.width + b.width == wanted.width) {
+        let (a, b, wanted) = (a.words(), b.words(), wanted.words());
+        return Err(format!(
+            "a product of {a} and {b} in {wanted}: multiply signed numbers into the sum of their widths"
+        ));
+    }
+    Ok(format!("{} * {}", bare(symbols, left, a)?, bare(symbols, right, b)?))
 }
 
 /// As [`print`], in parentheses if it has an operator.
@@ -222,7 +250,8 @@ fn resize(symbols: &Symbols, inner: &Expression, wanted: Type) -> Result<String,
         let signs = if more == 1 { sign } else { format!("{{{more}{{{sign}}}}}") };
         return Ok(format!("$signed({{{signs}, {text}}})"));
     }
-    Ok(format!("{{{more}'d0, {text}}}"))
+    let zeros = if more == 1 { "1'b0".to_owned() } else { format!("{more}'d0") };
+    Ok(format!("{{{zeros}, {text}}}"))
 }
 
 fn strip(expression: &Expression) -> &Expression {

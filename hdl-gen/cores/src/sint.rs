@@ -50,10 +50,11 @@ impl<const N: usize> Sub for Sint<N> {
     }
 }
 
-impl<const N: usize> Mul for Sint<N> {
-    type Output = Self;
-    fn mul(self, right: Self) -> Self {
-        Self::wrap(self.0.wrapping_mul(right.0))
+/// The whole product, for a signal as wide as both operands together.
+impl<const N: usize, const M: usize> Mul<Sint<M>> for Sint<N> {
+    type Output = i64;
+    fn mul(self, right: Sint<M>) -> i64 {
+        self.0.wrapping_mul(right.0)
     }
 }
 
