@@ -3,9 +3,40 @@
 //! The Verilog of a block is the same in every design (`hdl-gen/rtl`). Its file here states the parameters of its
 //! instance, and whatever else the plan has to know of it: latencies, memories, multipliers.
 
+pub mod array;
+pub mod bz;
+pub mod cean;
+pub mod co;
+pub mod field;
+pub mod op;
+pub mod turns;
+pub mod unfold;
+pub mod we;
+
 use std::fmt::Write;
 
 use serde::{Serialize, Serializer};
+
+use crate::plan::Plan;
+use crate::plan::format::address_bits;
+use crate::plan::layout::Place;
+use crate::plan::product::Vector;
+use crate::plan::reduced::SUM_ROWS;
+
+/// Where a vector stands in the lanes' operand memories: its first word, and whether that is in the stress's bank. One
+/// that no product reads is at 0.
+fn place(plan: &Plan, vector: Vector) -> (usize, bool) {
+    match plan.operands.place(vector) {
+        Some(Place::Fixed(word)) => (word, false),
+        Some(Place::StressBank) => (0, true),
+        None => (0, false),
+    }
+}
+
+/// Bits of the number of an element, or of a row of sums.
+pub fn row_width(plan: &Plan) -> u32 {
+    address_bits(plan.elements().max(SUM_ROWS))
+}
 
 /// Parameters of an instance: names and Verilog expressions, in the order of the module's declaration.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,6 +57,12 @@ impl Parameters {
     /// A count or a width.
     #[must_use]
     pub fn count(self, name: &'static str, value: usize) -> Self {
+        self.expression(name, value.to_string())
+    }
+
+    /// A latency.
+    #[must_use]
+    pub fn cycles(self, name: &'static str, value: u64) -> Self {
         self.expression(name, value.to_string())
     }
 
@@ -53,6 +90,13 @@ impl Parameters {
             let _ = write!(text, "\n            {bits}'d{value}{comma}{comment}");
         }
         self.expression(name, text + "\n        }")
+    }
+
+    /// One bit each, the first lowest.
+    #[must_use]
+    pub fn mask(self, name: &'static str, bits: &[bool]) -> Self {
+        let digits: String = bits.iter().rev().map(|&bit| if bit { '1' } else { '0' }).collect();
+        self.expression(name, format!("{}'b{digits}", bits.len()))
     }
 
     /// Any expression, for instance a parameter of the module around it.
@@ -84,6 +128,60 @@ impl Serialize for Parameters {
 #[cfg(test)]
 mod tests {
     use super::Parameters;
+    use crate::cores::cordic;
+    use crate::estimators::{joint, line};
+    use crate::model::inverse_gain;
+    use crate::plan::format::FRICTION_FRACTION;
+
+    /// The value of a constant in a module of the library, its width left out.
+    fn constant(module: &str, name: &str) -> i64 {
+        let path = format!("{}/rtl/{module}.v", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).unwrap();
+        let (_, rest) = text.split_once(&format!(" {name} = ")).unwrap_or_else(|| panic!("{module} has no {name}"));
+        let (literal, _) = rest.split_once(';').unwrap();
+        let digits = literal.rsplit('d').next().unwrap();
+        digits.parse().unwrap_or_else(|_| panic!("{module}: {name} = {literal}"))
+    }
+
+    /// The algorithm's constants stand in the modules and in the integer model.
+    #[test]
+    fn modules_and_model_have_the_same_constants() {
+        let one = 1 << FRICTION_FRACTION;
+        let expected: [(&str, &str, i64); 29] = [
+            ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
+            ("sptfra_direction", "PITCH_FRACTION", line::PITCH_FRACTION.into()),
+            ("sptfra_line", "LINE_FRACTION", line::LINE_FRACTION.into()),
+            ("sptfra_line", "LINE_SUM_BITS", line::LINE_SUM_BITS.into()),
+            ("sptfra_search", "SEARCH_STEPS", line::SEARCH_STEPS.into()),
+            ("sptfra_search", "ONE", one),
+            ("sptfra_search_cell", "FRICTION_FRACTION", FRICTION_FRACTION.into()),
+            ("sptfra_search_cell", "LINE_FRACTION", line::LINE_FRACTION.into()),
+            ("sptfra_search_cell", "HINGE_DROP", line::HINGE_DROP.into()),
+            ("sptfra_summary", "LINE_FRACTION", line::LINE_FRACTION.into()),
+            ("sptfra_summary", "INVERSE_GAIN", inverse_gain()),
+            ("sptfra_summary", "ONE", one),
+            ("sptfra_op", "FRICTION_FRACTION", FRICTION_FRACTION.into()),
+            ("sptfra_output", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
+            ("sptfra_output", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
+            ("sptfra_plane", "LAST", joint::SIDE as i64 - 1),
+            ("sptfra_plane_cell", "POINT_BITS", joint::POINT_BITS.into()),
+            ("sptfra_level_set", "REACH", joint::SIDE as i64 / 2),
+            ("sptfra_level_set", "DEPTH_BITS", joint::DEPTH_BITS.into()),
+            ("sptfra_level_set", "WEIGHT_DROP", joint::WEIGHT_DROP.into()),
+            ("sptfra_grid_centroid", "BORDER", joint::SIDE as i64 / 2),
+            ("sptfra_friction", "LINEAR_FRACTION", joint::LINEAR_FRACTION.into()),
+            ("sptfra_friction", "CUBIC_FRACTION", joint::CUBIC_FRACTION.into()),
+            ("sptfra_friction", "FACTOR_FRACTION", joint::FACTOR_FRACTION.into()),
+            ("sptfra_look_stress", "STRESS_BITS", joint::STRESS_BITS.into()),
+            ("sptfra_look_window", "CENTRE_HALF", joint::CENTRE_HALF),
+            ("sptfra_look_window", "INPUT_ONE", 1 << joint::INPUT_FRACTION),
+            ("sptfra_network", "UNIT_BITS", joint::UNIT_BITS.into()),
+            ("sptfra_network", "LIMIT", joint::CORRECTION_LIMIT),
+        ];
+        for (module, name, value) in expected {
+            assert_eq!(constant(module, name), value, "{module}: {name}");
+        }
+    }
 
     #[test]
     fn parameters_read_as_verilog() {

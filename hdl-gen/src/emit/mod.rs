@@ -1,20 +1,15 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
 mod columns;
-mod counts_view;
-mod expressions;
 mod flows;
-mod folded_view;
-mod joint_view;
 mod mcsr;
 mod metadata;
-mod product_view;
 mod registers;
 mod roms;
 pub mod rtl;
 mod sim;
+mod top;
 mod verilog;
-mod view;
 
 use std::collections::BTreeMap;
 

@@ -1,10 +1,12 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
+use crate::blocks::array::{column_bits, destination_bits};
+use crate::blocks::row_width;
 use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
 use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;
-use crate::plan::reduced::SUM_ROWS;
+use crate::plan::product::Vector;
 
 use super::{FileMap, lane_file};
 
@@ -39,25 +41,9 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     }
 }
 
-/// Bits of a column number: of the largest number of vectors that one product reads.
-pub fn column_bits(plan: &Plan) -> u32 {
-    let vectors = plan.products.iter().map(|product| product.operands.len()).max().unwrap_or(1);
-    address_bits(vectors * plan.elements())
-}
-
-/// Bits of a result's row.
-pub fn row_bits(plan: &Plan) -> u32 {
-    address_bits(plan.elements().max(SUM_ROWS))
-}
-
-/// Bits of a product's number; rows of sums count as a product of their own, after the last.
-pub fn product_bits(plan: &Plan) -> u32 {
-    address_bits(plan.products.len() + usize::from(plan.ways() > 1))
-}
-
-/// Bits of a visit: last of its program, lane, product, row.
-pub fn visit_bits(plan: &Plan) -> u32 {
-    1 + address_bits(plan.walkers()) + product_bits(plan) + row_bits(plan)
+/// Bits of a visit: last of its program, lane, destination, row.
+fn visit_bits(plan: &Plan) -> u32 {
+    1 + address_bits(plan.walkers()) + destination_bits(plan) + row_width(plan)
 }
 
 fn visit(plan: &Plan, index: usize) -> u128 {
@@ -66,12 +52,12 @@ fn visit(plan: &Plan, index: usize) -> u128 {
     let last = index + 1 == schedule.visits.len() || schedule.programs.iter().any(|program| program.visit == index + 1);
     let elements = plan.elements() as u32;
     // Rows in front of a product's own are sums.
-    let (product, row) = match visit.row.checked_sub(elements) {
-        Some(sum) => (plan.products.len() as u32, sum),
-        None => (visit.product, visit.row),
+    let (destination, row) = match visit.row.checked_sub(elements) {
+        Some(sum) => (Vector::SUMS_DESTINATION, sum),
+        None => (plan.products[visit.product as usize].result.destination(), visit.row),
     };
     let lane = u128::from(last) << address_bits(plan.walkers()) | u128::from(visit.lane);
-    (lane << product_bits(plan) | u128::from(product)) << row_bits(plan) | u128::from(row)
+    (lane << destination_bits(plan) | destination as u128) << row_width(plan) | u128::from(row)
 }
 
 /// The coefficients of all ways in one word, that of way 0 lowest.

@@ -4,6 +4,7 @@ use golden::design::Design;
 use golden::sensor::Sensor;
 use serde_json::Value;
 
+use crate::blocks::Parameters;
 use crate::plan::format::{Format, address_bits};
 use crate::plan::memory::Memory;
 
@@ -102,7 +103,7 @@ impl Cells {
 pub struct BlockCost {
     /// What the block is called.
     pub name: &'static str,
-    /// Its modules: the emitted module is `NAME_` and this.
+    /// Its modules: the emitted module is this, or `NAME_` and this.
     pub modules: &'static [&'static str],
     /// DSP48E2: one for each product that it forms in a cycle.
     pub dsp: usize,
@@ -150,8 +151,22 @@ pub trait Slot {
         Vec::new()
     }
 
-    /// `(suffix, template)` of its modules.
-    fn modules(&self) -> Vec<(&'static str, &'static str)>;
+    /// Its module in `hdl-gen/rtl`, with the ports that every estimator has.
+    fn module(&self) -> &'static str;
+
+    /// The parameters of its instance, for values that arrive `ways` at a time.
+    fn parameters(&self, design: &Design, ways: usize) -> Parameters;
+
+    /// Modules of the library that stand only in a `generate if` that these parameters do not take.
+    fn without(&self) -> Vec<&'static str> {
+        Vec::new()
+    }
+
+    /// Pitch in x and y over the larger of the two with 16 fraction bits, if it needs the direction of the push.
+    fn pitch(&self) -> Option<[i64; 2]>;
+
+    /// Whether its answer is one component and the line on which the other lies, rather than both components.
+    fn answers_with_a_line(&self) -> bool;
 
     /// What `metadata.json` says of it.
     fn metadata(&self) -> Metadata;

@@ -13,7 +13,6 @@ use super::product::Product;
 use super::quantise::QuantisedMatrix;
 use super::resources::Resources;
 use super::schedule::Schedule;
-use super::timing::Timeline;
 use super::{Condition, Formats, Nnz, Plan, Thresholds, control, paper, reduced};
 use crate::estimators::{self, EstimatorPlan, Given};
 
@@ -142,10 +141,7 @@ impl Work {
         let estimator = EstimatorPlan::new(&Given { design, elements, ways, stress, u });
         let slot = estimator.slot();
         let operands = OperandLayout::new(&self.products, elements);
-        let timeline = match design.algorithm.plan {
-            PlanKind::Paper => Timeline::new(elements, self.counts.is_some(), &self.products, &schedule, slot),
-            PlanKind::Reduced => control::timeline(design, &self.products, &schedule, slot),
-        };
+        let timeline = control::timeline(design, elements, &self.products, &schedule, slot);
         let resources = Resources::new(design, &self.products, &operands, &schedule, slot, self.counts.as_ref());
         Plan {
             design: design.clone(),

@@ -1,4 +1,4 @@
-//! Predicted cycles of the reduced plan: its control, register by register, without the data.
+//! Predicted cycles: the hardware's control, register by register, without the data.
 //!
 //! When a program starts depends on the frames under way, so latency and interval come from playing frames through
 //! what decides it. Every constant is a count of pipeline registers in the emitted modules; tests compare with
@@ -6,48 +6,43 @@
 
 use std::collections::VecDeque;
 
-use golden::design::{Design, Optimise, Outputs};
+use golden::design::{Design, Optimise, Outputs, PlanKind};
 
 use super::counts::input_stages;
-use super::product::Product;
-use super::schedule::{Program, Schedule, TURN_GAP};
-use super::timing::{
-    INTERVAL_FRAMES, OUTPUT_DEPTH, OUTPUT_SKID, SEQUENCER_TO_LANES, START_TO_ISSUE, SUMMARY_BEATS, SUMMARY_LATENCY,
-    Timeline, middle_interval,
-};
+use super::product::{Product, Vector};
+use super::schedule::{Program, Schedule, TURN_GAP, Visit};
+use super::timing::{INTERVAL_FRAMES, OUTPUT_SKID, Timeline, middle_interval};
+use crate::blocks::array::{SEQUENCER_TO_LANES, START_TO_ISSUE, VISIT_TO_BUS};
+use crate::blocks::op::{OUTPUT_LATENCY, SUMMARY_BEATS, SUMMARY_LATENCY};
+use crate::blocks::{bz, co, turns, unfold};
 use crate::estimators::Slot;
 
-/// From a frame's last stress to the frame being ready for the lanes.
-const STRESS_TO_READY: u64 = 4;
-/// From a visit to its taxels having left the unfolding.
-const VISIT_TO_TAXELS: u64 = 8;
 /// From the last taxels having left the unfolding to their being in the search's cells.
 const TAXELS_TO_CELLS: u64 = 2;
-/// From the visit to the last sum, to the sums being complete.
-const VISIT_TO_SUMS: u64 = 5;
 /// From the last visit of the residual, to the field's program being allowed.
-const VISIT_TO_RESIDUAL: u64 = 4;
-/// From the last visit of the field, to the output being allowed.
-const VISIT_TO_FIELD: u64 = VISIT_TO_TAXELS + 2;
+const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
 /// From the end of the search to the friction being known to the lanes.
 const SEARCH_TO_FRICTION: u64 = 9;
 /// Frames whose stress, whose search, and whose field have a place.
-const PLACES: u64 = 2;
-/// Frames whose weights have a place.
-const WEIGHT_PLACES: u64 = super::resources::WEIGHT_BANKS as u64;
+const PLACES: u64 = turns::FIELD_PLACES as u64;
 /// Cycles after which a frame is taken for lost: a defect.
 const FOREVER: u64 = 100_000_000;
 
 /// Predicts latency and interval.
-pub(super) fn timeline(design: &Design, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Timeline {
-    let constants = Constants::new(design, products, schedule, estimator);
+pub(super) fn timeline(
+    design: &Design,
+    elements: usize,
+    products: &[Product],
+    schedule: &Schedule,
+    estimator: &dyn Slot,
+) -> Timeline {
+    let constants = Constants::new(design, elements, products, schedule, estimator);
     let ends = |frames| Control::new(&constants).play(frames);
     Timeline {
         latency_cycles: ends(1)[0],
         interval_cycles: middle_interval(&ends(INTERVAL_FRAMES)),
         spmv_cycles: schedule.issue_cycles(),
         search_cycles: constants.search,
-        overlap: constants.interval,
     }
 }
 
@@ -57,7 +52,17 @@ struct Constants {
     beats: u64,
     /// From a beat entering the conversion to its stress entering the fold.
     beat_to_stress: u64,
+    /// From a frame's last stress to the frame being ready for the lanes.
+    stress_to_ready: u64,
+    /// From a visit to its taxels having left the unfolding.
+    visit_to_taxels: u64,
+    /// From the visit to the last sum, or the last g, to the sums being complete.
+    visit_to_sums: u64,
     field: bool,
+    /// Whether the lanes put the field together, once the friction is known; else it is there with the sums.
+    composed: bool,
+    /// Frames that have a place from their start until they have left, if any is needed.
+    places: Option<u64>,
     interval: bool,
     /// Of the stage before the search, if there is one: without it the search waits for all that it needs at once.
     line: Option<u64>,
@@ -72,20 +77,26 @@ struct Constants {
 }
 
 impl Constants {
-    fn new(design: &Design, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Self {
+    fn new(design: &Design, elements: usize, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Self {
         let field = design.algorithm.outputs == Outputs::Field;
         let taxels = design.sensor.taxels() as u64;
-        let elements = golden::parity::Quads::new(design.sensor.columns, design.sensor.rows).count() as u32;
-        let sums = schedule
-            .visits
-            .iter()
-            .filter(|visit| products[visit.product as usize].lead.is_some() && visit.row >= elements)
-            .map(|visit| visit.cycle);
+        let folded = design.algorithm.plan == PlanKind::Reduced;
+        let is_sum = |visit: &&Visit| {
+            let product = &products[visit.product as usize];
+            let leads = product.lead.is_some() && visit.row as usize >= elements;
+            leads || matches!(product.result, Vector::G(..))
+        };
+        let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
         Self {
             taxels,
             beats: SUMMARY_BEATS + if field { 3 * taxels } else { 0 },
             beat_to_stress: input_stages(design.input.pa_per_count.is_some()),
+            stress_to_ready: bz::stress_to_ready(folded),
+            visit_to_taxels: VISIT_TO_BUS + unfold::latency(folded),
+            visit_to_sums: VISIT_TO_BUS + co::bus_to_sums(folded),
             field,
+            composed: field && folded,
+            places: turns::places(field, folded).map(|places| places as u64),
             interval: design.hardware.optimise == Optimise::Interval,
             line: estimator.line_latency(),
             direction: estimator.contact_latency(),
@@ -211,7 +222,9 @@ impl<'a> Control<'a> {
                 Change::SearchOver => self.searches_due -= 1,
                 Change::FrameReleased => {
                     self.frames_held -= 1;
-                    self.fields_held -= 1;
+                    if self.of.composed {
+                        self.fields_held -= 1;
+                    }
                 }
                 Change::SummaryFree => self.summary_busy = false,
             }
@@ -233,7 +246,7 @@ impl<'a> Control<'a> {
         self.next_open = last_stress + 1;
         self.cean_idle = last_stress + self.of.direction;
         self.directions.push_back(self.cean_idle);
-        self.frames_ready.push_back(last_stress + STRESS_TO_READY);
+        self.frames_ready.push_back(last_stress + self.of.stress_to_ready);
         true
     }
 
@@ -248,14 +261,15 @@ impl<'a> Control<'a> {
         let may_residual = self.residual_due && !self.field_due;
         let may_frame = there(&self.frames_ready)
             && self.searches_due < PLACES
-            && (!self.of.field
-                || (!self.residual_due && self.frames_held < WEIGHT_PLACES && (self.of.interval || !self.field_due)));
+            && self.of.places.is_none_or(|places| self.frames_held < places)
+            && !self.residual_due
+            && (self.of.interval || !self.field_due);
         if may_field {
             let last_visit = self.start(2);
             self.field_due = false;
             self.friction_known = None;
             self.fields_held += 1;
-            self.field_there.push_back(last_visit + VISIT_TO_FIELD);
+            self.field_there.push_back(last_visit + self.of.visit_to_taxels + 2);
         } else if may_residual {
             let last_visit = self.start(1);
             self.residual_due = false;
@@ -266,12 +280,14 @@ impl<'a> Control<'a> {
             let last_visit = self.start(0);
             self.frames_ready.pop_front();
             self.searches_due += 1;
-            if self.of.field {
-                self.residual_due = true;
-                self.frames_held += 1;
+            self.residual_due = self.of.composed;
+            self.frames_held += u64::from(self.of.places.is_some());
+            let sums_there = first_issue + self.of.last_sum + self.of.visit_to_sums;
+            self.sums_there.push_back(sums_there);
+            if self.of.field && !self.of.composed {
+                self.field_there.push_back(sums_there);
             }
-            self.sums_there.push_back(first_issue + self.of.last_sum + VISIT_TO_SUMS);
-            let complete = last_visit + VISIT_TO_TAXELS;
+            let complete = last_visit + self.of.visit_to_taxels;
             self.u_there.push_back(complete + TAXELS_TO_CELLS);
             self.pending.push((complete + 1, Change::StressReleased));
         }
@@ -310,7 +326,7 @@ impl<'a> Control<'a> {
             self.summary_busy = true;
             self.pending.push((self.now + 1, Change::SearchOver));
             self.summary_there = Some(self.now + SUMMARY_LATENCY + 1);
-            self.friction_known = self.of.field.then_some(self.now + SEARCH_TO_FRICTION);
+            self.friction_known = self.of.composed.then_some(self.now + SEARCH_TO_FRICTION);
             return;
         }
         let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
@@ -343,6 +359,6 @@ impl<'a> Control<'a> {
         if self.of.field {
             self.pending.push((self.now + self.of.beats + 3, Change::FrameReleased));
         }
-        self.ends.push(self.now + OUTPUT_DEPTH + OUTPUT_SKID + self.of.beats);
+        self.ends.push(self.now + OUTPUT_LATENCY + OUTPUT_SKID + self.of.beats);
     }
 }

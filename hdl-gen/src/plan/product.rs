@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::format::round_shift;
 use super::quantise::{Entry, QuantisedMatrix};
+use crate::blocks::{array, co, unfold, we};
 
 /// A vector of m numbers that products read or write; in the reduced plan folded by mirror parity, unless it says
 /// otherwise.
@@ -46,11 +47,30 @@ impl Vector {
         }
     }
 
+    /// What becomes of a result, as the visit ROM and the collector (`sptfra_spmv_collector`) have it.
+    pub fn destination(self) -> usize {
+        match self {
+            Self::Stress | Self::Weight | Self::Pull => 0,
+            Self::U(q) => 1 + usize::from(q),
+            Self::Residual(q) => 5 + usize::from(q),
+            Self::Explained => 8,
+            Self::Force(p) => 8 + usize::from(p),
+            Self::Partial(p) => 3 + usize::from(p),
+            Self::G(p, q) => 7 + 3 * usize::from(p - 1) + usize::from(q),
+        }
+    }
+
+    /// The destination of sums over the frame.
+    pub const SUMS_DESTINATION: usize = 4;
+
     /// Whether a product with this result makes `vector`: weights and `y+` come together.
     pub fn holds(self, vector: Self) -> bool {
         self == vector || (self == Self::Weight && vector == Self::Pull)
     }
 }
+
+/// Numbers that a destination can have.
+pub const DESTINATIONS: usize = 16;
 
 /// The block that owns the lanes while a product runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -90,20 +110,15 @@ impl Epilogue {
 
     /// Cycles from the collector's visit to the first issue that may read the value as an operand.
     pub fn visit_to_operand(self) -> u64 {
-        match self {
-            Self::Part => PARTED_VISIT_TO_OPERAND,
-            Self::Store => STORED_VISIT_TO_OPERAND,
-            Self::ClipNegate | Self::Keep | Self::Add(_) | Self::Unfold | Self::AddStress => VISIT_TO_OPERAND,
-        }
+        let after_bus = match self {
+            Self::Part => unfold::latency(true) + we::latency(true),
+            Self::Store | Self::Unfold | Self::AddStress => co::latency(true),
+            Self::ClipNegate => unfold::latency(false) + we::latency(false),
+            Self::Keep | Self::Add(_) => co::latency(false),
+        };
+        array::VISIT_TO_BUS + after_bus + array::WRITE_TO_ISSUE
     }
 }
-
-/// Cycles from a collector visit to the first issue that may read the value as an operand.
-pub const VISIT_TO_OPERAND: u64 = 6;
-/// The same where results are written as they come.
-const STORED_VISIT_TO_OPERAND: u64 = 4;
-/// The same where they are unfolded, parted and folded again; the second half is a cycle later than the first.
-const PARTED_VISIT_TO_OPERAND: u64 = 13;
 
 /// Rows in front of a product's own, whose results are sums over the frame and go to Co.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -158,12 +173,6 @@ impl Product {
     /// The vector it multiplies, the first if there are several.
     pub fn operand(&self) -> Vector {
         self.operands[0]
-    }
-
-    /// Whether the lanes pass from this product's block to that of `next` by a start pulse: so in the paper's plan; in
-    /// the reduced plan a program runs through.
-    pub fn hands_over_to(&self, next: &Self) -> bool {
-        self.block != next.block && self.epilogue != Epilogue::Part
     }
 
     /// Largest magnitude of a rounded result before the epilogue, for operands up to `operand_bound`.

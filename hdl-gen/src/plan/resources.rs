@@ -26,7 +26,7 @@ const FIELD: &str = "field";
 pub struct BlockResources {
     /// What the block is called.
     pub name: &'static str,
-    /// Its modules: the emitted module is `NAME_` and this, and all that it instantiates counts too.
+    /// Its modules: the emitted module is this, or `NAME_` and this, and all that it instantiates counts too.
     pub modules: &'static [&'static str],
     /// DSP48E2.
     pub dsp: usize,
@@ -94,10 +94,10 @@ impl Resources {
 /// The blocks with multipliers or memories, in the data's order.
 fn blocks(design: &Design, estimator: &dyn Slot, counts: Option<&CountsPlan>) -> Vec<BlockCost> {
     let block = |name, modules, dsp| BlockCost { name, modules, dsp };
-    let output = match (design.algorithm.outputs, design.algorithm.plan) {
-        (Outputs::Resultants, _) => 0,
-        (Outputs::Field, PlanKind::Reduced) => 1,
-        (Outputs::Field, PlanKind::Paper) => 2,
+    let (field, output) = match (design.algorithm.outputs, design.algorithm.plan) {
+        (Outputs::Resultants, _) => (0, 0),
+        (Outputs::Field, PlanKind::Reduced) => (1, 0),
+        (Outputs::Field, PlanKind::Paper) => (0, 2),
     };
     let mut blocks = vec![
         block(BZ, &["bz", "fold"], usize::from(counts.is_some())),
@@ -105,10 +105,13 @@ fn blocks(design: &Design, estimator: &dyn Slot, counts: Option<&CountsPlan>) ->
         block(LANES, &["spmv_array"], design.hardware.lanes),
         block(WE, &["we", "nonzeros"], 0),
         block(CO, &["co", "unfold"], 0),
-        block(FIELD, &["field"], 0),
+        block(FIELD, &["field"], field),
     ];
     blocks.extend(estimator.search_blocks());
-    blocks.extend([block("summary", &["op_summary"], 1), block("output", &["op_output"], output)]);
+    blocks.extend([
+        block("summary", &["op_summary", "sptfra_summary"], 1),
+        block("output", &["op_output", "sptfra_output"], output),
+    ]);
     blocks
 }
 

@@ -8,7 +8,8 @@
 //! lane would finish another before there is room for it, idle cycles are inserted.
 //!
 //! Products that always follow each other at the same distance form a *program*. The paper's plan is one program a
-//! frame; the reduced plan has up to three, which the hardware starts when their data and the lanes are there.
+//! frame, and so are resultants alone; a field that the lanes put together takes two more. The hardware starts a program
+//! when its data and the lanes are there.
 
 use golden::parity::CLASSES;
 use serde::Serialize;
@@ -16,18 +17,16 @@ use serde::Serialize;
 use super::dealing::{Dealer, Stream, rounds_period};
 use super::product::{Epilogue, Product, Vector};
 use super::quantise::{Entry, QuantisedMatrix};
-use super::timing::SEQUENCER_TO_LANES;
+use crate::blocks::array::SEQUENCER_TO_LANES;
 
 /// Cycles from the issue of a row's last MAC to its sum standing in the lane's result register.
 pub const ISSUE_TO_RESULT: u64 = 7;
 /// Results that a lane holds until the collector comes.
 pub const RESULT_PLACES: usize = 2;
-/// Cycles without issue when the lanes pass from one block, or one program, to the next.
+/// Cycles without issue when the lanes pass from one program to the next.
 pub const TURN_GAP: u64 = 2;
 /// Cycles from taking a program's last result to taking the next program's first: the order is read from a ROM.
 pub const COLLECTOR_JUMP: u64 = 4;
-/// Cycles from the last collector visit of a frame to the `drained` pulse.
-pub const VISIT_TO_DRAINED: u64 = 4;
 /// Cycles without issue in front of a product's rounds: the list's first entry is fetched.
 pub const ROUNDS_FETCH: u64 = 1;
 /// Cycles from the last operand being there to the list of those that are not zero, as the lanes see it: the sequencer
@@ -76,7 +75,7 @@ pub struct Window {
     pub start: u64,
     /// Issue cycles.
     pub length: u64,
-    /// Idle cycles before `start`, beyond the turn gap, until the operand is complete.
+    /// Idle cycles before `start`, until the operand is complete.
     pub wait: u64,
     /// MACs of all lanes in this window; with four ways a lane counts once.
     pub macs: u64,
@@ -160,9 +159,6 @@ impl Schedule {
             let mut complete: Vec<(Vector, u64)> = Vec::new();
             let mut next_start = 0;
             for (offset, product) in chunk.iter().enumerate() {
-                if offset > 0 && chunk[offset - 1].hands_over_to(product) {
-                    next_start += TURN_GAP;
-                }
                 let start = earliest(product, chunk, &complete).max(next_start);
                 let main = &matrices[product.matrix];
                 let lead = product.lead.as_ref().map(|lead| &matrices[lead.matrix]);
@@ -194,11 +190,6 @@ impl Schedule {
         }
         let program_gap = program_gap(&programs, &windows, lanes);
         Self { lanes: dealer.programs, programs, windows, visits: dealer.visits, program_gap }
-    }
-
-    /// Cycle of the `drained` pulse that follows the only program's last visit, from its first issue.
-    pub fn drained(&self) -> u64 {
-        self.programs.iter().map(|program| program.last_visit).max().unwrap_or(0) + VISIT_TO_DRAINED
     }
 
     /// Words in the values ROMs: those with a column, then the dense rows.

@@ -161,7 +161,7 @@ fn the_roms_hold_the_weights() {
         let wanted = network.readout.get(index).copied().unwrap_or_default();
         assert_eq!([weight(line, 0), weight(line, 1)], wanted);
     }
-    assert!(files.contains_key("rtl/pad_op_plane.v") && !files.contains_key("rtl/pad_op_line.v"));
+    assert!(files.contains_key("rtl/sptfra_plane.v") && !files.contains_key("rtl/sptfra_line.v"));
     let metadata: serde_json::Value = serde_json::from_slice(&files["metadata.json"]).unwrap();
     assert_eq!(metadata["joint"]["network"]["length"], network.length);
 }

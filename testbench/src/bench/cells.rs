@@ -117,7 +117,7 @@ pub fn count(file: &Path, metadata: &Path, statistics: &Path) -> Result<Cells, B
     blocks.push(Block { name: REST.to_owned(), yosys: Count::default(), predicted: Expected::default() });
     let rest = blocks.len() - 1;
     let place = |module: &str| {
-        let suffix = module.strip_prefix(top.as_str())?.strip_prefix('_')?;
+        let suffix = module.strip_prefix(top.as_str()).and_then(|rest| rest.strip_prefix('_')).unwrap_or(module);
         predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == suffix))
     };
     // A module with the block of the one that instantiates it, and how often it is there.

@@ -136,8 +136,24 @@ fn rom_changes(line: &str, index: usize) -> Vec<(Kind, String)> {
 fn verilog_changes(line: &str) -> Vec<(Kind, String)> {
     let code = line.split("//").next().unwrap_or_default();
     let trimmed = code.trim();
-    let skip = ["input", "output", "module", "genvar", "(*", "`", "parameter", ".", "localparam [2:0] ", "for ("];
-    if trimmed.is_empty() || trimmed.contains("_unused") || skip.iter().any(|start| trimmed.starts_with(start)) {
+    let skip = [
+        "input",
+        "output",
+        "module",
+        "genvar",
+        "(*",
+        "`",
+        "parameter",
+        ".",
+        "localparam [1:0] ",
+        "localparam [2:0] ",
+        "for (",
+    ];
+    if trimmed.is_empty()
+        || trimmed.contains("_unused")
+        || trimmed.contains("begin : gen_check")
+        || skip.iter().any(|start| trimmed.starts_with(start))
+    {
         return Vec::new();
     }
     let mut changes = numbers(code);

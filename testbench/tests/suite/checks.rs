@@ -14,7 +14,8 @@ const FRAMES: usize = 8;
 fn broken(design: &Design, module: &str, from: &str, to: &str) -> String {
     let plan = planned(design);
     let mut sources = rtl_sources(&plan).expect("emitted");
-    let file = format!("rtl/{}_{module}.v", design.name);
+    let library = format!("rtl/{module}.v");
+    let file = if sources.files.contains_key(&library) { library } else { format!("rtl/{}_{module}.v", design.name) };
     let text = String::from_utf8(sources.files[&file].clone()).expect("UTF-8");
     assert_eq!(text.matches(from).count(), 1, "{file}: {from:?} stands there once");
     sources.files.insert(file, text.replace(from, to).into());
@@ -40,7 +41,10 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         // A program begins before the one before has put out its results.
         (reduced(), "turns", "wire free = !busy || issued;", "wire free = 1'b1;", "spmv_collector.v"),
         // The line does not take the sums.
-        (reduced(), "op_line", "sums_take <= (state == SUMS) && sums_complete;", "sums_take <= 1'b0;", "_co.v"),
+        (reduced(), "sptfra_line", "sums_take <= (state == SUMS) && sums_complete;", "sums_take <= 1'b0;", "_co.v"),
+        // Op and the estimator take longer than the plan says.
+        (reduced(), "sptfra_summary", "6'd33: begin", "6'd34: begin", "sptfra_check_latency.v"),
+        (reduced(), "sptfra_search", "wait_count == 4'd3", "wait_count == 4'd4", "sptfra_check_latency.v"),
         // More frames are begun than Op has places for.
         (resultants(), "turns", "frame_ready && (searches_due != 2'd2)", "frame_ready", "_co.v"),
         // Op is still busy when the next frame's results come. With two lanes it works on one while they have the next.

@@ -115,8 +115,6 @@ fn corner_designs_agree_with_the_model() {
         ("three_diagonals", diagonal),
     ];
     let plans: Vec<Plan> = shapes.iter().map(|(name, shape)| planned(&shape.design(name))).collect();
-    let overlaps = |wanted: bool| plans.iter().any(|plan| plan.timeline.overlap == wanted);
-    assert!(overlaps(true) && overlaps(false), "designs whose frames overlap in the lanes and in Op, and others");
     judge(&plans);
 }
 

@@ -52,7 +52,7 @@ fn faults_at_rare_moments_are_noticed() {
         [PlanKind::Paper, PlanKind::Reduced].map(|kind| by_plan(shipped("small"), kind, Outputs::Field));
     let cases = [
         // No quotient although there is no force along z.
-        (&reduced, "op_summary", "(bits_z == 7'd0) || (bits_xy == 7'd0)", "(bits_z == 7'd0) && (bits_xy == 7'd0)"),
+        (&reduced, "sptfra_summary", "(bits_z == 7'd0) || (bits_xy == 7'd0)", "(bits_z == 7'd0) && (bits_xy == 7'd0)"),
         // A direction that comes in the cycle in which the one before is taken is lost.
         (
             &paper,
@@ -62,7 +62,7 @@ fn faults_at_rare_moments_are_noticed() {
         ),
         (
             &reduced,
-            "cean",
+            "sptfra_cean",
             "if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin",
             "if (push && (waiting == 2'd0)) begin",
         ),
@@ -70,7 +70,9 @@ fn faults_at_rare_moments_are_noticed() {
     let noticed = in_parallel(&cases, |&(design, module, from, to)| {
         let plan = planned(design);
         let mut sources = rtl_sources(&plan).expect("emitted");
-        let file = format!("rtl/{}_{module}.v", design.name);
+        let library = format!("rtl/{module}.v");
+        let file =
+            if sources.files.contains_key(&library) { library } else { format!("rtl/{}_{module}.v", design.name) };
         let text = String::from_utf8(sources.files[&file].clone()).expect("UTF-8");
         assert_eq!(text.matches(from).count(), 1, "{file}: {from:?} stands there once");
         sources.files.insert(file, text.replace(from, to).into());

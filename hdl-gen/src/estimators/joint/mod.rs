@@ -16,6 +16,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
+use crate::blocks::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
 use crate::plan::memory::{Memory, memory};
 pub use network::{
@@ -122,7 +123,7 @@ impl Slot for JointPlan {
     }
 
     fn contact_block(&self) -> BlockCost {
-        BlockCost { name: "CeAn", modules: &["cean"], dsp: 0 }
+        BlockCost { name: "CeAn", modules: &["sptfra_cean"], dsp: 0 }
     }
 
     fn search_blocks(&self) -> Vec<BlockCost> {
@@ -130,10 +131,14 @@ impl Slot for JointPlan {
         // The square of a depth and both moments; the stress of a taxel and its share of all; the hidden units' four
         // classes and both components; one after the other.
         vec![
-            BlockCost { name: PLANE, modules: &["op_plane", "op_level"], dsp: 3 },
-            BlockCost { name: LOOK, modules: &["op_look"], dsp: if network { 2 } else { 0 } },
-            BlockCost { name: NETWORK, modules: &["op_network"], dsp: if network { CLASSES * UNITS + 2 } else { 0 } },
-            BlockCost { name: "friction", modules: &["op_friction"], dsp: 1 },
+            BlockCost { name: PLANE, modules: &["sptfra_plane", "sptfra_level_set"], dsp: 3 },
+            BlockCost { name: LOOK, modules: &["sptfra_look"], dsp: if network { 2 } else { 0 } },
+            BlockCost {
+                name: NETWORK,
+                modules: &["sptfra_network"],
+                dsp: if network { CLASSES * UNITS + 2 } else { 0 },
+            },
+            BlockCost { name: "friction", modules: &["sptfra_friction"], dsp: 1 },
         ]
     }
 
@@ -159,12 +164,51 @@ impl Slot for JointPlan {
         vec![("weights", weights.collect()), ("readout", readout)]
     }
 
-    fn modules(&self) -> Vec<(&'static str, &'static str)> {
-        let mut modules = MODULES.to_vec();
-        if self.network.is_some() {
-            modules.extend(CORRECTION_MODULES);
-        }
-        modules
+    fn module(&self) -> &'static str {
+        "sptfra_estimator_joint"
+    }
+
+    fn parameters(&self, design: &Design, ways: usize) -> Parameters {
+        let parameters = Parameters::new()
+            .count("COLUMNS", design.sensor.columns)
+            .count("ROWS", design.sensor.rows)
+            .count("WAYS", ways)
+            .number("DATA_BITS", design.hardware.data_bits.into())
+            .count("CELLS", self.cells.cells)
+            .count("CELL_ELEMENTS", self.cells.elements)
+            .number("SHARE_SHIFT", self.share_shift.into())
+            .wide("LINEAR", 27, self.linear)
+            .wide("CUBIC", 18, self.cubic)
+            .flag("NETWORK", self.network.is_some())
+            .cycles("EXPECTED_PLANE_LATENCY", timing::first_value(self.cells))
+            .cycles("EXPECTED_LEVEL_LATENCY", timing::LEVEL)
+            .cycles("EXPECTED_FRICTION_LATENCY", timing::FRICTION);
+        let Some(network) = &self.network else { return parameters };
+        let [half_x, half_y] = network.half_window;
+        parameters
+            .count("HALF_X", half_x)
+            .count("HALF_Y", half_y)
+            .count("LENGTH", network.length)
+            .count("PASSES", network.passes)
+            .number("STRESS_LEFT", network.stress_left.into())
+            .number("UNIT_SHIFT", network.unit_shift.into())
+            .number("CORRECTION_SHIFT", network.correction_shift.into())
+            .expression("ROM_DIR", "ROM_DIR")
+            .expression("ROM_NAME", format!("\"{}\"", design.name))
+            .cycles("EXPECTED_LOOK_LATENCY", timing::look(design.sensor.taxels(), network))
+            .cycles("EXPECTED_NETWORK_LATENCY", timing::network(network))
+    }
+
+    fn without(&self) -> Vec<&'static str> {
+        if self.network.is_some() { Vec::new() } else { vec!["sptfra_look", "sptfra_network"] }
+    }
+
+    fn pitch(&self) -> Option<[i64; 2]> {
+        None
+    }
+
+    fn answers_with_a_line(&self) -> bool {
+        false
     }
 
     fn metadata(&self) -> Metadata {
@@ -188,23 +232,3 @@ impl Slot for JointPlan {
         model::friction(self, seen)
     }
 }
-
-/// `(suffix, template)` of the modules that there are with and without a correction.
-const MODULES: [(&str, &str); 5] = [
-    ("_cean", include_str!("../../../templates/rtl/reduced/joint/cean.v.tera")),
-    ("_op_plane", include_str!("../../../templates/rtl/reduced/joint/plane.v.tera")),
-    ("_op_level", include_str!("../../../templates/rtl/reduced/joint/level.v.tera")),
-    ("_op_hinges", include_str!("../../../templates/rtl/reduced/joint/hinges.v.tera")),
-    ("_op_friction", include_str!("../../../templates/rtl/reduced/joint/friction.v.tera")),
-];
-
-/// What the correction looks at, along its way: the scale, the stress at the centroid, the window.
-const LOOK_MODULE: &str = concat!(
-    include_str!("../../../templates/rtl/reduced/joint/look/scale.v.tera"),
-    include_str!("../../../templates/rtl/reduced/joint/look/stress.v.tera"),
-    include_str!("../../../templates/rtl/reduced/joint/look/window.v.tera"),
-);
-
-/// Those of the correction.
-const CORRECTION_MODULES: [(&str, &str); 2] =
-    [("_op_look", LOOK_MODULE), ("_op_network", include_str!("../../../templates/rtl/reduced/joint/network.v.tera"))];

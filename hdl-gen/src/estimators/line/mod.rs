@@ -10,6 +10,7 @@ use golden::design::Design;
 use serde_json::json;
 
 use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot};
+use crate::blocks::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS};
 
 /// Fraction bits of a centroid, in units of the taxel index.
@@ -73,23 +74,39 @@ impl Slot for LinePlan {
     }
 
     fn contact_block(&self) -> BlockCost {
-        BlockCost { name: "CeAn", modules: &["cean"], dsp: 1 }
+        BlockCost { name: "CeAn", modules: &["cean", "sptfra_cean"], dsp: 1 }
     }
 
     fn search_blocks(&self) -> Vec<BlockCost> {
         vec![
-            BlockCost { name: "line", modules: &["op_line"], dsp: 1 },
-            BlockCost { name: "cells", modules: &["op_search"], dsp: self.cells.cells },
+            BlockCost { name: "line", modules: &["op_line", "sptfra_line"], dsp: 1 },
+            BlockCost { name: "cells", modules: &["op_search", "sptfra_search"], dsp: self.cells.cells },
         ]
     }
 
-    fn modules(&self) -> Vec<(&'static str, &'static str)> {
-        vec![
-            ("_cean", include_str!("../../../templates/rtl/cean.v.tera")),
-            ("_op_line", include_str!("../../../templates/rtl/op_line.v.tera")),
-            ("_op_search", include_str!("../../../templates/rtl/op_search.v.tera")),
-            ("_op_cell", include_str!("../../../templates/rtl/op_cell.v.tera")),
-        ]
+    fn module(&self) -> &'static str {
+        "sptfra_estimator_line"
+    }
+
+    fn parameters(&self, design: &Design, ways: usize) -> Parameters {
+        Parameters::new()
+            .count("COLUMNS", design.sensor.columns)
+            .count("ROWS", design.sensor.rows)
+            .count("WAYS", ways)
+            .number("DATA_BITS", design.hardware.data_bits.into())
+            .count("CELLS", self.cells.cells)
+            .count("CELL_ELEMENTS", self.cells.elements)
+            .number("LEVEL_SHIFT", self.level_shift.into())
+            .cycles("EXPECTED_LINE_LATENCY", timing::LINE_LATENCY)
+            .cycles("EXPECTED_SEARCH_LATENCY", timing::search(self.cells))
+    }
+
+    fn pitch(&self) -> Option<[i64; 2]> {
+        Some(self.pitch)
+    }
+
+    fn answers_with_a_line(&self) -> bool {
+        true
     }
 
     fn metadata(&self) -> Metadata {

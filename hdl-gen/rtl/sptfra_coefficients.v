@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Coefficient vectors g_pq (Eqs. 11 to 13) and their sums over the frame, taxel by taxel.
+//
+// A_p b waits in a memory of its own until D_p0 w arrives; every finished g goes to the field memory, into the sum G_pq,
+// and, where the lanes multiply it again, to the operand memories. Result bus to g: 3 cycles.
+
+`default_nettype none
+
+module sptfra_coefficients #(
+    // Taxels
+    parameter ELEMENTS = 100,
+    // Bits of a value
+    parameter DATA_BITS = 27,
+    // Words of the operand memories, and where g30, g31 and g32 stand there, unless in the stress's bank
+    parameter OPERAND_DEPTH = 600,
+    parameter [63:0] STORE_BASES = 64'd0,
+    parameter [3:0] STORE_IN_BANK = 4'd0,
+    // Derived
+    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1,
+    parameter COMPONENT_WIDTH = $clog2(3 * ELEMENTS)
+) (
+    input  wire clock,
+    input  wire reset,
+    // Result bus
+    input  wire [15:0] result_route,
+    input  wire [ROW_WIDTH-1:0] result_row,
+    input  wire signed [DATA_BITS-1:0] result_value,
+    // Operand memories
+    input  wire bank, // of the frame's stress
+    output wire write_next, // write_valid of the next cycle
+    output wire write_valid,
+    output wire [OPERAND_WIDTH-1:0] write_address,
+    output wire [DATA_BITS-1:0] write_data,
+    // To the field: g_pq of component 3 i + p - 1
+    output wire [2:0] g_valid, // of q
+    output reg  [COMPONENT_WIDTH-1:0] g_component,
+    output reg  signed [DATA_BITS-1:0] g,
+    // Frame sums
+    output reg  sums_there, // one cycle, when the last g is in
+    output wire [9*40-1:0] sums
+);
+
+    // ---- What a result is: A_p b, or g_pq
+    wire [6:4] is_partial = result_route[6:4];
+    wire [15:7] is_g = result_route[15:7]; // at 7 + 3 (p - 1) + q
+    wire [1:0] p = {is_partial[6] || (is_g[15:13] != 3'd0), is_partial[5] || (is_g[12:10] != 3'd0)};
+    wire [31:0] row_wide = {{(32-ROW_WIDTH){1'b0}}, result_row};
+    wire [COMPONENT_WIDTH-1:0] row_short = row_wide[COMPONENT_WIDTH-1:0];
+    wire [COMPONENT_WIDTH-1:0] component = row_short + row_short + row_short + {{(COMPONENT_WIDTH-2){1'b0}}, p};
+
+    // ---- A_p b
+    reg partial_write;
+    reg [COMPONENT_WIDTH-1:0] component_1;
+    reg signed [DATA_BITS-1:0] value_1;
+    wire signed [DATA_BITS-1:0] partial;
+
+    sptfra_ram #(
+        .WIDTH         (DATA_BITS),
+        .DEPTH         (3 * ELEMENTS),
+        .ADDRESS_WIDTH (COMPONENT_WIDTH)
+    ) partials (
+        .clock         (clock),
+        .write_enable  (partial_write),
+        .write_address (component_1),
+        .write_data    (value_1),
+        .read_enable   (1'b1),
+        .read_address  (component),
+        .read_data     (partial)
+    );
+
+    // ---- g = D_p0 w + A_p b, or as it comes. Index k: k cycles after the result
+    reg [8:0] is_g_1;
+    reg [8:0] is_g_2;
+    reg [8:0] is_g_3; // at 3 (p - 1) + q
+    reg [ROW_WIDTH-1:0] row_1;
+    reg [ROW_WIDTH-1:0] row_2;
+    reg [ROW_WIDTH-1:0] row_3;
+    reg [COMPONENT_WIDTH-1:0] component_2;
+    reg signed [DATA_BITS-1:0] value_2;
+    reg signed [DATA_BITS-1:0] partial_2;
+    localparam signed [DATA_BITS-1:0] ZERO = 0;
+
+    assign g_valid = is_g_3[2:0] | is_g_3[5:3] | is_g_3[8:6];
+
+    always @(posedge clock) begin
+        partial_write <= (is_partial != 3'd0);
+        is_g_1 <= is_g;
+        is_g_2 <= is_g_1;
+        is_g_3 <= is_g_2;
+        row_1 <= result_row;
+        row_2 <= row_1;
+        row_3 <= row_2;
+        component_1 <= component;
+        component_2 <= component_1;
+        g_component <= component_2;
+        value_1 <= result_value;
+        value_2 <= value_1;
+        partial_2 <= (is_g_1[0] || is_g_1[3] || is_g_1[6]) ? partial : ZERO;
+        g <= value_2 + partial_2;
+        if (reset) begin
+            partial_write <= 1'b0;
+            is_g_1 <= 9'd0;
+            is_g_2 <= 9'd0;
+            is_g_3 <= 9'd0;
+        end
+    end
+
+    // ---- Operands of u_q = C33 g_3q; by the time g30 comes, nothing reads this frame's stress any more
+    localparam [31:0] LENGTH = ELEMENTS;
+    wire [31:0] stored_row = {{(32-ROW_WIDTH){1'b0}}, row_3};
+    wire [1:0] q = {is_g_3[8], is_g_3[7]};
+    wire [15:0] base = STORE_BASES[16*q +: 16];
+    wire [OPERAND_WIDTH-1:0] bank_base = bank ? LENGTH[OPERAND_WIDTH-1:0] : {OPERAND_WIDTH{1'b0}};
+
+    assign write_next = (is_g_2[8:6] != 3'd0);
+    assign write_valid = (is_g_3[8:6] != 3'd0);
+    assign write_address = (STORE_IN_BANK[q] ? bank_base : base[OPERAND_WIDTH-1:0]) + stored_row[OPERAND_WIDTH-1:0];
+    assign write_data = g;
+
+    // ---- Frame sums: each begins anew with the first of its frame
+    localparam TOTAL = 9 * ELEMENTS;
+    localparam COUNT_WIDTH = $clog2(TOTAL + 1);
+    reg [COUNT_WIDTH-1:0] count;
+    wire last = (count == TOTAL - 1);
+    wire signed [39:0] g_wide = {{(40-DATA_BITS){g[DATA_BITS-1]}}, g};
+
+    always @(posedge clock) begin
+        sums_there <= (g_valid != 3'd0) && last;
+        if (g_valid != 3'd0) begin
+            count <= last ? {COUNT_WIDTH{1'b0}} : count + 1;
+        end
+        if (reset) begin
+            count <= {COUNT_WIDTH{1'b0}};
+            sums_there <= 1'b0;
+        end
+    end
+
+    genvar index;
+    generate
+        for (index = 0; index < 9; index = index + 1) begin : gen_sums
+            reg signed [39:0] sum;
+            reg fresh;
+
+            always @(posedge clock) begin
+                if (is_g_3[index]) begin
+                    sum <= (fresh ? 40'sd0 : sum) + g_wide;
+                    fresh <= 1'b0;
+                end
+                if (reset || sums_there) begin
+                    fresh <= 1'b1;
+                end
+            end
+
+            assign sums[40*index +: 40] = sum;
+        end
+    endgenerate
+
+    wire _unused = &{1'b0, result_route, row_wide, stored_row, base};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Estimator: both friction components at once, from the level set of Condition 1 in the (mu_x, mu_y) plane.
+//
+// One frame at a time, when its u_q, its sums and what CeAn knows are there: the walk over the plane, the level set's
+// centroid, with NETWORK a correction from a look at the contact, and the friction. u_q of the next frame may arrive
+// meanwhile. The answer are both components as they are.
+
+`default_nettype none
+
+module sptfra_estimator_joint #(
+    // Taxels along x
+    parameter integer COLUMNS = 10,
+    // Taxels along y
+    parameter integer ROWS = 10,
+    // Taxels that arrive at a time: 4, the members of a quad
+    parameter integer WAYS = 4,
+    // Bits of u_q
+    parameter integer DATA_BITS = 27,
+    // Cells of the walk, as many for each way
+    parameter integer CELLS = 28,
+    // Taxels of a cell, a power of two, at least 4
+    parameter integer CELL_ELEMENTS = 4,
+    // Right shift that turns max |b| into 8 times the dead zone, and sum |b| into the level above the least value
+    parameter integer SHARE_SHIFT = 5,
+    // c1 and c3 of the friction, with 22 and 15 fraction bits
+    parameter signed [26:0] LINEAR = 27'sd4194304,
+    parameter signed [17:0] CUBIC = 18'sd0,
+    // 1: with a correction; the parameters from here to ROM_NAME are its own
+    parameter integer NETWORK = 1,
+    // Taxels on either side of the window's middle
+    parameter integer HALF_X = 4,
+    parameter integer HALF_Y = 4,
+    // Words of inputs, and passes over them
+    parameter integer LENGTH = 27,
+    parameter integer PASSES = 4,
+    // Left shift of a stress times the reciprocal of sum |b|; bits dropped from a unit's sums, and from the output's
+    parameter integer STRESS_LEFT = 9,
+    parameter integer UNIT_SHIFT = 12,
+    parameter integer CORRECTION_SHIFT = 12,
+    // Prefix of the ROM file names, for instance a directory with its slash
+    parameter ROM_DIR = "",
+    // Name of the ROM files, without what they hold
+    parameter ROM_NAME = "design",
+    // Checked in simulation, 0: unchecked: cycles from the start to the first value of the walk
+    parameter integer EXPECTED_PLANE_LATENCY = 0,
+    // ... from the last value to the centroid
+    parameter integer EXPECTED_LEVEL_LATENCY = 0,
+    // ... from the centroid to the last input of the network
+    parameter integer EXPECTED_LOOK_LATENCY = 0,
+    // ... from there to the correction
+    parameter integer EXPECTED_NETWORK_LATENCY = 0,
+    // ... from the centroid or the correction to the friction
+    parameter integer EXPECTED_FRICTION_LATENCY = 0,
+    // Derived: quads, and the bits of their number
+    parameter integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter integer ROW_WIDTH = (QUADS > 4) ? $clog2(QUADS) : 2
+) (
+    input  wire clock,
+    input  wire reset,
+    // u_q of a frame, way 0 in the lowest bits
+    input  wire [2:0] u_valid, // q, one-hot
+    input  wire [ROW_WIDTH-1:0] u_row,
+    input  wire [WAYS*DATA_BITS-1:0] u_values,
+    input  wire u_complete, // one cycle, with the last ones
+    // From Co, held until taken
+    input  wire sums_complete,
+    output wire sums_take,
+    input  wire [9*40-1:0] sums_in,
+    // From CeAn, held until taken
+    input  wire direction_valid,
+    output wire direction_take,
+    input  wire signed [26:0] direction_x,
+    input  wire signed [26:0] direction_y,
+    input  wire no_direction,
+    input  wire [39:0] stress_sum,
+    input  wire [26:0] largest,
+    input  wire [3:0] flags_in, // no contact, saturated, NaN or infinity, bad length
+    // The answer, held until taken
+    output wire answer_valid,
+    input  wire answer_take, // only with answer_valid
+    output wire x_is_free, // the free component is mu_x
+    output wire signed [17:0] free, // mu_x, 16 fraction bits
+    output wire signed [17:0] other, // mu_y
+    output wire signed [17:0] slope, // none
+    output wire unknown,
+    output wire at_bound,
+    output wire saturated,
+    output reg  [9*40-1:0] sums,
+    output reg  [3:0] flags
+);
+
+    localparam integer TAXELS = COLUMNS * ROWS;
+    // Of a value of the walk: a sum of stresses without their sign
+    localparam integer VALUE_BITS = 31 + $clog2(TAXELS);
+    localparam integer WORD_WIDTH = $clog2(LENGTH);
+
+    generate
+        if (WAYS != 4) begin : gen_check
+            sptfra_error_the_joint_estimator_needs_four_ways invalid ();
+        end
+    endgenerate
+
+    // ---- u_q: a register on the way to all cells
+    reg [2:0] fill_valid;
+    reg [ROW_WIDTH-1:0] fill_row;
+    reg [WAYS*DATA_BITS-1:0] fill_values;
+    reg fill_complete;
+
+    always @(posedge clock) begin
+        fill_valid <= u_valid;
+        fill_row <= u_row;
+        fill_values <= u_values;
+        fill_complete <= u_complete;
+        if (reset) begin
+            fill_valid <= 3'd0;
+            fill_complete <= 1'b0;
+        end
+    end
+
+    // ---- Search: takes a frame when u_q, sums and what CeAn knows are there
+    reg [1:0] u_waiting; // frames whose u_q wait in the cells
+    reg fill_bank;
+    reg search_bank;
+    reg searching;
+    reg answer_waits; // to be taken
+    reg [39:0] search_stress_sum;
+    reg [26:0] search_largest;
+    wire search_done;
+    wire search_start = sums_complete && direction_valid && (u_waiting != 2'd0) && !searching;
+
+    assign sums_take = search_start;
+    assign direction_take = search_start;
+    assign answer_valid = search_done || answer_waits;
+
+    always @(posedge clock) begin
+        u_waiting <= u_waiting + {1'b0, fill_complete} - {1'b0, search_start};
+        if (fill_complete) begin
+            fill_bank <= !fill_bank;
+        end
+        if (search_start) begin
+            searching <= 1'b1;
+            sums <= sums_in;
+            search_stress_sum <= stress_sum;
+            search_largest <= largest;
+            flags <= flags_in;
+        end
+        if (search_done) begin
+            answer_waits <= 1'b1;
+        end
+        if (answer_take) begin
+            searching <= 1'b0;
+            answer_waits <= 1'b0;
+            search_bank <= !search_bank;
+        end
+        if (reset) begin
+            u_waiting <= 2'd0;
+            fill_bank <= 1'b0;
+            search_bank <= 1'b0;
+            searching <= 1'b0;
+            answer_waits <= 1'b0;
+        end
+    end
+
+    // ---- Walk over the plane
+    wire [ROW_WIDTH-1:0] look_quad;
+    wire [1:0] look_member;
+    wire [1:0] look_q;
+    wire signed [26:0] look_value;
+    wire value_valid;
+    wire [VALUE_BITS-1:0] value;
+
+    sptfra_plane #(
+        .COLUMNS          (COLUMNS),
+        .ROWS             (ROWS),
+        .DATA_BITS        (DATA_BITS),
+        .ROW_WIDTH        (ROW_WIDTH),
+        .CELLS            (CELLS),
+        .CELL_ELEMENTS    (CELL_ELEMENTS),
+        .SHARE_SHIFT      (SHARE_SHIFT),
+        .VALUE_BITS       (VALUE_BITS),
+        .EXPECTED_LATENCY (EXPECTED_PLANE_LATENCY)
+    ) plane (
+        .clock       (clock),
+        .reset       (reset),
+        .u_valid     (fill_valid),
+        .u_quad      (fill_row),
+        .u_values    (fill_values),
+        .fill_bank   (fill_bank),
+        .search_bank (search_bank),
+        .start       (search_start),
+        .largest     (search_largest),
+        .look_quad   (look_quad),
+        .look_member (look_member),
+        .look_q      (look_q),
+        .look_value  (look_value),
+        .value_valid (value_valid),
+        .value       (value)
+    );
+
+    // ---- Level set
+    wire level_done;
+    wire signed [17:0] centroid_x;
+    wire signed [17:0] centroid_y;
+    wire on_border;
+
+    sptfra_level_set #(
+        .VALUE_BITS       (VALUE_BITS),
+        .SHARE_SHIFT      (SHARE_SHIFT),
+        .EXPECTED_LATENCY (EXPECTED_LEVEL_LATENCY)
+    ) level_set (
+        .clock       (clock),
+        .reset       (reset),
+        .start       (search_start),
+        .stress_sum  (search_stress_sum),
+        .value_valid (value_valid),
+        .value       (value),
+        .done        (level_done),
+        .mu_x        (centroid_x),
+        .mu_y        (centroid_y),
+        .unknown     (unknown),
+        .at_bound    (on_border)
+    );
+
+    // ---- Correction
+    wire correction_done;
+    wire signed [17:0] correction_x;
+    wire signed [17:0] correction_y;
+    wire look_saturated;
+
+    generate
+        if (NETWORK != 0) begin : gen_correction
+            wire input_valid;
+            wire [WORD_WIDTH-1:0] input_word;
+            wire [4*27-1:0] input_values;
+            wire look_done;
+
+            sptfra_look #(
+                .COLUMNS          (COLUMNS),
+                .ROWS             (ROWS),
+                .ROW_WIDTH        (ROW_WIDTH),
+                .HALF_X           (HALF_X),
+                .HALF_Y           (HALF_Y),
+                .LENGTH           (LENGTH),
+                .WORD_WIDTH       (WORD_WIDTH),
+                .STRESS_LEFT      (STRESS_LEFT),
+                .EXPECTED_LATENCY (EXPECTED_LOOK_LATENCY)
+            ) look (
+                .clock        (clock),
+                .reset        (reset),
+                .start        (search_start),
+                .stress_sum   (search_stress_sum),
+                .look_start   (level_done),
+                .mu_x         (centroid_x),
+                .mu_y         (centroid_y),
+                .u_quad       (look_quad),
+                .u_member     (look_member),
+                .u_q          (look_q),
+                .u_value      (look_value),
+                .input_valid  (input_valid),
+                .input_word   (input_word),
+                .input_values (input_values),
+                .done         (look_done),
+                .saturated    (look_saturated)
+            );
+
+            sptfra_network #(
+                .LENGTH           (LENGTH),
+                .WORD_WIDTH       (WORD_WIDTH),
+                .PASSES           (PASSES),
+                .UNIT_SHIFT       (UNIT_SHIFT),
+                .CORRECTION_SHIFT (CORRECTION_SHIFT),
+                .ROM_DIR          (ROM_DIR),
+                .ROM_NAME         (ROM_NAME),
+                .EXPECTED_LATENCY (EXPECTED_NETWORK_LATENCY)
+            ) network (
+                .clock        (clock),
+                .reset        (reset),
+                .input_valid  (input_valid),
+                .input_word   (input_word),
+                .input_values (input_values),
+                .start        (look_done),
+                .done         (correction_done),
+                .correction_x (correction_x),
+                .correction_y (correction_y)
+            );
+        end else begin : gen_none
+            assign look_quad = {ROW_WIDTH{1'b0}};
+            assign look_member = 2'd0;
+            assign look_q = 2'd1;
+            assign correction_done = level_done;
+            assign correction_x = 18'sd0;
+            assign correction_y = 18'sd0;
+            assign look_saturated = 1'b0;
+
+            wire _unused = &{1'b0, look_value, WORD_WIDTH != 0, HALF_X != 0, HALF_Y != 0, PASSES != 0, STRESS_LEFT != 0,
+                UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0, EXPECTED_NETWORK_LATENCY != 0};
+        end
+    endgenerate
+
+    // ---- Friction
+    wire clipped;
+
+    sptfra_friction #(
+        .LINEAR           (LINEAR),
+        .CUBIC            (CUBIC),
+        .EXPECTED_LATENCY (EXPECTED_FRICTION_LATENCY)
+    ) friction (
+        .clock        (clock),
+        .reset        (reset),
+        .start        (correction_done),
+        .centroid_x   (centroid_x),
+        .centroid_y   (centroid_y),
+        .unknown      (unknown),
+        .correction_x (correction_x),
+        .correction_y (correction_y),
+        .done         (search_done),
+        .mu_x         (free),
+        .mu_y         (other),
+        .clipped      (clipped)
+    );
+
+    assign x_is_free = 1'b1;
+    assign slope = 18'sd0;
+    assign at_bound = on_border || clipped;
+    assign saturated = look_saturated && !unknown;
+
+    // The direction of the push is not needed
+    wire _unused = &{1'b0, direction_x, direction_y, no_direction};
+
+endmodule
+
+`default_nettype wire

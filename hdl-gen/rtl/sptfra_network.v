@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// The network of the correction: one layer of hinges, then two sums, as a mean over its input's four mirror images.
+//
+// The input stands in the basis of the parity classes, and so do the weights: one pass gives four classes' sums of four
+// hidden units, which a butterfly turns into the units of the four images. PASSES passes of LENGTH words, 16 MACs. From
+// start to done: a cycle for each word of each pass, and 18.
+
+`default_nettype none
+
+module sptfra_network #(
+    // Words of inputs
+    parameter integer LENGTH = 32,
+    // Bits of a word's number
+    parameter integer WORD_WIDTH = 5,
+    // Passes, each for four hidden units
+    parameter integer PASSES = 4,
+    // Bits dropped from a class's sum
+    parameter integer UNIT_SHIFT = 12,
+    // Bits dropped from the sum of the output; negative: added
+    parameter integer CORRECTION_SHIFT = 12,
+    // Prefix of the ROM file names, for instance a directory with its slash
+    parameter ROM_DIR = "",
+    // Name of the ROM files, without what they hold
+    parameter ROM_NAME = "design",
+    // From start to done, checked in simulation; 0: unchecked
+    parameter integer EXPECTED_LATENCY = 0
+) (
+    input  wire clock,
+    input  wire reset,
+    // Inputs, class 0 in the lowest bits, 19 fraction bits each
+    input  wire input_valid,
+    input  wire [WORD_WIDTH-1:0] input_word,
+    input  wire [4*27-1:0] input_values,
+    input  wire start, // with the last of them
+    // Result, held until the next start: within 1/4, 16 fraction bits
+    output reg  done, // one cycle
+    output reg  signed [17:0] correction_x,
+    output reg  signed [17:0] correction_y
+);
+
+    localparam integer INPUT_BITS = 27;
+    localparam integer UNIT_BITS = 26; // of a hidden unit before the hinge
+    localparam integer SUMS = 16; // four units by four classes
+    localparam integer UNITS = 4 * PASSES;
+    localparam integer WEIGHTS = PASSES * LENGTH;
+    localparam integer LAST_WORD = LENGTH - 1;
+    localparam integer LAST_WEIGHT = WEIGHTS - 1;
+    localparam integer WEIGHT_WIDTH = $clog2(WEIGHTS);
+    localparam integer READOUT_WIDTH = $clog2(UNITS);
+    localparam signed [47:0] UNIT_HALF = (UNIT_SHIFT == 0) ? 48'sd0 : 48'sd1 <<< (UNIT_SHIFT - 1);
+    localparam integer RIGHT = (CORRECTION_SHIFT > 0) ? CORRECTION_SHIFT : 0;
+    localparam integer LEFT = (CORRECTION_SHIFT < 0) ? -CORRECTION_SHIFT : 0;
+    localparam signed [63:0] HALF = (RIGHT == 0) ? 64'sd0 : 64'sd1 <<< (RIGHT - 1);
+    localparam signed [17:0] LIMIT = 18'sd16384; // 1/4
+    localparam signed [63:0] WIDE_LIMIT = 64'sd16384;
+
+    generate
+        if (LENGTH < 8) begin : gen_check
+            sptfra_error_a_pass_is_too_short_to_read_out_the_one_before invalid ();
+        end
+    endgenerate
+
+    // ---- Walk over the weights
+    reg running;
+    reg [WORD_WIDTH-1:0] word;
+    reg [WEIGHT_WIDTH-1:0] weight_address;
+    wire last_word = (word == LAST_WORD[WORD_WIDTH-1:0]);
+    wire last_weight = (weight_address == LAST_WEIGHT[WEIGHT_WIDTH-1:0]);
+    reg valid_1;
+    reg first_1;
+    reg [4:1] pass_ends; // index k: k cycles after its last address
+    wire [4*INPUT_BITS-1:0] values_1;
+    wire [18*SUMS-1:0] weights_1;
+
+    always @(posedge clock) begin
+        if (running) begin
+            word <= last_word ? {WORD_WIDTH{1'b0}} : word + 1'b1;
+            weight_address <= weight_address + 1'b1;
+            if (last_weight) begin
+                running <= 1'b0;
+            end
+        end
+        if (start) begin
+            running <= 1'b1;
+            word <= {WORD_WIDTH{1'b0}};
+            weight_address <= {WEIGHT_WIDTH{1'b0}};
+        end
+        valid_1 <= running;
+        first_1 <= (word == {WORD_WIDTH{1'b0}});
+        pass_ends <= {pass_ends[3:1], running && last_word};
+        if (reset) begin
+            running <= 1'b0;
+            valid_1 <= 1'b0;
+            pass_ends <= 4'd0;
+        end
+    end
+
+    sptfra_ram #(
+        .WIDTH         (4 * INPUT_BITS),
+        .DEPTH         (LENGTH),
+        .ADDRESS_WIDTH (WORD_WIDTH)
+    ) inputs (
+        .clock         (clock),
+        .write_enable  (input_valid),
+        .write_address (input_word),
+        .write_data    (input_values),
+        .read_enable   (1'b1),
+        .read_address  (word),
+        .read_data     (values_1)
+    );
+
+    sptfra_rom #(
+        .WIDTH         (18 * SUMS),
+        .DEPTH         (WEIGHTS),
+        .ADDRESS_WIDTH (WEIGHT_WIDTH),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          ({ROM_NAME, "_weights.mem"})
+    ) weights (
+        .clock         (clock),
+        .enable        (1'b1),
+        .address       (weight_address),
+        .data          (weights_1)
+    );
+
+    // ---- Sums of four units by class, at index 4 unit + class; held while the next pass begins
+    wire [UNIT_BITS*SUMS-1:0] class_sums;
+    reg [UNIT_BITS*SUMS-1:0] held;
+    genvar index;
+    generate
+        for (index = 0; index < SUMS; index = index + 1) begin : gen_sums
+            wire signed [47:0] exact;
+            wire signed [47:0] rounded = exact + UNIT_HALF;
+
+            sptfra_mac weigh (
+                .clock       (clock),
+                .reset       (reset),
+                .valid       (valid_1),
+                .first       (first_1),
+                .coefficient (weights_1[18*index +: 18]),
+                .data        (values_1[INPUT_BITS*(index % 4) +: INPUT_BITS]),
+                .accumulator (exact)
+            );
+
+            assign class_sums[UNIT_BITS*index +: UNIT_BITS] = rounded[UNIT_SHIFT +: UNIT_BITS];
+
+            // The bits above are copies of the sign
+            wire _unused = &{1'b0, rounded};
+        end
+    endgenerate
+
+    // ---- One unit after the other: the mirror images, their hinges, mirrored back
+    reg [2:0] unit; // 4: none
+    reg [5:1] unit_there; // index k: k cycles after its number
+    reg [4*UNIT_BITS-1:0] classes_1;
+    wire [4*UNIT_BITS+7:0] images_3;
+    wire [4*UNIT_BITS-1:0] hinges_3;
+    wire [4*UNIT_BITS+7:0] mean_5;
+
+    always @(posedge clock) begin
+        if (pass_ends[4]) begin
+            held <= class_sums;
+            unit <= 3'd0;
+        end else if (!unit[2]) begin
+            unit <= unit + 3'd1;
+        end
+        case (unit[1:0])
+            2'd0: classes_1 <= held[4*UNIT_BITS*0 +: 4*UNIT_BITS];
+            2'd1: classes_1 <= held[4*UNIT_BITS*1 +: 4*UNIT_BITS];
+            2'd2: classes_1 <= held[4*UNIT_BITS*2 +: 4*UNIT_BITS];
+            default: classes_1 <= held[4*UNIT_BITS*3 +: 4*UNIT_BITS];
+        endcase
+        unit_there <= {unit_there[4:1], !unit[2]};
+        if (reset) begin
+            unit <= 3'd4;
+            unit_there <= 5'd0;
+        end
+    end
+
+    sptfra_butterfly #(
+        .WIDTH (UNIT_BITS)
+    ) mirror (
+        .clock  (clock),
+        .values (classes_1),
+        .sums   (images_3)
+    );
+
+    // The sum of a unit fits the width, by the plan's bound: the bits above are copies of the sign
+    generate
+        for (index = 0; index < 4; index = index + 1) begin : gen_hinges
+            wire [UNIT_BITS+1:0] image = images_3[(UNIT_BITS+2)*index +: UNIT_BITS+2];
+            wire negative = image[UNIT_BITS+1];
+
+            assign hinges_3[UNIT_BITS*index +: UNIT_BITS] = negative ? {UNIT_BITS{1'b0}} : image[UNIT_BITS-1:0];
+
+            wire _unused = &{1'b0, image[UNIT_BITS]};
+        end
+    endgenerate
+
+    sptfra_butterfly #(
+        .WIDTH (UNIT_BITS)
+    ) mirror_back (
+        .clock  (clock),
+        .values (hinges_3),
+        .sums   (mean_5)
+    );
+
+    // ---- Output: odd in x, and odd in y
+    reg [READOUT_WIDTH-1:0] readout_address;
+    reg first_5;
+    wire [35:0] readout_5;
+    wire signed [47:0] sum_x;
+    wire signed [47:0] sum_y;
+    wire signed [26:0] along_x_5 = mean_5[(UNIT_BITS+2)*1 +: 27];
+    wire signed [26:0] along_y_5 = mean_5[(UNIT_BITS+2)*2 +: 27];
+
+    sptfra_rom #(
+        .WIDTH         (36),
+        .DEPTH         (UNITS),
+        .ADDRESS_WIDTH (READOUT_WIDTH),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          ({ROM_NAME, "_readout.mem"})
+    ) readout (
+        .clock         (clock),
+        .enable        (1'b1),
+        .address       (readout_address),
+        .data          (readout_5)
+    );
+
+    sptfra_mac output_x (
+        .clock       (clock),
+        .reset       (reset),
+        .valid       (unit_there[5]),
+        .first       (first_5),
+        .coefficient (readout_5[17:0]),
+        .data        (along_x_5),
+        .accumulator (sum_x)
+    );
+
+    sptfra_mac output_y (
+        .clock       (clock),
+        .reset       (reset),
+        .valid       (unit_there[5]),
+        .first       (first_5),
+        .coefficient (readout_5[35:18]),
+        .data        (along_y_5),
+        .accumulator (sum_y)
+    );
+
+    always @(posedge clock) begin
+        if (unit_there[4]) begin
+            readout_address <= readout_address + 1'b1;
+        end
+        if (unit_there[5]) begin
+            first_5 <= 1'b0;
+        end
+        if (start) begin
+            readout_address <= {READOUT_WIDTH{1'b0}};
+            first_5 <= 1'b1;
+        end
+    end
+
+    // ---- The mean, within its limit
+    reg summing; // until the last unit is in
+    reg [4:0] wait_count;
+    reg signed [63:0] exact_x;
+    reg signed [63:0] exact_y;
+    wire signed [63:0] wide_x = { {16{sum_x[47]}}, sum_x};
+    wire signed [63:0] wide_y = { {16{sum_y[47]}}, sum_y};
+
+    always @(posedge clock) begin
+        done <= 1'b0;
+        exact_x <= ((wide_x + HALF) >>> RIGHT) <<< LEFT;
+        exact_y <= ((wide_y + HALF) >>> RIGHT) <<< LEFT;
+        correction_x <= (exact_x > WIDE_LIMIT) ? LIMIT : (exact_x < -WIDE_LIMIT) ? -LIMIT : exact_x[17:0];
+        correction_y <= (exact_y > WIDE_LIMIT) ? LIMIT : (exact_y < -WIDE_LIMIT) ? -LIMIT : exact_y[17:0];
+        wait_count <= summing ? wait_count + 5'd1 : 5'd0;
+        if (running && last_weight) begin
+            summing <= 1'b1;
+        end
+        if (summing && (wait_count == 5'd16)) begin
+            summing <= 1'b0;
+            done <= 1'b1;
+        end
+        if (reset) begin
+            summing <= 1'b0;
+            done <= 1'b0;
+        end
+    end
+
+`ifdef SIMULATION
+    sptfra_check_latency #(
+        .CYCLES (EXPECTED_LATENCY)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset),
+        .start (start),
+        .done  (done)
+    );
+`else
+    wire _unused_check = (EXPECTED_LATENCY != 0);
+`endif
+
+    wire _unused = &{1'b0, mean_5};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,147 @@
+//! The array of SpMV lanes with its sequencer and its collector: `sptfra_spmv_array`.
+
+use crate::plan::Plan;
+use crate::plan::format::address_bits;
+use crate::plan::layout::Place;
+use crate::plan::product::{Coefficients, DESTINATIONS, Vector};
+use crate::plan::schedule::TURN_GAP;
+
+use super::Parameters;
+
+/// From the sequencer's control to the lanes' and the collector's, in cycles: the register on the way.
+pub const SEQUENCER_TO_LANES: u64 = 1;
+/// From a program's start pulse to its first issue, in the lanes.
+pub const START_TO_ISSUE: u64 = 2 + SEQUENCER_TO_LANES;
+/// From the collector taking a result to its standing on the result bus.
+pub const VISIT_TO_BUS: u64 = 3;
+/// From a write at the array's port to the first issue that may read the word: the write passes a register and enters the
+/// memory; the operand is read two cycles after its issue.
+pub const WRITE_TO_ISSUE: u64 = 0;
+
+/// Bits of a destination in the visit ROM: the first eight are all there is without a field.
+pub fn destination_bits(plan: &Plan) -> u32 {
+    if plan.field_words() > 0 { 4 } else { 3 }
+}
+
+/// Bits of a column number: of the largest number of vectors that one product reads.
+pub fn column_bits(plan: &Plan) -> u32 {
+    address_bits(vectors(plan) * plan.elements())
+}
+
+/// The instance's parameters: sizes, then the products and programs as tables.
+pub fn parameters(plan: &Plan) -> Parameters {
+    let (hardware, schedule) = (&plan.design.hardware, &plan.schedule);
+    let parameters = Parameters::new()
+        .count("LANES", plan.walkers())
+        .count("WAYS", plan.ways())
+        .number("COEFFICIENT_BITS", hardware.coefficient_bits.into())
+        .number("DATA_BITS", hardware.data_bits.into())
+        .count("ELEMENTS", plan.elements())
+        .count("VECTORS", vectors(plan))
+        .count("VALUE_DEPTH", schedule.value_depth())
+        .count("WORD_DEPTH", schedule.word_depth())
+        .count("SEGMENT_DEPTH", schedule.segment_depth())
+        .count("OPERAND_DEPTH", plan.operands.words())
+        .count("VISIT_DEPTH", schedule.visits.len())
+        .count("MIRROR_SIDE", mirror_side(plan));
+    let parameters = programs(plan, products(plan, parameters));
+    parameters
+        .number("DESTINATION_BITS", destination_bits(plan).into())
+        .table("SHIFTS", 6, &shifts(plan))
+        .expression("ROM_DIR", "ROM_DIR")
+        .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+}
+
+fn vectors(plan: &Plan) -> usize {
+    plan.products.iter().map(|product| product.operands.len()).max().unwrap_or(1)
+}
+
+/// Quads along a side of the grid, if some products are mirrored at its diagonal.
+fn mirror_side(plan: &Plan) -> usize {
+    plan.products.iter().find_map(|product| product.mirrored).unwrap_or(0)
+}
+
+fn products(plan: &Plan, parameters: Parameters) -> Parameters {
+    let (products, windows, programs) = (&plan.products, &plan.schedule.windows, &plan.schedule.programs);
+    let begins = |index| programs.iter().any(|program| program.first == index);
+    let length = |index: usize| windows[index].rounds.map_or(windows[index].length, |rounds| rounds.lead).max(1);
+    let wait =
+        |index: usize| windows[index].wait + if begins(index) { plan.schedule.program_gap - TURN_GAP } else { 0 };
+    let longest = (0..products.len()).map(|index| length(index).max(wait(index))).max().unwrap_or(1);
+    let bits = address_bits(longest as usize + 1);
+    let name = |index: usize| {
+        let product = &products[index];
+        let mirror = if product.mirrored.is_some() { " mirrored" } else { "" };
+        format!(
+            "{}{mirror} {} -> {}",
+            plan.matrices[product.matrix].name,
+            product.operand().name(),
+            product.result.name()
+        )
+    };
+    let of_each = |value: &dyn Fn(usize) -> u64, name: &dyn Fn(usize) -> String| -> Vec<(u64, String)> {
+        (0..products.len()).map(|index| (value(index), name(index))).collect()
+    };
+    let place = |index: usize| plan.operands.place(products[index].operand());
+    let base = |index: usize| match place(index) {
+        Some(Place::Fixed(word)) => word as u64,
+        Some(Place::StressBank) | None => 0,
+    };
+    let rereads = |index: usize| products[..index].iter().position(|other| other.matrix == products[index].matrix);
+    let is_read_again = |index: usize| (index + 1..products.len()).any(|later| rereads(later) == Some(index));
+    let mask = |condition: &dyn Fn(usize) -> bool| -> Vec<bool> { (0..products.len()).map(condition).collect() };
+    let parameters = parameters
+        .count("PRODUCTS", products.len())
+        .number("COUNT_BITS", bits.into())
+        .table("LENGTHS", bits, &of_each(&length, &name))
+        .table("WAITS", bits, &of_each(&wait, &|_| String::new()))
+        .table("BASES", 16, &of_each(&base, &|index| products[index].operand().name()))
+        .mask("OF_STRESS", &mask(&|index| place(index) == Some(Place::StressBank)))
+        .mask("MARKS", &mask(&is_read_again))
+        .mask("REWINDS", &mask(&|index| rereads(index).is_some()))
+        .mask("MIRRORED", &mask(&|index| products[index].mirrored.is_some()))
+        .mask("FRICTIONS", &mask(&|index| products[index].coefficients == Coefficients::Friction))
+        .mask("LASTS", &mask(&|index| programs.iter().any(|program| program.end == index + 1)));
+    if windows.iter().all(|window| window.rounds.is_none()) {
+        return parameters;
+    }
+    let word =
+        |index: usize| windows[index].rounds.map_or(0, |rounds| (plan.schedule.word_depth() + rounds.word) as u64);
+    parameters
+        .flag("SKIPS", true)
+        .mask("IN_ROUNDS", &mask(&|index| windows[index].rounds.is_some()))
+        .mask("ROUNDS_ONLY", &mask(&|index| windows[index].rounds.is_some_and(|rounds| rounds.lead == 0)))
+        .mask("PULLS", &mask(&|index| products[index].operand() == Vector::Pull))
+        .table("ROUND_WORDS", 32, &of_each(&word, &|_| String::new()))
+}
+
+fn programs(plan: &Plan, parameters: Parameters) -> Parameters {
+    let programs = &plan.schedule.programs;
+    let of_each = |value: &dyn Fn(usize) -> usize| -> Vec<(u64, String)> {
+        (0..programs.len()).map(|index| (value(index) as u64, String::new())).collect()
+    };
+    parameters
+        .count("PROGRAMS", programs.len())
+        .table("FIRSTS", 8, &of_each(&|index| programs[index].first))
+        .table("START_WORDS", 32, &of_each(&|index| programs[index].word))
+        .table("START_SEGMENTS", 16, &of_each(&|index| programs[index].segment))
+        .table("START_VISITS", 32, &of_each(&|index| programs[index].visit))
+}
+
+/// Bits dropped by destination. One that no product has repeats the one before, so that it costs nothing.
+fn shifts(plan: &Plan) -> Vec<(u64, String)> {
+    let mut known = vec![None; DESTINATIONS];
+    for product in &plan.products {
+        known[product.result.destination()] = Some((u64::from(product.shift), product.result.name()));
+        if let Some(lead) = product.lead {
+            known[Vector::SUMS_DESTINATION] = Some((u64::from(lead.shift), "sums of the frame".to_owned()));
+        }
+    }
+    let mut last = 0;
+    let filled = known.into_iter().map(|entry| {
+        let (shift, name) = entry.unwrap_or((last, String::new()));
+        last = shift;
+        (shift, name)
+    });
+    filled.collect()
+}

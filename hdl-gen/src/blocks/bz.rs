@@ -1,0 +1,33 @@
+//! Bz, the stream's frames to fixed point: `sptfra_bz`.
+
+use crate::plan::Plan;
+
+use super::Parameters;
+
+/// From a frame's last stress to the frame being ready for the lanes, in cycles: the fold, and the count of frames.
+pub fn stress_to_ready(folded: bool) -> u64 {
+    if folded { 4 } else { 1 }
+}
+
+/// The instance's parameters.
+pub fn parameters(plan: &Plan) -> Parameters {
+    let number = plan.counts.as_ref().map_or(plan.formats.stress, |counts| counts.count);
+    let parameters = Parameters::new()
+        .count("COLUMNS", plan.design.sensor.columns)
+        .count("ROWS", plan.design.sensor.rows)
+        .count("WAYS", plan.ways())
+        .number("DATA_BITS", plan.design.hardware.data_bits.into())
+        .number("NUMBER_SHIFT", (-number.lsb).into())
+        .wide("NUMBER_BOUND", 27, number.bound);
+    let Some(counts) = &plan.counts else { return parameters };
+    parameters
+        .flag("COUNTS", true)
+        .flag("PER_TAXEL", counts.per_taxel())
+        .wide("GAIN", 18, counts.gains[0].into())
+        .number("OFFSET_BITS", counts.offset_bits().into())
+        .number("COUNT_SHIFT", counts.shift.into())
+        .wide("FULL_SCALE", 48, counts.full_scale)
+        .wide("STRESS_BOUND", 27, plan.formats.stress.bound)
+        .expression("ROM_DIR", "ROM_DIR")
+        .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+}

@@ -1,0 +1,38 @@
+//! Op behind the estimator: summary, status and output of a frame.
+
+use golden::design::Outputs;
+
+use crate::cores::{cordic, divider};
+use crate::plan::Plan;
+use crate::plan::format::FRICTION_FRACTION;
+use crate::plan::reduced::field_shifts;
+
+use super::Parameters;
+
+/// From the answer's taking to the end of the summary.
+pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY as u64;
+/// From the start of the output to the first beat leaving Op.
+pub const OUTPUT_LATENCY: u64 = 13;
+/// Beats of a frame before those of the field.
+pub const SUMMARY_BEATS: u64 = 8;
+
+/// Parameters of `sptfra_op`.
+pub fn parameters(plan: &Plan) -> Parameters {
+    Parameters::new()
+        .count("COLUMNS", plan.design.sensor.columns)
+        .count("ROWS", plan.design.sensor.rows)
+        .flag("FIELD", plan.design.algorithm.outputs == Outputs::Field)
+        .flag("DEPENDENT", plan.estimator.slot().answers_with_a_line())
+        .number("SUM_LSB", plan.formats.g.lsb.into())
+        .number("FIELD_LSB", field_lsb(plan).into())
+        .cycles("EXPECTED_SUMMARY_LATENCY", SUMMARY_LATENCY)
+        .cycles("EXPECTED_OUTPUT_LATENCY", OUTPUT_LATENCY)
+}
+
+/// Exponent of a step of a taxel's force as the field memory puts it together, in N.
+pub fn field_lsb(plan: &Plan) -> i32 {
+    match &plan.formats.folded {
+        Some(folded) => field_shifts(&plan.formats, folded).2,
+        None => plan.formats.g.lsb - FRICTION_FRACTION as i32,
+    }
+}

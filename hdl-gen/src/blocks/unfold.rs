@@ -1,0 +1,19 @@
+//! Results to taxels: `sptfra_unfold`.
+
+use crate::plan::Plan;
+
+use super::Parameters;
+
+/// Result bus to taxels, in cycles.
+pub fn latency(folded: bool) -> u64 {
+    if folded { 5 } else { 1 }
+}
+
+/// The instance's parameters.
+pub fn parameters(plan: &Plan) -> Parameters {
+    Parameters::new()
+        .count("WAYS", plan.ways())
+        .count("ELEMENTS", plan.elements())
+        .number("DATA_BITS", plan.design.hardware.data_bits.into())
+        .number("U_SHIFT", plan.formats.folded.map_or(0, |folded| folded.u.lsb - folded.stress.lsb).into())
+}

@@ -1,0 +1,24 @@
+//! We, the weights: `sptfra_we`.
+
+use crate::plan::Plan;
+use crate::plan::product::Vector;
+
+use super::{Parameters, place};
+
+/// Taxels to the write port of the operand memories, in cycles: of a folded grid to the second of two words, y+.
+pub fn latency(folded: bool) -> u64 {
+    if folded { 5 } else { 1 }
+}
+
+/// The instance's parameters.
+pub fn parameters(plan: &Plan) -> Parameters {
+    let weight = plan.formats.weight;
+    Parameters::new()
+        .count("WAYS", plan.ways())
+        .count("ELEMENTS", plan.elements())
+        .number("DATA_BITS", plan.design.hardware.data_bits.into())
+        .number("FOLD_SHIFT", plan.formats.folded.map_or(0, |folded| folded.weight.lsb - weight.lsb).into())
+        .count("OPERAND_DEPTH", plan.operands.words())
+        .count("WEIGHT_BASE", place(plan, Vector::Weight).0)
+        .flag("SKIPS", plan.design.hardware.skip_zeros)
+}

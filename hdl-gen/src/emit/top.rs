@@ -1,0 +1,169 @@
+//! The top of a design: its parameters and its wiring, around the modules of the library.
+
+use serde::Serialize;
+use tera::Context;
+
+use golden::design::Filter;
+
+use crate::blocks::{Parameters, array, bz, cean, co, field, op, row_width, turns, unfold, we};
+use crate::plan::Plan;
+use crate::plan::format::address_bits;
+
+use super::verilog::design_module;
+use super::{EmitError, registers};
+
+const TEMPLATE: &str = include_str!("../../templates/rtl/top.v.tera");
+
+/// The data of the template. Widths end in `_width`.
+#[derive(Serialize)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a question that the template asks")]
+struct View {
+    /// Whether a register bank is around the core, and then the core's own module.
+    control: bool,
+    core_module: String,
+    columns: usize,
+    rows: usize,
+    taxels: usize,
+    plan: &'static str,
+    estimator: String,
+    filter: String,
+    counts: bool,
+    beats: usize,
+    field: bool,
+    at_most: &'static str,
+    latency_cycles: u64,
+    latency_us: String,
+    interval_cycles: u64,
+    interval_us: String,
+    clock_mhz: f64,
+    issue_cycles: u64,
+    macs: u64,
+    busy_percent: String,
+    stress_lsb: i32,
+    weight_lsb: i32,
+    u_lsb: i32,
+    g_lsb: i32,
+
+    /// What an element of a vector is, how many there are, and how many values come at a time.
+    element: &'static str,
+    elements: usize,
+    ways: usize,
+    programs: usize,
+    row_width: u32,
+    operand_width: u32,
+    component_width: u32,
+    data_bits: u32,
+    vector_bits: usize,
+
+    bz: Parameters,
+    cean: Parameters,
+    turns: Parameters,
+    array: Parameters,
+    unfold: Parameters,
+    we: Parameters,
+    co: Parameters,
+    estimator_module: &'static str,
+    estimator_parameters: Parameters,
+    field_module: &'static str,
+    field_parameters: Parameters,
+    op: Parameters,
+}
+
+impl View {
+    fn new(plan: &Plan) -> Self {
+        let (design, hardware, timeline) = (&plan.design, &plan.design.hardware, &plan.timeline);
+        let slot = plan.estimator.slot();
+        let folded = plan.ways() > 1;
+        let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
+        Self {
+            control: hardware.control,
+            core_module: registers::core_module(plan),
+            columns: design.sensor.columns,
+            rows: design.sensor.rows,
+            taxels: plan.taxels(),
+            plan: if folded { "reduced" } else { "paper's" },
+            estimator: slot.module().trim_start_matches("sptfra_estimator_").to_owned(),
+            filter: filter_text(&design.algorithm.filter),
+            counts: plan.counts.is_some(),
+            beats: plan.beats_out(),
+            field: plan.field_words() > 0,
+            at_most: if hardware.skip_zeros { "at most " } else { "" },
+            latency_cycles: timeline.latency_cycles,
+            latency_us: microseconds(timeline.latency_cycles),
+            interval_cycles: timeline.interval_cycles,
+            interval_us: microseconds(timeline.interval_cycles),
+            clock_mhz: hardware.clock_mhz,
+            issue_cycles: plan.schedule.issue_cycles(),
+            macs: plan.macs(),
+            busy_percent: format!("{:.1}", 100.0 * plan.schedule.busy_fraction()),
+            stress_lsb: plan.formats.stress.lsb,
+            weight_lsb: plan.formats.weight.lsb,
+            u_lsb: plan.formats.u.lsb,
+            g_lsb: plan.formats.g.lsb,
+
+            element: if folded { "quad" } else { "taxel" },
+            elements: plan.elements(),
+            ways: plan.ways(),
+            programs: plan.schedule.programs.len(),
+            row_width: row_width(plan),
+            operand_width: address_bits(plan.operands.words()),
+            component_width: address_bits(3 * plan.elements()),
+            data_bits: hardware.data_bits,
+            vector_bits: plan.ways() * hardware.data_bits as usize,
+
+            bz: bz::parameters(plan),
+            cean: cean::parameters(plan),
+            turns: turns::parameters(plan),
+            array: array::parameters(plan),
+            unfold: unfold::parameters(plan),
+            we: we::parameters(plan),
+            co: co::parameters(plan),
+            estimator_module: slot.module(),
+            estimator_parameters: slot.parameters(design, plan.ways()),
+            field_module: field::module(plan),
+            field_parameters: field::parameters(plan),
+            op: op::parameters(plan),
+        }
+    }
+}
+
+/// The module of the core and its text.
+///
+/// # Errors
+/// [`EmitError::Template`] if the template does not fit the view.
+pub(super) fn render(plan: &Plan, hash: &str) -> Result<(String, String), EmitError> {
+    let view = View::new(plan);
+    let context =
+        Context::from_serialize(&view).map_err(|source| EmitError::Template { template: "top".to_owned(), source })?;
+    let text = design_module(plan, hash, &view.core_module, TEMPLATE, &context)?;
+    Ok((view.core_module, text))
+}
+
+/// Modules of the library that stand only in a `generate if` that the design does not take.
+pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
+    let mut without = plan.estimator.slot().without();
+    if plan.counts.is_none() {
+        without.push("sptfra_counts");
+    }
+    if plan.ways() > 1 {
+        without.push("sptfra_coefficients");
+    } else {
+        without.extend(["sptfra_fold", "sptfra_butterfly"]);
+    }
+    if !plan.design.hardware.skip_zeros {
+        without.push("sptfra_nonzeros");
+    }
+    if plan.products.iter().all(|product| product.mirrored.is_none()) {
+        without.push("sptfra_diagonal_mirror");
+    }
+    without
+}
+
+fn filter_text(filter: &Filter) -> String {
+    match filter {
+        Filter::None => "none".to_owned(),
+        Filter::F1 { l } => format!("F1 with L = {l}"),
+        Filter::F2 { p } => format!("F2 with p = {p}"),
+        Filter::F3 { .. } => "F3, chosen for each matrix".to_owned(),
+    }
+}
