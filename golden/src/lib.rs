@@ -36,6 +36,7 @@ pub mod metrics;
 pub mod names;
 pub mod output;
 pub mod parity;
+pub mod products;
 pub mod reduced;
 pub mod scene;
 pub mod sensor;

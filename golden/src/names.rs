@@ -60,6 +60,16 @@ impl MatrixName {
         self as usize
     }
 
+    /// What the matrix does to the class of a vector: bit 0 changes even and odd in x, bit 1 in y.
+    pub fn parity(self) -> usize {
+        match self {
+            Self::C33inv | Self::A3 | Self::D11 | Self::D22 | Self::D30 => 0,
+            Self::A1 | Self::D10 | Self::D31 => 1,
+            Self::A2 | Self::D20 | Self::D32 => 2,
+            Self::D12 | Self::D21 => 3,
+        }
+    }
+
     /// `(p, q)` of `D_pq`, p from 1 to 3 and q from 0 to 2, or `None` for C33inv and the `A_p`.
     pub(crate) fn product(self) -> Option<(usize, usize)> {
         let place = self.index().checked_sub(Self::D10.index())?;

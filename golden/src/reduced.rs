@@ -79,6 +79,14 @@ impl SumRow {
     }
 }
 
+/// The rows of all sums of a frame, see [`ReducedMatrices::sums`] and [`ReducedMatrices::weight_sum`].
+#[derive(Clone, Debug)]
+pub(crate) struct SumRows {
+    /// By `[p][q]`.
+    pub(crate) rows: [[SumRow; 3]; 3],
+    pub(crate) total: SumRow,
+}
+
 /// The ten matrices of the reduced plan after the filter, and the rows of its sums.
 ///
 /// **What a filter means here.** It is applied to the folded blocks, whose rows and columns are quads. F2 with p keeps
@@ -88,8 +96,7 @@ impl SumRow {
 #[derive(Clone, Debug)]
 pub struct ReducedMatrices {
     ten: Vec<FoldedRows>,
-    sums: Vec<SumRow>,
-    weight_sum: SumRow,
+    sums: SumRows,
 }
 
 impl ReducedMatrices {
@@ -110,21 +117,18 @@ impl ReducedMatrices {
         let a = [MatrixName::A1, MatrixName::A2, MatrixName::A3].map(|name| matrices.folded(name));
 
         let weight_sum = SumRow { class: 0, weights: (0..quads.count()).map(|q| quads.size(q) as f64 / 4.0).collect() };
-        let mut sums = Vec::with_capacity(9);
-        for (p, a) in a.iter().enumerate() {
-            let over_a = sum_row(&weight_sum, a);
-            for (q, c) in [c33, c31, c32].into_iter().enumerate() {
-                let mut row = sum_row(&over_a, c);
-                if q > 0 {
-                    row.weights.iter_mut().for_each(|weight| *weight = -*weight);
-                }
-                // |w| itself, in g11 and g22.
-                if q == p + 1 {
-                    row.weights.iter_mut().zip(&weight_sum.weights).for_each(|(weight, one)| *weight += one);
-                }
-                sums.push(row);
+        let row = |p: usize, q: usize| {
+            let mut row = sum_row(&sum_row(&weight_sum, &a[p]), [c33, c31, c32][q]);
+            if q > 0 {
+                row.weights.iter_mut().for_each(|weight| *weight = -*weight);
             }
-        }
+            // |w| itself, in g11 and g22.
+            if q == p + 1 {
+                row.weights.iter_mut().zip(&weight_sum.weights).for_each(|(weight, one)| *weight += one);
+            }
+            row
+        };
+        let rows = std::array::from_fn(|p| std::array::from_fn(|q| row(p, q)));
 
         let e = c33.times(&a[2]);
         let sparse = |name: ReducedName, folded: &FoldedMatrix| filtered(name, folded, quads, rule);
@@ -140,7 +144,7 @@ impl ReducedMatrices {
             sparse(ReducedName::A2, &a[1])?,
             sparse(ReducedName::A3, &a[2])?,
         ];
-        Ok(Self { ten, sums, weight_sum })
+        Ok(Self { ten, sums: SumRows { rows, total: weight_sum } })
     }
 
     /// One of the ten matrices.
@@ -151,12 +155,17 @@ impl ReducedMatrices {
     /// The row of `G_(p+1)q`, p and q from 0 to 2. Its operand is the folded y+ for q = 0 and the folded |w| for q = 1
     /// and 2. The sum of |w| in G11 and G22 is included, that in G30 (`- sum |w|`) is not.
     pub fn sums(&self, p: usize, q: usize) -> &SumRow {
-        &self.sums[3 * p + q]
+        &self.sums.rows[p][q]
     }
 
     /// The row of the sum of |w|, from the folded |w|.
     pub fn weight_sum(&self) -> &SumRow {
-        &self.weight_sum
+        &self.sums.total
+    }
+
+    /// Those of all sums.
+    pub(crate) fn sum_rows(&self) -> &SumRows {
+        &self.sums
     }
 
     /// Number of coefficients stored: four for each entry that any class keeps.

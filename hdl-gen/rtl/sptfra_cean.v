@@ -14,7 +14,7 @@ module sptfra_cean #(
     // Taxels along y
     parameter integer ROWS = 10,
     // 1: the direction of the push too; 0: for an estimator that needs none
-    parameter integer DIRECTION = 1,
+    parameter integer DIRECTION = 0,
     // Noise floor of a taxel, in steps of the stress
     parameter [26:0] TAXEL_FLOOR = 27'd100,
     // Noise floor of the frame's sum |b|, in steps of the stress

@@ -28,7 +28,7 @@ module sptfra_estimator_joint #(
     parameter signed [26:0] LINEAR = 27'sd4194304,
     parameter signed [17:0] CUBIC = 18'sd0,
     // 1: with a correction; the parameters from here to ROM_NAME are its own
-    parameter integer NETWORK = 1,
+    parameter integer NETWORK = 0,
     // Taxels on either side of the window's middle
     parameter integer HALF_X = 4,
     parameter integer HALF_Y = 4,
@@ -295,7 +295,8 @@ module sptfra_estimator_joint #(
             assign look_saturated = 1'b0;
 
             wire _unused = &{1'b0, look_value, WORD_WIDTH != 0, HALF_X != 0, HALF_Y != 0, PASSES != 0, STRESS_LEFT != 0,
-                UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0, EXPECTED_NETWORK_LATENCY != 0};
+                UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0, EXPECTED_NETWORK_LATENCY != 0,
+                ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate
 

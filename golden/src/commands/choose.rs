@@ -29,14 +29,15 @@ pub fn run(path: &Path, out: &Path, csv: Option<&Path>, json: bool) -> Result<()
         _ => Vec::new(),
     };
     let mut inputs: Vec<_> = scenes.iter().map(|scene| from.join(scene)).collect();
+    inputs.extend(Design::files_named_in(path)?);
     inputs.push(path.to_path_buf());
     let inputs: Vec<&Path> = inputs.iter().map(AsRef::as_ref).collect();
     for output in [Some(out), csv].into_iter().flatten() {
         keep_apart(output, &inputs)?;
     }
     let resolved = Resolved::new(&design, path, out)?;
-    if csv == Some(out) {
-        return Err(format!("{}: named for both the design and the table; choose two names", out.display()).into());
+    if let Some(csv) = csv.filter(|csv| resolved.holds(&design, csv)) {
+        return Err(format!("{}: named for both the design and the table; choose two names", csv.display()).into());
     }
     let frames = reference_frames(&design, from)?;
     // Draws on a terminal only.

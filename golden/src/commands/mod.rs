@@ -78,6 +78,11 @@ impl<'a> Resolved<'a> {
         files.chain([(self.design.to_path_buf(), text)]).collect()
     }
 
+    /// Whether a file is one of those that are written for a design.
+    pub fn holds(&self, design: &Design, file: &Path) -> bool {
+        file == self.design || design.files().iter().any(|(name, _)| file == self.path(name))
+    }
+
     /// The place of a file that the design names.
     fn path(&self, name: &str) -> PathBuf {
         folder(self.design).join(if name == WEIGHTS_FILE { &self.weights } else { name })

@@ -46,8 +46,9 @@ pub fn run(
     reference: Option<&Path>,
     json: bool,
 ) -> Result<(), Box<dyn Error>> {
-    let inputs = [Some(design), Some(frames.file), reference];
-    keep_apart(out, &inputs.into_iter().flatten().collect::<Vec<_>>())?;
+    let named = Design::files_named_in(design)?;
+    let inputs = [Some(design), Some(frames.file), reference].into_iter().flatten();
+    keep_apart(out, &inputs.chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
     let design = Design::load(design)?;
     let frames = frames::read_labelled_frames(frames.file, design.sensor.taxels(), frames.labels)?;
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;

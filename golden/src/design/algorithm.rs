@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Filter, Regularisation};
-use crate::estimators::Estimator;
 use crate::estimators::joint::JointConstants;
+use crate::estimators::{Constants, Estimator};
 use crate::kernel::Kernel;
 use crate::words::print_as_words;
 
@@ -48,6 +48,16 @@ pub struct Algorithm {
     pub outputs: Outputs,
     /// Stress in pascals below which a taxel tells nothing; full scale / 65536 unless given.
     pub noise_floor_pa: f64,
+}
+
+impl Algorithm {
+    /// The estimator with its constants; those of another one are left aside.
+    pub fn constants(&self) -> Constants<'_> {
+        match self.estimator {
+            Estimator::Line => Constants::Line,
+            Estimator::Joint => Constants::Joint(&self.joint),
+        }
+    }
 }
 
 print_as_words!(Outputs, PlanKind);

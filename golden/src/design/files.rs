@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-use super::{Design, Estimator};
+use super::Design;
+use crate::estimators::Constants;
 
 /// Name of the calibration file beside a resolved design.
 pub const CALIBRATION_FILE: &str = "calibration.csv";
@@ -51,10 +52,11 @@ impl Design {
     /// The files that [`Design::to_toml`] names, by name, to be written beside it: none for most designs.
     pub fn files(&self) -> Vec<(&'static str, String)> {
         let calibration = self.input.calibration.as_ref().map(|calibration| (CALIBRATION_FILE, calibration.to_csv()));
-        let constants = Some(&self.algorithm.joint).filter(|_| self.algorithm.estimator == Estimator::Joint);
-        let weights = constants
-            .and_then(|constants| constants.correction.as_ref())
-            .map(|correction| (WEIGHTS_FILE, correction.to_csv()));
+        let correction = match self.algorithm.constants() {
+            Constants::Joint(constants) => constants.correction.as_ref(),
+            Constants::Line => None,
+        };
+        let weights = correction.map(|correction| (WEIGHTS_FILE, correction.to_csv()));
         calibration.into_iter().chain(weights).collect()
     }
 }

@@ -66,7 +66,7 @@ fn key(name: &str) -> String {
 }
 
 /// What to do about weights that are not there, or others than those of the design.
-const RESTORE: &str = "copy the file that was written with the design to its side, or run `golden calibrate` again";
+const RESTORE: &str = "copy the file that was written with the design to its side, or remove [algorithm.correction] and run `golden calibrate`";
 
 /// Checks the correction, and reads its file if it has one.
 pub(super) fn correction(
@@ -84,13 +84,15 @@ pub(super) fn correction(
         (Some(file), Some(hash), None, None) => from_file(check, &file, &hash, half_window, beside),
         (None, None, Some(hidden), Some(output)) => from_table(check, half_window, &hidden, &output),
         (Some(file), None, None, None) => {
-            refuse("sha256", "is missing", format!("write what `sha256sum {file}` prints, or run `golden calibrate`"))
+            refuse("sha256", "is missing", format!("write what `sha256sum {file}` prints"))
         }
         (None, Some(_), ..) => refuse("sha256", "is given without a file", "add the key file".to_owned()),
         (Some(_), ..) => refuse("file", "is given beside weights", "remove hidden and output, or file".to_owned()),
-        (None, None, ..) => {
-            refuse("file", "is missing", "name the file of weights, or run `golden calibrate`".to_owned())
-        }
+        (None, None, ..) => refuse(
+            "file",
+            "is missing",
+            "name the file of weights, or remove [algorithm.correction] and run `golden calibrate`".to_owned(),
+        ),
     }
 }
 
@@ -128,7 +130,7 @@ fn from_table(
     hidden: &[Vec<i64>],
     output: &[Vec<i64>],
 ) -> Result<Correction, DesignError> {
-    let again = || "run `golden calibrate` again".to_owned();
+    let again = || "remove [algorithm.correction] and run `golden calibrate`".to_owned();
     check.integer(&key("hidden (number of rows)"), hidden.len() as i64, 1, MAX_HIDDEN as i64)?;
     let row = |name: String, row: &[i64], length: usize| -> Result<Vec<i32>, DesignError> {
         if row.len() != length {

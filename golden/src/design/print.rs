@@ -4,9 +4,8 @@ use std::fmt::Write;
 
 use toml::Value;
 
-use super::{
-    Algorithm, CALIBRATION_FILE, Choices, Design, Estimator, Filter, FilterKind, Hardware, joint, regularisation,
-};
+use super::{Algorithm, CALIBRATION_FILE, Choices, Design, Filter, FilterKind, Hardware, joint, regularisation};
+use crate::estimators::Constants;
 use crate::names::MatrixName;
 
 // Written by hand, not by serde, so that the order and the layout are those of the documentation. `{:?}` of an f64
@@ -24,9 +23,9 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
         Filter::F2 { p } => (format!("filter = {{ kind = \"{kind}\", p = {p:?} }}\n"), String::new()),
         Filter::F3 { scenes, choices } => (String::new(), f3(scenes, choices.as_deref())),
     };
-    let [constants, correction] = match algorithm.estimator {
-        Estimator::Line => [String::new(), String::new()],
-        Estimator::Joint => joint::print(&algorithm.joint, weights),
+    let [constants, correction] = match algorithm.constants() {
+        Constants::Line => [String::new(), String::new()],
+        Constants::Joint(constants) => joint::print(constants, weights),
     };
     let counts = match input.pa_per_count {
         Some(value) => format!("pa_per_count = {value:?}\n"),

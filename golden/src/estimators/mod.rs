@@ -32,7 +32,16 @@ pub enum Estimator {
 
 print_as_words!(Estimator);
 
-/// An estimator with its constants.
+/// An estimator as a design has it, with its constants.
+#[derive(Clone, Copy, Debug)]
+pub enum Constants<'a> {
+    /// It has none.
+    Line,
+    /// Those that `golden calibrate` finds.
+    Joint(&'a JointConstants),
+}
+
+/// An estimator, ready for frames.
 #[derive(Clone, Debug)]
 pub(crate) enum Friction {
     Line,
@@ -47,11 +56,11 @@ pub(crate) struct FrictionScratch {
 }
 
 impl Friction {
-    /// The estimator of a design; constants of another one are left aside.
-    pub(crate) fn new(estimator: Estimator, joint: &JointConstants, sensor: &Sensor) -> Self {
-        match estimator {
-            Estimator::Line => Self::Line,
-            Estimator::Joint => Self::Joint(Box::new(Joint::new(joint, sensor.columns))),
+    /// The estimator of a design.
+    pub(crate) fn new(constants: Constants, sensor: &Sensor) -> Self {
+        match constants {
+            Constants::Line => Self::Line,
+            Constants::Joint(joint) => Self::Joint(Box::new(Joint::new(joint, sensor.columns))),
         }
     }
 

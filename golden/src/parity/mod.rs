@@ -74,6 +74,11 @@ impl Quads {
         (0..4).filter(move |&s| !members[..s].contains(&members[s])).map(move |s| (s, members[s]))
     }
 
+    /// The taxels of every quad by member.
+    pub fn all(&self) -> Vec<[usize; 4]> {
+        (0..self.count()).map(|q| self.members(q)).collect()
+    }
+
     /// Number of taxels of quad `q`: 4, on a centre line 2, at the centre of the grid 1.
     pub fn size(&self, q: usize) -> usize {
         self.distinct(q).count()
@@ -112,8 +117,15 @@ impl Quads {
     }
 }
 
-/// `out[c]` is the sum over s of `sign(c, s) * x[s]`; on a centre line the differences are zero to the bit.
-pub(crate) fn butterfly<T: Copy + Add<Output = T> + Sub<Output = T>>([a, b, c, d]: [T; 4]) -> [T; 4] {
-    let (even, odd) = ([a + b, c + d], [a - b, c - d]);
-    [even[0] + even[1], odd[0] + odd[1], even[0] - even[1], odd[0] - odd[1]]
+/// `out[c]` is the sum over s of `sign(c, s) * x[s]`; on a centre line the differences are zero to the bit. Of one value
+/// it is that.
+pub fn butterfly<T: Copy + Add<Output = T> + Sub<Output = T>, const W: usize>(mut x: [T; W]) -> [T; W] {
+    let mut half = 1;
+    while half < W {
+        for low in (0..W).filter(|index| index & half == 0) {
+            (x[low], x[low + half]) = (x[low] + x[low + half], x[low] - x[low + half]);
+        }
+        half *= 2;
+    }
+    x
 }

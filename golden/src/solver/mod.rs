@@ -2,33 +2,32 @@
 //!
 //! The stages are those of the paper's hardware, each a function of its own: [`cean`] (contact analysis), [`we`]
 //! (weights), [`co`] (coefficients), [`op`] (optimum). [`Solver`] runs them and takes care of frames that have no
-//! answer, which get a [`Status`] and zeros, never a NaN. With the reduced plan the stages We, Co and Op are the same
-//! mathematics on folded vectors, see [`crate::reduced`]. A design may ask for another estimator of friction than the
+//! answer, which get a [`Status`] and zeros, never a NaN. It executes the products of the design's plan as a list, see
+//! [`crate::products`]; with the reduced plan that is the same mathematics on folded vectors. A design may ask for another estimator of friction than the
 //! paper's, with either plan.
 
 mod batch;
 pub mod cean;
 pub mod co;
-mod fours;
 pub mod op;
-mod paper;
 pub(crate) mod reading;
-mod reduced;
 pub mod we;
 mod workspace;
 
 pub use crate::status::Status;
 pub use workspace::Workspace;
 
+use std::sync::{Arc, OnceLock};
+
 use crate::design::{Design, Outputs, PlanKind};
-use crate::estimators::Friction;
+use crate::estimators::{Friction, FrictionScratch, Seen};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
-use crate::parity::Quads;
+use crate::parity::CLASSES;
+use crate::products::batch::Blocks;
+use crate::products::{Engine, PaperMatrices, ProductList};
 use crate::reduced::ReducedMatrices;
-use paper::Paper;
 use reading::Reader;
-use reduced::Reduced;
 
 /// Why a solver cannot be made or a frame cannot be solved.
 #[derive(Debug, thiserror::Error)]
@@ -107,6 +106,14 @@ impl Solution {
         self.field.iter_mut().flatten().chain(&mut self.resultant).for_each(|force| *force *= gain);
     }
 
+    /// Finds the friction components, and puts them and what follows from them in place.
+    fn optimum(&mut self, friction: &Friction, seen: &Seen, scratch: &mut FrictionScratch) -> [f64; 2] {
+        let (status, mu) = friction.find(seen, scratch);
+        self.status.insert(status);
+        self.put_friction(mu, seen.sums.map(|[g0, g1, g2]| g0 + mu[0] * g1 + mu[1] * g2));
+        mu
+    }
+
     /// Puts the friction components and the resultant in place, and what follows from that.
     fn put_friction(&mut self, [mu_x, mu_y]: [f64; 2], resultant: [f64; 3]) {
         let [x, y, _] = resultant;
@@ -124,16 +131,19 @@ pub struct Solver {
     friction: Friction,
 }
 
-/// The estimator of a design.
-fn friction(design: &Design) -> Friction {
-    Friction::new(design.algorithm.estimator, &design.algorithm.joint, &design.sensor)
-}
-
 /// The products of the design's plan.
 #[derive(Clone, Debug)]
 enum Products {
-    Paper(Box<Paper>),
+    Paper(Box<Engine<f64, PaperMatrices, 1>>),
     Reduced(Box<Reduced>),
+}
+
+/// Those of the reduced plan, and what several frames at once need.
+#[derive(Clone, Debug)]
+struct Reduced {
+    engine: Engine<f64, ReducedMatrices, CLASSES>,
+    /// Made when first used.
+    blocks: OnceLock<Arc<Blocks>>,
 }
 
 impl Solver {
@@ -151,22 +161,29 @@ impl Solver {
             PlanKind::Paper => {
                 FilteredMatrices::new(&matrices, filter).map(|filtered| Self::from_parts(design, matrices, filtered))
             }
-            PlanKind::Reduced => {
-                let quads = Quads::new(design.sensor.columns, design.sensor.rows);
-                ReducedMatrices::new(&matrices, &quads, filter).map(|reduced| {
-                    let outputs = design.algorithm.outputs;
-                    let products = Products::Reduced(Box::new(Reduced::new(&quads, reduced, outputs)));
-                    Self { reader: Reader::new(design), matrices, products, friction: friction(design) }
-                })
-            }
+            PlanKind::Reduced => ReducedMatrices::new(&matrices, matrices.quads(), filter).map(|reduced| {
+                let field = design.algorithm.outputs == Outputs::Field;
+                let list = ProductList::paper().fewer_products(field).folded();
+                let quads = *matrices.quads();
+                let engine = Engine::new(list, reduced, quads.all(), quads.taxels());
+                Self::with(design, matrices, Products::Reduced(Box::new(Reduced { engine, blocks: OnceLock::new() })))
+            }),
         }
         .map_err(|source| SolverError::Filter { name: name(), source })
     }
 
     /// A solver by the paper's plan from matrices already computed for the same design, whatever plan that names.
     pub fn from_parts(design: &Design, matrices: Matrices, filtered: FilteredMatrices) -> Self {
-        let products = Products::Paper(Box::new(Paper::new(&matrices, filtered)));
-        Self { reader: Reader::new(design), matrices, products, friction: friction(design) }
+        let taxels = matrices.quads().taxels();
+        let stored = PaperMatrices::new(&matrices, filtered);
+        let members = (0..taxels).map(|taxel| [taxel]).collect();
+        let engine = Engine::new(ProductList::paper(), stored, members, taxels);
+        Self::with(design, matrices, Products::Paper(Box::new(engine)))
+    }
+
+    fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
+        let friction = Friction::new(design.algorithm.constants(), &design.sensor);
+        Self { reader: Reader::new(design), matrices, products, friction }
     }
 
     /// The unfiltered matrices.
@@ -177,7 +194,7 @@ impl Solver {
     /// The matrices the solver uses, with the paper's plan.
     pub fn filtered(&self) -> Option<&FilteredMatrices> {
         match &self.products {
-            Products::Paper(paper) => Some(&paper.filtered),
+            Products::Paper(paper) => Some(&paper.stored().filtered),
             Products::Reduced(_) => None,
         }
     }
@@ -186,7 +203,7 @@ impl Solver {
     pub fn reduced(&self) -> Option<&ReducedMatrices> {
         match &self.products {
             Products::Paper(_) => None,
-            Products::Reduced(reduced) => Some(&reduced.matrices),
+            Products::Reduced(reduced) => Some(reduced.engine.stored()),
         }
     }
 
@@ -208,7 +225,7 @@ impl Solver {
 
     fn field_length(&self) -> usize {
         match &self.products {
-            Products::Reduced(reduced) if reduced.outputs == Outputs::Resultants => 0,
+            Products::Reduced(reduced) if !reduced.engine.list.has_forces() => 0,
             _ => self.taxels(),
         }
     }

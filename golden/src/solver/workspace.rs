@@ -1,37 +1,48 @@
 //! Solving frame after frame without asking for memory each time.
 
+use std::sync::Arc;
+
 use nalgebra::DVector;
 
+use super::batch::{self, BatchFrame};
 use super::reading::Reading;
-use super::{Products, Solution, Solver, SolverError, Status, batch, paper, reduced};
-use crate::estimators::Seen;
-use crate::parity::Quads;
+use super::{Products, Reduced, Solution, Solver, SolverError, Status};
+use crate::estimators::{Contact, Friction, FrictionScratch, Seen};
+use crate::parity::{CLASSES, Quads};
+use crate::products::batch::{Blocks, FRAMES};
+use crate::products::{Engine, PaperMatrices, RealFrame, Stored};
+use crate::reduced::ReducedMatrices;
 
 /// Memory for solving frames with one solver; see [`Solver::workspace`].
 #[derive(Clone, Debug)]
 pub struct Workspace {
     quads: Quads,
     b: DVector<f64>,
+    friction: FrictionScratch,
     products: Scratch,
     /// For several frames at once, made when first used.
-    batch: Option<Box<batch::Scratch>>,
+    batch: Option<Box<BatchFrame>>,
 }
 
 #[derive(Clone, Debug)]
 enum Scratch {
-    Paper(Box<paper::Scratch>),
-    Reduced(Box<reduced::Scratch>),
+    Paper(Box<RealFrame<f64, PaperMatrices, 1>>),
+    Reduced(Box<RealFrame<f64, ReducedMatrices, CLASSES>>),
 }
 
 impl Solver {
     /// Memory for [`Solver::solve_into`] and [`Solver::solve_batch`]; each thread needs its own.
     pub fn workspace(&self) -> Workspace {
-        let taxels = self.taxels();
-        let products = match &self.products {
-            Products::Paper(paper) => Scratch::Paper(Box::new(paper.scratch(taxels))),
-            Products::Reduced(reduced) => Scratch::Reduced(Box::new(reduced.scratch(taxels))),
-        };
-        Workspace { quads: *self.matrices.quads(), b: DVector::zeros(taxels), products, batch: None }
+        Workspace {
+            quads: *self.matrices.quads(),
+            b: DVector::zeros(self.taxels()),
+            friction: FrictionScratch::default(),
+            products: match &self.products {
+                Products::Paper(paper) => Scratch::Paper(Box::new(paper.frame())),
+                Products::Reduced(reduced) => Scratch::Reduced(Box::new(reduced.engine.frame())),
+            },
+            batch: None,
+        }
     }
 
     /// As [`Solver::solve`], into a solution that is there already: after the first frame no memory is asked for.
@@ -48,17 +59,18 @@ impl Solver {
         solution: &mut Solution,
     ) -> Result<(), SolverError> {
         self.fit(workspace);
-        let b = &mut workspace.b;
+        let Workspace { b, friction: scratch, products, .. } = workspace;
         match self.reader.read(frame, b)? {
             Reading::Nothing(status) => solution.reset(status, self.field_length()),
             Reading::Contact { contact, status } => {
                 solution.reset(status, self.field_length());
-                match (&self.products, &mut workspace.products) {
-                    (Products::Paper(paper), Scratch::Paper(scratch)) => {
-                        paper.solve(&self.friction, b.as_slice(), contact, scratch, solution);
+                let b = b.as_slice();
+                match (&self.products, products) {
+                    (Products::Paper(engine), Scratch::Paper(frame)) => {
+                        solve(engine, frame, (b, contact), &self.friction, scratch, solution);
                     }
-                    (Products::Reduced(reduced), Scratch::Reduced(scratch)) => {
-                        reduced.solve(&self.friction, b.as_slice(), contact, scratch, solution);
+                    (Products::Reduced(reduced), Scratch::Reduced(frame)) => {
+                        solve(&reduced.engine, frame, (b, contact), &self.friction, scratch, solution);
                     }
                     // `fit` has seen to it that there is no other case.
                     _ => {}
@@ -69,6 +81,13 @@ impl Solver {
         Ok(())
     }
 
+    /// Multiplies the forces by the estimator's gain.
+    fn scale(&self, solution: &mut Solution) {
+        if let Some(gain) = self.friction.gain() {
+            solution.scale(gain);
+        }
+    }
+
     /// What an estimator sees of a frame; `None` for a frame without an answer.
     pub(crate) fn see<'a>(&self, workspace: &'a mut Workspace, frame: &[f64]) -> Result<Option<Seen<'a>>, SolverError> {
         self.fit(workspace);
@@ -76,14 +95,8 @@ impl Solver {
         let Reading::Contact { contact, .. } = self.reader.read(frame, b)? else { return Ok(None) };
         let b = b.as_slice();
         Ok(match (&self.products, products) {
-            (Products::Paper(paper), Scratch::Paper(scratch)) => {
-                paper.coefficients(b, scratch);
-                Some(Seen { b, contact, sums: &scratch.sums, u: scratch.u.each_ref().map(Vec::as_slice) })
-            }
-            (Products::Reduced(reduced), Scratch::Reduced(scratch)) => {
-                reduced.coefficients(b, scratch);
-                Some(Seen { b, contact, sums: &scratch.sums, u: scratch.frame.stresses() })
-            }
+            (Products::Paper(engine), Scratch::Paper(frame)) => Some(see(engine, frame, b, contact)),
+            (Products::Reduced(reduced), Scratch::Reduced(frame)) => Some(see(&reduced.engine, frame, b, contact)),
             // As above.
             _ => None,
         })
@@ -103,30 +116,35 @@ impl Solver {
     ) -> Result<(), SolverError> {
         self.fit(workspace);
         solutions.resize_with(frames.len(), || Solution::zeros(Status::default(), 0));
-        let reduced = match &self.products {
-            Products::Reduced(reduced) if reduced.batch_pays() => reduced,
+        let reduced: &Reduced = match &self.products {
+            Products::Reduced(reduced) if batch::pays(reduced.engine.stored(), self.matrices.quads()) => reduced,
             _ => {
                 let mut pairs = frames.iter().zip(solutions);
                 return pairs.try_for_each(|(frame, solution)| self.solve_into(workspace, frame.as_ref(), solution));
             }
         };
-        let taxels = self.taxels();
-        let Workspace { b, batch, .. } = workspace;
-        let scratch = batch.get_or_insert_with(|| Box::new(batch::Scratch::new(reduced.quads(), taxels)));
-        for (frames, solutions) in frames.chunks(batch::FRAMES).zip(solutions.chunks_mut(batch::FRAMES)) {
-            reduced.solve_batch(&self.reader, &self.friction, frames, solutions, b, scratch)?;
+        let blocks = reduced.blocks.get_or_init(|| {
+            Arc::new(Blocks::new(&reduced.engine.list, reduced.engine.stored(), self.matrices.quads()))
+        });
+        let Workspace { b, friction: scratch, batch, .. } = workspace;
+        let batch = batch.get_or_insert_with(|| Box::new(BatchFrame::new(&reduced.engine.list, blocks)));
+        for (frames, solutions) in frames.chunks(FRAMES).zip(solutions.chunks_mut(FRAMES)) {
+            batch.clear();
+            for (index, (frame, solution)) in frames.iter().zip(&mut *solutions).enumerate() {
+                match self.reader.read(frame.as_ref(), b)? {
+                    Reading::Nothing(status) => solution.reset(status, self.field_length()),
+                    Reading::Contact { contact, status } => {
+                        solution.reset(status, self.field_length());
+                        batch.push(index, contact, b.as_slice());
+                    }
+                }
+            }
+            batch.solve(&self.friction, scratch, solutions);
             for solution in solutions {
                 self.scale(solution);
             }
         }
         Ok(())
-    }
-
-    /// Multiplies the forces by the estimator's gain, if it has one.
-    fn scale(&self, solution: &mut Solution) {
-        if let Some(gain) = self.friction.gain() {
-            solution.scale(gain);
-        }
     }
 
     /// Replaces a workspace made for another sensor or plan.
@@ -140,4 +158,29 @@ impl Solver {
             *workspace = self.workspace();
         }
     }
+}
+
+/// Finds the forces for the stress `b` (pascals, length m).
+fn solve<S: Stored<W>, const W: usize>(
+    engine: &Engine<f64, S, W>,
+    frame: &mut RealFrame<f64, S, W>,
+    (b, contact): (&[f64], Contact),
+    friction: &Friction,
+    scratch: &mut FrictionScratch,
+    solution: &mut Solution,
+) {
+    let mu = solution.optimum(friction, &see(engine, frame, b, contact), scratch);
+    engine.field(mu, frame, |p, taxel, force| solution.field[p][taxel] = force);
+}
+
+/// What an estimator sees of the stress `b` (pascals, length m).
+fn see<'a, S: Stored<W>, const W: usize>(
+    engine: &Engine<f64, S, W>,
+    frame: &'a mut RealFrame<f64, S, W>,
+    b: &'a [f64],
+    contact: Contact,
+) -> Seen<'a> {
+    frame.stress.copy_from_slice(b);
+    engine.until_friction(frame);
+    Seen { b, contact, sums: &frame.sums, u: frame.u.each_ref().map(Vec::as_slice) }
 }

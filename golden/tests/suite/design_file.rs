@@ -383,7 +383,10 @@ fn weights_that_are_not_those_of_the_design() {
 fn corrections_that_contradict_themselves() {
     let file = "file = \"w.csv\"\n";
     for (keys, parts) in [
-        ("half_window = [0, 0]\n".to_owned(), ["algorithm.correction.file", "missing", "golden calibrate"]),
+        (
+            "half_window = [0, 0]\n".to_owned(),
+            ["algorithm.correction.file", "missing", "remove [algorithm.correction]"],
+        ),
         (format!("{INLINE}{file}"), ["algorithm.correction.file", "beside weights", "remove"]),
         (format!("half_window = [0, 0]\n{file}"), ["algorithm.correction.sha256", "missing", "sha256sum w.csv"]),
         (format!("{INLINE}sha256 = \"0\"\n"), ["algorithm.correction.sha256", "without a file", "file"]),

@@ -141,7 +141,7 @@ fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
     assert!((other.gain - plain.gain).abs() < 1e-9 && (other.tangential[0] - plain.tangential[0]).abs() < 1e-9);
 
     *design.algorithm.joint = found;
-    assert_eq!(Design::from_toml(&design.to_toml(), "again.toml").unwrap(), design);
+    assert_eq!(Design::from_parts(&design.to_toml(), "again.toml", &design.files()).unwrap(), design);
 }
 
 #[test]

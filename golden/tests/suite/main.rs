@@ -10,6 +10,7 @@ mod half_space;
 mod joint;
 mod large;
 mod matrices;
+mod products;
 mod recording;
 mod reduced;
 mod regularisation;

@@ -3,7 +3,7 @@
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
-use crate::plan::product::{Coefficients, DESTINATIONS, Vector};
+use crate::plan::product::{Coefficients, DESTINATIONS, SUMS_DESTINATION, Vector, destination};
 use crate::plan::schedule::TURN_GAP;
 
 use super::Parameters;
@@ -132,9 +132,9 @@ fn programs(plan: &Plan, parameters: Parameters) -> Parameters {
 fn shifts(plan: &Plan) -> Vec<(u64, String)> {
     let mut known = vec![None; DESTINATIONS];
     for product in &plan.products {
-        known[product.result.destination()] = Some((u64::from(product.shift), product.result.name()));
+        known[destination(product.result)] = Some((u64::from(product.shift), product.result.name()));
         if let Some(lead) = product.lead {
-            known[Vector::SUMS_DESTINATION] = Some((u64::from(lead.shift), "sums of the frame".to_owned()));
+            known[SUMS_DESTINATION] = Some((u64::from(lead.shift), "sums of the frame".to_owned()));
         }
     }
     let mut last = 0;

@@ -1,7 +1,7 @@
 //! The field memory: `sptfra_field` of a folded grid, `sptfra_coefficient_field` where taxels are not folded.
 
 use crate::plan::Plan;
-use crate::plan::reduced::field_shifts;
+use crate::plan::formats::field_shifts;
 
 use super::Parameters;
 

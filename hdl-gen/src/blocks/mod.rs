@@ -20,8 +20,8 @@ use serde::{Serialize, Serializer};
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
+use crate::plan::product::SUM_ROWS;
 use crate::plan::product::Vector;
-use crate::plan::reduced::SUM_ROWS;
 
 /// Where a vector stands in the lanes' operand memories: its first word, and whether that is in the stress's bank. One
 /// that no product reads is at 0.

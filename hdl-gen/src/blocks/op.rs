@@ -5,7 +5,7 @@ use golden::design::Outputs;
 use crate::cores::{cordic, divider};
 use crate::plan::Plan;
 use crate::plan::format::FRICTION_FRACTION;
-use crate::plan::reduced::field_shifts;
+use crate::plan::formats::field_shifts;
 
 use super::Parameters;
 

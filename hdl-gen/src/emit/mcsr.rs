@@ -4,7 +4,7 @@ use std::io::Write;
 
 use crate::plan::Plan;
 use crate::plan::format::pow2;
-use crate::plan::quantise::QuantisedMatrix;
+use crate::plan::matrix::QuantisedMatrix;
 
 use super::FileMap;
 

@@ -6,7 +6,7 @@ use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
 use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;
-use crate::plan::product::Vector;
+use crate::plan::product::{SUMS_DESTINATION, destination};
 
 use super::{FileMap, lane_file};
 
@@ -53,8 +53,8 @@ fn visit(plan: &Plan, index: usize) -> u128 {
     let elements = plan.elements() as u32;
     // Rows in front of a product's own are sums.
     let (destination, row) = match visit.row.checked_sub(elements) {
-        Some(sum) => (Vector::SUMS_DESTINATION, sum),
-        None => (plan.products[visit.product as usize].result.destination(), visit.row),
+        Some(sum) => (SUMS_DESTINATION, sum),
+        None => (destination(plan.products[visit.product as usize].result), visit.row),
     };
     let lane = u128::from(last) << address_bits(plan.walkers()) | u128::from(visit.lane);
     (lane << destination_bits(plan) | destination as u128) << row_width(plan) | u128::from(row)

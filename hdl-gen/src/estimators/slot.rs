@@ -1,6 +1,7 @@
 //! What every estimator tells the rest of the generator, and what it is given.
 
 use golden::design::Design;
+use golden::products::ByPq;
 use golden::sensor::Sensor;
 use serde_json::Value;
 
@@ -10,9 +11,6 @@ use crate::plan::memory::Memory;
 
 /// Width of a weight in the ROM files of an estimator.
 pub const WEIGHT_BITS: u32 = 18;
-
-/// `g_pq` or `G_pq` by `[p - 1][q]`.
-pub type ByPq<T> = [[T; 3]; 3];
 
 /// What an estimator's constants are made from.
 #[derive(Clone, Copy, Debug)]

@@ -3,17 +3,23 @@
 //! One packet of input words in, one frame of output words out. Order of summation does not matter: every sum is
 //! exact in its width, by the bounds of the plan.
 
-mod reduced;
+mod integer;
 mod summary;
 #[cfg(test)]
 mod tests;
 
-use crate::cores::{fixed_to_float, float_to_fixed};
-use crate::estimators::{ByPq, Contact, Seen};
-use crate::plan::Plan;
-use crate::plan::format::{FRICTION_FRACTION, round_shift};
-use crate::plan::product::{Epilogue, Vector};
+use std::ops::Range;
 
+use golden::products::{ByPq, Frame, Scalar};
+
+use crate::cores::{fixed_to_float, float_to_fixed};
+use crate::estimators::{Contact, Seen};
+use crate::plan::Plan;
+use crate::plan::format::FRICTION_FRACTION;
+use crate::plan::formats::field_shifts;
+use crate::plan::product::{Coefficients, Product, Vector};
+
+use integer::Integer;
 use summary::Summary;
 pub use summary::inverse_gain;
 
@@ -31,49 +37,6 @@ pub const NOT_FINITE: u32 = 1 << 4;
 pub const BAD_LENGTH: u32 = 1 << 5;
 
 pub use crate::plan::SUMMARY_WORDS;
-
-/// The vectors of one frame, as the plan's products fill them.
-struct Vectors {
-    stress: Vec<i64>,
-    weight: Vec<i64>,
-    partial: [Vec<i64>; 3],
-    g: ByPq<Vec<i64>>,
-    u: [Vec<i64>; 3],
-}
-
-impl Vectors {
-    fn new(stress: Vec<i64>) -> Self {
-        let empty = || vec![0; stress.len()];
-        Self {
-            weight: empty(),
-            partial: std::array::from_fn(|_| empty()),
-            g: std::array::from_fn(|_| std::array::from_fn(|_| empty())),
-            u: std::array::from_fn(|_| empty()),
-            stress,
-        }
-    }
-
-    fn get(&self, vector: Vector) -> &Vec<i64> {
-        match vector {
-            Vector::Weight => &self.weight,
-            Vector::Partial(p) => &self.partial[usize::from(p) - 1],
-            Vector::G(p, q) => &self.g[usize::from(p) - 1][usize::from(q)],
-            Vector::U(q) => &self.u[usize::from(q)],
-            // The paper's plan has no other vectors.
-            _ => &self.stress,
-        }
-    }
-
-    fn get_mut(&mut self, vector: Vector) -> &mut Vec<i64> {
-        match vector {
-            Vector::Weight => &mut self.weight,
-            Vector::Partial(p) => &mut self.partial[usize::from(p) - 1],
-            Vector::G(p, q) => &mut self.g[usize::from(p) - 1][usize::from(q)],
-            Vector::U(q) => &mut self.u[usize::from(q)],
-            _ => &mut self.stress,
-        }
-    }
-}
 
 /// The stress of a taxel, and what is to be said of it.
 struct Stress {
@@ -148,52 +111,84 @@ impl<'plan> Model<'plan> {
 
     fn answer(&self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
         match self.plan.formats.folded {
-            Some(folded) => reduced::answer(self.plan, &folded, counter, stress, saturated),
-            None => self.paper_answer(counter, stress, saturated),
+            None => self.execute(&integer::by_taxel(self.plan), counter, stress, saturated),
+            Some(_) => self.execute(&integer::by_quad(self.plan), counter, stress, saturated),
         }
     }
 
-    fn paper_answer(&self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
-        let plan = self.plan;
-        let vectors = self.products(stress.to_vec());
-        let sums: ByPq<i64> = std::array::from_fn(|p| std::array::from_fn(|q| vectors.g[p][q].iter().sum()));
-        let (mut words, summary) = scalars(plan, counter, stress, saturated, &sums, &vectors.u);
-        let force_exponent = plan.formats.g.lsb - FRICTION_FRACTION as i32;
-        let [mu_x, mu_y] = summary.friction;
-        for taxel in 0..plan.taxels() {
-            for [g0, g1, g2] in &vectors.g {
-                let force = (g0[taxel] << FRICTION_FRACTION) + mu_x * g1[taxel] + mu_y * g2[taxel];
-                words.push(fixed_to_float::convert(force, force_exponent));
-            }
+    fn execute<const W: usize>(
+        &self,
+        integers: &Scalar<Integer<'_>, W>,
+        counter: u32,
+        stress: &[i64],
+        saturated: bool,
+    ) -> Vec<u32> {
+        let products = &self.plan.products;
+        let needs_friction = |product: &Product| product.coefficients == Coefficients::Friction;
+        let search = products.iter().position(needs_friction).unwrap_or(products.len());
+        let mut frame = frame(self.plan, integers, stress);
+        run(self.plan, integers, 0..search, [0, 0], &mut frame);
+        let (mut words, summary) = scalars(self.plan, counter, stress, saturated, &frame.sums, &frame.u);
+        run(self.plan, integers, search..products.len(), summary.friction, &mut frame);
+        if self.plan.field_words() > 0 {
+            words.extend(self.field(&frame, summary.friction));
         }
         words
     }
 
-    /// Every product of the plan, in order, with its epilogue.
-    fn products(&self, stress: Vec<i64>) -> Vectors {
-        let mut vectors = Vectors::new(stress);
-        for product in &self.plan.products {
-            let matrix = &self.plan.matrices[product.matrix];
-            let operand = vectors.get(product.operand());
-            let result: Vec<i64> = (0..operand.len())
-                .map(|row| {
-                    let rounded = round_shift(matrix.row_product(row, 0, operand), product.shift);
-                    match product.epilogue {
-                        Epilogue::ClipNegate => (-rounded).max(0),
-                        Epilogue::Add(partial) => rounded + vectors.get(partial)[row],
-                        _ => rounded,
-                    }
-                })
-                .collect();
-            *vectors.get_mut(product.result) = result;
-        }
-        vectors
+    /// Forces of every taxel, from what the plan's products have left of them.
+    fn field<const W: usize>(&self, frame: &Integers<'_, W>, [mu_x, mu_y]: [i64; 2]) -> Vec<u32> {
+        let formats = &self.plan.formats;
+        let shares = [mu_x, mu_y, -(1 << FRICTION_FRACTION)];
+        let of_taxel = |taxel: usize| -> [u32; 3] {
+            std::array::from_fn(|p| match &formats.folded {
+                None => {
+                    let [g0, g1, g2] = [0, 1, 2].map(|q| frame.get(Vector::G(1 + p as u8, q)).as_flattened()[taxel]);
+                    let force = (g0 << FRICTION_FRACTION) + mu_x * g1 + mu_y * g2;
+                    fixed_to_float::convert(force, formats.g.lsb - FRICTION_FRACTION as i32)
+                }
+                Some(folded) => {
+                    let (force_shift, weight_shift, exponent) = field_shifts(formats, folded);
+                    let share = (shares[p] * frame.weight[taxel]) << weight_shift;
+                    fixed_to_float::convert((frame.force[p][taxel] << force_shift) + share, exponent)
+                }
+            })
+        };
+        (0..self.plan.taxels()).flat_map(of_taxel).collect()
     }
 
     fn blank(&self, status: u32) -> Vec<u32> {
         let mut words = vec![0; self.output_words()];
         words[0] = status;
         words
+    }
+}
+
+/// A frame in the integers of a plan.
+type Integers<'plan, const W: usize> = Frame<Scalar<Integer<'plan>, W>>;
+
+/// A frame with its stress, of each taxel.
+fn frame<'plan, const W: usize>(
+    plan: &'plan Plan,
+    integers: &Scalar<Integer<'plan>, W>,
+    stress: &[i64],
+) -> Integers<'plan, W> {
+    let mut frame = Frame::new(integers, plan.products.iter().map(|product| &product.step));
+    frame.stress.copy_from_slice(stress);
+    frame.load(integers);
+    frame
+}
+
+/// Executes products of a plan.
+fn run<'plan, const W: usize>(
+    plan: &'plan Plan,
+    integers: &Scalar<Integer<'plan>, W>,
+    products: Range<usize>,
+    friction: [i64; 2],
+    frame: &mut Integers<'plan, W>,
+) {
+    for index in products {
+        frame.step(integers, index, &plan.products[index].step, friction);
     }
 }
 

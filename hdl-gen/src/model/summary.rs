@@ -1,8 +1,8 @@
 //! Op's summary in integers: friction components, resultants, friction coefficient, angle.
 
 use crate::cores::{cordic, divider};
-use crate::estimators::ByPq;
 use crate::plan::format::FRICTION_FRACTION;
+use golden::products::ByPq;
 
 /// Fraction bits of the CORDIC's inverse gain.
 pub const GAIN_FRACTION: u32 = 26;

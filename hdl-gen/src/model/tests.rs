@@ -1,12 +1,14 @@
 //! Frames made to be as bad as can be: every vector of the paper's plan stays within the bound of its format.
 
+mod folded;
+
 use golden::design::Design;
 use proptest::prelude::*;
 
-use super::{Model, Vectors};
+use super::{Integers, frame, integer, run};
 use crate::plan::Plan;
+use crate::plan::matrix::QuantisedMatrix;
 use crate::plan::product::Vector;
-use crate::plan::quantise::QuantisedMatrix;
 
 fn plan(columns: usize, rows: usize, algorithm: &str, hardware: &str) -> Plan {
     let text = format!(
@@ -37,17 +39,25 @@ fn sign_patterns(matrix: &QuantisedMatrix, before: Option<&QuantisedMatrix>) -> 
     patterns
 }
 
+/// All products of a frame at full scale, of these signs.
+fn products<'plan>(plan: &'plan Plan, signs: &[i64]) -> Integers<'plan, 1> {
+    let stress: Vec<i64> = signs.iter().map(|sign| sign * plan.formats.stress.bound).collect();
+    let integers = integer::by_taxel(plan);
+    let mut frame = frame(plan, &integers, &stress);
+    run(plan, &integers, 0..plan.products.len(), [0, 0], &mut frame);
+    frame
+}
+
 fn check(plan: &Plan, signs: &[i64]) {
-    let bound = plan.formats.stress.bound;
-    let vectors: Vectors = Model::new(plan).products(signs.iter().map(|sign| sign * bound).collect());
+    let vectors = products(plan, signs);
     for product in &plan.products {
         for vector in [product.operand(), product.result] {
             let format = plan.formats.of(vector);
-            let top = vectors.get(vector).iter().map(|value| value.abs()).max().unwrap();
+            let top = vectors.get(vector).as_flattened().iter().map(|value| value.abs()).max().unwrap();
             assert!(top <= format.bound, "{} reaches {top} of {}", vector.name(), format.bound);
         }
     }
-    assert!(vectors.get(Vector::Weight).iter().all(|&weight| weight >= 0));
+    assert!(vectors.get(Vector::Weight).as_flattened().iter().all(|&weight| weight >= 0));
 }
 
 fn check_worst_frames(plan: &Plan) {
@@ -74,11 +84,8 @@ fn the_worst_frames_stay_within_the_bounds() {
 #[test]
 fn the_bound_of_the_weights_is_reached_and_not_just_respected() {
     let plan = plan(4, 4, "", "");
-    let reach = |signs: &[i64]| {
-        let bound = plan.formats.stress.bound;
-        let vectors = Model::new(&plan).products(signs.iter().map(|sign| sign * bound).collect());
-        vectors.get(Vector::Weight).iter().copied().max().unwrap()
-    };
+    let reach =
+        |signs: &[i64]| products(&plan, signs).get(Vector::Weight).as_flattened().iter().copied().max().unwrap();
     let patterns = sign_patterns(&plan.matrices[0], None);
     let negative = patterns.iter().map(|pattern| pattern.iter().map(|sign| -sign).collect::<Vec<_>>());
     assert_eq!(negative.map(|signs| reach(&signs)).max(), Some(plan.formats.weight.bound));

@@ -1,19 +1,22 @@
 //! From a checked design to its plan.
 
 use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, PlanKind};
-use golden::filter::{FilterError, FilteredMatrices, nnz_of};
-use golden::matrices::{Matrices, MatrixName};
+use golden::matrices::Matrices;
 use golden::parity::{CLASSES, Quads};
 
 use super::counts::CountsPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
+use super::filtered::Filtered;
 use super::format::{Format, pow2};
+use super::formats::Formats;
 use super::layout::OperandLayout;
+use super::matrix::QuantisedMatrix;
+use super::passes;
 use super::product::Product;
-use super::quantise::QuantisedMatrix;
+use super::quantise::{Quantised, quantise, taxel_force_n};
 use super::resources::Resources;
 use super::schedule::Schedule;
-use super::{Condition, Formats, Nnz, Plan, Thresholds, control, paper, reduced};
+use super::{Condition, Nnz, Plan, Thresholds, control};
 use crate::estimators::{self, EstimatorPlan, Given};
 
 /// Plans the hardware of `design`.
@@ -106,30 +109,15 @@ impl Work {
         let stress = Format::covering(hardware.full_scale_in_frames(), hardware.data_bits);
         let thresholds = thresholds(design, stress)?;
         let counts = CountsPlan::new(design, stress)?;
-        let mut rounding_n = 0.0;
-        let (stored, products, formats, nnz) = match design.algorithm.plan {
-            PlanKind::Paper => {
-                let filtered = FilteredMatrices::new(&matrices, &design.algorithm.filter)?;
-                let [bits, data_bits] = [hardware.coefficient_bits, hardware.data_bits];
-                let paper = paper::build(&matrices, &filtered, stress, bits, data_bits)?;
-                let nnz = MatrixName::ALL.map(|name| (name, filtered.nnz(name)));
-                (paper.matrices, paper.products, paper.formats, nnz)
-            }
-            PlanKind::Reduced => {
-                let reduced = reduced::build(design, &matrices, stress)?;
-                // One of the thirteen at a time: of a large sensor they do not fit into memory together.
-                let mut nnz = MatrixName::ALL.map(|name| (name, 0));
-                for (name, count) in &mut nnz {
-                    let filter = design.algorithm.filter.of(*name).ok_or(FilterError::Unresolved)?;
-                    *count = nnz_of(&matrices, *name, filter);
-                }
-                rounding_n = reduced.rounding_n;
-                (reduced.matrices, reduced.products, reduced.formats, nnz)
-            }
-        };
+        let list = passes::products(design);
+        let filtered = Filtered::new(design, &matrices)?;
+        let quantised = quantise(&list, &filtered, design, stress)?;
+        let products = passes::bind(&list, &quantised, hardware.skip_zeros);
+        let nnz = Nnz(filtered.nnz(&design.algorithm.filter)?);
+        let Quantised { matrices: stored, formats, rounding_n, .. } = quantised;
         let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
         check_force_resolution(design, &formats, condition, rounding_n)?;
-        Ok(Self { condition, nnz: Nnz(nnz.to_vec()), matrices: stored, products, formats, counts, thresholds })
+        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, thresholds })
     }
 
     /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
@@ -185,7 +173,7 @@ fn check_force_resolution(
     condition: Condition,
     rounding_n: f64,
 ) -> Result<(), PlanError> {
-    let taxel_n = reduced::taxel_force_n(design);
+    let taxel_n = taxel_force_n(design);
     if rounding_n * MOST_ROUNDING > taxel_n {
         let (bits, condition) = (design.hardware.data_bits, condition.aat);
         return Err(PlanError::ForceRounding { bits, rounding_n, taxel_n, condition });

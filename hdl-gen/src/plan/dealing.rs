@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BinaryHeap, VecDeque};
 
 use golden::parity::CLASSES;
 
-use super::quantise::{Entry, QuantisedMatrix};
+use super::matrix::{Entry, QuantisedMatrix};
 use super::schedule::{ISSUE_TO_RESULT, LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 
 /// A piece of a row as dealt to a lane, before its time is known.

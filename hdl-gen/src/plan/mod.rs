@@ -8,13 +8,15 @@ mod control;
 pub mod counts;
 mod dealing;
 mod error;
+pub mod filtered;
 pub mod format;
+pub mod formats;
 pub mod layout;
+pub mod matrix;
 pub mod memory;
-pub mod paper;
+pub mod passes;
 pub mod product;
 pub mod quantise;
-pub mod reduced;
 pub mod resources;
 pub mod savings;
 pub mod schedule;
@@ -28,46 +30,16 @@ use serde::Serialize;
 use crate::estimators::EstimatorPlan;
 use counts::CountsPlan;
 pub use error::PlanError;
-use format::Format;
+use formats::Formats;
 use layout::OperandLayout;
-use product::{Block, Product, Vector};
-use quantise::QuantisedMatrix;
-use reduced::FoldedFormats;
+use matrix::QuantisedMatrix;
+use product::{Block, Product};
 use resources::Resources;
 use schedule::Schedule;
 use timing::Timeline;
 
 /// Words before the field: status, `F_x`, `F_y`, `F_z`, mu, phi, `mu_x`, `mu_y`.
 pub const SUMMARY_WORDS: usize = 8;
-
-/// Formats of the taxels' values in the four kinds of vectors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Formats {
-    /// `b_z` in Pa; its bound is the full scale, to which larger inputs are clamped.
-    pub stress: Format,
-    /// `|w_z|` in N; in the reduced plan `y+` too.
-    pub weight: Format,
-    /// All nine `g_pq`, and `A_p b_z`, in N; in the reduced plan their sums `G_pq`.
-    pub g: Format,
-    /// `u_q` in Pa.
-    pub u: Format,
-    /// Reduced plan: formats of the folded vectors.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub folded: Option<FoldedFormats>,
-}
-
-impl Formats {
-    /// The format in which the lanes read or leave `vector`.
-    pub fn of(&self, vector: Vector) -> Format {
-        match (&self.folded, vector) {
-            (Some(folded), _) => folded.of(vector),
-            (None, Vector::Stress) => self.stress,
-            (None, Vector::Weight | Vector::Pull) => self.weight,
-            (None, Vector::U(_) | Vector::Residual(_) | Vector::Explained) => self.u,
-            (None, Vector::Partial(_) | Vector::G(..) | Vector::Force(_)) => self.g,
-        }
-    }
-}
 
 /// Thresholds of the frame statuses, in steps of the stress format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -8,8 +8,7 @@ use super::counts::{CountsPlan, GAIN_BITS};
 use super::format::address_bits;
 use super::layout::OperandLayout;
 use super::memory::{Memory, memory};
-use super::product::Product;
-use super::reduced::SUM_ROWS;
+use super::product::{Product, SUM_ROWS};
 use super::schedule::Schedule;
 use crate::estimators::{BlockCost, Slot};
 

@@ -1,6 +1,7 @@
 //! What each reduction of the reduced plan saves: multiply-accumulates a frame and coefficients in ROM.
 
 use golden::design::Outputs;
+use golden::products::{ProductList, Step};
 use serde::Serialize;
 
 use super::Plan;
@@ -17,12 +18,6 @@ pub struct Saving {
     pub coefficients: usize,
 }
 
-/// Products of a frame in the paper's plan, three of them with C33.
-const PAPER_PRODUCTS: usize = 16;
-/// Products of a frame in the reduced plan, with and without the field.
-const PRODUCTS: usize = 10;
-const RESULTANT_PRODUCTS: usize = 4;
-
 /// The steps in the order in which they are taken; empty for the paper's plan.
 pub fn savings(plan: &Plan) -> Vec<Saving> {
     let ways = plan.ways();
@@ -30,13 +25,16 @@ pub fn savings(plan: &Plan) -> Vec<Saving> {
         return Vec::new();
     }
     let all = plan.taxels() * plan.taxels();
-    let mut steps = vec![
-        Saving { step: "the paper's plan", macs: PAPER_PRODUCTS * all, coefficients: (PAPER_PRODUCTS - 2) * all },
-        Saving { step: "fewer products", macs: PRODUCTS * all, coefficients: PRODUCTS * all },
-    ];
+    let whole = |step: &'static str, list: &ProductList| {
+        let is_stored = |step: &&Step| step.coefficients == Coefficients::Rom;
+        let friction = list.steps.len() - list.steps.iter().filter(is_stored).count();
+        let coefficients = (list.matrices.len() - friction) * all;
+        Saving { step, macs: (list.steps.len() - friction) * all, coefficients }
+    };
+    let paper = ProductList::paper();
+    let mut steps = vec![whole("the paper's plan", &paper), whole("fewer products", &paper.fewer_products(true))];
     if plan.design.algorithm.outputs == Outputs::Resultants {
-        let macs = RESULTANT_PRODUCTS * all;
-        steps.push(Saving { step: "resultants only", macs, coefficients: macs });
+        steps.push(whole("resultants only", &paper.fewer_products(false)));
     }
     let of_products = || plan.products.iter().filter(|product| product.coefficients == Coefficients::Rom);
     let of_matrix = |index: usize| ways * plan.matrices[index].nnz();

@@ -15,8 +15,8 @@ use golden::parity::CLASSES;
 use serde::Serialize;
 
 use super::dealing::{Dealer, Stream, rounds_period};
-use super::product::{Epilogue, Product, Vector};
-use super::quantise::{Entry, QuantisedMatrix};
+use super::matrix::{Entry, QuantisedMatrix};
+use super::product::{Epilogue, Product, Vector, spacing, visit_to_operand};
 use crate::blocks::array::SEQUENCER_TO_LANES;
 
 /// Cycles from the issue of a row's last MAC to its sum standing in the lane's result register.
@@ -234,7 +234,7 @@ type Dealt = (u64, u64, u64, Option<Rounds>);
 impl<'a> Work<'a> {
     fn stream(&self, mut rows: Vec<(u32, &'a [Entry])>, store: bool, start: u64) -> Stream<'a> {
         self.product.relabel(&mut rows);
-        Stream { product: self.index, rows, store, start, spacing: self.product.epilogue.spacing() }
+        Stream { product: self.index, rows, store, start, spacing: spacing(self.product.epilogue) }
     }
 
     fn in_pieces(&self, dealer: &mut Dealer, mut new: impl FnMut(usize) -> bool) -> Dealt {
@@ -268,7 +268,7 @@ fn earliest(product: &Product, program: &[Product], complete: &[(Vector, u64)]) 
     };
     let operands = product.operands.iter().filter_map(|&operand| made_by(operand)).map(|(producer, visit)| {
         let list = if product.skips { WRITE_TO_LIST } else { 0 };
-        visit + producer.epilogue.visit_to_operand() + list
+        visit + visit_to_operand(producer.epilogue) + list
     });
     let addend = match product.epilogue {
         Epilogue::Add(partial) => made_by(partial).map(|(_, visit)| visit),

@@ -6,9 +6,10 @@ use golden::solver::Solver;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::FRICTION_FRACTION;
 use hdl_gen::plan::format::{ACCUMULATOR_BITS, MOST_SHIFT, largest, pow2, round_shift};
+use hdl_gen::plan::formats::{FOLD_BITS, FoldedFormats};
+use hdl_gen::plan::matrix::QuantisedMatrix;
 use hdl_gen::plan::product::{Coefficients, Epilogue, Product, Vector};
-use hdl_gen::plan::quantise::QuantisedMatrix;
-use hdl_gen::plan::reduced::{FOLD_BITS, FoldedFormats, SUM_ROWS, sum_way};
+use hdl_gen::plan::product::{SUM_ROWS, sum_way};
 use proptest::prelude::*;
 
 use crate::formats::check_widths;

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use golden::parity::CLASSES;
-use hdl_gen::plan::product::{Epilogue, Product, Vector, mirror};
-use hdl_gen::plan::quantise::Entry;
+use hdl_gen::plan::matrix::Entry;
+use hdl_gen::plan::product::{Epilogue, Product, Vector, mirror, visit_to_operand};
 use hdl_gen::plan::schedule::{ISSUE_TO_RESULT, LaneProgram, Program, RESULT_PLACES, Schedule, SegmentKind, Visit};
 
 /// The sums of one row, a way each.
@@ -91,7 +91,7 @@ impl Run<'_> {
         let mut written: BTreeMap<(Vector, usize), u64> = BTreeMap::new();
         for visit in visits {
             let product = &self.products[visit.product as usize];
-            let there = visit.cycle + product.epilogue.visit_to_operand();
+            let there = visit.cycle + visit_to_operand(product.epilogue);
             if (visit.row as usize) < self.elements {
                 written.insert((product.result, visit.row as usize), there);
                 if product.epilogue == Epilogue::Part {

@@ -15,8 +15,8 @@ use hdl_gen::model::{
 };
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::pow2;
+use hdl_gen::plan::matrix::QuantisedMatrix;
 use hdl_gen::plan::product::Vector;
-use hdl_gen::plan::quantise::QuantisedMatrix;
 use nalgebra::DVector;
 use proptest::prelude::*;
 

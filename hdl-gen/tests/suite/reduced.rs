@@ -7,8 +7,8 @@ use golden::design::{Design, PlanKind};
 use golden::parity::{CLASSES, FoldedMatrix, Quads, sign};
 use hdl_gen::model::{AT_BOUND, Model, SUMMARY_WORDS};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, Vector, mirror};
-use hdl_gen::plan::quantise::{Entry, QuantisedMatrix};
+use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
+use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, Step, Vector, mirror};
 use hdl_gen::plan::schedule::Schedule;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -96,17 +96,20 @@ pub fn unfolded(quads: &Quads, classes: impl Fn(usize) -> [i64; CLASSES]) -> Vec
 
 pub fn product(parity: usize, mirrored: Option<usize>) -> Product {
     Product {
-        matrix: 0,
+        step: Step {
+            matrix: 0,
+            operands: vec![Vector::Weight],
+            coefficients: Coefficients::Rom,
+            sums: false,
+            parity,
+            mirrored,
+            epilogue: Epilogue::Unfold,
+            result: Vector::U(0),
+        },
         lead: None,
-        operands: vec![Vector::Weight],
         block: Block::Co,
         program: 0,
-        coefficients: Coefficients::Rom,
-        parity,
-        mirrored,
         skips: false,
-        epilogue: Epilogue::Unfold,
-        result: Vector::U(0),
         shift: 0,
     }
 }

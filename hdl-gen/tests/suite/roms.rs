@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
+use hdl_gen::plan::product::SUM_ROWS;
 use hdl_gen::plan::product::mirror;
-use hdl_gen::plan::quantise::{Entry, QuantisedMatrix};
-use hdl_gen::plan::reduced::SUM_ROWS;
 use proptest::prelude::*;
 use serde_json::Value;
 

@@ -1,8 +1,8 @@
 //! Zeros passed over: whole rows dealt in rounds, over the columns that are not zero, are the product with the matrix.
 
 use golden::parity::{CLASSES, Quads};
+use hdl_gen::plan::matrix::QuantisedMatrix;
 use hdl_gen::plan::product::{Product, mirror};
-use hdl_gen::plan::quantise::QuantisedMatrix;
 use hdl_gen::plan::schedule::Schedule;
 use proptest::prelude::*;
 

@@ -3,7 +3,7 @@
 use golden::design::Design;
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::quantise::QuantisedMatrix;
+use hdl_gen::plan::matrix::QuantisedMatrix;
 
 use crate::support::design_text;
 

@@ -3,9 +3,8 @@
 use golden::parity::CLASSES;
 use hdl_gen::estimators::Cells;
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, Vector};
-use hdl_gen::plan::quantise::{Entry, QuantisedMatrix};
-use hdl_gen::plan::reduced::SUM_ROWS;
+use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
+use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, SUM_ROWS, Step, Vector, visit_to_operand};
 use hdl_gen::plan::schedule::{COLLECTOR_JUMP, ISSUE_TO_RESULT, Schedule, SegmentKind, Visit};
 use proptest::prelude::*;
 
@@ -268,17 +267,20 @@ fn a_product_waits_for_the_last_row_of_its_operand() {
     let reversal =
         |size: usize| matrix(size, (1..=size).map(|row| vec![((size - row) as u32, [3, 5, 7, 9])]).collect());
     let product = |matrix, block, operand, epilogue, result| Product {
-        matrix,
+        step: Step {
+            matrix,
+            operands: vec![operand],
+            coefficients: Coefficients::Rom,
+            sums: false,
+            parity: 0,
+            mirrored: None,
+            epilogue,
+            result,
+        },
         lead: None,
-        operands: vec![operand],
         block,
         program: 0,
-        coefficients: Coefficients::Rom,
-        parity: 0,
-        mirrored: None,
         skips: false,
-        epilogue,
-        result,
         shift: 0,
     };
     let chain = |first: Epilogue, second: Epilogue| {
@@ -289,8 +291,8 @@ fn a_product_waits_for_the_last_row_of_its_operand() {
         ]
     };
     let kinds = [
-        (Epilogue::Keep, Epilogue::Keep, [Epilogue::Keep.visit_to_operand(); 2]),
-        (Epilogue::Part, Epilogue::Store, [Epilogue::Part.visit_to_operand(), Epilogue::Store.visit_to_operand()]),
+        (Epilogue::Keep, Epilogue::Keep, [visit_to_operand(Epilogue::Keep); 2]),
+        (Epilogue::Part, Epilogue::Store, [visit_to_operand(Epilogue::Part), visit_to_operand(Epilogue::Store)]),
     ];
     for (first, second, delays) in kinds {
         for (size, lanes) in (2..20).flat_map(|size| (1..10).map(move |lanes| (size, lanes))) {

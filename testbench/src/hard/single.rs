@@ -4,8 +4,9 @@
 use golden::design::{Design, Estimator};
 use golden::estimators::RANGE;
 use golden::estimators::line::{LEVEL, MAX_LINE_RATIO};
-use golden::parity::{CLASSES, Quads};
-use golden::reduced::{FoldedRows, ReducedMatrices, ReducedName, SumRow};
+use golden::parity::CLASSES;
+use golden::products::{Engine, ProductList};
+use golden::reduced::ReducedMatrices;
 use golden::solver::{Solver, Status};
 
 use crate::words::Answer;
@@ -13,15 +14,11 @@ use crate::words::Answer;
 /// Bisections of each search: as many as a float32 has bits.
 const STEPS: usize = 24;
 
-/// One value a quad and class.
-type Folded = [Vec<f32>; CLASSES];
-
 /// A solver in float32.
 #[derive(Debug)]
 pub struct Single<'a> {
     design: &'a Design,
-    quads: &'a Quads,
-    matrices: &'a ReducedMatrices,
+    engine: Engine<f32, &'a ReducedMatrices, CLASSES>,
 }
 
 impl<'a> Single<'a> {
@@ -29,12 +26,14 @@ impl<'a> Single<'a> {
     pub fn new(design: &'a Design, solver: &'a Solver) -> Option<Self> {
         let line = design.algorithm.estimator == Estimator::Line;
         line.then_some(())?;
-        Some(Self { design, quads: solver.matrices().quads(), matrices: solver.reduced()? })
+        let list = ProductList::paper().fewer_products(true).folded();
+        let quads = solver.matrices().quads();
+        Some(Self { design, engine: Engine::new(list, solver.reduced()?, quads.all(), quads.taxels()) })
     }
 
     /// The answer to one frame in Pa.
     pub fn solve(&self, frame: &[f64]) -> Answer {
-        let m = self.quads.taxels();
+        let m = self.design.sensor.taxels();
         let full_scale = self.design.hardware.full_scale_in_frames() as f32;
         let raw: Vec<f32> = frame.iter().map(|&stress| stress as f32).collect();
         if raw.iter().any(|stress| !stress.is_finite()) {
@@ -47,31 +46,18 @@ impl<'a> Single<'a> {
         if stress_sum < floor * m as f32 {
             return blank(Status::NO_CONTACT, m);
         }
-        let y = self.unfold(&times(self.matrices.get(ReducedName::C33inv), &self.fold(&b)));
-        let magnitude: Vec<f32> = y.iter().map(|force| (-force).max(0.0)).collect();
-        let w = self.fold(&magnitude);
-        let pull = self.fold(&y.iter().map(|force| force.max(0.0)).collect::<Vec<_>>());
-        let product = |name, operand: &Folded| self.unfold(&times(self.matrices.get(name), operand));
-        let [k0, k1, k2] = [(ReducedName::K0, &pull), (ReducedName::K1, &w), (ReducedName::K2, &w)]
-            .map(|(name, operand)| product(name, operand));
-        let u0: Vec<f32> = b.iter().zip(&k0).map(|(b, k)| b - k).collect();
-        let [u1, u2] = [k1, k2].map(|k| k.iter().map(|k| -k).collect::<Vec<f32>>());
-        let sums = self.sums(&pull, &w);
+        let mut of_frame = self.engine.frame();
+        of_frame.stress.copy_from_slice(&b);
+        self.engine.until_friction(&mut of_frame);
+        let sums = of_frame.sums;
         let mut status = Status::default();
-        let [mu_x, mu_y] = self.friction(&b, floor, &sums, [&u0, &u1, &u2], stress_sum, &mut status);
+        let u = of_frame.u.each_ref().map(Vec::as_slice);
+        let [mu_x, mu_y] = self.friction(&b, floor, &sums, u, stress_sum, &mut status);
         if saturated {
             status.insert(Status::SATURATED);
         }
-        let mut r = times(self.matrices.get(ReducedName::C33), &pull);
-        for (name, mu) in [(ReducedName::C31, mu_x), (ReducedName::C32, mu_y)] {
-            let part = times(self.matrices.get(name), &w);
-            r.iter_mut().flatten().zip(part.iter().flatten()).for_each(|(r, part)| *r -= mu * part);
-        }
-        let shares = [mu_x, mu_y, -1.0];
-        let field = [(ReducedName::A1, 0), (ReducedName::A2, 1), (ReducedName::A3, 2)].map(|(name, axis)| {
-            let force = product(name, &r);
-            force.iter().zip(&magnitude).map(|(force, w)| f64::from(force + shares[axis] * w)).collect::<Vec<f64>>()
-        });
+        let mut field: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; m]);
+        self.engine.field([mu_x, mu_y], &mut of_frame, |p, taxel, force| field[p][taxel] = f64::from(force));
         let resultant = sums.map(|[g0, g1, g2]| g0 + mu_x * g1 + mu_y * g2);
         let [x, y, z] = resultant;
         let mu = if z == 0.0 { 0.0 } else { x.hypot(y) / z.abs() };
@@ -84,35 +70,6 @@ impl<'a> Single<'a> {
             mu_xy: [f64::from(mu_x), f64::from(mu_y)],
             field,
         }
-    }
-
-    fn fold(&self, x: &[f32]) -> Folded {
-        let quads = (0..self.quads.count()).map(|q| butterfly(self.quads.members(q).map(|taxel| x[taxel])));
-        let sums: Vec<[f32; CLASSES]> = quads.collect();
-        std::array::from_fn(|class| sums.iter().map(|sums| sums[class]).collect())
-    }
-
-    fn unfold(&self, folded: &Folded) -> Vec<f32> {
-        let mut x = vec![0.0; self.quads.taxels()];
-        let [even, odd_x, odd_y, odd] = folded;
-        for (q, ((even, odd_x), (odd_y, odd))) in even.iter().zip(odd_x).zip(odd_y.iter().zip(odd)).enumerate() {
-            let values = butterfly([*even, *odd_x, *odd_y, *odd]);
-            for (member, taxel) in self.quads.distinct(q) {
-                x[taxel] = 0.25 * values[member];
-            }
-        }
-        x
-    }
-
-    /// The sums `G_pq` from the folded y+ and |w|.
-    fn sums(&self, pull: &Folded, w: &Folded) -> [[f32; 3]; 3] {
-        let dot = |row: &SumRow, x: &Folded| -> f32 {
-            row.weights.iter().zip(&x[row.class]).map(|(&weight, value)| weight as f32 * value).sum()
-        };
-        let mut sums =
-            [0, 1, 2].map(|p| [0, 1, 2].map(|q| dot(self.matrices.sums(p, q), if q == 0 { pull } else { w })));
-        sums[2][0] -= dot(self.matrices.weight_sum(), w);
-        sums
     }
 
     /// The paper's line estimator: the direction of push, the line, the middle of the level set on it.
@@ -191,28 +148,6 @@ fn search(alpha: &[f32], beta: &[f32], allowance: f32) -> (f32, bool) {
     let left = bisect(-1.0, optimum, &|t| value(t) > level);
     let right = bisect(optimum, 1.0, &|t| value(t) <= level);
     (left.midpoint(right), slope(-1.0) >= 0.0 || slope(1.0) < 0.0)
-}
-
-/// The product with a folded vector.
-fn times(matrix: &FoldedRows, x: &Folded) -> Folded {
-    let mut result: Folded = std::array::from_fn(|_| Vec::with_capacity(matrix.rows.len()));
-    for row in &matrix.rows {
-        let mut sums = [0.0_f32; CLASSES];
-        for &(column, coefficients) in row {
-            for class in 0..CLASSES {
-                sums[class] += coefficients[class] as f32 * x[class][column as usize];
-            }
-        }
-        for (class, sum) in sums.into_iter().enumerate() {
-            result[class ^ matrix.parity].push(sum);
-        }
-    }
-    result
-}
-
-/// Sums and differences of the four members, by class; applied twice it multiplies by four.
-fn butterfly([a, b, c, d]: [f32; 4]) -> [f32; 4] {
-    [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d]
 }
 
 fn blank(status: Status, taxels: usize) -> Answer {

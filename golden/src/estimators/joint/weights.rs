@@ -47,7 +47,7 @@ impl Correction {
     pub(crate) fn read_csv(text: &str, half_window: [usize; 2]) -> Result<Self, WeightsError> {
         let wrong =
             |line: usize, problem: String, remedy: &str| WeightsError { line, problem, remedy: remedy.to_owned() };
-        let again = "take the file that was written with the design, or run `golden calibrate` again";
+        let again = "take the file that was written with the design, or remove [algorithm.correction] and run `golden calibrate`";
         let mut lines = (1..).zip(text.lines());
         if lines.next().is_none_or(|(_, line)| line != header(half_window)) {
             let [x, y] = half_window;

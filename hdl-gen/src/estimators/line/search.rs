@@ -1,6 +1,8 @@
 //! Op's line and search in integers.
 
-use super::super::{ByPq, Found, Seen};
+use golden::products::ByPq;
+
+use super::super::{Found, Seen};
 use super::direction::Direction;
 use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, SEARCH_STEPS};
 use crate::cores::divider;

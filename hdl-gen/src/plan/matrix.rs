@@ -1,6 +1,7 @@
 //! Coefficients as integers: one power-of-two scale per matrix.
 
 use golden::parity::CLASSES;
+use golden::products::{mirror, swapped};
 use nalgebra_sparse::CsrMatrix;
 
 use super::PlanError;
@@ -31,11 +32,11 @@ pub struct QuantisedMatrix {
     pub row_sum: i64,
 }
 
-/// The one way of the paper's plan.
-pub fn one_way(matrix: &CsrMatrix<f64>) -> RealRows {
+/// The one way of the paper's plan, times `factor`.
+pub fn one_way(matrix: &CsrMatrix<f64>, factor: f64) -> RealRows {
     let row = |row: nalgebra_sparse::csr::CsrRow<f64>| {
         let entries = row.col_indices().iter().zip(row.values());
-        entries.map(|(&column, &value)| (column as u32, [value, 0.0, 0.0, 0.0])).collect()
+        entries.map(|(&column, &value)| (column as u32, [factor * value, 0.0, 0.0, 0.0])).collect()
     };
     matrix.row_iter().map(row).collect()
 }
@@ -92,6 +93,16 @@ impl QuantisedMatrix {
         Self { name: name.to_owned(), rows, lsb, row_sum }
     }
 
+    /// Its image at the diagonal of a grid of `side` by `side` quads.
+    #[must_use]
+    pub fn mirrored(&self, side: usize) -> Self {
+        let entry = |&(column, ways): &Entry| {
+            (mirror(column as usize, side) as u32, std::array::from_fn(|class| ways[swapped(class)]))
+        };
+        let row = |row: usize| self.rows[mirror(row, side)].iter().map(entry).collect();
+        Self { rows: (0..self.rows.len()).map(row).collect(), ..self.clone() }
+    }
+
     /// Number of stored entries: cycles of a lane per product.
     pub fn nnz(&self) -> usize {
         self.rows.iter().map(Vec::len).sum()
@@ -128,7 +139,7 @@ mod tests {
         for &(row, column, value) in entries {
             coo.push(row, column, value);
         }
-        one_way(&CsrMatrix::from(&coo))
+        one_way(&CsrMatrix::from(&coo), 1.0)
     }
 
     #[test]

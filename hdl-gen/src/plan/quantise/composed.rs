@@ -9,10 +9,10 @@ use golden::parity::CLASSES;
 use nalgebra::DMatrix;
 
 use super::super::format::{Format, largest};
-use super::super::quantise::QuantisedMatrix;
-use super::FOLD_BITS;
+use super::super::formats::FOLD_BITS;
+use super::super::matrix::QuantisedMatrix;
+use super::LARGEST_FRICTION;
 use super::bounds::Operand;
-use super::steps::LARGEST_FRICTION;
 
 /// Factor for the rounding of sums in f64.
 const SLACK: f64 = 1.0 + 1e-9;

@@ -2,10 +2,13 @@
 //! format, for any friction.
 
 use golden::design::Design;
-use golden::parity::sign;
+use golden::parity::{CLASSES, Quads, butterfly, sign};
 use proptest::prelude::*;
 
-use super::*;
+use super::super::{frame, integer, run};
+use crate::plan::Plan;
+use crate::plan::format::FRICTION_FRACTION;
+use crate::plan::product::{Coefficients, Epilogue, Product, Vector};
 
 /// The ends of a friction component's range, which is [-2, 2).
 const STEEP: [i64; 2] = [-(2 << FRICTION_FRACTION), (2 << FRICTION_FRACTION) - 1];
@@ -27,14 +30,14 @@ fn top(values: &[i64]) -> i64 {
 /// the largest weight or y+.
 fn check(plan: &Plan, stress: &[i64], friction: [i64; 2]) -> i64 {
     let folded = plan.formats.folded.unwrap();
-    let mut frame = Frame::new(plan, stress);
-    for product in &plan.products {
-        frame.multiply(product, friction, &folded);
-    }
+    let integers = integer::by_quad(plan);
+    let mut frame = frame(plan, &integers, stress);
+    run(plan, &integers, 0..plan.products.len(), friction, &mut frame);
     let within = |what: &str, found: i64, bound: i64| assert!(found <= bound, "{what} reaches {found} of {bound}");
-    for (vector, classes) in &frame.vectors {
-        for class in classes {
-            within(&vector.name(), top(class), folded.of(*vector).bound);
+    for product in &plan.products {
+        let pull = (product.epilogue == Epilogue::Part).then_some(Vector::Pull);
+        for vector in [Vector::Stress, product.result].into_iter().chain(pull) {
+            within(&vector.name(), top(frame.get(vector).as_flattened()), folded.of(vector).bound);
         }
     }
     let largest_weight = top(&frame.weight);
@@ -155,9 +158,9 @@ proptest! {
 #[test]
 fn folding_is_undone_but_for_a_factor_of_four() {
     for [columns, rows] in [[2, 2], [3, 3], [2, 5], [6, 4]] {
-        let quads = Quads::new(columns, rows);
-        let values: Vec<i64> = (0..(columns * rows) as i64).map(|taxel| 1000 - 37 * taxel * taxel).collect();
-        let four_times: Vec<i64> = values.iter().map(|value| 4 * value).collect();
-        assert_eq!(unfold(&quads, &fold(&quads, &values, 0)), four_times);
+        for members in Quads::new(columns, rows).all() {
+            let values = members.map(|taxel| 1000 - 37 * (taxel * taxel) as i64);
+            assert_eq!(butterfly(butterfly(values)), values.map(|value| 4 * value));
+        }
     }
 }

@@ -1,0 +1,32 @@
+//! The kinds of floating-point numbers.
+
+use std::fmt::Debug;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// f64 or f32.
+pub trait Float:
+    Copy
+    + Debug
+    + Default
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + Into<f64>
+{
+    /// The nearest number.
+    fn of(value: f64) -> Self;
+}
+
+impl Float for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+}
+
+impl Float for f32 {
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+}

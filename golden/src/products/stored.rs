@@ -1,0 +1,139 @@
+//! Stored matrices that real vectors are multiplied with.
+
+use nalgebra_sparse::CsrMatrix;
+
+use super::float::Float;
+use super::interpreter::ByPq;
+use super::list::Source;
+use crate::filter::FilteredMatrices;
+use crate::matrices::Matrices;
+use crate::parity::{CLASSES, butterfly};
+use crate::reduced::{FoldedRows, ReducedMatrices, SumRows};
+
+/// The matrices that the products of a list are with, for vectors of `W` values an element.
+pub trait Stored<const W: usize> {
+    /// The product with the matrix that `source` names. `scratch` has two vectors of four values a quad.
+    fn times<T: Float>(&self, source: Source, x: &[[T; W]], result: &mut [[T; W]], scratch: &mut Quarters<T>);
+
+    /// The sums `G_pq` from y+ and the weights.
+    fn sums<T: Float>(&self, pull: &[[T; W]], weight: &[[T; W]]) -> ByPq<T>;
+}
+
+impl<S: Stored<W>, const W: usize> Stored<W> for &S {
+    fn times<T: Float>(&self, source: Source, x: &[[T; W]], result: &mut [[T; W]], scratch: &mut Quarters<T>) {
+        (*self).times(source, x, result, scratch);
+    }
+
+    fn sums<T: Float>(&self, pull: &[[T; W]], weight: &[[T; W]]) -> ByPq<T> {
+        (*self).sums(pull, weight)
+    }
+}
+
+/// Two folded vectors.
+pub type Quarters<T> = [Vec<[T; CLASSES]>; 2];
+
+impl Stored<4> for ReducedMatrices {
+    fn times<T: Float>(&self, source: Source, x: &[[T; 4]], result: &mut [[T; 4]], _: &mut Quarters<T>) {
+        if let Source::Ten(name) = source {
+            times(self.get(name), x, result);
+        }
+    }
+
+    fn sums<T: Float>(&self, pull: &[[T; 4]], weight: &[[T; 4]]) -> ByPq<T> {
+        self.sum_rows().of(|quad, class| pull[quad][class], |quad, class| weight[quad][class])
+    }
+}
+
+impl SumRows {
+    /// The sums `G_pq` from what y+ and the weights have at a quad in a class.
+    pub(super) fn of<T: Float>(&self, pull: impl Fn(usize, usize) -> T, weight: impl Fn(usize, usize) -> T) -> ByPq<T> {
+        let mut sums = ByPq::<T>::default();
+        for (quad, &one) in self.total.weights.iter().enumerate() {
+            for (p, sums) in sums.iter_mut().enumerate() {
+                for (q, sum) in sums.iter_mut().enumerate() {
+                    let row = &self.rows[p][q];
+                    let value = if q == 0 { pull(quad, row.class) } else { weight(quad, row.class) };
+                    *sum = *sum + T::of(row.weights[quad]) * value;
+                }
+            }
+            sums[2][0] = sums[2][0] - T::of(one) * weight(quad, 0);
+        }
+        sums
+    }
+}
+
+/// The thirteen after the filter, and C33, which no filter touches and which needs no more than its blocks.
+#[derive(Clone, Debug)]
+pub struct PaperMatrices {
+    /// The thirteen.
+    pub filtered: FilteredMatrices,
+    c33: FoldedRows,
+    members: Vec<[usize; 4]>,
+}
+
+impl PaperMatrices {
+    /// Of one sensor.
+    pub fn new(matrices: &Matrices, filtered: FilteredMatrices) -> Self {
+        Self { filtered, c33: FoldedRows::from(&matrices.c33), members: matrices.quads().all() }
+    }
+}
+
+impl Stored<1> for PaperMatrices {
+    fn times<T: Float>(&self, source: Source, x: &[[T; 1]], result: &mut [[T; 1]], scratch: &mut Quarters<T>) {
+        let (x, result) = (x.as_flattened(), result.as_flattened_mut());
+        if let Source::Thirteen(name) = source {
+            return row_by_row(self.filtered.get(name), x, result);
+        }
+        let [folded, product] = scratch;
+        folded.clear();
+        folded.extend(self.members.iter().map(|taxels| butterfly(taxels.map(|taxel| x[taxel]))));
+        product.resize(folded.len(), Default::default());
+        times(&self.c33, folded, product);
+        for (taxels, product) in self.members.iter().zip(product) {
+            for (&taxel, sum) in taxels.iter().zip(butterfly(*product)) {
+                result[taxel] = T::of(0.25) * sum;
+            }
+        }
+    }
+
+    /// The paper's sums are those of the vectors `g_pq`.
+    fn sums<T: Float>(&self, _: &[[T; 1]], _: &[[T; 1]]) -> ByPq<T> {
+        ByPq::default()
+    }
+}
+
+/// The product of a folded matrix with a folded vector.
+fn times<T: Float>(matrix: &FoldedRows, x: &[[T; CLASSES]], result: &mut [[T; CLASSES]]) {
+    for (row, result) in matrix.rows.iter().zip(result) {
+        let mut sums = [T::default(); CLASSES];
+        for (column, [a, b, c, d]) in row {
+            let x = &x[*column as usize];
+            sums[0] = sums[0] + T::of(*a) * x[0];
+            sums[1] = sums[1] + T::of(*b) * x[1];
+            sums[2] = sums[2] + T::of(*c) * x[2];
+            sums[3] = sums[3] + T::of(*d) * x[3];
+        }
+        *result = [0, 1, 2, 3].map(|class| sums[class ^ matrix.parity]);
+    }
+}
+
+/// The product of a sparse matrix with a vector.
+fn row_by_row<T: Float>(matrix: &CsrMatrix<f64>, x: &[T], result: &mut [T]) {
+    let (offsets, columns, values) = matrix.csr_data();
+    for (row, result) in offsets.windows(2).zip(result) {
+        let entries = row[0]..row[1];
+        let (columns, columns_left) = columns[entries.clone()].as_chunks::<4>();
+        let (values, values_left) = values[entries].as_chunks::<4>();
+        // Four sums at a time: one alone would wait for each addition before it could begin the next.
+        let mut sums = [T::default(); 4];
+        for (&[i, j, k, l], &[a, b, c, d]) in columns.iter().zip(values) {
+            sums[0] = sums[0] + T::of(a) * x[i];
+            sums[1] = sums[1] + T::of(b) * x[j];
+            sums[2] = sums[2] + T::of(c) * x[k];
+            sums[3] = sums[3] + T::of(d) * x[l];
+        }
+        let left = columns_left.iter().zip(values_left);
+        let left = left.fold(T::default(), |sum, (&column, &value)| sum + T::of(value) * x[column]);
+        *result = (sums[0] + sums[1]) + (sums[2] + sums[3]) + left;
+    }
+}

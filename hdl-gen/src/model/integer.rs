@@ -1,0 +1,82 @@
+//! The arithmetic of a plan: integers, every product rounded to the step of its result.
+
+use golden::parity::CLASSES;
+use golden::products::{ByPq, Number, Scalar, Step};
+
+use crate::plan::Plan;
+use crate::plan::format::{FRICTION_FRACTION, round_shift};
+use crate::plan::formats::FOLD_BITS;
+use crate::plan::product::{SUM_ROWS, sum_way};
+
+/// The integers of a plan. Order of summation does not matter: every sum is exact in its width, by the bounds of the
+/// plan.
+#[derive(Clone, Copy, Debug)]
+pub struct Integer<'plan> {
+    plan: &'plan Plan,
+}
+
+/// The paper's plan has one value a taxel.
+pub fn by_taxel(plan: &Plan) -> Scalar<Integer<'_>, 1> {
+    Scalar::new(Integer { plan }, (0..plan.taxels()).map(|taxel| [taxel]).collect(), plan.taxels())
+}
+
+/// The reduced plan has four a quad.
+pub fn by_quad(plan: &Plan) -> Scalar<Integer<'_>, CLASSES> {
+    Scalar::new(Integer { plan }, plan.quads().all(), plan.taxels())
+}
+
+impl<const W: usize> Number<W> for Integer<'_> {
+    type Element = i64;
+    type Scratch = ();
+
+    fn scratch(&self) {}
+
+    fn multiply(&self, index: usize, step: &Step, operand: &[[i64; W]], result: &mut [[i64; W]], (): &mut ()) {
+        let shift = self.plan.products[index].shift;
+        for (row, result) in self.plan.matrices[step.matrix].rows.iter().zip(result) {
+            let mut sums = [0; W];
+            for (column, ways) in row {
+                for ((sum, &way), value) in sums.iter_mut().zip(ways).zip(operand[*column as usize]) {
+                    *sum += i64::from(way) * value;
+                }
+            }
+            *result = std::array::from_fn(|class| round_shift(sums[class ^ step.parity], shift));
+        }
+    }
+
+    fn combine(&self, index: usize, [a, b, c]: [i64; 3], [mu_x, mu_y]: [i64; 2]) -> i64 {
+        round_shift((a << FRICTION_FRACTION) + mu_x * b + mu_y * c, self.plan.products[index].shift)
+    }
+
+    fn sums(&self, index: usize, pull: &[[i64; W]], weight: &[[i64; W]]) -> ByPq<i64> {
+        let Some(lead) = self.plan.products[index].lead else { return ByPq::default() };
+        let matrix = &self.plan.matrices[lead.matrix];
+        let operand: [Vec<i64>; W] =
+            std::array::from_fn(|way| pull.iter().chain(weight).map(|element| element[way]).collect());
+        let row = |row: usize, way: usize| round_shift(matrix.row_product(row, way, &operand[way]), lead.shift);
+        let mut sums: ByPq<i64> = std::array::from_fn(|p| std::array::from_fn(|q| row(q, sum_way(p, q))));
+        sums[2][0] -= row(SUM_ROWS - 1, 0);
+        sums
+    }
+
+    fn folded_stress(&self, sum: i64) -> i64 {
+        round_shift(sum, self.plan.formats.folded.map_or(0, |_| FOLD_BITS))
+    }
+
+    fn folded_weight(&self, sum: i64) -> i64 {
+        let formats = &self.plan.formats;
+        round_shift(sum, formats.folded.map_or(0, |folded| (folded.weight.lsb - formats.weight.lsb) as u32))
+    }
+
+    /// Four times the taxels' values are, at a quarter of the step, the values.
+    fn unfolded(&self, sum: i64) -> i64 {
+        sum
+    }
+
+    fn added_stress(&self, _: usize, stress: i64) -> i64 {
+        match self.plan.formats.folded.map_or(0, |folded| folded.u.lsb - folded.stress.lsb) {
+            shift if shift >= 0 => round_shift(stress, shift as u32),
+            shift => stress << -shift,
+        }
+    }
+}
