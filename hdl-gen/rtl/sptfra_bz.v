@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Bz: takes frames of float32 stresses or counts from the stream, checks them, and writes them as fixed point into one of
-// two banks of the lanes' operand memories: taxel by taxel, or folded into parity classes.
+// Bz: takes frames of float32 stresses or counts from the stream, checks them, and writes them as fixed point into one
+// of two banks of the lanes' operand memories: taxel by taxel, or folded into parity classes.
 //
 // Beat to stress: 5 cycles, with counts 9; to the write, where taxels are folded, three more. One beat a cycle.
 // A frame is accepted while a bank is free and CeAn has finished the frame before. Frames of a wrong length are
@@ -179,8 +179,8 @@ module sptfra_bz #(
             assign fixed = number;
             assign saturated = number_saturated;
             assign not_finite = number_not_finite;
-            wire _unused = (PER_TAXEL != 0) || (GAIN != 0) || (OFFSET_BITS != 0) || (COUNT_SHIFT != 0) || (FULL_SCALE != 0)
-                || (STRESS_BOUND != 0) || (ROM_DIR != "") || (ROM_NAME != "");
+            wire _unused = (PER_TAXEL != 0) || (GAIN != 0) || (OFFSET_BITS != 0) || (COUNT_SHIFT != 0)
+                || (FULL_SCALE != 0) || (STRESS_BOUND != 0) || (ROM_DIR != "") || (ROM_NAME != "");
         end
     endgenerate
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Co: the sums G_pq of the coefficient vectors over the frame (Eqs. 11 to 13), and what of the results the lanes multiply
-// again.
+// Co: the sums G_pq of the coefficient vectors over the frame (Eqs. 11 to 13), and what of the results the lanes
+// multiply again.
 //
 // Of a folded grid the sums are dot products of y+ and |w| with constant rows, which the lanes compute; what is left of
 // the stress for the field passes through to the operand memories, in 1 cycle. Where taxels are not folded, the
@@ -17,7 +17,8 @@ module sptfra_co #(
     parameter ELEMENTS = 25,
     // Bits of a value
     parameter DATA_BITS = 27,
-    // Words of the operand memories; where r0, r1, r2 and r, or g30, g31 and g32, stand there, unless in the stress's bank
+    // Words of the operand memories; where r0, r1, r2 and r, or g30, g31 and g32, stand there, unless in the stress's
+    // bank
     parameter OPERAND_DEPTH = 200,
     parameter [63:0] STORE_BASES = 64'd0,
     parameter [3:0] STORE_IN_BANK = 4'd0,

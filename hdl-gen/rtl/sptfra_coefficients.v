@@ -3,8 +3,8 @@
 //
 // Coefficient vectors g_pq (Eqs. 11 to 13) and their sums over the frame, taxel by taxel.
 //
-// A_p b waits in a memory of its own until D_p0 w arrives; every finished g goes to the field memory, into the sum G_pq,
-// and, where the lanes multiply it again, to the operand memories. Result bus to g: 3 cycles.
+// A_p b waits in a memory of its own until D_p0 w arrives; every finished g goes to the field memory, into the sum
+// G_pq, and, where the lanes multiply it again, to the operand memories. Result bus to g: 3 cycles.
 
 `default_nettype none
 

@@ -106,8 +106,8 @@ module sptfra_counts #(
     reg signed [47:0] sum_3;
     reg [3:1] number_saturated_to;
     reg [4:1] not_finite_to;
-    wire signed [47:0] product_half = {{3{product_low_2[44]}}, product_low_2} + {{3{product_high_2[44]}}, product_high_2}
-        + HALF;
+    wire signed [47:0] product_half = {{3{product_low_2[44]}}, product_low_2}
+        + {{3{product_high_2[44]}}, product_high_2} + HALF;
     wire above = (sum_3 >= FULL_SCALE);
     wire below = (sum_3 <= -FULL_SCALE);
 

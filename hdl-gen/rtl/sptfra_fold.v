@@ -135,8 +135,10 @@ module sptfra_fold #(
     );
 
     localparam signed [DATA_BITS+1:0] HALF = 2; // half a step of the result, for the rounding
-    wire signed [DATA_BITS+1:0] even_above = centre[2] ? {even_2[DATA_BITS], even_2} : {upper_even[DATA_BITS], upper_even};
-    wire signed [DATA_BITS+1:0] odd_above = centre[2] ? {odd_2[DATA_BITS], odd_2} : {upper_odd[DATA_BITS], upper_odd};
+    wire signed [DATA_BITS+1:0] even_above = centre[2] ? {even_2[DATA_BITS], even_2}
+        : {upper_even[DATA_BITS], upper_even};
+    wire signed [DATA_BITS+1:0] odd_above = centre[2] ? {odd_2[DATA_BITS], odd_2}
+        : {upper_odd[DATA_BITS], upper_odd};
     wire signed [DATA_BITS+1:0] even_below = {even_2[DATA_BITS], even_2};
     wire signed [DATA_BITS+1:0] odd_below = {odd_2[DATA_BITS], odd_2};
     reg signed [DATA_BITS+1:0] sum_0;

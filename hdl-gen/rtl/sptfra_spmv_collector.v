@@ -175,8 +175,8 @@ module sptfra_spmv_collector #(
         end
     end
 
-    // ---- Round: half a step of the result, then the shift, both by destination. The format of each result was chosen so
-    // that its worst case fits: the bits above are copies of the sign
+    // ---- Round: half a step of the result, then the shift, both by destination. The format of each result was chosen
+    // so that its worst case fits: the bits above are copies of the sign
     wire [47:0] half = (48'd1 << visited_shift) >> 1;
     reg sum_valid;
     reg [DESTINATION_BITS-1:0] sum_destination;

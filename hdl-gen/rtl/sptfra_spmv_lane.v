@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// One SpMV lane: walks its own MCSR ROMs (values, columns, MACs per row), one multiply-accumulate a cycle in each of its
-// ways. With four ways these are the parity classes of the operand: same row, same column, own coefficient.
+// One SpMV lane: walks its own MCSR ROMs (values, columns, MACs per row), one multiply-accumulate a cycle in each of
+// its ways. With four ways these are the parity classes of the operand: same row, same column, own coefficient.
 //
 // Issue to result register: 7 cycles (ROM, address, operand memory, 3 for the MAC, carry). Initiation interval: 1.
 // Kinds of row segments: 0 row, 1 tail of a row begun in the lane before, 2 head of a row that the next lane

@@ -43,8 +43,8 @@ module sptfra_spmv_sequencer #(
     parameter [PROGRAMS*32-1:0] START_WORDS = {(PROGRAMS*32){1'b0}},
     parameter [PROGRAMS*16-1:0] START_SEGMENTS = {(PROGRAMS*16){1'b0}},
     parameter [PROGRAMS*32-1:0] START_VISITS = {(PROGRAMS*32){1'b0}},
-    // Whether some products pass over zeros, in rounds over dense rows: which do, which of them have no pieces of rows in
-    // front, which multiply y+ rather than |w|, and the first word of their dense rows
+    // Whether some products pass over zeros, in rounds over dense rows: which do, which of them have no pieces of rows
+    // in front, which multiply y+ rather than |w|, and the first word of their dense rows
     parameter SKIPS = 0,
     parameter [PRODUCTS-1:0] IN_ROUNDS = {PRODUCTS{1'b0}},
     parameter [PRODUCTS-1:0] ROUNDS_ONLY = {PRODUCTS{1'b0}},

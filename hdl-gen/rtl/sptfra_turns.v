@@ -14,8 +14,8 @@ module sptfra_turns #(
     parameter PROGRAMS = 3,
     // Frames that have a place until they are released; 0: nothing of a frame stays
     parameter PLACES = 4,
-    // 1: the next frame's first program goes ahead of a field whose search is not finished, best for the interval; 0: it
-    // waits until this field is under way, best for the latency under load
+    // 1: the next frame's first program goes ahead of a field whose search is not finished, best for the interval; 0:
+    // it waits until this field is under way, best for the latency under load
     parameter INTERVAL = 1
 ) (
     input  wire clock,

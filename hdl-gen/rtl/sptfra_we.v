@@ -3,7 +3,8 @@
 //
 // We: weights |w| = max(-y, 0) (Eq. 9) from y = C33inv b; of a folded grid also what pulls, y+ = max(y, 0).
 //
-// Taxels to operand memories: 1 cycle. Folded again into parity classes: 4 cycles for |w|, 5 for y+. The array adds one.
+// Taxels to operand memories: 1 cycle. Folded again into parity classes: 4 cycles for |w|, 5 for y+. The array adds
+// one.
 
 `default_nettype none
 

@@ -95,7 +95,7 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
         .number("COUNT_BITS", bits.into())
         .table("LENGTHS", bits, &of_each(&length, &name))
         .table("WAITS", bits, &of_each(&wait, &|_| String::new()))
-        .table("BASES", 16, &of_each(&base, &|index| products[index].operand().name()))
+        .table("BASES", 16, &of_each(&base, &|_| String::new()))
         .mask("OF_STRESS", &mask(&|index| place(index) == Some(Place::StressBank)))
         .mask("MARKS", &mask(&is_read_again))
         .mask("REWINDS", &mask(&|index| rereads(index).is_some()))

@@ -79,9 +79,14 @@ impl Parameters {
         self.expression(name, format!("{sign}{bits}'sd{}", value.unsigned_abs()))
     }
 
-    /// A table: numbers of `bits` bits each, the first in the lowest bits, each with a comment that says what it is of.
+    /// A table: numbers of `bits` bits each, the first in the lowest bits; each on a line of its own if there are comments
+    /// that say what it is of.
     #[must_use]
     pub fn table(self, name: &'static str, bits: u32, entries: &[(u64, String)]) -> Self {
+        if entries.iter().all(|(_, comment)| comment.is_empty()) {
+            let values: Vec<String> = entries.iter().rev().map(|(value, _)| format!("{bits}'d{value}")).collect();
+            return self.expression(name, format!("{{{}}}", values.join(", ")));
+        }
         let mut text = "{".to_owned();
         for (index, (value, comment)) in entries.iter().enumerate().rev() {
             let comma = if index == 0 { "" } else { "," };
@@ -191,5 +196,7 @@ mod tests {
                         8'd3 // 0: first\n        })\n    ) ";
         assert_eq!(parameters.verilog(), expected);
         assert_eq!(Parameters::new().verilog(), "");
+        let bare = Parameters::new().table("WAITS", 4, &[(1, String::new()), (2, String::new())]);
+        assert_eq!(bare.verilog(), "#(\n        .WAITS ({4'd2, 4'd1})\n    ) ");
     }
 }

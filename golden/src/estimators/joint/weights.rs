@@ -29,7 +29,7 @@ fn header([half_x, half_y]: [usize; 2]) -> String {
 }
 
 impl Correction {
-    /// The weights as CSV: [`Correction::read_csv`] reads them back.
+    /// The weights as CSV, in the form of `docs/formats.md`; a design reads them back.
     pub fn to_csv(&self) -> String {
         let mut text = header(self.half_window) + "\n";
         let [along_x, along_y] = &self.output;
