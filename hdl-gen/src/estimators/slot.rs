@@ -101,7 +101,7 @@ impl Cells {
 pub struct BlockCost {
     /// What the block is called.
     pub name: &'static str,
-    /// Its modules: the emitted module is this, or `NAME_` and this.
+    /// Its modules in `rtl/`.
     pub modules: &'static [&'static str],
     /// DSP48E2: one for each product that it forms in a cycle.
     pub dsp: usize,

@@ -25,7 +25,7 @@ const FIELD: &str = "field";
 pub struct BlockResources {
     /// What the block is called.
     pub name: &'static str,
-    /// Its modules: the emitted module is this, or `NAME_` and this, and all that it instantiates counts too.
+    /// Its modules in `rtl/`; all that they instantiate counts too.
     pub modules: &'static [&'static str],
     /// DSP48E2.
     pub dsp: usize,
@@ -93,24 +93,21 @@ impl Resources {
 /// The blocks with multipliers or memories, in the data's order.
 fn blocks(design: &Design, estimator: &dyn Slot, counts: Option<&CountsPlan>) -> Vec<BlockCost> {
     let block = |name, modules, dsp| BlockCost { name, modules, dsp };
-    let (field, output) = match (design.algorithm.outputs, design.algorithm.plan) {
-        (Outputs::Resultants, _) => (0, 0),
-        (Outputs::Field, PlanKind::Reduced) => (1, 0),
-        (Outputs::Field, PlanKind::Paper) => (0, 2),
+    let field = match (design.algorithm.outputs, design.algorithm.plan) {
+        (Outputs::Resultants, _) => 0,
+        (Outputs::Field, PlanKind::Reduced) => 1,
+        (Outputs::Field, PlanKind::Paper) => 2,
     };
     let mut blocks = vec![
-        block(BZ, &["bz", "fold"], usize::from(counts.is_some())),
+        block(BZ, &["sptfra_bz"], usize::from(counts.is_some())),
         estimator.contact_block(),
-        block(LANES, &["spmv_array"], design.hardware.lanes),
-        block(WE, &["we", "nonzeros"], 0),
-        block(CO, &["co", "unfold"], 0),
-        block(FIELD, &["field"], field),
+        block(LANES, &["sptfra_spmv_array"], design.hardware.lanes),
+        block(WE, &["sptfra_we"], 0),
+        block(CO, &["sptfra_co", "sptfra_unfold"], 0),
+        block(FIELD, &["sptfra_field", "sptfra_coefficient_field"], field),
     ];
     blocks.extend(estimator.search_blocks());
-    blocks.extend([
-        block("summary", &["op_summary", "sptfra_summary"], 1),
-        block("output", &["op_output", "sptfra_output"], output),
-    ]);
+    blocks.push(block("summary", &["sptfra_summary"], 1));
     blocks
 }
 
@@ -138,7 +135,10 @@ fn frame_memories(design: &Design, elements: usize) -> Vec<Memory> {
     let taxels = design.sensor.taxels();
     let data = design.hardware.data_bits;
     if design.algorithm.plan == PlanKind::Paper {
-        return vec![memory(CO, "A_p b", 1, 3 * taxels, data, false), memory(CO, "field", 3, 6 * taxels, data, false)];
+        return vec![
+            memory(CO, "A_p b", 1, 3 * taxels, data, false),
+            memory(FIELD, "field", 3, 6 * taxels, data, false),
+        ];
     }
     let mut memories = Vec::new();
     if design.hardware.skip_zeros {

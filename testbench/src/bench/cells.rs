@@ -116,10 +116,8 @@ pub fn count(file: &Path, metadata: &Path, statistics: &Path) -> Result<Cells, B
         .collect();
     blocks.push(Block { name: REST.to_owned(), yosys: Count::default(), predicted: Expected::default() });
     let rest = blocks.len() - 1;
-    let place = |module: &str| {
-        let suffix = module.strip_prefix(top.as_str()).and_then(|rest| rest.strip_prefix('_')).unwrap_or(module);
-        predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == suffix))
-    };
+    let place =
+        |module: &str| predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == module));
     // A module with the block of the one that instantiates it, and how often it is there.
     let mut waiting = vec![(top.clone(), rest, 1)];
     while let Some((key, parent, times)) = waiting.pop() {
@@ -197,13 +195,13 @@ mod tests {
     use super::*;
 
     const METADATA: &str = r#"{ "top": "t", "predicted": { "dsp": 3, "bram36": 1.0, "blocks": [
-        { "name": "lanes", "modules": ["spmv_array"], "dsp": 2, "bram36": 1.0 },
-        { "name": "field", "modules": ["field"], "dsp": 1, "bram36": 0.0 } ] } }"#;
+        { "name": "lanes", "modules": ["sptfra_spmv_array"], "dsp": 2, "bram36": 1.0 },
+        { "name": "field", "modules": ["sptfra_field"], "dsp": 1, "bram36": 0.0 } ] } }"#;
     const STATISTICS: &str = r#"{ "modules": {
-        "\\t": { "num_cells_by_type": { "LUT2": 3, "$paramod$1\\t_spmv_array": 1, "t_field": 1 } },
-        "$paramod$1\\t_spmv_array": { "num_cells_by_type": { "sptfra_mac": 2, "RAMB18E2": 3, "$paramod\\ram\\W=s'1": 1 } },
+        "\\t": { "num_cells_by_type": { "LUT2": 3, "$paramod$1\\sptfra_spmv_array": 1, "sptfra_field": 1 } },
+        "$paramod$1\\sptfra_spmv_array": { "num_cells_by_type": { "sptfra_mac": 2, "RAMB18E2": 3, "$paramod\\ram\\W=s'1": 1 } },
         "$paramod\\ram\\W=s'1": { "num_cells_by_type": { "RAM64M8": 2 } },
-        "\\t_field": { "num_cells_by_type": { "sptfra_mac": 1 } },
+        "\\sptfra_field": { "num_cells_by_type": { "sptfra_mac": 1 } },
         "\\sptfra_mac": { "num_cells_by_type": { "DSP48E2": 1, "FDRE": 5, "CARRY4": 2 } } } }"#;
 
     #[test]

@@ -74,13 +74,13 @@ impl Slot for LinePlan {
     }
 
     fn contact_block(&self) -> BlockCost {
-        BlockCost { name: "CeAn", modules: &["cean", "sptfra_cean"], dsp: 1 }
+        BlockCost { name: "CeAn", modules: &["sptfra_cean"], dsp: 1 }
     }
 
     fn search_blocks(&self) -> Vec<BlockCost> {
         vec![
-            BlockCost { name: "line", modules: &["op_line", "sptfra_line"], dsp: 1 },
-            BlockCost { name: "cells", modules: &["op_search", "sptfra_search"], dsp: self.cells.cells },
+            BlockCost { name: "line", modules: &["sptfra_line"], dsp: 1 },
+            BlockCost { name: "cells", modules: &["sptfra_search"], dsp: self.cells.cells },
         ]
     }
 
