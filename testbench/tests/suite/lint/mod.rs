@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::path::PathBuf;
 use std::process::Command;
 
 use crate::support::random;
@@ -69,8 +70,9 @@ impl Written {
         fs::read_to_string(self.folder.path().join(format!("rtl/{module}.v"))).expect("written above")
     }
 
+    /// With their whole paths, which no library has a file at.
     fn sources(&self) -> impl Iterator<Item = String> {
-        self.modules.iter().map(|module| format!("../rtl/{module}.v"))
+        self.modules.iter().map(|module| self.folder.path().join(format!("rtl/{module}.v")).display().to_string())
     }
 
     /// Runs a tool beside the ROM files, where the parameter `ROM_DIR` looks for them unless it is set; what the tool
@@ -120,12 +122,18 @@ fn tops(all: &[Written]) -> Vec<(&Written, &str)> {
     tops
 }
 
+/// Where a tool finds what a module instantiates with its default parameters and the design does without.
+fn library() -> [PathBuf; 2] {
+    ["-y".into(), crate::support::workspace("hdl-gen/rtl")]
+}
+
 #[test]
 fn verilator_accepts_every_module_as_a_top() {
     let all = in_parallel(&designs(), Written::new);
     assert_silent(in_parallel(&tops(&all), |&(written, module)| {
         let mut verilator = tools::verilator().expect("installed");
-        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(written.sources());
+        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(library());
+        verilator.args(written.sources());
         vec![written.run(verilator)]
     }));
 }
@@ -135,7 +143,7 @@ fn icarus_accepts_every_module_as_a_top() {
     let all = in_parallel(&designs(), Written::new);
     assert_silent(in_parallel(&tops(&all), |&(written, module)| {
         let mut icarus = tools::icarus().expect("installed");
-        icarus.args(["-Wall", "-g2005", "-t", "null", "-s", module]).args(written.sources());
+        icarus.args(["-Wall", "-g2005", "-t", "null", "-s", module]).args(library()).args(written.sources());
         vec![written.run(icarus)]
     }));
 }
