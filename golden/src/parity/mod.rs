@@ -118,14 +118,13 @@ impl Quads {
 }
 
 /// `out[c]` is the sum over s of `sign(c, s) * x[s]`; on a centre line the differences are zero to the bit. Of one value
-/// it is that.
+/// it is that: W is 4 or 1.
+#[inline]
 pub fn butterfly<T: Copy + Add<Output = T> + Sub<Output = T>, const W: usize>(mut x: [T; W]) -> [T; W] {
-    let mut half = 1;
-    while half < W {
-        for low in (0..W).filter(|index| index & half == 0) {
-            (x[low], x[low + half]) = (x[low] + x[low + half], x[low] - x[low + half]);
-        }
-        half *= 2;
+    // Known when it is compiled, and written out: this is in every loop over quads.
+    if W == 4 {
+        let (even, odd) = ([x[0] + x[1], x[2] + x[3]], [x[0] - x[1], x[2] - x[3]]);
+        (x[0], x[1], x[2], x[3]) = (even[0] + even[1], odd[0] + odd[1], even[0] - even[1], odd[0] - odd[1]);
     }
     x
 }

@@ -19,13 +19,18 @@ pub trait Float:
     fn of(value: f64) -> Self;
 }
 
+// Always inline: these stand in the innermost loop, and development builds inline little by themselves.
+#[expect(clippy::inline_always, reason = "the innermost loop of every product")]
 impl Float for f64 {
+    #[inline(always)]
     fn of(value: f64) -> Self {
         value
     }
 }
 
+#[expect(clippy::inline_always, reason = "the innermost loop of every product")]
 impl Float for f32 {
+    #[inline(always)]
     fn of(value: f64) -> Self {
         value as Self
     }

@@ -10,9 +10,9 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::compare::Comparison;
 use testbench::stream::{INITIAL_RESET, Mode, Outcome, Pacing, Pattern, Reset, Traffic, exchange};
+use testbench::stream_words::{Answer, decode, encode};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
-use testbench::words::{Answer, decode, encode};
 
 const LONG: usize = 1200;
 /// Frames among as many that must have each status, so that a mode shows it more than once.

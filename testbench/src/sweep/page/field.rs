@@ -1,8 +1,8 @@
 //! One frame: the stress that the sensor feels and the forces that the hardware finds.
 
+use crate::stream_words::Answer;
 use crate::svg::{INK, Svg};
 use crate::sweep::point::Geometry;
-use crate::words::Answer;
 
 const WIDTH: f64 = 370.0;
 const MARGIN: f64 = 12.0;

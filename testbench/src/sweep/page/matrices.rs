@@ -70,7 +70,7 @@ pub fn sparsity(matrices: &Matrices, filters: &[MatrixFilter]) -> Vec<Figure> {
             let level = |row: usize, column: usize| usize::from(keeps[row * dense.ncols() + column]);
             let svg = pixels(dense.nrows(), &[DROPPED, KEPT], 0, level, &format!("Entries of C33inv kept by {filter}"));
             let name = filter.to_string().replace("f1 l=", "F1 L = ").replace("f2 p=", "F2 p = ");
-            Figure { svg, caption: format!("{name}: {} kept", crate::table::grouped(kept.nnz() as u64)) }
+            Figure { svg, caption: format!("{name}: {} kept", crate::figures::grouped(kept.nnz() as u64)) }
         })
         .collect()
 }

@@ -8,7 +8,7 @@ pub mod paper;
 pub mod tables;
 
 use golden::choose::choose;
-use golden::design::{Design, Filter, MatrixFilter, Outputs};
+use golden::design::{Design, Estimator, Filter, MatrixFilter, Outputs};
 use golden::matrices::Matrices;
 use golden::metrics::Outcome;
 use hdl_gen::plan::Plan;
@@ -18,13 +18,12 @@ use thiserror::Error;
 
 use crate::hard::judge::Row;
 use crate::sweep::evaluate::answers;
-use crate::sweep::grid::{sensor_title, sensors};
-use crate::sweep::point::{Geometry, Point, Verified};
+use crate::sweep::point::{Geometry, Point, Verified, sensor_title, sensors};
 use crate::sweep::{Sweep, SweepError, SweepScene};
+use crate::table::Table;
 use matrices::Figure;
-use tables::Table;
 
-const TEMPLATE: &str = include_str!("../../templates/report.html.tera");
+const TEMPLATE: &str = include_str!("../../../templates/report.html.tera");
 /// The name ends so that text is escaped.
 const NAME: &str = "report.html";
 /// Larger sensors have too many entries for a picture of each.
@@ -235,7 +234,7 @@ fn widths(points: &[&Point]) -> Vec<Figure> {
         let mut series: Vec<(String, Vec<(u32, f64)>)> = Vec::new();
         for point in points.iter().filter(|point| other(point) == usual && point.lanes == 16) {
             let Some(error) = point.against_solver.and_then(|error| error.field_max) else { continue };
-            let estimator = if point.estimator == "line" { "" } else { ", joint estimator" };
+            let estimator = if point.estimator == Estimator::Line { "" } else { ", joint estimator" };
             let name = format!("{}, {}{estimator}", point.plan, point.filter_title());
             match series.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, values)) => values.push((bits(point), error)),

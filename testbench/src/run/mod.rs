@@ -1,5 +1,8 @@
 //! `testbench run`: a design and frames in, a [`Report`] out.
 
+pub mod page;
+pub mod report;
+
 use std::path::{Path, PathBuf};
 
 use golden::design::Design;
@@ -12,12 +15,12 @@ use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
 use crate::registers;
-use crate::report::Report;
 use crate::simulate::frames_to_simulate;
+use crate::stream_words::{Answer, as_received, decode, packets};
 use crate::trial::{Trial, TrialError, planned, rtl_sources};
 use crate::verilate::{Effort, Trace, Verilate, verilator_version};
 use crate::waves;
-use crate::words::{Answer, as_received, decode, packets};
+use report::Report;
 
 /// Why a run has no report.
 #[derive(Debug, Error)]

@@ -1,17 +1,23 @@
 //! The hard cases as cells, and as a page of text.
 
-use super::judge::{Judged, Row};
-use crate::markdown::Page;
+use golden::design::Estimator;
+use serde::Serialize;
 
-/// The rows of one table.
-#[derive(Clone, Debug)]
+use super::judge::{Judged, Row};
+use crate::figures::{or_dash, percent, scientific};
+use crate::markdown::Page;
+use crate::table::{Cell, Table};
+
+/// Style of what must not be.
+const BAD: &str = "bad";
+
+/// The cases about one thing, by one estimator.
+#[derive(Clone, Debug, Serialize)]
 pub struct Group {
     /// Its heading.
     pub title: String,
-    /// Names of the columns.
-    pub header: Vec<&'static str>,
-    /// Cells, row by row.
-    pub rows: Vec<Vec<String>>,
+    /// Case by case.
+    pub table: Table,
     /// Why rows have no hardware.
     pub refusals: Vec<String>,
 }
@@ -48,73 +54,76 @@ pub fn groups(rows: &[Row]) -> Vec<Group> {
             true
         }
     });
-    let of = |wanted: &'static str, estimator: &str| {
+    let of = |wanted: &'static str, estimator| {
         let own: Vec<&Row> = rows.iter().filter(|row| title(row) == wanted && row.estimator == estimator).collect();
-        let is_line = estimator == "line";
+        let is_line = estimator == Estimator::Line;
+        let table = if is_line {
+            Table::new(LINE_HEADER).with(own.iter().map(|row| line_cells(row)))
+        } else {
+            Table::new(JOINT_HEADER).with(own.iter().map(|row| joint_cells(row)))
+        };
         (!own.is_empty()).then(|| Group {
             title: if is_line { wanted.to_owned() } else { format!("{wanted}, {estimator} estimator") },
-            header: if is_line { LINE_HEADER.to_vec() } else { JOINT_HEADER.to_vec() },
-            rows: own.iter().map(|row| if is_line { line_cells(row) } else { joint_cells(row) }).collect(),
+            table: table.ending_in_words(),
             // The joint estimator needs the same matrices: it is refused for the same reason.
             refusals: if is_line { refusals(&own) } else { Vec::new() },
         })
     };
-    titles.into_iter().flat_map(|title| ["line", "joint"].map(|estimator| of(title, estimator))).flatten().collect()
+    titles
+        .into_iter()
+        .flat_map(|title| [Estimator::Line, Estimator::Joint].map(|estimator| of(title, estimator)))
+        .flatten()
+        .collect()
 }
 
-fn or_dash(value: Option<f64>, show: fn(f64) -> String) -> String {
-    value.map_or_else(|| "–".to_owned(), show)
-}
-
-fn line_cells(row: &Row) -> Vec<String> {
+fn line_cells(row: &Row) -> Vec<Cell> {
     let all = [&row.f64, &row.f32, &row.fixed];
     let each = |value: fn(&Judged) -> Option<f64>, show: fn(f64) -> String| {
         all.map(|judged| or_dash(judged.as_ref().and_then(value), show))
     };
-    let mut cells = vec![row.case.clone()];
-    cells.extend([row.condition_c33, row.condition_aat].map(|condition| or_dash(condition, scientific)));
-    cells.extend(each(|judged| judged.backward, scientific));
-    cells.extend(each(|judged| judged.tangential, percent));
-    cells.extend(each(|judged| judged.normal, percent));
-    cells.extend(hardware_cells(row));
-    cells
+    let conditions = [row.condition_c33, row.condition_aat].map(|condition| or_dash(condition, scientific));
+    let figures = conditions
+        .into_iter()
+        .chain(each(|judged| judged.backward, scientific))
+        .chain(each(|judged| judged.tangential, percent))
+        .chain(each(|judged| judged.normal, percent));
+    cells(row, figures)
 }
 
-fn joint_cells(row: &Row) -> Vec<String> {
+fn joint_cells(row: &Row) -> Vec<Cell> {
     let each = |value: fn(&Judged) -> Option<f64>| {
         [&row.f64, &row.fixed].map(|judged| or_dash(judged.as_ref().and_then(value), percent))
     };
-    let mut cells = vec![row.case.clone()];
-    cells.extend(each(|judged| judged.tangential));
-    cells.extend(each(|judged| judged.normal));
-    cells.extend(hardware_cells(row));
+    cells(row, each(|judged| judged.tangential).into_iter().chain(each(|judged| judged.normal)))
+}
+
+/// The case, its figures, error of the field, RTL, status.
+fn cells(row: &Row, figures: impl Iterator<Item = String>) -> Vec<Cell> {
+    let field = or_dash(row.fixed.as_ref().and_then(|judged| judged.against_f64), scientific);
+    let rtl = match row.rtl_is_model {
+        Some(true) => "= model".into(),
+        Some(false) => Cell::new("DIFFERS", BAD),
+        None => "–".into(),
+    };
+    let mut cells: Vec<Cell> = [row.case.clone()].into_iter().chain(figures).chain([field]).map(Cell::from).collect();
+    cells.extend([rtl, status(row)]);
     cells
 }
 
-/// Error of the field, RTL, status.
-fn hardware_cells(row: &Row) -> [String; 3] {
-    let field = or_dash(row.fixed.as_ref().and_then(|judged| judged.against_f64), scientific);
-    let rtl = match row.rtl_is_model {
-        Some(true) => "= model",
-        Some(false) => "DIFFERS",
-        None => "–",
-    };
-    [field, rtl.to_owned(), status(row)]
-}
-
 /// The status of the hardware's frames, or why there is none.
-fn status(row: &Row) -> String {
+fn status(row: &Row) -> Cell {
     let words = |judged: &Judged| {
+        let class = if judged.silent > 0 { BAD } else { "" };
         let mut words: Vec<String> = judged.status.iter().map(|(name, count)| format!("{count} {name}")).collect();
         if judged.silent > 0 {
             words.push(format!("{} SILENTLY WRONG", judged.silent));
         }
-        words.join(", ")
+        Cell::new(words.join(", "), class)
     };
     match (&row.fixed, &row.refusal) {
         (Some(judged), _) => words(judged),
-        (None, Some(_)) => "refused".to_owned(),
-        (None, None) => String::new(),
+        (None, Some(_)) => Cell::new("refused", BAD),
+        (None, None) => Cell::default(),
     }
 }
 
@@ -165,7 +174,7 @@ pub fn markdown(rows: &[Row]) -> String {
     );
     for group in groups(rows) {
         page.heading(&group.title);
-        page.table(&group.header, group.rows.into_iter());
+        page.table(&group.table);
         for refusal in group.refusals {
             page.line(&format!("Refused, {refusal}."));
         }
@@ -188,38 +197,9 @@ fn title(row: &Row) -> &'static str {
 
 /// The tables for people.
 pub fn text(rows: &[Row]) -> String {
-    let mut text = String::new();
-    for Group { title, header, rows, refusals } in groups(rows) {
-        let header: Vec<String> = header.into_iter().map(str::to_owned).collect();
-        let lines: Vec<&Vec<String>> = std::iter::once(&header).chain(&rows).collect();
-        let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or_default();
-        let widths: Vec<usize> = (0..header.len()).map(width).collect();
-        if !text.is_empty() {
-            text.push('\n');
-        }
-        text += &(title + "\n\n");
-        for line in &lines {
-            let mut row = String::new();
-            for (column, (cell, &width)) in line.iter().zip(&widths).enumerate() {
-                let padding = " ".repeat(width - cell.chars().count());
-                let left = column == 0 || column == header.len() - 1;
-                let [first, second] = if left { [cell.as_str(), &padding] } else { [padding.as_str(), cell] };
-                row.extend([first, second, "  "]);
-            }
-            text += row.trim_end();
-            text.push('\n');
-        }
-        for refusal in refusals {
-            text += &("\nrefused, ".to_owned() + &refusal + "\n");
-        }
-    }
-    text
-}
-
-fn scientific(value: f64) -> String {
-    if value != 0.0 && !(0.1..1000.0).contains(&value.abs()) { format!("{value:.0e}") } else { format!("{value:.1}") }
-}
-
-fn percent(value: f64) -> String {
-    if value < 1000.0 { format!("{value:.1}") } else { format!("{value:.0e}") }
+    let texts = groups(rows).into_iter().map(|Group { title, table, refusals }| {
+        let refused: String = refusals.iter().map(|refusal| format!("\nrefused, {refusal}\n")).collect();
+        format!("{title}\n\n{}{refused}", table.text(0, 0))
+    });
+    texts.collect::<Vec<_>>().join("\n")
 }

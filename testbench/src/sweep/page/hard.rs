@@ -1,12 +1,12 @@
 //! The hard cases on the page: their table, and what regularisation does to deep sensors.
 
+use golden::design::Estimator;
 use serde::Serialize;
 
 use super::matrices::Figure;
-use super::tables::{Cell, Table, cell};
 use crate::hard::cases::{DEPTHS, NOISE, PLAIN, REGULARISED};
 use crate::hard::judge::{Judged, Row};
-use crate::hard::render;
+use crate::hard::tables::{Group, groups};
 use crate::svg::{Axis, INK, Svg, power};
 
 const WIDTH: f64 = 480.0;
@@ -28,26 +28,10 @@ pub struct Section {
     refusals: Vec<String>,
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct Group {
-    title: String,
-    table: Table,
-}
-
 /// The section of rows.
 pub fn section(rows: &[Row]) -> Section {
-    let tables = render::groups(rows);
-    let refusals = tables.iter().flat_map(|group| group.refusals.clone()).collect();
-    let groups = tables
-        .into_iter()
-        .map(|group| Group {
-            title: group.title,
-            table: Table {
-                header: group.header.into_iter().map(str::to_owned).collect(),
-                rows: group.rows.into_iter().map(styled).collect(),
-            },
-        })
-        .collect();
+    let groups = groups(rows);
+    let refusals = groups.iter().flat_map(|group| group.refusals.clone()).collect();
     let tangential: fn(&Judged) -> Option<f64> = |judged| judged.tangential;
     let normal: fn(&Judged) -> Option<f64> = |judged| judged.normal;
     let depths = [("tangential force", tangential), ("normal force", normal)]
@@ -61,24 +45,6 @@ pub fn section(rows: &[Row]) -> Section {
         })
         .to_vec();
     Section { depths, groups, refusals }
-}
-
-fn styled(row: Vec<String>) -> Vec<Cell> {
-    let last = row.len() - 1;
-    let class = |column: usize, text: &str| {
-        if text.contains("SILENTLY") || text == "DIFFERS" || text == "refused" {
-            "bad"
-        } else if column == last {
-            "left"
-        } else {
-            ""
-        }
-    };
-    row.into_iter()
-        .enumerate()
-        .map(|(column, text)| (class(column, &text), text))
-        .map(|(c, text)| cell(text, c))
-        .collect()
 }
 
 /// Error over depth, both logarithmic.
@@ -97,8 +63,9 @@ fn depths(rows: &[Row], value: fn(&Judged) -> Option<f64>, what: &str) -> String
         svg.text((x.from - 8.0, place + 4.0), "end", INK, &power(decade));
     }
     for (number, (name, group, colour, dashes)) in LINES.into_iter().enumerate() {
-        let of_group =
-            rows.iter().filter(|row| row.estimator == "line" && row.group == group && row.case.contains(&noisy));
+        let of_group = rows
+            .iter()
+            .filter(|row| row.estimator == Estimator::Line && row.group == group && row.case.contains(&noisy));
         let places: Vec<(f64, f64)> = DEPTHS
             .into_iter()
             .zip(of_group)

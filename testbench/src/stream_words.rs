@@ -1,5 +1,7 @@
 //! Frames as the words of the two streams.
 
+use golden::solver::Solution;
+
 /// Summary beats in front of the field.
 pub const SUMMARY_BEATS: usize = 8;
 
@@ -51,6 +53,20 @@ pub struct Answer {
     pub mu_xy: [f64; 2],
     /// `f_x`, `f_y`, `f_z` in N, each of m values; empty for a design that puts out resultants only.
     pub field: [Vec<f64>; 3],
+}
+
+impl From<Solution> for Answer {
+    fn from(solution: Solution) -> Self {
+        Self {
+            status: solution.status.0,
+            counter: 0,
+            resultant: solution.resultant,
+            mu: solution.mu,
+            phi: solution.phi,
+            mu_xy: [solution.mu_x, solution.mu_y],
+            field: solution.field,
+        }
+    }
 }
 
 /// Reads an output frame of 8 summary beats and three beats per taxel; `None` if its length is another.

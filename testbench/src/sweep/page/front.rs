@@ -1,5 +1,7 @@
 //! Latency against error, and what width and lanes do to both.
 
+use golden::design::{Estimator, PlanKind};
+
 use super::paper::TABLE_3;
 use crate::svg::{Axis, INK, MARK, Svg, power};
 use crate::sweep::point::{Hardware, Point, paper_sensor};
@@ -13,8 +15,8 @@ const BOTTOM: f64 = 52.0;
 /// What a point is drawn in: its name, its colour, and which points they are.
 type Kind = (&'static str, &'static str, fn(&Point) -> bool);
 const KINDS: [Kind; 6] = [
-    ("reduced plan, no filter", "#0b84d8", |point| point.plan == "reduced" && point.filter == "none"),
-    ("reduced plan, F1 or F2", "#62b6f0", |point| point.plan == "reduced"),
+    ("reduced plan, no filter", "#0b84d8", |point| point.plan == PlanKind::Reduced && point.filter == "none"),
+    ("reduced plan, F1 or F2", "#62b6f0", |point| point.plan == PlanKind::Reduced),
     ("paper's plan, no filter", "#8a6d3b", |point| point.filter == "none"),
     ("paper's plan, F1", "#d9730d", |point| point.filter.starts_with("f1")),
     ("paper's plan, F2", "#e0a800", |point| point.filter.starts_with("f2")),
@@ -36,7 +38,7 @@ pub fn legend(points: &[Point]) -> Legend {
 }
 
 fn style(point: &Point) -> (&'static str, &'static str) {
-    if point.estimator == "joint" {
+    if point.estimator == Estimator::Joint {
         return JOINT;
     }
     let kind = KINDS.iter().find(|(_, _, is)| is(point)).unwrap_or(&KINDS[0]);

@@ -1,47 +1,26 @@
 //! Tables 1 and 3 of the paper beside the points of a sweep.
 
+use golden::design::{Estimator, PlanKind};
 use golden::matrices::MatrixName;
 use golden::metrics::ErrorSummary;
-use serde::Serialize;
 
 use super::matrices::symbol;
 use super::paper::{TABLE_1, TABLE_3};
+use crate::figures::grouped;
 use crate::sweep::point::{Point, paper_sensor};
-use crate::table::grouped;
+use crate::table::{Cell, Table};
 
 /// Widths and lanes of the shipped designs, by which points are looked up.
 const BASE: (u32, u32, usize) = (18, 27, 16);
 
-/// A cell with its class of style.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Cell {
-    /// What it says.
-    pub text: String,
-    /// Empty, `paper`, `same` or `ours`.
-    pub class: &'static str,
-}
-
-/// A table of a page.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Table {
-    /// Above the columns.
-    pub header: Vec<String>,
-    /// Row by row.
-    pub rows: Vec<Vec<Cell>>,
-}
-
-pub(super) fn cell(text: impl Into<String>, class: &'static str) -> Cell {
-    Cell { text: text.into(), class }
-}
-
 /// The line estimator's point of a filter and a plan, in the usual widths and lanes, on one scene.
-pub fn find<'a>(points: &[&'a Point], filter: &str, plan: &str) -> Option<&'a Point> {
-    find_by(points, filter, plan, "line")
+pub fn find<'a>(points: &[&'a Point], filter: &str, plan: PlanKind) -> Option<&'a Point> {
+    find_by(points, filter, plan, Estimator::Line)
 }
 
-fn find_by<'a>(points: &[&'a Point], filter: &str, plan: &str, estimator: &str) -> Option<&'a Point> {
+fn find_by<'a>(points: &[&'a Point], filter: &str, plan: PlanKind, estimator: Estimator) -> Option<&'a Point> {
     points.iter().copied().find(|point| {
-        (point.filter.as_str(), point.plan.as_str(), point.estimator.as_str()) == (filter, plan, estimator)
+        (point.filter.as_str(), point.plan, point.estimator) == (filter, plan, estimator)
             && (point.coefficient_bits, point.data_bits, point.lanes) == BASE
     })
 }
@@ -54,20 +33,20 @@ pub fn table_1(points: &[&Point]) -> Option<Table> {
     header.push("mean µ".to_owned());
     let mut rows = Vec::new();
     for row in TABLE_1.iter().filter(|row| row.sensor == number) {
-        let mut paper = vec![cell(row.name, "name"), cell("paper", "paper")];
-        paper.extend(row.nnz.map(|count| cell(grouped(count as u64), "paper")));
-        paper.push(cell(format!("{:.2}", row.mean_mu), "paper"));
+        let mut paper = vec![Cell::new(row.name, "name"), Cell::new("paper", "paper")];
+        paper.extend(row.nnz.map(|count| Cell::new(grouped(count as u64), "paper")));
+        paper.push(Cell::new(format!("{:.2}", row.mean_mu), "paper"));
         rows.push(paper);
-        let Some(point) = find(points, row.filter, "paper") else { continue };
-        let mut ours = vec![cell("", "name"), cell("ours", "")];
+        let Some(point) = find(points, row.filter, PlanKind::Paper) else { continue };
+        let mut ours = vec![Cell::new("", "name"), Cell::new("ours", "")];
         for (name, printed) in MatrixName::ALL.into_iter().zip(row.nnz) {
             let count = point.nnz.get(&name.to_string()).copied().unwrap_or_default();
-            ours.push(cell(grouped(count as u64), if count == printed { "same" } else { "" }));
+            ours.push(Cell::new(grouped(count as u64), if count == printed { "same" } else { "" }));
         }
-        ours.push(cell(format!("{:.2}", point.mean_mu), ""));
+        ours.push(Cell::new(format!("{:.2}", point.mean_mu), ""));
         rows.push(ours);
     }
-    Some(Table { header, rows })
+    Some(Table::new(header).with(rows))
 }
 
 /// Table 3: errors and times, the paper's and ours; `None` for a sensor that is not the paper's.
@@ -81,12 +60,12 @@ pub fn table_3(points: &[&Point]) -> Option<Table> {
     header.push("verified by".to_owned());
     let mut rows = Vec::new();
     for row in TABLE_3.iter().filter(|row| row.sensor == number) {
-        let mut paper = vec![cell(format!("{}, paper", row.name), "paper")];
-        paper.extend(row.max.iter().chain(&row.standard_error).map(|error| cell(format!("{error:.2}"), "paper")));
-        paper.push(cell(format!("{:.2} ms", row.milliseconds), "paper"));
-        paper.push(cell(if row.software { "software" } else { "" }, "paper"));
+        let mut paper = vec![Cell::new(format!("{}, paper", row.name), "paper")];
+        paper.extend(row.max.iter().chain(&row.standard_error).map(|error| Cell::new(format!("{error:.2}"), "paper")));
+        paper.push(Cell::new(format!("{:.2} ms", row.milliseconds), "paper"));
+        paper.push(Cell::new(if row.software { "software" } else { "" }, "paper"));
         rows.push(paper);
-        if let Some(point) = find(points, row.filter, "paper") {
+        if let Some(point) = find(points, row.filter, PlanKind::Paper) {
             if row.software {
                 rows.push(errors("f64 solver, no filter", &point.solver_errors, "", "software"));
             } else {
@@ -94,31 +73,31 @@ pub fn table_3(points: &[&Point]) -> Option<Table> {
             }
         }
     }
-    if let Some(point) = find(points, "none", "reduced") {
+    if let Some(point) = find(points, "none", PlanKind::Reduced) {
         rows.push(of_point("reduced plan, no filter", point, "ours"));
     }
-    if let Some(point) = find_by(points, "none", "reduced", "joint") {
+    if let Some(point) = find_by(points, "none", PlanKind::Reduced, Estimator::Joint) {
         rows.push(of_point("reduced plan, joint estimator", point, "ours"));
     }
-    Some(Table { header, rows })
+    Some(Table::new(header).with(rows))
 }
 
 fn of_point(name: &str, point: &Point, class: &'static str) -> Vec<Cell> {
     let mut row = errors(name, &point.errors, class, point.verified.title());
     if let Some(hardware) = &point.hardware {
         let time = row.len() - 2;
-        row[time] = cell(format!("{:.1} µs", hardware.latency_us), class);
+        row[time] = Cell::new(format!("{:.1} µs", hardware.latency_us), class);
     }
     row
 }
 
 fn errors(name: &str, errors: &ErrorSummary, class: &'static str, verified: &str) -> Vec<Cell> {
     let spreads = errors.spreads();
-    let mut row = vec![cell(name, class)];
-    row.extend(spreads.iter().map(|spread| cell(format!("{:.2}", spread.max), class)));
-    row.extend(spreads.iter().map(|spread| cell(format!("{:.2}", spread.standard_error), class)));
-    row.push(cell("", class));
-    row.push(cell(verified, class));
+    let mut row = vec![Cell::new(name, class)];
+    row.extend(spreads.iter().map(|spread| Cell::new(format!("{:.2}", spread.max), class)));
+    row.extend(spreads.iter().map(|spread| Cell::new(format!("{:.2}", spread.standard_error), class)));
+    row.push(Cell::new("", class));
+    row.push(Cell::new(verified, class));
     row
 }
 
@@ -136,10 +115,8 @@ pub fn lanes(points: &[&Point]) -> Table {
         "RAMB36",
         "ROM, kbit",
         "entries",
-    ]
-    .map(str::to_owned)
-    .to_vec();
-    let mut rows: Vec<(&Point, Vec<Cell>)> = Vec::new();
+    ];
+    let mut rows: Vec<(&Point, [String; 11])> = Vec::new();
     for point in points.iter().filter(|point| (point.coefficient_bits, point.data_bits) == (BASE.0, BASE.1)) {
         let Some(hardware) = &point.hardware else { continue };
         let of_lanes = |other: &&&Point| {
@@ -153,9 +130,9 @@ pub fn lanes(points: &[&Point]) -> Table {
         }
         let rate = 1e6 / hardware.interval_us;
         let cells = [
-            point.plan.clone(),
+            point.plan.to_string(),
             point.filter_title(),
-            point.estimator.clone(),
+            point.estimator.to_string(),
             point.lanes.to_string(),
             format!("{} ({:.1} µs)", grouped(hardware.latency_cycles), hardware.latency_us),
             grouped(hardware.interval_cycles),
@@ -165,15 +142,15 @@ pub fn lanes(points: &[&Point]) -> Table {
             grouped(hardware.rom_bits / 1000),
             grouped(point.nnz_total as u64),
         ];
-        rows.push((*point, cells.into_iter().map(|text| cell(text, "")).collect()));
+        rows.push((*point, cells));
     }
     rows.sort_by(|(a, _), (b, _)| {
         let of = |point: &Point| {
-            let Point { plan, filter, estimator, lanes, .. } = point.clone();
-            (std::cmp::Reverse(plan), filter, std::cmp::Reverse(estimator), lanes)
+            let (paper, joint) = (point.plan == PlanKind::Paper, point.estimator == Estimator::Joint);
+            (paper, point.filter.clone(), joint, point.lanes)
         };
         of(a).cmp(&of(b))
     });
     rows.dedup_by(|a, b| a.1 == b.1);
-    Table { header, rows: rows.into_iter().map(|(_, cells)| cells).collect() }
+    Table::new(header).with(rows.into_iter().map(|(_, cells)| cells))
 }

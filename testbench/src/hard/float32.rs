@@ -9,7 +9,7 @@ use golden::products::{Engine, ProductList};
 use golden::reduced::ReducedMatrices;
 use golden::solver::{Solver, Status};
 
-use crate::words::Answer;
+use crate::stream_words::Answer;
 
 /// Bisections of each search: as many as a float32 has bits.
 const STEPS: usize = 24;
