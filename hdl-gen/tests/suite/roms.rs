@@ -181,7 +181,8 @@ fn listings(files: &FileMap) -> BTreeMap<String, Rows> {
     for name in files.keys().filter(|name| name.starts_with("mcsr/")) {
         let (comments, rows): (Vec<&str>, Vec<&str>) =
             text(files, name).lines().partition(|line| line.starts_with('#'));
-        let matrix = comments[0].strip_prefix("# ").unwrap().split(" of design").next().unwrap();
+        let named = comments.iter().find_map(|line| line.strip_prefix("# ")?.split_once(" of design "));
+        let matrix = named.unwrap().0;
         let parsed = rows.iter().enumerate().map(|(index, line)| {
             let (head, entries) = line.split_once(" |").unwrap();
             let (row, macs) = head.split_once(": ").unwrap();
