@@ -1,6 +1,8 @@
 //! What other tools say of the emitted Verilog: not one warning.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::path::PathBuf;
 use std::process::Command;
 
 use crate::support::random;
@@ -64,8 +66,13 @@ impl Written {
         Self { name: design.name.clone(), folder, modules: files.keys().filter_map(module).collect() }
     }
 
+    fn read(&self, module: &str) -> String {
+        fs::read_to_string(self.folder.path().join(format!("rtl/{module}.v"))).expect("written above")
+    }
+
+    /// With their whole paths, which no library has a file at.
     fn sources(&self) -> impl Iterator<Item = String> {
-        self.modules.iter().map(|module| format!("../rtl/{module}.v"))
+        self.modules.iter().map(|module| self.folder.path().join(format!("rtl/{module}.v")).display().to_string())
     }
 
     /// Runs a tool beside the ROM files, where the parameter `ROM_DIR` looks for them unless it is set; what the tool
@@ -83,30 +90,61 @@ fn assert_silent(complaints: Vec<Vec<String>>) {
     assert!(all.is_empty(), "{}", all.join("\n"));
 }
 
+/// Every module that any of the designs has, as a top, and a design that has it. The same text above the same texts
+/// stands here once.
+fn tops(all: &[Written]) -> Vec<(&Written, &str)> {
+    let mut seen = BTreeSet::new();
+    let mut tops = Vec::new();
+    for written in all {
+        let texts: BTreeMap<&str, String> =
+            written.modules.iter().map(|module| (module.as_str(), written.read(module))).collect();
+        assert!(texts.len() >= 20 && texts.contains_key(written.name.as_str()), "{:?}", written.modules);
+        for &top in texts.keys() {
+            let mut inside = BTreeMap::new();
+            let mut open = vec![top];
+            while let Some(module) = open.pop() {
+                let text = &texts[module];
+                if inside.insert(module, text.clone()).is_none() {
+                    let words = text.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_');
+                    open.extend(words.filter_map(|word| texts.get_key_value(word)).map(|(&module, _)| module));
+                }
+            }
+            let inside: Vec<(String, String)> =
+                inside.into_iter().map(|(name, text)| (name.to_owned(), text)).collect();
+            if seen.insert((top.to_owned(), inside)) {
+                tops.push((written, top));
+            }
+        }
+    }
+    let names: BTreeSet<&str> = tops.iter().map(|&(_, top)| top).collect();
+    let all_names: BTreeSet<&str> = all.iter().flat_map(|written| &written.modules).map(String::as_str).collect();
+    assert_eq!(names, all_names, "every module is there");
+    tops
+}
+
+/// Where a tool finds what a module instantiates with its default parameters and the design does without.
+fn library() -> [PathBuf; 2] {
+    ["-y".into(), crate::support::workspace("hdl-gen/rtl")]
+}
+
 #[test]
 fn verilator_accepts_every_module_as_a_top() {
-    assert_silent(in_parallel(&designs(), |design| {
-        let written = Written::new(design);
-        assert!(written.modules.len() >= 20 && written.modules.contains(&written.name), "{:?}", written.modules);
-        let lint = |module: &String| {
-            let mut verilator = tools::verilator().expect("installed");
-            verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(written.sources());
-            written.run(verilator)
-        };
-        written.modules.iter().map(lint).collect()
+    let all = in_parallel(&designs(), Written::new);
+    assert_silent(in_parallel(&tops(&all), |&(written, module)| {
+        let mut verilator = tools::verilator().expect("installed");
+        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(library());
+        verilator.args(written.sources());
+        vec![written.run(verilator)]
     }));
 }
 
 #[test]
 fn icarus_accepts_every_module_as_a_top() {
-    assert_silent(in_parallel(&designs(), |design| {
-        let written = Written::new(design);
-        let lint = |module: &String| {
-            let mut icarus = tools::icarus().expect("installed");
-            icarus.args(["-Wall", "-g2005", "-t", "null", "-s", module]).args(written.sources());
-            written.run(icarus)
-        };
-        written.modules.iter().map(lint).collect()
+    let all = in_parallel(&designs(), Written::new);
+    assert_silent(in_parallel(&tops(&all), |&(written, module)| {
+        let mut icarus = tools::icarus().expect("installed");
+        icarus.args(["-Wall", "-g2005", "-t", "null", "-s", module]).args(library()).args(written.sources());
+        vec![written.run(icarus)]
     }));
 }
 

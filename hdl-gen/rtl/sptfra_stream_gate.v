@@ -1,8 +1,14 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
 // Soft reset of a core between two AXI4-Streams that may not notice: no beat on offer is withdrawn, no packet out cut.
 //
 // On request the output goes on until the packet it has begun is sent, then closes; the core is reset for one cycle;
 // both streams open again. The packet coming in, if there is one, is taken to its TLAST and dropped, however long that
 // takes; the next one is a frame again. Outside of that both streams pass in the same cycle.
+
+`default_nettype none
+
 module sptfra_stream_gate (
     input  wire clock,
     input  wire reset,
@@ -78,3 +84,5 @@ module sptfra_stream_gate (
     end
 
 endmodule
+
+`default_nettype wire

@@ -1,4 +1,10 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
 // Counts frames and measures their cycles, from the handshakes of a core's two streams. Sixteen frames may be inside.
+
+`default_nettype none
+
 module sptfra_frame_meter (
     input  wire clock,
     input  wire reset,
@@ -83,3 +89,5 @@ module sptfra_frame_meter (
     end
 
 endmodule
+
+`default_nettype wire

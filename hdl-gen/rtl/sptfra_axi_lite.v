@@ -1,8 +1,14 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
 // AXI4-Lite, 32 bits: takes write address and write data in either order, one write and one read at a time, and turns
 // them into accesses of a register bank that answers in the same cycle.
 //
 // Address and data are registered on the way in, responses on the way out; SLVERR where no register is. A write acts in
 // the cycle after the later of its address and data, once the response before it is taken.
+
+`default_nettype none
+
 module sptfra_axi_lite (
     input  wire clock,
     input  wire reset,
@@ -56,7 +62,7 @@ module sptfra_axi_lite (
     assign write_enable = write_acts && write_mapped;
     assign write_word = write_word_held;
     assign write_data = write_data_held;
-    assign write_mask = { {8{strobes_held[3]} }, {8{strobes_held[2]} }, {8{strobes_held[1]} }, {8{strobes_held[0]} }};
+    assign write_mask = {{8{strobes_held[3]}}, {8{strobes_held[2]}}, {8{strobes_held[1]}}, {8{strobes_held[0]}}};
 
     always @(posedge clock) begin
         if (s_awvalid && s_awready) begin
@@ -123,3 +129,5 @@ module sptfra_axi_lite (
     wire _unused = &{1'b0, s_awaddr[1:0], s_araddr[1:0]};
 
 endmodule
+
+`default_nettype wire

@@ -1,7 +1,46 @@
-// The registers of control/{{ name }}.rdl: constants, soft reset, status, interrupts, counters.
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
 //
-// Reads answer in the same cycle. A soft reset clears counters, not interrupts.
-module {{ name }}_registers (
+// The registers behind the AXI4-Lite port: what the design is, soft reset, status, interrupts, counters.
+//
+// Reads answer in the same cycle. A soft reset clears counters, not interrupts. The map is that of the design's
+// control/NAME.rdl.
+
+`default_nettype none
+
+module sptfra_registers #(
+    // Version of the register map
+    parameter [7:0] MAP_VERSION = 8'd1,
+    // Version of the generator
+    parameter [7:0] MAJOR = 8'd0,
+    parameter [7:0] MINOR = 8'd0,
+    parameter [7:0] PATCH = 8'd0,
+    // The design's hash, as in metadata.json
+    parameter [63:0] HASH = 64'd0,
+    // Taxels in x and in y
+    parameter [7:0] COLUMNS = 8'd4,
+    parameter [7:0] ROWS = 8'd3,
+    // Multiply-accumulate lanes
+    parameter [7:0] LANES = 8'd4,
+    // Beats of a frame
+    parameter [15:0] WORDS_IN = 16'd12,
+    parameter [15:0] WORDS_OUT = 16'd8,
+    // The forces of each taxel go out too
+    parameter [0:0] HAS_FIELD = 1'd0,
+    // The reduced plan, else the paper's
+    parameter [0:0] IS_REDUCED = 1'd1,
+    // Frames hold counts, else pascals
+    parameter [0:0] HAS_COUNTS = 1'd0,
+    // Cycles depend on the data
+    parameter [0:0] SKIPS_ZEROS = 1'd0,
+    // The design's clock
+    parameter [31:0] CLOCK_KHZ = 32'd125000,
+    // Largest stress in Pa, a float32
+    parameter [31:0] FULL_SCALE = 32'd0,
+    // Predicted cycles of a frame alone, first beat in to last beat out, and between frames
+    parameter [31:0] LATENCY_CYCLES = 32'd0,
+    parameter [31:0] INTERVAL_CYCLES = 32'd0
+) (
     input  wire clock,
     input  wire reset,
     // Accesses
@@ -31,6 +70,8 @@ module {{ name }}_registers (
     output reg  irq
 );
 
+    // "TFRA" in ASCII
+    localparam [31:0] MAGIC = 32'h54465241;
     // Addresses, in words
     localparam [9:0] IDENTITY = 10'd0;
     localparam [9:0] VERSION = 10'd1;
@@ -40,7 +81,7 @@ module {{ name }}_registers (
     localparam [9:0] FRAME = 10'd5;
     localparam [9:0] FEATURES = 10'd6;
     localparam [9:0] CLOCK = 10'd7;
-    localparam [9:0] FULL_SCALE = 10'd8;
+    localparam [9:0] FULL_SCALE_PASCALS = 10'd8;
     localparam [9:0] PREDICTED_LATENCY = 10'd9;
     localparam [9:0] PREDICTED_INTERVAL = 10'd10;
     localparam [9:0] CONTROL = 10'd16;
@@ -66,17 +107,17 @@ module {{ name }}_registers (
     // ---- Reads
     always @(*) begin
         case (read_word)
-            IDENTITY: read_data = 32'h54465241;
-            VERSION: read_data = {8'd{{ map_version }}, 8'd{{ major }}, 8'd{{ minor }}, 8'd{{ patch }}};
-            HASH_LOW: read_data = 32'h{{ hash_low }};
-            HASH_HIGH: read_data = 32'h{{ hash_high }};
-            GEOMETRY: read_data = {8'd0, 8'd{{ lanes }}, 8'd{{ rows }}, 8'd{{ columns }}};
-            FRAME: read_data = {16'd{{ words_out }}, 16'd{{ words_in }}};
-            FEATURES: read_data = {28'd0, 1'd{{ skips_zeros }}, 1'd{{ has_counts }}, 1'd{{ is_reduced }}, 1'd{{ has_field }}};
-            CLOCK: read_data = 32'd{{ clock_khz }};
-            FULL_SCALE: read_data = 32'h{{ full_scale }};
-            PREDICTED_LATENCY: read_data = 32'd{{ latency_cycles }};
-            PREDICTED_INTERVAL: read_data = 32'd{{ interval_cycles }};
+            IDENTITY: read_data = MAGIC;
+            VERSION: read_data = {MAP_VERSION, MAJOR, MINOR, PATCH};
+            HASH_LOW: read_data = HASH[31:0];
+            HASH_HIGH: read_data = HASH[63:32];
+            GEOMETRY: read_data = {8'd0, LANES, ROWS, COLUMNS};
+            FRAME: read_data = {WORDS_OUT, WORDS_IN};
+            FEATURES: read_data = {28'd0, SKIPS_ZEROS, HAS_COUNTS, IS_REDUCED, HAS_FIELD};
+            CLOCK: read_data = CLOCK_KHZ;
+            FULL_SCALE_PASCALS: read_data = FULL_SCALE;
+            PREDICTED_LATENCY: read_data = LATENCY_CYCLES;
+            PREDICTED_INTERVAL: read_data = INTERVAL_CYCLES;
             STATUS: read_data = {28'd0, sending, receiving, discarding, resetting};
             INTERRUPT_ENABLE: read_data = {30'd0, enabled};
             INTERRUPT_STATUS: read_data = {30'd0, pending};
@@ -114,3 +155,5 @@ module {{ name }}_registers (
     wire _unused = &{1'b0, write_data[31:2], write_mask[31:2]};
 
 endmodule
+
+`default_nettype wire
