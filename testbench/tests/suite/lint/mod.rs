@@ -1,10 +1,12 @@
 //! What other tools say of the emitted Verilog: not one warning.
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::path::PathBuf;
 use std::process::Command;
 
 use crate::support::random;
-use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
+use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes, workspace};
 use golden::design::{Design, Estimator, Outputs, PlanKind};
 use hdl_gen::emit::emit;
 use tempfile::TempDir;
@@ -83,30 +85,71 @@ fn assert_silent(complaints: Vec<Vec<String>>) {
     assert!(all.is_empty(), "{}", all.join("\n"));
 }
 
+/// The library as it stands, with other implementations of its modules for the second kind of fabric.
+const LIBRARIES: [&[&str]; 2] = [&["hdl-gen/rtl"], &["hdl-gen/rtl", "hdl-gen/rtl/ecp5"]];
+
+/// `(module, file)` of the modules in the folders, the last of those with one name.
+fn library(folders: &[&str]) -> BTreeMap<String, PathBuf> {
+    let entries = folders.iter().flat_map(|folder| fs::read_dir(workspace(folder)).expect("the library"));
+    let files = entries.map(|entry| entry.expect("readable").path());
+    let verilog = files.filter(|file| file.extension().is_some_and(|extension| extension == "v"));
+    verilog.map(|file| (file.file_stem().expect("a name").to_string_lossy().into_owned(), file)).collect()
+}
+
+/// What `lint` has to say of every module of the library, as a top with the parameters that it has by default.
+fn of_the_library(lint: &(dyn Fn(&str) -> Command + Sync)) -> Vec<Vec<String>> {
+    in_parallel(&LIBRARIES, |folders| {
+        let modules = library(folders);
+        assert!(modules.len() > 50, "{:?}", modules.keys());
+        let said = |module: &String| {
+            let output = lint(module).args(modules.values()).output().expect("the tool starts");
+            let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+            if output.status.success() { said.into_owned() } else { format!("{module}: {}\n{said}", output.status) }
+        };
+        modules.keys().map(said).collect()
+    })
+}
+
+fn verilator(top: &str) -> Command {
+    let mut verilator = tools::verilator().expect("installed");
+    verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", top]);
+    verilator
+}
+
+fn icarus(top: &str) -> Command {
+    let mut icarus = tools::icarus().expect("installed");
+    icarus.args(["-Wall", "-g2005", "-t", "null", "-s", top]);
+    icarus
+}
+
 #[test]
-fn verilator_accepts_every_module_as_a_top() {
+fn verilator_accepts_every_module_of_the_library_as_a_top() {
+    assert_silent(of_the_library(&verilator));
+}
+
+#[test]
+fn icarus_accepts_every_module_of_the_library_as_a_top() {
+    assert_silent(of_the_library(&icarus));
+}
+
+#[test]
+fn verilator_accepts_every_design() {
     assert_silent(in_parallel(&designs(), |design| {
         let written = Written::new(design);
         assert!(written.modules.len() >= 20 && written.modules.contains(&written.name), "{:?}", written.modules);
-        let lint = |module: &String| {
-            let mut verilator = tools::verilator().expect("installed");
-            verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(written.sources());
-            written.run(verilator)
-        };
-        written.modules.iter().map(lint).collect()
+        let mut verilator = verilator(&written.name);
+        verilator.args(written.sources());
+        vec![written.run(verilator)]
     }));
 }
 
 #[test]
-fn icarus_accepts_every_module_as_a_top() {
+fn icarus_accepts_every_design() {
     assert_silent(in_parallel(&designs(), |design| {
         let written = Written::new(design);
-        let lint = |module: &String| {
-            let mut icarus = tools::icarus().expect("installed");
-            icarus.args(["-Wall", "-g2005", "-t", "null", "-s", module]).args(written.sources());
-            written.run(icarus)
-        };
-        written.modules.iter().map(lint).collect()
+        let mut icarus = icarus(&written.name);
+        icarus.args(written.sources());
+        vec![written.run(icarus)]
     }));
 }
 
