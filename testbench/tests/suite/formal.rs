@@ -27,8 +27,9 @@ struct Proof {
     design: fn(&mut Design),
     /// What is defined for the harness, which may have other ways for other designs.
     defines: &'static [&'static str],
-    /// The module that the harness instantiates.
+    /// The module that the harness instantiates, and its parameters, as `chparam` takes them.
     top: &'static str,
+    parameters: &'static str,
     /// Files of `formal/` that take the place of generated modules.
     models: &'static [(&'static str, &'static str)],
     /// Whose outputs may be anything in any cycle: instances by the pattern of their module, then wires by name.
@@ -134,6 +135,7 @@ const PROOFS: &[Proof] = &[
         design: reduced,
         defines: &[],
         top: "sptfra_axis_skid",
+        parameters: "",
         models: &[],
         free: &[],
         free_wires: &[],
@@ -154,7 +156,8 @@ const PROOFS: &[Proof] = &[
         harness: "bz",
         design: reduced,
         defines: &[],
-        top: "sptfra_bz -chparam COLUMNS 4 -chparam ROWS 3",
+        top: "sptfra_bz",
+        parameters: "-set COLUMNS 4 -set ROWS 3",
         models: &[("sptfra_float_to_fixed", "float_model")],
         free: &["*sptfra_ram*"],
         free_wires: &[],
@@ -177,7 +180,8 @@ const PROOFS: &[Proof] = &[
         harness: "bz",
         design: paper,
         defines: &["PAPER"],
-        top: "sptfra_bz -chparam COLUMNS 4 -chparam ROWS 3 -chparam WAYS 1",
+        top: "sptfra_bz",
+        parameters: "-set COLUMNS 4 -set ROWS 3 -set WAYS 1",
         models: &[("sptfra_float_to_fixed", "float_model")],
         free: &[],
         free_wires: &[],
@@ -196,6 +200,7 @@ const PROOFS: &[Proof] = &[
         design: paper,
         defines: &["FIELD"],
         top: "subject",
+        parameters: "",
         models: &[("sptfra_spmv_array", "resultants_lanes")],
         free: FREE,
         free_wires: &[],
@@ -208,6 +213,7 @@ const PROOFS: &[Proof] = &[
         design: reduced,
         defines: &[],
         top: "subject",
+        parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
         free: FREE,
         free_wires: &["turns.residual_written"],
@@ -220,6 +226,7 @@ const PROOFS: &[Proof] = &[
         design: reduced_for_latency,
         defines: &["LATENCY"],
         top: "subject",
+        parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
         free: FREE,
         free_wires: &["turns.residual_written"],
@@ -232,6 +239,7 @@ const PROOFS: &[Proof] = &[
         design: reduced_with_zeros_skipped,
         defines: &[],
         top: "subject",
+        parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
         free: FREE,
         free_wires: &["turns.residual_written"],
@@ -244,6 +252,7 @@ const PROOFS: &[Proof] = &[
         design: joint,
         defines: &["JOINT"],
         top: "subject",
+        parameters: "",
         models: &[("sptfra_spmv_array", "reduced_lanes")],
         free: FREE,
         free_wires: &["turns.residual_written"],
@@ -256,6 +265,7 @@ const PROOFS: &[Proof] = &[
         design: resultants,
         defines: &[],
         top: "subject",
+        parameters: "",
         models: &[("sptfra_spmv_array", "resultants_lanes")],
         free: FREE,
         free_wires: &[],
@@ -307,7 +317,12 @@ impl Proof {
             }
         }
         let harness = fs::read_to_string(folder.path().join(format!("{}.sv", self.harness))).expect("there");
-        let mut script = vec![read.join(" "), format!("hierarchy -top {}", self.top), "proc".to_owned()];
+        let mut script = vec![read.join(" ")];
+        if !self.parameters.is_empty() {
+            // Modules that are read and not elaborated yet have this prefix.
+            script.push(format!("chparam {} $abstract\\{}", self.parameters, self.top));
+        }
+        script.extend([format!("hierarchy -top {}", self.top), "proc".to_owned()]);
         if !self.free.is_empty() {
             script.push(format!("cutpoint t:{}", self.free.join(" t:")));
         }
