@@ -5,8 +5,8 @@ MAKEFLAGS += --no-builtin-rules
 
 CARGO  ?= cargo
 TARGET := $(or $(CARGO_TARGET_DIR),target)
-# The development profile: its dependencies are optimised, a frame is simulated by compiled C++ in any profile, and
-# `make run` and `make test` share one build. A release build would take minutes more to save under a second.
+# The development profile: what computes in it is optimised, a frame is simulated by compiled C++ in any profile, and
+# `make test` builds on what `make run` has built. A release build would take minutes more to save under a second.
 BIN    := $(TARGET)/debug
 # All but the leaf cores: their Verilog lies in git, and only a test prints it anew.
 PACKAGES := -p golden -p hdl-gen -p testbench
@@ -38,9 +38,14 @@ run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a l
 	@echo
 	@$(BIN)/testbench run designs/bed-mat.toml --frames data/bed_mat_64x27.csv --labels 2
 
+# What fails soonest comes first: formatting and lints, then the crates in the order in which they use each other.
 .PHONY: test
-test: tools sweep-tools lint ## Everything: formatting, lints, all tests of all crates
+test: lint tools sweep-tools ## Everything: formatting, lints, all tests of all crates
 	$(CARGO) test --workspace
+
+.PHONY: test-times
+test-times: tools sweep-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
+	@tools/test_times.py
 
 .PHONY: formal
 formal: tools ## Prove the stream rules and the frame handshake with Yosys and z3 (part of `make test`)

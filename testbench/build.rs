@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 /// What decides a result, from this crate's folder on.
-const SOURCES: [&str; 5] = ["../golden/src", "../hdl-gen/src", "../hdl-gen/templates/rtl", "src", "../Cargo.lock"];
+const SOURCES: [&str; 6] =
+    ["../golden/src", "../hdl-gen/src", "../hdl-gen/rtl", "../hdl-gen/templates/rtl", "src", "../Cargo.lock"];
 
 fn main() -> io::Result<()> {
     let mut digest = Sha256::new();

@@ -42,4 +42,4 @@ pub mod scene;
 pub mod sensor;
 pub mod solver;
 pub mod status;
-mod words;
+pub mod words;

@@ -181,7 +181,7 @@ module sptfra_cordic (
     assign done = finished;
 
     // Bits left unread on purpose.
-    wire unused = &{1'b0, along_bits, turned_bits, 1'b0};
+    wire _unused = &{1'b0, along_bits, turned_bits};
 
 endmodule
 

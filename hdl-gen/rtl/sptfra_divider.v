@@ -65,7 +65,7 @@ module sptfra_divider (
     assign done = finished;
 
     // Bits left unread on purpose.
-    wire unused = &{1'b0, trial, 1'b0};
+    wire _unused = &{1'b0, trial};
 
 endmodule
 

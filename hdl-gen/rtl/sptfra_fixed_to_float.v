@@ -178,7 +178,7 @@ module sptfra_fixed_to_float (
     assign float_bits = result;
 
     // Bits left unread on purpose.
-    wire unused = &{1'b0, by_one, 1'b0};
+    wire _unused = &{1'b0, by_one};
 
 endmodule
 

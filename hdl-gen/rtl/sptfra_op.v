@@ -74,7 +74,7 @@ module sptfra_op #(
     reg summary_saturated;
     reg summary_busy;
     reg summary_there;
-    reg field_there;
+    reg [1:0] fields_there; // that no output has begun of: without a friction to wait for, two
     wire friction_done;
     wire summary_done;
     wire dependent_clipped;
@@ -85,7 +85,7 @@ module sptfra_op #(
     wire signed [9:0] friction_exponent;
     wire signed [31:0] angle;
     wire output_idle;
-    wire output_start = summary_there && output_idle && ((FIELD == 0) || field_there);
+    wire output_start = summary_there && output_idle && ((FIELD == 0) || (fields_there != 2'd0));
 
     assign answer_take = answer_valid && !summary_busy;
 
@@ -111,19 +111,16 @@ module sptfra_op #(
         if (field_start) begin
             friction_known <= 1'b0;
         end
-        if (field_complete) begin
-            field_there <= 1'b1;
-        end
+        fields_there <= fields_there + {1'b0, field_complete} - {1'b0, output_start && (FIELD != 0)};
         if (output_start) begin
             summary_busy <= 1'b0;
             summary_there <= 1'b0;
-            field_there <= 1'b0;
         end
         if (reset) begin
             summary_busy <= 1'b0;
             summary_there <= 1'b0;
             friction_known <= 1'b0;
-            field_there <= 1'b0;
+            fields_there <= 2'd0;
         end
     end
 

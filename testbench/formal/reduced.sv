@@ -39,7 +39,8 @@ module harness (
     wire search_done;
     wire summary_busy;
     wire summary_there;
-    wire field_there;
+    wire [1:0] fields_there;
+    wire field_there = fields_there[0];
     wire friction_done;
     wire summary_done;
     wire output_start;
@@ -94,7 +95,7 @@ module harness (
         .\estimator.search_done (search_done),
         .\op.summary_busy (summary_busy),
         .\op.summary_there (summary_there),
-        .\op.field_there (field_there),
+        .\op.fields_there (fields_there),
         .\op.friction_done (friction_done),
         .\op.summary_done (summary_done),
         .\op.output_start (output_start),
@@ -244,6 +245,7 @@ module harness (
             assert (summary_there == (summary_busy && !summary_due));
             assert (friction_known == (summary_busy && !friction_due && !field_started));
             assert (!field_started || (summary_busy && !friction_due));
+            assert (!fields_there[1]); // here the lanes wait for the friction, and one place would do
             assert (!field_there || field_started);
             assert (open[2] == (field_started && !field_there));
             // The beats of a frame pass the output's stages without a gap, the last one marked

@@ -4,7 +4,7 @@ use golden::metrics::{ErrorSummary, Outcome, field_error};
 use golden::solver::{Solution, Status};
 use serde::{Deserialize, Serialize};
 
-use crate::words::Answer;
+use crate::stream_words::Answer;
 
 /// Largest errors against the f64 solver with the same filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -56,9 +56,14 @@ pub struct StatusCounts {
 impl StatusCounts {
     /// Counts the answers.
     pub fn new(answers: &[Answer]) -> Self {
-        let with = |bit: Status| answers.iter().filter(|answer| Status(answer.status).contains(bit)).count();
+        Self::of(&answers.iter().map(|answer| Status(answer.status)).collect::<Vec<_>>())
+    }
+
+    /// Counts statuses.
+    pub fn of(statuses: &[Status]) -> Self {
+        let with = |bit: Status| statuses.iter().filter(|status| status.contains(bit)).count();
         Self {
-            good: answers.iter().filter(|answer| answer.status == 0).count(),
+            good: statuses.iter().filter(|status| status.0 == 0).count(),
             no_contact: with(Status::NO_CONTACT),
             direction_unknown: with(Status::DIRECTION_UNKNOWN),
             at_bound: with(Status::AT_BOUND),

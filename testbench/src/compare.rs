@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::words::beat_name;
+use crate::stream_words::beat_name;
 
 /// Mismatches kept for the report; all are counted.
 const KEPT: usize = 8;

@@ -25,10 +25,18 @@ impl FrameSet {
     /// # Errors
     /// [`SceneError`] if the scene cannot be computed for this geometry.
     pub fn standing(sensor: &Sensor) -> Result<Self, SceneError> {
-        let frames = Scene::standing(sensor).frames()?;
+        Self::of_scene(&Scene::standing(sensor), "the sensor's standing scene")
+    }
+
+    /// The frames of a scene.
+    ///
+    /// # Errors
+    /// [`SceneError`] if it cannot be computed.
+    pub fn of_scene(scene: &Scene, origin: impl Into<String>) -> Result<Self, SceneError> {
+        let frames = scene.frames()?;
         let truth = frames.iter().map(Outcome::from).collect();
         let stress = frames.into_iter().map(|frame| frame.stress).collect();
-        Ok(Self { origin: "the sensor's standing scene".to_owned(), stress, truth: Some(truth) })
+        Ok(Self { origin: origin.into(), stress, truth: Some(truth) })
     }
 
     /// The same frames as the design's sensor delivers them: in counts, whole ones, if it counts.

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::table::Table;
+
 /// Characters of a line of running text.
 const PAGE_WIDTH: usize = 120;
 
@@ -47,11 +49,8 @@ impl Page {
         let _ = write!(self.0, "\n```sh\n{command}\n```\n");
     }
 
-    /// The first column to the left, the others to the right.
-    pub fn table(&mut self, header: &[&str], rows: impl Iterator<Item = Vec<String>>) {
-        let _ = write!(self.0, "\n| {} |\n|---{}|\n", header.join(" | "), "|---:".repeat(header.len() - 1));
-        for row in rows {
-            let _ = writeln!(self.0, "| {} |", row.join(" | "));
-        }
+    /// A table.
+    pub fn table(&mut self, table: &Table) {
+        let _ = write!(self.0, "\n{}", table.markdown());
     }
 }

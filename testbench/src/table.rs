@@ -1,214 +1,150 @@
-//! A report as a page of text.
+//! Tables: made once, shown in a terminal, on a page of Markdown, or by a template of HTML.
 
-use std::fmt::Write;
+use serde::Serialize;
 
-use golden::metrics::ERROR_NAMES;
+/// Between two columns of a terminal.
+const GAP: usize = 2;
+/// Rows of a terminal stand in from their header.
+const INDENT: &str = "  ";
 
-use crate::report::{Published, Report};
-use crate::trial::Timing;
-
-const LEFT: usize = 26;
-const COLUMN: usize = 15;
-
-/// The whole page, without colours: it reads the same in a file.
-pub fn render(report: &Report) -> String {
-    let mut page = Page::default();
-    page.line(&report.design);
-    page.line(&report.description);
-    page.line(&format!("{} frames from {} · {}", report.frames, report.frames_from, report.simulator));
-    speed(&mut page, report);
-    streams(&mut page, report);
-    registers(&mut page, report);
-    accuracy(&mut page, report);
-    verdict(&mut page, report);
-    page.text
+/// What a cell says, and what it is to a page with colours.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Cell {
+    /// The words or the figure.
+    pub text: String,
+    /// The class of style: `paper`, `same`, `ours`, `bad`, or nothing.
+    pub class: &'static str,
 }
 
-fn speed(page: &mut Page, report: &Report) {
-    let published = report.published;
-    let other = |show: &dyn Fn(Published) -> String| published.as_ref().copied().map_or_else(String::new, show);
-    let heading = if published.is_some() { "published" } else { "" };
-    page.heading("Speed and size", &["simulated", "predicted", heading]);
-    let predicted = &report.predicted;
-    let clock = |cycles: u64| decimals(cycles as f64 / report.clock_mhz, 2);
-    page.row(
-        "latency, cycles",
-        &[
-            grouped(report.latency_cycles),
-            grouped(predicted.latency_cycles),
-            other(&|them| grouped(them.latency_cycles)),
-        ],
-    );
-    page.row(
-        "latency, µs",
-        &[
-            clock(report.latency_cycles),
-            clock(predicted.latency_cycles),
-            other(&|them| decimals(1000.0 * them.milliseconds, 2)),
-        ],
-    );
-    page.row("interval, cycles", &[grouped(report.interval_cycles), grouped(predicted.interval_cycles)]);
-    page.row("interval, µs", &[clock(report.interval_cycles), clock(predicted.interval_cycles)]);
-    let rate = |cycles: u64| grouped((report.clock_mhz * 1e6 / cycles.max(1) as f64) as u64);
-    page.row("frames per second", &[rate(report.interval_cycles), rate(predicted.interval_cycles)]);
-    page.row("lanes busy in SpMV", &[String::new(), format!("{} %", decimals(100.0 * report.lanes_busy, 1))]);
-    page.row("DSP48E2", &[String::new(), grouped(predicted.dsp as u64), other(&|them| them.dsp.to_string())]);
-    page.row("BRAM36", &[String::new(), decimals(predicted.bram36, 1), other(&|them| them.bram36.to_string())]);
-    page.row("ROM, bits", &[String::new(), grouped(report.rom_bits)]);
-    page.row("MACs a frame", &[String::new(), grouped(report.macs)]);
-}
-
-fn streams(page: &mut Page, report: &Report) {
-    page.heading("RTL against the model", &["cycles", "words", "differ"]);
-    for mode in &report.modes {
-        let differ = if mode.bit_exact { "0, bit-exact".to_owned() } else { grouped(mode.mismatches) };
-        page.row(mode.mode, &[grouped(mode.cycles), grouped(mode.words), differ]);
+impl Cell {
+    /// With a class.
+    pub fn new(text: impl Into<String>, class: &'static str) -> Self {
+        Self { text: text.into(), class }
     }
-    // A wrong word is mostly wrong in every mode: the first one's list says it all, `--json` has the others.
-    if let Some(mode) = report.modes.iter().find(|mode| !mode.bit_exact) {
-        page.line(&format!("  first differences, {}:", mode.mode));
-        for mismatch in &mode.first_mismatches {
-            page.line(&format!("    {mismatch}"));
+}
+
+impl<T: Into<String>> From<T> for Cell {
+    fn from(text: T) -> Self {
+        Self::new(text, "")
+    }
+}
+
+/// A table: the first column to the left, the others to the right.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Table {
+    /// Above the columns.
+    pub header: Vec<String>,
+    /// Row by row; what a row lacks is empty.
+    pub rows: Vec<Vec<Cell>>,
+    /// Whether the last column holds words, which go to the left too.
+    pub ends_in_words: bool,
+}
+
+impl Table {
+    /// Without rows.
+    pub fn new(header: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self { header: header.into_iter().map(Into::into).collect(), rows: Vec::new(), ends_in_words: false }
+    }
+
+    /// With words in the last column.
+    #[must_use]
+    pub fn ending_in_words(self) -> Self {
+        Self { ends_in_words: true, ..self }
+    }
+
+    /// One row more.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<Cell>>) {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+    }
+
+    /// With rows.
+    #[must_use]
+    pub fn with(mut self, rows: impl IntoIterator<Item = impl IntoIterator<Item = impl Into<Cell>>>) -> Self {
+        rows.into_iter().for_each(|row| self.row(row));
+        self
+    }
+
+    fn is_left(&self, column: usize) -> bool {
+        column == 0 || self.ends_in_words && column + 1 == self.header.len()
+    }
+
+    /// For a terminal: a rule below the header, columns as wide as they need and at least `first` and `others` wide.
+    pub fn text(&self, first: usize, others: usize) -> String {
+        let cells = |column: usize| self.rows.iter().filter_map(move |row| row.get(column)).map(|cell| &cell.text);
+        let widths: Vec<usize> = (0..self.header.len())
+            .map(|column| {
+                let (before, least) = if column == 0 { (INDENT.len(), first) } else { (GAP, others) };
+                let head = if column == 0 { 0 } else { GAP } + self.header[column].chars().count();
+                cells(column).map(|text| before + text.chars().count()).fold(head.max(least), usize::max)
+            })
+            .collect();
+        let cell = |column: usize, text: &str| {
+            let width = widths[column];
+            match (column, self.is_left(column)) {
+                (0, _) => format!("{text:<width$}"),
+                (_, true) => format!("{:GAP$}{text:<1$}", "", width - GAP),
+                (_, false) => format!("{text:>width$}"),
+            }
+        };
+        let line = |indent: &str, row: &[&str]| {
+            let first = row.first().map(|name| format!("{indent}{name}")).unwrap_or_default();
+            let others = row.iter().enumerate().skip(1).map(|(column, text)| cell(column, text));
+            let line: String = [cell(0, &first)].into_iter().chain(others).collect();
+            format!("{}\n", line.trim_end())
+        };
+        let header: Vec<&str> = self.header.iter().map(String::as_str).collect();
+        let mut text = line("", &header) + &rule(widths.iter().sum());
+        for row in &self.rows {
+            text += &line(INDENT, &row.iter().map(|cell| cell.text.as_str()).collect::<Vec<_>>());
         }
+        text
+    }
+
+    /// For a page of Markdown.
+    pub fn markdown(&self) -> String {
+        let alignment = |column| if self.is_left(column) { "---|" } else { "---:|" };
+        let alignments: String = (0..self.header.len()).map(alignment).collect();
+        let line = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
+        let header: Vec<&str> = self.header.iter().map(String::as_str).collect();
+        let rows = self.rows.iter().map(|row| line(&row.iter().map(|cell| cell.text.as_str()).collect::<Vec<_>>()));
+        [line(&header), format!("|{alignments}\n")].into_iter().chain(rows).collect()
     }
 }
 
-fn registers(page: &mut Page, report: &Report) {
-    let Some(registers) = &report.registers else { return };
-    let wrong = registers.wrong.len();
-    let differ = if wrong == 0 { "0, all right".to_owned() } else { grouped(wrong as u64) };
-    page.heading("Register bank", &["accesses", "differ"]);
-    page.row("AXI4-Lite", &[grouped(registers.accesses as u64), differ]);
-    for line in &registers.wrong {
-        page.line(&format!("    {line}"));
-    }
-}
-
-fn accuracy(page: &mut Page, report: &Report) {
-    page.heading("Error against f64", &["largest", "relative to"]);
-    page.row("resultants", &[format!("{:.2e}", report.error.resultant_max), "|F_z|".to_owned()]);
-    page.row("force field", &[format!("{:.2e}", report.error.field_max), "max |f_z|".to_owned()]);
-    if let Some(errors) = &report.true_force_errors {
-        page.heading("Error against true forces", &["largest, %", "std. error, %"]);
-        for (name, spread) in ERROR_NAMES.iter().zip(errors.spreads()) {
-            page.row(name, &[decimals(spread.max, 2), decimals(spread.standard_error, 2)]);
-        }
-    }
-    page.heading("Frames by status", &["frames"]);
-    for (name, count) in report.status_counts.present() {
-        page.row(name, &[grouped(count as u64)]);
-    }
-}
-
-fn verdict(page: &mut Page, report: &Report) {
-    page.rule("");
-    let times = report.published.map_or_else(String::new, |them| {
-        let factor = 1000.0 * them.milliseconds / report.microseconds.latency;
-        format!(", {} times as fast as published", grouped(factor.round() as u64))
-    });
-    if report.bit_exact {
-        page.line(&format!("Bit-exact in all {} stream modes{times}.", report.modes.len()));
-    } else {
-        page.line(&format!("NOT BIT-EXACT: {} words differ from the model.", grouped(report.mismatches)));
-    }
-    if let [trace, gtkwave, surfer] = &report.traces[..] {
-        page.line(&format!(
-            "Waveforms in {}: gtkwave {}, or surfer --command-file {}",
-            trace.display(),
-            gtkwave.display(),
-            surfer.display()
-        ));
-    }
-    match report.timing {
-        Timing::AsPredicted => {}
-        Timing::WithinBound => {
-            page.line("Zeros were passed over: the predicted cycles are those of a frame without any.");
-        }
-        Timing::Wrong => page.line("WRONG CYCLES: latency and interval are not the predicted ones."),
-    }
-}
-
-#[derive(Default)]
-struct Page {
-    text: String,
-}
-
-impl Page {
-    fn line(&mut self, text: &str) {
-        self.text.push_str(text.trim_end());
-        self.text.push('\n');
-    }
-
-    fn rule(&mut self, columns: &str) {
-        let width = LEFT + 3 * COLUMN;
-        let rest = width.saturating_sub(columns.chars().count());
-        self.line(&format!("{columns}{}", "─".repeat(rest)));
-    }
-
-    fn heading(&mut self, title: &str, columns: &[&str]) {
-        self.text.push('\n');
-        self.row_with("", title, columns.iter().copied());
-        self.rule("");
-    }
-
-    fn row(&mut self, name: &str, cells: &[String]) {
-        self.row_with("  ", name, cells.iter().map(String::as_str));
-    }
-
-    fn row_with<'a>(&mut self, indent: &str, name: &str, cells: impl Iterator<Item = &'a str>) {
-        let left = format!("{indent}{name}");
-        let mut line = format!("{left:<LEFT$}");
-        for cell in cells {
-            // Writing to a String cannot fail.
-            let _ = write!(line, "{cell:>COLUMN$}");
-        }
-        self.line(&line);
-    }
-}
-
-/// `1234567` as `1,234,567`.
-pub(crate) fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
-/// Rounded, the whole part grouped. For values that are not negative.
-pub(crate) fn decimals(value: f64, places: usize) -> String {
-    if !value.is_finite() {
-        return "∞".to_owned();
-    }
-    let text = format!("{value:.places$}");
-    match text.split_once('.') {
-        Some((whole, fraction)) => format!("{}.{fraction}", whole.parse().map_or_else(|_| whole.to_owned(), grouped)),
-        None => text,
-    }
+/// A line across a terminal.
+pub fn rule(width: usize) -> String {
+    "─".repeat(width) + "\n"
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn numbers_are_grouped() {
-        assert_eq!([0, 999, 1000, 7_335_000].map(grouped), ["0", "999", "1,000", "7,335,000"]);
-        assert_eq!(decimals(58680.0, 2), "58,680.00");
-        assert_eq!(decimals(0.045, 1), "0.0");
-        assert_eq!(decimals(f64::INFINITY, 1), "∞");
+    fn table() -> Table {
+        Table::new(["what", "µs", "why"]).ending_in_words().with([["one", "1.5", "so"], ["two", "10.0", "because"]])
     }
 
     #[test]
-    fn columns_are_aligned() {
-        let mut page = Page::default();
-        page.heading("Title", &["a", "b"]);
-        page.row("µs", &["1".to_owned(), "2".to_owned()]);
-        let ends: Vec<usize> = page.text.lines().skip(1).map(|line| line.chars().count()).collect();
-        assert_eq!(ends, [LEFT + 2 * COLUMN, LEFT + 3 * COLUMN, LEFT + 2 * COLUMN]);
+    fn columns_of_a_terminal_are_aligned() {
+        let text = "what     µs  why\n────────────────────\n  one   1.5  so\n  two  10.0  because\n";
+        assert_eq!(table().text(0, 0), text);
+        let wide = table().text(8, 9);
+        let ends: Vec<usize> = wide.lines().map(|line| line.find("why").or(line.find("so")).unwrap_or(0)).collect();
+        assert_eq!(wide.lines().nth(1).map(|rule| rule.chars().count()), Some(8 + 9 + 9), "{wide}");
+        // `µ` has two bytes.
+        assert_eq!(ends[0], ends[2] + 1, "{wide}");
+    }
+
+    #[test]
+    fn markdown_says_which_columns_are_words() {
+        let expected = "| what | µs | why |\n|---|---:|---|\n| one | 1.5 | so |\n| two | 10.0 | because |\n";
+        assert_eq!(table().markdown(), expected);
+    }
+
+    #[test]
+    fn a_template_gets_cells_with_their_class() {
+        let table = Table::new(["a"]).with([[Cell::new("1", "ours")]]);
+        let json = serde_json::to_value(table).unwrap();
+        assert_eq!(json["rows"][0][0], serde_json::json!({ "text": "1", "class": "ours" }));
     }
 }

@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
-use crate::words::{Answer, decode, encode};
+use crate::stream_words::{Answer, decode, encode};
 
 /// Towards larger x, then a further eighth of a turn towards larger y each; y is up on the page.
 const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];

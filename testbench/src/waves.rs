@@ -1,4 +1,4 @@
-//! Saved views beside a trace: clock, handshakes, frames and blocks' starts, for `GTKWave` and for Surfer.
+//! Saved views beside a trace: clock, handshakes, frames and programs, for `GTKWave` and for Surfer.
 //!
 //! A view names a signal only if the emitted Verilog declares it, so that it fits every design.
 
@@ -48,7 +48,7 @@ const OF_TOP: [(&str, &[&str]); 4] = [
     ),
 ];
 
-/// Signals of the core; each plan has some of them.
+/// Signals of the core; each design has some of them.
 const OF_CORE: [(&str, &[&str]); 3] = [
     (
         "frames",
@@ -60,17 +60,31 @@ const OF_CORE: [(&str, &[&str]); 3] = [
             "direction_valid",
             "coefficients_complete",
             "sums_complete",
+            "sums_take",
+            "answer_valid",
+            "answer_take",
             "search_over",
             "friction_known",
             "field_complete",
             "field_release",
-            "drained",
         ],
     ),
-    ("block_starts", &["start", "frame_start", "co_start", "op_start", "issued", "turn_issued", "bank"]),
+    ("programs", &["start", "issued", "bank"]),
     (
         "results",
-        &["stress_valid", "result_valid", "result_product", "result_row", "taxel_valid", "we_write", "co_write"],
+        &[
+            "stress_valid",
+            "result_route",
+            "result_row",
+            "result_last",
+            "taxel_y",
+            "taxel_u",
+            "taxel_force",
+            "taxel_row",
+            "weights_valid",
+            "we_write",
+            "co_write",
+        ],
     ),
 ];
 
@@ -128,22 +142,48 @@ fn groups(sources: &RtlSources) -> Vec<(&'static str, Vec<Signal>)> {
     groups
 }
 
-/// Name and range of every net, register and port that a line of its own declares, as the emitter prints them.
+/// Name and range of every net, register and port that a line of its own declares, as the emitter prints them. Ranges
+/// are numbers, as in a trace; one that is not to be known leaves its signal out.
 fn declared(verilog: &str) -> BTreeMap<&str, String> {
     let mut found = BTreeMap::new();
+    let mut constants = BTreeMap::new();
     for line in verilog.lines() {
         let mut words = line.split_whitespace().peekable();
+        if words.next_if_eq(&"localparam").is_some() {
+            if let (Some(name), Some("="), Some(text)) = (words.next(), words.next(), words.next()) {
+                constants.extend(value(text.trim_end_matches(';'), &constants).map(|value| (name, value)));
+            }
+            continue;
+        }
         words.next_if(|word| ["input", "output"].contains(word));
         if words.next_if(|word| ["wire", "reg"].contains(word)).is_none() {
             continue;
         }
         words.next_if_eq(&"signed");
-        let range = words.next_if(|word| word.starts_with('[')).unwrap_or_default();
-        if let Some(name) = words.next() {
-            found.insert(name.trim_end_matches([',', ';']), range.to_owned());
+        let range = words.next_if(|word| word.starts_with('[')).map(|range| numbers(range, &constants));
+        if let (Some(name), Some(range)) = (words.next(), range.unwrap_or_else(|| Some(String::new()))) {
+            found.insert(name.trim_end_matches([',', ';']), range);
         }
     }
     found
+}
+
+/// A range such as `[WIDTH-1:0]` in numbers.
+fn numbers(range: &str, constants: &BTreeMap<&str, u64>) -> Option<String> {
+    let (high, low) = range.strip_prefix('[')?.strip_suffix(']')?.split_once(':')?;
+    Some(format!("[{}:{}]", value(high, constants)?, value(low, constants)?))
+}
+
+/// A sum of products of numbers and constants.
+fn value(text: &str, constants: &BTreeMap<&str, u64>) -> Option<u64> {
+    if let Some(at) = text.rfind(['+', '-']) {
+        let (left, right) = (value(&text[..at], constants)?, value(&text[at + 1..], constants)?);
+        return if text[at..].starts_with('+') { left.checked_add(right) } else { left.checked_sub(right) };
+    }
+    match text.split_once('*') {
+        Some((left, right)) => value(left, constants)?.checked_mul(value(right, constants)?),
+        None => text.parse().ok().or_else(|| constants.get(text).copied()),
+    }
 }
 
 fn render_gtkwave(trace: &str, groups: &[(&str, Vec<Signal>)]) -> String {
@@ -182,6 +222,15 @@ mod tests {
     }
 
     #[test]
+    fn ranges_are_those_of_the_trace() {
+        let text = "localparam WIDTH = 5; // bits\nlocalparam ALL = 4*WIDTH;\nwire [WIDTH-1:0] a;\nreg [ALL+2:0] b;\n\
+                    wire [9*40-1:0] c;\nwire [OTHER-1:0] d;\n";
+        let expected = [("a", "[4:0]"), ("b", "[22:0]"), ("c", "[359:0]")];
+        let found = declared(text);
+        assert_eq!(found.into_iter().collect::<Vec<_>>(), expected.map(|(name, range)| (name, range.to_owned())));
+    }
+
+    #[test]
     fn only_what_the_design_has_is_named() {
         let file = |text: &str| text.as_bytes().to_vec();
         let files = [
@@ -191,10 +240,10 @@ mod tests {
         let sources = RtlSources { top: "t".to_owned(), files: files.into_iter().collect() };
         let groups = groups(&sources);
         let gtkwave = "[dumpfile] \"t.vcd\"\n[timestart] 0\n[size] 1600 900\n@200\n-clock\n@28\ntop.t.aclk\n@200\n\
-                       -registers\n@28\ntop.t.interrupt\n@200\n-block_starts\n@22\ntop.t.core.start[2:0]\n";
+                       -registers\n@28\ntop.t.interrupt\n@200\n-programs\n@22\ntop.t.core.start[2:0]\n";
         assert_eq!(render_gtkwave("t.vcd", &groups), gtkwave);
         let surfer = "load_file t.vcd\ndivider_add clock\nvariable_add top.t.aclk\ndivider_add registers\n\
-                      variable_add top.t.interrupt\ndivider_add block_starts\nvariable_add top.t.core.start\nzoom_fit\n";
+                      variable_add top.t.interrupt\ndivider_add programs\nvariable_add top.t.core.start\nzoom_fit\n";
         assert_eq!(render_surfer("t.vcd", &groups), surfer);
     }
 }

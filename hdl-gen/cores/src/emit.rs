@@ -117,7 +117,7 @@ impl Parts {
             let names: Result<Vec<_>, _> = description.unused.iter().map(|name| symbol(&symbols, name)).collect();
             let names: Vec<&str> = names?.iter().map(|symbol| symbol.name.as_str()).collect();
             lines.extend(["", "    // Bits left unread on purpose."].map(str::to_owned));
-            lines.push(format!("    wire unused = &{{1'b0, {}, 1'b0}};", names.join(", ")));
+            lines.push(format!("    wire _unused = &{{1'b0, {}}};", names.join(", ")));
         }
         lines.extend(["", "endmodule", "", "`default_nettype wire", ""].map(str::to_owned));
         Ok(lines.join("\n"))

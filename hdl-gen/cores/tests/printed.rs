@@ -14,12 +14,15 @@ fn rtl() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../rtl")
 }
 
+fn renews() -> bool {
+    env::var_os("UPDATE_EXPECTED").is_some()
+}
+
 #[test]
 fn the_files_are_what_the_descriptions_print() {
-    let renew = env::var_os("UPDATE_EXPECTED").is_some();
     for core in print_all().expect("every core is printed") {
         let file = rtl().join(core.path);
-        if renew {
+        if renews() {
             fs::write(&file, core.verilog).expect("writable");
         } else {
             let found = fs::read_to_string(&file).unwrap_or_default();
@@ -31,6 +34,10 @@ fn the_files_are_what_the_descriptions_print() {
 /// The files that a design takes are the printed ones, all of them.
 #[test]
 fn hdl_gen_has_every_core() {
+    if renews() {
+        // It was compiled with the files before.
+        return;
+    }
     for core in print_all().expect("every core is printed") {
         let (folder, file) = core.path.rsplit_once('/').unwrap_or(("", core.path));
         let multiplier = if folder == "ecp5" { Multiplier::Split } else { Multiplier::Whole };

@@ -9,6 +9,7 @@ pub mod cean;
 pub mod co;
 pub mod field;
 pub mod op;
+pub mod registers;
 pub mod turns;
 pub mod unfold;
 pub mod we;

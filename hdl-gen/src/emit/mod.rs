@@ -4,6 +4,7 @@ mod columns;
 mod flows;
 mod mcsr;
 mod metadata;
+mod origin;
 mod registers;
 mod roms;
 pub mod rtl;
@@ -60,7 +61,7 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
         files.insert(format!("rtl/{module}.v"), text.into_bytes());
     }
     roms::insert(plan, &mut files);
-    sim::insert(plan, &hash, &mut files)?;
+    sim::insert(plan, &mut files)?;
     mcsr::insert(plan, &mut files);
     registers::insert(plan, &hash, &mut files)?;
     files.insert("design.toml".to_owned(), design.into_bytes());
@@ -69,6 +70,7 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     }
     // After every file that a list or script names.
     flows::insert(plan, &hash, &mut files)?;
+    origin::insert(&plan.design.name, &hash, &mut files);
     let metadata = metadata::metadata(plan, &hash, &files)?;
     files.insert("metadata.json".to_owned(), metadata);
     Ok(files)

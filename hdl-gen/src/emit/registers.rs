@@ -3,28 +3,17 @@
 use serde::Serialize;
 use tera::Context;
 
+use crate::blocks::Parameters;
+use crate::blocks::registers::Constants;
 use crate::plan::Plan;
 
-use super::verilog::{design_module, framed, one};
-use super::{EmitError, FileMap, VERSION};
-
-/// Version of the register map: one more whenever a register moves or changes its meaning.
-const MAP_VERSION: u8 = 1;
+use super::verilog::{design_module, one};
+use super::{EmitError, FileMap};
 
 const MAP: &str = include_str!("../../templates/control/registers.rdl.tera");
 
-/// `(suffix, template)` of the modules that carry the design's name.
-const DESIGN_MODULES: [(&str, &str); 2] = [
-    ("", include_str!("../../templates/rtl/control/top.v.tera")),
-    ("_registers", include_str!("../../templates/rtl/control/registers.v.tera")),
-];
-
-/// `(module, template)` of those that are the same in every design.
-const SHARED_MODULES: [(&str, &str); 3] = [
-    ("sptfra_axi_lite", include_str!("../../templates/rtl/control/axi_lite.v.tera")),
-    ("sptfra_stream_gate", include_str!("../../templates/rtl/control/stream_gate.v.tera")),
-    ("sptfra_frame_meter", include_str!("../../templates/rtl/control/frame_meter.v.tera")),
-];
+/// The top around the bank and the core.
+const TOP: &str = include_str!("../../templates/rtl/control/top.v.tera");
 
 /// `(signal, output, bits)` of the AXI4-Lite port, in the order of the bus standard.
 const AXI_SIGNALS: [(&str, bool, u32); 19] = [
@@ -61,39 +50,19 @@ struct AxiPort {
     used: bool,
 }
 
-/// The data of the templates. Truths are 0 or 1: they are reset values.
+/// The data of the templates.
 #[derive(Serialize)]
 struct View<'a> {
     name: &'a str,
-    version: &'static str,
-    hash: &'a str,
-    map_version: u8,
-    major: &'static str,
-    minor: &'static str,
-    patch: &'static str,
-    hash_high: &'a str,
-    hash_low: &'a str,
-    columns: usize,
-    rows: usize,
-    lanes: usize,
-    words_in: usize,
-    words_out: usize,
-    has_field: u8,
-    is_reduced: u8,
-    has_counts: u8,
-    skips_zeros: u8,
-    clock_khz: u64,
-    /// Hexadecimal digits of a float32.
-    full_scale: String,
-    latency_cycles: u64,
-    interval_cycles: u64,
+    #[serde(flatten)]
+    constants: Constants,
     axi_ports: Vec<AxiPort>,
+    /// Parameters of the bank.
+    registers: Parameters,
 }
 
 impl<'a> View<'a> {
-    fn new(plan: &'a Plan, hash: &'a str) -> Self {
-        let (design, hardware) = (&plan.design, &plan.design.hardware);
-        let (hash_high, hash_low) = hash.split_at(8);
+    fn new(plan: &'a Plan, hash: &str) -> Self {
         let port = |&(signal, output, bits): &(&'static str, bool, u32)| AxiPort {
             signal,
             bus: signal.to_uppercase(),
@@ -101,30 +70,12 @@ impl<'a> View<'a> {
             range: format!("{:6}", if bits == 1 { String::new() } else { format!("[{}:0]", bits - 1) }),
             used: !signal.ends_with("prot"),
         };
+        let constants = Constants::new(plan, hash);
         Self {
-            name: &design.name,
-            version: VERSION,
-            hash,
-            map_version: MAP_VERSION,
-            major: env!("CARGO_PKG_VERSION_MAJOR"),
-            minor: env!("CARGO_PKG_VERSION_MINOR"),
-            patch: env!("CARGO_PKG_VERSION_PATCH"),
-            hash_high,
-            hash_low,
-            columns: design.sensor.columns,
-            rows: design.sensor.rows,
-            lanes: hardware.lanes,
-            words_in: plan.taxels(),
-            words_out: plan.beats_out(),
-            has_field: u8::from(plan.field_words() > 0),
-            is_reduced: u8::from(plan.ways() > 1),
-            has_counts: u8::from(plan.counts.is_some()),
-            skips_zeros: u8::from(hardware.skip_zeros),
-            clock_khz: (hardware.clock_mhz * 1e3).round() as u64,
-            full_scale: format!("{:08x}", (hardware.full_scale_pa as f32).to_bits()),
-            latency_cycles: plan.timeline.latency_cycles,
-            interval_cycles: plan.timeline.interval_cycles,
+            name: &plan.design.name,
             axi_ports: AXI_SIGNALS.iter().map(port).collect(),
+            registers: constants.parameters(),
+            constants,
         }
     }
 
@@ -139,7 +90,7 @@ pub(super) fn core_module(plan: &Plan) -> String {
     if plan.design.hardware.control { format!("{name}_core") } else { name.clone() }
 }
 
-/// `(module, text)` of the bank and of the top around it and the core; none without a bank.
+/// `(module, text)` of the top around the bank and the core; none without a bank.
 ///
 /// # Errors
 /// [`EmitError::Template`] if a template does not fit the view.
@@ -147,18 +98,9 @@ pub(super) fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, E
     if !plan.design.hardware.control {
         return Ok(Vec::new());
     }
-    let context = View::new(plan, hash).context()?;
-    let mut modules = Vec::new();
-    for (suffix, template) in DESIGN_MODULES {
-        let module = format!("{}{suffix}", plan.design.name);
-        let text = design_module(plan, hash, &module, template, &context)?;
-        modules.push((module, text));
-    }
-    for (module, template) in SHARED_MODULES {
-        let origin = format!("// Generated by hdl-gen {VERSION}. Do not edit.\n");
-        modules.push((module.to_owned(), framed(&origin, &one(module, template, &context)?)));
-    }
-    Ok(modules)
+    let module = plan.design.name.clone();
+    let text = design_module(&module, TOP, &View::new(plan, hash).context()?)?;
+    Ok(vec![(module, text)])
 }
 
 /// Adds the register map, where there is a bank.

@@ -14,6 +14,7 @@ macro_rules! library {
 const LIBRARY: &[(&str, &str)] = library![
     "rtl":
     "sptfra_adder_tree",
+    "sptfra_axi_lite",
     "sptfra_axis_skid",
     "sptfra_butterfly",
     "sptfra_bz",
@@ -33,6 +34,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_fixed_to_float",
     "sptfra_float_to_fixed",
     "sptfra_fold",
+    "sptfra_frame_meter",
     "sptfra_friction",
     "sptfra_grid_centroid",
     "sptfra_leading_bit",
@@ -53,6 +55,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_plane_cell",
     "sptfra_quad_rows",
     "sptfra_ram",
+    "sptfra_registers",
     "sptfra_rom",
     "sptfra_row_sequencer",
     "sptfra_search",
@@ -63,6 +66,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_spmv_lane",
     "sptfra_spmv_sequencer",
     "sptfra_spmv_way",
+    "sptfra_stream_gate",
     "sptfra_summary",
     "sptfra_times_index",
     "sptfra_turns",

@@ -36,7 +36,7 @@ struct View<'a> {
 /// # Errors
 /// [`EmitError::Template`] if the template does not fit the view; [`EmitError::Scene`] if no frames can be made for
 /// the sensor.
-pub fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitError> {
+pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     let name = plan.design.name.as_str();
     let packets = packets(plan)?;
     let mut model = Model::new(plan);
@@ -53,7 +53,7 @@ pub fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitEr
     let module = format!("{name}_tb");
     let context =
         Context::from_serialize(&view).map_err(|source| EmitError::Template { template: module.clone(), source })?;
-    let text = verilog::design_module(plan, hash, &module, TEMPLATE, &context)?;
+    let text = verilog::design_module(&module, TEMPLATE, &context)?;
     files.insert(format!("sim/{module}.v"), text.into_bytes());
     files.insert(format!("sim/{name}_stimulus.mem"), words(&packets));
     files.insert(format!("sim/{name}_expected.mem"), words(&answers));

@@ -131,11 +131,11 @@ impl View {
 ///
 /// # Errors
 /// [`EmitError::Template`] if the template does not fit the view.
-pub(super) fn render(plan: &Plan, hash: &str) -> Result<(String, String), EmitError> {
+pub(super) fn render(plan: &Plan) -> Result<(String, String), EmitError> {
     let view = View::new(plan);
     let context =
         Context::from_serialize(&view).map_err(|source| EmitError::Template { template: "top".to_owned(), source })?;
-    let text = design_module(plan, hash, &view.core_module, TEMPLATE, &context)?;
+    let text = design_module(&view.core_module, TEMPLATE, &context)?;
     Ok((view.core_module, text))
 }
 

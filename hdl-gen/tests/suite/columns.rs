@@ -1,11 +1,13 @@
-//! No emitted line is longer than a person reads without scrolling.
+//! No emitted line and no module is longer than a person reads in one go, whatever the design.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
 use golden::design::{Design, WEIGHTS_FILE};
+use hdl_gen::cores::Multiplier;
 use hdl_gen::emit::emit;
+use hdl_gen::emit::rtl::library;
 use hdl_gen::plan::Plan;
 
 use crate::support::{design_text, plan};
@@ -13,11 +15,19 @@ use crate::support::{design_text, plan};
 /// Columns of a line, as in the project's own sources.
 const MOST_COLUMNS: usize = 120;
 
+/// Lines of a module, header and comments included.
+const MOST_LINES: usize = 335;
+/// Of the top, which has no logic: parameters, pins and wires, one a line.
+const MOST_LINES_OF_TOP: usize = 600;
+
 /// Data, not text: words of memories, rows of matrices, and the joint estimator's weights.
 fn is_data(path: &str) -> bool {
     let memory = Path::new(path).extension().is_some_and(|ending| ending == "mem");
     memory || path.starts_with("mcsr/") || path == WEIGHTS_FILE
 }
+
+/// A calibration of each taxel.
+const GAINS: &str = "calibration = \"gains.csv\"\n";
 
 /// The designs that come with the project but the mat, whose text differs from theirs by widths only, and those that
 /// take ways of the templates which none of these takes.
@@ -45,17 +55,32 @@ fn standing() -> Vec<Plan> {
         let more = format!("[algorithm]\n{keys}");
         plans.push(plan(&design_text("array", [columns, rows], [4.0, 4.0], 3.0, &more)));
     }
-    let counts = design_text("counts", [6, 4], [4.0, 4.0], 3.0, "pa_per_count = -12.5\n[algorithm]\nplan = \"paper\"");
-    plans.push(plan(&counts));
+    for (kind, calibration) in [("paper", ""), ("paper", GAINS), ("reduced", GAINS)] {
+        let more = format!("pa_per_count = -12.5\n{calibration}[algorithm]\nplan = \"{kind}\"");
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("gains.csv"), "1.01,-0.5\n".repeat(24)).expect("writable");
+        let file = folder.path().join("counts.toml");
+        fs::write(&file, design_text("counting_pad", [6, 4], [4.0, 4.0], 3.0, &more)).expect("writable");
+        plans.push(Plan::new(&Design::load(&file).expect("right")).expect("a plan"));
+    }
     plans
 }
 
 #[test]
-fn no_line_is_long() {
+fn no_line_and_no_module_is_long() {
     let mut long: BTreeMap<String, String> = BTreeMap::new();
+    let mut kinds = BTreeSet::new();
     for plan in standing() {
         for (path, bytes) in emit(&plan).expect("emitted") {
             let text = std::str::from_utf8(&bytes).expect("text");
+            if path.starts_with("rtl/") {
+                kinds.insert(path.replace(&plan.design.name, "NAME"));
+                let lines = text.lines().count();
+                let most = if path.starts_with("rtl/sptfra_") { MOST_LINES } else { MOST_LINES_OF_TOP };
+                if lines > most {
+                    long.insert(path.replace(&plan.design.name, "NAME"), format!("{lines} lines"));
+                }
+            }
             let lines = text.lines().enumerate().filter(|(_, line)| line.chars().count() > MOST_COLUMNS);
             for (number, line) in lines.filter(|_| !is_data(&path)) {
                 let path = path.replace(&plan.design.name, "NAME");
@@ -66,4 +91,8 @@ fn no_line_is_long() {
     }
     let long: Vec<String> = long.into_iter().map(|(place, line)| format!("{place}: {line}")).collect();
     assert!(long.is_empty(), "{}", long.join("\n"));
+    // A module that no design takes would not have been looked at.
+    for (module, _) in library(Multiplier::Whole) {
+        assert!(kinds.contains(&format!("rtl/{module}.v")), "no design has {module}");
+    }
 }

@@ -4,6 +4,7 @@ mod bad_input;
 mod columns;
 mod command;
 mod emission;
+mod expected;
 mod folded_formats;
 mod formats;
 mod hostile;

@@ -6,12 +6,16 @@ use std::ops::Range;
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
-use hdl_gen::plan::product::SUM_ROWS;
-use hdl_gen::plan::product::mirror;
+use hdl_gen::plan::product::{SUM_ROWS, SUMS_DESTINATION, destination, mirror};
 use proptest::prelude::*;
 use serde_json::Value;
 
 use crate::support::{any_design, design_text, plan};
+
+/// Bits of a result's destination in a visit; resultants alone have fewer.
+fn destination_bits(plan: &Plan) -> u32 {
+    if plan.field_words() > 0 { 4 } else { 3 }
+}
 
 /// Rows of a column and its coefficients, one a way.
 type Rows = Vec<Vec<(u32, Vec<i32>)>>;
@@ -61,9 +65,7 @@ impl Reader {
         let (name, lanes, elements) = (&plan.design.name, plan.walkers(), plan.elements());
         let coefficient_bits = plan.design.hardware.coefficient_bits;
         let most_vectors = plan.products.iter().map(|product| product.operands.len()).max().unwrap();
-        // In four ways, rows of sums have a product number of their own, the one after the last.
-        let numbers = plan.products.len() + usize::from(plan.ways() > 1);
-        let (row_bits, product_bits) = (bits_for(elements.max(SUM_ROWS)), bits_for(numbers));
+        let row_bits = bits_for(elements.max(SUM_ROWS));
         let lane = |lane: usize| {
             let file = |kind: &str, bits| words(files, &format!("rom/{name}_{kind}_lane{lane:02}.mem"), bits);
             let values = file("values", plan.ways() as u32 * coefficient_bits);
@@ -79,7 +81,8 @@ impl Reader {
             }
         };
         let mut readers: Vec<Self> = (0..lanes).map(lane).collect();
-        let below = product_bits + row_bits;
+        let destination_bits = destination_bits(plan);
+        let below = destination_bits + row_bits;
         let visits = words(files, &format!("rom/{name}_visits.mem"), 1 + bits_for(lanes) + below);
         let program_ends: Vec<usize> =
             plan.schedule.programs.iter().skip(1).map(|next| next.visit - 1).chain([visits.len() - 1]).collect();
@@ -88,7 +91,7 @@ impl Reader {
             assert_eq!(visit >> (below + bits_for(lanes)) == 1, program_ends.contains(&index), "last of its program");
             readers[field(below, bits_for(lanes))]
                 .visits
-                .push_back((field(row_bits, product_bits), field(0, row_bits)));
+                .push_back((field(row_bits, destination_bits), field(0, row_bits)));
         }
         let depth = |get: fn(&Self) -> usize| readers.iter().all(|reader| get(reader) == get(&readers[0]));
         assert!(depth(|reader| reader.values.len()) && depth(|reader| reader.columns.len()));
@@ -151,9 +154,9 @@ fn product_in_roms(readers: &mut [Reader], plan: &Plan, index: usize, cycles: u6
             let row = if kind == 1 {
                 open_head.take().expect("the lane before has begun this row")
             } else {
-                let (of_product, row) = reader.visits.pop_front().expect("a visit for every result");
-                let sums = of_product == plan.products.len();
-                assert!(of_product == index || (sums && product.lead.is_some()));
+                let (to, row) = reader.visits.pop_front().expect("a visit for every result");
+                let sums = to == SUMS_DESTINATION && product.lead.is_some();
+                assert!(sums || to == destination(product.result), "{to} of {}", product.result.name());
                 if sums { elements + row } else { product.mirrored.map_or(row, |side| mirror(row, side)) }
             };
             if kind == 2 {
@@ -178,7 +181,8 @@ fn listings(files: &FileMap) -> BTreeMap<String, Rows> {
     for name in files.keys().filter(|name| name.starts_with("mcsr/")) {
         let (comments, rows): (Vec<&str>, Vec<&str>) =
             text(files, name).lines().partition(|line| line.starts_with('#'));
-        let matrix = comments[0].strip_prefix("# ").unwrap().split(" of design").next().unwrap();
+        let named = comments.iter().find_map(|line| line.strip_prefix("# ")?.split_once(" of design "));
+        let matrix = named.unwrap().0;
         let parsed = rows.iter().enumerate().map(|(index, line)| {
             let (head, entries) = line.split_once(" |").unwrap();
             let (row, macs) = head.split_once(": ").unwrap();

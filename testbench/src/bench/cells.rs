@@ -1,12 +1,13 @@
 //! Yosys' cell counts of a generated design, by block, beside the generator's prediction.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::{BenchError, read_json};
+use crate::figures::{decimals, grouped};
+use crate::table::Table;
 
 /// Name of what is in no predicted block: stream buffers, turns, registers between the blocks.
 const REST: &str = "rest";
@@ -152,7 +153,8 @@ impl Statistics {
     }
 }
 
-/// The module's name in the Verilog, without the parameters that Yosys adds: `$paramod$…\NAME`, `$paramod\NAME\P=…`.
+/// The module's name in the Verilog. With parameters that are not its own it is called `$paramod$HASH\NAME`, or
+/// `$paramod\NAME\P=…` where that is short, once for each set of values.
 fn base_name(name: &str) -> &str {
     name.split('\\').nth(1).unwrap_or(name)
 }
@@ -173,21 +175,30 @@ impl Count {
     }
 }
 
-/// A table for people.
-pub fn render(cells: &Cells) -> String {
-    let mut text = format!(
-        "{:<18}{:>6}{:>11}{:>8}{:>11}{:>8}{:>8}\n",
-        cells.design, "DSP", "predicted", "RAMB36", "predicted", "LUT", "FF"
-    );
-    for Block { name, yosys, predicted } in cells.blocks.iter().chain([&cells.total]) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "  {name:<16}{:>6}{:>11}{:>8}{:>11}{:>8}{:>8}",
-            yosys.dsp, predicted.dsp, yosys.bram36, predicted.bram36, yosys.lut, yosys.ff
-        );
+impl Cells {
+    /// Block by block, then all of it; `title` stands above the names.
+    pub fn table(&self, title: &str) -> Table {
+        let header = [title, "DSP", "predicted", "RAMB36", "predicted", "LUT", "FF"];
+        Table::new(header).with(self.blocks.iter().chain([&self.total]).map(|Block { name, yosys, predicted }| {
+            [
+                name.clone(),
+                grouped(yosys.dsp),
+                grouped(predicted.dsp),
+                decimals(yosys.bram36, 1),
+                decimals(predicted.bram36, 1),
+                grouped(yosys.lut),
+                grouped(yosys.ff),
+            ]
+        }))
     }
-    text
+
+    /// The blocks whose multipliers or memories Yosys counts otherwise.
+    pub fn not_as_predicted(&self) -> Vec<&str> {
+        let differ = |block: &&Block| {
+            block.yosys.dsp != block.predicted.dsp || (block.yosys.bram36 - block.predicted.bram36).abs() > 1e-9
+        };
+        self.blocks.iter().filter(differ).map(|block| block.name.as_str()).collect()
+    }
 }
 
 #[cfg(test)]
@@ -217,7 +228,8 @@ mod tests {
         assert_eq!(found[1], ("field", Count { dsp: 1, bram36: 0.0, lut: 0, ff: 5 }));
         assert_eq!(found[2], (REST, Count { lut: 3, ..Count::default() }));
         assert_eq!(cells.total.yosys, Count { dsp: 3, bram36: 1.5, lut: 19, ff: 15 });
-        assert!(render(&cells).contains("lanes"));
+        let table = cells.table("t").text(0, 0);
+        assert!(table.contains("\n  lanes    2          2     1.5        1.0   16  10\n"), "{table}");
         std::fs::write(&statistics, STATISTICS.replace("\\\\t\"", "\\\\u\"")).expect("written");
         assert!(
             count(Path::new("t.toml"), &metadata, &statistics).expect_err("another design").to_string().contains("`t`")

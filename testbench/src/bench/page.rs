@@ -1,6 +1,6 @@
 //! The figures as a page of Markdown, with the command behind each.
 
-use super::cells::{Block, Cells};
+use super::cells::Cells;
 use super::cycles::{Kind, LANES, Point};
 use super::filters::Filtered;
 use super::generation::Generation;
@@ -8,9 +8,10 @@ use super::rate::Rate;
 use super::solver::SolverRate;
 use super::zeros::Zeros;
 use super::{Figures, generation, rate};
+use crate::figures::{decimals, grouped, or_dash};
 use crate::markdown::Page;
 use crate::simulate::Cycles;
-use crate::table::{decimals, grouped};
+use crate::table::Table;
 
 /// The whole page. `command` is the `testbench bench` command that measured; `plot` is the picture's place, as seen
 /// from the page.
@@ -42,22 +43,32 @@ fn solver(page: &mut Page, rows: &[SolverRate]) {
          after frame.",
         first.repetitions
     ));
+    let cells = rows.iter().map(|row| {
+        let ratio = |rate: f64| decimals(rate / first.one_by_one.frames_per_second, 2);
+        let [one, many] = [row.one_by_one.frames_per_second, row.in_batches.frames_per_second];
+        vec![
+            format!("`{}`", row.design),
+            row.plan.to_string(),
+            grouped(row.taxels as u64),
+            decimals(row.setup_s, 2),
+            grouped(one.round() as u64),
+            ratio(one),
+            grouped(many.round() as u64),
+            ratio(many),
+        ]
+    });
     page.table(
-        &["design", "plan", "taxels", "set up, s", "frame by frame, 1/s", "ratio", "in batches, 1/s", "ratio"],
-        rows.iter().map(|row| {
-            let ratio = |rate: f64| decimals(rate / first.one_by_one.frames_per_second, 2);
-            let [one, many] = [row.one_by_one.frames_per_second, row.in_batches.frames_per_second];
-            vec![
-                format!("`{}`", row.design),
-                row.plan.clone(),
-                grouped(row.taxels as u64),
-                decimals(row.setup_s, 2),
-                grouped(one.round() as u64),
-                ratio(one),
-                grouped(many.round() as u64),
-                ratio(many),
-            ]
-        }),
+        &Table::new([
+            "design",
+            "plan",
+            "taxels",
+            "set up, s",
+            "frame by frame, 1/s",
+            "ratio",
+            "in batches, 1/s",
+            "ratio",
+        ])
+        .with(cells),
     );
     let files: Vec<&str> = rows.iter().map(|row| row.file.as_str()).collect();
     page.command(&format!("golden bench {}", files.join(" ")));
@@ -71,19 +82,19 @@ fn generated(page: &mut Page, rows: &[Generation], command: &str) {
          is the most that the process had meanwhile, files included.",
         generation::REPETITIONS
     ));
+    let cells = rows.iter().map(|row| {
+        vec![
+            row.design.clone(),
+            grouped(row.taxels as u64),
+            decimals(row.plan_s, 3),
+            decimals(row.emit_s, 3),
+            decimals(row.plan_s + row.emit_s, 3),
+            decimals(row.bytes as f64 / 1e6, 1),
+            or_dash(row.memory.map(|bytes| bytes as f64), |bytes| decimals(bytes / 1e6, 0)),
+        ]
+    });
     page.table(
-        &["design", "taxels", "plan, s", "files, s", "together, s", "files, MB", "memory, MB"],
-        rows.iter().map(|row| {
-            vec![
-                row.design.clone(),
-                grouped(row.taxels as u64),
-                decimals(row.plan_s, 3),
-                decimals(row.emit_s, 3),
-                decimals(row.plan_s + row.emit_s, 3),
-                decimals(row.bytes as f64 / 1e6, 1),
-                row.memory.map_or_else(|| "–".to_owned(), |bytes| decimals(bytes as f64 / 1e6, 0)),
-            ]
-        }),
+        &Table::new(["design", "taxels", "plan, s", "files, s", "together, s", "files, MB", "memory, MB"]).with(cells),
     );
     page.command(command);
 }
@@ -95,18 +106,18 @@ fn simulated(page: &mut Page, rows: &[Rate], command: &str) {
          fastest beside it. `testbench run` simulates its four stream modes on cores of their own.",
         rate::REPETITIONS
     ));
+    let cells = rows.iter().map(|row| {
+        vec![
+            format!("`{}`", row.design),
+            row.lanes.to_string(),
+            grouped(row.cycles_per_second.round() as u64),
+            grouped(row.range[0].round() as u64),
+            grouped(row.range[1].round() as u64),
+            decimals(row.frames_per_second, 1),
+        ]
+    });
     page.table(
-        &["design", "lanes", "cycles a second", "slowest", "fastest", "frames a second"],
-        rows.iter().map(|row| {
-            vec![
-                format!("`{}`", row.design),
-                row.lanes.to_string(),
-                grouped(row.cycles_per_second.round() as u64),
-                grouped(row.range[0].round() as u64),
-                grouped(row.range[1].round() as u64),
-                decimals(row.frames_per_second, 1),
-            ]
-        }),
+        &Table::new(["design", "lanes", "cycles a second", "slowest", "fastest", "frames a second"]).with(cells),
     );
     page.command(command);
 }
@@ -134,17 +145,14 @@ fn cycles(page: &mut Page, points: &[Point], command: &str, plot: Option<&str>) 
         page.line(&format!("Latency / interval, {}:", kind.title()));
         let mut header = vec!["taxels".to_owned(), "MACs a frame".to_owned()];
         header.extend(LANES.map(|lanes| format!("{lanes} lanes")));
-        let header: Vec<&str> = header.iter().map(String::as_str).collect();
         let of_kind: Vec<&Point> = points.iter().filter(|point| point.kind == kind).collect();
-        page.table(
-            &header,
-            of_kind.chunk_by(|one, other| one.side == other.side).map(|row| {
-                let first = row[0];
-                let mut cells = vec![format!("{0} × {0}", first.side), grouped(first.macs)];
-                cells.extend(row.iter().map(|point| cell(point)));
-                cells
-            }),
-        );
+        let rows = of_kind.chunk_by(|one, other| one.side == other.side).map(|row| {
+            let first = row[0];
+            let mut cells = vec![format!("{0} × {0}", first.side), grouped(first.macs)];
+            cells.extend(row.iter().map(|point| cell(point)));
+            cells
+        });
+        page.table(&Table::new(header).with(rows));
     }
     page.command(command);
 }
@@ -159,20 +167,21 @@ fn filters(page: &mut Page, rows: &[Filtered], command: &str) {
          the sensor's standing scene: of a taxel's force, over the frame's largest normal force; of the friction \
          vector. The resultants do not depend on the filter but through the friction. Cycles and RAMB36 by the plan.",
     );
+    let cells = rows.iter().map(|row| {
+        vec![
+            format!("`{}`", row.design),
+            row.filter.clone(),
+            grouped(row.macs),
+            grouped(row.latency),
+            grouped(row.interval),
+            decimals(row.bram36, 1),
+            decimals(100.0 * row.field_error, 2),
+            decimals(row.friction_error, 4),
+        ]
+    });
     page.table(
-        &["design", "filter", "MACs a frame", "latency", "interval", "RAMB36", "force, %", "friction"],
-        rows.iter().map(|row| {
-            vec![
-                format!("`{}`", row.design),
-                row.filter.clone(),
-                grouped(row.macs),
-                grouped(row.latency),
-                grouped(row.interval),
-                decimals(row.bram36, 1),
-                decimals(100.0 * row.field_error, 2),
-                decimals(row.friction_error, 4),
-            ]
-        }),
+        &Table::new(["design", "filter", "MACs a frame", "latency", "interval", "RAMB36", "force, %", "friction"])
+            .with(cells),
     );
     page.command(command);
 }
@@ -190,15 +199,12 @@ fn zeros(page: &mut Page, rows: &[Zeros], command: &str) {
     );
     let mut header = vec!["taxels".to_owned(), "without".to_owned(), "bound".to_owned()];
     header.extend(first.contacts.iter().map(|(friction, _)| format!("µ = {friction}")));
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    page.table(
-        &header,
-        rows.iter().map(|row| {
-            let mut cells = vec![format!("{0} × {0}", row.side), both(row.without), both(row.worst)];
-            cells.extend(row.contacts.iter().map(|&(_, cycles)| both(cycles)));
-            cells
-        }),
-    );
+    let cells = rows.iter().map(|row| {
+        let mut cells = vec![format!("{0} × {0}", row.side), both(row.without), both(row.worst)];
+        cells.extend(row.contacts.iter().map(|&(_, cycles)| both(cycles)));
+        cells
+    });
+    page.table(&Table::new(header).with(cells));
     page.command(command);
 }
 
@@ -231,29 +237,13 @@ fn cells(page: &mut Page, designs: &[Cells]) {
          * **rest**: stream buffers, control, registers between the blocks, and blocks without multipliers and block \
          RAM.",
     );
-    for Cells { design, blocks, total, .. } in designs {
-        let differ = |block: &&Block| {
-            block.yosys.dsp != block.predicted.dsp || (block.yosys.bram36 - block.predicted.bram36).abs() > 1e-9
-        };
-        let verdict = match blocks.iter().filter(differ).map(|block| block.name.as_str()).collect::<Vec<_>>() {
+    for cells in designs {
+        let verdict = match cells.not_as_predicted() {
             names if names.is_empty() => "every block as predicted".to_owned(),
             names => format!("not as predicted: {}", names.join(", ")),
         };
-        page.line(&format!("`{design}`, {verdict}:"));
-        page.table(
-            &["block", "DSP", "predicted", "RAMB36", "predicted", "LUT", "FF"],
-            blocks.iter().chain([total]).map(|Block { name, yosys, predicted }| {
-                vec![
-                    name.clone(),
-                    grouped(yosys.dsp),
-                    grouped(predicted.dsp),
-                    decimals(yosys.bram36, 1),
-                    decimals(predicted.bram36, 1),
-                    grouped(yosys.lut),
-                    grouped(yosys.ff),
-                ]
-            }),
-        );
+        page.line(&format!("`{}`, {verdict}:", cells.design));
+        page.table(&cells.table("block"));
     }
     let commands: Vec<String> = designs.iter().map(|cells| format!("tools/synth.sh {}", cells.file)).collect();
     page.command(&commands.join("\n"));

@@ -1,7 +1,7 @@
 //! The latency of a frame against the number of taxels, as an SVG: logarithmic axes, readable on light and dark pages.
 
 use super::cycles::{Kind, Point};
-use crate::report::PUBLISHED;
+use crate::run::report::PUBLISHED;
 use crate::svg::{Axis, INK, MARK, Svg, power};
 
 const WIDTH: f64 = 760.0;

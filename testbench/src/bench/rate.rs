@@ -8,8 +8,8 @@ use super::{BenchError, Scope, median};
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
 use crate::stream::Pacing;
+use crate::stream_words::packets;
 use crate::trial::{self, TrialError, planned};
-use crate::words::packets;
 
 /// Repetitions behind a median.
 pub const REPETITIONS: usize = 5;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use golden::design::PlanKind;
 use serde::{Deserialize, Serialize};
 
 use super::{BenchError, read_json};
@@ -14,7 +15,7 @@ pub struct SolverRate {
     /// The design's name.
     pub design: String,
     /// Its plan.
-    pub plan: String,
+    pub plan: PlanKind,
     /// Its taxels.
     pub taxels: usize,
     /// Seconds for matrices and filter, once.

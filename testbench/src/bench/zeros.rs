@@ -9,8 +9,8 @@ use super::BenchError;
 use crate::progress::Progress;
 use crate::simulate::Cycles;
 use crate::stream::{Exchange, Pacing};
+use crate::stream_words::encode;
 use crate::trial::{self, TrialError, planned};
-use crate::words::encode;
 
 /// Sides of the square sensors.
 const SIDES: [usize; 2] = [10, 20];

@@ -1,11 +1,11 @@
 //! `testbench hard`.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
 use golden::output::write_whole;
 
+use super::{Said, shown};
 use testbench::hard::{self, Scope};
 use testbench::progress::Progress;
 
@@ -22,13 +22,14 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Judges the hard cases; returns what to print, and whether all is as it must be.
-pub fn run(arguments: &Arguments) -> Result<(String, bool), Box<dyn Error>> {
+/// Judges the hard cases.
+pub fn run(arguments: &Arguments) -> super::Result {
     let rows = hard::table(Scope { large: !arguments.quick, rtl: !arguments.quick }, &Progress::new())?;
-    let sound = hard::is_sound(&rows);
+    let unsound =
+        "an answer is wrong in silence, or not that of the model: see DIFFERS and SILENTLY WRONG in the table";
+    let faults = if hard::is_sound(&rows) { Vec::new() } else { vec![unsound.to_owned()] };
     if let Some(path) = &arguments.page {
-        write_whole(path, hard::render::markdown(&rows).as_bytes())?;
+        write_whole(path, hard::tables::markdown(&rows).as_bytes())?;
     }
-    let text = if arguments.json { serde_json::to_string_pretty(&rows)? + "\n" } else { hard::render::text(&rows) };
-    Ok((text, sound))
+    Ok(Said { text: shown(&rows, arguments.json, |rows| hard::tables::text(rows))?, faults })
 }

@@ -1,19 +1,19 @@
 //! `testbench sweep`.
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use golden::design::{Design, Estimator, PlanKind};
 use golden::output::write_whole;
+use golden::words::parser;
 
 use testbench::hard::{self, Scope};
-use testbench::page;
 use testbench::progress::Progress;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
+use testbench::sweep::page;
 use testbench::sweep::point::Verified;
 use testbench::sweep::store::Store;
-use testbench::sweep::{Outcomes, Simulate, Sweep, SweepScene, table};
+use testbench::sweep::{Outcomes, Simulate, Sweep, SweepScene, csv_file};
 
 /// Where results go.
 const OUT: &str = "target/sweep";
@@ -31,8 +31,8 @@ pub struct Arguments {
     #[arg(long, value_delimiter = ',', value_parser = filter)]
     filters: Vec<FilterAxis>,
     /// Plans.
-    #[arg(long, value_delimiter = ',')]
-    plans: Vec<PlanWord>,
+    #[arg(long, value_delimiter = ',', value_parser = parser::<PlanKind>())]
+    plans: Vec<PlanKind>,
     /// Widths of the coefficients in bits.
     #[arg(long, value_delimiter = ',')]
     coefficient_bits: Vec<u32>,
@@ -44,8 +44,8 @@ pub struct Arguments {
     lanes: Vec<usize>,
     /// Estimators; the joint one, with the reduced plan, has the constants of a design given that has it, on the same
     /// sensor.
-    #[arg(long, value_delimiter = ',')]
-    estimators: Vec<EstimatorWord>,
+    #[arg(long, value_delimiter = ',', value_parser = parser::<Estimator>())]
+    estimators: Vec<Estimator>,
     /// Every combination: thousands of points.
     #[arg(long)]
     full: bool,
@@ -70,41 +70,21 @@ pub struct Arguments {
     json: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum PlanWord {
-    Paper,
-    Reduced,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum EstimatorWord {
-    Line,
-    Joint,
-}
-
 fn filter(word: &str) -> Result<FilterAxis, String> {
     word.parse().map_err(|error: testbench::sweep::SweepError| error.to_string())
 }
 
-/// Sweeps; returns what to print.
-pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
+/// Sweeps.
+pub fn run(arguments: &Arguments) -> super::Result {
     let designs = arguments.designs.iter().map(|path| Design::load(path)).collect::<Result<Vec<_>, _>>()?;
     let mut scenes = arguments.scenes.iter().map(|path| SweepScene::load(path)).collect::<Result<Vec<_>, _>>()?;
-    let plan = |word: &PlanWord| match word {
-        PlanWord::Paper => PlanKind::Paper,
-        PlanWord::Reduced => PlanKind::Reduced,
-    };
-    let estimator = |word: &EstimatorWord| match word {
-        EstimatorWord::Line => Estimator::Line,
-        EstimatorWord::Joint => Estimator::Joint,
-    };
     let axes = Axes {
         filters: arguments.filters.clone(),
-        plans: arguments.plans.iter().map(plan).collect(),
+        plans: arguments.plans.clone(),
         coefficient_bits: arguments.coefficient_bits.clone(),
         data_bits: arguments.data_bits.clone(),
         lanes: arguments.lanes.clone(),
-        estimators: arguments.estimators.iter().map(estimator).collect(),
+        estimators: arguments.estimators.clone(),
         full: arguments.full,
     };
     let jobs = jobs(&designs, &axes, &mut scenes)?;
@@ -115,7 +95,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
             "{count} of {} points to run in {}\n",
             sweep.jobs.len(),
             arguments.out.join("jobs").display()
-        ));
+        )
+        .into());
     }
     let store = Store::open(&arguments.out)?;
     let progress = Progress::new();
@@ -124,7 +105,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
     let json = serde_json::to_string_pretty(&outcomes.points)? + "\n";
     let place = |name: &str| arguments.out.join(name);
     write_whole(&place("sweep.json"), json.as_bytes())?;
-    write_whole(&place("sweep.csv"), table::csv(&outcomes.points)?.as_bytes())?;
+    write_whole(&place("sweep.csv"), csv_file::csv(&outcomes.points)?.as_bytes())?;
     let mut contents = page::Contents::new(&designs, &sweep, &outcomes.points)?;
     if arguments.hard {
         contents = contents.with_hard_cases(&hard::table(
@@ -134,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Box<dyn Error>> {
     }
     write_whole(&place("report.html"), page::render(&contents)?.as_bytes())?;
     drop(progress);
-    Ok(if arguments.json { json } else { summary(&outcomes, &arguments.out) })
+    Ok(if arguments.json { json } else { summary(&outcomes, &arguments.out) }.into())
 }
 
 fn summary(outcomes: &Outcomes, out: &Path) -> String {

@@ -3,9 +3,10 @@
 use golden::calibrate::{Settings, calibrate};
 use golden::design::{Design, DesignError, Estimator, JointConstants, Sensor};
 use golden::metrics::Outcome;
-use golden::scene::{Contact, Converter, Medium, Scene, SceneError, SensorErrors, Shape};
+use golden::scene::{Contact, Converter, Medium, Scene, SensorErrors, Shape};
 
 use super::HardError;
+use crate::frame_set::FrameSet;
 
 /// Frames for one design.
 #[derive(Clone, Debug)]
@@ -105,11 +106,9 @@ impl Cases {
         algorithm: &str,
         scene: &Scene,
     ) -> Result<(), HardError> {
-        let frames = scene.frames().map_err(|source: SceneError| HardError::Scene(source))?;
-        let truth = frames.iter().map(Outcome::from).collect();
-        let frames = frames.into_iter().map(|frame| frame.stress).collect();
+        let FrameSet { stress: frames, truth, .. } = FrameSet::of_scene(scene, "")?;
         let design = design(&scene.sensor, algorithm)?;
-        self.0.push(Case { group, name: name.into(), design, frames, truth: Some(truth) });
+        self.0.push(Case { group, name: name.into(), design, frames, truth });
         Ok(())
     }
 

@@ -3,15 +3,15 @@
 use golden::design::Estimator;
 use golden::matrices::Matrices;
 use golden::metrics::field_error;
-use golden::solver::{Solution, Solver};
+use golden::solver::Solver;
 use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use super::cases::Case;
-use super::single::Single;
+use super::float32::Single;
 use crate::accuracy::{StatusCounts, against_truth};
+use crate::stream_words::{Answer, as_received, decode, packets};
 use crate::trial::model_answers;
-use crate::words::{Answer, as_received, decode, packets};
 
 /// A resultant beyond this times what the stress would mean as a pressure, `sum |b|` times a taxel's area, is beyond
 /// reason.
@@ -42,8 +42,8 @@ pub struct Row {
     pub group: &'static str,
     /// The case.
     pub case: String,
-    /// `line` or `joint`.
-    pub estimator: &'static str,
+    /// The estimator.
+    pub estimator: Estimator,
     /// Frames.
     pub frames: usize,
     /// Condition number of C33.
@@ -67,7 +67,7 @@ pub fn judge(case: &Case) -> Row {
     let mut row = Row {
         group: case.group,
         case: case.name.clone(),
-        estimator: if case.design.algorithm.estimator == Estimator::Joint { "joint" } else { "line" },
+        estimator: case.design.algorithm.estimator,
         frames: case.frames.len(),
         condition_c33: None,
         condition_aat: None,
@@ -93,7 +93,7 @@ pub fn judge(case: &Case) -> Row {
     let packets = packets(&case.frames);
     let frames: Vec<Vec<f64>> = packets.iter().map(|packet| as_received(packet)).collect();
     // Frames have the sensor's length, the only thing that the solver refuses.
-    let reference: Vec<Answer> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).map(answer).collect();
+    let reference: Vec<Answer> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).map(Answer::from).collect();
     let judged = |answers: &[Answer]| judged(case, &solver, &frames, &reference, answers);
     row.f64 = Some(judged(&reference));
     if let Some(single) = Single::new(&case.design, &solver) {
@@ -107,18 +107,6 @@ pub fn judge(case: &Case) -> Row {
         Err(refusal) => row.refusal = Some(refusal.to_string()),
     }
     row
-}
-
-fn answer(solution: Solution) -> Answer {
-    Answer {
-        status: solution.status.0,
-        counter: 0,
-        resultant: solution.resultant,
-        mu: solution.mu,
-        phi: solution.phi,
-        mu_xy: [solution.mu_x, solution.mu_y],
-        field: solution.field,
-    }
 }
 
 fn judged(case: &Case, solver: &Solver, frames: &[Vec<f64>], reference: &[Answer], answers: &[Answer]) -> Judged {
@@ -196,7 +184,7 @@ mod tests {
         let cases = cases::all(false).expect("cases");
         let case = cases.iter().find(|case| case.name == "on the axes").expect("a case");
         let solver = Solver::new(&case.design).expect("a solver");
-        let good = answer(solver.solve(&case.frames[0]).expect("solved"));
+        let good = Answer::from(solver.solve(&case.frames[0]).expect("solved"));
         let silent = |change: fn(&mut Answer)| {
             let mut answer = good.clone();
             change(&mut answer);

@@ -1,10 +1,10 @@
 //! `testbench hard`: what becomes of frames and sensors at the limits, in f64, float32 and the hardware's fixed point.
 
 pub mod cases;
+pub mod float32;
 pub mod judge;
-pub mod render;
 pub mod rtl;
-pub mod single;
+pub mod tables;
 
 use golden::design::DesignError;
 use golden::scene::SceneError;

@@ -5,8 +5,8 @@ use hdl_gen::plan::Plan;
 
 use super::cases::Case;
 use crate::progress::Progress;
+use crate::stream_words::packets;
 use crate::trial::{Timing, Trial, TrialError, Verdict};
-use crate::words::packets;
 
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;

@@ -21,10 +21,10 @@ pub use sites::{Kind, Mutation, all};
 
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
+use crate::stream_words::packets;
 use crate::stress::{BATCH, run_batch};
 use crate::trial::{Trial, TrialError, planned, rtl_sources};
-use crate::verilate::{BuildError, Built, RtlSources, Verilate};
-use crate::words::packets;
+use crate::verilate::{BuildError, Built, RtlSources, Verilate, elaborated_lines};
 
 /// Batches of `testbench stress` after the standing frames.
 const STRESS_BATCHES: u64 = 3;
@@ -132,7 +132,7 @@ pub fn mutants(design: &Design, options: &Options, progress: &Progress) -> Resul
     if let Some(reason) = ordeal.complaint(&sources).map_err(TrialError::from)? {
         return Err(MutantsError::Unsound(reason));
     }
-    let queue = drawn(&sources, options.seed);
+    let queue = drawn(&sources, options.seed).map_err(TrialError::from)?;
     progress.counted("mutants", options.count as u64);
     let next = AtomicUsize::new(0);
     let wanted = AtomicUsize::new(options.count);
@@ -163,10 +163,12 @@ pub fn mutants(design: &Design, options: &Options, progress: &Progress) -> Resul
     Ok(Report { design: plan.design.name.clone(), seed: options.seed, mutants })
 }
 
-/// Every possible mutation, at random, the kinds in turn.
-fn drawn(sources: &RtlSources, seed: u64) -> Vec<Mutation> {
+/// Every possible mutation of what this design has of its modules, at random, the kinds in turn.
+fn drawn(sources: &RtlSources, seed: u64) -> Result<Vec<Mutation>, BuildError> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut found = sites::all(sources);
+    let lines = elaborated_lines(sources)?;
+    found.retain(|of| of.kind == Kind::Rom || lines.get(&of.file).is_some_and(|lines| lines.contains(&of.line)));
     found.shuffle(&mut random);
     let mut turns: Vec<(usize, Mutation)> = Vec::with_capacity(found.len());
     let mut counts = [0; Kind::ALL.len()];
@@ -176,7 +178,7 @@ fn drawn(sources: &RtlSources, seed: u64) -> Vec<Mutation> {
         counts[kind] += 1;
     }
     turns.sort_by_key(|(turn, mutation)| (*turn, mutation.kind));
-    turns.into_iter().map(|(_, mutation)| mutation).collect()
+    Ok(turns.into_iter().map(|(_, mutation)| mutation).collect())
 }
 
 /// What every mutant goes through: the trial that every design goes through, then stress.

@@ -10,14 +10,14 @@ use golden::metrics::{ErrorSummary, Outcome};
 use golden::solver::{Solution, Solver};
 use hdl_gen::plan::Plan;
 
+use super::distributed::RunReport;
 use super::grid::{Job, filter_text};
 use super::point::{AgainstSolver, Geometry, Hardware, Point, Verified};
-use super::runs::RunReport;
 use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
+use crate::stream_words::{Answer, as_received, decode, packets};
 use crate::trial::{Trial, model_answers, planned};
-use crate::words::{Answer, as_received, decode, packets};
 
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;
@@ -106,15 +106,14 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
     });
     let pairs: Vec<(Outcome, Outcome)> = truth.iter().copied().zip(solutions.iter().map(Outcome::from)).collect();
     let errors = ErrorSummary::new(&pairs);
-    let answers: Vec<Answer> = solutions.iter().map(as_answer).collect();
     Point {
         key: job.key.clone(),
         sensor: Geometry::from(sensor),
         scene: scene.name.clone(),
-        plan: algorithm.plan.to_string(),
-        kernel: algorithm.kernel.to_string(),
+        plan: algorithm.plan,
+        kernel: algorithm.kernel,
         filter: filter_text(&algorithm.filter),
-        estimator: algorithm.estimator.to_string(),
+        estimator: algorithm.estimator,
         coefficient_bits: hardware.coefficient_bits,
         data_bits: hardware.data_bits,
         lanes: hardware.lanes,
@@ -128,20 +127,7 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
         errors,
         solver_errors: errors,
         against_solver: None,
-        status_counts: StatusCounts::new(&answers),
-    }
-}
-
-/// A solution in the form of an answer, for what is counted over answers.
-fn as_answer(solution: &Solution) -> Answer {
-    Answer {
-        status: solution.status.0,
-        counter: 0,
-        resultant: solution.resultant,
-        mu: solution.mu,
-        phi: solution.phi,
-        mu_xy: [solution.mu_x, solution.mu_y],
-        field: [const { Vec::new() }; 3],
+        status_counts: StatusCounts::of(&solutions.iter().map(|solution| solution.status).collect::<Vec<_>>()),
     }
 }
 

@@ -7,7 +7,6 @@ use golden::design::{Design, Estimator, Filter, JointConstants, MatrixFilter, Pl
 use hdl_gen::plan::Plan;
 use sha2::{Digest, Sha256};
 
-use super::point::{Geometry, Point};
 use super::{SweepError, SweepScene};
 
 /// Steps of L and p in the paper's sweep.
@@ -89,7 +88,7 @@ impl Job {
     pub fn label(&self, scene: &SweepScene) -> String {
         let hardware = &self.design.hardware;
         format!(
-            "point {} ({}, {:?} plan, {:?} estimator, {} lanes, {} x {} bits, scene {})",
+            "point {} ({}, {} plan, {} estimator, {} lanes, {} x {} bits, scene {})",
             self.key,
             filter_text(&self.design.algorithm.filter),
             self.design.algorithm.plan,
@@ -165,17 +164,17 @@ fn key(design: &Design, scene: &SweepScene) -> String {
     digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<String>()[..KEY_DIGITS].to_owned()
 }
 
+/// The values of an axis, or the usual ones.
+fn or<T: Copy>(given: &[T], usual: &[T]) -> Vec<T> {
+    if given.is_empty() { usual } else { given }.to_vec()
+}
+
 /// The designs that differ from `base`, one of `designs`, along the axes, and exist.
 fn variants(base: &Design, designs: &[Design], axes: &Axes) -> Vec<Design> {
-    let or = |given: &[usize], usual: &[usize]| if given.is_empty() { usual.to_vec() } else { given.to_vec() };
-    let bits = |given: &[u32], usual: &[u32]| if given.is_empty() { usual.to_vec() } else { given.to_vec() };
     let lanes = or(&axes.lanes, &LANES);
-    let coefficient_bits = bits(&axes.coefficient_bits, &COEFFICIENT_BITS);
-    let data_bits = bits(&axes.data_bits, &DATA_BITS);
-    let mut plans = axes.plans.clone();
-    if plans.is_empty() {
-        plans = vec![PlanKind::Reduced, PlanKind::Paper];
-    }
+    let coefficient_bits = or(&axes.coefficient_bits, &COEFFICIENT_BITS);
+    let data_bits = or(&axes.data_bits, &DATA_BITS);
+    let plans = or(&axes.plans, &[PlanKind::Reduced, PlanKind::Paper]);
     // The design itself first, unless another grid was asked for.
     let asked = axes.full || !axes.filters.is_empty() || !axes.plans.is_empty() || !axes.estimators.is_empty();
     let mut variants = if asked { Vec::new() } else { vec![base.clone()] };
@@ -217,8 +216,8 @@ fn variants(base: &Design, designs: &[Design], axes: &Axes) -> Vec<Design> {
 /// The joint one has the constants that it needs from a design of the same sensor, else it is left out.
 fn with_estimators(base: &Design, designs: &[Design], axes: &Axes) -> Vec<Design> {
     let usual: &[Estimator] = if axes.full { &[Estimator::Line, Estimator::Joint] } else { &[Estimator::Line] };
-    let axis = if axes.estimators.is_empty() { usual } else { &axes.estimators };
-    axis.iter()
+    or(&axes.estimators, usual)
+        .iter()
         .filter_map(|estimator| match estimator {
             Estimator::Line => Some(line(base)),
             Estimator::Joint => joint(base, designs),
@@ -267,9 +266,8 @@ fn product<T: Copy>(designs: &[Design], values: &[T], set: impl Fn(&mut Design, 
 /// The design with each filter of the axis; all of the paper's without any.
 fn with_filters(base: &Design, axis: &[FilterAxis]) -> Vec<Design> {
     let usual = [FilterAxis::None, FilterAxis::F1(None), FilterAxis::F2(None), FilterAxis::F3];
-    let axis = if axis.is_empty() { &usual[..] } else { axis };
     let mut filters = Vec::new();
-    for &kind in axis {
+    for kind in or(axis, &usual) {
         match kind {
             FilterAxis::None => filters.push(Filter::None),
             FilterAxis::F1(Some(l)) => filters.push(Filter::F1 { l }),
@@ -293,25 +291,4 @@ fn with_filters(base: &Design, axis: &[FilterAxis]) -> Vec<Design> {
 /// Whether a design file could say this.
 fn exists(design: &Design) -> bool {
     Design::from_parts(&design.to_toml(), NAME, &design.files()).is_ok_and(|again| again == *design)
-}
-
-/// The paper's name of a sensor, or its geometry.
-pub fn sensor_title(sensor: &Geometry) -> String {
-    let Geometry { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
-    let geometry = format!("{columns} × {rows} taxels of {x} × {y} mm, {depth_mm} mm deep");
-    match super::point::paper_sensor(sensor) {
-        Some(number) => format!("Sensor {number}: {geometry}"),
-        None => geometry,
-    }
-}
-
-/// The sensors of points, each once, in order.
-pub fn sensors(points: &[Point]) -> Vec<Geometry> {
-    let mut sensors: Vec<Geometry> = Vec::new();
-    for point in points {
-        if !sensors.contains(&point.sensor) {
-            sensors.push(point.sensor.clone());
-        }
-    }
-    sensors
 }

@@ -1,20 +1,20 @@
 //! `testbench sweep`: speed against error, one point a variant of a design and a scene.
 //!
-//! The way of the data: [`grid`] (which points) → [`evaluate`] (one point) → [`store`] (a file each) → [`table`].
+//! The way of the data: [`grid`] (which points) → [`evaluate`] (one point) → [`store`] (a file each) → [`csv_file`].
 
+pub mod csv_file;
+pub mod distributed;
 pub mod evaluate;
 pub mod grid;
+pub mod page;
 pub mod point;
-pub mod runs;
 pub mod store;
-pub mod table;
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use golden::design::DesignError;
 use golden::frames::FrameError;
-use golden::metrics::Outcome;
 use golden::output::OutputError;
 use golden::scene::{Scene, SceneError};
 use golden::solver::SolverError;
@@ -145,16 +145,9 @@ impl SweepScene {
         let text =
             std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_owned(), source })?;
         let scene = Scene::from_toml(&text, &path.display().to_string())?;
-        let frames = scene.frames().map_err(failed)?;
+        let frames = FrameSet::of_scene(&scene, path.display().to_string()).map_err(failed)?;
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        let truth = frames.iter().map(Outcome::from).collect();
-        let stress = frames.into_iter().map(|frame| frame.stress).collect();
-        Ok(Self {
-            frames: FrameSet { origin: path.display().to_string(), stress, truth: Some(truth) },
-            name,
-            text,
-            scene,
-        })
+        Ok(Self { name, text, scene, frames })
     }
 
     /// The standing scene of a sensor.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use golden::design::Sensor;
+use golden::design::{Estimator, Kernel, PlanKind, Sensor};
 use golden::metrics::ErrorSummary;
 use serde::{Deserialize, Serialize};
 
@@ -90,14 +90,14 @@ pub struct Point {
     pub sensor: Geometry,
     /// Name of the scene.
     pub scene: String,
-    /// `paper` or `reduced`.
-    pub plan: String,
-    /// `point` or `cell`.
-    pub kernel: String,
+    /// The plan.
+    pub plan: PlanKind,
+    /// What each force loads.
+    pub kernel: Kernel,
     /// `none`, `f1 l=40`, `f2 p=50` or `f3`.
     pub filter: String,
-    /// `line` or `joint`.
-    pub estimator: String,
+    /// The estimator.
+    pub estimator: Estimator,
     /// Width of the coefficients.
     pub coefficient_bits: u32,
     /// Width of the vectors.
@@ -160,4 +160,25 @@ impl Point {
 pub fn paper_sensor(sensor: &Geometry) -> Option<usize> {
     let of = |pitch_mm| Geometry { columns: 10, rows: 10, pitch_mm, depth_mm: 3.0 };
     [of([4.0, 2.0]), of([4.0, 4.0])].iter().position(|known| known == sensor).map(|index| index + 1)
+}
+
+/// The paper's name of a sensor, or its geometry.
+pub fn sensor_title(sensor: &Geometry) -> String {
+    let Geometry { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
+    let geometry = format!("{columns} × {rows} taxels of {x} × {y} mm, {depth_mm} mm deep");
+    match paper_sensor(sensor) {
+        Some(number) => format!("Sensor {number}: {geometry}"),
+        None => geometry,
+    }
+}
+
+/// The sensors of points, each once, in order.
+pub fn sensors(points: &[Point]) -> Vec<Geometry> {
+    let mut sensors: Vec<Geometry> = Vec::new();
+    for point in points {
+        if !sensors.contains(&point.sensor) {
+            sensors.push(point.sensor.clone());
+        }
+    }
+    sensors
 }

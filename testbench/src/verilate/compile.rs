@@ -243,7 +243,7 @@ pub fn version(mut program: Command, tool: &'static str, remedy: &'static str) -
 }
 
 /// Runs a command to its end; its standard output.
-fn output(command: Command, step: &'static str, top: &str) -> Result<String, BuildError> {
+pub fn output(command: Command, step: &'static str, top: &str) -> Result<String, BuildError> {
     said(command)?.map_err(|output| BuildError::Step { step, top: top.to_owned(), output })
 }
 

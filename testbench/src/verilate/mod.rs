@@ -6,6 +6,7 @@
 
 mod cache;
 mod compile;
+mod elaborate;
 
 use std::collections::BTreeMap;
 use std::io;
@@ -16,6 +17,7 @@ use thiserror::Error;
 
 pub use cache::default_cache;
 pub use compile::Effort;
+pub use elaborate::elaborated_lines;
 
 use crate::dut::{Dut, DutError};
 use crate::tools::{self, ToolError};

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::support::{built, frames, in_parallel, planned, shipped, with_joint};
+use crate::support::{built_to_last, frames, in_parallel, planned, shipped, with_joint};
 use golden::design::{Design, Optimise, Outputs, PlanKind};
 use hdl_gen::model::{AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, Model, NO_CONTACT, NOT_FINITE, SATURATED};
 use hdl_gen::plan::Plan;
@@ -10,9 +10,9 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::compare::Comparison;
 use testbench::stream::{INITIAL_RESET, Mode, Outcome, Pacing, Pattern, Reset, Traffic, exchange};
+use testbench::stream_words::{Answer, decode, encode};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
-use testbench::words::{Answer, decode, encode};
 
 const LONG: usize = 1200;
 /// Frames among as many that must have each status, so that a mode shows it more than once.
@@ -52,7 +52,7 @@ fn subjects() -> &'static [Subject] {
         ];
         in_parallel(&designs, |design| {
             let plan = planned(design);
-            let built = built(&plan);
+            let built = built_to_last(&plan);
             Subject { plan, built }
         })
     })
@@ -278,35 +278,43 @@ fn mixed_in_every_mode(subject: &Subject) {
 }
 
 /// Judges traffic with resets: between two of them the core is a new one, and only packets that were on the way when
-/// one came have no answer.
-fn judge(plan: &Plan, packets: &[Vec<u32>], resets: &[Reset], outcome: &Outcome) {
-    // One in each of two banks, one being put out, one being sent, one between the search and the output. In the
-    // reduced plan one whose search waits for that, one behind it, and eight beats alone fit into the output's
-    // registers.
-    let most_inside = if plan.ways() > 1 { 8 } else { 5 };
+/// one came have no answer. How many answers came after each reset and how many packets were lost to it, as far as they
+/// can be told apart.
+fn judge(plan: &Plan, packets: &[Vec<u32>], resets: &[Reset], outcome: &Outcome) -> Vec<(usize, usize)> {
+    // One in each of two banks, one being put out, one being sent, one between the search and the output, and in the
+    // output's registers the last beats of the one before. In the reduced plan one whose search waits for that, one
+    // behind it, and eight beats alone fit into the output's registers.
+    let most_inside = if plan.ways() > 1 { 9 } else { 6 };
     let mut exchanges = outcome.exchanges.iter().peekable();
     let (mut next, mut lost) = (0, 0);
+    let mut counts = vec![(0, 0); resets.len() + 1];
     let ends = resets.iter().map(|reset| reset.cycle + INITIAL_RESET).chain([u64::MAX]);
-    for end in ends {
+    for (count, end) in counts.iter_mut().zip(ends) {
         let mut model = Model::new(plan);
         while let Some(exchange) = exchanges.next_if(|exchange| exchange.last_out < end) {
             let packet = exchange.packet;
             assert!((next..=next + lost).contains(&packet), "packet {packet} answered, {next} expected, {resets:?}");
             assert_eq!(exchange.words, model.process(&packets[packet]), "packet {packet}, {resets:?}");
+            *count = (count.0 + 1, count.1 + packet - next);
             (next, lost) = (packet + 1, 0);
         }
         lost += most_inside;
     }
     assert_eq!(next, packets.len(), "the last packet is sent after the last reset, {resets:?}");
+    counts
+}
+
+/// Every so many cycles of a frame are tried.
+fn step(plan: &Plan) -> usize {
+    1 + 2 * (plan.timeline.latency_cycles / LONG_FRAME) as usize
 }
 
 /// Every pair of a design and one of so many cycles.
-fn with_each_cycle(cycles: impl Fn(&Plan) -> std::ops::Range<u64>, step: usize) -> Vec<(&'static Subject, u64)> {
+fn with_each_cycle(cycles: impl Fn(&Plan) -> std::ops::Range<u64>, every: usize) -> Vec<(&'static Subject, u64)> {
     subjects()
         .iter()
         .flat_map(|subject| {
-            let step = step * (1 + 2 * (subject.plan.timeline.latency_cycles / LONG_FRAME) as usize);
-            cycles(&subject.plan).step_by(step).map(move |cycle| (subject, cycle))
+            cycles(&subject.plan).step_by(every * step(&subject.plan)).map(move |cycle| (subject, cycle))
         })
         .collect()
 }
@@ -343,22 +351,51 @@ fn a_reset_while_frames_overlap_leaves_no_trace() {
     });
 }
 
-/// The sink stands still for so long that every place inside is taken, then a reset.
+/// Intervals of traffic in front of each reset: frames come out after the reset before, and pile up again.
+const PILING_UP: u64 = 24;
+/// Packets for each reset: about as many as that time takes.
+const PACKETS_A_RESET: usize = 12;
+/// Resets of one simulation.
+const CHAIN: usize = 24;
+
+/// The sink stands still for so long that every place inside is taken, then a reset. After a reset the core is a new
+/// one, so that the next trial begins where the one before has ended.
 #[test]
 fn a_reset_while_frames_pile_up_leaves_no_trace() {
-    let cases = with_each_cycle(|plan| 0..2 * plan.timeline.interval_cycles, 11);
-    in_parallel(&cases, |&(subject, offset)| {
+    let offsets = |subject: &Subject| (0..2 * subject.plan.timeline.interval_cycles).step_by(11 * step(&subject.plan));
+    let chains: Vec<(&Subject, Vec<u64>)> = subjects()
+        .iter()
+        .flat_map(|subject| {
+            let offsets: Vec<u64> = offsets(subject).collect();
+            offsets.chunks(CHAIN).map(|chain| (subject, chain.to_vec())).collect::<Vec<_>>()
+        })
+        .collect();
+    in_parallel(&chains, |(subject, offsets)| {
         let plan = &subject.plan;
         let mut random = ChaCha8Rng::seed_from_u64(6);
-        let packets: Vec<Vec<u32>> = (0..20).map(|_| good(plan, &mut random)).collect();
+        let some: Vec<Vec<u32>> = (0..20).map(|_| good(plan, &mut random)).collect();
+        let packets: Vec<Vec<u32>> = some.into_iter().cycle().take(PACKETS_A_RESET * (offsets.len() + 1)).collect();
         let interval = plan.timeline.interval_cycles;
+        let mut cycle = 0;
+        let resets: Vec<Reset> = offsets
+            .iter()
+            .map(|offset| {
+                cycle += PILING_UP * interval + offset;
+                Reset { cycle, length: 1 }
+            })
+            .collect();
         let sink =
-            Pattern::Bursts { seed: 5, longest_run: 2 * plan.beats_out() as u32, longest_pause: 12 * interval as u32 };
+            Pattern::Bursts { seed: 5, longest_run: 3 * plan.beats_out() as u32, longest_pause: 12 * interval as u32 };
         let mode = Mode { name: "sink that stands still", source: Pattern::Free, sink };
-        let resets = [Reset { cycle: 8 * interval + offset, length: 1 }];
         let traffic = Traffic::new(&packets, 8 * timeout(plan)).with_resets(&resets).with_mode(&mode);
         let outcome = subject.run(&traffic).unwrap_or_else(|error| panic!("{resets:?}: {error}"));
-        judge(plan, &packets, &resets, &outcome);
+        assert!(outcome.cycles > cycle, "every reset took place");
+        let counts = judge(plan, &packets, &resets, &outcome);
+        let share = |wanted: &dyn Fn(&(usize, usize)) -> bool| {
+            counts[1..].iter().filter(|&count| wanted(count)).count() as f64 / resets.len() as f64
+        };
+        assert!(share(&|&(answered, _)| answered > 0) >= 0.9, "resets are judged by what comes next: {counts:?}");
+        assert!(share(&|&(_, lost)| lost >= 4) >= 0.8, "resets come while frames have piled up: {counts:?}");
     });
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::standin::{PLAIN_TRACE, answer, load, packet_sum};
 use testbench::dut::DutError;
 use testbench::stream::{Traffic, exchange};
-use testbench::verilate::{BuildError, Trace, Verilate, default_cache};
+use testbench::verilate::{BuildError, RtlSources, Trace, Verilate, default_cache, elaborated_lines};
 
 /// A cache of its own that borrows the compiled runtime of the shared one, whose build takes seconds.
 fn fresh_cache() -> tempfile::TempDir {
@@ -91,7 +91,7 @@ fn registers_without_reset_start_random_and_the_seed_decides() {
         reg [31:0] value; always @(posedge aclk) value <= value;
         assign m_axis_tdata = value; assign m_axis_tvalid = s_axis_tvalid; assign m_axis_tlast = s_axis_tlast;
         assign s_axis_tready = m_axis_tready; endmodule";
-    let sources = testbench::verilate::RtlSources {
+    let sources = RtlSources {
         top: "seeded".to_owned(),
         files: [("rtl/seeded.v".to_owned(), source.as_bytes().to_vec())].into(),
     };
@@ -185,4 +185,33 @@ fn what_an_interrupted_build_left_is_removed_and_a_running_one_is_not() {
     Verilate::new(cache.path()).build(&packet_sum(0)).expect("builds");
     assert!(!cache.path().join("building-abandoned").exists());
     assert!(cache.path().join("building-running/dut.so").exists());
+}
+
+/// A module of the library holds more than a design uses of it.
+#[test]
+fn lines_that_generate_leaves_out_are_no_hardware() {
+    let library = "module sptfra_part #(parameter WAYS = 4) (input wire clock, input wire x, output reg y);
+        generate
+            if (WAYS == 4) begin : gen_four
+                always @(posedge clock) y <= x;
+            end else begin : gen_one
+                always @(posedge clock) y <= !x;
+            end
+            if (WAYS > 4) begin : gen_check
+                sptfra_error_ways invalid ();
+            end
+        endgenerate
+        `ifdef SIMULATION
+        wire seen = x;
+        `endif
+        endmodule\n";
+    let top = "module t #(parameter ROM_DIR = \"\") (input wire clock, input wire x, output wire y);
+        sptfra_part #(.WAYS (1)) part (.clock(clock), .x(x), .y(y));
+        endmodule\n";
+    let file = |name: &str, text: &str| (name.to_owned(), text.as_bytes().to_vec());
+    let files = [file("rtl/sptfra_part.v", library), file("rtl/t.v", top)].into();
+    let lines = elaborated_lines(&RtlSources { top: "t".to_owned(), files }).expect("elaborated");
+    let (part, top) = (&lines["rtl/sptfra_part.v"], &lines["rtl/t.v"]);
+    assert!(part.contains(&6) && top.contains(&2), "{lines:?}");
+    assert!([4, 9, 13].iter().all(|line| !part.contains(line)), "{part:?}");
 }

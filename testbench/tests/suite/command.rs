@@ -9,8 +9,7 @@ use hdl_gen::plan::Plan;
 use serde_json::Value;
 use testbench::frame_set::FrameSet;
 use testbench::progress::Progress;
-use testbench::run::{Options, run_plan};
-use testbench::table;
+use testbench::run::{Options, page, run_plan};
 use testbench::trial::Timing;
 
 fn testbench(arguments: &[&str]) -> Output {
@@ -87,7 +86,7 @@ fn other_cycles_than_predicted_are_wrong() {
     let report = |plan: &Plan| run_plan(plan, &frames, &Options::default(), &Progress::hidden()).expect("runs");
     let right = report(&plan);
     assert!(right.is_right() && right.timing == Timing::AsPredicted && right.faults.is_empty());
-    let page = table::render(&right);
+    let page = page::render(&right);
     assert!(!page.contains("Zeros") && !page.contains("WRONG"), "{page}");
     plan.timeline.latency_cycles -= 1;
     plan.timeline.interval_cycles += 2;
@@ -99,7 +98,7 @@ fn other_cycles_than_predicted_are_wrong() {
         let cycles = format!("{} / {}", figures.latency_cycles, figures.interval_cycles);
         assert!(fault.contains(&cycles), "{fault}");
     }
-    assert!(table::render(&wrong).contains("WRONG CYCLES"));
+    assert!(page::render(&wrong).contains("WRONG CYCLES"));
     let json = serde_json::to_value(&wrong).expect("JSON");
     assert_eq!((&json["timing"], &json["faults"]), (&Value::from("wrong"), &Value::from(vec![fault.clone()])));
 }

@@ -11,8 +11,8 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::compare::Comparison;
 use testbench::stream::{Mode, Pacing, Traffic, exchange};
+use testbench::stream_words::{decode, encode};
 use testbench::trial::{model_answers, timeout};
-use testbench::words::{decode, encode};
 
 use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, workspace};
 

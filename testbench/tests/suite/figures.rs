@@ -13,8 +13,8 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::product::{Coefficients, Product};
 use testbench::accuracy::SolverError;
 use testbench::frame_set::FrameSet;
+use testbench::stream_words::{decode, encode};
 use testbench::trial::model_answers;
-use testbench::words::{decode, encode};
 
 /// Of the largest `|f_z|` of a frame; of resultants, of `|F_z|`.
 const MOST_FIELD_ERROR: f64 = 2e-3;

@@ -102,7 +102,7 @@ const LATENCY_BROKEN: &[Broken] = &[
     ("turns", "field_due && residual_there && friction_known", "field_due && friction_known"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
-    ("sptfra_op", "output_idle && ((FIELD == 0) || field_there)", "output_idle"),
+    ("sptfra_op", "output_idle && ((FIELD == 0) || (fields_there != 2'd0))", "output_idle"),
     ("sptfra_output", "issued && issued_last && advance", "issued && issued_last"),
 ];
 const JOINT_BROKEN: &[Broken] = &[

@@ -2,6 +2,7 @@
 
 use std::process::Command;
 
+use golden::design::Estimator;
 use serde_json::Value;
 use testbench::hard::cases::{self, Case};
 use testbench::hard::judge::{Judged, Row};
@@ -28,7 +29,7 @@ fn no_answer_is_wrong_in_silence() {
             continue;
         };
         let f64 = row.f64.as_ref().expect("solved");
-        if row.estimator == "joint" {
+        if row.estimator == Estimator::Joint {
             check_joint(row, f64, fixed);
             continue;
         }

@@ -15,8 +15,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::accuracy::SolverError;
 use testbench::stream::{Traffic, exchange};
+use testbench::stream_words::{Answer, decode, encode};
 use testbench::trial::{model_answers, timeout};
-use testbench::words::{Answer, decode, encode};
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 const SOFTER: Medium = Medium::BondedLayer { poisson: 0.45 };

@@ -9,8 +9,8 @@ use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
 use golden::scene::Scene;
 use golden::solver::Solver;
 use testbench::accuracy::against_truth;
-use testbench::words::as_received;
-use testbench::words::{Answer, decode, encode};
+use testbench::stream_words::as_received;
+use testbench::stream_words::{Answer, decode, encode};
 
 /// Percentage points between an error of the RTL and that of f64.
 const MOST_DIFFERENCE: f64 = 0.1;

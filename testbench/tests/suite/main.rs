@@ -3,6 +3,7 @@
 mod bad_frames;
 mod bench;
 mod build_cache;
+mod cells;
 mod checks;
 mod command;
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]

@@ -5,9 +5,8 @@ use golden::design::{Design, Outputs, PlanKind};
 use testbench::frame_set::FrameSet;
 use testbench::mutants::{self, Fate, Kind, mutants};
 use testbench::progress::Progress;
-use testbench::run::{self, run};
+use testbench::run::{self, page, run};
 use testbench::stress::{self, StressError, stress};
-use testbench::table;
 use testbench::trial::{Timing, rtl_sources};
 use testbench::verilate::Verilate;
 
@@ -111,7 +110,7 @@ fn a_design_that_passes_over_zeros_is_sound() {
     let report = run(&design, &frames, &run::Options::default(), &Progress::hidden()).expect("runs");
     assert_eq!(report.timing, Timing::WithinBound, "{report:#?}");
     assert!(report.latency_cycles < report.predicted.latency_cycles && report.is_right());
-    assert!(table::render(&report).contains("Zeros were passed over"));
+    assert!(page::render(&report).contains("Zeros were passed over"));
     let none = mutants(&design, &mutants::Options { count: 0, seed: 1 }, &Progress::hidden()).expect("sound");
     assert!(none.mutants.is_empty());
 }

@@ -81,7 +81,7 @@ fn lists_name_the_bank_and_tools_read_them() {
     let files = control();
     let folder = Folder::new(&files);
     let sources: Vec<&str> = files.keys().map(String::as_str).filter(|path| path.starts_with("rtl/")).collect();
-    assert!(sources.contains(&"rtl/sptfra_stream_gate.v") && sources.contains(&"rtl/small_control_registers.v"));
+    assert!(sources.contains(&"rtl/sptfra_stream_gate.v") && sources.contains(&"rtl/sptfra_registers.v"));
     assert_eq!(folder.read("small_control.f").lines().collect::<Vec<_>>(), sources);
     let bender = yaml(&folder.design().join("Bender.yml"));
     let listed = bender["sources"].as_array().expect("sources").iter().filter_map(serde_json::Value::as_str);

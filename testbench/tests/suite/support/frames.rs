@@ -5,7 +5,7 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::product::Product;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use testbench::words::encode;
+use testbench::stream_words::encode;
 
 /// A round contact somewhere on the sensor, dragged in some direction: compression in front of it, tension behind.
 pub fn contact(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {

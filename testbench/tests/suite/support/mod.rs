@@ -11,7 +11,7 @@ use golden::design::{Correction, Design, Estimator, Outputs, PlanKind};
 use hdl_gen::plan::Plan;
 use testbench::simulate::Simulation;
 use testbench::trial::{Trial, rtl_sources};
-use testbench::verilate::{Built, Verilate};
+use testbench::verilate::{Built, Effort, Verilate};
 
 /// A file of the workspace.
 pub fn workspace(path: &str) -> PathBuf {
@@ -61,6 +61,12 @@ pub fn planned(design: &Design) -> Plan {
 /// The plan's RTL, compiled.
 pub fn built(plan: &Plan) -> Built {
     Verilate::default().build(&rtl_sources(plan).expect("emitted")).expect("Verilator accepts it")
+}
+
+/// The same for a simulation of many millions of cycles.
+pub fn built_to_last(plan: &Plan) -> Built {
+    let verilate = Verilate::default().with_effort(Effort::Long);
+    verilate.build(&rtl_sources(plan).expect("emitted")).expect("Verilator accepts it")
 }
 
 /// Plans nothing and compiles nothing twice: sends `packets` through the RTL in all four stream modes, and judges

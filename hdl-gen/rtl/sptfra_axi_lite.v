@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// AXI4-Lite, 32 bits: takes write address and write data in either order, one write and one read at a time, and turns
+// them into accesses of a register bank that answers in the same cycle.
+//
+// Address and data are registered on the way in, responses on the way out; SLVERR where no register is. A write acts in
+// the cycle after the later of its address and data, once the response before it is taken.
+
+`default_nettype none
+
+module sptfra_axi_lite (
+    input  wire clock,
+    input  wire reset,
+    // Bus
+    input  wire [11:0] s_awaddr,
+    input  wire s_awvalid,
+    output wire s_awready,
+    input  wire [31:0] s_wdata,
+    input  wire [3:0] s_wstrb,
+    input  wire s_wvalid,
+    output wire s_wready,
+    output wire [1:0] s_bresp,
+    output wire s_bvalid,
+    input  wire s_bready,
+    input  wire [11:0] s_araddr,
+    input  wire s_arvalid,
+    output wire s_arready,
+    output wire [31:0] s_rdata,
+    output wire [1:0] s_rresp,
+    output wire s_rvalid,
+    input  wire s_rready,
+    // Bank: words of four bytes
+    output wire write_enable, // for one cycle, if write_mapped
+    output wire [9:0] write_word,
+    output wire [31:0] write_data,
+    output wire [31:0] write_mask, // bits of the bytes that are written
+    input  wire write_mapped,
+    output wire [9:0] read_word,
+    input  wire [31:0] read_data,
+    input  wire read_mapped
+);
+
+    localparam [1:0] OKAY = 2'b00;
+    localparam [1:0] SLVERR = 2'b10;
+
+    // ---- Writes
+    reg address_held;
+    reg data_held;
+    reg [9:0] write_word_held;
+    reg [31:0] write_data_held;
+    reg [3:0] strobes_held;
+    reg response_valid;
+    reg response_error;
+
+    wire write_acts = address_held && data_held && !response_valid;
+
+    assign s_awready = !address_held;
+    assign s_wready = !data_held;
+    assign s_bvalid = response_valid;
+    assign s_bresp = response_error ? SLVERR : OKAY;
+    assign write_enable = write_acts && write_mapped;
+    assign write_word = write_word_held;
+    assign write_data = write_data_held;
+    assign write_mask = {{8{strobes_held[3]}}, {8{strobes_held[2]}}, {8{strobes_held[1]}}, {8{strobes_held[0]}}};
+
+    always @(posedge clock) begin
+        if (s_awvalid && s_awready) begin
+            address_held <= 1'b1;
+            write_word_held <= s_awaddr[11:2];
+        end
+        if (s_wvalid && s_wready) begin
+            data_held <= 1'b1;
+            write_data_held <= s_wdata;
+            strobes_held <= s_wstrb;
+        end
+        if (response_valid && s_bready) begin
+            response_valid <= 1'b0;
+        end
+        if (write_acts) begin
+            address_held <= 1'b0;
+            data_held <= 1'b0;
+            response_valid <= 1'b1;
+            response_error <= !write_mapped;
+        end
+        if (reset) begin
+            address_held <= 1'b0;
+            data_held <= 1'b0;
+            response_valid <= 1'b0;
+        end
+    end
+
+    // ---- Reads
+    reg read_held;
+    reg [9:0] read_word_held;
+    reg read_valid;
+    reg read_error;
+    reg [31:0] read_data_held;
+
+    wire read_acts = read_held && !read_valid;
+
+    assign s_arready = !read_held;
+    assign s_rvalid = read_valid;
+    assign s_rresp = read_error ? SLVERR : OKAY;
+    assign s_rdata = read_data_held;
+    assign read_word = read_word_held;
+
+    always @(posedge clock) begin
+        if (s_arvalid && s_arready) begin
+            read_held <= 1'b1;
+            read_word_held <= s_araddr[11:2];
+        end
+        if (read_valid && s_rready) begin
+            read_valid <= 1'b0;
+        end
+        if (read_acts) begin
+            read_held <= 1'b0;
+            read_valid <= 1'b1;
+            read_data_held <= read_data;
+            read_error <= !read_mapped;
+        end
+        if (reset) begin
+            read_held <= 1'b0;
+            read_valid <= 1'b0;
+        end
+    end
+
+    // Registers are whole words
+    wire _unused = &{1'b0, s_awaddr[1:0], s_araddr[1:0]};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// The registers behind the AXI4-Lite port: what the design is, soft reset, status, interrupts, counters.
+//
+// Reads answer in the same cycle. A soft reset clears counters, not interrupts. The map is that of the design's
+// control/NAME.rdl.
+
+`default_nettype none
+
+module sptfra_registers #(
+    // Version of the register map
+    parameter [7:0] MAP_VERSION = 8'd1,
+    // Version of the generator
+    parameter [7:0] MAJOR = 8'd0,
+    parameter [7:0] MINOR = 8'd0,
+    parameter [7:0] PATCH = 8'd0,
+    // The design's hash, as in metadata.json
+    parameter [63:0] HASH = 64'd0,
+    // Taxels in x and in y
+    parameter [7:0] COLUMNS = 8'd4,
+    parameter [7:0] ROWS = 8'd3,
+    // Multiply-accumulate lanes
+    parameter [7:0] LANES = 8'd4,
+    // Beats of a frame
+    parameter [15:0] WORDS_IN = 16'd12,
+    parameter [15:0] WORDS_OUT = 16'd8,
+    // The forces of each taxel go out too
+    parameter [0:0] HAS_FIELD = 1'd0,
+    // The reduced plan, else the paper's
+    parameter [0:0] IS_REDUCED = 1'd1,
+    // Frames hold counts, else pascals
+    parameter [0:0] HAS_COUNTS = 1'd0,
+    // Cycles depend on the data
+    parameter [0:0] SKIPS_ZEROS = 1'd0,
+    // The design's clock
+    parameter [31:0] CLOCK_KHZ = 32'd125000,
+    // Largest stress in Pa, a float32
+    parameter [31:0] FULL_SCALE = 32'd0,
+    // Predicted cycles of a frame alone, first beat in to last beat out, and between frames
+    parameter [31:0] LATENCY_CYCLES = 32'd0,
+    parameter [31:0] INTERVAL_CYCLES = 32'd0
+) (
+    input  wire clock,
+    input  wire reset,
+    // Accesses
+    input  wire write_enable,
+    input  wire [9:0] write_word,
+    input  wire [31:0] write_data,
+    input  wire [31:0] write_mask,
+    output wire write_mapped,
+    input  wire [9:0] read_word,
+    output reg  [31:0] read_data,
+    output wire read_mapped,
+    // Soft reset
+    output wire soft_reset, // for one cycle
+    input  wire resetting,
+    input  wire discarding,
+    input  wire receiving,
+    input  wire sending,
+    // Figures and events
+    input  wire [31:0] frames_in,
+    input  wire [31:0] frames_out,
+    input  wire [31:0] frames_bad,
+    input  wire [31:0] last_status,
+    input  wire [31:0] last_latency,
+    input  wire [31:0] last_interval,
+    input  wire frame_done,
+    input  wire frame_error,
+    output reg  irq
+);
+
+    // "TFRA" in ASCII
+    localparam [31:0] MAGIC = 32'h54465241;
+    // Addresses, in words
+    localparam [9:0] IDENTITY = 10'd0;
+    localparam [9:0] VERSION = 10'd1;
+    localparam [9:0] HASH_LOW = 10'd2;
+    localparam [9:0] HASH_HIGH = 10'd3;
+    localparam [9:0] GEOMETRY = 10'd4;
+    localparam [9:0] FRAME = 10'd5;
+    localparam [9:0] FEATURES = 10'd6;
+    localparam [9:0] CLOCK = 10'd7;
+    localparam [9:0] FULL_SCALE_PASCALS = 10'd8;
+    localparam [9:0] PREDICTED_LATENCY = 10'd9;
+    localparam [9:0] PREDICTED_INTERVAL = 10'd10;
+    localparam [9:0] CONTROL = 10'd16;
+    localparam [9:0] STATUS = 10'd17;
+    localparam [9:0] INTERRUPT_ENABLE = 10'd18;
+    localparam [9:0] INTERRUPT_STATUS = 10'd19;
+    localparam [9:0] FRAMES_IN = 10'd20;
+    localparam [9:0] FRAMES_OUT = 10'd21;
+    localparam [9:0] FRAMES_BAD = 10'd22;
+    localparam [9:0] LAST_STATUS = 10'd23;
+    localparam [9:0] LAST_LATENCY = 10'd24;
+    localparam [9:0] LAST_INTERVAL = 10'd25;
+
+    reg [1:0] enabled;
+    reg [1:0] pending;
+
+    // Constants to word 10, the rest from word 16 on
+    assign write_mapped = (write_word <= PREDICTED_INTERVAL)
+        || ((write_word >= CONTROL) && (write_word <= LAST_INTERVAL));
+    assign read_mapped = (read_word <= PREDICTED_INTERVAL)
+        || ((read_word >= CONTROL) && (read_word <= LAST_INTERVAL));
+
+    // ---- Reads
+    always @(*) begin
+        case (read_word)
+            IDENTITY: read_data = MAGIC;
+            VERSION: read_data = {MAP_VERSION, MAJOR, MINOR, PATCH};
+            HASH_LOW: read_data = HASH[31:0];
+            HASH_HIGH: read_data = HASH[63:32];
+            GEOMETRY: read_data = {8'd0, LANES, ROWS, COLUMNS};
+            FRAME: read_data = {WORDS_OUT, WORDS_IN};
+            FEATURES: read_data = {28'd0, SKIPS_ZEROS, HAS_COUNTS, IS_REDUCED, HAS_FIELD};
+            CLOCK: read_data = CLOCK_KHZ;
+            FULL_SCALE_PASCALS: read_data = FULL_SCALE;
+            PREDICTED_LATENCY: read_data = LATENCY_CYCLES;
+            PREDICTED_INTERVAL: read_data = INTERVAL_CYCLES;
+            STATUS: read_data = {28'd0, sending, receiving, discarding, resetting};
+            INTERRUPT_ENABLE: read_data = {30'd0, enabled};
+            INTERRUPT_STATUS: read_data = {30'd0, pending};
+            FRAMES_IN: read_data = frames_in;
+            FRAMES_OUT: read_data = frames_out;
+            FRAMES_BAD: read_data = frames_bad;
+            LAST_STATUS: read_data = last_status;
+            LAST_LATENCY: read_data = last_latency;
+            LAST_INTERVAL: read_data = last_interval;
+            default: read_data = 32'd0; // CONTROL reads as zero
+        endcase
+    end
+
+    // ---- Writes
+    wire [1:0] ones = write_data[1:0] & write_mask[1:0];
+    wire [1:0] events = {frame_error, frame_done};
+    wire [1:0] cleared = (write_enable && (write_word == INTERRUPT_STATUS)) ? ones : 2'd0;
+
+    assign soft_reset = write_enable && (write_word == CONTROL) && ones[0];
+
+    always @(posedge clock) begin
+        if (write_enable && (write_word == INTERRUPT_ENABLE)) begin
+            enabled <= (enabled & ~write_mask[1:0]) | ones;
+        end
+        // An event in the cycle in which its bit is cleared is not lost
+        pending <= (pending & ~cleared) | events;
+        irq <= ((pending & enabled) != 2'd0);
+        if (reset) begin
+            enabled <= 2'd0;
+            pending <= 2'd0;
+            irq <= 1'b0;
+        end
+    end
+
+    wire _unused = &{1'b0, write_data[31:2], write_mask[31:2]};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Bz: takes frames of float32 stresses or counts from the stream, checks them, and writes them as fixed point into one
+// of two banks of the lanes' operand memories: taxel by taxel, or folded into parity classes.
+//
+// Beat to stress: 5 cycles, with counts 9; to the write, where taxels are folded, three more. One beat a cycle.
+// A frame is accepted while a bank is free and CeAn has finished the frame before. Frames of a wrong length are
+// swallowed up to their TLAST and marked.
+
+`default_nettype none
+
+module sptfra_bz #(
+    // Taxels in x and y
+    parameter COLUMNS = 10,
+    parameter ROWS = 10,
+    // 4: folded into parity classes; 1: as they are
+    parameter WAYS = 4,
+    // Bits of a stress
+    parameter DATA_BITS = 27,
+    // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts
+    parameter NUMBER_SHIFT = 9,
+    parameter [26:0] NUMBER_BOUND = 27'd51200000,
+    // Whether the stream carries counts: see sptfra_counts
+    parameter COUNTS = 0,
+    parameter PER_TAXEL = 0,
+    parameter signed [17:0] GAIN = 18'sd65536,
+    parameter OFFSET_BITS = 27,
+    parameter COUNT_SHIFT = 16,
+    parameter signed [47:0] FULL_SCALE = 48'sd51200000,
+    parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
+    // Prefix of the ROM file names, and what they begin with
+    parameter ROM_DIR = "",
+    parameter ROM_NAME = "",
+    // Derived
+    parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2
+) (
+    input  wire clock,
+    input  wire reset,
+    // Stream in
+    input  wire [31:0] s_tdata,
+    input  wire s_tlast,
+    input  wire s_tvalid,
+    output wire s_tready,
+    // Operand memories, class 0 in the lowest bits
+    output wire write_valid,
+    input  wire write_ready,
+    output wire write_bank,
+    output wire [ROW_WIDTH-1:0] write_row,
+    output wire [WAYS*DATA_BITS-1:0] write_data,
+    // To CeAn: each stress, then the frame's flags
+    input  wire cean_idle,
+    input  wire direction_room, // in CeAn, for another frame
+    output wire stress_valid,
+    output wire signed [26:0] stress,
+    output wire frame_done,
+    output wire frame_saturated,
+    output wire frame_not_finite,
+    output wire frame_bad_length,
+    // Banks
+    output wire frame_ready, // a whole frame waits
+    input  wire frame_start, // the lanes begin with it
+    input  wire frame_release // its bank is free again
+);
+
+    localparam TAXELS = COLUMNS * ROWS;
+    localparam INDEX_WIDTH = $clog2(TAXELS + 1);
+    localparam NUMBER_STAGES = 5;
+    localparam STAGES = (COUNTS != 0) ? NUMBER_STAGES + 4 : NUMBER_STAGES;
+    localparam signed [9:0] SHIFT = NUMBER_SHIFT;
+
+    generate
+        if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+            sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+        end
+        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
+            sptfra_error_ways_must_be_1_or_4 invalid ();
+        end
+        if ((DATA_BITS < 16) || (DATA_BITS > 27)) begin : gen_check_data
+            sptfra_error_data_bits_must_be_16_to_27 invalid ();
+        end
+    endgenerate
+
+    // ---- Which beats belong to a frame
+    reg [INDEX_WIDTH-1:0] index; // of the next beat, stops at TAXELS
+    reg in_frame;
+    reg [1:0] banks_taken;
+    wire pipe_busy;
+    wire advance = write_ready; // whether or not there is something to write: a short way to the stream
+    wire frame_written; // the frame is complete
+
+    // A frame may begin: a register, so that the stream's ready has a short way. What it looks at changes to the worse
+    // with a frame's first beat only
+    reg may_open;
+    assign s_tready = advance && (in_frame || may_open);
+    wire accept = s_tvalid && s_tready;
+    wire store = (index != TAXELS);
+
+    always @(posedge clock) begin
+        if (accept) begin
+            in_frame <= !s_tlast;
+            index <= s_tlast ? {INDEX_WIDTH{1'b0}} : store ? index + 1 : index;
+        end
+        may_open <= !accept && !pipe_busy && cean_idle && (banks_taken != 2'd2) && direction_room;
+        if (reset) begin
+            may_open <= 1'b1;
+            in_frame <= 1'b0;
+            index <= {INDEX_WIDTH{1'b0}};
+        end
+    end
+
+    // ---- float32 to fixed point
+    wire signed [26:0] number;
+    wire number_saturated;
+    wire number_not_finite;
+
+    sptfra_float_to_fixed float_to_fixed (
+        .clock      (clock),
+        .enable     (advance),
+        .float_bits (s_tdata),
+        .shift      (SHIFT),
+        .limit      (NUMBER_BOUND),
+        .fixed      (number),
+        .saturated  (number_saturated),
+        .not_finite (number_not_finite)
+    );
+
+    reg [STAGES:1] valid;
+    reg [STAGES:1] stores;
+    reg [STAGES:1] lasts;
+    reg [STAGES:1] bad_lengths;
+
+    assign pipe_busy = (valid != {STAGES{1'b0}});
+
+    always @(posedge clock) begin
+        if (advance) begin
+            valid <= {valid[STAGES-1:1], accept};
+            stores <= {stores[STAGES-1:1], store};
+            lasts <= {lasts[STAGES-1:1], s_tlast};
+            bad_lengths <= {bad_lengths[STAGES-1:1], index != TAXELS - 1};
+        end
+        if (reset) begin
+            valid <= {STAGES{1'b0}};
+        end
+    end
+
+    // ---- Counts to stress
+    wire signed [26:0] fixed;
+    wire saturated;
+    wire not_finite;
+
+    generate
+        if (COUNTS != 0) begin : gen_counts
+            sptfra_counts #(
+                .TAXELS       (TAXELS),
+                .PER_TAXEL    (PER_TAXEL),
+                .GAIN         (GAIN),
+                .OFFSET_BITS  (OFFSET_BITS),
+                .SHIFT        (COUNT_SHIFT),
+                .FULL_SCALE   (FULL_SCALE),
+                .STRESS_BOUND (STRESS_BOUND),
+                .ROM_DIR      (ROM_DIR),
+                .ROM_NAME     (ROM_NAME)
+            ) counts (
+                .clock             (clock),
+                .reset             (reset),
+                .advance           (advance),
+                .next_taxel        (valid[NUMBER_STAGES] && stores[NUMBER_STAGES]),
+                .frame_ends        (valid[NUMBER_STAGES] && lasts[NUMBER_STAGES]),
+                .number            (number),
+                .number_saturated  (number_saturated),
+                .number_not_finite (number_not_finite),
+                .stress            (fixed),
+                .saturated         (saturated),
+                .not_finite        (not_finite)
+            );
+        end else begin : gen_stress
+            assign fixed = number;
+            assign saturated = number_saturated;
+            assign not_finite = number_not_finite;
+            wire _unused = (PER_TAXEL != 0) || (GAIN != 0) || (OFFSET_BITS != 0) || (COUNT_SHIFT != 0)
+                || (FULL_SCALE != 0) || (STRESS_BOUND != 0) || (ROM_DIR != "") || (ROM_NAME != "");
+        end
+    endgenerate
+
+    // ---- Write
+    wire taxel_valid = valid[STAGES] && stores[STAGES];
+
+    generate
+        if (WAYS == 4) begin : gen_fold
+            sptfra_fold #(
+                .COLUMNS   (COLUMNS),
+                .ROWS      (ROWS),
+                .DATA_BITS (DATA_BITS)
+            ) fold (
+                .clock         (clock),
+                .reset         (reset),
+                .advance       (advance),
+                .in_valid      (valid[STAGES]),
+                .in_store      (stores[STAGES]),
+                .in_last       (lasts[STAGES]),
+                .in_stress     (fixed[DATA_BITS-1:0]),
+                .write_valid   (write_valid),
+                .write_bank    (write_bank),
+                .write_quad    (write_row),
+                .write_data    (write_data),
+                .frame_written (frame_written)
+            );
+        end else begin : gen_taxels
+            reg bank;
+            reg [ROW_WIDTH-1:0] taxel;
+
+            assign write_valid = taxel_valid;
+            assign write_bank = bank;
+            assign write_row = taxel;
+            assign write_data = fixed[DATA_BITS-1:0];
+            assign frame_written = frame_done;
+
+            always @(posedge clock) begin
+                if (stress_valid) begin
+                    taxel <= taxel + 1;
+                end
+                if (frame_done) begin
+                    bank <= !bank;
+                    taxel <= {ROW_WIDTH{1'b0}};
+                end
+                if (reset) begin
+                    bank <= 1'b0;
+                    taxel <= {ROW_WIDTH{1'b0}};
+                end
+            end
+        end
+    endgenerate
+
+    // ---- Tell CeAn
+    reg seen_saturated;
+    reg seen_not_finite;
+
+    assign stress_valid = taxel_valid && advance;
+    assign stress = fixed;
+    assign frame_done = valid[STAGES] && lasts[STAGES] && advance;
+    assign frame_saturated = seen_saturated || (stores[STAGES] && saturated);
+    assign frame_not_finite = seen_not_finite || (stores[STAGES] && not_finite);
+    assign frame_bad_length = bad_lengths[STAGES];
+
+    always @(posedge clock) begin
+        if (stress_valid) begin
+            seen_saturated <= frame_saturated;
+            seen_not_finite <= frame_not_finite;
+        end
+        if (reset || frame_done) begin
+            seen_saturated <= 1'b0;
+            seen_not_finite <= 1'b0;
+        end
+    end
+
+    // ---- Banks
+    reg [1:0] frames_waiting;
+    wire frame_opens = accept && !in_frame;
+
+    assign frame_ready = (frames_waiting != 2'd0);
+
+    always @(posedge clock) begin
+        banks_taken <= banks_taken + {1'b0, frame_opens} - {1'b0, frame_release};
+        frames_waiting <= frames_waiting + {1'b0, frame_written} - {1'b0, frame_start};
+        if (reset) begin
+            banks_taken <= 2'd0;
+            frames_waiting <= 2'd0;
+        end
+    end
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// CeAn: what a frame's stress b says at first sight, for Op: how much there is, and where the push goes (Eq. 24).
+//
+// Stresses come in one a cycle, taxel by taxel in rows; the result follows 4 cycles after the last one, or, with
+// DIRECTION, after the 12 + 2 divisions of sptfra_direction. The results of up to two frames wait for Op.
+
+`default_nettype none
+
+module sptfra_cean #(
+    // Taxels along x
+    parameter integer COLUMNS = 10,
+    // Taxels along y
+    parameter integer ROWS = 10,
+    // 1: the direction of the push too; 0: for an estimator that needs none
+    parameter integer DIRECTION = 0,
+    // Noise floor of a taxel, in steps of the stress
+    parameter [26:0] TAXEL_FLOOR = 27'd100,
+    // Noise floor of the frame's sum |b|, in steps of the stress
+    parameter [39:0] CONTACT_FLOOR = 40'd1000,
+    // Pitch in x over the larger pitch, 16 fraction bits
+    parameter signed [17:0] PITCH_X = 18'sd65536,
+    // Pitch in y over the larger pitch, 16 fraction bits
+    parameter signed [17:0] PITCH_Y = 18'sd65536,
+    // From the last stress to the result, checked in simulation; 0: unchecked
+    parameter integer EXPECTED_LATENCY = 0
+) (
+    input  wire clock,
+    input  wire reset,
+    // From Bz
+    output wire idle,
+    input  wire stress_valid,
+    input  wire signed [26:0] stress,
+    input  wire frame_done, // one cycle, with the last stress or after it
+    input  wire frame_saturated,
+    input  wire frame_not_finite,
+    input  wire frame_bad_length,
+    // To Op
+    output wire direction_room, // for the result of another frame
+    output wire direction_valid,
+    input  wire direction_take,
+    output wire signed [26:0] direction_x, // d = c - t in units of the larger pitch, 20 fraction bits
+    output wire signed [26:0] direction_y,
+    output wire no_direction, // nothing pushes, or nothing pulls
+    output wire [39:0] stress_sum, // sum |b|
+    output wire [26:0] largest, // max |b|
+    output wire [3:0] flags // no contact, saturated, NaN or infinity, bad length
+);
+
+    // ---- Stage 1: magnitude; stage 2: sum and maximum
+    reg valid_1;
+    reg tensile_1;
+    reg [26:0] magnitude_1;
+    reg [39:0] sum;
+    reg [26:0] most;
+    reg clear;
+
+    always @(posedge clock) begin
+        valid_1 <= stress_valid;
+        tensile_1 <= !stress[26];
+        magnitude_1 <= stress[26] ? -stress : stress;
+        if (valid_1) begin
+            sum <= sum + {13'd0, magnitude_1};
+            most <= (magnitude_1 > most) ? magnitude_1 : most;
+        end
+        if (reset) begin
+            valid_1 <= 1'b0;
+        end
+        if (reset || clear) begin
+            sum <= 40'd0;
+            most <= 27'd0;
+        end
+    end
+
+    // ---- Centroids and direction
+    wire measured; // at the end of MEASURE
+    wire signed [26:0] push_x;
+    wire signed [26:0] push_y;
+    wire no_push;
+
+    // ---- After the last stress
+    localparam [1:0] COLLECT = 2'd0, MEASURE = 2'd1, PUSH = 2'd2;
+
+    reg [1:0] state;
+    reg below_floor;
+    reg [2:0] faults; // saturated, NaN or infinity, bad length
+
+    assign idle = (state == COLLECT);
+
+    always @(posedge clock) begin
+        clear <= 1'b0;
+        below_floor <= (sum < CONTACT_FLOOR);
+        case (state)
+            COLLECT: begin
+                if (frame_done) begin
+                    faults <= {frame_saturated, frame_not_finite, frame_bad_length};
+                    state <= MEASURE;
+                end
+            end
+            MEASURE: begin
+                if (measured) begin
+                    state <= PUSH;
+                end
+            end
+            default: begin
+                clear <= 1'b1;
+                state <= COLLECT;
+            end
+        endcase
+        if (reset) begin
+            state <= COLLECT;
+        end
+    end
+
+    generate
+        if (DIRECTION != 0) begin : gen_direction
+            sptfra_direction #(
+                .COLUMNS     (COLUMNS),
+                .ROWS        (ROWS),
+                .TAXEL_FLOOR (TAXEL_FLOOR),
+                .PITCH_X     (PITCH_X),
+                .PITCH_Y     (PITCH_Y)
+            ) direction (
+                .clock     (clock),
+                .reset     (reset),
+                .clear     (clear),
+                .valid     (valid_1),
+                .tensile   (tensile_1),
+                .magnitude (magnitude_1),
+                .start     (idle && frame_done),
+                .done      (measured),
+                .push_x    (push_x),
+                .push_y    (push_y),
+                .no_push   (no_push)
+            );
+        end else begin : gen_none
+            // The sum, then its comparison
+            reg settled;
+
+            always @(posedge clock) begin
+                settled <= (state == MEASURE);
+            end
+
+            assign measured = settled;
+            assign push_x = 27'sd0;
+            assign push_y = 27'sd0;
+            assign no_push = 1'b1;
+
+            wire _unused = &{1'b0, tensile_1, COLUMNS != 0, ROWS != 0, TAXEL_FLOOR, PITCH_X, PITCH_Y};
+        end
+    endgenerate
+
+    // ---- Two places for finished frames: never full, since Bz asks first
+    wire [125:0] pushed = {push_x, push_y, no_push, sum, most, below_floor, faults};
+    reg [125:0] waiting_0;
+    reg [125:0] waiting_1;
+    reg [1:0] waiting;
+    wire push = (state == PUSH);
+
+    assign direction_valid = (waiting != 2'd0);
+    assign direction_room = (waiting != 2'd2);
+    assign {direction_x, direction_y, no_direction, stress_sum, largest, flags} = waiting_0;
+
+    always @(posedge clock) begin
+        waiting <= waiting + {1'b0, push} - {1'b0, direction_take};
+        if (direction_take) begin
+            waiting_0 <= waiting_1;
+        end
+        if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin
+            waiting_0 <= pushed;
+        end
+        if (push && (waiting - {1'b0, direction_take} != 2'd0)) begin
+            waiting_1 <= pushed;
+        end
+        if (reset) begin
+            waiting <= 2'd0;
+        end
+    end
+
+`ifdef SIMULATION
+    reg pushed_1;
+
+    always @(posedge clock) begin
+        pushed_1 <= push && !reset;
+    end
+
+    sptfra_check_latency #(
+        .CYCLES (EXPECTED_LATENCY)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset),
+        .start (idle && frame_done),
+        .done  (pushed_1)
+    );
+`else
+    wire _unused = (EXPECTED_LATENCY != 0);
+`endif
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Co: the sums G_pq of the coefficient vectors over the frame (Eqs. 11 to 13), and what of the results the lanes
+// multiply again.
+//
+// Of a folded grid the sums are dot products of y+ and |w| with constant rows, which the lanes compute; what is left of
+// the stress for the field passes through to the operand memories, in 1 cycle. Where taxels are not folded, the
+// coefficient vectors themselves come, see sptfra_coefficients. The array adds one cycle.
+
+`default_nettype none
+
+module sptfra_co #(
+    // 4: parity classes; 1: taxels
+    parameter WAYS = 4,
+    // Elements of a vector: taxels, or quads of a folded grid
+    parameter ELEMENTS = 25,
+    // Bits of a value
+    parameter DATA_BITS = 27,
+    // Words of the operand memories; where r0, r1, r2 and r, or g30, g31 and g32, stand there, unless in the stress's
+    // bank
+    parameter OPERAND_DEPTH = 200,
+    parameter [63:0] STORE_BASES = 64'd0,
+    parameter [3:0] STORE_IN_BANK = 4'd0,
+    // Derived
+    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1,
+    parameter COMPONENT_WIDTH = $clog2(3 * ELEMENTS)
+) (
+    input  wire clock,
+    input  wire reset,
+    // Result bus
+    input  wire [15:0] result_route,
+    input  wire [ROW_WIDTH-1:0] result_row,
+    input  wire [WAYS*DATA_BITS-1:0] result_value,
+    // Operand memories
+    input  wire bank, // of the frame's stress
+    output wire write_next, // write_valid of the next cycle
+    output wire write_valid,
+    output wire [OPERAND_WIDTH-1:0] write_address,
+    output wire [WAYS*DATA_BITS-1:0] write_data,
+    // Coefficient vectors, to the field: g_pq of component 3 i + p - 1
+    output wire [2:0] g_valid, // of q
+    output wire [COMPONENT_WIDTH-1:0] g_component,
+    output wire signed [DATA_BITS-1:0] g,
+    output wire g_last, // one cycle, when all of a frame are there
+    // Frame sums, G10 in the lowest 40 bits, then G11, G12, G20, ... G32
+    output reg  sums_complete, // until they are taken
+    input  wire sums_take,
+    output wire [9*40-1:0] sums
+);
+
+    wire sums_there;
+
+    always @(posedge clock) begin
+        if (sums_there) begin
+            sums_complete <= 1'b1;
+        end else if (sums_take) begin
+            sums_complete <= 1'b0;
+        end
+        if (reset) begin
+            sums_complete <= 1'b0;
+        end
+    end
+
+    generate
+        if (WAYS == 4) begin : gen_folded
+            // ---- Sums: row q has G_pq in the class on which it depends, row 3 the sum of the weights in class 0
+            wire [8:5] stored = result_route[8:5];
+            reg [1:0] sums_count;
+            // A register on the way from the result bus
+            reg sum_valid;
+            reg [1:0] sum_row;
+            reg signed [4*DATA_BITS-1:0] sum_value;
+            // As they come, at 3 (p - 1) + q
+            reg signed [39:0] g_0;
+            reg signed [39:0] g_1;
+            reg signed [39:0] g_2;
+            reg signed [39:0] g_3;
+            reg signed [39:0] g_4;
+            reg signed [39:0] g_5;
+            reg signed [39:0] g_6;
+            reg signed [39:0] g_7;
+            reg signed [39:0] g_8;
+            reg signed [39:0] weight_sum;
+            wire [DATA_BITS-1:0] value_0 = sum_value[DATA_BITS*0 +: DATA_BITS];
+            wire [DATA_BITS-1:0] value_1 = sum_value[DATA_BITS*1 +: DATA_BITS];
+            wire [DATA_BITS-1:0] value_2 = sum_value[DATA_BITS*2 +: DATA_BITS];
+            wire [DATA_BITS-1:0] value_3 = sum_value[DATA_BITS*3 +: DATA_BITS];
+            wire signed [39:0] class_0 = {{(40-DATA_BITS){value_0[DATA_BITS-1]}}, value_0};
+            wire signed [39:0] class_1 = {{(40-DATA_BITS){value_1[DATA_BITS-1]}}, value_1};
+            wire signed [39:0] class_2 = {{(40-DATA_BITS){value_2[DATA_BITS-1]}}, value_2};
+            wire signed [39:0] class_3 = {{(40-DATA_BITS){value_3[DATA_BITS-1]}}, value_3};
+
+            assign sums_there = sum_valid && (sums_count == 2'd3);
+            // G30 less the weights themselves
+            assign sums = {g_8, g_7, g_6 - weight_sum, g_5, g_4, g_3, g_2, g_1, g_0};
+
+            always @(posedge clock) begin
+                sum_valid <= result_route[4];
+                sum_row <= result_row[1:0];
+                sum_value <= result_value;
+                if (sum_valid) begin
+                    sums_count <= sums_count + 2'd1;
+                    case (sum_row)
+                        2'd0: begin
+                            g_0 <= class_1;
+                            g_3 <= class_2;
+                            g_6 <= class_0;
+                        end
+                        2'd1: begin
+                            g_1 <= class_0;
+                            g_4 <= class_3;
+                            g_7 <= class_1;
+                        end
+                        2'd2: begin
+                            g_2 <= class_3;
+                            g_5 <= class_0;
+                            g_8 <= class_2;
+                        end
+                        default: weight_sum <= class_0;
+                    endcase
+                end
+                if (reset) begin
+                    sum_valid <= 1'b0;
+                    sums_count <= 2'd0;
+                end
+            end
+
+`ifdef SIMULATION
+            // By the schedule a frame's sums are taken before the next ones come
+            always @(posedge clock) begin
+                if (!reset && sum_valid && sums_complete && !sums_take) begin
+                    $fdisplay(32'h80000002, "%m: sums have come while those before are not taken");
+                    $finish;
+                end
+            end
+`endif
+
+            // ---- What is stored as it comes
+            localparam [31:0] LENGTH = ELEMENTS;
+            wire [31:0] row_wide = {{(32-ROW_WIDTH){1'b0}}, result_row};
+            reg [15:0] base;
+            reg stored_valid;
+            reg [OPERAND_WIDTH-1:0] stored_address;
+            reg [4*DATA_BITS-1:0] stored_data;
+
+            always @(*) begin
+                base = STORE_BASES[63:48];
+                if (stored[5]) begin
+                    base = STORE_BASES[15:0];
+                end
+                if (stored[6]) begin
+                    base = STORE_BASES[31:16];
+                end
+                if (stored[7]) begin
+                    base = STORE_BASES[47:32];
+                end
+            end
+
+            assign write_next = (stored != 4'd0);
+            assign write_valid = stored_valid;
+            assign write_address = stored_address;
+            assign write_data = stored_data;
+            assign g_valid = 3'd0;
+            assign g_component = {COMPONENT_WIDTH{1'b0}};
+            assign g = {DATA_BITS{1'b0}};
+            assign g_last = 1'b0;
+
+            always @(posedge clock) begin
+                stored_valid <= write_next;
+                stored_address <= base[OPERAND_WIDTH-1:0] + row_wide[OPERAND_WIDTH-1:0];
+                stored_data <= result_value;
+                if (reset) begin
+                    stored_valid <= 1'b0;
+                end
+            end
+
+            wire _unused = &{1'b0, result_route, row_wide, base, bank, LENGTH, STORE_IN_BANK};
+        end else begin : gen_taxels
+            sptfra_coefficients #(
+                .ELEMENTS      (ELEMENTS),
+                .DATA_BITS     (DATA_BITS),
+                .OPERAND_DEPTH (OPERAND_DEPTH),
+                .STORE_BASES   (STORE_BASES),
+                .STORE_IN_BANK (STORE_IN_BANK)
+            ) coefficients (
+                .clock         (clock),
+                .reset         (reset),
+                .result_route  (result_route),
+                .result_row    (result_row),
+                .result_value  (result_value),
+                .bank          (bank),
+                .write_next    (write_next),
+                .write_valid   (write_valid),
+                .write_address (write_address),
+                .write_data    (write_data),
+                .g_valid       (g_valid),
+                .g_component   (g_component),
+                .g             (g),
+                .sums_there    (sums_there),
+                .sums          (sums)
+            );
+
+            assign g_last = sums_there;
+
+`ifdef SIMULATION
+            // By the schedule a frame's sums are taken before the next ones grow
+            always @(posedge clock) begin
+                if (!reset && (g_valid != 3'd0) && sums_complete && !sums_take) begin
+                    $fdisplay(32'h80000002, "%m: sums have come while those before are not taken");
+                    $finish;
+                end
+            end
+`endif
+        end
+    endgenerate
+
+endmodule
+
+`default_nettype wire

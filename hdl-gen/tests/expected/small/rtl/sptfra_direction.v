@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Centroids of compression and tension, and the direction of the push d = c - t (Eq. 24), as a vector.
+//
+// Stresses come in as magnitudes; d follows the last one after 9 cycles and two divisions, one for each centroid's two
+// components. Centroids have 20 fraction bits of a taxel index; d the same, in units of the larger pitch.
+
+`default_nettype none
+
+module sptfra_direction #(
+    // Taxels along x
+    parameter integer COLUMNS = 10,
+    // Taxels along y
+    parameter integer ROWS = 10,
+    // Noise floor of a taxel, in steps of the stress
+    parameter [26:0] TAXEL_FLOOR = 27'd100,
+    // Pitch in x over the larger pitch, 16 fraction bits
+    parameter signed [17:0] PITCH_X = 18'sd65536,
+    // Pitch in y over the larger pitch, 16 fraction bits
+    parameter signed [17:0] PITCH_Y = 18'sd65536
+) (
+    input  wire clock,
+    input  wire reset,
+    // Stress, taxel by taxel in rows
+    input  wire clear, // for a new frame
+    input  wire valid,
+    input  wire tensile,
+    input  wire [26:0] magnitude,
+    // All stresses are in, the last one maybe in this cycle
+    input  wire start,
+    // Result, from the cycle after done until the next clear
+    output wire done,
+    output reg  signed [26:0] push_x,
+    output reg  signed [26:0] push_y,
+    output wire no_push // nothing above, or nothing below, the noise floor
+);
+
+    localparam integer CENTROID_FRACTION = 20;
+    localparam integer PITCH_FRACTION = 16;
+    localparam signed [47:0] PITCH_HALF = 48'sd1 <<< (PITCH_FRACTION - 1);
+    localparam integer X_WIDTH = (COLUMNS <= 2) ? 1 : $clog2(COLUMNS);
+    localparam integer Y_WIDTH = (ROWS <= 2) ? 1 : $clog2(ROWS);
+    localparam integer LAST_COLUMN = COLUMNS - 1;
+
+    // ---- Where the stress belongs, and its moments
+    reg [X_WIDTH-1:0] column;
+    reg [Y_WIDTH-1:0] row;
+    reg compression_seen;
+    reg tension_seen;
+    wire last_column = (column == LAST_COLUMN[X_WIDTH-1:0]);
+    wire above_floor = (magnitude > TAXEL_FLOOR);
+    wire [47:0] moment_x;
+    wire [47:0] moment_y;
+
+    assign no_push = !(compression_seen && tension_seen);
+
+    sptfra_times_index #(
+        .INDEX_WIDTH (X_WIDTH)
+    ) times_x (
+        .number  (magnitude),
+        .index   (column),
+        .product (moment_x)
+    );
+
+    sptfra_times_index #(
+        .INDEX_WIDTH (Y_WIDTH)
+    ) times_y (
+        .number  (magnitude),
+        .index   (row),
+        .product (moment_y)
+    );
+
+    always @(posedge clock) begin
+        if (valid) begin
+            compression_seen <= compression_seen || (!tensile && above_floor);
+            tension_seen <= tension_seen || (tensile && above_floor);
+            column <= last_column ? {X_WIDTH{1'b0}} : column + 1'b1;
+            row <= last_column ? row + 1'b1 : row;
+        end
+        if (reset || clear) begin
+            column <= {X_WIDTH{1'b0}};
+            row <= {Y_WIDTH{1'b0}};
+            compression_seen <= 1'b0;
+            tension_seen <= 1'b0;
+        end
+    end
+
+    // ---- Sums
+    reg valid_1;
+    reg tensile_1;
+    reg [47:0] magnitude_1;
+    reg [47:0] moment_x_1;
+    reg [47:0] moment_y_1;
+    reg [47:0] compression;
+    reg [47:0] compression_x;
+    reg [47:0] compression_y;
+    reg [47:0] tension;
+    reg [47:0] tension_x;
+    reg [47:0] tension_y;
+
+    always @(posedge clock) begin
+        valid_1 <= valid && !reset;
+        tensile_1 <= tensile;
+        magnitude_1 <= {21'd0, magnitude};
+        moment_x_1 <= moment_x;
+        moment_y_1 <= moment_y;
+        if (valid_1 && tensile_1) begin
+            tension <= tension + magnitude_1;
+            tension_x <= tension_x + moment_x_1;
+            tension_y <= tension_y + moment_y_1;
+        end
+        if (valid_1 && !tensile_1) begin
+            compression <= compression + magnitude_1;
+            compression_x <= compression_x + moment_x_1;
+            compression_y <= compression_y + moment_y_1;
+        end
+        if (reset || clear) begin
+            compression <= 48'd0;
+            compression_x <= 48'd0;
+            compression_y <= 48'd0;
+            tension <= 48'd0;
+            tension_x <= 48'd0;
+            tension_y <= 48'd0;
+        end
+    end
+
+    // ---- After the last stress: two divisions for each axis, a product each
+    localparam [1:0] IDLE = 2'd0, SETTLE = 2'd1, DIVIDE = 2'd2, SCALE = 2'd3;
+
+    reg [1:0] state;
+    reg of_tension; // the division, rather than of the compression
+    reg [2:0] step;
+    reg divide_start;
+
+    wire [47:0] sum_x = of_tension ? tension_x : compression_x;
+    wire [47:0] sum_y = of_tension ? tension_y : compression_y;
+    wire [47:0] weight = of_tension ? tension : compression;
+    wire [63:0] quotient_x;
+    wire [63:0] quotient_y;
+    wire divide_done;
+    wire divide_done_y; // at the same time
+
+    sptfra_divider divider_x (
+        .clock       (clock),
+        .reset       (reset),
+        .start       (divide_start),
+        .numerator   ({sum_x[63-CENTROID_FRACTION:0], {CENTROID_FRACTION{1'b0}}}),
+        .denominator (weight),
+        .quotient    (quotient_x),
+        .done        (divide_done)
+    );
+
+    sptfra_divider divider_y (
+        .clock       (clock),
+        .reset       (reset),
+        .start       (divide_start),
+        .numerator   ({sum_y[63-CENTROID_FRACTION:0], {CENTROID_FRACTION{1'b0}}}),
+        .denominator (weight),
+        .quotient    (quotient_y),
+        .done        (divide_done_y)
+    );
+
+    reg signed [26:0] difference_x; // first c, then c - t
+    reg signed [26:0] difference_y;
+    wire signed [26:0] centroid_x = {1'b0, quotient_x[25:0]};
+    wire signed [26:0] centroid_y = {1'b0, quotient_y[25:0]};
+    wire signed [47:0] scaled;
+    wire signed [47:0] rounded = scaled + PITCH_HALF;
+
+    sptfra_mac pitch_mac (
+        .clock       (clock),
+        .reset       (reset),
+        .valid       ((state == SCALE) && (step <= 3'd1)),
+        .first       (1'b1),
+        .coefficient ((step == 3'd0) ? PITCH_X : PITCH_Y),
+        .data        ((step == 3'd0) ? difference_x : difference_y),
+        .accumulator (scaled)
+    );
+
+    assign done = (state == SCALE) && (step == 3'd4);
+
+    always @(posedge clock) begin
+        divide_start <= 1'b0;
+        step <= step + 3'd1;
+        case (state)
+            IDLE: begin
+                step <= 3'd0;
+                of_tension <= 1'b0;
+                if (start) begin
+                    state <= SETTLE;
+                end
+            end
+            SETTLE: begin
+                if (step == 3'd2) begin
+                    divide_start <= 1'b1;
+                    state <= DIVIDE;
+                end
+            end
+            DIVIDE: begin
+                step <= 3'd0;
+                if (divide_done) begin
+                    difference_x <= of_tension ? difference_x - centroid_x : centroid_x;
+                    difference_y <= of_tension ? difference_y - centroid_y : centroid_y;
+                    of_tension <= 1'b1;
+                    divide_start <= !of_tension;
+                    if (of_tension) begin
+                        state <= SCALE;
+                    end
+                end
+            end
+            default: begin
+                if (step == 3'd3) begin
+                    push_x <= rounded[PITCH_FRACTION +: 27];
+                end
+                if (step == 3'd4) begin
+                    push_y <= rounded[PITCH_FRACTION +: 27];
+                    state <= IDLE;
+                end
+            end
+        endcase
+        if (reset) begin
+            state <= IDLE;
+            divide_start <= 1'b0;
+        end
+    end
+
+    // The quotient of a centroid has at most 25 bits, the scaled difference at most 43
+    wire _unused = &{1'b0, sum_x, sum_y, quotient_x, quotient_y, divide_done_y, rounded};
+
+endmodule
+
+`default_nettype wire

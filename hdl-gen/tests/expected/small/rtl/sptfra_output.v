@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Sends a frame: status word, seven summary words, with FIELD then f_x, f_y, f_z of each taxel, float32.
+//
+// A beat a cycle while the sink takes them; the first one 13 cycles after start. Frames without an answer send zeros
+// after the status word. A taxel's force comes from the field memory as it goes out.
+
+`default_nettype none
+
+module sptfra_output #(
+    // Taxels along x
+    parameter integer COLUMNS = 10,
+    // Taxels along y
+    parameter integer ROWS = 10,
+    // 1: the forces of all taxels go out too; 0: resultants only
+    parameter integer FIELD = 1,
+    // A step of a resultant is 2^FORCE_LSB N, one of a taxel's force 2^FIELD_LSB N
+    parameter integer FORCE_LSB = -50,
+    parameter integer FIELD_LSB = -50,
+    // From start to the first beat, checked in simulation; 0: unchecked
+    parameter integer EXPECTED_LATENCY = 0
+) (
+    input  wire clock,
+    input  wire reset,
+    // Start, with everything held by the output from then on but the field
+    input  wire start,
+    output wire idle,
+    input  wire [5:0] status,
+    input  wire blank, // no answer: zeros
+    input  wire signed [63:0] force_x,
+    input  wire signed [63:0] force_y,
+    input  wire signed [63:0] force_z,
+    input  wire [63:0] friction_quotient,
+    input  wire signed [9:0] friction_exponent,
+    input  wire signed [31:0] angle, // 29 fraction bits
+    input  wire signed [17:0] mu_x, // 16 fraction bits
+    input  wire signed [17:0] mu_y,
+    // Field memory: after rewind, the first taxel's x; after each step, the next one
+    output wire signed [17:0] field_mu_x, // of the frame going out
+    output wire signed [17:0] field_mu_y,
+    output wire field_enable,
+    output wire field_rewind,
+    output wire field_step,
+    output reg  field_release,
+    input  wire signed [63:0] field_value, // six enabled cycles after its step
+    // Stream out
+    output wire [31:0] m_tdata,
+    output wire m_tlast,
+    output wire m_tvalid,
+    input  wire m_tready
+);
+
+    localparam integer BEATS = (FIELD != 0) ? 8 + 3 * COLUMNS * ROWS : 8;
+    localparam integer BEAT_WIDTH = $clog2(BEATS);
+    localparam integer LAST_BEAT = BEATS - 1;
+    localparam signed [9:0] FORCE_EXPONENT = FORCE_LSB[9:0];
+    localparam signed [9:0] FIELD_EXPONENT = FIELD_LSB[9:0];
+    localparam signed [9:0] FRICTION_EXPONENT = -10'sd16;
+    localparam signed [9:0] ANGLE_EXPONENT = -10'sd29;
+
+    // ---- The frame, held
+    reg busy;
+    reg [15:0] frame_count;
+    reg [5:0] held_status;
+    reg held_blank;
+    reg signed [63:0] held_force_x;
+    reg signed [63:0] held_force_y;
+    reg signed [63:0] held_force_z;
+    reg [63:0] held_quotient;
+    reg signed [9:0] held_exponent;
+    reg signed [31:0] held_angle;
+    reg signed [17:0] held_mu_x;
+    reg signed [17:0] held_mu_y;
+
+    // The beat, one cycle after it is asked of the field memory: index k is k cycles after that
+    reg issued;
+    reg issued_last;
+    reg [BEAT_WIDTH-1:0] issued_beat;
+    reg [11:1] valid;
+    reg [11:1] lasts;
+    reg [11:4] statuses;
+    reg [3:1] blanks;
+    reg [3:1] in_field;
+    reg [2:0] word_1;
+    reg [2:0] word_2;
+    reg [2:0] word_3;
+    reg signed [15:0] frame_1;
+    reg signed [15:0] frame_2;
+    reg signed [63:0] summary_3;
+    reg signed [9:0] summary_exponent_3;
+    reg signed [63:0] value_4;
+    reg signed [9:0] exponent_4;
+
+    reg [BEAT_WIDTH-1:0] beat;
+    wire advance = m_tready; // of the skid buffer, a register
+    reg reads; // beat is 7 or more: the field's data come a cycle after the summary's
+    wire last_beat = (beat == LAST_BEAT[BEAT_WIDTH-1:0]);
+    wire beat_in_field;
+
+    generate
+        if (FIELD != 0) begin : gen_field
+            assign beat_in_field = (issued_beat[BEAT_WIDTH-1:3] != {(BEAT_WIDTH - 3){1'b0}});
+        end else begin : gen_summary
+            assign beat_in_field = 1'b0;
+        end
+    endgenerate
+
+    assign idle = !busy && !issued && !valid[1] && !valid[2]; // the last beat no longer needs what is held
+    assign field_mu_x = held_mu_x;
+    assign field_mu_y = held_mu_y;
+    assign field_enable = advance;
+    assign field_rewind = start;
+    assign field_step = busy && advance && reads;
+
+    always @(posedge clock) begin
+        field_release <= 1'b0;
+        if (busy && advance) begin
+            beat <= beat + 1'b1;
+            reads <= reads || (beat[2:0] == 3'd6);
+            if (last_beat) begin
+                busy <= 1'b0;
+                frame_count <= frame_count + 16'd1;
+            end
+        end
+        // The last component must have left the memory before its place is given back
+        if (issued && issued_last && advance) begin
+            field_release <= 1'b1;
+        end
+        if (start) begin
+            busy <= 1'b1;
+            beat <= {BEAT_WIDTH{1'b0}};
+            reads <= 1'b0;
+            held_status <= status;
+            held_blank <= blank;
+            held_force_x <= force_x;
+            held_force_y <= force_y;
+            held_force_z <= force_z;
+            held_quotient <= friction_quotient;
+            held_exponent <= friction_exponent;
+            held_angle <= angle;
+            held_mu_x <= mu_x;
+            held_mu_y <= mu_y;
+        end
+        if (reset) begin
+            busy <= 1'b0;
+            frame_count <= 16'd0;
+            field_release <= 1'b0;
+        end
+    end
+
+    // ---- Stages 1 to 4: the summary words, and the field's in stage 4
+    always @(posedge clock) begin
+        if (advance) begin
+            issued <= busy;
+            issued_last <= last_beat;
+            issued_beat <= beat;
+            valid <= {valid[10:1], issued};
+            lasts <= {lasts[10:1], issued_last};
+            statuses <= {statuses[10:4], !in_field[3] && (word_3 == 3'd0)};
+            in_field <= {in_field[2:1], beat_in_field};
+            blanks <= {blanks[2:1], held_blank};
+            word_1 <= issued_beat[2:0];
+            word_2 <= word_1;
+            word_3 <= word_2;
+            frame_1 <= frame_count;
+            frame_2 <= frame_1;
+            // Stage 3
+            summary_exponent_3 <= FORCE_EXPONENT;
+            case (word_2)
+                3'd0: summary_3 <= {32'd0, frame_2, 10'd0, held_status};
+                3'd1: summary_3 <= held_force_x;
+                3'd2: summary_3 <= held_force_y;
+                3'd3: summary_3 <= held_force_z;
+                3'd4: begin
+                    summary_3 <= held_quotient;
+                    summary_exponent_3 <= held_exponent;
+                end
+                3'd5: begin
+                    summary_3 <= { {32{held_angle[31]}}, held_angle};
+                    summary_exponent_3 <= ANGLE_EXPONENT;
+                end
+                3'd6: begin
+                    summary_3 <= { {46{held_mu_x[17]}}, held_mu_x};
+                    summary_exponent_3 <= FRICTION_EXPONENT;
+                end
+                default: begin
+                    summary_3 <= { {46{held_mu_y[17]}}, held_mu_y};
+                    summary_exponent_3 <= FRICTION_EXPONENT;
+                end
+            endcase
+            // Stage 4
+            if (in_field[3]) begin
+                value_4 <= blanks[3] ? 64'sd0 : field_value;
+                exponent_4 <= FIELD_EXPONENT;
+            end else begin
+                value_4 <= (blanks[3] && (word_3 != 3'd0)) ? 64'sd0 : summary_3;
+                exponent_4 <= summary_exponent_3;
+            end
+        end
+        if (reset) begin
+            issued <= 1'b0;
+            valid <= 11'd0;
+        end
+    end
+
+    // ---- Stages 5 to 11: float32; the status word passes beside it
+    wire [31:0] float_word;
+    reg [31:0] raw_5;
+    reg [31:0] raw_6;
+    reg [31:0] raw_7;
+    reg [31:0] raw_8;
+    reg [31:0] raw_9;
+    reg [31:0] raw_10;
+    reg [31:0] raw_11;
+
+    sptfra_fixed_to_float fixed_to_float (
+        .clock      (clock),
+        .enable     (advance),
+        .fixed      (value_4),
+        .exponent   (exponent_4),
+        .float_bits (float_word)
+    );
+
+    always @(posedge clock) begin
+        if (advance) begin
+            raw_5 <= value_4[31:0];
+            raw_6 <= raw_5;
+            raw_7 <= raw_6;
+            raw_8 <= raw_7;
+            raw_9 <= raw_8;
+            raw_10 <= raw_9;
+            raw_11 <= raw_10;
+        end
+    end
+
+    assign m_tdata = statuses[11] ? raw_11 : float_word;
+    assign m_tlast = lasts[11];
+    assign m_tvalid = valid[11];
+
+`ifdef SIMULATION
+    // With a sink that stalls it takes longer
+    reg stalled;
+
+    always @(posedge clock) begin
+        stalled <= !advance || (stalled && !start);
+    end
+
+    sptfra_check_latency #(
+        .CYCLES (EXPECTED_LATENCY)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset || stalled || !advance),
+        .start (start),
+        .done  (m_tvalid)
+    );
+`else
+    wire _unused_check = (EXPECTED_LATENCY != 0);
+`endif
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Memory with one write port and one read port, both synchronous.
+//
+// Latency: 1 cycle from read_address to read_data, held while read_enable is low. A word read in the cycle in
+// which it is written is the old one.
+
+`default_nettype none
+
+module sptfra_ram #(
+    // Bits of a word
+    parameter WIDTH = 27,
+    // Words
+    parameter DEPTH = 512,
+    // Bits of an address
+    parameter ADDRESS_WIDTH = 9
+) (
+    input  wire                     clock,
+    input  wire                     write_enable,
+    input  wire [ADDRESS_WIDTH-1:0] write_address,
+    input  wire [WIDTH-1:0]         write_data,
+    input  wire                     read_enable,
+    input  wire [ADDRESS_WIDTH-1:0] read_address,
+    output reg  [WIDTH-1:0]         read_data
+);
+
+    reg [WIDTH-1:0] memory [0:DEPTH-1];
+
+    always @(posedge clock) begin
+        if (write_enable) begin
+            memory[write_address] <= write_data;
+        end
+        if (read_enable) begin
+            read_data <= memory[read_address];
+        end
+    end
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// One cell of the search along the line: up to CELL_ELEMENTS taxels, one multiplier.
+//
+// Fill: u0, u1, u2 of its taxels arrive, also of the next frame while this one is searched. Passes: alpha = u0 + c0
+// u_dependent, then beta = u_free + c1 u_dependent. Search: for each taxel with alpha + t beta > 0 either beta (slope
+// of B) or alpha + t beta without its last 8 bits (B itself) is summed. Address to sum: 5 cycles; one taxel a cycle.
+
+`default_nettype none
+
+module sptfra_search_cell #(
+    // Places for taxels, a power of two
+    parameter integer CELL_ELEMENTS = 8,
+    // Bits of a taxel's place
+    parameter integer ELEMENT_WIDTH = 3,
+    // Taxels of this cell
+    parameter integer COUNT = 8
+) (
+    input  wire clock,
+    input  wire reset,
+    // Fill
+    input  wire [2:0] fill, // one bit for each of u0, u1, u2
+    input  wire fill_bank,
+    input  wire [ELEMENT_WIDTH-1:0] fill_element,
+    input  wire signed [26:0] fill_value,
+    // Read
+    input  wire read,
+    input  wire first, // of a sum
+    input  wire bank,
+    input  wire [ELEMENT_WIDTH-1:0] element,
+    input  wire alpha_pass,
+    input  wire beta_pass,
+    input  wire x_is_free,
+    input  wire want_slope, // rather than B
+    input  wire signed [17:0] factor, // t, c0 or c1
+    // Results
+    output reg  signed [47:0] sum,
+    output reg  saturated // alpha or beta in the cycle before
+);
+
+    localparam integer FRICTION_FRACTION = 16; // of t
+    localparam integer LINE_FRACTION = 15; // of c0 and c1
+    localparam integer HINGE_DROP = 8;
+    localparam integer DEPTH = 2 << ELEMENT_WIDTH; // two frames
+
+    (* ram_style = "distributed" *) reg signed [26:0] memory_0 [0:DEPTH-1]; // u0
+    (* ram_style = "distributed" *) reg signed [26:0] memory_1 [0:DEPTH-1]; // u1
+    (* ram_style = "distributed" *) reg signed [26:0] memory_2 [0:DEPTH-1]; // u2
+    (* ram_style = "distributed" *) reg signed [26:0] alphas [0:CELL_ELEMENTS-1];
+    (* ram_style = "distributed" *) reg signed [26:0] betas [0:CELL_ELEMENTS-1];
+
+    // ---- Stage 1: operands
+    reg [3:1] valid;
+    reg [4:1] firsts;
+    reg [3:1] slopes;
+    reg [3:1] alpha_passes;
+    reg [3:1] beta_passes;
+    reg [ELEMENT_WIDTH-1:0] element_1;
+    reg [ELEMENT_WIDTH-1:0] element_2;
+    reg [ELEMENT_WIDTH-1:0] element_3;
+    reg signed [26:0] addend_1;
+    reg signed [26:0] multiplicand_1;
+    reg signed [17:0] factor_1;
+    wire [ELEMENT_WIDTH:0] address = {bank, element};
+    wire [ELEMENT_WIDTH:0] fill_address = {fill_bank, fill_element};
+    wire passing = alpha_pass || beta_pass;
+    wire in_cell = ({1'b0, element} < COUNT[ELEMENT_WIDTH:0]);
+    wire signed [26:0] u_free = x_is_free ? memory_1[address] : memory_2[address];
+    wire signed [26:0] u_dependent = x_is_free ? memory_2[address] : memory_1[address];
+
+    always @(posedge clock) begin
+        valid <= {valid[2:1], read && in_cell};
+        firsts <= {firsts[3:1], first};
+        slopes <= {slopes[2:1], want_slope};
+        alpha_passes <= {alpha_passes[2:1], alpha_pass};
+        beta_passes <= {beta_passes[2:1], beta_pass};
+        element_1 <= element;
+        element_2 <= element_1;
+        element_3 <= element_2;
+        addend_1 <= !passing ? alphas[element] : !beta_pass ? memory_0[address] : u_free;
+        multiplicand_1 <= !passing ? betas[element] : u_dependent;
+        factor_1 <= factor;
+        if (reset) begin
+            valid <= 3'd0;
+        end
+    end
+
+    // ---- Stages 2 and 3: addend * 2^16 + factor * multiplicand; in the passes 2^15, plus half a step
+    wire signed [44:0] product_low_2; // the product is their sum
+    wire signed [44:0] product_high_2;
+    reg signed [44:0] addend_2;
+    reg signed [44:0] hinge_3;
+    reg signed [26:0] multiplicand_2;
+    reg signed [26:0] multiplicand_3;
+
+    // One step less where only the sign counts: positive is what then is not negative
+    wire signed [26:0] addend_less = addend_1 - {26'd0, slopes[1]};
+
+    sptfra_multiply multiplier (
+        .clock       (clock),
+        .enable      (1'b1),
+        .coefficient (factor_1),
+        .data        (multiplicand_1),
+        .low         (product_low_2),
+        .high        (product_high_2)
+    );
+
+    always @(posedge clock) begin
+        addend_2 <= (alpha_passes[1] || beta_passes[1])
+            ? { {(18 - LINE_FRACTION){addend_1[26]}}, addend_1, 1'b1, {(LINE_FRACTION - 1){1'b0}}}
+            : { {(18 - FRICTION_FRACTION){addend_less[26]}}, addend_less, {FRICTION_FRACTION{slopes[1]}}};
+        multiplicand_2 <= multiplicand_1;
+        hinge_3 <= addend_2 + product_low_2 + product_high_2;
+        multiplicand_3 <= multiplicand_2;
+    end
+
+    // ---- Alpha and beta, clipped to 27 bits
+    wire signed [44-LINE_FRACTION:0] rounded = hinge_3[44:LINE_FRACTION];
+    wire sign = hinge_3[44];
+    wire fits = (rounded[44-LINE_FRACTION:26] == {(19 - LINE_FRACTION){rounded[26]}});
+    wire signed [26:0] clipped = fits ? rounded[26:0] : {sign, {26{!sign}}};
+
+    always @(posedge clock) begin
+        if (fill[0]) begin
+            memory_0[fill_address] <= fill_value;
+        end
+        if (fill[1]) begin
+            memory_1[fill_address] <= fill_value;
+        end
+        if (fill[2]) begin
+            memory_2[fill_address] <= fill_value;
+        end
+        if (valid[3] && alpha_passes[3]) begin
+            alphas[element_3] <= clipped;
+        end
+        if (valid[3] && beta_passes[3]) begin
+            betas[element_3] <= clipped;
+        end
+        saturated <= valid[3] && (alpha_passes[3] || beta_passes[3]) && !fits;
+        if (reset) begin
+            saturated <= 1'b0;
+        end
+    end
+
+    // ---- Stage 4: what this taxel adds; stage 5: sum
+    reg signed [47:0] term_4;
+
+    always @(posedge clock) begin
+        if (!valid[3] || hinge_3[44]) begin
+            term_4 <= 48'sd0;
+        end else if (slopes[3]) begin
+            term_4 <= { {21{multiplicand_3[26]}}, multiplicand_3};
+        end else begin
+            term_4 <= { {(3 + HINGE_DROP){1'b0}}, hinge_3[44:HINGE_DROP]};
+        end
+        sum <= (firsts[4] ? 48'sd0 : sum) + term_4;
+    end
+
+    wire _unused = &{1'b0, hinge_3[HINGE_DROP-1:0]};
+
+endmodule
+
+`default_nettype wire

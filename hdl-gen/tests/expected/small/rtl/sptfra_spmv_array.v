@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// The array of SpMV lanes that We, Co and Op share, with its sequencer and its collector.
+//
+// From the sequencer to the lanes there is one register; so is there from the write port to the operand memories.
+
+`default_nettype none
+
+module sptfra_spmv_array #(
+    // Lanes, and multiply-accumulates of each in a cycle: 1, or 4 parity classes
+    parameter LANES = 4,
+    parameter WAYS = 4,
+    // Bits of a coefficient, at most 18, and of an operand, at most 27
+    parameter COEFFICIENT_BITS = 18,
+    parameter DATA_BITS = 27,
+    // Elements of a vector: taxels, or quads of a folded grid
+    parameter ELEMENTS = 25,
+    // Vectors that a product reads side by side, at most
+    parameter VECTORS = 3,
+    // Words of the lanes' ROMs and operand memories, and of the visit ROM
+    parameter VALUE_DEPTH = 512,
+    parameter WORD_DEPTH = 512,
+    parameter SEGMENT_DEPTH = 64,
+    parameter OPERAND_DEPTH = 200,
+    parameter VISIT_DEPTH = 200,
+    // Quads along a side of a grid of which some products are mirrored at the diagonal; 0: none is
+    parameter MIRROR_SIDE = 0,
+    // Products of all programs: see sptfra_spmv_sequencer
+    parameter PRODUCTS = 2,
+    parameter COUNT_BITS = 12,
+    parameter [PRODUCTS*COUNT_BITS-1:0] LENGTHS = {(PRODUCTS*COUNT_BITS){1'b1}},
+    parameter [PRODUCTS*COUNT_BITS-1:0] WAITS = {(PRODUCTS*COUNT_BITS){1'b0}},
+    parameter [PRODUCTS*16-1:0] BASES = {(PRODUCTS*16){1'b0}},
+    parameter [PRODUCTS-1:0] OF_STRESS = {PRODUCTS{1'b0}},
+    parameter [PRODUCTS-1:0] MARKS = {PRODUCTS{1'b0}},
+    parameter [PRODUCTS-1:0] REWINDS = {PRODUCTS{1'b0}},
+    parameter [PRODUCTS-1:0] MIRRORED = {PRODUCTS{1'b0}},
+    parameter [PRODUCTS-1:0] FRICTIONS = {PRODUCTS{1'b0}},
+    parameter [PRODUCTS-1:0] LASTS = {1'b1, {(PRODUCTS-1){1'b0}}},
+    parameter PROGRAMS = 1,
+    parameter [PROGRAMS*8-1:0] FIRSTS = {(PROGRAMS*8){1'b0}},
+    parameter [PROGRAMS*32-1:0] START_WORDS = {(PROGRAMS*32){1'b0}},
+    parameter [PROGRAMS*16-1:0] START_SEGMENTS = {(PROGRAMS*16){1'b0}},
+    parameter [PROGRAMS*32-1:0] START_VISITS = {(PROGRAMS*32){1'b0}},
+    parameter SKIPS = 0,
+    parameter [PRODUCTS-1:0] IN_ROUNDS = {PRODUCTS{1'b0}},
+    parameter [PRODUCTS-1:0] ROUNDS_ONLY = {PRODUCTS{1'b0}},
+    parameter [PRODUCTS-1:0] PULLS = {PRODUCTS{1'b0}},
+    parameter [PRODUCTS*32-1:0] ROUND_WORDS = {(PRODUCTS*32){1'b0}},
+    // Results: see sptfra_spmv_collector
+    parameter DESTINATION_BITS = 4,
+    parameter [95:0] SHIFTS = {16{6'd16}},
+    // Prefix of the ROM file names, for instance a directory with its slash, and what they begin with
+    parameter ROM_DIR = "",
+    parameter ROM_NAME = "",
+    // Derived
+    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
+) (
+    input  wire clock,
+    input  wire reset,
+    // Turns
+    input  wire [PROGRAMS-1:0] start, // of the programs, one at a time
+    output wire issued, // with the last issue of a program
+    input  wire bank, // of the stress of the frame whose weights are computed
+    // Quads that are not zero
+    output wire list_pull,
+    output wire [ROW_WIDTH-1:0] list_address,
+    input  wire [ROW_WIDTH-1:0] list_quad,
+    input  wire [ROW_WIDTH+7:0] list_count,
+    // Friction, held while a program that needs it runs
+    input  wire signed [17:0] mu_x,
+    input  wire signed [17:0] mu_y,
+    // Operand memories
+    input  wire write_enable,
+    input  wire [OPERAND_WIDTH-1:0] write_address,
+    input  wire [WAYS*DATA_BITS-1:0] write_data,
+    // Result bus
+    output wire [15:0] result_route,
+    output wire [ROW_WIDTH-1:0] result_row,
+    output wire [WAYS*DATA_BITS-1:0] result_value, // class 0 in the lowest bits
+    output wire result_last // of its program
+);
+
+    localparam WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1;
+    localparam VALUE_WIDTH = (VALUE_DEPTH > 2) ? $clog2(VALUE_DEPTH) : 1;
+    localparam VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1;
+    // What the last round brings: a row for so many lanes
+    localparam LAST_ROWS = (ELEMENTS - 1) % LANES + 1;
+
+    // ---- From the sequencer; one register on the way to the lanes
+    wire next_restart;
+    wire [WORD_WIDTH-1:0] next_start_word;
+    wire next_restart_segment;
+    wire [15:0] next_start_segment;
+    wire [VISIT_WIDTH-1:0] next_start_visit;
+    wire next_issue;
+    wire next_mark;
+    wire next_rewind;
+    wire [OPERAND_WIDTH-1:0] next_base;
+    wire next_mirrored;
+    wire next_friction;
+    wire next_skip;
+    wire [VALUE_WIDTH-1:0] next_skip_word;
+    wire [ROW_WIDTH-1:0] next_skip_quad;
+    wire next_skip_first;
+    wire next_skip_last;
+    wire next_skip_partial;
+    reg  restart;
+    reg  [WORD_WIDTH-1:0] start_word;
+    reg  restart_segment;
+    reg  [15:0] start_segment;
+    reg  [VISIT_WIDTH-1:0] start_visit;
+    reg  issue;
+    reg  mark;
+    reg  rewind;
+    reg  [OPERAND_WIDTH-1:0] base;
+    reg  mirrored;
+    reg  friction;
+    reg  skip;
+    reg  [VALUE_WIDTH-1:0] skip_word;
+    reg  [ROW_WIDTH-1:0] skip_quad;
+    reg  skip_first;
+    reg  skip_last;
+    reg  skip_partial;
+
+    always @(posedge clock) begin
+        restart <= next_restart;
+        start_word <= next_start_word;
+        restart_segment <= next_restart_segment;
+        start_segment <= next_start_segment;
+        start_visit <= next_start_visit;
+        issue <= next_issue;
+        mark <= next_mark;
+        rewind <= next_rewind;
+        base <= next_base;
+        mirrored <= next_mirrored;
+        friction <= next_friction;
+        skip <= next_skip;
+        skip_word <= next_skip_word;
+        skip_quad <= next_skip_quad;
+        skip_first <= next_skip_first;
+        skip_last <= next_skip_last;
+        skip_partial <= next_skip_partial;
+        if (reset) begin
+            restart <= 1'b0;
+            restart_segment <= 1'b0;
+            issue <= 1'b0;
+            mark <= 1'b0;
+            rewind <= 1'b0;
+            skip <= 1'b0;
+        end
+    end
+
+    sptfra_spmv_sequencer #(
+        .LANES          (LANES),
+        .ELEMENTS       (ELEMENTS),
+        .VALUE_DEPTH    (VALUE_DEPTH),
+        .WORD_DEPTH     (WORD_DEPTH),
+        .OPERAND_DEPTH  (OPERAND_DEPTH),
+        .VISIT_DEPTH    (VISIT_DEPTH),
+        .PRODUCTS       (PRODUCTS),
+        .COUNT_BITS     (COUNT_BITS),
+        .LENGTHS        (LENGTHS),
+        .WAITS          (WAITS),
+        .BASES          (BASES),
+        .OF_STRESS      (OF_STRESS),
+        .MARKS          (MARKS),
+        .REWINDS        (REWINDS),
+        .MIRRORED       (MIRRORED),
+        .FRICTIONS      (FRICTIONS),
+        .LASTS          (LASTS),
+        .PROGRAMS       (PROGRAMS),
+        .FIRSTS         (FIRSTS),
+        .START_WORDS    (START_WORDS),
+        .START_SEGMENTS (START_SEGMENTS),
+        .START_VISITS   (START_VISITS),
+        .SKIPS          (SKIPS),
+        .IN_ROUNDS      (IN_ROUNDS),
+        .ROUNDS_ONLY    (ROUNDS_ONLY),
+        .PULLS          (PULLS),
+        .ROUND_WORDS    (ROUND_WORDS),
+        .MIRROR_SIDE    (MIRROR_SIDE)
+    ) sequencer (
+        .clock           (clock),
+        .reset           (reset),
+        .start           (start),
+        .issued          (issued),
+        .bank            (bank),
+        .restart         (next_restart),
+        .start_word      (next_start_word),
+        .restart_segment (next_restart_segment),
+        .start_segment   (next_start_segment),
+        .start_visit     (next_start_visit),
+        .issue           (next_issue),
+        .mark            (next_mark),
+        .rewind          (next_rewind),
+        .base            (next_base),
+        .mirrored        (next_mirrored),
+        .friction        (next_friction),
+        .list_pull       (list_pull),
+        .list_address    (list_address),
+        .list_quad       (list_quad),
+        .list_count      (list_count),
+        .skip            (next_skip),
+        .skip_word       (next_skip_word),
+        .skip_quad       (next_skip_quad),
+        .skip_first      (next_skip_first),
+        .skip_last       (next_skip_last),
+        .skip_partial    (next_skip_partial)
+    );
+
+    // ---- One register on the way to the operand memories
+    reg operand_write;
+    reg [OPERAND_WIDTH-1:0] operand_address;
+    reg [WAYS*DATA_BITS-1:0] operand_data;
+
+    always @(posedge clock) begin
+        operand_write <= write_enable;
+        operand_address <= write_address;
+        operand_data <= write_data;
+        if (reset) begin
+            operand_write <= 1'b0;
+        end
+    end
+
+    // ---- Lanes
+    wire [48*WAYS*LANES-1:0] results;
+    wire [48*WAYS*LANES-1:0] carries;
+    wire [LANES-1:0] pending;
+    wire [LANES-1:0] take;
+
+    genvar index;
+    generate
+        for (index = 0; index < LANES; index = index + 1) begin : gen_lanes
+            // The lane's number as two characters
+            localparam [7:0] TENS = 8'd48 + index / 10;
+            localparam [7:0] ONES = 8'd48 + index % 10;
+            localparam [7:0] NEXT = (index + 1) % LANES;
+
+            sptfra_spmv_lane #(
+                .WAYS             (WAYS),
+                .COEFFICIENT_BITS (COEFFICIENT_BITS),
+                .DATA_BITS        (DATA_BITS),
+                .ELEMENTS         (ELEMENTS),
+                .VECTORS          (VECTORS),
+                .VALUE_DEPTH      (VALUE_DEPTH),
+                .WORD_DEPTH       (WORD_DEPTH),
+                .SEGMENT_DEPTH    (SEGMENT_DEPTH),
+                .OPERAND_DEPTH    (OPERAND_DEPTH),
+                .MIRROR_SIDE      (MIRROR_SIDE),
+                .FRICTION         (FRICTIONS != {PRODUCTS{1'b0}}),
+                .SKIPS            (SKIPS),
+                .HAS_LAST_ROW     (index < LAST_ROWS),
+                .ROM_DIR          (ROM_DIR),
+                .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_lane", TENS, ONES, ".mem"}),
+                .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_lane", TENS, ONES, ".mem"}),
+                .MACS_FILE        ((ROM_NAME == "") ? "" : {ROM_NAME, "_macs_lane", TENS, ONES, ".mem"})
+            ) lane (
+                .clock           (clock),
+                .reset           (reset),
+                .restart         (restart),
+                .start_word      (start_word),
+                .restart_segment (restart_segment),
+                .start_segment   (start_segment),
+                .issue           (issue),
+                .mark            (mark),
+                .rewind          (rewind),
+                .base            (base),
+                .mirrored        (mirrored),
+                .skip            (skip),
+                .skip_word       (skip_word),
+                .skip_quad       (skip_quad),
+                .skip_first      (skip_first),
+                .skip_last       (skip_last),
+                .skip_partial    (skip_partial),
+                .friction        (friction),
+                .mu_x            (mu_x),
+                .mu_y            (mu_y),
+                .write_enable    (operand_write),
+                .write_address   (operand_address),
+                .write_data      (operand_data),
+                .next_carry      (carries[48*WAYS*NEXT +: 48*WAYS]),
+                .carry           (carries[48*WAYS*index +: 48*WAYS]),
+                .result          (results[48*WAYS*index +: 48*WAYS]),
+                .pending         (pending[index]),
+                .take            (take[index])
+            );
+        end
+    endgenerate
+
+    sptfra_spmv_collector #(
+        .LANES            (LANES),
+        .WAYS             (WAYS),
+        .DATA_BITS        (DATA_BITS),
+        .ELEMENTS         (ELEMENTS),
+        .MIRROR           (MIRROR_SIDE > 0),
+        .DESTINATION_BITS (DESTINATION_BITS),
+        .SHIFTS           (SHIFTS),
+        .VISIT_DEPTH      (VISIT_DEPTH),
+        .ROM_DIR          (ROM_DIR),
+        .VISITS_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_visits.mem"})
+    ) collector (
+        .clock        (clock),
+        .reset        (reset),
+        .restart      (restart),
+        .start_visit  (start_visit),
+        .results      (results),
+        .pending      (pending),
+        .take         (take),
+        .result_route (result_route),
+        .result_row   (result_row),
+        .result_value (result_value),
+        .result_last  (result_last)
+    );
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Takes one result a cycle from the lanes and puts it on the result bus, rounded.
+//
+// Take to bus: 3 cycles. Rounding: add half a step, drop the bits below. The order in which results become ready is
+// fixed, so a ROM says from which lane to take the next one, what becomes of it, and which row it is:
+// {last of its program, lane, destination, row}.
+//
+// | destination | four ways: parity classes    | one way: taxels                      |
+// |-------------|------------------------------|--------------------------------------|
+// | 0           | y, to We                     | the same                             |
+// | 1 2 3       | u0, u1, u2                   | the same                             |
+// | 4           | sums of the frame, to Co     | 4 5 6: A_p b, p = 1 2 3, to Co       |
+// | 5 6 7       | r0, r1, r2, stored           | 7 to 15: g_pq at 7 + 3 (p - 1) + q   |
+// | 8           | r, stored                    |                                      |
+// | 9 10 11     | A_p r, p = 1 2 3, the field  |                                      |
+//
+// The route is the destination as one bit of sixteen.
+
+`default_nettype none
+
+module sptfra_spmv_collector #(
+    // Lanes, and multiply-accumulates of each in a cycle
+    parameter LANES = 4,
+    parameter WAYS = 4,
+    // Bits of a result
+    parameter DATA_BITS = 27,
+    // Elements of a vector: taxels, or quads of a folded grid
+    parameter ELEMENTS = 25,
+    // Whether products for y are computed by the diagonal mirror of those for x
+    parameter MIRROR = 0,
+    // Bits of a destination in the ROM
+    parameter DESTINATION_BITS = 4,
+    // Bits dropped of a result by destination, 6 each, destination 0 lowest
+    parameter [95:0] SHIFTS = {16{6'd16}},
+    // Words of the ROM
+    parameter VISIT_DEPTH = 200,
+    // Prefix of the ROM file name, and the name
+    parameter ROM_DIR = "",
+    parameter VISITS_FILE = "",
+    // Derived
+    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1
+) (
+    input  wire clock,
+    input  wire reset,
+    input  wire restart, // one or two cycles before the first issue of a program
+    input  wire [VISIT_WIDTH-1:0] start_visit, // its first visit
+    // From the lanes
+    input  wire [48*WAYS*LANES-1:0] results,
+    input  wire [LANES-1:0] pending,
+    output wire [LANES-1:0] take,
+    // Result bus
+    output reg  [15:0] result_route, // nothing without a result
+    output reg  [ROW_WIDTH-1:0] result_row,
+    output reg  [WAYS*DATA_BITS-1:0] result_value, // class 0 in the lowest bits
+    output reg  result_last // of its program
+);
+
+    localparam LANE_WIDTH = (LANES > 2) ? $clog2(LANES) : 1;
+    localparam WORD_WIDTH = 1 + LANE_WIDTH + DESTINATION_BITS + ROW_WIDTH;
+    localparam [3:0] Y = 4'd0, U1 = 4'd2, U2 = 4'd3, R1 = 4'd6, R2 = 4'd7, FORCE_X = 4'd9, FORCE_Y = 4'd10;
+
+    // ---- The next visit, one word ahead of the ROM; after a program's last one, on to the program that has begun
+    reg  [VISIT_WIDTH-1:0] visit_count;
+    reg  visit_known;
+    reg  stopped;
+    reg  jump_waits;
+    reg  [VISIT_WIDTH-1:0] jump_target;
+    reg  last;
+    reg  [LANE_WIDTH-1:0] lane;
+    reg  [DESTINATION_BITS-1:0] destination;
+    reg  [ROW_WIDTH-1:0] row;
+    wire [WORD_WIDTH-1:0] visit;
+    reg  [LANES-1:0] select; // lane, one bit each
+    reg  parted; // both halves of y are written: the next result waits a cycle
+    wire may_take = visit_known && !parted;
+    wire taking = (take != {LANES{1'b0}});
+    wire ends = taking && last;
+    wire jump = stopped && jump_waits;
+    wire fetch = taking || !visit_known;
+    reg  filling; // the ROM's first word is on its way
+
+    sptfra_rom #(
+        .WIDTH         (WORD_WIDTH),
+        .DEPTH         (VISIT_DEPTH),
+        .ADDRESS_WIDTH (VISIT_WIDTH),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          (VISITS_FILE)
+    ) visits (
+        .clock   (clock),
+        .enable  (fetch),
+        .address (visit_count),
+        .data    (visit)
+    );
+
+    always @(posedge clock) begin
+        if (jump) begin
+            visit_count <= jump_target;
+        end else if (fetch) begin
+            visit_count <= visit_count + 1;
+        end
+        filling <= jump;
+        visit_known <= !stopped && !ends && !filling;
+        if (fetch) begin
+            {last, lane, destination, row} <= visit;
+        end
+        if (restart) begin
+            jump_target <= start_visit;
+            jump_waits <= 1'b1;
+        end else if (jump) begin
+            jump_waits <= 1'b0;
+        end
+        if (ends) begin
+            stopped <= 1'b1;
+        end else if (jump) begin
+            stopped <= 1'b0;
+        end
+        parted <= (WAYS > 1) && taking && (destination == Y[DESTINATION_BITS-1:0]);
+        if (reset) begin
+            visit_count <= {VISIT_WIDTH{1'b0}};
+            visit_known <= 1'b0;
+            stopped <= 1'b1;
+            jump_waits <= 1'b0;
+            parted <= 1'b0;
+        end
+    end
+
+    genvar index;
+    generate
+        for (index = 0; index < LANES; index = index + 1) begin : gen_select
+            always @(posedge clock) begin
+                if (fetch) begin
+                    select[index] <= (LANES == 1) || (visit[DESTINATION_BITS+ROW_WIDTH +: LANE_WIDTH] == index);
+                end
+            end
+        end
+    endgenerate
+
+`ifdef SIMULATION
+    // By the schedule a program's first visit is reached before the next program begins
+    always @(posedge clock) begin
+        if (!reset && restart && jump_waits && !jump) begin
+            $fdisplay(32'h80000002, "%m: a program has begun while the one before waits for its first visit");
+            $finish;
+        end
+    end
+`endif
+
+    // ---- Visit
+    wire [48*WAYS-1:0] result_of [0:LANES-1];
+    reg [48*WAYS-1:0] visited;
+    reg visited_valid;
+    reg [DESTINATION_BITS-1:0] visited_destination;
+    reg [5:0] visited_shift;
+    reg [ROW_WIDTH-1:0] visited_row;
+
+    generate
+        for (index = 0; index < LANES; index = index + 1) begin : gen_results
+            assign result_of[index] = results[48*WAYS*index +: 48*WAYS];
+        end
+    endgenerate
+
+    assign take = select & pending & {LANES{may_take}};
+
+    always @(posedge clock) begin
+        visited <= result_of[lane];
+        visited_valid <= taking;
+        visited_destination <= destination;
+        visited_shift <= SHIFTS[6*destination +: 6];
+        visited_row <= row;
+        if (reset) begin
+            visited_valid <= 1'b0;
+        end
+    end
+
+    // ---- Round: half a step of the result, then the shift, both by destination. The format of each result was chosen
+    // so that its worst case fits: the bits above are copies of the sign
+    wire [47:0] half = (48'd1 << visited_shift) >> 1;
+    reg sum_valid;
+    reg [DESTINATION_BITS-1:0] sum_destination;
+    reg [ROW_WIDTH-1:0] sum_row;
+    wire [WAYS*DATA_BITS-1:0] rounded;
+    genvar choice;
+    generate
+        for (index = 0; index < WAYS; index = index + 1) begin : gen_ways
+            reg [47:0] sum;
+            wire [47+DATA_BITS:0] wide = {{DATA_BITS{sum[47]}}, sum};
+            wire [(DATA_BITS << DESTINATION_BITS)-1:0] choices;
+
+            always @(posedge clock) begin
+                sum <= visited[48*index +: 48] + half;
+            end
+
+            for (choice = 0; choice < (1 << DESTINATION_BITS); choice = choice + 1) begin : gen_choices
+                localparam [6:0] DROP = {1'b0, SHIFTS[6*choice +: 6]};
+
+                assign choices[DATA_BITS*choice +: DATA_BITS] = wide[DROP +: DATA_BITS];
+            end
+
+            assign rounded[DATA_BITS*index +: DATA_BITS] = choices[DATA_BITS*sum_destination +: DATA_BITS];
+            wire _unused = &{1'b0, wide};
+        end
+    endgenerate
+
+    // ---- Bus: the classes from the ways that computed them
+    wire odd_x = (sum_destination == U1[DESTINATION_BITS-1:0]) || ((DESTINATION_BITS == 4)
+        && ((sum_destination == R1[DESTINATION_BITS-1:0]) || (sum_destination == FORCE_X[DESTINATION_BITS-1:0])));
+    wire odd_y = (sum_destination == U2[DESTINATION_BITS-1:0]) || ((DESTINATION_BITS == 4)
+        && ((sum_destination == R2[DESTINATION_BITS-1:0]) || (sum_destination == FORCE_Y[DESTINATION_BITS-1:0])));
+    wire [15:0] route = 16'd1 << sum_destination;
+    reg [2:1] lasts;
+
+    always @(posedge clock) begin
+        sum_valid <= visited_valid;
+        sum_destination <= visited_destination;
+        sum_row <= visited_row;
+        result_route <= route & {16{sum_valid}};
+        result_row <= sum_row;
+        {result_last, lasts} <= {lasts, ends};
+        if (reset) begin
+            sum_valid <= 1'b0;
+            result_route <= 16'd0;
+            {result_last, lasts} <= 3'd0;
+        end
+    end
+
+    generate
+        if (WAYS == 4) begin : gen_classes
+            wire [DATA_BITS-1:0] way_0 = rounded[DATA_BITS*0 +: DATA_BITS];
+            wire [DATA_BITS-1:0] way_1 = rounded[DATA_BITS*1 +: DATA_BITS];
+            wire [DATA_BITS-1:0] way_2 = rounded[DATA_BITS*2 +: DATA_BITS];
+            wire [DATA_BITS-1:0] way_3 = rounded[DATA_BITS*3 +: DATA_BITS];
+
+            always @(posedge clock) begin
+                if (odd_x) begin
+                    result_value <= {way_2, way_3, way_0, way_1};
+                end else if (odd_y && (MIRROR != 0)) begin
+                    result_value <= {way_2, way_0, way_3, way_1};
+                end else if (odd_y) begin
+                    result_value <= {way_1, way_0, way_3, way_2};
+                end else begin
+                    result_value <= rounded;
+                end
+            end
+        end else begin : gen_taxels
+            always @(posedge clock) begin
+                result_value <= rounded;
+            end
+            wire _unused = &{1'b0, odd_x, odd_y};
+        end
+    endgenerate
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// One SpMV lane: walks its own MCSR ROMs (values, columns, MACs per row), one multiply-accumulate a cycle in each of
+// its ways. With four ways these are the parity classes of the operand: same row, same column, own coefficient.
+//
+// Issue to result register: 7 cycles (ROM, address, operand memory, 3 for the MAC, carry). Initiation interval: 1.
+// Kinds of row segments: 0 row, 1 tail of a row begun in the lane before, 2 head of a row that the next lane
+// ends, 3 idle. A head is completed by the carry of the next lane, which is there in time by construction.
+
+`default_nettype none
+
+module sptfra_spmv_lane #(
+    // Multiply-accumulates a cycle: 1, or 4 parity classes
+    parameter WAYS = 4,
+    // Bits of a coefficient, at most 18, and of an operand, at most 27; the accumulator has 48
+    parameter COEFFICIENT_BITS = 18,
+    parameter DATA_BITS = 27,
+    // Elements of a vector: taxels, or quads of a folded grid
+    parameter ELEMENTS = 25,
+    // Vectors that a product reads side by side, at most
+    parameter VECTORS = 3,
+    // Words of the ROMs and of the operand memory
+    parameter VALUE_DEPTH = 512,
+    parameter WORD_DEPTH = 512,
+    parameter SEGMENT_DEPTH = 64,
+    parameter OPERAND_DEPTH = 200,
+    // Quads along a side of a square grid of which some products are mirrored at the diagonal; 0: none is
+    parameter MIRROR_SIDE = 0,
+    // Whether friction components take the coefficients' place in some products
+    parameter FRICTION = 1,
+    // Whether some products pass over zeros, in rounds over dense rows; and whether the last, partial round has a row
+    // for this lane
+    parameter SKIPS = 0,
+    parameter HAS_LAST_ROW = 1,
+    // Prefix of the ROM file names, and the names
+    parameter ROM_DIR = "",
+    parameter VALUES_FILE = "",
+    parameter COLUMNS_FILE = "",
+    parameter MACS_FILE = "",
+    // Derived
+    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1,
+    parameter VALUE_WIDTH = (VALUE_DEPTH > 2) ? $clog2(VALUE_DEPTH) : 1,
+    parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
+) (
+    input  wire clock,
+    input  wire reset,
+    // From the sequencer
+    input  wire restart, // with the addresses of a program's data
+    input  wire [WORD_WIDTH-1:0] start_word,
+    input  wire restart_segment, // one cycle before, with
+    input  wire [15:0] start_segment,
+    input  wire issue,
+    input  wire mark,
+    input  wire rewind,
+    input  wire [OPERAND_WIDTH-1:0] base,
+    input  wire mirrored, // one cycle after its issue: the operand's mirror image is meant
+    // Dense rows, in which all lanes are at the same column: with the issue
+    input  wire skip,
+    input  wire [VALUE_WIDTH-1:0] skip_word,
+    input  wire [ROW_WIDTH-1:0] skip_quad,
+    input  wire skip_first,
+    input  wire skip_last,
+    input  wire skip_partial, // the last round
+    input  wire friction, // three cycles after its issue: a friction component takes the coefficient's place
+    input  wire signed [17:0] mu_x,
+    input  wire signed [17:0] mu_y,
+    // Operand memory, written alike in all lanes
+    input  wire write_enable,
+    input  wire [OPERAND_WIDTH-1:0] write_address,
+    input  wire [WAYS*DATA_BITS-1:0] write_data,
+    // Row sums
+    input  wire [48*WAYS-1:0] next_carry, // of the next lane
+    output wire [48*WAYS-1:0] carry,
+    output wire [48*WAYS-1:0] result,
+    output reg  pending, // result waits for the collector
+    input  wire take
+);
+
+    localparam COLUMN_WIDTH = (VECTORS * ELEMENTS > 2) ? $clog2(VECTORS * ELEMENTS) : 1;
+    localparam SEGMENT_WIDTH = (SEGMENT_DEPTH > 2) ? $clog2(SEGMENT_DEPTH) : 1;
+    localparam [1:0] ROW = 2'd0, TAIL = 2'd1, HEAD = 2'd2, IDLE = 2'd3;
+
+    // ---- Issue: which MAC of which row segment
+    wire [15:0] segment_address;
+    wire [15:0] segment;
+    wire segment_fetch;
+    wire first;
+    wire last;
+    wire [1:0] kind;
+
+    sptfra_row_sequencer row_sequencer (
+        .clock         (clock),
+        .restart       (restart_segment),
+        .start_address (start_segment),
+        .issue         (issue && !skip),
+        .row_word      (segment),
+        .row_address   (segment_address),
+        .row_fetch     (segment_fetch),
+        .first         (first),
+        .last          (last),
+        .kind          (kind)
+    );
+
+    sptfra_rom #(
+        .WIDTH         (16),
+        .DEPTH         (SEGMENT_DEPTH),
+        .ADDRESS_WIDTH (SEGMENT_WIDTH),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          (MACS_FILE)
+    ) macs_per_row (
+        .clock   (clock),
+        .enable  (segment_fetch),
+        .address (segment_address[SEGMENT_WIDTH-1:0]),
+        .data    (segment)
+    );
+
+    reg  [WORD_WIDTH-1:0] next_word;
+    reg  [WORD_WIDTH-1:0] marked_word;
+    wire [WORD_WIDTH-1:0] word = rewind ? marked_word : next_word;
+    wire [31:0] word_wide = {{(32-WORD_WIDTH){1'b0}}, word};
+    wire own_issue = issue && !skip && (kind != IDLE);
+    wire mac_issue = own_issue || (issue && skip);
+    wire mac_is_first = skip ? skip_first : first;
+    wire row_ends = skip ? skip_last && ((HAS_LAST_ROW != 0) || !skip_partial)
+        : last && ((kind == ROW) || (kind == HEAD));
+    wire tail_ends_now = !skip && last && (kind == TAIL);
+    wire head_ends_now = !skip && (kind == HEAD);
+    wire [VALUE_WIDTH-1:0] value_address = skip ? skip_word : word_wide[VALUE_WIDTH-1:0];
+
+    always @(posedge clock) begin
+        next_word <= restart ? start_word : own_issue ? word + 1 : word;
+        if (mark) begin
+            marked_word <= next_word;
+        end
+    end
+
+    wire [WAYS*COEFFICIENT_BITS-1:0] value;
+    wire [COLUMN_WIDTH-1:0] column;
+
+    sptfra_rom #(
+        .WIDTH         (WAYS * COEFFICIENT_BITS),
+        .DEPTH         (VALUE_DEPTH),
+        .ADDRESS_WIDTH (VALUE_WIDTH),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          (VALUES_FILE)
+    ) values (
+        .clock   (clock),
+        .enable  (1'b1),
+        .address (value_address),
+        .data    (value)
+    );
+
+    sptfra_rom #(
+        .WIDTH         (COLUMN_WIDTH),
+        .DEPTH         (WORD_DEPTH),
+        .ADDRESS_WIDTH (WORD_WIDTH),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          (COLUMNS_FILE)
+    ) columns (
+        .clock   (clock),
+        .enable  (1'b1),
+        .address (word),
+        .data    (column)
+    );
+
+    // ---- Operand: the column, its mirror image, or the quad that all lanes are at
+    wire [31:0] column_wide = {{(32-COLUMN_WIDTH){1'b0}}, column};
+    wire [ROW_WIDTH-1:0] mirror_image;
+    wire [31:0] element; // one cycle after its issue
+    reg  [OPERAND_WIDTH-1:0] operand_address;
+    wire [WAYS*DATA_BITS-1:0] operand;
+    reg  [WAYS*COEFFICIENT_BITS-1:0] value_2;
+    reg  [WAYS*COEFFICIENT_BITS-1:0] coefficient;
+    reg  [3:2] swaps; // the classes that are odd in x only and in y only
+
+    generate
+        if (MIRROR_SIDE > 0) begin : gen_mirror
+            sptfra_diagonal_mirror #(
+                .SIDE      (MIRROR_SIDE),
+                .ROW_WIDTH (ROW_WIDTH)
+            ) diagonal_mirror (
+                .quad  (column_wide[ROW_WIDTH-1:0]),
+                .image (mirror_image)
+            );
+        end else begin : gen_no_mirror
+            assign mirror_image = {ROW_WIDTH{1'b0}};
+        end
+        if (SKIPS != 0) begin : gen_skips
+            reg skip_1;
+            reg [ROW_WIDTH-1:0] skip_quad_1;
+
+            always @(posedge clock) begin
+                skip_1 <= skip;
+                skip_quad_1 <= skip_quad;
+            end
+
+            assign element = skip_1 ? {{(32-ROW_WIDTH){1'b0}}, skip_quad_1}
+                : mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide;
+        end else begin : gen_no_skips
+            assign element = mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide;
+            wire _unused = &{1'b0, skip_quad};
+        end
+    endgenerate
+
+    sptfra_ram #(
+        .WIDTH         (WAYS * DATA_BITS),
+        .DEPTH         (OPERAND_DEPTH),
+        .ADDRESS_WIDTH (OPERAND_WIDTH)
+    ) operands (
+        .clock         (clock),
+        .write_enable  (write_enable),
+        .write_address (write_address),
+        .write_data    (write_data),
+        .read_enable   (1'b1),
+        .read_address  (operand_address),
+        .read_data     (operand)
+    );
+
+    always @(posedge clock) begin
+        swaps <= {swaps[2], mirrored};
+        operand_address <= base + element[OPERAND_WIDTH-1:0];
+        value_2 <= value;
+        coefficient <= value_2;
+    end
+
+    // ---- Control beside the data: index k holds what belongs to the issue k cycles ago
+    reg [3:1] mac_valid;
+    reg [3:1] mac_first;
+    reg [6:1] result_ends;
+    reg [6:1] tail_ends;
+    reg [6:1] is_head;
+
+    always @(posedge clock) begin
+        mac_valid <= {mac_valid[2:1], mac_issue};
+        mac_first <= {mac_first[2:1], mac_is_first};
+        result_ends <= {result_ends[5:1], issue && row_ends};
+        tail_ends <= {tail_ends[5:1], issue && tail_ends_now};
+        is_head <= {is_head[5:1], head_ends_now};
+        if (reset) begin
+            mac_valid <= 3'd0;
+            result_ends <= 6'd0;
+            tail_ends <= 6'd0;
+        end
+    end
+
+    // ---- Multiply-accumulate, and two places for results
+    reg [1:0] held; // results
+    wire [1:0] kept = held - {1'b0, take};
+
+    always @(posedge clock) begin
+        held <= kept + {1'b0, result_ends[6]};
+        pending <= (kept != 2'd0) || result_ends[6];
+        if (reset) begin
+            held <= 2'd0;
+            pending <= 1'b0;
+        end
+    end
+
+`ifdef SIMULATION
+    // By the schedule there is a place for every result
+    always @(posedge clock) begin
+        if (!reset && result_ends[6] && (kept == 2'd2)) begin
+            $fdisplay(32'h80000002, "%m: a result has come while both places are taken");
+            $finish;
+        end
+    end
+`endif
+
+    genvar way;
+    generate
+        for (way = 0; way < WAYS; way = way + 1) begin : gen_ways
+            // With the diagonal mirror ways 1 and 2 change places
+            localparam OTHER = (WAYS == 1) ? 0 : (way == 1) ? 2 : (way == 2) ? 1 : way;
+
+            sptfra_spmv_way #(
+                .COEFFICIENT_BITS (COEFFICIENT_BITS),
+                .DATA_BITS        (DATA_BITS),
+                .FRICTION         (FRICTION)
+            ) of_way (
+                .clock       (clock),
+                .reset       (reset),
+                .valid       (mac_valid[3]),
+                .first       (mac_first[3]),
+                .coefficient (coefficient[COEFFICIENT_BITS*way +: COEFFICIENT_BITS]),
+                .operand     (((MIRROR_SIDE > 0) && swaps[3]) ? operand[DATA_BITS*OTHER +: DATA_BITS]
+                    : operand[DATA_BITS*way +: DATA_BITS]),
+                .friction    (friction),
+                .mu_x        (mu_x),
+                .mu_y        (mu_y),
+                .tail_ends   (tail_ends[6]),
+                .result_ends (result_ends[6]),
+                .is_head     (is_head[6]),
+                .no_other    (kept == 2'd0),
+                .take        (take),
+                .next_carry  (next_carry[48*way +: 48]),
+                .carry       (carry[48*way +: 48]),
+                .result      (result[48*way +: 48])
+            );
+        end
+    endgenerate
+
+    wire _unused = &{1'b0, segment_address, word_wide, column_wide, element, swaps};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// We: weights |w| = max(-y, 0) (Eq. 9) from y = C33inv b; of a folded grid also what pulls, y+ = max(y, 0).
+//
+// Taxels to operand memories: 1 cycle. Folded again into parity classes: 4 cycles for |w|, 5 for y+. The array adds
+// one.
+
+`default_nettype none
+
+module sptfra_we #(
+    // 4: parity classes; 1: taxels
+    parameter WAYS = 4,
+    // Elements of a vector: taxels, or quads of a folded grid
+    parameter ELEMENTS = 25,
+    // Bits of a value
+    parameter DATA_BITS = 27,
+    // Bits dropped when weights are folded
+    parameter FOLD_SHIFT = 2,
+    // Words of the operand memories, and where |w| stands there; y+ stands ELEMENTS before it
+    parameter OPERAND_DEPTH = 200,
+    parameter WEIGHT_BASE = 100,
+    // Whether the quads that are not zero are listed
+    parameter SKIPS = 0,
+    // Derived
+    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
+) (
+    input  wire clock,
+    input  wire reset,
+    // Taxels
+    input  wire taxel_y,
+    input  wire [ROW_WIDTH-1:0] taxel_row,
+    input  wire [WAYS*DATA_BITS-1:0] taxels, // y, member 0 in the lowest bits
+    // Weights of the taxels, to the field
+    output wire weights_valid,
+    output wire [ROW_WIDTH-1:0] weights_row,
+    output wire [WAYS*DATA_BITS-1:0] weights,
+    // To the sequencer: the quads that are not zero
+    input  wire frame_start,
+    input  wire list_pull, // of y+, rather than of |w|
+    input  wire [ROW_WIDTH-1:0] list_address,
+    output wire [ROW_WIDTH-1:0] list_quad,
+    output wire [ROW_WIDTH+7:0] list_count,
+    // Operand memories
+    output wire write_next, // write_valid of the next cycle
+    output reg  write_valid,
+    output reg  [OPERAND_WIDTH-1:0] write_address,
+    output reg  [WAYS*DATA_BITS-1:0] write_data // class 0 in the lowest bits
+);
+
+    localparam [31:0] BASE = WEIGHT_BASE;
+    localparam [31:0] LENGTH = ELEMENTS;
+    localparam signed [DATA_BITS-1:0] ZERO = 0;
+
+    generate
+        if (WAYS == 4) begin : gen_folded
+            // ---- Stage 1: part. Stages 2 and 3: fold
+            reg [3:1] valid;
+            reg [ROW_WIDTH-1:0] quad_1;
+            reg [ROW_WIDTH-1:0] quad_2;
+            reg [ROW_WIDTH-1:0] quad_3;
+            wire [4*DATA_BITS-1:0] press;
+            wire [4*DATA_BITS-1:0] pull;
+            wire [4*DATA_BITS+7:0] press_sums;
+            wire [4*DATA_BITS+7:0] pull_sums;
+            genvar index;
+
+            always @(posedge clock) begin
+                valid <= {valid[2:1], taxel_y};
+                {quad_3, quad_2, quad_1} <= {quad_2, quad_1, taxel_row};
+                if (reset) begin
+                    valid <= 3'd0;
+                end
+            end
+
+            for (index = 0; index < 4; index = index + 1) begin : gen_members
+                wire signed [DATA_BITS-1:0] y = taxels[DATA_BITS*index +: DATA_BITS];
+                reg signed [DATA_BITS-1:0] pressing;
+                reg signed [DATA_BITS-1:0] pulling;
+
+                always @(posedge clock) begin
+                    pressing <= y[DATA_BITS-1] ? -y : ZERO;
+                    pulling <= y[DATA_BITS-1] ? ZERO : y;
+                end
+
+                assign press[DATA_BITS*index +: DATA_BITS] = pressing;
+                assign pull[DATA_BITS*index +: DATA_BITS] = pulling;
+            end
+
+            sptfra_butterfly #(
+                .WIDTH (DATA_BITS)
+            ) fold_press (
+                .clock  (clock),
+                .values (press),
+                .sums   (press_sums)
+            );
+
+            sptfra_butterfly #(
+                .WIDTH (DATA_BITS)
+            ) fold_pull (
+                .clock  (clock),
+                .values (pull),
+                .sums   (pull_sums)
+            );
+
+            assign weights_valid = valid[1];
+            assign weights_row = quad_1;
+            assign weights = press;
+
+            // ---- Stages 4 and 5: round, write one after the other. The next result is two cycles behind, or more
+            localparam [DATA_BITS+1:0] HALF = (FOLD_SHIFT > 0) ? 1 << (FOLD_SHIFT - 1) : 0;
+            reg pull_waits;
+            reg [4*DATA_BITS-1:0] pull_held;
+            wire [4*DATA_BITS-1:0] press_rounded;
+            wire [4*DATA_BITS-1:0] pull_rounded;
+            wire [31:0] quad_wide = {{(32-ROW_WIDTH){1'b0}}, quad_3};
+
+            for (index = 0; index < 4; index = index + 1) begin : gen_classes
+                wire [DATA_BITS+1:0] press_half = press_sums[(DATA_BITS+2)*index +: DATA_BITS+2] + HALF;
+                wire [DATA_BITS+1:0] pull_half = pull_sums[(DATA_BITS+2)*index +: DATA_BITS+2] + HALF;
+
+                assign press_rounded[DATA_BITS*index +: DATA_BITS] = press_half[FOLD_SHIFT +: DATA_BITS];
+                assign pull_rounded[DATA_BITS*index +: DATA_BITS] = pull_half[FOLD_SHIFT +: DATA_BITS];
+                wire _unused = &{1'b0, press_half, pull_half};
+            end
+
+            assign write_next = valid[3] || pull_waits;
+
+            always @(posedge clock) begin
+                write_valid <= write_next;
+                pull_waits <= valid[3];
+                if (valid[3]) begin
+                    pull_held <= pull_rounded;
+                    write_address <= BASE[OPERAND_WIDTH-1:0] + quad_wide[OPERAND_WIDTH-1:0];
+                    write_data <= press_rounded;
+                end else begin
+                    write_address <= write_address - LENGTH[OPERAND_WIDTH-1:0]; // y+ stands before |w|
+                    write_data <= pull_held;
+                end
+                if (reset) begin
+                    write_valid <= 1'b0;
+                    pull_waits <= 1'b0;
+                end
+            end
+
+            if (SKIPS != 0) begin : gen_list
+                reg write_pull;
+                reg [ROW_WIDTH-1:0] write_quad;
+
+                always @(posedge clock) begin
+                    write_pull <= !valid[3];
+                    if (valid[3]) begin
+                        write_quad <= quad_3;
+                    end
+                end
+
+                sptfra_nonzeros #(
+                    .ELEMENTS  (ELEMENTS),
+                    .DATA_BITS (DATA_BITS)
+                ) nonzeros (
+                    .clock    (clock),
+                    .reset    (reset),
+                    .clear    (frame_start),
+                    .we_valid (write_valid),
+                    .we_pull  (write_pull),
+                    .we_quad  (write_quad),
+                    .we_data  (write_data),
+                    .pull     (list_pull),
+                    .address  (list_address),
+                    .quad     (list_quad),
+                    .count    (list_count)
+                );
+            end
+
+            wire _unused = &{1'b0, quad_wide};
+        end else begin : gen_taxels
+            wire signed [DATA_BITS-1:0] y = taxels[DATA_BITS-1:0];
+            wire [31:0] row_wide = {{(32-ROW_WIDTH){1'b0}}, taxel_row};
+
+            assign weights_valid = 1'b0; // the field has no use for them
+            assign weights_row = {ROW_WIDTH{1'b0}};
+            assign weights = {(WAYS*DATA_BITS){1'b0}};
+            assign write_next = taxel_y;
+
+            always @(posedge clock) begin
+                write_valid <= taxel_y;
+                write_address <= BASE[OPERAND_WIDTH-1:0] + row_wide[OPERAND_WIDTH-1:0];
+                write_data <= y[DATA_BITS-1] ? -y : ZERO;
+                if (reset) begin
+                    write_valid <= 1'b0;
+                end
+            end
+
+            wire _unused = &{1'b0, row_wide};
+        end
+        if (SKIPS == 0) begin : gen_no_list
+            assign list_quad = {ROW_WIDTH{1'b0}};
+            assign list_count = {(ROW_WIDTH+8){1'b0}};
+            wire _unused = &{1'b0, frame_start, list_pull, list_address};
+        end
+    endgenerate
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,37 @@
+//! The frames that `run` and `view` take.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use golden::design::Design;
+
+use testbench::frame_set::FrameSet;
+use testbench::progress::Progress;
+
+#[derive(Args)]
+pub struct FrameArguments {
+    /// Frames (CSV): one frame a line, stresses in pascals, compression negative, or counts if the design has
+    /// `pa_per_count`. Without it, the ground-truth frames made for the sensor.
+    #[arg(long)]
+    frames: Option<PathBuf>,
+    /// Columns of labels before the values of a frame; the file may then have a header.
+    #[arg(long, default_value_t = 0, requires = "frames")]
+    labels: usize,
+}
+
+impl FrameArguments {
+    /// Frames of the file, or the standing ones.
+    pub fn load(
+        &self,
+        reference: Option<&Path>,
+        design: &Design,
+        progress: &Progress,
+    ) -> Result<FrameSet, Box<dyn Error>> {
+        if let Some(path) = &self.frames {
+            return Ok(FrameSet::load(path, self.labels, reference, &design.sensor)?);
+        }
+        progress.stage("making ground-truth frames");
+        Ok(FrameSet::standing(&design.sensor)?.as_delivered(design))
+    }
+}

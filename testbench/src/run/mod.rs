@@ -1,0 +1,121 @@
+//! `testbench run`: a design and frames in, a [`Report`] out.
+
+pub mod page;
+pub mod report;
+
+use std::path::{Path, PathBuf};
+
+use golden::design::Design;
+use golden::output::OutputError;
+use golden::solver::{Solver, SolverError as SolveError};
+use hdl_gen::plan::Plan;
+use thiserror::Error;
+
+use crate::accuracy::{SolverError, StatusCounts, against_truth};
+use crate::frame_set::FrameSet;
+use crate::progress::Progress;
+use crate::registers;
+use crate::simulate::frames_to_simulate;
+use crate::stream_words::{Answer, as_received, decode, packets};
+use crate::trial::{Trial, TrialError, planned, rtl_sources};
+use crate::verilate::{Effort, Trace, Verilate, verilator_version};
+use crate::waves;
+use report::Report;
+
+/// Why a run has no report.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The design cannot be planned, built or simulated.
+    #[error(transparent)]
+    Trial(#[from] TrialError),
+    /// The f64 solver refused the design or a frame.
+    #[error(transparent)]
+    Solver(#[from] SolveError),
+    /// A view of the trace cannot be written.
+    #[error(transparent)]
+    View(#[from] OutputError),
+    /// A trace was asked for in a format that cannot be written here.
+    #[error(
+        "{}: the headers of zlib and LZ4 are missing, which FST needs; run `make tools` or name a .vcd file",
+        .0.display()
+    )]
+    NoFst(PathBuf),
+}
+
+/// What to do besides comparing.
+#[derive(Clone, Copy, Debug)]
+pub struct Options<'a> {
+    /// File for the signals of the free-running mode: VCD if its name ends so, FST otherwise.
+    pub trace: Option<&'a Path>,
+    /// Decides the pauses of the streams and the registers' random start.
+    pub seed: u32,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { trace: None, seed: 1 }
+    }
+}
+
+/// Plans, emits, builds, simulates and judges a design.
+///
+/// # Errors
+/// [`RunError`]; words and cycles that are wrong are no error but part of the report.
+pub fn run(design: &Design, frames: &FrameSet, options: &Options<'_>, progress: &Progress) -> Result<Report, RunError> {
+    progress.stage("planning");
+    run_plan(&planned(design)?, frames, options, progress)
+}
+
+/// The same of a plan.
+///
+/// # Errors
+/// [`RunError`].
+pub fn run_plan(
+    plan: &Plan,
+    frames: &FrameSet,
+    options: &Options<'_>,
+    progress: &Progress,
+) -> Result<Report, RunError> {
+    let sources = rtl_sources(plan)?;
+    progress.stage("computing what the hardware must answer");
+    let trial = Trial::new(plan, packets(&frames.stress), options.seed);
+    let solver = Solver::new(&plan.design)?;
+    let solutions =
+        trial.packets.iter().map(|packet| solver.solve(&as_received(packet))).collect::<Result<Vec<_>, _>>()?;
+
+    progress.stage("building the simulation with Verilator");
+    let verilate = Verilate::default().with_trace(trace_format(options.trace)?);
+    let built = verilate.with_effort(Effort::for_cycles(trial.cycles())).build(&sources).map_err(TrialError::from)?;
+    let frame_count = trial.packets.len();
+    progress.counted("simulating", frames_to_simulate(frame_count));
+    let verdict = trial.simulate(&built, options.trace, &|| progress.step()).map_err(TrialError::from)?;
+    let registers = if plan.design.hardware.control {
+        progress.counted("simulating with register accesses", frame_count as u64);
+        Some(registers::check(&trial, &built, || progress.step()).map_err(TrialError::from)?)
+    } else {
+        None
+    };
+
+    // Answers of another length are mismatches already; here they count as missing.
+    let answers: Vec<Answer> = verdict.simulation.answers.iter().filter_map(|words| decode(words)).collect();
+    let simulator = verilator_version().map_err(TrialError::from)?;
+    let mut report = Report::new(plan, &verdict, registers, simulator);
+    report.frames_from.clone_from(&frames.origin);
+    report.error = SolverError::new(&answers, &solutions);
+    if let Some(trace) = options.trace {
+        report.traces = [trace.to_owned()].into_iter().chain(waves::write(trace, &sources)?).collect();
+    }
+    report.status_counts = StatusCounts::new(&answers);
+    report.true_force_errors = frames.truth.as_ref().map(|truth| against_truth(&answers, truth));
+    Ok(report)
+}
+
+fn trace_format(file: Option<&Path>) -> Result<Trace, RunError> {
+    let Some(file) = file else {
+        return Ok(Trace::Off);
+    };
+    if file.extension().is_some_and(|ending| ending == "vcd") {
+        return Ok(Trace::Vcd);
+    }
+    if Trace::best() == Trace::Fst { Ok(Trace::Fst) } else { Err(RunError::NoFst(file.to_owned())) }
+}

@@ -1,0 +1,200 @@
+//! Both ends of the streams: synchronous logic. What it drives in a cycle depends on earlier cycles only, never on the
+//! core's outputs in the same one.
+
+use std::collections::VecDeque;
+
+use super::{Checker, Exchange, Gate, INITIAL_RESET, Outcome, Pacing, StreamError, Traffic, Violation};
+use crate::dut::{Beat, Core, Inputs};
+
+/// Cycles watched after the last expected packet, for a beat too many.
+const QUIET: u64 = 64;
+
+/// Runs the traffic until every packet has its answer. `progress` is told the number of answers after each.
+///
+/// # Errors
+/// [`StreamError`] at the first broken rule, when nothing moves for [`Traffic::timeout`] cycles, or when the
+/// simulation stops.
+pub fn exchange(
+    core: &mut impl Core,
+    traffic: &Traffic<'_>,
+    mut progress: impl FnMut(usize),
+) -> Result<Outcome, StreamError> {
+    let mut driver = Driver::new(traffic);
+    for _ in 0..INITIAL_RESET {
+        driver.reset_cycle(core)?;
+    }
+    let start = driver.cycle;
+    let mut resets = traffic.resets.iter().peekable();
+    let mut answers = 0;
+    let mut quiet = 0;
+    while quiet < QUIET {
+        if let Some(reset) = resets.next_if(|reset| driver.cycle - start >= reset.cycle) {
+            driver.give_up();
+            for _ in 0..reset.length.max(1) {
+                driver.reset_cycle(core)?;
+            }
+            continue;
+        }
+        driver.run_cycle(core)?;
+        if driver.outcome.exchanges.len() > answers {
+            answers = driver.outcome.exchanges.len();
+            progress(answers);
+        }
+        quiet = if driver.done() { quiet + 1 } else { 0 };
+    }
+    driver.outcome.cycles = driver.cycle;
+    Ok(driver.outcome)
+}
+
+/// State between cycles.
+struct Driver<'a> {
+    traffic: &'a Traffic<'a>,
+    source: Gate,
+    sink: Gate,
+    checker: Checker,
+    cycle: u64,
+    last_handshake: u64,
+    /// Packet being sent and the next word of it.
+    packet: usize,
+    word: usize,
+    /// True once the current word is on offer: it stays until taken.
+    offering: bool,
+    first_in: u64,
+    /// Packets sent whose answer is not complete: index and cycle of the first beat.
+    inside: VecDeque<(usize, u64)>,
+    /// Output beats of the packet coming out.
+    words: Vec<u32>,
+    outcome: Outcome,
+}
+
+impl<'a> Driver<'a> {
+    fn new(traffic: &'a Traffic<'a>) -> Self {
+        let mut driver = Self {
+            traffic,
+            source: traffic.source.start(),
+            sink: traffic.sink.start(),
+            checker: Checker::default(),
+            cycle: 0,
+            last_handshake: 0,
+            packet: 0,
+            word: 0,
+            offering: false,
+            first_in: 0,
+            inside: VecDeque::new(),
+            words: Vec::new(),
+            outcome: Outcome::default(),
+        };
+        driver.skip_empty();
+        driver
+    }
+
+    fn done(&self) -> bool {
+        self.packet >= self.traffic.packets.len() && self.inside.is_empty()
+    }
+
+    fn skip_empty(&mut self) {
+        while self.traffic.packets.get(self.packet).is_some_and(Vec::is_empty) {
+            self.packet += 1;
+        }
+    }
+
+    fn next_packet(&mut self) {
+        self.packet += 1;
+        self.word = 0;
+        self.skip_empty();
+    }
+
+    fn give_up(&mut self) {
+        // A packet of which no word was offered yet loses nothing and is sent after the reset.
+        if self.word > 0 || self.offering {
+            self.next_packet();
+        }
+        self.offering = false;
+        self.inside.clear();
+        self.words.clear();
+    }
+
+    fn reset_cycle(&mut self, core: &mut impl Core) -> Result<(), StreamError> {
+        let outputs = core.step(Inputs::default())?;
+        self.checker.watch(self.cycle, false, false, &outputs)?;
+        self.last_handshake = self.cycle;
+        self.cycle += 1;
+        Ok(())
+    }
+
+    /// The beat on offer in this cycle; draws from the source's pattern only while there is something to send.
+    fn offer(&mut self) -> Beat {
+        let Some(words) = self.traffic.packets.get(self.packet) else {
+            return Beat::default();
+        };
+        let answered = self.traffic.pacing == Pacing::BackToBack || self.word > 0 || self.inside.is_empty();
+        if !self.offering {
+            self.offering = answered && self.source.next_cycle();
+        }
+        let data = words.get(self.word).copied().unwrap_or_default();
+        Beat { valid: self.offering, data, last: self.offering && self.word + 1 == words.len() }
+    }
+
+    fn run_cycle(&mut self, core: &mut impl Core) -> Result<(), StreamError> {
+        let offer = self.offer();
+        let ready = self.sink.next_cycle();
+        let outputs = core.step(Inputs { run: true, source: offer, ready })?;
+        self.checker.watch(self.cycle, true, ready, &outputs)?;
+        let output = outputs.sink;
+        // An answer may start while its packet is still coming in, but not before.
+        let sending = offer.valid || self.word > 0;
+        if output.valid && self.inside.is_empty() && !sending {
+            return Err(Violation::UnexpectedFrame { cycle: self.cycle }.into());
+        }
+        if offer.valid && outputs.ready {
+            self.taken(offer);
+        }
+        if output.valid && ready {
+            self.received(output)?;
+        }
+        if self.cycle - self.last_handshake >= self.traffic.timeout && !self.done() {
+            return Err(self.timeout(offer));
+        }
+        self.cycle += 1;
+        Ok(())
+    }
+
+    fn taken(&mut self, beat: Beat) {
+        self.last_handshake = self.cycle;
+        self.offering = false;
+        if self.word == 0 {
+            self.first_in = self.cycle;
+        }
+        self.word += 1;
+        if beat.last {
+            self.inside.push_back((self.packet, self.first_in));
+            self.next_packet();
+        }
+    }
+
+    fn received(&mut self, beat: Beat) -> Result<(), StreamError> {
+        self.last_handshake = self.cycle;
+        self.words.push(beat.data);
+        if beat.last {
+            let (packet, first_in) = self.inside.pop_front().ok_or(Violation::UnexpectedFrame { cycle: self.cycle })?;
+            let words = std::mem::take(&mut self.words);
+            self.outcome.exchanges.push(Exchange { packet, first_in, last_out: self.cycle, words });
+        }
+        Ok(())
+    }
+
+    fn timeout(&self, offer: Beat) -> StreamError {
+        let input = if offer.valid {
+            format!("s_axis_tready stays low at word {} of frame {}", self.word, self.packet)
+        } else {
+            format!("m_axis_tvalid stays low with {} frames inside", self.inside.len())
+        };
+        StreamError::Timeout {
+            waited: self.cycle - self.last_handshake,
+            cycle: self.cycle,
+            received: self.outcome.exchanges.len(),
+            expected: self.traffic.packets.len(),
+            inside: format!("{input}, {} beats of the next answer seen", self.words.len()),
+        }
+    }
+}

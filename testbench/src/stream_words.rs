@@ -1,0 +1,126 @@
+//! Frames as the words of the two streams.
+
+use golden::solver::Solution;
+
+/// Summary beats in front of the field.
+pub const SUMMARY_BEATS: usize = 8;
+
+const SUMMARY_NAMES: [&str; SUMMARY_BEATS] = ["status", "F_x", "F_y", "F_z", "mu", "phi", "mu_x", "mu_y"];
+const AXES: [char; 3] = ['x', 'y', 'z'];
+/// The status bits of beat 0; the frame counter is above.
+const STATUS_MASK: u32 = 0xFFFF;
+
+/// The input packet of a frame of stresses in Pa: float32, in taxel order.
+pub fn encode(stress: &[f64]) -> Vec<u32> {
+    stress.iter().map(|&value| (value as f32).to_bits()).collect()
+}
+
+/// The input packets of frames.
+pub fn packets(frames: &[Vec<f64>]) -> Vec<Vec<u32>> {
+    frames.iter().map(|stress| encode(stress)).collect()
+}
+
+/// The stresses as the core gets them. The f64 solver is given the same ones, so that its difference to the core is
+/// the core's alone.
+pub fn as_received(packet: &[u32]) -> Vec<f64> {
+    packet.iter().map(|&word| f64::from(f32::from_bits(word))).collect()
+}
+
+/// What a beat of an output frame is, such as `F_z`, or `f_x of taxel 12 (2, 1)` with column and row.
+pub fn beat_name(beat: usize, columns: usize) -> String {
+    if let Some(name) = SUMMARY_NAMES.get(beat) {
+        return (*name).to_owned();
+    }
+    let (taxel, axis) = ((beat - SUMMARY_BEATS) / 3, (beat - SUMMARY_BEATS) % 3);
+    let columns = columns.max(1);
+    format!("f_{} of taxel {taxel} ({}, {})", AXES[axis], taxel % columns, taxel / columns)
+}
+
+/// An output frame in numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Answer {
+    /// Status bits.
+    pub status: u32,
+    /// Frame counter.
+    pub counter: u16,
+    /// `F_x, F_y, F_z` in N.
+    pub resultant: [f64; 3],
+    /// Friction coefficient.
+    pub mu: f64,
+    /// Direction in rad.
+    pub phi: f64,
+    /// Components of the friction coefficient.
+    pub mu_xy: [f64; 2],
+    /// `f_x`, `f_y`, `f_z` in N, each of m values; empty for a design that puts out resultants only.
+    pub field: [Vec<f64>; 3],
+}
+
+impl From<Solution> for Answer {
+    fn from(solution: Solution) -> Self {
+        Self {
+            status: solution.status.0,
+            counter: 0,
+            resultant: solution.resultant,
+            mu: solution.mu,
+            phi: solution.phi,
+            mu_xy: [solution.mu_x, solution.mu_y],
+            field: solution.field,
+        }
+    }
+}
+
+/// Reads an output frame of 8 summary beats and three beats per taxel; `None` if its length is another.
+pub fn decode(words: &[u32]) -> Option<Answer> {
+    let (summary, field) = words.split_first_chunk::<SUMMARY_BEATS>()?;
+    let (triples, []) = field.as_chunks::<3>() else {
+        return None;
+    };
+    let value = |word: u32| f64::from(f32::from_bits(word));
+    let [head, fx, fy, fz, mu, phi, mu_x, mu_y] = *summary;
+    Some(Answer {
+        status: head & STATUS_MASK,
+        counter: (head >> 16) as u16,
+        resultant: [fx, fy, fz].map(value),
+        mu: value(mu),
+        phi: value(phi),
+        mu_xy: [mu_x, mu_y].map(value),
+        field: [0, 1, 2].map(|axis| triples.iter().map(|triple| value(triple[axis])).collect()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_follow_the_stream_format() {
+        let names: Vec<String> = [0, 3, 7, 8, 10, 8 + 3 * 12 + 1].iter().map(|&beat| beat_name(beat, 10)).collect();
+        let expected =
+            ["status", "F_z", "mu_y", "f_x of taxel 0 (0, 0)", "f_z of taxel 0 (0, 0)", "f_y of taxel 12 (2, 1)"];
+        assert_eq!(names, expected);
+    }
+
+    #[test]
+    fn an_answer_is_taken_apart() {
+        let mut words = vec![0x0005_0006];
+        words.extend(encode(&[1.0, 2.0, -3.0, 0.5, 0.25, -0.5, 0.125, 10.0, 20.0, 30.0, 11.0, 21.0, 31.0]));
+        let answer = decode(&words).expect("two taxels");
+        let expected = Answer {
+            status: 6,
+            counter: 5,
+            resultant: [1.0, 2.0, -3.0],
+            mu: 0.5,
+            phi: 0.25,
+            mu_xy: [-0.5, 0.125],
+            field: [vec![10.0, 11.0], vec![20.0, 21.0], vec![30.0, 31.0]],
+        };
+        assert_eq!(answer, expected);
+    }
+
+    #[test]
+    fn other_lengths_are_no_answer() {
+        assert_eq!(decode(&[0; 7]), None);
+        assert_eq!(decode(&[0; 9]), None);
+        assert!(decode(&[0; 8]).is_some());
+    }
+}

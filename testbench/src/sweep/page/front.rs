@@ -1,0 +1,188 @@
+//! Latency against error, and what width and lanes do to both.
+
+use golden::design::{Estimator, PlanKind};
+
+use super::paper::TABLE_3;
+use crate::svg::{Axis, INK, MARK, Svg, power};
+use crate::sweep::point::{Hardware, Point, paper_sensor};
+
+const WIDTH: f64 = 760.0;
+const HEIGHT: f64 = 440.0;
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 36.0;
+const TOP: f64 = 24.0;
+const BOTTOM: f64 = 52.0;
+/// What a point is drawn in: its name, its colour, and which points they are.
+type Kind = (&'static str, &'static str, fn(&Point) -> bool);
+const KINDS: [Kind; 6] = [
+    ("reduced plan, no filter", "#0b84d8", |point| point.plan == PlanKind::Reduced && point.filter == "none"),
+    ("reduced plan, F1 or F2", "#62b6f0", |point| point.plan == PlanKind::Reduced),
+    ("paper's plan, no filter", "#8a6d3b", |point| point.filter == "none"),
+    ("paper's plan, F1", "#d9730d", |point| point.filter.starts_with("f1")),
+    ("paper's plan, F2", "#e0a800", |point| point.filter.starts_with("f2")),
+    ("paper's plan, F3", "#8e5bd0", |point| point.filter == "f3"),
+];
+const JOINT: (&str, &str) = ("joint estimator", "#2a9d5c");
+/// Errors above are drawn at the rim.
+const MOST_PERCENT: f64 = 100.0;
+const LEAST_PERCENT: f64 = 1.0;
+
+/// One entry of a legend.
+pub type Legend = Vec<(&'static str, &'static str)>;
+
+/// The entries of the fronts' legend that points of a page have.
+pub fn legend(points: &[Point]) -> Legend {
+    let used = |colour: &str| points.iter().any(|point| style(point).1 == colour);
+    let ours = KINDS.iter().map(|&(name, colour, _)| (name, colour)).chain([JOINT]);
+    ours.filter(|(_, colour)| used(colour)).chain([("the paper, Table 3", MARK)]).collect()
+}
+
+fn style(point: &Point) -> (&'static str, &'static str) {
+    if point.estimator == Estimator::Joint {
+        return JOINT;
+    }
+    let kind = KINDS.iter().find(|(_, _, is)| is(point)).unwrap_or(&KINDS[0]);
+    (kind.0, kind.1)
+}
+
+/// The front of one scene's points: latency in µs against the largest tangential error in percent, both logarithmic.
+/// `with_paper` marks the paper's points of this sensor.
+pub fn front(points: &[&Point], with_paper: bool) -> String {
+    let built: Vec<(&Point, &Hardware)> =
+        points.iter().filter_map(|&point| Some((point, point.hardware.as_ref()?))).collect();
+    let paper: Vec<(f64, f64, &str)> = TABLE_3
+        .iter()
+        .filter(|row| with_paper && points.first().and_then(|point| paper_sensor(&point.sensor)) == Some(row.sensor))
+        .map(|row| (1000.0 * row.milliseconds, row.max[0].max(row.max[1]), row.name))
+        .collect();
+    let times = built.iter().map(|(_, hardware)| hardware.latency_us).chain(paper.iter().map(|&(time, ..)| time));
+    let x = Axis::covering(times, false, LEFT, WIDTH - RIGHT);
+    let y = Axis::covering([LEAST_PERCENT, MOST_PERCENT].into_iter(), false, HEIGHT - BOTTOM, TOP);
+    let height = |percent: f64| y.place(percent.clamp(LEAST_PERCENT, MOST_PERCENT));
+    let mut svg = Svg::new(WIDTH, HEIGHT, "Largest tangential error against latency");
+    axes(&mut svg, x, y, ["latency, µs (logarithmic)", "largest error of F_x and F_y, %"]);
+    let mut best: Vec<(f64, f64)> =
+        built.iter().map(|(point, hardware)| (hardware.latency_us, point.tangential())).collect();
+    let corners: Vec<(f64, f64)> =
+        frontier(&mut best).into_iter().map(|(time, e)| (x.place(time), height(e))).collect();
+    svg.line(&corners, INK, "2 3");
+    for (point, hardware) in &built {
+        let place = (x.place(hardware.latency_us), height(point.tangential()));
+        let name = format!(
+            "{}: {} cycles, {:.1} % tangential, e_mu {:.1} %, {} DSP; {}",
+            point.label(),
+            hardware.latency_cycles,
+            point.tangential(),
+            point.errors.e_mu.max,
+            hardware.dsp,
+            point.verified.title()
+        );
+        svg.named_dot(place, 4.5, style(point).1, &name);
+        if point.verified == crate::sweep::point::Verified::Rtl {
+            svg.ring(place, 7.5, style(point).1);
+        }
+    }
+    // What has an error and no latency.
+    for point in points.iter().filter(|point| point.hardware.is_none()) {
+        let (name, colour) = style(point);
+        let place = height(point.tangential());
+        svg.line(&[(LEFT, place), (WIDTH - RIGHT, place)], colour, "7 4");
+        let text = format!("{name}, not in hardware: {:.1} %", point.tangential());
+        svg.text((WIDTH - RIGHT - 6.0, place - 6.0), "end", colour, &text);
+    }
+    let mut free: Vec<(f64, f64)> = Vec::new();
+    for (time, percent, name) in paper {
+        let place = (x.place(time), height(percent));
+        svg.cross(place);
+        // Names that would stand on each other go one below the other.
+        let mut line = place.1 - 12.0;
+        while free.iter().any(|&(x, y)| (x - place.0).abs() < 90.0 && (y - line).abs() < 13.0) {
+            line -= 13.0;
+        }
+        free.push((place.0, line));
+        svg.sized_text((place.0 + 10.0, line), "middle", MARK, 11, name);
+    }
+    svg.finish()
+}
+
+/// The points that no other is faster than and at least as good, fastest first.
+fn frontier(points: &mut [(f64, f64)]) -> Vec<(f64, f64)> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut best = f64::INFINITY;
+    points
+        .iter()
+        .copied()
+        .filter(|&(_, error)| {
+            let better = error < best;
+            best = best.min(error);
+            better
+        })
+        .collect()
+}
+
+/// Error against the f64 solver over the width of coefficients or vectors; one line for each series.
+pub fn widths(series: &[(String, Vec<(u32, f64)>)], unit: &str) -> String {
+    const COLOURS: [&str; 6] = ["#0b84d8", "#8e5bd0", "#d9730d", "#2a9d5c", "#159aa0", "#d63b5c"];
+    let (width, height) = (480.0, 300.0);
+    let values = series.iter().flat_map(|(_, values)| values);
+    let (low, high) = values.clone().fold((u32::MAX, 0), |(low, high), &(bits, _)| (low.min(bits), high.max(bits)));
+    let y = Axis::covering(values.map(|&(_, error)| error).filter(|&error| error > 0.0), false, height - 46.0, 20.0);
+    let place =
+        |bits: u32| LEFT + 20.0 + f64::from(bits - low) / f64::from((high - low).max(1)) * (width - LEFT - 60.0);
+    let mut svg = Svg::new(width, height, &format!("Error of the number format against {unit}"));
+    for decade in y.decades() {
+        let line = y.place(10_f64.powi(decade));
+        svg.grid((LEFT, line), (width - RIGHT, line));
+        svg.text((LEFT - 8.0, line + 4.0), "end", INK, &power(decade));
+    }
+    for (number, (name, values)) in series.iter().enumerate() {
+        let colour = COLOURS[number % COLOURS.len()];
+        let places: Vec<(f64, f64)> =
+            values.iter().filter(|(_, e)| *e > 0.0).map(|&(bits, e)| (place(bits), y.place(e))).collect();
+        svg.line(&places, colour, "");
+        for (&at, (bits, error)) in places.iter().zip(values) {
+            svg.named_dot(at, 4.0, colour, &format!("{name}, {bits} bits: {error:.1e}"));
+        }
+        svg.text((width - RIGHT, 34.0 + 17.0 * number as f64), "end", colour, name);
+    }
+    let mut widths: Vec<u32> = series.iter().flat_map(|(_, values)| values.iter().map(|&(bits, _)| bits)).collect();
+    widths.sort_unstable();
+    widths.dedup();
+    for bits in widths {
+        svg.text((place(bits), height - 28.0), "middle", INK, &bits.to_string());
+    }
+    svg.text((f64::midpoint(LEFT, width - RIGHT), height - 8.0), "middle", INK, unit);
+    svg.finish()
+}
+
+fn axes(svg: &mut Svg, x: Axis, y: Axis, names: [&str; 2]) {
+    for decade in x.decades() {
+        let place = x.place(10_f64.powi(decade));
+        svg.grid((place, y.from), (place, y.to));
+        svg.text((place, y.from + 18.0), "middle", INK, &power(decade));
+    }
+    for decade in y.decades() {
+        for step in [1.0, 2.0, 5.0] {
+            let value = step * 10_f64.powi(decade);
+            let place = y.place(value);
+            if place < y.to - 0.5 {
+                continue;
+            }
+            svg.grid((x.from, place), (x.to, place));
+            svg.text((x.from - 8.0, place + 4.0), "end", INK, &format!("{value}"));
+        }
+    }
+    svg.text((f64::midpoint(x.from, x.to), HEIGHT - 12.0), "middle", INK, names[0]);
+    svg.text((6.0, 14.0), "start", INK, names[1]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::frontier;
+
+    #[test]
+    fn the_front_has_no_dominated_point() {
+        let mut points = [(3.0, 1.0), (1.0, 5.0), (2.0, 5.0), (2.0, 2.0), (4.0, 1.5)];
+        assert_eq!(frontier(&mut points), [(1.0, 5.0), (2.0, 2.0), (3.0, 1.0)]);
+    }
+}

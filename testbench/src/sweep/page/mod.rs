@@ -1,0 +1,259 @@
+//! The page of a sweep: one HTML file without a network, with pictures as SVG, for light and dark.
+
+pub mod field;
+pub mod front;
+pub mod hard;
+pub mod matrices;
+pub mod paper;
+pub mod tables;
+
+use golden::choose::choose;
+use golden::design::{Design, Estimator, Filter, MatrixFilter, Outputs};
+use golden::matrices::Matrices;
+use golden::metrics::Outcome;
+use hdl_gen::plan::Plan;
+use serde::Serialize;
+use tera::{Context, Tera};
+use thiserror::Error;
+
+use crate::hard::judge::Row;
+use crate::sweep::evaluate::answers;
+use crate::sweep::point::{Geometry, Point, Verified, sensor_title, sensors};
+use crate::sweep::{Sweep, SweepError, SweepScene};
+use crate::table::Table;
+use matrices::Figure;
+
+const TEMPLATE: &str = include_str!("../../../templates/report.html.tera");
+/// The name ends so that text is escaped.
+const NAME: &str = "report.html";
+/// Larger sensors have too many entries for a picture of each.
+const MOST_TAXELS: usize = 256;
+/// The frame whose field is drawn, if the scene has so many: 40° in a sweep of tens.
+const DRAWN_FRAME: usize = 4;
+
+/// Why there is no page.
+#[derive(Debug, Error)]
+pub enum PageError {
+    /// A picture's data cannot be computed.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    /// The template does not fit.
+    #[error("report.html: {0}; please report this")]
+    Template(#[from] tera::Error),
+}
+
+/// Everything on the page.
+#[derive(Clone, Debug, Serialize)]
+pub struct Contents {
+    version: &'static str,
+    points: usize,
+    verified: Vec<(usize, &'static str)>,
+    refusals: Vec<String>,
+    legend: front::Legend,
+    ramp: Vec<(String, &'static str)>,
+    sensors: Vec<SensorSection>,
+    hard: Option<hard::Section>,
+}
+
+/// One sensor's part.
+#[derive(Clone, Debug, Serialize)]
+struct SensorSection {
+    title: String,
+    fronts: Vec<Figure>,
+    table_1: Option<Table>,
+    table_3: Option<Table>,
+    lanes: Table,
+    widths: Vec<Figure>,
+    field: Vec<Figure>,
+    field_caption: String,
+    costs: Option<Figure>,
+    magnitudes: Vec<Figure>,
+    rows: Option<String>,
+    bands: Vec<Figure>,
+    thresholds: Vec<Figure>,
+}
+
+impl Contents {
+    /// Gathers what the points do not hold: matrices, costs of filters, a field.
+    ///
+    /// # Errors
+    /// [`PageError::Sweep`] if a design that was swept has no answer.
+    pub fn new(designs: &[Design], sweep: &Sweep, points: &[Point]) -> Result<Self, PageError> {
+        let count = |verified: Verified| points.iter().filter(|point| point.verified == verified).count();
+        let mut refusals: Vec<String> = points.iter().filter_map(|point| point.refusal.clone()).collect();
+        refusals.sort_unstable();
+        refusals.dedup();
+        let sections = sensors(points)
+            .iter()
+            .map(|sensor| section(sensor, designs, sweep, points))
+            .collect::<Result<_, PageError>>()?;
+        Ok(Self {
+            version: hdl_gen::emit::VERSION,
+            points: points.len(),
+            verified: [Verified::Rtl, Verified::Model, Verified::Golden]
+                .map(|verified| (count(verified), verified.title()))
+                .into_iter()
+                .filter(|&(count, _)| count > 0)
+                .collect(),
+            refusals,
+            legend: front::legend(points),
+            ramp: matrices::ramp_legend(),
+            sensors: sections,
+            hard: None,
+        })
+    }
+}
+
+impl Contents {
+    /// The same with the table of hard cases.
+    #[must_use]
+    pub fn with_hard_cases(mut self, rows: &[Row]) -> Self {
+        self.hard = Some(hard::section(rows));
+        self
+    }
+}
+
+/// The page.
+///
+/// # Errors
+/// [`PageError::Template`] if template and contents do not fit each other.
+pub fn render(contents: &Contents) -> Result<String, PageError> {
+    let mut tera = Tera::default();
+    tera.add_raw_template(NAME, TEMPLATE)?;
+    Ok(tera.render(NAME, &Context::from_serialize(contents)?)?)
+}
+
+fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point]) -> Result<SensorSection, PageError> {
+    let own: Vec<&Point> = points.iter().filter(|point| point.sensor == *sensor).collect();
+    let designs: Vec<&Design> = designs.iter().filter(|design| is_of(design, sensor)).collect();
+    let scenes: Vec<&SweepScene> =
+        sweep.scenes.iter().filter(|scene| designs.iter().any(|design| design.sensor == scene.scene.sensor)).collect();
+    // The paper's contacts are swept over all directions: its tables stand beside the first such scene.
+    let main = scenes.iter().copied().find(|scene| scene.frames.stress.len() > 1).or(scenes.first().copied());
+    let on = |scene: &SweepScene| own.iter().copied().filter(|point| point.scene == scene.name).collect::<Vec<_>>();
+    let fronts = scenes
+        .iter()
+        .map(|scene| {
+            let paper = main.is_some_and(|main| main.name == scene.name);
+            let frames = scene.frames.stress.len();
+            let caption = format!("scene {}, {frames} frame{}", scene.name, if frames == 1 { "" } else { "s" });
+            Figure { svg: front::front(&on(scene), paper), caption }
+        })
+        .collect();
+    let on_main = main.map(on).unwrap_or_default();
+    let small = sensor.columns * sensor.rows <= MOST_TAXELS;
+    let pictures = match designs.first().filter(|_| small) {
+        Some(design) => Matrices::of(design).ok(),
+        None => None,
+    };
+    let (field, field_caption) = field_figures(sensor, &designs, main)?;
+    let filters = |kinds: [MatrixFilter; 4]| {
+        // F1 has no more diagonals than the matrix.
+        let legal =
+            |filter: &MatrixFilter| !matches!(filter, MatrixFilter::F1 { l } if l + 2 > sensor.columns * sensor.rows);
+        pictures.as_ref().map_or_else(Vec::new, |matrices| {
+            matrices::sparsity(matrices, &kinds.into_iter().filter(legal).collect::<Vec<_>>())
+        })
+    };
+    Ok(SensorSection {
+        title: sensor_title(sensor),
+        fronts,
+        table_1: tables::table_1(&on_main),
+        table_3: tables::table_3(&on_main),
+        lanes: tables::lanes(&on_main),
+        widths: widths(&on_main),
+        field,
+        field_caption,
+        costs: costs(&designs, main, small),
+        magnitudes: pictures.as_ref().map(matrices::magnitudes).unwrap_or_default(),
+        rows: pictures.as_ref().map(|matrices| matrices::rows(matrices, sensor.columns)),
+        bands: filters([10, 40, 50, 90].map(|l| MatrixFilter::F1 { l })),
+        thresholds: filters([10.0, 30.0, 50.0, 90.0].map(|p| MatrixFilter::F2 { p })),
+    })
+}
+
+fn is_of(design: &Design, sensor: &Geometry) -> bool {
+    Geometry::from(&design.sensor) == *sensor
+}
+
+/// What each filter of each matrix costs, on the scene of the sensor's tables.
+fn costs(designs: &[&Design], scene: Option<&SweepScene>, small: bool) -> Option<Figure> {
+    let frames = scene?.scene.frames().ok()?;
+    // The search needs no filter of its own.
+    let mut design = designs.first().filter(|_| small).map(|&design| design.clone())?;
+    design.algorithm.filter = Filter::None;
+    let choice = choose(&design, &frames, &|| ()).ok()?;
+    let caption = format!(
+        "e_µ · Nnz in thousands, with only that matrix filtered; mean over {} frames of scene {}. Orange: the least \
+         of the matrix, which is F3. e_µ is {:.2} % without a filter and {:.2} % with all of these choices.",
+        choice.frames, scene?.name, choice.e_mu_unfiltered, choice.e_mu_chosen
+    );
+    Some(Figure { svg: matrices::costs(&choice), caption })
+}
+
+fn field_figures(
+    sensor: &Geometry,
+    designs: &[&Design],
+    scene: Option<&SweepScene>,
+) -> Result<(Vec<Figure>, String), PageError> {
+    let shows = |design: &&&Design| design.algorithm.outputs == Outputs::Field && Plan::new(design).is_ok();
+    let (Some(design), Some(scene)) = (designs.iter().find(shows), scene) else {
+        return Ok((Vec::new(), String::new()));
+    };
+    let frame = DRAWN_FRAME.min(scene.frames.stress.len() - 1);
+    let mut frames = scene.frames.clone();
+    frames.stress = vec![frames.stress.swap_remove(frame)];
+    let found = answers(design, &frames)?;
+    let (Some(answer), Some(truth)) = (found.first(), scene.frames.truth.as_ref().map(|truth| truth[frame])) else {
+        return Ok((Vec::new(), String::new()));
+    };
+    let Outcome { force, .. } = truth;
+    let caption = format!(
+        "Frame {frame} of scene {}: pushed with ({:.2}, {:.2}, {:.2}) N; the hardware of {} finds \
+         ({:.2}, {:.2}, {:.2}) N.",
+        scene.name,
+        force[0],
+        force[1],
+        force[2],
+        design.name,
+        answer.resultant[0],
+        answer.resultant[1],
+        answer.resultant[2]
+    );
+    let felt = field::stress(sensor, &frames.stress[0]);
+    let figures = vec![
+        Figure { svg: felt, caption: "what the taxels feel".to_owned() },
+        Figure { svg: field::forces(sensor, answer), caption: "what the hardware finds".to_owned() },
+    ];
+    Ok((figures, caption))
+}
+
+/// Error of the number format over the widths, for each plan and filter that was varied.
+fn widths(points: &[&Point]) -> Vec<Figure> {
+    let over = |title: &str, bits: fn(&Point) -> u32, other: fn(&Point) -> u32, usual: u32| {
+        let mut series: Vec<(String, Vec<(u32, f64)>)> = Vec::new();
+        for point in points.iter().filter(|point| other(point) == usual && point.lanes == 16) {
+            let Some(error) = point.against_solver.and_then(|error| error.field_max) else { continue };
+            let estimator = if point.estimator == Estimator::Line { "" } else { ", joint estimator" };
+            let name = format!("{}, {}{estimator}", point.plan, point.filter_title());
+            match series.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, values)) => values.push((bits(point), error)),
+                None => series.push((name, vec![(bits(point), error)])),
+            }
+        }
+        series.retain(|(_, values)| values.len() > 1);
+        for (_, values) in &mut series {
+            values.sort_by_key(|&(bits, _)| bits);
+            values.dedup_by_key(|&mut (bits, _)| bits);
+        }
+        let caption = format!("largest error of a force against f64, relative to max |f_z|, over the {title}");
+        (!series.is_empty()).then(|| Figure { svg: front::widths(&series, title), caption })
+    };
+    [
+        over("coefficient bits", |point| point.coefficient_bits, |point| point.data_bits, 27),
+        over("data bits", |point| point.data_bits, |point| point.coefficient_bits, 18),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
