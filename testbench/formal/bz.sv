@@ -9,33 +9,24 @@ module harness (
     input wire s_tvalid,
     input wire write_ready,
     input wire cean_idle,
-`ifndef PAPER
     input wire direction_room,
-`endif
     input wire frame_start,
     input wire frame_release
 );
 
     localparam [4:0] TAXELS = 5'd12, MANY = 5'd31;
 `ifdef PAPER
-    localparam ADDRESS_BITS = 6;
+    localparam ROW_BITS = 4;
 `else
-    localparam ADDRESS_BITS = 3;
+    localparam ROW_BITS = 2;
 `endif
 
     reg started = 1'b0;
     wire reset = !started;
     wire s_tready;
     wire write_valid;
-`ifdef PAPER
-    wire direction_room = 1'b1;
-    wire [ADDRESS_BITS-1:0] write_address;
-    wire fill_bank;
-    wire [3:0] taxel;
-`else
     wire write_bank;
-    wire [1:0] write_quad;
-`endif
+    wire [ROW_BITS-1:0] write_row;
     wire stress_valid;
     wire signed [26:0] stress;
     wire frame_done;
@@ -58,13 +49,12 @@ module harness (
     wire [14:0] stages;
 `ifdef PAPER
     wire [3:1] fold_lasts = 3'd0;
-    wire frame_written = frame_done;
 `else
     wire [3:1] fold_lasts;
-    wire frame_written;
 `endif
+    wire frame_written;
 
-    subject_bz subject (
+    sptfra_bz subject (
         .clock            (clock),
         .reset            (reset),
         .s_tdata          (s_tdata),
@@ -73,13 +63,9 @@ module harness (
         .s_tready         (s_tready),
         .write_valid      (write_valid),
         .write_ready      (write_ready),
-`ifdef PAPER
-        .write_address    (write_address),
-`else
         .write_bank       (write_bank),
-        .write_quad       (write_quad),
+        .write_row        (write_row),
         .direction_room   (direction_room),
-`endif
         .cean_idle        (cean_idle),
         .stress_valid     (stress_valid),
         .stress           (stress),
@@ -103,12 +89,9 @@ module harness (
         .bad_lengths      (bad_lengths),
         .seen_saturated   (seen_saturated),
         .seen_not_finite  (seen_not_finite),
-`ifdef PAPER
-        .fill_bank        (fill_bank),
-        .taxel            (taxel),
-`else
         .frame_written    (frame_written),
-        .\fold.lasts     (fold_lasts),
+`ifndef PAPER
+        .\gen_fold.fold.lasts (fold_lasts),
 `endif
         .\float_to_fixed.stages (stages)
     );
@@ -175,13 +158,11 @@ module harness (
     end
 
     reg waited = 1'b0;
+    wire [ROW_BITS:0] to_write = {write_bank, write_row};
+    reg [ROW_BITS:0] waiting;
 `ifdef PAPER
-    wire [ADDRESS_BITS-1:0] to_write = write_address;
     reg bank_out; // of the frame that comes out
-`else
-    wire [2:0] to_write = {write_bank, write_quad};
 `endif
-    reg [ADDRESS_BITS-1:0] waiting;
     reg nothing_missing; // for a new frame, a cycle ago
 
     always @(posedge clock) begin
@@ -217,7 +198,7 @@ module harness (
             assert (!waited || (write_valid && (to_write == waiting)));
 `ifdef PAPER
             // Each stress goes to its place in its frame's bank
-            assert (!write_valid || (write_address == (bank_out ? TAXELS : 5'd0) + places[24:20]));
+            assert (!write_valid || ((write_bank == bank_out) && ({1'b0, write_row} == places[24:20])));
 `endif
             // Whoever waits is served: nothing stands still but for want of a bank, of CeAn or of the memories' port
             assert (s_tready || !write_ready || (!in_frame && !nothing_missing));
@@ -237,8 +218,8 @@ module harness (
         if (!reset) begin
             assert (valid == there);
 `ifdef PAPER
-            assert (fill_bank == bank_out);
-            assert ({1'b0, taxel} == ((place_out > TAXELS) ? TAXELS : place_out));
+            assert (write_bank == bank_out);
+            assert ({1'b0, write_row} == ((place_out > TAXELS) ? TAXELS : place_out));
 `endif
             assert (in_frame == (place_in != 5'd0));
             assert ({1'b0, index} == ((place_in > TAXELS) ? TAXELS : place_in));

@@ -1,5 +1,5 @@
-// The frame handshake of a design that puts out resultants only: one program a frame, with up to three frames between
-// it and the output.
+// The frame handshake of a design with one program a frame: resultants only, with up to three frames between it and the
+// output, or, with FIELD, the paper's plan, whose two fields have a place until they have left.
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
 // Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever.
@@ -7,7 +7,13 @@ module harness (
     input wire clock
 );
 
+`ifdef FIELD
+    localparam BEAT_BITS = 6;
+    localparam [5:0] LAST_BEAT = 6'd43;
+`else
+    localparam BEAT_BITS = 3;
     localparam [2:0] LAST_BEAT = 3'd7;
+`endif
 
     reg started = 1'b0;
     wire reset = !started;
@@ -34,7 +40,11 @@ module harness (
     wire line_valid;
     wire [2:0] line_state;
     wire busy;
-    wire [2:0] beat;
+`ifdef FIELD
+    wire field_release;
+    wire [2:0] frames_held;
+`endif
+    wire [BEAT_BITS-1:0] beat;
     wire beat_issued;
     wire issued_last;
     wire [11:1] valid;
@@ -70,6 +80,10 @@ module harness (
         .\op.output_start (output_start),
         .\estimator.line_valid (line_valid),
         .\estimator.line.state (line_state),
+`ifdef FIELD
+        .field_release (field_release),
+        .\turns.frames_held (frames_held),
+`endif
         .\op.frame_output.busy (busy),
         .\op.frame_output.beat (beat),
         .\op.frame_output.issued (beat_issued),
@@ -90,6 +104,16 @@ module harness (
     reg summary_due;
     reg [3:0] recent; // sums were written in one of the last cycles
     wire sums_written = $anyseq;
+`ifdef FIELD
+    reg at_output; // a frame whose field is still needed
+
+    always @(posedge clock) begin
+        at_output <= output_start || (at_output && !field_release);
+        if (reset) begin
+            at_output <= 1'b0;
+        end
+    end
+`endif
 
     always @(posedge clock) begin
         started <= 1'b1;
@@ -134,6 +158,13 @@ module harness (
             // Places: two searches
             assert (!start || (searches_due < 2'd2));
             assert (!search_over || (searches_due != 2'd0));
+`ifdef FIELD
+            // And two fields, which are never given back twice
+            assert (frames_held <= 3'd2);
+            assert (!start || (frames_held < 3'd2));
+            assert (!field_release || (frames_held != 3'd0));
+            assert (!output_start || !at_output);
+`endif
         end
     end
 
@@ -154,6 +185,12 @@ module harness (
             assert (!answer_waits || searching);
             assert (!summary_due || summary_busy);
             assert (summary_there == (summary_busy && !summary_due));
+`ifdef FIELD
+            assert ({1'b0, frames_held} == {2'd0, searches_due} + summary_busy + at_output);
+            assert (at_output == (busy || beat_issued || field_release));
+            assert (!field_release || !(busy || beat_issued));
+            assert (!busy || (beat <= LAST_BEAT));
+`endif
             // The beats of a frame pass the output's stages without a gap, the last one marked
             assert (!beat_issued || (issued_last == !busy));
             assert (!valid[1] || (lasts[1] == !beat_issued));

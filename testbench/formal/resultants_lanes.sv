@@ -1,6 +1,14 @@
 // The lanes as the turns of a design that puts out resultants only see them: one program, of any length.
-module subject_spmv_array #(
-    parameter ROM_DIR = ""
+module sptfra_spmv_array #(
+    // Those of the module that it stands for; it needs none of them
+    parameter ROM_DIR = "",
+    parameter
+    LANES = 0, WAYS = 0, COEFFICIENT_BITS = 0, DATA_BITS = 0, ELEMENTS = 0, VECTORS = 0, VALUE_DEPTH =
+    0, WORD_DEPTH = 0, SEGMENT_DEPTH = 0, OPERAND_DEPTH = 0, VISIT_DEPTH = 0, MIRROR_SIDE = 0, PRODUCTS
+    = 0, COUNT_BITS = 0, LENGTHS = 0, WAITS = 0, BASES = 0, OF_STRESS = 0, MARKS = 0, REWINDS = 0,
+    MIRRORED = 0, FRICTIONS = 0, LASTS = 0, PROGRAMS = 0, FIRSTS = 0, START_WORDS = 0, START_SEGMENTS =
+    0, START_VISITS = 0, SKIPS = 0, IN_ROUNDS = 0, ROUNDS_ONLY = 0, PULLS = 0, ROUND_WORDS = 0,
+    DESTINATION_BITS = 0, SHIFTS = 0, ROM_NAME = 0
 ) (
     input wire clock,
     input wire reset,

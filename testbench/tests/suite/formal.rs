@@ -27,8 +27,9 @@ struct Proof {
     design: fn(&mut Design),
     /// What is defined for the harness, which may have other ways for other designs.
     defines: &'static [&'static str],
-    /// The module that the harness instantiates.
+    /// The module that the harness instantiates, and its parameters, as `chparam` takes them.
     top: &'static str,
+    parameters: &'static str,
     /// Files of `formal/` that take the place of generated modules.
     models: &'static [(&'static str, &'static str)],
     /// Whose outputs may be anything in any cycle: instances by the pattern of their module, then wires by name.
@@ -69,28 +70,27 @@ fn resultants(design: &mut Design) {
     design.algorithm.outputs = Outputs::Resultants;
 }
 
-const ARITHMETIC: [&str; 5] = ["*sptfra_*", "*_bz*", "*_cean*", "*_op_search*", "*_op_summary*"];
-/// Of the reduced plan: the leaf cores that the handshake does not need, and the blocks of arithmetic.
-const REDUCED_FREE: &[&str] = &[
+/// The leaf cores that the handshake does not need, and the blocks of arithmetic.
+const FREE: &[&str] = &[
     "*sptfra_axis_skid*",
     "*sptfra_fixed_to_float*",
     "*sptfra_divider*",
     "*sptfra_mac*",
     "*sptfra_leading_bit*",
-    "*_bz*",
+    "*sptfra_bz*",
     "*sptfra_cean*",
     "*sptfra_search*",
     "*sptfra_plane*",
     "*sptfra_level_set*",
     "*sptfra_friction*",
     "*sptfra_summary*",
-    "subject_we",
-    "subject_co",
-    "subject_field",
-    "subject_unfold",
+    "*sptfra_we*",
+    "*sptfra_co",
+    "*sptfra_field*",
+    "*sptfra_unfold*",
 ];
 const REDUCED_BROKEN: &[Broken] = &[
-    ("turns", "!residual_due && ", ""),
+    ("turns", "field_waits = residual_due || (", "field_waits = ("),
     ("turns", "field_due && residual_there && friction_known", "field_due && residual_there"),
     ("turns", "friction_known && (fields", "friction_known && frame_ready && (fields"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
@@ -98,7 +98,7 @@ const REDUCED_BROKEN: &[Broken] = &[
     ("sptfra_op", "summary_there && output_idle && ", "summary_there && "),
 ];
 const LATENCY_BROKEN: &[Broken] = &[
-    ("turns", "(frames_held != 3'd4) && !field_due", "(frames_held != 3'd4)"),
+    ("turns", "(INTERVAL == 0) && field_due", "1'b0"),
     ("turns", "field_due && residual_there && friction_known", "field_due && friction_known"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
@@ -110,6 +110,15 @@ const JOINT_BROKEN: &[Broken] = &[
     ("sptfra_estimator_joint", "assign sums_take = search_start;", "assign sums_take = answer_take;"),
     ("sptfra_estimator_joint", "(u_waiting != 2'd0) && !searching", "!searching"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
+];
+const PAPER_BROKEN: &[Broken] = &[
+    ("turns", "(PLACES == 0) || (frames_held != PLACES)", "1'b1"),
+    ("turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
+    ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
+    ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
+    ("sptfra_op", "summary_there && output_idle && ", "summary_there && "),
+    // The place is given back before the last component has left the memory.
+    ("sptfra_output", "issued && issued_last && advance", "issued && issued_last"),
 ];
 const RESULTANTS_BROKEN: &[Broken] = &[
     ("turns", "frame_ready && (searches_due != 2'd2)", "frame_ready"),
@@ -126,6 +135,7 @@ const PROOFS: &[Proof] = &[
         design: reduced,
         defines: &[],
         top: "sptfra_axis_skid",
+        parameters: "",
         models: &[],
         free: &[],
         free_wires: &[],
@@ -146,7 +156,8 @@ const PROOFS: &[Proof] = &[
         harness: "bz",
         design: reduced,
         defines: &[],
-        top: "subject_bz",
+        top: "sptfra_bz",
+        parameters: "-set COLUMNS 4 -set ROWS 3",
         models: &[("sptfra_float_to_fixed", "float_model")],
         free: &["*sptfra_ram*"],
         free_wires: &[],
@@ -160,7 +171,7 @@ const PROOFS: &[Proof] = &[
             ("bz", "advance && (in_frame || may_open)", "(in_frame || may_open)"),
             ("bz", "index <= s_tlast ? ", "index <= (s_tlast && !store) ? "),
             ("bz", "frame_not_finite = seen_not_finite || ", "frame_not_finite = "),
-            ("fold", "assign in_ready = advance;", "assign in_ready = 1'b1;"),
+            ("bz", "wire advance = write_ready;", "wire advance = 1'b1;"),
             ("fold", "assign frame_written = lasts[3] && advance;", "assign frame_written = lasts[3];"),
         ],
     },
@@ -169,39 +180,32 @@ const PROOFS: &[Proof] = &[
         harness: "bz",
         design: paper,
         defines: &["PAPER"],
-        top: "subject_bz",
+        top: "sptfra_bz",
+        parameters: "-set COLUMNS 4 -set ROWS 3 -set WAYS 1",
         models: &[("sptfra_float_to_fixed", "float_model")],
         free: &[],
         free_wires: &[],
         induction: "3",
         broken: &[
             ("bz", "(banks_taken != 2'd2)", "(banks_taken != 2'd3)"),
-            ("bz", "assign advance = !write_valid || write_ready;", "assign advance = 1'b1;"),
-            ("bz", "fill_bank <= !fill_bank;", "fill_bank <= frame_ready;"),
-            ("bz", "assign stress_valid = write_valid && advance;", "assign stress_valid = write_valid;"),
+            ("bz", "wire advance = write_ready;", "wire advance = 1'b1;"),
+            ("bz", "bank <= !bank;", "bank <= frame_ready;"),
+            ("bz", "assign stress_valid = taxel_valid && advance;", "assign stress_valid = taxel_valid;"),
             ("bz", "if (reset || frame_done)", "if (reset)"),
         ],
     },
     Proof {
         name: "frame handshake, paper plan",
-        harness: "paper",
+        harness: "resultants",
         design: paper,
-        defines: &[],
+        defines: &["FIELD"],
         top: "subject",
-        models: &[("subject_spmv_array", "paper_lanes")],
-        free: &ARITHMETIC,
-        free_wires: &["sums_complete"],
-        induction: "4",
-        broken: &[
-            // The place was given back while the output was not yet idle: a third frame came in behind a stalled sink.
-            ("op_output", "valid[2] && lasts[2] && advance", "issued && issued_last && advance"),
-            ("co", "(frames_held != 2'd2)", "(frames_held != 2'd3)"),
-            ("we", "frame_ready && array_idle && ", "frame_ready && "),
-            ("we", "&& field_free", ""),
-            ("op", "default: if (output_idle)", "default: if (output_idle && drained)"),
-            ("op", "(state == WAIT_OUTPUT) && output_idle", "(state == WAIT_OUTPUT)"),
-            ("op", ".line_take       (output_start)", ".line_take       (search_done)"),
-        ],
+        parameters: "",
+        models: &[("sptfra_spmv_array", "resultants_lanes")],
+        free: FREE,
+        free_wires: &[],
+        induction: "5",
+        broken: PAPER_BROKEN,
     },
     Proof {
         name: "frame handshake, reduced plan, for the interval",
@@ -209,8 +213,9 @@ const PROOFS: &[Proof] = &[
         design: reduced,
         defines: &[],
         top: "subject",
-        models: &[("subject_spmv_array", "reduced_lanes")],
-        free: REDUCED_FREE,
+        parameters: "",
+        models: &[("sptfra_spmv_array", "reduced_lanes")],
+        free: FREE,
         free_wires: &["turns.residual_written"],
         induction: "5",
         broken: REDUCED_BROKEN,
@@ -221,8 +226,9 @@ const PROOFS: &[Proof] = &[
         design: reduced_for_latency,
         defines: &["LATENCY"],
         top: "subject",
-        models: &[("subject_spmv_array", "reduced_lanes")],
-        free: REDUCED_FREE,
+        parameters: "",
+        models: &[("sptfra_spmv_array", "reduced_lanes")],
+        free: FREE,
         free_wires: &["turns.residual_written"],
         induction: "5",
         broken: LATENCY_BROKEN,
@@ -233,8 +239,9 @@ const PROOFS: &[Proof] = &[
         design: reduced_with_zeros_skipped,
         defines: &[],
         top: "subject",
-        models: &[("subject_spmv_array", "reduced_lanes")],
-        free: REDUCED_FREE,
+        parameters: "",
+        models: &[("sptfra_spmv_array", "reduced_lanes")],
+        free: FREE,
         free_wires: &["turns.residual_written"],
         induction: "5",
         broken: &[("turns", "residual_there && friction_known", "friction_known")],
@@ -245,8 +252,9 @@ const PROOFS: &[Proof] = &[
         design: joint,
         defines: &["JOINT"],
         top: "subject",
-        models: &[("subject_spmv_array", "reduced_lanes")],
-        free: REDUCED_FREE,
+        parameters: "",
+        models: &[("sptfra_spmv_array", "reduced_lanes")],
+        free: FREE,
         free_wires: &["turns.residual_written"],
         induction: "5",
         broken: JOINT_BROKEN,
@@ -257,8 +265,9 @@ const PROOFS: &[Proof] = &[
         design: resultants,
         defines: &[],
         top: "subject",
-        models: &[("subject_spmv_array", "resultants_lanes")],
-        free: REDUCED_FREE,
+        parameters: "",
+        models: &[("sptfra_spmv_array", "resultants_lanes")],
+        free: FREE,
         free_wires: &[],
         induction: "5",
         broken: RESULTANTS_BROKEN,
@@ -292,7 +301,7 @@ impl Proof {
             }
             let mut text = String::from_utf8(contents.clone()).expect("UTF-8");
             if let Some((_, from, to)) =
-                broken.filter(|(place, ..)| module == *place || module == format!("subject_{place}"))
+                broken.filter(|(place, ..)| module == *place || module == format!("sptfra_{place}"))
             {
                 assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
                 text = text.replace(from, to);
@@ -308,7 +317,12 @@ impl Proof {
             }
         }
         let harness = fs::read_to_string(folder.path().join(format!("{}.sv", self.harness))).expect("there");
-        let mut script = vec![read.join(" "), format!("hierarchy -top {}", self.top), "proc".to_owned()];
+        let mut script = vec![read.join(" ")];
+        if !self.parameters.is_empty() {
+            // Modules that are read and not elaborated yet have this prefix.
+            script.push(format!("chparam {} $abstract\\{}", self.parameters, self.top));
+        }
+        script.extend([format!("hierarchy -top {}", self.top), "proc".to_owned()]);
         if !self.free.is_empty() {
             script.push(format!("cutpoint t:{}", self.free.join(" t:")));
         }
