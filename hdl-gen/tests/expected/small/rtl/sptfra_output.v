@@ -239,11 +239,11 @@ module sptfra_output #(
     assign m_tvalid = valid[11];
 
 `ifdef SIMULATION
-    // With a sink that stalls it takes longer
+    // With a sink that stalls it takes longer; after one that has, beats of the frame before may still be on their way
     reg stalled;
 
     always @(posedge clock) begin
-        stalled <= !advance || (stalled && !start);
+        stalled <= !advance || (start ? (valid != 11'd0) : stalled);
     end
 
     sptfra_check_latency #(
