@@ -4,9 +4,6 @@
 mod sites;
 
 use std::fmt;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 use golden::design::Design;
 use golden::scene::SceneError;
@@ -14,6 +11,7 @@ use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -134,32 +132,23 @@ pub fn mutants(design: &Design, options: &Options, progress: &Progress) -> Resul
     }
     let queue = drawn(&sources, options.seed).map_err(TrialError::from)?;
     progress.counted("mutants", options.count as u64);
-    let next = AtomicUsize::new(0);
-    let wanted = AtomicUsize::new(options.count);
-    let results = Mutex::new(Vec::new());
-    // A thread takes a mutant while some are wanted, and gives the wish back if its mutant does not build.
-    let worker = || {
-        while wanted.fetch_update(Ordering::AcqRel, Ordering::Acquire, |left| left.checked_sub(1)).is_ok() {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(mutation) = queue.get(index) else { return };
+    let mut queue = queue.into_iter();
+    let mut mutants: Vec<Mutant> = Vec::new();
+    loop {
+        // Those that did not build are replaced by the next ones.
+        let built = mutants.iter().filter(|mutant| mutant.fate != Fate::Rejected).count();
+        let next: Vec<Mutation> = queue.by_ref().take(options.count - built).collect();
+        if next.is_empty() {
+            break;
+        }
+        mutants.par_extend(next.into_par_iter().map(|mutation| {
             let fate = ordeal.fate(&mutation.apply(&sources));
-            if fate == Fate::Rejected {
-                wanted.fetch_add(1, Ordering::AcqRel);
-            } else {
+            if fate != Fate::Rejected {
                 progress.step();
             }
-            let mutant = Mutant { mutation: mutation.clone(), fate };
-            results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((index, mutant));
-        }
-    };
-    thread::scope(|scope| {
-        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(worker);
-        }
-    });
-    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    results.sort_by_key(|&(index, _)| index);
-    let mutants = results.into_iter().map(|(_, mutant)| mutant).collect();
+            Mutant { mutation, fate }
+        }));
+    }
     Ok(Report { design: plan.design.name.clone(), seed: options.seed, mutants })
 }
 

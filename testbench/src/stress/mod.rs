@@ -7,14 +7,12 @@ mod judge;
 mod packets;
 
 use std::fmt;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread;
 
 use golden::design::Design;
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -29,6 +27,8 @@ use judge::judge;
 
 /// Frames of a batch.
 pub const BATCH: u64 = 1000;
+/// Batches between two looks at what went wrong.
+const AT_A_TIME: usize = 32;
 /// Frames between two resets, on average.
 const FRAMES_PER_RESET: u64 = 100;
 
@@ -133,35 +133,17 @@ pub fn stress(design: &Design, options: &Options, progress: &Progress) -> Result
     let built = trial::build(&plan, trial::cycles_of(&plan, options.frames))?;
     progress.counted("simulating", options.frames);
     let batches = options.frames.div_ceil(BATCH);
-    let next = AtomicU64::new(0);
-    let results = Mutex::new(Vec::new());
-    let worker = || {
-        loop {
-            let batch = next.fetch_add(1, Ordering::Relaxed);
-            if batch >= batches {
-                return;
-            }
-            let frames = BATCH.min(options.frames - batch * BATCH);
-            let result = built
-                .load((options.seed ^ batch) as u32)
-                .map_err(|error| StressError::Trial(error.into()))
-                .and_then(|mut core| run_batch(&plan, &mut core, batch, frames, options.seed, &|| progress.step()));
-            if result.is_err() {
-                next.store(batches, Ordering::Relaxed);
-            }
-            results.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((batch, result));
-        }
+    let one = |batch: u64| {
+        let frames = BATCH.min(options.frames - batch * BATCH);
+        let mut core = built.load((options.seed ^ batch) as u32).map_err(|error| StressError::Trial(error.into()))?;
+        run_batch(&plan, &mut core, batch, frames, options.seed, &|| progress.step())
     };
-    thread::scope(|scope| {
-        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(worker);
-        }
-    });
-    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    results.sort_by_key(|&(batch, _)| batch);
     let mut report = Report { design: plan.design.name.clone(), seed: options.seed, ..Report::default() };
-    for (_, result) in results {
-        report.add(&result?);
+    // Some at a time, so that a wrong one ends it soon.
+    for first in (0..batches).step_by(AT_A_TIME) {
+        let some = first..batches.min(first + AT_A_TIME as u64);
+        let results: Vec<Result<Report, StressError>> = some.into_par_iter().map(one).collect();
+        results.into_iter().try_for_each(|result| result.map(|batch| report.add(&batch)))?;
     }
     Ok(report)
 }
