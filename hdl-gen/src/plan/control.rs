@@ -60,7 +60,7 @@ struct Constants {
     /// From the visit to the last sum, or the last g, to the sums being complete.
     visit_to_sums: u64,
     field: bool,
-    /// Whether the lanes put the field together, once the friction is known; else it is there before.
+    /// Whether the lanes put the field together, once the friction is known; else it is there with the sums.
     composed: bool,
     /// Frames that have a place from their start until they have left, if any is needed.
     places: Option<u64>,
@@ -283,7 +283,11 @@ impl<'a> Control<'a> {
             self.searches_due += 1;
             self.residual_due = self.of.composed;
             self.frames_held += u64::from(self.of.places.is_some());
-            self.sums_there.push_back(first_issue + self.of.last_sum + self.of.visit_to_sums);
+            let sums_there = first_issue + self.of.last_sum + self.of.visit_to_sums;
+            self.sums_there.push_back(sums_there);
+            if self.of.field && !self.of.composed {
+                self.field_there.push_back(sums_there);
+            }
             let complete = last_visit + self.of.visit_to_taxels;
             self.u_there.push_back(complete + TAXELS_TO_CELLS);
             self.pending.push((complete + 1, Change::StressReleased));
@@ -345,7 +349,7 @@ impl<'a> Control<'a> {
 
     fn send(&mut self) {
         let summary = self.summary_there.is_some_and(|cycle| cycle <= self.now);
-        let field = !self.of.composed || self.field_there.front().is_some_and(|&cycle| cycle <= self.now);
+        let field = !self.of.field || self.field_there.front().is_some_and(|&cycle| cycle <= self.now);
         if !summary || !field || self.output_idle > self.now {
             return;
         }
