@@ -70,9 +70,13 @@ impl Written {
         fs::read_to_string(self.folder.path().join(format!("rtl/{module}.v"))).expect("written above")
     }
 
-    /// With their whole paths, which no library has a file at.
     fn sources(&self) -> impl Iterator<Item = String> {
-        self.modules.iter().map(|module| self.folder.path().join(format!("rtl/{module}.v")).display().to_string())
+        self.modules.iter().map(|module| format!("../rtl/{module}.v"))
+    }
+
+    /// For a tool that looks for relative paths in its library too.
+    fn whole_paths(&self) -> impl Iterator<Item = PathBuf> {
+        self.modules.iter().map(|module| self.folder.path().join(format!("rtl/{module}.v")))
     }
 
     /// Runs a tool beside the ROM files, where the parameter `ROM_DIR` looks for them unless it is set; what the tool
@@ -133,7 +137,7 @@ fn verilator_accepts_every_module_as_a_top() {
     assert_silent(in_parallel(&tops(&all), |&(written, module)| {
         let mut verilator = tools::verilator().expect("installed");
         verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(library());
-        verilator.args(written.sources());
+        verilator.args(written.whole_paths());
         vec![written.run(verilator)]
     }));
 }

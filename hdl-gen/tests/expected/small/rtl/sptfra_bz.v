@@ -68,7 +68,7 @@ module sptfra_bz #(
     localparam INDEX_WIDTH = $clog2(TAXELS + 1);
     localparam NUMBER_STAGES = 5;
     localparam STAGES = (COUNTS != 0) ? NUMBER_STAGES + 4 : NUMBER_STAGES;
-    localparam signed [9:0] SHIFT = NUMBER_SHIFT;
+    localparam signed [9:0] SHIFT = NUMBER_SHIFT[9:0];
 
     generate
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid

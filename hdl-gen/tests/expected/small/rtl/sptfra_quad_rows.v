@@ -30,10 +30,10 @@ module sptfra_quad_rows #(
 
     always @(posedge clock) begin
         next_base <= row_base;
-        if (row < MIDDLE) begin
-            next_base <= row_base + QUAD_COLUMNS[ROW_WIDTH-1:0];
-        end else if ((ROWS % 2 == 1) || (row != MIDDLE)) begin
+        if ((row > MIDDLE) || ((ROWS % 2 == 1) && (row == MIDDLE))) begin
             next_base <= row_base - QUAD_COLUMNS[ROW_WIDTH-1:0];
+        end else if (row != MIDDLE) begin
+            next_base <= row_base + QUAD_COLUMNS[ROW_WIDTH-1:0];
         end
         if (next_row) begin
             row_base <= next_base;

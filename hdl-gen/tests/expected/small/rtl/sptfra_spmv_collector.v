@@ -182,6 +182,7 @@ module sptfra_spmv_collector #(
     reg [DESTINATION_BITS-1:0] sum_destination;
     reg [ROW_WIDTH-1:0] sum_row;
     wire [WAYS*DATA_BITS-1:0] rounded;
+    localparam DROP_WIDTH = $clog2(48 + DATA_BITS);
     genvar choice;
     generate
         for (index = 0; index < WAYS; index = index + 1) begin : gen_ways
@@ -194,7 +195,8 @@ module sptfra_spmv_collector #(
             end
 
             for (choice = 0; choice < (1 << DESTINATION_BITS); choice = choice + 1) begin : gen_choices
-                localparam [6:0] DROP = {1'b0, SHIFTS[6*choice +: 6]};
+                localparam [31:0] DROP_WIDE = {26'd0, SHIFTS[6*choice +: 6]};
+                localparam [DROP_WIDTH-1:0] DROP = DROP_WIDE[DROP_WIDTH-1:0];
 
                 assign choices[DATA_BITS*choice +: DATA_BITS] = wide[DROP +: DATA_BITS];
             end
