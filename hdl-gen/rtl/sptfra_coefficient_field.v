@@ -22,7 +22,7 @@ module sptfra_coefficient_field #(
     input  wire [COMPONENT_WIDTH-1:0] g_component,
     input  wire signed [DATA_BITS-1:0] g,
     input  wire g_last, // one cycle: all of a frame are there
-    output wire complete, // a frame's field is there before its friction is known
+    output wire complete, // one cycle: a frame's field is there, before its friction is known
     // To the output: after rewind, the first taxel's x; after each step, the next one
     input  wire enable,
     input  wire rewind,
@@ -47,7 +47,7 @@ module sptfra_coefficient_field #(
     wire [ADDRESS_WIDTH-1:0] write_address = (fill_bank ? SECOND_BANK[ADDRESS_WIDTH-1:0] : {ADDRESS_WIDTH{1'b0}})
         + write_wide[ADDRESS_WIDTH-1:0];
 
-    assign complete = 1'b1;
+    assign complete = g_last;
 
     always @(posedge clock) begin
         if (g_last) begin

@@ -252,7 +252,7 @@ module sptfra_output #(
         .clock (clock),
         .reset (reset || stalled || !advance),
         .start (start),
-        .done  (m_tvalid)
+        .done  (m_tvalid && statuses[11]) // the status goes first; beats of the frame before may still be on their way
     );
 `else
     wire _unused_check = (EXPECTED_LATENCY != 0);

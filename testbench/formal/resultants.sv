@@ -41,7 +41,9 @@ module harness (
     wire [2:0] line_state;
     wire busy;
 `ifdef FIELD
+    wire field_complete;
     wire field_release;
+    wire [1:0] fields_there;
     wire [2:0] frames_held;
 `endif
     wire [BEAT_BITS-1:0] beat;
@@ -81,7 +83,9 @@ module harness (
         .\estimator.line_valid (line_valid),
         .\estimator.line.state (line_state),
 `ifdef FIELD
+        .field_complete (field_complete),
         .field_release (field_release),
+        .\op.fields_there (fields_there),
         .\turns.frames_held (frames_held),
 `endif
         .\op.frame_output.busy (busy),
@@ -137,6 +141,10 @@ module harness (
     always @(*) begin
         if (!reset) begin
             assume (sums_complete == sums_wait);
+`ifdef FIELD
+            // A frame's field is there with its sums
+            assume (field_complete == sums_written);
+`endif
             assume (!sums_written || ((arriving || issuing) && !summed));
             assume (!sums_written || (recent == 4'd0));
             assume (!coefficients_complete || (arriving && summed));
@@ -187,6 +195,7 @@ module harness (
             assert (summary_there == (summary_busy && !summary_due));
 `ifdef FIELD
             assert ({1'b0, frames_held} == {2'd0, searches_due} + summary_busy + at_output);
+            assert ({2'd0, fields_there} == {3'd0, summed} + u_there + searching + summary_busy);
             assert (at_output == (busy || beat_issued || field_release));
             assert (!field_release || !(busy || beat_issued));
             assert (!busy || (beat <= LAST_BEAT));

@@ -3,25 +3,10 @@
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
-use crate::plan::product::{Coefficients, DESTINATIONS, SUMS_DESTINATION, Vector, destination};
+use crate::plan::product::{Coefficients, DESTINATIONS, SUMS_DESTINATION, Vector, destination, destination_bits};
 use crate::plan::schedule::TURN_GAP;
 
 use super::Parameters;
-
-/// From the sequencer's control to the lanes' and the collector's, in cycles: the register on the way.
-pub const SEQUENCER_TO_LANES: u64 = 1;
-/// From a program's start pulse to its first issue, in the lanes.
-pub const START_TO_ISSUE: u64 = 2 + SEQUENCER_TO_LANES;
-/// From the collector taking a result to its standing on the result bus.
-pub const VISIT_TO_BUS: u64 = 3;
-/// From a write at the array's port to the first issue that may read the word: the write passes a register and enters the
-/// memory; the operand is read two cycles after its issue.
-pub const WRITE_TO_ISSUE: u64 = 0;
-
-/// Bits of a destination in the visit ROM: the first eight are all there is without a field.
-pub fn destination_bits(plan: &Plan) -> u32 {
-    if plan.field_words() > 0 { 4 } else { 3 }
-}
 
 /// Bits of a column number: of the largest number of vectors that one product reads.
 pub fn column_bits(plan: &Plan) -> u32 {
@@ -46,7 +31,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("MIRROR_SIDE", mirror_side(plan));
     let parameters = programs(plan, products(plan, parameters));
     parameters
-        .number("DESTINATION_BITS", destination_bits(plan).into())
+        .number("DESTINATION_BITS", destination_bits(plan.field_words() > 0).into())
         .table("SHIFTS", 6, &shifts(plan))
         .expression("ROM_DIR", "ROM_DIR")
         .expression("ROM_NAME", format!("\"{}\"", plan.design.name))

@@ -4,11 +4,6 @@ use crate::plan::Plan;
 
 use super::Parameters;
 
-/// From a frame's last stress to the frame being ready for the lanes, in cycles: the fold, and the count of frames.
-pub fn stress_to_ready(folded: bool) -> u64 {
-    if folded { 4 } else { 1 }
-}
-
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
     let number = plan.counts.as_ref().map_or(plan.formats.stress, |counts| counts.count);

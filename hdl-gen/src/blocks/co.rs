@@ -5,16 +5,6 @@ use crate::plan::product::Vector;
 
 use super::{Parameters, place};
 
-/// Result bus to the write port of the operand memories, in cycles: of what is stored as it comes, or of g.
-pub fn latency(folded: bool) -> u64 {
-    if folded { 1 } else { 3 }
-}
-
-/// From the last sum, or the last g, on the result bus to the sums being complete.
-pub fn bus_to_sums(folded: bool) -> u64 {
-    if folded { 2 } else { 5 }
-}
-
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
     let folded = [Vector::Residual(0), Vector::Residual(1), Vector::Residual(2), Vector::Explained];

@@ -1,28 +1,27 @@
 //! The hardware's blocks: one file each, with what a design decides of it.
 //!
 //! The Verilog of a block is the same in every design (`hdl-gen/rtl`). Its file here states the parameters of its
-//! instance, and whatever else the plan has to know of it: latencies, memories, multipliers.
+//! instance. The cycles that it takes, which the plan counts with before there is an instance, stand in [`latency`].
 
 pub mod array;
 pub mod bz;
 pub mod cean;
 pub mod co;
 pub mod field;
+pub mod latency;
 pub mod op;
+pub mod parameters;
 pub mod registers;
 pub mod turns;
 pub mod unfold;
 pub mod we;
-
-use std::fmt::Write;
-
-use serde::{Serialize, Serializer};
 
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
 use crate::plan::product::SUM_ROWS;
 use crate::plan::product::Vector;
+pub use parameters::Parameters;
 
 /// Where a vector stands in the lanes' operand memories: its first word, and whether that is in the stress's bank. One
 /// that no product reads is at 0.
@@ -37,167 +36,4 @@ fn place(plan: &Plan, vector: Vector) -> (usize, bool) {
 /// Bits of the number of an element, or of a row of sums.
 pub fn row_width(plan: &Plan) -> u32 {
     address_bits(plan.elements().max(SUM_ROWS))
-}
-
-/// Parameters of an instance: names and Verilog expressions, in the order of the module's declaration.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Parameters(Vec<(&'static str, String)>);
-
-impl Parameters {
-    /// None yet.
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// A number, as a plain decimal one of at most 32 bits.
-    #[must_use]
-    pub fn number(self, name: &'static str, value: i64) -> Self {
-        self.expression(name, value.to_string())
-    }
-
-    /// A count or a width.
-    #[must_use]
-    pub fn count(self, name: &'static str, value: usize) -> Self {
-        self.expression(name, value.to_string())
-    }
-
-    /// A latency.
-    #[must_use]
-    pub fn cycles(self, name: &'static str, value: u64) -> Self {
-        self.expression(name, value.to_string())
-    }
-
-    /// 1 or 0.
-    #[must_use]
-    pub fn flag(self, name: &'static str, value: bool) -> Self {
-        self.number(name, i64::from(value))
-    }
-
-    /// A number of a stated width, for those of more than 32 bits, with its sign.
-    #[must_use]
-    pub fn wide(self, name: &'static str, bits: u32, value: i64) -> Self {
-        let sign = if value < 0 { "-" } else { "" };
-        self.expression(name, format!("{sign}{bits}'sd{}", value.unsigned_abs()))
-    }
-
-    /// A table: numbers of `bits` bits each, the first in the lowest bits; each on a line of its own if there are comments
-    /// that say what it is of.
-    #[must_use]
-    pub fn table(self, name: &'static str, bits: u32, entries: &[(u64, String)]) -> Self {
-        if entries.iter().all(|(_, comment)| comment.is_empty()) {
-            let values: Vec<String> = entries.iter().rev().map(|(value, _)| format!("{bits}'d{value}")).collect();
-            return self.expression(name, format!("{{{}}}", values.join(", ")));
-        }
-        let mut text = "{".to_owned();
-        for (index, (value, comment)) in entries.iter().enumerate().rev() {
-            let comma = if index == 0 { "" } else { "," };
-            let comment = if comment.is_empty() { String::new() } else { format!(" // {index}: {comment}") };
-            // Writing to a string cannot fail.
-            let _ = write!(text, "\n            {bits}'d{value}{comma}{comment}");
-        }
-        self.expression(name, text + "\n        }")
-    }
-
-    /// One bit each, the first lowest.
-    #[must_use]
-    pub fn mask(self, name: &'static str, bits: &[bool]) -> Self {
-        let digits: String = bits.iter().rev().map(|&bit| if bit { '1' } else { '0' }).collect();
-        self.expression(name, format!("{}'b{digits}", bits.len()))
-    }
-
-    /// Any expression, for instance a parameter of the module around it.
-    #[must_use]
-    pub fn expression(mut self, name: &'static str, value: impl Into<String>) -> Self {
-        self.0.push((name, value.into()));
-        self
-    }
-
-    /// `#(` to `) ` as it stands between module and instance, for an instance that is indented once; nothing without
-    /// parameters.
-    pub fn verilog(&self) -> String {
-        if self.0.is_empty() {
-            return String::new();
-        }
-        let width = self.0.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-        let lines: Vec<String> =
-            self.0.iter().map(|(name, value)| format!("        .{name:width$} ({value})")).collect();
-        format!("#(\n{}\n    ) ", lines.join(",\n"))
-    }
-}
-
-impl Serialize for Parameters {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(&self.verilog())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Parameters;
-    use crate::cores::cordic;
-    use crate::estimators::{joint, line};
-    use crate::model::inverse_gain;
-    use crate::plan::format::FRICTION_FRACTION;
-
-    /// The value of a constant in a module of the library, its width left out.
-    fn constant(module: &str, name: &str) -> i64 {
-        let path = format!("{}/rtl/{module}.v", env!("CARGO_MANIFEST_DIR"));
-        let text = std::fs::read_to_string(path).unwrap();
-        let (_, rest) = text.split_once(&format!(" {name} = ")).unwrap_or_else(|| panic!("{module} has no {name}"));
-        let (literal, _) = rest.split_once(';').unwrap();
-        let digits = literal.rsplit('d').next().unwrap();
-        digits.parse().unwrap_or_else(|_| panic!("{module}: {name} = {literal}"))
-    }
-
-    /// The algorithm's constants stand in the modules and in the integer model.
-    #[test]
-    fn modules_and_model_have_the_same_constants() {
-        let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 29] = [
-            ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
-            ("sptfra_direction", "PITCH_FRACTION", line::PITCH_FRACTION.into()),
-            ("sptfra_line", "LINE_FRACTION", line::LINE_FRACTION.into()),
-            ("sptfra_line", "LINE_SUM_BITS", line::LINE_SUM_BITS.into()),
-            ("sptfra_search", "SEARCH_STEPS", line::SEARCH_STEPS.into()),
-            ("sptfra_search", "ONE", one),
-            ("sptfra_search_cell", "FRICTION_FRACTION", FRICTION_FRACTION.into()),
-            ("sptfra_search_cell", "LINE_FRACTION", line::LINE_FRACTION.into()),
-            ("sptfra_search_cell", "HINGE_DROP", line::HINGE_DROP.into()),
-            ("sptfra_summary", "LINE_FRACTION", line::LINE_FRACTION.into()),
-            ("sptfra_summary", "INVERSE_GAIN", inverse_gain()),
-            ("sptfra_summary", "ONE", one),
-            ("sptfra_op", "FRICTION_FRACTION", FRICTION_FRACTION.into()),
-            ("sptfra_output", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
-            ("sptfra_output", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
-            ("sptfra_plane", "LAST", joint::SIDE as i64 - 1),
-            ("sptfra_plane_cell", "POINT_BITS", joint::POINT_BITS.into()),
-            ("sptfra_level_set", "REACH", joint::SIDE as i64 / 2),
-            ("sptfra_level_set", "DEPTH_BITS", joint::DEPTH_BITS.into()),
-            ("sptfra_level_set", "WEIGHT_DROP", joint::WEIGHT_DROP.into()),
-            ("sptfra_grid_centroid", "BORDER", joint::SIDE as i64 / 2),
-            ("sptfra_friction", "LINEAR_FRACTION", joint::LINEAR_FRACTION.into()),
-            ("sptfra_friction", "CUBIC_FRACTION", joint::CUBIC_FRACTION.into()),
-            ("sptfra_friction", "FACTOR_FRACTION", joint::FACTOR_FRACTION.into()),
-            ("sptfra_look_stress", "STRESS_BITS", joint::STRESS_BITS.into()),
-            ("sptfra_look_window", "CENTRE_HALF", joint::CENTRE_HALF),
-            ("sptfra_look_window", "INPUT_ONE", 1 << joint::INPUT_FRACTION),
-            ("sptfra_network", "UNIT_BITS", joint::UNIT_BITS.into()),
-            ("sptfra_network", "LIMIT", joint::CORRECTION_LIMIT),
-        ];
-        for (module, name, value) in expected {
-            assert_eq!(constant(module, name), value, "{module}: {name}");
-        }
-    }
-
-    #[test]
-    fn parameters_read_as_verilog() {
-        let entries = [(3, "first".to_owned()), (5, String::new())];
-        let parameters = Parameters::new().count("ROWS", 10).wide("BOUND", 40, -7).table("LENGTHS", 8, &entries);
-        let expected = "#(\n        .ROWS    (10),\n        .BOUND   (-40'sd7),\n        .LENGTHS ({\n            8'd5,\n            \
-                        8'd3 // 0: first\n        })\n    ) ";
-        assert_eq!(parameters.verilog(), expected);
-        assert_eq!(Parameters::new().verilog(), "");
-        let bare = Parameters::new().table("WAITS", 4, &[(1, String::new()), (2, String::new())]);
-        assert_eq!(bare.verilog(), "#(\n        .WAITS ({4'd2, 4'd1})\n    ) ");
-    }
 }

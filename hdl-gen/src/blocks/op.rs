@@ -2,19 +2,12 @@
 
 use golden::design::Outputs;
 
-use crate::cores::{cordic, divider};
 use crate::plan::Plan;
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::formats::field_shifts;
 
 use super::Parameters;
-
-/// From the answer's taking to the end of the summary.
-pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY as u64;
-/// From the start of the output to the first beat leaving Op.
-pub const OUTPUT_LATENCY: u64 = 13;
-/// Beats of a frame before those of the field.
-pub const SUMMARY_BEATS: u64 = 8;
+use super::latency::{OUTPUT_LATENCY, SUMMARY_LATENCY};
 
 /// Parameters of `sptfra_op`.
 pub fn parameters(plan: &Plan) -> Parameters {

@@ -4,11 +4,6 @@ use crate::plan::Plan;
 
 use super::Parameters;
 
-/// Result bus to taxels, in cycles.
-pub fn latency(folded: bool) -> u64 {
-    if folded { 5 } else { 1 }
-}
-
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
     Parameters::new()

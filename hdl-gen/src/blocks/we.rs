@@ -5,11 +5,6 @@ use crate::plan::product::Vector;
 
 use super::{Parameters, place};
 
-/// Taxels to the write port of the operand memories, in cycles: of a folded grid to the second of two words, y+.
-pub fn latency(folded: bool) -> u64 {
-    if folded { 5 } else { 1 }
-}
-
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
     let weight = plan.formats.weight;

@@ -4,13 +4,14 @@ mod columns;
 mod flows;
 mod mcsr;
 mod metadata;
+mod modules;
 mod origin;
 mod registers;
 mod roms;
 pub mod rtl;
 mod sim;
+mod template;
 mod top;
-mod verilog;
 
 use std::collections::BTreeMap;
 
@@ -57,7 +58,7 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
     let hash = resolved_hash(&plan.design);
-    for (module, text) in verilog::render(plan, &hash)? {
+    for (module, text) in modules::render(plan, &hash)? {
         files.insert(format!("rtl/{module}.v"), text.into_bytes());
     }
     roms::insert(plan, &mut files);

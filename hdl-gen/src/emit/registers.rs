@@ -7,7 +7,7 @@ use crate::blocks::Parameters;
 use crate::blocks::registers::Constants;
 use crate::plan::Plan;
 
-use super::verilog::{design_module, one};
+use super::template::{design_module, one};
 use super::{EmitError, FileMap};
 
 const MAP: &str = include_str!("../../templates/control/registers.rdl.tera");

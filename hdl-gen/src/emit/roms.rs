@@ -1,12 +1,12 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
-use crate::blocks::array::{column_bits, destination_bits};
+use crate::blocks::array::column_bits;
 use crate::blocks::row_width;
 use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
 use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;
-use crate::plan::product::{SUMS_DESTINATION, destination};
+use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
 
 use super::{FileMap, lane_file};
 
@@ -43,7 +43,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
 
 /// Bits of a visit: last of its program, lane, destination, row.
 fn visit_bits(plan: &Plan) -> u32 {
-    1 + address_bits(plan.walkers()) + destination_bits(plan) + row_width(plan)
+    1 + address_bits(plan.walkers()) + destination_bits(plan.field_words() > 0) + row_width(plan)
 }
 
 fn visit(plan: &Plan, index: usize) -> u128 {
@@ -57,7 +57,7 @@ fn visit(plan: &Plan, index: usize) -> u128 {
         None => (destination(plan.products[visit.product as usize].result), visit.row),
     };
     let lane = u128::from(last) << address_bits(plan.walkers()) | u128::from(visit.lane);
-    (lane << destination_bits(plan) | destination as u128) << row_width(plan) | u128::from(row)
+    (lane << destination_bits(plan.field_words() > 0) | destination as u128) << row_width(plan) | u128::from(row)
 }
 
 /// The coefficients of all ways in one word, that of way 0 lowest.

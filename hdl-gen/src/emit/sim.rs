@@ -9,7 +9,7 @@ use tera::Context;
 use crate::model::Model;
 use crate::plan::Plan;
 
-use super::{EmitError, FileMap, verilog};
+use super::{EmitError, FileMap, template};
 
 const TEMPLATE: &str = include_str!("../../templates/sim/tb.v.tera");
 /// Directions of the push, off the axes and in all four quadrants.
@@ -53,7 +53,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     let module = format!("{name}_tb");
     let context =
         Context::from_serialize(&view).map_err(|source| EmitError::Template { template: module.clone(), source })?;
-    let text = verilog::design_module(&module, TEMPLATE, &context)?;
+    let text = template::design_module(&module, TEMPLATE, &context)?;
     files.insert(format!("sim/{module}.v"), text.into_bytes());
     files.insert(format!("sim/{name}_stimulus.mem"), words(&packets));
     files.insert(format!("sim/{name}_expected.mem"), words(&answers));

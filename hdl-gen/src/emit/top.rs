@@ -9,7 +9,7 @@ use crate::blocks::{Parameters, array, bz, cean, co, field, op, row_width, turns
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
 
-use super::verilog::design_module;
+use super::template::design_module;
 use super::{EmitError, registers};
 
 const TEMPLATE: &str = include_str!("../../templates/rtl/top.v.tera");

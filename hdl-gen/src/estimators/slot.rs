@@ -5,7 +5,7 @@ use golden::products::ByPq;
 use golden::sensor::Sensor;
 use serde_json::Value;
 
-use crate::blocks::Parameters;
+use crate::blocks::parameters::Parameters;
 use crate::plan::format::{Format, address_bits};
 use crate::plan::memory::Memory;
 

@@ -9,12 +9,13 @@ use std::collections::VecDeque;
 use golden::design::{Design, Optimise, Outputs, PlanKind};
 
 use super::counts::input_stages;
+use super::places;
 use super::product::{Product, Vector};
 use super::schedule::{Program, Schedule, TURN_GAP, Visit};
 use super::timing::{INTERVAL_FRAMES, OUTPUT_SKID, Timeline, middle_interval};
-use crate::blocks::array::{SEQUENCER_TO_LANES, START_TO_ISSUE, VISIT_TO_BUS};
-use crate::blocks::op::{OUTPUT_LATENCY, SUMMARY_BEATS, SUMMARY_LATENCY};
-use crate::blocks::{bz, co, turns, unfold};
+use crate::blocks::latency::{
+    self, OUTPUT_LATENCY, SEQUENCER_TO_LANES, START_TO_ISSUE, SUMMARY_BEATS, SUMMARY_LATENCY, VISIT_TO_BUS,
+};
 use crate::estimators::Slot;
 
 /// From the last taxels having left the unfolding to their being in the search's cells.
@@ -24,7 +25,7 @@ const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
 /// From the end of the search to the friction being known to the lanes.
 const SEARCH_TO_FRICTION: u64 = 9;
 /// Frames whose stress, whose search, and whose field have a place.
-const PLACES: u64 = turns::FIELD_PLACES as u64;
+const PLACES: u64 = places::FIELD_PLACES as u64;
 /// Cycles after which a frame is taken for lost: a defect.
 const FOREVER: u64 = 100_000_000;
 
@@ -59,7 +60,7 @@ struct Constants {
     /// From the visit to the last sum, or the last g, to the sums being complete.
     visit_to_sums: u64,
     field: bool,
-    /// Whether the lanes put the field together, once the friction is known; else it is there before.
+    /// Whether the lanes put the field together, once the friction is known; else it is there with the sums.
     composed: bool,
     /// Frames that have a place from their start until they have left, if any is needed.
     places: Option<u64>,
@@ -91,12 +92,12 @@ impl Constants {
             taxels,
             beats: SUMMARY_BEATS + if field { 3 * taxels } else { 0 },
             beat_to_stress: input_stages(design.input.pa_per_count.is_some()),
-            stress_to_ready: bz::stress_to_ready(folded),
-            visit_to_taxels: VISIT_TO_BUS + unfold::latency(folded),
-            visit_to_sums: VISIT_TO_BUS + co::bus_to_sums(folded),
+            stress_to_ready: latency::stress_to_ready(folded),
+            visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
+            visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),
             field,
             composed: field && folded,
-            places: turns::places(field, folded).map(|places| places as u64),
+            places: places::places(field, folded).map(|places| places as u64),
             interval: design.hardware.optimise == Optimise::Interval,
             line: estimator.line_latency(),
             direction: estimator.contact_latency(),
@@ -282,7 +283,11 @@ impl<'a> Control<'a> {
             self.searches_due += 1;
             self.residual_due = self.of.composed;
             self.frames_held += u64::from(self.of.places.is_some());
-            self.sums_there.push_back(first_issue + self.of.last_sum + self.of.visit_to_sums);
+            let sums_there = first_issue + self.of.last_sum + self.of.visit_to_sums;
+            self.sums_there.push_back(sums_there);
+            if self.of.field && !self.of.composed {
+                self.field_there.push_back(sums_there);
+            }
             let complete = last_visit + self.of.visit_to_taxels;
             self.u_there.push_back(complete + TAXELS_TO_CELLS);
             self.pending.push((complete + 1, Change::StressReleased));
@@ -344,7 +349,7 @@ impl<'a> Control<'a> {
 
     fn send(&mut self) {
         let summary = self.summary_there.is_some_and(|cycle| cycle <= self.now);
-        let field = !self.of.composed || self.field_there.front().is_some_and(|&cycle| cycle <= self.now);
+        let field = !self.of.field || self.field_there.front().is_some_and(|&cycle| cycle <= self.now);
         if !summary || !field || self.output_idle > self.now {
             return;
         }

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BinaryHeap, VecDeque};
 
 use golden::parity::CLASSES;
 
+use super::lane::{ISSUE_TO_RESULT, LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
-use super::schedule::{ISSUE_TO_RESULT, LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 
 /// A piece of a row as dealt to a lane, before its time is known.
 struct Piece {

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::format::round_shift;
 use super::matrix::{Entry, QuantisedMatrix};
-use crate::blocks::{array, co, unfold, we};
+use crate::blocks::latency::{VISIT_TO_BUS, WRITE_TO_ISSUE, bus_to_taxels, bus_to_write, taxels_to_write};
 
 /// What becomes of a result, as the visit ROM and the collector (`sptfra_spmv_collector`) have it.
 pub fn destination(result: Vector) -> usize {
@@ -25,6 +25,11 @@ pub fn destination(result: Vector) -> usize {
 
 /// The destination of sums over the frame.
 pub const SUMS_DESTINATION: usize = 4;
+
+/// Bits of a destination in the visit ROM: the first eight are all there is without a field.
+pub const fn destination_bits(field: bool) -> u32 {
+    if field { 4 } else { 3 }
+}
 
 /// Numbers that a destination can have.
 pub const DESTINATIONS: usize = 16;
@@ -48,12 +53,12 @@ pub fn spacing(epilogue: Epilogue) -> u64 {
 /// Cycles from the collector's visit to the first issue that may read the value as an operand.
 pub fn visit_to_operand(epilogue: Epilogue) -> u64 {
     let after_bus = match epilogue {
-        Epilogue::Part => unfold::latency(true) + we::latency(true),
-        Epilogue::Store | Epilogue::Unfold | Epilogue::AddStress => co::latency(true),
-        Epilogue::ClipNegate => unfold::latency(false) + we::latency(false),
-        Epilogue::Keep | Epilogue::Add(_) => co::latency(false),
+        Epilogue::Part => bus_to_taxels(true) + taxels_to_write(true),
+        Epilogue::Store | Epilogue::Unfold | Epilogue::AddStress => bus_to_write(true),
+        Epilogue::ClipNegate => bus_to_taxels(false) + taxels_to_write(false),
+        Epilogue::Keep | Epilogue::Add(_) => bus_to_write(false),
     };
-    array::VISIT_TO_BUS + after_bus + array::WRITE_TO_ISSUE
+    VISIT_TO_BUS + after_bus + WRITE_TO_ISSUE
 }
 
 /// Rows in front of a product's own, whose results are sums over the frame and go to Co.

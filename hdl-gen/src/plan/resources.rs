@@ -8,12 +8,11 @@ use super::counts::{CountsPlan, GAIN_BITS};
 use super::format::address_bits;
 use super::layout::OperandLayout;
 use super::memory::{Memory, memory};
-use super::product::{Product, SUM_ROWS};
+use super::places::WEIGHT_PLACES;
+use super::product::{Product, SUM_ROWS, destination_bits};
 use super::schedule::Schedule;
 use crate::estimators::{BlockCost, Slot};
 
-/// Frames whose weights are kept for the output, reduced plan.
-pub const WEIGHT_BANKS: usize = 4;
 const BZ: &str = "Bz";
 const LANES: &str = "lanes";
 const WE: &str = "We";
@@ -118,8 +117,8 @@ fn lane_memories(design: &Design, products: &[Product], operands: &OperandLayout
     let elements = operands.elements();
     let words = schedule.word_depth();
     let vectors = products.iter().map(|product| product.operands.len()).max().unwrap_or(1);
-    let codes = products.len() + usize::from(ways > 1);
-    let visit = 1 + address_bits(walkers) + address_bits(codes) + address_bits(elements.max(SUM_ROWS));
+    let destination = destination_bits(design.algorithm.outputs == Outputs::Field);
+    let visit = 1 + address_bits(walkers) + destination + address_bits(elements.max(SUM_ROWS));
     let values = ways as u32 * design.hardware.coefficient_bits;
     vec![
         memory(LANES, "values", walkers, schedule.value_depth(), values, true),
@@ -148,7 +147,7 @@ fn frame_memories(design: &Design, elements: usize) -> Vec<Memory> {
     memories.push(memory(BZ, "half-folded b", 1, elements, 2 * data + 2, false));
     memories.push(memory(CO, "folded b", 1, folded, CLASSES as u32 * data, false));
     if design.algorithm.outputs == Outputs::Field {
-        let weights = WEIGHT_BANKS * elements.next_power_of_two();
+        let weights = WEIGHT_PLACES * elements.next_power_of_two();
         memories.push(memory(FIELD, "weights", CLASSES, weights, data, false));
         memories.push(memory(FIELD, "field", CLASSES, 6 * elements, data, false));
     }

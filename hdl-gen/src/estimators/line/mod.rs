@@ -10,7 +10,7 @@ use golden::design::Design;
 use serde_json::json;
 
 use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot};
-use crate::blocks::Parameters;
+use crate::blocks::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS};
 
 /// Fraction bits of a centroid, in units of the taxel index.

@@ -1,27 +1,9 @@
-//! Renders the Tera templates into Verilog modules.
+//! Tera templates to text: a module of Verilog, or any other file.
 
 use tera::{Context, Tera};
 
-use crate::cores::Multiplier;
-use crate::plan::Plan;
-
 use super::EmitError;
 use super::columns::wrap;
-use super::{registers, rtl, top};
-
-/// `(module, text)` of every module of the design: the top, the register bank if there is one, and what they use of the
-/// library.
-///
-/// # Errors
-/// [`EmitError::Template`] if a template does not fit its view.
-pub fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, EmitError> {
-    let mut modules = vec![top::render(plan)?];
-    modules.extend(registers::render(plan, hash)?);
-    let multiplier = Multiplier::of_part(&plan.design.hardware.part);
-    let library = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &top::without(plan), multiplier);
-    modules.extend(library.into_iter().map(|(module, text)| (module.to_owned(), text.to_owned())));
-    Ok(modules)
-}
 
 /// The text of one module of the design.
 ///
