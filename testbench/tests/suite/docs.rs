@@ -46,7 +46,7 @@ fn lines_of(file: &Path) -> Vec<Line> {
             None => (words, false),
         };
         match found.last_mut().filter(|_| open) {
-            Some(last) => last.text += &format!(" {}", words.trim()),
+            Some(last) => last.text.extend([" ", words.trim()]),
             None => found.push(Line { file: file.to_owned(), number, text: words.to_owned() }),
         }
         open = goes_on;
