@@ -17,9 +17,7 @@
 
 /* "TFRA", and the version of the register map that this driver knows. */
 #define MAGIC 0x54465241u
-#define MAP_VERSION 1u
-
-#define SUMMARY_WORDS 8u
+#define MAP_VERSION 2u
 
 /* AXI DMA, direct register mode: offsets of both channels, registers of a channel, bits. */
 #define SEND 0x00u
@@ -310,8 +308,19 @@ int sptfra_reset_dma(const sptfra *device, uint32_t polls)
 const char *sptfra_status_name(unsigned bit)
 {
     static const char *const names[] = {
-        "no contact", "direction unknown",  "optimum at the bound",
-        "saturated",  "NaN or infinity in", "frame length wrong",
+        "no contact",
+        "direction unknown",
+        "optimum at the bound",
+        "saturated",
+        "NaN or infinity in",
+        "frame length wrong",
+        "doubtful",
+        "more bodies than records",
+        "a taxel was replaced",
+        "too many taxels replaced",
+        "slip",
+        "no tension",
+        "frames dropped before",
     };
 
     return bit < sizeof names / sizeof names[0] ? names[bit] : NULL;
@@ -321,17 +330,21 @@ void sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *
 {
     const uint32_t *raw = words;
     const float *values = words;
-    const uint32_t bits = SPTFRA__LAST_STATUS__NO_CONTACT_bm | SPTFRA__LAST_STATUS__DIRECTION_UNKNOWN_bm
-        | SPTFRA__LAST_STATUS__AT_BOUND_bm | SPTFRA__LAST_STATUS__SATURATED_bm | SPTFRA__LAST_STATUS__NOT_FINITE_bm
-        | SPTFRA__LAST_STATUS__BAD_LENGTH_bm;
+    const uint32_t census = raw[SPTFRA_WORD_CENSUS];
 
-    result->status = (uint16_t)(raw[0] & bits);
-    result->number = (uint16_t)FIELD(raw[0], LAST_STATUS__NUMBER);
-    memcpy(result->force, values + 1, sizeof result->force);
-    memcpy(&result->friction, values + 4, sizeof result->friction);
-    memcpy(&result->direction, values + 5, sizeof result->direction);
-    memcpy(result->friction_xy, values + 6, sizeof result->friction_xy);
-    result->field = shape->has_field ? values + SUMMARY_WORDS : NULL;
+    result->status = (uint16_t)(raw[SPTFRA_WORD_STATUS] & 0xFFFFu);
+    result->number = (uint16_t)FIELD(raw[SPTFRA_WORD_STATUS], LAST_STATUS__NUMBER);
+    result->timestamp = raw[SPTFRA_WORD_TIMESTAMP];
+    memcpy(result->force, values + SPTFRA_WORD_FORCE, sizeof result->force);
+    memcpy(result->torque, values + SPTFRA_WORD_TORQUE, sizeof result->torque);
+    memcpy(&result->friction, values + SPTFRA_WORD_FRICTION, sizeof result->friction);
+    memcpy(&result->direction, values + SPTFRA_WORD_DIRECTION, sizeof result->direction);
+    memcpy(result->friction_xy, values + SPTFRA_WORD_FRICTION_XY, sizeof result->friction_xy);
+    memcpy(&result->standard_error, values + SPTFRA_WORD_STANDARD_ERROR, sizeof result->standard_error);
+    result->bodies = (uint8_t)(census & 0xFFu);
+    result->generation = (uint8_t)(census >> 8 & 0xFFu);
+    result->replaced = (uint8_t)(census >> 16 & 0xFFu);
+    result->field = shape->has_field ? values + SPTFRA_SUMMARY_WORDS : NULL;
 }
 
 /* ---- Linux user space */

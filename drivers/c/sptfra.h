@@ -56,7 +56,7 @@ extern const sptfra_platform sptfra_memory_mapped;
 typedef struct {
     uint16_t columns, rows;
     uint16_t words_in, words_out; /* of a frame */
-    uint8_t has_field;            /* three forces of each taxel follow the eight words of the summary */
+    uint8_t has_field;            /* three forces of each taxel follow the words of the summary */
     uint8_t has_counts;           /* frames hold counts, else pascals */
 } sptfra_shape;
 
@@ -130,19 +130,46 @@ enum {
     SPTFRA_AT_BOUND = SPTFRA__LAST_STATUS__AT_BOUND_bm,
     SPTFRA_SATURATED = SPTFRA__LAST_STATUS__SATURATED_bm,
     SPTFRA_NOT_FINITE = SPTFRA__LAST_STATUS__NOT_FINITE_bm,
-    SPTFRA_BAD_LENGTH = SPTFRA__LAST_STATUS__BAD_LENGTH_bm
+    SPTFRA_BAD_LENGTH = SPTFRA__LAST_STATUS__BAD_LENGTH_bm,
+    SPTFRA_DOUBTFUL = SPTFRA__LAST_STATUS__DOUBTFUL_bm,
+    SPTFRA_MORE_BODIES = SPTFRA__LAST_STATUS__MORE_BODIES_bm,
+    SPTFRA_REPLACED = SPTFRA__LAST_STATUS__REPLACED_bm,
+    SPTFRA_TOO_MANY_REPLACED = SPTFRA__LAST_STATUS__TOO_MANY_REPLACED_bm,
+    SPTFRA_SLIP = SPTFRA__LAST_STATUS__SLIP_bm,
+    SPTFRA_NO_TENSION = SPTFRA__LAST_STATUS__NO_TENSION_bm,
+    SPTFRA_DROPPED = SPTFRA__LAST_STATUS__DROPPED_bm
 };
 
-/* Name of a status bit, 0 to 5; NULL for any other. */
+/* Name of a status bit, 0 to 12; NULL for any other. */
 const char *sptfra_status_name(unsigned bit);
 
+/* Where the values stand in the words of an answer: "output" in metadata.json. */
+enum {
+    SPTFRA_WORD_STATUS = 0, /* and the frame's number above it */
+    SPTFRA_WORD_TIMESTAMP = 1,
+    SPTFRA_WORD_FORCE = 2,
+    SPTFRA_WORD_TORQUE = 5,
+    SPTFRA_WORD_FRICTION = 8,
+    SPTFRA_WORD_DIRECTION = 9,
+    SPTFRA_WORD_FRICTION_XY = 10,
+    SPTFRA_WORD_STANDARD_ERROR = 12,
+    SPTFRA_WORD_CENSUS = 13,
+    SPTFRA_SUMMARY_WORDS = 16
+};
+
 typedef struct {
-    uint16_t status; /* bits as above */
-    uint16_t number; /* of the frame since the core was reset, modulo 65536 */
-    float force[3];  /* F_x, F_y, F_z in N */
-    float friction;  /* mu */
-    float direction; /* phi in rad */
+    uint16_t status;      /* bits as above */
+    uint16_t number;      /* of the frame since the core was reset, modulo 65536 */
+    uint32_t timestamp;   /* of its first beat in, in cycles since the reset, modulo 2^32 */
+    float force[3];       /* F_x, F_y, F_z in N */
+    float torque[3];      /* T_x, T_y, T_z in N m about the middle of the grid */
+    float friction;       /* mu */
+    float direction;      /* phi in rad */
     float friction_xy[2];
+    float standard_error; /* of (F_x, F_y) in N; 0 where the design has none */
+    uint8_t bodies;
+    uint8_t generation;   /* of the calibration */
+    uint8_t replaced;     /* taxels */
     /* f_x, f_y, f_z in N of taxel iy * columns + ix, taxel after taxel, in the buffer; NULL without a field. */
     const float *field;
 } sptfra_result;

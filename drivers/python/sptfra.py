@@ -13,14 +13,17 @@
 """
 
 import enum
+import json
+import pathlib
 import time
 from dataclasses import dataclass
 
 import numpy as np
 
 MAGIC = 0x54465241
-MAP_VERSION = 1
-SUMMARY_WORDS = 8
+MAP_VERSION = 2
+#: Edition of metadata.json, and of the streams that it describes.
+FORMAT = 2
 
 
 class Register(enum.IntEnum):
@@ -58,6 +61,13 @@ class Status(enum.IntFlag):
     SATURATED = 8
     NOT_FINITE = 16
     BAD_LENGTH = 32
+    DOUBTFUL = 64
+    MORE_BODIES = 128
+    REPLACED = 256
+    TOO_MANY_REPLACED = 512
+    SLIP = 1024
+    NO_TENSION = 2048
+    DROPPED = 4096
 
 
 class Event(enum.IntFlag):
@@ -104,22 +114,78 @@ class Counters:
     last_interval: int
 
 
+class Layout:
+    """Where the values stand in an answer's words, by name: (index of the word, its lowest bit, mask; None: float32)."""
+
+    def __init__(self, values, field):
+        """`field` is the first word of the taxels' forces."""
+        self.values, self.field = values, field
+
+    @classmethod
+    def load(cls, path):
+        """That of a design, from its metadata.json. Raises ValueError for one of another edition."""
+        metadata = json.loads(pathlib.Path(path).read_text())
+        if metadata.get("format") != FORMAT:
+            raise ValueError(f"{path}: format {metadata.get('format')}, this driver knows {FORMAT}")
+        values, field = {}, None
+        for value in metadata["output"]:
+            high, low = value.get("bits", (31, 0))
+            mask = None if value["type"] == "float32" else (1 << (high - low + 1)) - 1
+            if value["name"] == "field":
+                field = value["index"]
+            else:
+                values[value["name"]] = (value["index"], low, mask)
+        return cls(values, field)
+
+    def get(self, words, name):
+        """The value of each answer in (n, words_out) uint32."""
+        index, low, mask = self.values[name]
+        column = words[:, index]
+        return column.copy().view(np.float32) if mask is None else column >> low & mask
+
+    def vector(self, words, *names):
+        """Several values of each answer, side by side."""
+        return np.column_stack([self.get(words, name) for name in names])
+
+
+_FLOATS = {"F_x": 2, "F_y": 3, "F_z": 4, "T_x": 5, "T_y": 6, "T_z": 7, "mu": 8, "phi": 9, "mu_x": 10, "mu_y": 11}
+#: The layout of every core with one body and no more.
+LAYOUT = Layout(
+    {name: (index, 0, None) for name, index in (_FLOATS | {"standard_error": 12}).items()}
+    | {"status": (0, 0, 0xFFFF), "frame": (0, 16, 0xFFFF), "timestamp": (1, 0, 0xFFFFFFFF)}
+    | {"bodies": (13, 0, 0xFF), "generation": (13, 8, 0xFF), "replaced_taxels": (13, 16, 0xFF)},
+    field=16,
+)
+
+
 @dataclass(frozen=True)
 class Forces:
-    """Answers to n frames; a frame whose status says NOT_FINITE, BAD_LENGTH or NO_CONTACT is all zeros."""
+    """Answers to n frames; of a frame whose status says NOT_FINITE, BAD_LENGTH or NO_CONTACT all results are zeros."""
 
     #: (n,) uint16: bits of `Status`.
     status: np.ndarray
     #: (n,) uint16: number of the frame since the core was reset, modulo 65536.
     number: np.ndarray
+    #: (n,) uint32: when its first beat came in, in cycles since the reset, modulo 2**32.
+    timestamp: np.ndarray
     #: (n, 3) float32: F_x, F_y, F_z in N.
     resultant: np.ndarray
+    #: (n, 3) float32: T_x, T_y, T_z in N m about the middle of the grid.
+    torque: np.ndarray
     #: (n,) float32: friction coefficient.
     friction: np.ndarray
     #: (n,) float32: direction of the push in rad.
     direction: np.ndarray
     #: (n, 2) float32: friction along x and y.
     friction_xy: np.ndarray
+    #: (n,) float32: standard error of (F_x, F_y) in N; 0 where the design has none.
+    standard_error: np.ndarray
+    #: (n,) uint8: bodies in touch.
+    bodies: np.ndarray
+    #: (n,) uint8: generation of the calibration.
+    generation: np.ndarray
+    #: (n,) uint8: taxels whose stress was made up.
+    replaced: np.ndarray
     #: (n, rows, columns, 3) float32: f_x, f_y, f_z of each taxel in N; None if the design has resultants only.
     field: np.ndarray | None
 
@@ -128,18 +194,26 @@ class Forces:
         return [bit.name for bit in Status if int(self.status[index]) & bit]
 
 
-def decode(words, rows, columns, has_field):
+def decode(words, rows, columns, has_field, layout=LAYOUT):
     """Forces from (n, words_out) words of uint32 as the core sends them."""
     words = np.ascontiguousarray(words, dtype=np.uint32)
-    values = words.view(np.float32)
-    field = values[:, SUMMARY_WORDS:].reshape(len(words), rows, columns, 3) if has_field else None
+    field = None
+    if has_field:
+        taxels = words[:, layout.field : layout.field + 3 * rows * columns]
+        field = np.ascontiguousarray(taxels).view(np.float32).reshape(len(words), rows, columns, 3)
     return Forces(
-        status=(words[:, 0] & 0x3F).astype(np.uint16),
-        number=(words[:, 0] >> 16).astype(np.uint16),
-        resultant=values[:, 1:4],
-        friction=values[:, 4],
-        direction=values[:, 5],
-        friction_xy=values[:, 6:8],
+        status=layout.get(words, "status").astype(np.uint16),
+        number=layout.get(words, "frame").astype(np.uint16),
+        timestamp=layout.get(words, "timestamp"),
+        resultant=layout.vector(words, "F_x", "F_y", "F_z"),
+        torque=layout.vector(words, "T_x", "T_y", "T_z"),
+        friction=layout.get(words, "mu"),
+        direction=layout.get(words, "phi"),
+        friction_xy=layout.vector(words, "mu_x", "mu_y"),
+        standard_error=layout.get(words, "standard_error"),
+        bodies=layout.get(words, "bodies").astype(np.uint8),
+        generation=layout.get(words, "generation").astype(np.uint8),
+        replaced=layout.get(words, "replaced_taxels").astype(np.uint8),
         field=field,
     )
 
@@ -147,8 +221,10 @@ def decode(words, rows, columns, has_field):
 class Sptfra:
     """A core between the two channels of an AXI DMA."""
 
-    def __init__(self, core, dma, allocate):
-        """`allocate` is `pynq.allocate`. Raises RuntimeError if there is no core that this driver knows."""
+    def __init__(self, core, dma, allocate, metadata=None):
+        """`allocate` is `pynq.allocate`, `metadata` the path of the design's metadata.json, if the answers' layout is to
+        be read from there. Raises RuntimeError if there is no core that this driver knows."""
+        self._layout = LAYOUT if metadata is None else Layout.load(metadata)
         self._core = core
         self._dma = dma
         magic = core.read(Register.IDENTITY)
@@ -192,7 +268,7 @@ class Sptfra:
             frames_in=read(Register.FRAMES_IN),
             frames_out=read(Register.FRAMES_OUT),
             frames_bad=read(Register.FRAMES_BAD),
-            last_status=Status(read(Register.LAST_STATUS) & 0x3F),
+            last_status=Status(read(Register.LAST_STATUS) & 0xFFFF),
             last_latency=read(Register.LAST_LATENCY),
             last_interval=read(Register.LAST_INTERVAL),
         )
@@ -235,4 +311,4 @@ class Sptfra:
             self._dma.recvchannel.wait()
             self._forces.invalidate()
             answer[:] = self._forces
-        return decode(answers, rows, columns, self.identity.has_field)
+        return decode(answers, rows, columns, self.identity.has_field, self._layout)

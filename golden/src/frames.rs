@@ -97,26 +97,27 @@ pub fn read_frames(path: &Path, taxels: usize) -> Result<Vec<Vec<f64>>, FrameErr
 /// As [`read_frames`].
 pub fn read_labelled_frames(path: &Path, taxels: usize, labels: usize) -> Result<Vec<Vec<f64>>, FrameError> {
     let wrong_length = |found| (found != labels + taxels).then_some(labels + taxels);
-    let frames = read_table(path, labels, wrong_length)?;
+    let frames = read_table(path, labels, labels > 0, wrong_length)?;
     if frames.is_empty() {
         return Err(FrameError::Empty { path: path.to_path_buf(), expected: taxels });
     }
     Ok(frames)
 }
 
-/// Reads the rows of a CSV file of finite numbers. `wrong_length` is given the number of values of a row and
+/// Reads the rows of a CSV file of finite numbers, which may have a header. `wrong_length` is given the number of values of a row and
 /// returns the number wanted if that is another.
 pub(crate) fn read_rows(
     path: &Path,
     wrong_length: impl Fn(usize) -> Option<usize>,
 ) -> Result<Vec<Vec<f64>>, FrameError> {
-    read_table(path, 0, wrong_length)
+    read_table(path, 0, true, wrong_length)
 }
 
 /// Reads the columns after the labels; `wrong_length` is given the number of all columns.
 fn read_table(
     path: &Path,
     labels: usize,
+    may_have_header: bool,
     wrong_length: impl Fn(usize) -> Option<usize>,
 ) -> Result<Vec<Vec<f64>>, FrameError> {
     let unreadable = |source| FrameError::Read { path: path.to_path_buf(), source };
@@ -131,8 +132,8 @@ fn read_table(
             continue;
         }
         let fields = || content.split(|&byte| byte == b',').map(<[u8]>::trim_ascii);
-        if labels > 0 && rows.is_empty() && !std::mem::replace(&mut begun, true) && fields().skip(labels).all(no_number)
-        {
+        let first = rows.is_empty() && !std::mem::replace(&mut begun, true);
+        if may_have_header && first && fields().skip(labels).all(no_number) {
             continue;
         }
         let mut row = Vec::new();

@@ -8,7 +8,7 @@
 //! r = C33 y+ - mu_x C31 |w| - mu_y C32 |w|            f_p = A_p r + [mu_x |w|, mu_y |w|, -|w|]
 //! ```
 //!
-//! and for the line the sums `G_pq`, which are dot products. All this is the paper's mathematics (Eqs. 8 to 16) put
+//! and for the line and the resultants the sums `G_pq` and those of the torques, which are dot products. All this is the paper's mathematics (Eqs. 8 to 16) put
 //! together otherwise: without a filter the results are the same but for rounding.
 
 use nalgebra::{DMatrix, RowDVector};
@@ -19,6 +19,7 @@ use crate::matrices::Matrices;
 use crate::names::MatrixName;
 pub use crate::names::ReducedName;
 use crate::parity::{CLASSES, FoldedMatrix, Quads};
+use crate::products::{ByPq, RESULTANTS};
 
 /// The four blocks of a matrix, sparse, row by row.
 ///
@@ -77,14 +78,64 @@ impl SumRow {
     pub fn apply(&self, x: &[Vec<f64>; CLASSES]) -> f64 {
         self.weights.iter().zip(&x[self.class]).map(|(weight, value)| weight * value).sum()
     }
+
+    /// The row of this sum and another one of the same class.
+    fn plus(mut self, other: &Self) -> Self {
+        self.weights.iter_mut().zip(&other.weights).for_each(|(weight, other)| *weight += other);
+        self
+    }
 }
 
-/// The rows of all sums of a frame, see [`ReducedMatrices::sums`] and [`ReducedMatrices::weight_sum`].
+/// The rows of all sums of a frame, see [`ReducedMatrices::sums`] and [`ReducedMatrices::weight_shares`].
 #[derive(Clone, Debug)]
 pub(crate) struct SumRows {
     /// By `[p][q]`.
-    pub(crate) rows: [[SumRow; 3]; 3],
-    pub(crate) total: SumRow,
+    pub(crate) rows: ByPq<SumRow>,
+    pub(crate) shares: [SumRow; 3],
+}
+
+impl SumRows {
+    /// Each resultant is a sum over the taxels of their forces times an arm: one, x or y from the middle of the grid, or
+    /// minus that.
+    fn new(matrices: &Matrices, quads: &Quads, a: [&FoldedMatrix; 3]) -> Self {
+        let sensor = matrices.sensor();
+        let over = |class: usize, arm: &dyn Fn(usize) -> f64| {
+            let of_quad = |q: usize| quads.size(q) as f64 / 4.0 * arm(quads.members(q)[0]);
+            let weights = (0..quads.count()).map(|q| if quads.exists(class, q) { of_quad(q) } else { 0.0 });
+            SumRow { class, weights: weights.collect() }
+        };
+        let one = over(0, &|_| 1.0);
+        let [x, minus_x] = [1.0, -1.0].map(|sign| over(1, &|taxel| sign * sensor.arm_m(taxel)[0]));
+        let [y, minus_y] = [1.0, -1.0].map(|sign| over(2, &|taxel| sign * sensor.arm_m(taxel)[1]));
+        // The arms of f_x, f_y and f_z in each resultant.
+        let arms: [[Option<&SumRow>; 3]; RESULTANTS] = [
+            [Some(&one), None, None],
+            [None, Some(&one), None],
+            [None, None, Some(&one)],
+            [None, None, Some(&y)],
+            [None, None, Some(&minus_x)],
+            [Some(&minus_y), Some(&x), None],
+        ];
+        let row = |p: usize, q: usize| {
+            let c = [&matrices.c33, &matrices.c31, &matrices.c32][q];
+            let mut parts = arms[p].iter().zip(a).filter_map(|(arm, a)| arm.map(|arm| sum_row(&sum_row(arm, a), c)));
+            // Every resultant has a part, and all parts of one are of one class.
+            let first = parts.next().unwrap_or_else(|| SumRow { class: 0, weights: vec![0.0; quads.count()] });
+            let mut row = parts.fold(first, |row, part| row.plus(&part));
+            if q > 0 {
+                row.weights.iter_mut().for_each(|weight| *weight = -*weight);
+                // mu_x |w| and mu_y |w| themselves.
+                if let Some(arm) = arms[p][q - 1] {
+                    row = row.plus(arm);
+                }
+            }
+            row
+        };
+        Self {
+            rows: std::array::from_fn(|p| std::array::from_fn(|q| row(p, q))),
+            shares: [one.clone(), y.clone(), minus_x.clone()],
+        }
+    }
 }
 
 /// The ten matrices of the reduced plan after the filter, and the rows of its sums.
@@ -116,20 +167,7 @@ impl ReducedMatrices {
         let Matrices { c31, c32, c33, .. } = matrices;
         let a = [MatrixName::A1, MatrixName::A2, MatrixName::A3].map(|name| matrices.folded(name));
 
-        let weight_sum = SumRow { class: 0, weights: (0..quads.count()).map(|q| quads.size(q) as f64 / 4.0).collect() };
-        let row = |p: usize, q: usize| {
-            let mut row = sum_row(&sum_row(&weight_sum, &a[p]), [c33, c31, c32][q]);
-            if q > 0 {
-                row.weights.iter_mut().for_each(|weight| *weight = -*weight);
-            }
-            // |w| itself, in g11 and g22.
-            if q == p + 1 {
-                row.weights.iter_mut().zip(&weight_sum.weights).for_each(|(weight, one)| *weight += one);
-            }
-            row
-        };
-        let rows = std::array::from_fn(|p| std::array::from_fn(|q| row(p, q)));
-
+        let sums = SumRows::new(matrices, quads, a.each_ref().map(AsRef::as_ref));
         let e = c33.times(&a[2]);
         let sparse = |name: ReducedName, folded: &FoldedMatrix| filtered(name, folded, quads, rule);
         let ten = vec![
@@ -144,7 +182,7 @@ impl ReducedMatrices {
             sparse(ReducedName::A2, &a[1])?,
             sparse(ReducedName::A3, &a[2])?,
         ];
-        Ok(Self { ten, sums: SumRows { rows, total: weight_sum } })
+        Ok(Self { ten, sums })
     }
 
     /// One of the ten matrices.
@@ -152,15 +190,16 @@ impl ReducedMatrices {
         &self.ten[name.index()]
     }
 
-    /// The row of `G_(p+1)q`, p and q from 0 to 2. Its operand is the folded y+ for q = 0 and the folded |w| for q = 1
-    /// and 2. The sum of |w| in G11 and G22 is included, that in G30 (`- sum |w|`) is not.
+    /// The row of `G_(p+1)q`, q from 0 to 2 and p from 0 to 5 as in [`ByPq`]. Its operand is the folded y+ for q = 0 and
+    /// the folded |w| for q = 1 and 2. What |w| adds for q = 1 and 2 is included, what it adds to `f_z` is not: see
+    /// [`ReducedMatrices::weight_shares`].
     pub fn sums(&self, p: usize, q: usize) -> &SumRow {
         &self.sums.rows[p][q]
     }
 
-    /// The row of the sum of |w|, from the folded |w|.
-    pub fn weight_sum(&self) -> &SumRow {
-        &self.sums.total
+    /// What the folded |w| takes from `F_z`, `T_x` and `T_y` for q = 0: rows of the sums of |w|, `y |w|` and `-x |w|`.
+    pub fn weight_shares(&self) -> &[SumRow; 3] {
+        &self.sums.shares
     }
 
     /// Those of all sums.

@@ -37,6 +37,23 @@ impl Sensor {
         [ix as f64 * self.pitch_mm[0] * 1e-3, iy as f64 * self.pitch_mm[1] * 1e-3]
     }
 
+    /// Position of taxel `index` in metres about the middle of the grid: the arm of its force's torque.
+    pub fn arm_m(&self, index: usize) -> [f64; 2] {
+        let (ix, iy) = (index % self.columns, index / self.columns);
+        [
+            (ix as f64 - 0.5 * (self.columns - 1) as f64) * self.pitch_mm[0] * 1e-3,
+            (iy as f64 - 0.5 * (self.rows - 1) as f64) * self.pitch_mm[1] * 1e-3,
+        ]
+    }
+
+    /// The torque `[T_x, T_y, T_z]` in N m about the middle of the grid of a force in newtons at the surface, at a
+    /// position in metres from the first taxel.
+    pub fn torque_of(&self, [x, y]: [f64; 2], [fx, fy, fz]: [f64; 3]) -> [f64; 3] {
+        let [corner_x, corner_y] = self.arm_m(0);
+        let (x, y) = (x + corner_x, y + corner_y);
+        [y * fz, -x * fz, x * fy - y * fx]
+    }
+
     /// Depth of the taxels below the surface in metres.
     pub fn depth_m(&self) -> f64 {
         self.depth_mm * 1e-3

@@ -20,14 +20,36 @@ impl Status {
     /// Too few or too many values in the frame (hardware only): all results are zero.
     pub const FRAME_LENGTH: Self = Self(1 << 5);
 
-    /// All bits with the words that describe them, from bit 0 on.
-    pub const NAMED: [(Self, &'static str); 6] = [
+    /// The tangential force may be far off: its standard error is above the design's limit.
+    pub const DOUBTFUL: Self = Self(1 << 6);
+    /// More bodies press than the design has records for.
+    pub const MORE_BODIES: Self = Self(1 << 7);
+    /// A dead taxel's stress was made up from its neighbours.
+    pub const REPLACED: Self = Self(1 << 8);
+    /// So many were that the result cannot be trusted.
+    pub const TOO_MANY_REPLACED: Self = Self(1 << 9);
+    /// Friction is at the design's limit: what is held begins to slide.
+    pub const SLIP: Self = Self(1 << 10);
+    /// Nothing pulls in a frame of a sensor that reads tension, as its design says.
+    pub const NO_TENSION: Self = Self(1 << 11);
+    /// Frames were dropped before this one (hardware only).
+    pub const DROPPED: Self = Self(1 << 12);
+
+    /// All bits with the words that describe them, from bit 0 on. Not every design raises all of them.
+    pub const NAMED: [(Self, &'static str); 13] = [
         (Self::NO_CONTACT, "no contact"),
         (Self::DIRECTION_UNKNOWN, "direction unknown"),
         (Self::AT_BOUND, "optimum at the bound"),
         (Self::SATURATED, "saturated"),
         (Self::NOT_FINITE, "NaN or infinity in"),
         (Self::FRAME_LENGTH, "frame length wrong"),
+        (Self::DOUBTFUL, "doubtful"),
+        (Self::MORE_BODIES, "more bodies than records"),
+        (Self::REPLACED, "a taxel was replaced"),
+        (Self::TOO_MANY_REPLACED, "too many taxels replaced"),
+        (Self::SLIP, "slip"),
+        (Self::NO_TENSION, "no tension"),
+        (Self::DROPPED, "frames dropped before"),
     ];
 
     /// True if every bit of `other` is set.

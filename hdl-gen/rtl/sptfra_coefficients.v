@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Coefficient vectors g_pq (Eqs. 11 to 13) and their sums over the frame, taxel by taxel.
+// Coefficient vectors g_pq (Eqs. 11 to 13), their sums over the frame and those of their torques, taxel by taxel.
 //
 // A_p b waits in a memory of its own until D_p0 w arrives; every finished g goes to the field memory, into the sum
-// G_pq, and, where the lanes multiply it again, to the operand memories. Result bus to g: 3 cycles.
+// G_pq, times the taxel's arms into the torques' sums, and, where the lanes multiply it again, to the operand memories.
+// Result bus to g: 3 cycles; to a torque's sum: 6.
 
 `default_nettype none
 
@@ -17,8 +18,11 @@ module sptfra_coefficients #(
     parameter OPERAND_DEPTH = 600,
     parameter [63:0] STORE_BASES = 64'd0,
     parameter [3:0] STORE_IN_BANK = 4'd0,
+    // Prefix of the ROM file name, and what it begins with: the taxels' arms
+    parameter ROM_DIR = "",
+    parameter ROM_NAME = "",
     // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1,
     parameter COMPONENT_WIDTH = $clog2(3 * ELEMENTS)
 ) (
@@ -39,8 +43,8 @@ module sptfra_coefficients #(
     output reg  [COMPONENT_WIDTH-1:0] g_component,
     output reg  signed [DATA_BITS-1:0] g,
     // Frame sums
-    output reg  sums_there, // one cycle, when the last g is in
-    output wire [9*40-1:0] sums
+    output reg  sums_there, // one cycle, when the last g is in all of them
+    output wire [18*40-1:0] sums
 );
 
     // ---- What a result is: A_p b, or g_pq
@@ -126,15 +130,16 @@ module sptfra_coefficients #(
     reg [COUNT_WIDTH-1:0] count;
     wire last = (count == TOTAL - 1);
     wire signed [39:0] g_wide = {{(40-DATA_BITS){g[DATA_BITS-1]}}, g};
+    reg [5:4] lasts;
 
     always @(posedge clock) begin
-        sums_there <= (g_valid != 3'd0) && last;
+        {sums_there, lasts} <= {lasts, (g_valid != 3'd0) && last};
         if (g_valid != 3'd0) begin
             count <= last ? {COUNT_WIDTH{1'b0}} : count + 1;
         end
         if (reset) begin
             count <= {COUNT_WIDTH{1'b0}};
-            sums_there <= 1'b0;
+            {sums_there, lasts} <= 3'd0;
         end
     end
 
@@ -155,6 +160,93 @@ module sptfra_coefficients #(
             end
 
             assign sums[40*index +: 40] = sum;
+        end
+    endgenerate
+
+    // ---- Torques: g times the arms, rounded to steps of g. Index k: k cycles after the result
+    localparam integer ARM_FRACTION = 16;
+    localparam signed [44:0] ARM_HALF = 45'sd1 <<< (ARM_FRACTION - 1);
+    wire [35:0] arms; // along x in the lower half
+    reg [8:0] is_g_4;
+    reg [8:0] is_g_5;
+
+    sptfra_rom #(
+        .WIDTH         (36),
+        .DEPTH         (ELEMENTS),
+        .ADDRESS_WIDTH (ROW_WIDTH),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_arms.mem"})
+    ) taxel_arms (
+        .clock   (clock),
+        .enable  (1'b1),
+        .address (row_2),
+        .data    (arms)
+    );
+
+    always @(posedge clock) begin
+        is_g_4 <= is_g_3;
+        is_g_5 <= is_g_4;
+        if (reset) begin
+            is_g_4 <= 9'd0;
+            is_g_5 <= 9'd0;
+        end
+    end
+
+    wire signed [39:0] moment_5 [0:1]; // of the arm along x, along y
+
+    generate
+        for (index = 0; index < 2; index = index + 1) begin : gen_moments
+            wire signed [44:0] low_4;
+            wire signed [44:0] high_4;
+            reg signed [44:0] rounded_5;
+
+            sptfra_multiply times_arm (
+                .clock       (clock),
+                .enable      (1'b1),
+                .coefficient (arms[18*index +: 18]),
+                .data        (g_wide[26:0]),
+                .low         (low_4),
+                .high        (high_4)
+            );
+
+            always @(posedge clock) begin
+                rounded_5 <= low_4 + high_4 + ARM_HALF;
+            end
+
+            assign moment_5[index] = {{(ARM_FRACTION - 5){rounded_5[44]}}, rounded_5[44:ARM_FRACTION]};
+
+            wire _unused = &{1'b0, rounded_5};
+        end
+        for (index = 0; index < 3; index = index + 1) begin : gen_torques
+            // T_x: y f_z; T_y: -x f_z; T_z: x f_y - y f_x
+            wire of_x = is_g_5[index];
+            wire of_y = is_g_5[3+index];
+            wire of_z = is_g_5[6+index];
+            reg signed [39:0] torque_x;
+            reg signed [39:0] torque_y;
+            reg signed [39:0] torque_z;
+            reg fresh; // no f_z of the frame yet
+            reg fresh_z; // neither f_x nor f_y
+
+            always @(posedge clock) begin
+                if (of_z) begin
+                    torque_x <= (fresh ? 40'sd0 : torque_x) + moment_5[1];
+                    torque_y <= (fresh ? 40'sd0 : torque_y) - moment_5[0];
+                    fresh <= 1'b0;
+                end
+                if (of_x || of_y) begin
+                    torque_z <= (fresh_z ? 40'sd0 : torque_z) + (of_y ? moment_5[0] : -moment_5[1]);
+                    fresh_z <= 1'b0;
+                end
+                if (reset || sums_there) begin
+                    fresh <= 1'b1;
+                    fresh_z <= 1'b1;
+                end
+            end
+
+            assign sums[40*(9+index) +: 40] = torque_x;
+            assign sums[40*(12+index) +: 40] = torque_y;
+            assign sums[40*(15+index) +: 40] = torque_z;
         end
     endgenerate
 

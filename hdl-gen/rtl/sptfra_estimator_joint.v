@@ -55,7 +55,7 @@ module sptfra_estimator_joint #(
     parameter integer EXPECTED_FRICTION_LATENCY = 0,
     // Derived: quads, and the bits of their number
     parameter integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter integer ROW_WIDTH = (QUADS > 4) ? $clog2(QUADS) : 2
+    parameter integer ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3
 ) (
     input  wire clock,
     input  wire reset,
@@ -67,7 +67,7 @@ module sptfra_estimator_joint #(
     // From Co, held until taken
     input  wire sums_complete,
     output wire sums_take,
-    input  wire [9*40-1:0] sums_in,
+    input  wire [18*40-1:0] sums_in,
     // From CeAn, held until taken
     input  wire direction_valid,
     output wire direction_take,
@@ -87,7 +87,7 @@ module sptfra_estimator_joint #(
     output wire unknown,
     output wire at_bound,
     output wire saturated,
-    output reg  [9*40-1:0] sums,
+    output reg  [18*40-1:0] sums,
     output reg  [3:0] flags
 );
 

@@ -19,7 +19,7 @@ module sptfra_line #(
     // From Co, held until taken
     input  wire sums_complete,
     output reg  sums_take, // one cycle, behind the taking
-    input  wire [9*40-1:0] sums_in, // G10, G11, G12, G20 .. G32 from the lowest bits on
+    input  wire [18*40-1:0] sums_in, // G10, G11, G12, G20 .. G32 from the lowest bits on
     // From CeAn
     input  wire direction_valid,
     output wire direction_take,
@@ -29,7 +29,7 @@ module sptfra_line #(
     // The line, held until taken
     output wire line_valid,
     input  wire line_take,
-    output reg  [9*40-1:0] sums,
+    output reg  [18*40-1:0] sums,
     output reg  x_is_free,
     output reg  unknown, // no direction, or a line without sense
     output reg  signed [17:0] c0,

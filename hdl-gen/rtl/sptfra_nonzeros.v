@@ -13,7 +13,7 @@ module sptfra_nonzeros #(
     // Bits of a class
     parameter DATA_BITS = 27,
     // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
     input  wire clock,
     input  wire reset,

@@ -1,10 +1,22 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Sends a frame: status word, seven summary words, with FIELD then f_x, f_y, f_z of each taxel, float32.
+// Sends a frame: sixteen words of its summary, with FIELD then f_x, f_y, f_z of each taxel, float32.
+//
+// | word    | content                                                                      |
+// |---------|------------------------------------------------------------------------------|
+// | 0       | status bits 15:0, frame counter 31:16                                        |
+// | 1       | timestamp                                                                    |
+// | 2 to 4  | F_x, F_y, F_z in N                                                           |
+// | 5 to 7  | T_x, T_y, T_z in N m                                                         |
+// | 8, 9    | mu, phi in rad                                                               |
+// | 10, 11  | mu_x, mu_y                                                                   |
+// | 12      | standard error of (F_x, F_y) in N: none                                      |
+// | 13      | bodies in bits 7:0, generation of the calibration 15:8, replaced taxels 23:16 |
+// | 14, 15  | 0                                                                            |
 //
 // A beat a cycle while the sink takes them; the first one 13 cycles after start. Frames without an answer send zeros
-// after the status word. A taxel's force comes from the field memory as it goes out.
+// but for words 0, 1 and 13. A taxel's force comes from the field memory as it goes out.
 
 `default_nettype none
 
@@ -15,8 +27,9 @@ module sptfra_output #(
     parameter integer ROWS = 10,
     // 1: the forces of all taxels go out too; 0: resultants only
     parameter integer FIELD = 1,
-    // A step of a resultant is 2^FORCE_LSB N, one of a taxel's force 2^FIELD_LSB N
+    // A step of a force is 2^FORCE_LSB N, of a torque 2^TORQUE_LSB N m, of a taxel's force 2^FIELD_LSB N
     parameter integer FORCE_LSB = -50,
+    parameter integer TORQUE_LSB = -55,
     parameter integer FIELD_LSB = -50,
     // From start to the first beat, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0
@@ -26,11 +39,16 @@ module sptfra_output #(
     // Start, with everything held by the output from then on but the field
     input  wire start,
     output wire idle,
-    input  wire [5:0] status,
+    input  wire [15:0] status,
+    input  wire [31:0] timestamp,
+    input  wire [31:0] census, // word 13
     input  wire blank, // no answer: zeros
     input  wire signed [63:0] force_x,
     input  wire signed [63:0] force_y,
     input  wire signed [63:0] force_z,
+    input  wire signed [63:0] torque_x,
+    input  wire signed [63:0] torque_y,
+    input  wire signed [63:0] torque_z,
     input  wire [63:0] friction_quotient,
     input  wire signed [9:0] friction_exponent,
     input  wire signed [31:0] angle, // 29 fraction bits
@@ -51,10 +69,11 @@ module sptfra_output #(
     input  wire m_tready
 );
 
-    localparam integer BEATS = (FIELD != 0) ? 8 + 3 * COLUMNS * ROWS : 8;
+    localparam integer BEATS = (FIELD != 0) ? 16 + 3 * COLUMNS * ROWS : 16;
     localparam integer BEAT_WIDTH = $clog2(BEATS);
     localparam integer LAST_BEAT = BEATS - 1;
     localparam signed [9:0] FORCE_EXPONENT = FORCE_LSB[9:0];
+    localparam signed [9:0] TORQUE_EXPONENT = TORQUE_LSB[9:0];
     localparam signed [9:0] FIELD_EXPONENT = FIELD_LSB[9:0];
     localparam signed [9:0] FRICTION_EXPONENT = -10'sd16;
     localparam signed [9:0] ANGLE_EXPONENT = -10'sd29;
@@ -62,11 +81,16 @@ module sptfra_output #(
     // ---- The frame, held
     reg busy;
     reg [15:0] frame_count;
-    reg [5:0] held_status;
+    reg [15:0] held_status;
+    reg [31:0] held_timestamp;
+    reg [31:0] held_census;
     reg held_blank;
     reg signed [63:0] held_force_x;
     reg signed [63:0] held_force_y;
     reg signed [63:0] held_force_z;
+    reg signed [63:0] held_torque_x;
+    reg signed [63:0] held_torque_y;
+    reg signed [63:0] held_torque_z;
     reg [63:0] held_quotient;
     reg signed [9:0] held_exponent;
     reg signed [31:0] held_angle;
@@ -79,14 +103,15 @@ module sptfra_output #(
     reg [BEAT_WIDTH-1:0] issued_beat;
     reg [11:1] valid;
     reg [11:1] lasts;
-    reg [11:4] statuses;
+    reg [11:4] statuses; // word 0
+    reg [11:4] raws; // words that are no float32
     reg [3:1] blanks;
     reg [3:1] in_field;
-    reg [2:0] word_1;
-    reg [2:0] word_2;
-    reg [2:0] word_3;
-    reg signed [15:0] frame_1;
-    reg signed [15:0] frame_2;
+    reg [3:0] word_1;
+    reg [3:0] word_2;
+    reg [3:0] word_3;
+    reg [15:0] frame_1;
+    reg [15:0] frame_2;
     reg signed [63:0] summary_3;
     reg signed [9:0] summary_exponent_3;
     reg signed [63:0] value_4;
@@ -94,13 +119,13 @@ module sptfra_output #(
 
     reg [BEAT_WIDTH-1:0] beat;
     wire advance = m_tready; // of the skid buffer, a register
-    reg reads; // beat is 7 or more: the field's data come a cycle after the summary's
+    reg reads; // beat is 15 or more: the field's data come a cycle after the summary's
     wire last_beat = (beat == LAST_BEAT[BEAT_WIDTH-1:0]);
     wire beat_in_field;
 
     generate
         if (FIELD != 0) begin : gen_field
-            assign beat_in_field = (issued_beat[BEAT_WIDTH-1:3] != {(BEAT_WIDTH - 3){1'b0}});
+            assign beat_in_field = (issued_beat[BEAT_WIDTH-1:4] != {(BEAT_WIDTH - 4){1'b0}});
         end else begin : gen_summary
             assign beat_in_field = 1'b0;
         end
@@ -117,7 +142,7 @@ module sptfra_output #(
         field_release <= 1'b0;
         if (busy && advance) begin
             beat <= beat + 1'b1;
-            reads <= reads || (beat[2:0] == 3'd6);
+            reads <= reads || (beat[3:0] == 4'd14);
             if (last_beat) begin
                 busy <= 1'b0;
                 frame_count <= frame_count + 16'd1;
@@ -132,10 +157,15 @@ module sptfra_output #(
             beat <= {BEAT_WIDTH{1'b0}};
             reads <= 1'b0;
             held_status <= status;
+            held_timestamp <= timestamp;
+            held_census <= census;
             held_blank <= blank;
             held_force_x <= force_x;
             held_force_y <= force_y;
             held_force_z <= force_z;
+            held_torque_x <= torque_x;
+            held_torque_y <= torque_y;
+            held_torque_z <= torque_z;
             held_quotient <= friction_quotient;
             held_exponent <= friction_exponent;
             held_angle <= angle;
@@ -150,6 +180,9 @@ module sptfra_output #(
     end
 
     // ---- Stages 1 to 4: the summary words, and the field's in stage 4
+    wire status_3 = !in_field[3] && (word_3 == 4'd0);
+    wire raw_3 = !in_field[3] && ((word_3 == 4'd0) || (word_3 == 4'd1) || (word_3 == 4'd13));
+
     always @(posedge clock) begin
         if (advance) begin
             issued <= busy;
@@ -157,10 +190,11 @@ module sptfra_output #(
             issued_beat <= beat;
             valid <= {valid[10:1], issued};
             lasts <= {lasts[10:1], issued_last};
-            statuses <= {statuses[10:4], !in_field[3] && (word_3 == 3'd0)};
+            statuses <= {statuses[10:4], status_3};
+            raws <= {raws[10:4], raw_3};
             in_field <= {in_field[2:1], beat_in_field};
             blanks <= {blanks[2:1], held_blank};
-            word_1 <= issued_beat[2:0];
+            word_1 <= issued_beat[3:0];
             word_2 <= word_1;
             word_3 <= word_2;
             frame_1 <= frame_count;
@@ -168,33 +202,48 @@ module sptfra_output #(
             // Stage 3
             summary_exponent_3 <= FORCE_EXPONENT;
             case (word_2)
-                3'd0: summary_3 <= {32'd0, frame_2, 10'd0, held_status};
-                3'd1: summary_3 <= held_force_x;
-                3'd2: summary_3 <= held_force_y;
-                3'd3: summary_3 <= held_force_z;
-                3'd4: begin
+                4'd0: summary_3 <= {32'd0, frame_2, held_status};
+                4'd1: summary_3 <= {32'd0, held_timestamp};
+                4'd2: summary_3 <= held_force_x;
+                4'd3: summary_3 <= held_force_y;
+                4'd4: summary_3 <= held_force_z;
+                4'd5: begin
+                    summary_3 <= held_torque_x;
+                    summary_exponent_3 <= TORQUE_EXPONENT;
+                end
+                4'd6: begin
+                    summary_3 <= held_torque_y;
+                    summary_exponent_3 <= TORQUE_EXPONENT;
+                end
+                4'd7: begin
+                    summary_3 <= held_torque_z;
+                    summary_exponent_3 <= TORQUE_EXPONENT;
+                end
+                4'd8: begin
                     summary_3 <= held_quotient;
                     summary_exponent_3 <= held_exponent;
                 end
-                3'd5: begin
+                4'd9: begin
                     summary_3 <= { {32{held_angle[31]}}, held_angle};
                     summary_exponent_3 <= ANGLE_EXPONENT;
                 end
-                3'd6: begin
+                4'd10: begin
                     summary_3 <= { {46{held_mu_x[17]}}, held_mu_x};
                     summary_exponent_3 <= FRICTION_EXPONENT;
                 end
-                default: begin
+                4'd11: begin
                     summary_3 <= { {46{held_mu_y[17]}}, held_mu_y};
                     summary_exponent_3 <= FRICTION_EXPONENT;
                 end
+                4'd13: summary_3 <= {32'd0, held_census};
+                default: summary_3 <= 64'sd0;
             endcase
             // Stage 4
             if (in_field[3]) begin
                 value_4 <= blanks[3] ? 64'sd0 : field_value;
                 exponent_4 <= FIELD_EXPONENT;
             end else begin
-                value_4 <= (blanks[3] && (word_3 != 3'd0)) ? 64'sd0 : summary_3;
+                value_4 <= (blanks[3] && !raw_3) ? 64'sd0 : summary_3;
                 exponent_4 <= summary_exponent_3;
             end
         end
@@ -204,7 +253,7 @@ module sptfra_output #(
         end
     end
 
-    // ---- Stages 5 to 11: float32; the status word passes beside it
+    // ---- Stages 5 to 11: float32; words that are none pass beside it
     wire [31:0] float_word;
     reg [31:0] raw_5;
     reg [31:0] raw_6;
@@ -234,7 +283,7 @@ module sptfra_output #(
         end
     end
 
-    assign m_tdata = statuses[11] ? raw_11 : float_word;
+    assign m_tdata = raws[11] ? raw_11 : float_word;
     assign m_tlast = lasts[11];
     assign m_tvalid = valid[11];
 

@@ -55,7 +55,7 @@ module sptfra_spmv_array #(
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
     // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
 ) (
     input  wire clock,

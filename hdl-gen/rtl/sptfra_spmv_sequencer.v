@@ -53,7 +53,7 @@ module sptfra_spmv_sequencer #(
     // Quads along a side of the grid that is mirrored; 0: none is
     parameter MIRROR_SIDE = 0,
     // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1,
     parameter VALUE_WIDTH = (VALUE_DEPTH > 2) ? $clog2(VALUE_DEPTH) : 1,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1,

@@ -20,7 +20,7 @@ module sptfra_unfold #(
     // Exponent of the step of u over that of the folded stress
     parameter U_SHIFT = 2,
     // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
     input  wire clock,
     input  wire reset,

@@ -23,7 +23,7 @@ module sptfra_we #(
     // Whether the quads that are not zero are listed
     parameter SKIPS = 0,
     // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
 ) (
     input  wire clock,

@@ -102,12 +102,11 @@ mod tests {
     fn answer(status: u32) -> Answer {
         Answer {
             status,
-            counter: 0,
             resultant: [3.0, 0.0, -6.0],
             mu: 0.5,
-            phi: 0.0,
             mu_xy: [0.5, 0.0],
             field: [vec![1.0, 2.0], vec![0.0, 0.0], vec![-2.0, -4.0]],
+            ..Answer::default()
         }
     }
 

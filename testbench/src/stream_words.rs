@@ -1,11 +1,11 @@
 //! Frames as the words of the two streams.
 
 use golden::solver::Solution;
+use hdl_gen::plan::words;
 
 /// Summary beats in front of the field.
-pub const SUMMARY_BEATS: usize = 8;
+pub const SUMMARY_BEATS: usize = words::SUMMARY_WORDS;
 
-const SUMMARY_NAMES: [&str; SUMMARY_BEATS] = ["status", "F_x", "F_y", "F_z", "mu", "phi", "mu_x", "mu_y"];
 const AXES: [char; 3] = ['x', 'y', 'z'];
 /// The status bits of beat 0; the frame counter is above.
 const STATUS_MASK: u32 = 0xFFFF;
@@ -28,8 +28,10 @@ pub fn as_received(packet: &[u32]) -> Vec<f64> {
 
 /// What a beat of an output frame is, such as `F_z`, or `f_x of taxel 12 (2, 1)` with column and row.
 pub fn beat_name(beat: usize, columns: usize) -> String {
-    if let Some(name) = SUMMARY_NAMES.get(beat) {
-        return (*name).to_owned();
+    if beat < SUMMARY_BEATS {
+        let values = words::SUMMARY.iter().filter(|word| word.index == beat).map(|word| word.name);
+        let names: Vec<&str> = values.collect();
+        return if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
     }
     let (taxel, axis) = ((beat - SUMMARY_BEATS) / 3, (beat - SUMMARY_BEATS) % 3);
     let columns = columns.max(1);
@@ -45,12 +47,18 @@ pub struct Answer {
     pub counter: u16,
     /// `F_x, F_y, F_z` in N.
     pub resultant: [f64; 3],
+    /// `T_x, T_y, T_z` in N m.
+    pub torque: [f64; 3],
     /// Friction coefficient.
     pub mu: f64,
     /// Direction in rad.
     pub phi: f64,
     /// Components of the friction coefficient.
     pub mu_xy: [f64; 2],
+    /// Standard error of `(F_x, F_y)` in N.
+    pub standard_error: f64,
+    /// Number of bodies.
+    pub bodies: usize,
     /// `f_x`, `f_y`, `f_z` in N, each of m values; empty for a design that puts out resultants only.
     pub field: [Vec<f64>; 3],
 }
@@ -61,29 +69,35 @@ impl From<Solution> for Answer {
             status: solution.status.0,
             counter: 0,
             resultant: solution.resultant,
+            torque: solution.torque,
             mu: solution.mu,
             phi: solution.phi,
             mu_xy: [solution.mu_x, solution.mu_y],
+            standard_error: solution.standard_error,
+            bodies: solution.bodies,
             field: solution.field,
         }
     }
 }
 
-/// Reads an output frame of 8 summary beats and three beats per taxel; `None` if its length is another.
+/// Reads an output frame of 16 summary beats and three beats per taxel; `None` if its length is another.
 pub fn decode(words: &[u32]) -> Option<Answer> {
     let (summary, field) = words.split_first_chunk::<SUMMARY_BEATS>()?;
     let (triples, []) = field.as_chunks::<3>() else {
         return None;
     };
     let value = |word: u32| f64::from(f32::from_bits(word));
-    let [head, fx, fy, fz, mu, phi, mu_x, mu_y] = *summary;
+    let [head, _, fx, fy, fz, tx, ty, tz, mu, phi, mu_x, mu_y, standard_error, census, ..] = *summary;
     Some(Answer {
         status: head & STATUS_MASK,
         counter: (head >> 16) as u16,
         resultant: [fx, fy, fz].map(value),
+        torque: [tx, ty, tz].map(value),
         mu: value(mu),
         phi: value(phi),
         mu_xy: [mu_x, mu_y].map(value),
+        standard_error: value(standard_error),
+        bodies: (census & 0xFF) as usize,
         field: [0, 1, 2].map(|axis| triples.iter().map(|triple| value(triple[axis])).collect()),
     })
 }
@@ -94,24 +108,30 @@ mod tests {
 
     #[test]
     fn names_follow_the_stream_format() {
-        let names: Vec<String> = [0, 3, 7, 8, 10, 8 + 3 * 12 + 1].iter().map(|&beat| beat_name(beat, 10)).collect();
-        let expected =
-            ["status", "F_z", "mu_y", "f_x of taxel 0 (0, 0)", "f_z of taxel 0 (0, 0)", "f_y of taxel 12 (2, 1)"];
+        let beats = [0, 1, 4, 11, 15, 16, 18, 16 + 3 * 12 + 1];
+        let names: Vec<String> = beats.iter().map(|&beat| beat_name(beat, 10)).collect();
+        let of_taxels = ["f_x of taxel 0 (0, 0)", "f_z of taxel 0 (0, 0)", "f_y of taxel 12 (2, 1)"];
+        let expected = [&["status, frame", "timestamp", "F_z", "mu_y", "nothing"][..], &of_taxels].concat();
         assert_eq!(names, expected);
     }
 
     #[test]
     fn an_answer_is_taken_apart() {
-        let mut words = vec![0x0005_0006];
-        words.extend(encode(&[1.0, 2.0, -3.0, 0.5, 0.25, -0.5, 0.125, 10.0, 20.0, 30.0, 11.0, 21.0, 31.0]));
+        let mut words = vec![0x0005_0006, 77];
+        words.extend(encode(&[1.0, 2.0, -3.0, 0.01, 0.02, 0.03, 0.5, 0.25, -0.5, 0.125, 0.0625]));
+        words.extend([0x0003_0002, 0, 0]);
+        words.extend(encode(&[10.0, 20.0, 30.0, 11.0, 21.0, 31.0]));
         let answer = decode(&words).expect("two taxels");
         let expected = Answer {
             status: 6,
             counter: 5,
             resultant: [1.0, 2.0, -3.0],
+            torque: [0.01_f32, 0.02, 0.03].map(f64::from),
             mu: 0.5,
             phi: 0.25,
             mu_xy: [-0.5, 0.125],
+            standard_error: 0.0625,
+            bodies: 2,
             field: [vec![10.0, 11.0], vec![20.0, 21.0], vec![30.0, 31.0]],
         };
         assert_eq!(answer, expected);
@@ -119,8 +139,8 @@ mod tests {
 
     #[test]
     fn other_lengths_are_no_answer() {
-        assert_eq!(decode(&[0; 7]), None);
-        assert_eq!(decode(&[0; 9]), None);
-        assert!(decode(&[0; 8]).is_some());
+        assert_eq!(decode(&[0; 15]), None);
+        assert_eq!(decode(&[0; 17]), None);
+        assert!(decode(&[0; 16]).is_some());
     }
 }

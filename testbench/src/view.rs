@@ -210,7 +210,7 @@ mod tests {
 
     fn answer(forces: &[[f64; 3]]) -> Answer {
         let field = [0, 1, 2].map(|axis| forces.iter().map(|force| force[axis]).collect());
-        Answer { status: 0, counter: 0, resultant: [1.0, 2.0, -3.0], mu: 0.5, phi: 1.0, mu_xy: [0.3, 0.4], field }
+        Answer { resultant: [1.0, 2.0, -3.0], mu: 0.5, phi: 1.0, mu_xy: [0.3, 0.4], field, ..Answer::default() }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use super::{CalibrateError, Settings, Stage, random_contacts};
 use crate::design::Design;
 use crate::estimators::joint::{self, JointScratch, Look};
+use crate::products::ByPq;
 use crate::scene::{Contact, Medium, Shape, normal, unit_responses};
 use crate::solver::{Solver, Status};
 
@@ -33,7 +34,7 @@ pub(super) struct Sample {
     /// The contact as the correction sees it.
     pub(super) look: Look,
     /// Sums `G_pq` in newtons.
-    sums: [[f64; 3]; 3],
+    sums: ByPq<f64>,
     /// True resultant in newtons.
     force: [f64; 3],
 }
@@ -133,7 +134,7 @@ pub(super) fn gain_and_targets(samples: &[Sample]) -> (f64, Vec<[f64; 2]>) {
 
 /// Solves the two equations of the tangential resultant for the friction components.
 fn target(sample: &Sample, gain: f64) -> [f64; 2] {
-    let [[x0, a, b], [y0, c, d], _] = sample.sums;
+    let [[x0, a, b], [y0, c, d], ..] = sample.sums;
     let [x, y] = [sample.force[0] / gain - x0, sample.force[1] / gain - y0];
     let determinant = a * d - b * c;
     let found = [(d * x - b * y) / determinant, (a * y - c * x) / determinant];

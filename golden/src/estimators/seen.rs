@@ -1,5 +1,7 @@
 //! What every estimator sees of a frame, and the range of what it finds.
 
+use crate::products::ByPq;
+
 /// A friction component found is within this on either side of 0.
 pub const RANGE: f64 = 2.0;
 
@@ -21,8 +23,8 @@ pub(crate) struct Seen<'a> {
     /// Stress in pascals, m values.
     pub(crate) b: &'a [f64],
     pub(crate) contact: Contact,
-    /// Sums `G_pq` in newtons, at `[p - 1][q]`.
-    pub(crate) sums: &'a [[f64; 3]; 3],
+    /// Sums `G_pq` in newtons, and those of the torques in N m.
+    pub(crate) sums: &'a ByPq<f64>,
     /// Stresses `u_q = C33 g_3q` in pascals, m values each.
     pub(crate) u: [&'a [f64]; 3],
 }

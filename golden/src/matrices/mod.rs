@@ -67,6 +67,7 @@ pub struct Matrices {
     a: [FoldedMatrix; 3],
     condition_c33: f64,
     condition_aat: f64,
+    sensor: Sensor,
 }
 
 /// Largest condition number that leaves a digit of the result, `1 / f64::EPSILON`.
@@ -135,7 +136,12 @@ impl Matrices {
         }
         let [c33inv, a1, a2, a3] = factors.inverses(&quads).ok_or_else(|| singular("A A^T", f64::INFINITY))?;
         let [c31, c32, c33] = c;
-        Ok(Self { c31, c32, c33, c33inv, a: [a1, a2, a3], condition_c33, condition_aat })
+        Ok(Self { c31, c32, c33, c33inv, a: [a1, a2, a3], condition_c33, condition_aat, sensor: sensor.clone() })
+    }
+
+    /// The sensor that they are of.
+    pub fn sensor(&self) -> &Sensor {
+        &self.sensor
     }
 
     /// The quads of the sensor.

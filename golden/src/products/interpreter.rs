@@ -2,8 +2,11 @@
 
 use super::step::{Coefficients, Epilogue, Step, Vector};
 
-/// `G_pq` by `[p - 1][q]`.
-pub type ByPq<T> = [[T; 3]; 3];
+/// The sums `G_pq` by `[p - 1][q]`, so that `F_p = G_p0 + mu_x G_p1 + mu_y G_p2`, and after those of `F_x`, `F_y` and
+/// `F_z` in the same form those of the torques `T_x`, `T_y` and `T_z` about the middle of the grid.
+pub type ByPq<T> = [[T; 3]; RESULTANTS];
+/// Forces and torques of a frame.
+pub const RESULTANTS: usize = 6;
 
 /// What the interpreter computes with: how vectors look, and what one step does to them.
 ///
@@ -54,7 +57,7 @@ pub trait Arithmetic {
     fn unfold(&self, vector: &Self::Vector, taxels: &mut Self::Taxels);
     /// All sums, from y+ and the weights.
     fn sums(&self, index: usize, pull: &Self::Vector, weight: &Self::Vector, sums: &mut Self::Sums);
-    /// `G_pq` as the sum of `g_pq`; p from 0.
+    /// `G_pq` as the sum of `g_pq`, and what it adds to those of the torques; p from 0, `g_1q` before `g_2q`.
     fn sum(&self, g: &Self::Vector, p: usize, q: usize, sums: &mut Self::Sums);
 }
 

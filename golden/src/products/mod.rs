@@ -18,9 +18,9 @@ mod step;
 mod stored;
 
 pub use float::Float;
-pub use interpreter::{Arithmetic, ByPq, Frame};
+pub use interpreter::{Arithmetic, ByPq, Frame, RESULTANTS};
 pub use list::{Form, ProductList, Source};
 pub use real::{Engine, Real, RealFrame};
-pub use scalar::{Number, Scalar, mirror, swapped};
+pub use scalar::{Number, Scalar, mirror, put_moments, swapped};
 pub use step::{Coefficients, Epilogue, Step, Vector};
 pub use stored::{PaperMatrices, Stored};

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use super::float::Float;
 use super::interpreter::{ByPq, Frame};
 use super::list::ProductList;
-use super::scalar::{Number, Scalar};
+use super::scalar::{Number, Scalar, put_moments};
 use super::step::{Step, Vector};
 use super::stored::{Quarters, Stored};
 
@@ -44,6 +44,17 @@ impl<T: Float, S: Stored<W>, const W: usize> Number<W> for Real<T, S> {
 
     fn sums(&self, _: usize, pull: &[[T; W]], weight: &[[T; W]]) -> ByPq<T> {
         self.stored.sums(pull, weight)
+    }
+
+    fn sum(&self, g: &[[T; W]], p: usize, q: usize, sums: &mut ByPq<T>) {
+        let mut totals = [T::default(); 3];
+        for (taxel, &value) in g.as_flattened().iter().enumerate() {
+            let [x, y] = self.stored.arm_m(taxel).map(T::of);
+            let parts = [value, x * value, y * value];
+            totals.iter_mut().zip(parts).for_each(|(total, part)| *total = *total + part);
+        }
+        let [sum, along_x, along_y] = totals;
+        put_moments(sums, (p, q), sum, [along_x, along_y]);
     }
 
     fn folded_stress(&self, sum: T) -> T {

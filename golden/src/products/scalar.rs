@@ -34,6 +34,8 @@ pub trait Number<const W: usize> {
     fn combine(&self, index: usize, parts: [Self::Element; 3], friction: [Self::Element; 2]) -> Self::Element;
     /// The sums `G_pq` from y+ and the weights.
     fn sums(&self, index: usize, pull: &[[Self::Element; W]], weight: &[[Self::Element; W]]) -> ByPq<Self::Element>;
+    /// `G_pq` as the sum of `g_pq`, and what it adds to those of the torques.
+    fn sum(&self, g: &[[Self::Element; W]], p: usize, q: usize, sums: &mut ByPq<Self::Element>);
     /// Folded stress in the format of an operand.
     fn folded_stress(&self, sum: Self::Element) -> Self::Element;
     /// Folded weights, or y+, in the format of an operand.
@@ -159,7 +161,21 @@ impl<N: Number<W>, const W: usize> Arithmetic for Scalar<N, W> {
     }
 
     fn sum(&self, g: &Self::Vector, p: usize, q: usize, sums: &mut Self::Sums) {
-        sums[p][q] = g.as_flattened().iter().fold(N::Element::default(), |sum, &value| sum + value);
+        self.numbers.sum(g, p, q, sums);
+    }
+}
+
+/// Puts a sum of `g_pq` and its moments, those of `x g_pq` and `y g_pq`, where they belong: `T_x` is the sum of `y f_z`,
+/// `T_y` that of `-x f_z`, `T_z` that of `x f_y - y f_x`.
+pub fn put_moments<E>(sums: &mut ByPq<E>, (p, q): (usize, usize), sum: E, [along_x, along_y]: [E; 2])
+where
+    E: Copy + Add<Output = E> + Neg<Output = E>,
+{
+    sums[p][q] = sum;
+    match p {
+        0 => sums[5][q] = -along_y,
+        1 => sums[5][q] = sums[5][q] + along_x,
+        _ => (sums[3][q], sums[4][q]) = (along_y, -along_x),
     }
 }
 

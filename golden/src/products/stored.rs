@@ -17,6 +17,9 @@ pub trait Stored<const W: usize> {
 
     /// The sums `G_pq` from y+ and the weights.
     fn sums<T: Float>(&self, pull: &[[T; W]], weight: &[[T; W]]) -> ByPq<T>;
+
+    /// The arm of a taxel's force, in metres from the middle of the grid, for sums of vectors that are not folded.
+    fn arm_m(&self, taxel: usize) -> [f64; 2];
 }
 
 impl<S: Stored<W>, const W: usize> Stored<W> for &S {
@@ -26,6 +29,10 @@ impl<S: Stored<W>, const W: usize> Stored<W> for &S {
 
     fn sums<T: Float>(&self, pull: &[[T; W]], weight: &[[T; W]]) -> ByPq<T> {
         (*self).sums(pull, weight)
+    }
+
+    fn arm_m(&self, taxel: usize) -> [f64; 2] {
+        (*self).arm_m(taxel)
     }
 }
 
@@ -42,13 +49,18 @@ impl Stored<4> for ReducedMatrices {
     fn sums<T: Float>(&self, pull: &[[T; 4]], weight: &[[T; 4]]) -> ByPq<T> {
         self.sum_rows().of(|quad, class| pull[quad][class], |quad, class| weight[quad][class])
     }
+
+    /// Rows of sums have the arms in them.
+    fn arm_m(&self, _: usize) -> [f64; 2] {
+        [0.0; 2]
+    }
 }
 
 impl SumRows {
     /// The sums `G_pq` from what y+ and the weights have at a quad in a class.
     pub(super) fn of<T: Float>(&self, pull: impl Fn(usize, usize) -> T, weight: impl Fn(usize, usize) -> T) -> ByPq<T> {
         let mut sums = ByPq::<T>::default();
-        for (quad, &one) in self.total.weights.iter().enumerate() {
+        for quad in 0..self.shares[0].weights.len() {
             for (p, sums) in sums.iter_mut().enumerate() {
                 for (q, sum) in sums.iter_mut().enumerate() {
                     let row = &self.rows[p][q];
@@ -56,7 +68,9 @@ impl SumRows {
                     *sum = *sum + T::of(row.weights[quad]) * value;
                 }
             }
-            sums[2][0] = sums[2][0] - T::of(one) * weight(quad, 0);
+            for (sums, share) in sums[2..].iter_mut().zip(&self.shares) {
+                sums[0] = sums[0] - T::of(share.weights[quad]) * weight(quad, share.class);
+            }
         }
         sums
     }
@@ -69,12 +83,19 @@ pub struct PaperMatrices {
     pub filtered: FilteredMatrices,
     c33: FoldedRows,
     members: Vec<[usize; 4]>,
+    arms_m: Vec<[f64; 2]>,
 }
 
 impl PaperMatrices {
     /// Of one sensor.
     pub fn new(matrices: &Matrices, filtered: FilteredMatrices) -> Self {
-        Self { filtered, c33: FoldedRows::from(&matrices.c33), members: matrices.quads().all() }
+        let sensor = matrices.sensor();
+        Self {
+            filtered,
+            c33: FoldedRows::from(&matrices.c33),
+            members: matrices.quads().all(),
+            arms_m: (0..sensor.taxels()).map(|taxel| sensor.arm_m(taxel)).collect(),
+        }
     }
 }
 
@@ -99,6 +120,10 @@ impl Stored<1> for PaperMatrices {
     /// The paper's sums are those of the vectors `g_pq`.
     fn sums<T: Float>(&self, _: &[[T; 1]], _: &[[T; 1]]) -> ByPq<T> {
         ByPq::default()
+    }
+
+    fn arm_m(&self, taxel: usize) -> [f64; 2] {
+        self.arms_m[taxel]
     }
 }
 

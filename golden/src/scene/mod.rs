@@ -80,10 +80,14 @@ pub struct SceneFrame {
     pub stress: Vec<f64>,
     /// Resultant force `[F_x, F_y, F_z]` in newtons; `F_z < 0` presses.
     pub force: [f64; 3],
+    /// Its torque `[T_x, T_y, T_z]` in N m about the middle of the grid at the surface.
+    pub torque: [f64; 3],
     /// Tangential over normal resultant.
     pub friction: f64,
     /// Direction of the tangential resultant in radians, `atan2(F_y, F_x)`.
     pub direction: f64,
+    /// Number of contacts.
+    pub bodies: usize,
 }
 
 impl Scene {
@@ -189,6 +193,7 @@ impl Scene {
     fn combine(&self, responses: &[UnitResponses], sweep_deg: Option<f64>) -> SceneFrame {
         let mut stress = vec![0.0; self.sensor.taxels()];
         let mut force = [0.0; 3];
+        let mut torque = [0.0; 3];
         for (contact, [normal, along_x, along_y]) in self.contacts.iter().zip(responses) {
             let angle = contact.direction_deg + sweep_deg.unwrap_or(0.0);
             let pressing = contact.normal_force_n;
@@ -197,9 +202,12 @@ impl Scene {
             for (taxel, sum) in stress.iter_mut().enumerate() {
                 *sum += pressing * normal[taxel] + fx * along_x[taxel] + fy * along_y[taxel];
             }
-            force[0] += fx;
-            force[1] += fy;
-            force[2] -= pressing;
+            // Every shape is its own mirror image in x and in y, so that its forces act at its centre.
+            let own = [fx, fy, -pressing];
+            let own = own.into_iter().zip(self.sensor.torque_of(contact.centre_m, own));
+            for ((sum, moment), (part, arm)) in force.iter_mut().zip(&mut torque).zip(own) {
+                (*sum, *moment) = (*sum + part, *moment + arm);
+            }
         }
         SceneFrame {
             label: match sweep_deg {
@@ -208,8 +216,10 @@ impl Scene {
             },
             stress,
             force,
+            torque,
             friction: force[0].hypot(force[1]) / force[2].abs(),
             direction: force[1].atan2(force[0]),
+            bodies: self.contacts.len(),
         }
     }
 }

@@ -65,6 +65,12 @@ pub struct Solution {
     pub status: Status,
     /// Sum of the forces `[F_x, F_y, F_z]` in newtons.
     pub resultant: [f64; 3],
+    /// Their torque `[T_x, T_y, T_z]` in N m about the middle of the grid at the surface.
+    pub torque: [f64; 3],
+    /// Standard error of `(F_x, F_y)` in newtons; 0 where the estimator has none.
+    pub standard_error: f64,
+    /// Number of bodies in touch: 1, and 0 without an answer.
+    pub bodies: usize,
     /// `sqrt(F_x^2 + F_y^2) / |F_z|`, 0 where `F_z` is 0 (Eq. 29).
     pub mu: f64,
     /// Direction of the tangential resultant, `atan2(F_y, F_x)`, in radians.
@@ -83,6 +89,9 @@ impl Solution {
         Self {
             status,
             resultant: [0.0; 3],
+            torque: [0.0; 3],
+            standard_error: 0.0,
+            bodies: 0,
             mu: 0.0,
             phi: 0.0,
             mu_x: 0.0,
@@ -103,22 +112,20 @@ impl Solution {
 
     /// Multiplies all forces by a gain.
     fn scale(&mut self, gain: f64) {
-        self.field.iter_mut().flatten().chain(&mut self.resultant).for_each(|force| *force *= gain);
+        let resultants = self.resultant.iter_mut().chain(&mut self.torque);
+        self.field.iter_mut().flatten().chain(resultants).for_each(|force| *force *= gain);
     }
 
     /// Finds the friction components, and puts them and what follows from them in place.
     fn optimum(&mut self, friction: &Friction, seen: &Seen, scratch: &mut FrictionScratch) -> [f64; 2] {
         let (status, mu) = friction.find(seen, scratch);
         self.status.insert(status);
-        self.put_friction(mu, seen.sums.map(|[g0, g1, g2]| g0 + mu[0] * g1 + mu[1] * g2));
+        let [fx, fy, fz, tx, ty, tz] = seen.sums.map(|[g0, g1, g2]| g0 + mu[0] * g1 + mu[1] * g2);
+        let resultant = [fx, fy, fz];
+        [self.mu_x, self.mu_y] = mu;
+        (self.resultant, self.torque, self.bodies) = (resultant, [tx, ty, tz], 1);
+        (self.mu, self.phi) = (op::quotient(resultant), fy.atan2(fx));
         mu
-    }
-
-    /// Puts the friction components and the resultant in place, and what follows from that.
-    fn put_friction(&mut self, [mu_x, mu_y]: [f64; 2], resultant: [f64; 3]) {
-        let [x, y, _] = resultant;
-        (self.mu_x, self.mu_y, self.resultant) = (mu_x, mu_y, resultant);
-        (self.mu, self.phi) = (op::quotient(resultant), y.atan2(x));
     }
 }
 

@@ -28,6 +28,9 @@ fn folder_with(frames: &str) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
+/// The first line of every force file.
+const HEADER: &str = "status,F_x,F_y,F_z,mu,phi,mu_x,mu_y,T_x,T_y,T_z,standard_error,bodies";
+
 fn row(value: &str) -> String {
     [value; 12].join(",")
 }
@@ -65,17 +68,30 @@ fn scene_then_solve() {
     assert!((error - 10.8).abs() < 0.05, "{error}");
 
     let lines = fs::read_to_string(&forces).unwrap();
-    assert_eq!(lines.lines().count(), 36);
-    for line in lines.lines() {
+    assert_eq!(lines.lines().count(), 1 + 36);
+    assert!(lines.starts_with(&format!("{HEADER},taxel0_f_x,taxel0_f_y,taxel0_f_z,taxel1_f_x,")));
+    for line in lines.lines().skip(1) {
         let values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
-        assert_eq!(values.len(), 8 + 300);
+        assert_eq!(values.len(), 13 + 300);
+        let mut torque = [0.0; 3];
         for axis in 0..3 {
-            let sum: f64 = values[8..].iter().skip(axis).step_by(3).sum();
+            let sum: f64 = values[13..].iter().skip(axis).step_by(3).sum();
             assert!((sum - values[1 + axis]).abs() < 1e-9);
         }
+        for (taxel, force) in values[13..].as_chunks::<3>().0.iter().enumerate() {
+            let (x, y) = (0.004 * (taxel % 10) as f64 - 0.018, 0.002 * (taxel / 10) as f64 - 0.009);
+            let part = [y * force[2], -x * force[2], x * force[1] - y * force[0]];
+            torque.iter_mut().zip(part).for_each(|(torque, part)| *torque += part);
+        }
+        for (found, expected) in values[8..11].iter().zip(torque) {
+            assert!((found - expected).abs() < 1e-11, "{found} {expected}");
+        }
+        assert_eq!(values[12], 1.0);
     }
+    // The contact is in the middle.
     let truth = fs::read_to_string(&reference).unwrap();
-    assert_eq!(truth.lines().next(), Some("0,3.0,0.0,-6.0,0.5,0.0,0.5,0.0"));
+    assert_eq!(truth.lines().next(), Some(HEADER));
+    assert_eq!(truth.lines().nth(1), Some("0,3.0,0.0,-6.0,0.5,0.0,0.5,0.0,-0.0,0.0,0.0,0.0,1.0"));
     // Besides these three and the frames' sensor nothing is left behind.
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4);
 }
@@ -88,8 +104,9 @@ fn without_field_a_line_is_the_summary() {
     let output = golden(&["solve", text(&design), "--frames", text(&frames), "--out", text(&out)]);
     assert!(output.status.success(), "{output:?}");
     let lines = fs::read_to_string(&out).unwrap();
-    assert!(lines.lines().all(|line| line.split(',').count() == 8));
-    assert_eq!(lines.lines().nth(1), Some("1,0.0,0.0,0.0,0.0,0.0,0.0,0.0"));
+    assert!(lines.lines().all(|line| line.split(',').count() == 13));
+    assert_eq!(lines.lines().next(), Some(HEADER));
+    assert_eq!(lines.lines().nth(2), Some("1,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0"));
 }
 
 #[test]
@@ -258,7 +275,7 @@ fn an_old_file_is_replaced_whole() {
     let design = repository("designs/small.toml");
     let output = golden(&["solve", text(&design), "--frames", text(&frames), "--out", text(&out)]);
     assert!(output.status.success());
-    assert_eq!(fs::read_to_string(&out).unwrap().lines().count(), 1);
+    assert_eq!(fs::read_to_string(&out).unwrap().lines().count(), 2);
 }
 
 #[test]

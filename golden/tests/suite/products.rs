@@ -11,6 +11,7 @@ use nalgebra::DMatrix;
 /// All matrices whole: nothing here knows of folds, blocks or rows of sums.
 #[derive(Clone)]
 struct Dense {
+    sensor: Sensor,
     quads: Quads,
     thirteen: Vec<DMatrix<f64>>,
     ten: Vec<DMatrix<f64>>,
@@ -24,7 +25,7 @@ impl Dense {
         let [c33inv, a1, a2, a3] = [0, 1, 2, 3].map(|index: usize| thirteen[index].clone());
         let e = &c33 * &a3;
         let ten = vec![c33inv, &c33 - &e * &c33, &e * &c31, &e * &c32, c33, c31, c32, a1, a2, a3];
-        Self { quads: *matrices.quads(), thirteen, ten }
+        Self { sensor: sensor.clone(), quads: *matrices.quads(), thirteen, ten }
     }
 
     fn of(&self, source: Source) -> (&DMatrix<f64>, usize) {
@@ -35,18 +36,32 @@ impl Dense {
         }
     }
 
-    /// The sums of all forces by Eqs. 11 to 13 from the values of the taxels.
+    /// The sums of all forces and their torques by Eqs. 11 to 13 from the values of the taxels.
     fn sums_of(&self, pull: &[f64], weight: &[f64]) -> ByPq<f64> {
         let of = |name: ReducedName| &self.ten[name.index()];
-        let total = |p: usize, q: usize| -> f64 {
+        let [pull, weight] = [pull, weight].map(nalgebra::DVector::from_row_slice);
+        let vector = |p: usize, q: usize| -> nalgebra::DVector<f64> {
             let a = of([ReducedName::A1, ReducedName::A2, ReducedName::A3][p]);
             let c = of([ReducedName::C33, ReducedName::C31, ReducedName::C32][q]);
-            let x = nalgebra::DVector::from_row_slice(if q == 0 { pull } else { weight });
-            (a * (c * x)).sum()
+            let product = a * (c * if q == 0 { &pull } else { &weight });
+            match (p, q) {
+                (2, 0) => product - &weight,
+                (_, 0) => product,
+                _ if q == p + 1 => &weight - product,
+                _ => -product,
+            }
         };
-        let all: f64 = weight.iter().sum();
-        let mut sums = [0, 1, 2].map(|p| [total(p, 0), -total(p, 1), -total(p, 2)]);
-        (sums[0][1], sums[1][2], sums[2][0]) = (sums[0][1] + all, sums[1][2] + all, sums[2][0] - all);
+        let mut sums = ByPq::default();
+        for q in 0..3 {
+            let [x, y, z] = [0, 1, 2].map(|p| vector(p, q));
+            for taxel in 0..self.quads.taxels() {
+                let force = [x[taxel], y[taxel], z[taxel]];
+                let torque = self.sensor.torque_of(self.sensor.position_m(taxel), force);
+                for (sum, part) in sums.iter_mut().zip(force.into_iter().chain(torque)) {
+                    sum[q] += part;
+                }
+            }
+        }
         sums
     }
 }
@@ -66,6 +81,10 @@ impl Stored<1> for Dense {
     fn sums<T: Float>(&self, pull: &[[T; 1]], weight: &[[T; 1]]) -> ByPq<T> {
         self.sums_of(&real(pull.as_flattened()), &real(weight.as_flattened())).map(|sums| sums.map(T::of))
     }
+
+    fn arm_m(&self, taxel: usize) -> [f64; 2] {
+        self.sensor.arm_m(taxel)
+    }
 }
 
 impl Stored<4> for Dense {
@@ -83,6 +102,10 @@ impl Stored<4> for Dense {
             self.quads.unfold(&std::array::from_fn(|class| x.iter().map(|values| values[class].into()).collect()))
         };
         self.sums_of(&taxels(pull), &taxels(weight)).map(|sums| sums.map(T::of))
+    }
+
+    fn arm_m(&self, taxel: usize) -> [f64; 2] {
+        self.sensor.arm_m(taxel)
     }
 }
 

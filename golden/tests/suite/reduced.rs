@@ -128,7 +128,12 @@ fn sums_are_those_of_the_coefficients() {
         let x = DVector::from_vec(uneven(columns * rows));
         let folded = quads.fold(x.as_slice());
         let total = x.sum();
-        assert!((reduced.weight_sum().apply(&folded) - total).abs() < 1e-12);
+        let arms = (0..x.len()).map(|taxel| matrices.sensor().arm_m(taxel));
+        let shares =
+            arms.zip(x.iter()).fold([0.0; 3], |[one, y, x], (arm, w)| [one + w, y + arm[1] * w, x - arm[0] * w]);
+        for (row, share) in reduced.weight_shares().iter().zip(shares) {
+            assert!((row.apply(&folded) - share).abs() < 1e-12);
+        }
         for p in 0..3 {
             for (q, c) in [&dense[4], &dense[5], &dense[6]].into_iter().enumerate() {
                 let product = (&dense[7 + p] * (c * &x)).sum();

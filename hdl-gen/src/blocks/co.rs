@@ -15,11 +15,15 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let mut in_bank: Vec<bool> = stored.iter().map(|&vector| place(plan, vector).1).collect();
     bases.resize(folded.len(), (0, String::new()));
     in_bank.resize(folded.len(), false);
-    Parameters::new()
+    let parameters = Parameters::new()
         .count("WAYS", plan.ways())
         .count("ELEMENTS", plan.elements())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .count("OPERAND_DEPTH", plan.operands.words())
         .table("STORE_BASES", 16, &bases)
-        .mask("STORE_IN_BANK", &in_bank)
+        .mask("STORE_IN_BANK", &in_bank);
+    if plan.arms.is_empty() {
+        return parameters;
+    }
+    parameters.expression("ROM_DIR", "ROM_DIR").expression("ROM_NAME", format!("\"{}\"", plan.design.name))
 }

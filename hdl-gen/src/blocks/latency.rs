@@ -39,7 +39,7 @@ pub fn bus_to_write(folded: bool) -> u64 {
 
 /// From the last sum, or the last g, on the result bus to the sums being complete.
 pub fn bus_to_sums(folded: bool) -> u64 {
-    if folded { 2 } else { 5 }
+    if folded { 2 } else { 7 }
 }
 
 // ---- Op
@@ -48,4 +48,4 @@ pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY 
 /// From the start of the output to the first beat leaving Op.
 pub const OUTPUT_LATENCY: u64 = 13;
 /// Beats of a frame before those of the field.
-pub const SUMMARY_BEATS: u64 = 8;
+pub const SUMMARY_BEATS: u64 = crate::plan::SUMMARY_WORDS as u64;

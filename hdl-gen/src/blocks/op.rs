@@ -17,6 +17,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .flag("FIELD", plan.design.algorithm.outputs == Outputs::Field)
         .flag("DEPENDENT", plan.estimator.slot().answers_with_a_line())
         .number("SUM_LSB", plan.formats.g.lsb.into())
+        .number("TORQUE_LSB", plan.formats.torque_lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into())
         .cycles("EXPECTED_SUMMARY_LATENCY", SUMMARY_LATENCY)
         .cycles("EXPECTED_OUTPUT_LATENCY", OUTPUT_LATENCY)

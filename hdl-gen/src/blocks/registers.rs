@@ -6,7 +6,7 @@ use super::Parameters;
 use crate::plan::Plan;
 
 /// Version of the register map: one more whenever a register moves or changes its meaning.
-const MAP_VERSION: u8 = 1;
+pub const MAP_VERSION: u8 = 2;
 
 /// What the read-only registers hold. Truths are 0 or 1: they are reset values in the register map.
 #[derive(Clone, Debug, Serialize)]

@@ -3,9 +3,9 @@
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::plan::Plan;
 use crate::plan::product::{Product, Vector};
 use crate::plan::schedule::Window;
+use crate::plan::{Plan, words};
 
 use super::{EmitError, FileMap, VERSION, registers};
 
@@ -76,6 +76,25 @@ pub fn products(plan: &Plan) -> Vec<ProductEntry<'_>> {
     plan.products.iter().zip(&plan.schedule.windows).map(entry).collect()
 }
 
+/// Edition of the file and of the streams that it describes.
+const FORMAT: u32 = 2;
+
+/// The words of an output frame: values by name, then the taxels' forces, `count` words from `index` on.
+fn output(plan: &Plan) -> Value {
+    let mut output: Vec<Value> = words::SUMMARY.iter().map(|word| json!(word)).collect();
+    if plan.field_words() > 0 {
+        output.push(json!({
+            "name": "field",
+            "index": words::SUMMARY_WORDS,
+            "count": plan.field_words(),
+            "of_each_taxel": ["f_x", "f_y", "f_z"],
+            "type": words::Kind::Float32,
+            "unit": "N",
+        }));
+    }
+    json!(output)
+}
+
 /// The file's bytes. `files` are the others of the folder.
 ///
 /// # Errors
@@ -92,6 +111,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         .collect();
     let estimator = plan.estimator.slot().metadata();
     let mut value = json!({
+        "format": FORMAT,
         "name": plan.design.name,
         "generator": format!("hdl-gen {VERSION}"),
         "design_hash": hash,
@@ -100,6 +120,8 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         "rows": plan.design.sensor.rows,
         "beats_in": plan.taxels(),
         "beats_out": plan.beats_out(),
+        "output": output(plan),
+        "status_bits": words::status_bits().map(|(bit, name)| (name.to_owned(), json!(bit))).collect::<Map<_, _>>(),
         "clock_mhz": plan.design.hardware.clock_mhz,
         "part": plan.design.hardware.part,
         "condition": plan.condition,

@@ -6,6 +6,7 @@ use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
 use crate::plan::counts::GAIN_BITS;
 use crate::plan::format::address_bits;
+use crate::plan::formats::ARM_BITS;
 use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
 
 use super::{FileMap, lane_file};
@@ -35,6 +36,10 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         files.insert(format!("rom/{name}_gains.mem"), hex(gains, counts.gains.len(), GAIN_BITS));
         let offsets = counts.offsets.iter().map(|&offset| u128::from(offset as u64));
         files.insert(format!("rom/{name}_offsets.mem"), hex(offsets, counts.offsets.len(), counts.offset_bits()));
+    }
+    if !plan.arms.is_empty() {
+        let arms = plan.arms.iter().map(|arms| joined(arms, ARM_BITS));
+        files.insert(format!("rom/{name}_arms.mem"), hex(arms, plan.arms.len(), 2 * ARM_BITS));
     }
     for (contents, words) in plan.estimator.slot().roms() {
         files.insert(format!("rom/{name}_{contents}.mem"), network_file(&words));

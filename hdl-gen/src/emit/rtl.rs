@@ -69,6 +69,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_stream_gate",
     "sptfra_summary",
     "sptfra_times_index",
+    "sptfra_timestamp",
     "sptfra_turns",
     "sptfra_unfold",
     "sptfra_we",

@@ -8,6 +8,7 @@ use tera::Context;
 
 use crate::model::Model;
 use crate::plan::Plan;
+use crate::plan::words::TIMESTAMP;
 
 use super::{EmitError, FileMap, template};
 
@@ -26,6 +27,8 @@ struct View<'a> {
     words_out: usize,
     /// Words of an output frame.
     beats: usize,
+    /// Which of them is the timestamp.
+    timestamp: usize,
     timeout: u64,
     /// Whether the core has a register bank.
     control: bool,
@@ -47,6 +50,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
         words_in: packets.iter().map(Vec::len).sum(),
         words_out: answers.iter().map(Vec::len).sum(),
         beats: model.output_words(),
+        timestamp: TIMESTAMP,
         timeout: SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64,
         control: plan.design.hardware.control,
     };

@@ -43,6 +43,7 @@ struct View {
     weight_lsb: i32,
     u_lsb: i32,
     g_lsb: i32,
+    torque_lsb: i32,
 
     /// What an element of a vector is, how many there are, and how many values come at a time.
     element: &'static str,
@@ -100,6 +101,7 @@ impl View {
             weight_lsb: plan.formats.weight.lsb,
             u_lsb: plan.formats.u.lsb,
             g_lsb: plan.formats.g.lsb,
+            torque_lsb: plan.formats.torque_lsb,
 
             element: if folded { "quad" } else { "taxel" },
             elements: plan.elements(),

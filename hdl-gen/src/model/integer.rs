@@ -1,12 +1,12 @@
 //! The arithmetic of a plan: integers, every product rounded to the step of its result.
 
 use golden::parity::CLASSES;
-use golden::products::{ByPq, Number, Scalar, Step};
+use golden::products::{ByPq, Number, Scalar, Step, put_moments};
 
 use crate::plan::Plan;
 use crate::plan::format::{FRICTION_FRACTION, round_shift};
-use crate::plan::formats::FOLD_BITS;
-use crate::plan::product::{SUM_ROWS, sum_way};
+use crate::plan::formats::{ARM_FRACTION, FOLD_BITS};
+use crate::plan::product::{SHARE_ROW, sum_row, sum_way};
 
 /// The integers of a plan. Order of summation does not matter: every sum is exact in its width, by the bounds of the
 /// plan.
@@ -54,9 +54,20 @@ impl<const W: usize> Number<W> for Integer<'_> {
         let operand: [Vec<i64>; W] =
             std::array::from_fn(|way| pull.iter().chain(weight).map(|element| element[way]).collect());
         let row = |row: usize, way: usize| round_shift(matrix.row_product(row, way, &operand[way]), lead.shift);
-        let mut sums: ByPq<i64> = std::array::from_fn(|p| std::array::from_fn(|q| row(q, sum_way(p, q))));
-        sums[2][0] -= row(SUM_ROWS - 1, 0);
+        let mut sums: ByPq<i64> = std::array::from_fn(|p| std::array::from_fn(|q| row(sum_row(p, q), sum_way(p, q))));
+        for p in 2..5 {
+            sums[p][0] -= row(SHARE_ROW, sum_way(p, 0));
+        }
         sums
+    }
+
+    fn sum(&self, g: &[[i64; W]], p: usize, q: usize, sums: &mut ByPq<i64>) {
+        let values = g.as_flattened();
+        let moment = |axis: usize| {
+            let arms = self.plan.arms.iter().map(|arms| i64::from(arms[axis]));
+            arms.zip(values).map(|(arm, value)| round_shift(arm * value, ARM_FRACTION)).sum()
+        };
+        put_moments(sums, (p, q), values.iter().sum(), [moment(0), moment(1)]);
     }
 
     fn folded_stress(&self, sum: i64) -> i64 {

@@ -14,10 +14,10 @@ use golden::products::{ByPq, Frame, Scalar};
 
 use crate::cores::{fixed_to_float, float_to_fixed};
 use crate::estimators::{Contact, Seen};
-use crate::plan::Plan;
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::formats::field_shifts;
 use crate::plan::product::{Coefficients, Product, Vector};
+use crate::plan::{Plan, words};
 
 use integer::Integer;
 use summary::Summary;
@@ -63,12 +63,13 @@ impl<'plan> Model<'plan> {
         self.frames = 0;
     }
 
-    /// Words of every output frame: 8, and for the field 3 m more.
+    /// Words of every output frame: 16, and for the field 3 m more.
     pub fn output_words(&self) -> usize {
         self.plan.beats_out()
     }
 
-    /// The output frame for one packet: float32 words in Pa up to and including the one with TLAST.
+    /// The output frame for one packet: float32 words in Pa up to and including the one with TLAST. Its timestamp is 0:
+    /// when a packet comes is not the model's to know.
     pub fn process(&mut self, packet: &[u32]) -> Vec<u32> {
         let counter = u32::from(self.frames) << 16;
         self.frames = self.frames.wrapping_add(1);
@@ -192,7 +193,7 @@ fn run<'plan, const W: usize>(
     }
 }
 
-/// The eight words before the field, from the sums `G_pq` and the vectors `u_q` of a frame; what Op found goes with
+/// The words before the field, from the sums `G_pq` and the vectors `u_q` of a frame; what Op found goes with
 /// them.
 fn scalars(
     plan: &Plan,
@@ -216,11 +217,21 @@ fn scalars(
     if saturated || found.saturated {
         status |= SATURATED;
     }
-    let force_exponent = plan.formats.g.lsb - FRICTION_FRACTION as i32;
-    let mut words = vec![status];
-    words.extend(summary.forces.map(|force| fixed_to_float::convert(force, force_exponent)));
-    words.push(fixed_to_float::convert(summary.friction_quotient as i64, summary.friction_exponent));
-    words.push(fixed_to_float::convert(i64::from(summary.angle), -(crate::cores::cordic::ANGLE_FRACTION_BITS as i32)));
-    words.extend(summary.friction.map(|mu| fixed_to_float::convert(mu, -(FRICTION_FRACTION as i32))));
-    (words, summary)
+    let friction = FRICTION_FRACTION as i32;
+    let angle_exponent = -(crate::cores::cordic::ANGLE_FRACTION_BITS as i32);
+    let mut answer = vec![0; SUMMARY_WORDS];
+    answer[words::STATUS] = status;
+    let mut put = |first: usize, values: &[i64], exponent: i32| {
+        for (word, &value) in answer[first..].iter_mut().zip(values) {
+            *word = fixed_to_float::convert(value, exponent);
+        }
+    };
+    put(words::FORCE, &summary.forces, plan.formats.g.lsb - friction);
+    put(words::TORQUE, &summary.torques, plan.formats.torque_lsb - friction);
+    put(words::MU, &[summary.friction_quotient as i64], summary.friction_exponent);
+    put(words::MU + 1, &[i64::from(summary.angle)], angle_exponent);
+    put(words::MU_XY, &summary.friction, -friction);
+    // One body.
+    answer[words::CENSUS] = 1;
+    (answer, summary)
 }

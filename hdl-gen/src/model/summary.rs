@@ -19,6 +19,8 @@ pub struct Summary {
     pub friction: [i64; 2],
     /// Resultants, [`FRICTION_FRACTION`] bits finer than g.
     pub forces: [i64; 3],
+    /// Torques, as many bits finer than their sums.
+    pub torques: [i64; 3],
     /// `mu = quotient * 2^exponent`.
     pub friction_quotient: u64,
     /// See `friction_quotient`.
@@ -29,7 +31,9 @@ pub struct Summary {
 
 impl Summary {
     pub fn new(sums: &ByPq<i64>, friction: [i64; 2]) -> Self {
-        let forces = sums.map(|[g0, g1, g2]| (g0 << FRICTION_FRACTION) + friction[0] * g1 + friction[1] * g2);
+        let [fx, fy, fz, tx, ty, tz] =
+            sums.map(|[g0, g1, g2]| (g0 << FRICTION_FRACTION) + friction[0] * g1 + friction[1] * g2);
+        let (forces, torques) = ([fx, fy, fz], [tx, ty, tz]);
         let tangential = Tangential::new(forces[0], forces[1]);
         let normal = forces[2].unsigned_abs();
         let normal_bits = bits(normal);
@@ -42,6 +46,7 @@ impl Summary {
         Self {
             friction,
             forces,
+            torques,
             friction_quotient: quotient,
             friction_exponent: tangential.bits as i32 - normal_bits as i32 - 30,
             angle: tangential.angle,

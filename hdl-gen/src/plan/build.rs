@@ -8,7 +8,7 @@ use super::counts::CountsPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::filtered::Filtered;
 use super::format::{Format, pow2};
-use super::formats::Formats;
+use super::formats::{Formats, arms};
 use super::layout::OperandLayout;
 use super::matrix::QuantisedMatrix;
 use super::passes;
@@ -138,6 +138,7 @@ impl Work {
             matrices: self.matrices.clone(),
             products: self.products.clone(),
             formats: self.formats,
+            arms: if ways == 1 { arms(&design.sensor) } else { Vec::new() },
             counts: self.counts.clone(),
             thresholds: self.thresholds,
             estimator,

@@ -1,9 +1,10 @@
 //! Formats of a plan's vectors.
 
 use golden::products::Vector;
+use golden::sensor::Sensor;
 use serde::Serialize;
 
-use super::format::{FRICTION_FRACTION, Format};
+use super::format::{FRICTION_FRACTION, Format, pow2};
 
 /// Bits by which four taxels' sum is wider than a taxel's value.
 pub const FOLD_BITS: u32 = 2;
@@ -17,6 +18,9 @@ pub struct Formats {
     pub weight: Format,
     /// All nine `g_pq`, and `A_p b_z`, in N; in the reduced plan their sums `G_pq`.
     pub g: Format,
+    /// Exponent of a step of the torques' sums, in N m. They are as many bits wide as those of the forces: an arm is
+    /// counted in a power of two that none exceeds.
+    pub torque_lsb: i32,
     /// `u_q` in Pa.
     pub u: Format,
     /// Reduced plan: formats of the folded vectors.
@@ -35,6 +39,24 @@ impl Formats {
             (None, Vector::Partial(_) | Vector::G(..) | Vector::Force(_)) => self.g,
         }
     }
+}
+
+/// Fraction bits of an arm, in units of [`arm_exponent`].
+pub const ARM_FRACTION: u32 = 16;
+
+/// Bits of an arm.
+pub const ARM_BITS: u32 = ARM_FRACTION + 2;
+
+/// The smallest power of two, in metres, that no arm of a sensor's torques exceeds; its exponent.
+pub fn arm_exponent(sensor: &Sensor) -> i32 {
+    let [x, y] = sensor.arm_m(0);
+    x.abs().max(y.abs()).log2().ceil() as i32
+}
+
+/// The arms of all taxels along x and y with [`ARM_FRACTION`] fraction bits.
+pub fn arms(sensor: &Sensor) -> Vec<[i32; 2]> {
+    let scale = pow2(ARM_FRACTION as i32 - arm_exponent(sensor));
+    (0..sensor.taxels()).map(|taxel| sensor.arm_m(taxel).map(|arm| (arm * scale).round() as i32)).collect()
 }
 
 /// Formats of the folded vectors; those of the taxels' values are in [`Formats`].

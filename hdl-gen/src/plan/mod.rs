@@ -23,6 +23,7 @@ pub mod resources;
 pub mod savings;
 pub mod schedule;
 pub mod timing;
+pub mod words;
 
 use golden::design::{Design, Outputs};
 use golden::matrices::MatrixName;
@@ -39,9 +40,7 @@ use product::{Block, Product};
 use resources::Resources;
 use schedule::Schedule;
 use timing::Timeline;
-
-/// Words before the field: status, `F_x`, `F_y`, `F_z`, mu, phi, `mu_x`, `mu_y`.
-pub const SUMMARY_WORDS: usize = 8;
+pub use words::SUMMARY_WORDS;
 
 /// Thresholds of the frame statuses, in steps of the stress format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -82,6 +81,8 @@ pub struct Plan {
     pub products: Vec<Product>,
     /// Vector formats.
     pub formats: Formats,
+    /// Arms of the taxels' forces, where sums of torques are made of them; empty where rows of sums have them.
+    pub arms: Vec<[i32; 2]>,
     /// Conversion of counts, if the frames are not in pascals.
     pub counts: Option<CountsPlan>,
     /// Status thresholds.
@@ -140,7 +141,7 @@ impl Plan {
         self.design.sensor.taxels()
     }
 
-    /// Words of every output frame: 8, and for the field 3 m more.
+    /// Words of every output frame: 16, and for the field 3 m more.
     pub fn beats_out(&self) -> usize {
         SUMMARY_WORDS + self.field_words()
     }

@@ -76,13 +76,20 @@ pub const SELECT_ONE: i32 = 0;
 pub const SELECT_MU_X: i32 = 1;
 /// See [`SELECT_ONE`].
 pub const SELECT_MU_Y: i32 = 2;
-/// Rows of the sums in front of `K0 y+`: `G_p0`, `G_p1`, `G_p2`, `sum |w|`. The first three have a p in each of three
-/// ways, see [`sum_way`].
-pub const SUM_ROWS: usize = 4;
+/// Rows of the sums in front of `K0 y+`, see [`sum_row`].
+pub const SUM_ROWS: usize = 7;
+/// The row of what `|w|` takes from `F_z`, `T_x` and `T_y` for q = 0, each in its [`sum_way`].
+pub const SHARE_ROW: usize = 3;
 
-/// The way in which sum row `q` holds `G_pq`: the class of the operand on which the sum depends. `p` from 0.
+/// The row that holds `G_pq`, p as in [`golden::products::ByPq`]: row q has those of `F_x`, `F_y`, `F_z` and `T_z`, each
+/// in a way of its own, see [`sum_way`], row 4 + q those of `T_x` and `T_y`.
+pub fn sum_row(p: usize, q: usize) -> usize {
+    if matches!(p, 3 | 4) { 4 + q } else { q }
+}
+
+/// The way in which its row holds `G_pq`: the class of the operand on which the sum depends. `p` from 0.
 pub fn sum_way(p: usize, q: usize) -> usize {
-    let of_p = [1, 2, 0];
+    let of_p = [1, 2, 0, 2, 1, 3];
     let of_q = [0, 1, 2];
     of_p[p] ^ of_q[q]
 }

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::counts::{CountsPlan, GAIN_BITS};
 use super::format::address_bits;
+use super::formats::ARM_BITS;
 use super::layout::OperandLayout;
 use super::memory::{Memory, memory};
 use super::places::WEIGHT_PLACES;
@@ -102,7 +103,8 @@ fn blocks(design: &Design, estimator: &dyn Slot, counts: Option<&CountsPlan>) ->
         estimator.contact_block(),
         block(LANES, &["sptfra_spmv_array"], design.hardware.lanes),
         block(WE, &["sptfra_we"], 0),
-        block(CO, &["sptfra_co", "sptfra_unfold"], 0),
+        // Both arms of a taxel, where sums of torques are made of taxels' forces.
+        block(CO, &["sptfra_co", "sptfra_unfold"], if design.algorithm.plan == PlanKind::Paper { 2 } else { 0 }),
         block(FIELD, &["sptfra_field", "sptfra_coefficient_field"], field),
     ];
     blocks.extend(estimator.search_blocks());
@@ -136,6 +138,7 @@ fn frame_memories(design: &Design, elements: usize) -> Vec<Memory> {
     if design.algorithm.plan == PlanKind::Paper {
         return vec![
             memory(CO, "A_p b", 1, 3 * taxels, data, false),
+            memory(CO, "arms", 1, taxels, 2 * ARM_BITS, true),
             memory(FIELD, "field", 3, 6 * taxels, data, false),
         ];
     }

@@ -1,6 +1,7 @@
 //! Formats of the reduced plan: that the worst case fits, folded and unfolded.
 
 use golden::parity::{CLASSES, Quads, sign};
+use golden::products::RESULTANTS;
 use golden::reduced::ReducedName;
 use golden::solver::Solver;
 use hdl_gen::plan::Plan;
@@ -9,7 +10,7 @@ use hdl_gen::plan::format::{ACCUMULATOR_BITS, MOST_SHIFT, largest, pow2, round_s
 use hdl_gen::plan::formats::{FOLD_BITS, FoldedFormats};
 use hdl_gen::plan::matrix::QuantisedMatrix;
 use hdl_gen::plan::product::{Coefficients, Epilogue, Product, Vector};
-use hdl_gen::plan::product::{SUM_ROWS, sum_way};
+use hdl_gen::plan::product::{SHARE_ROW, SUM_ROWS, sum_row, sum_way};
 use proptest::prelude::*;
 
 use crate::formats::check_widths;
@@ -67,18 +68,17 @@ fn check_folded(plan: &Plan, folded: &FoldedFormats) {
     }
 }
 
-/// The frame sums, and G30, which is one less another.
+/// The frame sums; G30, and those of T_x and T_y for q = 0, are one less another.
 fn check_sums(plan: &Plan, folded: &FoldedFormats) {
     let product = plan.products.iter().find(|product| product.lead.is_some()).unwrap();
     let lead = product.lead.unwrap();
     let matrix = &plan.matrices[lead.matrix];
     assert_eq!((matrix.rows.len(), product.result), (SUM_ROWS, Vector::U(0)));
     assert_eq!(matrix.lsb + folded.weight.lsb + lead.shift as i32, plan.formats.g.lsb);
-    let sum = |q: usize, way: usize| largest_result(matrix, q, way, folded.weight.bound, lead.shift);
-    let total = sum(SUM_ROWS - 1, 0);
-    for (p, q) in (0..3).flat_map(|p| (0..3).map(move |q| (p, q))) {
-        let less = if (p, q) == (2, 0) { total } else { 0 };
-        let result = sum(q, sum_way(p, q));
+    let sum = |row: usize, way: usize| largest_result(matrix, row, way, folded.weight.bound, lead.shift);
+    for (p, q) in (0..RESULTANTS).flat_map(|p| (0..3).map(move |q| (p, q))) {
+        let less = if q == 0 && (2..5).contains(&p) { sum(SHARE_ROW, sum_way(p, 0)) } else { 0 };
+        let result = sum(sum_row(p, q), sum_way(p, q));
         assert!(result <= largest(plan.formats.g.bits) && result + less <= plan.formats.g.bound, "G{}{q}", p + 1);
     }
 }

@@ -68,7 +68,9 @@ pub fn frame(contact: &Contact, design: &Design, solver: &Solver) -> Vec<f32> {
 /// An output frame in numbers; without a field where the design has none.
 pub struct Answer {
     pub status: u32,
+    /// Forces, friction, direction, components of the friction.
     pub summary: [f64; 7],
+    pub torque: [f64; 3],
     pub field: [Vec<f64>; 3],
 }
 
@@ -77,7 +79,12 @@ pub fn answer(plan: &Plan, frame: &[f32]) -> Answer {
     assert_eq!(words.len(), plan.beats_out());
     let values: Vec<f64> = words.iter().map(|&word| f64::from(f32::from_bits(word))).collect();
     let component = |p: usize| values[SUMMARY_WORDS..].iter().skip(p).step_by(3).copied().collect();
-    Answer { status: words[0], summary: std::array::from_fn(|i| values[1 + i]), field: std::array::from_fn(component) }
+    Answer {
+        status: words[0],
+        summary: [2, 3, 4, 8, 9, 10, 11].map(|index| values[index]),
+        torque: [5, 6, 7].map(|index| values[index]),
+        field: std::array::from_fn(component),
+    }
 }
 
 pub fn reference(solver: &Solver, frame: &[f32]) -> Solution {
@@ -174,6 +181,22 @@ proptest! {
                 let error = (found.summary[p] - found.field[p].iter().sum::<f64>()).abs();
                 prop_assert!(error <= plan.taxels() as f64 * top(&found.field[p]) * f64::from(f32::EPSILON));
             }
+            // The torque is that of the forces, but for the steps of an arm and of a sum's parts.
+            let sensor = &design.sensor;
+            let mut torque = [0.0; 3];
+            for taxel in 0..frame.len() {
+                let force = found.field.each_ref().map(|component| component[taxel]);
+                let part = sensor.torque_of(sensor.position_m(taxel), force);
+                torque.iter_mut().zip(part).for_each(|(torque, part)| *torque += part);
+            }
+            let [x, y] = sensor.arm_m(0).map(f64::abs);
+            let arm = x.max(y);
+            let largest = found.field.each_ref().map(|component| top(component));
+            let all = plan.taxels() as f64 * (largest[0] + largest[1] + largest[2]);
+            let bound = all * arm * pow2(-16) + 8.0 * plan.taxels() as f64 * pow2(plan.formats.torque_lsb);
+            for (found, exact) in found.torque.into_iter().zip(torque) {
+                prop_assert!((found - exact).abs() <= bound, "{found} for {exact}, bound {bound:e}");
+            }
         }
     }
 
@@ -251,6 +274,8 @@ fn the_papers_sensors_keep_within_two_thousandths() {
                 }
                 let error = (found.summary[p] - expected.resultant[p]).abs();
                 assert!(error <= 2e-3 * expected.resultant[2].abs(), "F[{p}] off by {error} N");
+                let error = (found.torque[p] - expected.torque[p]).abs();
+                assert!(error <= 2e-5 * expected.resultant[2].abs(), "T[{p}] off by {error} N m");
             }
             assert!((found.summary[3] - expected.mu).abs() <= 2e-3);
             let turn = (found.summary[4] - expected.phi).abs();

@@ -226,6 +226,11 @@ fn the_plans_agree() {
                 }
                 let error = (second.summary[p] - expected.resultant[p]).abs();
                 assert!(error <= BETWEEN_PLANS * expected.resultant[2].abs(), "F[{p}] off by {error} N");
+                // An arm is a hundredth of a metre.
+                let (first, second, in_f64) = (first.torque[p], second.torque[p], in_f64.torque[p]);
+                let worst = [first, second, in_f64].map(|torque| (torque - expected.torque[p]).abs());
+                let limit = 0.01 * BETWEEN_PLANS * expected.resultant[2].abs();
+                assert!(worst.iter().all(|&error| error <= limit), "{size:?} T[{p}] off by {worst:?} N m");
             }
             assert!((second.summary[3] - expected.mu).abs() <= 2e-3);
             let turn = (second.summary[4] - expected.phi).abs();

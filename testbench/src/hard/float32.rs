@@ -58,17 +58,19 @@ impl<'a> Single<'a> {
         }
         let mut field: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; m]);
         self.engine.field([mu_x, mu_y], &mut of_frame, |p, taxel, force| field[p][taxel] = f64::from(force));
-        let resultant = sums.map(|[g0, g1, g2]| g0 + mu_x * g1 + mu_y * g2);
-        let [x, y, z] = resultant;
+        let [x, y, z, torque @ ..] = sums.map(|[g0, g1, g2]| g0 + mu_x * g1 + mu_y * g2);
         let mu = if z == 0.0 { 0.0 } else { x.hypot(y) / z.abs() };
         Answer {
             status: status.0,
             counter: 0,
-            resultant: resultant.map(f64::from),
+            resultant: [x, y, z].map(f64::from),
+            torque: torque.map(f64::from),
             mu: f64::from(mu),
             phi: f64::from(y.atan2(x)),
             mu_xy: [f64::from(mu_x), f64::from(mu_y)],
+            bodies: 1,
             field,
+            ..Answer::default()
         }
     }
 
@@ -77,7 +79,7 @@ impl<'a> Single<'a> {
         &self,
         b: &[f32],
         floor: f32,
-        sums: &[[f32; 3]; 3],
+        sums: &[[f32; 3]],
         u: [&[f32]; 3],
         stress_sum: f32,
         status: &mut Status,
@@ -151,15 +153,7 @@ fn search(alpha: &[f32], beta: &[f32], allowance: f32) -> (f32, bool) {
 }
 
 fn blank(status: Status, taxels: usize) -> Answer {
-    Answer {
-        status: status.0,
-        counter: 0,
-        resultant: [0.0; 3],
-        mu: 0.0,
-        phi: 0.0,
-        mu_xy: [0.0; 2],
-        field: std::array::from_fn(|_| vec![0.0; taxels]),
-    }
+    Answer { status: status.0, field: std::array::from_fn(|_| vec![0.0; taxels]), ..Answer::default() }
 }
 
 #[cfg(test)]

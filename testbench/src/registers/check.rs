@@ -1,5 +1,6 @@
 //! What `testbench run` asks of a register bank: who it is, and whether it counts what happens.
 
+use hdl_gen::blocks::registers::MAP_VERSION;
 use hdl_gen::emit::{VERSION, resolved_hash};
 use hdl_gen::model::{BAD_LENGTH, NOT_FINITE};
 use hdl_gen::plan::Plan;
@@ -97,7 +98,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
     let features = [plan.field_words() > 0, plan.ways() > 1, plan.counts.is_some(), hardware.skip_zeros];
     vec![
         ("IDENTITY", address::IDENTITY, u32::from_be_bytes(*b"TFRA")),
-        ("VERSION", address::VERSION, 1 << 24 | part(0) << 16 | part(1) << 8 | part(2)),
+        ("VERSION", address::VERSION, u32::from(MAP_VERSION) << 24 | part(0) << 16 | part(1) << 8 | part(2)),
         ("HASH_LOW", address::HASH_LOW, hash as u32),
         ("HASH_HIGH", address::HASH_HIGH, (hash >> 32) as u32),
         ("GEOMETRY", address::GEOMETRY, (hardware.lanes << 16 | sensor.rows << 8 | sensor.columns) as u32),

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 
 use super::{Checker, Exchange, Gate, INITIAL_RESET, Outcome, Pacing, StreamError, Traffic, Violation};
 use crate::dut::{Beat, Core, Inputs};
+use hdl_gen::plan::words::TIMESTAMP;
 
 /// Cycles watched after the last expected packet, for a beat too many.
 const QUIET: u64 = 64;
@@ -60,6 +61,8 @@ struct Driver<'a> {
     /// True once the current word is on offer: it stays until taken.
     offering: bool,
     first_in: u64,
+    /// First cycle out of the last reset.
+    released: u64,
     /// Packets sent whose answer is not complete: index and cycle of the first beat.
     inside: VecDeque<(usize, u64)>,
     /// Output beats of the packet coming out.
@@ -80,6 +83,7 @@ impl<'a> Driver<'a> {
             word: 0,
             offering: false,
             first_in: 0,
+            released: 0,
             inside: VecDeque::new(),
             words: Vec::new(),
             outcome: Outcome::default(),
@@ -120,6 +124,7 @@ impl<'a> Driver<'a> {
         self.checker.watch(self.cycle, false, false, &outputs)?;
         self.last_handshake = self.cycle;
         self.cycle += 1;
+        self.released = self.cycle;
         Ok(())
     }
 
@@ -178,7 +183,10 @@ impl<'a> Driver<'a> {
         self.words.push(beat.data);
         if beat.last {
             let (packet, first_in) = self.inside.pop_front().ok_or(Violation::UnexpectedFrame { cycle: self.cycle })?;
-            let words = std::mem::take(&mut self.words);
+            let mut words = std::mem::take(&mut self.words);
+            if let Some(timestamp) = words.get_mut(TIMESTAMP) {
+                *timestamp = timestamp.wrapping_sub((first_in - self.released) as u32);
+            }
             self.outcome.exchanges.push(Exchange { packet, first_in, last_out: self.cycle, words });
         }
         Ok(())

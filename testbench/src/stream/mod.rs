@@ -89,7 +89,8 @@ pub struct Exchange {
     pub first_in: u64,
     /// Cycle in which the last output beat was taken.
     pub last_out: u64,
-    /// The output packet.
+    /// The output packet. Of its timestamp only the difference to the cycle in which the first input beat was taken is
+    /// left, counted from the reset: 0, as the integer model has it, if the timestamp is right.
     pub words: Vec<u32>,
 }
 

@@ -29,7 +29,7 @@ pub struct Line {
 ///
 /// Eqs. 22 and 23 of Pinto-Salamanca et al., Sensors 2024, times cos(phi), are one line `a mu_x + e mu_y = k` without
 /// poles. The independent component is that of the larger component of `d`, so that the division is well scaled.
-pub fn line(direction: [f64; 2], sums: &[[f64; 3]; 3]) -> Option<Line> {
+pub fn line(direction: [f64; 2], sums: &[[f64; 3]]) -> Option<Line> {
     let [dx, dy] = direction;
     let a = sums[0][1] * dy - sums[1][1] * dx;
     let e = sums[0][2] * dy - sums[1][2] * dx;
@@ -46,7 +46,7 @@ pub fn line(direction: [f64; 2], sums: &[[f64; 3]; 3]) -> Option<Line> {
 /// the components are 0, and the status says why.
 pub(crate) fn friction(
     contact: &Contact,
-    sums: &[[f64; 3]; 3],
+    sums: &[[f64; 3]],
     u: [&[f64]; 3],
     level: f64,
     scratch: &mut LineScratch,

@@ -17,7 +17,7 @@ use golden::products::{Epilogue, Form, ProductList, Source, Step, Vector};
 use super::PlanError;
 use super::filtered::Filtered;
 use super::format::{FRICTION_FRACTION, Format, MOST_SHIFT, largest, round_shift};
-use super::formats::{FOLD_BITS, FoldedFormats, Formats};
+use super::formats::{FOLD_BITS, FoldedFormats, Formats, arm_exponent};
 use super::matrix::{ANY_LSB, QuantisedMatrix};
 use super::product::{SELECT_MU_X, SELECT_MU_Y, SELECT_ONE};
 use bounds::{Operand, Term};
@@ -52,6 +52,7 @@ pub fn quantise(
     stress: Format,
 ) -> Result<Quantised, PlanError> {
     let mut pass = Pass::new(list, filtered, design);
+    let arm_exponent = arm_exponent(&design.sensor);
     let base = pass.unfolded(stress);
     pass.operands.insert(Vector::Stress, base);
     let y = pass.group(|result| result == Vector::Weight)?;
@@ -61,10 +62,11 @@ pub fn quantise(
         let g = pass.group(|result| matches!(result, Vector::Partial(_) | Vector::G(..)))?;
         pass.operands.extend([0, 1, 2].map(|q| (Vector::G(3, q), Operand { folded: g, taxel: g })));
         let u = pass.group(|result| matches!(result, Vector::U(_)))?;
-        return Ok(pass.finish(Formats { stress, weight: y, g, u, folded: None }, 0.0));
+        let torque_lsb = g.lsb + arm_exponent;
+        return Ok(pass.finish(Formats { stress, weight: y, g, torque_lsb, u, folded: None }, 0.0));
     };
     let u = pass.group(|result| matches!(result, Vector::U(_)))?;
-    let (rows, g) = sums::quantise(ten, pass.coefficient_bits, pass.data_bits, weights)?;
+    let (rows, g) = sums::quantise(ten, pass.coefficient_bits, pass.data_bits, weights, arm_exponent)?;
     pass.sums = Some(pass.matrices.len());
     pass.matrices.push(rows);
     let field = if list.has_forces() { pass.field(weights, taxel_force_n(design))? } else { Field::none(u) };
@@ -80,7 +82,8 @@ pub fn quantise(
         force,
         taxel_force: taxel(force),
     };
-    Ok(pass.finish(Formats { stress, weight: weights.taxel, g, u: taxel(u), folded: Some(folded) }, rounding_n))
+    let (weight, torque_lsb) = (weights.taxel, g.lsb + arm_exponent);
+    Ok(pass.finish(Formats { stress, weight, g, torque_lsb, u: taxel(u), folded: Some(folded) }, rounding_n))
 }
 
 /// The force of a taxel whose cell is pressed with the full scale.

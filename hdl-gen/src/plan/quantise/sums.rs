@@ -1,41 +1,48 @@
 //! The rows of the sums, in front of `K0 y+`.
 
 use golden::parity::CLASSES;
+use golden::products::RESULTANTS;
 use golden::reduced::ReducedMatrices;
 
 use super::super::PlanError;
-use super::super::format::{Format, largest};
+use super::super::format::{Format, largest, pow2};
 use super::super::matrix::{ANY_LSB, QuantisedMatrix, RealRows};
-use super::super::product::sum_way;
+use super::super::product::{SHARE_ROW, SUM_ROWS, sum_row, sum_way};
 use super::bounds::{self, Operand};
 
-/// The rows of all sums of `y+` and the weights, and their format.
+/// The rows of all sums of `y+` and the weights, and their format. Torques are in units of `2^arm_exponent` N m.
 pub(super) fn quantise(
     ten: &ReducedMatrices,
     coefficient_bits: u32,
     data_bits: u32,
     weights: Operand,
+    arm_exponent: i32,
 ) -> Result<(QuantisedMatrix, Format), PlanError> {
-    let total = &ten.weight_sum().weights;
-    let count = total.len();
-    let row = |q: usize| {
-        // y+ stands first among the operands, |w| next to it.
-        let first_column = if q == 0 { 0 } else { count };
-        let ways = |quad: usize| {
-            let mut ways = [0.0; CLASSES];
-            for p in 0..3 {
-                ways[sum_way(p, q)] = ten.sums(p, q).weights[quad];
-            }
-            ways
-        };
-        (0..count).map(|quad| ((first_column + quad) as u32, ways(quad))).collect::<Vec<_>>()
+    let shares = ten.weight_shares();
+    let count = shares[0].weights.len();
+    let unit = |p: usize| if p < 3 { 1.0 } else { pow2(-arm_exponent) };
+    let mut rows: RealRows = (0..SUM_ROWS)
+        .map(|row| {
+            // y+ stands first among the operands, |w| next to it.
+            let first_column = if matches!(row, 0 | 4) { 0 } else { count };
+            (0..count).map(|quad| ((first_column + quad) as u32, [0.0; CLASSES])).collect()
+        })
+        .collect();
+    let mut put = |row: usize, way: usize, weights: &[f64], unit: f64| {
+        for ((_, ways), weight) in rows[row].iter_mut().zip(weights) {
+            ways[way] = unit * weight;
+        }
     };
-    let total = total.iter().enumerate().map(|(quad, &one)| ((count + quad) as u32, [one, 0.0, 0.0, 0.0]));
-    let rows: RealRows = (0..3).map(row).chain([total.collect()]).collect();
+    for (p, q) in (0..RESULTANTS).flat_map(|p| (0..3).map(move |q| (p, q))) {
+        put(sum_row(p, q), sum_way(p, q), &ten.sums(p, q).weights, unit(p));
+    }
+    for (p, share) in (2..).zip(shares) {
+        put(SHARE_ROW, sum_way(p, 0), &share.weights, unit(p));
+    }
     let matrix = QuantisedMatrix::new("sums", &rows, coefficient_bits, weights.folded.bound, ANY_LSB)?;
     let term = [(&matrix, weights)];
     let mut format = bounds::finest(term, data_bits, |lsb| bounds::folded(term[0], lsb));
-    // G30 is a row's result less the sum of the weights.
+    // G30 is a row's result less the sum of the weights, and so are T_x's and T_y's.
     while 2 * format.bound > largest(format.bits) {
         format.lsb += 1;
         format.bound = format.bound / 2 + 1;

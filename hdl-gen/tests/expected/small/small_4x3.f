@@ -35,6 +35,7 @@ rtl/sptfra_spmv_sequencer.v
 rtl/sptfra_spmv_way.v
 rtl/sptfra_summary.v
 rtl/sptfra_times_index.v
+rtl/sptfra_timestamp.v
 rtl/sptfra_turns.v
 rtl/sptfra_unfold.v
 rtl/sptfra_we.v

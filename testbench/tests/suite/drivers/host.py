@@ -1,6 +1,6 @@
 """The Python driver against the simulated core: an overlay, a DMA and memory as PYNQ presents them, all made up.
 
-    host.py MACHINE.so CORE.so FRAMES
+    host.py MACHINE.so CORE.so FRAMES METADATA
 
 FRAMES as in host.c. Prints what the core is, and PASS.
 """
@@ -13,7 +13,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[4] / "drivers" / "python"))
-from sptfra import Event, Sptfra, Status  # noqa: E402
+from sptfra import LAYOUT, Event, Layout, Sptfra, Status  # noqa: E402
 
 DMA, CORE, BUS_OFFSET = 0xA0000000, 0xA0010000, 0x100000000000
 
@@ -121,12 +121,15 @@ def refused(kind, action):
 
 
 def main():
-    library, core, path = sys.argv[1:]
+    library, core, path, metadata = sys.argv[1:]
     machine = Machine(library, core)
     overlay = Overlay(machine)
     wrong = Block(machine, CORE + 4)
     assert "IDENTITY" in refused(RuntimeError, lambda: Sptfra(wrong, overlay.dma, allocate))
-    sensor = Sptfra(overlay.core, overlay.dma, allocate)
+    # The layout that the driver knows is the design's.
+    design = Layout.load(metadata)
+    assert design.values == LAYOUT.values and design.field in (LAYOUT.field, None)
+    sensor = Sptfra(overlay.core, overlay.dma, allocate, metadata)
     identity = sensor.identity
     print(identity)
     rows, columns = identity.rows, identity.columns
@@ -141,13 +144,17 @@ def main():
     assert sensor.take_interrupts() & Event.FRAME_DONE
     count = len(whole)
     assert list(forces.number) == list(range(count))
-    assert np.array_equal(forces.status, expected[:, 0] & 0x3F)
-    seen = np.column_stack([forces.resultant, forces.friction, forces.direction, forces.friction_xy])
-    assert np.array_equal(seen.view(np.uint32), expected[:, 1:8])
+    assert np.array_equal(forces.status, expected[:, 0] & 0xFFFF)
+    assert np.all(np.diff(forces.timestamp.astype(np.int64)) >= identity.words_in)
+    parts = [forces.resultant, forces.torque, forces.friction, forces.direction, forces.friction_xy]
+    seen = np.column_stack([*parts, forces.standard_error])
+    assert np.array_equal(seen.view(np.uint32), expected[:, 2:13])
     assert seen.dtype == np.float32
+    census = forces.bodies.astype(np.uint32) | forces.generation.astype(np.uint32) << 8
+    assert np.array_equal(census | forces.replaced.astype(np.uint32) << 16, expected[:, 13])
     if identity.has_field:
         assert forces.field.shape == (count, rows, columns, 3)
-        assert np.array_equal(forces.field.reshape(count, -1).view(np.uint32), expected[:, 8:])
+        assert np.array_equal(forces.field.reshape(count, -1).view(np.uint32), expected[:, 16:])
     else:
         assert forces.field is None
     bad = [index for index in range(count) if forces.status[index] & Status.NOT_FINITE]
@@ -164,7 +171,7 @@ def main():
     for number, frame in enumerate([stress[0], stress[0].ravel(), stress[:1].reshape(1, -1)]):
         forces = sensor.reconstruct(frame)
         assert forces.number.tolist() == [number]
-        assert np.array_equal(forces.resultant.view(np.uint32), expected[:1, 1:4])
+        assert np.array_equal(forces.resultant.view(np.uint32), expected[:1, 2:5])
     assert "rows" in refused(ValueError, lambda: sensor.reconstruct(np.zeros((3, rows + 1, columns))))
     assert machine.calls.machine_faults(machine.handle) == 0
     print(f"PASS: {count} frames, {len(bad)} bad")

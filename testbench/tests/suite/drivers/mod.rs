@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::support::{built, by_plan, frames, planned, shipped, workspace};
 use golden::design::{Outputs, PlanKind};
-use hdl_gen::emit::resolved_hash;
+use hdl_gen::emit::{emit, resolved_hash};
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -37,6 +37,8 @@ impl Subject {
             bytes.extend(words.flat_map(u32::to_le_bytes));
         }
         fs::write(folder.path().join("frames"), bytes).expect("written");
+        fs::write(folder.path().join("metadata.json"), &emit(&plan).expect("emitted")["metadata.json"])
+            .expect("written");
         Self { plan, built, folder }
     }
 
@@ -147,7 +149,7 @@ fn a_wrong_c_driver_is_noticed() {
     let text = fs::read_to_string(workspace("drivers/c/sptfra.c")).expect("is there");
     for (right, wrong) in [
         ("#define DMA_ADDRESS_HIGH 0x1Cu", "#define DMA_ADDRESS_HIGH 0x20u"),
-        ("values + 6, sizeof result->friction_xy", "values + 5, sizeof result->friction_xy"),
+        ("values + SPTFRA_WORD_FRICTION_XY, sizeof", "values + SPTFRA_WORD_FRICTION, sizeof"),
         ("SET(device, INTERRUPT_STATUS, *events);", ""),
         ("SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);", ""),
         ("buffer->bytes >= 4u * words", "buffer->bytes + 4u >= 4u * words"),
@@ -171,7 +173,11 @@ fn the_python_driver_gets_every_word_and_knows_the_core() {
         let mut command = Command::new(&python);
         command.arg("-B").arg(workspace("testbench/tests/suite/drivers/host.py"));
         let said = run({
-            command.arg(machine).arg(&subject.built.library).arg(subject.file("frames"));
+            command
+                .arg(machine)
+                .arg(&subject.built.library)
+                .arg(subject.file("frames"))
+                .arg(subject.file("metadata.json"));
             command
         });
         let hash = resolved_hash(&subject.plan.design);

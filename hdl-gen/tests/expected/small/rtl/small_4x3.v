@@ -4,14 +4,18 @@
 // Triaxial contact forces from normal stress: 4 x 3 taxels, reduced plan, line estimator, filter none.
 //
 // In:  12 beats, float32 stress in Pa, compression negative, taxel order i = iy * 4 + ix, TLAST on the last.
-// Out: 44 beats: status, F_x, F_y, F_z, mu, phi, mu_x, mu_y, then f_x f_y f_z per taxel, float32 but the status;
-//      TLAST on the last. One frame out for each frame in.
+// Out: 52 beats: status, timestamp, F_x, F_y, F_z, T_x, T_y, T_z, mu, phi, mu_x, mu_y, standard error, bodies, 0, 0,
+// then
+//      f_x f_y f_z per taxel, float32 but the status, the timestamp and the bodies; TLAST on the last. One frame out
+// for
+//      each frame in.
 // Status: 0 no contact, 1 direction unknown, 2 optimum at the bound, 3 saturated, 4 NaN or infinity in,
-//      5 frame length wrong; 31:16 frame counter.
-// Latency, first beat in to last beat out, streams never waiting: 978 cycles (7.82 us at 125.0 MHz).
+//      5 frame length wrong; 31:16 frame counter. Timestamp: of the first beat in, in cycles since the reset.
+// Latency, first beat in to last beat out, streams never waiting: 986 cycles (7.89 us at 125.0 MHz).
 // Interval between frames: 508 cycles (4.06 us).
-// The lanes' programs take 217 cycles of issue a frame, 752 MACs: they are busy 86.6 % of that time.
-// One step of the stress is 2^-9 Pa, of a taxel's weight 2^-24 N, of u 2^-8 Pa, of the sums G 2^-20 N.
+// The lanes' programs take 229 cycles of issue a frame, 800 MACs: they are busy 87.3 % of that time.
+// One step of the stress is 2^-9 Pa, of a taxel's weight 2^-24 N, of u 2^-8 Pa, of the sums G 2^-20 N, of the torques'
+// 2^-27 N m.
 
 `default_nettype none
 
@@ -35,7 +39,7 @@ module small_4x3 #(
     output wire        m_axis_tlast
 );
 
-    localparam ROW_WIDTH = 2; // of the number of a quad
+    localparam ROW_WIDTH = 3; // of the number of a quad
     localparam VECTOR_BITS = 108; // of what 4 ways have in a cycle
     localparam OPERAND_WIDTH = 5; // of a place in the lanes' operand memories
 
@@ -75,6 +79,19 @@ module small_4x3 #(
         .m_tlast  (m_axis_tlast),
         .m_tvalid (m_axis_tvalid),
         .m_tready (m_axis_tready)
+    );
+
+    // ---- When each frame inside began
+    wire [31:0] timestamp;
+    wire timestamp_take;
+
+    sptfra_timestamp frame_beginnings (
+        .clock     (aclk),
+        .reset     (reset),
+        .in_taken  (s_axis_tvalid && s_axis_tready),
+        .in_last   (s_axis_tlast),
+        .timestamp (timestamp),
+        .take      (timestamp_take)
     );
 
     // ---- Bz: stream to fixed point, taxels to parity classes
@@ -226,11 +243,11 @@ module small_4x3 #(
         .DATA_BITS        (27),
         .ELEMENTS         (4),
         .VECTORS          (3),
-        .VALUE_DEPTH      (188),
-        .WORD_DEPTH       (188),
-        .SEGMENT_DEPTH    (48),
+        .VALUE_DEPTH      (200),
+        .WORD_DEPTH       (200),
+        .SEGMENT_DEPTH    (51),
         .OPERAND_DEPTH    (32),
-        .VISIT_DEPTH      (48),
+        .VISIT_DEPTH      (51),
         .MIRROR_SIDE      (0),
         .PRODUCTS         (11),
         .COUNT_BITS       (6),
@@ -243,7 +260,7 @@ module small_4x3 #(
             6'd16, // 5: -C31 |w| -> r1
             6'd16, // 4: C33 y+ -> r0
             6'd16, // 3: -K2 |w| -> u2
-            6'd32, // 2: -K0 y+ -> u0
+            6'd44, // 2: -K0 y+ -> u0
             6'd16, // 1: -K1 |w| -> u1
             6'd16 // 0: C33inv b -> |w|
         }),
@@ -257,9 +274,9 @@ module small_4x3 #(
         .LASTS            (11'b10001001000),
         .PROGRAMS         (3),
         .FIRSTS           ({8'd7, 8'd4, 8'd0}),
-        .START_WORDS      ({32'd128, 32'd80, 32'd0}),
-        .START_SEGMENTS   ({16'd32, 16'd20, 16'd0}),
-        .START_VISITS     ({32'd32, 32'd20, 32'd0}),
+        .START_WORDS      ({32'd140, 32'd92, 32'd0}),
+        .START_SEGMENTS   ({16'd35, 16'd23, 16'd0}),
+        .START_VISITS     ({32'd35, 32'd23, 32'd0}),
         .DESTINATION_BITS (4),
         .SHIFTS           ({
             6'd17,
@@ -373,7 +390,7 @@ module small_4x3 #(
     // ---- Co: sums, and what the lanes multiply again
     wire sums_complete;
     wire sums_take;
-    wire [9*40-1:0] sums;
+    wire [18*40-1:0] sums;
     wire [2:0] g_valid;
     wire [3:0] g_component;
     wire signed [26:0] g;
@@ -421,7 +438,7 @@ module small_4x3 #(
     wire unknown;
     wire at_bound;
     wire search_saturated;
-    wire [9*40-1:0] answer_sums;
+    wire [18*40-1:0] answer_sums;
     wire [3:0] answer_flags;
 
     assign search_over = answer_valid && answer_take;
@@ -510,6 +527,7 @@ module small_4x3 #(
         .FIELD                    (1),
         .DEPENDENT                (1),
         .SUM_LSB                  (-20),
+        .TORQUE_LSB               (-27),
         .FIELD_LSB                (-40),
         .EXPECTED_SUMMARY_LATENCY (170),
         .EXPECTED_OUTPUT_LATENCY  (13)
@@ -539,6 +557,8 @@ module small_4x3 #(
         .field_step       (field_step),
         .field_release    (field_release),
         .field_value      (field_value),
+        .timestamp        (timestamp),
+        .timestamp_take   (timestamp_take),
         .m_tdata          (out_tdata),
         .m_tlast          (out_tlast),
         .m_tvalid         (out_tvalid),

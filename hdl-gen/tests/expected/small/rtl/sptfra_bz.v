@@ -34,7 +34,7 @@ module sptfra_bz #(
     parameter ROM_NAME = "",
     // Derived
     parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
     input  wire clock,
     input  wire reset,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Co: the sums G_pq of the coefficient vectors over the frame (Eqs. 11 to 13), and what of the results the lanes
-// multiply again.
+// Co: the sums G_pq of the coefficient vectors over the frame (Eqs. 11 to 13), those of their torques about the middle
+// of the grid, and what of the results the lanes multiply again.
 //
 // Of a folded grid the sums are dot products of y+ and |w| with constant rows, which the lanes compute; what is left of
 // the stress for the field passes through to the operand memories, in 1 cycle. Where taxels are not folded, the
@@ -22,8 +22,11 @@ module sptfra_co #(
     parameter OPERAND_DEPTH = 200,
     parameter [63:0] STORE_BASES = 64'd0,
     parameter [3:0] STORE_IN_BANK = 4'd0,
+    // Prefix of the ROM file names, and what they begin with: taxels' arms, where they are not folded
+    parameter ROM_DIR = "",
+    parameter ROM_NAME = "",
     // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1,
     parameter COMPONENT_WIDTH = $clog2(3 * ELEMENTS)
 ) (
@@ -44,10 +47,10 @@ module sptfra_co #(
     output wire [COMPONENT_WIDTH-1:0] g_component,
     output wire signed [DATA_BITS-1:0] g,
     output wire g_last, // one cycle, when all of a frame are there
-    // Frame sums, G10 in the lowest 40 bits, then G11, G12, G20, ... G32
+    // Frame sums, G10 in the lowest 40 bits, then G11, G12, G20, ... G32, in the same way those of T_x, T_y and T_z
     output reg  sums_complete, // until they are taken
     input  wire sums_take,
-    output wire [9*40-1:0] sums
+    output wire [18*40-1:0] sums
 );
 
     wire sums_there;
@@ -65,12 +68,13 @@ module sptfra_co #(
 
     generate
         if (WAYS == 4) begin : gen_folded
-            // ---- Sums: row q has G_pq in the class on which it depends, row 3 the sum of the weights in class 0
+            // ---- Sums: row q has G_pq, and T_z's, in the class on which it depends, row 4 + q those of T_x and T_y;
+            // row 3 what the weights take from F_z, T_x and T_y
             wire [8:5] stored = result_route[8:5];
-            reg [1:0] sums_count;
+            reg [2:0] sums_count;
             // A register on the way from the result bus
             reg sum_valid;
-            reg [1:0] sum_row;
+            reg [2:0] sum_row;
             reg signed [4*DATA_BITS-1:0] sum_value;
             // As they come, at 3 (p - 1) + q
             reg signed [39:0] g_0;
@@ -82,7 +86,18 @@ module sptfra_co #(
             reg signed [39:0] g_6;
             reg signed [39:0] g_7;
             reg signed [39:0] g_8;
-            reg signed [39:0] weight_sum;
+            reg signed [39:0] t_x0;
+            reg signed [39:0] t_x1;
+            reg signed [39:0] t_x2;
+            reg signed [39:0] t_y0;
+            reg signed [39:0] t_y1;
+            reg signed [39:0] t_y2;
+            reg signed [39:0] t_z0;
+            reg signed [39:0] t_z1;
+            reg signed [39:0] t_z2;
+            reg signed [39:0] share_z;
+            reg signed [39:0] share_tx;
+            reg signed [39:0] share_ty;
             wire [DATA_BITS-1:0] value_0 = sum_value[DATA_BITS*0 +: DATA_BITS];
             wire [DATA_BITS-1:0] value_1 = sum_value[DATA_BITS*1 +: DATA_BITS];
             wire [DATA_BITS-1:0] value_2 = sum_value[DATA_BITS*2 +: DATA_BITS];
@@ -92,38 +107,60 @@ module sptfra_co #(
             wire signed [39:0] class_2 = {{(40-DATA_BITS){value_2[DATA_BITS-1]}}, value_2};
             wire signed [39:0] class_3 = {{(40-DATA_BITS){value_3[DATA_BITS-1]}}, value_3};
 
-            assign sums_there = sum_valid && (sums_count == 2'd3);
-            // G30 less the weights themselves
-            assign sums = {g_8, g_7, g_6 - weight_sum, g_5, g_4, g_3, g_2, g_1, g_0};
+            assign sums_there = sum_valid && (sums_count == 3'd6);
+            // Those of f_z for q = 0 less the weights themselves
+            assign sums = {
+                t_z2, t_z1, t_z0, t_y2, t_y1, t_y0 - share_ty, t_x2, t_x1, t_x0 - share_tx,
+                g_8, g_7, g_6 - share_z, g_5, g_4, g_3, g_2, g_1, g_0
+            };
 
             always @(posedge clock) begin
                 sum_valid <= result_route[4];
-                sum_row <= result_row[1:0];
+                sum_row <= result_row[2:0];
                 sum_value <= result_value;
                 if (sum_valid) begin
-                    sums_count <= sums_count + 2'd1;
+                    sums_count <= (sums_count == 3'd6) ? 3'd0 : sums_count + 3'd1;
                     case (sum_row)
-                        2'd0: begin
+                        3'd0: begin
                             g_0 <= class_1;
                             g_3 <= class_2;
                             g_6 <= class_0;
+                            t_z0 <= class_3;
                         end
-                        2'd1: begin
+                        3'd1: begin
                             g_1 <= class_0;
                             g_4 <= class_3;
                             g_7 <= class_1;
+                            t_z1 <= class_2;
                         end
-                        2'd2: begin
+                        3'd2: begin
                             g_2 <= class_3;
                             g_5 <= class_0;
                             g_8 <= class_2;
+                            t_z2 <= class_1;
                         end
-                        default: weight_sum <= class_0;
+                        3'd3: begin
+                            share_z <= class_0;
+                            share_tx <= class_2;
+                            share_ty <= class_1;
+                        end
+                        3'd4: begin
+                            t_x0 <= class_2;
+                            t_y0 <= class_1;
+                        end
+                        3'd5: begin
+                            t_x1 <= class_3;
+                            t_y1 <= class_0;
+                        end
+                        default: begin
+                            t_x2 <= class_0;
+                            t_y2 <= class_3;
+                        end
                     endcase
                 end
                 if (reset) begin
                     sum_valid <= 1'b0;
-                    sums_count <= 2'd0;
+                    sums_count <= 3'd0;
                 end
             end
 
@@ -176,14 +213,17 @@ module sptfra_co #(
                 end
             end
 
-            wire _unused = &{1'b0, result_route, row_wide, base, bank, LENGTH, STORE_IN_BANK};
+            wire _unused = &{1'b0, result_route, row_wide, base, bank, LENGTH, STORE_IN_BANK, ROM_DIR == "",
+                ROM_NAME == ""};
         end else begin : gen_taxels
             sptfra_coefficients #(
                 .ELEMENTS      (ELEMENTS),
                 .DATA_BITS     (DATA_BITS),
                 .OPERAND_DEPTH (OPERAND_DEPTH),
                 .STORE_BASES   (STORE_BASES),
-                .STORE_IN_BANK (STORE_IN_BANK)
+                .STORE_IN_BANK (STORE_IN_BANK),
+                .ROM_DIR       (ROM_DIR),
+                .ROM_NAME      (ROM_NAME)
             ) coefficients (
                 .clock         (clock),
                 .reset         (reset),

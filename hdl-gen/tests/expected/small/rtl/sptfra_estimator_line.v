@@ -30,7 +30,7 @@ module sptfra_estimator_line #(
     parameter integer EXPECTED_SEARCH_LATENCY = 0,
     // Derived: quads, or taxels, and the bits of their number
     parameter integer ELEMENTS = (WAYS == 4) ? ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2) : COLUMNS * ROWS,
-    parameter integer ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2
+    parameter integer ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
     input  wire clock,
     input  wire reset,
@@ -42,7 +42,7 @@ module sptfra_estimator_line #(
     // From Co, held until taken
     input  wire sums_complete,
     output wire sums_take,
-    input  wire [9*40-1:0] sums_in,
+    input  wire [18*40-1:0] sums_in,
     // From CeAn, held until taken
     input  wire direction_valid,
     output wire direction_take,
@@ -62,7 +62,7 @@ module sptfra_estimator_line #(
     output reg  unknown,
     output wire at_bound,
     output wire saturated,
-    output reg  [9*40-1:0] sums,
+    output reg  [18*40-1:0] sums,
     output reg  [3:0] flags
 );
 
@@ -86,7 +86,7 @@ module sptfra_estimator_line #(
     // ---- Line
     wire line_valid;
     wire line_take;
-    wire [9*40-1:0] line_sums;
+    wire [18*40-1:0] line_sums;
     wire line_x_is_free;
     wire line_unknown;
     wire signed [17:0] line_c0;

@@ -20,7 +20,7 @@ module sptfra_field #(
     parameter SHARE_SHIFT = 0,
     // Derived
     parameter QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter ROW_WIDTH = (QUADS > 4) ? $clog2(QUADS) : 2
+    parameter ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3
 ) (
     input  wire clock,
     input  wire reset,

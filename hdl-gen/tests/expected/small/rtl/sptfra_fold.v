@@ -18,7 +18,7 @@ module sptfra_fold #(
     parameter DATA_BITS = 27,
     // Derived
     parameter QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter ROW_WIDTH = (QUADS > 4) ? $clog2(QUADS) : 2
+    parameter ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3
 ) (
     input  wire clock,
     input  wire reset,

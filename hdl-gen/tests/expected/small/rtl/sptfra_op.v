@@ -17,8 +17,10 @@ module sptfra_op #(
     parameter integer FIELD = 1,
     // 1: the answer's other component is other + slope * free; 0: it is as it comes
     parameter integer DEPENDENT = 1,
-    // A step of the frame sums G is 2^SUM_LSB N, one of a taxel's force 2^FIELD_LSB N
+    // A step of the frame sums G is 2^SUM_LSB N, of those of the torques 2^TORQUE_LSB N m, of a taxel's force
+    // 2^FIELD_LSB N
     parameter integer SUM_LSB = -40,
+    parameter integer TORQUE_LSB = -45,
     parameter integer FIELD_LSB = -50,
     // From the answer's taking to the end of the summary, checked in simulation; 0: unchecked
     parameter integer EXPECTED_SUMMARY_LATENCY = 0,
@@ -37,7 +39,7 @@ module sptfra_op #(
     input  wire unknown,
     input  wire at_bound,
     input  wire search_saturated,
-    input  wire [9*40-1:0] sums,
+    input  wire [18*40-1:0] sums,
     input  wire [3:0] flags, // no contact, saturated, NaN or infinity, bad length
     // To the lanes: the friction of the frame in the summary
     output reg  friction_known, // and held, until the field is started
@@ -53,6 +55,9 @@ module sptfra_op #(
     output wire field_step,
     output wire field_release, // the frame's place is free again
     input  wire signed [63:0] field_value,
+    // When the oldest frame inside began
+    input  wire [31:0] timestamp,
+    output wire timestamp_take,
     // Stream out
     output wire [31:0] m_tdata,
     output wire m_tlast,
@@ -68,7 +73,7 @@ module sptfra_op #(
     reg signed [17:0] summary_free;
     reg signed [17:0] summary_other;
     reg signed [17:0] summary_slope;
-    reg [9*40-1:0] summary_sums;
+    reg [18*40-1:0] summary_sums;
     reg [3:0] summary_flags;
     reg summary_at_bound;
     reg summary_saturated;
@@ -81,6 +86,9 @@ module sptfra_op #(
     wire signed [63:0] force_x;
     wire signed [63:0] force_y;
     wire signed [63:0] force_z;
+    wire signed [63:0] torque_x;
+    wire signed [63:0] torque_y;
+    wire signed [63:0] torque_z;
     wire [63:0] friction_quotient;
     wire signed [9:0] friction_exponent;
     wire signed [31:0] angle;
@@ -88,6 +96,7 @@ module sptfra_op #(
     wire output_start = summary_there && output_idle && ((FIELD == 0) || (fields_there != 2'd0));
 
     assign answer_take = answer_valid && !summary_busy;
+    assign timestamp_take = output_start;
 
     always @(posedge clock) begin
         if (answer_take) begin
@@ -145,6 +154,9 @@ module sptfra_op #(
         .force_x           (force_x),
         .force_y           (force_y),
         .force_z           (force_z),
+        .torque_x          (torque_x),
+        .torque_y          (torque_y),
+        .torque_z          (torque_z),
         .friction_quotient (friction_quotient),
         .friction_exponent (friction_exponent),
         .angle             (angle)
@@ -156,7 +168,8 @@ module sptfra_op #(
     wire bad_length = summary_flags[0];
     wire bad = not_finite || bad_length;
     wire answered = !bad && !no_contact;
-    wire [5:0] status = {
+    wire [15:0] status = {
+        10'd0,
         bad_length,
         not_finite,
         answered && (summary_flags[2] || summary_saturated),
@@ -164,6 +177,8 @@ module sptfra_op #(
         answered && summary_unknown,
         !bad && no_contact
     };
+    // Replaced taxels, generation of the calibration, bodies
+    wire [31:0] census = {8'd0, 8'd0, 8'd0, 7'd0, answered};
 
     // ---- Output
     sptfra_output #(
@@ -171,6 +186,7 @@ module sptfra_op #(
         .ROWS             (ROWS),
         .FIELD            (FIELD),
         .FORCE_LSB        (SUM_LSB - FRICTION_FRACTION),
+        .TORQUE_LSB       (TORQUE_LSB - FRICTION_FRACTION),
         .FIELD_LSB        (FIELD_LSB),
         .EXPECTED_LATENCY (EXPECTED_OUTPUT_LATENCY)
     ) frame_output (
@@ -179,10 +195,15 @@ module sptfra_op #(
         .start             (output_start),
         .idle              (output_idle),
         .status            (status),
+        .timestamp         (timestamp),
+        .census            (census),
         .blank             (!answered),
         .force_x           (force_x),
         .force_y           (force_y),
         .force_z           (force_z),
+        .torque_x          (torque_x),
+        .torque_y          (torque_y),
+        .torque_z          (torque_z),
         .friction_quotient (friction_quotient),
         .friction_exponent (friction_exponent),
         .angle             (angle),

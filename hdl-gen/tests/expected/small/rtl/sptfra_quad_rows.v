@@ -12,7 +12,7 @@ module sptfra_quad_rows #(
     parameter ROWS = 10,
     // Derived
     parameter QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter ROW_WIDTH = (QUADS > 4) ? $clog2(QUADS) : 2,
+    parameter ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3,
     parameter Y_WIDTH = $clog2(ROWS)
 ) (
     input  wire clock,

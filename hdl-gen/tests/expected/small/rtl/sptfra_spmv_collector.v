@@ -40,7 +40,7 @@ module sptfra_spmv_collector #(
     parameter ROM_DIR = "",
     parameter VISITS_FILE = "",
     // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 4) ? $clog2(ELEMENTS) : 2,
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1
 ) (
     input  wire clock,

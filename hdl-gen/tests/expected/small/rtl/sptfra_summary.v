@@ -3,9 +3,10 @@
 //
 // Resultants, friction coefficient and angle of a frame from the estimator's answer and the sums G_pq.
 //
-// F_p = G_p0 + mu_x G_p1 + mu_y G_p2; mu = sqrt(F_x^2 + F_y^2) / |F_z|; phi = atan2(F_y, F_x).
+// F_p = G_p0 + mu_x G_p1 + mu_y G_p2, the torques likewise; mu = sqrt(F_x^2 + F_y^2) / |F_z|; phi = atan2(F_y, F_x).
 // A step of F is 2^-16 of one of G; mu is quotient * 2^exponent, a floating-point number; phi has 29 fraction bits.
-// From start to done: 43 cycles, a rotation and a division. Results hold until the next start.
+// From start to done: 43 cycles, a rotation and a division; the torques are made during the rotation.
+// Results hold until the next start.
 
 `default_nettype none
 
@@ -18,7 +19,7 @@ module sptfra_summary #(
     input  wire clock,
     input  wire reset,
     input  wire start, // with these held from the next cycle on
-    input  wire [9*40-1:0] sums,
+    input  wire [18*40-1:0] sums,
     input  wire x_is_free, // the free component is mu_x
     input  wire unknown, // both components are zero
     input  wire signed [17:0] free, // 16 fraction bits
@@ -32,6 +33,9 @@ module sptfra_summary #(
     output reg  signed [63:0] force_x,
     output reg  signed [63:0] force_y,
     output reg  signed [63:0] force_z,
+    output reg  signed [63:0] torque_x,
+    output reg  signed [63:0] torque_y,
+    output reg  signed [63:0] torque_z,
     output wire [63:0] friction_quotient,
     output reg  signed [9:0] friction_exponent,
     output wire signed [31:0] angle
@@ -47,20 +51,22 @@ module sptfra_summary #(
     reg [2:0] state;
     reg [5:0] step;
 
-    // ---- Multiply-accumulate: dependent component (steps 0, 1), forces (steps 6 to 23), gain (steps 0, 1 of GAIN)
-    reg [1:0] p; // component - 1
+    // ---- Multiply-accumulate: dependent component (steps 0, 1), forces and torques (steps 6 to 41), gain (steps 0, 1
+    // of GAIN)
+    reg [2:0] p; // component - 1, torques from 3 on
     reg low_half; // of the sums
     reg [1:0] q;
-    wire [3:0] sum_index = { {2'b00, p} + {2'b00, p} + {2'b00, p} } + {2'b00, q};
-    wire [39:0] sum_of [0:8];
+    wire [4:0] sum_index = { {2'b00, p} + {2'b00, p} + {2'b00, p} } + {3'b000, q};
+    wire [39:0] sum_of [0:17];
     genvar pq;
     generate
-        for (pq = 0; pq < 9; pq = pq + 1) begin : gen_sums
+        for (pq = 0; pq < 18; pq = pq + 1) begin : gen_sums
             assign sum_of[pq] = sums[40*pq +: 40];
         end
     endgenerate
     wire [39:0] selected = sum_of[sum_index];
-    reg forces; // in steps 4 to 21: a sum is chosen
+    wire resultants = (state == FORCES) || (state == ROTATE);
+    reg forces; // in steps 4 to 39: a sum is chosen
     reg forces_1; // then its half
     reg forces_2; // then it goes into the multiplier
     reg [1:0] q_1;
@@ -98,7 +104,7 @@ module sptfra_summary #(
     end
 
     always @(posedge clock) begin
-        forces <= (state == FORCES) && (step >= 6'd3) && (step <= 6'd20);
+        forces <= resultants && (step >= 6'd3) && (step <= 6'd38);
         {forces_2, forces_1} <= {forces_1, forces};
         {q_2, q_1} <= {q_1, q};
         low_half_1 <= low_half;
@@ -235,12 +241,31 @@ module sptfra_summary #(
         done <= 1'b0;
         rotate_start <= 1'b0;
         divide_start <= 1'b0;
-        step <= step + 6'd1;
+        step <= (step == 6'd63) ? step : step + 6'd1;
         dependent_rounded <= accumulator + LINE_HALF;
+        if (forces) begin
+            q <= (q == 2'd2) ? 2'd0 : q + 2'd1;
+            if (q == 2'd2) begin
+                low_half <= !low_half;
+                p <= low_half ? p + 3'd1 : p;
+            end
+        end
+        if (resultants) begin
+            case (step)
+                6'd12, 6'd18, 6'd24, 6'd30, 6'd36, 6'd42: high_part <= accumulator;
+                6'd15: force_x <= joined;
+                6'd21: force_y <= joined;
+                6'd27: force_z <= joined;
+                6'd33: torque_x <= joined;
+                6'd39: torque_y <= joined;
+                6'd45: torque_z <= joined;
+                default: ;
+            endcase
+        end
         case (state)
             IDLE: begin
                 step <= 6'd0;
-                p <= 2'd0;
+                p <= 3'd0;
                 low_half <= 1'b0;
                 q <= 2'd0;
                 if (start) begin
@@ -253,28 +278,14 @@ module sptfra_summary #(
                     mu_y <= unknown ? 18'sd0 : x_is_free ? bound : free;
                     dependent_clipped <= (DEPENDENT != 0) && !unknown && !dependent_fits;
                 end
-                if (forces) begin
-                    q <= (q == 2'd2) ? 2'd0 : q + 2'd1;
-                    if (q == 2'd2) begin
-                        low_half <= !low_half;
-                        p <= low_half ? p + 2'd1 : p;
-                    end
+                if (step == 6'd33) begin
+                    rotate_start <= 1'b1;
+                    state <= ROTATE;
                 end
-                case (step)
-                    6'd12, 6'd18, 6'd24: high_part <= accumulator;
-                    6'd15: force_x <= joined;
-                    6'd21: force_y <= joined;
-                    6'd27: force_z <= joined;
-                    6'd33: begin
-                        rotate_start <= 1'b1;
-                        state <= ROTATE;
-                    end
-                    default: ;
-                endcase
             end
             ROTATE: begin
-                step <= 6'd0;
                 if (rotate_done) begin
+                    step <= 6'd0;
                     state <= GAIN;
                 end
             end

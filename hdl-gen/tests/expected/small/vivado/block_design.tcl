@@ -7,7 +7,7 @@
 #   vivado -mode batch -source FOLDER/vivado/block_design.tcl -tclargs bitstream    up to bitstream and .xsa
 #
 # Packages the IP first, then makes the project small_4x3_zcu102, both in the working directory.
-# One DMA transfer is one frame: 48 bytes to the core, 176 bytes from it.
+# One DMA transfer is one frame: 48 bytes to the core, 208 bytes from it.
 
 source [file join [file dirname [file normalize [info script]]] package_ip.tcl]
 

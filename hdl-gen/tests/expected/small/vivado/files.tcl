@@ -50,6 +50,7 @@ foreach file {
     sptfra_spmv_way.v
     sptfra_summary.v
     sptfra_times_index.v
+    sptfra_timestamp.v
     sptfra_turns.v
     sptfra_unfold.v
     sptfra_we.v
