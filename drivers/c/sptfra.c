@@ -7,11 +7,15 @@
 
 #include <string.h>
 
+#if !defined(__GNUC__)
+#include <stdatomic.h>
+#endif
 #if defined(__linux__) && !defined(SPTFRA_NO_UIO)
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
+#include <time.h>
 #include <unistd.h>
 #endif
 
@@ -35,6 +39,8 @@
 #define STATUS_FAULTS 0x0070u
 #define STATUS_INTERRUPTS 0x7000u
 #define RESET_POLLS 100000u
+#define RECOVERY_POLLS 1000000u
+#define MOST_PACKETS 32 /* more than a core holds */
 
 #define FIELD(word, name) (((word) & SPTFRA__##name##_bm) >> SPTFRA__##name##_bp)
 #define GET(device, register) get(device, offsetof(sptfra_t, register))
@@ -47,11 +53,14 @@ const char *sptfra_error(int code)
     case SPTFRA_NOT_A_CORE: return "no core at this address: IDENTITY is not TFRA";
     case SPTFRA_OTHER_MAP: return "the core's register map is of another version than this driver";
     case SPTFRA_NO_REGISTERS: return "the core was opened without registers";
-    case SPTFRA_BAD_BUFFER: return "a buffer is too small or not on a multiple of four bytes";
+    case SPTFRA_BAD_BUFFER: return "a buffer is too small or not on a multiple of four bytes, or of a cache line";
     case SPTFRA_TIMEOUT: return "no answer in the polls given";
     case SPTFRA_DMA_FAULT: return "the DMA stopped with an error; its status register says which";
     case SPTFRA_CUT_SHORT: return "the answer is shorter than a frame's";
     case SPTFRA_SYSTEM: return "the operating system refused; errno says why";
+    case SPTFRA_BUSY: return "a frame is on its way or has failed: wait for it, or recover";
+    case SPTFRA_OUT_OF_STEP: return "the answer is that to another frame: recover";
+    case SPTFRA_NOT_STARTED: return "no frame was started";
     default: return "unknown code";
     }
 }
@@ -70,7 +79,25 @@ static void mapped_write(void *context, uintptr_t address, uint32_t value)
     *(volatile uint32_t *)address = value;
 }
 
-const sptfra_platform sptfra_memory_mapped = {NULL, mapped_read, mapped_write, NULL, NULL};
+const sptfra_platform sptfra_memory_mapped = {NULL, mapped_read, mapped_write, NULL, NULL, NULL};
+
+/* Registers are volatile, buffers are not: neither the compiler nor the processor may move one past the other. */
+static void barrier(const sptfra *device)
+{
+    if (device->platform.barrier != NULL) {
+        device->platform.barrier(device->platform.context);
+        return;
+    }
+#if defined(__aarch64__)
+    __asm__ volatile("dsb sy" ::: "memory");
+#elif defined(__ARM_ARCH) && __ARM_ARCH >= 7
+    __asm__ volatile("dsb" ::: "memory");
+#elif defined(__GNUC__)
+    __sync_synchronize();
+#else
+    atomic_thread_fence(memory_order_seq_cst);
+#endif
+}
 
 static uint32_t get(const sptfra *device, size_t offset)
 {
@@ -93,6 +120,13 @@ static void dma_set(const sptfra *device, uint32_t offset, uint32_t value)
 }
 
 /* ---- The core */
+
+/* The core numbers frames as they come in. */
+static void follow_number(sptfra *device)
+{
+    device->knows_number = device->has_registers;
+    device->next_number = device->has_registers ? (uint16_t)GET(device, FRAMES_IN) : 0;
+}
 
 int sptfra_open(sptfra *device, const sptfra_platform *platform, uintptr_t core, uintptr_t dma)
 {
@@ -118,6 +152,7 @@ int sptfra_open(sptfra *device, const sptfra_platform *platform, uintptr_t core,
     device->shape.words_out = (uint16_t)FIELD(frame, FRAME__WORDS_OUT);
     device->shape.has_field = (uint8_t)FIELD(features, FEATURES__FIELD_OUT);
     device->shape.has_counts = (uint8_t)FIELD(features, FEATURES__COUNTS);
+    follow_number(device);
     return sptfra_reset_dma(device, RESET_POLLS);
 }
 
@@ -169,19 +204,26 @@ int sptfra_count(const sptfra *device, sptfra_counters *counters)
     return SPTFRA_OK;
 }
 
-int sptfra_soft_reset(const sptfra *device, uint32_t polls)
+/* Until the soft reset has taken place. */
+static int reset_over(sptfra *device, uint32_t polls)
 {
-    if (!device->has_registers) {
-        return SPTFRA_NO_REGISTERS;
-    }
-    SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);
     while (FIELD(GET(device, STATUS), STATUS__RESETTING)) {
         if (polls == 0) {
             return SPTFRA_TIMEOUT;
         }
         polls -= polls != SPTFRA_FOREVER;
     }
+    follow_number(device);
     return SPTFRA_OK;
+}
+
+int sptfra_soft_reset(sptfra *device, uint32_t polls)
+{
+    if (!device->has_registers) {
+        return SPTFRA_NO_REGISTERS;
+    }
+    SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);
+    return reset_over(device, polls);
 }
 
 int sptfra_enable_interrupts(const sptfra *device, uint32_t events)
@@ -205,9 +247,18 @@ int sptfra_take_interrupts(const sptfra *device, uint32_t *events)
 
 /* ---- Frames */
 
-static int fits(const sptfra_buffer *buffer, size_t words)
+static int fits(const sptfra *device, const sptfra_buffer *buffer, size_t words)
 {
-    return buffer->data != NULL && buffer->address % 4u == 0 && buffer->bytes >= 4u * words;
+    const sptfra_platform *platform = &device->platform;
+    const size_t unit = platform->flush != NULL || platform->invalidate != NULL ? SPTFRA_LINE : 4u;
+
+    return buffer->data != NULL && (uintptr_t)buffer->data % unit == 0 && buffer->address % unit == 0
+        && buffer->bytes % unit == 0 && buffer->bytes / 4u >= words;
+}
+
+static size_t whole_lines(size_t bytes)
+{
+    return (bytes + SPTFRA_LINE - 1u) / SPTFRA_LINE * SPTFRA_LINE;
 }
 
 static void transfer(const sptfra *device, uint32_t channel, uint64_t address, size_t bytes)
@@ -220,34 +271,48 @@ static void transfer(const sptfra *device, uint32_t channel, uint64_t address, s
     dma_set(device, channel + DMA_LENGTH, (uint32_t)bytes);
 }
 
-int sptfra_start_words(const sptfra *device, const sptfra_buffer *stress, size_t words, const sptfra_buffer *forces)
+/* Offers the buffers to the DMA: what the processor wrote is in memory, and it has nothing to write over them. */
+static void hand_over(const sptfra *device, const sptfra_buffer *stress, size_t words, const sptfra_buffer *forces)
 {
     const sptfra_platform *platform = &device->platform;
-    const size_t answer = 4u * (size_t)device->shape.words_out;
 
-    if (words == 0 || !fits(stress, words) || !fits(forces, device->shape.words_out)) {
+    if (platform->flush != NULL) {
+        platform->flush(platform->context, stress->data, whole_lines(4u * words));
+        platform->flush(platform->context, forces->data, whole_lines(4u * (size_t)device->shape.words_out));
+    }
+    barrier(device);
+}
+
+int sptfra_start_words(sptfra *device, const sptfra_buffer *stress, size_t words, const sptfra_buffer *forces)
+{
+    if (device->busy) {
+        return SPTFRA_BUSY;
+    }
+    if (words == 0 || !fits(device, stress, words) || !fits(device, forces, device->shape.words_out)) {
         return SPTFRA_BAD_BUFFER;
     }
-    if (platform->flush != NULL) {
-        platform->flush(platform->context, stress->data, 4u * words);
-        /* No dirty line may be written over the answer later. */
-        platform->flush(platform->context, forces->data, answer);
-    }
-    transfer(device, RECEIVE, forces->address, answer);
+    hand_over(device, stress, words, forces);
+    device->busy = 1;
+    transfer(device, RECEIVE, forces->address, 4u * (size_t)device->shape.words_out);
     transfer(device, SEND, stress->address, 4u * words);
     return SPTFRA_OK;
 }
 
-int sptfra_start(const sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces)
+int sptfra_start(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces)
 {
     return sptfra_start_words(device, stress, device->shape.words_in, forces);
 }
 
-int sptfra_wait(const sptfra *device, const sptfra_buffer *forces, uint32_t polls)
+int sptfra_wait(sptfra *device, const sptfra_buffer *forces, uint32_t polls)
 {
     const sptfra_platform *platform = &device->platform;
     const size_t answer = 4u * (size_t)device->shape.words_out;
+    uint32_t status;
+    uint16_t number;
 
+    if (!device->busy) {
+        return SPTFRA_NOT_STARTED;
+    }
     for (;;) {
         const uint32_t sent = dma_get(device, SEND + DMA_STATUS);
         const uint32_t received = dma_get(device, RECEIVE + DMA_STATUS);
@@ -267,20 +332,81 @@ int sptfra_wait(const sptfra *device, const sptfra_buffer *forces, uint32_t poll
     if (dma_get(device, RECEIVE + DMA_LENGTH) != answer) {
         return SPTFRA_CUT_SHORT;
     }
+    /* Nothing of the answer is read before the DMA was seen to be done. */
+    barrier(device);
     if (platform->invalidate != NULL) {
-        platform->invalidate(platform->context, forces->data, answer);
+        platform->invalidate(platform->context, forces->data, whole_lines(answer));
     }
+    memcpy(&status, forces->data, sizeof status);
+    number = (uint16_t)FIELD(status, LAST_STATUS__NUMBER);
+    if (device->knows_number && number != device->next_number) {
+        return SPTFRA_OUT_OF_STEP;
+    }
+    device->knows_number = 1;
+    device->next_number = (uint16_t)(number + 1u);
+    device->busy = 0;
     return SPTFRA_OK;
 }
 
-int sptfra_process(const sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces, uint32_t polls)
+int sptfra_process(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces, uint32_t polls)
 {
     const int code = sptfra_start(device, stress, forces);
 
     return code == SPTFRA_OK ? sptfra_wait(device, forces, polls) : code;
 }
 
-int sptfra_reset_dma(const sptfra *device, uint32_t polls)
+/* Takes one packet and drops it; SPTFRA_TIMEOUT if none comes. */
+static int drop_packet(sptfra *device, const sptfra_buffer *forces, uint32_t polls)
+{
+    transfer(device, RECEIVE, forces->address, 4u * (size_t)device->shape.words_out);
+    while (!(dma_get(device, RECEIVE + DMA_STATUS) & (STATUS_IDLE | STATUS_FAULTS))) {
+        if (polls-- == 0) {
+            return SPTFRA_TIMEOUT;
+        }
+    }
+    return dma_get(device, RECEIVE + DMA_STATUS) & STATUS_FAULTS ? SPTFRA_DMA_FAULT : SPTFRA_OK;
+}
+
+int sptfra_recover(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces, uint32_t polls)
+{
+    int code, packets;
+
+    if (!fits(device, stress, 1u) || !fits(device, forces, device->shape.words_out)) {
+        return SPTFRA_BAD_BUFFER;
+    }
+    if (polls == SPTFRA_FOREVER) {
+        polls = RECOVERY_POLLS;
+    }
+    code = sptfra_reset_dma(device, RESET_POLLS);
+    if (code != SPTFRA_OK) {
+        return code;
+    }
+    if (device->has_registers) {
+        SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);
+    }
+    /* One word with TLAST: the end of a packet that the reset has cut, else a bad frame of its own. */
+    memset(stress->data, 0, 4u);
+    hand_over(device, stress, 1u, forces);
+    transfer(device, SEND, stress->address, 4u);
+    for (packets = 0; packets < MOST_PACKETS && code == SPTFRA_OK; packets++) {
+        code = drop_packet(device, forces, polls);
+    }
+    if (code != SPTFRA_TIMEOUT) {
+        return code == SPTFRA_OK ? SPTFRA_TIMEOUT : code;
+    }
+    /* The transfer that waits for one packet more goes. */
+    code = sptfra_reset_dma(device, RESET_POLLS);
+    if (code == SPTFRA_OK && device->has_registers) {
+        code = reset_over(device, polls);
+    }
+    if (code == SPTFRA_OK) {
+        follow_number(device);
+        device->busy = 0;
+    }
+    return code;
+}
+
+int sptfra_reset_dma(sptfra *device, uint32_t polls)
 {
     static const uint32_t channels[2] = {SEND, RECEIVE};
     size_t index;
@@ -326,11 +452,16 @@ const char *sptfra_status_name(unsigned bit)
     return bit < sizeof names / sizeof names[0] ? names[bit] : NULL;
 }
 
-void sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result)
+int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result)
 {
     const uint32_t *raw = words;
     const float *values = words;
-    const uint32_t census = raw[SPTFRA_WORD_CENSUS];
+    uint32_t census;
+
+    if ((uintptr_t)words % sizeof *raw != 0) {
+        return SPTFRA_BAD_BUFFER;
+    }
+    census = raw[SPTFRA_WORD_CENSUS];
 
     result->status = (uint16_t)(raw[SPTFRA_WORD_STATUS] & 0xFFFFu);
     result->number = (uint16_t)FIELD(raw[SPTFRA_WORD_STATUS], LAST_STATUS__NUMBER);
@@ -345,6 +476,7 @@ void sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *
     result->generation = (uint8_t)(census >> 8 & 0xFFu);
     result->replaced = (uint8_t)(census >> 16 & 0xFFu);
     result->field = shape->has_field ? values + SPTFRA_SUMMARY_WORDS : NULL;
+    return SPTFRA_OK;
 }
 
 /* ---- Linux user space */
@@ -379,24 +511,44 @@ void sptfra_uio_close(sptfra_uio *uio)
     uio->file = -1;
 }
 
+static int64_t now(void)
+{
+    struct timespec time;
+
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (int64_t)time.tv_sec * 1000 + time.tv_nsec / 1000000;
+}
+
 int sptfra_uio_wait(const sptfra_uio *uio, int milliseconds)
 {
+    const int64_t end = now() + milliseconds;
     struct pollfd waits = {.fd = uio->file, .events = POLLIN};
     uint32_t word = 1;
+    ssize_t moved;
     int ready;
 
     /* A UIO driver masks the interrupt when it comes; writing 1 unmasks it. */
-    if (write(uio->file, &word, sizeof word) != (ssize_t)sizeof word) {
+    do {
+        moved = write(uio->file, &word, sizeof word);
+    } while (moved < 0 && errno == EINTR);
+    if (moved != (ssize_t)sizeof word) {
         return SPTFRA_SYSTEM;
     }
-    ready = poll(&waits, 1, milliseconds);
+    do {
+        const int64_t left = end - now();
+
+        ready = poll(&waits, 1, milliseconds < 0 ? -1 : left < 0 ? 0 : (int)left);
+    } while (ready < 0 && errno == EINTR);
     if (ready < 0) {
         return SPTFRA_SYSTEM;
     }
     if (ready == 0) {
         return SPTFRA_TIMEOUT;
     }
-    return read(uio->file, &word, sizeof word) == (ssize_t)sizeof word ? SPTFRA_OK : SPTFRA_SYSTEM;
+    do {
+        moved = read(uio->file, &word, sizeof word);
+    } while (moved < 0 && errno == EINTR);
+    return moved == (ssize_t)sizeof word ? SPTFRA_OK : SPTFRA_SYSTEM;
 }
 
 #endif

@@ -24,11 +24,14 @@ enum {
     SPTFRA_NOT_A_CORE = -1, /* IDENTITY has another value */
     SPTFRA_OTHER_MAP = -2,  /* the register map is of another version than this driver */
     SPTFRA_NO_REGISTERS = -3,
-    SPTFRA_BAD_BUFFER = -4, /* too small, or not on a multiple of four bytes */
-    SPTFRA_TIMEOUT = -5,
+    SPTFRA_BAD_BUFFER = -4, /* too small, or not on a multiple of four bytes, or of SPTFRA_LINE where there is a cache */
+    SPTFRA_TIMEOUT = -5,    /* the frame is still on its way: wait again, or recover */
     SPTFRA_DMA_FAULT = -6,
-    SPTFRA_CUT_SHORT = -7, /* the packet of forces has another length than a frame's */
-    SPTFRA_SYSTEM = -8     /* errno says why */
+    SPTFRA_CUT_SHORT = -7,   /* the packet of forces has another length than a frame's */
+    SPTFRA_SYSTEM = -8,      /* errno says why */
+    SPTFRA_BUSY = -9,        /* a frame is on its way, or the last one failed: wait, or recover */
+    SPTFRA_OUT_OF_STEP = -10, /* the answer is that to another frame */
+    SPTFRA_NOT_STARTED = -11
 };
 
 /* What went wrong, in words. */
@@ -43,10 +46,16 @@ typedef struct {
     void *context;
     uint32_t (*read)(void *context, uintptr_t address);
     void (*write)(void *context, uintptr_t address, uint32_t value);
-    /* Data cache, where the DMA does not see it; NULL if it does or if buffers are uncached. */
+    /* Data cache, where the DMA does not see it; NULL if it does or if buffers are uncached. Lines are whole ones. */
     void (*flush)(void *context, const void *start, size_t bytes);
     void (*invalidate)(void *context, void *start, size_t bytes);
+    /* Orders accesses to buffers and to registers; NULL for the processor's own barrier. */
+    void (*barrier)(void *context);
 } sptfra_platform;
+
+/* Where there are cache functions, buffers begin and end on multiples of so many bytes, so that no other data share a
+ * line with them. */
+#define SPTFRA_LINE 64u
 
 /* Registers at their addresses, coherent memory. */
 extern const sptfra_platform sptfra_memory_mapped;
@@ -66,6 +75,9 @@ typedef struct {
     uintptr_t dma;
     int has_registers;
     sptfra_shape shape;
+    int busy;             /* a frame was started whose answer has not come as it should */
+    int knows_number;     /* whether next_number is known: not before the first answer of a core without registers */
+    uint16_t next_number; /* which the core gives to the next frame */
 } sptfra;
 
 /* Looks for a core with registers at `core` and its DMA at `dma`, and resets and starts the DMA. */
@@ -92,7 +104,7 @@ int sptfra_count(const sptfra *device, sptfra_counters *counters);
 
 /* Resets the core without cutting a packet, see docs/control.md. Frames inside are lost; the packet going out still
  * needs a transfer that takes it. */
-int sptfra_soft_reset(const sptfra *device, uint32_t polls);
+int sptfra_soft_reset(sptfra *device, uint32_t polls);
 
 /* Events of the registers INTERRUPT_ENABLE and INTERRUPT_STATUS. */
 #define SPTFRA_FRAME_DONE SPTFRA__INTERRUPT_STATUS__FRAME_DONE_bm
@@ -112,16 +124,21 @@ typedef struct {
 } sptfra_buffer;
 
 /* Sends a frame of words_in float32 and takes words_out words. Returns at once; both buffers belong to the DMA until
- * sptfra_wait says otherwise. */
-int sptfra_start(const sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces);
+ * sptfra_wait says otherwise. One frame is on its way at a time. */
+int sptfra_start(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces);
 /* The same for a packet of any length, of which the core makes an answer with the status BAD_LENGTH. */
-int sptfra_start_words(const sptfra *device, const sptfra_buffer *stress, size_t words, const sptfra_buffer *forces);
-/* Waits for the answer to sptfra_start, asking at most so many times. */
-int sptfra_wait(const sptfra *device, const sptfra_buffer *forces, uint32_t polls);
+int sptfra_start_words(sptfra *device, const sptfra_buffer *stress, size_t words, const sptfra_buffer *forces);
+/* Waits for the answer to sptfra_start, asking at most so many times, and checks that it is the answer to that frame.
+ * After SPTFRA_TIMEOUT it can be called again; after any other error nothing starts before sptfra_recover. */
+int sptfra_wait(sptfra *device, const sptfra_buffer *forces, uint32_t polls);
 /* Both. */
-int sptfra_process(const sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces, uint32_t polls);
-/* Stops a transfer and starts the DMA anew. */
-int sptfra_reset_dma(const sptfra *device, uint32_t polls);
+int sptfra_process(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces, uint32_t polls);
+/* After any error: resets the DMA and, where it has registers, the core, ends a packet that was cut on its way in, and
+ * takes and drops whatever the core still sends. The core counts as empty when no answer has come in so many polls:
+ * give more than a frame takes. Uses both buffers. */
+int sptfra_recover(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces, uint32_t polls);
+/* Stops a transfer and starts the DMA anew. What the core has inside stays there: see sptfra_recover. */
+int sptfra_reset_dma(sptfra *device, uint32_t polls);
 
 /* Status bits of a frame: those of the register LAST_STATUS. */
 enum {
@@ -174,8 +191,9 @@ typedef struct {
     const float *field;
 } sptfra_result;
 
-/* Reads the words of an answer; they are float32 as the processor has it. */
-void sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result);
+/* Reads the words of an answer, float32 as the processor has it. SPTFRA_BAD_BUFFER if they do not stand on a multiple
+ * of four bytes. */
+int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result);
 
 /* ---- Linux user space: a UIO device for each block of registers */
 
@@ -188,7 +206,8 @@ typedef struct {
 
 int sptfra_uio_open(sptfra_uio *uio, const char *path, size_t bytes);
 void sptfra_uio_close(sptfra_uio *uio);
-/* Sleeps until the device's interrupt, at most so many milliseconds (-1: for ever), and unmasks it before. */
+/* Unmasks the device's interrupt and sleeps until it comes, at most so many milliseconds (-1: for ever). Signals in
+ * between are no reason to return. */
 int sptfra_uio_wait(const sptfra_uio *uio, int milliseconds);
 #endif
 

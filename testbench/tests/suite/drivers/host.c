@@ -15,9 +15,12 @@
 
 #define MOST_WORDS 16384
 #define POLLS 1000000u
+#define RECOVERY 1000u /* more than a frame takes: three cycles each */
 
-static uint32_t stress_words[MOST_WORDS], force_words[MOST_WORDS], expected[MOST_WORDS];
-static int flushed, invalidated;
+/* The driver has cache functions here, so its buffers are whole lines. */
+_Alignas(SPTFRA_LINE) static uint32_t stress_words[MOST_WORDS], force_words[MOST_WORDS];
+static uint32_t expected[MOST_WORDS];
+static int flushed, invalidated, fenced;
 
 #define CHECK(condition)                                                      \
     do {                                                                      \
@@ -31,13 +34,21 @@ static void flush(void *context, const void *start, size_t bytes)
 {
     (void)context;
     (void)start;
+    CHECK(bytes % SPTFRA_LINE == 0);
     flushed += bytes != 0;
+}
+
+static void fence(void *context)
+{
+    (void)context;
+    fenced++;
 }
 
 static void invalidate(void *context, void *start, size_t bytes)
 {
     (void)context;
     (void)start;
+    CHECK(bytes % SPTFRA_LINE == 0);
     invalidated += bytes != 0;
 }
 
@@ -64,7 +75,8 @@ static void check_result(const sptfra_shape *shape)
     const float *values = (const float *)force_words;
     unsigned bit;
 
-    sptfra_decode(shape, force_words, &result);
+    CHECK(sptfra_decode(shape, (const char *)force_words + 2, &result) == SPTFRA_BAD_BUFFER);
+    CHECK(sptfra_decode(shape, force_words, &result) == SPTFRA_OK);
     CHECK(result.number == force_words[0] >> 16 && result.status == (force_words[0] & 0xFFFF));
     CHECK(result.timestamp == force_words[1]);
     CHECK(memcmp(result.force, values + 2, 12) == 0 && memcmp(result.torque, values + 5, 12) == 0);
@@ -105,7 +117,7 @@ int main(int count, char **arguments)
     const sptfra_buffer forces = {force_words, (uintptr_t)force_words + MACHINE_BUS_OFFSET, sizeof force_words};
     sptfra_buffer wrong = stress;
     sptfra_shape shape;
-    sptfra_platform platform = {NULL, machine_read, machine_write, flush, invalidate};
+    sptfra_platform platform = {NULL, machine_read, machine_write, flush, invalidate, fence};
     sptfra_counters counters;
     sptfra_identity identity;
     machine *system;
@@ -167,7 +179,7 @@ int main(int count, char **arguments)
             CHECK(!machine_interrupt(system));
         }
     }
-    CHECK(frames > 10 && bad > 2 && flushed > 0 && invalidated > 0);
+    CHECK(frames > 10 && bad > 2 && flushed > 0 && invalidated > 0 && fenced == 2 * (int)frames);
     if (has_registers) {
         CHECK(sptfra_count(&device, &counters) == SPTFRA_OK);
         CHECK(counters.frames_in == frames && counters.frames_out == frames && counters.frames_bad == bad);
@@ -176,15 +188,47 @@ int main(int count, char **arguments)
     }
 
     /* What is refused before anything moves. */
-    wrong.bytes = 4u * shape.words_in - 4u;
+    CHECK(sptfra_wait(&device, &forces, POLLS) == SPTFRA_NOT_STARTED);
+    wrong.bytes = 0;
     CHECK(sptfra_start(&device, &wrong, &forces) == SPTFRA_BAD_BUFFER);
     wrong = stress;
-    wrong.address += 2;
+    wrong.address += 4;
+    CHECK(sptfra_start(&device, &wrong, &forces) == SPTFRA_BAD_BUFFER);
+    wrong = stress;
+    wrong.bytes -= 4;
     CHECK(sptfra_start(&device, &wrong, &forces) == SPTFRA_BAD_BUFFER);
     CHECK(sptfra_start_words(&device, &stress, 0, &forces) == SPTFRA_BAD_BUFFER);
-    /* The patience of one call is no end of the transfer. */
+    CHECK(sptfra_start_words(&device, &stress, SIZE_MAX / 4u + 2u, &forces) == SPTFRA_BAD_BUFFER);
+    /* The patience of one call is no end of the transfer, and until then nothing else starts. */
     CHECK(sptfra_process(&device, &stress, &forces, 0) == SPTFRA_TIMEOUT);
+    CHECK(sptfra_start(&device, &stress, &forces) == SPTFRA_BUSY);
     CHECK(sptfra_wait(&device, &forces, POLLS) == SPTFRA_OK);
+
+    /* A timeout, and only the DMA is reset: the next answer is the one before, and is not taken for the next. */
+    rewind(file);
+    CHECK(next_frame(file, &words, shape.words_out) && words == shape.words_in);
+    CHECK(sptfra_process(&device, &stress, &forces, 0) == SPTFRA_TIMEOUT);
+    while (machine_sends(system)) {
+        machine_run(system, 1);
+    }
+    CHECK(sptfra_reset_dma(&device, POLLS) == SPTFRA_OK);
+    device.busy = 0;
+    device.next_number++; /* somebody who goes on as if nothing had been */
+    CHECK(sptfra_process(&device, &stress, &forces, POLLS) == SPTFRA_OUT_OF_STEP);
+    CHECK(sptfra_start(&device, &stress, &forces) == SPTFRA_BUSY);
+
+    /* A recovery at any moment of a frame, and the next one is right. */
+    for (words = 0; words < 1500; words += 7) {
+        CHECK(sptfra_recover(&device, &stress, &forces, RECOVERY) == SPTFRA_OK);
+        rewind(file);
+        CHECK(next_frame(file, &events, shape.words_out) && events == shape.words_in);
+        CHECK(sptfra_process(&device, &stress, &forces, POLLS) == SPTFRA_OK);
+        CHECK((force_words[0] & 0xFFFFu) == (expected[0] & 0xFFFFu));
+        CHECK(memcmp(force_words + 2, expected + 2, 4u * (shape.words_out - 2u)) == 0);
+        CHECK(sptfra_start(&device, &stress, &forces) == SPTFRA_OK);
+        machine_run(system, words);
+    }
+    CHECK(sptfra_recover(&device, &stress, &forces, RECOVERY) == SPTFRA_OK);
 
     /* A soft reset with a frame inside: the counters start anew, and the next frame is right again. */
     if (has_registers) {
@@ -194,8 +238,11 @@ int main(int count, char **arguments)
         machine_run(system, 40);
         CHECK(sptfra_soft_reset(&device, POLLS) == SPTFRA_OK);
         CHECK(sptfra_wait(&device, &forces, 1000u) == SPTFRA_TIMEOUT);
-        CHECK(sptfra_reset_dma(&device, POLLS) == SPTFRA_OK);
+        CHECK(sptfra_recover(&device, &stress, &forces, RECOVERY) == SPTFRA_OK);
+        CHECK(sptfra_soft_reset(&device, POLLS) == SPTFRA_OK);
         CHECK(sptfra_count(&device, &counters) == SPTFRA_OK && counters.frames_out == 0);
+        rewind(file);
+        CHECK(next_frame(file, &words, shape.words_out) && words == shape.words_in);
         CHECK(sptfra_process(&device, &stress, &forces, POLLS) == SPTFRA_OK);
         CHECK(is_expected(&shape) && force_words[0] >> 16 == 0 && force_words[1] < timestamp);
     }

@@ -146,6 +146,8 @@ void machine_run(machine *system, uint64_t cycles)
 
 int machine_interrupt(const machine *system) { return system->interrupt; }
 
+int machine_sends(const machine *system) { return system->send.busy; }
+
 uint32_t machine_faults(const machine *system) { return system->faults; }
 
 /* One access on the register port: address and data of a write together, then the reply. */

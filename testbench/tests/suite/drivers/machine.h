@@ -20,6 +20,8 @@ void machine_write(void *system, uintptr_t address, uint32_t value);
 /* Lets cycles pass. */
 void machine_run(machine *system, uint64_t cycles);
 int machine_interrupt(const machine *system);
+/* Whether a transfer to the core is under way. */
+int machine_sends(const machine *system);
 /* Accesses that were answered by an error or hit nothing. */
 uint32_t machine_faults(const machine *system);
 

@@ -90,7 +90,8 @@ fn run(mut command: Command) -> String {
 fn run_c(subject: &Subject, driver: &Path) -> Command {
     let sources = ["host.c", "machine.c"].map(|name| workspace("testbench/tests/suite/drivers").join(name));
     let host = subject.file("host");
-    compile(&[driver, &sources[0], &sources[1]], &["-D_GNU_SOURCE"], &host);
+    let sanitized = ["-D_GNU_SOURCE", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+    compile(&[driver, &sources[0], &sources[1]], &sanitized, &host);
     let plan = &subject.plan;
     let mut command = Command::new(host);
     command.arg(&subject.built.library).arg(u8::from(plan.design.hardware.control).to_string());
@@ -151,8 +152,13 @@ fn a_wrong_c_driver_is_noticed() {
         ("#define DMA_ADDRESS_HIGH 0x1Cu", "#define DMA_ADDRESS_HIGH 0x20u"),
         ("values + SPTFRA_WORD_FRICTION_XY, sizeof", "values + SPTFRA_WORD_FRICTION, sizeof"),
         ("SET(device, INTERRUPT_STATUS, *events);", ""),
-        ("SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);", ""),
-        ("buffer->bytes >= 4u * words", "buffer->bytes + 4u >= 4u * words"),
+        ("SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);\n    return reset_over", "return reset_over"),
+        ("buffer->bytes / 4u >= words", "buffer->bytes / 4u + 32u >= words"),
+        ("buffer->bytes / 4u >= words", "buffer->bytes >= 4u * words"),
+        ("&& number != device->next_number", "&& number > device->next_number + 9u"),
+        ("    if (device->busy) {", "    if (0) {"),
+        ("    transfer(device, SEND, stress->address, 4u);\n", ""),
+        ("    for (packets = 0; packets < MOST_PACKETS", "    for (packets = MOST_PACKETS; packets < MOST_PACKETS"),
     ] {
         assert_eq!(text.matches(right).count(), 1, "{right}");
         let driver = subject.file("sptfra.c");
