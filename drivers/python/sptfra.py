@@ -22,6 +22,10 @@ import numpy as np
 
 MAGIC = 0x54465241
 MAP_VERSION = 2
+#: Bit of the DMA's control register.
+DMA_RESET = 4
+#: More than a core holds.
+MOST_PACKETS = 32
 #: Edition of metadata.json, and of the streams that it describes.
 FORMAT = 2
 
@@ -236,6 +240,13 @@ class Sptfra:
         self.identity = self._identify()
         self._stress = allocate(shape=(self.identity.words_in,), dtype=np.float32)
         self._forces = allocate(shape=(self.identity.words_out,), dtype=np.uint32)
+        self._word = allocate(shape=(1,), dtype=np.uint32)
+        self._failed = False
+        self._follow_number()
+
+    def _follow_number(self):
+        """The core numbers frames as they come in."""
+        self._next = self._core.read(Register.FRAMES_IN) & 0xFFFF
 
     def _identify(self):
         read = self._core.read
@@ -279,7 +290,45 @@ class Sptfra:
         end = time.monotonic() + timeout
         while self._core.read(Register.STATUS) & RESETTING:
             if time.monotonic() > end:
-                raise TimeoutError("the packet going out is not taken; start a receiving transfer or reset the DMA")
+                raise TimeoutError("the packet going out is not taken: recover()")
+        self._follow_number()
+
+    def recover(self, timeout=0.1):
+        """After an exception: resets DMA and core, ends a packet that was cut, and drops what the core still sends.
+
+        Without an answer for `timeout` seconds the core counts as empty: give more than a frame takes.
+        """
+        self._reset_dma(timeout)
+        self._core.write(Register.CONTROL, SOFT_RESET)
+        self._word[:] = 0
+        self._word.flush()
+        # One word with TLAST: the end of a packet that the reset has cut, else a bad frame of its own.
+        self._dma.sendchannel.transfer(self._word)
+        try:
+            for _ in range(MOST_PACKETS):
+                self._dma.recvchannel.transfer(self._forces)
+                self._until(lambda: self._dma.recvchannel.idle, timeout)
+            raise RuntimeError(f"the core is not empty after {MOST_PACKETS} packets: reset it by its aresetn")
+        except TimeoutError:
+            self._reset_dma(timeout)
+        self._until(lambda: not self._core.read(Register.STATUS) & RESETTING, timeout)
+        self._follow_number()
+        self._failed = False
+
+    def _reset_dma(self, timeout):
+        # A reset on either channel resets both.
+        self._dma.write(0, DMA_RESET)
+        self._until(lambda: not self._dma.read(0) & DMA_RESET, timeout)
+        self._dma.sendchannel.start()
+        self._dma.recvchannel.start()
+
+    def _until(self, reached, timeout):
+        end = time.monotonic() + timeout
+        while not reached():
+            if self._dma.sendchannel.error or self._dma.recvchannel.error:
+                raise RuntimeError("the DMA stopped with an error: recover()")
+            if time.monotonic() > end:
+                raise TimeoutError(f"nothing came in {timeout} s: recover()")
 
     def enable_interrupts(self, events):
         """Lets these events, a combination of `Event`, raise the core's interrupt; none of the others."""
@@ -291,24 +340,33 @@ class Sptfra:
         self._core.write(Register.INTERRUPT_STATUS, events)
         return Event(events)
 
-    def reconstruct(self, frames):
+    def reconstruct(self, frames, timeout=1.0):
         """Forces of frames (n, rows, columns), (n, taxels), (rows, columns) or (taxels,), in pascals or counts.
 
-        Returns `Forces` of n frames, in new arrays; a single frame is n = 1. Raises ValueError on another shape.
+        Returns `Forces` of n frames, in new arrays; a single frame is n = 1. Raises ValueError on another shape,
+        TimeoutError if a frame takes longer than so many seconds, RuntimeError if the DMA stops or an answer is that to
+        another frame; after the last three nothing is sent before `recover`.
         """
         rows, columns, words = self.identity.rows, self.identity.columns, self.identity.words_in
         frames = np.asarray(frames, dtype=np.float32)
         if frames.shape[-2:] != (rows, columns) and frames.shape[-1:] != (words,) or frames.ndim > 3:
             raise ValueError(f"frames of shape {frames.shape}: the core has {rows} rows of {columns} taxels")
+        if self._failed:
+            raise RuntimeError("the last frame has failed: recover()")
         frames = frames.reshape(-1, words)
         answers = np.empty((len(frames), self.identity.words_out), dtype=np.uint32)
         for frame, answer in zip(frames, answers):
             self._stress[:] = frame
             self._stress.flush()
+            self._failed = True
             self._dma.recvchannel.transfer(self._forces)
             self._dma.sendchannel.transfer(self._stress)
-            self._dma.sendchannel.wait()
-            self._dma.recvchannel.wait()
+            self._until(lambda: self._dma.sendchannel.idle and self._dma.recvchannel.idle, timeout)
             self._forces.invalidate()
             answer[:] = self._forces
+            number = int(self._layout.get(answer[np.newaxis], "frame")[0])
+            if number != self._next:
+                raise RuntimeError(f"the answer is that to frame {number}, not {self._next}: recover()")
+            self._next = (number + 1) & 0xFFFF
+            self._failed = False
         return decode(answers, rows, columns, self.identity.has_field, self._layout)

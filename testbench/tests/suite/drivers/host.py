@@ -78,16 +78,23 @@ class Channel:
 
     def __init__(self, machine, base):
         self.registers = Block(machine, base)
+        self.start()
+
+    def start(self):
         self.registers.write(0x00, 1)
+
+    @property
+    def idle(self):
+        return bool(self.registers.read(0x04) & 2)
+
+    @property
+    def error(self):
+        return bool(self.registers.read(0x04) & 0x70)
 
     def transfer(self, buffer):
         self.registers.write(0x18, buffer.device_address & 0xFFFFFFFF)
         self.registers.write(0x1C, buffer.device_address >> 32)
         self.registers.write(0x28, buffer.nbytes)
-
-    def wait(self):
-        while not self.registers.read(0x04) & 2:
-            assert not self.registers.read(0x04) & 0x70, "the DMA stopped"
 
 
 class Overlay:
@@ -95,7 +102,7 @@ class Overlay:
 
     def __init__(self, machine):
         self.core = Block(machine, CORE)
-        self.dma = type("Dma", (), {})()
+        self.dma = Block(machine, DMA)
         self.dma.sendchannel = Channel(machine, DMA)
         self.dma.recvchannel = Channel(machine, DMA + 0x30)
 
@@ -172,6 +179,19 @@ def main():
         forces = sensor.reconstruct(frame)
         assert forces.number.tolist() == [number]
         assert np.array_equal(forces.resultant.view(np.uint32), expected[:1, 2:5])
+    # An answer that does not come in time, and one that comes late, are no answers; after a recovery all is as before.
+    assert "recover()" in refused(TimeoutError, lambda: sensor.reconstruct(stress[0], timeout=0))
+    assert "has failed" in refused(RuntimeError, lambda: sensor.reconstruct(stress[0]))
+    machine.calls.machine_run(machine.handle, 100)
+    sensor._reset_dma(1.0)
+    sensor._failed, sensor._next = False, sensor._next + 1
+    assert "to frame 3, not 4" in refused(RuntimeError, lambda: sensor.reconstruct(stress[0]))
+    for cycles in range(0, 1200, 60):
+        sensor.recover()
+        assert np.array_equal(sensor.reconstruct(stress[0]).resultant.view(np.uint32), expected[:1, 2:5])
+        refused(TimeoutError, lambda: sensor.reconstruct(stress[0], timeout=0))
+        machine.calls.machine_run(machine.handle, cycles)
+    sensor.recover()
     assert "rows" in refused(ValueError, lambda: sensor.reconstruct(np.zeros((3, rows + 1, columns))))
     assert machine.calls.machine_faults(machine.handle) == 0
     print(f"PASS: {count} frames, {len(bad)} bad")
