@@ -109,6 +109,7 @@ int sptfra_soft_reset(sptfra *device, uint32_t polls);
 /* Events of the registers INTERRUPT_ENABLE and INTERRUPT_STATUS. */
 #define SPTFRA_FRAME_DONE SPTFRA__INTERRUPT_STATUS__FRAME_DONE_bm
 #define SPTFRA_FRAME_ERROR SPTFRA__INTERRUPT_STATUS__FRAME_ERROR_bm
+#define SPTFRA_BAD_ACCESS SPTFRA__INTERRUPT_STATUS__BAD_ACCESS_bm /* to an address without a register */
 
 int sptfra_enable_interrupts(const sptfra *device, uint32_t events);
 /* The events since they were acknowledged last; acknowledges them. */

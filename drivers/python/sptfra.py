@@ -79,6 +79,7 @@ class Event(enum.IntFlag):
 
     FRAME_DONE = 1
     FRAME_ERROR = 2
+    BAD_ACCESS = 4
 
 
 SOFT_RESET = 1

@@ -4,8 +4,9 @@
 // AXI4-Lite, 32 bits: takes write address and write data in either order, one write and one read at a time, and turns
 // them into accesses of a register bank that answers in the same cycle.
 //
-// Address and data are registered on the way in, responses on the way out; SLVERR where no register is. A write acts in
-// the cycle after the later of its address and data, once the response before it is taken.
+// Address and data are registered on the way in, responses on the way out. Where no register is, a read gives zero, a
+// write changes nothing, and bad_access is high for a cycle: an error on the bus would stop many a processor. A write acts
+// in the cycle after the later of its address and data, once the response before it is taken.
 
 `default_nettype none
 
@@ -37,12 +38,12 @@ module sptfra_axi_lite (
     output wire [31:0] write_mask, // bits of the bytes that are written
     input  wire write_mapped,
     output wire [9:0] read_word,
-    input  wire [31:0] read_data,
-    input  wire read_mapped
+    input  wire [31:0] read_data, // zero if not read_mapped
+    input  wire read_mapped,
+    output wire bad_access // one cycle: an address without a register
 );
 
     localparam [1:0] OKAY = 2'b00;
-    localparam [1:0] SLVERR = 2'b10;
 
     // ---- Writes
     reg address_held;
@@ -51,14 +52,13 @@ module sptfra_axi_lite (
     reg [31:0] write_data_held;
     reg [3:0] strobes_held;
     reg response_valid;
-    reg response_error;
 
     wire write_acts = address_held && data_held && !response_valid;
 
     assign s_awready = !address_held;
     assign s_wready = !data_held;
     assign s_bvalid = response_valid;
-    assign s_bresp = response_error ? SLVERR : OKAY;
+    assign s_bresp = OKAY;
     assign write_enable = write_acts && write_mapped;
     assign write_word = write_word_held;
     assign write_data = write_data_held;
@@ -81,7 +81,6 @@ module sptfra_axi_lite (
             address_held <= 1'b0;
             data_held <= 1'b0;
             response_valid <= 1'b1;
-            response_error <= !write_mapped;
         end
         if (reset) begin
             address_held <= 1'b0;
@@ -94,14 +93,13 @@ module sptfra_axi_lite (
     reg read_held;
     reg [9:0] read_word_held;
     reg read_valid;
-    reg read_error;
     reg [31:0] read_data_held;
 
     wire read_acts = read_held && !read_valid;
 
     assign s_arready = !read_held;
     assign s_rvalid = read_valid;
-    assign s_rresp = read_error ? SLVERR : OKAY;
+    assign s_rresp = OKAY;
     assign s_rdata = read_data_held;
     assign read_word = read_word_held;
 
@@ -117,13 +115,14 @@ module sptfra_axi_lite (
             read_held <= 1'b0;
             read_valid <= 1'b1;
             read_data_held <= read_data;
-            read_error <= !read_mapped;
         end
         if (reset) begin
             read_held <= 1'b0;
             read_valid <= 1'b0;
         end
     end
+
+    assign bad_access = (write_acts && !write_mapped) || (read_acts && !read_mapped);
 
     // Registers are whole words
     wire _unused = &{1'b0, s_awaddr[1:0], s_araddr[1:0]};

@@ -67,6 +67,7 @@ module sptfra_registers #(
     input  wire [31:0] last_interval,
     input  wire frame_done,
     input  wire frame_error,
+    input  wire bad_access,
     output reg  irq
 );
 
@@ -95,8 +96,8 @@ module sptfra_registers #(
     localparam [9:0] LAST_LATENCY = 10'd24;
     localparam [9:0] LAST_INTERVAL = 10'd25;
 
-    reg [1:0] enabled;
-    reg [1:0] pending;
+    reg [2:0] enabled;
+    reg [2:0] pending;
 
     // Constants to word 10, the rest from word 16 on
     assign write_mapped = (write_word <= PREDICTED_INTERVAL)
@@ -119,8 +120,8 @@ module sptfra_registers #(
             PREDICTED_LATENCY: read_data = LATENCY_CYCLES;
             PREDICTED_INTERVAL: read_data = INTERVAL_CYCLES;
             STATUS: read_data = {28'd0, sending, receiving, discarding, resetting};
-            INTERRUPT_ENABLE: read_data = {30'd0, enabled};
-            INTERRUPT_STATUS: read_data = {30'd0, pending};
+            INTERRUPT_ENABLE: read_data = {29'd0, enabled};
+            INTERRUPT_STATUS: read_data = {29'd0, pending};
             FRAMES_IN: read_data = frames_in;
             FRAMES_OUT: read_data = frames_out;
             FRAMES_BAD: read_data = frames_bad;
@@ -132,27 +133,27 @@ module sptfra_registers #(
     end
 
     // ---- Writes
-    wire [1:0] ones = write_data[1:0] & write_mask[1:0];
-    wire [1:0] events = {frame_error, frame_done};
-    wire [1:0] cleared = (write_enable && (write_word == INTERRUPT_STATUS)) ? ones : 2'd0;
+    wire [2:0] ones = write_data[2:0] & write_mask[2:0];
+    wire [2:0] events = {bad_access, frame_error, frame_done};
+    wire [2:0] cleared = (write_enable && (write_word == INTERRUPT_STATUS)) ? ones : 3'd0;
 
     assign soft_reset = write_enable && (write_word == CONTROL) && ones[0];
 
     always @(posedge clock) begin
         if (write_enable && (write_word == INTERRUPT_ENABLE)) begin
-            enabled <= (enabled & ~write_mask[1:0]) | ones;
+            enabled <= (enabled & ~write_mask[2:0]) | ones;
         end
         // An event in the cycle in which its bit is cleared is not lost
         pending <= (pending & ~cleared) | events;
-        irq <= ((pending & enabled) != 2'd0);
+        irq <= ((pending & enabled) != 3'd0);
         if (reset) begin
-            enabled <= 2'd0;
-            pending <= 2'd0;
+            enabled <= 3'd0;
+            pending <= 3'd0;
             irq <= 1'b0;
         end
     end
 
-    wire _unused = &{1'b0, write_data[31:2], write_mask[31:2]};
+    wire _unused = &{1'b0, write_data[31:3], write_mask[31:3]};
 
 endmodule
 

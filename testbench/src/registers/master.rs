@@ -37,8 +37,6 @@ pub struct Reply {
     pub access: Access,
     /// What was read.
     pub data: u32,
-    /// SLVERR.
-    pub error: bool,
     /// When the reply was taken.
     pub cycle: u64,
 }
@@ -52,8 +50,8 @@ pub enum PortViolation {
     /// VALID was withdrawn or the payload changed.
     #[error("cycle {0}: a reply on s_axi_ctrl was withdrawn or changed before it was taken")]
     Withdrawn(u64),
-    /// A response that a slave without exclusive access does not give.
-    #[error("cycle {cycle}: response {response} on s_axi_ctrl, expected 0 (OKAY) or 2 (SLVERR)")]
+    /// A response that the bank does not give.
+    #[error("cycle {cycle}: response {response} on s_axi_ctrl, expected 0 (OKAY)")]
     Response {
         /// When.
         cycle: u64,
@@ -189,17 +187,17 @@ impl Master {
             return Err(PortViolation::Unasked(cycle));
         }
         for response in [port.response, port.data.map(|(_, response)| response)].into_iter().flatten() {
-            if response != 0 && response != 2 {
+            if response != 0 {
                 return Err(PortViolation::Response { cycle, response });
             }
         }
         (self.waiting_response, self.waiting_data) = (port.response, port.data);
-        if let (Some(request), Some(response), true) = (self.write, port.response, self.driven.take_response) {
-            self.replies.push(Reply { access: request.access, data: 0, error: response != 0, cycle });
+        if let (Some(request), Some(_), true) = (self.write, port.response, self.driven.take_response) {
+            self.replies.push(Reply { access: request.access, data: 0, cycle });
             (self.write, self.waiting_response) = (None, None);
         }
-        if let (Some(request), Some((data, response)), true) = (self.read, port.data, self.driven.take_data) {
-            self.replies.push(Reply { access: request.access, data, error: response != 0, cycle });
+        if let (Some(request), Some((data, _)), true) = (self.read, port.data, self.driven.take_data) {
+            self.replies.push(Reply { access: request.access, data, cycle });
             (self.read, self.waiting_data) = (None, None);
         }
         if let Some(request) = &mut self.write {

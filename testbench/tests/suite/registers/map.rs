@@ -6,7 +6,8 @@ use std::process::Command;
 use hdl_gen::emit::emit;
 use serde::Deserialize;
 use testbench::dut::{Core, Inputs};
-use testbench::registers::{Access, Controlled, address};
+use testbench::registers::address::{self, INTERRUPT_STATUS};
+use testbench::registers::{Access, Controlled};
 use testbench::tools;
 use testbench::trial::rtl_sources;
 use testbench::verilate::{Built, Verilate};
@@ -16,6 +17,8 @@ use crate::support::workspace;
 
 /// Words in the port's 4 KiB.
 const WORDS: u32 = 1024;
+/// Bit of the events: an access to an address without a register.
+const BAD_ACCESS: u32 = 1 << 2;
 
 #[derive(Deserialize)]
 struct Field {
@@ -93,12 +96,14 @@ fn differences(map: &[Register], built: &Built) -> Vec<String> {
     for word in 0..WORDS {
         let address = 4 * word;
         let mapped = map.iter().any(|register| register.address == address);
-        expect(format!("read error at {address:#05x}"), u32::from(!mapped), read(&mut fresh, address).error.into());
-        expect(
-            format!("write error at {address:#05x}"),
-            u32::from(!mapped),
-            write(&mut fresh, address, !0, 0).error.into(),
-        );
+        let bad = if mapped { 0 } else { BAD_ACCESS };
+        let data = read(&mut fresh, address).data;
+        expect(format!("bad access by reading {address:#05x}"), bad, read(&mut fresh, INTERRUPT_STATUS).data);
+        expect(format!("{address:#05x} without a register"), 0, if mapped { 0 } else { data });
+        write(&mut fresh, INTERRUPT_STATUS, BAD_ACCESS, 1);
+        write(&mut fresh, address, !0, 0);
+        expect(format!("bad access by writing {address:#05x}"), bad, read(&mut fresh, INTERRUPT_STATUS).data);
+        write(&mut fresh, INTERRUPT_STATUS, BAD_ACCESS, 1);
     }
     for register in map {
         let name = &register.name;
@@ -166,10 +171,26 @@ fn the_maps_special_fields_are_the_ones_that_other_tests_try() {
             "CONTROL.SOFT_RESET pulse",
             "INTERRUPT_ENABLE.FRAME_DONE plain",
             "INTERRUPT_ENABLE.FRAME_ERROR plain",
+            "INTERRUPT_ENABLE.BAD_ACCESS plain",
             "INTERRUPT_STATUS.FRAME_DONE woclr",
             "INTERRUPT_STATUS.FRAME_ERROR woclr",
+            "INTERRUPT_STATUS.BAD_ACCESS woclr",
         ]
     );
+}
+
+#[test]
+fn an_access_without_a_register_can_interrupt() {
+    let mut core = core(&subjects()[0].built, 5);
+    for (enabled, interrupt) in [(0, false), (BAD_ACCESS, true)] {
+        core.write(address::INTERRUPT_ENABLE, enabled).expect("a reply");
+        assert_eq!(core.read(0xF00).expect("a reply"), 0);
+        core.read(address::STATUS).expect("a reply");
+        assert_eq!(core.interrupt(), interrupt);
+    }
+    core.write(INTERRUPT_STATUS, BAD_ACCESS).expect("a reply");
+    core.read(address::STATUS).expect("a reply");
+    assert!(!core.interrupt());
 }
 
 /// The testbench's own names of addresses, and the table in the documentation.
@@ -218,7 +239,7 @@ fn a_wrong_bank_is_noticed() {
     let faults = [
         ("HASH_HIGH = 10'd3", "HASH_HIGH = 10'd11", "a register that moved"),
         ("IS_REDUCED, HAS_FIELD}", "1'd0, HAS_FIELD}", "a feature that is not there"),
-        ("(enabled & ~write_mask[1:0]) | ones", "ones", "strobes that are not heard"),
+        ("(enabled & ~write_mask[2:0]) | ones", "ones", "strobes that are not heard"),
         ("if (write_enable && (write_word == INTERRUPT_ENABLE))", "if (write_enable)", "writes that go elsewhere"),
         ("write_word <= LAST_INTERVAL", "write_word <= 10'd31", "addresses that nothing has"),
     ];
