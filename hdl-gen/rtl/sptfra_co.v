@@ -53,6 +53,12 @@ module sptfra_co #(
     output wire [18*40-1:0] sums
 );
 
+    generate
+        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
+            sptfra_error_ways_must_be_1_or_4 invalid ();
+        end
+    endgenerate
+
     wire sums_there;
 
     always @(posedge clock) begin

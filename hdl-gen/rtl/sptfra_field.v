@@ -45,6 +45,12 @@ module sptfra_field #(
     output wire signed [63:0] force_value
 );
 
+    generate
+        if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+            sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+        end
+    endgenerate
+
     localparam FORCE_DEPTH = 6 * QUADS;
     localparam FORCE_WIDTH = $clog2(FORCE_DEPTH);
     localparam QUAD_COLUMNS = (COLUMNS + 1) / 2;

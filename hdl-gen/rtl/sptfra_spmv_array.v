@@ -83,6 +83,18 @@ module sptfra_spmv_array #(
     output wire result_last // of its program
 );
 
+    generate
+        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
+            sptfra_error_ways_must_be_1_or_4 invalid ();
+        end
+        if ((LANES < 1) || (LANES > 128)) begin : gen_check_lanes
+            sptfra_error_lanes_must_be_1_to_128 invalid ();
+        end
+        if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destinations
+            sptfra_error_a_destination_has_3_or_4_bits invalid ();
+        end
+    endgenerate
+
     localparam WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1;
     localparam VALUE_WIDTH = (VALUE_DEPTH > 2) ? $clog2(VALUE_DEPTH) : 1;
     localparam VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1;

@@ -46,6 +46,12 @@ module sptfra_unfold #(
     output wire coefficients_complete // one cycle, with the last u: the stress of this frame is done with
 );
 
+    generate
+        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
+            sptfra_error_ways_must_be_1_or_4 invalid ();
+        end
+    endgenerate
+
     // ---- What a value is, beside it on its way: stage k holds what was on the bus k cycles ago
     localparam STAGES = (WAYS == 4) ? 5 : 1;
 

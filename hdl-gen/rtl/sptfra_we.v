@@ -49,6 +49,12 @@ module sptfra_we #(
     output reg  [WAYS*DATA_BITS-1:0] write_data // class 0 in the lowest bits
 );
 
+    generate
+        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
+            sptfra_error_ways_must_be_1_or_4 invalid ();
+        end
+    endgenerate
+
     localparam [31:0] BASE = WEIGHT_BASE;
     localparam [31:0] LENGTH = ELEMENTS;
     localparam signed [DATA_BITS-1:0] ZERO = 0;

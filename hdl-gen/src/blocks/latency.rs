@@ -1,4 +1,4 @@
-//! Cycles from place to place in the hardware, each said once: the schedule, the predicted times and the checks in
+//! Cycles from block to block in the hardware: the schedule, the predicted times and the checks in
 //! simulation read them here. `folded` says whether vectors are folded by parity. Those of an estimator stand with it, those
 //! of a leaf core in [`crate::cores`].
 

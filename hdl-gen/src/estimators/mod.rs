@@ -1,8 +1,8 @@
 //! The estimators of friction: what finds `mu_x` and `mu_y` from the sums and stresses of a frame.
 //!
 //! An estimator is a slot: its constants and formats, its steps in integers, its latencies, memories, multipliers and
-//! modules stand in a folder of its own, and the rest of the generator asks [`Slot`]. A new one is a folder and a line
-//! in each function of [`EstimatorPlan`].
+//! modules stand in a folder of its own, and the rest of the generator asks [`Slot`]. A new one is a folder, a line in
+//! each function of [`EstimatorPlan`], and its modules in the list of `emit::rtl`.
 
 pub mod joint;
 pub mod line;
@@ -38,11 +38,6 @@ impl EstimatorPlan {
             Self::Line(line) => line,
             Self::Joint(joint) => joint.as_ref(),
         }
-    }
-
-    /// The line estimator, if it is that one.
-    pub fn line(&self) -> Option<&LinePlan> {
-        if let Self::Line(line) = self { Some(line) } else { None }
     }
 
     /// The joint estimator, if it is that one.

@@ -1,4 +1,4 @@
-//! Predicted cycles, exact: every count below is that of the emitted pipelines and is compared with simulation.
+//! The predicted times of a design, exact: each is compared with simulation. `plan::control` finds them.
 
 use serde::Serialize;
 

@@ -23,6 +23,7 @@ mod layered;
 mod lint;
 mod looking;
 mod netlist;
+mod parameters;
 mod properties;
 mod registers;
 mod simulate;

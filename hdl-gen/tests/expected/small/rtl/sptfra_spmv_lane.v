@@ -78,6 +78,15 @@ module sptfra_spmv_lane #(
     input  wire take
 );
 
+    generate
+        if (OPERAND_DEPTH < VECTORS * ELEMENTS) begin : gen_check_operands
+            sptfra_error_the_operand_memory_does_not_hold_its_vectors invalid ();
+        end
+        if ((MIRROR_SIDE > 0) && (MIRROR_SIDE * MIRROR_SIDE != ELEMENTS)) begin : gen_check_mirror
+            sptfra_error_only_a_square_grid_is_mirrored invalid ();
+        end
+    endgenerate
+
     localparam COLUMN_WIDTH = (VECTORS * ELEMENTS > 2) ? $clog2(VECTORS * ELEMENTS) : 1;
     localparam SEGMENT_WIDTH = (SEGMENT_DEPTH > 2) ? $clog2(SEGMENT_DEPTH) : 1;
     localparam [1:0] ROW = 2'd0, TAIL = 2'd1, HEAD = 2'd2, IDLE = 2'd3;

@@ -35,6 +35,12 @@ module sptfra_spmv_way #(
     output reg  [47:0] result
 );
 
+    generate
+        if ((COEFFICIENT_BITS > 18) || (DATA_BITS > 27)) begin : gen_check_factors
+            sptfra_error_a_multiplier_has_18_by_27_bits invalid ();
+        end
+    endgenerate
+
     localparam signed [17:0] ONE = 18'sd65536; // friction has 16 fraction bits
 
     // ---- Sign extension to the multiplier's widths

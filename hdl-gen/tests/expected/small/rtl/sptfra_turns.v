@@ -32,6 +32,12 @@ module sptfra_turns #(
     output reg  bank // of the stress of the frame started last
 );
 
+    generate
+        if ((PROGRAMS < 1) || (PROGRAMS > 3)) begin : gen_check_programs
+            sptfra_error_programs_must_be_1_to_3 invalid ();
+        end
+    endgenerate
+
     reg busy;
     reg [1:0] searches_due; // frames started whose search is not over: two at most have a place in Op
     reg [2:0] frames_held; // started and not released

@@ -1,0 +1,57 @@
+//! Parameters that make no sense end the elaboration, with a name that says why.
+
+use std::fs;
+
+use testbench::tools;
+
+use crate::support::workspace;
+
+/// Module, parameter, value, what the tool must name.
+const SENSELESS: [(&str, &str, &str, &str); 16] = [
+    ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
+    ("bz", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("bz", "DATA_BITS", "28", "data_bits_must_be_16_to_27"),
+    ("cean", "ROWS", "65", "columns_and_rows_must_be_2_to_64"),
+    ("spmv_array", "WAYS", "3", "ways_must_be_1_or_4"),
+    ("spmv_array", "LANES", "129", "lanes_must_be_1_to_128"),
+    ("spmv_array", "DESTINATION_BITS", "5", "a_destination_has_3_or_4_bits"),
+    ("spmv_lane", "OPERAND_DEPTH", "12", "the_operand_memory_does_not_hold_its_vectors"),
+    ("spmv_lane", "MIRROR_SIDE", "4", "only_a_square_grid_is_mirrored"),
+    ("spmv_way", "COEFFICIENT_BITS", "19", "a_multiplier_has_18_by_27_bits"),
+    ("unfold", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("we", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("co", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("turns", "PROGRAMS", "4", "programs_must_be_1_to_3"),
+    ("field", "COLUMNS", "65", "columns_and_rows_must_be_2_to_64"),
+    ("estimator_joint", "WAYS", "1", "the_joint_estimator_needs_four_ways"),
+];
+
+/// What Verilator says of a module of the library with these parameters.
+fn said(module: &str, parameters: &[String]) -> String {
+    let mut verilator = tools::verilator().expect("installed");
+    let library = workspace("hdl-gen/rtl");
+    verilator.args(["--lint-only", "-Wno-fatal", "--top-module", &format!("sptfra_{module}")]);
+    verilator.args(parameters).arg("-y").arg(&library);
+    let output = verilator.arg(library.join(format!("sptfra_{module}.v"))).output().expect("starts");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn senseless_parameters_are_named() {
+    for (module, parameter, value, reason) in SENSELESS {
+        let name = format!("sptfra_error_{reason}");
+        let text = said(module, &[format!("-G{parameter}={value}")]);
+        assert!(text.contains(&name), "{module} with {parameter} = {value}: {text}");
+        let path = workspace("hdl-gen/rtl").join(format!("sptfra_{module}.v"));
+        assert!(fs::read_to_string(path).expect("is there").contains(&name), "{module}");
+    }
+}
+
+/// By itself a module stands with what it has by default.
+#[test]
+fn what_makes_sense_is_not_refused() {
+    for (module, ..) in SENSELESS {
+        let text = said(module, &[]);
+        assert!(!text.contains("%Error"), "{module}: {text}");
+    }
+}
