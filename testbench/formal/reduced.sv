@@ -7,7 +7,7 @@ module harness (
     input wire clock
 );
 
-    localparam [5:0] LAST_BEAT = 6'd43;
+    localparam [5:0] LAST_BEAT = 6'd51;
 
     reg started = 1'b0;
     wire reset = !started;

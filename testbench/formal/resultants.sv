@@ -9,10 +9,10 @@ module harness (
 
 `ifdef FIELD
     localparam BEAT_BITS = 6;
-    localparam [5:0] LAST_BEAT = 6'd43;
+    localparam [5:0] LAST_BEAT = 6'd51;
 `else
-    localparam BEAT_BITS = 3;
-    localparam [2:0] LAST_BEAT = 3'd7;
+    localparam BEAT_BITS = 4;
+    localparam [3:0] LAST_BEAT = 4'd15;
 `endif
 
     reg started = 1'b0;
