@@ -2,9 +2,12 @@
 
 use std::fmt::Write;
 
+use serde::{Deserialize, Serialize};
+
 use super::DesignError;
 use super::checks::Check;
 use super::files::Beside;
+use crate::words::print_as_words;
 
 /// Largest gain of a taxel.
 const MAX_GAIN: f64 = 16.0;
@@ -20,6 +23,31 @@ pub struct Input {
     pub pa_per_count: Option<f64>,
     /// Gain and offset of each taxel; only with counts.
     pub calibration: Option<Calibration>,
+    /// Whether the sensor reads what pulls.
+    pub tension: Tension,
+}
+
+/// What a taxel reads that is pulled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Tension {
+    /// A pull, as a positive stress.
+    #[default]
+    Read,
+    /// Nothing: most resistive and capacitive arrays read pressure only.
+    Clipped,
+}
+
+print_as_words!(Tension);
+
+impl Tension {
+    /// What is read of a stress in pascals.
+    pub fn of(self, stress: f64) -> f64 {
+        match self {
+            Self::Read => stress,
+            Self::Clipped => stress.min(0.0),
+        }
+    }
 }
 
 /// Gain and offset of each taxel.
@@ -50,8 +78,10 @@ impl Input {
         }
     }
 
-    /// A frame of stress in pascals as the sensor delivers it: in whole counts, if it counts.
+    /// A frame of stress in pascals as the sensor delivers it: without what pulls, if it does not read that, and in whole
+    /// counts, if it counts.
     pub fn deliver(&self, frame: &mut [f64]) {
+        frame.iter_mut().for_each(|value| *value = self.tension.of(*value));
         if self.pa_per_count.is_some() {
             for (taxel, value) in frame.iter_mut().enumerate() {
                 *value = self.from_pa(taxel, *value).round();
@@ -64,6 +94,7 @@ impl Input {
         check: &Check,
         pa_per_count: Option<f64>,
         calibration: Option<&str>,
+        tension: Tension,
         beside: Beside<'_>,
         taxels: usize,
     ) -> Result<Self, DesignError> {
@@ -85,7 +116,7 @@ impl Input {
             ));
         }
         let calibration = calibration.map(|file| Calibration::load(file, beside, taxels)).transpose()?;
-        Ok(Self { pa_per_count, calibration })
+        Ok(Self { pa_per_count, calibration, tension })
     }
 }
 

@@ -6,12 +6,13 @@ use serde::Deserialize;
 
 use super::checks::Check;
 use super::files::{Beside, sha256};
-use super::{DesignError, Kernel, Regularisation, Sensor};
-use crate::estimators::joint::{Correction, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT};
+use super::{DesignError, Kernel, Regularisation, Sensor, Tension};
+use crate::estimators::joint::{CUBIC_LIMIT, Correction, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT};
 
 /// What the constants depend on, for people and for comparison.
-pub fn conditions(sensor: &Sensor, kernel: Kernel, regularisation: Regularisation) -> String {
-    format!("{sensor}, {kernel}, {}", regularisation.factor())
+pub fn conditions(sensor: &Sensor, tension: Tension, kernel: Kernel, regularisation: Regularisation) -> String {
+    let reads = if tension == Tension::Clipped { ", tension clipped" } else { "" };
+    format!("{sensor}, {kernel}, {}{reads}", regularisation.factor())
 }
 
 /// The `[algorithm.correction]` table: the weights in a file with its hash, or in the table itself.
@@ -49,7 +50,7 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
     let [c1, c3] = two(check, "algorithm.tangential", raw.tangential.unwrap_or(&[1.0, 0.0]), "c1 and c3")?;
     let tangential = [
         check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
-        check.real("algorithm.tangential[1]", c3, -2.0, 2.0, "")?,
+        check.real("algorithm.tangential[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
     ];
     Ok(JointConstants { gain, tangential, correction: None, fitted_to: raw.fitted_to })
 }

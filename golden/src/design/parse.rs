@@ -13,7 +13,7 @@ use super::parse_plan::{self, PlanKeys};
 use super::regularisation;
 use super::{
     Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input,
-    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, Sensor,
+    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, Sensor, Slip, Tension,
 };
 
 #[derive(Deserialize)]
@@ -35,6 +35,8 @@ pub(crate) struct RawSensor {
     rows: i64,
     pitch_mm: Lengths,
     depth_mm: f64,
+    #[serde(default)]
+    tension: Option<String>,
 }
 
 /// The sensor of a design; unknown keys would pass if this held a flattened [`RawSensor`].
@@ -45,6 +47,7 @@ struct RawDesignSensor {
     rows: i64,
     pitch_mm: Lengths,
     depth_mm: f64,
+    tension: Option<String>,
     pa_per_count: Option<f64>,
     calibration: Option<String>,
 }
@@ -63,6 +66,14 @@ struct RawAlgorithm {
     fitted_to: Option<String>,
     outputs: Option<String>,
     noise_floor_pa: Option<f64>,
+    slip: Option<RawSlip>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSlip {
+    limit: f64,
+    hysteresis: Option<f64>,
 }
 
 #[derive(Deserialize, Default)]
@@ -111,14 +122,16 @@ pub(super) fn unfitted(text: &str, origin: &str, beside: Beside<'_>) -> Result<D
 fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
     let check = Check { origin };
     checks::name(&check, &raw.name)?;
-    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, pa_per_count, calibration } = raw.sensor;
-    let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
+    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, tension, pa_per_count, calibration } = raw.sensor;
+    let raw_sensor = RawSensor { columns, rows, pitch_mm, depth_mm, tension };
+    let tension = raw_sensor.tension(&check)?;
+    let sensor = raw_sensor.check(origin)?;
     let lanes_given = raw.hardware.lanes.is_some();
     let hardware = hardware(&check, raw.hardware)?;
-    let (mut algorithm, correction) = algorithm(&check, raw.algorithm, &sensor, &hardware)?;
+    let (mut algorithm, correction) = algorithm(&check, raw.algorithm, (&sensor, tension), &hardware)?;
     parse_plan::check(&check, &PlanKeys { sensor: &sensor, algorithm: &algorithm, hardware: &hardware, lanes_given })?;
     // Last, so that what is wrong with the design itself is said before its files are read.
-    let input = Input::new(&check, pa_per_count, calibration.as_deref(), beside, sensor.taxels())?;
+    let input = Input::new(&check, pa_per_count, calibration.as_deref(), tension, beside, sensor.taxels())?;
     algorithm.joint.correction = correction.map(|raw| joint::correction(&check, raw, &sensor, beside)).transpose()?;
     Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }
@@ -139,6 +152,11 @@ pub(crate) fn syntax_position(error: &toml::de::Error, text: &str, origin: &str)
 }
 
 impl RawSensor {
+    /// What it reads of a pull.
+    pub(crate) fn tension(&self, check: &Check) -> Result<Tension, DesignError> {
+        Ok(check.optional_word("sensor.tension", self.tension.as_deref())?.unwrap_or_default())
+    }
+
     pub(crate) fn check(self, origin: &str) -> Result<Sensor, DesignError> {
         let check = Check { origin };
         let side = |key, value| check.integer(key, value, 2, MAX_SIDE as i64);
@@ -157,7 +175,7 @@ impl RawSensor {
 fn algorithm(
     check: &Check,
     raw: RawAlgorithm,
-    sensor: &Sensor,
+    (sensor, tension): (&Sensor, Tension),
     hardware: &Hardware,
 ) -> Result<(Algorithm, Option<RawCorrection>), DesignError> {
     let full_scale_pa = hardware.full_scale_pa;
@@ -170,7 +188,7 @@ fn algorithm(
     let estimator: Estimator =
         check.optional_word("algorithm.estimator", raw.estimator.as_deref())?.unwrap_or_default();
     let joint = if estimator == Estimator::Joint {
-        let conditions = joint::conditions(sensor, kernel, regularisation);
+        let conditions = joint::conditions(sensor, tension, kernel, regularisation);
         let constants = joint::Raw { gain: raw.gain, tangential: raw.tangential.as_deref(), fitted_to: raw.fitted_to };
         joint::constants(check, constants, &conditions)?
     } else {
@@ -184,9 +202,16 @@ fn algorithm(
         None => full_scale_pa / NOISE_FLOOR_DIVISOR,
     };
     let plan = parse_plan::kind(check, raw.plan.as_deref(), &filter, hardware)?;
-    let algorithm =
-        Algorithm { plan, kernel, regularisation, filter, estimator, joint: Box::new(joint), outputs, noise_floor_pa };
+    let slip = raw.slip.map(|raw| slip(check, &raw)).transpose()?;
+    let joint = Box::new(joint);
+    let algorithm = Algorithm { plan, kernel, regularisation, filter, estimator, joint, outputs, noise_floor_pa, slip };
     Ok((algorithm, raw.correction))
+}
+
+fn slip(check: &Check, raw: &RawSlip) -> Result<Slip, DesignError> {
+    let limit = check.real("algorithm.slip.limit", raw.limit, 0.01, Slip::LARGEST, "")?;
+    let hysteresis = raw.hysteresis.unwrap_or(0.1 * limit);
+    Ok(Slip { limit, hysteresis: check.real("algorithm.slip.hysteresis", hysteresis, 0.0, limit, "")? })
 }
 
 fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {

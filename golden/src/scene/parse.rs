@@ -98,11 +98,13 @@ pub(super) fn scene(text: &str, origin: &str) -> Result<Scene, DesignError> {
         .enumerate()
         .map(|(index, raw)| contact(&check, raw, &|key| format!("contact[{index}].{key}"), !sweep_deg.is_empty()))
         .collect::<Result<_, _>>()?;
+    let tension = raw.sensor.tension(&check)?;
     let sensor = raw.sensor.check(origin)?;
     let sensor_errors = match raw.sensor_errors {
         Some(raw) => sensor_errors(&check, &raw, sensor.taxels())?,
         None => SensorErrors::default(),
     };
+    let sensor_errors = SensorErrors { tension, ..sensor_errors };
     Ok(Scene { sensor, medium: medium(&check, &raw.medium)?, contacts, sweep_deg, sensor_errors })
 }
 
@@ -231,6 +233,7 @@ fn sensor_errors(check: &Check, raw: &RawSensorErrors, taxels: usize) -> Result<
         dead,
         // Pressed too hard: the end of the range for compression.
         stuck: saturated.into_iter().map(|taxel| (taxel, -full_scale_pa)).collect(),
+        ..SensorErrors::default()
     })
 }
 

@@ -5,9 +5,13 @@ use std::f64::consts::TAU;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use crate::design::Tension;
+
 /// Errors of a sensor, applied to each frame in the order of the fields. The default is a sensor without errors.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensorErrors {
+    /// What the taxels read of a pull. Where they read nothing, noise is no pull either.
+    pub tension: Tension,
     /// Seed of all that is random; the same seed gives the same frames.
     pub seed: u64,
     /// Standard deviation of the taxels' gains around 1; a gain stays the same in all frames.
@@ -50,6 +54,7 @@ impl SensorErrors {
             generator.set_stream(stream);
             generator
         };
+        stress.iter_mut().for_each(|value| *value = self.tension.of(*value));
         if self.gain_spread > 0.0 {
             let mut gains = generator(0);
             for value in &mut *stress {
@@ -63,6 +68,7 @@ impl SensorErrors {
                 *value += deviation * normal(&mut noise);
             }
         }
+        stress.iter_mut().for_each(|value| *value = self.tension.of(*value));
         if let Some(converter) = self.converter {
             for value in &mut *stress {
                 *value = converter.read(*value);

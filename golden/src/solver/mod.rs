@@ -19,7 +19,7 @@ pub use workspace::Workspace;
 
 use std::sync::{Arc, OnceLock};
 
-use crate::design::{Design, Outputs, PlanKind};
+use crate::design::{Design, Outputs, PlanKind, Slip};
 use crate::estimators::{Friction, FrictionScratch, Seen};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
@@ -136,6 +136,7 @@ pub struct Solver {
     matrices: Matrices,
     products: Products,
     friction: Friction,
+    slip: Option<Slip>,
 }
 
 /// The products of the design's plan.
@@ -190,7 +191,7 @@ impl Solver {
 
     fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
         let friction = Friction::new(design.algorithm.constants(), &design.sensor);
-        Self { reader: Reader::new(design), matrices, products, friction }
+        Self { reader: Reader::new(design), matrices, products, friction, slip: design.algorithm.slip }
     }
 
     /// The unfiltered matrices.

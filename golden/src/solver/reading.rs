@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::cean::{self, Contact};
 use super::{SolverError, Status};
-use crate::design::{Design, Input};
+use crate::design::{Design, Input, Tension};
 
 /// Reads the frames of one sensor.
 #[derive(Clone, Debug)]
@@ -67,6 +67,9 @@ impl Reader {
         let contact = cean::cean(b, &self.positions, self.noise_floor);
         if !contact.touched {
             return Ok(Reading::Nothing(Status::NO_CONTACT));
+        }
+        if self.input.tension == Tension::Read && b.iter().all(|&stress| stress <= 0.0) {
+            status.insert(Status::NO_TENSION);
         }
         Ok(Reading::Contact { contact, status })
     }

@@ -10,6 +10,7 @@ mod tests;
 
 use std::ops::Range;
 
+use golden::design::Tension;
 use golden::products::{ByPq, Frame, Scalar};
 
 use crate::cores::{fixed_to_float, float_to_fixed};
@@ -35,6 +36,10 @@ pub const SATURATED: u32 = 1 << 3;
 pub const NOT_FINITE: u32 = 1 << 4;
 /// Status bit: early or late TLAST.
 pub const BAD_LENGTH: u32 = 1 << 5;
+/// Status bit: friction at the design's limit.
+pub const SLIP: u32 = 1 << 10;
+/// Status bit: nothing pulls, where the design says that tension is read.
+pub const NO_TENSION: u32 = 1 << 11;
 
 pub use crate::plan::SUMMARY_WORDS;
 
@@ -50,17 +55,19 @@ struct Stress {
 pub struct Model<'plan> {
     plan: &'plan Plan,
     frames: u16,
+    /// Whether the last frame slipped.
+    slips: bool,
 }
 
 impl<'plan> Model<'plan> {
     /// A model just out of reset.
     pub fn new(plan: &'plan Plan) -> Self {
-        Self { plan, frames: 0 }
+        Self { plan, frames: 0, slips: false }
     }
 
     /// As after the hardware's reset: the frame counter starts again.
     pub fn reset(&mut self) {
-        self.frames = 0;
+        (self.frames, self.slips) = (0, false);
     }
 
     /// Words of every output frame: 16, and for the field 3 m more.
@@ -89,6 +96,7 @@ impl<'plan> Model<'plan> {
         let saturated = converted.iter().any(|stress| stress.saturated);
         let stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
         if Contact::new(&stress).stress_sum < self.plan.thresholds.contact {
+            self.slips = false;
             return self.blank(counter | NO_CONTACT);
         }
         self.answer(counter, &stress, saturated)
@@ -110,11 +118,20 @@ impl<'plan> Model<'plan> {
         Stress { steps, saturated, not_finite: converted.not_finite }
     }
 
-    fn answer(&self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
-        match self.plan.formats.folded {
+    fn answer(&mut self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
+        let mut counter = counter;
+        if self.plan.design.input.tension == Tension::Read && stress.iter().all(|&stress| stress <= 0) {
+            counter |= NO_TENSION;
+        }
+        let (mut words, summary) = match self.plan.formats.folded {
             None => self.execute(&integer::by_taxel(self.plan), counter, stress, saturated),
             Some(_) => self.execute(&integer::by_quad(self.plan), counter, stress, saturated),
+        };
+        if let Some([limit, release]) = self.plan.thresholds.slip {
+            self.slips = summary.friction_coefficient() >= if self.slips { release } else { limit };
+            words[words::STATUS] |= if self.slips { SLIP } else { 0 };
         }
+        words
     }
 
     fn execute<const W: usize>(
@@ -123,7 +140,7 @@ impl<'plan> Model<'plan> {
         counter: u32,
         stress: &[i64],
         saturated: bool,
-    ) -> Vec<u32> {
+    ) -> (Vec<u32>, Summary) {
         let products = &self.plan.products;
         let needs_friction = |product: &Product| product.coefficients == Coefficients::Friction;
         let search = products.iter().position(needs_friction).unwrap_or(products.len());
@@ -134,7 +151,7 @@ impl<'plan> Model<'plan> {
         if self.plan.field_words() > 0 {
             words.extend(self.field(&frame, summary.friction));
         }
-        words
+        (words, summary)
     }
 
     /// Forces of every taxel, from what the plan's products have left of them.

@@ -1,13 +1,13 @@
 //! From a checked design to its plan.
 
-use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, PlanKind};
+use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, PlanKind, Slip};
 use golden::matrices::Matrices;
 use golden::parity::{CLASSES, Quads};
 
 use super::counts::CountsPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::filtered::Filtered;
-use super::format::{Format, pow2};
+use super::format::{FRICTION_FRACTION, Format, pow2};
 use super::formats::{Formats, arms};
 use super::layout::OperandLayout;
 use super::matrix::QuantisedMatrix;
@@ -207,5 +207,9 @@ fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> 
     }
     let taxel = ((floor_pa * pow2(-stress.lsb)).round() as i64).max(1);
     let contact = ((floor_pa * design.sensor.taxels() as f64 * pow2(-stress.lsb)).round() as i64).max(1);
-    Ok(Thresholds { taxel, contact })
+    let slip = design.algorithm.slip.map(|Slip { limit, hysteresis }| {
+        // Never 0: that friction of 0 slips is no limit's meaning.
+        [limit, limit - hysteresis].map(|friction| ((friction * pow2(FRICTION_FRACTION as i32)).round() as i64).max(1))
+    });
+    Ok(Thresholds { taxel, contact, slip })
 }

@@ -37,7 +37,7 @@ impl CountsPlan {
     /// # Errors
     /// [`PlanError::Offset`] when an offset is so far beyond the full scale that it does not fit the sum.
     pub fn new(design: &Design, stress: Format) -> Result<Option<Self>, PlanError> {
-        let Input { pa_per_count: Some(pa_per_count), ref calibration } = design.input else { return Ok(None) };
+        let Input { pa_per_count: Some(pa_per_count), ref calibration, .. } = design.input else { return Ok(None) };
         let (gains, offsets) = match calibration {
             Some(calibration) => (calibration.gain.clone(), calibration.offset.clone()),
             None => (vec![1.0], vec![0.0]),

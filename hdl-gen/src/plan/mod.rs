@@ -49,6 +49,10 @@ pub struct Thresholds {
     pub taxel: i64,
     /// A frame with a smaller `sum |b|` has no contact.
     pub contact: i64,
+    /// Friction at which a frame slips, and at which it still does if the one before did, with
+    /// [`format::FRICTION_FRACTION`] fraction bits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slip: Option<[i64; 2]>,
 }
 
 /// Number of entries per filtered matrix.

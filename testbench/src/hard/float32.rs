@@ -1,7 +1,7 @@
 //! The reduced plan in float32 throughout, as a processor without f64 would compute it. Matrices come from f64 and are
 //! rounded. Only for comparison: hardware has fixed point.
 
-use golden::design::{Design, Estimator};
+use golden::design::{Design, Estimator, Tension};
 use golden::estimators::RANGE;
 use golden::estimators::line::{LEVEL, MAX_LINE_RATIO};
 use golden::parity::CLASSES;
@@ -55,6 +55,9 @@ impl<'a> Single<'a> {
         let [mu_x, mu_y] = self.friction(&b, floor, &sums, u, stress_sum, &mut status);
         if saturated {
             status.insert(Status::SATURATED);
+        }
+        if self.design.input.tension == Tension::Read && b.iter().all(|&stress| stress <= 0.0) {
+            status.insert(Status::NO_TENSION);
         }
         let mut field: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; m]);
         self.engine.field([mu_x, mu_y], &mut of_frame, |p, taxel, force| field[p][taxel] = f64::from(force));

@@ -6,6 +6,9 @@ pub const WEIGHT_FRACTION: u32 = 12;
 pub const WEIGHT_LIMIT: i32 = 32 << WEIGHT_FRACTION;
 /// Most hidden units of a correction.
 pub const MAX_HIDDEN: usize = 256;
+/// Largest magnitude of `c3`, less than 4, as far as the hardware's word for it reaches. Sensors that read no tension
+/// need more than 2.
+pub const CUBIC_LIMIT: f64 = 3.9;
 /// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.
 pub const EXTRA_INPUTS: usize = 5;
 

@@ -12,7 +12,7 @@ mod weights;
 
 use super::seen::{RANGE, Seen};
 use crate::status::Status;
-pub use constants::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION, WEIGHT_LIMIT};
+pub use constants::{CUBIC_LIMIT, Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION, WEIGHT_LIMIT};
 pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};
 pub use level_set::{REACH, STEP};

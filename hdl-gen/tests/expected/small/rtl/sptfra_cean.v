@@ -15,6 +15,8 @@ module sptfra_cean #(
     parameter integer ROWS = 10,
     // 1: the direction of the push too; 0: for an estimator that needs none
     parameter integer DIRECTION = 0,
+    // 1: the sensor reads what pulls, so that a frame in which nothing does is to be told
+    parameter integer TENSION_READ = 1,
     // Noise floor of a taxel, in steps of the stress
     parameter [26:0] TAXEL_FLOOR = 27'd100,
     // Noise floor of the frame's sum |b|, in steps of the stress
@@ -45,7 +47,7 @@ module sptfra_cean #(
     output wire no_direction, // nothing pushes, or nothing pulls
     output wire [39:0] stress_sum, // sum |b|
     output wire [26:0] largest, // max |b|
-    output wire [3:0] flags // no contact, saturated, NaN or infinity, bad length
+    output wire [4:0] flags // no tension, no contact, saturated, NaN or infinity, bad length
 );
 
     // ---- Stage 1: magnitude; stage 2: sum and maximum
@@ -54,6 +56,7 @@ module sptfra_cean #(
     reg [26:0] magnitude_1;
     reg [39:0] sum;
     reg [26:0] most;
+    reg pulled; // a stress was above 0
     reg clear;
 
     always @(posedge clock) begin
@@ -63,6 +66,7 @@ module sptfra_cean #(
         if (valid_1) begin
             sum <= sum + {13'd0, magnitude_1};
             most <= (magnitude_1 > most) ? magnitude_1 : most;
+            pulled <= pulled || (tensile_1 && (magnitude_1 != 27'd0));
         end
         if (reset) begin
             valid_1 <= 1'b0;
@@ -70,6 +74,7 @@ module sptfra_cean #(
         if (reset || clear) begin
             sum <= 40'd0;
             most <= 27'd0;
+            pulled <= 1'b0;
         end
     end
 
@@ -152,9 +157,10 @@ module sptfra_cean #(
     endgenerate
 
     // ---- Two places for finished frames: never full, since Bz asks first
-    wire [125:0] pushed = {push_x, push_y, no_push, sum, most, below_floor, faults};
-    reg [125:0] waiting_0;
-    reg [125:0] waiting_1;
+    wire no_tension = (TENSION_READ != 0) && !pulled;
+    wire [126:0] pushed = {push_x, push_y, no_push, sum, most, no_tension, below_floor, faults};
+    reg [126:0] waiting_0;
+    reg [126:0] waiting_1;
     reg [1:0] waiting;
     wire push = (state == PUSH);
 
