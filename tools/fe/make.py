@@ -40,7 +40,7 @@ MESH = (4.0 / 3.0, 4.0, (0.0, 0.8, 1.8, 3.0))
 # The first case once more on other meshes.
 MESHES = {
     "mesh-coarse": (2.0, 4.0, (0.0, 1.2, 3.0)),
-    "mesh-fine": (1.0, 2.0, (0.0, 0.5, 1.2, 2.0, 3.0)),
+    "mesh-fine": (1.0, 4.0, (0.0, 0.6, 1.3, 2.1, 3.0)),
 }
 NEAR = 7.5
 

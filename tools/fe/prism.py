@@ -52,6 +52,7 @@ def cylinder(radius, reach, half_length, turn_deg=0.0):
 
     def height(x, y):
         across, along = cos * x + sin * y, cos * y - sin * x
+        across = min(abs(across), 0.98 * radius)
         beyond = max(0.0, abs(along) - half_length)
         return radius - math.sqrt(radius**2 - across**2) + 0.1 * beyond**2
 
