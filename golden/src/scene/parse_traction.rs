@@ -63,7 +63,7 @@ impl RawTraction<'_> {
             };
             return refuse("held", problem, remedy);
         }
-        let bent = self.edge.is_some() || tilt != [0.0; 2] || !matches!(shape, Shape::Hertz { .. });
+        let bent = self.edge.is_some() || self.tilt.is_some() || !matches!(shape, Shape::Hertz { .. });
         if shear == Kind::Held && bent {
             return refuse(
                 "shear",

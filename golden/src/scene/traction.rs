@@ -178,7 +178,9 @@ fn unit_points(shape: Shape, edge: f64, Points { radial, around }: Points) -> Ve
             .collect(),
     };
     let sum: f64 = found.iter().map(|(_, weight)| weight).sum();
-    found.iter_mut().for_each(|(_, weight)| *weight /= sum);
+    for (_, weight) in &mut found {
+        *weight /= sum;
+    }
     found
 }
 

@@ -65,7 +65,7 @@ fn frame(sensor: &Sensor, family: Family, seed: u64) -> SceneFrame {
     let margin = radius + sensor.depth_m() / 3.0;
     let mut centre_m = last.map(|far| between(margin.min(0.5 * far), (far - margin).max(0.5 * far)));
     let round = Shape::Hertz { semi_axes_m: [radius; 2] };
-    let mut shape = if seed % 2 == 0 { round } else { Shape::Disc { radius_m: radius } };
+    let mut shape = if seed.is_multiple_of(2) { round } else { Shape::Disc { radius_m: radius } };
     let mut traction = Traction::default();
     let mut friction = 0.5;
     let mut poisson = 0.49;
@@ -113,7 +113,7 @@ fn frame(sensor: &Sensor, family: Family, seed: u64) -> SceneFrame {
                 2 => Shape::Rectangle { sides_m: sides.map(|half| 1.8 * half) },
                 _ => Shape::Disc { radius_m: radius },
             };
-            if seed % 4 == 0 {
+            if seed.is_multiple_of(4) {
                 traction.shear = Shear::Held { share: between(0.2, 0.95) };
             } else {
                 traction.edge = Some(between(-0.4, 2.0));
@@ -127,7 +127,7 @@ fn frame(sensor: &Sensor, family: Family, seed: u64) -> SceneFrame {
         }
     }
     let direction_deg = between(-180.0, 180.0);
-    let contact = Contact { shape, centre_m, normal_force_n: 6.0, friction, traction, direction_deg };
+    let contact = Contact { shape, centre_m, normal_force_n: 3.0, friction, traction, direction_deg };
     let scene = Scene {
         sensor: sensor.clone(),
         medium: Medium::BondedLayer { poisson },
