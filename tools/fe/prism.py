@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 # Penalties of contact and of stick, times Young's modulus: surfaces overlap by a few micrometres.
-CONTACT_PER_MM = 50.0
-STICK_PER_MM = 20.0
+CONTACT_PER_MM = 10.0
+STICK_PER_MM = 3.0
 TAXEL_SHARE = 0.8  # of its pitch, along x and along y, over which a taxel averages
 
 
