@@ -1,7 +1,7 @@
 """Contacts on the paper's prisms by finite elements: the frames in data/fe.
 
     apt-get install calculix-ccx
-    .venv/bin/python tools/fe/make.py target/fe          # runs what is not there yet (hours), one thread
+    .venv/bin/python tools/fe/make.py target/fe          # runs what is not there yet (an hour or two), one thread
     .venv/bin/python tools/fe/make.py target/fe --write  # writes data/fe from what is there
 
 A case is pressed down, then dragged; each increment of the drag is a frame, from held (partial slip) to sliding.
