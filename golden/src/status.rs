@@ -30,7 +30,8 @@ impl Status {
     pub const TOO_MANY_REPLACED: Self = Self(1 << 9);
     /// Friction is at the design's limit: what is held begins to slide.
     pub const SLIP: Self = Self(1 << 10);
-    /// Nothing pulls in a frame of a sensor that reads tension, as its design says.
+    /// Nothing pulls in a frame of a sensor that reads tension, as its design says, though friction of
+    /// [`crate::solver::PULLING`] was found, or none could be.
     pub const NO_TENSION: Self = Self(1 << 11);
     /// Frames were dropped before this one (hardware only).
     pub const DROPPED: Self = Self(1 << 12);
@@ -55,6 +56,11 @@ impl Status {
     /// True if every bit of `other` is set.
     pub fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
+    }
+
+    /// Clears the bits of `other`.
+    pub fn remove(&mut self, other: Self) {
+        self.0 &= !other.0;
     }
 
     /// Sets the bits of `other`.

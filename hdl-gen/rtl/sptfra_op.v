@@ -172,10 +172,15 @@ module sptfra_op #(
     wire bad_length = summary_flags[0];
     wire bad = not_finite || bad_length;
     wire answered = !bad && !no_contact;
+    // Friction |mu_x| + |mu_y| from which on something pulls, 16 fraction bits
+    localparam [17:0] PULLING = 18'd22937;
+    wire [17:0] size_x = mu_x[17] ? -mu_x : mu_x;
+    wire [17:0] size_y = mu_y[17] ? -mu_y : mu_y;
+    wire pushed = ({1'b0, size_x} + {1'b0, size_y} >= {1'b0, PULLING});
     wire slips;
     wire [15:0] status = {
         4'd0,
-        answered && summary_flags[4],
+        answered && summary_flags[4] && (summary_unknown || pushed),
         answered && slips,
         4'd0,
         bad_length,

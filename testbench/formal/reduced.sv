@@ -267,9 +267,9 @@ module harness (
         + (field_due ? (residual_there ? 10'd15 : 10'd20) : 10'd0)
         + (start[2] ? 10'd14 : (start != 3'd0) ? 10'd4 : (issuing != 3'd0) ? 10'd2 : 10'd0)
         + (field_there ? 10'd5 : field_started ? 10'd10 : 10'd0);
-    wire [9:0] left_of_search = (open[0] ? (summed ? 10'd99 : 10'd100) : 10'd0) + 10'd90 * u_there
-        + (searching ? (answer_waits ? 10'd75 : 10'd80) : 10'd0)
-        + (friction_due ? 10'd60 : summary_due ? 10'd55 : summary_busy ? 10'd50 : 10'd0);
+    wire [9:0] left_of_search = (open[0] ? (summed ? 10'd107 : 10'd108) : 10'd0) + 10'd98 * u_there
+        + (searching ? (answer_waits ? 10'd83 : 10'd88) : 10'd0)
+        + (friction_due ? 10'd68 : summary_due ? 10'd63 : summary_busy ? 10'd58 : 10'd0);
     wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : {9'd0, field_release};
     wire [9:0] left = left_of_turns + left_of_search + left_at_output;
     wire asked = (issuing != 3'd0) || (open != 3'd0) || (searching && !answer_waits) || summary_due;

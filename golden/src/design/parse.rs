@@ -31,12 +31,10 @@ struct RawDesign {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RawSensor {
-    columns: i64,
-    rows: i64,
-    pitch_mm: Lengths,
-    depth_mm: f64,
-    #[serde(default)]
-    tension: Option<String>,
+    pub(crate) columns: i64,
+    pub(crate) rows: i64,
+    pub(crate) pitch_mm: Lengths,
+    pub(crate) depth_mm: f64,
 }
 
 /// The sensor of a design; unknown keys would pass if this held a flattened [`RawSensor`].
@@ -123,9 +121,8 @@ fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, D
     let check = Check { origin };
     checks::name(&check, &raw.name)?;
     let RawDesignSensor { columns, rows, pitch_mm, depth_mm, tension, pa_per_count, calibration } = raw.sensor;
-    let raw_sensor = RawSensor { columns, rows, pitch_mm, depth_mm, tension };
-    let tension = raw_sensor.tension(&check)?;
-    let sensor = raw_sensor.check(origin)?;
+    let tension = check.optional_word("sensor.tension", tension.as_deref())?.unwrap_or_default();
+    let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
     let lanes_given = raw.hardware.lanes.is_some();
     let hardware = hardware(&check, raw.hardware)?;
     let (mut algorithm, correction) = algorithm(&check, raw.algorithm, (&sensor, tension), &hardware)?;
@@ -152,11 +149,6 @@ pub(crate) fn syntax_position(error: &toml::de::Error, text: &str, origin: &str)
 }
 
 impl RawSensor {
-    /// What it reads of a pull.
-    pub(crate) fn tension(&self, check: &Check) -> Result<Tension, DesignError> {
-        Ok(check.optional_word("sensor.tension", self.tension.as_deref())?.unwrap_or_default())
-    }
-
     pub(crate) fn check(self, origin: &str) -> Result<Sensor, DesignError> {
         let check = Check { origin };
         let side = |key, value| check.integer(key, value, 2, MAX_SIDE as i64);

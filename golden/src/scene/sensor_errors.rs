@@ -7,9 +7,14 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::design::Tension;
 
-/// Errors of a sensor, applied to each frame in the order of the fields. The default is a sensor without errors.
+/// What a sensor does to the stress, in the order of the fields. The default is a sensor without errors, whose taxels are
+/// points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensorErrors {
+    /// Sides of the part of its cell over which a taxel averages the stress, in metres; a point if absent.
+    pub taxel_m: Option<[f64; 2]>,
+    /// Share by which the layer is really deeper than the sensor says.
+    pub depth: f64,
     /// What the taxels read of a pull. Where they read nothing, noise is no pull either.
     pub tension: Tension,
     /// Seed of all that is random; the same seed gives the same frames.

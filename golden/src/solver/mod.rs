@@ -29,6 +29,10 @@ use crate::products::{Engine, PaperMatrices, ProductList};
 use crate::reduced::ReducedMatrices;
 use reading::Reader;
 
+/// Friction, `|mu_x| + |mu_y|`, from which on a layer that is dragged shows tension somewhere. Below it a contact in the
+/// middle may show none.
+pub const PULLING: f64 = 0.35;
+
 /// Why a solver cannot be made or a frame cannot be solved.
 #[derive(Debug, thiserror::Error)]
 pub enum SolverError {
@@ -120,6 +124,9 @@ impl Solution {
     fn optimum(&mut self, friction: &Friction, seen: &Seen, scratch: &mut FrictionScratch) -> [f64; 2] {
         let (status, mu) = friction.find(seen, scratch);
         self.status.insert(status);
+        if !status.contains(Status::DIRECTION_UNKNOWN) && mu[0].abs() + mu[1].abs() < PULLING {
+            self.status.remove(Status::NO_TENSION);
+        }
         let [fx, fy, fz, tx, ty, tz] = seen.sums.map(|[g0, g1, g2]| g0 + mu[0] * g1 + mu[1] * g2);
         let resultant = [fx, fy, fz];
         [self.mu_x, self.mu_y] = mu;

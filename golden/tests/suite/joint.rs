@@ -203,7 +203,7 @@ fn constants_that_make_no_sense_are_refused() {
         (joint("gain = 0.0"), ["algorithm.gain", "0.1"]),
         (joint("gain = nan"), ["algorithm.gain", "NaN"]),
         (joint("tangential = [1.0]"), ["algorithm.tangential", "has 1 values"]),
-        (joint("tangential = [1.0, 9.0]"), ["algorithm.tangential[1]", "-2 to 2"]),
+        (joint("tangential = [1.0, 9.0]"), ["algorithm.tangential[1]", "-3.9 to 3.9"]),
         (correction("half_window = [0]\nhidden = []\noutput = []"), ["half_window", "has 1 values"]),
         (correction("half_window = [4, 0]\nhidden = []\noutput = []"), ["half_window[0]", "0 to 3"]),
         (correction("half_window = [0, 0]\nhidden = []\noutput = []"), ["hidden", "1 to 256"]),

@@ -38,8 +38,10 @@ pub const NOT_FINITE: u32 = 1 << 4;
 pub const BAD_LENGTH: u32 = 1 << 5;
 /// Status bit: friction at the design's limit.
 pub const SLIP: u32 = 1 << 10;
-/// Status bit: nothing pulls, where the design says that tension is read.
+/// Status bit: nothing pulls, where the design says that tension is read and the friction that something should.
 pub const NO_TENSION: u32 = 1 << 11;
+/// [`golden::solver::PULLING`] with [`FRICTION_FRACTION`] fraction bits.
+pub const PULLING: i64 = (golden::solver::PULLING * (1_u32 << FRICTION_FRACTION) as f64) as i64;
 
 pub use crate::plan::SUMMARY_WORDS;
 
@@ -119,14 +121,16 @@ impl<'plan> Model<'plan> {
     }
 
     fn answer(&mut self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
-        let mut counter = counter;
-        if self.plan.design.input.tension == Tension::Read && stress.iter().all(|&stress| stress <= 0) {
-            counter |= NO_TENSION;
-        }
         let (mut words, summary) = match self.plan.formats.folded {
             None => self.execute(&integer::by_taxel(self.plan), counter, stress, saturated),
             Some(_) => self.execute(&integer::by_quad(self.plan), counter, stress, saturated),
         };
+        let read = self.plan.design.input.tension == Tension::Read;
+        let pushed = summary.friction.iter().map(|mu| mu.abs()).sum::<i64>() >= PULLING;
+        if read && (pushed || words[words::STATUS] & DIRECTION_UNKNOWN != 0) && stress.iter().all(|&stress| stress <= 0)
+        {
+            words[words::STATUS] |= NO_TENSION;
+        }
         if let Some([limit, release]) = self.plan.thresholds.slip {
             self.slips = summary.friction_coefficient() >= if self.slips { release } else { limit };
             words[words::STATUS] |= if self.slips { SLIP } else { 0 };

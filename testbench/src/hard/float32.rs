@@ -7,7 +7,7 @@ use golden::estimators::line::{LEVEL, MAX_LINE_RATIO};
 use golden::parity::CLASSES;
 use golden::products::{Engine, ProductList};
 use golden::reduced::ReducedMatrices;
-use golden::solver::{Solver, Status};
+use golden::solver::{PULLING, Solver, Status};
 
 use crate::stream_words::Answer;
 
@@ -56,7 +56,8 @@ impl<'a> Single<'a> {
         if saturated {
             status.insert(Status::SATURATED);
         }
-        if self.design.input.tension == Tension::Read && b.iter().all(|&stress| stress <= 0.0) {
+        let pushed = status.contains(Status::DIRECTION_UNKNOWN) || f64::from(mu_x.abs() + mu_y.abs()) >= PULLING;
+        if pushed && self.design.input.tension == Tension::Read && b.iter().all(|&stress| stress <= 0.0) {
             status.insert(Status::NO_TENSION);
         }
         let mut field: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; m]);

@@ -268,7 +268,9 @@ fn mixed_in_every_mode(subject: &Subject) {
         assert!(seen >= FEWEST_OF_A_STATUS, "only {seen} frames with the status {status:#x} alone");
     }
     let seen = expected.iter().filter(|words| words[0] & NO_TENSION != 0).count();
-    assert!(seen >= FEWEST_OF_A_STATUS, "only {seen} frames without tension");
+    // The joint estimator asks for tension only where it finds that something is pushed.
+    let least = if plan.estimator.joint().is_some() { 0 } else { FEWEST_OF_A_STATUS };
+    assert!(seen >= least, "only {seen} frames without tension");
     let [free, _, _, both] = Mode::all(11);
     // The sink takes a beat now and then: frames pile up inside.
     let slow = Mode { name: "slow sink", source: Pattern::Free, sink: Pattern::Random { seed: 3, willing: 0.03 } };
