@@ -18,7 +18,8 @@ module sptfra_bz #(
     parameter WAYS = 4,
     // Bits of a stress
     parameter DATA_BITS = 27,
-    // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts
+    // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts; with PER_TAXEL
+    // each taxel has an exponent of its own
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
     // Whether the stream carries counts: see sptfra_counts
@@ -114,12 +115,31 @@ module sptfra_bz #(
     wire signed [26:0] number;
     wire number_saturated;
     wire number_not_finite;
+    wire signed [9:0] shift;
+
+    generate
+        if (PER_TAXEL != 0) begin : gen_exponents
+            sptfra_exponents #(
+                .TAXELS   (TAXELS),
+                .ROM_DIR  (ROM_DIR),
+                .ROM_NAME (ROM_NAME)
+            ) exponents (
+                .clock    (clock),
+                .reset    (reset),
+                .accept   (accept),
+                .last     (s_tlast),
+                .exponent (shift)
+            );
+        end else begin : gen_exponent
+            assign shift = SHIFT;
+        end
+    endgenerate
 
     sptfra_float_to_fixed float_to_fixed (
         .clock      (clock),
         .enable     (advance),
         .float_bits (s_tdata),
-        .shift      (SHIFT),
+        .shift      (shift),
         .limit      (NUMBER_BOUND),
         .fixed      (number),
         .saturated  (number_saturated),

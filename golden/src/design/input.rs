@@ -6,8 +6,8 @@ use super::DesignError;
 use super::checks::Check;
 use super::files::Beside;
 
-/// Largest gain of a taxel.
-const MAX_GAIN: f64 = 16.0;
+/// Range of a taxel's gain.
+const GAIN: [f64; 2] = [1e-9, 16.0];
 /// Largest offset of a taxel, in counts.
 const MAX_OFFSET: f64 = 1e6;
 /// Range of the magnitude of pascals per count.
@@ -25,7 +25,7 @@ pub struct Input {
 /// Gain and offset of each taxel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// What each taxel's count is multiplied by, m values greater than 0 and at most 16.
+    /// What each taxel's count is multiplied by, m values from 1e-9 to 16.
     pub gain: Vec<f64>,
     /// What is added to the product, in counts, m values.
     pub offset: Vec<f64>,
@@ -98,8 +98,9 @@ impl Calibration {
                 return Err(wrong(line, format!("{shown:?} is no pair of numbers"), remedy));
             };
             // A NaN is in no range.
-            if !(g > 0.0 && g <= MAX_GAIN) {
-                let remedy = format!("use a gain greater than 0 and at most {MAX_GAIN}");
+            let [low, high] = GAIN;
+            if !(low..=high).contains(&g) {
+                let remedy = format!("use a gain from {low:e} to {high}");
                 return Err(wrong(line, format!("the gain is {g}"), remedy));
             }
             if !(-MAX_OFFSET..=MAX_OFFSET).contains(&o) {

@@ -1,19 +1,24 @@
 //! Bz, the stream's frames to fixed point: `sptfra_bz`.
 
 use crate::plan::Plan;
+use crate::plan::counts::LARGEST_NUMBER;
 
 use super::Parameters;
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let number = plan.counts.as_ref().map_or(plan.formats.stress, |counts| counts.count);
+    let stress = plan.formats.stress;
+    let (shift, bound) = match &plan.counts {
+        Some(counts) => (counts.exponents[0], LARGEST_NUMBER),
+        None => (-stress.lsb, stress.bound),
+    };
     let parameters = Parameters::new()
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .count("WAYS", plan.ways())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
-        .number("NUMBER_SHIFT", (-number.lsb).into())
-        .wide("NUMBER_BOUND", 27, number.bound);
+        .number("NUMBER_SHIFT", shift.into())
+        .wide("NUMBER_BOUND", 27, bound);
     let Some(counts) = &plan.counts else { return parameters };
     parameters
         .flag("COUNTS", true)
@@ -22,7 +27,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("OFFSET_BITS", counts.offset_bits().into())
         .number("COUNT_SHIFT", counts.shift.into())
         .wide("FULL_SCALE", 48, counts.full_scale)
-        .wide("STRESS_BOUND", 27, plan.formats.stress.bound)
+        .wide("STRESS_BOUND", 27, stress.bound)
         .expression("ROM_DIR", "ROM_DIR")
         .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
 }

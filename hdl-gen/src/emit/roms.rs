@@ -4,7 +4,7 @@ use crate::blocks::array::column_bits;
 use crate::blocks::row_width;
 use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
-use crate::plan::counts::GAIN_BITS;
+use crate::plan::counts::{EXPONENT_BITS, GAIN_BITS};
 use crate::plan::format::address_bits;
 use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
 
@@ -31,6 +31,8 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
     files.insert(format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
     if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
+        let exponents = counts.exponents.iter().map(|&exponent| u128::from(exponent as u32));
+        files.insert(format!("rom/{name}_exponents.mem"), hex(exponents, counts.exponents.len(), EXPONENT_BITS));
         let gains = counts.gains.iter().map(|&gain| u128::from(gain as u32));
         files.insert(format!("rom/{name}_gains.mem"), hex(gains, counts.gains.len(), GAIN_BITS));
         let offsets = counts.offsets.iter().map(|&offset| u128::from(offset as u64));

@@ -30,6 +30,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_divider",
     "sptfra_estimator_joint",
     "sptfra_estimator_line",
+    "sptfra_exponents",
     "sptfra_field",
     "sptfra_fixed_to_float",
     "sptfra_float_to_fixed",

@@ -96,15 +96,15 @@ impl<'plan> Model<'plan> {
     /// One input word as stress.
     fn convert(&self, taxel: usize, word: u32) -> Stress {
         let format = self.plan.formats.stress;
-        let number = self.plan.counts.as_ref().map_or(format, |counts| counts.count);
-        let converted = float_to_fixed::convert(word, -number.lsb, number.bound as u32);
-        let number = i64::from(converted.fixed);
-        let (mut steps, mut saturated) = (number, converted.saturated);
-        if let Some(counts) = &self.plan.counts {
-            steps = counts.to_stress(taxel, number);
-            if steps.abs() >= counts.full_scale {
-                (steps, saturated) = (steps.signum() * format.bound, true);
-            }
+        let Some(counts) = &self.plan.counts else {
+            let converted = float_to_fixed::convert(word, -format.lsb, format.bound as u32);
+            let steps = i64::from(converted.fixed);
+            return Stress { steps, saturated: converted.saturated, not_finite: converted.not_finite };
+        };
+        let converted = counts.number(taxel, word);
+        let (mut steps, mut saturated) = (counts.to_stress(taxel, i64::from(converted.fixed)), converted.saturated);
+        if steps.abs() >= counts.full_scale {
+            (steps, saturated) = (steps.signum() * format.bound, true);
         }
         Stress { steps, saturated, not_finite: converted.not_finite }
     }

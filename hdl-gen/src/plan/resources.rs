@@ -4,7 +4,7 @@ use golden::design::{Design, Outputs, PlanKind};
 use golden::parity::CLASSES;
 use serde::Serialize;
 
-use super::counts::{CountsPlan, GAIN_BITS};
+use super::counts::{CountsPlan, EXPONENT_BITS, GAIN_BITS};
 use super::format::address_bits;
 use super::layout::OperandLayout;
 use super::memory::{Memory, memory};
@@ -61,6 +61,7 @@ impl Resources {
         memories.extend(frame_memories(design, operands.elements()));
         if let Some(counts) = counts.filter(|counts| counts.per_taxel()) {
             let taxels = design.sensor.taxels();
+            memories.push(memory(BZ, "exponents", 1, taxels, EXPONENT_BITS, true));
             memories.push(memory(BZ, "gains", 1, taxels, GAIN_BITS, true));
             memories.push(memory(BZ, "offsets", 1, taxels, counts.offset_bits(), true));
         }
