@@ -23,6 +23,7 @@
 
 pub mod calibrate;
 pub mod choose;
+pub mod dead_taxels;
 pub mod design;
 pub mod estimators;
 pub mod filter;

@@ -58,7 +58,7 @@ impl FrameSet {
     /// # Errors
     /// [`FrameError`], with file, line and column.
     pub fn load(frames: &Path, labels: usize, reference: Option<&Path>, sensor: &Sensor) -> Result<Self, FrameError> {
-        let stress = read_labelled_frames(frames, sensor.taxels(), labels)?;
+        let stress = read_labelled_frames(frames, sensor, labels)?;
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
         Ok(Self { origin: frames.display().to_string(), stress, truth })
     }

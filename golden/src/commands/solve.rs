@@ -50,7 +50,7 @@ pub fn run(
     let inputs = [Some(design), Some(frames.file), reference].into_iter().flatten();
     keep_apart(out, &inputs.chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
     let design = Design::load(design)?;
-    let frames = frames::read_labelled_frames(frames.file, design.sensor.taxels(), frames.labels)?;
+    let frames = frames::read_labelled_frames(frames.file, &design.sensor, frames.labels)?;
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
     let solver = {
         let _stage = Stage::new("matrices");

@@ -3,6 +3,7 @@
 mod choose;
 mod command;
 mod contacts;
+mod dead_taxels;
 mod design_file;
 mod estimator;
 mod fuzz;

@@ -1,7 +1,7 @@
 //! Bz, the stream's frames to fixed point: `sptfra_bz`.
 
 use crate::plan::Plan;
-use crate::plan::counts::LARGEST_NUMBER;
+use crate::plan::counts::{CountsPlan, LARGEST_NUMBER};
 
 use super::Parameters;
 
@@ -19,7 +19,24 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .number("NUMBER_SHIFT", shift.into())
         .wide("NUMBER_BOUND", 27, bound);
-    let Some(counts) = &plan.counts else { return parameters };
+    let parameters = match &plan.counts {
+        Some(counts) => of_counts(parameters, counts),
+        None => parameters,
+    };
+    let parameters = match &plan.dead {
+        Some(dead) => parameters.count("DEAD", dead.taxels.len()).number("WEIGHT_SHIFT", dead.shift.into()),
+        None => parameters,
+    };
+    if plan.counts.is_none() && plan.dead.is_none() {
+        return parameters;
+    }
+    parameters
+        .wide("STRESS_BOUND", 27, stress.bound)
+        .expression("ROM_DIR", "ROM_DIR")
+        .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+}
+
+fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
     parameters
         .flag("COUNTS", true)
         .flag("PER_TAXEL", counts.per_taxel())
@@ -27,7 +44,4 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("OFFSET_BITS", counts.offset_bits().into())
         .number("COUNT_SHIFT", counts.shift.into())
         .wide("FULL_SCALE", 48, counts.full_scale)
-        .wide("STRESS_BOUND", 27, stress.bound)
-        .expression("ROM_DIR", "ROM_DIR")
-        .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
 }

@@ -38,6 +38,12 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         let offsets = counts.offsets.iter().map(|&offset| u128::from(offset as u64));
         files.insert(format!("rom/{name}_offsets.mem"), hex(offsets, counts.offsets.len(), counts.offset_bits()));
     }
+    if let Some(dead) = &plan.dead {
+        let words: String = dead.words().iter().map(|weights| wide_hex(weights, WEIGHT_BITS) + "\n").collect();
+        files.insert(format!("rom/{name}_neighbours.mem"), words.into_bytes());
+        let taxels = (0..plan.taxels()).map(|taxel| u128::from(dead.taxels.contains(&taxel)));
+        files.insert(format!("rom/{name}_dead.mem"), hex(taxels, plan.taxels(), 1));
+    }
     for (contents, words) in plan.estimator.slot().roms() {
         files.insert(format!("rom/{name}_{contents}.mem"), network_file(&words));
     }
@@ -82,6 +88,14 @@ fn network_file(words: &[Vec<i32>]) -> Vec<u8> {
     text
 }
 
+/// One word of several values of `bits` bits each in two's complement, the first lowest.
+fn wide_hex(values: &[i32], bits: u32) -> String {
+    let total = values.len() as u32 * bits;
+    let bit = |index: u32| index < total && values[(index / bits) as usize] >> (index % bits) & 1 == 1;
+    let digit = |digit: u32| (0..4).fold(0, |nibble, place| nibble | u32::from(bit(4 * digit + place)) << place);
+    (0..total.div_ceil(4)).rev().filter_map(|index| char::from_digit(digit(index), 16)).collect()
+}
+
 /// `depth` words of `bits` bits in two's complement.
 fn hex(words: impl Iterator<Item = u128>, depth: usize, bits: u32) -> Vec<u8> {
     // Digit by digit rather than by the formatter: the largest designs have 30 million words.
@@ -98,7 +112,14 @@ fn hex(words: impl Iterator<Item = u128>, depth: usize, bits: u32) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::{hex, joined};
+    use super::{hex, joined, wide_hex};
+
+    #[test]
+    fn a_wide_word_has_its_first_value_lowest() {
+        assert_eq!(wide_hex(&[1], 18), "00001");
+        assert_eq!(wide_hex(&[-1, 5, 0], 18), "0000000017ffff");
+        assert_eq!(wide_hex(&[3; 8], 18).len(), 36);
+    }
 
     #[test]
     fn words_are_masked_and_padded() {

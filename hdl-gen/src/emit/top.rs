@@ -149,6 +149,9 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
         without.push("sptfra_exponents");
     }
+    if plan.dead.is_none() {
+        without.push("sptfra_dead_taxels");
+    }
     if plan.ways() > 1 {
         without.push("sptfra_coefficients");
     } else {

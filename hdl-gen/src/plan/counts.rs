@@ -47,7 +47,9 @@ impl CountsPlan {
     /// [`PlanError::Offset`] when an offset is so far beyond the full scale that a step of the numbers that hold both
     /// exceeds the noise.
     pub fn new(design: &Design, stress: Format) -> Result<Option<Self>, PlanError> {
-        let Input { pa_per_count: Some(pa_per_count), ref calibration } = design.input else { return Ok(None) };
+        let Input { pa_per_count: Some(pa_per_count), ref calibration, .. } = design.input else {
+            return Ok(None);
+        };
         let (gains, offsets) = match calibration {
             Some(calibration) => (calibration.gain.clone(), calibration.offset.clone()),
             None => (vec![1.0], vec![0.0]),
@@ -59,8 +61,12 @@ impl CountsPlan {
         let furthest =
             (0..gains.len()).map(|taxel| (reach(taxel), taxel)).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
         let fits = |shift: i32| {
-            let largest_number = |taxel: usize| reach(taxel) * pow2(shift) / f64::from(taxels[taxel].gain.abs());
-            (0..gains.len()).all(|taxel| largest_number(taxel) <= LARGEST_NUMBER as f64)
+            // A dead taxel has no gain, and whatever it reads is 0.
+            let holds = |taxel: usize| {
+                let gain = f64::from(taxels[taxel].gain.abs());
+                reach(taxel) * pow2(shift) <= gain * LARGEST_NUMBER as f64 || gain == 0.0
+            };
+            (0..gains.len()).all(holds)
         };
         let shift = (0..=MOST_SHIFT).rev().find(|&shift| fits(shift));
         // A number's step is at most this many steps of the stress.
@@ -90,6 +96,7 @@ impl CountsPlan {
     fn least_full_scale(&self, design: &Design, stress: Format) -> i64 {
         let full_scale = design.hardware.full_scale_pa;
         (0..self.gains.len())
+            .filter(|taxel| !design.input.dead.contains(taxel))
             .flat_map(|taxel| [full_scale, -full_scale].map(|stress| (taxel, design.input.from_pa(taxel, stress))))
             .map(|(taxel, count)| {
                 let converted = self.number(taxel, (count as f32).to_bits());

@@ -97,7 +97,8 @@ fn counts_become_stress_bit_for_bit() {
 #[test]
 fn every_frame_of_the_mat_is_the_models() {
     let plan = planned(&shipped("bed-mat"));
-    let frames = read_labelled_frames(&workspace("data/bed_mat_64x27.csv"), plan.taxels(), 2).expect("the recording");
+    let frames =
+        read_labelled_frames(&workspace("data/bed_mat_64x27.csv"), &plan.design.sensor, 2).expect("the recording");
     let packets: Vec<Vec<u32>> = frames.iter().map(|frame| encode(frame)).collect();
     assert_eq!(packets.len(), 24);
     let (expected, built) = (model_answers(&plan, &packets), built(&plan));
