@@ -199,6 +199,7 @@ module sptfra_dead_taxels #(
     reg [29:0] replaced_before; // without that of the stress that goes out
     wire above = (sum_3 > MOST);
     wire below = (sum_3 < -MOST);
+    wire signed [26:0] clipped = above ? STRESS_BOUND : below ? -STRESS_BOUND : $signed(sum_3[26:0]);
     wire [26:0] magnitude = stress_4[26] ? -stress_4 : stress_4;
 
     assign out_valid = valid[4];
@@ -219,7 +220,7 @@ module sptfra_dead_taxels #(
             read_3 <= read_2;
             sum_2 <= $signed(waiting[47:0]);
             sum_3 <= (sum_2 + HALF) >>> WEIGHT_SHIFT;
-            stress_4 <= !replaces[3] ? $signed(read_3[26:0]) : above ? STRESS_BOUND : below ? -STRESS_BOUND : sum_3[26:0];
+            stress_4 <= !replaces[3] ? $signed(read_3[26:0]) : clipped;
             saturated_4 <= replaces[3] ? above || below : read_3[27];
             not_finite_4 <= !replaces[3] && read_3[28];
             if (valid[4]) begin
