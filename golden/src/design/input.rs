@@ -43,8 +43,11 @@ pub struct Calibration {
 }
 
 impl Input {
-    /// Stress in pascals of a taxel whose value in the frame is `value`.
+    /// Stress in pascals of a taxel whose value in the frame is `value`; of a dead one 0.
     pub fn to_pa(&self, taxel: usize, value: f64) -> f64 {
+        if self.dead.contains(&taxel) {
+            return 0.0;
+        }
         let Some(pa_per_count) = self.pa_per_count else { return value };
         match &self.calibration {
             Some(Calibration { gain, offset }) => (gain[taxel] * value + offset[taxel]) * pa_per_count,
@@ -62,6 +65,15 @@ impl Input {
         match &self.calibration {
             Some(Calibration { gain, offset }) => (stress / pa_per_count - offset[taxel]) / gain[taxel],
             None => stress / pa_per_count,
+        }
+    }
+
+    /// A frame of stress in pascals as the sensor delivers it: in whole counts, if it counts.
+    pub fn deliver(&self, frame: &mut [f64]) {
+        if self.pa_per_count.is_some() {
+            for (taxel, value) in frame.iter_mut().enumerate() {
+                *value = self.from_pa(taxel, *value).round();
+            }
         }
     }
 

@@ -10,6 +10,7 @@ mod text;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use crate::geometry::GeometryError;
 use crate::output::{self, OutputError};
 use crate::sensor::Sensor;
 
@@ -89,6 +90,9 @@ pub enum FrameError {
         /// Frames.
         expected: usize,
     },
+    /// The frames of another sensor.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
     /// The file could not be written.
     #[error(transparent)]
     Write(#[from] OutputError),

@@ -61,7 +61,7 @@ impl Reader {
         }
         let mut status = Status::default();
         for (taxel, (stress, &value)) in b.iter_mut().zip(frame).enumerate() {
-            *stress = if is_dead(taxel) { 0.0 } else { self.input.to_pa(taxel, value) };
+            *stress = self.input.to_pa(taxel, value);
         }
         // What reads full scale may have been clipped by the converter: nobody can tell.
         if b.iter().any(|stress| stress.abs() >= self.flagged) {
