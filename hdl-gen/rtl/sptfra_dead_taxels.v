@@ -165,7 +165,7 @@ module sptfra_dead_taxels #(
 
     generate
         for (index = 0; index < DEAD; index = index + 1) begin : gen_sums
-            sptfra_mac sum (
+            sptfra_mac neighbours (
                 .clock       (clock),
                 .reset       (reset),
                 .valid       (keeps_1 && advance),

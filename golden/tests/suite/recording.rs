@@ -102,7 +102,8 @@ fn wrong_inputs_are_refused() {
     }
     for (lines, parts) in [
         (LINES.replace("16,", "16.5,"), ["gains.csv, line 7", "gain is 16.5", "1e-9 to 16"]),
-        (LINES.replace("0.5,", "0,"), ["gains.csv, line 2", "gain is 0", "1e-9 to 16"]),
+        (LINES.replace("0.5,", "1e-10,"), ["gains.csv, line 2", "gain is 0.0000000001", "1e-9 to 16"]),
+        (LINES.replace("0.5,", "-1,"), ["gains.csv, line 2", "gain is -1", "0 for a dead taxel"]),
         (LINES.replace("0.5,", "nan,"), ["gains.csv, line 2", "gain is NaN", "1e-9 to 16"]),
         (LINES.replace("1e6", "1e7"), ["gains.csv, line 7", "offset is -10000000", "1000000"]),
         (LINES.replace("1,1", "1;1"), ["gains.csv, line 5", "1;1", "gain,offset"]),

@@ -60,6 +60,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_registers",
     "sptfra_rom",
     "sptfra_row_sequencer",
+    "sptfra_samples",
     "sptfra_search",
     "sptfra_search_cell",
     "sptfra_search_cells",
