@@ -3,8 +3,10 @@
 use golden::design::{Calibration, Design, Input, Outputs, PlanKind};
 use hdl_gen::model::{NOT_FINITE, REPLACED, SATURATED, TOO_MANY_REPLACED};
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::dead::DeadPlan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::stream_words::encode;
 use testbench::trial::model_answers;
 
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
@@ -34,11 +36,22 @@ fn designs() -> Vec<Design> {
     ]
 }
 
+/// The full scale, in the values of a frame.
+fn full_scale(plan: &Plan) -> f64 {
+    plan.design.hardware.full_scale_pa / plan.design.input.pa_per_count.unwrap_or(1.0)
+}
+
 fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     let dead = plan.design.input.dead.clone();
     let mut packets: Vec<Vec<u32>> = (0..5).map(|_| frames::contact(plan, random)).collect();
     packets.extend([1e-5, 0.03, 1.0, 1.3].map(|share| frames::noise(plan, share, random)));
     packets.extend(frames::extremes(plan, random).into_iter().step_by(3));
+    // All that presses stands where a dead taxel's stress comes from, within the full scale and beyond it.
+    for share in [0.1, 0.9] {
+        let DeadPlan { weights, shift, .. } = plan.dead.as_ref().expect("dead taxels");
+        let load = |&weight: &i32| if weight > 1 << (shift - 3) { share } else { 0.0 };
+        packets.push(encode(&weights[0].iter().map(load).map(|share| -share * full_scale(plan)).collect::<Vec<_>>()));
+    }
     // What a dead taxel reads is nothing.
     for reading in [f32::NAN, f32::INFINITY, 1e30, -1e5, 0.0] {
         let mut packet = packets[0].clone();

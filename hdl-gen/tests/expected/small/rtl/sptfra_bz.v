@@ -23,7 +23,7 @@ module sptfra_bz #(
     // each taxel has an exponent of its own
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
-    // Whether the stream carries counts: see sptfra_counts
+    // Whether the stream carries counts: see sptfra_samples
     parameter COUNTS = 0,
     parameter PER_TAXEL = 0,
     parameter signed [17:0] GAIN = 18'sd65536,
@@ -74,7 +74,6 @@ module sptfra_bz #(
     localparam INDEX_WIDTH = $clog2(TAXELS + 1);
     localparam NUMBER_STAGES = 5;
     localparam STAGES = (COUNTS != 0) ? NUMBER_STAGES + 4 : NUMBER_STAGES;
-    localparam signed [9:0] SHIFT = NUMBER_SHIFT[9:0];
 
     generate
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
@@ -116,41 +115,6 @@ module sptfra_bz #(
         end
     end
 
-    // ---- float32 to fixed point
-    wire signed [26:0] number;
-    wire number_saturated;
-    wire number_not_finite;
-    wire signed [9:0] shift;
-
-    generate
-        if (PER_TAXEL != 0) begin : gen_exponents
-            sptfra_exponents #(
-                .TAXELS   (TAXELS),
-                .ROM_DIR  (ROM_DIR),
-                .ROM_NAME (ROM_NAME)
-            ) exponents (
-                .clock    (clock),
-                .reset    (reset),
-                .accept   (accept),
-                .last     (s_tlast),
-                .exponent (shift)
-            );
-        end else begin : gen_exponent
-            assign shift = SHIFT;
-        end
-    endgenerate
-
-    sptfra_float_to_fixed float_to_fixed (
-        .clock      (clock),
-        .enable     (advance),
-        .float_bits (s_tdata),
-        .shift      (shift),
-        .limit      (NUMBER_BOUND),
-        .fixed      (number),
-        .saturated  (number_saturated),
-        .not_finite (number_not_finite)
-    );
-
     reg [STAGES:1] valid;
     reg [STAGES:1] stores;
     reg [STAGES:1] lasts;
@@ -172,44 +136,37 @@ module sptfra_bz #(
         end
     end
 
-    // ---- Counts to stress
+    // ---- Samples to stress
     wire signed [26:0] read;
     wire read_saturated;
     wire read_not_finite;
 
-    generate
-        if (COUNTS != 0) begin : gen_counts
-            sptfra_counts #(
-                .TAXELS       (TAXELS),
-                .PER_TAXEL    (PER_TAXEL),
-                .GAIN         (GAIN),
-                .OFFSET_BITS  (OFFSET_BITS),
-                .SHIFT        (COUNT_SHIFT),
-                .FULL_SCALE   (FULL_SCALE),
-                .STRESS_BOUND (STRESS_BOUND),
-                .ROM_DIR      (ROM_DIR),
-                .ROM_NAME     (ROM_NAME)
-            ) counts (
-                .clock             (clock),
-                .reset             (reset),
-                .advance           (advance),
-                .next_taxel        (valid[NUMBER_STAGES] && stores[NUMBER_STAGES]),
-                .frame_ends        (valid[NUMBER_STAGES] && lasts[NUMBER_STAGES]),
-                .number            (number),
-                .number_saturated  (number_saturated),
-                .number_not_finite (number_not_finite),
-                .stress            (read),
-                .saturated         (read_saturated),
-                .not_finite        (read_not_finite)
-            );
-        end else begin : gen_stress
-            assign read = number;
-            assign read_saturated = number_saturated;
-            assign read_not_finite = number_not_finite;
-            wire _unused = (PER_TAXEL != 0) || (GAIN != 0) || (OFFSET_BITS != 0) || (COUNT_SHIFT != 0)
-                || (FULL_SCALE != 0) || (STRESS_BOUND != 0) || (ROM_DIR != "") || (ROM_NAME != "");
-        end
-    endgenerate
+    sptfra_samples #(
+        .TAXELS       (TAXELS),
+        .NUMBER_SHIFT (NUMBER_SHIFT),
+        .NUMBER_BOUND (NUMBER_BOUND),
+        .COUNTS       (COUNTS),
+        .PER_TAXEL    (PER_TAXEL),
+        .GAIN         (GAIN),
+        .OFFSET_BITS  (OFFSET_BITS),
+        .COUNT_SHIFT  (COUNT_SHIFT),
+        .FULL_SCALE   (FULL_SCALE),
+        .STRESS_BOUND (STRESS_BOUND),
+        .ROM_DIR      (ROM_DIR),
+        .ROM_NAME     (ROM_NAME)
+    ) samples (
+        .clock      (clock),
+        .reset      (reset),
+        .advance    (advance),
+        .accept     (accept),
+        .word       (s_tdata),
+        .last       (s_tlast),
+        .next_taxel (valid[NUMBER_STAGES] && stores[NUMBER_STAGES]),
+        .frame_ends (valid[NUMBER_STAGES] && lasts[NUMBER_STAGES]),
+        .stress     (read),
+        .saturated  (read_saturated),
+        .not_finite (read_not_finite)
+    );
 
     // ---- Dead taxels
     wire signed [26:0] fixed;
