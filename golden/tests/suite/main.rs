@@ -7,6 +7,7 @@ mod contacts;
 mod dead_taxels;
 mod design_file;
 mod estimator;
+mod families;
 mod fuzz;
 mod half_space;
 mod joint;
