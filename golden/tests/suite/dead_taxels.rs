@@ -5,7 +5,7 @@ use std::path::Path;
 use golden::dead_taxels::{DeadTaxels, MOST_DEAD};
 use golden::design::Design;
 use golden::kernel::Kernel;
-use golden::scene::{Contact, Medium, Scene, SceneFrame, SensorErrors, Shape};
+use golden::scene::{Contact, Medium, Scene, SceneFrame, SensorErrors, Shape, Traction};
 use golden::sensor::Sensor;
 use golden::solver::{Solver, Status};
 use rand::seq::IndexedRandom;
@@ -30,6 +30,7 @@ fn scenes(sensor: &Sensor) -> Vec<Vec<SceneFrame>> {
             normal_force_n: 6.0,
             friction: 0.5,
             direction_deg: 0.0,
+            traction: Traction::default(),
         };
         let scene = Scene {
             sensor: sensor.clone(),
