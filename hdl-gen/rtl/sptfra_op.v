@@ -17,6 +17,8 @@ module sptfra_op #(
     parameter integer FIELD = 1,
     // 1: the answer's other component is other + slope * free; 0: it is as it comes
     parameter integer DEPENDENT = 1,
+    // Dead taxels of the design, whose readings others replace
+    parameter integer REPLACED = 0,
     // A step of the frame sums G is 2^SUM_LSB N, of those of the torques 2^TORQUE_LSB N m, of a taxel's force
     // 2^FIELD_LSB N
     parameter integer SUM_LSB = -40,
@@ -44,7 +46,7 @@ module sptfra_op #(
     input  wire at_bound,
     input  wire search_saturated,
     input  wire [18*40-1:0] sums,
-    input  wire [4:0] flags, // no tension, no contact, saturated, NaN or infinity, bad length
+    input  wire [5:0] flags, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // To the lanes: the friction of the frame in the summary
     output reg  friction_known, // and held, until the field is started
     input  wire field_start,
@@ -78,7 +80,7 @@ module sptfra_op #(
     reg signed [17:0] summary_other;
     reg signed [17:0] summary_slope;
     reg [18*40-1:0] summary_sums;
-    reg [4:0] summary_flags;
+    reg [5:0] summary_flags;
     reg summary_at_bound;
     reg summary_saturated;
     reg summary_busy;
@@ -180,9 +182,11 @@ module sptfra_op #(
     wire slips;
     wire [15:0] status = {
         4'd0,
-        answered && summary_flags[4] && (summary_unknown || pushed),
+        answered && summary_flags[5] && (summary_unknown || pushed),
         answered && slips,
-        4'd0,
+        answered && summary_flags[4],
+        answered && (REPLACED != 0),
+        2'b00,
         bad_length,
         not_finite,
         answered && (summary_flags[2] || summary_saturated),
@@ -219,7 +223,8 @@ module sptfra_op #(
     endgenerate
 
     // Replaced taxels, generation of the calibration, bodies
-    wire [31:0] census = {8'd0, 8'd0, 8'd0, 7'd0, answered};
+    wire [7:0] replaced = REPLACED[7:0];
+    wire [31:0] census = {8'd0, answered ? replaced : 8'd0, 8'd0, 7'd0, answered};
 
     // ---- Output
     sptfra_output #(

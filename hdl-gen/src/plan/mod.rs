@@ -6,6 +6,7 @@
 mod build;
 mod control;
 pub mod counts;
+pub mod dead;
 mod dealing;
 mod error;
 pub mod filtered;
@@ -32,6 +33,7 @@ use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
 use counts::CountsPlan;
+use dead::DeadPlan;
 pub use error::PlanError;
 use formats::Formats;
 use layout::OperandLayout;
@@ -89,6 +91,8 @@ pub struct Plan {
     pub arms: Vec<[i32; 2]>,
     /// Conversion of counts, if the frames are not in pascals.
     pub counts: Option<CountsPlan>,
+    /// Weights that replace the readings of dead taxels, if there are any.
+    pub dead: Option<DeadPlan>,
     /// Status thresholds.
     pub thresholds: Thresholds,
     /// The estimator of friction: `CeAn`, and the search in Op.
