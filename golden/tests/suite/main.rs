@@ -7,6 +7,7 @@ mod contacts;
 mod design_file;
 mod estimator;
 mod families;
+mod finite_elements;
 mod fuzz;
 mod half_space;
 mod joint;
