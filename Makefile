@@ -68,7 +68,8 @@ stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses an
 .PHONY: mutants
 mutants: tools $(SMALL_DESIGNS) ## 220 copies with a fault each: which does the comparison not notice? (a quarter of an hour)
 	@$(CARGO) build --quiet -p testbench
-	@set -e; for design in $(SMALL_DESIGNS); do $(BIN)/testbench mutants $$design --count $(MUTANTS_COUNT); done
+	@set -e; for design in $(SMALL_DESIGNS); do $(BIN)/testbench mutants $$design --count $(MUTANTS_COUNT) \
+		--explained testbench/survivors.toml; done
 
 .PHONY: lint
 lint: ## Formatting and clippy, warnings are errors

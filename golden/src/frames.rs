@@ -4,6 +4,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use crate::geometry::GeometryError;
 use crate::output::{self, OutputError};
 
 /// What is wrong with a frame file.
@@ -71,6 +72,9 @@ pub enum FrameError {
         /// Frames.
         expected: usize,
     },
+    /// The frames of another sensor.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
     /// The file could not be written.
     #[error(transparent)]
     Write(#[from] OutputError),

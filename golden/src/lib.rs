@@ -21,13 +21,16 @@
 //! (millimetres only in files); stress is positive in tension and **negative in compression**; `f_z < 0`
 //! presses on the sensor and `(f_x, f_y)` is the force the object exerts along the surface.
 
+pub mod arguments;
 pub mod calibrate;
+pub mod check;
 pub mod choose;
 pub mod design;
 pub mod estimators;
 pub mod filter;
 pub mod forces;
 pub mod frames;
+pub mod geometry;
 pub mod half_space;
 pub mod kernel;
 pub mod manual;

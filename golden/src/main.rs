@@ -13,7 +13,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use commands::solve::Recording;
+use commands::Recording;
+use golden::arguments::design_file;
 use golden::calibrate::Settings;
 use golden::manual::Manual;
 use golden::output::print_text;
@@ -31,11 +32,18 @@ enum Command {
     /// Make frames of stress from contacts with known forces.
     ///
     /// The frames go to FRAMES.csv, one frame a line, and the true forces beside it, to FRAMES.forces.csv, in the
-    /// columns of `golden solve`.
+    /// columns of `golden solve`. FRAMES.sensor.toml says what sensor they belong to: `golden solve`, `golden check`,
+    /// `testbench run` and `testbench view` refuse them for a design of another one.
+    ///
+    /// With --design alone: a round contact in the middle of the design's sensor, friction 0.5, in 36 directions.
     #[command(after_long_help = SCENE_FILE)]
     Scene {
         /// Scene file (TOML).
-        scene: PathBuf,
+        #[arg(required_unless_present = "design")]
+        scene: Option<PathBuf>,
+        /// Design file (TOML) whose sensor the frames are for; in counts, if it counts.
+        #[arg(long, value_name = "DESIGN.toml", value_parser = design_file())]
+        design: Option<PathBuf>,
         /// Where to write the frames (CSV).
         #[arg(long, value_name = "FRAMES.csv")]
         out: PathBuf,
@@ -50,6 +58,7 @@ enum Command {
     #[command(after_long_help = ALGORITHM)]
     Solve {
         /// Design file (TOML).
+        #[arg(value_parser = design_file())]
         design: PathBuf,
         /// Frames (CSV): one frame a line, stresses in pascals, compression negative; counts for a design with
         /// `pa_per_count`.
@@ -71,13 +80,32 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Look for what is wrong with frames before their forces are trusted.
+    ///
+    /// Says in a line each, with the likely cause and the key to change: values in another unit than the design says,
+    /// stress with the wrong sign, no tension anywhere, a missing tare, taxels in another order, readings at the end
+    /// of the converter. The exit code is 0 only if nothing is found.
+    Check {
+        /// Design file (TOML).
+        #[arg(value_parser = design_file())]
+        design: PathBuf,
+        /// Frames (CSV), as for `golden solve`.
+        #[arg(long, value_name = "FRAMES.csv")]
+        frames: PathBuf,
+        /// Columns of labels before the values of a frame; the file may then have a header.
+        #[arg(long, value_name = "N", default_value_t = 0)]
+        labels: usize,
+        /// Report as JSON.
+        #[arg(long)]
+        json: bool,
+    },
     /// Measure how many frames a second the solver in double precision takes.
     ///
     /// One frame after the other, as they come from a sensor, and in batches, as from a file; on one core. The frames are
     /// pushed contacts at random places, the same in every run. Each figure is the median of several repetitions.
     Bench {
         /// Design files (TOML).
-        #[arg(required = true)]
+        #[arg(required = true, value_parser = design_file())]
         designs: Vec<PathBuf>,
         /// Report as JSON.
         #[arg(long)]
@@ -91,6 +119,7 @@ enum Command {
     #[command(after_long_help = CHOOSE_FILES)]
     Choose {
         /// Design file (TOML).
+        #[arg(value_parser = design_file())]
         design: PathBuf,
         /// Where to write the design with the choices (TOML).
         #[arg(long, value_name = "RESOLVED.toml")]
@@ -110,6 +139,7 @@ enum Command {
     #[command(after_long_help = CALIBRATE_FILES)]
     Calibrate {
         /// Design file (TOML).
+        #[arg(value_parser = design_file())]
         design: PathBuf,
         /// Where to write the design with the constants (TOML).
         #[arg(long, value_name = "RESOLVED.toml")]
@@ -205,9 +235,14 @@ In RESOLVED.toml, besides:
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Scene { scene, out, json } => commands::scene::run(&scene, &out, json),
+        Command::Scene { scene, design, out, json } => {
+            commands::scene::run(scene.as_deref(), design.as_deref(), &out, json)
+        }
         Command::Solve { design, frames, labels, out, field, reference, json } => {
             commands::solve::run(&design, &Recording { file: &frames, labels }, &out, field, reference.as_deref(), json)
+        }
+        Command::Check { design, frames, labels, json } => {
+            commands::check::run(&design, &Recording { file: &frames, labels }, json)
         }
         Command::Calibrate { design, out, seed, hidden, quick, json } => {
             let work = if quick { Settings::quick() } else { Settings::default() };

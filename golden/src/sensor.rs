@@ -1,5 +1,7 @@
 //! The geometry of a sensor.
 
+use std::fmt;
+
 /// Largest number of columns or rows of a sensor.
 pub const MAX_SIDE: usize = 64;
 
@@ -14,6 +16,13 @@ pub struct Sensor {
     pub pitch_mm: [f64; 2],
     /// Thickness of the layer above the taxels, in millimetres.
     pub depth_mm: f64,
+}
+
+impl fmt::Display for Sensor {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { columns, rows, pitch_mm: [x, y], depth_mm } = self;
+        write!(formatter, "{columns} x {rows} taxels of {x} x {y} mm, {depth_mm} mm deep")
+    }
 }
 
 impl Sensor {

@@ -5,6 +5,7 @@ use std::path::Path;
 use golden::design::{Design, Sensor};
 use golden::forces::read_outcomes;
 use golden::frames::{FrameError, read_labelled_frames};
+use golden::geometry;
 use golden::metrics::Outcome;
 use golden::scene::{Scene, SceneError};
 
@@ -42,23 +43,20 @@ impl FrameSet {
     /// The same frames as the design's sensor delivers them: in counts, whole ones, if it counts.
     #[must_use]
     pub fn as_delivered(mut self, design: &Design) -> Self {
-        if design.input.pa_per_count.is_some() {
-            for frame in &mut self.stress {
-                for (taxel, value) in frame.iter_mut().enumerate() {
-                    *value = design.input.from_pa(taxel, *value).round();
-                }
-            }
+        for frame in &mut self.stress {
+            design.input.deliver(frame);
         }
         self
     }
 
-    /// Frames from a CSV file whose lines begin with `labels` columns of other things, with true forces from another
-    /// file if there is one.
+    /// Frames for a design from a CSV file whose lines begin with `labels` columns of other things, with true forces
+    /// from another file if there is one.
     ///
     /// # Errors
-    /// [`FrameError`], with file, line and column.
-    pub fn load(frames: &Path, labels: usize, reference: Option<&Path>, sensor: &Sensor) -> Result<Self, FrameError> {
-        let stress = read_labelled_frames(frames, sensor.taxels(), labels)?;
+    /// [`FrameError`], with file, line and column, or for frames that are known to be another sensor's.
+    pub fn load(frames: &Path, labels: usize, reference: Option<&Path>, design: &Design) -> Result<Self, FrameError> {
+        geometry::compare(frames, &design.name, &design.sensor)?;
+        let stress = read_labelled_frames(frames, design.sensor.taxels(), labels)?;
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
         Ok(Self { origin: frames.display().to_string(), stress, truth })
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use golden::calibrate::{Settings, calibrate};
 use golden::choose::rebase_scenes;
-use golden::design::{Design, Filter};
+use golden::design::{Design, Filter, is_name};
 use golden::output::write_together;
 use indicatif::ProgressBar;
 use serde::Serialize;
@@ -24,7 +24,10 @@ struct Report<'a> {
 
 /// Calibrates the design in `path` and writes the resolved design to `out`.
 pub fn run(path: &Path, out: &Path, settings: &Settings, json: bool) -> Result<(), Box<dyn Error>> {
-    let mut design = Design::load(path)?;
+    let mut design = Design::load_unfitted(path)?;
+    if let Some(name) = name_of(out) {
+        design.name = name;
+    }
     let resolved = Resolved::new(&design, path, out)?;
     // Draws on a terminal only.
     let progress = ProgressBar::new((settings.contacts + settings.samples + settings.steps) as u64);
@@ -59,4 +62,11 @@ pub fn run(path: &Path, out: &Path, settings: &Settings, json: bool) -> Result<(
         }
     }
     Ok(())
+}
+
+/// The name of a design in a file: a design of its own, beside whose hardware that of the first one stays. Nothing if the
+/// file is called what no module can be.
+fn name_of(file: &Path) -> Option<String> {
+    let name = file.file_stem()?.to_str()?.replace('-', "_");
+    is_name(&name).then_some(name)
 }

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod calibrate;
+pub mod check;
 pub mod choose;
 pub mod scene;
 pub mod solve;
@@ -10,7 +11,10 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use golden::check::Finding;
 use golden::design::{CALIBRATION_FILE, Design, JointConstants, WEIGHTS_FILE};
+use golden::frames::{self, FrameError};
+use golden::geometry;
 use indicatif::ProgressBar;
 
 /// Says what is being done, on a terminal only, until it is dropped.
@@ -28,6 +32,28 @@ impl Stage {
 impl Drop for Stage {
     fn drop(&mut self) {
         self.0.finish_and_clear();
+    }
+}
+
+/// A file of frames.
+pub struct Recording<'a> {
+    pub file: &'a Path,
+    /// Columns of labels before the values.
+    pub labels: usize,
+}
+
+impl Recording<'_> {
+    /// The frames, which may not be known to be those of another sensor than the design's.
+    pub fn read(&self, design: &Design) -> Result<Vec<Vec<f64>>, FrameError> {
+        geometry::compare(self.file, &design.name, &design.sensor)?;
+        frames::read_labelled_frames(self.file, design.sensor.taxels(), self.labels)
+    }
+}
+
+/// Says on standard error what is suspicious.
+pub fn warn(findings: &[Finding]) {
+    for finding in findings {
+        eprintln!("warning: {finding}");
     }
 }
 

@@ -3,8 +3,10 @@
 use std::error::Error;
 use std::path::Path;
 
+use golden::design::Design;
+use golden::output::write_whole;
 use golden::scene::Scene;
-use golden::{forces, frames};
+use golden::{forces, frames, geometry};
 use serde::Serialize;
 
 use super::{Stage, keep_apart};
@@ -15,14 +17,18 @@ struct SceneReport<'a> {
     taxels: usize,
     frames_file: &'a Path,
     forces_file: &'a Path,
+    sensor_file: &'a Path,
 }
 
-/// Makes the frames of `scene` in `out`, and their forces beside it.
-pub fn run(scene: &Path, out: &Path, json: bool) -> Result<(), Box<dyn Error>> {
-    let forces_file = forces::reference_path(out);
-    keep_apart(out, &[scene])?;
-    keep_apart(&forces_file, &[scene])?;
-    let scene = Scene::load(scene)?;
+/// Makes the frames of `scene`, or the standing ones of `design`, in `out`, and their forces and sensor beside it.
+pub fn run(scene: Option<&Path>, design: Option<&Path>, out: &Path, json: bool) -> Result<(), Box<dyn Error>> {
+    let (forces_file, sensor_file) = (forces::reference_path(out), geometry::beside(out));
+    let inputs: Vec<&Path> = [scene, design].into_iter().flatten().collect();
+    for file in [out, &forces_file, &sensor_file] {
+        keep_apart(file, &inputs)?;
+    }
+    let design = design.map(Design::load).transpose()?;
+    let scene = scene_for(scene, design.as_ref())?;
     let made = {
         let _stage = Stage::new("computing the stress");
         scene.frames()?
@@ -32,9 +38,15 @@ pub fn run(scene: &Path, out: &Path, json: bool) -> Result<(), Box<dyn Error>> {
             format!("{}: the true forces would overwrite the frames; choose another name", out.display()).into()
         );
     }
-    // The forces first: a frame file always has its forces beside it.
+    // The forces first: a frame file always has its forces and its sensor beside it.
     forces::write_reference(&forces_file, &made)?;
-    let stresses: Vec<Vec<f64>> = made.into_iter().map(|frame| frame.stress).collect();
+    write_whole(&sensor_file, geometry::to_toml(&scene.sensor).as_bytes())?;
+    let mut stresses: Vec<Vec<f64>> = made.into_iter().map(|frame| frame.stress).collect();
+    if let Some(design) = &design {
+        for frame in &mut stresses {
+            design.input.deliver(frame);
+        }
+    }
     frames::write_frames(out, &stresses)?;
     if json {
         let report = SceneReport {
@@ -42,11 +54,38 @@ pub fn run(scene: &Path, out: &Path, json: bool) -> Result<(), Box<dyn Error>> {
             taxels: scene.sensor.taxels(),
             frames_file: out,
             forces_file: &forces_file,
+            sensor_file: &sensor_file,
         };
         say!("{}", serde_json::to_string_pretty(&report)?);
     } else {
         say!("{} frames of {} taxels in {}", stresses.len(), scene.sensor.taxels(), out.display());
         say!("their true forces in {}", forces_file.display());
+        say!("their sensor, {}, in {}", scene.sensor, sensor_file.display());
     }
     Ok(())
+}
+
+/// The scene of the file, which must be one of the design's sensor if there is a design; without a file that sensor's
+/// standing scene.
+fn scene_for(file: Option<&Path>, design: Option<&Design>) -> Result<Scene, Box<dyn Error>> {
+    match (file, design) {
+        (Some(file), None) => Ok(Scene::load(file)?),
+        (Some(file), Some(design)) => {
+            let scene = Scene::load(file)?;
+            if scene.sensor == design.sensor {
+                return Ok(scene);
+            }
+            Err(format!(
+                "{}: the scene has {}, the design {} has {}; write the design's values under [sensor] in the scene, or \
+                 leave the scene out for a contact that suits the design",
+                file.display(),
+                scene.sensor,
+                design.name,
+                design.sensor
+            )
+            .into())
+        }
+        (None, Some(design)) => Ok(Scene::standing(&design.sensor)),
+        (None, None) => Err("nothing to make frames of; name a scene file, or a design with --design".into()),
+    }
 }

@@ -3,14 +3,15 @@
 use std::error::Error;
 use std::path::Path;
 
+use golden::check::check;
 use golden::design::Design;
+use golden::forces;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
 use golden::solver::{Solution, Solver, Status};
-use golden::{forces, frames};
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::{Stage, keep_apart};
+use super::{Recording, Stage, keep_apart, warn};
 
 #[derive(Serialize)]
 struct StatusCount {
@@ -30,13 +31,6 @@ struct SolveReport<'a> {
     errors: Option<ErrorSummary>,
 }
 
-/// A file of frames.
-pub struct Recording<'a> {
-    pub file: &'a Path,
-    /// Columns of labels before the values.
-    pub labels: usize,
-}
-
 /// Solves `frames` and writes the forces to `out`.
 pub fn run(
     design: &Path,
@@ -50,7 +44,7 @@ pub fn run(
     let inputs = [Some(design), Some(frames.file), reference].into_iter().flatten();
     keep_apart(out, &inputs.chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
     let design = Design::load(design)?;
-    let frames = frames::read_labelled_frames(frames.file, design.sensor.taxels(), frames.labels)?;
+    let frames = frames.read(&design)?;
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
     let solver = {
         let _stage = Stage::new("matrices");
@@ -66,6 +60,7 @@ pub fn run(
     }
     progress.finish_and_clear();
     forces::write_solutions(out, &solutions, with_field)?;
+    warn(&check(&design, &frames, Some(solver.matrices())));
 
     let report = SolveReport {
         design: &design.name,

@@ -78,6 +78,11 @@ const MAX_NAME: usize = 64;
 /// Modules that are the same in every design begin so.
 const RESERVED_PREFIX: &str = "sptfra_";
 
+/// Whether a word may be the name of a design.
+pub fn is_name(word: &str) -> bool {
+    name(&Check { origin: "" }, word).is_ok()
+}
+
 pub(crate) fn name(check: &Check, name: &str) -> Result<(), DesignError> {
     let refuse = |problem: String| {
         Err(check.value(

@@ -50,6 +50,15 @@ impl Input {
         }
     }
 
+    /// A frame of stress in pascals as the sensor delivers it: in whole counts, if it counts.
+    pub fn deliver(&self, frame: &mut [f64]) {
+        if self.pa_per_count.is_some() {
+            for (taxel, value) in frame.iter_mut().enumerate() {
+                *value = self.from_pa(taxel, *value).round();
+            }
+        }
+    }
+
     /// Checks the keys of `[sensor]`; a calibration is one of the files `beside` the design.
     pub(super) fn new(
         check: &Check,

@@ -1,5 +1,7 @@
 //! The constants of the joint estimator as keys of a design.
 
+use std::path::{Path, PathBuf};
+
 use serde::Deserialize;
 
 use super::checks::Check;
@@ -9,11 +11,9 @@ use crate::estimators::joint::{Correction, Grid, JointConstants, MAX_HIDDEN, WEI
 
 /// What the constants depend on, for people and for comparison.
 pub fn conditions(sensor: &Sensor, kernel: Kernel, regularisation: Regularisation, grid: Grid) -> String {
-    let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
     // Constants of the fine grid were fitted before there was another one.
     let of_grid = if grid == Grid::FINE { String::new() } else { format!(", grid {}", grid.side()) };
-    let factor = regularisation.factor();
-    format!("{columns} x {rows} taxels of {x} x {y} mm, {depth_mm} mm deep, {kernel}, {factor}{of_grid}")
+    format!("{sensor}, {kernel}, {}{of_grid}", regularisation.factor())
 }
 
 /// The `[algorithm.correction]` table: the weights in a file with its hash, or in the table itself.
@@ -50,7 +50,11 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
         return Err(check.value(
             "algorithm.fitted_to",
             format!("says that the constants belong to \"{other}\", but the design is \"{conditions}\""),
-            "remove fitted_to, gain, tangential and [algorithm.correction], and run `golden calibrate`".to_owned(),
+            format!(
+                "run `golden calibrate {0} --out {1}`, which fits new ones",
+                check.origin,
+                resolved_name(check.origin).display()
+            ),
         ));
     }
     let gain = check.real("algorithm.gain", raw.gain.unwrap_or(1.0), 0.1, 10.0, "")?;
@@ -60,6 +64,13 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
         check.real("algorithm.tangential[1]", c3, -2.0, 2.0, "")?,
     ];
     Ok(JointConstants { grid: raw.grid, gain, tangential, correction: None, fitted_to: raw.fitted_to })
+}
+
+/// A name for the calibrated design beside the one at `origin`.
+fn resolved_name(origin: &str) -> PathBuf {
+    let path = Path::new(origin);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{stem}-calibrated.toml"))
 }
 
 /// Refuses the keys of the joint estimator, of which those marked are there, beside another one.

@@ -10,6 +10,7 @@ mod filter;
 mod hardware;
 mod input;
 mod joint;
+mod lengths;
 mod parse;
 mod parse_filter;
 mod parse_plan;
@@ -23,6 +24,7 @@ pub use crate::estimators::joint::{Correction, Grid, JointConstants};
 pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
 pub use algorithm::{Algorithm, Outputs, PlanKind};
+pub use checks::is_name;
 pub use error::DesignError;
 pub(crate) use files::Beside;
 pub use files::{CALIBRATION_FILE, WEIGHTS_FILE};
@@ -61,6 +63,15 @@ impl Design {
     /// Every way a file can be wrong, see [`DesignError`]; the message names the file, the key and the remedy.
     pub fn load(path: &Path) -> Result<Self, DesignError> {
         parse::design(&read(path)?, &path.display().to_string(), Beside::folder_of(path))
+    }
+
+    /// As [`Design::load`], without the constants that were fitted to the sensor, be they those of another one.
+    ///
+    /// # Errors
+    ///
+    /// As [`Design::load`], but for what is wrong with these constants.
+    pub fn load_unfitted(path: &Path) -> Result<Self, DesignError> {
+        parse::unfitted(&read(path)?, &path.display().to_string(), Beside::folder_of(path))
     }
 
     /// Checks the text of a design file; `origin` is the name to use in messages, and files that the design names are

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use super::checks::{self, Check};
 use super::files::Beside;
 use super::joint::{self, RawCorrection};
+use super::lengths::Lengths;
 use super::parse_filter::{self, RawFilter};
 use super::parse_plan::{self, PlanKeys};
 use super::regularisation;
@@ -32,7 +33,7 @@ struct RawDesign {
 pub(crate) struct RawSensor {
     columns: i64,
     rows: i64,
-    pitch_mm: Vec<f64>,
+    pitch_mm: Lengths,
     depth_mm: f64,
 }
 
@@ -42,7 +43,7 @@ pub(crate) struct RawSensor {
 struct RawDesignSensor {
     columns: i64,
     rows: i64,
-    pitch_mm: Vec<f64>,
+    pitch_mm: Lengths,
     depth_mm: f64,
     pa_per_count: Option<f64>,
     calibration: Option<String>,
@@ -94,7 +95,21 @@ pub(super) fn files_named_in(text: &str, origin: &str, beside: Beside<'_>) -> Re
 
 /// `beside` are the files that the design names.
 pub(super) fn design(text: &str, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
-    let raw = raw(text, origin)?;
+    checked(raw(text, origin)?, origin, beside)
+}
+
+/// As [`design`], without what was fitted to the sensor: a design to fit it to.
+pub(super) fn unfitted(text: &str, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
+    let mut raw = raw(text, origin)?;
+    // Of another estimator they stay, to be refused.
+    if raw.algorithm.estimator.as_deref() == Some("joint") {
+        let RawAlgorithm { gain, tangential, correction, fitted_to, .. } = &mut raw.algorithm;
+        (*gain, *tangential, *correction, *fitted_to) = (None, None, None, None);
+    }
+    checked(raw, origin, beside)
+}
+
+fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
     let check = Check { origin };
     checks::name(&check, &raw.name)?;
     let RawDesignSensor { columns, rows, pitch_mm, depth_mm, pa_per_count, calibration } = raw.sensor;
@@ -129,7 +144,7 @@ impl RawSensor {
         let check = Check { origin };
         let side = |key, value| check.integer(key, value, 2, MAX_SIDE as i64);
         let length = |key, value| check.real(key, value, 0.01, 1000.0, "mm");
-        let pitch_mm = check.pair("sensor.pitch_mm", &self.pitch_mm)?;
+        let pitch_mm = self.pitch_mm.pair(&check, "sensor.pitch_mm")?;
         Ok(Sensor {
             columns: side("sensor.columns", self.columns)? as usize,
             rows: side("sensor.rows", self.rows)? as usize,

@@ -76,8 +76,8 @@ fn scene_then_solve() {
     }
     let truth = fs::read_to_string(&reference).unwrap();
     assert_eq!(truth.lines().next(), Some("0,3.0,0.0,-6.0,0.5,0.0,0.5,0.0"));
-    // Nothing else is left behind.
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    // Besides these three and the frames' sensor nothing is left behind.
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4);
 }
 
 #[test]
@@ -402,4 +402,104 @@ fn calibrate_then_solve() {
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(said.contains(part) && said.lines().count() == 1, "{said}");
     }
+}
+
+#[test]
+fn frames_for_a_design_and_for_no_other() {
+    let folder = TempDir::new().unwrap();
+    let sensor = "[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+    let [pad, other, frames, forces] =
+        ["pad.toml", "other.toml", "push.csv", "forces.csv"].map(|name| folder.path().join(name));
+    fs::write(&pad, format!("name = \"pad\"\n{sensor}pa_per_count = -2.0\n")).unwrap();
+    fs::write(&other, format!("name = \"other\"\n{}", sensor.replace("4.0, 4.0", "4.0, 2.0"))).unwrap();
+    // The ending of a design may be left out.
+    let output = golden(&["scene", "--design", text(&pad.with_extension("")), "--out", text(&frames), "--json"]);
+    assert!(output.status.success(), "{output:?}");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&report["frames"], &report["taxels"]), (&36.into(), &30.into()));
+    let counts = read_frames(&frames, 30).unwrap();
+    assert!(counts.iter().flatten().all(|count| count.fract() == 0.0), "a sensor that counts");
+    assert!(counts.iter().flatten().any(|&count| count > 5000.0));
+    let solve = |design: &Path| golden(&["solve", text(design), "--frames", text(&frames), "--out", text(&forces)]);
+    let output = solve(&pad);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    fs::remove_file(&forces).unwrap();
+
+    for command in ["solve", "check"] {
+        let mut arguments = vec![command, text(&other), "--frames", text(&frames)];
+        if command == "solve" {
+            arguments.extend(["--out", text(&forces)]);
+        }
+        let output = golden(&arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.lines().count() == 1, "{said}");
+        for part in ["4 x 4 mm", "4 x 2 mm", "push.sensor.toml", "other", "golden scene --design"] {
+            assert!(said.contains(part), "no {part:?} in: {said}");
+        }
+        assert!(!forces.exists());
+    }
+    // Frames whose sensor nobody knows are solved as ever.
+    fs::remove_file(folder.path().join("push.sensor.toml")).unwrap();
+    assert!(solve(&other).status.success());
+
+    let scene = repository("scenes/sensor1-hertz.toml");
+    let output = golden(&["scene", text(&scene), "--design", text(&pad), "--out", text(&frames)]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("10 x 10 taxels of 4 x 2 mm") && said.contains("6 x 5 taxels of 4 x 4 mm"), "{said}");
+    let design = repository("designs/sensor1-none.toml");
+    assert!(golden(&["scene", text(&scene), "--design", text(&design), "--out", text(&frames)]).status.success());
+    let output = golden(&["scene", "--out", text(&frames)]);
+    assert!(!output.status.success());
+}
+
+#[test]
+fn suspicious_frames_are_solved_with_a_warning_and_found_by_check() {
+    let folder = TempDir::new().unwrap();
+    let [frames, pulled, forces] = ["push.csv", "pulled.csv", "forces.csv"].map(|name| folder.path().join(name));
+    let design = repository("designs/sensor1-none.toml");
+    assert!(golden(&["scene", "--design", text(&design), "--out", text(&frames)]).status.success());
+    let check = |file: &Path, json: bool| {
+        let arguments = ["check", text(&design), "--frames", text(file), "--json"];
+        golden(&arguments[..if json { 5 } else { 4 }])
+    };
+    let output = check(&frames, false);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && said.contains("36 frames") && said.contains("nothing suspicious"), "{said}");
+
+    let turned: Vec<Vec<f64>> =
+        read_frames(&frames, 100).unwrap().iter().map(|frame| frame.iter().map(|stress| -stress).collect()).collect();
+    write_frames(&pulled, &turned).unwrap();
+    let output = check(&pulled, false);
+    let (said, wrong) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert!(!output.status.success() && said.lines().count() == 1 && said.contains("F_z > 0"), "{said}");
+    assert!(wrong.starts_with("error: ") && wrong.contains("pulled.csv"), "{wrong}");
+    let report: serde_json::Value = serde_json::from_slice(&check(&pulled, true).stdout).unwrap();
+    assert_eq!(report["findings"][0]["kind"], "sign");
+
+    let output = golden(&["solve", text(&design), "--frames", text(&pulled), "--out", text(&forces)]);
+    let wrong = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && wrong.starts_with("warning: ") && wrong.lines().count() == 1, "{wrong}");
+    assert!(forces.exists());
+}
+
+#[test]
+fn one_command_fits_the_constants_to_a_changed_sensor() {
+    let folder = TempDir::new().unwrap();
+    let [pad, fitted] = ["pad.toml", "pad-calibrated.toml"].map(|name| folder.path().join(name));
+    let sensor = "[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+    let stale = "[algorithm]\nestimator = \"joint\"\ngain = 1.1\n\
+        fitted_to = \"6 x 5 taxels of 4 x 2 mm, 3 mm deep, point, 0\"\n";
+    fs::write(&pad, format!("name = \"pad\"\n{sensor}{stale}")).unwrap();
+    let frames = folder.path().join("f.csv");
+    let output = golden(&["scene", "--design", text(&pad), "--out", text(&frames)]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    let command = said.split('`').nth(1).unwrap_or_else(|| panic!("no command in: {said}")).to_owned();
+    let mut words = command.split(' ');
+    assert_eq!(words.next(), Some("golden"));
+    let arguments: Vec<&str> = words.chain(["--hidden", "0", "--quick"]).collect();
+    let output = golden(&arguments);
+    assert!(output.status.success(), "{output:?}");
+    let design = Design::load(&fitted).unwrap();
+    assert_eq!(design.name, "pad_calibrated", "a design of its own");
+    assert!(design.algorithm.joint.fitted_to.is_some_and(|sensor| sensor.contains("4 x 4 mm")));
 }

@@ -215,6 +215,12 @@ fn unknown_and_missing_keys() {
 #[test]
 fn wrong_types_and_broken_toml() {
     refused(&with("columns = 10", "columns = \"ten\""), &["line 3", "columns"]);
+    for one in ["3.4", "3"] {
+        let remedy = format!("[{0:?}, {0:?}]", one.parse::<f64>().unwrap());
+        let parts = ["sensor.pitch_mm", "one number", &remedy];
+        refused(&with("pitch_mm = [4.0, 2.0]", &format!("pitch_mm = {one}")), &parts);
+    }
+    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = \"3.4\""), &["pitch_mm", "two numbers"]);
     refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0]"), &["sensor.pitch_mm", "1 values", "two"]);
     refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0, 2.0, 1.0]"), &["sensor.pitch_mm", "3 values", "two"]);
     refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0, \"2\"]"), &["line 5", "pitch_mm"]);

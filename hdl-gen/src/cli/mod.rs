@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use golden::arguments::design_file;
 use golden::design::Design;
 use golden::manual::Manual;
 use hdl_gen::plan::Plan;
@@ -31,6 +32,7 @@ enum Command {
     /// Shows geometry, condition numbers, Nnz per matrix, ROM bits, predicted cycles, DSP and BRAM
     Inspect {
         /// Design file (TOML)
+        #[arg(value_parser = design_file())]
         design: PathBuf,
         /// For machines
         #[arg(long)]
@@ -39,6 +41,7 @@ enum Command {
     /// Writes RTL, ROM files, MCSR listings and metadata.json
     Generate {
         /// Design file (TOML)
+        #[arg(value_parser = design_file())]
         design: PathBuf,
         /// Folder to write; default: rtl-out/NAME
         #[arg(long)]

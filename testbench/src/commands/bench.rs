@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use golden::arguments::design_file;
 use golden::design::Design;
 use golden::output::write_whole;
 
@@ -13,6 +14,7 @@ use testbench::progress::Progress;
 #[derive(Args)]
 pub struct Arguments {
     /// Design files (TOML) to generate and simulate.
+    #[arg(value_parser = design_file())]
     designs: Vec<PathBuf>,
     /// Largest side of the square sensors in the tables of cycles.
     #[arg(long, default_value_t = 32)]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use golden::arguments::design_file;
 
 use super::shown;
 use testbench::bench::cells;
@@ -10,6 +11,7 @@ use testbench::bench::cells;
 #[derive(Args)]
 pub struct Arguments {
     /// Design file (TOML).
+    #[arg(value_parser = design_file())]
     design: PathBuf,
     /// Its generated folder.
     folder: PathBuf,

@@ -4,7 +4,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use golden::check::check;
 use golden::design::Design;
+use golden::matrices::Matrices;
 
 use testbench::frame_set::FrameSet;
 use testbench::progress::Progress;
@@ -21,7 +23,7 @@ pub struct FrameArguments {
 }
 
 impl FrameArguments {
-    /// Frames of the file, or the standing ones.
+    /// Frames of the file, with warnings of what is wrong with them, or the standing ones.
     pub fn load(
         &self,
         reference: Option<&Path>,
@@ -29,7 +31,12 @@ impl FrameArguments {
         progress: &Progress,
     ) -> Result<FrameSet, Box<dyn Error>> {
         if let Some(path) = &self.frames {
-            return Ok(FrameSet::load(path, self.labels, reference, &design.sensor)?);
+            let frames = FrameSet::load(path, self.labels, reference, design)?;
+            // A design without matrices is refused later, with the reason.
+            for finding in check(design, &frames.stress, Matrices::of(design).ok().as_ref()) {
+                eprintln!("warning: {finding}");
+            }
+            return Ok(frames);
         }
         progress.stage("making ground-truth frames");
         Ok(FrameSet::standing(&design.sensor)?.as_delivered(design))

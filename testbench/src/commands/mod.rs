@@ -14,6 +14,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use golden::arguments::design_file;
 use serde::Serialize;
 
 /// What a command has to say: on standard output, and on standard error what is wrong.
@@ -44,6 +45,7 @@ fn shown<T: Serialize>(
 #[derive(Args)]
 pub struct SeededArguments {
     /// Design file (TOML).
+    #[arg(value_parser = design_file())]
     design: PathBuf,
     /// Decides everything that is random.
     #[arg(long, default_value_t = 1)]

@@ -1,10 +1,12 @@
 //! `testbench mutants`.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use golden::design::Design;
 
-use super::{SeededArguments, shown};
-use testbench::mutants::{Options, mutants};
+use super::{Said, SeededArguments, shown};
+use testbench::mutants::{Explained, Options, mutants};
 use testbench::progress::Progress;
 
 #[derive(Args)]
@@ -14,12 +16,19 @@ pub struct Arguments {
     /// Mutants to make.
     #[arg(long, default_value_t = 50)]
     count: usize,
+    /// Survivors with their reasons (TOML, as testbench/survivors.toml); any other one is then an error.
+    #[arg(long)]
+    explained: Option<PathBuf>,
 }
 
 /// Makes mutants of a design.
 pub fn run(arguments: &Arguments) -> super::Result {
     let SeededArguments { design, seed, json } = &arguments.common;
-    let options = Options { count: arguments.count, seed: *seed };
+    let explained = arguments.explained.as_deref().map(Explained::load).transpose()?;
+    let strict = explained.is_some();
+    let options = Options { count: arguments.count, seed: *seed, explained: explained.unwrap_or_default() };
     let report = mutants(&Design::load(design)?, &options, &Progress::new())?;
-    Ok(shown(&report, *json, ToString::to_string)?.into())
+    let unexplained = report.survivors().count();
+    let faults = (strict && unexplained > 0).then(|| format!("{unexplained} survivors have no explanation"));
+    Ok(Said { text: shown(&report, *json, ToString::to_string)?, faults: faults.into_iter().collect() })
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use golden::arguments::design_file;
 use golden::design::{Design, Estimator, PlanKind};
 use golden::output::write_whole;
 use golden::words::parser;
@@ -22,7 +23,7 @@ const OUT: &str = "target/sweep";
 #[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Arguments {
     /// Design files (TOML) to vary.
-    #[arg(required = true)]
+    #[arg(required = true, value_parser = design_file())]
     designs: Vec<PathBuf>,
     /// Scene files (TOML) with known forces; a design without one of its sensor gets a standing scene.
     #[arg(long = "scene", value_name = "SCENE.toml", num_args = 1..)]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use golden::arguments::design_file;
 use golden::design::Design;
 
 use super::frames::FrameArguments;
@@ -12,6 +13,7 @@ use testbench::view;
 #[derive(Args)]
 pub struct Arguments {
     /// Design file (TOML).
+    #[arg(value_parser = design_file())]
     design: PathBuf,
     #[command(flatten)]
     frames: FrameArguments,

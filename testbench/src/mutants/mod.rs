@@ -1,6 +1,7 @@
 //! `testbench mutants`: does the testbench notice? Many copies of a design, each with one small fault, go through the
 //! comparison that every design goes through; those that pass it are listed.
 
+mod explained;
 mod sites;
 
 use std::fmt;
@@ -15,6 +16,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;
 
+pub use explained::{Explained, ExplainedError};
 pub use sites::{Kind, Mutation, all};
 
 use crate::frame_set::FrameSet;
@@ -22,18 +24,20 @@ use crate::progress::Progress;
 use crate::stream_words::packets;
 use crate::stress::{BATCH, run_batch};
 use crate::trial::{Trial, TrialError, planned, rtl_sources};
-use crate::verilate::{BuildError, Built, RtlSources, Verilate, elaborated_lines};
+use crate::verilate::{BuildError, Built, RtlSources, Verilate, translation};
 
 /// Batches of `testbench stress` after the standing frames.
 const STRESS_BATCHES: u64 = 3;
 
 /// How many, and which.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Options {
-    /// Mutants to make; those that no tool accepts do not count.
+    /// Mutants to make; those that no tool accepts, or that are the same hardware, do not count.
     pub count: usize,
     /// Decides which.
     pub seed: u64,
+    /// Survivors that need no second look.
+    pub explained: Explained,
 }
 
 /// What became of a mutant.
@@ -42,10 +46,21 @@ pub struct Options {
 pub enum Fate {
     /// Verilator does not accept it.
     Rejected,
+    /// Verilator makes the same of it as of the design: the line is left out there, or the change means nothing.
+    Same,
     /// The comparison said so.
     Caught(String),
+    /// Nobody noticed, and it is known why.
+    Explained(String),
     /// Nobody noticed.
     Survived,
+}
+
+impl Fate {
+    /// Whether the mutant is another hardware, so that there was something to notice.
+    pub fn counts(&self) -> bool {
+        !matches!(self, Self::Rejected | Self::Same)
+    }
 }
 
 /// A mutant and its fate.
@@ -69,35 +84,50 @@ pub struct Report {
 }
 
 impl Report {
-    /// Those that were not caught.
+    /// Those that were not caught, without an explanation.
     pub fn survivors(&self) -> impl Iterator<Item = &Mutation> {
         self.mutants.iter().filter(|mutant| mutant.fate == Fate::Survived).map(|mutant| &mutant.mutation)
     }
 
-    /// How many of a kind were simulated, and how many of them survived.
+    /// How many of a kind were simulated, and how many of them were not caught.
     pub fn of_kind(&self, kind: Kind) -> (usize, usize) {
-        let made = self.mutants.iter().filter(|m| m.mutation.kind == kind && m.fate != Fate::Rejected);
-        (made.count(), self.survivors().filter(|mutation| mutation.kind == kind).count())
+        let made = || self.mutants.iter().filter(|mutant| mutant.mutation.kind == kind && mutant.fate.counts());
+        let caught = made().filter(|mutant| matches!(mutant.fate, Fate::Caught(_))).count();
+        (made().count(), made().count() - caught)
+    }
+
+    fn count(&self, of: impl Fn(&Fate) -> bool) -> usize {
+        self.mutants.iter().filter(|mutant| of(&mutant.fate)).count()
     }
 }
 
 impl fmt::Display for Report {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rejected = self.mutants.iter().filter(|mutant| mutant.fate == Fate::Rejected).count();
-        let made = self.mutants.len() - rejected;
-        let survived = self.survivors().count();
         writeln!(
             out,
-            "{}, seed {}: {made} mutants, {} caught, {survived} survived; {rejected} more did not build",
+            "{}, seed {}: {} mutants, {} caught, {} survived, of which {} are explained; {} more did not build, and of \
+             {} Verilator makes the same as of the design",
             self.design,
             self.seed,
-            made - survived
+            self.count(Fate::counts),
+            self.count(|fate| matches!(fate, Fate::Caught(_))),
+            self.count(|fate| matches!(fate, Fate::Survived | Fate::Explained(_))),
+            self.count(|fate| matches!(fate, Fate::Explained(_))),
+            self.count(|fate| *fate == Fate::Rejected),
+            self.count(|fate| *fate == Fate::Same),
         )?;
         for kind in Kind::ALL {
             let (made, survived) = self.of_kind(kind);
             writeln!(out, "{:>12} {made:>4} made {survived:>4} survived", format!("{kind:?}").to_lowercase())?;
         }
-        self.survivors().try_for_each(|mutation| writeln!(out, "survived: {mutation}"))
+        for Mutant { mutation, fate } in &self.mutants {
+            match fate {
+                Fate::Survived => writeln!(out, "survived: {mutation}")?,
+                Fate::Explained(why) => writeln!(out, "explained: {mutation}: {why}")?,
+                _ => {}
+            }
+        }
+        Ok(())
     }
 }
 
@@ -126,24 +156,23 @@ pub fn mutants(design: &Design, options: &Options, progress: &Progress) -> Resul
     progress.stage("planning");
     let plan = planned(design)?;
     let sources = rtl_sources(&plan)?;
-    let ordeal = Ordeal::new(&plan, options.seed)?;
+    let ordeal = Ordeal::new(&plan, &sources, options)?;
     if let Some(reason) = ordeal.complaint(&sources).map_err(TrialError::from)? {
         return Err(MutantsError::Unsound(reason));
     }
-    let queue = drawn(&sources, options.seed).map_err(TrialError::from)?;
     progress.counted("mutants", options.count as u64);
-    let mut queue = queue.into_iter();
+    let mut queue = drawn(&sources, options.seed).into_iter();
     let mut mutants: Vec<Mutant> = Vec::new();
     loop {
-        // Those that did not build are replaced by the next ones.
-        let built = mutants.iter().filter(|mutant| mutant.fate != Fate::Rejected).count();
-        let next: Vec<Mutation> = queue.by_ref().take(options.count - built).collect();
+        // Those that do not count are replaced by the next ones.
+        let counted = mutants.iter().filter(|mutant| mutant.fate.counts()).count();
+        let next: Vec<Mutation> = queue.by_ref().take(options.count - counted).collect();
         if next.is_empty() {
             break;
         }
         mutants.par_extend(next.into_par_iter().map(|mutation| {
-            let fate = ordeal.fate(&mutation.apply(&sources));
-            if fate != Fate::Rejected {
+            let fate = ordeal.fate(&mutation);
+            if fate.counts() {
                 progress.step();
             }
             Mutant { mutation, fate }
@@ -152,12 +181,10 @@ pub fn mutants(design: &Design, options: &Options, progress: &Progress) -> Resul
     Ok(Report { design: plan.design.name.clone(), seed: options.seed, mutants })
 }
 
-/// Every possible mutation of what this design has of its modules, at random, the kinds in turn.
-fn drawn(sources: &RtlSources, seed: u64) -> Result<Vec<Mutation>, BuildError> {
+/// Every possible mutation, at random, the kinds in turn.
+fn drawn(sources: &RtlSources, seed: u64) -> Vec<Mutation> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut found = sites::all(sources);
-    let lines = elaborated_lines(sources)?;
-    found.retain(|of| of.kind == Kind::Rom || lines.get(&of.file).is_some_and(|lines| lines.contains(&of.line)));
     found.shuffle(&mut random);
     let mut turns: Vec<(usize, Mutation)> = Vec::with_capacity(found.len());
     let mut counts = [0; Kind::ALL.len()];
@@ -167,29 +194,46 @@ fn drawn(sources: &RtlSources, seed: u64) -> Result<Vec<Mutation>, BuildError> {
         counts[kind] += 1;
     }
     turns.sort_by_key(|(turn, mutation)| (*turn, mutation.kind));
-    Ok(turns.into_iter().map(|(_, mutation)| mutation).collect())
+    turns.into_iter().map(|(_, mutation)| mutation).collect()
 }
 
 /// What every mutant goes through: the trial that every design goes through, then stress.
 struct Ordeal<'a> {
     trial: Trial<'a>,
-    seed: u64,
+    sources: &'a RtlSources,
+    /// Of the sources.
+    translation: String,
+    options: &'a Options,
     /// Where the mutants are built; away with them afterwards.
     cache: tempfile::TempDir,
 }
 
 impl<'a> Ordeal<'a> {
-    fn new(plan: &'a Plan, seed: u64) -> Result<Self, MutantsError> {
+    fn new(plan: &'a Plan, sources: &'a RtlSources, options: &'a Options) -> Result<Self, MutantsError> {
         let frames = FrameSet::standing(&plan.design.sensor)?.as_delivered(&plan.design);
         let cache = tempfile::tempdir().map_err(MutantsError::Folder)?;
-        Ok(Self { trial: Trial::new(plan, packets(&frames.stress), seed as u32), seed, cache })
+        let translation = translation(sources).map_err(TrialError::from)?;
+        let trial = Trial::new(plan, packets(&frames.stress), options.seed as u32);
+        Ok(Self { trial, sources, translation, options, cache })
     }
 
-    fn fate(&self, sources: &RtlSources) -> Fate {
-        match self.complaint(sources) {
+    fn fate(&self, mutation: &Mutation) -> Fate {
+        let mutant = mutation.apply(self.sources);
+        // ROM files are read at run time.
+        if mutation.kind != Kind::Rom {
+            match translation(&mutant) {
+                Err(_) => return Fate::Rejected,
+                Ok(same) if same == self.translation => return Fate::Same,
+                Ok(_) => {}
+            }
+        }
+        match self.complaint(&mutant) {
             Err(_) => Fate::Rejected,
             Ok(Some(reason)) => Fate::Caught(reason),
-            Ok(None) => Fate::Survived,
+            Ok(None) => {
+                let known = self.options.explained.why(mutation);
+                known.map_or(Fate::Survived, |why| Fate::Explained(why.to_owned()))
+            }
         }
     }
 
@@ -203,8 +247,8 @@ impl<'a> Ordeal<'a> {
     }
 
     fn stress(&self, built: &Built, batch: u64) -> Result<(), String> {
-        let mut core = built.load((self.seed ^ batch) as u32).map_err(|error| error.to_string())?;
-        run_batch(self.trial.plan, &mut core, batch, BATCH, self.seed, &|| ())
+        let mut core = built.load((self.options.seed ^ batch) as u32).map_err(|error| error.to_string())?;
+        run_batch(self.trial.plan, &mut core, batch, BATCH, self.options.seed, &|| ())
             .map(drop)
             .map_err(|error| error.to_string())
     }

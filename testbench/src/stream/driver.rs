@@ -112,6 +112,7 @@ impl<'a> Driver<'a> {
         self.offering = false;
         self.inside.clear();
         self.words.clear();
+        self.outcome.resumed.push(self.packet);
     }
 
     fn reset_cycle(&mut self, core: &mut impl Core) -> Result<(), StreamError> {

@@ -4,6 +4,8 @@ mod check;
 mod driver;
 mod pattern;
 
+use std::ops::Range;
+
 use hdl_gen::plan::timing::middle_interval;
 use thiserror::Error;
 
@@ -103,11 +105,25 @@ impl Exchange {
 pub struct Outcome {
     /// Completed exchanges, in order. Packets lost to a reset have none.
     pub exchanges: Vec<Exchange>,
+    /// By reset that took place: the first packet that was sent after it.
+    pub resumed: Vec<usize>,
     /// Cycles simulated.
     pub cycles: u64,
 }
 
 impl Outcome {
+    /// What was sent of so many packets before the first reset, between two, and after the last one, and its exchanges.
+    pub fn between_resets(&self, packets: usize) -> impl Iterator<Item = (Range<usize>, &[Exchange])> {
+        let mut exchanges = self.exchanges.as_slice();
+        let mut begin = 0;
+        self.resumed.iter().copied().chain([packets]).map(move |end| {
+            let count = exchanges.iter().position(|exchange| exchange.packet >= end).unwrap_or(exchanges.len());
+            let (own, later) = exchanges.split_at(count);
+            exchanges = later;
+            (std::mem::replace(&mut begin, end)..end, own)
+        })
+    }
+
     /// Longest latency of the completed exchanges; the latency of the core if they were sent one at a time.
     pub fn latency(&self) -> Option<u64> {
         self.exchanges.iter().map(Exchange::latency).max()

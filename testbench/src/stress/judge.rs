@@ -4,61 +4,35 @@ use hdl_gen::model::Model;
 use hdl_gen::plan::Plan;
 
 use super::{Kind, Report};
-use crate::stream::{Exchange, INITIAL_RESET, Outcome, Reset};
+use crate::stream::{Exchange, Outcome};
 
-/// Packets that a reset can cost at most: one being sent, one being put out, and those between. In the reduced plan
-/// two in Bz' banks, two searches, one in the summary; frames so short that several fit into the output's stages.
-const MOST_INSIDE: usize = 8;
-
-/// Between two resets the core is a new one; only packets that were on their way when one came have no answer.
+/// Between two resets the core is a new one, and answers the packets in turn; those that were on their way when a reset
+/// came have no answer.
 ///
 /// # Errors
 /// The first packet that is wrong, and how.
-pub fn judge(
-    plan: &Plan,
-    kinds: &[Kind],
-    packets: &[Vec<u32>],
-    resets: &[Reset],
-    outcome: &Outcome,
-) -> Result<Report, String> {
-    let mut report = Report { cycles: outcome.cycles, ..Report::default() };
-    let mut exchanges = outcome.exchanges.iter().peekable();
-    let (mut next, mut may_be_lost) = (0, 0);
-    for end in begins(resets).into_iter().take_while(|&begin| begin < outcome.cycles).chain([u64::MAX]) {
+pub fn judge(plan: &Plan, kinds: &[Kind], packets: &[Vec<u32>], outcome: &Outcome) -> Result<Report, String> {
+    let mut report = Report { cycles: outcome.cycles, resets: outcome.resumed.len() as u64, ..Report::default() };
+    for (mut sent, exchanges) in outcome.between_resets(packets.len()) {
         let mut model = Model::new(plan);
-        while let Some(exchange) = exchanges.next_if(|exchange| exchange.last_out < end) {
-            if !(next..=next + may_be_lost).contains(&exchange.packet) {
+        for exchange in exchanges {
+            let next = sent.start;
+            if exchange.packet != next {
                 return Err(format!("packet {} was answered where packet {next} should have been", exchange.packet));
             }
-            (next..exchange.packet).for_each(|lost| report.lost_to_resets.add(kinds[lost]));
             check(exchange, kinds, packets, &mut model)?;
-            report.answered.add(kinds[exchange.packet]);
-            (next, may_be_lost) = (exchange.packet + 1, 0);
+            report.answered.add(kinds[next]);
+            sent.next();
         }
-        if end != u64::MAX {
-            may_be_lost += MOST_INSIDE;
-            report.resets += 1;
+        if sent.end == packets.len() && !sent.is_empty() {
+            return Err(format!("packet {} has no answer", sent.start));
         }
+        sent.for_each(|lost| report.lost_to_resets.add(kinds[lost]));
     }
-    if next + may_be_lost < packets.len() {
-        return Err(format!("packet {next} has no answer"));
-    }
-    (next..packets.len()).for_each(|lost| report.lost_to_resets.add(kinds[lost]));
     for &kind in kinds {
         report.sent.add(kind);
     }
     Ok(report)
-}
-
-/// The cycles in which the resets begin: one that is due while another lasts follows it.
-fn begins(resets: &[Reset]) -> Vec<u64> {
-    let mut free = 0;
-    let begin = |reset: &Reset| {
-        let begin = free.max(INITIAL_RESET + reset.cycle);
-        free = begin + reset.length.max(1);
-        begin
-    };
-    resets.iter().map(begin).collect()
 }
 
 fn check(exchange: &Exchange, kinds: &[Kind], packets: &[Vec<u32>], model: &mut Model<'_>) -> Result<(), String> {
@@ -94,10 +68,9 @@ mod tests {
     const DESIGN: &str = "name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
 
     /// Packets, and the traffic of a core that is right, with a reset that costs two of them.
-    fn right(plan: &Plan) -> (Vec<Kind>, Vec<Vec<u32>>, Vec<Reset>, Outcome) {
+    fn right(plan: &Plan) -> (Vec<Kind>, Vec<Vec<u32>>, Outcome) {
         let mut random = ChaCha8Rng::seed_from_u64(3);
         let (kinds, packets): (Vec<Kind>, Vec<Vec<u32>>) = (0..40).map(|_| packet(plan, &mut random)).unzip();
-        let resets = vec![Reset { cycle: 1050, length: 2 }];
         let mut exchanges = Vec::new();
         for range in [0..10, 12..40] {
             let mut model = Model::new(plan);
@@ -106,14 +79,14 @@ mod tests {
                 exchanges.push(Exchange { packet, first_in, last_out, words: model.process(&packets[packet]) });
             }
         }
-        (kinds, packets, resets, Outcome { exchanges, cycles: 5000 })
+        (kinds, packets, Outcome { exchanges, resumed: vec![12], cycles: 5000 })
     }
 
     fn judged(change: impl Fn(&mut Vec<Exchange>)) -> Result<Report, String> {
         let plan = Plan::new(&Design::from_toml(DESIGN, "tiny.toml").unwrap()).unwrap();
-        let (kinds, packets, resets, mut outcome) = right(&plan);
+        let (kinds, packets, mut outcome) = right(&plan);
         change(&mut outcome.exchanges);
-        judge(&plan, &kinds, &packets, &resets, &outcome)
+        judge(&plan, &kinds, &packets, &outcome)
     }
 
     #[test]

@@ -172,7 +172,7 @@ pub fn run_batch(
     };
     let outcome = exchange(core, &traffic.with_resets(&resets), |_| progress())
         .map_err(|source| StressError::Stream { batch, source })?;
-    judge(plan, &kinds, &packets, &resets, &outcome).map_err(|what| StressError::Wrong { batch, what })
+    judge(plan, &kinds, &packets, &outcome).map_err(|what| StressError::Wrong { batch, what })
 }
 
 /// Moments anywhere in the batch, some of them close to each other. Not in its last tenth: resets lose frames, and the

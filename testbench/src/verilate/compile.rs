@@ -189,7 +189,8 @@ pub fn design(
     fs::remove_dir_all(&generated).map_err(BuildError::io("remove", &generated))
 }
 
-fn translate(
+/// Verilog to C++ in `generated`, by Verilator.
+pub fn translate(
     toolchain: &Toolchain,
     sources: &RtlSources,
     folder: &Path,
@@ -211,7 +212,8 @@ fn translate(
     output(command, "Verilator", &sources.top).map(drop)
 }
 
-fn sorted_cpp(folder: &Path) -> Result<Vec<PathBuf>, BuildError> {
+/// The C++ sources of a folder, in the order of their names.
+pub fn sorted_cpp(folder: &Path) -> Result<Vec<PathBuf>, BuildError> {
     let entries = fs::read_dir(folder).map_err(BuildError::io("read", folder))?;
     let mut files: Vec<PathBuf> = entries
         .filter_map(Result::ok)

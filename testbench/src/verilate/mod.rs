@@ -6,7 +6,7 @@
 
 mod cache;
 mod compile;
-mod elaborate;
+mod translation;
 
 use std::collections::BTreeMap;
 use std::io;
@@ -17,7 +17,7 @@ use thiserror::Error;
 
 pub use cache::default_cache;
 pub use compile::Effort;
-pub use elaborate::elaborated_lines;
+pub use translation::translation;
 
 use crate::dut::{Dut, DutError};
 use crate::tools::{self, ToolError};

@@ -9,7 +9,7 @@ use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::compare::Comparison;
-use testbench::stream::{INITIAL_RESET, Mode, Outcome, Pacing, Pattern, Reset, Traffic, exchange};
+use testbench::stream::{Mode, Outcome, Pacing, Pattern, Reset, Traffic, exchange};
 use testbench::stream_words::{Answer, decode, encode};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
@@ -278,29 +278,18 @@ fn mixed_in_every_mode(subject: &Subject) {
 }
 
 /// Judges traffic with resets: between two of them the core is a new one, and only packets that were on the way when
-/// one came have no answer. How many answers came after each reset and how many packets were lost to it, as far as they
-/// can be told apart.
-fn judge(plan: &Plan, packets: &[Vec<u32>], resets: &[Reset], outcome: &Outcome) -> Vec<(usize, usize)> {
-    // One in each of two banks, one being put out, one being sent, one between the search and the output, and in the
-    // output's registers the last beats of the one before. In the reduced plan one whose search waits for that, one
-    // behind it, and eight beats alone fit into the output's registers.
-    let most_inside = if plan.ways() > 1 { 9 } else { 6 };
-    let mut exchanges = outcome.exchanges.iter().peekable();
-    let (mut next, mut lost) = (0, 0);
-    let mut counts = vec![(0, 0); resets.len() + 1];
-    let ends = resets.iter().map(|reset| reset.cycle + INITIAL_RESET).chain([u64::MAX]);
-    for (count, end) in counts.iter_mut().zip(ends) {
+/// one came have no answer. How many packets were answered between resets, and how many the one that followed has cost.
+fn judge(plan: &Plan, packets: &[Vec<u32>], outcome: &Outcome) -> Vec<(usize, usize)> {
+    let spans = outcome.between_resets(packets.len()).map(|(sent, exchanges)| {
         let mut model = Model::new(plan);
-        while let Some(exchange) = exchanges.next_if(|exchange| exchange.last_out < end) {
-            let packet = exchange.packet;
-            assert!((next..=next + lost).contains(&packet), "packet {packet} answered, {next} expected, {resets:?}");
-            assert_eq!(exchange.words, model.process(&packets[packet]), "packet {packet}, {resets:?}");
-            *count = (count.0 + 1, count.1 + packet - next);
-            (next, lost) = (packet + 1, 0);
+        for (packet, exchange) in sent.clone().zip(exchanges) {
+            assert_eq!(exchange.packet, packet, "{:?}", outcome.resumed);
+            assert_eq!(exchange.words, model.process(&packets[packet]), "packet {packet}, {:?}", outcome.resumed);
         }
-        lost += most_inside;
-    }
-    assert_eq!(next, packets.len(), "the last packet is sent after the last reset, {resets:?}");
+        (exchanges.len(), sent.len() - exchanges.len())
+    });
+    let counts: Vec<(usize, usize)> = spans.collect();
+    assert_eq!(counts[counts.len() - 1].1, 0, "the last packets are sent after the last reset, {:?}", outcome.resumed);
     counts
 }
 
@@ -329,7 +318,7 @@ fn a_reset_in_any_cycle_of_a_frame_leaves_no_trace() {
         let resets = [Reset { cycle, length: 1 + cycle % 3 }];
         let alone = subject.traffic(&packets).with_resets(&resets).with_pacing(Pacing::OneAtATime);
         let outcome = subject.run(&alone).unwrap_or_else(|error| panic!("{resets:?}: {error}"));
-        judge(&subject.plan, &packets, &resets, &outcome);
+        judge(&subject.plan, &packets, &outcome);
     });
 }
 
@@ -347,7 +336,7 @@ fn a_reset_while_frames_overlap_leaves_no_trace() {
         let resets = [Reset { cycle, length: 1 }];
         let traffic = subject.traffic(&packets).with_resets(&resets);
         let outcome = subject.run(&traffic).unwrap_or_else(|error| panic!("{resets:?}: {error}"));
-        judge(&subject.plan, &packets, &resets, &outcome);
+        judge(&subject.plan, &packets, &outcome);
     });
 }
 
@@ -390,11 +379,14 @@ fn a_reset_while_frames_pile_up_leaves_no_trace() {
         let traffic = Traffic::new(&packets, 8 * timeout(plan)).with_resets(&resets).with_mode(&mode);
         let outcome = subject.run(&traffic).unwrap_or_else(|error| panic!("{resets:?}: {error}"));
         assert!(outcome.cycles > cycle, "every reset took place");
-        let counts = judge(plan, &packets, &resets, &outcome);
+        let counts = judge(plan, &packets, &outcome);
         let share = |wanted: &dyn Fn(&(usize, usize)) -> bool| {
-            counts[1..].iter().filter(|&count| wanted(count)).count() as f64 / resets.len() as f64
+            counts[..resets.len()].iter().filter(|&count| wanted(count)).count() as f64 / resets.len() as f64
         };
-        assert!(share(&|&(answered, _)| answered > 0) >= 0.9, "resets are judged by what comes next: {counts:?}");
+        assert!(
+            share(&|&(answered, _)| answered > 0) >= 0.9,
+            "resets are judged by what comes between them: {counts:?}"
+        );
         assert!(share(&|&(_, lost)| lost >= 4) >= 0.8, "resets come while frames have piled up: {counts:?}");
     });
 }
@@ -417,6 +409,6 @@ fn resets_among_mixed_frames_cost_the_frames_inside() {
         let outcome = subject.run(&subject.traffic(&packets).with_resets(&resets).with_mode(&mode));
         let outcome = outcome.expect("no rule is broken");
         assert!(outcome.cycles > cycle, "every reset took place");
-        judge(&subject.plan, &packets, &resets, &outcome);
+        judge(&subject.plan, &packets, &outcome);
     });
 }

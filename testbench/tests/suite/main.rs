@@ -11,6 +11,7 @@ mod command;
 mod contacts;
 mod cores;
 mod counts;
+mod docs;
 mod drivers;
 mod figures;
 mod flows;

@@ -1,0 +1,34 @@
+//! Arguments that several commands of the project take.
+
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
+/// Parses the place of a design file, whose ending may be left out: `pad` is `pad.toml` where there is no `pad`.
+pub fn design_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().map(with_ending)
+}
+
+fn with_ending(path: PathBuf) -> PathBuf {
+    let mut longer = path.clone().into_os_string();
+    longer.push(".toml");
+    let longer = PathBuf::from(longer);
+    if !path.exists() && longer.is_file() { longer } else { path }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ending_may_be_left_out() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [pad, file] = ["pad", "pad.toml"].map(|name| folder.path().join(name));
+        assert_eq!(with_ending(pad.clone()), pad, "nothing is there: the message names what was given");
+        std::fs::write(&file, "").expect("writable");
+        assert_eq!(with_ending(pad.clone()), file);
+        assert_eq!(with_ending(file.clone()), file);
+        std::fs::write(&pad, "").expect("writable");
+        assert_eq!(with_ending(pad.clone()), pad);
+    }
+}

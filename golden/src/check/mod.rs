@@ -1,0 +1,194 @@
+//! What is wrong with frames, as far as they tell: readings that no contact on this sensor makes.
+//!
+//! Each check knows one usual mistake of those who connect a sensor. A frame that passes may still be wrong: a square
+//! grid that is transposed looks like another contact.
+
+mod order;
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::design::Design;
+use crate::matrices::Matrices;
+use crate::words::print_as_words;
+
+/// What a finding is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Every reading is zero.
+    Empty,
+    /// Readings far below or above the full scale.
+    Range,
+    /// The stresses add up to a pull.
+    Sign,
+    /// No reading is positive.
+    NoTension,
+    /// Every taxel is loaded, those beside the contact too.
+    Tare,
+    /// The taxels stand in another order.
+    Order,
+    /// Readings at the end of the converter's range, below the full scale.
+    Stuck,
+}
+
+print_as_words!(Kind);
+
+/// One thing that is suspicious, with its likely cause and what to change, on one line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// What it is about.
+    pub kind: Kind,
+    message: String,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.message)
+    }
+}
+
+/// A peak this many times below the full scale is in another unit.
+const TOO_SMALL: f64 = 1000.0;
+/// So is one this many times above it: more than any converter is overdriven by.
+const TOO_LARGE: f64 = 10.0;
+/// A frame counts as loaded if its peak is this share of the largest.
+const LOADED: f64 = 0.1;
+/// What a finding holds for: this share of the loaded frames.
+const MOST: f64 = 0.9;
+/// Readings below this share of a frame's peak are as good as zero.
+const FAINT: f64 = 2e-3;
+
+/// Looks for what is wrong with frames of a design, values as they are in the file, each of m finite numbers.
+///
+/// `matrices` are those of the design; without them the order of the taxels is not looked at.
+pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
+    let stress: Vec<Vec<f64>> = frames
+        .iter()
+        .map(|frame| frame.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect())
+        .collect();
+    let peak = stress.iter().map(|frame| largest(frame)).fold(0.0, f64::max);
+    let mut findings = Vec::new();
+    let mut found = |kind, message| findings.push(Finding { kind, message });
+    if peak <= 0.0 {
+        found(Kind::Empty, format!("all readings of {} are 0: is the sensor connected?", count(frames.len())));
+        return findings;
+    }
+    let counts = design.input.pa_per_count.is_some();
+    if let Some(message) = range(design.hardware.full_scale_pa, peak, counts) {
+        found(Kind::Range, message);
+    }
+    let mut loaded: Vec<Vec<f64>> = stress.into_iter().filter(|frame| largest(frame) >= LOADED * peak).collect();
+    let pulling = loaded.iter().filter(|frame| frame.iter().sum::<f64>() > 0.0).count();
+    if holds(pulling, loaded.len()) {
+        let remedy = if counts { "change the sign of sensor.pa_per_count" } else { "write sensor.pa_per_count = -1.0" };
+        found(
+            Kind::Sign,
+            format!(
+                "the stresses add up to a pull (F_z > 0) in {pulling} of {}: compression must be negative; {remedy}",
+                count(loaded.len())
+            ),
+        );
+        // What else is wrong shows with the right sign.
+        loaded.iter_mut().flatten().for_each(|stress| *stress = -*stress);
+    }
+    if let Some(message) = tare(&loaded) {
+        found(Kind::Tare, message);
+    } else if loaded.iter().all(|frame| frame.iter().all(|&stress| stress <= FAINT * largest(frame))) {
+        found(
+            Kind::NoTension,
+            format!(
+                "no reading of {} is a pull: where the sensor cannot read tension, or a converter clips it, the force \
+                 along the surface comes out too small; let the converter's range reach below 0",
+                count(loaded.len())
+            ),
+        );
+    }
+    if let Some(message) = matrices.and_then(|matrices| order::check(&design.sensor, matrices, &loaded)) {
+        found(Kind::Order, message);
+    }
+    if let Some(message) = stuck(design, frames, &loaded, peak) {
+        found(Kind::Stuck, message);
+    }
+    findings
+}
+
+/// Readings in another unit.
+fn range(full_scale: f64, peak: f64, counts: bool) -> Option<String> {
+    let key = if counts { "sensor.pa_per_count" } else { "the unit of the frames, or write sensor.pa_per_count," };
+    let what = if counts { "stress" } else { "reading" };
+    if peak * TOO_SMALL <= full_scale {
+        let times = full_scale / peak;
+        let cause = if counts { "is a count worth more?" } else { "kilopascals, or counts?" };
+        return Some(format!(
+            "the largest {what} is {peak:.3} Pa, {times:.0} times below hardware.full_scale_pa: {cause} Change {key} or \
+             hardware.full_scale_pa"
+        ));
+    }
+    (peak >= TOO_LARGE * full_scale).then(|| {
+        let times = peak / full_scale;
+        let cause = if counts { "are the frames in pascals already?" } else { "counts?" };
+        format!(
+            "the largest {what} is {peak:.0} Pa, {times:.0} times above hardware.full_scale_pa: {cause} Change {key} or \
+             hardware.full_scale_pa"
+        )
+    })
+}
+
+/// A load that even the least loaded quarter of the taxels has.
+fn tare(loaded: &[Vec<f64>]) -> Option<String> {
+    let rest = |frame: &Vec<f64>| {
+        let mut sorted = frame.clone();
+        sorted.sort_by(|a, b| b.total_cmp(a));
+        let quarter = &sorted[..sorted.len().div_ceil(4)];
+        quarter.iter().sum::<f64>() / quarter.len() as f64
+    };
+    let rests: Vec<f64> = loaded.iter().map(rest).collect();
+    let pressed = rests.iter().zip(loaded).filter(|(rest, frame)| **rest < -FAINT * largest(frame)).count();
+    let mean = rests.iter().sum::<f64>() / rests.len() as f64;
+    holds(pressed, loaded.len()).then(|| {
+        format!(
+            "every taxel is loaded in {pressed} of {}, the least loaded quarter by {:.0} Pa: is the tare missing? \
+             Subtract a frame without contact, or write its offsets into the file of sensor.calibration",
+            count(loaded.len()),
+            -mean
+        )
+    })
+}
+
+/// Readings that pile up at one extreme value.
+fn stuck(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], peak: f64) -> Option<String> {
+    // Of smooth readings few share the largest value, and many are just below it.
+    const LEAST: usize = 5;
+    const BELOW: f64 = 0.97;
+    if peak >= design.hardware.full_scale_in_frames() {
+        return None;
+    }
+    // By the values of the file, which a gain of each taxel has not touched yet.
+    let extreme =
+        frames.iter().flatten().fold(0.0_f64, |far, &value| if value.abs() > far.abs() { value } else { far });
+    let near = |value: &&f64| **value * extreme > 0.0 && value.abs() >= BELOW * extreme.abs();
+    let (at, close): (Vec<&f64>, Vec<&f64>) =
+        frames.iter().flatten().filter(near).partition(|value| value.to_bits() == extreme.to_bits());
+    (at.len() >= LEAST && at.len() > 2 * close.len()).then(|| {
+        format!(
+            "{} readings of {} are exactly {extreme}, the largest: the end of the converter? Write the stress there, \
+             {peak:.0} Pa, as hardware.full_scale_pa, so that such frames get the status \"saturated\"",
+            at.len(),
+            count(loaded.len()),
+        )
+    })
+}
+
+fn largest(frame: &[f64]) -> f64 {
+    frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()))
+}
+
+fn holds(frames: usize, of: usize) -> bool {
+    frames > 0 && frames as f64 >= MOST * of as f64
+}
+
+fn count(frames: usize) -> String {
+    if frames == 1 { "1 frame".to_owned() } else { format!("{frames} frames") }
+}

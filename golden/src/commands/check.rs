@@ -1,0 +1,54 @@
+//! `golden check`: what is wrong with frames.
+
+use std::error::Error;
+use std::path::Path;
+
+use golden::check::check;
+use golden::design::Design;
+use golden::matrices::Matrices;
+use serde::Serialize;
+
+use super::{Recording, Stage};
+
+#[derive(Serialize)]
+struct Report<'a> {
+    design: &'a str,
+    frames: usize,
+    findings: Vec<Line>,
+}
+
+#[derive(Serialize)]
+struct Line {
+    kind: String,
+    message: String,
+}
+
+/// Checks the frames of a file; an error if anything is found.
+pub fn run(path: &Path, recording: &Recording, json: bool) -> Result<(), Box<dyn Error>> {
+    let design = Design::load(path)?;
+    let frames = recording.read(&design)?;
+    let matrices = {
+        let _stage = Stage::new("matrices");
+        Matrices::of(&design).map_err(|error| format!("{}: {error}", design.name))?
+    };
+    let findings = check(&design, &frames, Some(&matrices));
+    let file = recording.file.display();
+    if json {
+        let line = |kind: String, message: String| Line { kind, message };
+        let findings = findings.iter().map(|found| line(found.kind.to_string(), found.to_string())).collect();
+        let report = Report { design: &design.name, frames: frames.len(), findings };
+        say!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        for finding in &findings {
+            say!("{finding}");
+        }
+        if findings.is_empty() {
+            say!("{}: {} frames of {file}, nothing suspicious", design.name, frames.len());
+        }
+    }
+    match findings.len() {
+        0 => Ok(()),
+        1 => Err(format!("{file}: one thing to look at before the forces are trusted").into()),
+        count => Err(format!("{file}: {count} things to look at before the forces are trusted").into()),
+    }
+}

@@ -1,0 +1,182 @@
+//! Usual mistakes with a sensor, each found and named, and frames without one, which are left alone.
+
+use std::path::Path;
+
+use golden::check::{Finding, Kind, check};
+use golden::design::Design;
+use golden::frames::read_labelled_frames;
+use golden::matrices::Matrices;
+use golden::scene::{Converter, Scene, SensorErrors};
+use golden::solver::Solver;
+
+fn repository(path: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+fn design(name: &str) -> Design {
+    Design::load(&repository(&format!("designs/{name}.toml"))).unwrap()
+}
+
+/// The standing frames of a design as its sensor delivers them, with noise.
+fn frames(design: &Design) -> Vec<Vec<f64>> {
+    let mut scene = Scene::standing(&design.sensor);
+    scene.sensor_errors = SensorErrors { seed: 3, noise: 0.002, ..SensorErrors::default() };
+    stress(design, &scene)
+}
+
+fn stress(design: &Design, scene: &Scene) -> Vec<Vec<f64>> {
+    let frames = scene.frames().unwrap().into_iter().map(|frame| frame.stress);
+    frames
+        .map(|mut frame| {
+            design.input.deliver(&mut frame);
+            frame
+        })
+        .collect()
+}
+
+fn changed(frames: &[Vec<f64>], change: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
+    frames.iter().map(|frame| frame.iter().map(|&value| change(value)).collect()).collect()
+}
+
+fn look(design: &Design, frames: &[Vec<f64>]) -> Vec<Finding> {
+    check(design, frames, Some(&Matrices::of(design).unwrap()))
+}
+
+#[track_caller]
+fn found(design: &Design, frames: &[Vec<f64>], kinds: &[Kind], words: &[&str]) {
+    let findings = look(design, frames);
+    assert_eq!(findings.iter().map(|finding| finding.kind).collect::<Vec<_>>(), kinds, "{findings:?}");
+    let said = findings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+    assert_eq!(said.lines().count(), kinds.len(), "a line each: {said}");
+    for word in words {
+        assert!(said.contains(word), "no {word:?} in: {said}");
+    }
+}
+
+#[test]
+fn good_frames_are_left_alone() {
+    for name in ["sensor1-joint", "sensor2-joint", "odd", "small", "sensor1-none"] {
+        let design = design(name);
+        found(&design, &frames(&design), &[], &[]);
+    }
+    for (scene, name) in [
+        ("sensor1-hertz", "sensor1-joint"),
+        ("sensor2-disc", "sensor2-joint"),
+        ("sensor2-punch", "sensor2-joint"),
+        ("two-contacts", "sensor1-joint"),
+    ] {
+        let (design, scene) = (design(name), Scene::load(&repository(&format!("scenes/{scene}.toml"))).unwrap());
+        found(&design, &stress(&design, &scene), &[], &[]);
+    }
+}
+
+#[test]
+fn a_real_mat_reads_no_tension_and_reaches_the_end_of_its_range() {
+    let design = design("bed-mat");
+    let frames = read_labelled_frames(&repository("data/bed_mat_64x27.csv"), design.sensor.taxels(), 2).unwrap();
+    let findings = check(&design, &frames, None);
+    // 73 readings are 104, one is 103, three are 102.
+    let kinds: Vec<Kind> = findings.iter().map(|finding| finding.kind).collect();
+    assert_eq!(kinds, [Kind::NoTension, Kind::Stuck], "{findings:?}");
+    assert!(findings[1].to_string().contains("73 readings of 22 frames are exactly 104"), "{findings:?}");
+}
+
+#[test]
+fn other_units() {
+    let design = design("sensor1-joint");
+    let pascals = frames(&design);
+    found(&design, &changed(&pascals, |pa| pa / 1000.0), &[Kind::Range], &["kilopascals", "sensor.pa_per_count"]);
+    found(&design, &changed(&pascals, |pa| pa * 100.0), &[Kind::Range], &["above hardware.full_scale_pa"]);
+    let counting = Design::from_toml(
+        &design.to_toml().replace("depth_mm", "pa_per_count = -24.4\ndepth_mm"),
+        &repository("designs/counting.toml").display().to_string().replace("counting", "sensor1-joint"),
+    );
+    // The weights have another name there; what counts is the input.
+    let mut counting = counting.unwrap_or(design.clone());
+    counting.input.pa_per_count = Some(-24.4);
+    // Counts of a converter that a design in pascals takes for pascals, and the other way round.
+    let counts = changed(&pascals, |pa| (pa / -24.4).round());
+    found(&counting, &counts, &[], &[]);
+    found(&design, &counts, &[Kind::Sign], &["F_z > 0", "sensor.pa_per_count"]);
+    found(&counting, &pascals, &[Kind::Range, Kind::Sign], &["in pascals already", "change the sign"]);
+    found(&design, &changed(&pascals, |_| 0.0), &[Kind::Empty], &["connected"]);
+}
+
+#[test]
+fn a_wrong_sign_hides_nothing_else() {
+    let design = design("sensor2-joint");
+    let frames = frames(&design);
+    found(&design, &changed(&frames, |pa| -pa), &[Kind::Sign], &["36 of 36 frames", "sensor.pa_per_count = -1.0"]);
+    found(&design, &changed(&frames, |pa| (-pa).max(0.0)), &[Kind::Sign, Kind::NoTension], &["cannot read tension"]);
+}
+
+#[test]
+fn a_converter_without_a_sign_clips_tension() {
+    let design = design("sensor1-joint");
+    found(&design, &changed(&frames(&design), |pa| pa.min(0.0)), &[Kind::NoTension], &["below 0"]);
+}
+
+#[test]
+fn a_missing_tare_is_found_where_the_answer_still_looks_good() {
+    let design = design("sensor1-joint");
+    let frames = frames(&design);
+    let solver = Solver::new(&design).unwrap();
+    // 20 and 300 steps of a converter of 12 bits.
+    for (counts, good) in [(20.0, true), (300.0, false)] {
+        let loaded = changed(&frames, |pa| pa - 24.4 * counts);
+        found(&design, &loaded, &[Kind::Tare], &["36 of 36 frames", "tare", "sensor.calibration"]);
+        let solution = solver.solve(&loaded[0]).unwrap();
+        assert_eq!(solution.status.0 == 0, good, "{}", solution.status);
+        assert!(solution.resultant[2] < -6.3, "the load of the tare counts as force: {:?}", solution.resultant);
+    }
+}
+
+#[test]
+fn transposed_grids_and_rows_that_run_back() {
+    // Pitches of 4 and 2 mm tell a transposed grid from another contact, and so do unequal sides.
+    let oblong = "name = \"oblong\"\n[sensor]\ncolumns = 12\nrows = 8\npitch_mm = [3.0, 3.0]\ndepth_mm = 3.0\n";
+    for design in [design("sensor1-joint"), Design::from_toml(oblong, "oblong.toml").unwrap()] {
+        let (columns, rows) = (design.sensor.columns, design.sensor.rows);
+        let frames = frames(&design);
+        let reordered = |place: &dyn Fn(usize, usize) -> usize| -> Vec<Vec<f64>> {
+            let order = |frame: &Vec<f64>| {
+                let mut other = vec![0.0; frame.len()];
+                for (taxel, &value) in frame.iter().enumerate() {
+                    other[place(taxel % columns, taxel / columns)] = value;
+                }
+                other
+            };
+            frames.iter().map(order).collect()
+        };
+        found(&design, &reordered(&|x, y| x * rows + y), &[Kind::Order], &["column after column"]);
+        let back = |x, y| y * columns + if y % 2 == 1 { columns - 1 - x } else { x };
+        // A contact in the middle of rows that run back is nearly its own mirror image; put it aside.
+        let mut scene = Scene::standing(&design.sensor);
+        scene.contacts[0].centre_m[0] *= 0.5;
+        let aside = stress(&design, &scene);
+        let turned: Vec<Vec<f64>> = aside
+            .iter()
+            .map(|frame| (0..frame.len()).map(|taxel| frame[back(taxel % columns, taxel / columns)]).collect())
+            .collect();
+        found(&design, &aside, &[], &[]);
+        found(&design, &turned, &[Kind::Order], &["every second row backwards"]);
+        let shuffled = reordered(&|x, y| (7 * (y * columns + x) + 3) % (columns * rows));
+        found(&design, &shuffled, &[Kind::Order], &["checkerboard", "i = iy * columns + ix"]);
+    }
+}
+
+#[test]
+fn the_end_of_a_converter_below_full_scale() {
+    let mut design = design("sensor1-joint");
+    design.hardware.full_scale_pa = 200_000.0;
+    let mut scene = Scene::standing(&design.sensor);
+    scene.contacts[0].normal_force_n *= 2.5;
+    let converter = Converter { bits: 13, full_scale_pa: 4096.0 * 24.4 };
+    scene.sensor_errors = SensorErrors { seed: 3, noise: 0.002, converter: Some(converter), ..SensorErrors::default() };
+    found(&design, &stress(&design, &scene), &[Kind::Stuck], &["99942", "hardware.full_scale_pa", "saturated"]);
+    design.hardware.full_scale_pa = 4096.0 * 24.4;
+    found(&design, &stress(&design, &scene), &[], &[]);
+    // Coarse readings alone are not at an end.
+    scene.contacts[0].normal_force_n /= 2.5;
+    found(&design, &stress(&design, &scene), &[], &[]);
+}

@@ -1,0 +1,156 @@
+//! The commands of README and docs: each exists as it is written, and the new user's session does what it says.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use crate::support::workspace;
+
+/// A line of a block of commands, without its comment.
+struct Line {
+    file: PathBuf,
+    number: usize,
+    text: String,
+}
+
+impl Line {
+    fn place(&self) -> String {
+        format!("{}, line {}: {}", self.file.display(), self.number, self.text)
+    }
+}
+
+/// All lines of `sh` blocks; one that ends with a backslash goes on in the next.
+fn lines() -> Vec<Line> {
+    let root = workspace("");
+    let docs = fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
+    let mut files: Vec<PathBuf> = docs.filter(|path| path.extension().is_some_and(|ending| ending == "md")).collect();
+    files.extend(["README.md", "data/README.md"].map(|name| root.join(name)));
+    files.sort();
+    files.iter().flat_map(|file| lines_of(file)).collect()
+}
+
+fn lines_of(file: &Path) -> Vec<Line> {
+    let text = fs::read_to_string(file).expect("readable");
+    let (mut found, mut inside, mut open): (Vec<Line>, bool, bool) = (Vec::new(), false, false);
+    for (number, line) in (1..).zip(text.lines()) {
+        if line.starts_with("```") {
+            inside = line == "```sh";
+            continue;
+        }
+        if !inside {
+            continue;
+        }
+        let words = line.split(" #").next().unwrap_or("").trim();
+        let (words, goes_on) = match words.strip_suffix('\\') {
+            Some(words) => (words, true),
+            None => (words, false),
+        };
+        match found.last_mut().filter(|_| open) {
+            Some(last) => last.text.extend([" ", words.trim()]),
+            None => found.push(Line { file: file.to_owned(), number, text: words.to_owned() }),
+        }
+        open = goes_on;
+    }
+    found.retain(|line| !line.text.is_empty());
+    found
+}
+
+/// The folder of the three commands, which are built if they are not.
+fn commands() -> PathBuf {
+    let folder = Path::new(env!("CARGO_BIN_EXE_testbench")).parent().expect("a folder").to_owned();
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["build", "--quiet", "-p", "golden", "-p", "hdl-gen", "--bins"]).current_dir(workspace(""));
+    if folder.ends_with("release") {
+        cargo.arg("--release");
+    }
+    assert!(cargo.status().expect("cargo starts").success());
+    folder
+}
+
+fn help(folder: &Path, command: &str, subcommand: &str) -> String {
+    let output = Command::new(folder.join(command)).args([subcommand, "--help"]).output().expect("starts");
+    assert!(output.status.success(), "{command} has no {subcommand}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+#[test]
+fn every_command_of_the_docs_exists() {
+    let folder = commands();
+    let root = workspace("");
+    let makefile = fs::read_to_string(root.join("Makefile")).expect("readable");
+    let mut checked = 0;
+    for line in lines() {
+        let words: Vec<&str> = line.text.split_whitespace().collect();
+        let name = words[0].trim_start_matches(". <(").trim_start_matches("target/debug/");
+        match (name, words.get(1)) {
+            ("golden" | "hdl-gen" | "testbench", Some(subcommand)) => {
+                let help = help(&folder, name, subcommand);
+                let options = words.iter().filter_map(|word| word.trim_matches(['[', ']']).strip_prefix("--"));
+                for option in options {
+                    assert!(help.contains(&format!("--{option}")), "{}: there is no --{option}", line.place());
+                }
+                let files = words
+                    .iter()
+                    .filter(|word| ["designs/", "scenes/", "data/"].iter().any(|folder| word.starts_with(folder)));
+                for file in files {
+                    assert!(root.join(file).exists(), "{}: there is no {file}", line.place());
+                }
+            }
+            ("make", Some(target)) => {
+                assert!(makefile.contains(&format!("\n{target}:")), "{}: no such target", line.place());
+            }
+            ("cargo", Some(&"test")) => {
+                let topic = words.iter().find_map(|word| word.split_once("::")).map(|(topic, _)| topic);
+                let package = words.iter().skip_while(|word| **word != "-p").nth(1);
+                if let (Some(topic), Some(package)) = (topic, package) {
+                    let suite = fs::read_to_string(root.join(package).join("tests/suite/main.rs")).expect("a suite");
+                    assert!(suite.contains(&format!("mod {topic};")), "{}: no such topic", line.place());
+                }
+            }
+            _ => continue,
+        }
+        checked += 1;
+    }
+    assert!(checked > 20, "only {checked} commands were found");
+}
+
+/// What takes minutes, or is tested elsewhere: the simulation, the training, make and cargo.
+const ELSEWHERE: [&str; 6] = ["make ", "cargo ", "testbench run", "testbench sweep", "golden calibrate", "export "];
+
+#[test]
+fn the_session_of_the_readme_does_what_it_says() {
+    let commands = commands();
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["designs", "scenes", "data"] {
+        std::os::unix::fs::symlink(workspace(name), folder.path().join(name)).expect("a link");
+    }
+    let path = format!("{}:{}", commands.display(), std::env::var("PATH").unwrap_or_default());
+    let run = |line: &Line| -> Output {
+        Command::new("bash")
+            .args(["-c", &line.text])
+            .current_dir(folder.path())
+            .env("PATH", &path)
+            .output()
+            .expect("bash starts")
+    };
+    let readme = workspace("README.md");
+    let stated = fs::read_to_string(&readme).expect("readable");
+    let mut said = String::new();
+    let mut count = 0;
+    for line in lines_of(&readme).iter().filter(|line| !ELSEWHERE.iter().any(|other| line.text.starts_with(other))) {
+        let output = run(line);
+        let wrong = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && wrong.is_empty(), "{}\n{wrong}", line.place());
+        said += &String::from_utf8_lossy(&output.stdout);
+        count += 1;
+    }
+    assert!(count >= 7, "only {count} lines were run");
+    // What the README says that the session prints.
+    let results = stated.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("stated results");
+    for result in results.lines() {
+        assert!(said.lines().any(|line| line.trim_end() == result), "the README says {result:?}, the session:\n{said}");
+    }
+    for name in ["my_sensor.toml", "frames.csv", "forces.csv", "rtl-out/my_sensor/rtl/my_sensor.v"] {
+        assert!(folder.path().join(name).exists(), "no {name}");
+    }
+}
