@@ -27,8 +27,8 @@ module sptfra_estimator_joint #(
     parameter integer CELLS = 28,
     // Taxels of a cell, a power of two, at least 4
     parameter integer CELL_ELEMENTS = 4,
-    // Right shift that turns max |b| into 8 times the dead zone, and sum |b| into the level above the least value; for the
-    // walk
+    // Right shift that turns max |b| into 8 times the walk's dead zone, and sum |b| into the level above its least
+    // value
     parameter integer SHARE_SHIFT = 5,
     // c1 and c3 of the friction, with 22 and 15 fraction bits
     parameter signed [26:0] LINEAR = 27'sd4194304,
@@ -97,7 +97,6 @@ module sptfra_estimator_joint #(
     output reg  [3:0] flags
 );
 
-    localparam integer WORD_WIDTH = $clog2(LENGTH);
 
     generate
         if (WAYS != 4) begin : gen_check
@@ -241,75 +240,38 @@ module sptfra_estimator_joint #(
 
     generate
         if (NETWORK != 0) begin : gen_correction
-            wire input_valid;
-            wire [WORD_WIDTH-1:0] input_word;
-            wire [4*27-1:0] input_values;
-            wire look_done;
-            wire [ROW_WIDTH-1:0] look_quad;
-            wire [3*4*27-1:0] look_values;
-
-            sptfra_taxel_memory #(
-                .COLUMNS   (COLUMNS),
-                .ROWS      (ROWS),
-                .DATA_BITS (DATA_BITS),
-                .ROW_WIDTH (ROW_WIDTH)
-            ) taxels (
-                .clock       (clock),
-                .u_valid     (fill_valid),
-                .fill_bank   (fill_bank),
-                .u_quad      (fill_row),
-                .u_values    (fill_values),
-                .read_bank   (correction_bank),
-                .read_quad   (look_quad),
-                .read_values (look_values)
-            );
-
-            sptfra_look #(
-                .COLUMNS          (COLUMNS),
-                .ROWS             (ROWS),
-                .ROW_WIDTH        (ROW_WIDTH),
-                .HALF_X           (HALF_X),
-                .HALF_Y           (HALF_Y),
-                .LENGTH           (LENGTH),
-                .WORD_WIDTH       (WORD_WIDTH),
-                .STRESS_LEFT      (STRESS_LEFT),
-                .EXPECTED_LATENCY (EXPECTED_LOOK_LATENCY)
-            ) look (
+            sptfra_correction #(
+                .COLUMNS                  (COLUMNS),
+                .ROWS                     (ROWS),
+                .DATA_BITS                (DATA_BITS),
+                .HALF_X                   (HALF_X),
+                .HALF_Y                   (HALF_Y),
+                .LENGTH                   (LENGTH),
+                .PASSES                   (PASSES),
+                .STRESS_LEFT              (STRESS_LEFT),
+                .UNIT_SHIFT               (UNIT_SHIFT),
+                .CORRECTION_SHIFT         (CORRECTION_SHIFT),
+                .ROM_DIR                  (ROM_DIR),
+                .ROM_NAME                 (ROM_NAME),
+                .EXPECTED_LOOK_LATENCY    (EXPECTED_LOOK_LATENCY),
+                .EXPECTED_NETWORK_LATENCY (EXPECTED_NETWORK_LATENCY)
+            ) correction (
                 .clock        (clock),
                 .reset        (reset),
-                .start        (search_start),
+                .u_valid      (fill_valid),
+                .fill_bank    (fill_bank),
+                .u_quad       (fill_row),
+                .u_values     (fill_values),
+                .search_start (search_start),
                 .stress_sum   (search_stress_sum),
-                .look_start   (correction_start),
+                .start        (correction_start),
+                .bank         (correction_bank),
                 .mu_x         (centroid_x),
                 .mu_y         (centroid_y),
-                .u_quad       (look_quad),
-                .u_values     (look_values),
-                .input_valid  (input_valid),
-                .input_word   (input_word),
-                .input_values (input_values),
-                .done         (look_done),
-                .saturated    (look_saturated)
-            );
-
-            sptfra_network #(
-                .LENGTH           (LENGTH),
-                .WORD_WIDTH       (WORD_WIDTH),
-                .PASSES           (PASSES),
-                .UNIT_SHIFT       (UNIT_SHIFT),
-                .CORRECTION_SHIFT (CORRECTION_SHIFT),
-                .ROM_DIR          (ROM_DIR),
-                .ROM_NAME         (ROM_NAME),
-                .EXPECTED_LATENCY (EXPECTED_NETWORK_LATENCY)
-            ) network (
-                .clock        (clock),
-                .reset        (reset),
-                .input_valid  (input_valid),
-                .input_word   (input_word),
-                .input_values (input_values),
-                .start        (look_done),
                 .done         (correction_done),
                 .correction_x (correction_x),
-                .correction_y (correction_y)
+                .correction_y (correction_y),
+                .saturated    (look_saturated)
             );
         end else begin : gen_none
             assign correction_done = correction_start;
@@ -317,8 +279,9 @@ module sptfra_estimator_joint #(
             assign correction_y = 18'sd0;
             assign look_saturated = 1'b0;
 
-            wire _unused = &{1'b0, correction_bank, WORD_WIDTH != 0, HALF_X != 0, HALF_Y != 0, PASSES != 0, STRESS_LEFT != 0,
-                UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0, EXPECTED_NETWORK_LATENCY != 0,
+            wire _unused = &{1'b0, correction_bank, HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0,
+                STRESS_LEFT != 0, UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0,
+                EXPECTED_NETWORK_LATENCY != 0,
                 ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate

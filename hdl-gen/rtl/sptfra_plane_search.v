@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Where Condition 1 is least in the (mu_x, mu_y) plane: its values over a grid of points, and their level set's centroid.
+// Where Condition 1 is least in the (mu_x, mu_y) plane: its values over a grid of points, their level set's centroid.
 //
-// Few points have a cell each, which see one taxel after the other; many are walked over, in cells of a few taxels each.
+// Few points have a cell each, which sees one taxel after the other; many are walked over, in cells of a few taxels.
 
 `default_nettype none
 
@@ -22,8 +22,8 @@ module sptfra_plane_search #(
     parameter integer CELLS = 28,
     // Taxels of a cell, a power of two, at least 4
     parameter integer CELL_ELEMENTS = 4,
-    // Right shift that turns max |b| into 8 times the dead zone, and sum |b| into the level above the least value; for the
-    // walk
+    // Right shift that turns max |b| into 8 times the walk's dead zone, and sum |b| into the level above its least
+    // value
     parameter integer SHARE_SHIFT = 5,
     // Checked in simulation, 0: unchecked: cycles from the start to the first row of points, or value of the walk
     parameter integer EXPECTED_PLANE_LATENCY = 0,

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Condition 1 at every point of the (mu_x, mu_y) plane at once: B = sum max(0, u0 + mu_x u1 + mu_y u2), SIDE x SIDE points
-// 3/16 apart, a cell a point.
+// Condition 1 at every point of the (mu_x, mu_y) plane at once: B = sum max(0, u0 + mu_x u1 + mu_y u2), SIDE x SIDE
+// points 3/16 apart, a cell a point.
 //
 // A taxel a cycle: a cell adds X of its column and Y of its row, and accumulates what is above zero; a sum that leaves
-// its width is the largest number. From start to the first row of points: four cycles a quad, and 11; then a row a cycle.
+// its width is the largest number. From start to the first row of points: four cycles a quad, and 11; then a row a
+// cycle.
 
 `default_nettype none
 

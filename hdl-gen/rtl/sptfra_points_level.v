@@ -23,16 +23,15 @@ module sptfra_points_level #(
     input  wire row_valid,
     input  wire [SIDE*28-1:0] row_values,
     // Result, held until the next start
-    output reg  done, // one cycle
-    output reg  signed [17:0] mu_x, // 16 fraction bits
-    output reg  signed [17:0] mu_y,
+    output wire done, // one cycle
+    output wire signed [17:0] mu_x, // 16 fraction bits
+    output wire signed [17:0] mu_y,
     output reg  unknown, // nothing limits the friction
     output reg  at_bound, // the least B lies on the border
     output reg  saturated // the least B is the largest number
 );
 
     localparam integer VALUE_BITS = 28;
-    localparam integer REACH = SIDE / 2;
     localparam integer AT_ONCE = 5; // points weighed in a cycle
     localparam integer GROUPS = SIDE / AT_ONCE;
     localparam integer DEPTH_BITS = 16; // of what a weight is the square of: up to the margin
@@ -55,8 +54,8 @@ module sptfra_points_level #(
     wire outer_row = (row_in == 4'd0) || (row_in == LAST_ROW);
     wire [SIDE*VALUE_BITS-1:0] stored_1; // a cycle after its row is asked for
     reg [3:0] row;
-    // Node 1 is the root; the children of node n are 2 n and 2 n + 1; nodes from LEAVES on are the points. Of a row inside
-    // the ends are no points of the tree: they are on the border
+    // Node 1 is the root; the children of node n are 2 n and 2 n + 1; nodes from LEAVES on are the points. The ends of
+    // a row, which are on the border, stay out of the tree
     wire [VALUE_BITS-1:0] nodes [1:2*LEAVES-1];
     reg [LEVELS*VALUE_BITS-1:0] ends; // the smaller end of a row, on its way beside the tree
     reg [LEVELS:1] outers;
@@ -165,8 +164,10 @@ module sptfra_points_level #(
     end
 
     // ---- Five depths below the level, squared: index k: k cycles after the row's address
-    localparam integer STAGES = 7;
+    localparam integer STAGES = 5;
     reg [STAGES:1] reads;
+    reg [STAGES:1] lasts;
+    wire last_5 = lasts[STAGES];
     reg [1:0] group_1;
     reg [3:0] row_1;
     reg [1:0] corners_2; // the first and the last of the five are corners of the grid
@@ -209,9 +210,11 @@ module sptfra_points_level #(
 
     always @(posedge clock) begin
         reads <= {reads[STAGES-1:1], reading};
+        lasts <= {lasts[STAGES-1:1], last_read};
         group_1 <= group;
         row_1 <= row;
-        corners_2 <= {2{reads[1] && ((row_1 == 4'd0) || (row_1 == LAST_ROW))}} & {group_1 == LAST_GROUP, group_1 == 2'd0};
+        corners_2 <= {2{reads[1] && ((row_1 == 4'd0) || (row_1 == LAST_ROW))}}
+            & {group_1 == LAST_GROUP, group_1 == 2'd0};
         if ((corners_2[0] && !below_2[0]) || (corners_2[1] && !below_2[AT_ONCE-1])) begin
             unknown <= 1'b0;
         end
@@ -220,130 +223,26 @@ module sptfra_points_level #(
         end
         if (reset) begin
             reads <= {STAGES{1'b0}};
+            lasts <= {STAGES{1'b0}};
             corners_2 <= 2'd0;
         end
     end
 
-    // ---- The weights' sum and their moments about the middle of the grid: of the five about their first, by additions,
-    // and of that one times what they weigh together
-    localparam integer FIVE_BITS = WEIGHT_BITS + 4; // of the sum of five times up to 4
-    wire [FIVE_BITS-1:0] w [0:AT_ONCE-1];
-    reg [FIVE_BITS-1:0] sum_012_6;
-    reg [FIVE_BITS-1:0] sum_34_6;
-    reg [FIVE_BITS-1:0] moment_12_6;
-    reg [FIVE_BITS-1:0] moment_34_6;
-    reg [FIVE_BITS-1:0] sum_7;
-    reg [FIVE_BITS-1:0] moment_7;
-    reg signed [17:0] column_7; // of the first of the five, from the middle
-    reg signed [17:0] row_7;
-    reg first_7;
-    reg [47:0] weight_sum;
-    reg [47:0] moment_within;
-    wire signed [47:0] moment_of_first;
-    wire signed [47:0] moment_y;
-    localparam signed [17:0] LEAST = -REACH[17:0];
-    localparam integer LAST_FIRST = REACH + 1 - AT_ONCE;
-    localparam signed [17:0] GREATEST_FIRST = LAST_FIRST[17:0];
-    localparam signed [17:0] FIVE = AT_ONCE[17:0];
-
-    generate
-        for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_wide
-            assign w[index] = {4'd0, weights_5[WEIGHT_BITS*index +: WEIGHT_BITS]};
-        end
-    endgenerate
-
-    sptfra_mac of_first (
-        .clock       (clock),
-        .reset       (reset),
-        .valid       (reads[7]),
-        .first       (first_7),
-        .coefficient (column_7),
-        .data        (sum_7[26:0]),
-        .accumulator (moment_of_first)
+    // ---- Their centroid
+    sptfra_points_centroid #(
+        .SIDE        (SIDE),
+        .WEIGHT_BITS (WEIGHT_BITS)
+    ) centroid (
+        .clock   (clock),
+        .reset   (reset),
+        .start   (start),
+        .valid   (reads[5]),
+        .weights (weights_5),
+        .last    (last_5),
+        .done    (done),
+        .mu_x    (mu_x),
+        .mu_y    (mu_y)
     );
-
-    sptfra_mac of_row (
-        .clock       (clock),
-        .reset       (reset),
-        .valid       (reads[7]),
-        .first       (first_7),
-        .coefficient (row_7),
-        .data        (sum_7[26:0]),
-        .accumulator (moment_y)
-    );
-
-    always @(posedge clock) begin
-        sum_012_6 <= w[0] + w[1] + w[2];
-        sum_34_6 <= w[3] + w[4];
-        moment_12_6 <= w[1] + (w[2] << 1);
-        moment_34_6 <= w[3] + (w[3] << 1) + (w[4] << 2);
-        sum_7 <= sum_012_6 + sum_34_6;
-        moment_7 <= moment_12_6 + moment_34_6;
-        if (reads[7]) begin
-            first_7 <= 1'b0;
-            weight_sum <= weight_sum + { {(48 - FIVE_BITS){1'b0}}, sum_7};
-            moment_within <= moment_within + { {(48 - FIVE_BITS){1'b0}}, moment_7};
-            column_7 <= (column_7 == GREATEST_FIRST) ? LEAST : column_7 + FIVE;
-            row_7 <= (column_7 == GREATEST_FIRST) ? row_7 + 18'sd1 : row_7;
-        end
-        if (start) begin
-            first_7 <= 1'b1;
-            weight_sum <= 48'd0;
-            moment_within <= 48'd0;
-            column_7 <= LEAST;
-            row_7 <= LEAST;
-        end
-    end
-
-    // ---- Centroid: mu = 3 / 16 of the moments over the sum of the weights
-    localparam integer WHOLE_BITS = 5; // of three times that quotient, up to 3 REACH
-    localparam integer RATIO_BITS = WHOLE_BITS + 12;
-    localparam integer DIVIDE_STAGES = 13; // from the last address to the division
-    reg [DIVIDE_STAGES:1] drains;
-    reg signed [47:0] moment_x_11;
-    reg signed [47:0] moment_y_11;
-    reg [47:0] magnitude_x_12;
-    reg [47:0] magnitude_y_12;
-    reg [47:0] triple_x_13;
-    reg [47:0] triple_y_13;
-    wire divide_done;
-    wire [RATIO_BITS-1:0] ratio_x;
-    wire [RATIO_BITS-1:0] ratio_y;
-
-    sptfra_ratio #(
-        .WIDTH        (48),
-        .INTEGER_BITS (WHOLE_BITS),
-        .BITS         (RATIO_BITS)
-    ) ratio (
-        .clock       (clock),
-        .reset       (reset),
-        .start       (drains[DIVIDE_STAGES]),
-        .numerator_x (triple_x_13),
-        .numerator_y (triple_y_13),
-        .denominator (weight_sum),
-        .done        (divide_done),
-        .quotient_x  (ratio_x),
-        .quotient_y  (ratio_y)
-    );
-
-    always @(posedge clock) begin
-        drains <= {drains[DIVIDE_STAGES-1:1], last_read};
-        moment_x_11 <= moment_of_first + moment_within;
-        moment_y_11 <= moment_y;
-        magnitude_x_12 <= moment_x_11[47] ? -moment_x_11 : moment_x_11;
-        magnitude_y_12 <= moment_y_11[47] ? -moment_y_11 : moment_y_11;
-        triple_x_13 <= (magnitude_x_12 << 1) + magnitude_x_12;
-        triple_y_13 <= (magnitude_y_12 << 1) + magnitude_y_12;
-        done <= divide_done;
-        if (divide_done) begin
-            mu_x <= moment_x_11[47] ? -{1'b0, ratio_x} : {1'b0, ratio_x};
-            mu_y <= moment_y_11[47] ? -{1'b0, ratio_y} : {1'b0, ratio_y};
-        end
-        if (reset) begin
-            drains <= {DIVIDE_STAGES{1'b0}};
-            done <= 1'b0;
-        end
-    end
 
 `ifdef SIMULATION
     reg awaited; // the first row of a frame
@@ -368,8 +267,6 @@ module sptfra_points_level #(
 `else
     wire _unused_check = (EXPECTED_LATENCY != 0);
 `endif
-
-    wire _unused = &{1'b0, sum_7, reads};
 
 endmodule
 

@@ -233,7 +233,7 @@ impl Slot for JointPlan {
             None => vec!["sptfra_points", "sptfra_points_level"],
         };
         if self.network.is_none() {
-            without.extend(["sptfra_look", "sptfra_network"]);
+            without.push("sptfra_correction");
         }
         without
     }
