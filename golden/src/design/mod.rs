@@ -32,6 +32,7 @@ pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter}
 pub use hardware::{Arithmetic, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise};
 pub use input::{Calibration, Input};
 pub use joint::conditions;
+pub(crate) use lengths::Lengths;
 pub(crate) use parse::{RawSensor, syntax_position};
 pub use regularisation::Regularisation;
 

@@ -31,10 +31,10 @@ struct RawDesign {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RawSensor {
-    columns: i64,
-    rows: i64,
-    pitch_mm: Lengths,
-    depth_mm: f64,
+    pub(crate) columns: i64,
+    pub(crate) rows: i64,
+    pub(crate) pitch_mm: Lengths,
+    pub(crate) depth_mm: f64,
 }
 
 /// The sensor of a design; unknown keys would pass if this held a flattened [`RawSensor`].

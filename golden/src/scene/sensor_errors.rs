@@ -5,9 +5,14 @@ use std::f64::consts::TAU;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Errors of a sensor, applied to each frame in the order of the fields. The default is a sensor without errors.
+/// What a sensor does to the stress, in the order of the fields. The default is a sensor without errors, whose taxels are
+/// points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensorErrors {
+    /// Sides of the part of its cell over which a taxel averages the stress, in metres; a point if absent.
+    pub taxel_m: Option<[f64; 2]>,
+    /// Share by which the layer is really deeper than the sensor says.
+    pub depth: f64,
     /// Seed of all that is random; the same seed gives the same frames.
     pub seed: u64,
     /// Standard deviation of the taxels' gains around 1; a gain stays the same in all frames.

@@ -6,6 +6,7 @@ mod command;
 mod contacts;
 mod design_file;
 mod estimator;
+mod families;
 mod fuzz;
 mod half_space;
 mod joint;

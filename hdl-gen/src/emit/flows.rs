@@ -6,6 +6,7 @@ use serde::Serialize;
 use tera::{Context, Tera};
 
 use crate::plan::Plan;
+use crate::plan::resources::BlockResources;
 
 use super::{EmitError, FileMap, VERSION};
 
@@ -61,6 +62,8 @@ struct View {
     /// Path of the self-checking testbench and names of its data files in `sim/`.
     testbench: Option<String>,
     sim_data: Vec<String>,
+    /// Predicted multipliers and block memories.
+    blocks: Vec<BlockResources>,
     /// Whether there is a register bank.
     control: bool,
 }
@@ -91,6 +94,7 @@ impl View {
             rom: names(files, "rom/", ".mem"),
             sim_data: names(files, "sim/", ".mem"),
             testbench: files.contains_key(&testbench).then_some(testbench),
+            blocks: plan.resources.blocks.clone(),
             control: design.hardware.control,
             name: design.name.clone(),
         }

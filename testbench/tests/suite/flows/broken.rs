@@ -10,7 +10,7 @@ const PACKAGE: &str = "vivado/package_ip.tcl";
 const SYSTEM: &str = "vivado/block_design.tcl";
 
 /// Script, text, what stands in its place, what the refusal says.
-const FAULTS: [(&str, &str, &str, &str); 26] = [
+const FAULTS: [(&str, &str, &str, &str); 27] = [
     (SYNTH, "read_mem $rom", "read_memory $rom", "invalid command name"),
     (SYNTH, "read_mem $rom", "", "Synth 8-4445"),
     (SYNTH, "-mode out_of_context", "-mode out-of-context", "mode is out-of-context"),
@@ -20,6 +20,7 @@ const FAULTS: [(&str, &str, &str, &str); 26] = [
     (SYNTH, "read_xdc $constraints", "", "no path is timed"),
     (SYNTH, "\"CLB LUTs\" \"Slice LUTs\"", "\"Slice LUTs\"", "no row named Slice LUTs"),
     (SYNTH, "[get_timing_paths -delay_type max -max_paths 1]", "[get_timing_paths -worst]", "unknown flag -worst"),
+    (SYNTH, "ORIG_REF_NAME == $module ||", "ORIG_REF == $module ||", "get_cells: filter ORIG_REF =="),
     (CLOCK, "get_ports aclk", "get_ports clk", "no port clk"),
     (CLOCK, "-period 8.000", "-frequency 125", "unknown flag -frequency"),
     (PACKAGE, "add_files -norecurse $rom", "", "is missing from file group"),

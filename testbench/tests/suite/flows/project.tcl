@@ -184,6 +184,44 @@ standin::command report_utilization {-hierarchical -file> -return_string} 0 0 {
         return [standin::utilization]
     }
 }
+# The netlist has what metadata.json says of each block, in an instance of its first module; STANDIN_SPLIT names a module
+# whose multipliers have become four each.
+proc standin::netlist {} {
+    set path [file join [file dirname [file dirname [lindex $::standin::sources 0]]] metadata.json]
+    set channel [open $path]
+    set text [read $channel]
+    close $channel
+    set cells {}
+    foreach {- modules dsp bram36} [regexp -all -inline \
+        {"modules": \[([^\]]*)\],\s+"dsp": (\d+),\s+"bram36": ([0-9.]+)} $text] {
+        set module [lindex [regexp -inline {sptfra_[a-z_0-9]+} $modules] 0]
+        set copies [expr {[standin::setting STANDIN_SPLIT ""] eq $module ? 4 : 1}]
+        lappend cells [list $module DSP48E2 [expr {$copies * $dsp}]] [list $module RAMB36E2 [expr {int($bram36)}]] \
+            [list $module RAMB18E2 [expr {$bram36 != int($bram36)}]]
+    }
+    return $cells
+}
+standin::command get_cells {-quiet -hierarchical -filter=} 0 0 {
+    standin::need synth_design
+    set found {}
+    if {[regexp {^ORIG_REF_NAME == (\w+) \|\| REF_NAME == (\w+)$} $option(-filter) -> module again]} {
+        foreach path $::standin::sources {
+            if {[file rootname [file tail $path]] eq $module && $again eq $module} {
+                lappend found core/$module
+            }
+        }
+    } elseif {[regexp {^REF_NAME =~ (\S+) && NAME =~ core/(\w+)/\*$} $option(-filter) -> kind within]} {
+        foreach cell [standin::netlist] {
+            lassign $cell module primitive count
+            for {set index 0} {$index < $count && $module eq $within && [string match $kind $primitive]} {incr index} {
+                lappend found core/$module/$primitive$index
+            }
+        }
+    } else {
+        error "get_cells: filter $option(-filter)"
+    }
+    return $found
+}
 standin::command report_timing_summary {-delay_type= -max_paths= -file> -return_string} 0 0 {
     standin::need route_design
     standin::choice "delay type" $option(-delay_type) {max min min_max}

@@ -64,6 +64,12 @@ fn missed_timing_is_an_error_with_the_figures() {
 }
 
 #[test]
+fn a_multiplier_that_became_four_is_an_error_that_names_its_block() {
+    let ran = Folder::small().vivado("vivado/synth.tcl", &[], &[("STANDIN_SPLIT", "sptfra_cean")]);
+    ran.refused("found and counted on differ: CeAn DSP 4 for 1, RAMB36 0.0 for 0");
+}
+
+#[test]
 fn the_packaged_ip_holds_every_source() {
     let folder = Folder::small();
     let ran = folder.vivado("vivado/package_ip.tcl", &[], &[]).succeeded();

@@ -67,6 +67,16 @@ foreach file {
     lappend rom [file join $root rom $file]
 }
 
+# What the generator has counted on: block, its modules, DSP48E2, RAMB36 (a RAMB18 is one half).
+set predicted {
+    {CeAn {sptfra_cean} 1 0.0}
+    {lanes {sptfra_spmv_array} 4 0.0}
+    {field {sptfra_field sptfra_coefficient_field} 1 0.0}
+    {line {sptfra_line} 1 0.0}
+    {cells {sptfra_search} 4 0.0}
+    {summary {sptfra_summary} 1 0.0}
+}
+
 # The self-checking testbench and its frames.
 set testbench [file join $root sim/small_4x3_tb.v]
 set sim_data {}

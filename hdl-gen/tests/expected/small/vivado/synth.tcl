@@ -6,7 +6,8 @@
 #   vivado -mode batch -source FOLDER/vivado/synth.tcl
 #
 # Reports and a checkpoint go to small_4x3_synth in the working directory.
-# The last line has the figures; timing that is not met is an error.
+# The last line has the figures; timing that is not met, and other multipliers or block memories than the generator has
+# counted on, are errors.
 
 source [file join [file dirname [file normalize [info script]]] files.tcl]
 
@@ -45,6 +46,28 @@ proc used {table names} {
     error "the utilization report has no row named [join $names { or }]"
 }
 
+# The primitives of a kind in the instances of these modules, each counted once.
+proc primitives {modules kind} {
+    set found {}
+    foreach module $modules {
+        foreach cell [get_cells -quiet -hierarchical -filter "ORIG_REF_NAME == $module || REF_NAME == $module"] {
+            lappend found {*}[get_cells -quiet -hierarchical -filter "REF_NAME =~ $kind && NAME =~ $cell/*"]
+        }
+    }
+    return [llength [lsort -unique $found]]
+}
+
+# A multiplier in logic, or a memory tiled otherwise, is seen here and not on the board.
+set differences {}
+foreach block $predicted {
+    lassign $block block_name modules dsp bram36
+    set found_dsp [primitives $modules DSP48*]
+    set found_bram36 [expr {[primitives $modules RAMB36*] + 0.5 * [primitives $modules RAMB18*]}]
+    if {$found_dsp != $dsp || $found_bram36 != $bram36} {
+        lappend differences "$block_name DSP $found_dsp for $dsp, RAMB36 $found_bram36 for $bram36"
+    }
+}
+
 set table [report_utilization -return_string]
 set path [get_timing_paths -delay_type max -max_paths 1]
 if {[llength $path] == 0} {
@@ -57,7 +80,10 @@ append line ", LUT [used $table [list "CLB LUTs" "Slice LUTs"]]"
 append line ", FF [used $table [list "CLB Registers" "Slice Registers" Registers]]"
 append line ", DSP [used $table [list DSPs "DSP Slices"]]"
 append line ", BRAM [used $table [list "Block RAM Tile"]]"
-if {$wns < 0} {
+if {[llength $differences] > 0} {
+    append line "; found and counted on differ: [join $differences {; }]"
+}
+if {$wns < 0 || [llength $differences] > 0} {
     error $line
 }
 puts $line
