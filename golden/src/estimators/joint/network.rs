@@ -49,7 +49,9 @@ impl Network {
             // The classes' shares: a weight of a member is their sum with its signs.
             let classes = hidden.iter().map(|unit| {
                 let mut values = [0.0; CLASSES];
-                members.iter().for_each(|&(member, place)| values[member] = weight(unit, place));
+                for &(member, place) in &members {
+                    values[member] = weight(unit, place);
+                }
                 let sums = butterfly(values);
                 let share = |class: usize| if quads.exists(class, quad) { sums[class] } else { 0.0 };
                 [0, 1, 2, 3].map(|class| share(class) / members.len() as f64)
@@ -85,7 +87,9 @@ impl Network {
         };
         for (word, members) in self.window.iter().enumerate() {
             let mut values = [0.0; CLASSES];
-            members.iter().for_each(|&(place, member)| values[member] = look.values[place]);
+            for &(place, member) in members {
+                values[member] = look.values[place];
+            }
             add(word, butterfly(values));
         }
         let behind = look.values.len() - EXTRA_CLASSES.len();
