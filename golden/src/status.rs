@@ -19,15 +19,21 @@ impl Status {
     pub const NOT_FINITE: Self = Self(1 << 4);
     /// Too few or too many values in the frame (hardware only): all results are zero.
     pub const FRAME_LENGTH: Self = Self(1 << 5);
+    /// A dead taxel's reading was replaced by what its neighbours say.
+    pub const REPLACED: Self = Self(1 << 8);
+    /// More than an eighth of the stress is in replaced taxels: see [`crate::dead_taxels::GUESSED`].
+    pub const TOO_MANY_REPLACED: Self = Self(1 << 9);
 
-    /// All bits with the words that describe them, from bit 0 on.
-    pub const NAMED: [(Self, &'static str); 6] = [
+    /// All bits with the words that describe them, in ascending order.
+    pub const NAMED: [(Self, &'static str); 8] = [
         (Self::NO_CONTACT, "no contact"),
         (Self::DIRECTION_UNKNOWN, "direction unknown"),
         (Self::AT_BOUND, "optimum at the bound"),
         (Self::SATURATED, "saturated"),
         (Self::NOT_FINITE, "NaN or infinity in"),
         (Self::FRAME_LENGTH, "frame length wrong"),
+        (Self::REPLACED, "dead taxel replaced"),
+        (Self::TOO_MANY_REPLACED, "too many replaced"),
     ];
 
     /// True if every bit of `other` is set.

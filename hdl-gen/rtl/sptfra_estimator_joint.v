@@ -82,7 +82,7 @@ module sptfra_estimator_joint #(
     input  wire no_direction,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
-    input  wire [3:0] flags_in, // no contact, saturated, NaN or infinity, bad length
+    input  wire [4:0] flags_in, // too much replaced, no contact, saturated, NaN or infinity, bad length
     // The answer, held until taken
     output wire answer_valid,
     input  wire answer_take, // only with answer_valid
@@ -94,7 +94,7 @@ module sptfra_estimator_joint #(
     output wire at_bound,
     output wire saturated,
     output reg  [9*40-1:0] sums,
-    output reg  [3:0] flags
+    output reg  [4:0] flags
 );
 
 

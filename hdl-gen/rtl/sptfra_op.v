@@ -17,6 +17,8 @@ module sptfra_op #(
     parameter integer FIELD = 1,
     // 1: the answer's other component is other + slope * free; 0: it is as it comes
     parameter integer DEPENDENT = 1,
+    // 1: the design has dead taxels, whose readings others replace
+    parameter integer REPLACED = 0,
     // A step of the frame sums G is 2^SUM_LSB N, one of a taxel's force 2^FIELD_LSB N
     parameter integer SUM_LSB = -40,
     parameter integer FIELD_LSB = -50,
@@ -38,7 +40,7 @@ module sptfra_op #(
     input  wire at_bound,
     input  wire search_saturated,
     input  wire [9*40-1:0] sums,
-    input  wire [3:0] flags, // no contact, saturated, NaN or infinity, bad length
+    input  wire [4:0] flags, // too much replaced, no contact, saturated, NaN or infinity, bad length
     // To the lanes: the friction of the frame in the summary
     output reg  friction_known, // and held, until the field is started
     input  wire field_start,
@@ -69,7 +71,7 @@ module sptfra_op #(
     reg signed [17:0] summary_other;
     reg signed [17:0] summary_slope;
     reg [9*40-1:0] summary_sums;
-    reg [3:0] summary_flags;
+    reg [4:0] summary_flags;
     reg summary_at_bound;
     reg summary_saturated;
     reg summary_busy;
@@ -156,7 +158,10 @@ module sptfra_op #(
     wire bad_length = summary_flags[0];
     wire bad = not_finite || bad_length;
     wire answered = !bad && !no_contact;
-    wire [5:0] status = {
+    wire [9:0] status = {
+        answered && summary_flags[4],
+        answered && (REPLACED != 0),
+        2'b00,
         bad_length,
         not_finite,
         answered && (summary_flags[2] || summary_saturated),

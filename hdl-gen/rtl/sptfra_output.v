@@ -26,7 +26,7 @@ module sptfra_output #(
     // Start, with everything held by the output from then on but the field
     input  wire start,
     output wire idle,
-    input  wire [5:0] status,
+    input  wire [9:0] status,
     input  wire blank, // no answer: zeros
     input  wire signed [63:0] force_x,
     input  wire signed [63:0] force_y,
@@ -62,7 +62,7 @@ module sptfra_output #(
     // ---- The frame, held
     reg busy;
     reg [15:0] frame_count;
-    reg [5:0] held_status;
+    reg [9:0] held_status;
     reg held_blank;
     reg signed [63:0] held_force_x;
     reg signed [63:0] held_force_y;
@@ -168,7 +168,7 @@ module sptfra_output #(
             // Stage 3
             summary_exponent_3 <= FORCE_EXPONENT;
             case (word_2)
-                3'd0: summary_3 <= {32'd0, frame_2, 10'd0, held_status};
+                3'd0: summary_3 <= {32'd0, frame_2, 6'd0, held_status};
                 3'd1: summary_3 <= held_force_x;
                 3'd2: summary_3 <= held_force_y;
                 3'd3: summary_3 <= held_force_z;

@@ -5,9 +5,11 @@ use std::fmt::Write;
 use super::DesignError;
 use super::checks::Check;
 use super::files::Beside;
+use crate::dead_taxels::MOST_DEAD;
+use crate::sensor::Sensor;
 
-/// Largest gain of a taxel.
-const MAX_GAIN: f64 = 16.0;
+/// Range of a live taxel's gain.
+const GAIN: [f64; 2] = [1e-9, 16.0];
 /// Largest offset of a taxel, in counts.
 const MAX_OFFSET: f64 = 1e6;
 /// Range of the magnitude of pascals per count.
@@ -20,20 +22,32 @@ pub struct Input {
     pub pa_per_count: Option<f64>,
     /// Gain and offset of each taxel; only with counts.
     pub calibration: Option<Calibration>,
+    /// Taxels whose readings mean nothing, in ascending order: others take their place. Those of gain 0 are among them.
+    pub dead: Vec<usize>,
+}
+
+/// The keys of `[sensor]` that say what a frame's values are, as they stand in the file.
+pub(super) struct RawInput {
+    pub(super) pa_per_count: Option<f64>,
+    pub(super) calibration: Option<String>,
+    pub(super) dead: Vec<i64>,
 }
 
 /// Gain and offset of each taxel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// What each taxel's count is multiplied by, m values greater than 0 and at most 16.
+    /// What each taxel's count is multiplied by, m values from 1e-9 to 16, or 0 for a dead taxel.
     pub gain: Vec<f64>,
     /// What is added to the product, in counts, m values.
     pub offset: Vec<f64>,
 }
 
 impl Input {
-    /// Stress in pascals of a taxel whose value in the frame is `value`.
+    /// Stress in pascals of a taxel whose value in the frame is `value`; of a dead one 0.
     pub fn to_pa(&self, taxel: usize, value: f64) -> f64 {
+        if self.dead.contains(&taxel) {
+            return 0.0;
+        }
         let Some(pa_per_count) = self.pa_per_count else { return value };
         match &self.calibration {
             Some(Calibration { gain, offset }) => (gain[taxel] * value + offset[taxel]) * pa_per_count,
@@ -41,8 +55,12 @@ impl Input {
         }
     }
 
-    /// The value in a frame, not rounded, of a taxel under a stress in pascals: undoes [`Input::to_pa`].
+    /// The value in a frame, not rounded, of a taxel under a stress in pascals: undoes [`Input::to_pa`]. A dead taxel
+    /// reads 0.
     pub fn from_pa(&self, taxel: usize, stress: f64) -> f64 {
+        if self.dead.contains(&taxel) {
+            return 0.0;
+        }
         let Some(pa_per_count) = self.pa_per_count else { return stress };
         match &self.calibration {
             Some(Calibration { gain, offset }) => (stress / pa_per_count - offset[taxel]) / gain[taxel],
@@ -60,13 +78,9 @@ impl Input {
     }
 
     /// Checks the keys of `[sensor]`; a calibration is one of the files `beside` the design.
-    pub(super) fn new(
-        check: &Check,
-        pa_per_count: Option<f64>,
-        calibration: Option<&str>,
-        beside: Beside<'_>,
-        taxels: usize,
-    ) -> Result<Self, DesignError> {
+    pub(super) fn new(check: &Check, raw: RawInput, beside: Beside<'_>, sensor: &Sensor) -> Result<Self, DesignError> {
+        let RawInput { pa_per_count, calibration, dead } = raw;
+        let taxels = sensor.taxels();
         let [low, high] = PA_PER_COUNT;
         if let Some(value) = pa_per_count
             && !(low..=high).contains(&value.abs())
@@ -84,8 +98,27 @@ impl Input {
                 "add pa_per_count, the pascals of one count: gains and offsets are those of counts".to_owned(),
             ));
         }
-        let calibration = calibration.map(|file| Calibration::load(file, beside, taxels)).transpose()?;
-        Ok(Self { pa_per_count, calibration })
+        let named = dead.iter().enumerate().map(|(index, &taxel)| {
+            let key = format!("sensor.dead[{index}]");
+            check.integer(&key, taxel, 0, taxels as i64 - 1).map(|taxel| taxel as usize)
+        });
+        let mut dead = named.collect::<Result<Vec<_>, _>>()?;
+        let calibration = calibration.map(|file| Calibration::load(&file, beside, taxels)).transpose()?;
+        let gains = calibration.iter().flat_map(|calibration| calibration.gain.iter().enumerate());
+        dead.extend(gains.filter(|&(_, &gain)| gain == 0.0).map(|(taxel, _)| taxel));
+        dead.sort_unstable();
+        dead.dedup();
+        let most = MOST_DEAD.min(taxels / 2);
+        if dead.len() > most {
+            return Err(check.value(
+                "sensor.dead",
+                format!("has {} taxels, with those of gain 0 in the calibration", dead.len()),
+                format!(
+                    "at most {most} of this sensor's can be replaced: mend the sensor, or leave out the part of it"
+                ),
+            ));
+        }
+        Ok(Self { pa_per_count, calibration, dead })
     }
 }
 
@@ -107,8 +140,9 @@ impl Calibration {
                 return Err(wrong(line, format!("{shown:?} is no pair of numbers"), remedy));
             };
             // A NaN is in no range.
-            if !(g > 0.0 && g <= MAX_GAIN) {
-                let remedy = format!("use a gain greater than 0 and at most {MAX_GAIN}");
+            let [low, high] = GAIN;
+            if g != 0.0 && !(low..=high).contains(&g) {
+                let remedy = format!("use a gain from {low:e} to {high}, or 0 for a dead taxel");
                 return Err(wrong(line, format!("the gain is {g}"), remedy));
             }
             if !(-MAX_OFFSET..=MAX_OFFSET).contains(&o) {

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::checks::{self, Check};
 use super::files::Beside;
+use super::input::RawInput;
 use super::joint::{self, RawCorrection};
 use super::lengths::Lengths;
 use super::parse_filter::{self, RawFilter};
@@ -47,6 +48,8 @@ struct RawDesignSensor {
     depth_mm: f64,
     pa_per_count: Option<f64>,
     calibration: Option<String>,
+    #[serde(default)]
+    dead: Vec<i64>,
 }
 
 #[derive(Deserialize, Default)]
@@ -112,14 +115,14 @@ pub(super) fn unfitted(text: &str, origin: &str, beside: Beside<'_>) -> Result<D
 fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
     let check = Check { origin };
     checks::name(&check, &raw.name)?;
-    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, pa_per_count, calibration } = raw.sensor;
+    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, pa_per_count, calibration, dead } = raw.sensor;
     let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
     let lanes_given = raw.hardware.lanes.is_some();
     let hardware = hardware(&check, raw.hardware)?;
     let (mut algorithm, correction) = algorithm(&check, raw.algorithm, &sensor, &hardware)?;
     parse_plan::check(&check, &PlanKeys { sensor: &sensor, algorithm: &algorithm, hardware: &hardware, lanes_given })?;
     // Last, so that what is wrong with the design itself is said before its files are read.
-    let input = Input::new(&check, pa_per_count, calibration.as_deref(), beside, sensor.taxels())?;
+    let input = Input::new(&check, RawInput { pa_per_count, calibration, dead }, beside, &sensor)?;
     algorithm.joint.correction = correction.map(|raw| joint::correction(&check, raw, &sensor, beside)).transpose()?;
     Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }

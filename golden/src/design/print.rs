@@ -35,6 +35,10 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
         Some(_) => format!("calibration = \"{CALIBRATION_FILE}\"\n"),
         None => String::new(),
     };
+    let dead = match input.dead.as_slice() {
+        [] => String::new(),
+        dead => format!("dead = {dead:?}\n"),
+    };
     let speed = match hardware.target_us {
         Some(target) => format!("target_us = {target:?}"),
         None => format!("lanes = {}", hardware.lanes),
@@ -46,7 +50,7 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
     let _ = write!(
         text,
         "name = \"{name}\"\n\n\
-         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{counts}{calibration}\n\
+         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{counts}{calibration}{dead}\n\
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\

@@ -73,7 +73,7 @@ fn good_frames_are_left_alone() {
 #[test]
 fn a_real_mat_reads_no_tension_and_reaches_the_end_of_its_range() {
     let design = design("bed-mat");
-    let frames = read_labelled_frames(&repository("data/bed_mat_64x27.csv"), design.sensor.taxels(), 2).unwrap();
+    let frames = read_labelled_frames(&repository("data/bed_mat_64x27.csv"), &design.sensor, 2).unwrap();
     let findings = check(&design, &frames, None);
     // 73 readings are 104, one is 103, three are 102.
     let kinds: Vec<Kind> = findings.iter().map(|finding| finding.kind).collect();

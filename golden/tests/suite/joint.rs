@@ -158,7 +158,7 @@ fn either_plan_finds_the_same_from_pascals_and_from_counts() {
             (PlanKind::Reduced, Outputs::Field, Some(-0.5)),
         ] {
             (design.algorithm.plan, design.algorithm.outputs) = (plan, outputs);
-            design.input = Input { pa_per_count, calibration: None };
+            design.input = Input { pa_per_count, ..Input::default() };
             solvers.push((Solver::new(&design).unwrap(), pa_per_count));
         }
         for Pressed { loads: [normal, along_x, along_y], .. } in &set {

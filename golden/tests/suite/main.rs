@@ -4,6 +4,7 @@ mod check;
 mod choose;
 mod command;
 mod contacts;
+mod dead_taxels;
 mod design_file;
 mod estimator;
 mod families;

@@ -1,20 +1,42 @@
 //! Bz, the stream's frames to fixed point: `sptfra_bz`.
 
 use crate::plan::Plan;
+use crate::plan::counts::{CountsPlan, LARGEST_NUMBER};
 
 use super::Parameters;
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let number = plan.counts.as_ref().map_or(plan.formats.stress, |counts| counts.count);
+    let stress = plan.formats.stress;
+    let (shift, bound) = match &plan.counts {
+        Some(counts) => (counts.exponents[0], LARGEST_NUMBER),
+        None => (-stress.lsb, stress.bound),
+    };
     let parameters = Parameters::new()
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .count("WAYS", plan.ways())
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
-        .number("NUMBER_SHIFT", (-number.lsb).into())
-        .wide("NUMBER_BOUND", 27, number.bound);
-    let Some(counts) = &plan.counts else { return parameters };
+        .number("NUMBER_SHIFT", shift.into())
+        .wide("NUMBER_BOUND", 27, bound);
+    let parameters = match &plan.counts {
+        Some(counts) => of_counts(parameters, counts),
+        None => parameters,
+    };
+    let parameters = match &plan.dead {
+        Some(dead) => parameters.count("DEAD", dead.taxels.len()).number("WEIGHT_SHIFT", dead.shift.into()),
+        None => parameters,
+    };
+    if plan.counts.is_none() && plan.dead.is_none() {
+        return parameters;
+    }
+    parameters
+        .wide("STRESS_BOUND", 27, stress.bound)
+        .expression("ROM_DIR", "ROM_DIR")
+        .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+}
+
+fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
     parameters
         .flag("COUNTS", true)
         .flag("PER_TAXEL", counts.per_taxel())
@@ -22,7 +44,4 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("OFFSET_BITS", counts.offset_bits().into())
         .number("COUNT_SHIFT", counts.shift.into())
         .wide("FULL_SCALE", 48, counts.full_scale)
-        .wide("STRESS_BOUND", 27, plan.formats.stress.bound)
-        .expression("ROM_DIR", "ROM_DIR")
-        .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
 }

@@ -16,6 +16,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("ROWS", plan.design.sensor.rows)
         .flag("FIELD", plan.design.algorithm.outputs == Outputs::Field)
         .flag("DEPENDENT", plan.estimator.slot().answers_with_a_line())
+        .flag("REPLACED", plan.dead.is_some())
         .number("SUM_LSB", plan.formats.g.lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into())
         .cycles("EXPECTED_SUMMARY_LATENCY", SUMMARY_LATENCY)

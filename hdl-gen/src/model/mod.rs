@@ -15,6 +15,7 @@ use golden::products::{ByPq, Frame, Scalar};
 use crate::cores::{fixed_to_float, float_to_fixed};
 use crate::estimators::{Contact, Seen};
 use crate::plan::Plan;
+use crate::plan::dead::GUESSED_SHARE;
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::formats::field_shifts;
 use crate::plan::product::{Coefficients, Product, Vector};
@@ -35,6 +36,11 @@ pub const SATURATED: u32 = 1 << 3;
 pub const NOT_FINITE: u32 = 1 << 4;
 /// Status bit: early or late TLAST.
 pub const BAD_LENGTH: u32 = 1 << 5;
+
+/// Status bit: a dead taxel was replaced.
+pub const REPLACED: u32 = 1 << 8;
+/// Status bit: too much of the stress is in replaced taxels.
+pub const TOO_MANY_REPLACED: u32 = 1 << 9;
 
 pub use crate::plan::SUMMARY_WORDS;
 
@@ -85,26 +91,38 @@ impl<'plan> Model<'plan> {
         if bad != 0 {
             return self.blank(counter | bad);
         }
-        let saturated = converted.iter().any(|stress| stress.saturated);
-        let stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
+        let mut saturated = converted.iter().any(|stress| stress.saturated);
+        let mut stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
+        let mut noted = 0;
+        if let Some(dead) = &self.plan.dead {
+            let replaced = dead.replace(&mut stress, self.plan.formats.stress);
+            saturated |= replaced.saturated;
+            noted = REPLACED;
+            if GUESSED_SHARE * replaced.sum > Contact::new(&stress).stress_sum {
+                noted |= TOO_MANY_REPLACED;
+            }
+        }
         if Contact::new(&stress).stress_sum < self.plan.thresholds.contact {
             return self.blank(counter | NO_CONTACT);
         }
-        self.answer(counter, &stress, saturated)
+        self.answer(counter | noted, &stress, saturated)
     }
 
     /// One input word as stress.
     fn convert(&self, taxel: usize, word: u32) -> Stress {
         let format = self.plan.formats.stress;
-        let number = self.plan.counts.as_ref().map_or(format, |counts| counts.count);
-        let converted = float_to_fixed::convert(word, -number.lsb, number.bound as u32);
-        let number = i64::from(converted.fixed);
-        let (mut steps, mut saturated) = (number, converted.saturated);
-        if let Some(counts) = &self.plan.counts {
-            steps = counts.to_stress(taxel, number);
-            if steps.abs() >= counts.full_scale {
-                (steps, saturated) = (steps.signum() * format.bound, true);
-            }
+        if self.plan.dead.as_ref().is_some_and(|dead| dead.taxels.contains(&taxel)) {
+            return Stress { steps: 0, saturated: false, not_finite: false };
+        }
+        let Some(counts) = &self.plan.counts else {
+            let converted = float_to_fixed::convert(word, -format.lsb, format.bound as u32);
+            let steps = i64::from(converted.fixed);
+            return Stress { steps, saturated: converted.saturated, not_finite: converted.not_finite };
+        };
+        let converted = counts.number(taxel, word);
+        let (mut steps, mut saturated) = (counts.to_stress(taxel, i64::from(converted.fixed)), converted.saturated);
+        if steps.abs() >= counts.full_scale {
+            (steps, saturated) = (steps.signum() * format.bound, true);
         }
         Stress { steps, saturated, not_finite: converted.not_finite }
     }

@@ -5,6 +5,7 @@ use golden::matrices::Matrices;
 use golden::parity::{CLASSES, Quads};
 
 use super::counts::CountsPlan;
+use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::filtered::Filtered;
 use super::format::{Format, pow2};
@@ -98,6 +99,7 @@ struct Work {
     products: Vec<Product>,
     formats: Formats,
     counts: Option<CountsPlan>,
+    dead: Option<DeadPlan>,
     thresholds: Thresholds,
 }
 
@@ -109,6 +111,7 @@ impl Work {
         let stress = Format::covering(hardware.full_scale_in_frames(), hardware.data_bits);
         let thresholds = thresholds(design, stress)?;
         let counts = CountsPlan::new(design, stress)?;
+        let dead = DeadPlan::new(design);
         let list = passes::products(design);
         let filtered = Filtered::new(design, &matrices)?;
         let quantised = quantise(&list, &filtered, design, stress)?;
@@ -117,7 +120,7 @@ impl Work {
         let Quantised { matrices: stored, formats, rounding_n, .. } = quantised;
         let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
         check_force_resolution(design, &formats, condition, rounding_n)?;
-        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, thresholds })
+        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, dead, thresholds })
     }
 
     /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
@@ -139,6 +142,7 @@ impl Work {
             products: self.products.clone(),
             formats: self.formats,
             counts: self.counts.clone(),
+            dead: self.dead.clone(),
             thresholds: self.thresholds,
             estimator,
             operands,

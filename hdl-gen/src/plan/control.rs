@@ -9,10 +9,10 @@ use std::collections::VecDeque;
 use golden::design::{Design, Optimise, Outputs, PlanKind};
 
 use super::counts::input_stages;
-use super::places;
 use super::product::{Product, Vector};
 use super::schedule::{Program, Schedule, TURN_GAP, Visit};
 use super::timing::{INTERVAL_FRAMES, OUTPUT_SKID, Timeline, middle_interval};
+use super::{dead, places};
 use crate::blocks::latency::{
     self, OUTPUT_LATENCY, SEQUENCER_TO_LANES, START_TO_ISSUE, SUMMARY_BEATS, SUMMARY_LATENCY, VISIT_TO_BUS,
 };
@@ -82,6 +82,7 @@ impl Constants {
     fn new(design: &Design, elements: usize, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Self {
         let field = design.algorithm.outputs == Outputs::Field;
         let taxels = design.sensor.taxels() as u64;
+        let dead = if design.input.dead.is_empty() { 0 } else { dead::latency(design.sensor.taxels()) };
         let folded = design.algorithm.plan == PlanKind::Reduced;
         let is_sum = |visit: &&Visit| {
             let product = &products[visit.product as usize];
@@ -92,7 +93,7 @@ impl Constants {
         Self {
             taxels,
             beats: SUMMARY_BEATS + if field { 3 * taxels } else { 0 },
-            beat_to_stress: input_stages(design.input.pa_per_count.is_some()),
+            beat_to_stress: input_stages(design.input.pa_per_count.is_some()) + dead,
             stress_to_ready: latency::stress_to_ready(folded),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
             visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),

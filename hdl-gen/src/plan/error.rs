@@ -52,10 +52,11 @@ pub enum PlanError {
         /// Noise floor of the design.
         floor_pa: f64,
     },
-    /// An offset of the calibration that no full scale can hold.
+    /// An offset of the calibration so large that little of the full scale is left beside it.
     #[error(
         "[sensor] calibration: the offset of taxel {taxel} is {counts} counts where the full scale is {full_scale:.1} \
-         counts; correct the file, or state a full_scale_pa that fits the sensor"
+         counts: a number that holds both has steps above the noise floor; correct the file, or state a \
+         full_scale_pa that fits the sensor"
     )]
     Offset {
         /// The taxel, from 0.

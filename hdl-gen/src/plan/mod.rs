@@ -6,6 +6,7 @@
 mod build;
 mod control;
 pub mod counts;
+pub mod dead;
 mod dealing;
 mod error;
 pub mod filtered;
@@ -31,6 +32,7 @@ use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
 use counts::CountsPlan;
+use dead::DeadPlan;
 pub use error::PlanError;
 use formats::Formats;
 use layout::OperandLayout;
@@ -84,6 +86,8 @@ pub struct Plan {
     pub formats: Formats,
     /// Conversion of counts, if the frames are not in pascals.
     pub counts: Option<CountsPlan>,
+    /// Weights that replace the readings of dead taxels, if there are any.
+    pub dead: Option<DeadPlan>,
     /// Status thresholds.
     pub thresholds: Thresholds,
     /// The estimator of friction: `CeAn`, and the search in Op.

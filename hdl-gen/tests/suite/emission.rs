@@ -12,7 +12,7 @@ use crate::support::{design_text, plan, small_plan};
 /// Longest module that a person still reads in one go.
 const MOST_LINES: usize = 340;
 /// Of the top, which is parameters and wiring.
-const MOST_LINES_OF_TOP: usize = 560;
+const MOST_LINES_OF_TOP: usize = 600;
 
 fn text_files(files: &FileMap) -> impl Iterator<Item = (&str, &str)> {
     files.iter().map(|(name, bytes)| (name.as_str(), std::str::from_utf8(bytes).expect("text")))

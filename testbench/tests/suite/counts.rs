@@ -18,17 +18,30 @@ use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, wor
 
 const SIDES: [usize; 2] = [5, 4];
 
-/// A design in counts; with `spread`, each taxel has a gain and an offset of its own.
-fn design(folder: &Path, name: &str, plan: &str, pa_per_count: f64, spread: bool) -> Design {
+/// How gains and offsets differ from taxel to taxel.
+#[derive(Clone, Copy, PartialEq)]
+enum Gains {
+    /// Not at all.
+    One,
+    /// As those of a real sensor.
+    Spread,
+    /// One is next to nothing, and the others of every size.
+    Tiny,
+}
+
+/// A design in counts.
+fn design(folder: &Path, name: &str, plan: &str, pa_per_count: f64, gains: Gains) -> Design {
     let [columns, rows] = SIDES;
     let mut random = ChaCha8Rng::seed_from_u64(5);
-    let calibration = if spread {
-        let line = |_| format!("{:?},{:?}\n", random.random_range(0.3..2.5), random.random_range(-40.0..40.0));
-        fs::write(folder.join("gains.csv"), (0..columns * rows).map(line).collect::<String>()).expect("writable");
-        "calibration = \"gains.csv\"\n"
-    } else {
-        ""
+    let line = |taxel: usize| match gains {
+        Gains::One => String::new(),
+        Gains::Spread => format!("{:?},{:?}\n", random.random_range(0.3..2.5), random.random_range(-40.0..40.0)),
+        Gains::Tiny if taxel == 7 => "1e-6,0\n".to_owned(),
+        Gains::Tiny => format!("{:?},{:?}\n", 10_f64.powf(random.random_range(-4.0..0.3)), 3 * taxel),
     };
+    let lines: String = (0..columns * rows).map(line).collect();
+    let calibration = if lines.is_empty() { "" } else { "calibration = \"gains.csv\"\n" };
+    fs::write(folder.join("gains.csv"), lines).expect("writable");
     let text = format!(
         "name = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
          pa_per_count = {pa_per_count:?}\n{calibration}[algorithm]\nplan = \"{plan}\"\n\
@@ -62,11 +75,12 @@ fn packets(plan: &Plan) -> Vec<Vec<u32>> {
 fn counts_become_stress_bit_for_bit() {
     let folder = tempfile::tempdir().expect("a folder");
     let kinds = [
-        ("counts_reduced", "reduced", -25.0, true),
-        ("counts_paper", "paper", 12.5, true),
-        ("counts_one_gain", "reduced", -3.7, false),
+        ("counts_reduced", "reduced", -25.0, Gains::Spread),
+        ("counts_paper", "paper", 12.5, Gains::Spread),
+        ("counts_one_gain", "reduced", -3.7, Gains::One),
+        ("counts_tiny_gain", "reduced", -10.0, Gains::Tiny),
     ];
-    let designs = kinds.map(|(name, plan, pascals, spread)| design(folder.path(), name, plan, pascals, spread));
+    let designs = kinds.map(|(name, plan, pascals, gains)| design(folder.path(), name, plan, pascals, gains));
     let failures: Vec<String> = in_parallel(&designs, |design| {
         let plan = planned(design);
         let packets = packets(&plan);
@@ -83,7 +97,8 @@ fn counts_become_stress_bit_for_bit() {
 #[test]
 fn every_frame_of_the_mat_is_the_models() {
     let plan = planned(&shipped("bed-mat"));
-    let frames = read_labelled_frames(&workspace("data/bed_mat_64x27.csv"), plan.taxels(), 2).expect("the recording");
+    let frames =
+        read_labelled_frames(&workspace("data/bed_mat_64x27.csv"), &plan.design.sensor, 2).expect("the recording");
     let packets: Vec<Vec<u32>> = frames.iter().map(|frame| encode(frame)).collect();
     assert_eq!(packets.len(), 24);
     let (expected, built) = (model_answers(&plan, &packets), built(&plan));

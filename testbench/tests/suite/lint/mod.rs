@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::support::random;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
-use golden::design::{Design, Estimator, Outputs, PlanKind};
+use golden::design::{Calibration, Design, Estimator, Input, Outputs, PlanKind};
 use hdl_gen::emit::emit;
 use tempfile::TempDir;
 use testbench::tools;
@@ -23,6 +23,12 @@ fn designs() -> Vec<Design> {
     "narrow".clone_into(&mut narrow.name);
     narrow.hardware.coefficient_bits = 8;
     narrow.hardware.data_bits = 16;
+    let mut broken = by_plan(shipped("odd"), reduced, Outputs::Field);
+    "broken".clone_into(&mut broken.name);
+    let taxels = broken.sensor.taxels();
+    let gain = (0..taxels).map(|taxel| 1.0 + taxel as f64).map(|gain| gain / 4.0).collect();
+    let calibration = Some(Calibration { gain, offset: vec![-7.5; taxels] });
+    broken.input = Input { pa_per_count: Some(-3.0), calibration, dead: vec![0, 1, 7] };
     let mut uncorrected = by_plan(with_lanes(shipped("odd"), 12), reduced, Outputs::Resultants);
     uncorrected.algorithm.estimator = Estimator::Joint;
     vec![
@@ -41,6 +47,7 @@ fn designs() -> Vec<Design> {
         shipped("sensor1-joint"),
         shipped("sensor1-fast"),
         uncorrected,
+        broken,
         with_lanes(shipped("sensor1-f1-l40"), 64),
         narrow,
     ]

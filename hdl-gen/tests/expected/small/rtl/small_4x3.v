@@ -7,7 +7,7 @@
 // Out: 44 beats: status, F_x, F_y, F_z, mu, phi, mu_x, mu_y, then f_x f_y f_z per taxel, float32 but the status;
 //      TLAST on the last. One frame out for each frame in.
 // Status: 0 no contact, 1 direction unknown, 2 optimum at the bound, 3 saturated, 4 NaN or infinity in,
-//      5 frame length wrong; 31:16 frame counter.
+//      5 frame length wrong, 8 a taxel was replaced, 9 too many were; 31:16 frame counter.
 // Latency, first beat in to last beat out, streams never waiting: 978 cycles (7.82 us at 125.0 MHz).
 // Interval between frames: 508 cycles (4.06 us).
 // The lanes' programs take 217 cycles of issue a frame, 752 MACs: they are busy 86.6 % of that time.
@@ -87,6 +87,7 @@ module small_4x3 #(
     wire frame_saturated;
     wire frame_not_finite;
     wire frame_bad_length;
+    wire [29:0] frame_replaced;
     wire bz_write;
     wire bz_write_bank;
     wire [ROW_WIDTH-1:0] bz_write_row;
@@ -122,6 +123,7 @@ module small_4x3 #(
         .frame_saturated  (frame_saturated),
         .frame_not_finite (frame_not_finite),
         .frame_bad_length (frame_bad_length),
+        .frame_replaced   (frame_replaced),
         .frame_ready      (frame_ready),
         .frame_start      (start[0]),
         .frame_release    (coefficients_complete)
@@ -135,7 +137,7 @@ module small_4x3 #(
     wire no_direction;
     wire [39:0] stress_sum;
     wire [26:0] largest;
-    wire [3:0] frame_flags; // no contact, saturated, NaN or infinity, bad length
+    wire [4:0] frame_flags; // too much replaced, no contact, saturated, NaN or infinity, bad length
 
     sptfra_cean #(
         .COLUMNS          (4),
@@ -156,6 +158,7 @@ module small_4x3 #(
         .frame_saturated  (frame_saturated),
         .frame_not_finite (frame_not_finite),
         .frame_bad_length (frame_bad_length),
+        .frame_replaced   (frame_replaced),
         .direction_room   (direction_room),
         .direction_valid  (direction_valid),
         .direction_take   (direction_take),
@@ -422,7 +425,7 @@ module small_4x3 #(
     wire at_bound;
     wire search_saturated;
     wire [9*40-1:0] answer_sums;
-    wire [3:0] answer_flags;
+    wire [4:0] answer_flags;
 
     assign search_over = answer_valid && answer_take;
 
@@ -509,6 +512,7 @@ module small_4x3 #(
         .ROWS                     (3),
         .FIELD                    (1),
         .DEPENDENT                (1),
+        .REPLACED                 (0),
         .SUM_LSB                  (-20),
         .FIELD_LSB                (-40),
         .EXPECTED_SUMMARY_LATENCY (170),

@@ -36,6 +36,7 @@ module sptfra_cean #(
     input  wire frame_saturated,
     input  wire frame_not_finite,
     input  wire frame_bad_length,
+    input  wire [29:0] frame_replaced, // sum of what took the place of dead taxels
     // To Op
     output wire direction_room, // for the result of another frame
     output wire direction_valid,
@@ -45,7 +46,7 @@ module sptfra_cean #(
     output wire no_direction, // nothing pushes, or nothing pulls
     output wire [39:0] stress_sum, // sum |b|
     output wire [26:0] largest, // max |b|
-    output wire [3:0] flags // no contact, saturated, NaN or infinity, bad length
+    output wire [4:0] flags // too much replaced, no contact, saturated, NaN or infinity, bad length
 );
 
     // ---- Stage 1: magnitude; stage 2: sum and maximum
@@ -84,6 +85,8 @@ module sptfra_cean #(
 
     reg [1:0] state;
     reg below_floor;
+    reg guessed; // more than an eighth of the stress is what neighbours say of dead taxels
+    reg [29:0] replaced;
     reg [2:0] faults; // saturated, NaN or infinity, bad length
 
     assign idle = (state == COLLECT);
@@ -91,10 +94,12 @@ module sptfra_cean #(
     always @(posedge clock) begin
         clear <= 1'b0;
         below_floor <= (sum < CONTACT_FLOOR);
+        guessed <= ({7'd0, replaced, 3'd0} > sum);
         case (state)
             COLLECT: begin
                 if (frame_done) begin
                     faults <= {frame_saturated, frame_not_finite, frame_bad_length};
+                    replaced <= frame_replaced;
                     state <= MEASURE;
                 end
             end
@@ -152,9 +157,9 @@ module sptfra_cean #(
     endgenerate
 
     // ---- Two places for finished frames: never full, since Bz asks first
-    wire [125:0] pushed = {push_x, push_y, no_push, sum, most, below_floor, faults};
-    reg [125:0] waiting_0;
-    reg [125:0] waiting_1;
+    wire [126:0] pushed = {push_x, push_y, no_push, sum, most, guessed, below_floor, faults};
+    reg [126:0] waiting_0;
+    reg [126:0] waiting_1;
     reg [1:0] waiting;
     wire push = (state == PUSH);
 
