@@ -1,4 +1,4 @@
-//! Force files: CSV with a header line, one frame a line, or NumPy's `.npy` where the name ends so.
+//! Force files: CSV with a header line, one frame a line, or `NumPy`'s `.npy` where the name ends so.
 //!
 //! [`columns`] names the values of a line, [`row`] and [`reference_row`] have them: the status word, the resultants and
 //! what follows from them, and, where asked for, `f_x, f_y, f_z` in newtons for each taxel in turn. A file without a
@@ -64,7 +64,7 @@ pub fn write_reference(path: &Path, frames: &[SceneFrame]) -> Result<(), FrameEr
     write(path, &columns(0), frames.iter().map(reference_row))
 }
 
-/// Writes lines of equal length, as NumPy does where the name ends in `.npy`, else as CSV.
+/// Writes lines of equal length, as `NumPy` does where the name ends in `.npy`, else as CSV.
 fn write(path: &Path, columns: &[String], rows: impl Iterator<Item = Vec<f64>>) -> Result<(), FrameError> {
     if frames::is_npy(path) {
         return frames::write_array(path, columns.len(), &rows.collect::<Vec<_>>());

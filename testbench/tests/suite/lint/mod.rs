@@ -46,6 +46,7 @@ fn designs() -> Vec<Design> {
         shipped("sensor1-resultants"),
         tiny,
         shipped("sensor1-joint"),
+        shipped("sensor1-fast"),
         uncorrected,
         broken,
         with_lanes(shipped("sensor1-f1-l40"), 64),
