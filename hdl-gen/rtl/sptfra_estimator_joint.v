@@ -130,7 +130,7 @@ module sptfra_estimator_joint #(
     reg [39:0] search_stress_sum;
     reg [26:0] search_largest;
     reg [9*40-1:0] search_sums;
-    reg [3:0] search_flags;
+    reg [4:0] search_flags;
     wire level_done;
     wire search_start = sums_complete && direction_valid && (u_waiting != 2'd0) && !searching;
     // ---- Correction: takes what the search has found
