@@ -2,6 +2,8 @@
 
 use crate::plan::Plan;
 use crate::plan::counts::{CountsPlan, LARGEST_NUMBER};
+use crate::plan::curve::CurvePlan;
+use crate::plan::format::pow2;
 
 use super::Parameters;
 
@@ -9,7 +11,7 @@ use super::Parameters;
 pub fn parameters(plan: &Plan) -> Parameters {
     let stress = plan.formats.stress;
     let (shift, bound) = match &plan.counts {
-        Some(counts) => (counts.exponents[0], LARGEST_NUMBER),
+        Some(counts) => (counts.exponents[0], counts.curve.as_ref().map_or(LARGEST_NUMBER, |curve| curve.limit)),
         None => (-stress.lsb, stress.bound),
     };
     let parameters = Parameters::new()
@@ -21,6 +23,10 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .wide("NUMBER_BOUND", 27, bound);
     let parameters = match &plan.counts {
         Some(counts) => of_counts(parameters, counts),
+        None => parameters,
+    };
+    let parameters = match plan.counts.as_ref().and_then(|counts| counts.curve.as_ref()) {
+        Some(curve) => of_curve(parameters, curve),
         None => parameters,
     };
     let parameters = match &plan.dead {
@@ -40,8 +46,19 @@ fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
     parameters
         .flag("COUNTS", true)
         .flag("PER_TAXEL", counts.per_taxel())
+        .flag("EXPONENTS", counts.per_taxel() && counts.curve.is_none())
         .wide("GAIN", 18, counts.gains[0].into())
         .number("OFFSET_BITS", counts.offset_bits().into())
         .number("COUNT_SHIFT", counts.shift.into())
         .wide("FULL_SCALE", 48, counts.full_scale)
+}
+
+fn of_curve(parameters: Parameters, curve: &CurvePlan) -> Parameters {
+    let knot = |&knot: &i64| (knot as u64 & 0x7ff_ffff, format!("from {}", pow2(-curve.exponent) * knot as f64));
+    let knots: Vec<(u64, String)> = curve.knots().iter().map(knot).collect();
+    parameters
+        .number("CURVE_LEVELS", curve.levels().into())
+        .table("CURVE_KNOTS", 27, &knots)
+        .wide("CURVE_FIRST", 27, curve.segments[0].first)
+        .wide("CURVE_LAST", 27, curve.last)
 }

@@ -25,6 +25,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_coefficients",
     "sptfra_cordic",
     "sptfra_counts",
+    "sptfra_curve",
     "sptfra_dead_taxels",
     "sptfra_diagonal_mirror",
     "sptfra_direction",
