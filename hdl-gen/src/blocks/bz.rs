@@ -3,9 +3,11 @@
 use crate::plan::Plan;
 use crate::plan::counts::{CountsPlan, LARGEST_NUMBER};
 use crate::plan::curve::CurvePlan;
-use crate::plan::format::pow2;
 
 use super::Parameters;
+
+/// Numbers of 27 bits on a line.
+const KNOTS_PER_LINE: usize = 7;
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
@@ -54,11 +56,12 @@ fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
 }
 
 fn of_curve(parameters: Parameters, curve: &CurvePlan) -> Parameters {
-    let knot = |&knot: &i64| (knot as u64 & 0x7ff_ffff, format!("from {}", pow2(-curve.exponent) * knot as f64));
-    let knots: Vec<(u64, String)> = curve.knots().iter().map(knot).collect();
+    // Two's complement, the first in the lowest bits, as many on a line as it holds.
+    let knots: Vec<String> = curve.knots().iter().rev().map(|knot| format!("27'd{}", knot & 0x7ff_ffff)).collect();
+    let lines: Vec<String> = knots.chunks(KNOTS_PER_LINE).map(|knots| knots.join(", ")).collect();
     parameters
         .number("CURVE_LEVELS", curve.levels().into())
-        .table("CURVE_KNOTS", 27, &knots)
+        .expression("CURVE_KNOTS", format!("{{\n            {}\n        }}", lines.join(",\n            ")))
         .wide("CURVE_FIRST", 27, curve.segments[0].first)
         .wide("CURVE_LAST", 27, curve.last)
 }
