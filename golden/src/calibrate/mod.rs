@@ -139,8 +139,9 @@ pub fn calibrate(
     let correction =
         (settings.hidden > 0).then(|| train::train(&samples, &targets, tangential, half_window, settings, tick));
     let algorithm = &design.algorithm;
-    let fitted_to = Some(conditions(&design.sensor, algorithm.kernel, algorithm.regularisation));
-    Ok(JointConstants { gain, tangential, correction, fitted_to })
+    let grid = algorithm.joint.grid;
+    let fitted_to = Some(conditions(&design.sensor, algorithm.kernel, algorithm.regularisation, grid));
+    Ok(JointConstants { grid, gain, tangential, correction, fitted_to })
 }
 
 /// The constants `c1, c3` that bring `c1 mu + c3 mu |mu|^2` closest to the targets, by least squares.

@@ -87,7 +87,7 @@ pub(super) fn make(
             *stress = force * (*stress + deviation * normal(&mut random));
         }
         let Some(seen) = solver.see(&mut workspace, &frame)? else { continue };
-        let found = joint::raw(&seen, &mut scratch);
+        let found = joint::raw(design.algorithm.joint.grid, &seen, &mut scratch);
         if !found.status.contains(Status::DIRECTION_UNKNOWN) {
             joint::look(&seen, found.mu, design.sensor.columns, half_window, 0.0, &mut scratch);
             let force = [force * x, force * y, -force];

@@ -62,6 +62,7 @@ struct RawAlgorithm {
     regularisation: Option<toml::Value>,
     filter: Option<RawFilter>,
     estimator: Option<String>,
+    grid: Option<i64>,
     gain: Option<f64>,
     tangential: Option<Vec<f64>>,
     correction: Option<RawCorrection>,
@@ -185,12 +186,15 @@ fn algorithm(
     let estimator: Estimator =
         check.optional_word("algorithm.estimator", raw.estimator.as_deref())?.unwrap_or_default();
     let joint = if estimator == Estimator::Joint {
-        let conditions = joint::conditions(sensor, kernel, regularisation);
-        let constants = joint::Raw { gain: raw.gain, tangential: raw.tangential.as_deref(), fitted_to: raw.fitted_to };
+        let grid = joint::grid(check, raw.grid)?;
+        let conditions = joint::conditions(sensor, kernel, regularisation, grid);
+        let (gain, tangential, fitted_to) = (raw.gain, raw.tangential.as_deref(), raw.fitted_to);
+        let constants = joint::Raw { grid, gain, tangential, fitted_to };
         joint::constants(check, constants, &conditions)?
     } else {
-        let given = [raw.gain.is_some(), raw.tangential.is_some(), raw.correction.is_some(), raw.fitted_to.is_some()];
-        joint::refuse(check, given)?;
+        let [gain, tangential] = [raw.gain.is_some(), raw.tangential.is_some()];
+        let [correction, fitted_to] = [raw.correction.is_some(), raw.fitted_to.is_some()];
+        joint::refuse(check, [raw.grid.is_some(), gain, tangential, correction, fitted_to])?;
         JointConstants::default()
     };
     let outputs: Outputs = check.optional_word("algorithm.outputs", raw.outputs.as_deref())?.unwrap_or_default();

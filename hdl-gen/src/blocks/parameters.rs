@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 29] = [
+        let expected: [(&str, &str, i64); 34] = [
             ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
             ("sptfra_direction", "PITCH_FRACTION", line::PITCH_FRACTION.into()),
             ("sptfra_line", "LINE_FRACTION", line::LINE_FRACTION.into()),
@@ -140,6 +140,11 @@ mod tests {
             ("sptfra_level_set", "DEPTH_BITS", joint::DEPTH_BITS.into()),
             ("sptfra_level_set", "WEIGHT_DROP", joint::WEIGHT_DROP.into()),
             ("sptfra_grid_centroid", "BORDER", joint::SIDE as i64 / 2),
+            ("sptfra_points_taxel", "FRACTION", joint::points::FRACTION.into()),
+            ("sptfra_points_taxel", "U_BITS", joint::points::U_BITS.into()),
+            ("sptfra_points", "VALUE_BITS", joint::points::VALUE_BITS.into()),
+            ("sptfra_points_level", "WEIGHT_DROP", joint::points::WEIGHT_DROP.into()),
+            ("sptfra_points_level", "AT_ONCE", joint::points::AT_ONCE as i64),
             ("sptfra_friction", "LINEAR_FRACTION", joint::LINEAR_FRACTION.into()),
             ("sptfra_friction", "CUBIC_FRACTION", joint::CUBIC_FRACTION.into()),
             ("sptfra_friction", "FACTOR_FRACTION", joint::FACTOR_FRACTION.into()),

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use golden::calibrate::{Settings, calibrate};
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, JointConstants};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Grid, JointConstants};
 
 use super::progress::Progress;
 
@@ -134,7 +134,8 @@ fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
         Design::from_toml(&text, "hdl-gen new")?;
         return Ok(text);
     }
-    let design = Design::from_toml(&bare, "hdl-gen new")?;
+    let design =
+        Design::from_toml(&text.replace(CONSTANTS, &format!("grid = {}\n", Grid::COARSE.side())), "hdl-gen new")?;
     progress.stage("fitting gain and friction to contacts with known forces".to_owned());
     let found = calibrate(&design, &Settings::constants(), &mut |_| ())
         .map_err(|error| format!("{error}; or choose --estimator line, which needs no constants"))?;
@@ -144,8 +145,9 @@ fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
 }
 
 /// The lines of the joint estimator's constants; four digits, which no processor rounds otherwise and no contact shows.
-fn constants(JointConstants { gain, tangential: [c1, c3], fitted_to, .. }: &JointConstants) -> String {
+fn constants(JointConstants { grid, gain, tangential: [c1, c3], fitted_to, .. }: &JointConstants) -> String {
     let remarks = [
+        "points of the plane along each axis, a cell of hardware each; 21: finer, walked over",
         "factor on all forces, fitted to the sensor above",
         "friction c1 mu + c3 mu |mu|^2, likewise; the correction, which",
         "  halves the error, is trained by golden calibrate",
@@ -153,6 +155,7 @@ fn constants(JointConstants { gain, tangential: [c1, c3], fitted_to, .. }: &Join
         "  these lines, and run golden calibrate",
     ];
     let keys = [
+        format!("grid = {}", grid.side()),
         format!("gain = {gain:.4}"),
         format!("tangential = [{c1:.4}, {c3:.4}]"),
         String::new(),

@@ -109,6 +109,17 @@ const JOINT_BROKEN: &[Broken] = &[
     ("turns", "field_due && residual_there && friction_known", "field_due && residual_there"),
     ("sptfra_estimator_joint", "assign sums_take = search_start;", "assign sums_take = answer_take;"),
     ("sptfra_estimator_joint", "(u_waiting != 2'd0) && !searching", "!searching"),
+    ("sptfra_estimator_joint", "(level_done || centroid_waits) && !correcting", "(level_done || centroid_waits)"),
+    (
+        "sptfra_estimator_joint",
+        "            search_bank <= !search_bank;\n            correcting",
+        "            correcting",
+    ),
+    (
+        "sptfra_estimator_joint",
+        "            centroid_waits <= 1'b0;\n            search_bank",
+        "            search_bank",
+    ),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
 ];
 const PAPER_BROKEN: &[Broken] = &[

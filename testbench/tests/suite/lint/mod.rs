@@ -48,6 +48,7 @@ fn designs() -> Vec<Design> {
         shipped("sensor1-resultants"),
         tiny,
         shipped("sensor1-joint"),
+        shipped("sensor1-fast"),
         uncorrected,
         broken,
         curved,
