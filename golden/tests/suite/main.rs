@@ -9,6 +9,7 @@ mod dead_taxels;
 mod design_file;
 mod estimator;
 mod families;
+mod finite_elements;
 mod fuzz;
 mod half_space;
 mod joint;
