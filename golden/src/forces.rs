@@ -1,4 +1,4 @@
-//! Force files: CSV without a header, one frame a line, or NumPy's `.npy` where the name ends so.
+//! Force files: CSV without a header, one frame a line, or `NumPy`'s `.npy` where the name ends so.
 //!
 //! A line has the status word, `F_x, F_y, F_z` in newtons, `mu`, `phi` in radians, `mu_x`, `mu_y`, and, where asked
 //! for, `f_x, f_y, f_z` in newtons for each taxel in turn.
@@ -50,7 +50,7 @@ fn line(status: u32, summary: [f64; SUMMARY - 1], field: impl Iterator<Item = f6
     std::iter::once(f64::from(status)).chain(summary).chain(field).collect()
 }
 
-/// Writes lines of equal length, as NumPy does where the name ends in `.npy`, else as CSV.
+/// Writes lines of equal length, as `NumPy` does where the name ends in `.npy`, else as CSV.
 fn write(path: &Path, lines: &[Vec<f64>]) -> Result<(), FrameError> {
     if frames::is_npy(path) {
         return frames::write_array(path, lines.first().map_or(SUMMARY, Vec::len), lines);

@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use toml::Value;
 
-use super::{Algorithm, CALIBRATION_FILE, Choices, Design, Filter, FilterKind, Hardware, joint, regularisation};
+use super::{
+    Algorithm, CALIBRATION_FILE, CURVE_FILE, Choices, Design, Filter, FilterKind, Hardware, joint, regularisation,
+};
 use crate::estimators::Constants;
 use crate::names::MatrixName;
 
@@ -31,6 +33,11 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
         Some(value) => format!("pa_per_count = {value:?}\n"),
         None => String::new(),
     };
+    let curve = match input.curve.as_ref().map(|curve| curve.law) {
+        Some(Some([power, scale])) => format!("curve = {{ power = {power:?}, scale = {scale:?} }}\n"),
+        Some(None) => format!("curve = \"{CURVE_FILE}\"\n"),
+        None => String::new(),
+    };
     let calibration = match input.calibration {
         Some(_) => format!("calibration = \"{CALIBRATION_FILE}\"\n"),
         None => String::new(),
@@ -50,7 +57,7 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
     let _ = write!(
         text,
         "name = \"{name}\"\n\n\
-         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{counts}{calibration}{dead}\n\
+         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{counts}{curve}{calibration}{dead}\n\
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\

@@ -2,7 +2,7 @@
 //! sensor's count.
 //!
 //! As text, one frame a line, with a header line or none, separated by commas, semicolons, tabs or spaces; recordings may
-//! have label columns before the values. Or NumPy's `.npy`, of frames by taxels or frames by rows by columns.
+//! have label columns before the values. Or `NumPy`'s `.npy`, of frames by taxels or frames by rows by columns.
 
 mod npy;
 mod text;
@@ -183,7 +183,7 @@ fn is_number(value: f64) -> bool {
     value.abs() <= f64::from(f32::MAX)
 }
 
-/// Writes frames so that reading them gives the same bits back, the whole file or nothing: as NumPy does where the name
+/// Writes frames so that reading them gives the same bits back, the whole file or nothing: as `NumPy` does where the name
 /// ends in `.npy`, else as CSV.
 ///
 /// # Errors
@@ -201,12 +201,12 @@ pub fn write_frames(path: &Path, frames: &[Vec<f64>]) -> Result<(), FrameError> 
     Ok(())
 }
 
-/// Whether a file's name asks for NumPy's format.
+/// Whether a file's name asks for `NumPy`'s format.
 pub(crate) fn is_npy(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
 }
 
-/// Writes rows of equal length as NumPy does, the whole file or nothing.
+/// Writes rows of equal length as `NumPy` does, the whole file or nothing.
 pub(crate) fn write_array(path: &Path, columns: usize, rows: &[Vec<f64>]) -> Result<(), FrameError> {
     output::write_whole(path, &npy::file(columns, rows))?;
     Ok(())

@@ -1,4 +1,4 @@
-//! NumPy's `.npy` files: arrays of numbers, as `numpy.save` writes them (NEP 1, versions 1 to 3).
+//! `NumPy`'s `.npy` files: arrays of numbers, as `numpy.save` writes them (NEP 1, versions 1 to 3).
 
 /// What every such file begins with.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
