@@ -204,6 +204,7 @@ const ALGORITHM: &str = r#"In the design file, what changes the result:
   [sensor]                          # besides the geometry, for frames in counts:
   pa_per_count = -12.5              # pascals of one count, negative where larger counts press
   calibration = "calibration.csv"   # a line gain,offset for each taxel: Pa = (gain * count + offset) * pa_per_count
+  curve = "curve.csv"               # in place of pa_per_count: lines count,pascals; or { power = 1.25, scale = -0.0066 }
   dead = [44, 45]                   # taxels that read nothing, up to 8: others replace them; so does gain 0
 
   [algorithm]

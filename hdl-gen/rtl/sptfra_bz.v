@@ -26,10 +26,18 @@ module sptfra_bz #(
     // Whether the stream carries counts: see sptfra_samples
     parameter COUNTS = 0,
     parameter PER_TAXEL = 0,
+    // Whether each taxel has an exponent of its own
+    parameter EXPONENTS = 0,
     parameter signed [17:0] GAIN = 18'sd65536,
     parameter OFFSET_BITS = 27,
     parameter COUNT_SHIFT = 16,
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
+    // Curve between counts and stress, of 2^CURVE_LEVELS segments, if there is one: see sptfra_curve
+    parameter CURVE_LEVELS = 0,
+    parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
+    parameter signed [26:0] CURVE_FIRST = 27'sd0,
+    parameter signed [26:0] CURVE_LAST = 27'sd33554431,
+    // Full scale, in steps of the stress
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
     // Taxels that take a weighted sum of the others, and the fraction bits of the weights
     parameter DEAD = 0,
@@ -73,7 +81,8 @@ module sptfra_bz #(
     localparam TAXELS = COLUMNS * ROWS;
     localparam INDEX_WIDTH = $clog2(TAXELS + 1);
     localparam NUMBER_STAGES = 5;
-    localparam STAGES = (COUNTS != 0) ? NUMBER_STAGES + 4 : NUMBER_STAGES;
+    localparam CURVE_STAGES = (CURVE_LEVELS != 0) ? NUMBER_STAGES + CURVE_LEVELS + 7 : NUMBER_STAGES;
+    localparam STAGES = (COUNTS != 0) ? CURVE_STAGES + 4 : CURVE_STAGES;
 
     generate
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
@@ -147,10 +156,15 @@ module sptfra_bz #(
         .NUMBER_BOUND (NUMBER_BOUND),
         .COUNTS       (COUNTS),
         .PER_TAXEL    (PER_TAXEL),
+        .EXPONENTS    (EXPONENTS),
         .GAIN         (GAIN),
         .OFFSET_BITS  (OFFSET_BITS),
         .COUNT_SHIFT  (COUNT_SHIFT),
         .FULL_SCALE   (FULL_SCALE),
+        .CURVE_LEVELS (CURVE_LEVELS),
+        .CURVE_KNOTS  (CURVE_KNOTS),
+        .CURVE_FIRST  (CURVE_FIRST),
+        .CURVE_LAST   (CURVE_LAST),
         .STRESS_BOUND (STRESS_BOUND),
         .ROM_DIR      (ROM_DIR),
         .ROM_NAME     (ROM_NAME)
@@ -161,8 +175,8 @@ module sptfra_bz #(
         .accept     (accept),
         .word       (s_tdata),
         .last       (s_tlast),
-        .next_taxel (valid[NUMBER_STAGES] && stores[NUMBER_STAGES]),
-        .frame_ends (valid[NUMBER_STAGES] && lasts[NUMBER_STAGES]),
+        .next_taxel (valid[CURVE_STAGES] && stores[CURVE_STAGES]),
+        .frame_ends (valid[CURVE_STAGES] && lasts[CURVE_STAGES]),
         .stress     (read),
         .saturated  (read_saturated),
         .not_finite (read_not_finite)

@@ -16,9 +16,10 @@ module sptfra_correction #(
     // Taxels on either side of the window's middle
     parameter integer HALF_X = 4,
     parameter integer HALF_Y = 4,
-    // Words of inputs, and passes over them
+    // Words of inputs, passes over them, and hidden units in each
     parameter integer LENGTH = 27,
     parameter integer PASSES = 4,
+    parameter integer AT_ONCE = 4,
     // Left shift of a stress times the reciprocal of sum |b|; bits dropped from a unit's sums, and from the output's
     parameter integer STRESS_LEFT = 9,
     parameter integer UNIT_SHIFT = 12,
@@ -113,6 +114,7 @@ module sptfra_correction #(
         .LENGTH           (LENGTH),
         .WORD_WIDTH       (WORD_WIDTH),
         .PASSES           (PASSES),
+        .AT_ONCE          (AT_ONCE),
         .UNIT_SHIFT       (UNIT_SHIFT),
         .CORRECTION_SHIFT (CORRECTION_SHIFT),
         .ROM_DIR          (ROM_DIR),

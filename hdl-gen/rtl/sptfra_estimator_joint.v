@@ -38,9 +38,10 @@ module sptfra_estimator_joint #(
     // Taxels on either side of the window's middle
     parameter integer HALF_X = 4,
     parameter integer HALF_Y = 4,
-    // Words of inputs, and passes over them
+    // Words of inputs, passes over them, and hidden units in each
     parameter integer LENGTH = 27,
     parameter integer PASSES = 4,
+    parameter integer AT_ONCE = 4,
     // Left shift of a stress times the reciprocal of sum |b|; bits dropped from a unit's sums, and from the output's
     parameter integer STRESS_LEFT = 9,
     parameter integer UNIT_SHIFT = 12,
@@ -248,6 +249,7 @@ module sptfra_estimator_joint #(
                 .HALF_Y                   (HALF_Y),
                 .LENGTH                   (LENGTH),
                 .PASSES                   (PASSES),
+                .AT_ONCE                  (AT_ONCE),
                 .STRESS_LEFT              (STRESS_LEFT),
                 .UNIT_SHIFT               (UNIT_SHIFT),
                 .CORRECTION_SHIFT         (CORRECTION_SHIFT),
@@ -281,8 +283,7 @@ module sptfra_estimator_joint #(
 
             wire _unused = &{1'b0, correction_bank, HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0,
                 STRESS_LEFT != 0, UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0,
-                EXPECTED_NETWORK_LATENCY != 0,
-                ROM_DIR == "", ROM_NAME == ""};
+                EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate
 

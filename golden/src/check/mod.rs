@@ -75,7 +75,7 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
         found(Kind::Empty, format!("all readings of {} are 0: is the sensor connected?", count(frames.len())));
         return findings;
     }
-    let counts = design.input.pa_per_count.is_some();
+    let counts = design.input.counts();
     if let Some(message) = range(design.hardware.full_scale_pa, peak, counts) {
         found(Kind::Range, message);
     }

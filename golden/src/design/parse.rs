@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::Deserialize;
 
 use super::checks::{self, Check};
+use super::curve::RawCurve;
 use super::files::Beside;
 use super::input::RawInput;
 use super::joint::{self, RawCorrection};
@@ -48,6 +49,7 @@ struct RawDesignSensor {
     depth_mm: f64,
     tension: Option<String>,
     pa_per_count: Option<f64>,
+    curve: Option<RawCurve>,
     calibration: Option<String>,
     #[serde(default)]
     dead: Vec<i64>,
@@ -102,7 +104,11 @@ fn raw(text: &str, origin: &str) -> Result<RawDesign, DesignError> {
 pub(super) fn files_named_in(text: &str, origin: &str, beside: Beside<'_>) -> Result<Vec<PathBuf>, DesignError> {
     let RawDesign { sensor, algorithm, .. } = raw(text, origin)?;
     let weights = algorithm.correction.and_then(|correction| correction.file);
-    Ok([sensor.calibration, weights].into_iter().flatten().map(|name| beside.path(&name)).collect())
+    let points = match sensor.curve {
+        Some(RawCurve::File(file)) => Some(file),
+        _ => None,
+    };
+    Ok([sensor.calibration, points, weights].into_iter().flatten().map(|name| beside.path(&name)).collect())
 }
 
 /// `beside` are the files that the design names.
@@ -124,7 +130,8 @@ pub(super) fn unfitted(text: &str, origin: &str, beside: Beside<'_>) -> Result<D
 fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
     let check = Check { origin };
     checks::name(&check, &raw.name)?;
-    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, tension, pa_per_count, calibration, dead } = raw.sensor;
+    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, tension, pa_per_count, curve, calibration, dead } =
+        raw.sensor;
     let tension = check.optional_word("sensor.tension", tension.as_deref())?.unwrap_or_default();
     let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
     let lanes_given = raw.hardware.lanes.is_some();
@@ -132,7 +139,13 @@ fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, D
     let (mut algorithm, correction) = algorithm(&check, raw.algorithm, (&sensor, tension), &hardware)?;
     parse_plan::check(&check, &PlanKeys { sensor: &sensor, algorithm: &algorithm, hardware: &hardware, lanes_given })?;
     // Last, so that what is wrong with the design itself is said before its files are read.
-    let input = Input::new(&check, RawInput { pa_per_count, calibration, dead, tension }, beside, &sensor)?;
+    let input = Input::new(
+        &check,
+        RawInput { pa_per_count, curve, calibration, dead, tension },
+        beside,
+        &sensor,
+        hardware.full_scale_pa,
+    )?;
     algorithm.joint.correction = correction.map(|raw| joint::correction(&check, raw, &sensor, beside)).transpose()?;
     Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use toml::Value;
 
 use super::{
-    Algorithm, CALIBRATION_FILE, Choices, Design, Filter, FilterKind, Hardware, Slip, Tension, joint, regularisation,
+    Algorithm, CALIBRATION_FILE, CURVE_FILE, Choices, Design, Filter, FilterKind, Hardware, Slip, Tension, joint,
+    regularisation,
 };
 use crate::estimators::Constants;
 use crate::names::MatrixName;
@@ -41,6 +42,11 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
         Some(value) => format!("pa_per_count = {value:?}\n"),
         None => String::new(),
     };
+    let curve = match input.curve.as_ref().map(|curve| curve.law) {
+        Some(Some([power, scale])) => format!("curve = {{ power = {power:?}, scale = {scale:?} }}\n"),
+        Some(None) => format!("curve = \"{CURVE_FILE}\"\n"),
+        None => String::new(),
+    };
     let calibration = match input.calibration {
         Some(_) => format!("calibration = \"{CALIBRATION_FILE}\"\n"),
         None => String::new(),
@@ -60,7 +66,7 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
     let _ = write!(
         text,
         "name = \"{name}\"\n\n\
-         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{tension}{counts}{calibration}{dead}\n\
+         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{tension}{counts}{curve}{calibration}{dead}\n\
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\

@@ -64,7 +64,8 @@ impl Reader {
             *stress = self.input.to_pa(taxel, value);
         }
         // What reads full scale may have been clipped by the converter: nobody can tell.
-        if b.iter().any(|stress| stress.abs() >= self.flagged) {
+        let beyond = |(taxel, &value): (usize, &f64)| !is_dead(taxel) && self.input.is_beyond(value);
+        if b.iter().any(|stress| stress.abs() >= self.flagged) || frame.iter().enumerate().any(beyond) {
             status.insert(Status::SATURATED);
         }
         b.apply(|stress| *stress = stress.clamp(-self.full_scale, self.full_scale));

@@ -4,6 +4,7 @@ mod check;
 mod choose;
 mod command;
 mod contacts;
+mod curve;
 mod dead_taxels;
 mod design_file;
 mod estimator;

@@ -8,6 +8,7 @@ use golden::kernel;
 use hdl_gen::emit::{nnz, predicted, products};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::short;
+use hdl_gen::plan::product::Coefficients;
 use hdl_gen::plan::savings::savings;
 use serde_json::json;
 
@@ -174,8 +175,11 @@ pub fn excess(plan: &Plan) -> Option<String> {
 
 /// What to tell whose coefficients are so narrow that the forces show it.
 pub fn narrow(plan: &Plan) -> Option<String> {
-    let matrices = || plan.matrices.iter().map(|matrix| (matrix.rounding(), &matrix.name));
-    let (rounding, name) = matrices().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    // Those of the friction are its components themselves, exact ones and others of more bits.
+    let stored = plan.products.iter().filter(|product| product.coefficients != Coefficients::Friction);
+    let matrices = stored.map(|product| &plan.matrices[product.matrix]);
+    let (rounding, name) =
+        matrices.map(|matrix| (matrix.rounding(), &matrix.name)).max_by(|a, b| a.0.total_cmp(&b.0))?;
     (rounding > COARSE).then(|| {
         format!(
             "coefficients of {} bits: rounding is {:.1} % of those of {name}, and the forces err by about as much; raise \

@@ -5,6 +5,7 @@ use crate::blocks::row_width;
 use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
 use crate::plan::counts::{EXPONENT_BITS, GAIN_BITS};
+use crate::plan::curve::SEGMENT_BITS;
 use crate::plan::format::address_bits;
 use crate::plan::formats::ARM_BITS;
 use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
@@ -32,8 +33,10 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
     files.insert(format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
     if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
-        let exponents = counts.exponents.iter().map(|&exponent| u128::from(exponent as u32));
-        files.insert(format!("rom/{name}_exponents.mem"), hex(exponents, counts.exponents.len(), EXPONENT_BITS));
+        if counts.curve.is_none() {
+            let exponents = counts.exponents.iter().map(|&exponent| u128::from(exponent as u32));
+            files.insert(format!("rom/{name}_exponents.mem"), hex(exponents, counts.exponents.len(), EXPONENT_BITS));
+        }
         let gains = counts.gains.iter().map(|&gain| u128::from(gain as u32));
         files.insert(format!("rom/{name}_gains.mem"), hex(gains, counts.gains.len(), GAIN_BITS));
         let offsets = counts.offsets.iter().map(|&offset| u128::from(offset as u64));
@@ -42,6 +45,10 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     if !plan.arms.is_empty() {
         let arms = plan.arms.iter().map(|arms| joined(arms, ARM_BITS));
         files.insert(format!("rom/{name}_arms.mem"), hex(arms, plan.arms.len(), 2 * ARM_BITS));
+    }
+    if let Some(curve) = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref()) {
+        let words = curve.words();
+        files.insert(format!("rom/{name}_curve.mem"), hex(words.iter().copied(), words.len(), SEGMENT_BITS));
     }
     if let Some(dead) = &plan.dead {
         let words: String = dead.words().iter().map(|weights| wide_hex(weights, WEIGHT_BITS) + "\n").collect();

@@ -26,6 +26,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_cordic",
     "sptfra_correction",
     "sptfra_counts",
+    "sptfra_curve",
     "sptfra_dead_taxels",
     "sptfra_diagonal_mirror",
     "sptfra_direction",

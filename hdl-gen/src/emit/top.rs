@@ -148,7 +148,11 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if plan.counts.is_none() {
         without.push("sptfra_counts");
     }
-    if !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
+    let curve = plan.counts.as_ref().is_some_and(|counts| counts.curve.is_some());
+    if !curve {
+        without.push("sptfra_curve");
+    }
+    if curve || !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
         without.push("sptfra_exponents");
     }
     if plan.dead.is_none() {

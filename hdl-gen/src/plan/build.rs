@@ -132,7 +132,7 @@ impl Work {
         let estimator = EstimatorPlan::new(&Given { design, elements, ways, stress, u });
         let slot = estimator.slot();
         let operands = OperandLayout::new(&self.products, elements);
-        let timeline = control::timeline(design, elements, &self.products, &schedule, slot);
+        let timeline = control::timeline(design, elements, &self.products, &schedule, slot, self.counts.as_ref());
         let resources = Resources::new(design, &self.products, &operands, &schedule, slot, self.counts.as_ref());
         Plan {
             design: design.clone(),

@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 use golden::design::{Design, Optimise, Outputs, PlanKind};
 
-use super::counts::input_stages;
+use super::counts::{CountsPlan, input_stages};
 use super::product::{Product, Vector};
 use super::schedule::{Program, Schedule, TURN_GAP, Visit};
 use super::timing::{INTERVAL_FRAMES, OUTPUT_SKID, Timeline, middle_interval};
@@ -36,8 +36,9 @@ pub(super) fn timeline(
     products: &[Product],
     schedule: &Schedule,
     estimator: &dyn Slot,
+    counts: Option<&CountsPlan>,
 ) -> Timeline {
-    let constants = Constants::new(design, elements, products, schedule, estimator);
+    let constants = Constants::new(design, elements, products, schedule, estimator, counts);
     let ends = |frames| Control::new(&constants).play(frames);
     Timeline {
         latency_cycles: ends(1)[0],
@@ -79,7 +80,14 @@ struct Constants {
 }
 
 impl Constants {
-    fn new(design: &Design, elements: usize, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Self {
+    fn new(
+        design: &Design,
+        elements: usize,
+        products: &[Product],
+        schedule: &Schedule,
+        estimator: &dyn Slot,
+        counts: Option<&CountsPlan>,
+    ) -> Self {
         let field = design.algorithm.outputs == Outputs::Field;
         let taxels = design.sensor.taxels() as u64;
         let dead = if design.input.dead.is_empty() { 0 } else { dead::latency(design.sensor.taxels()) };
@@ -93,7 +101,7 @@ impl Constants {
         Self {
             taxels,
             beats: SUMMARY_BEATS + if field { 3 * taxels } else { 0 },
-            beat_to_stress: input_stages(design.input.pa_per_count.is_some()) + dead,
+            beat_to_stress: input_stages(counts) + dead,
             stress_to_ready: latency::stress_to_ready(folded),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
             visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),

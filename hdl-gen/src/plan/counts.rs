@@ -1,9 +1,10 @@
 //! Counts to pascals: what a raw sensor's values are multiplied by and what is added, in fixed point.
 
-use golden::design::{Design, Input};
+use golden::design::{Curve, Design, Input};
 use serde::Serialize;
 
 use super::PlanError;
+use super::curve::CurvePlan;
 use super::format::{Format, largest, pow2, round_shift};
 use crate::cores::float_to_fixed::{self, Converted};
 
@@ -15,6 +16,10 @@ const COUNT_BITS: u32 = 27;
 pub const EXPONENT_BITS: u32 = 10;
 /// Most bits dropped after the product, whose width is 45.
 const MOST_SHIFT: i32 = 40;
+/// Widest offset along a curve, in steps of the stress: with the product it fits the 48 bits of the sum.
+const MOST_OFFSET_BITS: u32 = 44;
+/// Most that gains may differ by along a curve: the smallest keeps eleven bits.
+const MOST_SPREAD: i32 = 64;
 /// Most noise floors that a step of the numbers may be worth, as of the stress.
 const MOST_COARSE: f64 = 16.0;
 
@@ -25,6 +30,9 @@ const MOST_COARSE: f64 = 16.0;
 /// So every gain is as exact as the largest, and no taxel's steps depend on another's gain.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CountsPlan {
+    /// The curve between the two, if the sensor is not linear: then `stress = round(curve(number) * gain / 2^shift) +
+    /// offset`, and all taxels have one exponent.
+    pub curve: Option<CurvePlan>,
     /// Exponent of each taxel's counts, or one for all: a step of the number is `2^-exponent` counts.
     pub exponents: Vec<i32>,
     /// Mantissa of each taxel's gain, of full width; as many as exponents.
@@ -47,6 +55,9 @@ impl CountsPlan {
     /// [`PlanError::Offset`] when an offset is so far beyond the full scale that a step of the numbers that hold both
     /// exceeds the noise.
     pub fn new(design: &Design, stress: Format) -> Result<Option<Self>, PlanError> {
+        if let Some(curve) = &design.input.curve {
+            return Self::along(curve, design, stress).map(Some);
+        }
         let Input { pa_per_count: Some(pa_per_count), ref calibration, .. } = design.input else {
             return Ok(None);
         };
@@ -82,6 +93,7 @@ impl CountsPlan {
             (at_gain * f64::from(mantissa.gain) * pow2(mantissa.exponent)).round() as i64
         };
         let mut plan = Self {
+            curve: None,
             exponents: taxels.iter().map(|mantissa| mantissa.exponent + shift).collect(),
             gains: taxels.iter().map(|mantissa| mantissa.gain).collect(),
             offsets: taxels.iter().enumerate().map(offset).collect(),
@@ -92,12 +104,57 @@ impl CountsPlan {
         Ok(Some(plan))
     }
 
+    /// The conversion along a curve.
+    fn along(curve: &Curve, design: &Design, stress: Format) -> Result<Self, PlanError> {
+        let (gains, offsets) = match &design.input.calibration {
+            Some(calibration) => (calibration.gain.clone(), calibration.offset.clone()),
+            None => (vec![1.0], vec![0.0]),
+        };
+        let curve = CurvePlan::new(curve)?;
+        let steps = pow2(curve.lsb - stress.lsb);
+        let largest_gain = gains.iter().copied().fold(0.0, f64::max);
+        // Of the largest gain all bits are in use.
+        let shift = -Mantissa::new(largest_gain * steps).exponent;
+        let scaled = |gain: f64| (gain * steps * pow2(shift)).round() as i32;
+        let few = |gain: f64| gain != 0.0 && scaled(gain) < largest(GAIN_BITS) as i32 / (2 * MOST_SPREAD);
+        if let Some(taxel) = gains.iter().position(|&gain| few(gain)) {
+            return Err(PlanError::GainSpread {
+                taxel,
+                gain: gains[taxel],
+                largest: largest_gain,
+                spread: MOST_SPREAD,
+            });
+        }
+        let in_steps = |offset: f64| (offset * pow2(-stress.lsb)).round();
+        let far = offsets.iter().position(|&offset| in_steps(offset).abs() > largest(MOST_OFFSET_BITS) as f64);
+        if !(0..=MOST_SHIFT).contains(&shift) || far.is_some() {
+            let taxel = far.unwrap_or(0);
+            let full_scale = design.hardware.full_scale_pa;
+            return Err(PlanError::Offset { taxel, counts: offsets[taxel], full_scale });
+        }
+        let mut plan = Self {
+            exponents: vec![curve.exponent; gains.len()],
+            gains: gains.iter().map(|&gain| scaled(gain)).collect(),
+            offsets: offsets.iter().map(|&offset| in_steps(offset) as i64).collect(),
+            shift: shift as u32,
+            full_scale: stress.bound,
+            curve: Some(curve),
+        };
+        plan.full_scale = plan.least_full_scale(design, stress);
+        Ok(plan)
+    }
+
     /// The least stress that a taxel's reading of just the full scale, of either sign, becomes.
     fn least_full_scale(&self, design: &Design, stress: Format) -> i64 {
         let full_scale = design.hardware.full_scale_pa;
         (0..self.gains.len())
             .filter(|taxel| !design.input.dead.contains(taxel))
             .flat_map(|taxel| [full_scale, -full_scale].map(|stress| (taxel, design.input.from_pa(taxel, stress))))
+            // Where a curve ends before it, no count reads the full scale.
+            .filter(|&(taxel, count)| {
+                let read = design.input.to_pa(taxel, count).abs();
+                self.curve.is_none() || read >= (1.0 - 1e-9) * full_scale
+            })
             .map(|(taxel, count)| {
                 let converted = self.number(taxel, (count as f32).to_bits());
                 self.to_stress(taxel, i64::from(converted.fixed)).abs()
@@ -107,7 +164,8 @@ impl CountsPlan {
 
     /// A taxel's count, given as float32, in fixed point.
     pub fn number(&self, taxel: usize, count: u32) -> Converted {
-        float_to_fixed::convert(count, self.exponents[self.index(taxel)], LARGEST_NUMBER as u32)
+        let limit = self.curve.as_ref().map_or(LARGEST_NUMBER, |curve| curve.limit);
+        float_to_fixed::convert(count, self.exponents[self.index(taxel)], limit as u32)
     }
 
     /// The place of a taxel's constants.
@@ -123,6 +181,7 @@ impl CountsPlan {
     /// The stress of a number before it is clipped, in steps.
     pub fn to_stress(&self, taxel: usize, number: i64) -> i64 {
         let index = self.index(taxel);
+        let number = self.curve.as_ref().map_or(number, |curve| curve.value(number));
         round_shift(number * i64::from(self.gains[index]), self.shift) + self.offsets[index]
     }
 
@@ -134,14 +193,14 @@ impl CountsPlan {
 }
 
 /// A gain in steps of the stress for one count: `gain * 2^exponent`.
-struct Mantissa {
-    gain: i32,
-    exponent: i32,
+pub(super) struct Mantissa {
+    pub(super) gain: i32,
+    pub(super) exponent: i32,
 }
 
 impl Mantissa {
     /// With all of its bits in use; 0 for a gain of 0.
-    fn new(per_count: f64) -> Self {
+    pub(super) fn new(per_count: f64) -> Self {
         if per_count == 0.0 {
             return Self { gain: 0, exponent: 0 };
         }
@@ -154,8 +213,9 @@ impl Mantissa {
 }
 
 /// Pipeline registers from the stream to the stress in Bz: of the float conversion, and of the counts' if there is one.
-pub const fn input_stages(counts: bool) -> u64 {
-    float_to_fixed::LATENCY as u64 + if counts { COUNT_STAGES } else { 0 }
+pub fn input_stages(counts: Option<&CountsPlan>) -> u64 {
+    let curve = counts.and_then(|counts| counts.curve.as_ref()).map_or(0, CurvePlan::stages);
+    u64::from(float_to_fixed::LATENCY) + if counts.is_some() { COUNT_STAGES } else { 0 } + curve
 }
 
 /// Pipeline registers from a count to its stress: gain, product, sum, limits.

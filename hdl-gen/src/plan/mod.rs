@@ -6,6 +6,7 @@
 mod build;
 mod control;
 pub mod counts;
+pub mod curve;
 pub mod dead;
 mod dealing;
 mod error;

@@ -73,6 +73,55 @@ fn the_field_is_as_exact_beside_a_small_gain() {
     }
 }
 
+/// The 4 by 3 design along a curve, with a line `gain,offset` for each taxel.
+fn curved(curve: &str, points: &str, lines: &[(f64, f64)]) -> Design {
+    let text = format!(
+        "name = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+         curve = {curve}\ncalibration = \"gains.csv\"\n[hardware]\nlanes = 4\n"
+    );
+    let lines: String = lines.iter().map(|(gain, offset)| format!("{gain:?},{offset:?}\n")).collect();
+    Design::from_parts(&text, "pad.toml", &[("gains.csv", lines), ("points.csv", points.to_owned())]).unwrap()
+}
+
+const POINTS: &str = "-200,9000\n0,0\n1,-1\n100,-2000\n1000,-30000\n4000,-120000\n";
+
+#[test]
+fn a_curve_is_followed_to_its_last_bits() {
+    let gains: Vec<(f64, f64)> = (0..12).map(|taxel| (0.5 + 0.1 * f64::from(taxel), 20.0 * f64::from(taxel))).collect();
+    for (curve, points) in [("\"points.csv\"", POINTS), ("{ power = 1.25, scale = -0.5 }", "")] {
+        let design = curved(curve, points, &gains);
+        let plan = Plan::new(&design).unwrap();
+        let counts = plan.counts.as_ref().unwrap();
+        for taxel in 0..12 {
+            for count in [-300.0, -50.5, 0.0, 0.25, 3.0, 77.0, 100.0, 640.0, 1500.25, 3000.0] {
+                let exact = design.input.to_pa(taxel, count);
+                if exact.abs() > 0.99 * design.hardware.full_scale_pa {
+                    continue;
+                }
+                // Gains of at least fifteen bits, a slope of 17, and a count in steps of 2^-25 of the largest.
+                let allowed = exact.abs() * 1e-4 + 0.05;
+                let error = (stress(&plan, counts, taxel, count) - exact).abs();
+                assert!(error <= allowed, "{curve}: {error} Pa for {exact} Pa, {count} of taxel {taxel}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_curve_that_has_no_steps_is_refused() {
+    let error = |points: &str, lines: &[(f64, f64)]| match Plan::new(&curved("\"points.csv\"", points, lines)) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("a plan"),
+    };
+    let message = error("0,0\n10000,-1\n10000.1,-100000\n", &one_of(1.0, 0.0));
+    assert!(
+        ["between the counts 10000 and 10000.1", "leave one out"].iter().all(|part| message.contains(part)),
+        "{message}"
+    );
+    let message = error(POINTS, &one_of(1e-3, 0.0));
+    assert!(["the gain of taxel 5 is 1e-3", "a factor of 64"].iter().all(|part| message.contains(part)), "{message}");
+}
+
 #[test]
 fn an_offset_that_leaves_no_stress_is_refused() {
     let error = |offset: f64| Plan::new(&design(&one_of(1.0, offset))).map(drop);

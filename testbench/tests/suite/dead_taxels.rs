@@ -55,7 +55,9 @@ fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     // What a dead taxel reads is nothing.
     for reading in [f32::NAN, f32::INFINITY, 1e30, -1e5, 0.0] {
         let mut packet = packets[0].clone();
-        dead.iter().for_each(|&taxel| packet[taxel] = reading.to_bits());
+        for &taxel in &dead {
+            packet[taxel] = reading.to_bits();
+        }
         packets.push(packet);
     }
     let mut not_finite = packets[1].clone();

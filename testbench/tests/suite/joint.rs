@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 
 use crate::contacts::{Pressed, Truth, Worst, centred, frames, inside, judged};
-use crate::support::{built, in_parallel, planned, shipped, simulate_exactly};
+use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, with_lanes};
 use golden::design::{Design, Outputs};
 use golden::metrics::Outcome;
 use golden::scene::{Medium, Shape};
@@ -60,6 +60,8 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         (shipped("sensor1-joint"), "sensor1-reduced"),
         (shipped("sensor2-joint"), "sensor2-reduced"),
         (shipped("sensor1-fast"), "sensor1-reduced"),
+        // Sixteen hidden units at a time.
+        (with_lanes(shipped("sensor1-fast"), 64), "sensor1-reduced-64"),
         (uncorrected(shipped("sensor1-fast")), "sensor1-reduced"),
         (uncorrected(shipped("sensor1-joint")), "sensor1-reduced"),
         (resultants, "sensor1-resultants"),

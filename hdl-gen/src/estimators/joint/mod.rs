@@ -20,9 +20,7 @@ use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
 use crate::blocks::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
 use crate::plan::memory::{Memory, memory};
-pub use network::{
-    INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS, UNITS,
-};
+pub use network::{INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS};
 pub use points::PointsPlan;
 
 /// A step of the grid is `2^-STEP_SHIFT`.
@@ -66,7 +64,8 @@ pub struct JointPlan {
     /// A cell for each point of the grid, where these are few; else they are walked over.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<PointsPlan>,
-    /// Cells of the grid's values. They have adders only, and so their number does not follow the lanes'.
+    /// Cells of the grid's values: a point each, which all taxels pass, or a few taxels each. They have adders only, and so
+    /// their number does not follow the lanes'.
     #[serde(skip)]
     pub cells: Cells,
     /// Bits dropped from `max |b|` for the dead zone, and from `sum |b|` for the level above the least value, both in
@@ -91,15 +90,23 @@ impl JointPlan {
         let [c1, c3] = constants.tangential;
         let finer = given.stress.lsb - given.u.lsb;
         let fixed = |value: f64, fraction: u32| (value * pow2(fraction as i32)).round() as i64;
+        let points = PointsPlan::new(constants.grid, finer);
+        let cells = match &points {
+            Some(of) => Cells { cells: of.side * of.side, elements: given.design.sensor.taxels() },
+            None => Cells::new(given.elements, given.ways, per_cell),
+        };
         Self {
-            points: PointsPlan::new(constants.grid, finer),
-            cells: Cells::new(given.elements, given.ways, per_cell),
+            points,
+            cells,
             // `u` holds the stress itself and more: its steps are hardly ever finer, and never by a factor of 8.
             share_shift: (SHARE_SHIFT - STEP_SHIFT as i32 - finer).max(0) as u32,
             value_bits: POINT_BITS - 1 + address_bits(given.design.sensor.taxels()),
             linear: fixed(c1, LINEAR_FRACTION),
             cubic: fixed(c3, CUBIC_FRACTION),
-            network: constants.correction.as_ref().map(|correction| NetworkPlan::new(correction, -finer)),
+            network: constants
+                .correction
+                .as_ref()
+                .map(|correction| NetworkPlan::new(correction, -finer, given.design.hardware.lanes)),
         }
     }
 
@@ -148,7 +155,7 @@ impl Slot for JointPlan {
             BlockCost {
                 name: NETWORK,
                 modules: &["sptfra_network"],
-                dsp: if network { CLASSES * UNITS + 2 } else { 0 },
+                dsp: self.network.as_ref().map_or(0, |network| CLASSES * network.at_once + 2),
             },
             BlockCost { name: "friction", modules: &["sptfra_friction"], dsp: 1 },
         ]
@@ -171,7 +178,7 @@ impl Slot for JointPlan {
             // Each member of a place in the window may be in any quarter of the grid.
             memories.push(memory(LOOK, "look", CLASSES * CLASSES, quads, STRESS_BITS, false));
             memories.push(memory(NETWORK, "look, folded", 1, network.length, classes * INPUT_BITS, false));
-            let width = WEIGHT_BITS * classes * UNITS as u32;
+            let width = WEIGHT_BITS * classes * network.at_once as u32;
             memories.push(memory(NETWORK, "hinge weights", 1, network.weights.len(), width, true));
             memories.push(memory(NETWORK, "readout", 1, network.units(), 2 * WEIGHT_BITS, true));
         }
@@ -218,6 +225,7 @@ impl Slot for JointPlan {
             .count("HALF_Y", half_y)
             .count("LENGTH", network.length)
             .count("PASSES", network.passes)
+            .count("AT_ONCE", network.at_once)
             .number("STRESS_LEFT", network.stress_left.into())
             .number("UNIT_SHIFT", network.unit_shift.into())
             .number("CORRECTION_SHIFT", network.correction_shift.into())

@@ -5,7 +5,7 @@ use golden::kernel::gain;
 use golden::parity::CLASSES;
 
 use super::points::MOST_POINTS;
-use super::{JointPlan, POINTS, UNITS, timing};
+use super::{JointPlan, POINTS, timing};
 use crate::plan::format::short;
 
 /// Share by which the gain may differ from what the kernel lacks under a wide contact.
@@ -23,7 +23,7 @@ pub fn report(plan: &JointPlan, design: &Design) -> String {
             network.weight_lsb,
             network.passes,
             network.length,
-            CLASSES * UNITS
+            CLASSES * network.at_once
         ),
         _ => "none: `golden calibrate` trains one".to_owned(),
     };

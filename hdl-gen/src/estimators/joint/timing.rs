@@ -42,7 +42,7 @@ pub fn look(sensor: &Sensor, network: &NetworkPlan) -> u64 {
 
 /// First to last of the network: its words, and the way of the last unit to the output.
 pub fn network(network: &NetworkPlan) -> u64 {
-    network.weights.len() as u64 + 18
+    (network.weights.len() + network.at_once) as u64 + 14
 }
 
 /// The stages, each with a frame of its own: the search of the plane, then look, network and friction.

@@ -1,26 +1,34 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The stream's words to stress: float32 pascals to fixed point, or float32 counts, which taxels' gains make stresses.
+// The stream's words to stress: float32 pascals to fixed point, or float32 counts, which a curve and taxels' gains make
+// stresses.
 //
-// Word to stress: 5 cycles, with counts 9; one a cycle.
+// Word to stress: 5 cycles, with counts 9, with a curve CURVE_LEVELS + 7 more; one a cycle.
 
 `default_nettype none
 
 module sptfra_samples #(
     // Taxels of a frame
     parameter TAXELS = 100,
-    // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts; with PER_TAXEL
-    // each taxel has an exponent of its own
+    // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts; with EXPONENTS
+    // each taxel has one of its own
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
     // Whether the stream carries counts: see sptfra_counts
     parameter COUNTS = 0,
     parameter PER_TAXEL = 0,
+    parameter EXPONENTS = 0,
     parameter signed [17:0] GAIN = 18'sd65536,
     parameter OFFSET_BITS = 27,
     parameter COUNT_SHIFT = 16,
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
+    // Curve between counts and stress, of 2^CURVE_LEVELS segments, if there is one: see sptfra_curve
+    parameter CURVE_LEVELS = 0,
+    parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
+    parameter signed [26:0] CURVE_FIRST = 27'sd0,
+    parameter signed [26:0] CURVE_LAST = 27'sd33554431,
+    // Full scale, in steps of the stress
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
@@ -33,7 +41,7 @@ module sptfra_samples #(
     input  wire accept,
     input  wire [31:0] word,
     input  wire last,
-    // Five cycles later
+    // When the number, or the curve's value, is there
     input  wire next_taxel, // the number is of a taxel, the next one of the taxel after it
     input  wire frame_ends, // the next one is of the first taxel
     // Stress
@@ -51,7 +59,7 @@ module sptfra_samples #(
     wire signed [9:0] shift;
 
     generate
-        if (PER_TAXEL != 0) begin : gen_exponents
+        if (EXPONENTS != 0) begin : gen_exponents
             sptfra_exponents #(
                 .TAXELS   (TAXELS),
                 .ROM_DIR  (ROM_DIR),
@@ -79,6 +87,38 @@ module sptfra_samples #(
         .not_finite (number_not_finite)
     );
 
+    // ---- Counts along the curve
+    wire signed [26:0] count;
+    wire count_saturated;
+    wire count_not_finite;
+
+    generate
+        if (CURVE_LEVELS != 0) begin : gen_curve
+            sptfra_curve #(
+                .LEVELS   (CURVE_LEVELS),
+                .KNOTS    (CURVE_KNOTS),
+                .FIRST    (CURVE_FIRST),
+                .LAST     (CURVE_LAST),
+                .ROM_DIR  (ROM_DIR),
+                .ROM_NAME (ROM_NAME)
+            ) curve (
+                .clock             (clock),
+                .advance           (advance),
+                .number            (number),
+                .number_saturated  (number_saturated),
+                .number_not_finite (number_not_finite),
+                .value             (count),
+                .saturated         (count_saturated),
+                .not_finite        (count_not_finite)
+            );
+        end else begin : gen_straight
+            assign count = number;
+            assign count_saturated = number_saturated;
+            assign count_not_finite = number_not_finite;
+            wire _unused = &{1'b0, CURVE_KNOTS, CURVE_FIRST, CURVE_LAST};
+        end
+    endgenerate
+
     // ---- Counts to stress
     generate
         if (COUNTS != 0) begin : gen_counts
@@ -98,24 +138,24 @@ module sptfra_samples #(
                 .advance           (advance),
                 .next_taxel        (next_taxel),
                 .frame_ends        (frame_ends),
-                .number            (number),
-                .number_saturated  (number_saturated),
-                .number_not_finite (number_not_finite),
+                .number            (count),
+                .number_saturated  (count_saturated),
+                .number_not_finite (count_not_finite),
                 .stress            (stress),
                 .saturated         (saturated),
                 .not_finite        (not_finite)
             );
         end else begin : gen_stress
-            assign stress = number;
-            assign saturated = number_saturated;
-            assign not_finite = number_not_finite;
+            assign stress = count;
+            assign saturated = count_saturated;
+            assign not_finite = count_not_finite;
             wire _unused = next_taxel || frame_ends || (GAIN != 0) || (OFFSET_BITS != 0) || (COUNT_SHIFT != 0)
                 || (FULL_SCALE != 0) || (STRESS_BOUND != 0);
         end
     endgenerate
 
     generate
-        if (PER_TAXEL == 0) begin : gen_none
+        if (EXPONENTS == 0) begin : gen_none
             wire _unused = reset || accept || last || (TAXELS != 0) || (ROM_DIR != "") || (ROM_NAME != "");
         end
     endgenerate
