@@ -1,4 +1,4 @@
-//! Force files: CSV with a header line, one frame a line.
+//! Force files: CSV with a header line, one frame a line, or `NumPy`'s `.npy` where the name ends so.
 //!
 //! [`columns`] names the values of a line, [`row`] and [`reference_row`] have them: the status word, the resultants and
 //! what follows from them, and, where asked for, `f_x, f_y, f_z` in newtons for each taxel in turn. A file without a
@@ -64,7 +64,11 @@ pub fn write_reference(path: &Path, frames: &[SceneFrame]) -> Result<(), FrameEr
     write(path, &columns(0), frames.iter().map(reference_row))
 }
 
+/// Writes lines of equal length, as `NumPy` does where the name ends in `.npy`, else as CSV.
 fn write(path: &Path, columns: &[String], rows: impl Iterator<Item = Vec<f64>>) -> Result<(), FrameError> {
+    if frames::is_npy(path) {
+        return frames::write_array(path, columns.len(), &rows.collect::<Vec<_>>());
+    }
     let mut text = columns.join(",");
     text.push('\n');
     for row in rows {
@@ -94,7 +98,8 @@ pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameEr
         .collect())
 }
 
-/// The place of the reference forces of a frame file: `frames.csv` has them in `frames.forces.csv`.
+/// The place of the reference forces of a frame file: `frames.csv` has them in `frames.forces.csv`, `frames.npy` in
+/// `frames.forces.npy`.
 pub fn reference_path(frames: &Path) -> PathBuf {
-    frames.with_extension("forces.csv")
+    frames.with_extension(if frames::is_npy(frames) { "forces.npy" } else { "forces.csv" })
 }

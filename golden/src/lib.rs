@@ -25,6 +25,7 @@ pub mod arguments;
 pub mod calibrate;
 pub mod check;
 pub mod choose;
+pub mod dead_taxels;
 pub mod design;
 pub mod estimators;
 pub mod filter;

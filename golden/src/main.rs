@@ -167,6 +167,7 @@ const SCENE_FILE: &str = r#"Scene file:
   rows = 10
   pitch_mm = [4.0, 2.0]
   depth_mm = 3.0
+  taxel_mm = [3.0, 1.5]             # optional: sides of the part of its cell over which a taxel averages
 
   [medium]
   kind = "bonded_layer"             # on a rigid ground, with poisson; or "half_space" without
@@ -179,11 +180,18 @@ const SCENE_FILE: &str = r#"Scene file:
   normal_force_n = 6.0              # positive when pressing
   friction = 0.5                    # tangential over normal force
   direction_deg = 30.0              # of the tangential force, from x towards y
+  turn_deg = 25.0                   # optional, and so are all below: the shape's axes, from x towards y
+  edge = 2.0                        # pressure (1 - rho^2)^edge: soft above 0.5, Hertz's; even at 0; hard below
+  tilt = [0.6, 0.0]                 # of the pressure along and across the push: times 1 + 0.6 u/a + 0 v/b
+  shear = "sliding"                 # friction times pressure; with spin = 1.0 it turns, too, at its edge as fast as it
+                                    # slides. Or "even", the same everywhere; or "held" (shape "hertz"), Mindlin's
+                                    # partial slip, with held = 0.5, the share of the largest tangential force
 
   [sweep]                           # optional: one frame for each direction, which is
   direction_deg = { from = 0, to = 350, step = 10 } # added to those of the contacts
 
   [sensor_errors]                   # optional, and so is every key; applied in this order
+  depth = 0.05                      # share by which the layer is deeper than depth_mm says
   seed = 1                          # of gains and noise
   gain_spread = 0.01                # standard deviation of the taxels' gains around 1
   noise = 0.002                     # standard deviation, share of the frame's largest stress
@@ -196,6 +204,8 @@ const ALGORITHM: &str = r#"In the design file, what changes the result:
   [sensor]                          # besides the geometry, for frames in counts:
   pa_per_count = -12.5              # pascals of one count, negative where larger counts press
   calibration = "calibration.csv"   # a line gain,offset for each taxel: Pa = (gain * count + offset) * pa_per_count
+  curve = "curve.csv"               # in place of pa_per_count: lines count,pascals; or { power = 1.25, scale = -0.0066 }
+  dead = [44, 45]                   # taxels that read nothing, up to 8: others replace them; so does gain 0
 
   [algorithm]
   plan = "reduced"                  # the paper's result from ten folded matrices, the default without a filter; or

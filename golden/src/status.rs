@@ -19,18 +19,19 @@ impl Status {
     pub const NOT_FINITE: Self = Self(1 << 4);
     /// Too few or too many values in the frame (hardware only): all results are zero.
     pub const FRAME_LENGTH: Self = Self(1 << 5);
+    /// A dead taxel's reading was replaced by what its neighbours say.
+    pub const REPLACED: Self = Self(1 << 8);
+    /// More than an eighth of the stress is in replaced taxels: see [`crate::dead_taxels::GUESSED`].
+    pub const TOO_MANY_REPLACED: Self = Self(1 << 9);
 
     /// The tangential force may be far off: its standard error is above the design's limit.
     pub const DOUBTFUL: Self = Self(1 << 6);
     /// More bodies press than the design has records for.
     pub const MORE_BODIES: Self = Self(1 << 7);
-    /// A dead taxel's stress was made up from its neighbours.
-    pub const REPLACED: Self = Self(1 << 8);
-    /// So many were that the result cannot be trusted.
-    pub const TOO_MANY_REPLACED: Self = Self(1 << 9);
     /// Friction is at the design's limit: what is held begins to slide.
     pub const SLIP: Self = Self(1 << 10);
-    /// Nothing pulls in a frame of a sensor that reads tension, as its design says.
+    /// Nothing pulls in a frame of a sensor that reads tension, as its design says, though friction of
+    /// [`crate::solver::PULLING`] was found, or none could be.
     pub const NO_TENSION: Self = Self(1 << 11);
     /// Frames were dropped before this one (hardware only).
     pub const DROPPED: Self = Self(1 << 12);
@@ -45,8 +46,8 @@ impl Status {
         (Self::FRAME_LENGTH, "frame length wrong"),
         (Self::DOUBTFUL, "doubtful"),
         (Self::MORE_BODIES, "more bodies than records"),
-        (Self::REPLACED, "a taxel was replaced"),
-        (Self::TOO_MANY_REPLACED, "too many taxels replaced"),
+        (Self::REPLACED, "dead taxel replaced"),
+        (Self::TOO_MANY_REPLACED, "too many replaced"),
         (Self::SLIP, "slip"),
         (Self::NO_TENSION, "no tension"),
         (Self::DROPPED, "frames dropped before"),
@@ -55,6 +56,11 @@ impl Status {
     /// True if every bit of `other` is set.
     pub fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
+    }
+
+    /// Clears the bits of `other`.
+    pub fn remove(&mut self, other: Self) {
+        self.0 &= !other.0;
     }
 
     /// Sets the bits of `other`.

@@ -4,7 +4,8 @@
 // Bz: takes frames of float32 stresses or counts from the stream, checks them, and writes them as fixed point into one
 // of two banks of the lanes' operand memories: taxel by taxel, or folded into parity classes.
 //
-// Beat to stress: 5 cycles, with counts 9; to the write, where taxels are folded, three more. One beat a cycle.
+// Beat to stress: 5 cycles, with counts 9; to the write, where taxels are folded, three more. One beat a cycle. Where
+// taxels are dead, a frame is complete before its first stress goes on: see sptfra_dead_taxels.
 // A frame is accepted while a bank is free and CeAn has finished the frame before. Frames of a wrong length are
 // swallowed up to their TLAST and marked.
 
@@ -18,17 +19,29 @@ module sptfra_bz #(
     parameter WAYS = 4,
     // Bits of a stress
     parameter DATA_BITS = 27,
-    // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts
+    // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts; with PER_TAXEL
+    // each taxel has an exponent of its own
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
-    // Whether the stream carries counts: see sptfra_counts
+    // Whether the stream carries counts: see sptfra_samples
     parameter COUNTS = 0,
     parameter PER_TAXEL = 0,
+    // Whether each taxel has an exponent of its own
+    parameter EXPONENTS = 0,
     parameter signed [17:0] GAIN = 18'sd65536,
     parameter OFFSET_BITS = 27,
     parameter COUNT_SHIFT = 16,
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
+    // Curve between counts and stress, of 2^CURVE_LEVELS segments, if there is one: see sptfra_curve
+    parameter CURVE_LEVELS = 0,
+    parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
+    parameter signed [26:0] CURVE_FIRST = 27'sd0,
+    parameter signed [26:0] CURVE_LAST = 27'sd33554431,
+    // Full scale, in steps of the stress
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
+    // Taxels that take a weighted sum of the others, and the fraction bits of the weights
+    parameter DEAD = 0,
+    parameter WEIGHT_SHIFT = 16,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -58,6 +71,7 @@ module sptfra_bz #(
     output wire frame_saturated,
     output wire frame_not_finite,
     output wire frame_bad_length,
+    output wire [29:0] frame_replaced, // sum of the magnitudes that took a dead taxel's place
     // Banks
     output wire frame_ready, // a whole frame waits
     input  wire frame_start, // the lanes begin with it
@@ -67,8 +81,8 @@ module sptfra_bz #(
     localparam TAXELS = COLUMNS * ROWS;
     localparam INDEX_WIDTH = $clog2(TAXELS + 1);
     localparam NUMBER_STAGES = 5;
-    localparam STAGES = (COUNTS != 0) ? NUMBER_STAGES + 4 : NUMBER_STAGES;
-    localparam signed [9:0] SHIFT = NUMBER_SHIFT[9:0];
+    localparam CURVE_STAGES = (CURVE_LEVELS != 0) ? NUMBER_STAGES + CURVE_LEVELS + 7 : NUMBER_STAGES;
+    localparam STAGES = (COUNTS != 0) ? CURVE_STAGES + 4 : CURVE_STAGES;
 
     generate
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
@@ -110,28 +124,14 @@ module sptfra_bz #(
         end
     end
 
-    // ---- float32 to fixed point
-    wire signed [26:0] number;
-    wire number_saturated;
-    wire number_not_finite;
-
-    sptfra_float_to_fixed float_to_fixed (
-        .clock      (clock),
-        .enable     (advance),
-        .float_bits (s_tdata),
-        .shift      (SHIFT),
-        .limit      (NUMBER_BOUND),
-        .fixed      (number),
-        .saturated  (number_saturated),
-        .not_finite (number_not_finite)
-    );
-
     reg [STAGES:1] valid;
     reg [STAGES:1] stores;
     reg [STAGES:1] lasts;
     reg [STAGES:1] bad_lengths;
 
-    assign pipe_busy = (valid != {STAGES{1'b0}});
+    wire dead_busy;
+
+    assign pipe_busy = (valid != {STAGES{1'b0}}) || dead_busy;
 
     always @(posedge clock) begin
         if (advance) begin
@@ -145,47 +145,99 @@ module sptfra_bz #(
         end
     end
 
-    // ---- Counts to stress
+    // ---- Samples to stress
+    wire signed [26:0] read;
+    wire read_saturated;
+    wire read_not_finite;
+
+    sptfra_samples #(
+        .TAXELS       (TAXELS),
+        .NUMBER_SHIFT (NUMBER_SHIFT),
+        .NUMBER_BOUND (NUMBER_BOUND),
+        .COUNTS       (COUNTS),
+        .PER_TAXEL    (PER_TAXEL),
+        .EXPONENTS    (EXPONENTS),
+        .GAIN         (GAIN),
+        .OFFSET_BITS  (OFFSET_BITS),
+        .COUNT_SHIFT  (COUNT_SHIFT),
+        .FULL_SCALE   (FULL_SCALE),
+        .CURVE_LEVELS (CURVE_LEVELS),
+        .CURVE_KNOTS  (CURVE_KNOTS),
+        .CURVE_FIRST  (CURVE_FIRST),
+        .CURVE_LAST   (CURVE_LAST),
+        .STRESS_BOUND (STRESS_BOUND),
+        .ROM_DIR      (ROM_DIR),
+        .ROM_NAME     (ROM_NAME)
+    ) samples (
+        .clock      (clock),
+        .reset      (reset),
+        .advance    (advance),
+        .accept     (accept),
+        .word       (s_tdata),
+        .last       (s_tlast),
+        .next_taxel (valid[CURVE_STAGES] && stores[CURVE_STAGES]),
+        .frame_ends (valid[CURVE_STAGES] && lasts[CURVE_STAGES]),
+        .stress     (read),
+        .saturated  (read_saturated),
+        .not_finite (read_not_finite)
+    );
+
+    // ---- Dead taxels
     wire signed [26:0] fixed;
     wire saturated;
     wire not_finite;
+    wire whole_valid;
+    wire whole_store;
+    wire whole_last;
+    wire whole_bad_length;
 
     generate
-        if (COUNTS != 0) begin : gen_counts
-            sptfra_counts #(
+        if (DEAD != 0) begin : gen_dead
+            sptfra_dead_taxels #(
                 .TAXELS       (TAXELS),
-                .PER_TAXEL    (PER_TAXEL),
-                .GAIN         (GAIN),
-                .OFFSET_BITS  (OFFSET_BITS),
-                .SHIFT        (COUNT_SHIFT),
-                .FULL_SCALE   (FULL_SCALE),
+                .DEAD         (DEAD),
+                .WEIGHT_SHIFT (WEIGHT_SHIFT),
                 .STRESS_BOUND (STRESS_BOUND),
                 .ROM_DIR      (ROM_DIR),
                 .ROM_NAME     (ROM_NAME)
-            ) counts (
-                .clock             (clock),
-                .reset             (reset),
-                .advance           (advance),
-                .next_taxel        (valid[NUMBER_STAGES] && stores[NUMBER_STAGES]),
-                .frame_ends        (valid[NUMBER_STAGES] && lasts[NUMBER_STAGES]),
-                .number            (number),
-                .number_saturated  (number_saturated),
-                .number_not_finite (number_not_finite),
-                .stress            (fixed),
-                .saturated         (saturated),
-                .not_finite        (not_finite)
+            ) dead_taxels (
+                .clock          (clock),
+                .reset          (reset),
+                .advance        (advance),
+                .in_valid       (valid[STAGES]),
+                .in_store       (stores[STAGES]),
+                .in_last        (lasts[STAGES]),
+                .in_bad_length  (bad_lengths[STAGES]),
+                .in_stress      (read),
+                .in_saturated   (read_saturated),
+                .in_not_finite  (read_not_finite),
+                .busy           (dead_busy),
+                .out_valid      (whole_valid),
+                .out_last       (whole_last),
+                .out_bad_length (whole_bad_length),
+                .out_stress     (fixed),
+                .out_saturated  (saturated),
+                .out_not_finite (not_finite),
+                .replaced       (frame_replaced)
             );
-        end else begin : gen_stress
-            assign fixed = number;
-            assign saturated = number_saturated;
-            assign not_finite = number_not_finite;
-            wire _unused = (PER_TAXEL != 0) || (GAIN != 0) || (OFFSET_BITS != 0) || (COUNT_SHIFT != 0)
-                || (FULL_SCALE != 0) || (STRESS_BOUND != 0) || (ROM_DIR != "") || (ROM_NAME != "");
+
+            assign whole_store = 1'b1;
+        end else begin : gen_as_read
+            assign fixed = read;
+            assign saturated = read_saturated;
+            assign not_finite = read_not_finite;
+            assign whole_valid = valid[STAGES];
+            assign whole_store = stores[STAGES];
+            assign whole_last = lasts[STAGES];
+            assign whole_bad_length = bad_lengths[STAGES];
+            assign dead_busy = 1'b0;
+            assign frame_replaced = 30'd0;
+            wire _unused = (WEIGHT_SHIFT != 0);
         end
     endgenerate
 
     // ---- Write
-    wire taxel_valid = valid[STAGES] && stores[STAGES];
+    wire taxel_valid = whole_valid && whole_store;
 
     generate
         if (WAYS == 4) begin : gen_fold
@@ -197,9 +249,9 @@ module sptfra_bz #(
                 .clock         (clock),
                 .reset         (reset),
                 .advance       (advance),
-                .in_valid      (valid[STAGES]),
-                .in_store      (stores[STAGES]),
-                .in_last       (lasts[STAGES]),
+                .in_valid      (whole_valid),
+                .in_store      (whole_store),
+                .in_last       (whole_last),
                 .in_stress     (fixed[DATA_BITS-1:0]),
                 .write_valid   (write_valid),
                 .write_bank    (write_bank),
@@ -239,10 +291,10 @@ module sptfra_bz #(
 
     assign stress_valid = taxel_valid && advance;
     assign stress = fixed;
-    assign frame_done = valid[STAGES] && lasts[STAGES] && advance;
-    assign frame_saturated = seen_saturated || (stores[STAGES] && saturated);
-    assign frame_not_finite = seen_not_finite || (stores[STAGES] && not_finite);
-    assign frame_bad_length = bad_lengths[STAGES];
+    assign frame_done = whole_valid && whole_last && advance;
+    assign frame_saturated = seen_saturated || (whole_store && saturated);
+    assign frame_not_finite = seen_not_finite || (whole_store && not_finite);
+    assign frame_bad_length = whole_bad_length;
 
     always @(posedge clock) begin
         if (stress_valid) begin

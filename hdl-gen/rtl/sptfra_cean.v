@@ -15,6 +15,8 @@ module sptfra_cean #(
     parameter integer ROWS = 10,
     // 1: the direction of the push too; 0: for an estimator that needs none
     parameter integer DIRECTION = 0,
+    // 1: the sensor reads what pulls, so that a frame in which nothing does is to be told
+    parameter integer TENSION_READ = 1,
     // Noise floor of a taxel, in steps of the stress
     parameter [26:0] TAXEL_FLOOR = 27'd100,
     // Noise floor of the frame's sum |b|, in steps of the stress
@@ -36,6 +38,7 @@ module sptfra_cean #(
     input  wire frame_saturated,
     input  wire frame_not_finite,
     input  wire frame_bad_length,
+    input  wire [29:0] frame_replaced, // sum of what took the place of dead taxels
     // To Op
     output wire direction_room, // for the result of another frame
     output wire direction_valid,
@@ -45,7 +48,7 @@ module sptfra_cean #(
     output wire no_direction, // nothing pushes, or nothing pulls
     output wire [39:0] stress_sum, // sum |b|
     output wire [26:0] largest, // max |b|
-    output wire [3:0] flags // no contact, saturated, NaN or infinity, bad length
+    output wire [5:0] flags // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
 );
 
     generate
@@ -60,6 +63,7 @@ module sptfra_cean #(
     reg [26:0] magnitude_1;
     reg [39:0] sum;
     reg [26:0] most;
+    reg pulled; // a stress was above 0
     reg clear;
 
     always @(posedge clock) begin
@@ -69,6 +73,7 @@ module sptfra_cean #(
         if (valid_1) begin
             sum <= sum + {13'd0, magnitude_1};
             most <= (magnitude_1 > most) ? magnitude_1 : most;
+            pulled <= pulled || (tensile_1 && (magnitude_1 != 27'd0));
         end
         if (reset) begin
             valid_1 <= 1'b0;
@@ -76,6 +81,7 @@ module sptfra_cean #(
         if (reset || clear) begin
             sum <= 40'd0;
             most <= 27'd0;
+            pulled <= 1'b0;
         end
     end
 
@@ -90,6 +96,8 @@ module sptfra_cean #(
 
     reg [1:0] state;
     reg below_floor;
+    reg guessed; // more than an eighth of the stress is what neighbours say of dead taxels
+    reg [29:0] replaced;
     reg [2:0] faults; // saturated, NaN or infinity, bad length
 
     assign idle = (state == COLLECT);
@@ -97,10 +105,12 @@ module sptfra_cean #(
     always @(posedge clock) begin
         clear <= 1'b0;
         below_floor <= (sum < CONTACT_FLOOR);
+        guessed <= ({7'd0, replaced, 3'd0} > sum);
         case (state)
             COLLECT: begin
                 if (frame_done) begin
                     faults <= {frame_saturated, frame_not_finite, frame_bad_length};
+                    replaced <= frame_replaced;
                     state <= MEASURE;
                 end
             end
@@ -158,9 +168,10 @@ module sptfra_cean #(
     endgenerate
 
     // ---- Two places for finished frames: never full, since Bz asks first
-    wire [125:0] pushed = {push_x, push_y, no_push, sum, most, below_floor, faults};
-    reg [125:0] waiting_0;
-    reg [125:0] waiting_1;
+    wire no_tension = (TENSION_READ != 0) && !pulled;
+    wire [127:0] pushed = {push_x, push_y, no_push, sum, most, no_tension, guessed, below_floor, faults};
+    reg [127:0] waiting_0;
+    reg [127:0] waiting_1;
     reg [1:0] waiting;
     wire push = (state == PUSH);
 

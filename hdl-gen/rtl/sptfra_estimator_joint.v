@@ -3,9 +3,10 @@
 //
 // Estimator: both friction components at once, from the level set of Condition 1 in the (mu_x, mu_y) plane.
 //
-// One frame at a time, when its u_q, its sums and what CeAn knows are there: the walk over the plane, the level set's
-// centroid, with NETWORK a correction from a look at the contact, and the friction. u_q of the next frame may arrive
-// meanwhile. The answer are both components as they are.
+// Two stages, each with a frame of its own. The search takes a frame when its u_q, its sums and what CeAn knows are
+// there: Condition 1 over the plane, and the level set's centroid. The correction takes what the search has found: with
+// NETWORK a look at the contact and what the network makes of it, and the friction. u_q of the next frame may arrive
+// while two are under way in turn, one searched, one corrected. The answer are both components as they are.
 
 `default_nettype none
 
@@ -18,11 +19,16 @@ module sptfra_estimator_joint #(
     parameter integer WAYS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
+    // 1: a cell a point of the plane, 15 x 15 of them; 0: a walk over 21 x 21 points, in cells of a few taxels
+    parameter integer POINTS = 0,
+    // Left shift of u before the right shift by the bits of sum |b|, for the points
+    parameter integer U_LEFT = 24,
     // Cells of the walk, as many for each way
     parameter integer CELLS = 28,
     // Taxels of a cell, a power of two, at least 4
     parameter integer CELL_ELEMENTS = 4,
-    // Right shift that turns max |b| into 8 times the dead zone, and sum |b| into the level above the least value
+    // Right shift that turns max |b| into 8 times the walk's dead zone, and sum |b| into the level above its least
+    // value
     parameter integer SHARE_SHIFT = 5,
     // c1 and c3 of the friction, with 22 and 15 fraction bits
     parameter signed [26:0] LINEAR = 27'sd4194304,
@@ -32,9 +38,10 @@ module sptfra_estimator_joint #(
     // Taxels on either side of the window's middle
     parameter integer HALF_X = 4,
     parameter integer HALF_Y = 4,
-    // Words of inputs, and passes over them
+    // Words of inputs, passes over them, and hidden units in each
     parameter integer LENGTH = 27,
     parameter integer PASSES = 4,
+    parameter integer AT_ONCE = 4,
     // Left shift of a stress times the reciprocal of sum |b|; bits dropped from a unit's sums, and from the output's
     parameter integer STRESS_LEFT = 9,
     parameter integer UNIT_SHIFT = 12,
@@ -43,9 +50,9 @@ module sptfra_estimator_joint #(
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
     parameter ROM_NAME = "design",
-    // Checked in simulation, 0: unchecked: cycles from the start to the first value of the walk
+    // Checked in simulation, 0: unchecked: cycles from the start to the first row of points, or value of the walk
     parameter integer EXPECTED_PLANE_LATENCY = 0,
-    // ... from the last value to the centroid
+    // ... from that row, or the last value, to the centroid
     parameter integer EXPECTED_LEVEL_LATENCY = 0,
     // ... from the centroid to the last input of the network
     parameter integer EXPECTED_LOOK_LATENCY = 0,
@@ -76,7 +83,7 @@ module sptfra_estimator_joint #(
     input  wire no_direction,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
-    input  wire [3:0] flags_in, // no contact, saturated, NaN or infinity, bad length
+    input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // The answer, held until taken
     output wire answer_valid,
     input  wire answer_take, // only with answer_valid
@@ -84,17 +91,13 @@ module sptfra_estimator_joint #(
     output wire signed [17:0] free, // mu_x, 16 fraction bits
     output wire signed [17:0] other, // mu_y
     output wire signed [17:0] slope, // none
-    output wire unknown,
+    output reg  unknown,
     output wire at_bound,
     output wire saturated,
     output reg  [18*40-1:0] sums,
-    output reg  [3:0] flags
+    output reg  [5:0] flags
 );
 
-    localparam integer TAXELS = COLUMNS * ROWS;
-    // Of a value of the walk: a sum of stresses without their sign
-    localparam integer VALUE_BITS = 31 + $clog2(TAXELS);
-    localparam integer WORD_WIDTH = $clog2(LENGTH);
 
     generate
         if (WAYS != 4) begin : gen_check
@@ -120,15 +123,32 @@ module sptfra_estimator_joint #(
     end
 
     // ---- Search: takes a frame when u_q, sums and what CeAn knows are there
-    reg [1:0] u_waiting; // frames whose u_q wait in the cells
+    reg [1:0] u_waiting; // frames whose u_q wait to be searched
     reg fill_bank;
     reg search_bank;
     reg searching;
-    reg answer_waits; // to be taken
+    reg centroid_waits; // for the correction
     reg [39:0] search_stress_sum;
     reg [26:0] search_largest;
-    wire search_done;
+    reg [18*40-1:0] search_sums;
+    reg [5:0] search_flags;
+    wire level_done;
     wire search_start = sums_complete && direction_valid && (u_waiting != 2'd0) && !searching;
+    // ---- Correction: takes what the search has found
+    reg correcting;
+    reg correction_bank;
+    reg answer_waits; // to be taken
+    wire search_done; // the answer is there
+    wire signed [17:0] found_x;
+    wire signed [17:0] found_y;
+    wire found_unknown;
+    wire found_on_border;
+    wire found_saturated;
+    reg signed [17:0] centroid_x;
+    reg signed [17:0] centroid_y;
+    reg on_border;
+    reg plane_saturated; // a value of the search was clipped
+    wire correction_start = (level_done || centroid_waits) && !correcting;
 
     assign sums_take = search_start;
     assign direction_take = search_start;
@@ -139,49 +159,62 @@ module sptfra_estimator_joint #(
         if (fill_complete) begin
             fill_bank <= !fill_bank;
         end
+        if (level_done) begin
+            centroid_waits <= 1'b1;
+        end
         if (search_start) begin
             searching <= 1'b1;
-            sums <= sums_in;
+            search_sums <= sums_in;
             search_stress_sum <= stress_sum;
             search_largest <= largest;
-            flags <= flags_in;
+            search_flags <= flags_in;
+        end
+        if (correction_start) begin
+            searching <= 1'b0;
+            centroid_waits <= 1'b0;
+            search_bank <= !search_bank;
+            correcting <= 1'b1;
+            sums <= search_sums;
+            flags <= search_flags;
+            centroid_x <= found_x;
+            centroid_y <= found_y;
+            unknown <= found_unknown;
+            on_border <= found_on_border;
+            plane_saturated <= found_saturated;
         end
         if (search_done) begin
             answer_waits <= 1'b1;
         end
         if (answer_take) begin
-            searching <= 1'b0;
+            correcting <= 1'b0;
             answer_waits <= 1'b0;
-            search_bank <= !search_bank;
+            correction_bank <= !correction_bank;
         end
         if (reset) begin
             u_waiting <= 2'd0;
             fill_bank <= 1'b0;
             search_bank <= 1'b0;
             searching <= 1'b0;
+            centroid_waits <= 1'b0;
+            correcting <= 1'b0;
+            correction_bank <= 1'b0;
             answer_waits <= 1'b0;
         end
     end
 
-    // ---- Walk over the plane
-    wire [ROW_WIDTH-1:0] look_quad;
-    wire [1:0] look_member;
-    wire [1:0] look_q;
-    wire signed [26:0] look_value;
-    wire value_valid;
-    wire [VALUE_BITS-1:0] value;
-
-    sptfra_plane #(
-        .COLUMNS          (COLUMNS),
-        .ROWS             (ROWS),
-        .DATA_BITS        (DATA_BITS),
-        .ROW_WIDTH        (ROW_WIDTH),
-        .CELLS            (CELLS),
-        .CELL_ELEMENTS    (CELL_ELEMENTS),
-        .SHARE_SHIFT      (SHARE_SHIFT),
-        .VALUE_BITS       (VALUE_BITS),
-        .EXPECTED_LATENCY (EXPECTED_PLANE_LATENCY)
-    ) plane (
+    // ---- The plane, and the level set
+    sptfra_plane_search #(
+        .COLUMNS                (COLUMNS),
+        .ROWS                   (ROWS),
+        .DATA_BITS              (DATA_BITS),
+        .POINTS                 (POINTS),
+        .U_LEFT                 (U_LEFT),
+        .CELLS                  (CELLS),
+        .CELL_ELEMENTS          (CELL_ELEMENTS),
+        .SHARE_SHIFT            (SHARE_SHIFT),
+        .EXPECTED_PLANE_LATENCY (EXPECTED_PLANE_LATENCY),
+        .EXPECTED_LEVEL_LATENCY (EXPECTED_LEVEL_LATENCY)
+    ) plane_search (
         .clock       (clock),
         .reset       (reset),
         .u_valid     (fill_valid),
@@ -190,37 +223,14 @@ module sptfra_estimator_joint #(
         .fill_bank   (fill_bank),
         .search_bank (search_bank),
         .start       (search_start),
-        .largest     (search_largest),
-        .look_quad   (look_quad),
-        .look_member (look_member),
-        .look_q      (look_q),
-        .look_value  (look_value),
-        .value_valid (value_valid),
-        .value       (value)
-    );
-
-    // ---- Level set
-    wire level_done;
-    wire signed [17:0] centroid_x;
-    wire signed [17:0] centroid_y;
-    wire on_border;
-
-    sptfra_level_set #(
-        .VALUE_BITS       (VALUE_BITS),
-        .SHARE_SHIFT      (SHARE_SHIFT),
-        .EXPECTED_LATENCY (EXPECTED_LEVEL_LATENCY)
-    ) level_set (
-        .clock       (clock),
-        .reset       (reset),
-        .start       (search_start),
         .stress_sum  (search_stress_sum),
-        .value_valid (value_valid),
-        .value       (value),
+        .largest     (search_largest),
         .done        (level_done),
-        .mu_x        (centroid_x),
-        .mu_y        (centroid_y),
-        .unknown     (unknown),
-        .at_bound    (on_border)
+        .mu_x        (found_x),
+        .mu_y        (found_y),
+        .unknown     (found_unknown),
+        .at_bound    (found_on_border),
+        .saturated   (found_saturated)
     );
 
     // ---- Correction
@@ -231,72 +241,49 @@ module sptfra_estimator_joint #(
 
     generate
         if (NETWORK != 0) begin : gen_correction
-            wire input_valid;
-            wire [WORD_WIDTH-1:0] input_word;
-            wire [4*27-1:0] input_values;
-            wire look_done;
-
-            sptfra_look #(
-                .COLUMNS          (COLUMNS),
-                .ROWS             (ROWS),
-                .ROW_WIDTH        (ROW_WIDTH),
-                .HALF_X           (HALF_X),
-                .HALF_Y           (HALF_Y),
-                .LENGTH           (LENGTH),
-                .WORD_WIDTH       (WORD_WIDTH),
-                .STRESS_LEFT      (STRESS_LEFT),
-                .EXPECTED_LATENCY (EXPECTED_LOOK_LATENCY)
-            ) look (
+            sptfra_correction #(
+                .COLUMNS                  (COLUMNS),
+                .ROWS                     (ROWS),
+                .DATA_BITS                (DATA_BITS),
+                .HALF_X                   (HALF_X),
+                .HALF_Y                   (HALF_Y),
+                .LENGTH                   (LENGTH),
+                .PASSES                   (PASSES),
+                .AT_ONCE                  (AT_ONCE),
+                .STRESS_LEFT              (STRESS_LEFT),
+                .UNIT_SHIFT               (UNIT_SHIFT),
+                .CORRECTION_SHIFT         (CORRECTION_SHIFT),
+                .ROM_DIR                  (ROM_DIR),
+                .ROM_NAME                 (ROM_NAME),
+                .EXPECTED_LOOK_LATENCY    (EXPECTED_LOOK_LATENCY),
+                .EXPECTED_NETWORK_LATENCY (EXPECTED_NETWORK_LATENCY)
+            ) correction (
                 .clock        (clock),
                 .reset        (reset),
-                .start        (search_start),
+                .u_valid      (fill_valid),
+                .fill_bank    (fill_bank),
+                .u_quad       (fill_row),
+                .u_values     (fill_values),
+                .search_start (search_start),
                 .stress_sum   (search_stress_sum),
-                .look_start   (level_done),
+                .start        (correction_start),
+                .bank         (correction_bank),
                 .mu_x         (centroid_x),
                 .mu_y         (centroid_y),
-                .u_quad       (look_quad),
-                .u_member     (look_member),
-                .u_q          (look_q),
-                .u_value      (look_value),
-                .input_valid  (input_valid),
-                .input_word   (input_word),
-                .input_values (input_values),
-                .done         (look_done),
-                .saturated    (look_saturated)
-            );
-
-            sptfra_network #(
-                .LENGTH           (LENGTH),
-                .WORD_WIDTH       (WORD_WIDTH),
-                .PASSES           (PASSES),
-                .UNIT_SHIFT       (UNIT_SHIFT),
-                .CORRECTION_SHIFT (CORRECTION_SHIFT),
-                .ROM_DIR          (ROM_DIR),
-                .ROM_NAME         (ROM_NAME),
-                .EXPECTED_LATENCY (EXPECTED_NETWORK_LATENCY)
-            ) network (
-                .clock        (clock),
-                .reset        (reset),
-                .input_valid  (input_valid),
-                .input_word   (input_word),
-                .input_values (input_values),
-                .start        (look_done),
                 .done         (correction_done),
                 .correction_x (correction_x),
-                .correction_y (correction_y)
+                .correction_y (correction_y),
+                .saturated    (look_saturated)
             );
         end else begin : gen_none
-            assign look_quad = {ROW_WIDTH{1'b0}};
-            assign look_member = 2'd0;
-            assign look_q = 2'd1;
-            assign correction_done = level_done;
+            assign correction_done = correction_start;
             assign correction_x = 18'sd0;
             assign correction_y = 18'sd0;
             assign look_saturated = 1'b0;
 
-            wire _unused = &{1'b0, look_value, WORD_WIDTH != 0, HALF_X != 0, HALF_Y != 0, PASSES != 0, STRESS_LEFT != 0,
-                UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0, EXPECTED_NETWORK_LATENCY != 0,
-                ROM_DIR == "", ROM_NAME == ""};
+            wire _unused = &{1'b0, correction_bank, HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0,
+                STRESS_LEFT != 0, UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0,
+                EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate
 
@@ -325,7 +312,7 @@ module sptfra_estimator_joint #(
     assign x_is_free = 1'b1;
     assign slope = 18'sd0;
     assign at_bound = on_border || clipped;
-    assign saturated = look_saturated && !unknown;
+    assign saturated = (look_saturated || plane_saturated) && !unknown;
 
     // The direction of the push is not needed
     wire _unused = &{1'b0, direction_x, direction_y, no_direction};

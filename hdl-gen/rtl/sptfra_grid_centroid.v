@@ -2,7 +2,7 @@
 // Part of the SpTFRA hardware generator.
 //
 // Centroid of the weighted points of the 21 x 21 grid of (mu_x, mu_y), which come in the order of the walk: there and
-// back in alternate rows. From divide to done: one cycle and two divisions.
+// back in alternate rows. From divide to done: 20 cycles.
 
 `default_nettype none
 
@@ -24,9 +24,7 @@ module sptfra_grid_centroid (
     // Of a moment over a sum of weights, in steps of the grid, which are eighths
     localparam integer QUOTIENT_FRACTION = 13;
 
-    localparam [1:0] IDLE = 2'd0, DIVIDE_X = 2'd1, DIVIDE_Y = 2'd2;
-
-    reg [1:0] state;
+    localparam integer WHOLE_BITS = 4; // of that quotient, up to BORDER
 
     // ---- Sums of the weights, and of their products with the column and the row from the middle
     reg signed [17:0] column;
@@ -79,67 +77,44 @@ module sptfra_grid_centroid (
     end
 
     // ---- Centroid: mu = (moment / sum of weights) / 8
+    localparam integer RATIO_BITS = WHOLE_BITS + QUOTIENT_FRACTION;
     reg divide_start;
-    reg of_y;
-    wire signed [47:0] moment = of_y ? moment_y : moment_x;
-    reg [47:0] magnitude;
-    reg negative;
+    reg [47:0] magnitude_x;
+    reg [47:0] magnitude_y;
     wire divide_done;
-    wire [63:0] quotient;
-    reg negative_ratio;
-    wire signed [17:0] ratio = negative_ratio ? -quotient[17:0] : quotient[17:0];
+    wire [RATIO_BITS-1:0] ratio_x;
+    wire [RATIO_BITS-1:0] ratio_y;
 
-    sptfra_divider divider (
+    sptfra_ratio #(
+        .WIDTH        (48),
+        .INTEGER_BITS (WHOLE_BITS),
+        .BITS         (RATIO_BITS)
+    ) ratio (
         .clock       (clock),
         .reset       (reset),
         .start       (divide_start),
-        .numerator   ({ {(16 - QUOTIENT_FRACTION){1'b0}}, magnitude, {QUOTIENT_FRACTION{1'b0}}}),
+        .numerator_x (magnitude_x),
+        .numerator_y (magnitude_y),
         .denominator (weight_sum),
-        .quotient    (quotient),
-        .done        (divide_done)
+        .done        (divide_done),
+        .quotient_x  (ratio_x),
+        .quotient_y  (ratio_y)
     );
 
-    // ---- Sequence
     always @(posedge clock) begin
-        done <= 1'b0;
-        divide_start <= 1'b0;
-        negative <= moment[47];
-        if (divide_start) begin
-            negative_ratio <= negative;
+        magnitude_x <= moment_x[47] ? -moment_x : moment_x;
+        magnitude_y <= moment_y[47] ? -moment_y : moment_y;
+        divide_start <= divide;
+        done <= divide_done;
+        if (divide_done) begin
+            mu_x <= moment_x[47] ? -{1'b0, ratio_x} : {1'b0, ratio_x};
+            mu_y <= moment_y[47] ? -{1'b0, ratio_y} : {1'b0, ratio_y};
         end
-        magnitude <= moment[47] ? -moment : moment;
-        case (state)
-            IDLE: begin
-                of_y <= 1'b0;
-                if (divide) begin
-                    divide_start <= 1'b1;
-                    state <= DIVIDE_X;
-                end
-            end
-            DIVIDE_X: begin
-                of_y <= 1'b1;
-                if (divide_done) begin
-                    mu_x <= ratio;
-                    divide_start <= 1'b1;
-                    state <= DIVIDE_Y;
-                end
-            end
-            default: begin
-                if (divide_done) begin
-                    mu_y <= ratio;
-                    done <= 1'b1;
-                    state <= IDLE;
-                end
-            end
-        endcase
         if (reset) begin
-            state <= IDLE;
             divide_start <= 1'b0;
             done <= 1'b0;
         end
     end
-
-    wire _unused = &{1'b0, quotient[63:18]};
 
 endmodule
 

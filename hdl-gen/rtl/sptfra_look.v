@@ -3,8 +3,9 @@
 //
 // What the correction sees of a contact: the stress of the normal forces alone, in a window around its centre.
 //
-// Along its way: scale (1 / sum |b|, while the plane is searched), stress (taxel by taxel, its compression's moments),
-// scale again (their centroid), window (folded into parity classes, for the network).
+// Along its way: scale (1 / sum |b|, while the plane is searched), stress (a quad in two cycles, its compression's
+// moments), their centroid, window (folded into parity classes, for the network). While one frame is looked at the next
+// one may start. From look_start to done: two cycles a quad, one a word, and 43.
 
 `default_nettype none
 
@@ -29,84 +30,77 @@ module sptfra_look #(
 ) (
     input  wire clock,
     input  wire reset,
-    // A frame, with its sum |b| held from the next cycle on
+    // A frame, with its sum |b| held from the next cycle on until its centroid of the level set is there
     input  wire start,
     input  wire [39:0] stress_sum,
-    // Its centroid of the level set is there, and held
+    // It is, and held from the next cycle on until the next one is
     input  wire look_start,
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
-    // u_q of the taxels, three cycles after they are asked for
+    // u_q of a quad's taxels, a cycle after they are asked for
     output wire [ROW_WIDTH-1:0] u_quad,
-    output wire [1:0] u_member,
-    output wire [1:0] u_q,
-    input  wire signed [26:0] u_value,
+    input  wire [3*4*27-1:0] u_values,
     // Inputs of the network
     output wire input_valid,
     output wire [WORD_WIDTH-1:0] input_word,
     output wire [4*27-1:0] input_values, // class 0 in the lowest bits
     output wire done, // one cycle, with the last of them
-    output wire saturated // a share was clipped; held until the next start
+    output wire saturated // a share was clipped; held until the next look
 );
 
-    localparam integer X_WIDTH = (COLUMNS <= 2) ? 1 : $clog2(COLUMNS);
-    localparam integer Y_WIDTH = (ROWS <= 2) ? 1 : $clog2(ROWS);
+    // Of the centre: taxels, and fraction of a pitch
+    localparam integer CENTRE_BITS = 22;
+    localparam integer TAXEL_BITS = 6;
 
-    // ---- Scale
-    wire [5:0] sum_bits;
-    wire signed [17:0] reciprocal;
-    wire stresses_there;
-    wire [47:0] weight_sum;
-    wire [47:0] moment_x;
-    wire [47:0] moment_y;
-    wire centroid_there;
-    wire [23:0] centroid_x;
-    wire [23:0] centroid_y;
+    // ---- Scale: of the frame that is searched, then of the one that is looked at
+    wire [5:0] next_sum_bits;
+    wire signed [17:0] next_reciprocal;
+    reg [5:0] sum_bits;
+    reg signed [17:0] reciprocal;
 
     sptfra_look_scale scale (
         .clock      (clock),
         .reset      (reset),
         .start      (start),
         .stress_sum (stress_sum),
-        .sum_bits   (sum_bits),
-        .reciprocal (reciprocal),
-        .divide     (stresses_there),
-        .weight_sum (weight_sum),
-        .moment_x   (moment_x),
-        .moment_y   (moment_y),
-        .done       (centroid_there),
-        .centroid_x (centroid_x),
-        .centroid_y (centroid_y)
+        .sum_bits   (next_sum_bits),
+        .reciprocal (next_reciprocal)
     );
+
+    always @(posedge clock) begin
+        if (look_start) begin
+            sum_bits <= next_sum_bits;
+            reciprocal <= next_reciprocal;
+        end
+    end
 
     // ---- Stress
     wire share_valid;
-    wire [Y_WIDTH+X_WIDTH-1:0] share_place;
-    wire [24:0] share;
+    wire [ROW_WIDTH-1:0] share_quad;
+    wire [4*25-1:0] shares;
+    wire stresses_there;
+    wire [47:0] weight_sum;
+    wire [47:0] moment_x;
+    wire [47:0] moment_y;
 
     sptfra_look_stress #(
         .COLUMNS     (COLUMNS),
         .ROWS        (ROWS),
         .ROW_WIDTH   (ROW_WIDTH),
-        .X_WIDTH     (X_WIDTH),
-        .Y_WIDTH     (Y_WIDTH),
         .STRESS_LEFT (STRESS_LEFT)
     ) stress (
         .clock       (clock),
         .reset       (reset),
-        .clear       (start),
         .sum_bits    (sum_bits),
         .reciprocal  (reciprocal),
         .start       (look_start),
         .mu_x        (mu_x),
         .mu_y        (mu_y),
         .u_quad      (u_quad),
-        .u_member    (u_member),
-        .u_q         (u_q),
-        .u_value     (u_value),
+        .u_values    (u_values),
         .share_valid (share_valid),
-        .share_place (share_place),
-        .share       (share),
+        .share_quad  (share_quad),
+        .shares      (shares),
         .done        (stresses_there),
         .weight_sum  (weight_sum),
         .moment_x    (moment_x),
@@ -114,12 +108,33 @@ module sptfra_look #(
         .saturated   (saturated)
     );
 
+    // ---- Centroid of the compression; without any the first taxel does
+    wire centroid_there;
+    wire [CENTRE_BITS-1:0] ratio_x;
+    wire [CENTRE_BITS-1:0] ratio_y;
+    wire nothing = (weight_sum == 48'd0);
+
+    sptfra_ratio #(
+        .WIDTH        (48),
+        .INTEGER_BITS (TAXEL_BITS),
+        .BITS         (CENTRE_BITS)
+    ) ratio (
+        .clock       (clock),
+        .reset       (reset),
+        .start       (stresses_there),
+        .numerator_x (moment_x),
+        .numerator_y (moment_y),
+        .denominator (weight_sum),
+        .done        (centroid_there),
+        .quotient_x  (ratio_x),
+        .quotient_y  (ratio_y)
+    );
+
     // ---- Window
     sptfra_look_window #(
         .COLUMNS    (COLUMNS),
         .ROWS       (ROWS),
-        .X_WIDTH    (X_WIDTH),
-        .Y_WIDTH    (Y_WIDTH),
+        .ROW_WIDTH  (ROW_WIDTH),
         .HALF_X     (HALF_X),
         .HALF_Y     (HALF_Y),
         .LENGTH     (LENGTH),
@@ -128,12 +143,11 @@ module sptfra_look #(
         .clock        (clock),
         .reset        (reset),
         .share_valid  (share_valid),
-        .share_place  (share_place),
-        .share        (share),
-        .clear        (start),
+        .share_quad   (share_quad),
+        .shares       (shares),
         .start        (centroid_there),
-        .centroid_x   (centroid_x),
-        .centroid_y   (centroid_y),
+        .centroid_x   (nothing ? {CENTRE_BITS{1'b0}} : ratio_x),
+        .centroid_y   (nothing ? {CENTRE_BITS{1'b0}} : ratio_y),
         .mu_x         (mu_x),
         .mu_y         (mu_y),
         .input_valid  (input_valid),

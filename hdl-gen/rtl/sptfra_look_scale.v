@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The scale of a look, by one divider: 1 / sum |b| of the frame first, later the centroid of the compression.
+// The scale of a look: 1 / sum |b|, while the plane is searched.
 //
 // The leading bit of sum |b| goes to the top, then 2^56 is divided by it: the reciprocal of 17 bits is there 8 cycles
-// and a division after start. Centroid, 16 fraction bits of a taxel index: one cycle and two divisions from divide to
-// done.
+// and a division after start.
 
 `default_nettype none
 
@@ -16,22 +15,13 @@ module sptfra_look_scale (
     input  wire start,
     input  wire [39:0] stress_sum,
     output wire [5:0] sum_bits, // of stress_sum
-    output reg  signed [17:0] reciprocal, // 2^-(16 + sum_bits) a step
-    // Centroid: the sums hold
-    input  wire divide,
-    input  wire [47:0] weight_sum,
-    input  wire [47:0] moment_x,
-    input  wire [47:0] moment_y,
-    output wire done, // centroid_y follows
-    output reg  [23:0] centroid_x,
-    output reg  [23:0] centroid_y
+    output reg  signed [17:0] reciprocal // 2^-(16 + sum_bits) a step
 );
 
     localparam integer SUM_BITS = 40;
     localparam integer RECIPROCAL_BITS = 16;
     localparam [63:0] NUMERATOR = 64'd1 << (SUM_BITS + RECIPROCAL_BITS);
 
-    localparam [1:0] IDLE = 2'd0, DIVIDE_X = 2'd1, DIVIDE_Y = 2'd2;
 
     // ---- sum |b|, its leading bit at the top
     wire [5:0] found_bits;
@@ -51,24 +41,18 @@ module sptfra_look_scale (
         .bits  (found_bits)
     );
 
-    // ---- Divider: the reciprocal while the plane is searched, the centroid later
-    reg [1:0] state;
+    // ---- Reciprocal
     reg inverting;
-    reg divide_start;
-    reg [47:0] moment;
     wire divide_done;
     wire [63:0] quotient;
     wire invert = (prepare == 3'd6);
-    wire [23:0] centroid = (weight_sum == 48'd0) ? 24'd0 : quotient[23:0];
-
-    assign done = (state == DIVIDE_Y) && divide_done;
 
     sptfra_divider divider (
         .clock       (clock),
         .reset       (reset),
-        .start       (divide_start || invert),
-        .numerator   (invert ? NUMERATOR : {moment, 16'd0}),
-        .denominator (invert ? {8'd0, normalised} : weight_sum),
+        .start       (invert),
+        .numerator   (NUMERATOR),
+        .denominator ({8'd0, normalised}),
         .quotient    (quotient),
         .done        (divide_done)
     );
@@ -94,36 +78,6 @@ module sptfra_look_scale (
         if (reset) begin
             prepare <= 3'd0;
             inverting <= 1'b0;
-        end
-    end
-
-    always @(posedge clock) begin
-        divide_start <= 1'b0;
-        moment <= (state == DIVIDE_X) ? moment_y : moment_x;
-        case (state)
-            IDLE: begin
-                if (divide) begin
-                    divide_start <= 1'b1;
-                    state <= DIVIDE_X;
-                end
-            end
-            DIVIDE_X: begin
-                if (divide_done) begin
-                    centroid_x <= centroid;
-                    divide_start <= 1'b1;
-                    state <= DIVIDE_Y;
-                end
-            end
-            default: begin
-                if (divide_done) begin
-                    centroid_y <= centroid;
-                    state <= IDLE;
-                end
-            end
-        endcase
-        if (reset) begin
-            state <= IDLE;
-            divide_start <= 1'b0;
         end
     end
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The stress of the normal forces alone, taxel by taxel: n = u0 + mu_x u1 + mu_y u2 at the centroid of the level set.
+// The stress of the normal forces alone, a quad in two cycles: n = u0 + mu_x u1 + mu_y u2 at the centroid of the level
+// set, a quarter as fine as u.
 //
-// Three cycles a taxel on one multiplier; n is a quarter as fine as u. Out come n as a share of sum |b|, times 16, with
-// 19 fraction bits, and the moments of the compression. From start to done: three cycles a taxel, and 13.
+// Out come n as a share of sum |b|, times 16, with 19 fraction bits, and the moments of the compression. From start to
+// done: two cycles a quad, and 10.
 
 `default_nettype none
 
@@ -15,32 +16,26 @@ module sptfra_look_stress #(
     parameter integer ROWS = 10,
     // Bits of the number of a quad
     parameter integer ROW_WIDTH = 5,
-    // Bits of a taxel's place along x and along y
-    parameter integer X_WIDTH = 4,
-    parameter integer Y_WIDTH = 4,
     // Left shift of n times the reciprocal, before the right shift by the bits of sum |b|
     parameter integer STRESS_LEFT = 9
 ) (
     input  wire clock,
     input  wire reset,
-    // A frame: its sum |b| is inverted meanwhile
-    input  wire clear,
+    // 1 / sum |b|, held as the friction is
     input  wire [5:0] sum_bits,
-    input  wire signed [17:0] reciprocal,
-    // Its centroid of the level set is there, and held
+    input  wire signed [17:0] reciprocal, // 2^-(16 + sum_bits) a step
+    // The centroid of the level set is there, and held
     input  wire start,
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
-    // u_q of the taxels, three cycles after they are asked for
+    // u_q of a quad's taxels, a cycle after they are asked for
     output reg  [ROW_WIDTH-1:0] u_quad,
-    output reg  [1:0] u_member,
-    output reg  [1:0] u_q,
-    input  wire signed [26:0] u_value,
-    // Shares of the taxels
+    input  wire [3*4*27-1:0] u_values,
+    // Shares of a quad's taxels
     output wire share_valid,
-    output wire [Y_WIDTH+X_WIDTH-1:0] share_place, // {y, x}
-    output reg  [24:0] share,
-    // Moments of the compression, held until the next clear
+    output wire [ROW_WIDTH-1:0] share_quad,
+    output wire [4*25-1:0] shares,
+    // Moments of the compression, held until the next start
     output wire done, // all are in; one cycle
     output reg  [47:0] weight_sum,
     output reg  [47:0] moment_x,
@@ -49,7 +44,9 @@ module sptfra_look_stress #(
 );
 
     localparam integer QUAD_COLUMNS = (COLUMNS + 1) / 2;
-    localparam integer QUAD_ROWS = (ROWS + 1) / 2;
+    localparam integer QUADS = QUAD_COLUMNS * ((ROWS + 1) / 2);
+    localparam integer LAST_QUAD = QUADS - 1;
+    localparam integer LAST_QUAD_COLUMN = QUAD_COLUMNS - 1;
     localparam integer LAST_COLUMN = COLUMNS - 1;
     localparam integer LAST_ROW = ROWS - 1;
     // 16 fraction bits of the friction, two by which n is coarser than u
@@ -57,220 +54,210 @@ module sptfra_look_stress #(
     localparam signed [47:0] NORMAL_HALF = 48'sd1 <<< (NORMAL_SHIFT - 1);
     localparam integer STRESS_BITS = 25; // of a share
     localparam integer SHARE_BITS = 45 + STRESS_LEFT; // before it is clipped
-    localparam signed [17:0] ONE = 18'sd65536;
+    localparam integer STAGES = 11; // from a quad's second cycle to its shares
+    localparam integer SUMMED = 10; // ... to its moments being in
+    localparam integer INDEX_WIDTH = 6; // of a column and of a row
 
-    localparam [1:0] IDLE = 2'd0, TAXELS = 2'd1, DRAIN = 2'd2;
-
-    reg [1:0] state;
-    reg [3:0] wait_count;
-
-    // ---- Taxels in the order of the grid, three cycles each
-    reg [X_WIDTH-1:0] x;
-    reg [Y_WIDTH-1:0] y;
-    reg [1:0] q;
-    wire asking = (state == TAXELS);
-    wire last_x = (x == LAST_COLUMN[X_WIDTH-1:0]);
-    wire last_taxel = last_x && (y == LAST_ROW[Y_WIDTH-1:0]) && (q == 2'd2);
-    wire far_x = (x >= QUAD_COLUMNS[X_WIDTH-1:0]);
-    wire far_y = (y >= QUAD_ROWS[Y_WIDTH-1:0]);
-    wire [X_WIDTH-1:0] quad_x = far_x ? LAST_COLUMN[X_WIDTH-1:0] - x : x;
-    wire [Y_WIDTH-1:0] quad_y = far_y ? LAST_ROW[Y_WIDTH-1:0] - y : y;
-    wire [47:0] row_base;
-    wire [15:0] quad = row_base[15:0] + { {(16 - X_WIDTH){1'b0}}, quad_x};
-    reg [3:1] asked; // index k: k cycles after the counters
-    reg [3:1] firsts;
-    reg [6:1] lasts; // of a taxel's three
-    reg [1:0] q_2;
-    reg [1:0] q_3;
-
-    sptfra_times_index #(
-        .INDEX_WIDTH (Y_WIDTH)
-    ) times_row (
-        .number  (QUAD_COLUMNS[26:0]),
-        .index   (quad_y),
-        .product (row_base)
-    );
+    // ---- Quads, two cycles each: u1, then u2. Index k: k cycles after the counters
+    reg running;
+    reg second; // of a quad's cycles
+    wire last_cycle = second && (u_quad == LAST_QUAD[ROW_WIDTH-1:0]);
+    reg first_1;
+    reg [STAGES:1] seconds;
+    reg [SUMMED:1] lasts;
 
     always @(posedge clock) begin
-        if (asking) begin
-            q <= (q == 2'd2) ? 2'd0 : q + 2'd1;
-            if (q == 2'd2) begin
-                x <= last_x ? {X_WIDTH{1'b0}} : x + 1'b1;
-                y <= last_x ? y + 1'b1 : y;
-            end
-        end else begin
-            q <= 2'd0;
-            x <= {X_WIDTH{1'b0}};
-            y <= {Y_WIDTH{1'b0}};
+        if (running) begin
+            second <= !second;
+            u_quad <= second ? u_quad + 1'b1 : u_quad;
         end
-        u_quad <= quad[ROW_WIDTH-1:0];
-        u_member <= {far_y, far_x};
-        u_q <= q;
-        {q_3, q_2} <= {q_2, u_q};
-        asked <= {asked[2:1], asking};
-        firsts <= {firsts[2:1], q == 2'd0};
-        lasts <= {lasts[5:1], asking && (q == 2'd2)};
+        if (running && last_cycle) begin
+            running <= 1'b0;
+        end
+        if (start) begin
+            running <= 1'b1;
+            second <= 1'b0;
+            u_quad <= {ROW_WIDTH{1'b0}};
+        end
+        first_1 <= running && !second;
+        seconds <= {seconds[STAGES-1:1], running && second};
+        lasts <= {lasts[SUMMED-1:1], running && last_cycle};
         if (reset) begin
-            asked <= 3'd0;
-            lasts <= 6'd0;
+            running <= 1'b0;
+            first_1 <= 1'b0;
+            seconds <= {STAGES{1'b0}};
+            lasts <= {SUMMED{1'b0}};
         end
     end
 
-    // ---- Stress of the normal forces
-    wire signed [47:0] exact;
-    wire signed [47:0] rounded = exact + NORMAL_HALF;
-    reg signed [26:0] normal;
-    reg signed [17:0] factor;
+    assign done = lasts[SUMMED];
 
-    always @(*) begin
-        case (q_3)
-            2'd0: factor = ONE;
-            2'd1: factor = mu_x;
-            default: factor = mu_y;
-        endcase
-    end
+    // ---- Stress of the normal forces: there five cycles after a quad's second one, and for two
+    wire [4*27-1:0] normals;
+    wire [4*27-1:0] compressions; // a cycle later
 
-    sptfra_mac normal_mac (
-        .clock       (clock),
-        .reset       (reset),
-        .valid       (asked[3]),
-        .first       (firsts[3]),
-        .coefficient (factor),
-        .data        (u_value),
-        .accumulator (exact)
-    );
+    genvar index;
 
-    // ---- Compression and its moments. Index k: k cycles after a taxel's sum
-    reg [6:1] there;
-    reg [X_WIDTH-1:0] x_2;
-    reg [Y_WIDTH-1:0] y_2;
-    wire last_x_2 = (x_2 == LAST_COLUMN[X_WIDTH-1:0]);
-    reg [26:0] weight_2;
-    wire [47:0] moment_x_2;
-    wire [47:0] moment_y_2;
-    reg [47:0] weight_3;
-    reg [47:0] moment_x_3;
-    reg [47:0] moment_y_3;
+    generate
+        for (index = 0; index < 4; index = index + 1) begin : gen_members
+            wire signed [26:0] u0 = u_values[27*index +: 27];
+            wire signed [26:0] u1 = u_values[27*(4 + index) +: 27];
+            wire signed [26:0] u2 = u_values[27*(8 + index) +: 27];
+            reg signed [26:0] u0_2; // from two cycles after the second one of its quad on
+            reg signed [26:0] u0_4;
+            wire signed [47:0] friction;
+            wire signed [47:0] rounded = friction + { {5{u0_4[26]}}, u0_4, 16'd0} + NORMAL_HALF;
+            reg signed [26:0] normal;
+            reg signed [26:0] compression;
+
+            sptfra_mac with_friction (
+                .clock       (clock),
+                .reset       (reset),
+                .valid       (first_1 || seconds[1]),
+                .first       (first_1),
+                .coefficient (first_1 ? mu_x : mu_y),
+                .data        (first_1 ? u1 : u2),
+                .accumulator (friction)
+            );
+
+            always @(posedge clock) begin
+                if (seconds[1]) begin
+                    u0_2 <= u0;
+                end
+                if (seconds[3]) begin
+                    u0_4 <= u0_2;
+                end
+                if (seconds[4]) begin
+                    normal <= rounded[NORMAL_SHIFT +: 27];
+                end
+                compression <= normal[26] ? -normal : 27'd0;
+            end
+
+            assign normals[27*index +: 27] = normal;
+            assign compressions[27*index +: 27] = compression;
+
+            wire _unused = &{1'b0, rounded};
+        end
+    endgenerate
+
+    // ---- Moments of the compression, index k: k cycles after a quad's second one. One half of a quad, then the other
+    reg [26:0] at_left; // two compressions: of three stresses added up, a quarter as fine
+    reg [26:0] at_right;
+    reg [26:0] at_top;
+    reg [26:0] at_bottom;
+    reg [INDEX_WIDTH-1:0] column; // of the quad
+    reg [INDEX_WIDTH-1:0] row;
+    wire last_column = (column == LAST_QUAD_COLUMN[INDEX_WIDTH-1:0]);
+    wire other_half = seconds[8];
+    wire [26:0] along_x = other_half ? at_right : at_left;
+    wire [26:0] along_y = other_half ? at_bottom : at_top;
+    wire [47:0] moment_x_8;
+    wire [47:0] moment_y_8;
+    reg [47:0] weight_9;
+    reg [47:0] moment_x_9;
+    reg [47:0] moment_y_9;
 
     sptfra_times_index #(
-        .INDEX_WIDTH (X_WIDTH)
+        .INDEX_WIDTH (INDEX_WIDTH)
     ) times_x (
-        .number  (weight_2),
-        .index   (x_2),
-        .product (moment_x_2)
+        .number  (along_x),
+        .index   (other_half ? LAST_COLUMN[INDEX_WIDTH-1:0] - column : column),
+        .product (moment_x_8)
     );
 
     sptfra_times_index #(
-        .INDEX_WIDTH (Y_WIDTH)
+        .INDEX_WIDTH (INDEX_WIDTH)
     ) times_y (
-        .number  (weight_2),
-        .index   (y_2),
-        .product (moment_y_2)
+        .number  (along_y),
+        .index   (other_half ? LAST_ROW[INDEX_WIDTH-1:0] - row : row),
+        .product (moment_y_8)
     );
 
     always @(posedge clock) begin
-        there <= {there[5:1], lasts[6]};
-        normal <= rounded[NORMAL_SHIFT +: 27];
-        weight_2 <= normal[26] ? -normal : 27'd0;
-        weight_3 <= {21'd0, weight_2};
-        moment_x_3 <= moment_x_2;
-        moment_y_3 <= moment_y_2;
-        if (there[2]) begin
-            x_2 <= last_x_2 ? {X_WIDTH{1'b0}} : x_2 + 1'b1;
-            y_2 <= last_x_2 ? y_2 + 1'b1 : y_2;
+        at_left <= compressions[27*0 +: 27] + compressions[27*2 +: 27];
+        at_right <= compressions[27*1 +: 27] + compressions[27*3 +: 27];
+        at_top <= compressions[27*0 +: 27] + compressions[27*1 +: 27];
+        at_bottom <= compressions[27*2 +: 27] + compressions[27*3 +: 27];
+        weight_9 <= {21'd0, along_x};
+        moment_x_9 <= moment_x_8;
+        moment_y_9 <= moment_y_8;
+        if (other_half) begin
+            column <= last_column ? {INDEX_WIDTH{1'b0}} : column + 1'b1;
+            row <= last_column ? row + 1'b1 : row;
         end
-        if (there[3]) begin
-            weight_sum <= weight_sum + weight_3;
-            moment_x <= moment_x + moment_x_3;
-            moment_y <= moment_y + moment_y_3;
+        if (seconds[8] || seconds[9]) begin
+            weight_sum <= weight_sum + weight_9;
+            moment_x <= moment_x + moment_x_9;
+            moment_y <= moment_y + moment_y_9;
         end
-        if (clear) begin
-            x_2 <= {X_WIDTH{1'b0}};
-            y_2 <= {Y_WIDTH{1'b0}};
+        if (start) begin
+            column <= {INDEX_WIDTH{1'b0}};
+            row <= {INDEX_WIDTH{1'b0}};
             weight_sum <= 48'd0;
             moment_x <= 48'd0;
             moment_y <= 48'd0;
         end
-        if (reset) begin
-            there <= 6'd0;
-        end
     end
 
-    // ---- Share of sum |b|, clipped
-    wire signed [44:0] product_low_2; // the product is their sum
-    wire signed [44:0] product_high_2;
-    wire signed [44:0] product_2 = product_low_2 + product_high_2;
-    wire signed [SHARE_BITS-1:0] wide_2 = { {(STRESS_LEFT + 1){product_2[44]}}, product_2[43:0]};
-    reg signed [SHARE_BITS-1:0] share_3;
-    reg signed [SHARE_BITS-1:0] share_4;
-    reg signed [SHARE_BITS-1:0] share_5;
-    wire sign_5 = share_5[SHARE_BITS-1];
-    // Not the most negative number either: the sum of four would leave its width
-    wire fits_5 = (share_5[SHARE_BITS-1:STRESS_BITS-1] == {(SHARE_BITS - STRESS_BITS + 1){sign_5}})
-        && (share_5[STRESS_BITS-1:0] != {1'b1, {(STRESS_BITS - 1){1'b0}}});
-    reg [Y_WIDTH+X_WIDTH-1:0] place_3;
-    reg [Y_WIDTH+X_WIDTH-1:0] place_4;
-    reg [Y_WIDTH+X_WIDTH-1:0] place_5;
-    reg [Y_WIDTH+X_WIDTH-1:0] place_6;
+    // ---- Shares of sum |b|, clipped: of members 0 and 1 first, then of 2 and 3
+    wire [2*STRESS_BITS-1:0] pair;
+    wire [1:0] fits;
+    reg [2*STRESS_BITS-1:0] first_pair;
+    reg [ROW_WIDTH-1:0] quad_11;
 
-    sptfra_multiply share_multiplier (
-        .clock       (clock),
-        .enable      (1'b1),
-        .coefficient (reciprocal),
-        .data        (normal),
-        .low         (product_low_2),
-        .high        (product_high_2)
-    );
+    generate
+        for (index = 0; index < 2; index = index + 1) begin : gen_shares
+            wire signed [44:0] product_low; // the product is their sum
+            wire signed [44:0] product_high;
+            wire signed [44:0] product = product_low + product_high;
+            wire signed [SHARE_BITS-1:0] wide = { {(STRESS_LEFT + 1){product[44]}}, product[43:0]};
+            reg signed [SHARE_BITS-1:0] scaled;
+            reg signed [SHARE_BITS-1:0] octets;
+            reg signed [SHARE_BITS-1:0] exact;
+            reg [STRESS_BITS-1:0] share;
+            wire sign = exact[SHARE_BITS-1];
 
-    assign share_valid = there[6];
-    assign share_place = place_6;
+            // Not the most negative number either: the sum of four would leave its width
+            assign fits[index] = (exact[SHARE_BITS-1:STRESS_BITS-1] == {(SHARE_BITS - STRESS_BITS + 1){sign}})
+                && (exact[STRESS_BITS-1:0] != {1'b1, {(STRESS_BITS - 1){1'b0}}});
+
+            sptfra_multiply multiplier (
+                .clock       (clock),
+                .enable      (1'b1),
+                .coefficient (reciprocal),
+                .data        (seconds[5] ? normals[27*index +: 27] : normals[27*(2 + index) +: 27]),
+                .low         (product_low),
+                .high        (product_high)
+            );
+
+            always @(posedge clock) begin
+                scaled <= wide <<< STRESS_LEFT;
+                octets <= scaled >>> {sum_bits[5:3], 3'd0};
+                exact <= octets >>> sum_bits[2:0];
+                share <= fits[index] ? exact[STRESS_BITS-1:0] : {sign, {(STRESS_BITS - 2){!sign}}, 1'b1};
+            end
+
+            assign pair[STRESS_BITS*index +: STRESS_BITS] = share;
+        end
+    endgenerate
+
+    assign share_valid = seconds[11];
+    assign share_quad = quad_11;
+    assign shares = {pair, first_pair};
 
     always @(posedge clock) begin
-        share_3 <= wide_2 <<< STRESS_LEFT;
-        share_4 <= share_3 >>> {sum_bits[5:3], 3'd0};
-        share_5 <= share_4 >>> sum_bits[2:0];
-        share <= fits_5 ? share_5[STRESS_BITS-1:0] : {sign_5, {(STRESS_BITS - 2){!sign_5}}, 1'b1};
-        place_3 <= {y_2, x_2};
-        place_4 <= place_3;
-        place_5 <= place_4;
-        place_6 <= place_5;
-        if (there[5] && !fits_5) begin
+        first_pair <= pair;
+        if (seconds[11]) begin
+            quad_11 <= quad_11 + 1'b1;
+        end
+        if ((seconds[9] || seconds[10]) && (fits != 2'b11)) begin
             saturated <= 1'b1;
         end
-        if (clear) begin
+        if (start) begin
+            quad_11 <= {ROW_WIDTH{1'b0}};
             saturated <= 1'b0;
         end
     end
-
-    // ---- Sequence
-    assign done = (state == DRAIN) && (wait_count == 4'd12);
-
-    always @(posedge clock) begin
-        wait_count <= wait_count + 4'd1;
-        case (state)
-            IDLE: begin
-                if (start) begin
-                    state <= TAXELS;
-                end
-            end
-            TAXELS: begin
-                wait_count <= 4'd0;
-                if (last_taxel) begin
-                    state <= DRAIN;
-                end
-            end
-            default: begin
-                if (done) begin
-                    state <= IDLE;
-                end
-            end
-        endcase
-        if (reset) begin
-            state <= IDLE;
-        end
-    end
-
-    wire _unused = &{1'b0, row_base, quad, rounded};
 
 endmodule
 

@@ -5,7 +5,7 @@
 //
 // The centroid of the compression, to the next taxel, is the middle of a window of 2 HALF_X + 1 by 2 HALF_Y + 1 taxels.
 // A word of four classes for each of its places comes first; then follow 1, mu_x, mu_y and what is left of a pitch. All
-// have 19 fraction bits. From start to done: 16 cycles, four for each place, and one for each word behind.
+// have 19 fraction bits. From start to done: 10 cycles, and one for each word.
 
 `default_nettype none
 
@@ -14,9 +14,8 @@ module sptfra_look_window #(
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Bits of a taxel's place along x and along y
-    parameter integer X_WIDTH = 4,
-    parameter integer Y_WIDTH = 4,
+    // Bits of the number of a quad
+    parameter integer ROW_WIDTH = 5,
     // Taxels on either side of the window's middle
     parameter integer HALF_X = 4,
     parameter integer HALF_Y = 4,
@@ -27,15 +26,14 @@ module sptfra_look_window #(
 ) (
     input  wire clock,
     input  wire reset,
-    // Shares of the taxels
+    // Shares of a quad's taxels, member 0 in the lowest bits
     input  wire share_valid,
-    input  wire [Y_WIDTH+X_WIDTH-1:0] share_place, // {y, x}
-    input  wire [24:0] share,
-    // A new frame; then its centroid is there, the cycle after start, and held
-    input  wire clear,
+    input  wire [ROW_WIDTH-1:0] share_quad,
+    input  wire [4*25-1:0] shares,
+    // All shares are in; the centroid is there, and held
     input  wire start,
-    input  wire [23:0] centroid_x, // 16 fraction bits
-    input  wire [23:0] centroid_y,
+    input  wire [21:0] centroid_x, // 16 fraction bits
+    input  wire [21:0] centroid_y,
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
     // Inputs of the network
@@ -50,16 +48,20 @@ module sptfra_look_window #(
     localparam integer FINER = 3; // bits by which an input is finer than a friction component
     localparam [INPUT_BITS-1:0] INPUT_ONE = 27'd524288;
     // From here on a centre belongs to the next taxel, 16 fraction bits: a little more than half, for ties
-    localparam [23:0] CENTRE_HALF = 24'd32832;
+    localparam [21:0] CENTRE_HALF = 22'd32832;
     localparam integer PX_WIDTH = (HALF_X < 2) ? 1 : $clog2(HALF_X + 1);
     localparam integer PY_WIDTH = (HALF_Y < 2) ? 1 : $clog2(HALF_Y + 1);
     localparam integer PLACES = (HALF_X + 1) * (HALF_Y + 1);
     localparam integer LAST_OF_WINDOW = PLACES - 1;
     localparam integer LAST_BUT_ONE = LENGTH - 2;
-    localparam [9:0] GRID_COLUMNS = COLUMNS[9:0];
-    localparam [9:0] GRID_ROWS = ROWS[9:0];
+    localparam integer QUAD_COLUMNS = (COLUMNS + 1) / 2;
+    localparam integer QUAD_ROWS = (ROWS + 1) / 2;
+    localparam integer LAST_COLUMN = COLUMNS - 1;
+    localparam integer LAST_ROW = ROWS - 1;
+    localparam [8:0] GRID_COLUMNS = COLUMNS[8:0];
+    localparam [8:0] GRID_ROWS = ROWS[8:0];
 
-    localparam [1:0] IDLE = 2'd0, FLUSH = 2'd1, WINDOW = 2'd2, REST = 2'd3;
+    localparam [2:0] IDLE = 3'd0, CENTRE = 3'd1, WINDOW = 3'd2, FLUSH = 3'd3, REST = 3'd4;
 
     generate
         if (LENGTH < PLACES + 2) begin : gen_check
@@ -67,88 +69,162 @@ module sptfra_look_window #(
         end
     endgenerate
 
-    reg [1:0] state;
-    reg [3:0] wait_count;
+    reg [2:0] state;
+    reg [2:0] wait_count;
 
     // ---- The taxel next to the centre, and what is left of a pitch
-    wire [23:0] shifted_x = centroid_x + CENTRE_HALF;
-    wire [23:0] shifted_y = centroid_y + CENTRE_HALF;
+    wire [21:0] shifted_x = centroid_x + CENTRE_HALF;
+    wire [21:0] shifted_y = centroid_y + CENTRE_HALF;
     reg signed [9:0] centre_x;
     reg signed [9:0] centre_y;
     reg signed [17:0] left_x;
     reg signed [17:0] left_y;
 
     always @(posedge clock) begin
-        centre_x <= {2'd0, shifted_x[23:16]};
-        centre_y <= {2'd0, shifted_y[23:16]};
+        centre_x <= {4'd0, shifted_x[21:16]};
+        centre_y <= {4'd0, shifted_y[21:16]};
         left_x <= {2'd0, centroid_x[15:0]} - {1'b0, centre_x[0] ^ centroid_x[16], 16'd0};
         left_y <= {2'd0, centroid_y[15:0]} - {1'b0, centre_y[0] ^ centroid_y[16], 16'd0};
     end
 
-    // ---- Window: four members of each place; beyond the grid, and where members coincide, zero
-    reg [1:0] member;
+    // ---- Places of a quarter of the window, and where their members stand; index k: k cycles after the counters
     reg [PX_WIDTH-1:0] place_x;
     reg [PY_WIDTH-1:0] place_y;
     wire reading = (state == WINDOW);
     wire last_place_x = (place_x == HALF_X[PX_WIDTH-1:0]);
-    wire last_place = last_place_x && (place_y == HALF_Y[PY_WIDTH-1:0]) && (member == 2'd3);
+    wire last_place = last_place_x && (place_y == HALF_Y[PY_WIDTH-1:0]);
     wire signed [9:0] distance_x = { {(10 - PX_WIDTH){1'b0}}, place_x};
     wire signed [9:0] distance_y = { {(10 - PY_WIDTH){1'b0}}, place_y};
-    reg signed [9:0] at_x;
-    reg signed [9:0] at_y;
-    reg coincides_1;
-    wire inside_x_1 = !at_x[9] && (at_x[8:0] < GRID_COLUMNS[8:0]);
-    wire inside_y_1 = !at_y[9] && (at_y[8:0] < GRID_ROWS[8:0]);
-    reg inside_2;
-    wire [STRESS_BITS-1:0] value_2;
-    reg [4*STRESS_BITS-1:0] members_3;
-    wire [4*INPUT_BITS-1:0] folded_5;
-    reg [5:1] place_ends; // index k: k cycles after the last member's counters
+    reg [7:1] there; // a place
 
-    sptfra_ram #(
-        .WIDTH         (STRESS_BITS),
-        .DEPTH         (ROWS << X_WIDTH),
-        .ADDRESS_WIDTH (Y_WIDTH + X_WIDTH)
-    ) seen (
-        .clock         (clock),
-        .write_enable  (share_valid),
-        .write_address (share_place),
-        .write_data    (share),
-        .read_enable   (1'b1),
-        .read_address  ({at_y[Y_WIDTH-1:0], at_x[X_WIDTH-1:0]}),
-        .read_data     (value_2)
-    );
+    always @(posedge clock) begin
+        if (reading) begin
+            place_x <= last_place_x ? {PX_WIDTH{1'b0}} : place_x + 1'b1;
+            place_y <= last_place_x ? place_y + 1'b1 : place_y;
+        end else begin
+            place_x <= {PX_WIDTH{1'b0}};
+            place_y <= {PY_WIDTH{1'b0}};
+        end
+        there <= {there[6:1], reading};
+        if (reset) begin
+            there <= 7'd0;
+        end
+    end
+
+    // Along each axis, the side that grows and the mirrored one: the quad's column and row, whether the taxel is in the
+    // far half of the grid, and whether it is one at all. On the middle of the window both sides coincide, and only the
+    // first one counts
+    wire [9:0] column_2 [0:1];
+    wire [9:0] row_2 [0:1];
+    wire [1:0] far_x_2;
+    wire [1:0] far_y_2;
+    wire [1:0] inside_x_2;
+    wire [1:0] inside_y_2;
+
+    genvar side;
+
+    generate
+        for (side = 0; side < 2; side = side + 1) begin : gen_sides
+            reg signed [9:0] at_x;
+            reg signed [9:0] at_y;
+            reg counts_x;
+            reg counts_y;
+            wire in_far_x = (at_x[8:0] >= QUAD_COLUMNS[8:0]);
+            wire in_far_y = (at_y[8:0] >= QUAD_ROWS[8:0]);
+            reg [9:0] column;
+            reg [9:0] row;
+            reg far_x;
+            reg far_y;
+            reg inside_x;
+            reg inside_y;
+
+            always @(posedge clock) begin
+                at_x <= (side == 0) ? centre_x + distance_x : centre_x - distance_x;
+                at_y <= (side == 0) ? centre_y + distance_y : centre_y - distance_y;
+                counts_x <= (side == 0) || (place_x != {PX_WIDTH{1'b0}});
+                counts_y <= (side == 0) || (place_y != {PY_WIDTH{1'b0}});
+                column <= in_far_x ? LAST_COLUMN[9:0] - at_x : at_x;
+                row <= in_far_y ? LAST_ROW[9:0] - at_y : at_y;
+                far_x <= in_far_x;
+                far_y <= in_far_y;
+                inside_x <= counts_x && !at_x[9] && (at_x[8:0] < GRID_COLUMNS);
+                inside_y <= counts_y && !at_y[9] && (at_y[8:0] < GRID_ROWS);
+            end
+
+            assign column_2[side] = column;
+            assign row_2[side] = row;
+            assign far_x_2[side] = far_x;
+            assign far_y_2[side] = far_y;
+            assign inside_x_2[side] = inside_x;
+            assign inside_y_2[side] = inside_y;
+        end
+    endgenerate
+
+    // ---- Members: the share of the quad's taxel in the right quarter of the grid, each from memories of its own
+    wire [4*STRESS_BITS-1:0] members_5;
+    wire [4*INPUT_BITS-1:0] folded_7;
+
+    genvar member;
+    genvar quarter;
+
+    generate
+        for (member = 0; member < 4; member = member + 1) begin : gen_members
+            wire [47:0] row_base;
+            wire [31:0] quad_2 = row_base[31:0] + {22'd0, column_2[member % 2]};
+            reg [ROW_WIDTH-1:0] quad_3;
+            reg [1:0] quarter_3;
+            reg [1:0] quarter_4;
+            reg inside_3;
+            reg inside_4;
+            wire [STRESS_BITS-1:0] seen_4 [0:3];
+            reg [STRESS_BITS-1:0] value_5;
+
+            sptfra_times_index #(
+                .INDEX_WIDTH (6)
+            ) times_row (
+                .number  (QUAD_COLUMNS[26:0]),
+                .index   (row_2[member / 2][5:0]),
+                .product (row_base)
+            );
+
+            for (quarter = 0; quarter < 4; quarter = quarter + 1) begin : gen_quarters
+                sptfra_ram #(
+                    .WIDTH         (STRESS_BITS),
+                    .DEPTH         (QUAD_COLUMNS * QUAD_ROWS),
+                    .ADDRESS_WIDTH (ROW_WIDTH)
+                ) seen (
+                    .clock         (clock),
+                    .write_enable  (share_valid),
+                    .write_address (share_quad),
+                    .write_data    (shares[STRESS_BITS*quarter +: STRESS_BITS]),
+                    .read_enable   (1'b1),
+                    .read_address  (quad_3),
+                    .read_data     (seen_4[quarter])
+                );
+            end
+
+            always @(posedge clock) begin
+                quad_3 <= quad_2[ROW_WIDTH-1:0];
+                quarter_3 <= {far_y_2[member / 2], far_x_2[member % 2]};
+                quarter_4 <= quarter_3;
+                inside_3 <= inside_x_2[member % 2] && inside_y_2[member / 2];
+                inside_4 <= inside_3;
+                value_5 <= inside_4 ? seen_4[quarter_4] : {STRESS_BITS{1'b0}};
+            end
+
+            assign members_5[STRESS_BITS*member +: STRESS_BITS] = value_5;
+
+            wire _unused = &{1'b0, row_base, quad_2, row_2[member / 2]};
+        end
+    endgenerate
 
     sptfra_butterfly #(
         .WIDTH (STRESS_BITS)
     ) fold (
         .clock  (clock),
-        .values (members_3),
-        .sums   (folded_5)
+        .values (members_5),
+        .sums   (folded_7)
     );
-
-    always @(posedge clock) begin
-        if (reading) begin
-            member <= member + 2'd1;
-            if (member == 2'd3) begin
-                place_x <= last_place_x ? {PX_WIDTH{1'b0}} : place_x + 1'b1;
-                place_y <= last_place_x ? place_y + 1'b1 : place_y;
-            end
-        end else begin
-            member <= 2'd0;
-            place_x <= {PX_WIDTH{1'b0}};
-            place_y <= {PY_WIDTH{1'b0}};
-        end
-        at_x <= member[0] ? centre_x - distance_x : centre_x + distance_x;
-        at_y <= member[1] ? centre_y - distance_y : centre_y + distance_y;
-        coincides_1 <= (member[0] && (place_x == {PX_WIDTH{1'b0}})) || (member[1] && (place_y == {PY_WIDTH{1'b0}}));
-        inside_2 <= !coincides_1 && inside_x_1 && inside_y_1;
-        members_3 <= {inside_2 ? value_2 : {STRESS_BITS{1'b0}}, members_3[4*STRESS_BITS-1:STRESS_BITS]};
-        place_ends <= {place_ends[4:1], reading && (member == 2'd3)};
-        if (reset) begin
-            place_ends <= 5'd0;
-        end
-    end
 
     // ---- What goes to the network: the window, then the rest
     wire [INPUT_BITS-1:0] input_mu_x = { {(9 - FINER){mu_x[17]}}, mu_x, {FINER{1'b0}}};
@@ -156,9 +232,8 @@ module sptfra_look_window #(
     wire [INPUT_BITS-1:0] input_left_x = { {(9 - FINER){left_x[17]}}, left_x, {FINER{1'b0}}};
     wire [INPUT_BITS-1:0] input_left_y = { {(9 - FINER){left_y[17]}}, left_y, {FINER{1'b0}}};
     localparam [INPUT_BITS-1:0] ZERO = {INPUT_BITS{1'b0}};
-
     reg first_word;
-    wire next_word = place_ends[5] || (state == REST);
+    wire next_word = there[7] || (state == REST);
     wire last_word = (input_word == LAST_BUT_ONE[WORD_WIDTH-1:0]); // the last but one is out
 
     always @(posedge clock) begin
@@ -168,7 +243,7 @@ module sptfra_look_window #(
             input_word <= first_word ? {WORD_WIDTH{1'b0}} : input_word + 1'b1;
             first_word <= 1'b0;
         end
-        input_values <= folded_5;
+        input_values <= folded_7;
         if (state == REST) begin
             if (input_word == LAST_OF_WINDOW[WORD_WIDTH-1:0]) begin
                 input_values <= {ZERO, input_mu_y, input_mu_x, INPUT_ONE};
@@ -178,7 +253,7 @@ module sptfra_look_window #(
                 input_values <= {4{ZERO}};
             end
         end
-        if (clear) begin
+        if (start) begin
             first_word <= 1'b1;
         end
         if (reset) begin
@@ -189,23 +264,28 @@ module sptfra_look_window #(
 
     // ---- Sequence
     always @(posedge clock) begin
-        wait_count <= wait_count + 4'd1;
+        wait_count <= wait_count + 3'd1;
         case (state)
             IDLE: begin
-                wait_count <= 4'd0;
+                wait_count <= 3'd0;
                 if (start) begin
-                    state <= FLUSH;
+                    state <= CENTRE;
                 end
             end
-            FLUSH: begin // the centre is there after two cycles, and the window's last place after six
-                if (wait_count == 4'd7) begin
-                    state <= first_word ? WINDOW : REST;
+            CENTRE: begin // there after two cycles
+                if (wait_count == 3'd1) begin
+                    state <= WINDOW;
                 end
             end
             WINDOW: begin
-                wait_count <= 4'd0;
+                wait_count <= 3'd0;
                 if (last_place) begin
                     state <= FLUSH;
+                end
+            end
+            FLUSH: begin // the last place
+                if (wait_count == 3'd6) begin
+                    state <= REST;
                 end
             end
             default: begin
@@ -219,7 +299,7 @@ module sptfra_look_window #(
         end
     end
 
-    wire _unused = &{1'b0, shifted_x, shifted_y, centroid_x, centroid_y, at_x, at_y};
+    wire _unused = &{1'b0, shifted_x, shifted_y, centroid_x, centroid_y};
 
 endmodule
 

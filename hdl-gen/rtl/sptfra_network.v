@@ -3,9 +3,10 @@
 //
 // The network of the correction: one layer of hinges, then two sums, as a mean over its input's four mirror images.
 //
-// The input stands in the basis of the parity classes, and so do the weights: one pass gives four classes' sums of four
-// hidden units, which a butterfly turns into the units of the four images. PASSES passes of LENGTH words, 16 MACs. From
-// start to done: a cycle for each word of each pass, and 18.
+// The input stands in the basis of the parity classes, and so do the weights: one pass gives four classes' sums of
+// AT_ONCE hidden units, which a butterfly turns into the units of the four images, one after the other. PASSES passes
+// of LENGTH words, four MACs a unit. From start to done: a cycle for each word of each pass, one for each unit of one,
+// and 14.
 
 `default_nettype none
 
@@ -14,8 +15,9 @@ module sptfra_network #(
     parameter integer LENGTH = 32,
     // Bits of a word's number
     parameter integer WORD_WIDTH = 5,
-    // Passes, each for four hidden units
+    // Passes, and hidden units in each, a power of two from 4 on
     parameter integer PASSES = 4,
+    parameter integer AT_ONCE = 4,
     // Bits dropped from a class's sum
     parameter integer UNIT_SHIFT = 12,
     // Bits dropped from the sum of the output; negative: added
@@ -42,8 +44,10 @@ module sptfra_network #(
 
     localparam integer INPUT_BITS = 27;
     localparam integer UNIT_BITS = 26; // of a hidden unit before the hinge
-    localparam integer SUMS = 16; // four units by four classes
-    localparam integer UNITS = 4 * PASSES;
+    localparam integer SUMS = 4 * AT_ONCE; // units by four classes
+    localparam integer UNITS = AT_ONCE * PASSES;
+    localparam integer UNIT_WIDTH = $clog2(AT_ONCE);
+    localparam integer SUMMING = AT_ONCE + 12; // from the last weight to the mean, before it is out
     localparam integer WEIGHTS = PASSES * LENGTH;
     localparam integer LAST_WORD = LENGTH - 1;
     localparam integer LAST_WEIGHT = WEIGHTS - 1;
@@ -57,7 +61,7 @@ module sptfra_network #(
     localparam signed [63:0] WIDE_LIMIT = 64'sd16384;
 
     generate
-        if (LENGTH < 8) begin : gen_check
+        if (LENGTH < AT_ONCE + 4) begin : gen_check
             sptfra_error_a_pass_is_too_short_to_read_out_the_one_before invalid ();
         end
     endgenerate
@@ -124,7 +128,7 @@ module sptfra_network #(
         .data          (weights_1)
     );
 
-    // ---- Sums of four units by class, at index 4 unit + class; held while the next pass begins
+    // ---- Sums of the units by class, at index 4 unit + class; held while the next pass begins
     wire [UNIT_BITS*SUMS-1:0] class_sums;
     reg [UNIT_BITS*SUMS-1:0] held;
     genvar index;
@@ -151,7 +155,7 @@ module sptfra_network #(
     endgenerate
 
     // ---- One unit after the other: the mirror images, their hinges, mirrored back
-    reg [2:0] unit; // 4: none
+    reg [UNIT_WIDTH:0] unit; // AT_ONCE: none
     reg [5:1] unit_there; // index k: k cycles after its number
     reg [4*UNIT_BITS-1:0] classes_1;
     wire [4*UNIT_BITS+7:0] images_3;
@@ -161,19 +165,14 @@ module sptfra_network #(
     always @(posedge clock) begin
         if (pass_ends[4]) begin
             held <= class_sums;
-            unit <= 3'd0;
-        end else if (!unit[2]) begin
-            unit <= unit + 3'd1;
+            unit <= {(UNIT_WIDTH + 1){1'b0}};
+        end else if (!unit[UNIT_WIDTH]) begin
+            unit <= unit + 1'b1;
         end
-        case (unit[1:0])
-            2'd0: classes_1 <= held[4*UNIT_BITS*0 +: 4*UNIT_BITS];
-            2'd1: classes_1 <= held[4*UNIT_BITS*1 +: 4*UNIT_BITS];
-            2'd2: classes_1 <= held[4*UNIT_BITS*2 +: 4*UNIT_BITS];
-            default: classes_1 <= held[4*UNIT_BITS*3 +: 4*UNIT_BITS];
-        endcase
-        unit_there <= {unit_there[4:1], !unit[2]};
+        classes_1 <= held[4*UNIT_BITS*unit[UNIT_WIDTH-1:0] +: 4*UNIT_BITS];
+        unit_there <= {unit_there[4:1], !unit[UNIT_WIDTH]};
         if (reset) begin
-            unit <= 3'd4;
+            unit <= {1'b1, {UNIT_WIDTH{1'b0}}};
             unit_there <= 5'd0;
         end
     end
@@ -279,7 +278,7 @@ module sptfra_network #(
         if (running && last_weight) begin
             summing <= 1'b1;
         end
-        if (summing && (wait_count == 5'd16)) begin
+        if (summing && (wait_count == SUMMING[4:0])) begin
             summing <= 1'b0;
             done <= 1'b1;
         end

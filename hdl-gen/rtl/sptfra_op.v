@@ -17,11 +17,17 @@ module sptfra_op #(
     parameter integer FIELD = 1,
     // 1: the answer's other component is other + slope * free; 0: it is as it comes
     parameter integer DEPENDENT = 1,
+    // Dead taxels of the design, whose readings others replace
+    parameter integer REPLACED = 0,
     // A step of the frame sums G is 2^SUM_LSB N, of those of the torques 2^TORQUE_LSB N m, of a taxel's force
     // 2^FIELD_LSB N
     parameter integer SUM_LSB = -40,
     parameter integer TORQUE_LSB = -45,
     parameter integer FIELD_LSB = -50,
+    // Friction at which a frame slips, and below which it no longer does if the frame before did, 16 fraction bits;
+    // 0: none ever slips
+    parameter [17:0] SLIP_LIMIT = 18'd0,
+    parameter [17:0] SLIP_RELEASE = 18'd0,
     // From the answer's taking to the end of the summary, checked in simulation; 0: unchecked
     parameter integer EXPECTED_SUMMARY_LATENCY = 0,
     // From the start of the output to its first beat, checked in simulation; 0: unchecked
@@ -40,7 +46,7 @@ module sptfra_op #(
     input  wire at_bound,
     input  wire search_saturated,
     input  wire [18*40-1:0] sums,
-    input  wire [3:0] flags, // no contact, saturated, NaN or infinity, bad length
+    input  wire [5:0] flags, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // To the lanes: the friction of the frame in the summary
     output reg  friction_known, // and held, until the field is started
     input  wire field_start,
@@ -74,7 +80,7 @@ module sptfra_op #(
     reg signed [17:0] summary_other;
     reg signed [17:0] summary_slope;
     reg [18*40-1:0] summary_sums;
-    reg [3:0] summary_flags;
+    reg [5:0] summary_flags;
     reg summary_at_bound;
     reg summary_saturated;
     reg summary_busy;
@@ -168,8 +174,19 @@ module sptfra_op #(
     wire bad_length = summary_flags[0];
     wire bad = not_finite || bad_length;
     wire answered = !bad && !no_contact;
+    // Friction |mu_x| + |mu_y| from which on something pulls, 16 fraction bits
+    localparam [17:0] PULLING = 18'd22937;
+    wire [17:0] size_x = mu_x[17] ? -mu_x : mu_x;
+    wire [17:0] size_y = mu_y[17] ? -mu_y : mu_y;
+    wire pushed = ({1'b0, size_x} + {1'b0, size_y} >= {1'b0, PULLING});
+    wire slips;
     wire [15:0] status = {
-        10'd0,
+        4'd0,
+        answered && summary_flags[5] && (summary_unknown || pushed),
+        answered && slips,
+        answered && summary_flags[4],
+        answered && (REPLACED != 0),
+        2'b00,
         bad_length,
         not_finite,
         answered && (summary_flags[2] || summary_saturated),
@@ -177,8 +194,37 @@ module sptfra_op #(
         answered && summary_unknown,
         !bad && no_contact
     };
+    // ---- Slip: mu against the limit, which is lower while the frames before slip. Without contact nothing slips; a
+    // frame that cannot be trusted changes nothing
+    generate
+        if (SLIP_LIMIT != 18'd0) begin : gen_slip
+            // mu with 16 fraction bits: there before the output begins, a cycle behind the quotient
+            localparam signed [9:0] FRACTION = FRICTION_FRACTION[9:0];
+            wire signed [9:0] down = -(friction_exponent + FRACTION);
+            reg [34:0] friction;
+            reg slipping; // the frame before slips
+
+            assign slips = (friction >= {17'd0, slipping ? SLIP_RELEASE : SLIP_LIMIT});
+
+            always @(posedge clock) begin
+                // Not below 1: a quotient of 30 bits and more is far above any limit
+                friction <= (down < 10'sd1) ? {35{friction_quotient != 64'd0}} : friction_quotient[34:0] >> down;
+                if (output_start && !bad) begin
+                    slipping <= answered && slips;
+                end
+                if (reset) begin
+                    slipping <= 1'b0;
+                end
+            end
+        end else begin : gen_none
+            assign slips = 1'b0;
+            wire _unused_slip = &{1'b0, SLIP_RELEASE};
+        end
+    endgenerate
+
     // Replaced taxels, generation of the calibration, bodies
-    wire [31:0] census = {8'd0, 8'd0, 8'd0, 7'd0, answered};
+    wire [7:0] replaced = REPLACED[7:0];
+    wire [31:0] census = {8'd0, answered ? replaced : 8'd0, 8'd0, 7'd0, answered};
 
     // ---- Output
     sptfra_output #(

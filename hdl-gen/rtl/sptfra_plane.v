@@ -40,11 +40,6 @@ module sptfra_plane #(
     // Start, with this held from the next cycle on
     input  wire start,
     input  wire [26:0] largest, // max |b|
-    // u_q of one taxel, when the walk is over: two cycles from these to the value
-    input  wire [ROW_WIDTH-1:0] look_quad,
-    input  wire [1:0] look_member,
-    input  wire [1:0] look_q,
-    output reg  signed [26:0] look_value,
     // B at the points, in the order of the walk, in eighths of the step of u
     output wire value_valid,
     output wire [VALUE_BITS-1:0] value
@@ -55,12 +50,11 @@ module sptfra_plane #(
     localparam integer LAST_COUNT = QUADS - (GROUPS - 1) * CELL_ELEMENTS;
     localparam integer ELEMENT_WIDTH = $clog2(CELL_ELEMENTS);
     localparam integer LAST_ELEMENT = CELL_ELEMENTS - 1;
-    localparam integer GROUP_WIDTH = (GROUPS <= 2) ? 1 : $clog2(GROUPS);
     localparam integer TOTAL_DEPTH = 3 + $clog2(CELLS);
     localparam [4:0] LAST = 5'd20; // point of a row, and row
 
     // What a taxel goes on by: to the start along x and y, to the next point
-    localparam [2:0] START_X = 3'd0, START_Y = 3'd1, RIGHT = 3'd2, LEFT = 3'd3, UP = 3'd4, REST = 3'd5;
+    localparam [2:0] START_X = 3'd0, START_Y = 3'd1, RIGHT = 3'd2, LEFT = 3'd3, UP = 3'd4;
 
     generate
         if (CELL_ELEMENTS < 4) begin : gen_check_elements
@@ -115,18 +109,6 @@ module sptfra_plane #(
         end
     end
 
-    // ---- Look: one taxel's u_q, of the cell that holds it
-    wire signed [26:0] cell_value [0:CELLS-1];
-    wire [31:0] look_group = { {(32 - ROW_WIDTH){1'b0}}, look_quad} / CELL_ELEMENTS;
-    wire [ELEMENT_WIDTH-1:0] cell_element = reading ? element : look_quad[ELEMENT_WIDTH-1:0];
-    wire [2:0] step = reading ? walk_step : (look_q == 2'd0) ? REST : (look_q == 2'd1) ? RIGHT : UP;
-    reg [GROUP_WIDTH+1:0] look_cell_1;
-
-    always @(posedge clock) begin
-        look_cell_1 <= {look_group[GROUP_WIDTH-1:0], look_member};
-        look_value <= cell_value[look_cell_1];
-    end
-
     // ---- Cells: four take the members of the same quads
     wire [VALUE_BITS*CELLS-1:0] sums;
     wire [31:0] u_group = { {(32 - ROW_WIDTH){1'b0}}, u_quad} / CELL_ELEMENTS;
@@ -163,10 +145,9 @@ module sptfra_plane #(
                 .read         (reading),
                 .first        (element == {ELEMENT_WIDTH{1'b0}}),
                 .bank         (search_bank),
-                .element      (cell_element),
-                .step         (step),
+                .element      (element),
+                .step         (walk_step),
                 .dead_zone    (dead_zone),
-                .u_value      (cell_value[index]),
                 .sum          (sums[VALUE_BITS*index +: VALUE_BITS])
             );
         end
@@ -211,7 +192,7 @@ module sptfra_plane #(
     wire _unused_check = (EXPECTED_LATENCY != 0);
 `endif
 
-    wire _unused = &{1'b0, value_left, value_right, look_group};
+    wire _unused = &{1'b0, value_left, value_right};
 
 endmodule
 

@@ -33,14 +33,13 @@ module sptfra_plane_cell #(
     input  wire [ELEMENT_WIDTH-1:0] element,
     input  wire [2:0] step, // as in sptfra_plane
     input  wire [26:0] dead_zone, // 8 times
-    output wire signed [26:0] u_value, // u1 or, as the step has it, u0 or u2, one cycle after the address
     output reg  [VALUE_BITS-1:0] sum
 );
 
     // Width of a stress: 8 u0, and u1 and u2 up to 10 times
     localparam integer POINT_BITS = 32;
     localparam integer DEPTH = 2 << ELEMENT_WIDTH; // two frames
-    localparam [2:0] START_X = 3'd0, START_Y = 3'd1, LEFT = 3'd3, UP = 3'd4, REST = 3'd5;
+    localparam [2:0] START_X = 3'd0, START_Y = 3'd1, LEFT = 3'd3, UP = 3'd4;
 
     (* ram_style = "distributed" *) reg signed [26:0] memory_0 [0:DEPTH-1]; // u0
     (* ram_style = "distributed" *) reg signed [26:0] memory_1 [0:DEPTH-1]; // u1
@@ -61,8 +60,6 @@ module sptfra_plane_cell #(
     reg signed [26:0] u_1;
     wire signed [26:0] u0 = memory_0[address];
 
-    assign u_value = u_1;
-
     always @(posedge clock) begin
         valid <= {valid[2:1], read && in_cell};
         firsts <= {firsts[1], first};
@@ -71,7 +68,7 @@ module sptfra_plane_cell #(
         element_2 <= element_1;
         element_3 <= element_2;
         stress_1 <= (step == START_X) ? { {(POINT_BITS - 30){u0[26]}}, u0, 3'd0} : points[element];
-        u_1 <= ((step == START_Y) || (step == UP)) ? memory_2[address] : (step == REST) ? u0 : memory_1[address];
+        u_1 <= ((step == START_Y) || (step == UP)) ? memory_2[address] : memory_1[address];
         if (reset) begin
             valid <= 3'd0;
         end

@@ -2,12 +2,13 @@
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
 // Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever. With JOINT the
-// search is that of the joint estimator, which has no line before it; with LATENCY frames wait for fields.
+// search is that of the joint estimator, which has no line before it, and a stage of its own behind it: search and
+// correction have a frame each; with LATENCY frames wait for fields.
 module harness (
     input wire clock
 );
 
-    localparam [5:0] LAST_BEAT = 6'd43;
+    localparam [5:0] LAST_BEAT = 6'd51;
 
     reg started = 1'b0;
     wire reset = !started;
@@ -48,9 +49,22 @@ module harness (
     wire line_valid = 1'b1;
     wire [2:0] line_state = 3'd0;
     wire direction_valid;
+    wire level_done;
+    wire centroid_waits;
+    wire correcting;
+    wire correction_start;
+    wire fill_bank;
+    wire search_bank;
+    wire correction_bank;
+    wire found_waits = centroid_waits; // of what is searched
+    wire answering = correcting; // what an answer is of
 `else
     wire line_valid;
     wire [2:0] line_state;
+    wire level_done = 1'b0;
+    wire correcting = 1'b0;
+    wire found_waits = answer_waits;
+    wire answering = searching;
 `endif
     wire busy;
     wire [5:0] beat;
@@ -101,6 +115,13 @@ module harness (
         .\op.output_start (output_start),
 `ifdef JOINT
         .direction_valid (direction_valid),
+        .\estimator.level_done (level_done),
+        .\estimator.centroid_waits (centroid_waits),
+        .\estimator.correcting (correcting),
+        .\estimator.correction_start (correction_start),
+        .\estimator.fill_bank (fill_bank),
+        .\estimator.search_bank (search_bank),
+        .\estimator.correction_bank (correction_bank),
 `else
         .\estimator.line_valid (line_valid),
         .\estimator.line.state (line_state),
@@ -169,12 +190,13 @@ module harness (
             // written in the first cycles of their program
             assume (direction_valid || (u_waiting == 2'd0));
             assume (!sums_written || (young == 3'd0));
+            assume (!level_done || (searching && !centroid_waits));
 `endif
             assume (!coefficients_complete || (open[0] && summed));
             assume (!residual_written || open[1]);
             assume (!field_complete || open[2]);
             assume (!issued || ((open & ~issuing) == 3'd0));
-            assume (!search_done || (searching && !answer_waits));
+            assume (!search_done || (answering && !answer_waits));
             assume (!friction_done || friction_due);
             assume (!summary_done || (summary_due && !friction_due));
         end
@@ -204,13 +226,23 @@ module harness (
             assert (!field_release || ((fields_held != 2'd0) && (frames_held != 3'd0)));
             assert ((fields_held <= 2'd2) && (frames_held <= 3'd4));
             assert (!output_start || !at_output);
+`ifdef JOINT
+            // A frame passes on when there is one, to a stage that has none
+            assert (!correction_start || (searching && !correcting));
+            assert (!search_start || !searching);
+            // The bank that is filled is neither searched nor corrected, and those two are not the same one
+            assert (!open[0] || (u_there + searching + correcting < 3'd2));
+            assert (!open[0] || !searching || (fill_bank != search_bank));
+            assert (!open[0] || !correcting || (fill_bank != correction_bank));
+            assert (!searching || !correcting || (search_bank != correction_bank));
+`endif
         end
     end
 
 `ifdef INVARIANTS
     always @(posedge clock) begin
         if (!reset) begin
-            assert ({2'd0, searches_due} == {3'd0, open[0]} + u_there + searching);
+            assert ({2'd0, searches_due} == {3'd0, open[0]} + u_there + searching + correcting);
             assert ({1'b0, frames_held} == {2'd0, searches_due} + summary_busy + at_output);
             assert ({2'd0, fields_held} == {3'd0, field_started} + at_output);
             assert ({3'd0, residual_due} + field_due + start[2]
@@ -218,6 +250,9 @@ module harness (
 `ifdef JOINT
             assert ({3'd0, sums_wait} == {3'd0, open[0] && summed} + u_there);
             assert (!sums_take || sums_wait);
+            // Banks are taken in turn
+            assert (fill_bank == (search_bank ^ searching ^ u_waiting[0]));
+            assert (search_bank == (correction_bank ^ correcting));
             // The frame before is searched at once
             assert (!open[0] || (u_there == 3'd0) || searching || (young != 3'd0));
 `else
@@ -239,7 +274,8 @@ module harness (
             assert (!residual_there || field_due);
             assert ((open[1] || start[1]) == (field_due && !residual_there));
             // Op
-            assert (!answer_waits || searching);
+            assert (!answer_waits || answering);
+            assert (!found_waits || searching);
             assert (!friction_due || summary_due);
             assert (!summary_due || summary_busy);
             assert (summary_there == (summary_busy && !summary_due));
@@ -267,14 +303,16 @@ module harness (
         + (field_due ? (residual_there ? 10'd15 : 10'd20) : 10'd0)
         + (start[2] ? 10'd14 : (start != 3'd0) ? 10'd4 : (issuing != 3'd0) ? 10'd2 : 10'd0)
         + (field_there ? 10'd5 : field_started ? 10'd10 : 10'd0);
-    wire [9:0] left_of_search = (open[0] ? (summed ? 10'd99 : 10'd100) : 10'd0) + 10'd90 * u_there
-        + (searching ? (answer_waits ? 10'd75 : 10'd80) : 10'd0)
-        + (friction_due ? 10'd60 : summary_due ? 10'd55 : summary_busy ? 10'd50 : 10'd0);
+    wire [9:0] left_of_search = (open[0] ? (summed ? 10'd107 : 10'd108) : 10'd0) + 10'd98 * u_there
+        + (searching ? (found_waits ? 10'd91 : 10'd94) : 10'd0)
+        + (correcting ? (answer_waits ? 10'd83 : 10'd88) : 10'd0)
+        + (friction_due ? 10'd68 : summary_due ? 10'd63 : summary_busy ? 10'd58 : 10'd0);
     wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : {9'd0, field_release};
     wire [9:0] left = left_of_turns + left_of_search + left_at_output;
-    wire asked = (issuing != 3'd0) || (open != 3'd0) || (searching && !answer_waits) || summary_due;
+    wire asked = (issuing != 3'd0) || (open != 3'd0) || (searching && !found_waits)
+        || (correcting && !answer_waits) || summary_due;
     wire answered = issued || sums_written || coefficients_complete || residual_written || field_complete
-        || search_done || friction_done || summary_done;
+        || level_done || search_done || friction_done || summary_done;
     wire line_willing = (u_waiting == 2'd0) || searching || line_valid;
     reg [3:1] watched = 3'd0;
     reg [3:1] willing = 3'd0;

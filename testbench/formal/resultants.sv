@@ -9,10 +9,10 @@ module harness (
 
 `ifdef FIELD
     localparam BEAT_BITS = 6;
-    localparam [5:0] LAST_BEAT = 6'd43;
+    localparam [5:0] LAST_BEAT = 6'd51;
 `else
-    localparam BEAT_BITS = 3;
-    localparam [2:0] LAST_BEAT = 3'd7;
+    localparam BEAT_BITS = 4;
+    localparam [3:0] LAST_BEAT = 4'd15;
 `endif
 
     reg started = 1'b0;
@@ -212,10 +212,10 @@ module harness (
 
     // ---- Progress: what is left to do for the frames inside. It never grows but by a new frame, and shrinks within
     // three cycles in which those do something who may: so with a sink that is not for ever stalled, every frame ends
-    wire [9:0] left_in_lanes = (start ? 10'd110 : 10'd0) + (issuing ? 10'd107 : 10'd0) + (arriving ? 10'd102 : 10'd0)
+    wire [9:0] left_in_lanes = (start ? 10'd118 : 10'd0) + (issuing ? 10'd115 : 10'd0) + (arriving ? 10'd110 : 10'd0)
         - {9'd0, summed};
-    wire [9:0] left_of_search = 10'd90 * u_there + (searching ? (answer_waits ? 10'd75 : 10'd80) : 10'd0)
-        + (summary_due ? 10'd55 : summary_busy ? 10'd50 : 10'd0);
+    wire [9:0] left_of_search = 10'd98 * u_there + (searching ? (answer_waits ? 10'd83 : 10'd88) : 10'd0)
+        + (summary_due ? 10'd63 : summary_busy ? 10'd58 : 10'd0);
     wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : valid[1] ? 10'd2
         : {9'd0, valid[2]};
     wire [9:0] left = left_in_lanes + left_of_search + left_at_output;

@@ -51,6 +51,12 @@ pub struct StatusCounts {
     pub not_finite: usize,
     /// Bit 5.
     pub frame_length: usize,
+    /// Bit 8.
+    #[serde(default)]
+    pub replaced: usize,
+    /// Bit 9.
+    #[serde(default)]
+    pub too_many_replaced: usize,
 }
 
 impl StatusCounts {
@@ -70,20 +76,25 @@ impl StatusCounts {
             saturated: with(Status::SATURATED),
             not_finite: with(Status::NOT_FINITE),
             frame_length: with(Status::FRAME_LENGTH),
+            replaced: with(Status::REPLACED),
+            too_many_replaced: with(Status::TOO_MANY_REPLACED),
         }
     }
 
     /// The counts that are not zero, with words for people.
     pub fn present(&self) -> Vec<(&'static str, usize)> {
         let bits = [
-            self.no_contact,
-            self.direction_unknown,
-            self.at_bound,
-            self.saturated,
-            self.not_finite,
-            self.frame_length,
+            (Status::NO_CONTACT, self.no_contact),
+            (Status::DIRECTION_UNKNOWN, self.direction_unknown),
+            (Status::AT_BOUND, self.at_bound),
+            (Status::SATURATED, self.saturated),
+            (Status::NOT_FINITE, self.not_finite),
+            (Status::FRAME_LENGTH, self.frame_length),
+            (Status::REPLACED, self.replaced),
+            (Status::TOO_MANY_REPLACED, self.too_many_replaced),
         ];
-        let named = Status::NAMED.into_iter().zip(bits).map(|((_, name), count)| (name, count));
+        let count = |bit: Status| bits.iter().find(|(of, _)| *of == bit).map_or(0, |&(_, count)| count);
+        let named = Status::NAMED.into_iter().map(|(bit, name)| (name, count(bit)));
         std::iter::once(("good", self.good)).chain(named).filter(|&(_, count)| count > 0).collect()
     }
 }

@@ -49,14 +49,14 @@ impl FrameSet {
         self
     }
 
-    /// Frames for a design from a CSV file whose lines begin with `labels` columns of other things, with true forces
+    /// Frames for a design from a file whose lines begin with `labels` columns of other things, with true forces
     /// from another file if there is one.
     ///
     /// # Errors
     /// [`FrameError`], with file, line and column, or for frames that are known to be another sensor's.
     pub fn load(frames: &Path, labels: usize, reference: Option<&Path>, design: &Design) -> Result<Self, FrameError> {
         geometry::compare(frames, &design.name, &design.sensor)?;
-        let stress = read_labelled_frames(frames, design.sensor.taxels(), labels)?;
+        let stress = read_labelled_frames(frames, &design.sensor, labels)?;
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
         Ok(Self { origin: frames.display().to_string(), stress, truth })
     }

@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-YOUNG_MPA = 0.4  # soft silicone; stresses scale with it, forces as shares of F_z do not
-CONTACT_MPA_PER_MM = 20.0  # penalty: at 50 kPa the surfaces overlap by 2.5 micrometres
-STICK_MPA_PER_MM = 8.0
+# Penalties of contact and of stick, times Young's modulus: surfaces overlap by a few micrometres.
+CONTACT_PER_MM = 10.0
+STICK_PER_MM = 3.0
+TAXEL_SHARE = 0.8  # of its pitch, along x and along y, over which a taxel averages
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ def cylinder(radius, reach, half_length, turn_deg=0.0):
 
     def height(x, y):
         across, along = cos * x + sin * y, cos * y - sin * x
+        across = min(abs(across), 0.98 * radius)
         beyond = max(0.0, abs(along) - half_length)
         return radius - math.sqrt(radius**2 - across**2) + 0.1 * beyond**2
 
@@ -103,8 +105,8 @@ def _hexahedra(counts, lines):
 class Model:
     """A prism cut by the planes `lines` along x, y and z, with one indenter whose lowest point is above `centre`."""
 
-    def __init__(self, prism, lines, indenter, centre, poisson, friction):
-        self.prism, self.friction, self.poisson = prism, friction, poisson
+    def __init__(self, prism, lines, indenter, centre, young, poisson, friction):
+        self.prism, self.friction, self.young, self.poisson = prism, friction, young, poisson
         self.lines = lines
         self.mesh = mesh = tuple(len(line) - 1 for line in lines)
         self.nodes, self.elements = _hexahedra(mesh, lines)
@@ -147,11 +149,11 @@ class Model:
         out += ["*SURFACE, NAME=SOFT"] + [f"{n}, S2" for n in top]
         tools = range(len(self.elements) + 1, len(self.elements) + len(self.tool_elements) + 1)
         out += ["*SURFACE, NAME=HARD"] + [f"{n}, S1" for n in tools]
-        out += ["*MATERIAL, NAME=RUBBER", "*ELASTIC", f"{YOUNG_MPA}, {self.poisson}"]
+        out += ["*MATERIAL, NAME=RUBBER", "*ELASTIC", f"{self.young}, {self.poisson}"]
         out += ["*MATERIAL, NAME=STEEL", "*ELASTIC", "200000., 0.3"]
         out += ["*SOLID SECTION, ELSET=LAYER, MATERIAL=RUBBER", "*SOLID SECTION, ELSET=TOOL, MATERIAL=STEEL"]
         out += ["*SURFACE INTERACTION, NAME=TOUCH", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"]
-        out += [f"{CONTACT_MPA_PER_MM}", "*FRICTION", f"{self.friction}, {STICK_MPA_PER_MM}"]
+        out += [f"{CONTACT_PER_MM * self.young}", "*FRICTION", f"{self.friction}, {STICK_PER_MM * self.young}"]
         out += ["*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "SOFT, HARD"]
         out += ["*BOUNDARY", "BASE, 1, 3, 0.", "TOOLNODES, 1, 3, 0."]
         for displacement, increments in moves:
@@ -190,10 +192,11 @@ class Model:
         return found
 
     def at_taxels(self, load):
-        """Normal stress at the base in Pa whose work with every base node's shape function is `load`, in N.
+        """Mean of the normal stress over each taxel in Pa, from `load`, the traction's work with every base node in N.
 
-        The reactions are exact integrals of the traction against the shape functions; solved for the traction, they
-        are far more exact than stresses at Gauss points, and add up to the whole force.
+        The reactions are integrals of the traction against the shape functions; solved for the traction, they are more
+        exact than stresses at Gauss points, and add up to the whole force. At a point the traction still waves with the
+        elements, by several percent of the peak; over a taxel, which is larger than an element, it does not.
         """
         nx, ny, _ = self.mesh
         faces = self.elements[: nx * ny]
@@ -212,15 +215,28 @@ class Model:
         for n, value in load.items():
             right[index[n]] = value
         traction = np.linalg.solve(mass, right)
-        values = []
-        for x, y in self.prism.positions():
-            ex = min(int(np.searchsorted(self.lines[0], x, side="right")) - 1, nx - 1)
-            ey = min(int(np.searchsorted(self.lines[1], y, side="right")) - 1, ny - 1)
-            local = [2.0 * (v - line[e]) / (line[e + 1] - line[e]) - 1.0 for v, line, e in ((x, self.lines[0], ex), (y, self.lines[1], ey))]
+
+        def value(x, y):
+            ex, ey = (
+                min(int(np.searchsorted(line, v, side="right")) - 1, len(line) - 2)
+                for line, v in zip(self.lines, (x, y))
+            )
+            local = (
+                2.0 * (v - line[e]) / (line[e + 1] - line[e]) - 1.0
+                for v, line, e in zip((x, y), self.lines, (ex, ey))
+            )
             at = [index[faces[ey * nx + ex][c]] for c in corners]
-            # Compression is negative: the base is pressed where the layer pushes it down.
-            values.append(1e6 * float(_serendipity(*local) @ traction[at]))
-        return values
+            return _serendipity(*local) @ traction[at]
+
+        points, weights = np.polynomial.legendre.leggauss(8)
+        half = [0.5 * TAXEL_SHARE * pitch for pitch in self.prism.pitch]
+        return [
+            1e6 * float(sum(
+                0.25 * wx * wy * value(x + half[0] * dx, y + half[1] * dy)
+                for dx, wx in zip(points, weights) for dy, wy in zip(points, weights)
+            ))
+            for x, y in self.prism.positions()
+        ]
 
 
 def _serendipity(x, y):

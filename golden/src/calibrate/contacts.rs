@@ -4,7 +4,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::design::Sensor;
-use crate::scene::{Contact, Shape};
+use crate::scene::{Contact, Shape, Traction};
 
 /// Radii go from this many pitches (the coarser of both), below which a contact falls between the taxels,
 const SMALLEST: f64 = 1.1;
@@ -66,7 +66,14 @@ pub fn random_contacts(sensor: &Sensor, seed: u64, count: usize) -> Vec<Contact>
                 }
             });
             let friction = between(0.0, 1.0);
-            Contact { shape, centre_m, normal_force_n: 1.0, friction, direction_deg: between(-180.0, 180.0) }
+            Contact {
+                shape,
+                centre_m,
+                normal_force_n: 1.0,
+                friction,
+                traction: Traction::default(),
+                direction_deg: between(-180.0, 180.0),
+            }
         })
         .collect()
 }

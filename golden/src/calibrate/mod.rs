@@ -11,6 +11,7 @@ mod train;
 pub use contacts::random_contacts;
 
 use crate::design::{Design, Estimator, Input, JointConstants, conditions};
+use crate::estimators::joint::CUBIC_LIMIT;
 use crate::scene::SceneError;
 use crate::solver::SolverError;
 use samples::Sample;
@@ -123,7 +124,8 @@ pub fn calibrate(
         return Err(CalibrateError::OtherEstimator { name: name() });
     }
     // The contacts are in pascals, whatever the sensor counts.
-    let design = &Design { input: Input::default(), ..design.clone() };
+    let tension = design.input.tension;
+    let design = &Design { input: Input { tension, ..Input::default() }, ..design.clone() };
     let half_window = contacts::half_window(&design.sensor);
     let samples = samples::make(design, settings, half_window, tick)?;
     if samples.is_empty() {
@@ -132,15 +134,16 @@ pub fn calibrate(
     let (gain, targets) = samples::gain_and_targets(&samples);
     let tangential = fit_tangential(&samples, &targets);
     let [c1, c3] = tangential;
-    let legal = (0.1..=10.0).contains(&gain) && (0.1..=10.0).contains(&c1) && (-2.0..=2.0).contains(&c3);
+    let legal = (0.1..=10.0).contains(&gain) && (0.1..=10.0).contains(&c1) && c3.abs() <= CUBIC_LIMIT;
     if !legal {
         return Err(CalibrateError::OutOfRange { name: name(), gain, c1, c3 });
     }
     let correction =
         (settings.hidden > 0).then(|| train::train(&samples, &targets, tangential, half_window, settings, tick));
     let algorithm = &design.algorithm;
-    let fitted_to = Some(conditions(&design.sensor, algorithm.kernel, algorithm.regularisation));
-    Ok(JointConstants { gain, tangential, correction, fitted_to })
+    let grid = algorithm.joint.grid;
+    let fitted_to = Some(conditions(&design.sensor, tension, algorithm.kernel, algorithm.regularisation, grid));
+    Ok(JointConstants { grid, gain, tangential, correction, fitted_to })
 }
 
 /// The constants `c1, c3` that bring `c1 mu + c3 mu |mu|^2` closest to the targets, by least squares.

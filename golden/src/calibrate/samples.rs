@@ -80,15 +80,18 @@ pub(super) fn make(
         let load = |kind: usize, taxel: usize| (1.0 - share) * one[kind][taxel] + share * other[kind][taxel];
         let mut frame: Vec<f64> =
             (0..solver.taxels()).map(|taxel| load(0, taxel) + x * load(1, taxel) + y * load(2, taxel)).collect();
+        // What reads no pull has no noise that pulls either.
+        let tension = design.input.tension;
+        frame.iter_mut().for_each(|stress| *stress = tension.of(*stress));
         let peak = frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
         let deviation = NOISE * random.random::<f64>() * peak;
         // The estimator has no scale; the frame is put where neither the full scale nor the noise floor matters.
         let force = 0.5 * design.hardware.full_scale_pa / peak;
         for stress in &mut frame {
-            *stress = force * (*stress + deviation * normal(&mut random));
+            *stress = tension.of(force * (*stress + deviation * normal(&mut random)));
         }
         let Some(seen) = solver.see(&mut workspace, &frame)? else { continue };
-        let found = joint::raw(&seen, &mut scratch);
+        let found = joint::raw(design.algorithm.joint.grid, &seen, &mut scratch);
         if !found.status.contains(Status::DIRECTION_UNKNOWN) {
             joint::look(&seen, found.mu, design.sensor.columns, half_window, 0.0, &mut scratch);
             let force = [force * x, force * y, -force];

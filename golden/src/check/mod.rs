@@ -9,7 +9,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::design::Design;
+use crate::design::{Design, Tension};
 use crate::matrices::Matrices;
 use crate::words::print_as_words;
 
@@ -75,7 +75,7 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
         found(Kind::Empty, format!("all readings of {} are 0: is the sensor connected?", count(frames.len())));
         return findings;
     }
-    let counts = design.input.pa_per_count.is_some();
+    let counts = design.input.counts();
     if let Some(message) = range(design.hardware.full_scale_pa, peak, counts) {
         found(Kind::Range, message);
     }
@@ -95,12 +95,15 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     }
     if let Some(message) = tare(&loaded) {
         found(Kind::Tare, message);
-    } else if loaded.iter().all(|frame| frame.iter().all(|&stress| stress <= FAINT * largest(frame))) {
+    } else if design.input.tension == Tension::Read
+        && loaded.iter().all(|frame| frame.iter().all(|&stress| stress <= FAINT * largest(frame)))
+    {
         found(
             Kind::NoTension,
             format!(
                 "no reading of {} is a pull: where the sensor cannot read tension, or a converter clips it, the force \
-                 along the surface comes out too small; let the converter's range reach below 0",
+                 along the surface comes out too small; let the converter's range reach below 0, or write \
+                 sensor.tension = \"clipped\" with estimator = \"joint\" and run `golden calibrate`",
                 count(loaded.len())
             ),
         );

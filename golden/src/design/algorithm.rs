@@ -48,6 +48,27 @@ pub struct Algorithm {
     pub outputs: Outputs,
     /// Stress in pascals below which a taxel tells nothing; full scale / 65536 unless given.
     pub noise_floor_pa: f64,
+    /// When what is held counts as sliding; never, if absent.
+    pub slip: Option<Slip>,
+}
+
+/// Where the friction of a frame raises [`crate::status::Status::SLIP`], for controllers of a grip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slip {
+    /// The bit is raised when the friction coefficient reaches this.
+    pub limit: f64,
+    /// It is lowered when the coefficient is below the limit by more than this.
+    pub hysteresis: f64,
+}
+
+impl Slip {
+    /// Largest limit.
+    pub const LARGEST: f64 = 3.9;
+
+    /// Whether a frame of friction `mu` slips, if the one before did so or not.
+    pub fn slips(self, mu: f64, before: bool) -> bool {
+        mu >= if before { self.limit - self.hysteresis } else { self.limit }
+    }
 }
 
 impl Algorithm {

@@ -1,4 +1,4 @@
-//! The files that a design names: the calibration of its counts, and the weights of its estimator.
+//! The files that a design names: the calibration of its counts, their curve, and the weights of its estimator.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -10,6 +10,8 @@ use crate::estimators::Constants;
 
 /// Name of the calibration file beside a resolved design.
 pub const CALIBRATION_FILE: &str = "calibration.csv";
+/// Name of the file of the curve's points beside a resolved design.
+pub const CURVE_FILE: &str = "curve.csv";
 /// Name of the file of weights beside a resolved design.
 pub const WEIGHTS_FILE: &str = "weights.csv";
 
@@ -52,12 +54,14 @@ impl Design {
     /// The files that [`Design::to_toml`] names, by name, to be written beside it: none for most designs.
     pub fn files(&self) -> Vec<(&'static str, String)> {
         let calibration = self.input.calibration.as_ref().map(|calibration| (CALIBRATION_FILE, calibration.to_csv()));
+        let points = self.input.curve.as_ref().filter(|curve| curve.law.is_none());
+        let points = points.map(|curve| (CURVE_FILE, curve.to_csv()));
         let correction = match self.algorithm.constants() {
             Constants::Joint(constants) => constants.correction.as_ref(),
             Constants::Line => None,
         };
         let weights = correction.map(|correction| (WEIGHTS_FILE, correction.to_csv()));
-        calibration.into_iter().chain(weights).collect()
+        calibration.into_iter().chain(points).chain(weights).collect()
     }
 }
 

@@ -2,38 +2,90 @@
 
 use std::fmt::Write;
 
+use serde::{Deserialize, Serialize};
+
 use super::DesignError;
 use super::checks::Check;
+use super::curve::{Curve, RawCurve};
 use super::files::Beside;
+use crate::dead_taxels::MOST_DEAD;
+use crate::sensor::Sensor;
+use crate::words::print_as_words;
 
-/// Largest gain of a taxel.
-const MAX_GAIN: f64 = 16.0;
+/// Range of a live taxel's gain.
+const GAIN: [f64; 2] = [1e-9, 16.0];
 /// Largest offset of a taxel, in counts.
 const MAX_OFFSET: f64 = 1e6;
 /// Range of the magnitude of pascals per count.
 const PA_PER_COUNT: [f64; 2] = [1e-9, 1e9];
 
-/// From the values of a frame to stress: `Pa = (gain_i * count + offset_i) * pa_per_count`.
+/// From the values of a frame to stress: `Pa = (gain_i * count + offset_i) * pa_per_count`, or, with a curve,
+/// `Pa = gain_i * curve(count) + offset_i`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Input {
     /// Pascals of one count, with the sign that makes compression negative; `None` where frames are in pascals.
     pub pa_per_count: Option<f64>,
+    /// From counts to pascals, in place of `pa_per_count`, where the sensor is not linear.
+    pub curve: Option<Curve>,
     /// Gain and offset of each taxel; only with counts.
     pub calibration: Option<Calibration>,
+    /// Taxels whose readings mean nothing, in ascending order: others take their place. Those of gain 0 are among them.
+    pub dead: Vec<usize>,
+    /// Whether the sensor reads what pulls.
+    pub tension: Tension,
+}
+
+/// What a taxel reads that is pulled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Tension {
+    /// A pull, as a positive stress.
+    #[default]
+    Read,
+    /// Nothing: most resistive and capacitive arrays read pressure only.
+    Clipped,
+}
+
+print_as_words!(Tension);
+
+impl Tension {
+    /// What is read of a stress in pascals.
+    pub fn of(self, stress: f64) -> f64 {
+        match self {
+            Self::Read => stress,
+            Self::Clipped => stress.min(0.0),
+        }
+    }
+}
+
+/// The keys of `[sensor]` that say what a frame's values are, as they stand in the file.
+pub(super) struct RawInput {
+    pub(super) pa_per_count: Option<f64>,
+    pub(super) curve: Option<RawCurve>,
+    pub(super) calibration: Option<String>,
+    pub(super) dead: Vec<i64>,
+    pub(super) tension: Tension,
 }
 
 /// Gain and offset of each taxel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// What each taxel's count is multiplied by, m values greater than 0 and at most 16.
+    /// What each taxel's count is multiplied by, m values from 1e-9 to 16, or 0 for a dead taxel.
     pub gain: Vec<f64>,
-    /// What is added to the product, in counts, m values.
+    /// What is added to the product, in counts, with a curve in pascals, m values.
     pub offset: Vec<f64>,
 }
 
 impl Input {
-    /// Stress in pascals of a taxel whose value in the frame is `value`.
+    /// Stress in pascals of a taxel whose value in the frame is `value`; of a dead one 0.
     pub fn to_pa(&self, taxel: usize, value: f64) -> f64 {
+        if self.dead.contains(&taxel) {
+            return 0.0;
+        }
+        if let Some(curve) = &self.curve {
+            let (gain, offset) = self.of_taxel(taxel);
+            return gain * curve.at(value) + offset;
+        }
         let Some(pa_per_count) = self.pa_per_count else { return value };
         match &self.calibration {
             Some(Calibration { gain, offset }) => (gain[taxel] * value + offset[taxel]) * pa_per_count,
@@ -41,8 +93,16 @@ impl Input {
         }
     }
 
-    /// The value in a frame, not rounded, of a taxel under a stress in pascals: undoes [`Input::to_pa`].
+    /// The value in a frame, not rounded, of a taxel under a stress in pascals: undoes [`Input::to_pa`]. A dead taxel
+    /// reads 0.
     pub fn from_pa(&self, taxel: usize, stress: f64) -> f64 {
+        if self.dead.contains(&taxel) {
+            return 0.0;
+        }
+        if let Some(curve) = &self.curve {
+            let (gain, offset) = self.of_taxel(taxel);
+            return curve.count((stress - offset) / gain);
+        }
         let Some(pa_per_count) = self.pa_per_count else { return stress };
         match &self.calibration {
             Some(Calibration { gain, offset }) => (stress / pa_per_count - offset[taxel]) / gain[taxel],
@@ -50,23 +110,42 @@ impl Input {
         }
     }
 
-    /// A frame of stress in pascals as the sensor delivers it: in whole counts, if it counts.
+    /// A frame of stress in pascals as the sensor delivers it: without what pulls, if it does not read that, and in whole
+    /// counts, if it counts.
     pub fn deliver(&self, frame: &mut [f64]) {
-        if self.pa_per_count.is_some() {
+        frame.iter_mut().for_each(|value| *value = self.tension.of(*value));
+        if self.counts() {
             for (taxel, value) in frame.iter_mut().enumerate() {
                 *value = self.from_pa(taxel, *value).round();
             }
         }
     }
 
+    /// Gain and offset of a taxel.
+    fn of_taxel(&self, taxel: usize) -> (f64, f64) {
+        self.calibration.as_ref().map_or((1.0, 0.0), |Calibration { gain, offset }| (gain[taxel], offset[taxel]))
+    }
+
+    /// Whether frames are in counts.
+    pub fn counts(&self) -> bool {
+        self.pa_per_count.is_some() || self.curve.is_some()
+    }
+
+    /// Whether a value is so large that the sensor's curve ends before it.
+    pub(crate) fn is_beyond(&self, value: f64) -> bool {
+        self.curve.as_ref().is_some_and(|curve| value.abs() >= curve.largest_count())
+    }
+
     /// Checks the keys of `[sensor]`; a calibration is one of the files `beside` the design.
     pub(super) fn new(
         check: &Check,
-        pa_per_count: Option<f64>,
-        calibration: Option<&str>,
+        raw: RawInput,
         beside: Beside<'_>,
-        taxels: usize,
+        sensor: &Sensor,
+        full_scale: f64,
     ) -> Result<Self, DesignError> {
+        let RawInput { pa_per_count, curve, calibration, dead, tension } = raw;
+        let taxels = sensor.taxels();
         let [low, high] = PA_PER_COUNT;
         if let Some(value) = pa_per_count
             && !(low..=high).contains(&value.abs())
@@ -77,15 +156,40 @@ impl Input {
                 format!("use a number from {low:e} to {high:e} or from -{high:e} to -{low:e}, negative if larger counts press"),
             ));
         }
-        if calibration.is_some() && pa_per_count.is_none() {
+        if calibration.is_some() && pa_per_count.is_none() && curve.is_none() {
             return Err(check.value(
                 "sensor.calibration",
                 "is given, but pa_per_count is not".to_owned(),
-                "add pa_per_count, the pascals of one count: gains and offsets are those of counts".to_owned(),
+                "add pa_per_count, the pascals of one count, or a curve: gains and offsets are those of counts"
+                    .to_owned(),
             ));
         }
-        let calibration = calibration.map(|file| Calibration::load(file, beside, taxels)).transpose()?;
-        Ok(Self { pa_per_count, calibration })
+        if pa_per_count.is_some() && curve.is_some() {
+            let remedy = "a curve says what counts are worth: remove pa_per_count".to_owned();
+            return Err(check.value("sensor.curve", "is given, and so is pa_per_count".to_owned(), remedy));
+        }
+        let curve = curve.map(|curve| Curve::new(check, curve, beside, full_scale)).transpose()?;
+        let named = dead.iter().enumerate().map(|(index, &taxel)| {
+            let key = format!("sensor.dead[{index}]");
+            check.integer(&key, taxel, 0, taxels as i64 - 1).map(|taxel| taxel as usize)
+        });
+        let mut dead = named.collect::<Result<Vec<_>, _>>()?;
+        let calibration = calibration.map(|file| Calibration::load(&file, beside, taxels)).transpose()?;
+        let gains = calibration.iter().flat_map(|calibration| calibration.gain.iter().enumerate());
+        dead.extend(gains.filter(|&(_, &gain)| gain == 0.0).map(|(taxel, _)| taxel));
+        dead.sort_unstable();
+        dead.dedup();
+        let most = MOST_DEAD.min(taxels / 2);
+        if dead.len() > most {
+            return Err(check.value(
+                "sensor.dead",
+                format!("has {} taxels, with those of gain 0 in the calibration", dead.len()),
+                format!(
+                    "at most {most} of this sensor's can be replaced: mend the sensor, or leave out the part of it"
+                ),
+            ));
+        }
+        Ok(Self { pa_per_count, curve, calibration, dead, tension })
     }
 }
 
@@ -107,8 +211,9 @@ impl Calibration {
                 return Err(wrong(line, format!("{shown:?} is no pair of numbers"), remedy));
             };
             // A NaN is in no range.
-            if !(g > 0.0 && g <= MAX_GAIN) {
-                let remedy = format!("use a gain greater than 0 and at most {MAX_GAIN}");
+            let [low, high] = GAIN;
+            if g != 0.0 && !(low..=high).contains(&g) {
+                let remedy = format!("use a gain from {low:e} to {high}, or 0 for a dead taxel");
                 return Err(wrong(line, format!("the gain is {g}"), remedy));
             }
             if !(-MAX_OFFSET..=MAX_OFFSET).contains(&o) {

@@ -6,12 +6,21 @@ use serde::Deserialize;
 
 use super::checks::Check;
 use super::files::{Beside, sha256};
-use super::{DesignError, Kernel, Regularisation, Sensor};
-use crate::estimators::joint::{Correction, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT};
+use super::{DesignError, Kernel, Regularisation, Sensor, Tension};
+use crate::estimators::joint::{CUBIC_LIMIT, Correction, Grid, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT};
 
 /// What the constants depend on, for people and for comparison.
-pub fn conditions(sensor: &Sensor, kernel: Kernel, regularisation: Regularisation) -> String {
-    format!("{sensor}, {kernel}, {}", regularisation.factor())
+pub fn conditions(
+    sensor: &Sensor,
+    tension: Tension,
+    kernel: Kernel,
+    regularisation: Regularisation,
+    grid: Grid,
+) -> String {
+    let reads = if tension == Tension::Clipped { ", tension clipped" } else { "" };
+    // Constants of the fine grid were fitted before there was another one.
+    let of_grid = if grid == Grid::FINE { String::new() } else { format!(", grid {}", grid.side()) };
+    format!("{sensor}, {kernel}, {}{reads}{of_grid}", regularisation.factor())
 }
 
 /// The `[algorithm.correction]` table: the weights in a file with its hash, or in the table itself.
@@ -27,9 +36,19 @@ pub(super) struct RawCorrection {
 
 /// The constants as a file has them, without the correction.
 pub(super) struct Raw<'a> {
+    pub grid: Grid,
     pub gain: Option<f64>,
     pub tangential: Option<&'a [f64]>,
     pub fitted_to: Option<String>,
+}
+
+/// The grid that a design names by its points along an axis; the fine one if it names none.
+pub(super) fn grid(check: &Check, side: Option<i64>) -> Result<Grid, DesignError> {
+    let Some(side) = side else { return Ok(Grid::FINE) };
+    usize::try_from(side).ok().and_then(Grid::of_side).ok_or_else(|| {
+        let sides = Grid::ALL.map(|grid| grid.side().to_string()).join(" or ");
+        check.value("algorithm.grid", format!("is {side}"), format!("use {sides}"))
+    })
 }
 
 /// Checks the constants; a design without any has the default ones. `conditions` are those of the design.
@@ -49,9 +68,9 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
     let [c1, c3] = two(check, "algorithm.tangential", raw.tangential.unwrap_or(&[1.0, 0.0]), "c1 and c3")?;
     let tangential = [
         check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
-        check.real("algorithm.tangential[1]", c3, -2.0, 2.0, "")?,
+        check.real("algorithm.tangential[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
     ];
-    Ok(JointConstants { gain, tangential, correction: None, fitted_to: raw.fitted_to })
+    Ok(JointConstants { grid: raw.grid, gain, tangential, correction: None, fitted_to: raw.fitted_to })
 }
 
 /// A name for the calibrated design beside the one at `origin`.
@@ -62,8 +81,8 @@ fn resolved_name(origin: &str) -> PathBuf {
 }
 
 /// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
-pub(super) fn refuse(check: &Check, given: [bool; 4]) -> Result<(), DesignError> {
-    match ["gain", "tangential", "correction", "fitted_to"].into_iter().zip(given).find(|(_, given)| *given) {
+pub(super) fn refuse(check: &Check, given: [bool; 5]) -> Result<(), DesignError> {
+    match ["grid", "gain", "tangential", "correction", "fitted_to"].into_iter().zip(given).find(|(_, given)| *given) {
         Some((key, _)) => Err(check.value(
             &format!("algorithm.{key}"),
             "belongs to the joint estimator".to_owned(),
@@ -174,9 +193,11 @@ fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<
 
 /// The keys of `[algorithm]`, and the table that follows all of them, with the weights in the file named `weights`.
 pub(super) fn print(constants: &JointConstants, weights: &str) -> [String; 2] {
-    let JointConstants { gain, tangential: [c1, c3], correction, fitted_to } = constants;
+    let JointConstants { grid, gain, tangential: [c1, c3], correction, fitted_to } = constants;
+    // Only where it is another one: a design without it keeps the hash that it had before there was such a key.
+    let grid = if *grid == Grid::FINE { String::new() } else { format!("grid = {}\n", grid.side()) };
     let fitted_to = fitted_to.as_ref().map_or_else(String::new, |conditions| format!("fitted_to = {conditions:?}\n"));
-    let keys = format!("{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
+    let keys = format!("{grid}{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
     let table = correction.as_ref().map_or_else(String::new, |correction| {
         let ([x, y], hash) = (correction.half_window, sha256(&correction.to_csv()));
         let file = toml::Value::from(weights);

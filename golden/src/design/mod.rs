@@ -4,6 +4,7 @@
 
 mod algorithm;
 pub(crate) mod checks;
+mod curve;
 mod error;
 mod files;
 mod filter;
@@ -20,18 +21,20 @@ mod regularisation;
 use std::path::{Path, PathBuf};
 
 pub use crate::estimators::Estimator;
-pub use crate::estimators::joint::{Correction, JointConstants};
+pub use crate::estimators::joint::{Correction, Grid, JointConstants};
 pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
-pub use algorithm::{Algorithm, Outputs, PlanKind};
+pub use algorithm::{Algorithm, Outputs, PlanKind, Slip};
 pub use checks::is_name;
+pub use curve::{Curve, MOST_SEGMENTS};
 pub use error::DesignError;
 pub(crate) use files::Beside;
-pub use files::{CALIBRATION_FILE, WEIGHTS_FILE};
+pub use files::{CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
 pub use hardware::{Arithmetic, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise};
-pub use input::{Calibration, Input};
+pub use input::{Calibration, Input, Tension};
 pub use joint::conditions;
+pub(crate) use lengths::Lengths;
 pub(crate) use parse::{RawSensor, syntax_position};
 pub use regularisation::Regularisation;
 

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use serde::Deserialize;
 
 use super::checks::{self, Check};
+use super::curve::RawCurve;
 use super::files::Beside;
+use super::input::RawInput;
 use super::joint::{self, RawCorrection};
 use super::lengths::Lengths;
 use super::parse_filter::{self, RawFilter};
@@ -13,7 +15,7 @@ use super::parse_plan::{self, PlanKeys};
 use super::regularisation;
 use super::{
     Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input,
-    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, Sensor,
+    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, Sensor, Slip, Tension,
 };
 
 #[derive(Deserialize)]
@@ -31,10 +33,10 @@ struct RawDesign {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RawSensor {
-    columns: i64,
-    rows: i64,
-    pitch_mm: Lengths,
-    depth_mm: f64,
+    pub(crate) columns: i64,
+    pub(crate) rows: i64,
+    pub(crate) pitch_mm: Lengths,
+    pub(crate) depth_mm: f64,
 }
 
 /// The sensor of a design; unknown keys would pass if this held a flattened [`RawSensor`].
@@ -45,8 +47,12 @@ struct RawDesignSensor {
     rows: i64,
     pitch_mm: Lengths,
     depth_mm: f64,
+    tension: Option<String>,
     pa_per_count: Option<f64>,
+    curve: Option<RawCurve>,
     calibration: Option<String>,
+    #[serde(default)]
+    dead: Vec<i64>,
 }
 
 #[derive(Deserialize, Default)]
@@ -57,12 +63,21 @@ struct RawAlgorithm {
     regularisation: Option<toml::Value>,
     filter: Option<RawFilter>,
     estimator: Option<String>,
+    grid: Option<i64>,
     gain: Option<f64>,
     tangential: Option<Vec<f64>>,
     correction: Option<RawCorrection>,
     fitted_to: Option<String>,
     outputs: Option<String>,
     noise_floor_pa: Option<f64>,
+    slip: Option<RawSlip>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSlip {
+    limit: f64,
+    hysteresis: Option<f64>,
 }
 
 #[derive(Deserialize, Default)]
@@ -89,7 +104,11 @@ fn raw(text: &str, origin: &str) -> Result<RawDesign, DesignError> {
 pub(super) fn files_named_in(text: &str, origin: &str, beside: Beside<'_>) -> Result<Vec<PathBuf>, DesignError> {
     let RawDesign { sensor, algorithm, .. } = raw(text, origin)?;
     let weights = algorithm.correction.and_then(|correction| correction.file);
-    Ok([sensor.calibration, weights].into_iter().flatten().map(|name| beside.path(&name)).collect())
+    let points = match sensor.curve {
+        Some(RawCurve::File(file)) => Some(file),
+        _ => None,
+    };
+    Ok([sensor.calibration, points, weights].into_iter().flatten().map(|name| beside.path(&name)).collect())
 }
 
 /// `beside` are the files that the design names.
@@ -111,14 +130,22 @@ pub(super) fn unfitted(text: &str, origin: &str, beside: Beside<'_>) -> Result<D
 fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
     let check = Check { origin };
     checks::name(&check, &raw.name)?;
-    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, pa_per_count, calibration } = raw.sensor;
+    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, tension, pa_per_count, curve, calibration, dead } =
+        raw.sensor;
+    let tension = check.optional_word("sensor.tension", tension.as_deref())?.unwrap_or_default();
     let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
     let lanes_given = raw.hardware.lanes.is_some();
     let hardware = hardware(&check, raw.hardware)?;
-    let (mut algorithm, correction) = algorithm(&check, raw.algorithm, &sensor, &hardware)?;
+    let (mut algorithm, correction) = algorithm(&check, raw.algorithm, (&sensor, tension), &hardware)?;
     parse_plan::check(&check, &PlanKeys { sensor: &sensor, algorithm: &algorithm, hardware: &hardware, lanes_given })?;
     // Last, so that what is wrong with the design itself is said before its files are read.
-    let input = Input::new(&check, pa_per_count, calibration.as_deref(), beside, sensor.taxels())?;
+    let input = Input::new(
+        &check,
+        RawInput { pa_per_count, curve, calibration, dead, tension },
+        beside,
+        &sensor,
+        hardware.full_scale_pa,
+    )?;
     algorithm.joint.correction = correction.map(|raw| joint::correction(&check, raw, &sensor, beside)).transpose()?;
     Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }
@@ -157,7 +184,7 @@ impl RawSensor {
 fn algorithm(
     check: &Check,
     raw: RawAlgorithm,
-    sensor: &Sensor,
+    (sensor, tension): (&Sensor, Tension),
     hardware: &Hardware,
 ) -> Result<(Algorithm, Option<RawCorrection>), DesignError> {
     let full_scale_pa = hardware.full_scale_pa;
@@ -170,12 +197,15 @@ fn algorithm(
     let estimator: Estimator =
         check.optional_word("algorithm.estimator", raw.estimator.as_deref())?.unwrap_or_default();
     let joint = if estimator == Estimator::Joint {
-        let conditions = joint::conditions(sensor, kernel, regularisation);
-        let constants = joint::Raw { gain: raw.gain, tangential: raw.tangential.as_deref(), fitted_to: raw.fitted_to };
+        let grid = joint::grid(check, raw.grid)?;
+        let conditions = joint::conditions(sensor, tension, kernel, regularisation, grid);
+        let (gain, tangential, fitted_to) = (raw.gain, raw.tangential.as_deref(), raw.fitted_to);
+        let constants = joint::Raw { grid, gain, tangential, fitted_to };
         joint::constants(check, constants, &conditions)?
     } else {
-        let given = [raw.gain.is_some(), raw.tangential.is_some(), raw.correction.is_some(), raw.fitted_to.is_some()];
-        joint::refuse(check, given)?;
+        let [gain, tangential] = [raw.gain.is_some(), raw.tangential.is_some()];
+        let [correction, fitted_to] = [raw.correction.is_some(), raw.fitted_to.is_some()];
+        joint::refuse(check, [raw.grid.is_some(), gain, tangential, correction, fitted_to])?;
         JointConstants::default()
     };
     let outputs: Outputs = check.optional_word("algorithm.outputs", raw.outputs.as_deref())?.unwrap_or_default();
@@ -184,9 +214,16 @@ fn algorithm(
         None => full_scale_pa / NOISE_FLOOR_DIVISOR,
     };
     let plan = parse_plan::kind(check, raw.plan.as_deref(), &filter, hardware)?;
-    let algorithm =
-        Algorithm { plan, kernel, regularisation, filter, estimator, joint: Box::new(joint), outputs, noise_floor_pa };
+    let slip = raw.slip.map(|raw| slip(check, &raw)).transpose()?;
+    let joint = Box::new(joint);
+    let algorithm = Algorithm { plan, kernel, regularisation, filter, estimator, joint, outputs, noise_floor_pa, slip };
     Ok((algorithm, raw.correction))
+}
+
+fn slip(check: &Check, raw: &RawSlip) -> Result<Slip, DesignError> {
+    let limit = check.real("algorithm.slip.limit", raw.limit, 0.01, Slip::LARGEST, "")?;
+    let hysteresis = raw.hysteresis.unwrap_or(0.1 * limit);
+    Ok(Slip { limit, hysteresis: check.real("algorithm.slip.hysteresis", hysteresis, 0.0, limit, "")? })
 }
 
 fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {

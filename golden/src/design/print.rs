@@ -4,7 +4,10 @@ use std::fmt::Write;
 
 use toml::Value;
 
-use super::{Algorithm, CALIBRATION_FILE, Choices, Design, Filter, FilterKind, Hardware, joint, regularisation};
+use super::{
+    Algorithm, CALIBRATION_FILE, CURVE_FILE, Choices, Design, Filter, FilterKind, Hardware, Slip, Tension, joint,
+    regularisation,
+};
 use crate::estimators::Constants;
 use crate::names::MatrixName;
 
@@ -27,13 +30,30 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
         Constants::Line => [String::new(), String::new()],
         Constants::Joint(constants) => joint::print(constants, weights),
     };
+    // As with control below.
+    let tension = match input.tension {
+        Tension::Read => String::new(),
+        Tension::Clipped => format!("tension = \"{}\"\n", input.tension),
+    };
+    let slip = algorithm.slip.map_or_else(String::new, |Slip { limit, hysteresis }| {
+        format!("slip = {{ limit = {limit:?}, hysteresis = {hysteresis:?} }}\n")
+    });
     let counts = match input.pa_per_count {
         Some(value) => format!("pa_per_count = {value:?}\n"),
+        None => String::new(),
+    };
+    let curve = match input.curve.as_ref().map(|curve| curve.law) {
+        Some(Some([power, scale])) => format!("curve = {{ power = {power:?}, scale = {scale:?} }}\n"),
+        Some(None) => format!("curve = \"{CURVE_FILE}\"\n"),
         None => String::new(),
     };
     let calibration = match input.calibration {
         Some(_) => format!("calibration = \"{CALIBRATION_FILE}\"\n"),
         None => String::new(),
+    };
+    let dead = match input.dead.as_slice() {
+        [] => String::new(),
+        dead => format!("dead = {dead:?}\n"),
     };
     let speed = match hardware.target_us {
         Some(target) => format!("target_us = {target:?}"),
@@ -46,9 +66,9 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
     let _ = write!(
         text,
         "name = \"{name}\"\n\n\
-         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{counts}{calibration}\n\
+         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{tension}{counts}{curve}{calibration}{dead}\n\
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
-         {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{filter_table}{correction}\n\
+         {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
          full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{control}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,

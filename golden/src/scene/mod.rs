@@ -3,20 +3,27 @@
 //! The elastic models here are those of a layer or of loads with an extent, not the estimator's own.
 
 mod bessel;
+mod field;
+mod green;
 mod parse;
+mod parse_traction;
 mod sensor_errors;
 mod shape;
 mod spectral;
+mod traction;
 mod transfer;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 pub(crate) use sensor_errors::normal;
 pub use sensor_errors::{Converter, SensorErrors};
 pub use shape::Shape;
+pub use traction::{Shear, Traction};
 pub use transfer::Medium;
 
 use crate::design::{DesignError, Sensor};
+use field::Field;
 use spectral::UnitResponses;
 
 /// What is wrong with a scene.
@@ -40,7 +47,7 @@ pub enum SceneError {
     },
 }
 
-/// A contact that slides: normal force, and friction times it along one direction.
+/// A contact: normal force, and friction times it along one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
     /// Distribution of the load.
@@ -49,8 +56,10 @@ pub struct Contact {
     pub centre_m: [f64; 2],
     /// Normal force in newtons, positive when pressing.
     pub normal_force_n: f64,
-    /// Tangential over normal force.
+    /// Coefficient of friction: tangential over normal force where the contact slides without turning.
     pub friction: f64,
+    /// How the load is spread over the shape, beyond what the shape says.
+    pub traction: Traction,
     /// Direction of the tangential force in degrees from x towards y; the directions of a sweep are added to it.
     pub direction_deg: f64,
 }
@@ -136,6 +145,7 @@ impl Scene {
                 centre_m: [0.5e-3 * side_x, 0.5e-3 * side_y],
                 normal_force_n: FORCE_N * (radius / RADIUS_MM).powi(2),
                 friction: 0.5,
+                traction: Traction::default(),
                 direction_deg: 0.0,
             }],
             sweep_deg: (0..36).map(|step| f64::from(step) * 10.0).collect(),
@@ -151,21 +161,41 @@ impl Scene {
     ///
     /// [`SceneError::TooFine`] when a depth is tiny compared with the size of the grid or of a contact.
     pub fn frames(&self) -> Result<Vec<SceneFrame>, SceneError> {
-        let responses = self
+        let scene = self.as_built();
+        let points = scene.contacts.iter().any(|contact| scene.needs_points(contact)).then(|| Field::of(&scene));
+        let responses = scene
             .contacts
             .iter()
             .enumerate()
-            .map(|(index, contact)| self.unit_responses(index, contact))
+            .map(|(index, contact)| match &points {
+                Some(field) if scene.needs_points(contact) => Ok(Stress::Points(field)),
+                _ => scene.unit_responses(index, contact).map(Stress::Unit),
+            })
             .collect::<Result<Vec<_>, _>>()?;
         let directions = match self.sweep_deg.as_slice() {
             [] => vec![None],
             sweep => sweep.iter().copied().map(Some).collect(),
         };
-        let mut frames: Vec<_> = directions.into_iter().map(|direction| self.combine(&responses, direction)).collect();
+        let mut frames: Vec<_> = directions.into_iter().map(|direction| scene.combine(&responses, direction)).collect();
         for (index, frame) in frames.iter_mut().enumerate() {
             self.sensor_errors.apply(index, &mut frame.stress);
         }
         Ok(frames)
+    }
+
+    /// The scene with the depth that the layer really has.
+    fn as_built(&self) -> Cow<'_, Self> {
+        if self.sensor_errors.depth.to_bits() == 0 {
+            return Cow::Borrowed(self);
+        }
+        let mut scene = self.clone();
+        scene.sensor.depth_mm *= 1.0 + self.sensor_errors.depth;
+        Cow::Owned(scene)
+    }
+
+    /// Whether a contact is more than a shape that slides over taxels that are points.
+    fn needs_points(&self, contact: &Contact) -> bool {
+        self.sensor_errors.taxel_m.is_some() || contact.traction != Traction::default()
     }
 
     fn unit_responses(&self, index: usize, contact: &Contact) -> Result<UnitResponses, SceneError> {
@@ -190,19 +220,29 @@ impl Scene {
             .map_err(|waves| SceneError::TooFine { contact: index + 1, depth_mm: sensor.depth_mm, waves })
     }
 
-    fn combine(&self, responses: &[UnitResponses], sweep_deg: Option<f64>) -> SceneFrame {
+    fn combine(&self, responses: &[Stress<'_>], sweep_deg: Option<f64>) -> SceneFrame {
         let mut stress = vec![0.0; self.sensor.taxels()];
         let mut force = [0.0; 3];
         let mut torque = [0.0; 3];
-        for (contact, [normal, along_x, along_y]) in self.contacts.iter().zip(responses) {
+        for (contact, response) in self.contacts.iter().zip(responses) {
             let angle = contact.direction_deg + sweep_deg.unwrap_or(0.0);
+            let [normal, along_x, along_y] = match response {
+                Stress::Unit(responses) => responses,
+                Stress::Points(field) => {
+                    let exerted = field.add(contact, angle, &mut stress);
+                    for (sums, parts) in [&mut force, &mut torque].into_iter().zip(exerted) {
+                        sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+                    }
+                    continue;
+                }
+            };
             let pressing = contact.normal_force_n;
             let tangential = contact.friction * pressing;
             let (fx, fy) = (tangential * cos_degrees(angle), tangential * cos_degrees(angle - 90.0));
             for (taxel, sum) in stress.iter_mut().enumerate() {
                 *sum += pressing * normal[taxel] + fx * along_x[taxel] + fy * along_y[taxel];
             }
-            // Every shape is its own mirror image in x and in y, so that its forces act at its centre.
+            // Spread as its shape says, which is its own mirror image in x and in y, the load acts at its centre.
             let own = [fx, fy, -pressing];
             let own = own.into_iter().zip(self.sensor.torque_of(contact.centre_m, own));
             for ((sum, moment), (part, arm)) in force.iter_mut().zip(&mut torque).zip(own) {
@@ -222,6 +262,14 @@ impl Scene {
             bodies: self.contacts.len(),
         }
     }
+}
+
+/// The stress of one contact.
+enum Stress<'a> {
+    /// For each kind of load of 1 N.
+    Unit(UnitResponses),
+    /// Summed over points of the contact, anew for each direction.
+    Points(&'a Field),
 }
 
 /// Responses of all taxels to 1 N pressing, along x and along y, for one contact; good to about 1e-4 of the peak and

@@ -2,9 +2,10 @@
 
 use serde::Deserialize;
 
+use super::parse_traction::RawTraction;
 use super::{Contact, Converter, Medium, Scene, SensorErrors, Shape};
 use crate::design::checks::Check;
-use crate::design::{DEFAULT_FULL_SCALE_PA, DesignError, RawSensor, syntax_position};
+use crate::design::{DEFAULT_FULL_SCALE_PA, DesignError, Lengths, RawSensor, Sensor, syntax_position};
 
 /// Most frames of a sweep.
 const MAX_FRAMES: f64 = 100_000.0;
@@ -12,12 +13,24 @@ const MAX_FRAMES: f64 = 100_000.0;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawScene {
-    sensor: RawSensor,
+    sensor: RawSceneSensor,
     medium: RawMedium,
     #[serde(default)]
     contact: Vec<RawContact>,
     sweep: Option<RawSweep>,
     sensor_errors: Option<RawSensorErrors>,
+}
+
+/// The sensor of a design, and how large its taxels are.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawSceneSensor {
+    columns: i64,
+    rows: i64,
+    pitch_mm: Lengths,
+    depth_mm: f64,
+    taxel_mm: Option<Lengths>,
+    tension: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -54,6 +67,12 @@ struct RawContact {
     normal_force_n: f64,
     friction: f64,
     direction_deg: Option<f64>,
+    turn_deg: Option<f64>,
+    edge: Option<f64>,
+    tilt: Option<Vec<f64>>,
+    shear: Option<String>,
+    held: Option<f64>,
+    spin: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -74,6 +93,7 @@ struct RawRange {
 #[serde(deny_unknown_fields)]
 struct RawSensorErrors {
     seed: Option<i64>,
+    depth: Option<f64>,
     gain_spread: Option<f64>,
     noise: Option<f64>,
     quantisation_bits: Option<i64>,
@@ -98,12 +118,25 @@ pub(super) fn scene(text: &str, origin: &str) -> Result<Scene, DesignError> {
         .enumerate()
         .map(|(index, raw)| contact(&check, raw, &|key| format!("contact[{index}].{key}"), !sweep_deg.is_empty()))
         .collect::<Result<_, _>>()?;
-    let sensor = raw.sensor.check(origin)?;
-    let sensor_errors = match raw.sensor_errors {
+    let RawSceneSensor { columns, rows, pitch_mm, depth_mm, taxel_mm, tension } = raw.sensor;
+    let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
+    let mut sensor_errors = match raw.sensor_errors {
         Some(raw) => sensor_errors(&check, &raw, sensor.taxels())?,
         None => SensorErrors::default(),
     };
+    sensor_errors.tension = check.optional_word("sensor.tension", tension.as_deref())?.unwrap_or_default();
+    sensor_errors.taxel_m = taxel_mm.map(|taxel_mm| taxel(&check, &taxel_mm, &sensor)).transpose()?;
     Ok(Scene { sensor, medium: medium(&check, &raw.medium)?, contacts, sweep_deg, sensor_errors })
+}
+
+/// The sides of a taxel in metres, which fits into its cell.
+fn taxel(check: &Check, taxel_mm: &Lengths, sensor: &Sensor) -> Result<[f64; 2], DesignError> {
+    let [x, y] = taxel_mm.pair(check, "sensor.taxel_mm")?;
+    let side = |axis: usize, mm| {
+        let key = format!("sensor.taxel_mm[{axis}]");
+        check.real(&key, mm, 0.0, sensor.pitch_mm[axis], "mm, the pitch").map(|mm| mm * 1e-3)
+    };
+    Ok([side(0, x)?, side(1, y)?])
 }
 
 fn medium(check: &Check, raw: &RawMedium) -> Result<Medium, DesignError> {
@@ -143,6 +176,9 @@ fn contact(
             ));
         }
     };
+    let RawContact { turn_deg, edge, held, spin, .. } = *raw;
+    let (tilt, shear) = (raw.tilt.as_deref(), raw.shear.as_deref());
+    let traction = RawTraction { turn_deg, edge, tilt, shear, held, spin }.check(check, shape, key)?;
     let [x, y] = check.pair(&key("centre_mm"), &raw.centre_mm)?;
     let centre = |name: &str, mm: f64| check.real(&key(name), mm, -100_000.0, 100_000.0, "mm").map(|mm| mm * 1e-3);
     Ok(Contact {
@@ -150,6 +186,7 @@ fn contact(
         centre_m: [centre("centre_mm[0]", x)?, centre("centre_mm[1]", y)?],
         normal_force_n: check.above_zero(&key("normal_force_n"), raw.normal_force_n, 1e6, "N (it presses)")?,
         friction: check.real(&key("friction"), raw.friction, 0.0, 10.0, "")?,
+        traction,
         direction_deg,
     })
 }
@@ -225,12 +262,21 @@ fn sensor_errors(check: &Check, raw: &RawSensorErrors, taxels: usize) -> Result<
     };
     Ok(SensorErrors {
         seed: check.integer("sensor_errors.seed", raw.seed.unwrap_or(0), 0, i64::MAX)? as u64,
+        taxel_m: None,
+        depth: check.real(
+            "sensor_errors.depth",
+            raw.depth.unwrap_or(0.0),
+            -0.5,
+            0.5,
+            "(a share: 0.05 is 5 % deeper)",
+        )?,
         gain_spread: share("gain_spread", raw.gain_spread)?,
         noise: share("noise", raw.noise)?,
         converter,
         dead,
         // Pressed too hard: the end of the range for compression.
         stuck: saturated.into_iter().map(|taxel| (taxel, -full_scale_pa)).collect(),
+        ..SensorErrors::default()
     })
 }
 

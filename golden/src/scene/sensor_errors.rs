@@ -5,9 +5,18 @@ use std::f64::consts::TAU;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Errors of a sensor, applied to each frame in the order of the fields. The default is a sensor without errors.
+use crate::design::Tension;
+
+/// What a sensor does to the stress, in the order of the fields. The default is a sensor without errors, whose taxels are
+/// points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensorErrors {
+    /// Sides of the part of its cell over which a taxel averages the stress, in metres; a point if absent.
+    pub taxel_m: Option<[f64; 2]>,
+    /// Share by which the layer is really deeper than the sensor says.
+    pub depth: f64,
+    /// What the taxels read of a pull. Where they read nothing, noise is no pull either.
+    pub tension: Tension,
     /// Seed of all that is random; the same seed gives the same frames.
     pub seed: u64,
     /// Standard deviation of the taxels' gains around 1; a gain stays the same in all frames.
@@ -50,6 +59,7 @@ impl SensorErrors {
             generator.set_stream(stream);
             generator
         };
+        stress.iter_mut().for_each(|value| *value = self.tension.of(*value));
         if self.gain_spread > 0.0 {
             let mut gains = generator(0);
             for value in &mut *stress {
@@ -63,6 +73,7 @@ impl SensorErrors {
                 *value += deviation * normal(&mut noise);
             }
         }
+        stress.iter_mut().for_each(|value| *value = self.tension.of(*value));
         if let Some(converter) = self.converter {
             for value in &mut *stress {
                 *value = converter.read(*value);

@@ -38,6 +38,15 @@ impl Shape {
         }
     }
 
+    /// Exponent n of the pressure `(1 - rho^2)^n`.
+    pub(super) fn own_edge(self) -> f64 {
+        match self {
+            Self::Hertz { .. } => 0.5,
+            Self::Rectangle { .. } | Self::Disc { .. } => 0.0,
+            Self::Punch { .. } => -0.5,
+        }
+    }
+
     /// Stress on a half-space as the functions of [`half_space`] give it, or `None` where there is no closed form.
     pub(super) fn half_space(self, offset_m: [f64; 2], depth_m: f64) -> Option<[f64; 3]> {
         match self {

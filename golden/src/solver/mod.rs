@@ -19,7 +19,7 @@ pub use workspace::Workspace;
 
 use std::sync::{Arc, OnceLock};
 
-use crate::design::{Design, Outputs, PlanKind};
+use crate::design::{Design, Outputs, PlanKind, Slip};
 use crate::estimators::{Friction, FrictionScratch, Seen};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
@@ -28,6 +28,10 @@ use crate::products::batch::Blocks;
 use crate::products::{Engine, PaperMatrices, ProductList};
 use crate::reduced::ReducedMatrices;
 use reading::Reader;
+
+/// Friction, `|mu_x| + |mu_y|`, from which on a layer that is dragged shows tension somewhere. Below it a contact in the
+/// middle may show none.
+pub const PULLING: f64 = 0.35;
 
 /// Why a solver cannot be made or a frame cannot be solved.
 #[derive(Debug, thiserror::Error)]
@@ -120,6 +124,9 @@ impl Solution {
     fn optimum(&mut self, friction: &Friction, seen: &Seen, scratch: &mut FrictionScratch) -> [f64; 2] {
         let (status, mu) = friction.find(seen, scratch);
         self.status.insert(status);
+        if !status.contains(Status::DIRECTION_UNKNOWN) && mu[0].abs() + mu[1].abs() < PULLING {
+            self.status.remove(Status::NO_TENSION);
+        }
         let [fx, fy, fz, tx, ty, tz] = seen.sums.map(|[g0, g1, g2]| g0 + mu[0] * g1 + mu[1] * g2);
         let resultant = [fx, fy, fz];
         [self.mu_x, self.mu_y] = mu;
@@ -136,6 +143,7 @@ pub struct Solver {
     matrices: Matrices,
     products: Products,
     friction: Friction,
+    slip: Option<Slip>,
 }
 
 /// The products of the design's plan.
@@ -190,7 +198,7 @@ impl Solver {
 
     fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
         let friction = Friction::new(design.algorithm.constants(), &design.sensor);
-        Self { reader: Reader::new(design), matrices, products, friction }
+        Self { reader: Reader::new(design), matrices, products, friction, slip: design.algorithm.slip }
     }
 
     /// The unfiltered matrices.

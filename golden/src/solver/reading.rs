@@ -4,12 +4,14 @@ use nalgebra::DVector;
 
 use super::cean::{self, Contact};
 use super::{SolverError, Status};
-use crate::design::{Design, Input};
+use crate::dead_taxels::{DeadTaxels, GUESSED};
+use crate::design::{Design, Input, Tension};
 
 /// Reads the frames of one sensor.
 #[derive(Clone, Debug)]
 pub(crate) struct Reader {
     input: Input,
+    dead: DeadTaxels,
     positions: Vec<[f64; 2]>,
     noise_floor: f64,
     full_scale: f64,
@@ -34,6 +36,7 @@ impl Reader {
         let sensor = &design.sensor;
         Self {
             input: design.input.clone(),
+            dead: DeadTaxels::new(sensor, design.algorithm.kernel, &design.input.dead),
             positions: (0..sensor.taxels()).map(|i| sensor.position_m(i)).collect(),
             noise_floor: design.algorithm.noise_floor_pa,
             full_scale: design.hardware.full_scale_pa,
@@ -52,7 +55,8 @@ impl Reader {
         if frame.len() != taxels {
             return Err(SolverError::FrameLength { found: frame.len(), expected: taxels });
         }
-        if frame.iter().any(|stress| !stress.is_finite()) {
+        let is_dead = |taxel| self.dead.contains(taxel);
+        if frame.iter().enumerate().any(|(taxel, value)| !value.is_finite() && !is_dead(taxel)) {
             return Ok(Reading::Nothing(Status::NOT_FINITE));
         }
         let mut status = Status::default();
@@ -60,13 +64,29 @@ impl Reader {
             *stress = self.input.to_pa(taxel, value);
         }
         // What reads full scale may have been clipped by the converter: nobody can tell.
-        if b.iter().any(|stress| stress.abs() >= self.flagged) {
+        let beyond = |(taxel, &value): (usize, &f64)| !is_dead(taxel) && self.input.is_beyond(value);
+        if b.iter().any(|stress| stress.abs() >= self.flagged) || frame.iter().enumerate().any(beyond) {
+            status.insert(Status::SATURATED);
+        }
+        b.apply(|stress| *stress = stress.clamp(-self.full_scale, self.full_scale));
+        self.dead.replace(b.as_mut_slice());
+        if self.dead.taxels().iter().any(|&taxel| b[taxel].abs() > self.full_scale) {
             status.insert(Status::SATURATED);
         }
         b.apply(|stress| *stress = stress.clamp(-self.full_scale, self.full_scale));
         let contact = cean::cean(b, &self.positions, self.noise_floor);
         if !contact.touched {
             return Ok(Reading::Nothing(Status::NO_CONTACT));
+        }
+        if self.input.tension == Tension::Read && b.iter().all(|&stress| stress <= 0.0) {
+            status.insert(Status::NO_TENSION);
+        }
+        if !self.dead.taxels().is_empty() {
+            status.insert(Status::REPLACED);
+        }
+        let guessed: f64 = self.dead.taxels().iter().map(|&taxel| b[taxel].abs()).sum();
+        if guessed > GUESSED * contact.stress_sum {
+            status.insert(Status::TOO_MANY_REPLACED);
         }
         Ok(Reading::Contact { contact, status })
     }

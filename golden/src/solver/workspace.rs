@@ -20,6 +20,8 @@ pub struct Workspace {
     b: DVector<f64>,
     friction: FrictionScratch,
     products: Scratch,
+    /// Whether the last frame slipped.
+    slips: bool,
     /// For several frames at once, made when first used.
     batch: Option<Box<BatchFrame>>,
 }
@@ -41,13 +43,15 @@ impl Solver {
                 Products::Paper(paper) => Scratch::Paper(Box::new(paper.frame())),
                 Products::Reduced(reduced) => Scratch::Reduced(Box::new(reduced.engine.frame())),
             },
+            slips: false,
             batch: None,
         }
     }
 
     /// As [`Solver::solve`], into a solution that is there already: after the first frame no memory is asked for.
     ///
-    /// The workspace is that of this solver; that of another is replaced.
+    /// The workspace is that of this solver; that of another is replaced. Frames solved with one workspace follow each
+    /// other: whether a frame slips depends on the one before.
     ///
     /// # Errors
     ///
@@ -78,7 +82,17 @@ impl Solver {
                 self.scale(solution);
             }
         }
+        self.note_slip(&mut workspace.slips, solution);
         Ok(())
+    }
+
+    /// Raises the bit of a frame that slips. Without contact nothing does; a frame that tells nothing changes nothing.
+    fn note_slip(&self, slips: &mut bool, solution: &mut Solution) {
+        let Some(slip) = self.slip.filter(|_| !solution.status.contains(Status::NOT_FINITE)) else { return };
+        *slips = !solution.status.contains(Status::NO_CONTACT) && slip.slips(solution.mu, *slips);
+        if *slips {
+            solution.status.insert(Status::SLIP);
+        }
     }
 
     /// Multiplies the forces by the estimator's gain.
@@ -126,7 +140,7 @@ impl Solver {
         let blocks = reduced.blocks.get_or_init(|| {
             Arc::new(Blocks::new(&reduced.engine.list, reduced.engine.stored(), self.matrices.quads()))
         });
-        let Workspace { b, friction: scratch, batch, .. } = workspace;
+        let Workspace { b, friction: scratch, batch, slips, .. } = workspace;
         let batch = batch.get_or_insert_with(|| Box::new(BatchFrame::new(&reduced.engine.list, blocks)));
         for (frames, solutions) in frames.chunks(FRAMES).zip(solutions.chunks_mut(FRAMES)) {
             batch.clear();
@@ -142,6 +156,7 @@ impl Solver {
             batch.solve(&self.friction, scratch, solutions);
             for solution in solutions {
                 self.scale(solution);
+                self.note_slip(slips, solution);
             }
         }
         Ok(())

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use golden::check::{Finding, Kind, check};
-use golden::design::Design;
+use golden::design::{Design, Tension};
 use golden::frames::read_labelled_frames;
 use golden::matrices::Matrices;
 use golden::scene::{Converter, Scene, SensorErrors};
@@ -72,13 +72,17 @@ fn good_frames_are_left_alone() {
 
 #[test]
 fn a_real_mat_reads_no_tension_and_reaches_the_end_of_its_range() {
-    let design = design("bed-mat");
-    let frames = read_labelled_frames(&repository("data/bed_mat_64x27.csv"), design.sensor.taxels(), 2).unwrap();
+    let mut design = design("bed-mat");
+    design.input.tension = Tension::Read;
+    let frames = read_labelled_frames(&repository("data/bed_mat_64x27.csv"), &design.sensor, 2).unwrap();
     let findings = check(&design, &frames, None);
     // 73 readings are 104, one is 103, three are 102.
     let kinds: Vec<Kind> = findings.iter().map(|finding| finding.kind).collect();
     assert_eq!(kinds, [Kind::NoTension, Kind::Stuck], "{findings:?}");
     assert!(findings[1].to_string().contains("73 readings of 22 frames are exactly 104"), "{findings:?}");
+    // Of a sensor that is said to read none it is no finding.
+    design.input.tension = Tension::Clipped;
+    assert_eq!(check(&design, &frames, None), findings[1..]);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use std::process::{Command, Output};
 
 use golden::design::Design;
 use golden::frames::{read_frames, write_frames};
+use golden::sensor::Sensor;
 use tempfile::TempDir;
 
 fn repository(path: &str) -> PathBuf {
@@ -91,7 +92,10 @@ fn scene_then_solve() {
     // The contact is in the middle.
     let truth = fs::read_to_string(&reference).unwrap();
     assert_eq!(truth.lines().next(), Some(HEADER));
-    assert_eq!(truth.lines().nth(1), Some("0,3.0,0.0,-6.0,0.5,0.0,0.5,0.0,-0.0,0.0,0.0,0.0,1.0"));
+    let first: Vec<f64> = truth.lines().nth(1).unwrap().split(',').map(|value| value.parse().unwrap()).collect();
+    let expected = [0.0, 3.0, 0.0, -6.0, 0.5, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    assert_eq!(first.len(), expected.len());
+    assert!(first.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-15), "{first:?}");
     // Besides these three and the frames' sensor nothing is left behind.
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4);
 }
@@ -137,12 +141,17 @@ fn bad_frames_get_one_message_and_no_output() {
     }
 }
 
+/// So many taxels in a row.
+fn line_of(columns: usize) -> Sensor {
+    Sensor { columns, rows: 1, pitch_mm: [4.0, 4.0], depth_mm: 3.0 }
+}
+
 #[test]
 fn frames_that_are_no_text() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("frames.csv");
     fs::write(&path, [0xff, 0xfe, b',', b'1', b'\n']).unwrap();
-    let error = read_frames(&path, 2).unwrap_err().to_string();
+    let error = read_frames(&path, &line_of(2)).unwrap_err().to_string();
     assert!(error.contains("line 1, column 1"), "{error}");
 }
 
@@ -152,13 +161,17 @@ fn frames_read_back_to_the_bit() {
     let path = folder.path().join("frames.csv");
     let frames = vec![vec![-0.1, 1.0 / 3.0, 1e-300], vec![-0.0, 123_456_789.123, f64::from(f32::MAX)]];
     write_frames(&path, &frames).unwrap();
-    let again = read_frames(&path, 3).unwrap();
+    let again = read_frames(&path, &line_of(3)).unwrap();
+    let array = path.with_extension("npy");
+    write_frames(&array, &frames).unwrap();
+    assert!(fs::read(&array).unwrap().starts_with(b"\x93NUMPY"));
+    assert_eq!(read_frames(&array, &line_of(3)).unwrap(), again);
     let bits = |frames: &[Vec<f64>]| -> Vec<u64> { frames.iter().flatten().map(|value| value.to_bits()).collect() };
     assert_eq!(bits(&again), bits(&frames));
 
     // The sensor's stream is float32: what does not fit there is no stress.
     write_frames(&path, &[vec![0.0, 1e39, 0.0]]).unwrap();
-    let error = read_frames(&path, 3).unwrap_err().to_string();
+    let error = read_frames(&path, &line_of(3)).unwrap_err().to_string();
     assert!(error.contains("line 1, column 2"), "{error}");
 }
 
@@ -434,7 +447,7 @@ fn frames_for_a_design_and_for_no_other() {
     assert!(output.status.success(), "{output:?}");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((&report["frames"], &report["taxels"]), (&36.into(), &30.into()));
-    let counts = read_frames(&frames, 30).unwrap();
+    let counts = read_frames(&frames, &line_of(30)).unwrap();
     assert!(counts.iter().flatten().all(|count| count.fract() == 0.0), "a sensor that counts");
     assert!(counts.iter().flatten().any(|&count| count > 5000.0));
     let solve = |design: &Path| golden(&["solve", text(design), "--frames", text(&frames), "--out", text(&forces)]);
@@ -483,8 +496,11 @@ fn suspicious_frames_are_solved_with_a_warning_and_found_by_check() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success() && said.contains("36 frames") && said.contains("nothing suspicious"), "{said}");
 
-    let turned: Vec<Vec<f64>> =
-        read_frames(&frames, 100).unwrap().iter().map(|frame| frame.iter().map(|stress| -stress).collect()).collect();
+    let turned: Vec<Vec<f64>> = read_frames(&frames, &line_of(100))
+        .unwrap()
+        .iter()
+        .map(|frame| frame.iter().map(|stress| -stress).collect())
+        .collect();
     write_frames(&pulled, &turned).unwrap();
     let output = check(&pulled, false);
     let (said, wrong) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());

@@ -3,7 +3,7 @@
 use golden::calibrate::random_contacts;
 use golden::design::Sensor;
 use golden::metrics::{Outcome, errors};
-use golden::scene::{Contact, Medium, Scene, SensorErrors, Shape};
+use golden::scene::{Contact, Medium, Scene, SensorErrors, Shape, Traction};
 use golden::solver::Solver;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -29,7 +29,14 @@ pub struct Worst {
 }
 
 fn pressed(sensor: &Sensor, medium: Medium, shape: Shape, centre_m: [f64; 2], directions: Vec<f64>) -> Pressed {
-    let contact = Contact { shape, centre_m, normal_force_n: FORCE_N, friction: 1.0, direction_deg: 0.0 };
+    let contact = Contact {
+        shape,
+        centre_m,
+        normal_force_n: FORCE_N,
+        friction: 1.0,
+        traction: Traction::default(),
+        direction_deg: 0.0,
+    };
     let scene = Scene {
         sensor: sensor.clone(),
         medium,

@@ -8,8 +8,9 @@ use std::sync::OnceLock;
 
 use golden::design::Design;
 use golden::forces::read_outcomes;
-use golden::frames::read_labelled_frames;
+use golden::frames::{read_labelled_frames, write_frames};
 use golden::scene::Scene;
+use golden::sensor::Sensor;
 use proptest::prelude::*;
 
 const CASES: u32 = 600;
@@ -119,6 +120,11 @@ fn is_a_message(message: &str) -> bool {
     message.contains("fuzzed") && !message.is_empty() && message.lines().count() == 1
 }
 
+/// A sensor of four taxels.
+fn four() -> Sensor {
+    Sensor { columns: 2, rows: 2, pitch_mm: [4.0, 4.0], depth_mm: 3.0 }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: CASES, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -144,6 +150,27 @@ proptest! {
     }
 
     #[test]
+    fn a_damaged_array_is_read_or_refused(
+        rows in prop::collection::vec(prop::collection::vec(-1e6..1e6_f64, 4), 1..5),
+        place in any::<prop::sample::Index>(),
+        byte in any::<u8>(),
+        cut in 0..3_usize,
+    ) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("fuzzed.npy");
+        write_frames(&path, &rows).expect("writable");
+        let mut bytes = fs::read(&path).expect("there");
+        let place = place.index(bytes.len());
+        bytes[place] = byte;
+        bytes.truncate(bytes.len() - cut);
+        fs::write(&path, bytes).expect("writable");
+        match read_labelled_frames(&path, &four(), 0) {
+            Ok(frames) => prop_assert!(frames.iter().flatten().all(|value| value.is_finite())),
+            Err(error) => prop_assert!(is_a_message(&error.to_string()), "{}", error),
+        }
+    }
+
+    #[test]
     fn damaged_frames_are_read_or_refused(
         rows in prop::collection::vec(prop::collection::vec(-1e6..1e6_f64, 4), 1..5),
         changes in changes(),
@@ -154,7 +181,7 @@ proptest! {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("fuzzed.csv");
         fs::write(&path, changed(&lines.join("\n"), &changes)).expect("writable");
-        match read_labelled_frames(&path, 4, labels) {
+        match read_labelled_frames(&path, &four(), labels) {
             Ok(frames) => {
                 prop_assert!(frames.iter().all(|frame| frame.len() == 4));
                 prop_assert!(frames.iter().flatten().all(|value| value.is_finite()));
@@ -178,7 +205,7 @@ proptest! {
         match Design::load(&design) {
             Ok(design) => {
                 let calibration = design.input.calibration.expect("as the file says");
-                prop_assert!(calibration.gain.iter().all(|gain| gain.is_finite() && *gain > 0.0));
+                prop_assert!(calibration.gain.iter().all(|gain| gain.is_finite() && *gain >= 0.0));
                 prop_assert_eq!((calibration.gain.len(), calibration.offset.len()), (12, 12));
             }
             Err(error) => {
@@ -207,7 +234,7 @@ proptest! {
         let errors = [
             Design::load(&path).err().map(|error| error.to_string()),
             Scene::load(&path).err().map(|error| error.to_string()),
-            read_labelled_frames(&path, 4, 0).err().map(|error| error.to_string()),
+            read_labelled_frames(&path, &four(), 0).err().map(|error| error.to_string()),
             read_outcomes(&path, 1).err().map(|error| error.to_string()),
         ];
         for error in errors.into_iter().flatten() {

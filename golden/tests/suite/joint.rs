@@ -124,7 +124,7 @@ fn shapes_that_it_never_saw_are_solved_too() {
 #[test]
 fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
     let settings = Settings { seed: 3, contacts: 60, samples: 300, hidden: 4, steps: 200 };
-    let mut design = small("estimator = \"joint\"");
+    let mut design = small("estimator = \"joint\"\ngrid = 15");
     let mut ticks = 0_usize;
     let found = calibrate(&design, &settings, &mut |_| ticks += 1).unwrap();
     assert_eq!(ticks, 60 + 300 + 200);
@@ -158,7 +158,7 @@ fn either_plan_finds_the_same_from_pascals_and_from_counts() {
             (PlanKind::Reduced, Outputs::Field, Some(-0.5)),
         ] {
             (design.algorithm.plan, design.algorithm.outputs) = (plan, outputs);
-            design.input = Input { pa_per_count, calibration: None };
+            design.input = Input { pa_per_count, ..Input::default() };
             solvers.push((Solver::new(&design).unwrap(), pa_per_count));
         }
         for Pressed { loads: [normal, along_x, along_y], .. } in &set {
@@ -200,10 +200,17 @@ fn constants_that_make_no_sense_are_refused() {
     for (text, parts) in [
         (text("gain = 1.1"), ["algorithm.gain", "joint estimator"]),
         (text("tangential = [1.0, 0.0]"), ["algorithm.tangential", "joint estimator"]),
+        (text("grid = 15"), ["algorithm.grid", "joint estimator"]),
+        (joint("grid = 13"), ["algorithm.grid", "15 or 21"]),
+        (joint("grid = -15"), ["algorithm.grid", "15 or 21"]),
+        (
+            joint("grid = 15\nfitted_to = \"4 x 3 taxels of 4 x 2 mm, 3 mm deep, point, 0\""),
+            ["algorithm.fitted_to", "grid 15"],
+        ),
         (joint("gain = 0.0"), ["algorithm.gain", "0.1"]),
         (joint("gain = nan"), ["algorithm.gain", "NaN"]),
         (joint("tangential = [1.0]"), ["algorithm.tangential", "has 1 values"]),
-        (joint("tangential = [1.0, 9.0]"), ["algorithm.tangential[1]", "-2 to 2"]),
+        (joint("tangential = [1.0, 9.0]"), ["algorithm.tangential[1]", "-3.9 to 3.9"]),
         (correction("half_window = [0]\nhidden = []\noutput = []"), ["half_window", "has 1 values"]),
         (correction("half_window = [4, 0]\nhidden = []\noutput = []"), ["half_window[0]", "0 to 3"]),
         (correction("half_window = [0, 0]\nhidden = []\noutput = []"), ["hidden", "1 to 256"]),

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use golden::design::{CALIBRATION_FILE, Design, Filter, Kernel};
 use golden::frames::{read_frames, read_labelled_frames};
 use golden::metrics::field_error;
+use golden::sensor::Sensor;
 use golden::solver::{Solver, Status};
 
 const PAD: &str = "name = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
@@ -100,9 +101,10 @@ fn wrong_inputs_are_refused() {
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
     for (lines, parts) in [
-        (LINES.replace("16,", "16.5,"), ["gains.csv, line 7", "gain is 16.5", "at most 16"]),
-        (LINES.replace("0.5,", "0,"), ["gains.csv, line 2", "gain is 0", "greater than 0"]),
-        (LINES.replace("0.5,", "nan,"), ["gains.csv, line 2", "gain is NaN", "greater than 0"]),
+        (LINES.replace("16,", "16.5,"), ["gains.csv, line 7", "gain is 16.5", "1e-9 to 16"]),
+        (LINES.replace("0.5,", "1e-10,"), ["gains.csv, line 2", "gain is 0.0000000001", "1e-9 to 16"]),
+        (LINES.replace("0.5,", "-1,"), ["gains.csv, line 2", "gain is -1", "0 for a dead taxel"]),
+        (LINES.replace("0.5,", "nan,"), ["gains.csv, line 2", "gain is NaN", "1e-9 to 16"]),
         (LINES.replace("1e6", "1e7"), ["gains.csv, line 7", "offset is -10000000", "1000000"]),
         (LINES.replace("1,1", "1;1"), ["gains.csv, line 5", "1;1", "gain,offset"]),
         (LINES.replace("1,1", "1,1,1"), ["gains.csv, line 5", "1,1,1", "gain,offset"]),
@@ -115,13 +117,84 @@ fn wrong_inputs_are_refused() {
     }
 }
 
+fn grid(columns: usize, rows: usize) -> Sensor {
+    Sensor { columns, rows, pitch_mm: [4.0, 4.0], depth_mm: 3.0 }
+}
+
+#[test]
+fn any_usual_separator_with_a_header_or_without() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frames.csv");
+    let read = |text: &str| {
+        fs::write(&path, text).unwrap();
+        read_frames(&path, &grid(2, 1)).map_err(|error| error.to_string())
+    };
+    let two = Ok(vec![vec![-1.5, 2.0], vec![3e3, 4.0]]);
+    for text in [
+        "-1.5,2\n3e3,4\n",
+        "-1.5;2\r\n3e3;4\r\n",
+        "-1,5;2\n3e3;4,0",
+        "-1.5\t2\n3e3\t4\n",
+        "  -1.5   2\n3e3 4\n",
+        "\u{feff}r0,r1\n-1.5,2\n3e3,4\n",
+        "left side;right\n-1.5;2\n3e3;4\n",
+        "# of a pad, 2 x 1\n-1.5 2.0\n# a remark\n3e3 4\n",
+    ] {
+        assert_eq!(read(text), two, "{text:?}");
+    }
+    for (text, parts) in [
+        ("1|2\n3|4\n5|6\n", ["line 2, column 1: \"3|4\"", "commas, semicolons, tabs or spaces"]),
+        ("1,2\n3;4\n", ["line 2, column 1: \"3;4\"", "commas, semicolons"]),
+        ("1;2\n3;4;5\n", ["line 2", "column 3 where 2"]),
+    ] {
+        let message = read(text).unwrap_err();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+}
+
+/// A `.npy` file of whole numbers, counted from 0.
+fn array(shape: &[usize]) -> Vec<u8> {
+    let count: usize = shape.iter().product();
+    let sides: String = shape.iter().map(|side| format!("{side}, ")).collect();
+    let header = format!("{{'descr': '<i2', 'fortran_order': False, 'shape': ({sides}), }}\n");
+    let values: Vec<u8> = (0..count as i16).flat_map(i16::to_le_bytes).collect();
+    [b"\x93NUMPY\x01\x00".as_slice(), &(header.len() as u16).to_le_bytes(), header.as_bytes(), &values].concat()
+}
+
+#[test]
+fn arrays_of_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frames.npy");
+    let read = |bytes: &[u8], labels| {
+        fs::write(&path, bytes).unwrap();
+        read_labelled_frames(&path, &grid(3, 2), labels).map_err(|error| error.to_string())
+    };
+    let counted = |from: usize| (from..from + 6).map(|value| value as f64).collect::<Vec<_>>();
+    let two = Ok(vec![counted(0), counted(6)]);
+    assert_eq!(read(&array(&[2, 6]), 0), two);
+    assert_eq!(read(&array(&[2, 2, 3]), 0), two);
+    assert_eq!(read(&array(&[2, 7]), 1), Ok(vec![counted(1), counted(8)]));
+    for (bytes, part) in [
+        (array(&[2, 3, 2]), "the transposed grid: the sensor has 2 rows of 3 columns; transpose them"),
+        (array(&[2, 4, 2]), "frames are [4, 2] where"),
+        (array(&[2, 5]), "5 values a row where 6"),
+        (array(&[6]), "numpy.atleast_2d"),
+        (array(&[]), "a single number"),
+        (array(&[0, 6]), "no frame"),
+        (array(&[2, 6])[..70].to_vec(), "damaged"),
+    ] {
+        let message = read(&bytes, 0).unwrap_err();
+        assert!(message.contains("frames.npy") && message.contains(part), "{message}");
+    }
+}
+
 #[test]
 fn label_columns_are_skipped() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("frames.csv");
     let read = |text: &str, labels| {
         fs::write(&path, text).unwrap();
-        read_labelled_frames(&path, 2, labels).map_err(|error| error.to_string())
+        read_labelled_frames(&path, &grid(2, 1), labels).map_err(|error| error.to_string())
     };
     let two = Ok(vec![vec![1.0, 2.0], vec![3.0, 4.0]]);
     assert_eq!(read("a,0,1,2\nb,é 1,3,4\n", 2), two);
@@ -132,7 +205,8 @@ fn label_columns_are_skipped() {
         ("n,r0,r1\nm,r0,r1\n", 1, "line 2, column 2"),
         ("n,1,r1\na,1,2\n", 1, "line 1, column 3"),
         ("n,nan,inf\na,1,2\n", 1, "line 1, column 2"),
-        ("r0,r1\n1,2\n", 0, "line 1, column 1"),
+        ("r0,r1\nr0,r1\n", 0, "line 2, column 1"),
+        ("r0,1\n1,2\n", 0, "line 1, column 1"),
         ("a,1\n", 1, "ends at column 2 where 3"),
         ("a,1,2,3\n", 1, "ends at column 4 where 3"),
         ("name,r0,r1\n", 1, "no frame"),
@@ -140,14 +214,14 @@ fn label_columns_are_skipped() {
         let message = read(text, labels).unwrap_err();
         assert!(message.contains(part), "{message}");
     }
-    let message = read_frames(&file("data/bed_mat_64x27.csv"), 1728).unwrap_err().to_string();
-    assert!(message.contains("line 1, column 1: \"recording\"") && message.contains("--labels"), "{message}");
+    let message = read_frames(&file("data/bed_mat_64x27.csv"), &grid(27, 64)).unwrap_err().to_string();
+    assert!(message.contains("line 2, column 1") && message.contains("--labels"), "{message}");
 }
 
 #[test]
 fn the_mat_carries_the_person() {
     let mut design = Design::load(&file("designs/bed-mat.toml")).unwrap();
-    let frames = read_labelled_frames(&file("data/bed_mat_64x27.csv"), 1728, 2).unwrap();
+    let frames = read_labelled_frames(&file("data/bed_mat_64x27.csv"), &grid(27, 64), 2).unwrap();
     assert_eq!(frames.len(), 24);
     let filtered = Solver::new(&design).unwrap();
     design.algorithm.filter = Filter::None;

@@ -248,3 +248,67 @@ fn a_depth_out_of_proportion_is_refused() {
     let message = error.to_string();
     assert!(message.contains("contact 1") && message.contains("0.01 mm"), "{message}");
 }
+
+#[test]
+fn contacts_of_other_kinds_are_read_and_make_frames() {
+    let plain = Scene::from_toml(MINIMAL, "").unwrap().frames().unwrap();
+    for (keys, tangential) in [
+        ("tilt = [0.5, -0.3]", 2.0),
+        ("turn_deg = 30", 2.0),
+        ("edge = 1.5", 2.0),
+        ("shear = \"held\"\nheld = 0.5", 1.0),
+        ("shear = \"even\"", 2.0),
+        ("spin = 0.0\ntilt = [0.1, 0.0]", 2.0),
+    ] {
+        let frames = Scene::from_toml(&format!("{MINIMAL}{keys}\n"), "").unwrap().frames().unwrap();
+        let [x, y, z] = frames[0].force;
+        assert!((x.hypot(y) - tangential).abs() < 1e-9 && (z + 4.0).abs() < 1e-9, "{keys}: {:?}", frames[0].force);
+        assert_ne!(frames[0].stress, plain[0].stress, "{keys}");
+    }
+    let spinning = Scene::from_toml(&format!("{MINIMAL}spin = 2.0\n"), "").unwrap().frames().unwrap();
+    assert!(spinning[0].friction < 0.4, "what turns pushes less: {}", spinning[0].friction);
+    // A frame is that of its own direction: tilt and push turn together.
+    let sweep = with(
+        "direction_deg = 30.0\n",
+        "tilt = [0.5, 0.0]\n[sweep]\ndirection_deg = { from = 0, to = 180, step = 180 }\n",
+    );
+    let frames = Scene::from_toml(&sweep, "").unwrap().frames().unwrap();
+    assert!((frames[0].force[0] + frames[1].force[0]).abs() < 1e-9);
+}
+
+#[test]
+fn taxels_average_and_layers_are_deeper_than_they_should_be() {
+    let plain = Scene::from_toml(MINIMAL, "").unwrap().frames().unwrap();
+    let tiny = with("depth_mm = 3.0", "depth_mm = 3.0\ntaxel_mm = [0.001, 0.001]");
+    let peak = plain[0].stress.iter().fold(0.0_f64, |peak, s| peak.max(s.abs()));
+    let far = |text: &str| {
+        let frames = Scene::from_toml(text, "").unwrap().frames().unwrap();
+        let pairs = frames[0].stress.iter().zip(&plain[0].stress);
+        pairs.fold(0.0_f64, |far, (a, b)| far.max((a - b).abs())) / peak
+    };
+    assert!(far(&tiny) < 2e-5, "{}", far(&tiny));
+    let whole = with("depth_mm = 3.0", "depth_mm = 3.0\ntaxel_mm = [4.0, 4.0]");
+    assert!((0.01..0.5).contains(&far(&whole)), "{}", far(&whole));
+    let deeper = format!("{MINIMAL}[sensor_errors]\ndepth = 0.1\n");
+    let true_depth = Scene::from_toml(&with("depth_mm = 3.0", "depth_mm = 3.3"), "").unwrap().frames().unwrap();
+    let found = Scene::from_toml(&deeper, "").unwrap().frames().unwrap();
+    for (a, b) in found[0].stress.iter().zip(&true_depth[0].stress) {
+        assert!((a - b).abs() < 1e-9 * peak);
+    }
+}
+
+#[test]
+fn keys_of_contacts_that_contradict_themselves() {
+    let refused_with = |keys: &str, parts: &[&str]| refused(&format!("{MINIMAL}{keys}\n"), parts);
+    refused_with("tilt = [0.8, 0.4]", &["contact[0].tilt", "pull", "at most 1"]);
+    refused_with("tilt = [0.8]", &["contact[0].tilt", "two"]);
+    refused_with("edge = -0.7", &["contact[0].edge", "-0.5"]);
+    refused_with("shear = \"held\"", &["contact[0].held", "is missing"]);
+    refused_with("held = 0.5", &["contact[0].held", "shear = \"held\""]);
+    refused_with("shear = \"held\"\nheld = 1.5", &["contact[0].held", "0 to 1"]);
+    refused_with("shear = \"held\"\nheld = 0.5\ntilt = [0.1, 0.0]", &["contact[0].shear", "Hertz"]);
+    refused_with("shear = \"even\"\nspin = 1.0", &["contact[0].spin", "slides"]);
+    refused_with("shear = \"rolling\"", &["contact[0].shear", "sliding, held, even"]);
+    refused(&with("depth_mm = 3.0", "depth_mm = 3.0\ntaxel_mm = [5.0, 1.0]"), &["sensor.taxel_mm[0]", "pitch"]);
+    refused(&with("depth_mm = 3.0", "depth_mm = 3.0\ntaxel_mm = 2.0"), &["sensor.taxel_mm", "[2.0, 2.0]"]);
+}

@@ -92,7 +92,7 @@ fn constants() -> JointConstants {
     let hidden = vec![vec![700, -300, 500, 90, -40, 310, -820, 60, 75, 210, -190, 33, 480, 120]; 2];
     let output = [vec![400, -150], vec![90, 260]];
     let correction = Correction { half_window: [1, 1], hidden, output };
-    JointConstants { gain: 1.25, tangential: [0.9, -0.1], correction: Some(correction), fitted_to: None }
+    JointConstants { gain: 1.25, tangential: [0.9, -0.1], correction: Some(correction), ..JointConstants::default() }
 }
 
 /// Both plans, with and without a field, with and without a filter, on even and odd sides; then the other estimator.

@@ -1,5 +1,7 @@
 //! `CeAn`: what a frame's stress says at first sight, and the direction of the push.
 
+use golden::design::Tension;
+
 use crate::plan::Plan;
 
 use super::Parameters;
@@ -18,6 +20,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .flag("DIRECTION", pitch.is_some())
+        .flag("TENSION_READ", plan.design.input.tension == Tension::Read)
         .wide("TAXEL_FLOOR", STRESS_BITS, plan.thresholds.taxel)
         .wide("CONTACT_FLOOR", SUM_BITS, plan.thresholds.contact)
         .wide("PITCH_X", PITCH_BITS, pitch_x)

@@ -11,16 +11,23 @@ use super::latency::{OUTPUT_LATENCY, SUMMARY_LATENCY};
 
 /// Parameters of `sptfra_op`.
 pub fn parameters(plan: &Plan) -> Parameters {
-    Parameters::new()
+    let parameters = Parameters::new()
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .flag("FIELD", plan.design.algorithm.outputs == Outputs::Field)
         .flag("DEPENDENT", plan.estimator.slot().answers_with_a_line())
+        .count("REPLACED", plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()))
         .number("SUM_LSB", plan.formats.g.lsb.into())
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
-        .number("FIELD_LSB", field_lsb(plan).into())
-        .cycles("EXPECTED_SUMMARY_LATENCY", SUMMARY_LATENCY)
-        .cycles("EXPECTED_OUTPUT_LATENCY", OUTPUT_LATENCY)
+        .number("FIELD_LSB", field_lsb(plan).into());
+    let parameters = match plan.thresholds.slip {
+        Some([limit, release]) => {
+            let friction = |value: i64| format!("18'd{value}");
+            parameters.expression("SLIP_LIMIT", friction(limit)).expression("SLIP_RELEASE", friction(release))
+        }
+        None => parameters,
+    };
+    parameters.cycles("EXPECTED_SUMMARY_LATENCY", SUMMARY_LATENCY).cycles("EXPECTED_OUTPUT_LATENCY", OUTPUT_LATENCY)
 }
 
 /// Exponent of a step of a taxel's force as the field memory puts it together, in N.

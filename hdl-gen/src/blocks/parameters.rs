@@ -101,7 +101,7 @@ mod tests {
     use super::Parameters;
     use crate::cores::cordic;
     use crate::estimators::{joint, line};
-    use crate::model::inverse_gain;
+    use crate::model::{PULLING, inverse_gain};
     use crate::plan::format::FRICTION_FRACTION;
 
     /// The value of a constant in a module of the library, its width left out.
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 29] = [
+        let expected: [(&str, &str, i64); 35] = [
             ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
             ("sptfra_direction", "PITCH_FRACTION", line::PITCH_FRACTION.into()),
             ("sptfra_line", "LINE_FRACTION", line::LINE_FRACTION.into()),
@@ -132,6 +132,7 @@ mod tests {
             ("sptfra_summary", "INVERSE_GAIN", inverse_gain()),
             ("sptfra_summary", "ONE", one),
             ("sptfra_op", "FRICTION_FRACTION", FRICTION_FRACTION.into()),
+            ("sptfra_op", "PULLING", PULLING),
             ("sptfra_output", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
             ("sptfra_output", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
             ("sptfra_plane", "LAST", joint::SIDE as i64 - 1),
@@ -140,6 +141,11 @@ mod tests {
             ("sptfra_level_set", "DEPTH_BITS", joint::DEPTH_BITS.into()),
             ("sptfra_level_set", "WEIGHT_DROP", joint::WEIGHT_DROP.into()),
             ("sptfra_grid_centroid", "BORDER", joint::SIDE as i64 / 2),
+            ("sptfra_points_taxel", "FRACTION", joint::points::FRACTION.into()),
+            ("sptfra_points_taxel", "U_BITS", joint::points::U_BITS.into()),
+            ("sptfra_points", "VALUE_BITS", joint::points::VALUE_BITS.into()),
+            ("sptfra_points_level", "WEIGHT_DROP", joint::points::WEIGHT_DROP.into()),
+            ("sptfra_points_level", "AT_ONCE", joint::points::AT_ONCE as i64),
             ("sptfra_friction", "LINEAR_FRACTION", joint::LINEAR_FRACTION.into()),
             ("sptfra_friction", "CUBIC_FRACTION", joint::CUBIC_FRACTION.into()),
             ("sptfra_friction", "FACTOR_FRACTION", joint::FACTOR_FRACTION.into()),

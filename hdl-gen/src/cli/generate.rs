@@ -22,10 +22,11 @@ pub fn generate(path: &Path, out: Option<PathBuf>, progress: &Progress) -> Resul
     progress.stage(format!("writing {kibibytes} KiB"));
     write_folder(&folder, &files)?;
     let timeline = &plan.timeline;
-    let excess = super::inspect::excess(&plan).map_or_else(String::new, |excess| format!("warning: {excess}\n"));
+    let warnings = [super::inspect::excess(&plan), super::inspect::narrow(&plan)];
+    let warnings: String = warnings.into_iter().flatten().map(|warning| format!("warning: {warning}\n")).collect();
     Ok(format!(
         "{}: {} files, {kibibytes} KiB\n\
-         {} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{excess}",
+         {} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{warnings}",
         folder.display(),
         files.len(),
         plan.taxels(),

@@ -8,6 +8,7 @@ use golden::kernel;
 use hdl_gen::emit::{nnz, predicted, products};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::short;
+use hdl_gen::plan::product::Coefficients;
 use hdl_gen::plan::savings::savings;
 use serde_json::json;
 
@@ -15,6 +16,8 @@ use serde_json::json;
 const ILL_CONDITIONED: f64 = 1e4;
 /// `(beginning of the part's name, DSP48E2, RAMB36)` of the default part.
 const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
+/// Rounding of the coefficients, as a share of their size, from which on it is told.
+const COARSE: f64 = 0.005;
 /// Second lines stand under the values of the first.
 const INDENT: &str = "               ";
 /// Matrix names in one line of the table.
@@ -170,6 +173,23 @@ pub fn excess(plan: &Plan) -> Option<String> {
         .then(|| format!("too much for {part}, which has {dsp} DSP48E2 and {bram36} RAMB36; filter more entries"))
 }
 
+/// What to tell whose coefficients are so narrow that the forces show it.
+pub fn narrow(plan: &Plan) -> Option<String> {
+    // Those of the friction are its components themselves, exact ones and others of more bits.
+    let stored = plan.products.iter().filter(|product| product.coefficients != Coefficients::Friction);
+    let matrices = stored.map(|product| &plan.matrices[product.matrix]);
+    let (rounding, name) =
+        matrices.map(|matrix| (matrix.rounding(), &matrix.name)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (rounding > COARSE).then(|| {
+        format!(
+            "coefficients of {} bits: rounding is {:.1} % of those of {name}, and the forces err by about as much; raise \
+             [hardware] coefficient_bits",
+            plan.design.hardware.coefficient_bits,
+            100.0 * rounding
+        )
+    })
+}
+
 fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
     let resources = &plan.resources;
     let part = &plan.design.hardware.part;
@@ -220,6 +240,9 @@ fn numbers(out: &mut String, plan: &Plan) -> std::fmt::Result {
         let step = format!("2^{}", format.lsb);
         let worst = short(format.bound as f64 * format.step());
         writeln!(out, "  {what:<12} steps of {step:<6} {unit:<2}   worst case {worst} {unit}")?;
+    }
+    if let Some(narrow) = narrow(plan) {
+        writeln!(out, "  {narrow}")?;
     }
     Ok(())
 }

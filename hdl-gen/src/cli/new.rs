@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use golden::calibrate::{Settings, calibrate};
-use golden::design::{Design, JointConstants};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Grid, JointConstants};
 
 use super::progress::Progress;
 
@@ -41,6 +41,13 @@ pub struct New {
     /// Thickness of the layer above the taxels
     #[arg(long, default_value_t = 3.0)]
     depth_mm: f64,
+    /// Frames hold counts of a converter of so many bits: 0 without load, the largest count at the full scale; for one
+    /// whose counts fall under load, change the sign of `pa_per_count` in the file
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(4..=24))]
+    counts: Option<u32>,
+    /// Stress at the end of the sensor's range
+    #[arg(long, value_name = "PA", default_value_t = DEFAULT_FULL_SCALE_PA)]
+    full_scale_pa: f64,
 }
 
 /// The estimators.
@@ -92,6 +99,14 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     ))
 }
 
+/// Pascals of a count, so that the largest one reaches the full scale, where it is flagged, and no count is beyond.
+fn pa_per_count(new: &New, bits: u32) -> String {
+    let largest = f64::from(bits).exp2() - 1.0;
+    let step = new.full_scale_pa / largest;
+    let step = if step * largest < new.full_scale_pa { step.next_up() } else { step };
+    format!("{:?}", -step)
+}
+
 /// The design file, checked.
 fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     // Quoted, so that whatever the name holds reaches the check of names; a JSON string is a TOML string.
@@ -101,8 +116,12 @@ fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
         ("rows", new.rows.to_string()),
         ("pitch_mm", format!("{:?}", new.pitch_mm)),
         ("depth_mm", format!("{:?}", new.depth_mm)),
+        ("full_scale_pa", format!("{:?}", new.full_scale_pa)),
     ] {
         text = with(&text, key, &value);
+    }
+    if let Some(bits) = new.counts {
+        text = with(&text.replace("# pa_per_count = ", "pa_per_count = "), "pa_per_count", &pa_per_count(new, bits));
     }
     // Where noise would become force, and no plan might be possible without.
     let [x, y] = [new.pitch_mm[0], new.pitch_mm[1]];
@@ -115,7 +134,8 @@ fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
         Design::from_toml(&text, "hdl-gen new")?;
         return Ok(text);
     }
-    let design = Design::from_toml(&bare, "hdl-gen new")?;
+    let design =
+        Design::from_toml(&text.replace(CONSTANTS, &format!("grid = {}\n", Grid::COARSE.side())), "hdl-gen new")?;
     progress.stage("fitting gain and friction to contacts with known forces".to_owned());
     let found = calibrate(&design, &Settings::constants(), &mut |_| ())
         .map_err(|error| format!("{error}; or choose --estimator line, which needs no constants"))?;
@@ -125,8 +145,9 @@ fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
 }
 
 /// The lines of the joint estimator's constants; four digits, which no processor rounds otherwise and no contact shows.
-fn constants(JointConstants { gain, tangential: [c1, c3], fitted_to, .. }: &JointConstants) -> String {
+fn constants(JointConstants { grid, gain, tangential: [c1, c3], fitted_to, .. }: &JointConstants) -> String {
     let remarks = [
+        "points of the plane along each axis, a cell of hardware each; 21: finer, walked over",
         "factor on all forces, fitted to the sensor above",
         "friction c1 mu + c3 mu |mu|^2, likewise; the correction, which",
         "  halves the error, is trained by golden calibrate",
@@ -134,6 +155,7 @@ fn constants(JointConstants { gain, tangential: [c1, c3], fitted_to, .. }: &Join
         "  these lines, and run golden calibrate",
     ];
     let keys = [
+        format!("grid = {}", grid.side()),
         format!("gain = {gain:.4}"),
         format!("tangential = [{c1:.4}, {c3:.4}]"),
         String::new(),

@@ -147,6 +147,9 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
     if plan.design.hardware.control {
         value["registers"] = json!(registers::map_path(plan));
     }
+    if let Some(dead) = &plan.dead {
+        value["dead_taxels"] = json!({ "taxels": dead.taxels, "weight_lsb": -i64::from(dead.shift) });
+    }
     if let Some((key, own)) = estimator.own {
         value[key] = own;
     }

@@ -4,7 +4,8 @@ use crate::blocks::array::column_bits;
 use crate::blocks::row_width;
 use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
-use crate::plan::counts::GAIN_BITS;
+use crate::plan::counts::{EXPONENT_BITS, GAIN_BITS};
+use crate::plan::curve::SEGMENT_BITS;
 use crate::plan::format::address_bits;
 use crate::plan::formats::ARM_BITS;
 use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
@@ -32,6 +33,10 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
     files.insert(format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
     if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
+        if counts.curve.is_none() {
+            let exponents = counts.exponents.iter().map(|&exponent| u128::from(exponent as u32));
+            files.insert(format!("rom/{name}_exponents.mem"), hex(exponents, counts.exponents.len(), EXPONENT_BITS));
+        }
         let gains = counts.gains.iter().map(|&gain| u128::from(gain as u32));
         files.insert(format!("rom/{name}_gains.mem"), hex(gains, counts.gains.len(), GAIN_BITS));
         let offsets = counts.offsets.iter().map(|&offset| u128::from(offset as u64));
@@ -40,6 +45,16 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     if !plan.arms.is_empty() {
         let arms = plan.arms.iter().map(|arms| joined(arms, ARM_BITS));
         files.insert(format!("rom/{name}_arms.mem"), hex(arms, plan.arms.len(), 2 * ARM_BITS));
+    }
+    if let Some(curve) = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref()) {
+        let words = curve.words();
+        files.insert(format!("rom/{name}_curve.mem"), hex(words.iter().copied(), words.len(), SEGMENT_BITS));
+    }
+    if let Some(dead) = &plan.dead {
+        let words: String = dead.words().iter().map(|weights| wide_hex(weights, WEIGHT_BITS) + "\n").collect();
+        files.insert(format!("rom/{name}_neighbours.mem"), words.into_bytes());
+        let taxels = (0..plan.taxels()).map(|taxel| u128::from(dead.taxels.contains(&taxel)));
+        files.insert(format!("rom/{name}_dead.mem"), hex(taxels, plan.taxels(), 1));
     }
     for (contents, words) in plan.estimator.slot().roms() {
         files.insert(format!("rom/{name}_{contents}.mem"), network_file(&words));
@@ -85,6 +100,14 @@ fn network_file(words: &[Vec<i32>]) -> Vec<u8> {
     text
 }
 
+/// One word of several values of `bits` bits each in two's complement, the first lowest.
+fn wide_hex(values: &[i32], bits: u32) -> String {
+    let total = values.len() as u32 * bits;
+    let bit = |index: u32| index < total && values[(index / bits) as usize] >> (index % bits) & 1 == 1;
+    let digit = |digit: u32| (0..4).fold(0, |nibble, place| nibble | u32::from(bit(4 * digit + place)) << place);
+    (0..total.div_ceil(4)).rev().filter_map(|index| char::from_digit(digit(index), 16)).collect()
+}
+
 /// `depth` words of `bits` bits in two's complement.
 fn hex(words: impl Iterator<Item = u128>, depth: usize, bits: u32) -> Vec<u8> {
     // Digit by digit rather than by the formatter: the largest designs have 30 million words.
@@ -101,7 +124,14 @@ fn hex(words: impl Iterator<Item = u128>, depth: usize, bits: u32) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::{hex, joined};
+    use super::{hex, joined, wide_hex};
+
+    #[test]
+    fn a_wide_word_has_its_first_value_lowest() {
+        assert_eq!(wide_hex(&[1], 18), "00001");
+        assert_eq!(wide_hex(&[-1, 5, 0], 18), "0000000017ffff");
+        assert_eq!(wide_hex(&[3; 8], 18).len(), 36);
+    }
 
     #[test]
     fn words_are_masked_and_padded() {

@@ -7,6 +7,7 @@ use golden::design::Filter;
 
 use crate::blocks::{Parameters, array, bz, cean, co, field, op, row_width, turns, unfold, we};
 use crate::plan::Plan;
+use crate::plan::counts::CountsPlan;
 use crate::plan::format::address_bits;
 
 use super::template::design_module;
@@ -146,6 +147,16 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     let mut without = plan.estimator.slot().without();
     if plan.counts.is_none() {
         without.push("sptfra_counts");
+    }
+    let curve = plan.counts.as_ref().is_some_and(|counts| counts.curve.is_some());
+    if !curve {
+        without.push("sptfra_curve");
+    }
+    if curve || !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
+        without.push("sptfra_exponents");
+    }
+    if plan.dead.is_none() {
+        without.push("sptfra_dead_taxels");
     }
     if plan.ways() > 1 {
         without.push("sptfra_coefficients");

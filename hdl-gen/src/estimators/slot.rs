@@ -130,8 +130,9 @@ pub trait Slot {
     /// the search waits for all that it needs at once.
     fn line_latency(&self) -> Option<u64>;
 
-    /// Start to end of the search, in cycles.
-    fn search_latency(&self, taxels: usize) -> u64;
+    /// The stages of the search, each with a frame of its own, from start to end in cycles. A stage holds what it found
+    /// until the next one takes it, and begins anew in the cycle after.
+    fn stages(&self, sensor: &Sensor) -> Vec<u64>;
 
     /// `CeAn`.
     fn contact_block(&self) -> BlockCost;

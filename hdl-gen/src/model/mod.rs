@@ -10,10 +10,12 @@ mod tests;
 
 use std::ops::Range;
 
+use golden::design::Tension;
 use golden::products::{ByPq, Frame, Scalar};
 
 use crate::cores::{fixed_to_float, float_to_fixed};
 use crate::estimators::{Contact, Seen};
+use crate::plan::dead::GUESSED_SHARE;
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::formats::field_shifts;
 use crate::plan::product::{Coefficients, Product, Vector};
@@ -35,6 +37,17 @@ pub const SATURATED: u32 = 1 << 3;
 pub const NOT_FINITE: u32 = 1 << 4;
 /// Status bit: early or late TLAST.
 pub const BAD_LENGTH: u32 = 1 << 5;
+/// Status bit: friction at the design's limit.
+pub const SLIP: u32 = 1 << 10;
+/// Status bit: nothing pulls, where the design says that tension is read and the friction that something should.
+pub const NO_TENSION: u32 = 1 << 11;
+/// [`golden::solver::PULLING`] with [`FRICTION_FRACTION`] fraction bits.
+pub const PULLING: i64 = (golden::solver::PULLING * (1_u32 << FRICTION_FRACTION) as f64) as i64;
+
+/// Status bit: a dead taxel was replaced.
+pub const REPLACED: u32 = 1 << 8;
+/// Status bit: too much of the stress is in replaced taxels.
+pub const TOO_MANY_REPLACED: u32 = 1 << 9;
 
 pub use crate::plan::SUMMARY_WORDS;
 
@@ -50,17 +63,19 @@ struct Stress {
 pub struct Model<'plan> {
     plan: &'plan Plan,
     frames: u16,
+    /// Whether the last frame slipped.
+    slips: bool,
 }
 
 impl<'plan> Model<'plan> {
     /// A model just out of reset.
     pub fn new(plan: &'plan Plan) -> Self {
-        Self { plan, frames: 0 }
+        Self { plan, frames: 0, slips: false }
     }
 
     /// As after the hardware's reset: the frame counter starts again.
     pub fn reset(&mut self) {
-        self.frames = 0;
+        (self.frames, self.slips) = (0, false);
     }
 
     /// Words of every output frame: 16, and for the field 3 m more.
@@ -86,35 +101,59 @@ impl<'plan> Model<'plan> {
         if bad != 0 {
             return self.blank(counter | bad);
         }
-        let saturated = converted.iter().any(|stress| stress.saturated);
-        let stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
+        let mut saturated = converted.iter().any(|stress| stress.saturated);
+        let mut stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
+        let mut noted = 0;
+        if let Some(dead) = &self.plan.dead {
+            let replaced = dead.replace(&mut stress, self.plan.formats.stress);
+            saturated |= replaced.saturated;
+            noted = REPLACED;
+            if GUESSED_SHARE * replaced.sum > Contact::new(&stress).stress_sum {
+                noted |= TOO_MANY_REPLACED;
+            }
+        }
         if Contact::new(&stress).stress_sum < self.plan.thresholds.contact {
+            self.slips = false;
             return self.blank(counter | NO_CONTACT);
         }
-        self.answer(counter, &stress, saturated)
+        self.answer(counter | noted, &stress, saturated)
     }
 
     /// One input word as stress.
     fn convert(&self, taxel: usize, word: u32) -> Stress {
         let format = self.plan.formats.stress;
-        let number = self.plan.counts.as_ref().map_or(format, |counts| counts.count);
-        let converted = float_to_fixed::convert(word, -number.lsb, number.bound as u32);
-        let number = i64::from(converted.fixed);
-        let (mut steps, mut saturated) = (number, converted.saturated);
-        if let Some(counts) = &self.plan.counts {
-            steps = counts.to_stress(taxel, number);
-            if steps.abs() >= counts.full_scale {
-                (steps, saturated) = (steps.signum() * format.bound, true);
-            }
+        if self.plan.dead.as_ref().is_some_and(|dead| dead.taxels.contains(&taxel)) {
+            return Stress { steps: 0, saturated: false, not_finite: false };
+        }
+        let Some(counts) = &self.plan.counts else {
+            let converted = float_to_fixed::convert(word, -format.lsb, format.bound as u32);
+            let steps = i64::from(converted.fixed);
+            return Stress { steps, saturated: converted.saturated, not_finite: converted.not_finite };
+        };
+        let converted = counts.number(taxel, word);
+        let (mut steps, mut saturated) = (counts.to_stress(taxel, i64::from(converted.fixed)), converted.saturated);
+        if steps.abs() >= counts.full_scale {
+            (steps, saturated) = (steps.signum() * format.bound, true);
         }
         Stress { steps, saturated, not_finite: converted.not_finite }
     }
 
-    fn answer(&self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
-        match self.plan.formats.folded {
+    fn answer(&mut self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
+        let (mut words, summary) = match self.plan.formats.folded {
             None => self.execute(&integer::by_taxel(self.plan), counter, stress, saturated),
             Some(_) => self.execute(&integer::by_quad(self.plan), counter, stress, saturated),
+        };
+        let read = self.plan.design.input.tension == Tension::Read;
+        let pushed = summary.friction.iter().map(|mu| mu.abs()).sum::<i64>() >= PULLING;
+        if read && (pushed || words[words::STATUS] & DIRECTION_UNKNOWN != 0) && stress.iter().all(|&stress| stress <= 0)
+        {
+            words[words::STATUS] |= NO_TENSION;
         }
+        if let Some([limit, release]) = self.plan.thresholds.slip {
+            self.slips = summary.friction_coefficient() >= if self.slips { release } else { limit };
+            words[words::STATUS] |= if self.slips { SLIP } else { 0 };
+        }
+        words
     }
 
     fn execute<const W: usize>(
@@ -123,7 +162,7 @@ impl<'plan> Model<'plan> {
         counter: u32,
         stress: &[i64],
         saturated: bool,
-    ) -> Vec<u32> {
+    ) -> (Vec<u32>, Summary) {
         let products = &self.plan.products;
         let needs_friction = |product: &Product| product.coefficients == Coefficients::Friction;
         let search = products.iter().position(needs_friction).unwrap_or(products.len());
@@ -134,7 +173,7 @@ impl<'plan> Model<'plan> {
         if self.plan.field_words() > 0 {
             words.extend(self.field(&frame, summary.friction));
         }
-        words
+        (words, summary)
     }
 
     /// Forces of every taxel, from what the plan's products have left of them.
@@ -231,7 +270,7 @@ fn scalars(
     put(words::MU, &[summary.friction_quotient as i64], summary.friction_exponent);
     put(words::MU + 1, &[i64::from(summary.angle)], angle_exponent);
     put(words::MU_XY, &summary.friction, -friction);
-    // One body.
-    answer[words::CENSUS] = 1;
+    // One body, and taxels whose readings others replace.
+    answer[words::CENSUS] = 1 | plan.dead.as_ref().map_or(0, |dead| (dead.taxels.len() as u32) << 16);
     (answer, summary)
 }

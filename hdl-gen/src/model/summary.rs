@@ -54,6 +54,20 @@ impl Summary {
     }
 }
 
+impl Summary {
+    /// The friction coefficient with [`FRICTION_FRACTION`] fraction bits, rounded down; one far too large is all ones.
+    pub fn friction_coefficient(&self) -> i64 {
+        let down = -(self.friction_exponent + FRICTION_FRACTION as i32);
+        let quotient = self.friction_quotient as i64;
+        match down {
+            ..1 if quotient != 0 => (1 << 35) - 1,
+            ..1 => 0,
+            // The quotient has fewer bits than that.
+            _ => quotient >> down.min(62),
+        }
+    }
+}
+
 /// `(F_x, F_y)` in polar form.
 struct Tangential {
     /// Significant bits of the larger component.

@@ -1,13 +1,14 @@
 //! From a checked design to its plan.
 
-use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, PlanKind};
+use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, PlanKind, Slip};
 use golden::matrices::Matrices;
 use golden::parity::{CLASSES, Quads};
 
 use super::counts::CountsPlan;
+use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::filtered::Filtered;
-use super::format::{Format, pow2};
+use super::format::{FRICTION_FRACTION, Format, pow2};
 use super::formats::{Formats, arms};
 use super::layout::OperandLayout;
 use super::matrix::QuantisedMatrix;
@@ -98,6 +99,7 @@ struct Work {
     products: Vec<Product>,
     formats: Formats,
     counts: Option<CountsPlan>,
+    dead: Option<DeadPlan>,
     thresholds: Thresholds,
 }
 
@@ -109,6 +111,7 @@ impl Work {
         let stress = Format::covering(hardware.full_scale_in_frames(), hardware.data_bits);
         let thresholds = thresholds(design, stress)?;
         let counts = CountsPlan::new(design, stress)?;
+        let dead = DeadPlan::new(design);
         let list = passes::products(design);
         let filtered = Filtered::new(design, &matrices)?;
         let quantised = quantise(&list, &filtered, design, stress)?;
@@ -117,7 +120,7 @@ impl Work {
         let Quantised { matrices: stored, formats, rounding_n, .. } = quantised;
         let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
         check_force_resolution(design, &formats, condition, rounding_n)?;
-        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, thresholds })
+        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, dead, thresholds })
     }
 
     /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
@@ -129,7 +132,7 @@ impl Work {
         let estimator = EstimatorPlan::new(&Given { design, elements, ways, stress, u });
         let slot = estimator.slot();
         let operands = OperandLayout::new(&self.products, elements);
-        let timeline = control::timeline(design, elements, &self.products, &schedule, slot);
+        let timeline = control::timeline(design, elements, &self.products, &schedule, slot, self.counts.as_ref());
         let resources = Resources::new(design, &self.products, &operands, &schedule, slot, self.counts.as_ref());
         Plan {
             design: design.clone(),
@@ -140,6 +143,7 @@ impl Work {
             formats: self.formats,
             arms: if ways == 1 { arms(&design.sensor) } else { Vec::new() },
             counts: self.counts.clone(),
+            dead: self.dead.clone(),
             thresholds: self.thresholds,
             estimator,
             operands,
@@ -207,5 +211,9 @@ fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> 
     }
     let taxel = ((floor_pa * pow2(-stress.lsb)).round() as i64).max(1);
     let contact = ((floor_pa * design.sensor.taxels() as f64 * pow2(-stress.lsb)).round() as i64).max(1);
-    Ok(Thresholds { taxel, contact })
+    let slip = design.algorithm.slip.map(|Slip { limit, hysteresis }| {
+        // Never 0: that friction of 0 slips is no limit's meaning.
+        [limit, limit - hysteresis].map(|friction| ((friction * pow2(FRICTION_FRACTION as i32)).round() as i64).max(1))
+    });
+    Ok(Thresholds { taxel, contact, slip })
 }

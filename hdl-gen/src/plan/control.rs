@@ -8,11 +8,11 @@ use std::collections::VecDeque;
 
 use golden::design::{Design, Optimise, Outputs, PlanKind};
 
-use super::counts::input_stages;
-use super::places;
+use super::counts::{CountsPlan, input_stages};
 use super::product::{Product, Vector};
 use super::schedule::{Program, Schedule, TURN_GAP, Visit};
 use super::timing::{INTERVAL_FRAMES, OUTPUT_SKID, Timeline, middle_interval};
+use super::{dead, places};
 use crate::blocks::latency::{
     self, OUTPUT_LATENCY, SEQUENCER_TO_LANES, START_TO_ISSUE, SUMMARY_BEATS, SUMMARY_LATENCY, VISIT_TO_BUS,
 };
@@ -36,14 +36,15 @@ pub(super) fn timeline(
     products: &[Product],
     schedule: &Schedule,
     estimator: &dyn Slot,
+    counts: Option<&CountsPlan>,
 ) -> Timeline {
-    let constants = Constants::new(design, elements, products, schedule, estimator);
+    let constants = Constants::new(design, elements, products, schedule, estimator, counts);
     let ends = |frames| Control::new(&constants).play(frames);
     Timeline {
         latency_cycles: ends(1)[0],
         interval_cycles: middle_interval(&ends(INTERVAL_FRAMES)),
         spmv_cycles: schedule.issue_cycles(),
-        search_cycles: constants.search,
+        search_cycles: constants.stages.iter().sum(),
     }
 }
 
@@ -69,7 +70,8 @@ struct Constants {
     line: Option<u64>,
     /// From the last stress to what `CeAn` knows of the frame.
     direction: u64,
-    search: u64,
+    /// Of the search.
+    stages: Vec<u64>,
     /// Cycles from a start pulse to the first issue.
     start_to_issue: u64,
     programs: Vec<Program>,
@@ -78,9 +80,17 @@ struct Constants {
 }
 
 impl Constants {
-    fn new(design: &Design, elements: usize, products: &[Product], schedule: &Schedule, estimator: &dyn Slot) -> Self {
+    fn new(
+        design: &Design,
+        elements: usize,
+        products: &[Product],
+        schedule: &Schedule,
+        estimator: &dyn Slot,
+        counts: Option<&CountsPlan>,
+    ) -> Self {
         let field = design.algorithm.outputs == Outputs::Field;
         let taxels = design.sensor.taxels() as u64;
+        let dead = if design.input.dead.is_empty() { 0 } else { dead::latency(design.sensor.taxels()) };
         let folded = design.algorithm.plan == PlanKind::Reduced;
         let is_sum = |visit: &&Visit| {
             let product = &products[visit.product as usize];
@@ -91,7 +101,7 @@ impl Constants {
         Self {
             taxels,
             beats: SUMMARY_BEATS + if field { 3 * taxels } else { 0 },
-            beat_to_stress: input_stages(design.input.pa_per_count.is_some()),
+            beat_to_stress: input_stages(counts) + dead,
             stress_to_ready: latency::stress_to_ready(folded),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
             visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),
@@ -101,7 +111,7 @@ impl Constants {
             interval: design.hardware.optimise == Optimise::Interval,
             line: estimator.line_latency(),
             direction: estimator.contact_latency(),
-            search: estimator.search_latency(design.sensor.taxels()),
+            stages: estimator.stages(&design.sensor),
             start_to_issue: START_TO_ISSUE + schedule.program_gap - TURN_GAP,
             programs: schedule.programs.clone(),
             last_sum: sums.max().unwrap_or(0),
@@ -132,8 +142,7 @@ struct Control<'a> {
     sums_there: VecDeque<u64>,
     line: Line,
     u_there: VecDeque<u64>,
-    search_ends: Option<u64>,
-    search_free: u64,
+    stages: Vec<Stage>,
     summary_busy: bool,
     summary_there: Option<u64>,
     friction_known: Option<u64>,
@@ -142,6 +151,13 @@ struct Control<'a> {
     /// Changes that registers show later: `(first cycle seen, what)`.
     pending: Vec<(u64, Change)>,
     ends: Vec<u64>,
+}
+
+/// A stage of the search: when the frame in it is done, and from when on it may begin.
+#[derive(Clone, Copy, Default)]
+struct Stage {
+    ends: Option<u64>,
+    free: u64,
 }
 
 /// Where the line is.
@@ -180,8 +196,7 @@ impl<'a> Control<'a> {
             sums_there: VecDeque::new(),
             line: Line::Idle { from: 0 },
             u_there: VecDeque::new(),
-            search_ends: None,
-            search_free: 0,
+            stages: vec![Stage::default(); of.stages.len()],
             summary_busy: false,
             summary_there: None,
             friction_known: None,
@@ -318,17 +333,22 @@ impl<'a> Control<'a> {
     }
 
     fn search(&mut self) {
-        if let Some(end) = self.search_ends
-            && end <= self.now
-            && !self.summary_busy
-        {
-            self.search_ends = None;
-            self.search_free = self.now + 1;
+        let now = self.now;
+        let done = |stage: &Stage| stage.ends.is_some_and(|end| end <= now);
+        let may_begin = |stage: &Stage| stage.ends.is_none() && stage.free <= now;
+        let last = self.stages.len() - 1;
+        if done(&self.stages[last]) && !self.summary_busy {
+            self.stages[last] = Stage { ends: None, free: now + 1 };
             self.summary_busy = true;
-            self.pending.push((self.now + 1, Change::SearchOver));
-            self.summary_there = Some(self.now + SUMMARY_LATENCY + 1);
-            self.friction_known = self.of.composed.then_some(self.now + SEARCH_TO_FRICTION);
-            return;
+            self.pending.push((now + 1, Change::SearchOver));
+            self.summary_there = Some(now + SUMMARY_LATENCY + 1);
+            self.friction_known = self.of.composed.then_some(now + SEARCH_TO_FRICTION);
+        }
+        for stage in (0..last).rev() {
+            if done(&self.stages[stage]) && may_begin(&self.stages[stage + 1]) {
+                self.stages[stage] = Stage { ends: None, free: now + 1 };
+                self.stages[stage + 1].ends = Some(now + self.of.stages[stage + 1]);
+            }
         }
         let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
         let line = match self.line {
@@ -336,14 +356,14 @@ impl<'a> Control<'a> {
             Line::There { from } => from <= self.now,
             _ => false,
         };
-        if line && there(&self.u_there) && self.search_ends.is_none() && self.search_free <= self.now {
+        if line && there(&self.u_there) && may_begin(&self.stages[0]) {
             self.u_there.pop_front();
             self.line = Line::Idle { from: self.now + 1 };
             if self.of.line.is_none() {
                 self.sums_there.pop_front();
                 self.directions.pop_front();
             }
-            self.search_ends = Some(self.now + self.of.search);
+            self.stages[0].ends = Some(now + self.of.stages[0]);
         }
     }
 

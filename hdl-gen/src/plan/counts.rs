@@ -1,27 +1,41 @@
 //! Counts to pascals: what a raw sensor's values are multiplied by and what is added, in fixed point.
 
-use golden::design::{Design, Input};
+use golden::design::{Curve, Design, Input};
 use serde::Serialize;
 
 use super::PlanError;
+use super::curve::CurvePlan;
 use super::format::{Format, largest, pow2, round_shift};
-use crate::cores::float_to_fixed;
+use crate::cores::float_to_fixed::{self, Converted};
 
 /// Width of a gain: the shorter operand of a multiplier.
 pub const GAIN_BITS: u32 = 18;
-/// Width of a count: the longer operand.
+/// Width of a number, the longer operand: a count in fixed point.
 const COUNT_BITS: u32 = 27;
-/// Widest offset, in steps of the stress: with the product it fits the 48 bits of the sum.
+/// Bits of the exponent at the float conversion.
+pub const EXPONENT_BITS: u32 = 10;
+/// Most bits dropped after the product, whose width is 45.
+const MOST_SHIFT: i32 = 40;
+/// Widest offset along a curve, in steps of the stress: with the product it fits the 48 bits of the sum.
 const MOST_OFFSET_BITS: u32 = 44;
+/// Most that gains may differ by along a curve: the smallest keeps eleven bits.
+const MOST_SPREAD: i32 = 64;
+/// Most noise floors that a step of the numbers may be worth, as of the stress.
+const MOST_COARSE: f64 = 16.0;
 
-/// The conversion of one design: `stress = round(count * gain / 2^shift) + offset`, clipped to the full scale.
+/// The conversion of one design, taxel by taxel: `number = round(count * 2^exponent)`, then
+/// `stress = round(number * gain / 2^shift) + offset`, clipped to the full scale.
+///
+/// A taxel's gain is a mantissa of [`GAIN_BITS`] and the exponent with which its counts come out of the float conversion.
+/// So every gain is as exact as the largest, and no taxel's steps depend on another's gain.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CountsPlan {
-    /// Counts as they come from the float conversion; a larger one exceeds the full scale on every taxel.
-    pub count: Format,
-    /// Exponent of a gain's last bit, in Pa.
-    pub gain_lsb: i32,
-    /// Gain of each taxel, or one for all.
+    /// The curve between the two, if the sensor is not linear: then `stress = round(curve(number) * gain / 2^shift) +
+    /// offset`, and all taxels have one exponent.
+    pub curve: Option<CurvePlan>,
+    /// Exponent of each taxel's counts, or one for all: a step of the number is `2^-exponent` counts.
+    pub exponents: Vec<i32>,
+    /// Mantissa of each taxel's gain, of full width; as many as exponents.
     pub gains: Vec<i32>,
     /// Offset of each taxel in steps of the stress, as many as gains.
     pub offsets: Vec<i64>,
@@ -31,56 +45,132 @@ pub struct CountsPlan {
     pub full_scale: i64,
 }
 
+/// Largest magnitude of a number; a count that reaches it exceeds the full scale.
+pub const LARGEST_NUMBER: i64 = largest(COUNT_BITS);
+
 impl CountsPlan {
     /// The conversion, if the design's frames are counts.
     ///
     /// # Errors
-    /// [`PlanError::Offset`] when an offset is so far beyond the full scale that it does not fit the sum.
+    /// [`PlanError::Offset`] when an offset is so far beyond the full scale that a step of the numbers that hold both
+    /// exceeds the noise.
     pub fn new(design: &Design, stress: Format) -> Result<Option<Self>, PlanError> {
-        let Input { pa_per_count: Some(pa_per_count), ref calibration } = design.input else { return Ok(None) };
+        if let Some(curve) = &design.input.curve {
+            return Self::along(curve, design, stress).map(Some);
+        }
+        let Input { pa_per_count: Some(pa_per_count), ref calibration, .. } = design.input else {
+            return Ok(None);
+        };
         let (gains, offsets) = match calibration {
             Some(calibration) => (calibration.gain.clone(), calibration.offset.clone()),
             None => (vec![1.0], vec![0.0]),
         };
-        let full_scale = design.hardware.full_scale_pa / pa_per_count.abs();
-        let pairs = || gains.iter().zip(&offsets);
-        let largest_count = pairs().map(|(gain, offset)| (full_scale + offset.abs()) / gain).fold(0.0, f64::max);
-        let count = Format::covering(largest_count, COUNT_BITS);
-        let largest_gain = gains.iter().fold(0.0_f64, |top, &gain| top.max(gain)) * pa_per_count.abs();
-        // As fine as the width allows, but no finer than that the product has a bit below the stress's.
-        let mut gain_lsb = Format::covering(largest_gain, GAIN_BITS).lsb.min(stress.lsb - count.lsb);
-        while (largest_gain * pow2(-gain_lsb)).round() > largest(GAIN_BITS) as f64 {
-            gain_lsb += 1;
-        }
-        let in_steps = |offset: f64| offset * pa_per_count * pow2(-stress.lsb);
-        if let Some(taxel) =
-            offsets.iter().position(|&offset| in_steps(offset).abs() > largest(MOST_OFFSET_BITS) as f64)
-        {
-            return Err(PlanError::Offset { taxel, counts: offsets[taxel], full_scale });
-        }
+        let per_count = pa_per_count * pow2(-stress.lsb);
+        let taxels: Vec<Mantissa> = gains.iter().map(|gain| Mantissa::new(gain * per_count)).collect();
+        // Where a taxel reads its full scale, its gain has multiplied that and what the offset takes off again.
+        let reach = |taxel: usize| (offsets[taxel] * per_count).abs() + (stress.bound + 1) as f64;
+        let furthest =
+            (0..gains.len()).map(|taxel| (reach(taxel), taxel)).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
+        let fits = |shift: i32| {
+            // A dead taxel has no gain, and whatever it reads is 0.
+            let holds = |taxel: usize| {
+                let gain = f64::from(taxels[taxel].gain.abs());
+                reach(taxel) * pow2(shift) <= gain * LARGEST_NUMBER as f64 || gain == 0.0
+            };
+            (0..gains.len()).all(holds)
+        };
+        let shift = (0..=MOST_SHIFT).rev().find(|&shift| fits(shift));
+        // A number's step is at most this many steps of the stress.
+        let coarsest = |shift: i32| pow2(GAIN_BITS as i32 - 1 - shift) * stress.step();
+        let Some(shift) = shift.filter(|&shift| coarsest(shift) <= MOST_COARSE * design.algorithm.noise_floor_pa)
+        else {
+            let full_scale = design.hardware.full_scale_pa / pa_per_count.abs();
+            return Err(PlanError::Offset { taxel: furthest.1, counts: offsets[furthest.1], full_scale });
+        };
+        // By the gain as it is stored, so that the count of no stress at all gives none.
+        let offset = |(taxel, mantissa): (usize, &Mantissa)| {
+            let at_gain = if gains[taxel] == 0.0 { 0.0 } else { offsets[taxel] / gains[taxel] };
+            (at_gain * f64::from(mantissa.gain) * pow2(mantissa.exponent)).round() as i64
+        };
         let mut plan = Self {
-            count,
-            gain_lsb,
-            gains: gains.iter().map(|gain| (gain * pa_per_count * pow2(-gain_lsb)).round() as i32).collect(),
-            offsets: offsets.iter().map(|&offset| in_steps(offset).round() as i64).collect(),
-            shift: (stress.lsb - count.lsb - gain_lsb).max(0) as u32,
+            curve: None,
+            exponents: taxels.iter().map(|mantissa| mantissa.exponent + shift).collect(),
+            gains: taxels.iter().map(|mantissa| mantissa.gain).collect(),
+            offsets: taxels.iter().enumerate().map(offset).collect(),
+            shift: shift as u32,
             full_scale: stress.bound,
         };
         plan.full_scale = plan.least_full_scale(design, stress);
         Ok(Some(plan))
     }
 
+    /// The conversion along a curve.
+    fn along(curve: &Curve, design: &Design, stress: Format) -> Result<Self, PlanError> {
+        let (gains, offsets) = match &design.input.calibration {
+            Some(calibration) => (calibration.gain.clone(), calibration.offset.clone()),
+            None => (vec![1.0], vec![0.0]),
+        };
+        let curve = CurvePlan::new(curve)?;
+        let steps = pow2(curve.lsb - stress.lsb);
+        let largest_gain = gains.iter().copied().fold(0.0, f64::max);
+        // Of the largest gain all bits are in use.
+        let shift = -Mantissa::new(largest_gain * steps).exponent;
+        let scaled = |gain: f64| (gain * steps * pow2(shift)).round() as i32;
+        let few = |gain: f64| gain != 0.0 && scaled(gain) < largest(GAIN_BITS) as i32 / (2 * MOST_SPREAD);
+        if let Some(taxel) = gains.iter().position(|&gain| few(gain)) {
+            return Err(PlanError::GainSpread {
+                taxel,
+                gain: gains[taxel],
+                largest: largest_gain,
+                spread: MOST_SPREAD,
+            });
+        }
+        let in_steps = |offset: f64| (offset * pow2(-stress.lsb)).round();
+        let far = offsets.iter().position(|&offset| in_steps(offset).abs() > largest(MOST_OFFSET_BITS) as f64);
+        if !(0..=MOST_SHIFT).contains(&shift) || far.is_some() {
+            let taxel = far.unwrap_or(0);
+            let full_scale = design.hardware.full_scale_pa;
+            return Err(PlanError::Offset { taxel, counts: offsets[taxel], full_scale });
+        }
+        let mut plan = Self {
+            exponents: vec![curve.exponent; gains.len()],
+            gains: gains.iter().map(|&gain| scaled(gain)).collect(),
+            offsets: offsets.iter().map(|&offset| in_steps(offset) as i64).collect(),
+            shift: shift as u32,
+            full_scale: stress.bound,
+            curve: Some(curve),
+        };
+        plan.full_scale = plan.least_full_scale(design, stress);
+        Ok(plan)
+    }
+
     /// The least stress that a taxel's reading of just the full scale, of either sign, becomes.
     fn least_full_scale(&self, design: &Design, stress: Format) -> i64 {
         let full_scale = design.hardware.full_scale_pa;
         (0..self.gains.len())
+            .filter(|taxel| !design.input.dead.contains(taxel))
             .flat_map(|taxel| [full_scale, -full_scale].map(|stress| (taxel, design.input.from_pa(taxel, stress))))
+            // Where a curve ends before it, no count reads the full scale.
+            .filter(|&(taxel, count)| {
+                let read = design.input.to_pa(taxel, count).abs();
+                self.curve.is_none() || read >= (1.0 - 1e-9) * full_scale
+            })
             .map(|(taxel, count)| {
-                let bits = (count as f32).to_bits();
-                let converted = float_to_fixed::convert(bits, -self.count.lsb, self.count.bound as u32);
+                let converted = self.number(taxel, (count as f32).to_bits());
                 self.to_stress(taxel, i64::from(converted.fixed)).abs()
             })
             .fold(stress.bound, i64::min)
+    }
+
+    /// A taxel's count, given as float32, in fixed point.
+    pub fn number(&self, taxel: usize, count: u32) -> Converted {
+        let limit = self.curve.as_ref().map_or(LARGEST_NUMBER, |curve| curve.limit);
+        float_to_fixed::convert(count, self.exponents[self.index(taxel)], limit as u32)
+    }
+
+    /// The place of a taxel's constants.
+    fn index(&self, taxel: usize) -> usize {
+        if self.per_taxel() { taxel } else { 0 }
     }
 
     /// Whether each taxel has a gain and an offset of its own.
@@ -88,10 +178,11 @@ impl CountsPlan {
         self.gains.len() > 1
     }
 
-    /// The stress of a count before it is clipped, in steps.
-    pub fn to_stress(&self, taxel: usize, count: i64) -> i64 {
-        let index = if self.per_taxel() { taxel } else { 0 };
-        round_shift(count * i64::from(self.gains[index]), self.shift) + self.offsets[index]
+    /// The stress of a number before it is clipped, in steps.
+    pub fn to_stress(&self, taxel: usize, number: i64) -> i64 {
+        let index = self.index(taxel);
+        let number = self.curve.as_ref().map_or(number, |curve| curve.value(number));
+        round_shift(number * i64::from(self.gains[index]), self.shift) + self.offsets[index]
     }
 
     /// Bits of the widest offset, sign included.
@@ -101,9 +192,30 @@ impl CountsPlan {
     }
 }
 
+/// A gain in steps of the stress for one count: `gain * 2^exponent`.
+pub(super) struct Mantissa {
+    pub(super) gain: i32,
+    pub(super) exponent: i32,
+}
+
+impl Mantissa {
+    /// With all of its bits in use; 0 for a gain of 0.
+    pub(super) fn new(per_count: f64) -> Self {
+        if per_count == 0.0 {
+            return Self { gain: 0, exponent: 0 };
+        }
+        let mut exponent = per_count.abs().log2().floor() as i32 + 2 - GAIN_BITS as i32;
+        while (per_count.abs() * pow2(-exponent)).round() > largest(GAIN_BITS) as f64 {
+            exponent += 1;
+        }
+        Self { gain: (per_count * pow2(-exponent)).round() as i32, exponent }
+    }
+}
+
 /// Pipeline registers from the stream to the stress in Bz: of the float conversion, and of the counts' if there is one.
-pub const fn input_stages(counts: bool) -> u64 {
-    float_to_fixed::LATENCY as u64 + if counts { COUNT_STAGES } else { 0 }
+pub fn input_stages(counts: Option<&CountsPlan>) -> u64 {
+    let curve = counts.and_then(|counts| counts.curve.as_ref()).map_or(0, CurvePlan::stages);
+    u64::from(float_to_fixed::LATENCY) + if counts.is_some() { COUNT_STAGES } else { 0 } + curve
 }
 
 /// Pipeline registers from a count to its stress: gain, product, sum, limits.

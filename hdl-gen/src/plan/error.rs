@@ -52,10 +52,11 @@ pub enum PlanError {
         /// Noise floor of the design.
         floor_pa: f64,
     },
-    /// An offset of the calibration that no full scale can hold.
+    /// An offset of the calibration so large that little of the full scale is left beside it.
     #[error(
         "[sensor] calibration: the offset of taxel {taxel} is {counts} counts where the full scale is {full_scale:.1} \
-         counts; correct the file, or state a full_scale_pa that fits the sensor"
+         counts: a number that holds both has steps above the noise floor; correct the file, or state a \
+         full_scale_pa that fits the sensor"
     )]
     Offset {
         /// The taxel, from 0.
@@ -64,6 +65,32 @@ pub enum PlanError {
         counts: f64,
         /// The full scale in counts.
         full_scale: f64,
+    },
+    /// A part of the curve that no slope can follow.
+    #[error(
+        "[sensor] curve: between the counts {from} and {to} it rises so steeply that the hardware's numbers have no step \
+         for it; move the points apart, or leave one out"
+    )]
+    Curve {
+        /// Count at which the part begins.
+        from: f64,
+        /// Count at which it ends.
+        to: f64,
+    },
+    /// With a curve, a gain that is small beside another.
+    #[error(
+        "[sensor] calibration: the gain of taxel {taxel} is {gain:e} where the largest is {largest}; with a curve gains \
+         may differ by a factor of {spread}: correct the file, or give 0 if the taxel is dead"
+    )]
+    GainSpread {
+        /// The taxel, from 0.
+        taxel: usize,
+        /// Its gain.
+        gain: f64,
+        /// The largest gain.
+        largest: f64,
+        /// The factor.
+        spread: i32,
     },
     /// The geometry amplifies so much that the worst case leaves the forces too few bits.
     #[error(

@@ -108,6 +108,18 @@ impl QuantisedMatrix {
         self.rows.iter().map(Vec::len).sum()
     }
 
+    /// What the rounding of the coefficients is worth, root mean square, as a share of the coefficients' own.
+    pub fn rounding(&self) -> f64 {
+        // A rounding is anywhere in a step.
+        let of_step = 1.0 / 12.0;
+        let way = |way: usize| {
+            let values = || self.rows.iter().flatten().map(move |(_, ways)| f64::from(ways[way]));
+            let squares: f64 = values().map(|value| value * value).sum();
+            if squares > 0.0 { values().count() as f64 * of_step / squares } else { 0.0 }
+        };
+        (0..CLASSES).map(way).fold(0.0, f64::max).sqrt()
+    }
+
     /// Row `row` times one way's `operand` in the accumulator, exactly.
     pub fn row_product(&self, row: usize, way: usize, operand: &[i64]) -> i64 {
         self.rows[row].iter().map(|&(column, ways)| i64::from(ways[way]) * operand[column as usize]).sum()

@@ -6,6 +6,8 @@
 mod build;
 mod control;
 pub mod counts;
+pub mod curve;
+pub mod dead;
 mod dealing;
 mod error;
 pub mod filtered;
@@ -32,6 +34,7 @@ use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
 use counts::CountsPlan;
+use dead::DeadPlan;
 pub use error::PlanError;
 use formats::Formats;
 use layout::OperandLayout;
@@ -49,6 +52,10 @@ pub struct Thresholds {
     pub taxel: i64,
     /// A frame with a smaller `sum |b|` has no contact.
     pub contact: i64,
+    /// Friction at which a frame slips, and at which it still does if the one before did, with
+    /// [`format::FRICTION_FRACTION`] fraction bits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slip: Option<[i64; 2]>,
 }
 
 /// Number of entries per filtered matrix.
@@ -85,6 +92,8 @@ pub struct Plan {
     pub arms: Vec<[i32; 2]>,
     /// Conversion of counts, if the frames are not in pascals.
     pub counts: Option<CountsPlan>,
+    /// Weights that replace the readings of dead taxels, if there are any.
+    pub dead: Option<DeadPlan>,
     /// Status thresholds.
     pub thresholds: Thresholds,
     /// The estimator of friction: `CeAn`, and the search in Op.

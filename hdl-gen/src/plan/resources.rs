@@ -4,7 +4,9 @@ use golden::design::{Design, Outputs, PlanKind};
 use golden::parity::CLASSES;
 use serde::Serialize;
 
-use super::counts::{CountsPlan, GAIN_BITS};
+use super::counts::{CountsPlan, EXPONENT_BITS, GAIN_BITS};
+use super::curve::SEGMENT_BITS;
+use super::dead::WEIGHT_BITS;
 use super::format::address_bits;
 use super::formats::ARM_BITS;
 use super::layout::OperandLayout;
@@ -14,6 +16,8 @@ use super::product::{Product, SUM_ROWS, destination_bits};
 use super::schedule::Schedule;
 use crate::estimators::{BlockCost, Slot};
 
+/// Bits of a stress between Bz and the fold.
+const STRESS_BITS: u32 = 27;
 const BZ: &str = "Bz";
 const LANES: &str = "lanes";
 const WE: &str = "We";
@@ -62,8 +66,21 @@ impl Resources {
         memories.extend(frame_memories(design, operands.elements()));
         if let Some(counts) = counts.filter(|counts| counts.per_taxel()) {
             let taxels = design.sensor.taxels();
+            if counts.curve.is_none() {
+                memories.push(memory(BZ, "exponents", 1, taxels, EXPONENT_BITS, true));
+            }
             memories.push(memory(BZ, "gains", 1, taxels, GAIN_BITS, true));
             memories.push(memory(BZ, "offsets", 1, taxels, counts.offset_bits(), true));
+        }
+        if let Some(curve) = counts.and_then(|counts| counts.curve.as_ref()) {
+            memories.push(memory(BZ, "curve", 1, 1 << curve.levels(), SEGMENT_BITS, true));
+        }
+        let dead = design.input.dead.len();
+        if dead > 0 {
+            let taxels = design.sensor.taxels();
+            memories.push(memory(BZ, "whole frame", 1, taxels, STRESS_BITS + 2, false));
+            memories.push(memory(BZ, "neighbours", 1, taxels, WEIGHT_BITS * dead as u32, true));
+            memories.push(memory(BZ, "dead taxels", 1, taxels, 1, true));
         }
         memories.extend(estimator.memories(&design.sensor));
         let blocks: Vec<BlockResources> = blocks(design, estimator, counts)
@@ -99,7 +116,7 @@ fn blocks(design: &Design, estimator: &dyn Slot, counts: Option<&CountsPlan>) ->
         (Outputs::Field, PlanKind::Paper) => 2,
     };
     let mut blocks = vec![
-        block(BZ, &["sptfra_bz"], usize::from(counts.is_some())),
+        block(BZ, &["sptfra_bz"], multipliers(counts) + design.input.dead.len()),
         estimator.contact_block(),
         block(LANES, &["sptfra_spmv_array"], design.hardware.lanes),
         block(WE, &["sptfra_we"], 0),
@@ -110,6 +127,11 @@ fn blocks(design: &Design, estimator: &dyn Slot, counts: Option<&CountsPlan>) ->
     blocks.extend(estimator.search_blocks());
     blocks.push(block("summary", &["sptfra_summary"], 1));
     blocks
+}
+
+/// Multipliers between a count and its stress.
+fn multipliers(counts: Option<&CountsPlan>) -> usize {
+    counts.map_or(0, |counts| 1 + usize::from(counts.curve.is_some()))
 }
 
 /// The lanes' programs and operands.

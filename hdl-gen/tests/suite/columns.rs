@@ -56,13 +56,15 @@ fn standing() -> Vec<Plan> {
         plans.push(plan(&design_text("array", [columns, rows], [4.0, 4.0], 3.0, &more)));
     }
     for (kind, calibration) in [("paper", ""), ("paper", GAINS), ("reduced", GAINS)] {
-        let more = format!("pa_per_count = -12.5\n{calibration}[algorithm]\nplan = \"{kind}\"");
+        let more = format!("pa_per_count = -12.5\ndead = [3]\n{calibration}[algorithm]\nplan = \"{kind}\"");
         let folder = tempfile::tempdir().expect("a folder");
         fs::write(folder.path().join("gains.csv"), "1.01,-0.5\n".repeat(24)).expect("writable");
         let file = folder.path().join("counts.toml");
         fs::write(&file, design_text("counting_pad", [6, 4], [4.0, 4.0], 3.0, &more)).expect("writable");
         plans.push(Plan::new(&Design::load(&file).expect("right")).expect("a plan"));
     }
+    let more = "curve = { power = 1.25, scale = -0.5 }\n";
+    plans.push(plan(&design_text("curved_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     plans
 }
 

@@ -120,6 +120,20 @@ fn a_new_designs_constants_are_those_of_its_sensor() {
 }
 
 #[test]
+fn a_new_design_takes_what_the_sensors_maker_knows() {
+    let options = ["--counts", "12", "--full-scale-pa", "90000", "--estimator", "line"];
+    let design = new_design(&options);
+    let step = design.input.pa_per_count.expect("counts");
+    assert!((step + 90_000.0 / 4095.0).abs() < 1e-9, "{step}");
+    let hardware = &design.hardware;
+    assert_eq!(hardware.full_scale_pa.to_bits(), 90_000_f64.to_bits());
+    // The largest count may have been clipped, and says so; the one below it has not.
+    assert!(design.input.to_pa(0, 4095.0).abs() >= hardware.full_scale_in_frames());
+    assert!(design.input.to_pa(0, 4094.0).abs() < hardware.full_scale_in_frames());
+    assert_eq!(new_design(&["--estimator", "line"]).input.pa_per_count, None);
+}
+
+#[test]
 fn new_writes_into_another_folder() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("designs")).unwrap();

@@ -2,9 +2,7 @@
 
 use golden::design::{Correction, Design, Estimator};
 use hdl_gen::emit::emit;
-use hdl_gen::estimators::joint::{
-    CORRECTION_LIMIT, INPUT_BITS, NetworkPlan, POINT_BITS, STRESS_BITS, UNIT_BITS, UNITS,
-};
+use hdl_gen::estimators::joint::{CORRECTION_LIMIT, INPUT_BITS, NetworkPlan, POINT_BITS, STRESS_BITS, UNIT_BITS};
 use hdl_gen::model::{Model, SATURATED};
 use hdl_gen::plan::Plan;
 
@@ -44,10 +42,10 @@ fn no_sum_of_the_network_can_overflow() {
             let network = network(&plan);
             assert_eq!(
                 (network.passes, network.weights.len()),
-                (units.div_ceil(UNITS), network.passes * network.length)
+                (units.div_ceil(network.at_once), network.passes * network.length)
             );
             for pass in network.weights.chunks(network.length) {
-                for unit in 0..UNITS {
+                for unit in 0..network.at_once {
                     let class =
                         |class: usize| -> i64 { pass.iter().map(|word| i64::from(word[unit][class].abs())).sum() };
                     let sums = [0, 1, 2, 3].map(class);

@@ -3,6 +3,7 @@
 mod bad_input;
 mod columns;
 mod command;
+mod counts;
 mod emission;
 mod expected;
 mod folded_formats;

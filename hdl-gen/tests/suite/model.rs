@@ -4,14 +4,14 @@
 
 use std::f64::consts::TAU;
 
-use golden::design::{Design, PlanKind};
+use golden::design::{Design, PlanKind, Tension};
 use golden::parity::FoldedMatrix;
 use golden::solver::cean::cean;
 use golden::solver::co::co;
 use golden::solver::we::we;
-use golden::solver::{Solution, Solver};
+use golden::solver::{Solution, Solver, Status};
 use hdl_gen::model::{
-    AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, Model, NO_CONTACT, NOT_FINITE, SATURATED, SUMMARY_WORDS,
+    AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, Model, NO_CONTACT, NO_TENSION, NOT_FINITE, SATURATED, SLIP, SUMMARY_WORDS,
 };
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::pow2;
@@ -331,10 +331,54 @@ fn check_without_tension(kind: PlanKind) {
     for stress in [-500.0, 1.02 * -plan.design.algorithm.noise_floor_pa as f32, 500.0, 99_999.0] {
         let frame = vec![stress; plan.taxels()];
         let found = answer(&plan, &frame);
-        assert_eq!(found.status, DIRECTION_UNKNOWN, "{stress} Pa");
-        assert_eq!(reference(&solver, &frame).status.0, DIRECTION_UNKNOWN);
+        // What pushes everywhere pulls nowhere.
+        let status = DIRECTION_UNKNOWN | if stress < 0.0 { NO_TENSION } else { 0 };
+        assert_eq!(found.status, status, "{stress} Pa");
+        assert_eq!(reference(&solver, &frame).status.0, status);
         assert_eq!(found.summary[5..], [0.0, 0.0]);
         assert!(found.summary[2] * f64::from(stress) > 0.0, "pressed by compression");
+    }
+}
+
+/// With another tension the same frame has another status; nothing else changes.
+#[test]
+fn a_sensor_that_reads_no_tension_is_not_asked_for_it() {
+    let mut design = Design::from_toml(&design_text("pad", [4, 3], [4.0, 2.0], 3.0, ""), "pad.toml").unwrap();
+    let frame: Vec<f32> = (0..12).map(|taxel| -500.0 - 30.0 * taxel as f32).collect();
+    let read = answer(&Plan::new(&design).unwrap(), &frame);
+    design.input.tension = Tension::Clipped;
+    let clipped = answer(&Plan::new(&design).unwrap(), &frame);
+    assert_eq!((read.status, clipped.status), (DIRECTION_UNKNOWN | NO_TENSION, DIRECTION_UNKNOWN));
+    assert_eq!((read.summary, read.field), (clipped.summary, clipped.field));
+}
+
+/// Friction that rises and falls: the bit comes at the limit and goes below the release, in the model as in the solver.
+#[test]
+fn slip_has_a_hysteresis() {
+    for plan in [PlanKind::Paper, PlanKind::Reduced] {
+        let more = "[algorithm]\nslip = { limit = 0.3, hysteresis = 0.12 }";
+        let (design, solver, plan) = prepare_as(&design_text("pad", [8, 6], [4.0, 3.0], 3.0, more), plan);
+        let mut model = Model::new(&plan);
+        let (mut workspace, mut solution) = (solver.workspace(), Solution::zeros(Status::default(), 0));
+        let mut seen = Vec::new();
+        let path = [0.1, 0.3, 0.5, 0.36, 0.3, 0.1, 0.3, 0.36, 0.6];
+        for friction in path {
+            let contact = Contact { centre: [0.48, 0.5], radius: 0.3, friction, direction: 0.4, strength: 0.3 };
+            let frame = frame(&contact, &design, &solver);
+            let words = model.process(&frame.iter().map(|stress| stress.to_bits()).collect::<Vec<_>>());
+            let values: Vec<f64> = frame.iter().map(|&stress| f64::from(stress)).collect();
+            solver.solve_into(&mut workspace, &values, &mut solution).unwrap();
+            assert_eq!(words[0] & 0xFFFF, solution.status.0, "{friction}");
+            let (mu, before) = (f64::from(f32::from_bits(words[8])), seen.last().is_some_and(|&slips| slips));
+            let slips = words[0] & SLIP != 0;
+            assert_eq!(slips, mu >= if before { 0.18 } else { 0.3 }, "{friction}: {mu}");
+            seen.push(slips);
+        }
+        // Neither always nor never, and at one friction once so and once so.
+        assert!(seen[2] && seen[8] && !seen[0] && !seen[5], "{seen:?}");
+        assert_ne!(seen[3], seen[7], "{seen:?}");
+        // Nothing in touch slips, and nothing is remembered of before.
+        assert_eq!(model.process(&vec![0; plan.taxels()])[0] & SLIP, 0);
     }
 }
 

@@ -1,7 +1,7 @@
 //! What passing over zeros saves: cycles of frames by contact, with and without `skip_zeros`.
 
 use golden::design::Design;
-use golden::scene::{Contact, Medium, Scene, Shape};
+use golden::scene::{Contact, Medium, Scene, Shape, Traction};
 use hdl_gen::plan::Plan;
 use serde::Serialize;
 
@@ -78,6 +78,7 @@ fn scene(plan: &Plan, friction: f64) -> Scene {
         centre_m: [CENTRE * x, CENTRE * y],
         normal_force_n: 0.5,
         friction,
+        traction: Traction::default(),
         direction_deg: 0.0,
     };
     Scene { contacts: vec![contact], medium: Medium::HalfSpace, sweep_deg: SWEEP_DEG.to_vec(), ..standing }

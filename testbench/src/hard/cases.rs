@@ -3,7 +3,7 @@
 use golden::calibrate::{Settings, calibrate};
 use golden::design::{Design, DesignError, Estimator, JointConstants, Sensor};
 use golden::metrics::Outcome;
-use golden::scene::{Contact, Converter, Medium, Scene, SensorErrors, Shape};
+use golden::scene::{Contact, Converter, Medium, Scene, SensorErrors, Shape, Traction};
 
 use super::HardError;
 use crate::frame_set::FrameSet;
@@ -78,6 +78,7 @@ fn contact(sensor: &Sensor, radius_mm: f64) -> Contact {
         centre_m: [half(sensor.columns, sensor.pitch_mm[0]), half(sensor.rows, sensor.pitch_mm[1])],
         normal_force_n: FORCE_N,
         friction: 0.5,
+        traction: Traction::default(),
         direction_deg: 0.0,
     }
 }

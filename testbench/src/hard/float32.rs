@@ -1,13 +1,13 @@
 //! The reduced plan in float32 throughout, as a processor without f64 would compute it. Matrices come from f64 and are
 //! rounded. Only for comparison: hardware has fixed point.
 
-use golden::design::{Design, Estimator};
+use golden::design::{Design, Estimator, Tension};
 use golden::estimators::RANGE;
 use golden::estimators::line::{LEVEL, MAX_LINE_RATIO};
 use golden::parity::CLASSES;
 use golden::products::{Engine, ProductList};
 use golden::reduced::ReducedMatrices;
-use golden::solver::{Solver, Status};
+use golden::solver::{PULLING, Solver, Status};
 
 use crate::stream_words::Answer;
 
@@ -55,6 +55,10 @@ impl<'a> Single<'a> {
         let [mu_x, mu_y] = self.friction(&b, floor, &sums, u, stress_sum, &mut status);
         if saturated {
             status.insert(Status::SATURATED);
+        }
+        let pushed = status.contains(Status::DIRECTION_UNKNOWN) || f64::from(mu_x.abs() + mu_y.abs()) >= PULLING;
+        if pushed && self.design.input.tension == Tension::Read && b.iter().all(|&stress| stress <= 0.0) {
+            status.insert(Status::NO_TENSION);
         }
         let mut field: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; m]);
         self.engine.field([mu_x, mu_y], &mut of_frame, |p, taxel, force| field[p][taxel] = f64::from(force));

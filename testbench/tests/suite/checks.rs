@@ -43,7 +43,7 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (reduced(), "line", "sums_take <= (state == SUMS) && sums_complete;", "sums_take <= 1'b0;", "_co.v"),
         (paper(), "line", "sums_take <= (state == SUMS) && sums_complete;", "sums_take <= 1'b0;", "_co.v"),
         // Op and the estimator take longer than the plan says.
-        (reduced(), "summary", "6'd33: begin", "6'd34: begin", "sptfra_check_latency.v"),
+        (reduced(), "summary", "(step == 6'd33)", "(step == 6'd34)", "sptfra_check_latency.v"),
         (reduced(), "search", "wait_count == 4'd3", "wait_count == 4'd4", "sptfra_check_latency.v"),
         // More frames are begun than Op has places for.
         (resultants(), "turns", "frame_ready && (searches_due != 2'd2)", "frame_ready", "_co.v"),

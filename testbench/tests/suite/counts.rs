@@ -18,17 +18,30 @@ use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, wor
 
 const SIDES: [usize; 2] = [5, 4];
 
-/// A design in counts; with `spread`, each taxel has a gain and an offset of its own.
-fn design(folder: &Path, name: &str, plan: &str, pa_per_count: f64, spread: bool) -> Design {
+/// How gains and offsets differ from taxel to taxel.
+#[derive(Clone, Copy, PartialEq)]
+enum Gains {
+    /// Not at all.
+    One,
+    /// As those of a real sensor.
+    Spread,
+    /// One is next to nothing, and the others of every size.
+    Tiny,
+}
+
+/// A design in counts.
+fn design(folder: &Path, name: &str, plan: &str, pa_per_count: f64, gains: Gains) -> Design {
     let [columns, rows] = SIDES;
     let mut random = ChaCha8Rng::seed_from_u64(5);
-    let calibration = if spread {
-        let line = |_| format!("{:?},{:?}\n", random.random_range(0.3..2.5), random.random_range(-40.0..40.0));
-        fs::write(folder.join("gains.csv"), (0..columns * rows).map(line).collect::<String>()).expect("writable");
-        "calibration = \"gains.csv\"\n"
-    } else {
-        ""
+    let line = |taxel: usize| match gains {
+        Gains::One => String::new(),
+        Gains::Spread => format!("{:?},{:?}\n", random.random_range(0.3..2.5), random.random_range(-40.0..40.0)),
+        Gains::Tiny if taxel == 7 => "1e-6,0\n".to_owned(),
+        Gains::Tiny => format!("{:?},{:?}\n", 10_f64.powf(random.random_range(-4.0..0.3)), 3 * taxel),
     };
+    let lines: String = (0..columns * rows).map(line).collect();
+    let calibration = if lines.is_empty() { "" } else { "calibration = \"gains.csv\"\n" };
+    fs::write(folder.join("gains.csv"), lines).expect("writable");
     let text = format!(
         "name = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
          pa_per_count = {pa_per_count:?}\n{calibration}[algorithm]\nplan = \"{plan}\"\n\
@@ -62,11 +75,12 @@ fn packets(plan: &Plan) -> Vec<Vec<u32>> {
 fn counts_become_stress_bit_for_bit() {
     let folder = tempfile::tempdir().expect("a folder");
     let kinds = [
-        ("counts_reduced", "reduced", -25.0, true),
-        ("counts_paper", "paper", 12.5, true),
-        ("counts_one_gain", "reduced", -3.7, false),
+        ("counts_reduced", "reduced", -25.0, Gains::Spread),
+        ("counts_paper", "paper", 12.5, Gains::Spread),
+        ("counts_one_gain", "reduced", -3.7, Gains::One),
+        ("counts_tiny_gain", "reduced", -10.0, Gains::Tiny),
     ];
-    let designs = kinds.map(|(name, plan, pascals, spread)| design(folder.path(), name, plan, pascals, spread));
+    let designs = kinds.map(|(name, plan, pascals, gains)| design(folder.path(), name, plan, pascals, gains));
     let failures: Vec<String> = in_parallel(&designs, |design| {
         let plan = planned(design);
         let packets = packets(&plan);
@@ -80,10 +94,59 @@ fn counts_become_stress_bit_for_bit() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
+/// A design whose counts follow a curve.
+fn curved(folder: &Path, name: &str, plan: &str, curve: &str, dead: &str) -> Design {
+    let [columns, rows] = SIDES;
+    let gains = |taxel: usize| format!("{:?},{:?}\n", 0.3 + 0.1 * taxel as f64, 40.0 * taxel as f64 - 300.0);
+    fs::write(folder.join("curved.csv"), (0..columns * rows).map(gains).collect::<String>()).expect("writable");
+    fs::write(folder.join("points.csv"), "-90,700\n0,0\n40,-90\n500,-9000\n1700,-28000\n4095,-51000\n")
+        .expect("writable");
+    let text = format!(
+        "name = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
+         curve = {curve}\ncalibration = \"curved.csv\"\n{dead}[algorithm]\nplan = \"{plan}\"\n\
+         [hardware]\nlanes = 8\nfull_scale_pa = 50000.0\n"
+    );
+    let path = folder.join(format!("{name}.toml"));
+    fs::write(&path, text).expect("writable");
+    Design::load(&path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn counts_follow_a_curve_bit_for_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let designs = [
+        curved(folder.path(), "curve_points", "paper", "\"points.csv\"", ""),
+        curved(folder.path(), "curve_power", "reduced", "{ power = 1.25, scale = -1.5 }", "dead = [7, 8]\n"),
+    ];
+    let failures: Vec<String> = in_parallel(&designs, |design| {
+        let plan = planned(design);
+        let mut random = ChaCha8Rng::seed_from_u64(12);
+        let mut frame = |from: f64, to: f64| -> Vec<u32> {
+            encode(&(0..plan.taxels()).map(|_| random.random_range(from..to)).collect::<Vec<f64>>())
+        };
+        let ends = [(0.0, 4000.0), (-50.0, 60.0), (0.0, 1500.0), (3500.0, 6000.0), (-1e6, 1e7), (0.0, 1.0)];
+        let mut packets: Vec<Vec<u32>> = ends.iter().map(|&(from, to)| frame(from, to)).collect();
+        packets.push(vec![4095.0_f32.to_bits(); plan.taxels()]);
+        packets.push(frame(0.0, 900.0)[1..].to_vec());
+        let mut bad = frame(0.0, 900.0);
+        bad[2] = f32::INFINITY.to_bits();
+        packets.push(bad);
+        packets.push(frame(0.0, 2500.0));
+        let saturated = model_answers(&plan, &packets).iter().filter(|words| words[0] & SATURATED != 0).count();
+        assert!(saturated > 0 && saturated < packets.len() - 2, "{}: {saturated} saturated", design.name);
+        simulate_exactly(&plan, &built(&plan), &packets, 4).err().map(|error| format!("{}: {error}", design.name))
+    })
+    .into_iter()
+    .flatten()
+    .collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
 #[test]
 fn every_frame_of_the_mat_is_the_models() {
     let plan = planned(&shipped("bed-mat"));
-    let frames = read_labelled_frames(&workspace("data/bed_mat_64x27.csv"), plan.taxels(), 2).expect("the recording");
+    let frames =
+        read_labelled_frames(&workspace("data/bed_mat_64x27.csv"), &plan.design.sensor, 2).expect("the recording");
     let packets: Vec<Vec<u32>> = frames.iter().map(|frame| encode(frame)).collect();
     assert_eq!(packets.len(), 24);
     let (expected, built) = (model_answers(&plan, &packets), built(&plan));

@@ -73,6 +73,7 @@ fn resultants(design: &mut Design) {
 /// The leaf cores that the handshake does not need, and the blocks of arithmetic.
 const FREE: &[&str] = &[
     "*sptfra_axis_skid*",
+    "*sptfra_timestamp*",
     "*sptfra_fixed_to_float*",
     "*sptfra_divider*",
     "*sptfra_mac*",
@@ -109,6 +110,17 @@ const JOINT_BROKEN: &[Broken] = &[
     ("turns", "field_due && residual_there && friction_known", "field_due && residual_there"),
     ("sptfra_estimator_joint", "assign sums_take = search_start;", "assign sums_take = answer_take;"),
     ("sptfra_estimator_joint", "(u_waiting != 2'd0) && !searching", "!searching"),
+    ("sptfra_estimator_joint", "(level_done || centroid_waits) && !correcting", "(level_done || centroid_waits)"),
+    (
+        "sptfra_estimator_joint",
+        "            search_bank <= !search_bank;\n            correcting",
+        "            correcting",
+    ),
+    (
+        "sptfra_estimator_joint",
+        "            centroid_waits <= 1'b0;\n            search_bank",
+        "            search_bank",
+    ),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
 ];
 const PAPER_BROKEN: &[Broken] = &[
@@ -295,6 +307,10 @@ impl Proof {
         let folder = tempfile::tempdir().expect("a folder");
         let mut read = vec!["read_verilog -formal -defer".to_owned()];
         for (path, contents) in files {
+            // Modules of arithmetic read theirs before they are set free.
+            if let Some(name) = path.strip_prefix("rom/") {
+                fs::write(folder.path().join(name), contents).expect("writable");
+            }
             let Some(module) = path.strip_prefix("rtl/").and_then(|name| name.strip_suffix(".v")) else { continue };
             if self.models.iter().any(|&(replaced, _)| replaced == module) {
                 continue;

@@ -173,3 +173,27 @@ fn completions_and_manual_know_every_command() {
         assert!(text.contains(".TH ") && text.contains(".SH NAME"), "{page}");
     }
 }
+
+#[test]
+fn frames_that_are_suspicious_are_shown_with_a_warning_and_those_of_another_sensor_not_at_all() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let design = workspace("designs/small.toml").display().to_string();
+    let sensor = golden::design::Design::load(&workspace("designs/small.toml")).expect("a design").sensor;
+    let frames = testbench::frame_set::FrameSet::standing(&sensor).expect("frames").stress;
+    let pulled: Vec<Vec<f64>> = frames.iter().map(|frame| frame.iter().map(|stress| -stress).collect()).collect();
+    let file = folder.path().join("pulled.csv");
+    golden::frames::write_frames(&file, &pulled).expect("written");
+    let view = ["view", &design, "--frames", "pulled.csv"];
+    let shown = testbench(folder.path(), &view);
+    let said = text(&shown.stderr);
+    assert!(shown.status.success() && said.starts_with("warning: ") && said.contains("F_z > 0"), "{said}");
+    assert!(said.contains("sensor.pa_per_count = -1.0"), "what to change: {said}");
+
+    let other = golden::design::Sensor { pitch_mm: [4.0, 3.0], ..sensor };
+    fs::write(golden::geometry::beside(&file), golden::geometry::to_toml(&other)).expect("written");
+    for command in ["view", "run"] {
+        let refused = testbench(folder.path(), &[command, view[1], view[2], view[3]]);
+        let said = text(&refused.stderr);
+        assert!(!refused.status.success() && said.starts_with("error: ") && said.contains("4 x 3 mm"), "{said}");
+    }
+}

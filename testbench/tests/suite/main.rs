@@ -11,6 +11,7 @@ mod command;
 mod contacts;
 mod cores;
 mod counts;
+mod dead_taxels;
 mod docs;
 mod drivers;
 mod figures;

@@ -1,17 +1,24 @@
 //! What `golden calibrate` finds for the joint estimator.
 
+use super::grid::Grid;
+
 /// Weights of a correction are whole numbers of `2^-WEIGHT_FRACTION`.
 pub const WEIGHT_FRACTION: u32 = 12;
 /// A weight is at least minus this many steps and less than this many, 32 either way.
 pub const WEIGHT_LIMIT: i32 = 32 << WEIGHT_FRACTION;
 /// Most hidden units of a correction.
 pub const MAX_HIDDEN: usize = 256;
+/// Largest magnitude of `c3`, less than 4, as far as the hardware's word for it reaches. Sensors that read no tension
+/// need more than 2.
+pub const CUBIC_LIMIT: f64 = 3.9;
 /// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.
 pub const EXTRA_INPUTS: usize = 5;
 
 /// Constants of the joint estimator for one design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointConstants {
+    /// Points of the plane at which Condition 1 is evaluated.
+    pub grid: Grid,
     /// Factor on all forces; what a kernel of point forces lacks at long waves.
     pub gain: f64,
     /// `[c1, c3]`: the friction vector is `c1 mu + c3 mu |mu|^2` of the centroid of the level set.
@@ -25,7 +32,7 @@ pub struct JointConstants {
 
 impl Default for JointConstants {
     fn default() -> Self {
-        Self { gain: 1.0, tangential: [1.0, 0.0], correction: None, fitted_to: None }
+        Self { grid: Grid::FINE, gain: 1.0, tangential: [1.0, 0.0], correction: None, fitted_to: None }
     }
 }
 

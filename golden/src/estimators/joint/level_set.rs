@@ -1,13 +1,11 @@
 //! Condition 1 on a grid over the plane of both friction components, and the centroid of its level set.
 
+use super::grid::Grid;
 use crate::status::Status;
 
-/// Distance of neighbouring points of the grid.
-pub const STEP: f64 = 1.0 / 8.0;
-/// The grid reaches from `-REACH` to `REACH` steps along both axes.
-pub const REACH: i32 = 10;
-/// Points of the grid along one axis.
-const SIDE: usize = 2 * REACH as usize + 1;
+/// Sums side by side, so that a processor may form several at once.
+const LANES: usize = 8;
+
 /// What the search over the grid finds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Found {
@@ -20,42 +18,57 @@ pub(crate) struct Found {
 /// Memory of the search, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GridScratch {
-    /// The hinges at the first point of a row of the grid and at the point itself.
-    row: Vec<f64>,
-    point: Vec<f64>,
-    /// Their sums at all points.
+    /// Parts of the hinges' arguments that depend on the point's column, and on its row: taxel by taxel for each.
+    columns: Vec<f64>,
+    rows: Vec<f64>,
+    /// The hinges' sums at all points.
     values: Vec<f64>,
 }
 
-/// Searches the grid for `u_q` in pascals, the dead zone in pascals and the allowance above the least value.
-pub(super) fn search(u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &mut GridScratch) -> Found {
-    let GridScratch { row, point, values } = scratch;
-    let reach = f64::from(REACH);
-    // The corner with the least components; from here on there are additions only.
-    let terms = u[0].iter().zip(u[1]).zip(u[2]);
-    row.clear();
-    row.extend(terms.map(|((u0, u1), u2)| u0 - (u1 * STEP + u2 * STEP) * reach - dead_zone));
-    values.clear();
-    for _ in 0..SIDE {
-        point.clone_from(row);
-        for _ in 0..SIDE {
-            values.push(point.iter().map(|stress| stress.max(0.0)).sum());
-            point.iter_mut().zip(u[1]).for_each(|(stress, u1)| *stress += u1 * STEP);
+/// `sum max(0, a + b)` over pairs.
+fn hinges(a: &[f64], b: &[f64]) -> f64 {
+    let hinge = |(a, b): (&f64, &f64)| {
+        let stress = a + b;
+        if stress > 0.0 { stress } else { 0.0 }
+    };
+    let mut sums = [0.0; LANES];
+    let (chunks_a, chunks_b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest: f64 = chunks_a.remainder().iter().zip(chunks_b.remainder()).map(hinge).sum();
+    for (a, b) in chunks_a.zip(chunks_b) {
+        for (sum, pair) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += hinge(pair);
         }
-        row.iter_mut().zip(u[2]).for_each(|(stress, u2)| *stress += u2 * STEP);
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+/// Searches the grid for `u_q` in pascals, the dead zone in pascals and the allowance above the least value.
+pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &mut GridScratch) -> Found {
+    let GridScratch { columns, rows, values } = scratch;
+    let (side, taxels, reach) = (grid.side(), u[0].len(), f64::from(grid.reach));
+    columns.clear();
+    rows.clear();
+    values.clear();
+    for point in -grid.reach..=grid.reach {
+        let mu = grid.step() * f64::from(point);
+        columns.extend(u[0].iter().zip(u[1]).map(|(u0, u1)| u0 + u1 * mu - dead_zone));
+        rows.extend(u[2].iter().map(|u2| u2 * mu));
+    }
+    for row in rows.chunks_exact(taxels.max(1)) {
+        values.extend(columns.chunks_exact(taxels.max(1)).map(|column| hinges(column, row)));
     }
 
     // The least value inside the grid and on its border.
     let mut least = [f64::INFINITY; 2];
     for (index, value) in values.iter().enumerate() {
-        let on_border = [index % SIDE, index / SIDE].iter().any(|&at| at == 0 || at == SIDE - 1);
+        let on_border = [index % side, index / side].iter().any(|&at| at == 0 || at == side - 1);
         let least = &mut least[usize::from(on_border)];
         *least = least.min(*value);
     }
     let [inside, on_border] = least;
     let level = inside.min(on_border) + allowance;
     let mut status = Status::default();
-    if [0, SIDE - 1, SIDE * (SIDE - 1), SIDE * SIDE - 1].iter().all(|&corner| values[corner] < level) {
+    if [0, side - 1, side * (side - 1), side * side - 1].iter().all(|&corner| values[corner] < level) {
         status.insert(Status::DIRECTION_UNKNOWN);
         return Found { status, mu: [0.0; 2] };
     }
@@ -67,11 +80,11 @@ pub(super) fn search(u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &m
         // A point at the edge of the level set weighs nothing, so that the grid can be coarse.
         let weight = (level - value).max(0.0).powi(2);
         sums[0] += weight;
-        sums[1] += weight * ((index % SIDE) as f64 - reach);
-        sums[2] += weight * ((index / SIDE) as f64 - reach);
+        sums[1] += weight * ((index % side) as f64 - reach);
+        sums[2] += weight * ((index / side) as f64 - reach);
     }
     // With an allowance above 0 the best point has a weight.
-    let mu = if sums[0] > 0.0 { [sums[1], sums[2]].map(|sum| STEP * sum / sums[0]) } else { [0.0; 2] };
+    let mu = if sums[0] > 0.0 { [sums[1], sums[2]].map(|sum| grid.step() * sum / sums[0]) } else { [0.0; 2] };
     Found { status, mu }
 }
 
@@ -84,7 +97,7 @@ mod tests {
     }
 
     fn search(u: &[Vec<f64>; 3], dead_zone: f64, allowance: f64) -> Found {
-        super::search(u.each_ref().map(Vec::as_slice), dead_zone, allowance, &mut GridScratch::default())
+        super::search(Grid::FINE, u.each_ref().map(Vec::as_slice), dead_zone, allowance, &mut GridScratch::default())
     }
 
     #[test]
@@ -107,10 +120,10 @@ mod tests {
     fn between_grid_points_the_weights_interpolate() {
         // The valley moves by a quarter of a step at a time, and the estimate with it.
         for quarter in 0..8 {
-            let at = STEP * f64::from(quarter) / 4.0;
+            let at = Grid::FINE.step() * f64::from(quarter) / 4.0;
             let u = vectors([[-at, 1.0, 0.0], [at, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]);
             let found = search(&u, 0.0, 0.5);
-            assert!((found.mu[0] - at).abs() < 0.02 * STEP, "{at} {found:?}");
+            assert!((found.mu[0] - at).abs() < 0.02 * Grid::FINE.step(), "{at} {found:?}");
         }
     }
 
@@ -118,12 +131,12 @@ mod tests {
     fn search_in_integers(u: &[Vec<i64>; 3], dead_zone: i64, allowance: i64) -> [f64; 2] {
         let mut values = Vec::new();
         // Times 8, so that a step of the grid adds `u_1` or `u_2` as they are.
-        let reach = i64::from(REACH);
+        let (side, reach) = (Grid::FINE.side(), i64::from(Grid::FINE.reach));
         let terms = u[0].iter().zip(&u[1]).zip(&u[2]);
         let mut row: Vec<i64> = terms.map(|((u0, u1), u2)| 8 * (u0 - dead_zone) - reach * (u1 + u2)).collect();
-        for _ in 0..SIDE {
+        for _ in 0..side {
             let mut point = row.clone();
-            for _ in 0..SIDE {
+            for _ in 0..side {
                 values.push(point.iter().map(|&stress| stress.max(0)).sum::<i64>());
                 point.iter_mut().zip(&u[1]).for_each(|(stress, step)| *stress += step);
             }
@@ -137,10 +150,10 @@ mod tests {
         for (index, value) in values.iter().enumerate() {
             let weight = ((level - value).max(0) >> shift).pow(2);
             sums[0] += weight;
-            sums[1] += weight * ((index % SIDE) as i64 - reach);
-            sums[2] += weight * ((index / SIDE) as i64 - reach);
+            sums[1] += weight * ((index % side) as i64 - reach);
+            sums[2] += weight * ((index / side) as i64 - reach);
         }
-        [sums[1], sums[2]].map(|sum| STEP * sum as f64 / sums[0] as f64)
+        [sums[1], sums[2]].map(|sum| Grid::FINE.step() * sum as f64 / sums[0] as f64)
     }
 
     #[test]

@@ -56,7 +56,8 @@ impl Look {
     }
 
     /// Writes the look, mirrored where a sign is negative, to `into`, of the same length.
-    pub(crate) fn mirrored(&self, [sign_x, sign_y]: [f64; 2], into: &mut [f64]) {
+    #[cfg(test)]
+    pub(super) fn mirrored(&self, [sign_x, sign_y]: [f64; 2], into: &mut [f64]) {
         let [width, height] = self.half_window.map(|half| 2 * half + 1);
         for (index, value) in into.iter_mut().enumerate().take(width * height) {
             let (x, y) = (index % width, index / width);

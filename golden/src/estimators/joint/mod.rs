@@ -5,6 +5,7 @@
 //! `docs/estimators.md` gives the steps as the hardware takes them.
 
 mod constants;
+mod grid;
 mod level_set;
 mod look;
 mod network;
@@ -12,10 +13,10 @@ mod weights;
 
 use super::seen::{RANGE, Seen};
 use crate::status::Status;
-pub use constants::{Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION, WEIGHT_LIMIT};
+pub use constants::{CUBIC_LIMIT, Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION, WEIGHT_LIMIT};
+pub use grid::Grid;
 pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};
-pub use level_set::{REACH, STEP};
 pub(crate) use look::Look;
 pub use look::{STRESS_SCALE, TIE};
 pub use network::LARGEST;
@@ -38,9 +39,9 @@ pub(crate) struct JointScratch {
 }
 
 /// The estimate before it is calibrated.
-pub(crate) fn raw(seen: &Seen, scratch: &mut JointScratch) -> Found {
+pub(crate) fn raw(grid: Grid, seen: &Seen, scratch: &mut JointScratch) -> Found {
     let largest = seen.b.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
-    search(seen.u, DEAD_ZONE * largest, LEVEL * seen.contact.stress_sum, &mut scratch.grid)
+    search(grid, seen.u, DEAD_ZONE * largest, LEVEL * seen.contact.stress_sum, &mut scratch.grid)
 }
 
 /// Looks at the stress that the normal forces alone would cause at the friction `mu`, in a grid of `columns`.
@@ -64,6 +65,7 @@ pub(crate) fn look(
 pub(crate) struct Joint {
     /// Factor on all forces.
     pub(crate) gain: f64,
+    grid: Grid,
     tangential: [f64; 2],
     columns: usize,
     network: Option<Network>,
@@ -73,6 +75,7 @@ impl Joint {
     pub(crate) fn new(constants: &JointConstants, columns: usize) -> Self {
         Self {
             gain: constants.gain,
+            grid: constants.grid,
             tangential: constants.tangential,
             columns,
             network: constants.correction.as_ref().map(Network::new),
@@ -81,7 +84,7 @@ impl Joint {
 
     /// Finds the friction components.
     pub(crate) fn find(&self, seen: &Seen, scratch: &mut JointScratch) -> (Status, [f64; 2]) {
-        let Found { status, mu } = raw(seen, scratch);
+        let Found { status, mu } = raw(self.grid, seen, scratch);
         if status.contains(Status::DIRECTION_UNKNOWN) {
             return (status, mu);
         }

@@ -5,12 +5,13 @@
 
 mod model;
 mod network;
+pub mod points;
 mod report;
 pub mod timing;
 
 use golden::design::Design;
-use golden::estimators::joint::{DEAD_ZONE, LARGEST, LEVEL, REACH, STEP, TIE};
-use golden::parity::CLASSES;
+use golden::estimators::joint::{DEAD_ZONE, Grid, LARGEST, LEVEL, TIE};
+use golden::parity::{CLASSES, Quads};
 use golden::sensor::Sensor;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -19,19 +20,18 @@ use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
 use crate::blocks::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
 use crate::plan::memory::{Memory, memory};
-pub use network::{
-    INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS, UNITS,
-};
+pub use network::{INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS};
+pub use points::PointsPlan;
 
 /// A step of the grid is `2^-STEP_SHIFT`.
 pub const STEP_SHIFT: u32 = 3;
 /// Points of the grid along one axis.
-pub const SIDE: usize = 2 * REACH as usize + 1;
+pub const SIDE: usize = Grid::FINE.side();
 /// Points of the grid.
 pub const POINTS: usize = SIDE * SIDE;
 /// Both the dead zone and the level are `2^-SHARE_SHIFT`, of the largest and of the sum of |b|.
 const SHARE_SHIFT: i32 = 8;
-/// Width of a taxel's stress on the grid, `8 (u0 - dead zone) + i u1 + j u2`: the last two up to `REACH` times 27 bits.
+/// Width of a taxel's stress on the grid, `8 (u0 - dead zone) + i u1 + j u2`: the last two up to 10 times 27 bits.
 pub const POINT_BITS: u32 = 32;
 /// Leading bits of the level that a weight is the square of.
 pub const DEPTH_BITS: u32 = 17;
@@ -47,19 +47,25 @@ pub const FACTOR_FRACTION: u32 = 21;
 pub const CORRECTION_LIMIT: i64 = (LARGEST * ONE) as i64;
 /// Left of a pitch from where a contact's centre belongs to the second of two taxels, in the steps of the friction.
 pub const CENTRE_HALF: i64 = (ONE / 2.0 + TIE * ONE) as i64;
+/// Width of `u_q` where it waits for the look.
+const U_BITS: u32 = 27;
 /// One, in the steps of the friction.
 const ONE: f64 = (1_u32 << FRICTION_FRACTION) as f64;
 /// Taxels of a cell are visited anew after this many cycles at the earliest: the depth of its pipeline.
 const LEAST_ELEMENTS: usize = 4;
 
 // The shifts above are those of the solver.
-const _: () = assert!((1.0 / STEP) as u32 == 1 << STEP_SHIFT);
+const _: () = assert!(Grid::FINE.shift == STEP_SHIFT && Grid::FINE.numerator == 1);
 const _: () = assert!((1.0 / LEVEL) as u32 == 1 << SHARE_SHIFT && (1.0 / DEAD_ZONE) as u32 == 1 << SHARE_SHIFT);
 
 /// Formats and constants of the joint estimator of a design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JointPlan {
-    /// Cells of the grid's values. They have adders only, and so their number does not follow the lanes'.
+    /// A cell for each point of the grid, where these are few; else they are walked over.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<PointsPlan>,
+    /// Cells of the grid's values: a point each, which all taxels pass, or a few taxels each. They have adders only, and so
+    /// their number does not follow the lanes'.
     #[serde(skip)]
     pub cells: Cells,
     /// Bits dropped from `max |b|` for the dead zone, and from `sum |b|` for the level above the least value, both in
@@ -84,14 +90,23 @@ impl JointPlan {
         let [c1, c3] = constants.tangential;
         let finer = given.stress.lsb - given.u.lsb;
         let fixed = |value: f64, fraction: u32| (value * pow2(fraction as i32)).round() as i64;
+        let points = PointsPlan::new(constants.grid, finer);
+        let cells = match &points {
+            Some(of) => Cells { cells: of.side * of.side, elements: given.design.sensor.taxels() },
+            None => Cells::new(given.elements, given.ways, per_cell),
+        };
         Self {
-            cells: Cells::new(given.elements, given.ways, per_cell),
+            points,
+            cells,
             // `u` holds the stress itself and more: its steps are hardly ever finer, and never by a factor of 8.
             share_shift: (SHARE_SHIFT - STEP_SHIFT as i32 - finer).max(0) as u32,
             value_bits: POINT_BITS - 1 + address_bits(given.design.sensor.taxels()),
             linear: fixed(c1, LINEAR_FRACTION),
             cubic: fixed(c3, CUBIC_FRACTION),
-            network: constants.correction.as_ref().map(|correction| NetworkPlan::new(correction, -finer)),
+            network: constants
+                .correction
+                .as_ref()
+                .map(|correction| NetworkPlan::new(correction, -finer, given.design.hardware.lanes)),
         }
     }
 
@@ -118,8 +133,8 @@ impl Slot for JointPlan {
         None
     }
 
-    fn search_latency(&self, taxels: usize) -> u64 {
-        timing::search(taxels, self.network.as_ref(), self.cells)
+    fn stages(&self, sensor: &Sensor) -> Vec<u64> {
+        timing::stages(sensor, self).to_vec()
     }
 
     fn contact_block(&self) -> BlockCost {
@@ -128,28 +143,42 @@ impl Slot for JointPlan {
 
     fn search_blocks(&self) -> Vec<BlockCost> {
         let network = self.network.is_some();
-        // The square of a depth and both moments; the stress of a taxel and its share of all; the hidden units' four
-        // classes and both components; one after the other.
+        // The square of a depth, or of five, and both moments; the stresses of a quad, and two of their shares of all; the hidden
+        // units' four classes and both components; one after the other.
         vec![
-            BlockCost { name: PLANE, modules: &["sptfra_plane", "sptfra_level_set"], dsp: 3 },
-            BlockCost { name: LOOK, modules: &["sptfra_look"], dsp: if network { 2 } else { 0 } },
+            BlockCost {
+                name: PLANE,
+                modules: &["sptfra_plane_search"],
+                dsp: if self.points.is_some() { points::DSP } else { 3 },
+            },
+            BlockCost { name: LOOK, modules: &["sptfra_look"], dsp: if network { 6 } else { 0 } },
             BlockCost {
                 name: NETWORK,
                 modules: &["sptfra_network"],
-                dsp: if network { CLASSES * UNITS + 2 } else { 0 },
+                dsp: self.network.as_ref().map_or(0, |network| CLASSES * network.at_once + 2),
             },
             BlockCost { name: "friction", modules: &["sptfra_friction"], dsp: 1 },
         ]
     }
 
     fn memories(&self, sensor: &Sensor) -> Vec<Memory> {
-        let mut memories = vec![memory(PLANE, "grid values", 1, POINTS, self.value_bits, false)];
+        let quads = Quads::new(sensor.columns, sensor.rows).count();
+        // Two frames.
+        let taxels =
+            |block| memory(block, "u", 3, 2 * quads.max(4).next_power_of_two(), CLASSES as u32 * U_BITS, false);
+        let mut memories = match self.points {
+            Some(PointsPlan { side, .. }) => {
+                vec![taxels(PLANE), memory(PLANE, "grid values", side, side, points::VALUE_BITS, false)]
+            }
+            None => vec![memory(PLANE, "grid values", 1, POINTS, self.value_bits, false)],
+        };
         if let Some(network) = &self.network {
-            let seen = sensor.rows << address_bits(sensor.columns);
             let classes = CLASSES as u32;
-            memories.push(memory(LOOK, "look", 1, seen, STRESS_BITS, false));
+            memories.push(taxels(LOOK));
+            // Each member of a place in the window may be in any quarter of the grid.
+            memories.push(memory(LOOK, "look", CLASSES * CLASSES, quads, STRESS_BITS, false));
             memories.push(memory(NETWORK, "look, folded", 1, network.length, classes * INPUT_BITS, false));
-            let width = WEIGHT_BITS * classes * UNITS as u32;
+            let width = WEIGHT_BITS * classes * network.at_once as u32;
             memories.push(memory(NETWORK, "hinge weights", 1, network.weights.len(), width, true));
             memories.push(memory(NETWORK, "readout", 1, network.units(), 2 * WEIGHT_BITS, true));
         }
@@ -174,14 +203,20 @@ impl Slot for JointPlan {
             .count("ROWS", design.sensor.rows)
             .count("WAYS", ways)
             .number("DATA_BITS", design.hardware.data_bits.into())
-            .count("CELLS", self.cells.cells)
-            .count("CELL_ELEMENTS", self.cells.elements)
-            .number("SHARE_SHIFT", self.share_shift.into())
+            .flag("POINTS", self.points.is_some());
+        let parameters = match &self.points {
+            Some(points) => parameters.number("U_LEFT", points.u_left.into()),
+            None => parameters
+                .count("CELLS", self.cells.cells)
+                .count("CELL_ELEMENTS", self.cells.elements)
+                .number("SHARE_SHIFT", self.share_shift.into()),
+        };
+        let parameters = parameters
             .wide("LINEAR", 27, self.linear)
             .wide("CUBIC", 18, self.cubic)
             .flag("NETWORK", self.network.is_some())
-            .cycles("EXPECTED_PLANE_LATENCY", timing::first_value(self.cells))
-            .cycles("EXPECTED_LEVEL_LATENCY", timing::LEVEL)
+            .cycles("EXPECTED_PLANE_LATENCY", timing::first_value(&design.sensor, self))
+            .cycles("EXPECTED_LEVEL_LATENCY", timing::level(self))
             .cycles("EXPECTED_FRICTION_LATENCY", timing::FRICTION);
         let Some(network) = &self.network else { return parameters };
         let [half_x, half_y] = network.half_window;
@@ -190,17 +225,25 @@ impl Slot for JointPlan {
             .count("HALF_Y", half_y)
             .count("LENGTH", network.length)
             .count("PASSES", network.passes)
+            .count("AT_ONCE", network.at_once)
             .number("STRESS_LEFT", network.stress_left.into())
             .number("UNIT_SHIFT", network.unit_shift.into())
             .number("CORRECTION_SHIFT", network.correction_shift.into())
             .expression("ROM_DIR", "ROM_DIR")
             .expression("ROM_NAME", format!("\"{}\"", design.name))
-            .cycles("EXPECTED_LOOK_LATENCY", timing::look(design.sensor.taxels(), network))
+            .cycles("EXPECTED_LOOK_LATENCY", timing::look(&design.sensor, network))
             .cycles("EXPECTED_NETWORK_LATENCY", timing::network(network))
     }
 
     fn without(&self) -> Vec<&'static str> {
-        if self.network.is_some() { Vec::new() } else { vec!["sptfra_look", "sptfra_network"] }
+        let mut without = match self.points {
+            Some(_) => vec!["sptfra_plane", "sptfra_level_set"],
+            None => vec!["sptfra_points", "sptfra_points_level"],
+        };
+        if self.network.is_none() {
+            without.push("sptfra_correction");
+        }
+        without
     }
 
     fn pitch(&self) -> Option<[i64; 2]> {

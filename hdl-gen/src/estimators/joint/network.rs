@@ -18,10 +18,8 @@ pub const STRESS_BITS: u32 = 25;
 pub const INPUT_BITS: u32 = STRESS_BITS + 2;
 /// Width of a hidden unit's sum before the hinge.
 pub const UNIT_BITS: u32 = 26;
-/// Hidden units, and so sums of each class, at a time.
-pub const UNITS: usize = 4;
-/// Fewest words of a pass: while it lasts, the units of the pass before are read out one by one.
-const LEAST_LENGTH: usize = 8;
+/// Fewest words of a pass beyond its units: while it lasts, those of the pass before are read out one by one.
+const LENGTH_OVER_UNITS: usize = 4;
 /// Sum of the coefficients' magnitudes below which products with 27 bits do not overflow 48.
 const SUM_LIMIT: i64 = 1 << 21;
 // A weight of a design file, as it is, fits the readout.
@@ -41,8 +39,10 @@ pub struct NetworkPlan {
     pub half_window: [usize; 2],
     /// Words of inputs, four classes each: places of a quarter of the window, then the other inputs, then zeros.
     pub length: usize,
-    /// Passes over the inputs, each for [`UNITS`] hidden units.
+    /// Passes over the inputs.
     pub passes: usize,
+    /// Hidden units of a pass, and so sums of each class.
+    pub at_once: usize,
     /// One step of a weight is worth `2^weight_lsb`.
     pub weight_lsb: i32,
     /// One step of a weight in the output is worth `2^readout_lsb`.
@@ -53,21 +53,23 @@ pub struct NetworkPlan {
     pub unit_shift: u32,
     /// Bits dropped from the sum of the output; negative: added.
     pub correction_shift: i32,
-    /// Weights by pass and word.
+    /// Weights by pass and word, of each unit of the pass.
     #[serde(skip)]
-    pub weights: Vec<[ByClass; UNITS]>,
+    pub weights: Vec<Vec<ByClass>>,
     /// Weights of each hidden unit in the x and the y component.
     #[serde(skip)]
     pub readout: Vec<[i32; 2]>,
 }
 
 impl NetworkPlan {
-    /// Splits and quantises the weights of a correction, for stresses `u` with steps `2^coarser` times those of `b`.
-    pub(super) fn new(correction: &Correction, coarser: i32) -> Self {
+    /// Splits and quantises the weights of a correction, for stresses `u` with steps `2^coarser` times those of `b`, and
+    /// multipliers that are worth it beside so many `lanes`.
+    pub(super) fn new(correction: &Correction, coarser: i32, lanes: usize) -> Self {
         let half_window = correction.half_window;
         let units: Vec<Vec<[f64; CLASSES]>> = correction.hidden.iter().map(|row| by_parity(row, half_window)).collect();
-        let length = units.first().map_or(0, Vec::len).max(LEAST_LENGTH);
-        let passes = units.len().div_ceil(UNITS);
+        let at_once = at_once(lanes);
+        let length = units.first().map_or(0, Vec::len).max(at_once + LENGTH_OVER_UNITS);
+        let passes = units.len().div_ceil(at_once);
 
         // Two bits finer than the weights as they were found: a parity's share of one is a quarter of four's sum.
         let mut weight_lsb = -(WEIGHT_FRACTION as i32) - 2;
@@ -83,10 +85,10 @@ impl NetworkPlan {
         while !fits(weight_lsb) {
             weight_lsb += 1;
         }
-        let mut weights = vec![[[0; CLASSES]; UNITS]; passes * length];
+        let mut weights = vec![vec![[0; CLASSES]; at_once]; passes * length];
         for (index, unit) in units.iter().enumerate() {
             for (word, of_class) in unit.iter().enumerate() {
-                weights[index / UNITS * length + word][index % UNITS] =
+                weights[index / at_once * length + word][index % at_once] =
                     of_class.map(|weight| fixed(weight, weight_lsb) as i32);
             }
         }
@@ -120,6 +122,7 @@ impl NetworkPlan {
             half_window,
             length,
             passes,
+            at_once,
             weight_lsb,
             readout_lsb,
             stress_left: stress_left(coarser),
@@ -137,7 +140,16 @@ impl NetworkPlan {
 
     /// Hidden units, those included that fill up the last pass.
     pub fn units(&self) -> usize {
-        self.passes * UNITS
+        self.passes * self.at_once
+    }
+}
+
+/// Hidden units at a time, each on four multipliers: as many multipliers as lanes, but not fewer than 16.
+fn at_once(lanes: usize) -> usize {
+    match lanes {
+        0..=16 => 4,
+        17..=32 => 8,
+        _ => 16,
     }
 }
 

@@ -4,7 +4,8 @@ use golden::design::{Correction, Design, Kernel};
 use golden::kernel::gain;
 use golden::parity::CLASSES;
 
-use super::{JointPlan, POINTS, UNITS};
+use super::points::MOST_POINTS;
+use super::{JointPlan, POINTS, timing};
 use crate::plan::format::short;
 
 /// Share by which the gain may differ from what the kernel lacks under a wide contact.
@@ -22,15 +23,47 @@ pub fn report(plan: &JointPlan, design: &Design) -> String {
             network.weight_lsb,
             network.passes,
             network.length,
-            CLASSES * UNITS
+            CLASSES * network.at_once
         ),
         _ => "none: `golden calibrate` trains one".to_owned(),
     };
     format!(
-        "\nFriction, joint estimator\n  walk         {POINTS} points, {} taxels a cell; gain {} (in the matrices)\n  \
-         friction     c1 {c1:.4}, c3 {c3:.4}\n  correction   {correction}\n",
-        plan.cells.elements,
-        short(constants.gain)
+        "\nFriction, joint estimator\n  grid         {}; gain {} (in the matrices)\n  \
+         friction     c1 {c1:.4}, c3 {c3:.4}\n  network      {correction}\n{}",
+        grid(plan),
+        short(constants.gain),
+        stages(plan, design)
+    )
+}
+
+/// How Condition 1 is evaluated over the plane, and why so.
+fn grid(plan: &JointPlan) -> String {
+    match &plan.points {
+        Some(points) => format!("{} x {0} points, a cell each, a taxel a cycle", points.side),
+        None => format!(
+            "{POINTS} points, more than the {MOST_POINTS} that could have a cell each: walked over, {} taxels a cell",
+            plan.cells.elements
+        ),
+    }
+}
+
+/// What the search spends its cycles on. Search and correction have a frame each; the lanes work beside both.
+fn stages(plan: &JointPlan, design: &Design) -> String {
+    let sensor = &design.sensor;
+    let [search, correction] = timing::stages(sensor, plan);
+    let level = timing::level(plan);
+    let parts = match &plan.network {
+        Some(network) => format!(
+            "look {}, network {}, friction {}",
+            timing::look(sensor, network),
+            timing::network(network),
+            timing::FRICTION
+        ),
+        None => format!("friction {}", timing::FRICTION),
+    };
+    format!(
+        "  search       {search} cycles: plane {}, level set {level}\n  correction   {correction} cycles: {parts}\n",
+        search - level
     )
 }
 

@@ -7,6 +7,7 @@ mod search;
 pub mod timing;
 
 use golden::design::Design;
+use golden::sensor::Sensor;
 use serde_json::json;
 
 use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot};
@@ -69,8 +70,8 @@ impl Slot for LinePlan {
         Some(timing::LINE_LATENCY)
     }
 
-    fn search_latency(&self, _taxels: usize) -> u64 {
-        timing::search(self.cells)
+    fn stages(&self, _sensor: &Sensor) -> Vec<u64> {
+        vec![timing::search(self.cells)]
     }
 
     fn contact_block(&self) -> BlockCost {

@@ -25,6 +25,7 @@ rtl/sptfra_quad_rows.v
 rtl/sptfra_ram.v
 rtl/sptfra_rom.v
 rtl/sptfra_row_sequencer.v
+rtl/sptfra_samples.v
 rtl/sptfra_search.v
 rtl/sptfra_search_cell.v
 rtl/sptfra_search_cells.v

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::support::random;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
-use golden::design::{Design, Estimator, Outputs, PlanKind};
+use golden::design::{Calibration, Curve, Design, Estimator, Input, Outputs, PlanKind, Slip, Tension};
 use hdl_gen::emit::emit;
 use tempfile::TempDir;
 use testbench::tools;
@@ -23,8 +23,19 @@ fn designs() -> Vec<Design> {
     "narrow".clone_into(&mut narrow.name);
     narrow.hardware.coefficient_bits = 8;
     narrow.hardware.data_bits = 16;
+    let mut broken = by_plan(shipped("odd"), reduced, Outputs::Field);
+    "broken".clone_into(&mut broken.name);
+    let taxels = broken.sensor.taxels();
+    let gain = (0..taxels).map(|taxel| 1.0 + taxel as f64).map(|gain| gain / 4.0).collect();
+    let calibration = Some(Calibration { gain, offset: vec![-7.5; taxels] });
+    broken.input =
+        Input { pa_per_count: Some(-3.0), calibration, dead: vec![0, 1, 7], curve: None, tension: Tension::Clipped };
+    let mut curved = by_plan(shipped("small"), reduced, Outputs::Field);
+    "curved".clone_into(&mut curved.name);
+    curved.input.curve = Some(Curve { points: vec![[0.0, 0.0], [50.0, -100.0], [4095.0, -1e5]], law: None });
     let mut uncorrected = by_plan(with_lanes(shipped("odd"), 12), reduced, Outputs::Resultants);
     uncorrected.algorithm.estimator = Estimator::Joint;
+    uncorrected.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
     vec![
         by_plan(shipped("small"), paper, Outputs::Field),
         by_plan(shipped("odd"), paper, Outputs::Field),
@@ -39,7 +50,10 @@ fn designs() -> Vec<Design> {
         shipped("sensor1-resultants"),
         tiny,
         shipped("sensor1-joint"),
+        shipped("sensor1-fast"),
         uncorrected,
+        broken,
+        curved,
         with_lanes(shipped("sensor1-f1-l40"), 64),
         narrow,
     ]

@@ -2,7 +2,7 @@
 
 use std::env;
 
-use golden::design::{Correction, Design, JointConstants, Sensor};
+use golden::design::{Correction, Design, Grid, JointConstants, Sensor};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -148,10 +148,10 @@ lanes = {lanes}
 fn constants(sensor: &Sensor, correction: bool) -> JointConstants {
     let mut random = ChaCha8Rng::seed_from_u64((64 * sensor.columns + sensor.rows) as u64);
     let mut constants = JointConstants {
+        grid: Grid::ALL[random.random_range(0..Grid::ALL.len())],
         gain: random.random_range(0.5..2.0),
         tangential: [random.random_range(0.5..1.5), random.random_range(-0.3..0.3)],
-        correction: None,
-        fitted_to: None,
+        ..JointConstants::default()
     };
     if correction {
         let half_window = [sensor.columns, sensor.rows].map(|side| random.random_range(0..side.min(6)));

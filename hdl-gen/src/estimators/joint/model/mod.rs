@@ -2,6 +2,7 @@
 
 mod look;
 mod network;
+mod points;
 
 use super::super::{Found, Seen};
 use super::{
@@ -15,14 +16,18 @@ const REACH: i64 = SIDE as i64 / 2;
 
 /// Finds the friction of a frame.
 pub fn friction(joint: &JointPlan, seen: &Seen) -> Found {
-    let centroid = level_set(joint, &values(joint, seen.u, seen.contact.largest), seen.contact.stress_sum);
+    let centroid = match &joint.points {
+        Some(points) => points::search(points, seen),
+        None => level_set(joint, &values(joint, seen.u, seen.contact.largest), seen.contact.stress_sum),
+    };
     let mut found = Found { unknown: centroid.unknown, at_bound: centroid.on_border, ..Found::default() };
     let mut correction = [0; 2];
     if let Some(network) = &joint.network {
         let look = look::take(network, seen, centroid.mu);
-        found.saturated = look.saturated && !centroid.unknown;
+        found.saturated = look.saturated;
         correction = network::correction(network, &look.inputs);
     }
+    found.saturated = (found.saturated || centroid.saturated) && !centroid.unknown;
     let exact = scaled(joint, centroid.mu);
     if centroid.unknown {
         return found;
@@ -62,6 +67,8 @@ struct Centroid {
     mu: [i64; 2],
     unknown: bool,
     on_border: bool,
+    /// A value was clipped.
+    saturated: bool,
 }
 
 fn level_set(joint: &JointPlan, values: &[i64], stress_sum: i64) -> Centroid {
@@ -97,7 +104,7 @@ fn level_set(joint: &JointPlan, values: &[i64], stress_sum: i64) -> Centroid {
         let magnitude = divider::divide(numerator, sum as u64) as i64;
         if moment < 0 { -magnitude } else { magnitude }
     };
-    Centroid { mu: moments.map(quotient), unknown: corners == 4, on_border: on_border < inside }
+    Centroid { mu: moments.map(quotient), unknown: corners == 4, on_border: on_border < inside, saturated: false }
 }
 
 /// `c1 mu + c3 mu |mu|^2`.

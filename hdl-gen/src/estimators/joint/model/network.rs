@@ -2,14 +2,14 @@
 
 use golden::parity::CLASSES;
 
-use super::super::{CORRECTION_LIMIT, NetworkPlan, UNITS};
+use super::super::{CORRECTION_LIMIT, NetworkPlan};
 use crate::plan::format::round_shift;
 
 /// The correction of both friction components for a look's inputs by word and class.
 pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> [i64; 2] {
     let mut sums = [0; 2];
     for (pass, weights) in network.weights.chunks(network.length).enumerate() {
-        for (unit, readout) in network.readout.iter().skip(pass * UNITS).take(UNITS).enumerate() {
+        for (unit, readout) in network.readout.iter().skip(pass * network.at_once).take(network.at_once).enumerate() {
             let class = |class: usize| -> i64 {
                 let terms = weights.iter().zip(inputs);
                 let sum = terms.map(|(weights, inputs)| i64::from(weights[unit][class]) * inputs[class]).sum();

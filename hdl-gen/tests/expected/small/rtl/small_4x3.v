@@ -10,7 +10,8 @@
 // for
 //      each frame in.
 // Status: 0 no contact, 1 direction unknown, 2 optimum at the bound, 3 saturated, 4 NaN or infinity in,
-//      5 frame length wrong; 31:16 frame counter. Timestamp: of the first beat in, in cycles since the reset.
+//      5 frame length wrong, 8 a taxel was replaced, 9 too many were, 10 slip, 11 no tension; 31:16 frame counter.
+// Timestamp: of the first beat in, in cycles since the reset.
 // Latency, first beat in to last beat out, streams never waiting: 986 cycles (7.89 us at 125.0 MHz).
 // Interval between frames: 508 cycles (4.06 us).
 // The lanes' programs take 229 cycles of issue a frame, 800 MACs: they are busy 87.3 % of that time.
@@ -104,6 +105,7 @@ module small_4x3 #(
     wire frame_saturated;
     wire frame_not_finite;
     wire frame_bad_length;
+    wire [29:0] frame_replaced;
     wire bz_write;
     wire bz_write_bank;
     wire [ROW_WIDTH-1:0] bz_write_row;
@@ -139,6 +141,7 @@ module small_4x3 #(
         .frame_saturated  (frame_saturated),
         .frame_not_finite (frame_not_finite),
         .frame_bad_length (frame_bad_length),
+        .frame_replaced   (frame_replaced),
         .frame_ready      (frame_ready),
         .frame_start      (start[0]),
         .frame_release    (coefficients_complete)
@@ -152,12 +155,13 @@ module small_4x3 #(
     wire no_direction;
     wire [39:0] stress_sum;
     wire [26:0] largest;
-    wire [3:0] frame_flags; // no contact, saturated, NaN or infinity, bad length
+    wire [5:0] frame_flags; // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
 
     sptfra_cean #(
         .COLUMNS          (4),
         .ROWS             (3),
         .DIRECTION        (1),
+        .TENSION_READ     (1),
         .TAXEL_FLOOR      (27'sd781),
         .CONTACT_FLOOR    (40'sd9375),
         .PITCH_X          (18'sd65536),
@@ -173,6 +177,7 @@ module small_4x3 #(
         .frame_saturated  (frame_saturated),
         .frame_not_finite (frame_not_finite),
         .frame_bad_length (frame_bad_length),
+        .frame_replaced   (frame_replaced),
         .direction_room   (direction_room),
         .direction_valid  (direction_valid),
         .direction_take   (direction_take),
@@ -439,7 +444,7 @@ module small_4x3 #(
     wire at_bound;
     wire search_saturated;
     wire [18*40-1:0] answer_sums;
-    wire [3:0] answer_flags;
+    wire [5:0] answer_flags;
 
     assign search_over = answer_valid && answer_take;
 
@@ -526,6 +531,7 @@ module small_4x3 #(
         .ROWS                     (3),
         .FIELD                    (1),
         .DEPENDENT                (1),
+        .REPLACED                 (0),
         .SUM_LSB                  (-20),
         .TORQUE_LSB               (-27),
         .FIELD_LSB                (-40),

@@ -51,7 +51,7 @@ module sptfra_estimator_line #(
     input  wire no_direction,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
-    input  wire [3:0] flags_in, // no contact, saturated, NaN or infinity, bad length
+    input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // The answer, held until taken
     output wire answer_valid,
     input  wire answer_take, // only with answer_valid
@@ -63,7 +63,7 @@ module sptfra_estimator_line #(
     output wire at_bound,
     output wire saturated,
     output reg  [18*40-1:0] sums,
-    output reg  [3:0] flags
+    output reg  [5:0] flags
 );
 
     // ---- u_q: a register on the way to all cells
@@ -92,7 +92,7 @@ module sptfra_estimator_line #(
     wire signed [17:0] line_c0;
     wire signed [17:0] line_c1;
     reg [39:0] line_stress_sum;
-    reg [3:0] line_flags;
+    reg [5:0] line_flags;
 
     always @(posedge clock) begin
         if (direction_take) begin

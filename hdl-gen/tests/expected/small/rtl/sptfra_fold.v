@@ -41,7 +41,7 @@ module sptfra_fold #(
     localparam X_WIDTH = $clog2(COLUMNS);
     localparam Y_WIDTH = $clog2(ROWS);
     localparam QUAD_X_WIDTH = (QUAD_COLUMNS > 2) ? $clog2(QUAD_COLUMNS) : 1;
-    localparam UPPER_DEPTH = (QUADS > 4) ? QUADS : 4;
+    localparam UPPER_DEPTH = (QUADS > 8) ? QUADS : 8;
     localparam [31:0] LAST_X = COLUMNS - 1;
     localparam [31:0] LAST_Y = ROWS - 1;
     localparam [31:0] FIRST_X = COLUMNS - QUAD_COLUMNS;

@@ -40,6 +40,7 @@ foreach file {
     sptfra_ram.v
     sptfra_rom.v
     sptfra_row_sequencer.v
+    sptfra_samples.v
     sptfra_search.v
     sptfra_search_cell.v
     sptfra_search_cells.v

@@ -1,0 +1,223 @@
+//! Frame files: one value for each taxel, in taxel order: the stress in pascals or, for a design with `pa_per_count`, the
+//! sensor's count.
+//!
+//! As text, one frame a line, with a header line or none, separated by commas, semicolons, tabs or spaces; recordings may
+//! have label columns before the values. Or `NumPy`'s `.npy`, of frames by taxels or frames by rows by columns.
+
+mod npy;
+mod text;
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use crate::geometry::GeometryError;
+use crate::output::{self, OutputError};
+use crate::sensor::Sensor;
+
+/// What is wrong with a frame file.
+#[derive(Debug, thiserror::Error)]
+pub enum FrameError {
+    /// The file could not be read.
+    #[error("{}: cannot read the frames: {source}; check the path and the permissions", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file has no frame in it.
+    #[error(
+        "{}: no frame in the file; write one line of {expected} stresses, separated by commas, for each frame",
+        path.display()
+    )]
+    Empty {
+        /// The file.
+        path: PathBuf,
+        /// Values in a frame.
+        expected: usize,
+    },
+    /// A line with too few or too many values.
+    #[error(
+        "{}, line {line}: the line ends at column {found} where {expected} values are needed; \
+         give one stress for each taxel of the sensor", path.display()
+    )]
+    Length {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// Values on the line.
+        found: usize,
+        /// Values in a frame.
+        expected: usize,
+    },
+    /// A value that is no finite number.
+    #[error(
+        "{}, line {line}, column {column}: \"{text}\" is no finite float32 number; give the stress in pascals, \
+         such as -1250.5, separated by commas, semicolons, tabs or spaces; columns before the values need --labels, and a \
+         header has no number in it", path.display()
+    )]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// Position on the line, from 1.
+        column: usize,
+        /// What is there.
+        text: String,
+    },
+    /// A `.npy` file that holds something else than frames.
+    #[error(
+        "{}: {problem}; save frames by taxels, or frames by rows by columns, with numpy.save", path.display()
+    )]
+    Array {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A force file that does not belong to the frames.
+    #[error(
+        "{}: forces of {found} frames where there are {expected}; give the file that was made with these frames",
+        path.display()
+    )]
+    Count {
+        /// The file.
+        path: PathBuf,
+        /// Lines in the file.
+        found: usize,
+        /// Frames.
+        expected: usize,
+    },
+    /// The frames of another sensor.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] OutputError),
+}
+
+/// Reads all frames of a file; each has a finite value for each taxel of the sensor.
+///
+/// # Errors
+///
+/// [`FrameError`], with file, line and column, for the first line that is no frame, and for a `.npy` file of another shape.
+pub fn read_frames(path: &Path, sensor: &Sensor) -> Result<Vec<Vec<f64>>, FrameError> {
+    read_labelled_frames(path, sensor, 0)
+}
+
+/// As [`read_frames`], of a file whose lines begin with `labels` columns of any text, which are skipped.
+///
+/// # Errors
+///
+/// As [`read_frames`].
+pub fn read_labelled_frames(path: &Path, sensor: &Sensor, labels: usize) -> Result<Vec<Vec<f64>>, FrameError> {
+    let taxels = sensor.taxels();
+    let wrong_length = |found| (found != labels + taxels).then_some(labels + taxels);
+    let frames = read_table(path, labels, wrong_length, |shape| of_grid(shape, sensor))?;
+    if frames.is_empty() {
+        return Err(FrameError::Empty { path: path.to_path_buf(), expected: taxels });
+    }
+    Ok(frames)
+}
+
+/// Reads the rows of a file of finite numbers, which may have a header. `wrong_length` is given the number of values of a
+/// row and returns the number wanted if that is another.
+pub(crate) fn read_rows(
+    path: &Path,
+    wrong_length: impl Fn(usize) -> Option<usize>,
+) -> Result<Vec<Vec<f64>>, FrameError> {
+    read_table(path, 0, wrong_length, |_| Ok(()))
+}
+
+/// Reads the columns after the labels; `wrong_length` is given the number of all columns, `check` an array's shape.
+fn read_table(
+    path: &Path,
+    labels: usize,
+    wrong_length: impl Fn(usize) -> Option<usize>,
+    check: impl Fn(&[usize]) -> Result<(), String>,
+) -> Result<Vec<Vec<f64>>, FrameError> {
+    let unreadable = |source| FrameError::Read { path: path.to_path_buf(), source };
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    if !bytes.starts_with(npy::MAGIC) {
+        return text::read(path, &bytes, labels, wrong_length);
+    }
+    let wrong = |problem| FrameError::Array { path: path.to_path_buf(), problem };
+    let array = npy::parse(&bytes).map_err(wrong)?;
+    let [count, row @ ..] = array.shape.as_slice() else {
+        return Err(wrong("it holds a single number".to_owned()));
+    };
+    check(row).map_err(wrong)?;
+    let length: usize = row.iter().product();
+    if let Some(expected) = wrong_length(length).filter(|_| *count > 0) {
+        return Err(wrong(format!("it has {length} values a row where {expected} are needed")));
+    }
+    let rows: Vec<Vec<f64>> =
+        array.values.chunks(length.max(1)).map(|row| row[labels.min(length)..].to_vec()).collect();
+    for (row, values) in rows.iter().enumerate() {
+        if let Some(column) = values.iter().position(|value| !is_number(*value)) {
+            return Err(wrong(format!("[{row}, {}] is {}, no finite float32", labels + column, values[column])));
+        }
+    }
+    Ok(rows)
+}
+
+/// Whether frames of this shape, without the number of frames, are those of the sensor; else what they look like.
+fn of_grid(shape: &[usize], sensor: &Sensor) -> Result<(), String> {
+    let Sensor { columns, rows, .. } = sensor;
+    match shape {
+        [_] => Ok(()),
+        [a, b] if a == rows && b == columns => Ok(()),
+        [a, b] if a == columns && b == rows => Err(format!(
+            "its frames are {a} by {b}, the transposed grid: the sensor has {rows} rows of {columns} columns; \
+             transpose them with frames.transpose(0, 2, 1)"
+        )),
+        [] => Err("it holds one row of numbers; a single frame is numpy.atleast_2d(frame)".to_owned()),
+        _ => Err(format!("its frames are {shape:?} where the sensor has {rows} rows of {columns} columns")),
+    }
+}
+
+/// Whether a float32 stream can carry the value.
+fn is_number(value: f64) -> bool {
+    value.abs() <= f64::from(f32::MAX)
+}
+
+/// Writes frames so that reading them gives the same bits back, the whole file or nothing: as `NumPy` does where the name
+/// ends in `.npy`, else as CSV.
+///
+/// # Errors
+///
+/// [`FrameError::Write`] if the file cannot be written.
+pub fn write_frames(path: &Path, frames: &[Vec<f64>]) -> Result<(), FrameError> {
+    if is_npy(path) {
+        return write_array(path, frames.first().map_or(0, Vec::len), frames);
+    }
+    let mut text = String::new();
+    for frame in frames {
+        push_row(&mut text, frame.iter().copied());
+    }
+    output::write_whole(path, text.as_bytes())?;
+    Ok(())
+}
+
+/// Whether a file's name asks for `NumPy`'s format.
+pub(crate) fn is_npy(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npy"))
+}
+
+/// Writes rows of equal length as `NumPy` does, the whole file or nothing.
+pub(crate) fn write_array(path: &Path, columns: usize, rows: &[Vec<f64>]) -> Result<(), FrameError> {
+    output::write_whole(path, &npy::file(columns, rows))?;
+    Ok(())
+}
+
+/// Appends one CSV row; each number is the shortest that reads back as the same float.
+pub(crate) fn push_row(text: &mut String, values: impl Iterator<Item = f64>) {
+    for (index, value) in values.enumerate() {
+        let separator = if index == 0 { "" } else { "," };
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{separator}{value:?}");
+    }
+    text.push('\n');
+}

@@ -1,0 +1,118 @@
+//! The estimators on frames of finite elements, which share nothing with the model that they were fitted to.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use golden::design::Design;
+use golden::forces::read_outcomes;
+use golden::frames::read_frames;
+use golden::geometry;
+use golden::metrics::Outcome;
+use golden::solver::Solver;
+
+fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// A frame's case, the press in millimetres, and its true forces.
+struct Frame {
+    case: String,
+    press_mm: f64,
+    stress: Vec<f64>,
+    truth: Outcome,
+}
+
+fn frames(sensor: &str) -> Vec<Frame> {
+    let file = repository(&format!("data/fe/{sensor}.csv"));
+    let stress = read_frames(&file, &design(&format!("{sensor}-joint")).sensor).unwrap();
+    let truth = read_outcomes(&file.with_extension("forces.csv"), stress.len()).unwrap();
+    let cases = fs::read_to_string(repository("data/fe/cases.csv")).unwrap();
+    let cases: Vec<Vec<&str>> = cases
+        .lines()
+        .filter(|line| line.starts_with(&format!("{sensor}.csv,")))
+        .map(|line| line.split(',').collect())
+        .collect();
+    assert_eq!(cases.len(), stress.len(), "a line for each frame");
+    let named = cases.iter().zip(stress).zip(truth);
+    named
+        .map(|((case, stress), truth)| Frame {
+            case: case[2].to_owned(),
+            press_mm: case[4].parse().unwrap(),
+            stress,
+            truth,
+        })
+        .collect()
+}
+
+fn design(name: &str) -> Design {
+    Design::load(&repository(&format!("designs/{name}.toml"))).unwrap()
+}
+
+/// Length of the error of the tangential force, and error of the normal one, in percent of the normal force.
+fn errors(solver: &Solver, frame: &Frame) -> [f64; 2] {
+    let found = solver.solve(&frame.stress).unwrap().resultant;
+    let [x, y, z] = [0, 1, 2].map(|axis| 100.0 * (found[axis] - frame.truth.force[axis]) / -frame.truth.force[2]);
+    [x.hypot(y), z.abs()]
+}
+
+#[test]
+fn the_frames_are_what_they_say() {
+    for sensor in ["sensor1", "sensor2"] {
+        geometry::compare(
+            &repository(&format!("data/fe/{sensor}.csv")),
+            sensor,
+            &design(&format!("{sensor}-joint")).sensor,
+        )
+        .unwrap();
+        for frame in frames(sensor) {
+            let Outcome { force: [x, y, z], friction, .. } = frame.truth;
+            assert!(z < -0.1 && friction <= 0.505, "Coulomb's law with 0.5: {} {friction}", frame.case);
+            // The base carries the force; the taxels see nearly all of it, averaged over most of their cells.
+            let area = if sensor == "sensor1" { 8e-6 } else { 16e-6 };
+            let seen: f64 = frame.stress.iter().sum::<f64>() * area;
+            assert!((seen / z - 1.0).abs() < 0.06, "{}: {seen} N of {z} N", frame.case);
+            // The moment of the tangential force moves the stress the way it pushes, about the middle of all frames.
+            assert!(x.hypot(y) < -0.51 * z);
+        }
+    }
+}
+
+#[test]
+fn the_estimators_err_as_the_docs_say() {
+    for (sensor, limit) in [("sensor1", 30.0), ("sensor2", 18.0)] {
+        let solver = Solver::new(&design(&format!("{sensor}-joint"))).unwrap();
+        for frame in frames(sensor) {
+            let [tangential, normal] = errors(&solver, &frame);
+            assert!(tangential < limit && normal < 6.0, "{} {tangential} {normal}", frame.case);
+        }
+    }
+}
+
+#[test]
+#[ignore = "prints the table of finite elements in docs/contacts.md"]
+fn table() {
+    for sensor in ["sensor1", "sensor2"] {
+        let [line, joint] = ["none", "joint"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap());
+        let frames = frames(sensor);
+        for group in frames.chunk_by(|a, b| a.case == b.case) {
+            let pressed = &group[0].truth;
+            let row: String = [&line, &joint]
+                .map(|solver| {
+                    let found: Vec<[f64; 2]> = group.iter().map(|frame| errors(solver, frame)).collect();
+                    let each: Vec<String> = found.iter().map(|[tangential, _]| format!("{tangential:.1}")).collect();
+                    let normal = found.iter().fold(0.0_f64, |worst, found| worst.max(found[1]));
+                    format!(" {} | {normal:.1} |", each.join(" "))
+                })
+                .concat();
+            let friction: Vec<String> = group.iter().map(|frame| format!("{:.2}", frame.truth.friction)).collect();
+            println!(
+                "| {} | {} | {} mm, {:.1} N | {} |{row}",
+                &sensor[6..],
+                group[0].case,
+                group[0].press_mm,
+                -pressed.force[2],
+                friction.join(" ")
+            );
+        }
+    }
+}

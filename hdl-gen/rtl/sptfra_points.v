@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Condition 1 at every point of the (mu_x, mu_y) plane at once: B = sum max(0, u0 + mu_x u1 + mu_y u2), SIDE x SIDE
+// points 3/16 apart, a cell a point.
+//
+// A taxel a cycle: a cell adds X of its column and Y of its row, and accumulates what is above zero; a sum that leaves
+// its width is the largest number. From start to the first row of points: four cycles a quad, and 11; then a row a
+// cycle.
+
+`default_nettype none
+
+module sptfra_points #(
+    // Taxels along x
+    parameter integer COLUMNS = 10,
+    // Taxels along y
+    parameter integer ROWS = 10,
+    // Bits of u_q
+    parameter integer DATA_BITS = 27,
+    // Bits of the number of a quad
+    parameter integer ROW_WIDTH = 5,
+    // Points along an axis, odd
+    parameter integer SIDE = 15,
+    // Left shift of u before the right shift by the bits of sum |b|
+    parameter integer U_LEFT = 24,
+    // From start to the first row, checked in simulation; 0: unchecked
+    parameter integer EXPECTED_LATENCY = 0
+) (
+    input  wire clock,
+    input  wire reset,
+    // u_q of a quad's taxels, member 0 in the lowest bits
+    input  wire [2:0] u_valid,
+    input  wire [ROW_WIDTH-1:0] u_quad,
+    input  wire [4*DATA_BITS-1:0] u_values,
+    input  wire fill_bank,
+    input  wire search_bank,
+    // Start, with these held from the next cycle on
+    input  wire start,
+    input  wire [39:0] stress_sum,
+    input  wire [26:0] largest, // max |b|
+    // 2^-8 sum |b|, in the steps of B
+    output wire [15:0] margin,
+    // B, a row of points at a time, mu_x from the least one on in the lowest bits
+    output wire row_valid,
+    output wire [SIDE*28-1:0] row_values,
+    output wire clipped // a u was, or the least B may be; held until the next start
+);
+
+    localparam integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
+    localparam integer LAST_QUAD = QUADS - 1;
+    localparam integer VALUE_BITS = 28;
+    localparam integer POINT_BITS = 27;
+    localparam integer STAGES = 9; // from a taxel's address to its tension being in the sums
+    localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
+
+    // ---- Taxels: the members of a quad one after the other. Index k: k cycles after the address
+    reg reading;
+    reg [ROW_WIDTH-1:0] quad;
+    reg [1:0] member;
+    reg [1:0] member_1;
+    wire last_taxel = (quad == LAST_QUAD[ROW_WIDTH-1:0]) && (member == 2'd3);
+    reg [STAGES:1] valids;
+    reg [STAGES:1] firsts;
+    reg [STAGES:1] lasts;
+    wire [3*4*27-1:0] quad_1;
+    wire [3*27-1:0] taxel_1;
+    reg [3*27-1:0] taxel_2;
+
+    sptfra_taxel_memory #(
+        .COLUMNS   (COLUMNS),
+        .ROWS      (ROWS),
+        .DATA_BITS (DATA_BITS),
+        .ROW_WIDTH (ROW_WIDTH)
+    ) taxels (
+        .clock       (clock),
+        .u_valid     (u_valid),
+        .fill_bank   (fill_bank),
+        .u_quad      (u_quad),
+        .u_values    (u_values),
+        .read_bank   (search_bank),
+        .read_quad   (quad),
+        .read_values (quad_1)
+    );
+
+    always @(posedge clock) begin
+        if (reading) begin
+            member <= member + 2'd1;
+            quad <= (member == 2'd3) ? quad + 1'b1 : quad;
+        end
+        if (reading && last_taxel) begin
+            reading <= 1'b0;
+        end
+        if (start) begin
+            reading <= 1'b1;
+            quad <= {ROW_WIDTH{1'b0}};
+            member <= 2'd0;
+        end
+        member_1 <= member;
+        taxel_2 <= taxel_1;
+        valids <= {valids[STAGES-1:1], reading};
+        firsts <= {firsts[STAGES-1:1], (quad == {ROW_WIDTH{1'b0}}) && (member == 2'd0)};
+        lasts <= {lasts[STAGES-1:1], reading && last_taxel};
+        if (reset) begin
+            reading <= 1'b0;
+            valids <= {STAGES{1'b0}};
+            lasts <= {STAGES{1'b0}};
+        end
+    end
+
+    // ---- Its part in each column and in each row of points
+    wire [SIDE*27-1:0] along_x_8;
+    wire [SIDE*27-1:0] along_y_8;
+
+    genvar index;
+    genvar column;
+
+    generate
+        for (index = 0; index < 3; index = index + 1) begin : gen_select
+            wire [4*27-1:0] of_q = quad_1[4*27*index +: 4*27];
+
+            assign taxel_1[27*index +: 27] = of_q[27*member_1 +: 27];
+        end
+    endgenerate
+
+    sptfra_points_taxel #(
+        .SIDE   (SIDE),
+        .U_LEFT (U_LEFT)
+    ) parts (
+        .clock      (clock),
+        .reset      (reset),
+        .start      (start),
+        .stress_sum (stress_sum),
+        .largest    (largest),
+        .margin     (margin),
+        .valid      (valids[2]),
+        .u0         (taxel_2[27*0 +: 27]),
+        .u1         (taxel_2[27*1 +: 27]),
+        .u2         (taxel_2[27*2 +: 27]),
+        .along_x    (along_x_8),
+        .along_y    (along_y_8),
+        .clipped    (clipped)
+    );
+
+    // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed
+    wire [SIDE*SIDE*(VALUE_BITS+1)-1:0] sums;
+
+    generate
+        for (index = 0; index < SIDE; index = index + 1) begin : gen_rows
+            for (column = 0; column < SIDE; column = column + 1) begin : gen_points
+                wire signed [POINT_BITS-1:0] x = along_x_8[27*column +: 27];
+                wire signed [POINT_BITS-1:0] y = along_y_8[27*index +: 27];
+                wire signed [POINT_BITS-1:0] stress = x + y;
+                reg [POINT_BITS-2:0] tension_9;
+                reg [VALUE_BITS-1:0] sum;
+                reg over;
+                wire [VALUE_BITS:0] next = {1'b0, firsts[9] ? {VALUE_BITS{1'b0}} : sum}
+                    + { {(VALUE_BITS - POINT_BITS + 2){1'b0}}, tension_9};
+
+                always @(posedge clock) begin
+                    tension_9 <= stress[POINT_BITS-2:0];
+                    if (stress[POINT_BITS-1] || !valids[8]) begin
+                        tension_9 <= {(POINT_BITS - 1){1'b0}};
+                    end
+                    if (valids[9]) begin
+                        sum <= next[VALUE_BITS-1:0];
+                        over <= next[VALUE_BITS] || (over && !firsts[9]);
+                    end
+                end
+
+                assign sums[(VALUE_BITS+1)*(SIDE*index + column) +: VALUE_BITS+1] = {over, sum};
+            end
+        end
+    endgenerate
+
+    // ---- Rows, when all taxels are in
+    reg giving;
+    reg [3:0] row;
+    reg row_there;
+    reg [SIDE*(VALUE_BITS+1)-1:0] row_sums;
+
+    assign row_valid = row_there;
+
+    always @(posedge clock) begin
+        if (giving) begin
+            row <= row + 4'd1;
+        end
+        if (giving && (row == LAST_ROW)) begin
+            giving <= 1'b0;
+        end
+        if (lasts[9]) begin
+            giving <= 1'b1;
+            row <= 4'd0;
+        end
+        row_there <= giving;
+        row_sums <= sums[SIDE*(VALUE_BITS+1)*row +: SIDE*(VALUE_BITS+1)];
+        if (reset) begin
+            giving <= 1'b0;
+            row_there <= 1'b0;
+        end
+    end
+
+    generate
+        for (column = 0; column < SIDE; column = column + 1) begin : gen_values
+            wire [VALUE_BITS:0] of_column = row_sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
+
+            assign row_values[VALUE_BITS*column +: VALUE_BITS] = of_column[VALUE_BITS-1:0]
+                | {VALUE_BITS{of_column[VALUE_BITS]}};
+        end
+    endgenerate
+
+`ifdef SIMULATION
+    sptfra_check_latency #(
+        .CYCLES (EXPECTED_LATENCY)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset),
+        .start (start),
+        .done  (row_valid)
+    );
+`else
+    wire _unused_check = (EXPECTED_LATENCY != 0);
+`endif
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// The level set of B over SIDE x SIDE points, and its centroid: where the friction lies in the (mu_x, mu_y) plane.
+//
+// A row of points a cycle comes in and is stored, and the least values are kept. The level set lies below B_min + 2^-8
+// sum |b|; a point weighs as the square of its depth, so that it weighs nothing at the edge. Five points a cycle are
+// weighed. From the first row to done: a cycle a row, then three, and 37.
+
+`default_nettype none
+
+module sptfra_points_level #(
+    // Points along an axis, an odd multiple of 5
+    parameter integer SIDE = 15,
+    // From the first row to done, checked in simulation; 0: unchecked
+    parameter integer EXPECTED_LATENCY = 0
+) (
+    input  wire clock,
+    input  wire reset,
+    input  wire start, // of a frame, before its rows
+    input  wire [15:0] margin, // above the least value, held with the rows and after
+    // Rows of points
+    input  wire row_valid,
+    input  wire [SIDE*28-1:0] row_values,
+    // Result, held until the next start
+    output wire done, // one cycle
+    output wire signed [17:0] mu_x, // 16 fraction bits
+    output wire signed [17:0] mu_y,
+    output reg  unknown, // nothing limits the friction
+    output reg  at_bound, // the least B lies on the border
+    output reg  saturated // the least B is the largest number
+);
+
+    localparam integer VALUE_BITS = 28;
+    localparam integer AT_ONCE = 5; // points weighed in a cycle
+    localparam integer GROUPS = SIDE / AT_ONCE;
+    localparam integer DEPTH_BITS = 16; // of what a weight is the square of: up to the margin
+    localparam integer WEIGHT_DROP = 8; // bits dropped from the square
+    localparam integer WEIGHT_BITS = 2 * DEPTH_BITS - WEIGHT_DROP;
+    localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
+    localparam [1:0] LAST_GROUP = GROUPS[1:0] - 2'd1;
+    localparam integer LEVELS = $clog2(SIDE);
+    localparam integer LEAVES = 1 << LEVELS;
+    localparam integer MIN_STAGES = LEVELS + 1; // from a row to its least values being kept
+
+    generate
+        if ((SIDE % AT_ONCE != 0) || (SIDE % 2 == 0) || (SIDE > 15)) begin : gen_check
+            sptfra_error_points_along_an_axis_must_be_5_or_15 invalid ();
+        end
+    endgenerate
+
+    // ---- Rows as they come: stored, and the least values inside and on the border kept
+    reg [3:0] row_in;
+    wire outer_row = (row_in == 4'd0) || (row_in == LAST_ROW);
+    wire [SIDE*VALUE_BITS-1:0] stored_1; // a cycle after its row is asked for
+    reg [3:0] row;
+    // Node 1 is the root; the children of node n are 2 n and 2 n + 1; nodes from LEAVES on are the points. The ends of
+    // a row, which are on the border, stay out of the tree
+    wire [VALUE_BITS-1:0] nodes [1:2*LEAVES-1];
+    reg [LEVELS*VALUE_BITS-1:0] ends; // the smaller end of a row, on its way beside the tree
+    reg [LEVELS:1] outers;
+    reg [LEVELS:1] valids;
+    wire [VALUE_BITS-1:0] first_end = row_values[0 +: VALUE_BITS];
+    wire [VALUE_BITS-1:0] last_end = row_values[VALUE_BITS*(SIDE-1) +: VALUE_BITS];
+    reg [VALUE_BITS-1:0] least_inside;
+    reg [VALUE_BITS-1:0] least_on_border;
+
+    genvar index;
+
+    generate
+        for (index = 0; index < SIDE; index = index + 1) begin : gen_columns
+            sptfra_ram #(
+                .WIDTH         (VALUE_BITS),
+                .DEPTH         (SIDE),
+                .ADDRESS_WIDTH (4)
+            ) values (
+                .clock         (clock),
+                .write_enable  (row_valid),
+                .write_address (row_in),
+                .write_data    (row_values[VALUE_BITS*index +: VALUE_BITS]),
+                .read_enable   (1'b1),
+                .read_address  (row),
+                .read_data     (stored_1[VALUE_BITS*index +: VALUE_BITS])
+            );
+        end
+        for (index = 0; index < LEAVES; index = index + 1) begin : gen_leaves
+            if ((index > 0) && (index < SIDE - 1)) begin : gen_point
+                assign nodes[LEAVES + index] = row_values[VALUE_BITS*index +: VALUE_BITS];
+            end else begin : gen_none
+                assign nodes[LEAVES + index] = {VALUE_BITS{1'b1}};
+            end
+        end
+        for (index = 1; index < LEAVES; index = index + 1) begin : gen_tree
+            reg [VALUE_BITS-1:0] node;
+
+            always @(posedge clock) begin
+                node <= (nodes[2*index] < nodes[2*index + 1]) ? nodes[2*index] : nodes[2*index + 1];
+            end
+
+            assign nodes[index] = node;
+        end
+    endgenerate
+
+    wire [VALUE_BITS-1:0] least_end = ends[(LEVELS-1)*VALUE_BITS +: VALUE_BITS];
+    wire [VALUE_BITS-1:0] least_between = nodes[1];
+    wire [VALUE_BITS-1:0] least_of_row = (least_end < least_between) ? least_end : least_between;
+    wire [VALUE_BITS-1:0] border_of_row = outers[LEVELS] ? least_of_row : least_end;
+
+    always @(posedge clock) begin
+        ends <= {ends[(LEVELS-1)*VALUE_BITS-1:0], (first_end < last_end) ? first_end : last_end};
+        valids <= {valids[LEVELS-1:1], row_valid};
+        outers <= {outers[LEVELS-1:1], outer_row};
+        if (row_valid) begin
+            row_in <= row_in + 4'd1;
+        end
+        if (valids[LEVELS] && (border_of_row < least_on_border)) begin
+            least_on_border <= border_of_row;
+        end
+        if (valids[LEVELS] && !outers[LEVELS] && (least_between < least_inside)) begin
+            least_inside <= least_between;
+        end
+        if (start) begin
+            row_in <= 4'd0;
+            least_inside <= {VALUE_BITS{1'b1}};
+            least_on_border <= {VALUE_BITS{1'b1}};
+        end
+        if (reset) begin
+            valids <= {LEVELS{1'b0}};
+        end
+    end
+
+    // ---- Sequence: the level, when the last row is in the least values; then a row in three cycles
+    localparam integer LEVEL_STAGES = 1; // the level is there two cycles later, when the first depth is
+    reg [MIN_STAGES+LEVEL_STAGES:1] all_in; // index k: k cycles after the last row
+    reg reading;
+    reg [1:0] group;
+    wire last_group = (group == LAST_GROUP);
+    wire last_read = reading && last_group && (row == LAST_ROW);
+    reg [VALUE_BITS-1:0] least;
+    reg [VALUE_BITS:0] level;
+
+    always @(posedge clock) begin
+        all_in <= {all_in[MIN_STAGES+LEVEL_STAGES-1:1], row_valid && (row_in == LAST_ROW)};
+        at_bound <= (least_on_border < least_inside);
+        least <= at_bound ? least_on_border : least_inside;
+        saturated <= (least == {VALUE_BITS{1'b1}});
+        level <= {1'b0, least} + { {(VALUE_BITS - 15){1'b0}}, margin};
+        if (reading) begin
+            group <= last_group ? 2'd0 : group + 2'd1;
+            row <= last_group ? row + 4'd1 : row;
+        end
+        if (last_read) begin
+            reading <= 1'b0;
+        end
+        if (all_in[MIN_STAGES+LEVEL_STAGES]) begin
+            reading <= 1'b1;
+            group <= 2'd0;
+            row <= 4'd0;
+        end
+        if (reset) begin
+            all_in <= {(MIN_STAGES + LEVEL_STAGES){1'b0}};
+            reading <= 1'b0;
+        end
+    end
+
+    // ---- Five depths below the level, squared: index k: k cycles after the row's address
+    localparam integer STAGES = 5;
+    reg [STAGES:1] reads;
+    reg [STAGES:1] lasts;
+    wire last_5 = lasts[STAGES];
+    reg [1:0] group_1;
+    reg [3:0] row_1;
+    reg [1:0] corners_2; // the first and the last of the five are corners of the grid
+    wire [AT_ONCE*VALUE_BITS-1:0] five_1 = stored_1[AT_ONCE*VALUE_BITS*group_1 +: AT_ONCE*VALUE_BITS];
+    wire [AT_ONCE-1:0] below_2;
+    wire [AT_ONCE*WEIGHT_BITS-1:0] weights_5;
+
+    generate
+        for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_weights
+            reg signed [VALUE_BITS+1:0] depth_2;
+            reg [DEPTH_BITS-1:0] depth_3;
+            wire signed [44:0] square_low_4; // the square is their sum
+            wire signed [44:0] square_high_4;
+            wire signed [44:0] square_4 = square_low_4 + square_high_4;
+            reg [WEIGHT_BITS-1:0] weight_5;
+
+            assign below_2[index] = !depth_2[VALUE_BITS+1] && (depth_2 != {(VALUE_BITS + 2){1'b0}});
+
+            sptfra_multiply square (
+                .clock       (clock),
+                .enable      (1'b1),
+                .coefficient ({2'b00, depth_3}),
+                .data        ({11'd0, depth_3}),
+                .low         (square_low_4),
+                .high        (square_high_4)
+            );
+
+            always @(posedge clock) begin
+                depth_2 <= {1'b0, level} - {2'b00, five_1[VALUE_BITS*index +: VALUE_BITS]};
+                // Not more than the margin
+                depth_3 <= depth_2[VALUE_BITS+1] ? {DEPTH_BITS{1'b0}} : depth_2[DEPTH_BITS-1:0];
+                weight_5 <= square_4[WEIGHT_DROP +: WEIGHT_BITS];
+            end
+
+            assign weights_5[WEIGHT_BITS*index +: WEIGHT_BITS] = weight_5;
+
+            wire _unused = &{1'b0, square_4};
+        end
+    endgenerate
+
+    always @(posedge clock) begin
+        reads <= {reads[STAGES-1:1], reading};
+        lasts <= {lasts[STAGES-1:1], last_read};
+        group_1 <= group;
+        row_1 <= row;
+        corners_2 <= {2{reads[1] && ((row_1 == 4'd0) || (row_1 == LAST_ROW))}}
+            & {group_1 == LAST_GROUP, group_1 == 2'd0};
+        if ((corners_2[0] && !below_2[0]) || (corners_2[1] && !below_2[AT_ONCE-1])) begin
+            unknown <= 1'b0;
+        end
+        if (start) begin
+            unknown <= 1'b1;
+        end
+        if (reset) begin
+            reads <= {STAGES{1'b0}};
+            lasts <= {STAGES{1'b0}};
+            corners_2 <= 2'd0;
+        end
+    end
+
+    // ---- Their centroid
+    sptfra_points_centroid #(
+        .SIDE        (SIDE),
+        .WEIGHT_BITS (WEIGHT_BITS)
+    ) centroid (
+        .clock   (clock),
+        .reset   (reset),
+        .start   (start),
+        .valid   (reads[5]),
+        .weights (weights_5),
+        .last    (last_5),
+        .done    (done),
+        .mu_x    (mu_x),
+        .mu_y    (mu_y)
+    );
+
+`ifdef SIMULATION
+    reg awaited; // the first row of a frame
+
+    always @(posedge clock) begin
+        if (row_valid) begin
+            awaited <= 1'b0;
+        end
+        if (start) begin
+            awaited <= 1'b1;
+        end
+    end
+
+    sptfra_check_latency #(
+        .CYCLES (EXPECTED_LATENCY)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset),
+        .start (row_valid && awaited),
+        .done  (done)
+    );
+`else
+    wire _unused_check = (EXPECTED_LATENCY != 0);
+`endif
+
+endmodule
+
+`default_nettype wire

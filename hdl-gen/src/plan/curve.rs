@@ -1,0 +1,121 @@
+//! The curve from counts to pascals, in fixed point: the segment of a count, then a straight line.
+
+use golden::design::Curve;
+use serde::Serialize;
+
+use super::PlanError;
+use super::counts::{GAIN_BITS, Mantissa};
+use super::format::{Format, pow2, round_shift};
+
+/// Width of a count on the curve: the difference of two is the longer operand of a multiplier.
+const COUNT_BITS: u32 = 26;
+/// Width of the curve's value, the next multiplier's longer operand.
+const VALUE_BITS: u32 = 27;
+/// Most bits dropped after the product.
+const MOST_SHIFT: i32 = 40;
+/// Beyond every count.
+const NEVER: i64 = (1 << 26) - 1;
+/// Bits of a segment in the ROM: first count, value there, slope, bits dropped.
+pub const SEGMENT_BITS: u32 = 27 + VALUE_BITS + GAIN_BITS + SHIFT_BITS;
+const SHIFT_BITS: u32 = 6;
+
+/// One straight piece: `value + round(slope * (number - first) / 2^shift)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Segment {
+    /// The number with which it begins.
+    pub first: i64,
+    /// The curve's value there, in steps.
+    pub value: i64,
+    /// Mantissa of the slope, in steps of the value for one of the number.
+    pub slope: i32,
+    /// Bits dropped after the product, 1 at least.
+    pub shift: u32,
+}
+
+/// The curve of one design.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CurvePlan {
+    /// Exponent of the numbers: `number = round(count * 2^exponent)`.
+    pub exponent: i32,
+    /// The numbers' largest magnitude: counts are clipped there, and say so.
+    pub limit: i64,
+    /// Last number of the curve.
+    pub last: i64,
+    /// Exponent of a step of the values, in Pa.
+    pub lsb: i32,
+    /// The segments in ascending order.
+    pub segments: Vec<Segment>,
+}
+
+impl CurvePlan {
+    /// The curve in numbers as fine as their widths allow.
+    ///
+    /// # Errors
+    /// [`PlanError::Curve`] where it rises too steeply for that.
+    pub fn new(curve: &Curve) -> Result<Self, PlanError> {
+        let count = Format::covering(curve.largest_count(), COUNT_BITS);
+        let largest = curve.points.iter().fold(0.0_f64, |most, point| most.max(point[1].abs()));
+        let value = Format::covering(largest, VALUE_BITS);
+        let points: Vec<[i64; 2]> = curve
+            .points
+            .iter()
+            .map(|[at, pascals]| [at * pow2(-count.lsb), pascals * pow2(-value.lsb)].map(|x| x.round() as i64))
+            .collect();
+        let segment = |(pair, real): (&[[i64; 2]], &[[f64; 2]])| {
+            let [[a, p], [b, q]] = [pair[0], pair[1]];
+            let steep = || PlanError::Curve { from: real[0][0], to: real[1][0] };
+            if a == b {
+                return Err(steep());
+            }
+            let Mantissa { gain, exponent } = Mantissa::new((q - p) as f64 / (b - a) as f64);
+            // A slope of next to nothing has fewer bits.
+            let dropped = (-exponent - MOST_SHIFT).max(0);
+            if exponent >= 0 {
+                return Err(steep());
+            }
+            let slope = round_shift(i64::from(gain), dropped.min(60) as u32) as i32;
+            Ok(Segment { first: a, value: p, slope, shift: (-exponent - dropped) as u32 })
+        };
+        let segments = points.windows(2).zip(curve.points.windows(2)).map(segment).collect::<Result<_, _>>()?;
+        let last = points.last().map_or(0, |point| point[0]);
+        let limit = points.iter().fold(0, |most, point| most.max(point[0].abs()));
+        Ok(Self { exponent: -count.lsb, limit, last, lsb: value.lsb, segments })
+    }
+
+    /// The value of a number.
+    pub fn value(&self, number: i64) -> i64 {
+        let number = number.clamp(self.segments[0].first, self.last);
+        let index = self.segments[1..].partition_point(|segment| segment.first <= number);
+        let Segment { first, value, slope, shift } = self.segments[index];
+        value + round_shift(i64::from(slope) * (number - first), shift)
+    }
+
+    /// Comparisons that find a segment, one after the other.
+    pub fn levels(&self) -> u32 {
+        self.segments.len().next_power_of_two().trailing_zeros().max(1)
+    }
+
+    /// The first number of each segment, as many as the comparisons can tell apart.
+    pub fn knots(&self) -> Vec<i64> {
+        let firsts = self.segments.iter().map(|segment| segment.first);
+        firsts.chain(std::iter::repeat(NEVER)).take(1 << self.levels()).collect()
+    }
+
+    /// The segments as words of the ROM, as many as the comparisons can tell apart.
+    pub fn words(&self) -> Vec<u128> {
+        let field = |value: i64, bits: u32| u128::from(value as u64 & ((1 << bits) - 1));
+        let word = |segment: &Segment| {
+            let line = field(segment.first, 27) << VALUE_BITS | field(segment.value, VALUE_BITS);
+            // What the hardware's last bit rounds is not dropped before.
+            (line << GAIN_BITS | field(segment.slope.into(), GAIN_BITS)) << SHIFT_BITS | u128::from(segment.shift - 1)
+        };
+        let mut words: Vec<u128> = self.segments.iter().map(word).collect();
+        words.resize(1 << self.levels(), 0);
+        words
+    }
+
+    /// Pipeline registers from a number to its value.
+    pub fn stages(&self) -> u64 {
+        u64::from(self.levels()) + 7
+    }
+}

@@ -1,0 +1,79 @@
+//! Dead taxels: the weights of the others, in fixed point.
+
+use golden::dead_taxels::DeadTaxels;
+use golden::design::Design;
+use serde::Serialize;
+
+use super::format::{Format, largest, pow2, round_shift};
+
+/// Width of a weight: the shorter operand of a multiplier.
+pub const WEIGHT_BITS: u32 = 18;
+/// Most that the magnitudes of a sum's weights add up to: with it the accumulator holds any frame.
+const MOST_WEIGHT: i64 = (1 << 21) - 1;
+/// A share of this many in a frame's stress is the most that may be replaced: [`golden::dead_taxels::GUESSED`].
+pub const GUESSED_SHARE: i64 = 8;
+
+/// What takes the place of dead taxels' readings: `round(sum of weight * stress / 2^shift)`, clipped to the full scale.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct DeadPlan {
+    /// The dead taxels, in ascending order.
+    pub taxels: Vec<usize>,
+    /// For each of them the weights of all taxels; those of dead ones are 0.
+    pub weights: Vec<Vec<i32>>,
+    /// Fraction bits of the weights.
+    pub shift: u32,
+}
+
+/// What a frame's replacement has to say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Replaced {
+    /// Whether a sum was clipped.
+    pub saturated: bool,
+    /// Sum of the magnitudes that took a reading's place.
+    pub sum: i64,
+}
+
+impl DeadPlan {
+    /// The weights, if the design has dead taxels.
+    pub fn new(design: &Design) -> Option<Self> {
+        if design.input.dead.is_empty() {
+            return None;
+        }
+        let dead = DeadTaxels::new(&design.sensor, design.algorithm.kernel, &design.input.dead);
+        let rounded = |weight: f64, shift: u32| (weight * pow2(shift as i32)).round() as i64;
+        let fits = |shift: &u32| {
+            dead.weights().iter().all(|weights| {
+                let steps = || weights.iter().map(|&weight| rounded(weight, *shift).abs());
+                steps().all(|weight| weight <= largest(WEIGHT_BITS)) && steps().sum::<i64>() <= MOST_WEIGHT
+            })
+        };
+        let shift = (0..WEIGHT_BITS).rev().find(fits).unwrap_or(0);
+        let of = |weights: &Vec<f64>| weights.iter().map(|&weight| rounded(weight, shift) as i32).collect();
+        Some(Self { taxels: dead.taxels().to_vec(), weights: dead.weights().iter().map(of).collect(), shift })
+    }
+
+    /// Replaces the readings of a frame.
+    pub fn replace(&self, stress: &mut [i64], format: Format) -> Replaced {
+        let mut replaced = Replaced::default();
+        // A dead taxel's own weight is 0, so that the order does not matter.
+        for (&taxel, weights) in self.taxels.iter().zip(&self.weights) {
+            let sum: i64 = weights.iter().zip(&*stress).map(|(&weight, stress)| i64::from(weight) * stress).sum();
+            let rounded = round_shift(sum, self.shift);
+            stress[taxel] = rounded.clamp(-format.bound, format.bound);
+            replaced.saturated |= stress[taxel] != rounded;
+            replaced.sum += stress[taxel].abs();
+        }
+        replaced
+    }
+
+    /// Each taxel's weights in all sums, taxel by taxel.
+    pub fn words(&self) -> Vec<Vec<i32>> {
+        let taxels = self.weights.first().map_or(0, Vec::len);
+        (0..taxels).map(|taxel| self.weights.iter().map(|weights| weights[taxel]).collect()).collect()
+    }
+}
+
+/// Cycles that a frame's last stress takes longer to the fold where taxels are dead: the frame is read once more.
+pub const fn latency(taxels: usize) -> u64 {
+    taxels as u64 + 7
+}
