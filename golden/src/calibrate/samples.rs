@@ -82,7 +82,9 @@ pub(super) fn make(
             (0..solver.taxels()).map(|taxel| load(0, taxel) + x * load(1, taxel) + y * load(2, taxel)).collect();
         // What reads no pull has no noise that pulls either.
         let tension = design.input.tension;
-        frame.iter_mut().for_each(|stress| *stress = tension.of(*stress));
+        for stress in &mut *frame {
+            *stress = tension.of(*stress);
+        }
         let peak = frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
         let deviation = NOISE * random.random::<f64>() * peak;
         // The estimator has no scale; the frame is put where neither the full scale nor the noise floor matters.

@@ -113,7 +113,9 @@ impl Input {
     /// A frame of stress in pascals as the sensor delivers it: without what pulls, if it does not read that, and in whole
     /// counts, if it counts.
     pub fn deliver(&self, frame: &mut [f64]) {
-        frame.iter_mut().for_each(|value| *value = self.tension.of(*value));
+        for value in &mut *frame {
+            *value = self.tension.of(*value);
+        }
         if self.counts() {
             for (taxel, value) in frame.iter_mut().enumerate() {
                 *value = self.from_pa(taxel, *value).round();

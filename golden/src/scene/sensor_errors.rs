@@ -59,7 +59,9 @@ impl SensorErrors {
             generator.set_stream(stream);
             generator
         };
-        stress.iter_mut().for_each(|value| *value = self.tension.of(*value));
+        for value in &mut *stress {
+            *value = self.tension.of(*value);
+        }
         if self.gain_spread > 0.0 {
             let mut gains = generator(0);
             for value in &mut *stress {
@@ -73,7 +75,9 @@ impl SensorErrors {
                 *value += deviation * normal(&mut noise);
             }
         }
-        stress.iter_mut().for_each(|value| *value = self.tension.of(*value));
+        for value in &mut *stress {
+            *value = self.tension.of(*value);
+        }
         if let Some(converter) = self.converter {
             for value in &mut *stress {
                 *value = converter.read(*value);

@@ -55,8 +55,8 @@ impl<const W: usize> Number<W> for Integer<'_> {
             std::array::from_fn(|way| pull.iter().chain(weight).map(|element| element[way]).collect());
         let row = |row: usize, way: usize| round_shift(matrix.row_product(row, way, &operand[way]), lead.shift);
         let mut sums: ByPq<i64> = std::array::from_fn(|p| std::array::from_fn(|q| row(sum_row(p, q), sum_way(p, q))));
-        for p in 2..5 {
-            sums[p][0] -= row(SHARE_ROW, sum_way(p, 0));
+        for (p, sums) in sums.iter_mut().enumerate().skip(2).take(3) {
+            sums[0] -= row(SHARE_ROW, sum_way(p, 0));
         }
         sums
     }

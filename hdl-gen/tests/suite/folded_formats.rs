@@ -68,7 +68,7 @@ fn check_folded(plan: &Plan, folded: &FoldedFormats) {
     }
 }
 
-/// The frame sums; G30, and those of T_x and T_y for q = 0, are one less another.
+/// The frame sums; G30, and those of `T_x` and `T_y` for q = 0, are one less another.
 fn check_sums(plan: &Plan, folded: &FoldedFormats) {
     let product = plan.products.iter().find(|product| product.lead.is_some()).unwrap();
     let lead = product.lead.unwrap();
