@@ -5,8 +5,8 @@
 // them into accesses of a register bank that answers in the same cycle.
 //
 // Address and data are registered on the way in, responses on the way out. Where no register is, a read gives zero, a
-// write changes nothing, and bad_access is high for a cycle: an error on the bus would stop many a processor. A write acts
-// in the cycle after the later of its address and data, once the response before it is taken.
+// write changes nothing, and bad_access is high for a cycle: an error on the bus would stop many a processor. A write
+// acts in the cycle after the later of its address and data, once the response before it is taken.
 
 `default_nettype none
 

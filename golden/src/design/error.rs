@@ -52,7 +52,7 @@ pub enum DesignError {
         remedy: String,
     },
     /// A word that is not among the allowed ones.
-    #[error("{origin}: {key} is \"{found}\"; choose one of: {}", allowed.join(", "))]
+    #[error("{origin}: {key} is {found:?}; choose one of: {}", allowed.join(", "))]
     Choice {
         /// File name.
         origin: String,
