@@ -4,14 +4,10 @@
 // Triaxial contact forces from normal stress: 4 x 3 taxels, reduced plan, line estimator, filter none.
 //
 // In:  12 beats, float32 stress in Pa, compression negative, taxel order i = iy * 4 + ix, TLAST on the last.
-// Out: 52 beats: status, timestamp, F_x, F_y, F_z, T_x, T_y, T_z, mu, phi, mu_x, mu_y, standard error, bodies, 0, 0,
-// then
-//      f_x f_y f_z per taxel, float32 but the status, the timestamp and the bodies; TLAST on the last. One frame out
-// for
-//      each frame in.
+// Out: 52 beats, by name in metadata.json: status, timestamp, forces, torques, friction, bodies, f_x f_y f_z per taxel;
+//      TLAST on the last. One frame out for each frame in.
 // Status: 0 no contact, 1 direction unknown, 2 optimum at the bound, 3 saturated, 4 NaN or infinity in,
 //      5 frame length wrong, 8 a taxel was replaced, 9 too many were, 10 slip, 11 no tension; 31:16 frame counter.
-// Timestamp: of the first beat in, in cycles since the reset.
 // Latency, first beat in to last beat out, streams never waiting: 986 cycles (7.89 us at 125.0 MHz).
 // Interval between frames: 508 cycles (4.06 us).
 // The lanes' programs take 229 cycles of issue a frame, 800 MACs: they are busy 87.3 % of that time.
@@ -85,7 +81,6 @@ module small_4x3 #(
     // ---- When each frame inside began
     wire [31:0] timestamp;
     wire timestamp_take;
-
     sptfra_timestamp frame_beginnings (
         .clock     (aclk),
         .reset     (reset),
@@ -440,9 +435,7 @@ module small_4x3 #(
     wire signed [17:0] free;
     wire signed [17:0] other;
     wire signed [17:0] slope;
-    wire unknown;
-    wire at_bound;
-    wire search_saturated;
+    wire unknown, at_bound, search_saturated;
     wire [18*40-1:0] answer_sums;
     wire [5:0] answer_flags;
 
@@ -493,9 +486,7 @@ module small_4x3 #(
     wire signed [17:0] field_mu_x;
     wire signed [17:0] field_mu_y;
     wire field_complete;
-    wire field_enable;
-    wire field_rewind;
-    wire field_step;
+    wire field_enable, field_rewind, field_step;
     wire signed [63:0] field_value;
 
     sptfra_field #(
