@@ -78,7 +78,7 @@ impl Reader {
         if !contact.touched {
             return Ok(Reading::Nothing(Status::NO_CONTACT));
         }
-        if self.input.tension == Tension::Read && b.iter().all(|&stress| stress <= 0.0) {
+        if self.input.tension == Tension::Read && b.iter().all(|&stress| stress <= self.noise_floor) {
             status.insert(Status::NO_TENSION);
         }
         if !self.dead.taxels().is_empty() {

@@ -145,7 +145,9 @@ impl<'plan> Model<'plan> {
         };
         let read = self.plan.design.input.tension == Tension::Read;
         let pushed = summary.friction.iter().map(|mu| mu.abs()).sum::<i64>() >= PULLING;
-        if read && (pushed || words[words::STATUS] & DIRECTION_UNKNOWN != 0) && stress.iter().all(|&stress| stress <= 0)
+        if read
+            && (pushed || words[words::STATUS] & DIRECTION_UNKNOWN != 0)
+            && stress.iter().all(|&stress| stress <= self.plan.thresholds.taxel)
         {
             words[words::STATUS] |= NO_TENSION;
         }

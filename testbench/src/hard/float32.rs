@@ -57,7 +57,7 @@ impl<'a> Single<'a> {
             status.insert(Status::SATURATED);
         }
         let pushed = status.contains(Status::DIRECTION_UNKNOWN) || f64::from(mu_x.abs() + mu_y.abs()) >= PULLING;
-        if pushed && self.design.input.tension == Tension::Read && b.iter().all(|&stress| stress <= 0.0) {
+        if pushed && self.design.input.tension == Tension::Read && b.iter().all(|&stress| stress <= floor) {
             status.insert(Status::NO_TENSION);
         }
         let mut field: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; m]);

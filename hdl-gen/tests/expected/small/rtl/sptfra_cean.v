@@ -63,7 +63,7 @@ module sptfra_cean #(
     reg [26:0] magnitude_1;
     reg [39:0] sum;
     reg [26:0] most;
-    reg pulled; // a stress was above 0
+    reg pulled; // a stress was above the noise floor
     reg clear;
 
     always @(posedge clock) begin
@@ -73,7 +73,7 @@ module sptfra_cean #(
         if (valid_1) begin
             sum <= sum + {13'd0, magnitude_1};
             most <= (magnitude_1 > most) ? magnitude_1 : most;
-            pulled <= pulled || (tensile_1 && (magnitude_1 != 27'd0));
+            pulled <= pulled || (tensile_1 && (magnitude_1 > TAXEL_FLOOR));
         end
         if (reset) begin
             valid_1 <= 1'b0;
