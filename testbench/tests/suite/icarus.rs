@@ -89,7 +89,7 @@ fn icarus_gives_every_word_of_the_model() {
 fn the_frames_of_the_testbench_are_of_every_kind() {
     let design = shipped("small");
     let words = expected(&design.name, &emitted(&design));
-    let frames: Vec<&[String]> = words.chunks(8 + 3 * design.sensor.taxels()).collect();
+    let frames: Vec<&[String]> = words.chunks(planned(&design).beats_out()).collect();
     let statuses: Vec<&str> = frames.iter().map(|frame| frame[0].as_str()).collect();
     assert_eq!(
         statuses,
@@ -118,11 +118,11 @@ fn a_difference_fails() {
     let bit = u64::from_str_radix(&flipped[100], 16).expect("hexadecimal") ^ 1;
     flipped[100] = format!("{bit:09x}");
     let said = with(&flipped);
-    assert!(said.contains("word 12 of frame 2: expected") && said.contains("FAIL: 1 words wrong"), "{said}");
+    assert!(said.contains("word 48 of frame 1: expected") && said.contains("FAIL: 1 words wrong"), "{said}");
     assert!(!said.contains("PASS"), "{said}");
 
     let mut swapped = right;
-    swapped.swap(0, 43);
+    swapped.swap(0, 51);
     let said = with(&swapped);
     assert!(said.contains("FAIL: 2 words wrong"), "{said}");
 

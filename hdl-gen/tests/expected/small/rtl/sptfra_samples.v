@@ -149,8 +149,8 @@ module sptfra_samples #(
             assign stress = count;
             assign saturated = count_saturated;
             assign not_finite = count_not_finite;
-            wire _unused = next_taxel || frame_ends || (GAIN != 0) || (OFFSET_BITS != 0) || (COUNT_SHIFT != 0)
-                || (FULL_SCALE != 0) || (STRESS_BOUND != 0);
+            wire _unused = next_taxel || frame_ends || (PER_TAXEL != 0) || (GAIN != 0) || (OFFSET_BITS != 0)
+                || (COUNT_SHIFT != 0) || (FULL_SCALE != 0) || (STRESS_BOUND != 0);
         end
     endgenerate
 
