@@ -166,6 +166,7 @@ module sptfra_coefficients #(
     // ---- Torques: g times the arms, rounded to steps of g. Index k: k cycles after the result
     localparam integer ARM_FRACTION = 16;
     localparam signed [44:0] ARM_HALF = 45'sd1 <<< (ARM_FRACTION - 1);
+    localparam integer ARM_WIDTH = $clog2(ELEMENTS); // a row has three bits even of four taxels
     wire [35:0] arms; // along x in the lower half
     reg [8:0] is_g_4;
     reg [8:0] is_g_5;
@@ -173,13 +174,13 @@ module sptfra_coefficients #(
     sptfra_rom #(
         .WIDTH         (36),
         .DEPTH         (ELEMENTS),
-        .ADDRESS_WIDTH (ROW_WIDTH),
+        .ADDRESS_WIDTH (ARM_WIDTH),
         .ROM_DIR       (ROM_DIR),
         .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_arms.mem"})
     ) taxel_arms (
         .clock   (clock),
         .enable  (1'b1),
-        .address (row_2),
+        .address (row_2[ARM_WIDTH-1:0]),
         .data    (arms)
     );
 
