@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use super::{Checker, Exchange, Gate, INITIAL_RESET, Outcome, Pacing, StreamError, Traffic, Violation};
 use crate::dut::{Beat, Core, Inputs};
-use hdl_gen::plan::words::TIMESTAMP;
+use hdl_gen::plan::words::{SUMMARY_WORDS, TIMESTAMP};
 
 /// Cycles watched after the last expected packet, for a beat too many.
 const QUIET: u64 = 64;
@@ -184,7 +184,9 @@ impl<'a> Driver<'a> {
         if beat.last {
             let (packet, first_in) = self.inside.pop_front().ok_or(Violation::UnexpectedFrame { cycle: self.cycle })?;
             let mut words = std::mem::take(&mut self.words);
-            if let Some(timestamp) = words.get_mut(TIMESTAMP) {
+            // Cores made up for tests of this driver have shorter answers, without a summary.
+            let summary = words.get_mut(..SUMMARY_WORDS);
+            if let Some(timestamp) = summary.and_then(|summary| summary.get_mut(TIMESTAMP)) {
                 *timestamp = timestamp.wrapping_sub((first_in - self.released) as u32);
             }
             self.outcome.exchanges.push(Exchange { packet, first_in, last_out: self.cycle, words });

@@ -48,7 +48,7 @@ fn a_wrong_word_is_counted_in_every_mode_and_named() {
     let simulation = simulate(&job, &|| ()).expect("runs");
     assert_eq!((simulation.is_exact(), simulation.mismatches()), (false, 4));
     let mismatch = &simulation.modes[3].comparison.first[0];
-    assert_eq!((mismatch.frame, mismatch.beat, mismatch.name.as_str()), (4, 2, "F_y"));
+    assert_eq!((mismatch.frame, mismatch.beat, mismatch.name.as_str()), (4, 2, "F_x"));
 }
 
 #[test]

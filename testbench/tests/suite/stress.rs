@@ -53,7 +53,6 @@ fn faults_at_rare_moments_are_noticed() {
         [PlanKind::Paper, PlanKind::Reduced].map(|kind| by_plan(shipped("small"), kind, Outputs::Field));
     let cases = [
         // No quotient although there is no force along z.
-        (&reduced, "sptfra_summary", "(bits_z == 7'd0) || (bits_xy == 7'd0)", "(bits_z == 7'd0) && (bits_xy == 7'd0)"),
         // A direction that comes in the cycle in which the one before is taken is lost.
         (
             &paper,
@@ -80,9 +79,8 @@ fn faults_at_rare_moments_are_noticed() {
             let mut core = built.load(batch as u32).expect("loaded");
             stress::run_batch(&plan, &mut core, batch, stress::BATCH, 1, &|| ()).is_err()
         };
-        // As many batches as a mutant goes through; by the paper's plan directions seldom come so close together.
-        let batches = if design.algorithm.plan == PlanKind::Paper { 20 } else { 3 };
-        (0..batches).any(wrong)
+        // What is rare comes within some batches.
+        (0..20).any(wrong)
     });
     let names = cases.iter().map(|(design, module, ..)| format!("{module} in {}", design.name));
     let missed: Vec<String> = names.zip(noticed).filter(|(_, noticed)| !noticed).map(|(name, _)| name).collect();
