@@ -52,7 +52,6 @@ fn faults_at_rare_moments_are_noticed() {
     let [paper, reduced] =
         [PlanKind::Paper, PlanKind::Reduced].map(|kind| by_plan(shipped("small"), kind, Outputs::Field));
     let cases = [
-        // No quotient although there is no force along z.
         // A direction that comes in the cycle in which the one before is taken is lost.
         (
             &paper,
