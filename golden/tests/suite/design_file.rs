@@ -39,6 +39,7 @@ fn everything_but_name_and_sensor_has_a_default() {
     assert_eq!((design.algorithm.plan, design.algorithm.outputs), (PlanKind::Reduced, Outputs::Field));
     assert_eq!((design.hardware.target_us, design.hardware.optimise), (None, Optimise::Interval));
     assert!(!design.hardware.skip_zeros);
+    assert_eq!(design.hardware.stream_bits, 32);
 }
 
 #[test]
@@ -73,6 +74,7 @@ fn keys_of_the_reduced_plan_read_back_the_same() {
         ("[hardware]\ntarget_us = 20", ["target_us = 20.0", "plan = \"reduced\""]),
         ("[hardware]\noptimise = \"latency\"\nskip_zeros = true", ["optimise = \"latency\"", "skip_zeros = true"]),
         ("[algorithm]\nplan = \"paper\"", ["plan = \"paper\"", "skip_zeros = false"]),
+        ("[hardware]\nstream_bits = 64", ["stream_bits = 64\n", "plan = \"reduced\""]),
     ] {
         let design = Design::from_toml(&format!("{MINIMAL}{more}\n"), "pad.toml").unwrap();
         let resolved = design.to_toml();
@@ -289,6 +291,7 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
         ("coefficient_bits = 19", ["hardware.coefficient_bits", "19", "8 to 18"]),
         ("data_bits = 15", ["hardware.data_bits", "15", "16 to 27"]),
         ("lanes = 0", ["hardware.lanes", "is 0", "1 to 64"]),
+        ("stream_bits = 48", ["hardware.stream_bits", "is 48", "32, 64 or 128"]),
         ("lanes = 65", ["hardware.lanes", "65", "1 to 64"]),
         ("target_us = 0.0", ["hardware.target_us", "is 0", "greater than 0"]),
         ("target_us = inf", ["hardware.target_us", "inf", "finite"]),

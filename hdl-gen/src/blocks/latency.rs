@@ -47,5 +47,3 @@ pub fn bus_to_sums(folded: bool) -> u64 {
 pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY as u64;
 /// From the start of the output to the first beat leaving Op.
 pub const OUTPUT_LATENCY: u64 = 13;
-/// Beats of a frame before those of the field.
-pub const SUMMARY_BEATS: u64 = crate::plan::SUMMARY_WORDS as u64;

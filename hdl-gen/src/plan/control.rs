@@ -11,11 +11,11 @@ use golden::design::{Design, Optimise, Outputs, PlanKind};
 use super::counts::{CountsPlan, input_stages};
 use super::product::{Product, Vector};
 use super::schedule::{Program, Schedule, TURN_GAP, Visit};
+use super::streams::{Intake, Streams};
 use super::timing::{INTERVAL_FRAMES, OUTPUT_SKID, Timeline, middle_interval};
 use super::{dead, places};
-use crate::blocks::latency::{
-    self, OUTPUT_LATENCY, SEQUENCER_TO_LANES, START_TO_ISSUE, SUMMARY_BEATS, SUMMARY_LATENCY, VISIT_TO_BUS,
-};
+use crate::blocks::bz::{self, Arrival};
+use crate::blocks::latency::{self, OUTPUT_LATENCY, SEQUENCER_TO_LANES, START_TO_ISSUE, SUMMARY_LATENCY, VISIT_TO_BUS};
 use crate::estimators::Slot;
 
 /// From the last taxels having left the unfolding to their being in the search's cells.
@@ -50,12 +50,11 @@ pub(super) fn timeline(
 
 /// Durations that do not depend on the frames under way.
 struct Constants {
-    taxels: u64,
     beats: u64,
-    /// From a beat entering the conversion to its stress entering the fold.
-    beat_to_stress: u64,
-    /// From a frame's last stress to the frame being ready for the lanes.
-    stress_to_ready: u64,
+    /// From a frame's first beat out of the skid buffer to the first that enters Bz.
+    unpacking: u64,
+    /// What a frame brings, counted from there.
+    arrival: Arrival,
     /// From a visit to its taxels having left the unfolding.
     visit_to_taxels: u64,
     /// From the visit to the last sum, or the last g, to the sums being complete.
@@ -89,7 +88,7 @@ impl Constants {
         counts: Option<&CountsPlan>,
     ) -> Self {
         let field = design.algorithm.outputs == Outputs::Field;
-        let taxels = design.sensor.taxels() as u64;
+        let streams = Streams::of(design);
         let dead = if design.input.dead.is_empty() { 0 } else { dead::latency(design.sensor.taxels()) };
         let folded = design.algorithm.plan == PlanKind::Reduced;
         let is_sum = |visit: &&Visit| {
@@ -99,10 +98,9 @@ impl Constants {
         };
         let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
         Self {
-            taxels,
-            beats: SUMMARY_BEATS + if field { 3 * taxels } else { 0 },
-            beat_to_stress: input_stages(counts) + dead,
-            stress_to_ready: latency::stress_to_ready(folded),
+            beats: streams.beats_out() as u64,
+            unpacking: u64::from(streams.intake == Intake::Unpacked),
+            arrival: bz::arrival(&design.sensor, streams, folded, input_stages(counts), dead),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
             visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),
             field,
@@ -180,8 +178,9 @@ impl<'a> Control<'a> {
         Self {
             of,
             now: 0,
-            next_open: 0,
-            idle_since: Some(0), // in cycle 1 the first beat has left the skid buffer
+            // In cycle 1 the first beat has left the skid buffer.
+            next_open: 1 + of.unpacking,
+            idle_since: Some(0),
             stress_places: 0,
             cean_idle: 0,
             directions: VecDeque::new(),
@@ -257,12 +256,13 @@ impl<'a> Control<'a> {
             return false;
         }
         self.idle_since = None;
-        let last_stress = self.now + self.of.taxels - 1 + self.of.beat_to_stress;
+        let Arrival { ready, last_stress, done } = self.of.arrival;
+        let last_stress = self.now + last_stress;
         self.stress_places += 1;
-        self.next_open = last_stress + 1;
+        self.next_open = self.now + done;
         self.cean_idle = last_stress + self.of.direction;
         self.directions.push_back(self.cean_idle);
-        self.frames_ready.push_back(last_stress + self.of.stress_to_ready);
+        self.frames_ready.push_back(self.now + ready);
         true
     }
 

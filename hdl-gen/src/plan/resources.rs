@@ -14,6 +14,7 @@ use super::memory::{Memory, memory};
 use super::places::WEIGHT_PLACES;
 use super::product::{Product, SUM_ROWS, destination_bits};
 use super::schedule::Schedule;
+use super::streams::{Intake, Streams};
 use crate::estimators::{BlockCost, Slot};
 
 /// Bits of a stress between Bz and the fold.
@@ -64,16 +65,17 @@ impl Resources {
     ) -> Self {
         let mut memories = lane_memories(design, products, operands, schedule);
         memories.extend(frame_memories(design, operands.elements()));
+        let conversions = Streams::of(design).conversions();
         if let Some(counts) = counts.filter(|counts| counts.per_taxel()) {
-            let taxels = design.sensor.taxels();
+            let taxels = design.sensor.taxels().div_ceil(conversions);
             if counts.curve.is_none() {
-                memories.push(memory(BZ, "exponents", 1, taxels, EXPONENT_BITS, true));
+                memories.push(memory(BZ, "exponents", conversions, taxels, EXPONENT_BITS, true));
             }
-            memories.push(memory(BZ, "gains", 1, taxels, GAIN_BITS, true));
-            memories.push(memory(BZ, "offsets", 1, taxels, counts.offset_bits(), true));
+            memories.push(memory(BZ, "gains", conversions, taxels, GAIN_BITS, true));
+            memories.push(memory(BZ, "offsets", conversions, taxels, counts.offset_bits(), true));
         }
         if let Some(curve) = counts.and_then(|counts| counts.curve.as_ref()) {
-            memories.push(memory(BZ, "curve", 1, 1 << curve.levels(), SEGMENT_BITS, true));
+            memories.push(memory(BZ, "curve", conversions, 1 << curve.levels(), SEGMENT_BITS, true));
         }
         let dead = design.input.dead.len();
         if dead > 0 {
@@ -110,19 +112,24 @@ impl Resources {
 /// The blocks with multipliers or memories, in the data's order.
 fn blocks(design: &Design, estimator: &dyn Slot, counts: Option<&CountsPlan>) -> Vec<BlockCost> {
     let block = |name, modules, dsp| BlockCost { name, modules, dsp };
+    let streams = Streams::of(design);
     let field = match (design.algorithm.outputs, design.algorithm.plan) {
         (Outputs::Resultants, _) => 0,
-        (Outputs::Field, PlanKind::Reduced) => 1,
-        (Outputs::Field, PlanKind::Paper) => 2,
+        (Outputs::Field, PlanKind::Reduced) => streams.words(),
+        (Outputs::Field, PlanKind::Paper) => 2 * streams.words(),
     };
     let mut blocks = vec![
-        block(BZ, &["sptfra_bz"], multipliers(counts) + design.input.dead.len()),
+        block(
+            BZ,
+            &["sptfra_bz", "sptfra_bz_wide"],
+            streams.conversions() * multipliers(counts) + design.input.dead.len(),
+        ),
         estimator.contact_block(),
         block(LANES, &["sptfra_spmv_array"], design.hardware.lanes),
         block(WE, &["sptfra_we"], 0),
         // Both arms of a taxel, where sums of torques are made of taxels' forces.
         block(CO, &["sptfra_co", "sptfra_unfold"], if design.algorithm.plan == PlanKind::Paper { 2 } else { 0 }),
-        block(FIELD, &["sptfra_field", "sptfra_coefficient_field"], field),
+        block(FIELD, &["sptfra_field", "sptfra_field_wide", "sptfra_coefficient_field"], field),
     ];
     blocks.extend(estimator.search_blocks());
     blocks.push(block("summary", &["sptfra_summary"], 1));
@@ -157,11 +164,13 @@ fn lane_memories(design: &Design, products: &[Product], operands: &OperandLayout
 fn frame_memories(design: &Design, elements: usize) -> Vec<Memory> {
     let taxels = design.sensor.taxels();
     let data = design.hardware.data_bits;
+    let streams = Streams::of(design);
+    let words = streams.words();
     if design.algorithm.plan == PlanKind::Paper {
         return vec![
             memory(CO, "A_p b", 1, 3 * taxels, data, false),
             memory(CO, "arms", 1, taxels, 2 * ARM_BITS, true),
-            memory(FIELD, "field", 3, 6 * taxels, data, false),
+            memory(FIELD, "field", 3 * words, 2 * (3 * taxels).div_ceil(words), data, false),
         ];
     }
     let mut memories = Vec::new();
@@ -169,12 +178,26 @@ fn frame_memories(design: &Design, elements: usize) -> Vec<Memory> {
         memories.push(memory(WE, "nonzeros", 2, elements, address_bits(elements), false));
     }
     let folded = 2 * elements.next_power_of_two();
-    memories.push(memory(BZ, "half-folded b", 1, elements, 2 * data + 2, false));
+    if streams.intake == Intake::Whole {
+        // One for each taxel of a quad, and one for CeAn.
+        let samples = streams.samples();
+        memories.push(memory(BZ, "frame by quads", CLASSES * samples, streams.beats_in(), data, false));
+        memories.push(memory(BZ, "frame by taxels", samples, streams.beats_in(), STRESS_BITS, false));
+    } else {
+        memories.push(memory(BZ, "half-folded b", 1, elements, 2 * data + 2, false));
+    }
     memories.push(memory(CO, "folded b", 1, folded, CLASSES as u32 * data, false));
     if design.algorithm.outputs == Outputs::Field {
         let weights = WEIGHT_PLACES * elements.next_power_of_two();
-        memories.push(memory(FIELD, "weights", CLASSES, weights, data, false));
-        memories.push(memory(FIELD, "field", CLASSES, 6 * elements, data, false));
+        if words > 1 {
+            // A copy for a taxel, and one for the next.
+            let forces = 2 * elements.next_power_of_two();
+            memories.push(memory(FIELD, "weights", 2 * CLASSES, weights, data, false));
+            memories.push(memory(FIELD, "field", 2 * 3 * CLASSES, forces, data, false));
+        } else {
+            memories.push(memory(FIELD, "weights", CLASSES, weights, data, false));
+            memories.push(memory(FIELD, "field", CLASSES, 6 * elements, data, false));
+        }
     }
     memories
 }

@@ -110,9 +110,9 @@ module small_4x3 #(
     wire coefficients_complete;
 
     sptfra_bz #(
+        .WAYS         (4),
         .COLUMNS      (4),
         .ROWS         (3),
-        .WAYS         (4),
         .DATA_BITS    (27),
         .NUMBER_SHIFT (9),
         .NUMBER_BOUND (27'sd51200000)
