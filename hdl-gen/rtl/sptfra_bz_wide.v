@@ -39,6 +39,8 @@ module sptfra_bz_wide #(
     // Prefix of the ROM file names, and what they begin with; those of taxels have _sampleN behind that, N from 0 on
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
+    // Cycles from a beat to its stress that the plan counts on; 0: any
+    parameter EXPECTED_STAGES = 0,
     // Derived
     parameter ELEMENTS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
@@ -97,6 +99,9 @@ module sptfra_bz_wide #(
         end
         if ((SAMPLES != 2) && (SAMPLES != 4) && (SAMPLES != 8)) begin : gen_check_samples
             sptfra_error_samples_of_a_beat_must_be_2_4_or_8 invalid ();
+        end
+        if ((EXPECTED_STAGES != 0) && (EXPECTED_STAGES != STAGES)) begin : gen_check_stages
+            sptfra_error_the_plan_counts_on_other_stages invalid ();
         end
     endgenerate
 
@@ -247,8 +252,9 @@ module sptfra_bz_wide #(
     localparam [31:0] LAST_WIDE = TAXELS - 1;
     reg [INDEX_WIDTH-1:0] taxel;
     reg all_told;
-    reg [2:1] told;
-    reg [2:1] told_last;
+    localparam TURN_TO_STRESS = 2; // of the memory
+    reg [TURN_TO_STRESS:1] told;
+    reg [TURN_TO_STRESS:1] told_last;
     reg cean_done; // it has the frame's flags
     wire last_taxel = (taxel == LAST_WIDE[INDEX_WIDTH-1:0]);
     wire [31:0] beat_needed = {{(32-BEAT_WIDTH){1'b0}}, taxel[SAMPLE_WIDTH +: BEAT_WIDTH]};

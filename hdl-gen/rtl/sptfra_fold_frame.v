@@ -42,6 +42,7 @@ module sptfra_fold_frame #(
     output wire frame_written // the frame is complete
 );
 
+    localparam TURN_TO_WRITTEN = 4; // cycles, which simulations check of a frame that flows
     localparam SAMPLE_WIDTH = $clog2(SAMPLES);
     localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
     localparam QUAD_COLUMNS = (COLUMNS + 1) / 2;
@@ -183,6 +184,15 @@ module sptfra_fold_frame #(
     assign write_quad = quads[3*ROW_WIDTH +: ROW_WIDTH];
     assign write_data = {sum_3[DATA_BITS+1:2], sum_2[DATA_BITS+1:2], sum_1[DATA_BITS+1:2], sum_0[DATA_BITS+1:2]};
     assign frame_written = lasts[4] && advance;
+
+    sptfra_check_latency #(
+        .CYCLES (TURN_TO_WRITTEN)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset || !advance),
+        .start (turn && last_quad),
+        .done  (frame_written)
+    );
 
     wire _unused = &{1'b0, sum_0[1:0], sum_1[1:0], sum_2[1:0], sum_3[1:0]};
 

@@ -1,21 +1,26 @@
 //! Bz, the stream's frames to fixed point: `sptfra_bz`, or `sptfra_bz_wide` where all samples of a beat are taken at once.
 
-use golden::sensor::Sensor;
+use golden::parity::CLASSES;
 
+use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
-use crate::plan::counts::{CountsPlan, LARGEST_NUMBER};
-use crate::plan::curve::CurvePlan;
+use crate::plan::counts::{CountsPlan, EXPONENT_BITS, LARGEST_NUMBER};
+use crate::plan::curve::{CurvePlan, SEGMENT_BITS};
+use crate::plan::dead::WEIGHT_BITS;
+use crate::plan::gain::GAIN_BITS;
+use crate::plan::memory::memory;
+use crate::plan::resources::BlockCost;
 use crate::plan::streams::{Intake, Streams};
 
 use super::Parameters;
 use super::latency;
 
-/// Numbers of 27 bits on a line.
+/// Numbers of [`LONG_BITS`] on a line.
 const KNOTS_PER_LINE: usize = 7;
 
 /// The module.
-pub fn module(streams: Streams) -> &'static str {
-    if streams.intake == Intake::Whole { "sptfra_bz_wide" } else { "sptfra_bz" }
+pub fn module(plan: &Plan) -> &'static str {
+    if plan.streams().intake == Intake::Whole { "sptfra_bz_wide" } else { "sptfra_bz" }
 }
 
 /// What the ROM files of taxels' constants are called behind the design's name: one for all, or one for each sample of a
@@ -25,6 +30,53 @@ pub fn taxel_files(streams: Streams) -> Vec<String> {
         Intake::Whole => (0..streams.samples()).map(|sample| format!("_sample{sample}")).collect(),
         Intake::Single | Intake::Unpacked => vec![String::new()],
     }
+}
+
+/// The instance's parameters.
+pub fn parameters(plan: &Plan) -> Parameters {
+    let (stress, streams) = (plan.formats.stress, plan.streams());
+    let (shift, bound) = match &plan.counts {
+        Some(counts) => (counts.exponents[0], counts.curve.as_ref().map_or(LARGEST_NUMBER, |curve| curve.limit)),
+        None => (-stress.lsb, stress.bound),
+    };
+    let parameters =
+        Parameters::new().count("COLUMNS", plan.design.sensor.columns).count("ROWS", plan.design.sensor.rows);
+    let parameters = if streams.intake == Intake::Whole {
+        parameters.count("STREAM_BITS", streams.bits).count("SAMPLE_BITS", streams.sample_bits)
+    } else {
+        parameters.count("WAYS", plan.ways())
+    };
+    let parameters = parameters
+        .number("DATA_BITS", plan.design.hardware.data_bits.into())
+        .number("NUMBER_SHIFT", shift.into())
+        .wide("NUMBER_BOUND", LONG_BITS, bound);
+    let parameters = match &plan.counts {
+        Some(counts) => of_counts(parameters, counts),
+        None => parameters,
+    };
+    let parameters = match plan.counts.as_ref().and_then(|counts| counts.curve.as_ref()) {
+        Some(curve) => of_curve(parameters, curve),
+        None => parameters,
+    };
+    let parameters = match &plan.dead {
+        Some(dead) => parameters.count("DEAD", dead.taxels.len()).number("WEIGHT_SHIFT", dead.shift.into()),
+        None => parameters,
+    };
+    let parameters = if plan.counts.is_none() && plan.dead.is_none() {
+        parameters
+    } else {
+        parameters
+            .wide("STRESS_BOUND", LONG_BITS, stress.bound)
+            .expression("ROM_DIR", "ROM_DIR")
+            .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+    };
+    parameters.cycles("EXPECTED_STAGES", beat_to_stress(plan))
+}
+
+/// Cycles from a beat to its stress.
+pub fn beat_to_stress(plan: &Plan) -> u64 {
+    let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());
+    latency::beat_to_stress(plan.counts.is_some(), curve.map(CurvePlan::stages))
 }
 
 /// When what a frame brings is there, in cycles after its first beat enters Bz, streams never waiting.
@@ -38,12 +90,15 @@ pub struct Arrival {
     pub done: u64,
 }
 
-/// Cycles of Bz. `stages` are those of a sample's conversion, `dead` what replacing dead taxels takes.
-pub fn arrival(sensor: &Sensor, streams: Streams, folded: bool, stages: u64, dead: u64) -> Arrival {
-    let taxels = sensor.taxels() as u64;
+/// Cycles of Bz.
+pub fn arrival(plan: &Plan) -> Arrival {
+    let (sensor, streams) = (&plan.design.sensor, plan.streams());
+    let stages = beat_to_stress(plan);
     if streams.intake != Intake::Whole {
-        let last_stress = taxels - 1 + stages + dead;
-        return Arrival { ready: last_stress + latency::stress_to_ready(folded), last_stress, done: last_stress + 1 };
+        let dead = if plan.dead.is_some() { latency::dead_taxels(plan.taxels()) } else { 0 };
+        let last_stress = plan.taxels() as u64 - 1 + stages + dead;
+        let ready = last_stress + latency::stress_to_ready(plan.ways() > 1);
+        return Arrival { ready, last_stress, done: last_stress + 1 };
     }
     let beat_there = |taxel: usize| (taxel / streams.samples()) as u64 + stages + 1;
     // A quad a cycle, from the middle rows on, each when its last taxel is there.
@@ -51,52 +106,45 @@ pub fn arrival(sensor: &Sensor, streams: Streams, folded: bool, stages: u64, dea
     let last_taxels = (rows / 2..rows).flat_map(|y| (columns / 2..columns).map(move |x| y * columns + x));
     let last_quad = last_taxels.fold(0, |before, taxel| beat_there(taxel).max(before + 1));
     // A taxel a cycle.
-    let last_taxel = (0..sensor.taxels()).fold(0, |before, taxel| beat_there(taxel).max(before + 1));
-    let last_stress = last_taxel + WIDE_TO_CEAN;
-    Arrival { ready: last_quad + WIDE_TO_WRITE + 1, last_stress, done: last_stress.max(last_quad + 1) + 1 }
+    let last_taxel = (0..plan.taxels()).fold(0, |before, taxel| beat_there(taxel).max(before + 1));
+    let last_stress = last_taxel + latency::TAXEL_TO_CEAN;
+    Arrival { ready: last_quad + latency::QUAD_TO_READY, last_stress, done: last_stress.max(last_quad + 1) + 1 }
 }
 
-/// From a taxel's turn in `sptfra_bz_wide` to its stress in `CeAn`, from a quad's to its write, in cycles.
-const WIDE_TO_CEAN: u64 = 2;
-const WIDE_TO_WRITE: u64 = 4;
-
-/// The instance's parameters.
-pub fn parameters(plan: &Plan) -> Parameters {
-    let (stress, streams) = (plan.formats.stress, plan.streams());
-    let (shift, bound) = match &plan.counts {
-        Some(counts) => (counts.exponents[0], counts.curve.as_ref().map_or(LARGEST_NUMBER, |curve| curve.limit)),
-        None => (-stress.lsb, stress.bound),
-    };
-    let parameters = if streams.intake == Intake::Whole {
-        Parameters::new().count("STREAM_BITS", streams.bits).count("SAMPLE_BITS", streams.sample_bits)
-    } else {
-        Parameters::new().count("WAYS", plan.ways())
-    };
-    let parameters = parameters
-        .count("COLUMNS", plan.design.sensor.columns)
-        .count("ROWS", plan.design.sensor.rows)
-        .number("DATA_BITS", plan.design.hardware.data_bits.into())
-        .number("NUMBER_SHIFT", shift.into())
-        .wide("NUMBER_BOUND", 27, bound);
-    let parameters = match &plan.counts {
-        Some(counts) => of_counts(parameters, counts),
-        None => parameters,
-    };
-    let parameters = match plan.counts.as_ref().and_then(|counts| counts.curve.as_ref()) {
-        Some(curve) => of_curve(parameters, curve),
-        None => parameters,
-    };
-    let parameters = match &plan.dead {
-        Some(dead) => parameters.count("DEAD", dead.taxels.len()).number("WEIGHT_SHIFT", dead.shift.into()),
-        None => parameters,
-    };
-    if plan.counts.is_none() && plan.dead.is_none() {
-        return parameters;
+/// A multiplier each for a count's slope, a stress's gain and each dead taxel.
+pub fn cost(plan: &Plan) -> BlockCost {
+    let (streams, data) = (plan.streams(), plan.design.hardware.data_bits);
+    let (taxels, dead) = (plan.taxels(), plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()));
+    let conversions = streams.conversions();
+    let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());
+    let mut memories = Vec::new();
+    if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
+        let depth = taxels.div_ceil(conversions);
+        if curve.is_none() {
+            memories.push(memory("exponents", conversions, depth, EXPONENT_BITS, true));
+        }
+        memories.push(memory("gains", conversions, depth, GAIN_BITS, true));
+        memories.push(memory("offsets", conversions, depth, counts.offset_bits(), true));
     }
-    parameters
-        .wide("STRESS_BOUND", 27, stress.bound)
-        .expression("ROM_DIR", "ROM_DIR")
-        .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+    if let Some(curve) = curve {
+        memories.push(memory("curve", conversions, 1 << curve.levels(), SEGMENT_BITS, true));
+    }
+    if dead > 0 {
+        // With a stress, whether it was clipped and whether it was a number.
+        memories.push(memory("whole frame", 1, taxels, LONG_BITS + 2, false));
+        memories.push(memory("neighbours", 1, taxels, WEIGHT_BITS * dead as u32, true));
+        memories.push(memory("dead taxels", 1, taxels, 1, true));
+    }
+    if streams.intake == Intake::Whole {
+        // One for each taxel of a quad, and one for CeAn.
+        let samples = streams.samples();
+        memories.push(memory("frame by quads", CLASSES * samples, streams.beats_in(), data, false));
+        memories.push(memory("frame by taxels", samples, streams.beats_in(), LONG_BITS, false));
+    } else if plan.ways() > 1 {
+        memories.push(memory("half-folded b", 1, plan.elements(), 2 * data + 2, false));
+    }
+    let dsp = conversions * (usize::from(plan.counts.is_some()) + usize::from(curve.is_some())) + dead;
+    BlockCost::new("Bz", &["sptfra_bz", "sptfra_bz_wide"], dsp).with(memories)
 }
 
 fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
@@ -104,19 +152,21 @@ fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
         .flag("COUNTS", true)
         .flag("PER_TAXEL", counts.per_taxel())
         .flag("EXPONENTS", counts.per_taxel() && counts.curve.is_none())
-        .wide("GAIN", 18, counts.gains[0].into())
+        .wide("GAIN", GAIN_BITS, counts.gains[0].into())
         .number("OFFSET_BITS", counts.offset_bits().into())
         .number("COUNT_SHIFT", counts.shift.into())
-        .wide("FULL_SCALE", 48, counts.full_scale)
+        .wide("FULL_SCALE", ACCUMULATOR_BITS, counts.full_scale)
 }
 
 fn of_curve(parameters: Parameters, curve: &CurvePlan) -> Parameters {
     // Two's complement, the first in the lowest bits, as many on a line as it holds.
-    let knots: Vec<String> = curve.knots().iter().rev().map(|knot| format!("27'd{}", knot & 0x7ff_ffff)).collect();
+    let unsigned = |knot: &i64| knot & ((1 << LONG_BITS) - 1);
+    let knots: Vec<String> =
+        curve.knots().iter().rev().map(|knot| format!("{LONG_BITS}'d{}", unsigned(knot))).collect();
     let lines: Vec<String> = knots.chunks(KNOTS_PER_LINE).map(|knots| knots.join(", ")).collect();
     parameters
         .number("CURVE_LEVELS", curve.levels().into())
         .expression("CURVE_KNOTS", format!("{{\n            {}\n        }}", lines.join(",\n            ")))
-        .wide("CURVE_FIRST", 27, curve.segments[0].first)
-        .wide("CURVE_LAST", 27, curve.last)
+        .wide("CURVE_FIRST", LONG_BITS, curve.segments[0].first)
+        .wide("CURVE_LAST", LONG_BITS, curve.last)
 }

@@ -1,8 +1,13 @@
 //! The field memory: `sptfra_field` of a folded grid, `sptfra_field_wide` for several words a beat,
 //! `sptfra_coefficient_field` where taxels are not folded.
 
+use golden::parity::CLASSES;
+
 use crate::plan::Plan;
-use crate::plan::formats::field_shifts;
+use crate::plan::memory::memory;
+use crate::plan::places::WEIGHT_PLACES;
+use crate::plan::resources::BlockCost;
+use crate::plan::vector_formats::field_shifts;
 
 use super::Parameters;
 
@@ -35,4 +40,32 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("DATA_BITS", data)
         .number("FORCE_SHIFT", force.into())
         .number("SHARE_SHIFT", share.into())
+}
+
+/// What a frame's taxels leave until they go out, and the multipliers that put a force together.
+pub fn cost(plan: &Plan) -> BlockCost {
+    let (data, elements) = (plan.design.hardware.data_bits, plan.elements());
+    let words = plan.streams().words();
+    let modules = &["sptfra_field", "sptfra_field_wide", "sptfra_coefficient_field"];
+    let block = |dsp| BlockCost::new("field", modules, dsp);
+    if plan.ways() == 1 {
+        // The memory is there without a field, too: the sums over the frame pass it.
+        let dsp = if plan.field_words() > 0 { 2 * words } else { 0 };
+        let depth = 2 * (3 * plan.taxels()).div_ceil(words);
+        return block(dsp).with([memory("field", 3 * words, depth, data, false)]);
+    }
+    if plan.field_words() == 0 {
+        return block(0);
+    }
+    let weights = WEIGHT_PLACES * elements.next_power_of_two();
+    if words > 1 {
+        // A copy for a taxel, and one for the next.
+        let forces = 2 * elements.next_power_of_two();
+        return block(words).with([
+            memory("weights", 2 * CLASSES, weights, data, false),
+            memory("field", 2 * 3 * CLASSES, forces, data, false),
+        ]);
+    }
+    block(1)
+        .with([memory("weights", CLASSES, weights, data, false), memory("field", CLASSES, 6 * elements, data, false)])
 }

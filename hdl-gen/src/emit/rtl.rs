@@ -21,6 +21,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_bz",
     "sptfra_bz_wide",
     "sptfra_cean",
+    "sptfra_check_delay",
     "sptfra_check_latency",
     "sptfra_co",
     "sptfra_coefficient_field",

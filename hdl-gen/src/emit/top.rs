@@ -141,7 +141,7 @@ impl View {
             data_bits: hardware.data_bits,
             vector_bits: plan.ways() * hardware.data_bits as usize,
 
-            bz_module: bz::module(streams),
+            bz_module: bz::module(plan),
             bz: bz::parameters(plan),
             cean: cean::parameters(plan),
             turns: turns::parameters(plan),

@@ -110,12 +110,13 @@ module small_4x3 #(
     wire coefficients_complete;
 
     sptfra_bz #(
-        .WAYS         (4),
-        .COLUMNS      (4),
-        .ROWS         (3),
-        .DATA_BITS    (27),
-        .NUMBER_SHIFT (9),
-        .NUMBER_BOUND (27'sd51200000)
+        .COLUMNS         (4),
+        .ROWS            (3),
+        .WAYS            (4),
+        .DATA_BITS       (27),
+        .NUMBER_SHIFT    (9),
+        .NUMBER_BOUND    (27'sd51200000),
+        .EXPECTED_STAGES (5)
     ) bz (
         .clock            (aclk),
         .reset            (reset),
