@@ -19,7 +19,6 @@ pub mod stream_words;
 pub mod stress;
 pub mod svg;
 pub mod sweep;
-pub mod table;
 pub mod tools;
 pub mod trial;
 pub mod verilate;

@@ -20,7 +20,7 @@ use crate::hard::judge::Row;
 use crate::sweep::evaluate::answers;
 use crate::sweep::point::{Geometry, Point, Verified, sensor_title, sensors};
 use crate::sweep::{Sweep, SweepError, SweepScene};
-use crate::table::Table;
+use golden::table::Table;
 use matrices::Figure;
 
 const TEMPLATE: &str = include_str!("../../../templates/report.html.tera");
