@@ -5,6 +5,7 @@ pub mod accuracy;
 pub mod bench;
 pub mod compare;
 pub mod dut;
+pub mod field_plot;
 pub mod figures;
 pub mod frame_set;
 pub mod hard;
