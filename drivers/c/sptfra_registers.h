@@ -74,6 +74,9 @@ extern "C" {
 #define SPTFRA__FEATURES__STREAM_BYTES_bm 0xff00
 #define SPTFRA__FEATURES__STREAM_BYTES_bp 8
 #define SPTFRA__FEATURES__STREAM_BYTES_bw 8
+#define SPTFRA__FEATURES__SAMPLES_bm 0x30000
+#define SPTFRA__FEATURES__SAMPLES_bp 16
+#define SPTFRA__FEATURES__SAMPLES_bw 2
 
 // reg - sptfra::CLOCK
 #define SPTFRA__CLOCK__KHZ_bm 0xffffffff

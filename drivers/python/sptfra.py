@@ -102,6 +102,8 @@ class Identity:
     has_counts: bool
     skips_zeros: bool
     stream_bits: int
+    #: What a sample of a frame is: float32, int16 or uint16.
+    samples: np.dtype
     clock_mhz: float
     full_scale_pa: float
     latency_cycles: int
@@ -240,7 +242,8 @@ class Sptfra:
         if version != MAP_VERSION:
             raise RuntimeError(f"the core's register map is version {version}, this driver knows {MAP_VERSION}")
         self.identity = self._identify()
-        self._stress = allocate(shape=(self.identity.words_in,), dtype=np.float32)
+        samples = self.identity.samples
+        self._stress = allocate(shape=(4 * self.identity.words_in // samples.itemsize,), dtype=samples)
         self._forces = allocate(shape=(self.identity.words_out,), dtype=np.uint32)
         self._word = allocate(shape=(1,), dtype=np.uint32)
         self._failed = False
@@ -269,6 +272,7 @@ class Sptfra:
             has_counts=bool(features & 4),
             skips_zeros=bool(features & 8),
             stream_bits=8 * (features >> 8 & 0xFF) or 32,
+            samples=np.dtype((np.float32, np.int16, np.uint16)[features >> 16 & 3]),
             clock_mhz=read(Register.CLOCK) / 1e3,
             full_scale_pa=float(full_scale),
             latency_cycles=read(Register.PREDICTED_LATENCY),
@@ -346,20 +350,25 @@ class Sptfra:
     def reconstruct(self, frames, timeout=1.0):
         """Forces of frames (n, rows, columns), (n, taxels), (rows, columns) or (taxels,), in pascals or counts.
 
-        Returns `Forces` of n frames, in new arrays; a single frame is n = 1. Raises ValueError on another shape,
+        Returns `Forces` of n frames, in new arrays; a single frame is n = 1. Raises ValueError on another shape, and on
+        counts that the core's samples cannot be,
         TimeoutError if a frame takes longer than so many seconds, RuntimeError if the DMA stops or an answer is that to
         another frame; after the last three nothing is sent before `recover`.
         """
-        rows, columns, words = self.identity.rows, self.identity.columns, self.identity.words_in
-        frames = np.asarray(frames, dtype=np.float32)
-        if frames.shape[-2:] != (rows, columns) and frames.shape[-1:] != (words,) or frames.ndim > 3:
-            raise ValueError(f"frames of shape {frames.shape}: the core has {rows} rows of {columns} taxels")
+        rows, columns, samples = self.identity.rows, self.identity.columns, self.identity.samples
+        taxels = rows * columns
+        values = np.asarray(frames)
+        if values.shape[-2:] != (rows, columns) and values.shape[-1:] != (taxels,) or values.ndim > 3:
+            raise ValueError(f"frames of shape {values.shape}: the core has {rows} rows of {columns} taxels")
+        frames = values.astype(samples)
+        if samples != np.float32 and not np.array_equal(frames, values):
+            raise ValueError(f"the core takes counts as {samples}: whole numbers within its range")
         if self._failed:
             raise RuntimeError("the last frame has failed: recover()")
-        frames = frames.reshape(-1, words)
+        frames = frames.reshape(-1, taxels)
         answers = np.empty((len(frames), self.identity.words_out), dtype=np.uint32)
         for frame, answer in zip(frames, answers):
-            self._stress[:] = frame
+            self._stress[:taxels] = frame
             self._stress.flush()
             self._failed = True
             self._dma.recvchannel.transfer(self._forces)

@@ -13,15 +13,15 @@
 `default_nettype none
 
 module sptfra_bz_wide #(
-    // Bits of a beat, and of a sample
+    // Bits of a beat
     parameter STREAM_BITS = 128,
-    parameter SAMPLE_BITS = 32,
     // Taxels in x and y
     parameter COLUMNS = 10,
     parameter ROWS = 10,
     // Bits of a stress
     parameter DATA_BITS = 27,
-    // What a sample is, and how it becomes a stress: see sptfra_samples
+    // What a sample is: 0 float32, 1 and 2 integers; and how it becomes a stress: see sptfra_samples
+    parameter SAMPLE = 0,
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
     parameter COUNTS = 0,
@@ -42,6 +42,7 @@ module sptfra_bz_wide #(
     // Cycles from a beat to its stress that the plan counts on; 0: any
     parameter EXPECTED_STAGES = 0,
     // Derived
+    parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16,
     parameter ELEMENTS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
@@ -155,6 +156,7 @@ module sptfra_bz_wide #(
 
             sptfra_samples #(
                 .TAXELS       (BEATS),
+                .SAMPLE       (SAMPLE),
                 .NUMBER_SHIFT (NUMBER_SHIFT),
                 .NUMBER_BOUND (NUMBER_BOUND),
                 .COUNTS       (COUNTS),
@@ -177,7 +179,7 @@ module sptfra_bz_wide #(
                 .reset      (reset),
                 .advance    (1'b1),
                 .accept     (accept),
-                .word       (s_tdata[SAMPLE_BITS*sample +: SAMPLE_BITS]),
+                .sample     (s_tdata[SAMPLE_BITS*sample +: SAMPLE_BITS]),
                 .last       (s_tlast),
                 .next_taxel (valid[CURVE_STAGES] && stores[CURVE_STAGES]),
                 .frame_ends (valid[CURVE_STAGES] && lasts[CURVE_STAGES]),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use golden::design::{Design, Sensor};
 use golden::forces::read_outcomes;
-use golden::frames::{FrameError, read_labelled_frames};
+use golden::frames::{FrameError, read_frames_of};
 use golden::geometry;
 use golden::metrics::Outcome;
 use golden::scene::{Scene, SceneError};
@@ -44,7 +44,7 @@ impl FrameSet {
     #[must_use]
     pub fn as_delivered(mut self, design: &Design) -> Self {
         for frame in &mut self.stress {
-            design.input.deliver(frame);
+            design.deliver(frame);
         }
         self
     }
@@ -56,7 +56,7 @@ impl FrameSet {
     /// [`FrameError`], with file, line and column, or for frames that are known to be another sensor's.
     pub fn load(frames: &Path, labels: usize, reference: Option<&Path>, design: &Design) -> Result<Self, FrameError> {
         geometry::compare(frames, &design.name, &design.sensor)?;
-        let stress = read_labelled_frames(frames, &design.sensor, labels)?;
+        let stress = read_frames_of(frames, design, labels)?;
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
         Ok(Self { origin: frames.display().to_string(), stress, truth })
     }

@@ -1,6 +1,7 @@
 //! Frames as the words of the two streams.
 
 use golden::solver::Solution;
+use hdl_gen::plan::streams::Streams;
 use hdl_gen::plan::words;
 
 /// Summary beats in front of the field.
@@ -16,14 +17,14 @@ pub fn encode(stress: &[f64]) -> Vec<u32> {
 }
 
 /// The input packets of frames.
-pub fn packets(frames: &[Vec<f64>]) -> Vec<Vec<u32>> {
-    frames.iter().map(|stress| encode(stress)).collect()
+pub fn packets(streams: Streams, frames: &[Vec<f64>]) -> Vec<Vec<u32>> {
+    frames.iter().map(|values| streams.packet(values)).collect()
 }
 
-/// The stresses as the core gets them. The f64 solver is given the same ones, so that its difference to the core is
-/// the core's alone.
-pub fn as_received(packet: &[u32]) -> Vec<f64> {
-    packet.iter().map(|&word| f64::from(f32::from_bits(word))).collect()
+/// The values of a frame as the core gets them. The f64 solver is given the same ones, so that its difference to the core
+/// is the core's alone.
+pub fn as_received(streams: Streams, packet: &[u32]) -> Vec<f64> {
+    streams.received(packet)
 }
 
 /// What a beat of an output frame is, such as `F_z`, or `f_x of taxel 12 (2, 1)` with column and row.

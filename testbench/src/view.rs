@@ -14,7 +14,7 @@ use thiserror::Error;
 use crate::field_plot;
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
-use crate::stream_words::{Answer, decode, encode};
+use crate::stream_words::{Answer, decode};
 
 /// Towards larger x, then a further eighth of a turn towards larger y each; y is up on the page.
 const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
@@ -147,7 +147,7 @@ pub fn frame(design: &Design, frames: &FrameSet, frame: usize, progress: &Progre
     progress.stage("planning");
     let plan = Plan::new(design)?;
     progress.stage("computing the forces");
-    let words = Model::new(&plan).process(&encode(stress));
+    let words = Model::new(&plan).process(&plan.streams().packet(stress));
     Ok(View {
         design: design.name.clone(),
         origin: frames.origin.clone(),

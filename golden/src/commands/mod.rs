@@ -46,7 +46,7 @@ impl Recording<'_> {
     /// The frames, which may not be known to be those of another sensor than the design's.
     pub fn read(&self, design: &Design) -> Result<Vec<Vec<f64>>, FrameError> {
         geometry::compare(self.file, &design.name, &design.sensor)?;
-        frames::read_labelled_frames(self.file, &design.sensor, self.labels)
+        frames::read_frames_of(self.file, design, self.labels)
     }
 }
 

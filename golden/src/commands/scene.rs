@@ -44,7 +44,7 @@ pub fn run(scene: Option<&Path>, design: Option<&Path>, out: &Path, json: bool) 
     let mut stresses: Vec<Vec<f64>> = made.into_iter().map(|frame| frame.stress).collect();
     if let Some(design) = &design {
         for frame in &mut stresses {
-            design.input.deliver(frame);
+            design.deliver(frame);
         }
     }
     frames::write_frames(out, &stresses)?;

@@ -32,6 +32,45 @@ pub enum Optimise {
     Latency,
 }
 
+/// What a sample on the stream is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Samples {
+    /// IEEE 754, single precision: pascals or counts.
+    #[default]
+    Float32,
+    /// A count of 16 bits in two's complement.
+    Int16,
+    /// A count of 16 bits from 0 on.
+    Uint16,
+}
+
+impl Samples {
+    /// Least and largest count of an integer sample.
+    pub fn range(self) -> Option<[f64; 2]> {
+        match self {
+            Self::Float32 => None,
+            Self::Int16 => Some([i16::MIN, i16::MAX].map(f64::from)),
+            Self::Uint16 => Some([u16::MIN, u16::MAX].map(f64::from)),
+        }
+    }
+
+    /// Bits of a sample.
+    pub fn bits(self) -> u32 {
+        if self.range().is_none() { 32 } else { 16 }
+    }
+
+    /// Whether a frame's value can be one.
+    pub fn takes(self, value: f64) -> bool {
+        self.range().is_none_or(|[low, high]| (low..=high).contains(&value) && value.fract() == 0.0)
+    }
+
+    /// The sample next to a value that is whole already.
+    pub fn clip(self, value: f64) -> f64 {
+        self.range().map_or(value, |[low, high]| value.clamp(low, high))
+    }
+}
+
 /// The `[hardware]` table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hardware {
@@ -54,6 +93,8 @@ pub struct Hardware {
     pub skip_zeros: bool,
     /// Bits of a beat on both streams, one of [`STREAM_BITS`].
     pub stream_bits: u32,
+    /// What a sample on the stream is; integers only with counts.
+    pub samples: Samples,
     /// Whether the core has a register bank on AXI4-Lite.
     pub control: bool,
     /// Clock in megahertz, 1 to 1000.
@@ -71,4 +112,4 @@ impl Hardware {
     }
 }
 
-print_as_words!(Arithmetic, Optimise);
+print_as_words!(Arithmetic, Optimise, Samples);

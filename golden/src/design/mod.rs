@@ -31,7 +31,7 @@ pub use error::DesignError;
 pub(crate) use files::Beside;
 pub use files::{CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
-pub use hardware::{Arithmetic, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, STREAM_BITS};
+pub use hardware::{Arithmetic, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, STREAM_BITS, Samples};
 pub use input::{Calibration, Input, Tension};
 pub use joint::conditions;
 pub(crate) use lengths::Lengths;
@@ -59,6 +59,15 @@ pub struct Design {
 }
 
 impl Design {
+    /// A frame of stress in pascals as the design's sensor delivers it: without what pulls, if it does not read that, and
+    /// in whole counts, if it counts, as far as its samples reach.
+    pub fn deliver(&self, frame: &mut [f64]) {
+        self.input.deliver(frame);
+        for value in frame {
+            *value = self.hardware.samples.clip(*value);
+        }
+    }
+
     /// Reads and checks a design file.
     ///
     /// # Errors

@@ -15,8 +15,8 @@ use super::parse_plan::{self, PlanKeys};
 use super::regularisation;
 use super::{
     Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input,
-    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, STREAM_BITS, Sensor, Slip,
-    Tension,
+    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, STREAM_BITS, Samples, Sensor,
+    Slip, Tension,
 };
 use crate::words;
 
@@ -94,6 +94,7 @@ struct RawHardware {
     optimise: Option<String>,
     skip_zeros: Option<bool>,
     stream_bits: Option<i64>,
+    samples: Option<String>,
     control: Option<bool>,
     clock_mhz: Option<f64>,
     part: Option<String>,
@@ -150,6 +151,13 @@ fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, D
         &sensor,
         hardware.full_scale_pa,
     )?;
+    if hardware.samples != Samples::Float32 && !input.counts() {
+        return Err(check.value(
+            "hardware.samples",
+            format!("is \"{}\", and frames are in pascals", hardware.samples),
+            "integers are counts: add sensor.pa_per_count or sensor.curve".to_owned(),
+        ));
+    }
     algorithm.joint.correction = correction.map(|raw| joint::correction(&check, raw, &sensor, beside)).transpose()?;
     Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }
@@ -264,6 +272,7 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         optimise,
         skip_zeros: raw.skip_zeros.unwrap_or(false),
         stream_bits,
+        samples: check.optional_word("hardware.samples", raw.samples.as_deref())?.unwrap_or_default(),
         control: raw.control.unwrap_or(false),
         clock_mhz: check.real("hardware.clock_mhz", raw.clock_mhz.unwrap_or(125.0), 1.0, 1000.0, "MHz")?,
         part,

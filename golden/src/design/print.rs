@@ -5,8 +5,8 @@ use std::fmt::Write;
 use toml::Value;
 
 use super::{
-    Algorithm, CALIBRATION_FILE, CURVE_FILE, Choices, Design, Filter, FilterKind, Hardware, Slip, Tension, joint,
-    regularisation,
+    Algorithm, CALIBRATION_FILE, CURVE_FILE, Choices, Design, Filter, FilterKind, Hardware, Samples, Slip, Tension,
+    joint, regularisation,
 };
 use crate::estimators::Constants;
 use crate::names::MatrixName;
@@ -65,6 +65,10 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
         32 => String::new(),
         bits => format!("stream_bits = {bits}\n"),
     };
+    let samples = match hardware.samples {
+        Samples::Float32 => String::new(),
+        samples => format!("samples = \"{samples}\"\n"),
+    };
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write!(
@@ -74,7 +78,7 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{control}clock_mhz = {:?}\npart = \"{}\"\n",
+         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{control}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],

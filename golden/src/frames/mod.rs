@@ -10,6 +10,7 @@ mod text;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use crate::design::{Design, Samples};
 use crate::geometry::GeometryError;
 use crate::output::{self, OutputError};
 use crate::sensor::Sensor;
@@ -67,6 +68,23 @@ pub enum FrameError {
         /// What is there.
         text: String,
     },
+    /// A value that the design's integer samples cannot be.
+    #[error(
+        "{}, {place}: {value} is no {samples}, as hardware.samples says that the sensor's counts are; \
+         give whole numbers from {} to {}", path.display(), range[0], range[1]
+    )]
+    Sample {
+        /// The file.
+        path: PathBuf,
+        /// Line and column.
+        place: String,
+        /// What is there.
+        value: f64,
+        /// What it should be.
+        samples: Samples,
+        /// Least and largest count.
+        range: [f64; 2],
+    },
     /// A `.npy` file that holds something else than frames.
     #[error(
         "{}: {problem}; save frames by taxels, or frames by rows by columns, with numpy.save", path.display()
@@ -120,6 +138,25 @@ pub fn read_labelled_frames(path: &Path, sensor: &Sensor, labels: usize) -> Resu
         return Err(FrameError::Empty { path: path.to_path_buf(), expected: taxels });
     }
     Ok(frames)
+}
+
+/// Reads the frames of a design: as [`read_labelled_frames`], and each value is one that the design's samples can be.
+///
+/// # Errors
+///
+/// As [`read_frames`].
+pub fn read_frames_of(path: &Path, design: &Design, labels: usize) -> Result<Vec<Vec<f64>>, FrameError> {
+    let frames = read_labelled_frames(path, &design.sensor, labels)?;
+    let samples = design.hardware.samples;
+    let wrong = |values: &Vec<f64>| values.iter().position(|&value| !samples.takes(value));
+    let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
+    let (Some((frame, column)), Some(range)) = (found, samples.range()) else { return Ok(frames) };
+    let at = text::line_of(path, labels, frame);
+    let place = match at {
+        Some(line) => format!("line {line}, column {}", labels + column + 1),
+        None => format!("[{frame}, {}]", labels + column),
+    };
+    Err(FrameError::Sample { path: path.to_path_buf(), place, value: frames[frame][column], samples, range })
 }
 
 /// Reads the rows of a file of finite numbers, which may have a header. `wrong_length` is given the number of values of a

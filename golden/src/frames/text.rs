@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{FrameError, is_number};
+use super::{FrameError, is_number, npy};
 
 /// What stands between the values of a line.
 #[derive(Clone, Copy)]
@@ -77,6 +77,20 @@ pub(super) fn read(
         rows.push(row);
     }
     Ok(rows)
+}
+
+/// The line, from 1, on which a frame of a file that was read before stands; none in an array.
+pub(super) fn line_of(path: &Path, labels: usize, frame: usize) -> Option<usize> {
+    let bytes = std::fs::read(path).ok().filter(|bytes| !bytes.starts_with(npy::MAGIC))?;
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let lines = text.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).enumerate();
+    let mut rows = lines.filter(|(_, content)| !content.is_empty() && !content.starts_with(b"#"));
+    let (first, content) = rows.next()?;
+    let fields = Separator::of(content).split(content);
+    let has_header = fields.iter().skip(labels).all(|field| no_number(field));
+    let (index, _) =
+        if has_header { rows.nth(frame)? } else { std::iter::once((first, content)).chain(rows).nth(frame)? };
+    Some(index + 1)
 }
 
 /// Whether a field is that of a header: text and no number of any kind.

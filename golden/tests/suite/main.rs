@@ -19,5 +19,6 @@ mod products;
 mod recording;
 mod reduced;
 mod regularisation;
+mod samples;
 mod scene_file;
 mod workspace;

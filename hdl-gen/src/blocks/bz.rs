@@ -1,5 +1,6 @@
 //! Bz, the stream's frames to fixed point: `sptfra_bz`, or `sptfra_bz_wide` where all samples of a beat are taken at once.
 
+use golden::design::Samples;
 use golden::parity::CLASSES;
 
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
@@ -42,14 +43,18 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let parameters =
         Parameters::new().count("COLUMNS", plan.design.sensor.columns).count("ROWS", plan.design.sensor.rows);
     let parameters = if streams.intake == Intake::Whole {
-        parameters.count("STREAM_BITS", streams.bits).count("SAMPLE_BITS", streams.sample_bits)
+        parameters.count("STREAM_BITS", streams.bits)
     } else {
         parameters.count("WAYS", plan.ways())
     };
-    let parameters = parameters
-        .number("DATA_BITS", plan.design.hardware.data_bits.into())
-        .number("NUMBER_SHIFT", shift.into())
-        .wide("NUMBER_BOUND", LONG_BITS, bound);
+    let parameters = parameters.number("DATA_BITS", plan.design.hardware.data_bits.into());
+    // As in sptfra_samples.
+    let parameters = match streams.sample {
+        Samples::Float32 => parameters,
+        Samples::Int16 => parameters.number("SAMPLE", 1),
+        Samples::Uint16 => parameters.number("SAMPLE", 2),
+    };
+    let parameters = parameters.number("NUMBER_SHIFT", shift.into()).wide("NUMBER_BOUND", LONG_BITS, bound);
     let parameters = match &plan.counts {
         Some(counts) => of_counts(parameters, counts),
         None => parameters,

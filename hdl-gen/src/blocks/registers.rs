@@ -8,6 +8,11 @@ use crate::plan::Plan;
 /// Version of the register map: one more whenever a register moves or changes its meaning.
 pub const MAP_VERSION: u8 = 2;
 
+/// What a sample is, in `FEATURES`: 0 float32, 1 int16, 2 uint16.
+pub fn samples(plan: &Plan) -> u8 {
+    plan.streams().sample as u8
+}
+
 /// What the read-only registers hold. Truths are 0 or 1: they are reset values in the register map.
 #[derive(Clone, Debug, Serialize)]
 pub struct Constants {
@@ -28,6 +33,7 @@ pub struct Constants {
     has_counts: u8,
     skips_zeros: u8,
     stream_bytes: usize,
+    samples: u8,
     clock_khz: u64,
     /// Hexadecimal digits of a float32.
     full_scale: String,
@@ -57,6 +63,7 @@ impl Constants {
             has_counts: u8::from(plan.counts.is_some()),
             skips_zeros: u8::from(hardware.skip_zeros),
             stream_bytes: plan.streams().bits / 8,
+            samples: samples(plan),
             clock_khz: (hardware.clock_mhz * 1e3).round() as u64,
             full_scale: format!("{:08x}", (hardware.full_scale_pa as f32).to_bits()),
             latency_cycles: plan.timeline.latency_cycles,
@@ -83,6 +90,7 @@ impl Constants {
             .expression("HAS_COUNTS", decimal(1, &self.has_counts))
             .expression("SKIPS_ZEROS", decimal(1, &self.skips_zeros))
             .expression("STREAM_BYTES", decimal(8, &self.stream_bytes))
+            .expression("SAMPLES", decimal(2, &self.samples))
             .expression("CLOCK_KHZ", decimal(32, &self.clock_khz))
             .expression("FULL_SCALE", format!("32'h{}", self.full_scale))
             .expression("LATENCY_CYCLES", decimal(32, &self.latency_cycles))

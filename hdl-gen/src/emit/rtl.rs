@@ -49,6 +49,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_friction",
     "sptfra_grid_centroid",
     "sptfra_leading_bit",
+    "sptfra_int_to_fixed",
     "sptfra_level_set",
     "sptfra_line",
     "sptfra_look",

@@ -82,16 +82,20 @@ fn packets(plan: &Plan) -> Result<Vec<Vec<u32>>, SceneError> {
     let scene = Scene { sweep_deg: DIRECTIONS_DEG.to_vec(), ..Scene::standing(&plan.design.sensor) };
     // On a half-space stress has a closed form, so no layer is too thin.
     let frames = scene.frames().or_else(|_| Scene { medium: Medium::HalfSpace, ..scene }.frames())?;
-    let word = |(taxel, &pascal): (usize, &f64)| (plan.design.input.from_pa(taxel, pascal) as f32).to_bits();
-    let mut packets: Vec<Vec<u32>> =
-        frames.iter().map(|frame| frame.stress.iter().enumerate().map(word).collect()).collect();
-    let taxels = plan.taxels();
+    let value = |(taxel, &pascal): (usize, &f64)| plan.design.input.from_pa(taxel, pascal);
+    let streams = plan.streams();
+    let mut packets: Vec<Vec<u32>> = frames
+        .iter()
+        .map(|frame| streams.packet(&frame.stress.iter().enumerate().map(value).collect::<Vec<_>>()))
+        .collect();
+    let length = streams.words_in();
     let mut not_a_number = packets[0].clone();
-    not_a_number[taxels / 2] = f32::NAN.to_bits();
-    packets.insert(1, vec![0; taxels]);
+    not_a_number[length / 2] = f32::NAN.to_bits();
+    packets.insert(1, vec![0; length]);
+    // Of integers, which are always numbers, another frame.
     packets.insert(3, not_a_number);
     // A beat less than a frame.
-    packets.insert(5, vec![0; taxels - plan.streams().samples().min(taxels - 1)]);
+    packets.insert(5, vec![0; length - streams.words().min(length - 1)]);
     Ok(packets)
 }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use tera::Context;
 
-use golden::design::Filter;
+use golden::design::{Filter, Samples};
 
 use crate::blocks::{Parameters, array, bz, cean, co, field, op, row_width, turns, unfold, we};
 use crate::plan::Plan;
@@ -36,7 +36,7 @@ struct View {
     words: usize,
     samples: usize,
     sample_bits: usize,
-    sample: &'static str,
+    sample: String,
     beats_in: usize,
     beats: usize,
     /// TKEEP of the last beat out.
@@ -109,7 +109,7 @@ impl View {
             words: streams.words(),
             samples: streams.samples(),
             sample_bits: streams.sample_bits,
-            sample: "float32",
+            sample: streams.sample.to_string(),
             beats_in: streams.beats_in(),
             beats: streams.beats_out(),
             last_keep: format!("{:x}", streams.last_keep()),
@@ -183,6 +183,11 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if curve || !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
         without.push("sptfra_exponents");
     }
+    without.push(if plan.streams().sample == Samples::Float32 {
+        "sptfra_int_to_fixed"
+    } else {
+        "sptfra_float_to_fixed"
+    });
     if plan.dead.is_none() {
         without.push("sptfra_dead_taxels");
     }

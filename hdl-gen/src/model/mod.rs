@@ -93,7 +93,7 @@ impl<'plan> Model<'plan> {
         let (taxels, streams) = (self.plan.taxels(), self.plan.streams());
         let words = packet.iter().copied().chain(std::iter::repeat(0)).take(streams.whole_beats(packet.len()));
         let converted: Vec<Stress> =
-            words.take(taxels).enumerate().map(|(taxel, word)| self.convert(taxel, word)).collect();
+            streams.samples_of(words).take(taxels).enumerate().map(|(taxel, word)| self.convert(taxel, word)).collect();
         let mut bad = 0;
         if !streams.is_frame(packet.len()) {
             bad |= BAD_LENGTH;

@@ -1,14 +1,11 @@
 //! The two streams of a core: how samples and words fill their beats.
 
-use golden::design::{Design, Outputs, PlanKind};
+use golden::design::{Design, Outputs, PlanKind, Samples};
 
 use super::SUMMARY_WORDS;
 
 /// Bits of a word of the output, and of memory.
 pub const WORD_BITS: usize = 32;
-/// Bits of a sample.
-const SAMPLE_BITS: usize = 32;
-
 /// How the samples of a beat get to the lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Intake {
@@ -25,7 +22,9 @@ pub enum Intake {
 pub struct Streams {
     /// Bits of a beat.
     pub bits: usize,
-    /// Bits of a sample.
+    /// What a sample is.
+    pub sample: Samples,
+    /// Its bits.
     pub sample_bits: usize,
     /// Words of every output frame: 16, and for the field 3 m more.
     pub words_out: usize,
@@ -42,15 +41,16 @@ impl Streams {
             Outputs::Field => 3 * taxels,
             Outputs::Resultants => 0,
         };
-        let bits = design.hardware.stream_bits as usize;
-        let intake = if bits == SAMPLE_BITS {
+        let sample = design.hardware.samples;
+        let [bits, sample_bits] = [design.hardware.stream_bits, sample.bits()].map(|bits| bits as usize);
+        let intake = if bits == sample_bits {
             Intake::Single
         } else if design.algorithm.plan == PlanKind::Paper || !design.input.dead.is_empty() {
             Intake::Unpacked
         } else {
             Intake::Whole
         };
-        Self { bits, sample_bits: SAMPLE_BITS, words_out: SUMMARY_WORDS + field, intake, taxels }
+        Self { bits, sample, sample_bits, words_out: SUMMARY_WORDS + field, intake, taxels }
     }
 
     /// Words of a beat.
@@ -71,6 +71,43 @@ impl Streams {
     /// Words of an input frame as it lies in memory, the last filled with zeros.
     pub fn words_in(self) -> usize {
         (self.taxels * self.sample_bits).div_ceil(WORD_BITS)
+    }
+
+    /// The packet of a frame, as it lies in memory; values that no sample can be take the nearest.
+    pub fn packet(self, values: &[f64]) -> Vec<u32> {
+        let sample = |value: f64| match self.sample {
+            Samples::Float32 => (value as f32).to_bits(),
+            Samples::Int16 => u32::from((value.round() as i16).cast_unsigned()),
+            Samples::Uint16 => u32::from(value.round() as u16),
+        };
+        let packed = |values: &[f64]| {
+            values
+                .iter()
+                .rev()
+                .fold(0, |word: u32, &value| word.checked_shl(self.sample_bits as u32).unwrap_or(0) | sample(value))
+        };
+        values.chunks(WORD_BITS / self.sample_bits).map(packed).collect()
+    }
+
+    /// The samples of words in memory's order, as float32.
+    pub fn samples_of(self, words: impl IntoIterator<Item = u32>) -> impl Iterator<Item = u32> {
+        let step = self.sample_bits as u32;
+        words.into_iter().flat_map(move |word| {
+            (0..WORD_BITS as u32 / step).map(move |place| {
+                let bits = word >> (step * place);
+                match self.sample {
+                    Samples::Float32 => bits,
+                    Samples::Int16 => f32::from((bits as u16).cast_signed()).to_bits(),
+                    Samples::Uint16 => f32::from(bits as u16).to_bits(),
+                }
+            })
+        })
+    }
+
+    /// The values of a frame as a packet brings them.
+    pub fn received(self, packet: &[u32]) -> Vec<f64> {
+        let samples = self.samples_of(packet.iter().copied()).take(self.taxels);
+        samples.map(|bits| f64::from(f32::from_bits(bits))).collect()
     }
 
     /// Words of the beats that so many words fill, the last one with zeros.

@@ -65,6 +65,8 @@ fn standing() -> Vec<Plan> {
         fs::write(&file, design_text("counting_pad", [6, 4], [4.0, 4.0], 3.0, &more)).expect("writable");
         plans.push(Plan::new(&Design::load(&file).expect("right")).expect("a plan"));
     }
+    let more = "pa_per_count = -12.5\n[hardware]\nsamples = \"uint16\"";
+    plans.push(plan(&design_text("integer_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     let more = "curve = { power = 1.25, scale = -0.5 }\n";
     plans.push(plan(&design_text("curved_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     plans

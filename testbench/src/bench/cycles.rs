@@ -118,7 +118,7 @@ pub(super) fn measure(largest: usize, progress: &Progress) -> Result<Vec<Point>,
 /// The cycles of the sensor's standing frames, if the words are right too.
 fn simulate(plan: &Plan) -> Result<Cycles, BenchError> {
     let frames = FrameSet::standing(&plan.design.sensor)?.stress;
-    let verdict = Trial::new(plan, packets(&frames), SEED).run()?;
+    let verdict = Trial::new(plan, packets(plan.streams(), &frames), SEED).run()?;
     let wrong = |fault| BenchError::Wrong { design: plan.design.name.clone(), fault };
     Ok(verdict.right().map_err(wrong)?.cycles)
 }

@@ -9,7 +9,6 @@ use super::BenchError;
 use crate::progress::Progress;
 use crate::simulate::Cycles;
 use crate::stream::{Exchange, Pacing};
-use crate::stream_words::encode;
 use crate::trial::{self, TrialError, planned};
 
 /// Sides of the square sensors.
@@ -49,7 +48,7 @@ pub(super) fn measure(largest: usize, progress: &Progress) -> Result<Vec<Zeros>,
         let mut contacts = Vec::new();
         for friction in FRICTIONS {
             let frames = scene(&plan, friction).frames()?;
-            let packets: Vec<Vec<u32>> = frames.iter().map(|frame| encode(&frame.stress)).collect();
+            let packets: Vec<Vec<u32>> = frames.iter().map(|frame| plan.streams().packet(&frame.stress)).collect();
             let mut run = |pacing| trial::send(&mut core, &plan, &packets, pacing).map(|outcome| outcome.exchanges);
             let alone = run(Pacing::OneAtATime)?;
             let ends: Vec<u64> = run(Pacing::BackToBack)?.iter().map(|exchange| exchange.last_out).collect();

@@ -5,6 +5,7 @@ use golden::matrices::Matrices;
 use golden::metrics::field_error;
 use golden::solver::Solver;
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::streams::Streams;
 use serde::Serialize;
 
 use super::cases::Case;
@@ -90,8 +91,9 @@ pub fn judge(case: &Case) -> Row {
     };
     row.condition_c33 = Some(solver.matrices().condition_c33());
     row.condition_aat = Some(solver.matrices().condition_aat());
-    let packets = packets(&case.frames);
-    let frames: Vec<Vec<f64>> = packets.iter().map(|packet| as_received(packet)).collect();
+    let streams = Streams::of(&case.design);
+    let packets = packets(streams, &case.frames);
+    let frames: Vec<Vec<f64>> = packets.iter().map(|packet| as_received(streams, packet)).collect();
     // Frames have the sensor's length, the only thing that the solver refuses.
     let reference: Vec<Answer> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).map(Answer::from).collect();
     let judged = |answers: &[Answer]| judged(case, &solver, &frames, &reference, answers);

@@ -41,7 +41,7 @@ pub fn check(cases: &[Case], progress: &Progress) -> Result<Vec<Option<bool>>, T
 
 fn of_design(plan: &Plan, cases: &[&Case]) -> Result<Vec<bool>, TrialError> {
     let frames: Vec<Vec<f64>> = cases.iter().flat_map(|case| &case.frames).cloned().collect();
-    let trial = Trial::new(plan, packets(&frames), SEED);
+    let trial = Trial::new(plan, packets(plan.streams(), &frames), SEED);
     let Verdict { simulation, timing, .. } = trial.run()?;
     let mut first = 0;
     let free: Vec<bool> = cases

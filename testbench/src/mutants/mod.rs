@@ -213,7 +213,7 @@ impl<'a> Ordeal<'a> {
         let frames = FrameSet::standing(&plan.design.sensor)?.as_delivered(&plan.design);
         let cache = tempfile::tempdir().map_err(MutantsError::Folder)?;
         let translation = translation(sources).map_err(TrialError::from)?;
-        let trial = Trial::new(plan, packets(&frames.stress), options.seed as u32);
+        let trial = Trial::new(plan, packets(plan.streams(), &frames.stress), options.seed as u32);
         Ok(Self { trial, sources, translation, options, cache })
     }
 

@@ -1,6 +1,6 @@
 //! What `testbench run` asks of a register bank: who it is, and whether it counts what happens.
 
-use hdl_gen::blocks::registers::MAP_VERSION;
+use hdl_gen::blocks::registers::{self, MAP_VERSION};
 use hdl_gen::emit::{VERSION, resolved_hash};
 use hdl_gen::model::{BAD_LENGTH, NOT_FINITE};
 use hdl_gen::plan::Plan;
@@ -96,7 +96,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
     let hash = u64::from_str_radix(&resolved_hash(&plan.design), 16).unwrap_or_default();
     let part = |index| VERSION.split('.').nth(index).and_then(|text| text.parse::<u32>().ok()).unwrap_or_default();
     // From bit 8 on, behind four features and four bits that are 0.
-    let stream = hardware.stream_bits / 8;
+    let stream = (hardware.stream_bits / 8) | (u32::from(registers::samples(plan)) << 8);
     let features = [plan.field_words() > 0, plan.ways() > 1, plan.counts.is_some(), hardware.skip_zeros];
     vec![
         ("IDENTITY", address::IDENTITY, u32::from_be_bytes(*b"TFRA")),

@@ -78,10 +78,13 @@ pub fn run_plan(
 ) -> Result<Report, RunError> {
     let sources = rtl_sources(plan)?;
     progress.stage("computing what the hardware must answer");
-    let trial = Trial::new(plan, packets(&frames.stress), options.seed);
+    let trial = Trial::new(plan, packets(plan.streams(), &frames.stress), options.seed);
     let solver = Solver::new(&plan.design)?;
-    let solutions =
-        trial.packets.iter().map(|packet| solver.solve(&as_received(packet))).collect::<Result<Vec<_>, _>>()?;
+    let solutions = trial
+        .packets
+        .iter()
+        .map(|packet| solver.solve(&as_received(plan.streams(), packet)))
+        .collect::<Result<Vec<_>, _>>()?;
 
     progress.stage("building the simulation with Verilator");
     let verilate = Verilate::default().with_trace(trace_format(options.trace)?);

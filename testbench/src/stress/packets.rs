@@ -1,5 +1,6 @@
 //! Packets of every kind that a source can send, good and bad.
 
+use golden::design::Samples;
 use hdl_gen::model::{BAD_LENGTH, Model, NO_CONTACT, NOT_FINITE};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::words::FORCE;
@@ -119,7 +120,7 @@ pub fn packet(plan: &Plan, random: &mut ChaCha8Rng) -> (Kind, Vec<u32>) {
             }
             (Kind::Long, words)
         }
-        2 | 3 => {
+        2 | 3 if streams.sample == Samples::Float32 => {
             words[random.random_range(0..taxels)] = not_finite(random);
             (Kind::NotFinite, words)
         }
@@ -183,7 +184,8 @@ fn good(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {
         }
         4 => {
             let finite = |word: u32| if word >> 23 & 0xFF == 0xFF { word & !(1 << 30) } else { word };
-            return (0..taxels).map(|_| finite(random.random())).collect();
+            // Integers are what they are.
+            return (0..plan.streams().words_in()).map(|_| finite(random.random())).collect();
         }
         _ => {
             let centre = [sensor.columns, sensor.rows].map(|side| random.random_range(0.0..side as f64));
@@ -202,6 +204,6 @@ fn good(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {
 }
 
 fn in_words(plan: &Plan, pascals: &[f64]) -> Vec<u32> {
-    let word = |(taxel, &pascal): (usize, &f64)| (plan.design.input.from_pa(taxel, pascal) as f32).to_bits();
-    pascals.iter().enumerate().map(word).collect()
+    let value = |(taxel, &pascal): (usize, &f64)| plan.design.input.from_pa(taxel, pascal);
+    plan.streams().packet(&pascals.iter().enumerate().map(value).collect::<Vec<_>>())
 }

@@ -9,6 +9,7 @@ use golden::matrices::MatrixName;
 use golden::metrics::{ErrorSummary, Outcome};
 use golden::solver::{Solution, Solver};
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::streams::Streams;
 
 use super::distributed::RunReport;
 use super::grid::{Job, filter_text};
@@ -41,12 +42,12 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
     let design = &job.design;
     let frames = scene.frames.clone().as_delivered(design);
     let truth = frames.truth.clone().unwrap_or_default();
-    let packets = packets(&frames.stress);
+    let packets = packets(Streams::of(design), &frames.stress);
     let refused = |source| SweepError::Solver { label: job.label(scene), source };
     let solver = Solver::new(design).map_err(refused)?;
     let solutions = packets
         .iter()
-        .map(|packet| solver.solve(&as_received(packet)))
+        .map(|packet| solver.solve(&as_received(Streams::of(design), packet)))
         .collect::<Result<Vec<_>, _>>()
         .map_err(refused)?;
     let mut point = described(job, scene, &solver, &solutions, &truth);
@@ -142,6 +143,6 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 /// [`SweepError::Run`] if the design has no plan.
 pub fn answers(design: &Design, frames: &FrameSet) -> Result<Vec<Answer>, SweepError> {
     let plan = planned(design).map_err(|error| SweepError::Run { label: design.name.clone(), source: error.into() })?;
-    let packets = packets(&frames.clone().as_delivered(design).stress);
+    let packets = packets(plan.streams(), &frames.clone().as_delivered(design).stress);
     Ok(model_answers(&plan, &packets).iter().filter_map(|words| decode(words)).collect())
 }

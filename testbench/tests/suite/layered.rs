@@ -44,7 +44,8 @@ fn errors(design: &str, scene: &str) -> Vec<[ErrorSummary; 2]> {
         first = frames.end;
         let solved = packets[frames.clone()]
             .iter()
-            .map(|packet| Outcome::from(&solver.solve(&as_received(packet)).expect("a frame of the right length")));
+            .map(|packet| solver.solve(&as_received(plan.streams(), packet)).expect("a frame of the right length"))
+            .map(|solution| Outcome::from(&solution));
         let pairs: Vec<(Outcome, Outcome)> = truth.iter().copied().zip(solved).collect();
         [ErrorSummary::new(&pairs), against_truth(&answers[frames], truth)]
     };

@@ -4,7 +4,7 @@
 use std::sync::OnceLock;
 
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint, with_lanes};
-use golden::design::{Calibration, Curve, Design, Outputs, PlanKind};
+use golden::design::{Calibration, Curve, Design, Outputs, PlanKind, Samples};
 use hdl_gen::model::{BAD_LENGTH, NOT_FINITE};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::streams::Intake;
@@ -46,6 +46,13 @@ fn subjects() -> &'static [Subject] {
         calibrate(&mut counts);
         let mut curved = small("curved", 128, reduced, Outputs::Resultants);
         curved.input.curve = Some(Curve { points: vec![[0.0, 0.0], [50.0, -100.0], [4095.0, -1e5]], law: None });
+        let mut integers = small("integers", 128, reduced, Outputs::Resultants);
+        calibrate(&mut integers);
+        integers.hardware.samples = Samples::Int16;
+        let mut unsigned = small("unsigned", 32, paper, Outputs::Field);
+        (unsigned.sensor.columns, unsigned.sensor.rows) = (3, 3);
+        calibrate(&mut unsigned);
+        unsigned.hardware.samples = Samples::Uint16;
         let mut dead = small("dead", 128, reduced, Outputs::Field);
         dead.sensor.rows = 5;
         dead.sensor.columns = 3;
@@ -59,6 +66,8 @@ fn subjects() -> &'static [Subject] {
             counts,
             curved,
             dead,
+            integers,
+            unsigned,
         ];
         in_parallel(&designs, |design| {
             let plan = planned(design);
@@ -83,6 +92,19 @@ fn packets(plan: &Plan) -> Vec<Vec<u32>> {
     let mut packets = frames::extremes(plan, &mut random);
     packets.extend((0..6).map(|_| frames::contact(plan, &mut random)));
     packets.push(frames::noise(plan, 1.0, &mut random));
+    if plan.design.hardware.samples != Samples::Float32 {
+        // Made as float32: as words they are counts of all sizes and signs.
+        for packet in &mut packets {
+            packet.truncate(plan.streams().words_in());
+        }
+        for share in [1e-3, 0.1, 1.0] {
+            let pascals = random.random_range(0.1..1.0) * share * plan.design.hardware.full_scale_pa;
+            let value = |taxel: usize| {
+                plan.design.input.from_pa(taxel, if taxel.is_multiple_of(4) { pascals } else { -pascals })
+            };
+            packets.push(plan.streams().packet(&(0..plan.taxels()).map(value).collect::<Vec<_>>()));
+        }
+    }
     packets
 }
 
@@ -107,10 +129,12 @@ fn both_ways_in_are_among_the_designs() {
 #[test]
 fn bad_frames_cost_themselves_only() {
     in_parallel(subjects(), |Subject { plan, built }| {
-        let (taxels, streams) = (plan.taxels(), plan.streams());
-        let (width, whole) = (streams.words(), streams.whole_beats(taxels));
+        let streams = plan.streams();
+        // Words of a frame, of a beat, and of all beats.
+        let (taxels, width) = (streams.words_in(), streams.words());
+        let whole = streams.whole_beats(taxels);
         let mut random = ChaCha8Rng::seed_from_u64(11);
-        let good = frames::contact(plan, &mut random);
+        let good = frames::contact(plan, &mut random)[..taxels].to_vec();
         let mut packets = vec![good.clone()];
         let mut known = vec![0];
         let mut add = |packet: Vec<u32>, status: u32| {
@@ -120,8 +144,9 @@ fn bad_frames_cost_themselves_only() {
         for place in (0..width.min(taxels)).flat_map(|place| [place, taxels - 1 - place]) {
             let mut packet = good.clone();
             packet[place] = if place % 2 == 0 { f32::NAN } else { f32::NEG_INFINITY }.to_bits();
-            let dead = plan.design.input.dead.contains(&place);
-            add(packet, if dead { 0 } else { NOT_FINITE });
+            // Integers are numbers, and what a dead taxel reads is none's business.
+            let ignored = streams.sample != Samples::Float32 || plan.design.input.dead.contains(&place);
+            add(packet, if ignored { 0 } else { NOT_FINITE });
         }
         let of_length = |length: usize| good.iter().copied().cycle().take(length).collect::<Vec<u32>>();
         for beats in (1..streams.beats_in()).chain([1, 2, 7].map(|more| streams.beats_in() + more)) {

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::support::random;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
-use golden::design::{Calibration, Curve, Design, Estimator, Input, Outputs, PlanKind, Slip, Tension};
+use golden::design::{Calibration, Curve, Design, Estimator, Input, Outputs, PlanKind, Samples, Slip, Tension};
 use hdl_gen::emit::emit;
 use tempfile::TempDir;
 use testbench::tools;
@@ -41,6 +41,9 @@ fn designs() -> Vec<Design> {
     "wide".clone_into(&mut wide.name);
     wide.input.dead.clear();
     wide.hardware.stream_bits = 128;
+    let mut integers = wide.clone();
+    "integers".clone_into(&mut integers.name);
+    integers.hardware.samples = Samples::Int16;
     let mut unpacked = by_plan(shipped("odd"), paper, Outputs::Field);
     "unpacked".clone_into(&mut unpacked.name);
     unpacked.hardware.stream_bits = 64;
@@ -48,6 +51,7 @@ fn designs() -> Vec<Design> {
     wide_control.hardware.stream_bits = 64;
     vec![
         wide,
+        integers,
         unpacked,
         wide_control,
         by_plan(shipped("small"), paper, Outputs::Field),

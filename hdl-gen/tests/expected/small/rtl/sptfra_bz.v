@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Bz: takes frames of float32 stresses or counts from the stream, checks them, and writes them as fixed point into one
+// Bz: takes frames of stresses or counts from the stream, checks them, and writes them as fixed point into one
 // of two banks of the lanes' operand memories: taxel by taxel, or folded into parity classes.
 //
 // Beat to stress: 5 cycles, with counts 9; to the write, where taxels are folded, three more. One beat a cycle. Where
@@ -23,7 +23,8 @@ module sptfra_bz #(
     // each taxel has an exponent of its own
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
-    // Whether the stream carries counts: see sptfra_samples
+    // What a sample of the stream is, and whether it is a count: see sptfra_samples
+    parameter SAMPLE = 0,
     parameter COUNTS = 0,
     parameter PER_TAXEL = 0,
     // Whether each taxel has an exponent of its own
@@ -48,13 +49,14 @@ module sptfra_bz #(
     // Cycles from a beat to its stress that the plan counts on; 0: any
     parameter EXPECTED_STAGES = 0,
     // Derived
+    parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16,
     parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
     input  wire clock,
     input  wire reset,
     // Stream in
-    input  wire [31:0] s_tdata,
+    input  wire [SAMPLE_BITS-1:0] s_tdata,
     input  wire s_tlast,
     input  wire s_tvalid,
     output wire s_tready,
@@ -157,6 +159,7 @@ module sptfra_bz #(
 
     sptfra_samples #(
         .TAXELS       (TAXELS),
+        .SAMPLE       (SAMPLE),
         .NUMBER_SHIFT (NUMBER_SHIFT),
         .NUMBER_BOUND (NUMBER_BOUND),
         .COUNTS       (COUNTS),
@@ -178,7 +181,7 @@ module sptfra_bz #(
         .reset      (reset),
         .advance    (advance),
         .accept     (accept),
-        .word       (s_tdata),
+        .sample     (s_tdata),
         .last       (s_tlast),
         .next_taxel (valid[CURVE_STAGES] && stores[CURVE_STAGES]),
         .frame_ends (valid[CURVE_STAGES] && lasts[CURVE_STAGES]),

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The stream's words to stress: float32 pascals to fixed point, or float32 counts, which a curve and taxels' gains make
-// stresses.
+// The stream's samples to stress: float32 pascals to fixed point, or counts, float32 or integers, which a curve and
+// taxels' gains make stresses.
 //
-// Word to stress: 5 cycles, with counts 9, with a curve CURVE_LEVELS + 7 more; one a cycle.
+// Sample to stress: 5 cycles, with counts 9, with a curve CURVE_LEVELS + 7 more; one a cycle.
 
 `default_nettype none
 
 module sptfra_samples #(
     // Taxels of a frame
     parameter TAXELS = 100,
+    // What a sample is: 0 float32, 1 a 16-bit integer, 2 one without a sign
+    parameter SAMPLE = 0,
     // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts; with EXPONENTS
     // each taxel has one of its own
     parameter NUMBER_SHIFT = 9,
@@ -33,14 +35,16 @@ module sptfra_samples #(
     // Prefix of the ROM file names, and what they begin with; those of the taxels
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
-    parameter TAXEL_NAME = ROM_NAME
+    parameter TAXEL_NAME = ROM_NAME,
+    // Derived
+    parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16
 ) (
     input  wire clock,
     input  wire reset,
     input  wire advance,
-    // Words of the stream
+    // Samples of the stream
     input  wire accept,
-    input  wire [31:0] word,
+    input  wire [SAMPLE_BITS-1:0] sample,
     input  wire last,
     // When the number, or the curve's value, is there
     input  wire next_taxel, // the number is of a taxel, the next one of the taxel after it
@@ -53,7 +57,7 @@ module sptfra_samples #(
 
     localparam signed [9:0] SHIFT = NUMBER_SHIFT[9:0];
 
-    // ---- float32 to fixed point
+    // ---- To fixed point
     wire signed [26:0] number;
     wire number_saturated;
     wire number_not_finite;
@@ -77,16 +81,34 @@ module sptfra_samples #(
         end
     endgenerate
 
-    sptfra_float_to_fixed float_to_fixed (
-        .clock      (clock),
-        .enable     (advance),
-        .float_bits (word),
-        .shift      (shift),
-        .limit      (NUMBER_BOUND),
-        .fixed      (number),
-        .saturated  (number_saturated),
-        .not_finite (number_not_finite)
-    );
+    generate
+        if (SAMPLE == 0) begin : gen_float
+            sptfra_float_to_fixed float_to_fixed (
+                .clock      (clock),
+                .enable     (advance),
+                .float_bits (sample),
+                .shift      (shift),
+                .limit      (NUMBER_BOUND),
+                .fixed      (number),
+                .saturated  (number_saturated),
+                .not_finite (number_not_finite)
+            );
+        end else begin : gen_integer
+            sptfra_int_to_fixed #(
+                .SIGNED ((SAMPLE == 1) ? 1 : 0)
+            ) int_to_fixed (
+                .clock     (clock),
+                .enable    (advance),
+                .count     (sample),
+                .shift     (shift),
+                .limit     (NUMBER_BOUND),
+                .fixed     (number),
+                .saturated (number_saturated)
+            );
+
+            assign number_not_finite = 1'b0;
+        end
+    endgenerate
 
     // ---- Counts along the curve
     wire signed [26:0] count;

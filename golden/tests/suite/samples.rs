@@ -1,0 +1,56 @@
+//! Integer samples: which designs have them, and which frames they take.
+
+use golden::design::{Design, Samples};
+use golden::frames::read_frames_of;
+
+const PAD: &str = "name = \"pad\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
+
+fn pad(sensor: &str, samples: &str) -> Result<Design, String> {
+    let text = format!("{PAD}{sensor}\n[hardware]\nsamples = \"{samples}\"\n");
+    Design::from_toml(&text, "pad.toml").map_err(|error| error.to_string())
+}
+
+#[test]
+fn integers_are_counts() {
+    for (word, samples, range) in
+        [("int16", Samples::Int16, [-32_768.0, 32_767.0]), ("uint16", Samples::Uint16, [0.0, 65_535.0])]
+    {
+        let design = pad("pa_per_count = -10.0", word).unwrap();
+        assert_eq!((design.hardware.samples, samples.range()), (samples, Some(range)));
+        assert_eq!(Design::from_toml(&design.to_toml(), "again").unwrap(), design);
+        let message = pad("", word).unwrap_err();
+        assert!(["hardware.samples", word, "pascals", "sensor.pa_per_count"].iter().all(|part| message.contains(part)));
+    }
+    let message = pad("pa_per_count = -10.0", "int12").unwrap_err();
+    assert!(message.contains("hardware.samples") && message.contains("float32, int16, uint16"), "{message}");
+    let plain = pad("", "float32").unwrap();
+    assert!(!plain.to_toml().contains("samples"), "a design without the key keeps its hash");
+}
+
+#[test]
+fn frames_hold_what_samples_can_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |text: &str, samples: &str| {
+        let file = folder.path().join("frames.csv");
+        std::fs::write(&file, text).unwrap();
+        let design = pad("pa_per_count = -10.0", samples).unwrap();
+        read_frames_of(&file, &design, 0).map_err(|error| error.to_string())
+    };
+    assert_eq!(read("1,2,3,-4\n", "int16").unwrap(), [[1.0, 2.0, 3.0, -4.0]]);
+    for (text, samples, parts) in [
+        ("1,2,3,4\n\n1,2.5,3,4\n", "int16", ["line 3, column 2", "2.5", "from -32768 to 32767"]),
+        ("a,b,c,d\n# none\n1,2,3,40000\n", "int16", ["line 3, column 4", "40000", "int16"]),
+        ("1,2,3,4\n-1,2,3,4\n", "uint16", ["line 2, column 1", "-1", "from 0 to 65535"]),
+    ] {
+        let message = read(text, samples).unwrap_err();
+        assert!(parts.iter().all(|part| message.contains(part)) && message.contains("frames.csv"), "{message}");
+    }
+    assert!(read("1,2.5,3,4\n", "float32").is_ok());
+}
+
+#[test]
+fn what_a_sensor_delivers_fits_its_samples() {
+    let mut frame = [-1e6, 1e6, -15.0, 0.0];
+    pad("pa_per_count = -10.0", "uint16").unwrap().deliver(&mut frame);
+    assert_eq!(frame.map(|count| count as i64), [65_535, 0, 2, 0]);
+}
