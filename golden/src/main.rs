@@ -16,8 +16,10 @@ use clap::{CommandFactory, Parser, Subcommand};
 use commands::Recording;
 use golden::arguments::design_file;
 use golden::calibrate::Settings;
+use golden::design::Family;
 use golden::manual::Manual;
 use golden::output::print_text;
+use golden::words::parser;
 
 /// Reference solver and ground truth for three-axis tactile sensing from normal stress.
 #[derive(Parser)]
@@ -147,6 +149,10 @@ enum Command {
         /// Seed of the contacts and of the training.
         #[arg(long, default_value_t = 1)]
         seed: u64,
+        /// Contacts to fit to: "narrow", round and sliding, "wide", of any shape, tilted, held, over the grid's edge.
+        /// Unless given, what the design says under [algorithm] family.
+        #[arg(long, value_parser = parser::<Family>())]
+        family: Option<Family>,
         /// Hidden units of the correction, 0 to 256; 128 unless given, 24 with --quick; 0 for none.
         #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256))]
         hidden: Option<u16>,
@@ -254,10 +260,10 @@ fn main() -> ExitCode {
         Command::Check { design, frames, labels, json } => {
             commands::check::run(&design, &Recording { file: &frames, labels }, json)
         }
-        Command::Calibrate { design, out, seed, hidden, quick, json } => {
+        Command::Calibrate { design, out, seed, family, hidden, quick, json } => {
             let work = if quick { Settings::quick() } else { Settings::default() };
             let settings = Settings { seed, hidden: hidden.map_or(work.hidden, usize::from), ..work };
-            commands::calibrate::run(&design, &out, &settings, json)
+            commands::calibrate::run(&design, &out, family, &settings, json)
         }
         Command::Manual(manual) => manual.run(Arguments::command()).and_then(|text| Ok(print_text(&text)?)),
         Command::Bench { designs, json } => commands::bench::run(&designs, json),

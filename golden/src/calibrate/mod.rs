@@ -7,6 +7,8 @@ mod contacts;
 mod looks;
 mod samples;
 mod train;
+mod twins;
+mod wide;
 
 pub use contacts::random_contacts;
 
@@ -14,7 +16,7 @@ use crate::design::{Design, Estimator, Input, JointConstants, conditions};
 use crate::estimators::joint::CUBIC_LIMIT;
 use crate::scene::SceneError;
 use crate::solver::SolverError;
-use samples::Sample;
+use samples::{Observer, Sample};
 
 /// How much work the calibration takes on; more of each makes better constants, slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +34,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Pieces of work, each of which is reported.
+    pub fn work(&self) -> usize {
+        self.contacts + self.samples + self.steps
+    }
+
     /// A tenth of the work, for a first look: errors are up to twice as large.
     pub fn quick() -> Self {
         Self { contacts: 2000, samples: 10_000, hidden: 24, steps: 3000, ..Self::default() }
@@ -127,7 +134,8 @@ pub fn calibrate(
     let tension = design.input.tension;
     let design = &Design { input: Input { tension, ..Input::default() }, ..design.clone() };
     let half_window = contacts::half_window(&design.sensor);
-    let samples = samples::make(design, settings, half_window, tick)?;
+    let mut observer = Observer::new(design, half_window)?;
+    let samples = samples::make(&mut observer, settings, tick)?;
     if samples.is_empty() {
         return Err(CalibrateError::NoAnswer { name: name(), samples: settings.samples });
     }
@@ -138,12 +146,21 @@ pub fn calibrate(
     if !legal {
         return Err(CalibrateError::OutOfRange { name: name(), gain, c1, c3 });
     }
-    let correction =
-        (settings.hidden > 0).then(|| train::train(&samples, &targets, tangential, half_window, settings, tick));
+    let correction = (settings.hidden > 0).then(|| {
+        train::train(
+            (&design.sensor, design.algorithm.joint.family),
+            &samples,
+            &targets,
+            tangential,
+            half_window,
+            settings,
+            tick,
+        )
+    });
     let algorithm = &design.algorithm;
-    let grid = algorithm.joint.grid;
+    let (grid, family) = (algorithm.joint.grid, algorithm.joint.family);
     let fitted_to = Some(conditions(&design.sensor, tension, algorithm.kernel, algorithm.regularisation, grid));
-    Ok(JointConstants { grid, gain, tangential, correction, fitted_to })
+    Ok(JointConstants { grid, family, gain, tangential, correction, fitted_to })
 }
 
 /// The constants `c1, c3` that bring `c1 mu + c3 mu |mu|^2` closest to the targets, by least squares.

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::checks::Check;
 use super::files::{Beside, sha256};
 use super::{DesignError, Kernel, Regularisation, Sensor, Tension};
-use crate::estimators::joint::{CUBIC_LIMIT, Correction, Grid, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT};
+use crate::estimators::joint::{CUBIC_LIMIT, Correction, Family, Grid, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT};
 
 /// What the constants depend on, for people and for comparison.
 pub fn conditions(
@@ -37,6 +37,7 @@ pub(super) struct RawCorrection {
 /// The constants as a file has them, without the correction.
 pub(super) struct Raw<'a> {
     pub grid: Grid,
+    pub family: Family,
     pub gain: Option<f64>,
     pub tangential: Option<&'a [f64]>,
     pub fitted_to: Option<String>,
@@ -70,7 +71,8 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
         check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
         check.real("algorithm.tangential[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
     ];
-    Ok(JointConstants { grid: raw.grid, gain, tangential, correction: None, fitted_to: raw.fitted_to })
+    let Raw { grid, family, fitted_to, .. } = raw;
+    Ok(JointConstants { grid, family, gain, tangential, correction: None, fitted_to })
 }
 
 /// A name for the calibrated design beside the one at `origin`.
@@ -81,8 +83,12 @@ fn resolved_name(origin: &str) -> PathBuf {
 }
 
 /// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
-pub(super) fn refuse(check: &Check, given: [bool; 5]) -> Result<(), DesignError> {
-    match ["grid", "gain", "tangential", "correction", "fitted_to"].into_iter().zip(given).find(|(_, given)| *given) {
+pub(super) fn refuse(check: &Check, given: [bool; 6]) -> Result<(), DesignError> {
+    match ["grid", "family", "gain", "tangential", "correction", "fitted_to"]
+        .into_iter()
+        .zip(given)
+        .find(|(_, given)| *given)
+    {
         Some((key, _)) => Err(check.value(
             &format!("algorithm.{key}"),
             "belongs to the joint estimator".to_owned(),
@@ -193,11 +199,12 @@ fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<
 
 /// The keys of `[algorithm]`, and the table that follows all of them, with the weights in the file named `weights`.
 pub(super) fn print(constants: &JointConstants, weights: &str) -> [String; 2] {
-    let JointConstants { grid, gain, tangential: [c1, c3], correction, fitted_to } = constants;
+    let JointConstants { grid, family, gain, tangential: [c1, c3], correction, fitted_to } = constants;
     // Only where it is another one: a design without it keeps the hash that it had before there was such a key.
     let grid = if *grid == Grid::FINE { String::new() } else { format!("grid = {}\n", grid.side()) };
+    let family = if *family == Family::Narrow { String::new() } else { format!("family = \"{family}\"\n") };
     let fitted_to = fitted_to.as_ref().map_or_else(String::new, |conditions| format!("fitted_to = {conditions:?}\n"));
-    let keys = format!("{grid}{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
+    let keys = format!("{grid}{family}{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
     let table = correction.as_ref().map_or_else(String::new, |correction| {
         let ([x, y], hash) = (correction.half_window, sha256(&correction.to_csv()));
         let file = toml::Value::from(weights);

@@ -1,6 +1,9 @@
 //! What `golden calibrate` finds for the joint estimator.
 
+use serde::{Deserialize, Serialize};
+
 use super::grid::Grid;
+use crate::words::print_as_words;
 
 /// Weights of a correction are whole numbers of `2^-WEIGHT_FRACTION`.
 pub const WEIGHT_FRACTION: u32 = 12;
@@ -14,11 +17,26 @@ pub const CUBIC_LIMIT: f64 = 3.9;
 /// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.
 pub const EXTRA_INPUTS: usize = 5;
 
+/// Contacts that the constants are fitted to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Family {
+    /// Round or nearly so, sliding, with a pressure that is the same in front and behind.
+    #[default]
+    Narrow,
+    /// Of any shape, tilted, held, turning, over the grid's edge, on a sensor that is not quite what the design says.
+    Wide,
+}
+
+print_as_words!(Family);
+
 /// Constants of the joint estimator for one design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointConstants {
     /// Points of the plane at which Condition 1 is evaluated.
     pub grid: Grid,
+    /// Contacts that the other constants are fitted to.
+    pub family: Family,
     /// Factor on all forces; what a kernel of point forces lacks at long waves.
     pub gain: f64,
     /// `[c1, c3]`: the friction vector is `c1 mu + c3 mu |mu|^2` of the centroid of the level set.
@@ -32,7 +50,14 @@ pub struct JointConstants {
 
 impl Default for JointConstants {
     fn default() -> Self {
-        Self { grid: Grid::FINE, gain: 1.0, tangential: [1.0, 0.0], correction: None, fitted_to: None }
+        Self {
+            grid: Grid::FINE,
+            family: Family::default(),
+            gain: 1.0,
+            tangential: [1.0, 0.0],
+            correction: None,
+            fitted_to: None,
+        }
     }
 }
 

@@ -13,7 +13,9 @@ mod weights;
 
 use super::seen::{RANGE, Seen};
 use crate::status::Status;
-pub use constants::{CUBIC_LIMIT, Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION, WEIGHT_LIMIT};
+pub use constants::{
+    CUBIC_LIMIT, Correction, EXTRA_INPUTS, Family, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION, WEIGHT_LIMIT,
+};
 pub use grid::Grid;
 pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};
