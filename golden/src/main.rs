@@ -14,8 +14,8 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use commands::Recording;
+use commands::calibrate::Work;
 use golden::arguments::design_file;
-use golden::calibrate::Settings;
 use golden::design::Family;
 use golden::manual::Manual;
 use golden::output::print_text;
@@ -261,9 +261,8 @@ fn main() -> ExitCode {
             commands::check::run(&design, &Recording { file: &frames, labels }, json)
         }
         Command::Calibrate { design, out, seed, family, hidden, quick, json } => {
-            let work = if quick { Settings::quick() } else { Settings::default() };
-            let settings = Settings { seed, hidden: hidden.map_or(work.hidden, usize::from), ..work };
-            commands::calibrate::run(&design, &out, family, &settings, json)
+            let work = Work { seed, hidden: hidden.map(usize::from), quick };
+            commands::calibrate::run(&design, &out, family, work, json)
         }
         Command::Manual(manual) => manual.run(Arguments::command()).and_then(|text| Ok(print_text(&text)?)),
         Command::Bench { designs, json } => commands::bench::run(&designs, json),

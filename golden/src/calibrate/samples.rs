@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::wide::{self, Body};
 use super::{CalibrateError, Settings, Stage, random_contacts};
-use crate::design::Design;
+use crate::design::{Design, Sensor};
 use crate::estimators::joint::{self, Family, JointScratch, Look};
 use crate::products::ByPq;
 use crate::scene::{Contact, Medium, Shape, normal, unit_responses};
@@ -40,6 +40,14 @@ pub(super) struct Sample {
     force: [f64; 3],
 }
 
+impl Sample {
+    /// Length of the error of `(F_x, F_y)` over `|F_z|` with a gain and friction components.
+    pub(super) fn error(&self, mu: [f64; 2], gain: f64) -> f64 {
+        let [x, y, z] = [0, 1, 2].map(|p| gain * (self.sums[p][0] + mu[0] * self.sums[p][1] + mu[1] * self.sums[p][2]));
+        (x - self.force[0]).hypot(y - self.force[1]) / z.abs()
+    }
+}
+
 /// What frames are seen with: the estimator of a design, before it is calibrated.
 pub(super) struct Observer<'a> {
     design: &'a Design,
@@ -53,6 +61,11 @@ impl<'a> Observer<'a> {
     pub(super) fn new(design: &'a Design, half_window: [usize; 2]) -> Result<Self, CalibrateError> {
         let solver = Solver::new(design)?;
         Ok(Self { design, workspace: solver.workspace(), solver, scratch: JointScratch::default(), half_window })
+    }
+
+    /// The sensor of the design.
+    pub(super) fn sensor(&self) -> &'a Sensor {
+        &self.design.sensor
     }
 
     /// Estimates a frame with its true resultant, of any size, and with noise of a deviation that is a share of its largest

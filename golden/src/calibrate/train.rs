@@ -187,17 +187,10 @@ impl Learner {
     fn correction(&self, basis: &Basis, half_window: [usize; 2]) -> Correction {
         let mut hidden = basis.weights(self.hidden.each_ref().map(|layer| &layer.weights));
         let mut output = self.output.weights.map(f64::from);
-        for (mut unit, mut output) in hidden.row_iter_mut().zip(output.row_iter_mut()) {
-            let sum: f64 = unit.iter().map(|weight| weight.abs()).sum();
-            let most = (LARGEST_SUM / sum).min(LARGEST_WEIGHT / unit.amax());
-            // A power of two; of a unit without weights none.
-            let factor = if most.is_finite() { most.log2().floor().exp2() } else { 1.0 };
-            unit *= factor;
-            output /= factor;
-        }
+        scaled_alike(&mut hidden, &mut output);
         let mut output = quantised(&output.transpose()).into_iter();
         let output = [0, 1].map(|_| output.next().unwrap_or_default());
-        let mut correction = Correction { half_window, hidden: quantised(&hidden), output };
+        let mut correction = Correction { half_window, hidden: quantised(&hidden), output, doubt: None };
         if self.diagonal.is_some() {
             twins::tie(&mut correction);
         }
@@ -205,20 +198,32 @@ impl Learner {
     }
 }
 
+/// Brings the hidden units (rows) to about the same sum of weights, at the cost of their weights in the output.
+pub(super) fn scaled_alike(hidden: &mut DMatrix<f64>, output: &mut DMatrix<f64>) {
+    for (mut unit, mut output) in hidden.row_iter_mut().zip(output.row_iter_mut()) {
+        let sum: f64 = unit.iter().map(|weight| weight.abs()).sum();
+        let most = (LARGEST_SUM / sum).min(LARGEST_WEIGHT / unit.amax());
+        // A power of two; of a unit without weights none.
+        let factor = if most.is_finite() { most.log2().floor().exp2() } else { 1.0 };
+        unit *= factor;
+        output /= factor;
+    }
+}
+
 /// Weights with what the descent remembers of their gradients (Adam: Kingma and Ba, 2015).
-struct Layer {
-    weights: DMatrix<f32>,
+pub(super) struct Layer {
+    pub(super) weights: DMatrix<f32>,
     mean: DMatrix<f32>,
     square: DMatrix<f32>,
 }
 
 impl Layer {
-    fn new(weights: DMatrix<f32>) -> Self {
+    pub(super) fn new(weights: DMatrix<f32>) -> Self {
         let zero = DMatrix::zeros(weights.nrows(), weights.ncols());
         Self { weights, mean: zero.clone(), square: zero }
     }
 
-    fn descend(&mut self, gradient: &DMatrix<f32>, rate: f32, step: usize) {
+    pub(super) fn descend(&mut self, gradient: &DMatrix<f32>, rate: f32, step: usize) {
         const KEPT: [f32; 2] = [0.9, 0.999];
         let [mean_share, square_share] = KEPT.map(|kept| 1.0 - kept.powi(step as i32));
         let state = self.weights.iter_mut().zip(self.mean.iter_mut()).zip(self.square.iter_mut());
@@ -232,7 +237,7 @@ impl Layer {
 }
 
 /// Weights row by row in steps of `2^-WEIGHT_FRACTION`.
-fn quantised(weights: &DMatrix<f64>) -> Vec<Vec<i32>> {
+pub(super) fn quantised(weights: &DMatrix<f64>) -> Vec<Vec<i32>> {
     let limit = f64::from(WEIGHT_LIMIT);
     let steps = f64::from(1 << WEIGHT_FRACTION);
     let whole = |weight: &f64| (weight * steps).round().clamp(-limit, limit - 1.0) as i32;

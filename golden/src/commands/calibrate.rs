@@ -23,16 +23,18 @@ struct Report<'a> {
     weights: usize,
 }
 
+/// What the command's options say of the work.
+#[derive(Clone, Copy, Debug)]
+pub struct Work {
+    pub seed: u64,
+    pub hidden: Option<usize>,
+    pub quick: bool,
+}
+
 /// Calibrates the design in `path` and writes the resolved design to `out`.
 ///
 /// A family of contacts takes the place of the one that the design names.
-pub fn run(
-    path: &Path,
-    out: &Path,
-    family: Option<Family>,
-    settings: &Settings,
-    json: bool,
-) -> Result<(), Box<dyn Error>> {
+pub fn run(path: &Path, out: &Path, family: Option<Family>, work: Work, json: bool) -> Result<(), Box<dyn Error>> {
     let mut design = Design::load_unfitted(path)?;
     if let Some(name) = name_of(out) {
         design.name = name;
@@ -40,10 +42,13 @@ pub fn run(
     if let Some(family) = family {
         design.algorithm.joint.family = family;
     }
+    let family = design.algorithm.joint.family;
+    let settings = Settings::of(family, work.quick);
+    let settings = Settings { seed: work.seed, hidden: work.hidden.unwrap_or(settings.hidden), ..settings };
     let resolved = Resolved::new(&design, path, out)?;
     // Draws on a terminal only.
-    let progress = ProgressBar::new(settings.work() as u64);
-    let found = calibrate(&design, settings, &mut |_| progress.inc(1));
+    let progress = ProgressBar::new(settings.work(family) as u64);
+    let found = calibrate(&design, &settings, &mut |_| progress.inc(1));
     progress.finish_and_clear();
     *design.algorithm.joint = found?;
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {

@@ -92,18 +92,19 @@ fn the_estimators_err_as_the_docs_say() {
 #[ignore = "prints the table of finite elements in docs/contacts.md"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
-        let [line, joint] = ["none", "joint"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap());
+        let solvers = ["none", "joint", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap());
         let frames = frames(sensor);
         for group in frames.chunk_by(|a, b| a.case == b.case) {
             let pressed = &group[0].truth;
-            let row: String = [&line, &joint]
+            let row: String = solvers
+                .iter()
                 .map(|solver| {
                     let found: Vec<[f64; 2]> = group.iter().map(|frame| errors(solver, frame)).collect();
                     let each: Vec<String> = found.iter().map(|[tangential, _]| format!("{tangential:.1}")).collect();
                     let normal = found.iter().fold(0.0_f64, |worst, found| worst.max(found[1]));
                     format!(" {} | {normal:.1} |", each.join(" "))
                 })
-                .concat();
+                .collect();
             let friction: Vec<String> = group.iter().map(|frame| format!("{:.2}", frame.truth.friction)).collect();
             println!(
                 "| {} | {} | {} mm, {:.1} N | {} |{row}",

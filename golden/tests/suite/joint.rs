@@ -127,7 +127,7 @@ fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
     let mut design = small("estimator = \"joint\"\ngrid = 15");
     let mut ticks = 0_usize;
     let found = calibrate(&design, &settings, &mut |_| ticks += 1).unwrap();
-    assert_eq!(ticks, settings.work());
+    assert_eq!(ticks, settings.work(Family::Narrow));
     assert_eq!(found, calibrate(&design, &settings, &mut |_| ()).unwrap());
     assert_ne!(found, calibrate(&design, &Settings { seed: 4, ..settings }, &mut |_| ()).unwrap());
     let plain = calibrate(&design, &Settings { hidden: 0, ..settings }, &mut |_| ()).unwrap();

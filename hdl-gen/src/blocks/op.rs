@@ -20,6 +20,10 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("SUM_LSB", plan.formats.g.lsb.into())
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into());
+    let parameters = match plan.thresholds.doubt {
+        Some(limit) => parameters.flag("DOUBT", true).wide("DOUBT_LIMIT", 18, limit),
+        None => parameters,
+    };
     let parameters = match plan.thresholds.slip {
         Some([limit, release]) => {
             let friction = |value: i64| format!("18'd{value}");

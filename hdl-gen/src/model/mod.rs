@@ -37,6 +37,8 @@ pub const SATURATED: u32 = 1 << 3;
 pub const NOT_FINITE: u32 = 1 << 4;
 /// Status bit: early or late TLAST.
 pub const BAD_LENGTH: u32 = 1 << 5;
+/// Status bit: the error is above the design's limit.
+pub const DOUBTFUL: u32 = 1 << 6;
 /// Status bit: friction at the design's limit.
 pub const SLIP: u32 = 1 << 10;
 /// Status bit: nothing pulls, where the design says that tension is read and the friction that something should.
@@ -272,6 +274,13 @@ fn scalars(
     put(words::MU, &[summary.friction_quotient as i64], summary.friction_exponent);
     put(words::MU + 1, &[i64::from(summary.angle)], angle_exponent);
     put(words::MU_XY, &summary.friction, -friction);
+    if let Some(limit) = plan.thresholds.doubt {
+        let (error, exponent) = summary.standard_error(found.error_log);
+        put(words::STANDARD_ERROR, &[error], plan.formats.g.lsb - friction + exponent);
+        if found.error_log > limit {
+            answer[words::STATUS] |= DOUBTFUL;
+        }
+    }
     // One body, and taxels whose readings others replace.
     answer[words::CENSUS] = 1 | plan.dead.as_ref().map_or(0, |dead| (dead.taxels.len() as u32) << 16);
     (answer, summary)

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::doubt::Doubt;
 use super::grid::Grid;
 use crate::words::print_as_words;
 
@@ -14,6 +15,8 @@ pub const MAX_HIDDEN: usize = 256;
 /// Largest magnitude of `c3`, less than 4, as far as the hardware's word for it reaches. Sensors that read no tension
 /// need more than 2.
 pub const CUBIC_LIMIT: f64 = 3.9;
+/// Share of the normal force above which a standard error is doubtful, unless a design says otherwise.
+pub const DEFAULT_DOUBT: f64 = 0.06;
 /// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.
 pub const EXTRA_INPUTS: usize = 5;
 
@@ -43,6 +46,8 @@ pub struct JointConstants {
     pub tangential: [f64; 2],
     /// What a small network adds to that; nothing unless trained.
     pub correction: Option<Correction>,
+    /// A frame whose standard error of `(F_x, F_y)` is a larger share of `|F_z|` is doubtful, if the correction tells it.
+    pub doubt: f64,
     /// What they were fitted to, as [`crate::design::conditions`] states it; a design of other conditions is refused. `None` for
     /// constants of unknown origin.
     pub fitted_to: Option<String>,
@@ -56,6 +61,7 @@ impl Default for JointConstants {
             gain: 1.0,
             tangential: [1.0, 0.0],
             correction: None,
+            doubt: DEFAULT_DOUBT,
             fitted_to: None,
         }
     }
@@ -73,6 +79,8 @@ pub struct Correction {
     pub hidden: Vec<Vec<i32>>,
     /// Weights of the hidden units in the x and the y component of the correction.
     pub output: [Vec<i32>; 2],
+    /// The error that is left, where that has been found.
+    pub doubt: Option<Doubt>,
 }
 
 impl Correction {

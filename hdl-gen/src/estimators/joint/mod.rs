@@ -20,7 +20,9 @@ use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
 use crate::blocks::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
 use crate::plan::memory::{Memory, memory};
-pub use network::{INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS};
+pub use network::{
+    DoubtPlan, INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS,
+};
 pub use points::PointsPlan;
 
 /// A step of the grid is `2^-STEP_SHIFT`.
@@ -116,6 +118,11 @@ impl JointPlan {
     }
 }
 
+/// Sums of the hidden units: both components, and the error that is left.
+fn readouts(network: &NetworkPlan) -> usize {
+    2 + usize::from(network.doubt.is_some())
+}
+
 const PLANE: &str = "plane";
 const LOOK: &str = "look";
 const NETWORK: &str = "network";
@@ -155,7 +162,7 @@ impl Slot for JointPlan {
             BlockCost {
                 name: NETWORK,
                 modules: &["sptfra_network"],
-                dsp: self.network.as_ref().map_or(0, |network| CLASSES * network.at_once + 2),
+                dsp: self.network.as_ref().map_or(0, |of| CLASSES * of.at_once + readouts(of)),
             },
             BlockCost { name: "friction", modules: &["sptfra_friction"], dsp: 1 },
         ]
@@ -180,7 +187,7 @@ impl Slot for JointPlan {
             memories.push(memory(NETWORK, "look, folded", 1, network.length, classes * INPUT_BITS, false));
             let width = WEIGHT_BITS * classes * network.at_once as u32;
             memories.push(memory(NETWORK, "hinge weights", 1, network.weights.len(), width, true));
-            memories.push(memory(NETWORK, "readout", 1, network.units(), 2 * WEIGHT_BITS, true));
+            memories.push(memory(NETWORK, "readout", 1, network.units(), readouts(network) as u32 * WEIGHT_BITS, true));
         }
         memories
     }
@@ -189,7 +196,10 @@ impl Slot for JointPlan {
         let Some(network) = &self.network else { return Vec::new() };
         let weights = network.weights.iter().map(|units| units.iter().flatten().copied().collect());
         let mut readout: Vec<Vec<i32>> = network.readout.iter().map(|weights| weights.to_vec()).collect();
-        readout.resize(network.units(), vec![0; 2]);
+        if let Some(doubt) = &network.doubt {
+            readout.iter_mut().zip(&doubt.readout).for_each(|(weights, weight)| weights.push(*weight));
+        }
+        readout.resize(network.units(), vec![0; readouts(network)]);
         vec![("weights", weights.collect()), ("readout", readout)]
     }
 
@@ -220,7 +230,7 @@ impl Slot for JointPlan {
             .cycles("EXPECTED_FRICTION_LATENCY", timing::FRICTION);
         let Some(network) = &self.network else { return parameters };
         let [half_x, half_y] = network.half_window;
-        parameters
+        let parameters = parameters
             .count("HALF_X", half_x)
             .count("HALF_Y", half_y)
             .count("LENGTH", network.length)
@@ -228,7 +238,14 @@ impl Slot for JointPlan {
             .count("AT_ONCE", network.at_once)
             .number("STRESS_LEFT", network.stress_left.into())
             .number("UNIT_SHIFT", network.unit_shift.into())
-            .number("CORRECTION_SHIFT", network.correction_shift.into())
+            .number("CORRECTION_SHIFT", network.correction_shift.into());
+        let parameters = match &network.doubt {
+            Some(DoubtPlan { shift, base, .. }) => {
+                parameters.flag("DOUBT", true).number("DOUBT_SHIFT", (*shift).into()).wide("DOUBT_BASE", 18, *base)
+            }
+            None => parameters,
+        };
+        parameters
             .expression("ROM_DIR", "ROM_DIR")
             .expression("ROM_NAME", format!("\"{}\"", design.name))
             .cycles("EXPECTED_LOOK_LATENCY", timing::look(&design.sensor, network))
