@@ -90,13 +90,13 @@ pub(super) fn train(
     let mut wanted = vec![0.0; BATCH];
     let steps = settings.doubt_steps();
     for step in 1..=steps {
-        for column in 0..BATCH {
+        for (column, wanted) in wanted.iter_mut().enumerate() {
             let index = random.random_range(0..samples.len());
             for (batch, looks) in batch.iter_mut().zip(&looks) {
                 batch.set_column(column, &looks.column(index));
             }
             of_known.set_column(column, &known.column(index));
-            wanted[column] = errors[index];
+            *wanted = errors[index];
         }
         let rate = 0.5 * (1.0 + (std::f32::consts::PI * step as f32 / steps as f32).cos());
         learner.descend(&batch, &of_known, &wanted, rate, step);
@@ -125,7 +125,9 @@ impl Learner {
             .map(|class| DMatrix::from_fn(units, basis.size(class), |_, _| (spread * normal(random)) as f32));
         if let Some(diagonal) = &basis.diagonal {
             diagonal.add(&mut hidden);
-            hidden.iter_mut().for_each(|weights| *weights *= std::f32::consts::FRAC_1_SQRT_2);
+            for weights in &mut hidden {
+                *weights *= std::f32::consts::FRAC_1_SQRT_2;
+            }
         }
         let mut sorted = errors.to_vec();
         sorted.sort_by(f64::total_cmp);

@@ -17,6 +17,7 @@ use super::{
     Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input,
     JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, Sensor, Slip, Tension,
 };
+use crate::words;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -122,7 +123,8 @@ pub(super) fn design(text: &str, origin: &str, beside: Beside<'_>) -> Result<Des
 pub(super) fn unfitted(text: &str, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
     let mut raw = raw(text, origin)?;
     // Of another estimator they stay, to be refused.
-    if raw.algorithm.estimator.as_deref() == Some("joint") {
+    let estimator = raw.algorithm.estimator.as_deref().map(words::read::<Estimator>);
+    if matches!(estimator, Some(Ok(Estimator::Joint))) {
         let RawAlgorithm { gain, tangential, correction, fitted_to, .. } = &mut raw.algorithm;
         (*gain, *tangential, *correction, *fitted_to) = (None, None, None, None);
     }

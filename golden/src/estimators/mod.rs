@@ -40,6 +40,16 @@ pub enum Constants<'a> {
     Joint(&'a JointConstants),
 }
 
+impl Constants<'_> {
+    /// What all forces are multiplied by, if the estimator has a gain.
+    pub fn gain(&self) -> Option<f64> {
+        match self {
+            Self::Line => None,
+            Self::Joint(joint) => Some(joint.gain),
+        }
+    }
+}
+
 /// An estimator, ready for frames.
 #[derive(Clone, Debug)]
 pub(crate) enum Friction {

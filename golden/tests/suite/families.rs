@@ -231,10 +231,12 @@ fn table() {
             let [bad, good] =
                 found.doubtful.map(|share| if share.is_nan() { String::new() } else { format!("{share:.0}") });
             println!(
-                "| {} | {label} |{}{}{}{more} {bad} | {good} | {:.0} |",
+                "| {} | {label} |{} {:.0} |{} {:.0} |{}{more} {bad} | {good} | {:.0} |",
                 &sensor[6..],
                 row(&line),
+                line.flagged,
                 row(&joint),
+                joint.flagged,
                 row(&found),
                 found.within
             );

@@ -3,10 +3,15 @@
 use crate::plan::Plan;
 use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
+use crate::plan::memory::memory;
 use crate::plan::product::{Coefficients, DESTINATIONS, SUMS_DESTINATION, Vector, destination, destination_bits};
-use crate::plan::schedule::TURN_GAP;
+use crate::plan::resources::BlockCost;
 
-use super::Parameters;
+use super::latency::TURN_GAP;
+use super::{Parameters, row_width};
+
+/// Bits of a word in the MACs-per-row ROM: a count and what becomes of the sum.
+const SEGMENT_BITS: u32 = 16;
 
 /// Bits of a column number: of the largest number of vectors that one product reads.
 pub fn column_bits(plan: &Plan) -> u32 {
@@ -35,6 +40,21 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .table("SHIFTS", 6, &shifts(plan))
         .expression("ROM_DIR", "ROM_DIR")
         .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+}
+
+/// A multiplier a lane; the lanes' programs and operands.
+pub fn cost(plan: &Plan) -> BlockCost {
+    let (hardware, schedule, walkers) = (&plan.design.hardware, &plan.schedule, plan.walkers());
+    let ways = plan.ways() as u32;
+    // The lane, the destination, the row, and whether a program ends.
+    let visit = 1 + address_bits(walkers) + destination_bits(plan.field_words() > 0) + row_width(plan);
+    BlockCost::new("lanes", &["sptfra_spmv_array"], hardware.lanes).with([
+        memory("values", walkers, schedule.value_depth(), ways * hardware.coefficient_bits, true),
+        memory("columns", walkers, schedule.word_depth(), column_bits(plan), true),
+        memory("MACs per row", walkers, schedule.segment_depth(), SEGMENT_BITS, true),
+        memory("visits", 1, schedule.visits.len(), visit, true),
+        memory("operands", walkers, plan.operands.words(), ways * hardware.data_bits, false),
+    ])
 }
 
 fn vectors(plan: &Plan) -> usize {

@@ -2,14 +2,11 @@
 
 use golden::design::Tension;
 
+use crate::cores::{LONG_BITS, SHORT_BITS};
 use crate::plan::Plan;
+use crate::plan::format::SUM_BITS;
 
 use super::Parameters;
-
-/// Bits of a stress, of `sum |b|`, and of a pitch with its 16 fraction bits.
-const STRESS_BITS: u32 = 27;
-const SUM_BITS: u32 = 40;
-const PITCH_BITS: u32 = 18;
 
 /// Parameters of `sptfra_cean`.
 pub fn parameters(plan: &Plan) -> Parameters {
@@ -21,9 +18,9 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("ROWS", plan.design.sensor.rows)
         .flag("DIRECTION", pitch.is_some())
         .flag("TENSION_READ", plan.design.input.tension == Tension::Read)
-        .wide("TAXEL_FLOOR", STRESS_BITS, plan.thresholds.taxel)
+        .wide("TAXEL_FLOOR", LONG_BITS, plan.thresholds.taxel)
         .wide("CONTACT_FLOOR", SUM_BITS, plan.thresholds.contact)
-        .wide("PITCH_X", PITCH_BITS, pitch_x)
-        .wide("PITCH_Y", PITCH_BITS, pitch_y)
+        .wide("PITCH_X", SHORT_BITS, pitch_x)
+        .wide("PITCH_Y", SHORT_BITS, pitch_y)
         .cycles("EXPECTED_LATENCY", slot.contact_latency())
 }

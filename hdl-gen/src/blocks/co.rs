@@ -1,7 +1,12 @@
 //! Co, the sums over the frame and what the lanes multiply again: `sptfra_co`.
 
+use golden::parity::CLASSES;
+
 use crate::plan::Plan;
+use crate::plan::memory::memory;
 use crate::plan::product::Vector;
+use crate::plan::resources::BlockCost;
+use crate::plan::vector_formats::ARM_BITS;
 
 use super::{Parameters, place};
 
@@ -26,4 +31,15 @@ pub fn parameters(plan: &Plan) -> Parameters {
         return parameters;
     }
     parameters.expression("ROM_DIR", "ROM_DIR").expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+}
+
+/// Where sums of torques are made of taxels' forces, a multiplier for each of a taxel's arms.
+pub fn cost(plan: &Plan) -> BlockCost {
+    let (data, taxels) = (plan.design.hardware.data_bits, plan.taxels());
+    let block = |dsp| BlockCost::new("Co", &["sptfra_co", "sptfra_unfold"], dsp);
+    if plan.ways() > 1 {
+        let folded = 2 * plan.elements().next_power_of_two();
+        return block(0).with([memory("folded b", 1, folded, CLASSES as u32 * data, false)]);
+    }
+    block(2).with([memory("A_p b", 1, 3 * taxels, data, false), memory("arms", 1, taxels, 2 * ARM_BITS, true)])
 }

@@ -1,7 +1,12 @@
 //! The field memory: `sptfra_field` of a folded grid, `sptfra_coefficient_field` where taxels are not folded.
 
+use golden::parity::CLASSES;
+
 use crate::plan::Plan;
-use crate::plan::formats::field_shifts;
+use crate::plan::memory::memory;
+use crate::plan::places::WEIGHT_PLACES;
+use crate::plan::resources::BlockCost;
+use crate::plan::vector_formats::field_shifts;
 
 use super::Parameters;
 
@@ -23,4 +28,21 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("DATA_BITS", data)
         .number("FORCE_SHIFT", force.into())
         .number("SHARE_SHIFT", share.into())
+}
+
+/// What a frame's taxels leave until they go out, and the multipliers that put a force together.
+pub fn cost(plan: &Plan) -> BlockCost {
+    let (data, elements) = (plan.design.hardware.data_bits, plan.elements());
+    let block = |dsp| BlockCost::new("field", &["sptfra_field", "sptfra_coefficient_field"], dsp);
+    if plan.ways() == 1 {
+        // The memory is there without a field, too: the sums over the frame pass it.
+        let dsp = if plan.field_words() > 0 { 2 } else { 0 };
+        return block(dsp).with([memory("field", 3, 6 * plan.taxels(), data, false)]);
+    }
+    if plan.field_words() == 0 {
+        return block(0);
+    }
+    let weights = WEIGHT_PLACES * elements.next_power_of_two();
+    block(1)
+        .with([memory("weights", CLASSES, weights, data, false), memory("field", CLASSES, 6 * elements, data, false)])
 }

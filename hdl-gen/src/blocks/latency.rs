@@ -1,38 +1,66 @@
-//! Cycles from block to block in the hardware: the schedule, the predicted times and the checks in
-//! simulation read them here. `folded` says whether vectors are folded by parity. Those of an estimator stand with it, those
-//! of a leaf core in [`crate::cores`].
+//! Cycles from block to block in the hardware, each a count of pipeline registers: the schedule, the predicted times
+//! and the checks in simulation read them here. They are needed before there is a plan, and so stand apart from what
+//! the blocks make of one. `folded` says whether vectors are folded by parity. Cycles of an estimator stand with it,
+//! those of a leaf core in [`crate::cores`].
 
-use crate::cores::{cordic, divider};
+use crate::cores::{axis_skid, cordic, divider, float_to_fixed};
 
 // ---- Bz
-/// From a frame's last stress to the frame being ready for the lanes, in cycles: the fold, and the count of frames.
+/// From a beat entering the conversion to its stress: of the float conversion, and of the counts' if there is one.
+pub fn beat_to_stress(counts: bool, curve: Option<u64>) -> u64 {
+    /// Gain, product, sum, limits.
+    const COUNT_STAGES: u64 = 4;
+    u64::from(float_to_fixed::LATENCY) + if counts { COUNT_STAGES } else { 0 } + curve.unwrap_or(0)
+}
+
+/// What replacing dead taxels adds to that: the frame is read once more.
+pub fn dead_taxels(taxels: usize) -> u64 {
+    taxels as u64 + 7
+}
+
+/// From a frame's last stress to the frame being ready for the lanes: the fold, and the count of frames.
 pub fn stress_to_ready(folded: bool) -> u64 {
     if folded { 4 } else { 1 }
 }
 
 // ---- The array of lanes
-/// From the sequencer's control to the lanes' and the collector's, in cycles: the register on the way.
+/// From the sequencer's control to the lanes' and the collector's: the register on the way.
 pub const SEQUENCER_TO_LANES: u64 = 1;
-/// From a program's start pulse to its first issue, in the lanes.
-pub const START_TO_ISSUE: u64 = 2 + SEQUENCER_TO_LANES;
+/// From a program's start pulse to its first issue, in the lanes, where `gap` cycles pass without issue from one program
+/// to the next.
+pub fn start_to_issue(gap: u64) -> u64 {
+    2 + SEQUENCER_TO_LANES + gap - TURN_GAP
+}
+
+/// Without issue when the lanes pass from one program to the next, at least.
+pub const TURN_GAP: u64 = 2;
+/// Without issue in front of a product's rounds: the list's first entry is fetched.
+pub const ROUNDS_FETCH: u64 = 1;
+/// From the issue of a row's last MAC to its sum standing in the lane's result register.
+pub const ISSUE_TO_RESULT: u64 = 7;
+/// From taking a program's last result to taking the next program's first: the order is read from a ROM.
+pub const COLLECTOR_JUMP: u64 = 4;
 /// From the collector taking a result to its standing on the result bus.
 pub const VISIT_TO_BUS: u64 = 3;
 /// From a write at the array's port to the first issue that may read the word: the write passes a register and enters the
 /// memory; the operand is read two cycles after its issue.
 pub const WRITE_TO_ISSUE: u64 = 0;
+/// From the last operand being there to the list of those that are not zero, as the lanes see it: the sequencer reads it
+/// before them.
+pub const WRITE_TO_LIST: u64 = 2 + SEQUENCER_TO_LANES;
 
 // ---- Unfold, We, Co
-/// Result bus to taxels, in cycles.
+/// From the result bus to taxels.
 pub fn bus_to_taxels(folded: bool) -> u64 {
     if folded { 5 } else { 1 }
 }
 
-/// Taxels to the write port of the operand memories, in cycles: of a folded grid to the second of two words, y+.
+/// From taxels to the write port of the operand memories: of a folded grid to the second of two words, y+.
 pub fn taxels_to_write(folded: bool) -> u64 {
     if folded { 5 } else { 1 }
 }
 
-/// Result bus to the write port of the operand memories, in cycles: of what is stored as it comes, or of g.
+/// From the result bus to the write port of the operand memories: of what is stored as it comes, or of g.
 pub fn bus_to_write(folded: bool) -> u64 {
     if folded { 1 } else { 3 }
 }
@@ -42,10 +70,23 @@ pub fn bus_to_sums(folded: bool) -> u64 {
     if folded { 2 } else { 7 }
 }
 
-// ---- Op
+/// From the last visit of the residual to the field's program being allowed.
+pub const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
+
+// ---- The estimator and Op
+/// From the last taxels having left the unfolding to their being in the search's cells.
+pub const TAXELS_TO_CELLS: u64 = 2;
+/// From the last taxels of the field having left the unfolding to the field being there for the output.
+pub const TAXELS_TO_FIELD: u64 = 2;
+/// From the end of the search to the friction being known to the lanes.
+pub const SEARCH_TO_FRICTION: u64 = 9;
 /// From the answer's taking to the end of the summary.
 pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY as u64;
 /// From the start of the output to the first beat leaving Op.
 pub const OUTPUT_LATENCY: u64 = 13;
-/// Beats of a frame before those of the field.
-pub const SUMMARY_BEATS: u64 = crate::plan::SUMMARY_WORDS as u64;
+/// From a beat leaving Op to its leaving the core.
+pub const OUTPUT_SKID: u64 = axis_skid::LATENCY as u64;
+/// From the last beat of a frame being read to its places being free.
+pub const OUTPUT_TO_RELEASE: u64 = 3;
+/// From the last beat of a frame being read to the start of the next frame's output.
+pub const OUTPUT_TO_IDLE: u64 = 4;

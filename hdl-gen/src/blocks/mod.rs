@@ -1,7 +1,8 @@
 //! The hardware's blocks: one file each, with what a design decides of it.
 //!
 //! The Verilog of a block is the same in every design (`hdl-gen/rtl`). Its file here states the parameters of its
-//! instance. The cycles that it takes, which the plan counts with before there is an instance, stand in [`latency`].
+//! instance and what it costs, multipliers and memories. The cycles that it takes, which the schedule counts with before
+//! there is an instance, stand in [`latency`].
 
 pub mod array;
 pub mod bz;
@@ -21,7 +22,24 @@ use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
 use crate::plan::product::SUM_ROWS;
 use crate::plan::product::Vector;
+use crate::plan::resources::BlockCost;
 pub use parameters::Parameters;
+
+/// What each block of the design takes, in the data's order.
+pub fn costs(plan: &Plan) -> Vec<BlockCost> {
+    let slot = plan.estimator.slot();
+    let mut costs = vec![
+        bz::cost(plan),
+        slot.contact_block(),
+        array::cost(plan),
+        we::cost(plan),
+        co::cost(plan),
+        field::cost(plan),
+    ];
+    costs.extend(slot.search_blocks(&plan.design.sensor));
+    costs.push(op::cost());
+    costs
+}
 
 /// Where a vector stands in the lanes' operand memories: its first word, and whether that is in the stress's bank. One
 /// that no product reads is at 0.

@@ -3,8 +3,9 @@
 use golden::design::Outputs;
 
 use crate::plan::Plan;
-use crate::plan::format::FRICTION_FRACTION;
-use crate::plan::formats::field_shifts;
+use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION};
+use crate::plan::resources::BlockCost;
+use crate::plan::vector_formats::field_shifts;
 
 use super::Parameters;
 use super::latency::{OUTPUT_LATENCY, SUMMARY_LATENCY};
@@ -26,12 +27,17 @@ pub fn parameters(plan: &Plan) -> Parameters {
     };
     let parameters = match plan.thresholds.slip {
         Some([limit, release]) => {
-            let friction = |value: i64| format!("18'd{value}");
+            let friction = |value: i64| format!("{FRICTION_BITS}'d{value}");
             parameters.expression("SLIP_LIMIT", friction(limit)).expression("SLIP_RELEASE", friction(release))
         }
         None => parameters,
     };
     parameters.cycles("EXPECTED_SUMMARY_LATENCY", SUMMARY_LATENCY).cycles("EXPECTED_OUTPUT_LATENCY", OUTPUT_LATENCY)
+}
+
+/// One multiplier in turns, for all quotients and products of the summary.
+pub fn cost() -> BlockCost {
+    BlockCost::new("summary", &["sptfra_summary"], 1)
 }
 
 /// Exponent of a step of a taxel's force as the field memory puts it together, in N.

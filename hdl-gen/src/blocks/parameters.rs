@@ -99,17 +99,25 @@ impl Serialize for Parameters {
 #[cfg(test)]
 mod tests {
     use super::Parameters;
+    use crate::blocks::latency::{
+        VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, stress_to_ready, taxels_to_write,
+    };
     use crate::cores::cordic;
     use crate::estimators::{joint, line};
     use crate::model::{PULLING, inverse_gain};
     use crate::plan::format::FRICTION_FRACTION;
 
-    /// The value of a constant in a module of the library, its width left out.
-    fn constant(module: &str, name: &str) -> i64 {
+    /// What a constant in a module of the library is.
+    fn literal(module: &str, name: &str) -> String {
         let path = format!("{}/rtl/{module}.v", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(path).unwrap();
         let (_, rest) = text.split_once(&format!(" {name} = ")).unwrap_or_else(|| panic!("{module} has no {name}"));
-        let (literal, _) = rest.split_once(';').unwrap();
+        rest.split_once(';').unwrap().0.to_owned()
+    }
+
+    /// The value of such a constant, its width left out.
+    fn constant(module: &str, name: &str) -> i64 {
+        let literal = literal(module, name);
         let digits = literal.rsplit('d').next().unwrap();
         digits.parse().unwrap_or_else(|_| panic!("{module}: {name} = {literal}"))
     }
@@ -118,7 +126,10 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 35] = [
+        let expected: [(&str, &str, i64); 37] = [
+            // A cycle more counts the frame.
+            ("sptfra_fold", "LAST_TO_WRITTEN", stress_to_ready(true) as i64 - 1),
+            ("sptfra_spmv_collector", "TAKE_TO_BUS", VISIT_TO_BUS as i64),
             ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
             ("sptfra_direction", "PITCH_FRACTION", line::PITCH_FRACTION.into()),
             ("sptfra_line", "LINE_FRACTION", line::LINE_FRACTION.into()),
@@ -157,6 +168,22 @@ mod tests {
         ];
         for (module, name, value) in expected {
             assert_eq!(constant(module, name), value, "{module}: {name}");
+        }
+    }
+
+    /// Latencies that depend on whether vectors are folded.
+    #[test]
+    fn modules_and_schedule_have_the_same_latencies() {
+        let both = |latency: fn(bool) -> u64| [latency(true), latency(false)];
+        let expected = [
+            ("sptfra_unfold", "LATENCY", both(bus_to_taxels)),
+            ("sptfra_we", "LATENCY", both(taxels_to_write)),
+            ("sptfra_co", "WRITE_LATENCY", both(bus_to_write)),
+            ("sptfra_co", "SUMS_LATENCY", both(bus_to_sums)),
+        ];
+        for (module, name, [folded, taxels]) in expected {
+            let choice = format!("(WAYS == 4) ? {folded} : {taxels}");
+            assert_eq!(literal(module, name), choice, "{module}: {name}");
         }
     }
 

@@ -4,9 +4,10 @@ use std::error::Error;
 use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use golden::calibrate::{Settings, calibrate};
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Grid, JointConstants};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Grid, JointConstants};
+use golden::words;
 
 use super::progress::Progress;
 
@@ -26,9 +27,10 @@ pub struct New {
     /// Folder for the file
     #[arg(long, default_value = ".")]
     dir: PathBuf,
-    /// How friction is found
-    #[arg(long, value_enum, default_value_t = Friction::Joint)]
-    estimator: Friction,
+    /// How friction is found: both components at once, by constants fitted to the sensor, or along the direction of push,
+    /// as in the paper
+    #[arg(long, value_parser = words::parser::<Estimator>(), default_value = "joint")]
+    estimator: Estimator,
     /// Taxels in x
     #[arg(long, default_value_t = 10)]
     columns: usize,
@@ -48,15 +50,6 @@ pub struct New {
     /// Stress at the end of the sensor's range
     #[arg(long, value_name = "PA", default_value_t = DEFAULT_FULL_SCALE_PA)]
     full_scale_pa: f64,
-}
-
-/// The estimators.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Friction {
-    /// Both components at once; its constants are fitted to the sensor
-    Joint,
-    /// Along the direction of push, as in the paper
-    Line,
 }
 
 /// Writes `NAME.toml` into the folder, the whole file or none, never over an existing one; returns what to do next.
@@ -87,7 +80,7 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     file.write_all(text.as_bytes()).map_err(failed)?;
     file.persist_noclobber(&path).map_err(|error| failed(error.error))?;
     let said = format!("{}: edit it, then run hdl-gen inspect {0} and hdl-gen generate {0}\n", path.display());
-    if new.estimator == Friction::Line {
+    if new.estimator == Estimator::Line {
         return Ok(said);
     }
     let calibrated = folder.join(format!("{name}-calibrated.toml"));
@@ -129,7 +122,7 @@ fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
         text = text.replace("# regularisation = ", "regularisation = ");
     }
     let bare = text.replace(CONSTANTS, "");
-    if new.estimator == Friction::Line {
+    if new.estimator == Estimator::Line {
         let text = with(&bare, "estimator", "\"line\"");
         Design::from_toml(&text, "hdl-gen new")?;
         return Ok(text);

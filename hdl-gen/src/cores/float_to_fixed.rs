@@ -4,7 +4,7 @@
 pub const LATENCY: u32 = 5;
 
 /// Bits of `fixed`, sign included.
-pub const FIXED_BITS: u32 = 27;
+pub const FIXED_BITS: u32 = super::LONG_BITS;
 
 /// With this much left to shift, a normalised 24-bit significand already exceeds every 27-bit limit.
 const OVERFLOW_SHIFT: i32 = 4;

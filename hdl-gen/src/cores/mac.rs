@@ -1,9 +1,9 @@
 //! The multiply-accumulate lane: 18 by 27 bits into 48, the shape of one DSP block.
 
+use super::ACCUMULATOR_BITS;
+
 /// Cycles from the operands to the accumulator that holds their product.
 pub const LATENCY: u32 = 3;
-
-const ACCUMULATOR_BITS: u32 = 48;
 
 /// The accumulator after one valid product: `coefficient * data`, added to what was there unless this is the first
 /// product of a sum. Wraps at 48 bits.

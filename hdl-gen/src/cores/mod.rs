@@ -13,6 +13,13 @@ pub mod mac;
 pub mod multiply;
 pub mod row_sequencer;
 
+/// Width of the shorter operand of a multiplier, as in one DSP48E2.
+pub const SHORT_BITS: u32 = 18;
+/// Width of the longer one.
+pub const LONG_BITS: u32 = 27;
+/// Width of the sum of products behind them.
+pub const ACCUMULATOR_BITS: u32 = 48;
+
 /// How a fabric multiplies 18 by 27 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Multiplier {

@@ -128,7 +128,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         "nnz": nnz(plan),
         "formats": {
             "coefficient_bits": plan.design.hardware.coefficient_bits,
-            "accumulator_bits": crate::plan::format::ACCUMULATOR_BITS,
+            "accumulator_bits": crate::cores::ACCUMULATOR_BITS,
             "stress_pa": plan.formats.stress,
             "weight_n": plan.formats.weight,
             "g_n": plan.formats.g,

@@ -4,11 +4,12 @@ use crate::blocks::array::column_bits;
 use crate::blocks::row_width;
 use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
-use crate::plan::counts::{EXPONENT_BITS, GAIN_BITS};
+use crate::plan::counts::EXPONENT_BITS;
 use crate::plan::curve::SEGMENT_BITS;
 use crate::plan::format::address_bits;
-use crate::plan::formats::ARM_BITS;
+use crate::plan::gain::GAIN_BITS;
 use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
+use crate::plan::vector_formats::ARM_BITS;
 
 use super::{FileMap, lane_file};
 

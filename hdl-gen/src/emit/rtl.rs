@@ -19,6 +19,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_butterfly",
     "sptfra_bz",
     "sptfra_cean",
+    "sptfra_check_delay",
     "sptfra_check_latency",
     "sptfra_co",
     "sptfra_coefficient_field",

@@ -8,11 +8,12 @@ use golden::sensor::Sensor;
 use serde_json::Value;
 
 use crate::blocks::parameters::Parameters;
+use crate::cores::SHORT_BITS;
 use crate::plan::format::{Format, address_bits};
-use crate::plan::memory::Memory;
+use crate::plan::resources::BlockCost;
 
 /// Width of a weight in the ROM files of an estimator.
-pub const WEIGHT_BITS: u32 = 18;
+pub const WEIGHT_BITS: u32 = SHORT_BITS;
 
 /// What an estimator's constants are made from.
 #[derive(Clone, Copy, Debug)]
@@ -101,17 +102,6 @@ impl Cells {
     }
 }
 
-/// A block and its multipliers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BlockCost {
-    /// What the block is called.
-    pub name: &'static str,
-    /// Its modules in `rtl/`.
-    pub modules: &'static [&'static str],
-    /// DSP48E2: one for each product that it forms in a cycle.
-    pub dsp: usize,
-}
-
 /// An estimator's part of `metadata.json`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metadata {
@@ -143,12 +133,7 @@ pub trait Slot {
     fn contact_block(&self) -> BlockCost;
 
     /// The blocks of the search, in the data's order.
-    fn search_blocks(&self) -> Vec<BlockCost>;
-
-    /// Its memories.
-    fn memories(&self, _sensor: &Sensor) -> Vec<Memory> {
-        Vec::new()
-    }
+    fn search_blocks(&self, sensor: &Sensor) -> Vec<BlockCost>;
 
     /// `(contents, words)` of its ROM files: words of several weights of [`WEIGHT_BITS`].
     fn roms(&self) -> Vec<(&'static str, Vec<Vec<i32>>)> {

@@ -5,8 +5,8 @@ use golden::products::{ByPq, Number, Scalar, Step, put_moments};
 
 use crate::plan::Plan;
 use crate::plan::format::{FRICTION_FRACTION, round_shift};
-use crate::plan::formats::{ARM_FRACTION, FOLD_BITS};
 use crate::plan::product::{SHARE_ROW, sum_row, sum_way};
+use crate::plan::vector_formats::{ARM_FRACTION, FOLD_BITS};
 
 /// The integers of a plan. Order of summation does not matter: every sum is exact in its width, by the bounds of the
 /// plan.

@@ -1,16 +1,15 @@
 //! From a checked design to its plan.
 
-use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, PlanKind, Slip};
+use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, Slip};
 use golden::estimators::joint::DOUBT_FRACTION;
 use golden::matrices::Matrices;
-use golden::parity::{CLASSES, Quads};
+use golden::parity::CLASSES;
 
 use super::counts::CountsPlan;
 use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::filtered::Filtered;
 use super::format::{FRICTION_FRACTION, Format, pow2};
-use super::formats::{Formats, arms};
 use super::layout::OperandLayout;
 use super::matrix::QuantisedMatrix;
 use super::passes;
@@ -18,11 +17,26 @@ use super::product::Product;
 use super::quantise::{Quantised, quantise, taxel_force_n};
 use super::resources::Resources;
 use super::schedule::Schedule;
-use super::{Condition, Nnz, Plan, Thresholds, control};
+use super::timing::Timeline;
+use super::vector_formats::{Formats, arms};
+use super::{Condition, Nnz, Plan, Thresholds, control, elements, ways};
+use crate::blocks;
 use crate::estimators::{self, EstimatorPlan, Given};
 
-/// Plans the hardware of `design`.
-pub(super) fn plan(design: &Design) -> Result<Plan, PlanError> {
+impl Plan {
+    /// Plans the hardware of `design`.
+    ///
+    /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
+    ///
+    /// # Errors
+    /// [`PlanError`] if the plan has no hardware for the estimator, the geometry is singular, the filter empties a
+    /// matrix, the widths are too small, or no number of lanes meets the target.
+    pub fn new(design: &Design) -> Result<Self, PlanError> {
+        plan(design)
+    }
+}
+
+fn plan(design: &Design) -> Result<Plan, PlanError> {
     if !estimators::has_hardware(design) {
         return Err(PlanError::JointEstimator);
     }
@@ -131,11 +145,7 @@ impl Work {
         let schedule = Schedule::new(&self.products, &self.matrices, hardware.lanes / ways);
         let Formats { stress, u, .. } = self.formats;
         let estimator = EstimatorPlan::new(&Given { design, elements, ways, stress, u });
-        let slot = estimator.slot();
-        let operands = OperandLayout::new(&self.products, elements);
-        let timeline = control::timeline(design, elements, &self.products, &schedule, slot, self.counts.as_ref());
-        let resources = Resources::new(design, &self.products, &operands, &schedule, slot, self.counts.as_ref());
-        Plan {
+        let mut plan = Plan {
             design: design.clone(),
             condition: self.condition,
             nnz: self.nnz.clone(),
@@ -147,29 +157,14 @@ impl Work {
             dead: self.dead.clone(),
             thresholds: self.thresholds,
             estimator,
-            operands,
+            operands: OperandLayout::new(&self.products, elements),
             schedule,
-            timeline,
-            resources,
-        }
-    }
-}
-
-pub(super) fn ways(design: &Design) -> usize {
-    match design.algorithm.plan {
-        PlanKind::Paper => 1,
-        PlanKind::Reduced => CLASSES,
-    }
-}
-
-pub(super) fn quads(design: &Design) -> Quads {
-    Quads::new(design.sensor.columns, design.sensor.rows)
-}
-
-pub(super) fn elements(design: &Design) -> usize {
-    match design.algorithm.plan {
-        PlanKind::Paper => design.sensor.taxels(),
-        PlanKind::Reduced => quads(design).count(),
+            timeline: Timeline::default(),
+            resources: Resources::default(),
+        };
+        plan.timeline = control::timeline(&plan);
+        plan.resources = Resources::of(blocks::costs(&plan));
+        plan
     }
 }
 

@@ -1,49 +1,36 @@
 //! Predicted cycles: the hardware's control, register by register, without the data.
 //!
 //! When a program starts depends on the frames under way, so latency and interval come from playing frames through
-//! what decides it. Every constant is a count of pipeline registers in the emitted modules; tests compare with
-//! simulation.
+//! what decides it. Counts of pipeline registers stand with the blocks; tests compare with simulation.
 
 use std::collections::VecDeque;
 
-use golden::design::{Design, Optimise, Outputs, PlanKind};
+use golden::design::Optimise;
 
-use super::counts::{CountsPlan, input_stages};
-use super::product::{Product, Vector};
-use super::schedule::{Program, Schedule, TURN_GAP, Visit};
-use super::timing::{INTERVAL_FRAMES, OUTPUT_SKID, Timeline, middle_interval};
-use super::{dead, places};
+use super::Plan;
+use super::places::{self, FIELD_PLACES};
+use super::product::Vector;
+use super::schedule::{Program, Visit};
+use super::timing::{INTERVAL_FRAMES, Timeline, middle_interval};
+use crate::blocks::bz;
 use crate::blocks::latency::{
-    self, OUTPUT_LATENCY, SEQUENCER_TO_LANES, START_TO_ISSUE, SUMMARY_BEATS, SUMMARY_LATENCY, VISIT_TO_BUS,
+    self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
+    SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_BUS, VISIT_TO_RESIDUAL,
 };
-use crate::estimators::Slot;
 
-/// From the last taxels having left the unfolding to their being in the search's cells.
-const TAXELS_TO_CELLS: u64 = 2;
-/// From the last visit of the residual, to the field's program being allowed.
-const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
-/// From the end of the search to the friction being known to the lanes.
-const SEARCH_TO_FRICTION: u64 = 9;
 /// Frames whose stress, whose search, and whose field have a place.
-const PLACES: u64 = places::FIELD_PLACES as u64;
+const PLACES: u64 = FIELD_PLACES as u64;
 /// Cycles after which a frame is taken for lost: a defect.
 const FOREVER: u64 = 100_000_000;
 
-/// Predicts latency and interval.
-pub(super) fn timeline(
-    design: &Design,
-    elements: usize,
-    products: &[Product],
-    schedule: &Schedule,
-    estimator: &dyn Slot,
-    counts: Option<&CountsPlan>,
-) -> Timeline {
-    let constants = Constants::new(design, elements, products, schedule, estimator, counts);
+/// Predicts latency and interval; of the plan everything else is there.
+pub(super) fn timeline(plan: &Plan) -> Timeline {
+    let constants = Constants::new(plan);
     let ends = |frames| Control::new(&constants).play(frames);
     Timeline {
         latency_cycles: ends(1)[0],
         interval_cycles: middle_interval(&ends(INTERVAL_FRAMES)),
-        spmv_cycles: schedule.issue_cycles(),
+        spmv_cycles: plan.schedule.issue_cycles(),
         search_cycles: constants.stages.iter().sum(),
     }
 }
@@ -80,39 +67,31 @@ struct Constants {
 }
 
 impl Constants {
-    fn new(
-        design: &Design,
-        elements: usize,
-        products: &[Product],
-        schedule: &Schedule,
-        estimator: &dyn Slot,
-        counts: Option<&CountsPlan>,
-    ) -> Self {
-        let field = design.algorithm.outputs == Outputs::Field;
-        let taxels = design.sensor.taxels() as u64;
-        let dead = if design.input.dead.is_empty() { 0 } else { dead::latency(design.sensor.taxels()) };
-        let folded = design.algorithm.plan == PlanKind::Reduced;
+    fn new(plan: &Plan) -> Self {
+        let (schedule, estimator) = (&plan.schedule, plan.estimator.slot());
+        let (field, folded) = (plan.field_words() > 0, plan.ways() > 1);
         let is_sum = |visit: &&Visit| {
-            let product = &products[visit.product as usize];
-            let leads = product.lead.is_some() && visit.row as usize >= elements;
+            let product = &plan.products[visit.product as usize];
+            let leads = product.lead.is_some() && visit.row as usize >= plan.elements();
             leads || matches!(product.result, Vector::G(..))
         };
         let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
         Self {
-            taxels,
-            beats: SUMMARY_BEATS + if field { 3 * taxels } else { 0 },
-            beat_to_stress: input_stages(counts) + dead,
+            taxels: plan.taxels() as u64,
+            beats: plan.beats_out() as u64,
+            beat_to_stress: bz::beat_to_stress(plan)
+                + if plan.dead.is_some() { latency::dead_taxels(plan.taxels()) } else { 0 },
             stress_to_ready: latency::stress_to_ready(folded),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
             visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),
             field,
             composed: field && folded,
             places: places::places(field, folded).map(|places| places as u64),
-            interval: design.hardware.optimise == Optimise::Interval,
+            interval: plan.design.hardware.optimise == Optimise::Interval,
             line: estimator.line_latency(),
             direction: estimator.contact_latency(),
-            stages: estimator.stages(&design.sensor),
-            start_to_issue: START_TO_ISSUE + schedule.program_gap - TURN_GAP,
+            stages: estimator.stages(&plan.design.sensor),
+            start_to_issue: latency::start_to_issue(schedule.program_gap),
             programs: schedule.programs.clone(),
             last_sum: sums.max().unwrap_or(0),
         }
@@ -285,7 +264,7 @@ impl<'a> Control<'a> {
             self.field_due = false;
             self.friction_known = None;
             self.fields_held += 1;
-            self.field_there.push_back(last_visit + self.of.visit_to_taxels + 2);
+            self.field_there.push_back(last_visit + self.of.visit_to_taxels + TAXELS_TO_FIELD);
         } else if may_residual {
             let last_visit = self.start(1);
             self.residual_due = false;
@@ -376,9 +355,9 @@ impl<'a> Control<'a> {
         self.summary_there = None;
         self.field_there.pop_front();
         self.pending.push((self.now + 1, Change::SummaryFree));
-        self.output_idle = self.now + self.of.beats + 4;
+        self.output_idle = self.now + self.of.beats + OUTPUT_TO_IDLE;
         if self.of.field {
-            self.pending.push((self.now + self.of.beats + 3, Change::FrameReleased));
+            self.pending.push((self.now + self.of.beats + OUTPUT_TO_RELEASE, Change::FrameReleased));
         }
         self.ends.push(self.now + OUTPUT_LATENCY + OUTPUT_SKID + self.of.beats);
     }

@@ -6,12 +6,12 @@ use serde::Serialize;
 use super::PlanError;
 use super::curve::CurvePlan;
 use super::format::{Format, largest, pow2, round_shift};
+use super::gain::{GAIN_BITS, Gain};
+use crate::cores::LONG_BITS;
 use crate::cores::float_to_fixed::{self, Converted};
 
-/// Width of a gain: the shorter operand of a multiplier.
-pub const GAIN_BITS: u32 = 18;
 /// Width of a number, the longer operand: a count in fixed point.
-const COUNT_BITS: u32 = 27;
+const COUNT_BITS: u32 = LONG_BITS;
 /// Bits of the exponent at the float conversion.
 pub const EXPONENT_BITS: u32 = 10;
 /// Most bits dropped after the product, whose width is 45.
@@ -66,7 +66,7 @@ impl CountsPlan {
             None => (vec![1.0], vec![0.0]),
         };
         let per_count = pa_per_count * pow2(-stress.lsb);
-        let taxels: Vec<Mantissa> = gains.iter().map(|gain| Mantissa::new(gain * per_count)).collect();
+        let taxels: Vec<Gain> = gains.iter().map(|gain| Gain::new(gain * per_count)).collect();
         // Where a taxel reads its full scale, its gain has multiplied that and what the offset takes off again.
         let reach = |taxel: usize| (offsets[taxel] * per_count).abs() + (stress.bound + 1) as f64;
         let furthest =
@@ -74,7 +74,7 @@ impl CountsPlan {
         let fits = |shift: i32| {
             // A dead taxel has no gain, and whatever it reads is 0.
             let holds = |taxel: usize| {
-                let gain = f64::from(taxels[taxel].gain.abs());
+                let gain = f64::from(taxels[taxel].mantissa.abs());
                 reach(taxel) * pow2(shift) <= gain * LARGEST_NUMBER as f64 || gain == 0.0
             };
             (0..gains.len()).all(holds)
@@ -88,14 +88,14 @@ impl CountsPlan {
             return Err(PlanError::Offset { taxel: furthest.1, counts: offsets[furthest.1], full_scale });
         };
         // By the gain as it is stored, so that the count of no stress at all gives none.
-        let offset = |(taxel, mantissa): (usize, &Mantissa)| {
+        let offset = |(taxel, gain): (usize, &Gain)| {
             let at_gain = if gains[taxel] == 0.0 { 0.0 } else { offsets[taxel] / gains[taxel] };
-            (at_gain * f64::from(mantissa.gain) * pow2(mantissa.exponent)).round() as i64
+            (at_gain * f64::from(gain.mantissa) * pow2(gain.exponent)).round() as i64
         };
         let mut plan = Self {
             curve: None,
-            exponents: taxels.iter().map(|mantissa| mantissa.exponent + shift).collect(),
-            gains: taxels.iter().map(|mantissa| mantissa.gain).collect(),
+            exponents: taxels.iter().map(|gain| gain.exponent + shift).collect(),
+            gains: taxels.iter().map(|gain| gain.mantissa).collect(),
             offsets: taxels.iter().enumerate().map(offset).collect(),
             shift: shift as u32,
             full_scale: stress.bound,
@@ -114,7 +114,7 @@ impl CountsPlan {
         let steps = pow2(curve.lsb - stress.lsb);
         let largest_gain = gains.iter().copied().fold(0.0, f64::max);
         // Of the largest gain all bits are in use.
-        let shift = -Mantissa::new(largest_gain * steps).exponent;
+        let shift = -Gain::new(largest_gain * steps).exponent;
         let scaled = |gain: f64| (gain * steps * pow2(shift)).round() as i32;
         let few = |gain: f64| gain != 0.0 && scaled(gain) < largest(GAIN_BITS) as i32 / (2 * MOST_SPREAD);
         if let Some(taxel) = gains.iter().position(|&gain| few(gain)) {
@@ -191,32 +191,3 @@ impl CountsPlan {
         u64::BITS - widest.leading_zeros() + 1
     }
 }
-
-/// A gain in steps of the stress for one count: `gain * 2^exponent`.
-pub(super) struct Mantissa {
-    pub(super) gain: i32,
-    pub(super) exponent: i32,
-}
-
-impl Mantissa {
-    /// With all of its bits in use; 0 for a gain of 0.
-    pub(super) fn new(per_count: f64) -> Self {
-        if per_count == 0.0 {
-            return Self { gain: 0, exponent: 0 };
-        }
-        let mut exponent = per_count.abs().log2().floor() as i32 + 2 - GAIN_BITS as i32;
-        while (per_count.abs() * pow2(-exponent)).round() > largest(GAIN_BITS) as f64 {
-            exponent += 1;
-        }
-        Self { gain: (per_count * pow2(-exponent)).round() as i32, exponent }
-    }
-}
-
-/// Pipeline registers from the stream to the stress in Bz: of the float conversion, and of the counts' if there is one.
-pub fn input_stages(counts: Option<&CountsPlan>) -> u64 {
-    let curve = counts.and_then(|counts| counts.curve.as_ref()).map_or(0, CurvePlan::stages);
-    u64::from(float_to_fixed::LATENCY) + if counts.is_some() { COUNT_STAGES } else { 0 } + curve
-}
-
-/// Pipeline registers from a count to its stress: gain, product, sum, limits.
-const COUNT_STAGES: u64 = 4;

@@ -4,19 +4,20 @@ use golden::design::Curve;
 use serde::Serialize;
 
 use super::PlanError;
-use super::counts::{GAIN_BITS, Mantissa};
-use super::format::{Format, pow2, round_shift};
+use super::format::{Format, largest, pow2, round_shift};
+use super::gain::{GAIN_BITS, Gain};
+use crate::cores::LONG_BITS;
 
 /// Width of a count on the curve: the difference of two is the longer operand of a multiplier.
-const COUNT_BITS: u32 = 26;
+const COUNT_BITS: u32 = LONG_BITS - 1;
 /// Width of the curve's value, the next multiplier's longer operand.
-const VALUE_BITS: u32 = 27;
+const VALUE_BITS: u32 = LONG_BITS;
 /// Most bits dropped after the product.
 const MOST_SHIFT: i32 = 40;
 /// Beyond every count.
-const NEVER: i64 = (1 << 26) - 1;
+const NEVER: i64 = largest(LONG_BITS);
 /// Bits of a segment in the ROM: first count, value there, slope, bits dropped.
-pub const SEGMENT_BITS: u32 = 27 + VALUE_BITS + GAIN_BITS + SHIFT_BITS;
+pub const SEGMENT_BITS: u32 = LONG_BITS + VALUE_BITS + GAIN_BITS + SHIFT_BITS;
 const SHIFT_BITS: u32 = 6;
 
 /// One straight piece: `value + round(slope * (number - first) / 2^shift)`.
@@ -67,13 +68,13 @@ impl CurvePlan {
             if a == b {
                 return Err(steep());
             }
-            let Mantissa { gain, exponent } = Mantissa::new((q - p) as f64 / (b - a) as f64);
+            let Gain { mantissa, exponent } = Gain::new((q - p) as f64 / (b - a) as f64);
             // A slope of next to nothing has fewer bits.
             let dropped = (-exponent - MOST_SHIFT).max(0);
             if exponent >= 0 {
                 return Err(steep());
             }
-            let slope = round_shift(i64::from(gain), dropped.min(60) as u32) as i32;
+            let slope = round_shift(i64::from(mantissa), dropped.min(60) as u32) as i32;
             Ok(Segment { first: a, value: p, slope, shift: (-exponent - dropped) as u32 })
         };
         let segments = points.windows(2).zip(curve.points.windows(2)).map(segment).collect::<Result<_, _>>()?;

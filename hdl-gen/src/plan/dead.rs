@@ -5,13 +5,14 @@ use golden::design::Design;
 use serde::Serialize;
 
 use super::format::{Format, largest, pow2, round_shift};
+use crate::cores::SHORT_BITS;
 
 /// Width of a weight: the shorter operand of a multiplier.
-pub const WEIGHT_BITS: u32 = 18;
+pub const WEIGHT_BITS: u32 = SHORT_BITS;
 /// Most that the magnitudes of a sum's weights add up to: with it the accumulator holds any frame.
 const MOST_WEIGHT: i64 = (1 << 21) - 1;
-/// A share of this many in a frame's stress is the most that may be replaced: [`golden::dead_taxels::GUESSED`].
-pub const GUESSED_SHARE: i64 = 8;
+/// One in this many of a frame's stress is the most that may be replaced: [`golden::dead_taxels::GUESSED`].
+pub const GUESSED_SHARE: i64 = (1.0 / golden::dead_taxels::GUESSED) as i64;
 
 /// What takes the place of dead taxels' readings: `round(sum of weight * stress / 2^shift)`, clipped to the full scale.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -71,9 +72,4 @@ impl DeadPlan {
         let taxels = self.weights.first().map_or(0, Vec::len);
         (0..taxels).map(|taxel| self.weights.iter().map(|weights| weights[taxel]).collect()).collect()
     }
-}
-
-/// Cycles that a frame's last stress takes longer to the fold where taxels are dead: the frame is read once more.
-pub const fn latency(taxels: usize) -> u64 {
-    taxels as u64 + 7
 }

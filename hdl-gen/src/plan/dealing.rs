@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BinaryHeap, VecDeque};
 
 use golden::parity::CLASSES;
 
-use super::lane::{ISSUE_TO_RESULT, LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
+use super::lane::{LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
+use crate::blocks::latency::ISSUE_TO_RESULT;
 
 /// A piece of a row as dealt to a lane, before its time is known.
 struct Piece {

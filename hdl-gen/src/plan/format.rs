@@ -2,11 +2,13 @@
 
 use serde::Serialize;
 
-/// Width of one SpMV lane's accumulator in bits: that of a DSP48E2.
-pub const ACCUMULATOR_BITS: u32 = 48;
+use crate::cores::ACCUMULATOR_BITS;
 
 /// Fraction bits of the friction components; one integer bit and a sign go with them.
 pub const FRICTION_FRACTION: u32 = 16;
+
+/// Width of a friction component.
+pub const FRICTION_BITS: u32 = FRICTION_FRACTION + 2;
 
 /// Width of the frame sums `G_pq` and `sum |b|`.
 pub const SUM_BITS: u32 = 40;

@@ -5,8 +5,6 @@ use serde::Serialize;
 
 use super::matrix::Entry;
 
-/// Cycles from the issue of a row's last MAC to its sum standing in the lane's result register.
-pub const ISSUE_TO_RESULT: u64 = 7;
 /// Results that a lane holds until the collector comes.
 pub const RESULT_PLACES: usize = 2;
 /// A count in the MACs-per-row ROM has 14 bits.

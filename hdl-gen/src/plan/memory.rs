@@ -19,7 +19,7 @@ const HALF_SHAPES: [(usize, usize); 6] = [(512, 36), (1024, 18), (2048, 9), (409
 pub struct Memory {
     /// What it holds.
     pub name: &'static str,
-    /// The block that it is in, one of [`super::resources::Resources::blocks`].
+    /// The block that it is in: see [`super::resources::BlockCost`].
     pub block: &'static str,
     /// How many of them.
     pub count: usize,
@@ -40,16 +40,9 @@ impl Memory {
     }
 }
 
-/// A memory with its predicted RAMB36.
-pub fn memory(
-    block: &'static str,
-    name: &'static str,
-    count: usize,
-    depth: usize,
-    width: u32,
-    read_only: bool,
-) -> Memory {
-    Memory { name, block, count, depth, width, bram36: ramb36(depth, width as usize, read_only), read_only }
+/// A memory with its predicted RAMB36, in no block yet.
+pub fn memory(name: &'static str, count: usize, depth: usize, width: u32, read_only: bool) -> Memory {
+    Memory { name, block: "", count, depth, width, bram36: ramb36(depth, width as usize, read_only), read_only }
 }
 
 /// RAMB36 that a memory takes, a RAMB18 counting one half: the cheapest of the shapes, tiled, or none if LUTs are

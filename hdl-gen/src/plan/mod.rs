@@ -12,7 +12,7 @@ mod dealing;
 mod error;
 pub mod filtered;
 pub mod format;
-pub mod formats;
+pub mod gain;
 pub mod lane;
 pub mod layout;
 pub mod matrix;
@@ -25,26 +25,27 @@ pub mod resources;
 pub mod savings;
 pub mod schedule;
 pub mod timing;
+pub mod vector_formats;
 pub mod words;
 
-use golden::design::{Design, Outputs};
+use golden::design::{Design, Outputs, PlanKind};
 #[cfg(doc)]
 use golden::estimators::joint::DOUBT_FRACTION;
 use golden::matrices::MatrixName;
-use golden::parity::Quads;
+use golden::parity::{CLASSES, Quads};
 use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
 use counts::CountsPlan;
 use dead::DeadPlan;
 pub use error::PlanError;
-use formats::Formats;
 use layout::OperandLayout;
 use matrix::QuantisedMatrix;
 use product::{Block, Product};
 use resources::Resources;
 use schedule::Schedule;
 use timing::Timeline;
+use vector_formats::Formats;
 pub use words::SUMMARY_WORDS;
 
 /// Thresholds of the frame statuses, in steps of the stress format.
@@ -115,17 +116,6 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Plans the hardware of `design`.
-    ///
-    /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
-    ///
-    /// # Errors
-    /// [`PlanError`] if the plan has no hardware for the estimator, the geometry is singular, the filter empties a
-    /// matrix, the widths are too small, or no number of lanes meets the target.
-    pub fn new(design: &Design) -> Result<Self, PlanError> {
-        build::plan(design)
-    }
-
     /// Multiply-accumulates of a frame in the lanes, all ways counted.
     pub fn macs(&self) -> u64 {
         self.schedule.windows.iter().map(|window| window.macs * self.ways() as u64).sum()
@@ -133,7 +123,7 @@ impl Plan {
 
     /// Multiply-accumulates of a lane in a cycle: the parity classes of the reduced plan, else one.
     pub fn ways(&self) -> usize {
-        build::ways(&self.design)
+        ways(&self.design)
     }
 
     /// Lanes that walk MCSR data of their own: the design's lanes over the ways.
@@ -143,12 +133,12 @@ impl Plan {
 
     /// Elements of a vector as the lanes see it: taxels, or quads of the folded grid.
     pub fn elements(&self) -> usize {
-        build::elements(&self.design)
+        elements(&self.design)
     }
 
     /// The quads of the sensor's grid.
     pub fn quads(&self) -> Quads {
-        build::quads(&self.design)
+        quads(&self.design)
     }
 
     /// Number of taxels m.
@@ -174,5 +164,23 @@ impl Plan {
         let first = self.products.iter().position(|product| product.block == block).unwrap_or(0);
         let count = self.products.iter().filter(|product| product.block == block).count();
         (first, first + count)
+    }
+}
+
+fn ways(design: &Design) -> usize {
+    match design.algorithm.plan {
+        PlanKind::Paper => 1,
+        PlanKind::Reduced => CLASSES,
+    }
+}
+
+fn quads(design: &Design) -> Quads {
+    Quads::new(design.sensor.columns, design.sensor.rows)
+}
+
+fn elements(design: &Design) -> usize {
+    match design.algorithm.plan {
+        PlanKind::Paper => design.sensor.taxels(),
+        PlanKind::Reduced => quads(design).count(),
     }
 }

@@ -14,20 +14,11 @@
 use serde::Serialize;
 
 use super::dealing::{Dealer, Stream, rounds_period};
-pub use super::lane::{ISSUE_TO_RESULT, LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
+pub use super::lane::{LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
 use super::product::{Epilogue, Product, Vector, spacing, visit_to_operand};
-use crate::blocks::latency::SEQUENCER_TO_LANES;
+use crate::blocks::latency::{COLLECTOR_JUMP, ISSUE_TO_RESULT, ROUNDS_FETCH, TURN_GAP, WRITE_TO_LIST};
 
-/// Cycles without issue when the lanes pass from one program to the next.
-pub const TURN_GAP: u64 = 2;
-/// Cycles from taking a program's last result to taking the next program's first: the order is read from a ROM.
-pub const COLLECTOR_JUMP: u64 = 4;
-/// Cycles without issue in front of a product's rounds: the list's first entry is fetched.
-pub const ROUNDS_FETCH: u64 = 1;
-/// Cycles from the last operand being there to the list of those that are not zero, as the lanes see it: the sequencer
-/// reads it before them.
-const WRITE_TO_LIST: u64 = 2 + SEQUENCER_TO_LANES;
 /// When a product runs, in cycles from the first issue of its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Window {

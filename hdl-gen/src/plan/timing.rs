@@ -2,8 +2,6 @@
 
 use serde::Serialize;
 
-/// One more for the skid buffer at the output.
-pub(super) const OUTPUT_SKID: u64 = 1;
 /// Frames back to back that show the interval, between the two in the middle: every buffer is full by then, and there
 /// is still a next frame.
 pub const INTERVAL_FRAMES: usize = 14;
@@ -17,7 +15,7 @@ pub fn middle_interval(ends: &[u64]) -> u64 {
 }
 
 /// Predicted times of one design, in clock cycles.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Timeline {
     /// First beat in to last beat out of a single frame, both included, with streams that never wait.
     pub latency_cycles: u64,

@@ -4,13 +4,14 @@ use golden::parity::{CLASSES, Quads, sign};
 use golden::products::RESULTANTS;
 use golden::reduced::ReducedName;
 use golden::solver::Solver;
+use hdl_gen::cores::ACCUMULATOR_BITS;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::FRICTION_FRACTION;
-use hdl_gen::plan::format::{ACCUMULATOR_BITS, MOST_SHIFT, largest, pow2, round_shift};
-use hdl_gen::plan::formats::{FOLD_BITS, FoldedFormats};
+use hdl_gen::plan::format::{MOST_SHIFT, largest, pow2, round_shift};
 use hdl_gen::plan::matrix::QuantisedMatrix;
 use hdl_gen::plan::product::{Coefficients, Epilogue, Product, Vector};
 use hdl_gen::plan::product::{SHARE_ROW, SUM_ROWS, sum_row, sum_way};
+use hdl_gen::plan::vector_formats::{FOLD_BITS, FoldedFormats};
 use proptest::prelude::*;
 
 use crate::formats::check_widths;

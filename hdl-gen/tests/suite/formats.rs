@@ -3,7 +3,8 @@
 use golden::design::Design;
 use golden::matrices::MatrixName;
 use golden::solver::Solver;
-use hdl_gen::plan::format::{ACCUMULATOR_BITS, Format, MOST_SHIFT, largest, pow2, round_shift};
+use hdl_gen::cores::ACCUMULATOR_BITS;
+use hdl_gen::plan::format::{Format, MOST_SHIFT, largest, pow2, round_shift};
 use hdl_gen::plan::product::{Epilogue, Vector};
 use hdl_gen::plan::{Plan, PlanError};
 use proptest::prelude::*;

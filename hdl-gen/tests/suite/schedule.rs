@@ -1,11 +1,12 @@
 //! The schedule: who computes what, and when.
 
 use golden::parity::CLASSES;
+use hdl_gen::blocks::latency::{COLLECTOR_JUMP, ISSUE_TO_RESULT};
 use hdl_gen::estimators::Cells;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
 use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, SUM_ROWS, Step, Vector, visit_to_operand};
-use hdl_gen::plan::schedule::{COLLECTOR_JUMP, ISSUE_TO_RESULT, Schedule, SegmentKind, Visit};
+use hdl_gen::plan::schedule::{Schedule, SegmentKind, Visit};
 use proptest::prelude::*;
 
 use crate::lanes::{RowSums, Sums, execute};

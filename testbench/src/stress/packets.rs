@@ -2,6 +2,7 @@
 
 use hdl_gen::model::{BAD_LENGTH, Model, NO_CONTACT, NOT_FINITE};
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::words::FORCE;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -147,7 +148,7 @@ pub fn balanced(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
             pascals[one] = sign * pascal;
             let packet = in_words(plan, &pascals);
             let words = model.process(&packet);
-            (packet, words[0] & NO_CONTACT != 0, [1, 2, 3].map(|beat| f32::from_bits(words[beat])))
+            (packet, words[0] & NO_CONTACT != 0, [0, 1, 2].map(|axis| f32::from_bits(words[FORCE + axis])))
         };
         let (mut low, mut high) = (0.0, 3.0 * taxels as f64 * noise);
         let (_, _, [_, _, beyond]) = answer(high);

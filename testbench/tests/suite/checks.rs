@@ -2,7 +2,7 @@
 //! it breaks, not only by the words that come out.
 
 use crate::support::{by_plan, in_parallel, planned, shipped};
-use golden::design::{Design, Outputs, PlanKind};
+use golden::design::{Design, Estimator, Outputs, PlanKind};
 use testbench::stream::{Traffic, exchange};
 use testbench::trial::{rtl_sources, timeout};
 use testbench::verilate::Verilate;
@@ -28,11 +28,21 @@ fn broken(design: &Design, module: &str, from: &str, to: &str) -> String {
     exchange(&mut core, &traffic, |_| ()).err().map_or_else(String::new, |error| error.to_string())
 }
 
+/// A register's assignment that comes a cycle late.
+fn late(register: &str, value: &str) -> String {
+    format!(" begin : late reg held; {register} <= held; held = {value}; end")
+}
+
 #[test]
 fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
     let paper = || by_plan(shipped("small"), PlanKind::Paper, Outputs::Field);
     let reduced = || by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
     let resultants = || by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants);
+    let joint = || {
+        let mut design = reduced();
+        design.algorithm.estimator = Estimator::Joint;
+        design
+    };
     let cases = [
         // The collector does not keep up with the lanes.
         (paper(), "spmv_collector", "visit_known && !parted", "visit_known && parted", "spmv_lane.v"),
@@ -45,6 +55,20 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         // Op and the estimator take longer than the plan says.
         (reduced(), "summary", "(step == 6'd33)", "(step == 6'd34)", "sptfra_check_latency.v"),
         (reduced(), "search", "wait_count == 4'd3", "wait_count == 4'd4", "sptfra_check_latency.v"),
+        // A block takes longer than the plan says.
+        (reduced(), "unfold", "STAGES = (WAYS == 4) ? 5 : 1;", "STAGES = (WAYS == 4) ? 6 : 2;", "check_delay.v"),
+        (paper(), "unfold", "STAGES = (WAYS == 4) ? 5 : 1;", "STAGES = (WAYS == 4) ? 6 : 2;", "check_delay.v"),
+        (reduced(), "we", "pull_waits <= valid[3];", "pull_waits <= write_valid && !pull_waits;", "check_delay.v"),
+        (paper(), "we", "write_valid <= taxel_y;", "write_valid <= taxel_y && !write_valid;", "check_delay.v"),
+        (reduced(), "co", "(sums_count == 3'd6);", "(sums_count == 3'd5);", "check_delay.v"),
+        (paper(), "coefficients", "is_g_3 <= is_g_2;", "is_g_3 <= is_g_1;", "check_delay.v"),
+        (reduced(), "spmv_collector", "sum_valid <= visited_valid;", "sum_valid <= taking;", "check_delay.v"),
+        (reduced(), "line", "(step == 4'd14)", "(step == 4'd15)", "check_latency.v"),
+        (joint(), "cean", "settled <= (state == MEASURE);", &late("settled", "(state == MEASURE)"), "check_latency.v"),
+        (joint(), "plane", "value_valid = ends[TOTAL_DEPTH];", "value_valid = ends[TOTAL_DEPTH-1];", "check_latency.v"),
+        (joint(), "friction", "5'd18: begin", "5'd19: begin", "check_latency.v"),
+        (shipped("sensor1-fast"), "network", "== SUMMING[4:0])", "== SUMMING[4:0] + 5'd1)", "check_latency.v"),
+        (reduced(), "fold", "lasts[3] && advance", "lasts[2] && advance", "check_latency.v"),
         // More frames are begun than Op has places for.
         (resultants(), "turns", "frame_ready && (searches_due != 2'd2)", "frame_ready", "_co.v"),
     ];

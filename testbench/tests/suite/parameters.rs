@@ -7,10 +7,11 @@ use testbench::tools;
 use crate::support::workspace;
 
 /// Module, parameter, value, what the tool must name.
-const SENSELESS: [(&str, &str, &str, &str); 16] = [
+const SENSELESS: [(&str, &str, &str, &str); 17] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("bz", "WAYS", "2", "ways_must_be_1_or_4"),
     ("bz", "DATA_BITS", "28", "data_bits_must_be_16_to_27"),
+    ("bz", "EXPECTED_STAGES", "6", "the_plan_counts_on_other_stages"),
     ("cean", "ROWS", "65", "columns_and_rows_must_be_2_to_64"),
     ("spmv_array", "WAYS", "3", "ways_must_be_1_or_4"),
     ("spmv_array", "LANES", "129", "lanes_must_be_1_to_128"),

@@ -65,6 +65,8 @@ fn faults_at_rare_moments_are_noticed() {
             "if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin",
             "if (push && (waiting == 2'd0)) begin",
         ),
+        // No quotient although there is no force along z.
+        (&reduced, "sptfra_summary", "(bits_z == 7'd0) || (bits_xy == 7'd0)", "(bits_z == 7'd0) && (bits_xy == 7'd0)"),
     ];
     let noticed = in_parallel(&cases, |&(design, module, from, to)| {
         let plan = planned(design);

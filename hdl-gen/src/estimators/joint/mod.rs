@@ -16,10 +16,12 @@ use golden::sensor::Sensor;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
+use super::{Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
 use crate::blocks::parameters::Parameters;
+use crate::cores::{LONG_BITS, SHORT_BITS};
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
-use crate::plan::memory::{Memory, memory};
+use crate::plan::memory::memory;
+use crate::plan::resources::BlockCost;
 pub use network::{
     DoubtPlan, INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS,
 };
@@ -50,7 +52,7 @@ pub const CORRECTION_LIMIT: i64 = (LARGEST * ONE) as i64;
 /// Left of a pitch from where a contact's centre belongs to the second of two taxels, in the steps of the friction.
 pub const CENTRE_HALF: i64 = (ONE / 2.0 + TIE * ONE) as i64;
 /// Width of `u_q` where it waits for the look.
-const U_BITS: u32 = 27;
+const U_BITS: u32 = LONG_BITS;
 /// One, in the steps of the friction.
 const ONE: f64 = (1_u32 << FRICTION_FRACTION) as f64;
 /// Taxels of a cell are visited anew after this many cycles at the earliest: the depth of its pipeline.
@@ -123,10 +125,6 @@ fn readouts(network: &NetworkPlan) -> usize {
     2 + usize::from(network.doubt.is_some())
 }
 
-const PLANE: &str = "plane";
-const LOOK: &str = "look";
-const NETWORK: &str = "network";
-
 impl Slot for JointPlan {
     fn cells(&self) -> Cells {
         self.cells
@@ -145,51 +143,39 @@ impl Slot for JointPlan {
     }
 
     fn contact_block(&self) -> BlockCost {
-        BlockCost { name: "CeAn", modules: &["sptfra_cean"], dsp: 0 }
+        BlockCost::new("CeAn", &["sptfra_cean"], 0)
     }
 
-    fn search_blocks(&self) -> Vec<BlockCost> {
-        let network = self.network.is_some();
-        // The square of a depth, or of five, and both moments; the stresses of a quad, and two of their shares of all; the hidden
-        // units' four classes and both components; one after the other.
-        vec![
-            BlockCost {
-                name: PLANE,
-                modules: &["sptfra_plane_search"],
-                dsp: if self.points.is_some() { points::DSP } else { 3 },
-            },
-            BlockCost { name: LOOK, modules: &["sptfra_look"], dsp: if network { 6 } else { 0 } },
-            BlockCost {
-                name: NETWORK,
-                modules: &["sptfra_network"],
-                dsp: self.network.as_ref().map_or(0, |of| CLASSES * of.at_once + readouts(of)),
-            },
-            BlockCost { name: "friction", modules: &["sptfra_friction"], dsp: 1 },
-        ]
-    }
-
-    fn memories(&self, sensor: &Sensor) -> Vec<Memory> {
+    fn search_blocks(&self, sensor: &Sensor) -> Vec<BlockCost> {
         let quads = Quads::new(sensor.columns, sensor.rows).count();
+        let classes = CLASSES as u32;
         // Two frames.
-        let taxels =
-            |block| memory(block, "u", 3, 2 * quads.max(4).next_power_of_two(), CLASSES as u32 * U_BITS, false);
-        let mut memories = match self.points {
+        let taxels = || memory("u", 3, 2 * quads.max(4).next_power_of_two(), classes * U_BITS, false);
+        // The squares of five depths, or of one; and both moments.
+        let plane = |dsp| BlockCost::new("plane", &["sptfra_plane_search"], dsp);
+        let mut blocks = vec![match self.points {
             Some(PointsPlan { side, .. }) => {
-                vec![taxels(PLANE), memory(PLANE, "grid values", side, side, points::VALUE_BITS, false)]
+                plane(points::DSP).with([taxels(), memory("grid values", side, side, points::VALUE_BITS, false)])
             }
-            None => vec![memory(PLANE, "grid values", 1, POINTS, self.value_bits, false)],
-        };
+            None => plane(3).with([memory("grid values", 1, POINTS, self.value_bits, false)]),
+        }];
         if let Some(network) = &self.network {
-            let classes = CLASSES as u32;
-            memories.push(taxels(LOOK));
+            // The stresses of a quad, and two of their shares of all.
+            let look = BlockCost::new("look", &["sptfra_look"], CLASSES + 2);
             // Each member of a place in the window may be in any quarter of the grid.
-            memories.push(memory(LOOK, "look", CLASSES * CLASSES, quads, STRESS_BITS, false));
-            memories.push(memory(NETWORK, "look, folded", 1, network.length, classes * INPUT_BITS, false));
+            blocks.push(look.with([taxels(), memory("look", CLASSES * CLASSES, quads, STRESS_BITS, false)]));
+            // The hidden units' four classes, both components, and the error that is left.
+            let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + readouts(network));
             let width = WEIGHT_BITS * classes * network.at_once as u32;
-            memories.push(memory(NETWORK, "hinge weights", 1, network.weights.len(), width, true));
-            memories.push(memory(NETWORK, "readout", 1, network.units(), readouts(network) as u32 * WEIGHT_BITS, true));
+            blocks.push(units.with([
+                memory("look, folded", 1, network.length, classes * INPUT_BITS, false),
+                memory("hinge weights", 1, network.weights.len(), width, true),
+                memory("readout", 1, network.units(), readouts(network) as u32 * WEIGHT_BITS, true),
+            ]));
         }
-        memories
+        // One after the other.
+        blocks.push(BlockCost::new("friction", &["sptfra_friction"], 1));
+        blocks
     }
 
     fn roms(&self) -> Vec<(&'static str, Vec<Vec<i32>>)> {
@@ -222,8 +208,8 @@ impl Slot for JointPlan {
                 .number("SHARE_SHIFT", self.share_shift.into()),
         };
         let parameters = parameters
-            .wide("LINEAR", 27, self.linear)
-            .wide("CUBIC", 18, self.cubic)
+            .wide("LINEAR", LONG_BITS, self.linear)
+            .wide("CUBIC", SHORT_BITS, self.cubic)
             .flag("NETWORK", self.network.is_some())
             .cycles("EXPECTED_PLANE_LATENCY", timing::first_value(&design.sensor, self))
             .cycles("EXPECTED_LEVEL_LATENCY", timing::level(self))

@@ -10,9 +10,10 @@ use golden::design::Design;
 use golden::sensor::Sensor;
 use serde_json::json;
 
-use super::{BlockCost, Cells, Found, Given, Metadata, Seen, Slot};
+use super::{Cells, Found, Given, Metadata, Seen, Slot};
 use crate::blocks::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS};
+use crate::plan::resources::BlockCost;
 
 /// Fraction bits of a centroid, in units of the taxel index.
 pub const CENTROID_FRACTION: u32 = 20;
@@ -75,14 +76,11 @@ impl Slot for LinePlan {
     }
 
     fn contact_block(&self) -> BlockCost {
-        BlockCost { name: "CeAn", modules: &["sptfra_cean"], dsp: 1 }
+        BlockCost::new("CeAn", &["sptfra_cean"], 1)
     }
 
-    fn search_blocks(&self) -> Vec<BlockCost> {
-        vec![
-            BlockCost { name: "line", modules: &["sptfra_line"], dsp: 1 },
-            BlockCost { name: "cells", modules: &["sptfra_search"], dsp: self.cells.cells },
-        ]
+    fn search_blocks(&self, _sensor: &Sensor) -> Vec<BlockCost> {
+        vec![BlockCost::new("line", &["sptfra_line"], 1), BlockCost::new("cells", &["sptfra_search"], self.cells.cells)]
     }
 
     fn module(&self) -> &'static str {

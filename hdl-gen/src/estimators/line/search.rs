@@ -5,8 +5,8 @@ use golden::products::ByPq;
 use super::super::{Found, Seen};
 use super::direction::Direction;
 use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, SEARCH_STEPS};
-use crate::cores::divider;
-use crate::plan::format::{FRICTION_FRACTION, largest, round_shift};
+use crate::cores::{LONG_BITS, divider};
+use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
 
 /// Ratios of this magnitude (4.0) and more make the line meaningless.
 const WILD: u64 = 1 << (LINE_FRACTION + 2);
@@ -56,7 +56,7 @@ pub fn friction(plan: &LinePlan, seen: &Seen) -> Found {
     let line = Line::new(seen.sums, &Direction::new(seen, plan.pitch));
     let Optimum { t, at_bound, saturated } = search(&line, seen, plan.level_shift);
     let exact = round_shift((line.c0 << FRICTION_FRACTION) + line.c1 * t, LINE_FRACTION);
-    let dependent = exact.clamp(-largest(18) - 1, largest(18));
+    let dependent = exact.clamp(-largest(FRICTION_BITS) - 1, largest(FRICTION_BITS));
     let friction = match (line.unknown, line.x_is_free) {
         (true, _) => [0, 0],
         (false, true) => [t, dependent],
@@ -118,7 +118,7 @@ impl Hinges {
         let mut saturated = false;
         let mut mixed = |addend: i64, factor: i64, value: i64| {
             let exact = round_shift((addend << LINE_FRACTION) + factor * value, LINE_FRACTION);
-            let clipped = exact.clamp(-largest(27) - 1, largest(27));
+            let clipped = exact.clamp(-largest(LONG_BITS) - 1, largest(LONG_BITS));
             saturated |= clipped != exact;
             clipped
         };

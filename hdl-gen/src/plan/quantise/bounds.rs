@@ -3,9 +3,9 @@
 use golden::parity::CLASSES;
 
 use super::super::format::{Format, largest};
-use super::super::formats::FOLD_BITS;
 use super::super::matrix::QuantisedMatrix;
 use super::super::product::Product;
+use super::super::vector_formats::FOLD_BITS;
 
 /// An operand: its format, folded if the list is, and that of the taxels' values it is folded from.
 #[derive(Clone, Copy)]

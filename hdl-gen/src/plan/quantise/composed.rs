@@ -9,8 +9,8 @@ use golden::parity::CLASSES;
 use nalgebra::DMatrix;
 
 use super::super::format::{Format, largest};
-use super::super::formats::FOLD_BITS;
 use super::super::matrix::QuantisedMatrix;
+use super::super::vector_formats::FOLD_BITS;
 use super::LARGEST_FRICTION;
 use super::bounds::Operand;
 

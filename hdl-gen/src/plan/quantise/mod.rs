@@ -17,9 +17,9 @@ use golden::products::{Epilogue, Form, ProductList, Source, Step, Vector};
 use super::PlanError;
 use super::filtered::Filtered;
 use super::format::{FRICTION_FRACTION, Format, MOST_SHIFT, largest, round_shift};
-use super::formats::{FOLD_BITS, FoldedFormats, Formats, arm_exponent};
 use super::matrix::{ANY_LSB, QuantisedMatrix};
 use super::product::{SELECT_MU_X, SELECT_MU_Y, SELECT_ONE};
+use super::vector_formats::{FOLD_BITS, FoldedFormats, Formats, arm_exponent};
 use bounds::{Operand, Term};
 
 /// A friction component lies in [-2, 2).
@@ -129,7 +129,7 @@ impl<'a> Pass<'a> {
             filtered,
             coefficient_bits: design.hardware.coefficient_bits,
             data_bits: design.hardware.data_bits,
-            gain: design.algorithm.joint.gain,
+            gain: design.algorithm.constants().gain().unwrap_or(1.0),
             operands: BTreeMap::new(),
             matrices: Vec::new(),
             place: vec![0; list.matrices.len()],

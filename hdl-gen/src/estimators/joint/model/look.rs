@@ -4,7 +4,7 @@ use golden::parity::CLASSES;
 
 use super::super::super::Seen;
 use super::super::{CENTRE_HALF, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS};
-use crate::cores::divider;
+use crate::cores::{SHORT_BITS, divider};
 use crate::plan::format::{FRICTION_FRACTION, SUM_BITS, largest, round_shift};
 
 /// Fraction bits of the contact's centre.
@@ -77,5 +77,5 @@ pub fn take(network: &NetworkPlan, seen: &Seen, mu: [i64; 2]) -> Look {
 fn reciprocal(sum: i64, sum_bits: u32) -> i64 {
     let normalised = (sum as u64) << (SUM_BITS - sum_bits);
     let quotient = divider::divide(1 << (SUM_BITS + RECIPROCAL_BITS), normalised);
-    quotient.min(largest(18) as u64) as i64
+    quotient.min(largest(SHORT_BITS) as u64) as i64
 }

@@ -9,7 +9,7 @@ use super::{
     CUBIC_FRACTION, DEPTH_BITS, FACTOR_FRACTION, JointPlan, LINEAR_FRACTION, POINTS, SIDE, STEP_SHIFT, WEIGHT_DROP,
 };
 use crate::cores::divider;
-use crate::plan::format::{FRICTION_FRACTION, largest, round_shift};
+use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
 
 /// Steps of the grid from its middle to its border.
 const REACH: i64 = SIDE as i64 / 2;
@@ -36,7 +36,7 @@ pub fn friction(joint: &JointPlan, seen: &Seen) -> Found {
     }
     for (axis, component) in found.friction.iter_mut().enumerate() {
         let sum = exact[axis] + correction[axis];
-        *component = sum.clamp(-largest(18) - 1, largest(18));
+        *component = sum.clamp(-largest(FRICTION_BITS) - 1, largest(FRICTION_BITS));
         found.at_bound |= *component != sum;
     }
     found

@@ -110,12 +110,13 @@ module small_4x3 #(
     wire coefficients_complete;
 
     sptfra_bz #(
-        .COLUMNS      (4),
-        .ROWS         (3),
-        .WAYS         (4),
-        .DATA_BITS    (27),
-        .NUMBER_SHIFT (9),
-        .NUMBER_BOUND (27'sd51200000)
+        .COLUMNS         (4),
+        .ROWS            (3),
+        .WAYS            (4),
+        .DATA_BITS       (27),
+        .NUMBER_SHIFT    (9),
+        .NUMBER_BOUND    (27'sd51200000),
+        .EXPECTED_STAGES (5)
     ) bz (
         .clock            (aclk),
         .reset            (reset),
@@ -435,6 +436,7 @@ module small_4x3 #(
     wire signed [17:0] free;
     wire signed [17:0] other;
     wire signed [17:0] slope;
+    wire signed [17:0] error_log;
     wire unknown, at_bound, search_saturated;
     wire [18*40-1:0] answer_sums;
     wire [5:0] answer_flags;
@@ -475,6 +477,7 @@ module small_4x3 #(
         .free            (free),
         .other           (other),
         .slope           (slope),
+        .error_log       (error_log),
         .unknown         (unknown),
         .at_bound        (at_bound),
         .saturated       (search_saturated),
@@ -537,6 +540,7 @@ module small_4x3 #(
         .free             (free),
         .other            (other),
         .slope            (slope),
+        .error_log        (error_log),
         .unknown          (unknown),
         .at_bound         (at_bound),
         .search_saturated (search_saturated),

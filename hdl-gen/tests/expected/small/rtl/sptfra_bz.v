@@ -45,6 +45,8 @@ module sptfra_bz #(
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
+    // Cycles from a beat to its stress that the plan counts on; 0: any
+    parameter EXPECTED_STAGES = 0,
     // Derived
     parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
@@ -93,6 +95,9 @@ module sptfra_bz #(
         end
         if ((DATA_BITS < 16) || (DATA_BITS > 27)) begin : gen_check_data
             sptfra_error_data_bits_must_be_16_to_27 invalid ();
+        end
+        if ((EXPECTED_STAGES != 0) && (EXPECTED_STAGES != STAGES)) begin : gen_check_stages
+            sptfra_error_the_plan_counts_on_other_stages invalid ();
         end
     endgenerate
 

@@ -72,6 +72,48 @@ module sptfra_co #(
         end
     end
 
+    // ---- Cycles from the result bus, which simulations check: to the write of an operand, to all sums being complete
+    localparam WRITE_LATENCY = (WAYS == 4) ? 1 : 3;
+
+    sptfra_check_delay #(
+        .CYCLES (WRITE_LATENCY)
+    ) check_write (
+        .clock (clock),
+        .reset (reset),
+        .start ((WAYS == 4) ? (result_route[8:5] != 4'd0) : (result_route[15:13] != 3'd0)),
+        .done  (write_valid)
+    );
+
+`ifdef SIMULATION
+    localparam SUMS_LATENCY = (WAYS == 4) ? 2 : 7;
+    // The last of a frame's results that add up to sums
+    localparam integer SUMMANDS = (WAYS == 4) ? 7 : 9 * ELEMENTS;
+    integer summands;
+    wire summand = (WAYS == 4) ? result_route[4] : (result_route[15:7] != 9'd0);
+    wire last_summand = summand && (summands == SUMMANDS - 1);
+    reg sums_were_there;
+
+    always @(posedge clock) begin
+        sums_were_there <= sums_there;
+        if (summand) begin
+            summands <= last_summand ? 0 : summands + 1;
+        end
+        if (reset) begin
+            sums_were_there <= 1'b0;
+            summands <= 0;
+        end
+    end
+
+    sptfra_check_delay #(
+        .CYCLES (SUMS_LATENCY)
+    ) check_sums (
+        .clock (clock),
+        .reset (reset),
+        .start (last_summand),
+        .done  (sums_were_there)
+    );
+`endif
+
     generate
         if (WAYS == 4) begin : gen_folded
             // ---- Sums: row q has G_pq, and T_z's, in the class on which it depends, row 4 + q those of T_x and T_y;

@@ -36,6 +36,7 @@ module sptfra_fold #(
     output wire frame_written // the frame is complete
 );
 
+    localparam LAST_TO_WRITTEN = 3; // cycles, which simulations check of a frame that flows
     localparam QUAD_COLUMNS = (COLUMNS + 1) / 2;
     localparam QUAD_ROWS = (ROWS + 1) / 2;
     localparam X_WIDTH = $clog2(COLUMNS);
@@ -177,6 +178,15 @@ module sptfra_fold #(
     assign write_quad = quad_3;
     assign write_data = {sum_3[DATA_BITS+1:2], sum_2[DATA_BITS+1:2], sum_1[DATA_BITS+1:2], sum_0[DATA_BITS+1:2]};
     assign frame_written = lasts[3] && advance;
+
+    sptfra_check_latency #(
+        .CYCLES (LAST_TO_WRITTEN)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset || !advance),
+        .start (in_valid && in_last),
+        .done  (frame_written)
+    );
 
     wire _unused = &{1'b0, sum_0[1:0], sum_1[1:0], sum_2[1:0], sum_3[1:0], opposite_wide};
 

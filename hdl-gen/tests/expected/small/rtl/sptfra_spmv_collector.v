@@ -58,6 +58,7 @@ module sptfra_spmv_collector #(
     output reg  result_last // of its program
 );
 
+    localparam TAKE_TO_BUS = 3; // cycles, which simulations check
     localparam LANE_WIDTH = (LANES > 2) ? $clog2(LANES) : 1;
     localparam WORD_WIDTH = 1 + LANE_WIDTH + DESTINATION_BITS + ROW_WIDTH;
     localparam [3:0] Y = 4'd0, U1 = 4'd2, U2 = 4'd3, R1 = 4'd6, R2 = 4'd7, FORCE_X = 4'd9, FORCE_Y = 4'd10;
@@ -227,6 +228,15 @@ module sptfra_spmv_collector #(
             {result_last, lasts} <= 3'd0;
         end
     end
+
+    sptfra_check_delay #(
+        .CYCLES (TAKE_TO_BUS)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset),
+        .start (taking),
+        .done  (result_route != 16'd0)
+    );
 
     generate
         if (WAYS == 4) begin : gen_classes

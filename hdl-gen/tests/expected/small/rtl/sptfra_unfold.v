@@ -53,6 +53,7 @@ module sptfra_unfold #(
     endgenerate
 
     // ---- What a value is, beside it on its way: stage k holds what was on the bus k cycles ago
+    localparam LATENCY = (WAYS == 4) ? 5 : 1; // from the result bus to taxels, which simulations check
     localparam STAGES = (WAYS == 4) ? 5 : 1;
 
     wire [6:0] route = {result_force, result_u, result_y};
@@ -85,6 +86,15 @@ module sptfra_unfold #(
     end
 
     wire _unused_pipe = &{1'b0, next_routes, next_lasts, next_rows};
+
+    sptfra_check_delay #(
+        .CYCLES (LATENCY)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset),
+        .start (routed),
+        .done  (routes[7*(STAGES-1) +: 7] != 7'd0)
+    );
 
     generate
         if (WAYS == 4) begin : gen_classes

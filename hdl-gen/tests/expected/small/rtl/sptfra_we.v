@@ -55,6 +55,7 @@ module sptfra_we #(
         end
     endgenerate
 
+    localparam LATENCY = (WAYS == 4) ? 5 : 1; // from taxels to the last write of them, which simulations check
     localparam [31:0] BASE = WEIGHT_BASE;
     localparam [31:0] LENGTH = ELEMENTS;
     localparam signed [DATA_BITS-1:0] ZERO = 0;
@@ -117,6 +118,7 @@ module sptfra_we #(
             // ---- Stages 4 and 5: round, write one after the other. The next result is two cycles behind, or more
             localparam [DATA_BITS+1:0] HALF = (FOLD_SHIFT > 0) ? 1 << (FOLD_SHIFT - 1) : 0;
             reg pull_waits;
+            reg pull_written;
             reg [4*DATA_BITS-1:0] pull_held;
             wire [4*DATA_BITS-1:0] press_rounded;
             wire [4*DATA_BITS-1:0] pull_rounded;
@@ -136,6 +138,7 @@ module sptfra_we #(
             always @(posedge clock) begin
                 write_valid <= write_next;
                 pull_waits <= valid[3];
+                pull_written <= pull_waits;
                 if (valid[3]) begin
                     pull_held <= pull_rounded;
                     write_address <= BASE[OPERAND_WIDTH-1:0] + quad_wide[OPERAND_WIDTH-1:0];
@@ -147,8 +150,18 @@ module sptfra_we #(
                 if (reset) begin
                     write_valid <= 1'b0;
                     pull_waits <= 1'b0;
+                    pull_written <= 1'b0;
                 end
             end
+
+            sptfra_check_delay #(
+                .CYCLES (LATENCY)
+            ) check_latency (
+                .clock (clock),
+                .reset (reset),
+                .start (taxel_y),
+                .done  (pull_written)
+            );
 
             if (SKIPS != 0) begin : gen_list
                 reg write_pull;
@@ -197,6 +210,15 @@ module sptfra_we #(
                     write_valid <= 1'b0;
                 end
             end
+
+            sptfra_check_delay #(
+                .CYCLES (LATENCY)
+            ) check_latency (
+                .clock (clock),
+                .reset (reset),
+                .start (taxel_y),
+                .done  (write_valid)
+            );
 
             wire _unused = &{1'b0, row_wide};
         end

@@ -19,6 +19,7 @@ foreach file {
     sptfra_butterfly.v
     sptfra_bz.v
     sptfra_cean.v
+    sptfra_check_delay.v
     sptfra_check_latency.v
     sptfra_co.v
     sptfra_cordic.v
