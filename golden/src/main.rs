@@ -243,11 +243,14 @@ const CALIBRATE_FILES: &str = r#"In the design file:
 In RESOLVED.toml, besides:
   gain = 1.1                        # factor on all forces
   tangential = [1.0, 0.0]           # friction vector c1 mu + c3 mu |mu|^2
+  family = "wide"                   # contacts that all of it was fitted to, unless "narrow"
+  doubt = 0.06                      # with family "wide": a standard error above this share of F_z is doubtful
   [algorithm.correction]            # of the friction vector, by a small network
   half_window = [3, 7]              # taxels either side of the contact's centre, along x and y
   file = "RESOLVED.weights.csv"     # its weights in steps of 2^-12, written beside RESOLVED.toml: a line for each
                                     # hidden unit, under a header
-  sha256 = "..."                    # of that file"#;
+  sha256 = "..."                    # of that file
+  error_base = -17123               # with family "wide": what is added to the logarithm of the error that is left"#;
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {

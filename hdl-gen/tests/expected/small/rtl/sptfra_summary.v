@@ -79,6 +79,7 @@ module sptfra_summary #(
     reg [39:0] sum_1;
     reg signed [26:0] half_2;
 
+    reg [31:0] unit_z; // |F_z|, with its leading bit at the top
     reg signed [17:0] coefficient;
     reg signed [26:0] data;
     reg first;
@@ -161,7 +162,6 @@ module sptfra_summary #(
     reg no_quotient;
     reg signed [31:0] unit_x;
     reg signed [31:0] unit_y;
-    reg [31:0] unit_z;
 
     // Two cycles behind the numbers
     wire [6:0] found_xy;
