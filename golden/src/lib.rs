@@ -46,4 +46,5 @@ pub mod scene;
 pub mod sensor;
 pub mod solver;
 pub mod status;
+pub mod table;
 pub mod words;

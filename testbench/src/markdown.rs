@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::table::Table;
+use golden::table::Table;
 
 /// Characters of a line of running text.
 const PAGE_WIDTH: usize = 120;

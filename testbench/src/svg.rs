@@ -103,6 +103,26 @@ impl Svg {
         );
     }
 
+    /// A wide one.
+    pub fn bold_arrow(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), colour: &str) {
+        let (dx, dy) = (x2 - x1, y2 - y1);
+        let length = dx.hypot(dy);
+        if length < 1.0 {
+            return;
+        }
+        let (along, across) = ((dx / length, dy / length), (-dy / length, dx / length));
+        let head = (0.4 * length).min(10.0);
+        let neck = (x2 - head * along.0, y2 - head * along.1);
+        let wing = |side: f64| (neck.0 + side * 0.5 * head * across.0, neck.1 + side * 0.5 * head * across.1);
+        let ((ax, ay), (bx, by)) = (wing(1.0), wing(-1.0));
+        let _ = writeln!(
+            self.0,
+            "<path d=\"M{x1:.1} {y1:.1}L{:.1} {:.1}\" stroke=\"{colour}\" stroke-width=\"3.5\"/>\
+             <path d=\"M{x2:.1} {y2:.1}L{ax:.1} {ay:.1}L{bx:.1} {by:.1}Z\" fill=\"{colour}\"/>",
+            neck.0, neck.1
+        );
+    }
+
     /// A piece of text; `anchor` is `start`, `middle` or `end`.
     pub fn text(&mut self, (x, y): (f64, f64), anchor: &str, colour: &str, text: &str) {
         self.sized_text((x, y), anchor, colour, 13, text);

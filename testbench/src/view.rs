@@ -4,12 +4,14 @@ use std::fmt::Write;
 use std::io::IsTerminal;
 
 use golden::design::Design;
+use golden::sensor::Sensor;
 use golden::solver::Status;
 use hdl_gen::model::Model;
 use hdl_gen::plan::{Plan, PlanError};
 use serde::Serialize;
 use thiserror::Error;
 
+use crate::field_plot;
 use crate::frame_set::FrameSet;
 use crate::progress::Progress;
 use crate::stream_words::{Answer, decode, encode};
@@ -50,8 +52,11 @@ pub struct View {
     design: String,
     origin: String,
     frame: usize,
-    columns: usize,
+    sensor: Sensor,
+    /// In Pa.
+    stress: Vec<f64>,
     answer: Answer,
+    truth: Option<[f64; 3]>,
 }
 
 /// A view for machines; values have the names of the output stream, fields go in taxel order.
@@ -94,7 +99,14 @@ impl View {
     /// The page for a terminal.
     pub fn page(&self, colour: bool) -> String {
         let title = format!("{}, frame {} of {}", self.design, self.frame, self.origin);
-        render(&title, &self.answer, self.columns, colour)
+        render(&title, &self.answer, self.sensor.columns, colour)
+    }
+
+    /// The same as a picture: the stress, and the forces with the true sum if that is known. `None` where the design puts
+    /// out resultants only.
+    pub fn svg(&self) -> Option<String> {
+        let has_field = !self.answer.field[2].is_empty();
+        has_field.then(|| field_plot::frame(&self.sensor, &self.stress, &self.answer, self.truth))
     }
 
     /// The same for machines: all values of the answer, forces in N, angles in rad.
@@ -108,7 +120,7 @@ impl View {
             design: &self.design,
             origin: &self.origin,
             frame: self.frame,
-            columns: self.columns,
+            columns: self.sensor.columns,
             status,
             meaning: Status(status).to_string(),
             force_x,
@@ -140,7 +152,9 @@ pub fn frame(design: &Design, frames: &FrameSet, frame: usize, progress: &Progre
         design: design.name.clone(),
         origin: frames.origin.clone(),
         frame,
-        columns: design.sensor.columns,
+        sensor: design.sensor.clone(),
+        stress: stress.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect(),
+        truth: frames.truth.as_ref().map(|truth| truth[frame].force),
         // The model's answers have the length that it was made for.
         answer: decode(&words).unwrap_or_default(),
     })
@@ -244,7 +258,18 @@ mod tests {
     #[test]
     fn resultants_have_no_field() {
         assert!(render("t", &answer(&[]), 2, true).contains("resultants only"));
-        let view = |answer| View { design: "d".to_owned(), origin: "o".to_owned(), frame: 3, columns: 2, answer };
+        let sensor = Sensor { columns: 2, rows: 2, pitch_mm: [4.0; 2], depth_mm: 3.0 };
+        let [design, origin] = ["d", "o"].map(str::to_owned);
+        let view = |answer| View {
+            design: design.clone(),
+            origin: origin.clone(),
+            frame: 3,
+            sensor: sensor.clone(),
+            stress: vec![0.0; 4],
+            answer,
+            truth: None,
+        };
+        assert_eq!(view(answer(&[])).svg(), None);
         let json: serde_json::Value = serde_json::from_str(&view(answer(&[])).json().unwrap()).unwrap();
         assert!(json.get("field").is_none() && json["F_z"] == -3.0 && json["mu_y"] == 0.4, "{json}");
         let json: serde_json::Value = serde_json::from_str(&view(answer(&[[1.0, 2.0, 3.0]])).json().unwrap()).unwrap();

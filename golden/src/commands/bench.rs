@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use golden::design::{Design, PlanKind};
 use golden::solver::{Solution, Solver, SolverError, Status};
+use golden::table::Table;
 use indicatif::ProgressBar;
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
@@ -54,18 +55,16 @@ pub fn run(designs: &[PathBuf], json: bool) -> Result<(), Box<dyn Error>> {
         say!("{}", serde_json::to_string_pretty(&reports)?);
         return Ok(());
     }
-    say!("frames a second on one core, median of {REPETITIONS} repetitions");
-    say!("  design                  plan     taxels  setup s   one by one       us   in batches       us");
+    let mut table = Table::new(["design", "plan", "taxels", "setup s", "one by one", "us", "in batches", "us"]);
     for report in &reports {
         let Report { design, plan, taxels, setup_s, one_by_one, in_batches, .. } = report;
-        say!(
-            "  {design:<22}  {plan:<7}  {taxels:>6}  {setup_s:>7.2}   {:>10.0}  {:>7.1}   {:>10.0}  {:>7.1}",
-            one_by_one.frames_per_second,
-            one_by_one.us_per_frame,
-            in_batches.frames_per_second,
-            in_batches.us_per_frame
-        );
+        let mut row = vec![design.clone(), plan.to_string(), taxels.to_string(), format!("{setup_s:.2}")];
+        for speed in [one_by_one, in_batches] {
+            row.extend([format!("{:.0}", speed.frames_per_second), format!("{:.1}", speed.us_per_frame)]);
+        }
+        table.row(row);
     }
+    say!("frames a second on one core, median of {REPETITIONS} repetitions\n{}", table.text(0, 0));
     Ok(())
 }
 

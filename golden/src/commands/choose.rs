@@ -7,6 +7,7 @@ use std::path::Path;
 use golden::choose::{Choice, candidate_count, choose, rebase_scenes, reference_frames};
 use golden::design::{Design, Filter};
 use golden::output::write_together;
+use golden::table::Table;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
@@ -83,20 +84,20 @@ fn table(choice: &Choice) -> String {
 }
 
 fn print_report(name: &str, out: &Path, choice: &Choice) -> std::io::Result<()> {
-    say!("{name}: filters chosen by {} frames", choice.frames);
-    say!("  matrix  filter        Nnz    e_mu %    e_mu * Nnz");
+    let mut table = Table::new(["matrix", "filter", "Nnz", "e_mu %", "e_mu * Nnz"]);
     for candidate in choice.candidates.iter().filter(|candidate| candidate.chosen) {
-        say!(
-            "  {:<7} {:<8} {:>8}  {:>8.4}  {:>12.1}",
-            candidate.matrix,
-            candidate.filter,
-            candidate.nnz,
-            candidate.e_mu,
-            candidate.cost
-        );
+        table.row([
+            candidate.matrix.to_string(),
+            candidate.filter.to_string(),
+            candidate.nnz.to_string(),
+            format!("{:.4}", candidate.e_mu),
+            format!("{:.1}", candidate.cost),
+        ]);
     }
-    say!("  all together     {:>8}  {:>8.4}", choice.nnz_chosen, choice.e_mu_chosen);
-    say!("  without a filter           {:>8.4}", choice.e_mu_unfiltered);
+    let whole = |what: &str, nnz: String, e_mu: f64| [what.to_owned(), String::new(), nnz, format!("{e_mu:.4}")];
+    table.row(whole("all together", choice.nnz_chosen.to_string(), choice.e_mu_chosen));
+    table.row(whole("without a filter", String::new(), choice.e_mu_unfiltered));
+    say!("{name}: filters chosen by {} frames\n{}", choice.frames, table.text(0, 0));
     say!("the resolved design is {}", out.display());
     Ok(())
 }

@@ -8,6 +8,7 @@ use golden::design::Design;
 use golden::forces;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
 use golden::solver::{Solution, Solver, Status};
+use golden::table::Table;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
@@ -95,10 +96,11 @@ fn print_report(report: &SolveReport) -> std::io::Result<()> {
         say!("  {:>6} frames: {}", count.frames, count.meaning);
     }
     if let Some(errors) = &report.errors {
-        say!("errors in %       max  std. error");
+        let mut table = Table::new(["errors in %", "max", "std. error"]);
         for (name, spread) in ERROR_NAMES.iter().zip(errors.spreads()) {
-            say!("  {name:<8} {:>10.2}  {:>10.2}", spread.max, spread.standard_error);
+            table.row([name.to_string(), format!("{:.2}", spread.max), format!("{:.2}", spread.standard_error)]);
         }
+        say!("{}", table.text(0, 0));
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use golden::design::PlanKind;
 use golden::kernel;
+use golden::table::Table;
 use hdl_gen::emit::{nnz, predicted, products};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::short;
@@ -126,11 +127,12 @@ fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
 fn reductions(out: &mut String, plan: &Plan) -> std::fmt::Result {
     let steps = savings(plan);
     let Some(first) = steps.first() else { return Ok(()) };
-    writeln!(out, "\n{:<32}{:>13}{:>8}{:>22}", "Reductions", "MACs a frame", "", "coefficients in ROM")?;
+    let mut table = Table::new(["Reductions", "MACs a frame", "share", "coefficients in ROM"]);
     for step in &steps {
-        let share = 100.0 * step.macs as f64 / first.macs as f64;
-        writeln!(out, "  {:<30}{:>13} {share:>5.1} %{:>22}", step.step, step.macs, step.coefficients)?;
+        let share = format!("{:.1} %", 100.0 * step.macs as f64 / first.macs as f64);
+        table.row([step.step.to_owned(), step.macs.to_string(), share, step.coefficients.to_string()]);
     }
+    write!(out, "\n{}", table.text(0, 0))?;
     if plan.design.hardware.skip_zeros {
         writeln!(out, "  the cycles below are those of a frame without zeros, the worst case")?;
     }
@@ -138,13 +140,17 @@ fn reductions(out: &mut String, plan: &Plan) -> std::fmt::Result {
 }
 
 fn work(out: &mut String, plan: &Plan) -> std::fmt::Result {
-    writeln!(out, "\n{:<25}{:>9}{:>8}{:>9}", "Products", "entries", "cycles", "busy")?;
+    let mut table = Table::new(["Products", "entries", "cycles", "busy", "result"]).ending_in_words();
     for product in products(plan) {
-        let what = format!("{} of {}", product.matrix, product.operand);
-        let (entries, cycles, busy) = (product.nnz, product.issue_cycles, 100.0 * product.busy);
-        writeln!(out, "  {what:<23}{entries:>9}{cycles:>8}{busy:>7.1} %   {}", product.result)?;
+        table.row([
+            format!("{} of {}", product.matrix, product.operand),
+            product.nnz.to_string(),
+            product.issue_cycles.to_string(),
+            format!("{:.1} %", 100.0 * product.busy),
+            product.result,
+        ]);
     }
-    Ok(())
+    write!(out, "\n{}", table.text(0, 0))
 }
 
 fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
@@ -152,16 +158,17 @@ fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
     let timeline = &plan.timeline;
     let busy = 100.0 * plan.schedule.busy_fraction();
     let rate = clock * 1e6 / timeline.interval_cycles as f64;
-    writeln!(out, "\nSpeed at {clock} MHz")?;
+    let header = [format!("Speed at {clock} MHz"), "cycles".to_owned(), "us".to_owned(), String::new()];
+    let mut table = Table::new(header).ending_in_words();
     for (what, cycles, remark) in [
         ("latency", timeline.latency_cycles, "first beat in to last beat out".to_owned()),
         ("interval", timeline.interval_cycles, format!("between frames, {rate:.0} frames a second")),
         ("products", timeline.spmv_cycles, format!("{} busy {busy:.1} %", count(plan.design.hardware.lanes, "lane"))),
         ("search", timeline.search_cycles, count(plan.estimator.slot().cells().cells, "evaluation cell")),
     ] {
-        writeln!(out, "  {what:<9} {cycles:>10} cycles {:>11.2} us   {remark}", cycles as f64 / clock)?;
+        table.row([what.to_owned(), cycles.to_string(), format!("{:.2}", cycles as f64 / clock), remark]);
     }
-    Ok(())
+    write!(out, "\n{}", table.text(0, 0))
 }
 
 /// What to tell whose design does not fit its part, if that is one whose size is known.
@@ -209,19 +216,18 @@ fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
             used(resources.bram36, bram36)
         )?;
     }
-    writeln!(out, "  {:<14}{:>3}   {:>8} x {:>2}   {:>8}", "memory", "", "words", "bits", "RAMB36")?;
+    let mut table = Table::new(["Memories", "block", "how many", "words", "bits", "RAMB36"]);
     for memory in &resources.memories {
-        writeln!(
-            out,
-            "  {:<14}{:>3} x {:>8} x {:>2}   {:>8}",
-            memory.name,
-            memory.count,
-            memory.depth,
-            memory.width,
-            memory.count as f64 * memory.bram36
-        )?;
+        table.row([
+            memory.name.to_owned(),
+            memory.block.to_owned(),
+            memory.count.to_string(),
+            memory.depth.to_string(),
+            memory.width.to_string(),
+            memory.all_bram36().to_string(),
+        ]);
     }
-    Ok(())
+    write!(out, "\n{}", table.text(0, 0))
 }
 
 fn numbers(out: &mut String, plan: &Plan) -> std::fmt::Result {

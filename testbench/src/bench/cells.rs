@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{BenchError, read_json};
 use crate::figures::{decimals, grouped};
-use crate::table::Table;
+use golden::table::Table;
 
 /// Name of what is in no predicted block: stream buffers, turns, registers between the blocks.
 const REST: &str = "rest";

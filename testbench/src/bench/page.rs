@@ -11,7 +11,7 @@ use super::{Figures, generation, rate};
 use crate::figures::{decimals, grouped, or_dash};
 use crate::markdown::Page;
 use crate::simulate::Cycles;
-use crate::table::Table;
+use golden::table::Table;
 
 /// The whole page. `command` is the `testbench bench` command that measured; `plot` is the picture's place, as seen
 /// from the page.

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::judge::{Judged, Row};
 use crate::figures::{or_dash, percent, scientific};
 use crate::markdown::Page;
-use crate::table::{Cell, Table};
+use golden::table::{Cell, Table};
 
 /// Style of what must not be.
 const BAD: &str = "bad";

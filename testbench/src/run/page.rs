@@ -4,8 +4,8 @@ use golden::metrics::ERROR_NAMES;
 
 use super::report::{Published, Report};
 use crate::figures::{decimals, grouped};
-use crate::table::{Table, rule};
 use crate::trial::Timing;
+use golden::table::{Table, rule};
 
 /// Width of the names, and of each of the values beside them.
 const NAMES: usize = 26;

@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 use fst_reader::{FstHierarchyEntry, FstReader};
+use golden::forces::write_reference;
+use golden::frames::write_frames;
+use golden::scene::Scene;
 use testbench::verilate::Trace;
 
-fn workspace(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join(path)
-}
+use crate::support::{shipped, workspace};
 
 fn testbench(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_testbench")).args(arguments).current_dir(folder).output().expect("starts")
@@ -156,6 +157,37 @@ fn a_frame_is_shown_plainly_where_there_is_no_terminal() {
     let message = text(&refused.stderr);
     assert!(!refused.status.success() && refused.stdout.is_empty());
     assert_eq!(message, "error: --frame 36: the sensor's standing scene has 36 frames; choose 0 to 35\n");
+}
+
+/// The picture of the README. `UPDATE_EXPECTED=1` draws it anew.
+#[test]
+fn the_readmes_picture_is_what_view_draws() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let design = shipped("sensor1-joint");
+    let scene = Scene::load(&workspace("scenes/sensor1-hertz.toml")).expect("a scene");
+    let [frames, forces] = ["frames.csv", "frames.forces.csv"].map(|name| folder.path().join(name));
+    let made = scene.frames().expect("computed");
+    let stress: Vec<Vec<f64>> = made.iter().map(|frame| frame.stress.clone()).collect();
+    write_frames(&frames, &stress).expect("written");
+    write_reference(&forces, &made).expect("written");
+    let path = workspace("designs/sensor1-joint.toml").display().to_string();
+    let view = |more: &[&str]| {
+        let arguments = [&["view", &path, "--frames", "frames.csv", "--frame", "4", "--svg", "frame.svg"], more];
+        testbench(folder.path(), &arguments.concat())
+    };
+    let ran = view(&["--reference", "frames.forces.csv"]);
+    assert!(ran.status.success(), "{}", text(&ran.stderr));
+    let drawn = fs::read_to_string(folder.path().join("frame.svg")).expect("drawn");
+    let known = workspace("docs/frame.svg");
+    if std::env::var_os("UPDATE_EXPECTED").is_some() {
+        fs::write(&known, &drawn).expect("written");
+    }
+    assert_eq!(drawn, fs::read_to_string(&known).expect("docs/frame.svg"), "UPDATE_EXPECTED=1 draws it anew");
+    assert_eq!(drawn.matches("<rect").count(), 2 * design.sensor.taxels() + 2 * 24, "a cell a taxel, and both bars");
+    assert!(drawn.contains("F true"), "{drawn}");
+    // Without the true forces, there is none to draw.
+    assert!(view(&[]).status.success());
+    assert!(!fs::read_to_string(folder.path().join("frame.svg")).expect("drawn").contains("F true"));
 }
 
 #[test]

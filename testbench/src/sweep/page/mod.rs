@@ -1,6 +1,5 @@
 //! The page of a sweep: one HTML file without a network, with pictures as SVG, for light and dark.
 
-pub mod field;
 pub mod front;
 pub mod hard;
 pub mod matrices;
@@ -16,11 +15,12 @@ use serde::Serialize;
 use tera::{Context, Tera};
 use thiserror::Error;
 
+use crate::field_plot;
 use crate::hard::judge::Row;
 use crate::sweep::evaluate::answers;
 use crate::sweep::point::{Geometry, Point, Verified, sensor_title, sensors};
 use crate::sweep::{Sweep, SweepError, SweepScene};
-use crate::table::Table;
+use golden::table::Table;
 use matrices::Figure;
 
 const TEMPLATE: &str = include_str!("../../../templates/report.html.tera");
@@ -146,7 +146,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
         Some(design) => Matrices::of(design).ok(),
         None => None,
     };
-    let (field, field_caption) = field_figures(sensor, &designs, main)?;
+    let (field, field_caption) = field_figures(&designs, main)?;
     let filters = |kinds: [MatrixFilter; 4]| {
         // F1 has no more diagonals than the matrix.
         let legal =
@@ -191,13 +191,12 @@ fn costs(designs: &[&Design], scene: Option<&SweepScene>, small: bool) -> Option
     Some(Figure { svg: matrices::costs(&choice), caption })
 }
 
-fn field_figures(
-    sensor: &Geometry,
-    designs: &[&Design],
-    scene: Option<&SweepScene>,
-) -> Result<(Vec<Figure>, String), PageError> {
+/// The field of one frame, by the estimator that new designs have where there is a design with it.
+fn field_figures(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Figure>, String), PageError> {
     let shows = |design: &&&Design| design.algorithm.outputs == Outputs::Field && Plan::new(design).is_ok();
-    let (Some(design), Some(scene)) = (designs.iter().find(shows), scene) else {
+    let of_joint = |design: &&&Design| design.algorithm.estimator == Estimator::Joint && shows(design);
+    let shown = designs.iter().find(of_joint).or_else(|| designs.iter().find(shows));
+    let (Some(design), Some(scene)) = (shown, scene) else {
         return Ok((Vec::new(), String::new()));
     };
     let frame = DRAWN_FRAME.min(scene.frames.stress.len() - 1);
@@ -220,10 +219,13 @@ fn field_figures(
         answer.resultant[1],
         answer.resultant[2]
     );
-    let felt = field::stress(sensor, &frames.stress[0]);
+    let sensor = &design.sensor;
+    let felt: Vec<f64> =
+        frames.stress[0].iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect();
+    let found = field_plot::forces(sensor, answer, Some(force));
     let figures = vec![
-        Figure { svg: felt, caption: "what the taxels feel".to_owned() },
-        Figure { svg: field::forces(sensor, answer), caption: "what the hardware finds".to_owned() },
+        Figure { svg: field_plot::stress(sensor, &felt), caption: "what the taxels feel".to_owned() },
+        Figure { svg: found, caption: "what the hardware finds, and in orange the true sum of forces".to_owned() },
     ];
     Ok((figures, caption))
 }

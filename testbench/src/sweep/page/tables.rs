@@ -8,7 +8,7 @@ use super::matrices::symbol;
 use super::paper::{TABLE_1, TABLE_3};
 use crate::figures::grouped;
 use crate::sweep::point::{Point, paper_sensor};
-use crate::table::{Cell, Table};
+use golden::table::{Cell, Table};
 
 /// Widths and lanes of the shipped designs, by which points are looked up.
 const BASE: (u32, u32, usize) = (18, 27, 16);

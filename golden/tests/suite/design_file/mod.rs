@@ -1,0 +1,153 @@
+//! Design files: defaults, round trip, and a clear refusal of everything else.
+
+#![allow(clippy::float_cmp)] // the same bits are meant
+
+mod refused;
+mod weights;
+
+use std::path::Path;
+
+use golden::design::{Design, Filter, Optimise, Outputs, PlanKind};
+
+const MINIMAL: &str = "name = \"pad\"\n[sensor]\ncolumns = 10\nrows = 8\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
+
+fn message(text: &str) -> String {
+    Design::from_toml(text, "pad.toml").expect_err("the file is wrong").to_string()
+}
+
+/// Replaces a line of the minimal file, or adds one at the end.
+fn with(line: &str, replacement: &str) -> String {
+    assert!(MINIMAL.contains(line), "no such line: {line}");
+    MINIMAL.replace(line, replacement)
+}
+
+#[track_caller]
+fn refused(text: &str, parts: &[&str]) {
+    let message = message(text);
+    assert!(message.contains("pad.toml"), "no file name in: {message}");
+    for part in parts {
+        assert!(message.contains(part), "no {part:?} in: {message}");
+    }
+    assert!(!message.contains('\n'), "more than one line: {message}");
+}
+
+#[test]
+fn everything_but_name_and_sensor_has_a_default() {
+    let design = Design::from_toml(MINIMAL, "pad.toml").unwrap();
+    assert_eq!(design.algorithm.filter, Filter::None);
+    assert_eq!(design.algorithm.noise_floor_pa, 100_000.0 / 65536.0);
+    assert_eq!((design.hardware.coefficient_bits, design.hardware.data_bits, design.hardware.lanes), (18, 27, 16));
+    assert_eq!(design.hardware.part, "xczu9eg-ffvb1156-2-e");
+    assert_eq!((design.algorithm.plan, design.algorithm.outputs), (PlanKind::Reduced, Outputs::Field));
+    assert_eq!((design.hardware.target_us, design.hardware.optimise), (None, Optimise::Interval));
+    assert!(!design.hardware.skip_zeros);
+}
+
+#[test]
+fn a_register_bank_is_asked_for_and_leaves_no_word_where_it_is_not() {
+    let of = |text: &str| Design::from_toml(&format!("{MINIMAL}[hardware]\n{text}\n"), "pad.toml").unwrap();
+    let (without, with) = (of("control = false"), of("control = true"));
+    assert_eq!(without.to_toml(), Design::from_toml(MINIMAL, "pad.toml").unwrap().to_toml());
+    assert!(!without.to_toml().contains("control"));
+    assert!(with.hardware.control && with.to_toml().contains("\ncontrol = true\n"));
+    assert_eq!(Design::from_toml(&with.to_toml(), "pad.toml").unwrap(), with);
+}
+
+#[test]
+fn the_plan_is_the_reduced_one_where_that_changes_nothing_and_fits() {
+    for (more, expected) in [
+        ("[hardware]\nlanes = 4", PlanKind::Reduced),
+        ("[hardware]\nlanes = 6", PlanKind::Paper),
+        ("[algorithm]\nfilter = { kind = \"f1\", l = 7 }", PlanKind::Paper),
+        ("[algorithm]\nfilter = { kind = \"f3\", scenes = [\"a.toml\"] }", PlanKind::Paper),
+        ("[algorithm]\nplan = \"paper\"", PlanKind::Paper),
+        ("[algorithm]\nplan = \"reduced\"\nfilter = { kind = \"f2\", p = 7 }", PlanKind::Reduced),
+    ] {
+        let design = Design::from_toml(&format!("{MINIMAL}{more}\n"), "pad.toml").unwrap();
+        assert_eq!(design.algorithm.plan, expected, "{more}");
+    }
+}
+
+#[test]
+fn keys_of_the_reduced_plan_read_back_the_same() {
+    for (more, parts) in [
+        ("[algorithm]\noutputs = \"resultants\"", ["outputs = \"resultants\"", "plan = \"reduced\""]),
+        ("[hardware]\ntarget_us = 20", ["target_us = 20.0", "plan = \"reduced\""]),
+        ("[hardware]\noptimise = \"latency\"\nskip_zeros = true", ["optimise = \"latency\"", "skip_zeros = true"]),
+        ("[algorithm]\nplan = \"paper\"", ["plan = \"paper\"", "skip_zeros = false"]),
+    ] {
+        let design = Design::from_toml(&format!("{MINIMAL}{more}\n"), "pad.toml").unwrap();
+        let resolved = design.to_toml();
+        assert_eq!(Design::from_toml(&resolved, "resolved").unwrap(), design);
+        assert!(parts.iter().all(|part| resolved.contains(part)), "{resolved}");
+        assert_eq!(design.hardware.lanes, 16);
+        assert_ne!(resolved.contains("lanes = "), resolved.contains("target_us = "), "{resolved}");
+    }
+    let whole = with("columns = 10\nrows = 8", "columns = 64\nrows = 64");
+    assert_eq!(Design::from_toml(&whole, "pad.toml").unwrap().sensor.taxels(), 4096);
+}
+
+#[test]
+fn whole_numbers_do_where_reals_are_asked_for() {
+    let design = Design::from_toml(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4, 2]"), "").unwrap();
+    assert_eq!(design.sensor.pitch_mm, [4.0, 2.0]);
+}
+
+#[test]
+fn the_resolved_design_reads_back_the_same() {
+    for filter in ["{ kind = \"none\" }", "{ kind = \"f1\", l = 7 }", "{ kind = \"f2\", p = 0.3 }"] {
+        let text = format!(
+            "{MINIMAL}[algorithm]\nkernel = \"cell\"\nfilter = {filter}\n\
+             [hardware]\nfull_scale_pa = 12345.678\nlanes = 3\n"
+        );
+        let design = Design::from_toml(&text, "pad.toml").unwrap();
+        let resolved = design.to_toml();
+        let again = Design::from_toml(&resolved, "resolved").unwrap();
+        assert_eq!(design, again);
+        assert_eq!(again.to_toml(), resolved);
+    }
+}
+
+/// The minimal file with F3 and a filter for each matrix, in which `line` replaces that of A2.
+fn with_choices(line: &str) -> String {
+    let names = "C33inv A1 A2 A3 D10 D11 D12 D20 D21 D22 D30 D31 D32";
+    let lines: String = names.split(' ').map(|name| format!("{name} = \"f2 p=2.5\"\n")).collect();
+    let lines = lines.replace("A2 = \"f2 p=2.5\"", line);
+    format!("{MINIMAL}[algorithm.filter]\nkind = \"f3\"\n[algorithm.filter.choices]\n{lines}")
+}
+
+#[test]
+fn a_filter_for_each_matrix_reads_back_the_same() {
+    for line in ["A2 = \"f1 l=40\"", "A2 = \"none\"", "A2 = \" f2  p=0.25 \""] {
+        let design = Design::from_toml(&with_choices(line), "pad.toml").unwrap();
+        let resolved = design.to_toml();
+        assert_eq!(Design::from_toml(&resolved, "resolved").unwrap(), design, "{resolved}");
+        let text = line.trim_start_matches("A2 = ").replace("\" f2  p=0.25 \"", "\"f2 p=0.25\"");
+        assert!(resolved.contains(&format!("A2 = {text}\n")), "{resolved}");
+    }
+    let scenes = "filter = { kind = \"f3\", scenes = [\"../a \\\"b\\\".toml\", 'c\\d.toml'] }";
+    let design = Design::from_toml(&format!("{MINIMAL}[algorithm]\n{scenes}\n"), "pad.toml").unwrap();
+    let again = Design::from_toml(&design.to_toml(), "resolved").unwrap();
+    assert_eq!(again, design);
+    let expected = vec!["../a \"b\".toml".to_owned(), "c\\d.toml".to_owned()];
+    assert_eq!(again.algorithm.filter, Filter::F3 { scenes: expected, choices: None });
+}
+
+#[test]
+fn every_design_of_the_repository_loads() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs");
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        // Weights stand beside the designs that name them.
+        if path.extension().is_none_or(|ending| ending != "toml") {
+            continue;
+        }
+        let design = Design::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let name = stem.replace('-', "_");
+        assert!(design.name.starts_with(&name), "{} in {stem}", design.name);
+        names.push(stem);
+    }
+    assert!(names.len() >= 14, "{names:?}");
+}

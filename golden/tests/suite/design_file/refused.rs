@@ -1,0 +1,194 @@
+//! Design files that say what is not so.
+
+#![allow(clippy::float_cmp)] // the same bits are meant
+
+use std::path::Path;
+
+use golden::design::Design;
+
+use super::{MINIMAL, refused, with, with_choices};
+
+#[test]
+fn keys_that_contradict_the_plan() {
+    let paper = "[algorithm]\nplan = \"paper\"\n";
+    let reduced = "[algorithm]\nplan = \"reduced\"\n";
+    for (more, parts) in [
+        (format!("{paper}outputs = \"resultants\""), ["algorithm.outputs", "resultants", "plan = \"reduced\""]),
+        (format!("{paper}[hardware]\noptimise = \"latency\""), ["hardware.optimise", "latency", "plan = \"reduced\""]),
+        (format!("{paper}[hardware]\ntarget_us = 5"), ["hardware.target_us", "is 5", "plan = \"reduced\""]),
+        (format!("{paper}[hardware]\nskip_zeros = true"), ["hardware.skip_zeros", "paper", "plan = \"reduced\""]),
+        (format!("{reduced}[hardware]\nlanes = 6"), ["hardware.lanes", "is 6", "multiple of 4"]),
+        (
+            format!("{reduced}filter = {{ kind = \"f3\", scenes = [\"a\"] }}"),
+            ["algorithm.filter", "f3", "plan = \"paper\""],
+        ),
+        (
+            format!("{reduced}filter = {{ kind = \"f2\", p = 3 }}\n[hardware]\nskip_zeros = true"),
+            ["hardware.skip_zeros", "with a filter", "none"],
+        ),
+        (
+            "[hardware]\nlanes = 8\ntarget_us = 5".to_owned(),
+            ["hardware.target_us", "lanes = 8", "the need or the lanes"],
+        ),
+    ] {
+        refused(&format!("{MINIMAL}{more}\n"), &parts);
+    }
+    for key in ["columns", "rows"] {
+        let large = format!(
+            "{}{paper}",
+            MINIMAL.replace("rows = 8", "rows = 10").replace(&format!("{key} = 10"), &format!("{key} = 33"))
+        );
+        refused(&large, &[&format!("sensor.{key}"), "is 33", "at most 32", "plan = \"reduced\""]);
+    }
+}
+
+#[test]
+fn choices_that_are_none() {
+    for (line, parts) in [
+        ("", ["algorithm.filter.choices.A2", "missing", "golden choose"]),
+        ("A2 = \"f3\"", ["algorithm.filter.choices.A2", "f3", "f1 l=40"]),
+        ("A2 = \"f1 p=3\"", ["algorithm.filter.choices.A2", "f1 p=3", "f2 p=30"]),
+        ("A2 = \"f1 l=-3\"", ["algorithm.filter.choices.A2", "f1 l=-3", "f2 p=30"]),
+        ("A2 = \"f1 l=79\"", ["algorithm.filter.choices.A2", "is 79", "1 to 78"]),
+        ("A2 = \"f2 p=0\"", ["algorithm.filter.choices.A2", "is 0", "greater than 0"]),
+        ("A2 = \"f2 p=NaN\"", ["algorithm.filter.choices.A2", "NaN", "greater than 0"]),
+        ("A2 = \"none\"\nA4 = \"none\"", ["algorithm.filter.choices.A4", "A4", "names are C33inv"]),
+        ("A2 = 30", ["A2", "line", "string"]),
+    ] {
+        refused(&with_choices(line), &parts);
+    }
+}
+
+#[test]
+fn unknown_and_missing_keys() {
+    refused(&with("depth_mm = 3.0", "depth_mm = 3.0\nwidth = 2"), &["width", "line 7", "depth_mm"]);
+    refused(&format!("{MINIMAL}[hardwear]\nlanes = 3\n"), &["hardwear", "hardware"]);
+    refused(&format!("{MINIMAL}[hardware]\nlane = 3\n"), &["lane"]);
+    refused(&with("rows = 8\n", ""), &["rows", "missing"]);
+    refused(&with("name = \"pad\"\n", ""), &["name", "missing"]);
+    refused("name = \"pad\"\n", &["sensor", "missing"]);
+    refused(&format!("{MINIMAL}[algorithm]\nfilter = {{ kind = \"f1\", l = 4, q = 1 }}\n"), &["q", "line 8"]);
+}
+
+#[test]
+fn wrong_types_and_broken_toml() {
+    refused(&with("columns = 10", "columns = \"ten\""), &["line 3", "columns"]);
+    for one in ["3.4", "3"] {
+        let remedy = format!("[{0:?}, {0:?}]", one.parse::<f64>().unwrap());
+        let parts = ["sensor.pitch_mm", "one number", &remedy];
+        refused(&with("pitch_mm = [4.0, 2.0]", &format!("pitch_mm = {one}")), &parts);
+    }
+    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = \"3.4\""), &["pitch_mm", "two numbers"]);
+    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0]"), &["sensor.pitch_mm", "1 values", "two"]);
+    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0, 2.0, 1.0]"), &["sensor.pitch_mm", "3 values", "two"]);
+    refused(&with("pitch_mm = [4.0, 2.0]", "pitch_mm = [4.0, \"2\"]"), &["line 5", "pitch_mm"]);
+    refused(&with("columns = 10", "columns = = 10"), &["line 3"]);
+}
+
+#[test]
+fn sizes_out_of_range() {
+    for value in ["0", "-3", "1", "65", "9000000000000000000"] {
+        refused(&with("columns = 10", &format!("columns = {value}")), &["sensor.columns", value, "2 to 64"]);
+        refused(&with("rows = 8", &format!("rows = {value}")), &["sensor.rows", "2 to 64"]);
+    }
+    for value in ["0.0", "-3.0", "nan", "inf", "0.009", "1000.1"] {
+        refused(&with("depth_mm = 3.0", &format!("depth_mm = {value}")), &["sensor.depth_mm", "0.01 to 1000"]);
+        refused(
+            &with("pitch_mm = [4.0, 2.0]", &format!("pitch_mm = [4.0, {value}]")),
+            &["sensor.pitch_mm[1]", "0.01 to 1000"],
+        );
+    }
+}
+
+#[test]
+fn names_that_are_no_identifiers() {
+    for name in ["", "1st", "a b", "a-b", "a$b", "ä", "../x", "a\\n"] {
+        refused(&with("\"pad\"", &format!("\"{name}\"")), &["name", "Verilog identifier"]);
+    }
+    refused(&with("\"pad\"", "\"sptfra_mac\""), &["name", "all designs share"]);
+    for keyword in ["module", "reg", "logic", "small"] {
+        refused(&with("\"pad\"", &format!("\"{keyword}\"")), &["name", "keyword"]);
+    }
+    refused(&with("\"pad\"", &format!("\"{}\"", "x".repeat(65))), &["name", "65"]);
+    assert!(Design::from_toml(&with("\"pad\"", &format!("\"_{}\"", "x".repeat(63))), "pad.toml").is_ok());
+}
+
+#[test]
+fn options_are_refused_with_the_list_of_allowed_ones() {
+    for (line, parts) in [
+        ("kernel = \"line\"", ["algorithm.kernel", "line", "point, cell"]),
+        ("fitted_to = \"x\"", ["algorithm.fitted_to", "joint estimator", "remove it"]),
+        ("estimator = \"joint\"\nfitted_to = \"x\"", ["algorithm.fitted_to", "\"x\"", "golden calibrate"]),
+        ("estimator = \"point\"", ["algorithm.estimator", "point", "line, joint"]),
+        ("outputs = \"forces\"", ["algorithm.outputs", "forces", "field, resultants"]),
+        ("plan = \"fast\"", ["algorithm.plan", "fast", "paper, reduced"]),
+        ("filter = { kind = \"f4\" }", ["algorithm.filter.kind", "f4", "none, f1, f2, f3"]),
+        ("filter = { kind = \"f3\" }", ["algorithm.filter.scenes", "missing", "scenes = ["]),
+        ("filter = { kind = \"f3\", scenes = [] }", ["algorithm.filter.scenes", "missing", "scenes = ["]),
+        ("filter = { kind = \"f3\", l = 4 }", ["algorithm.filter.l", "f3", "remove"]),
+        ("filter = { kind = \"f2\", p = 4, scenes = [\"a\"] }", ["algorithm.filter.scenes", "f2", "remove"]),
+        ("filter = { kind = \"f1\" }", ["algorithm.filter.l", "missing", "l ="]),
+        ("filter = { kind = \"f2\" }", ["algorithm.filter.p", "missing", "p ="]),
+        ("filter = { kind = \"f1\", l = 4, p = 2.0 }", ["algorithm.filter.p", "f1", "remove"]),
+        ("filter = { kind = \"none\", l = 4 }", ["algorithm.filter.l", "none", "remove"]),
+        // 80 taxels: 78 is the narrowest band.
+        ("filter = { kind = \"f1\", l = 0 }", ["algorithm.filter.l", "is 0", "1 to 78"]),
+        ("filter = { kind = \"f1\", l = 79 }", ["algorithm.filter.l", "is 79", "1 to 78"]),
+        ("filter = { kind = \"f2\", p = 0.0 }", ["algorithm.filter.p", "is 0", "greater than 0"]),
+        ("filter = { kind = \"f2\", p = inf }", ["algorithm.filter.p", "inf", "finite"]),
+        ("filter = { kind = \"f2\", p = nan }", ["algorithm.filter.p", "NaN", "finite"]),
+        ("noise_floor_pa = 0.0", ["algorithm.noise_floor_pa", "is 0", "greater than 0"]),
+        ("noise_floor_pa = 1e6", ["algorithm.noise_floor_pa", "1000000", "100000"]),
+    ] {
+        refused(&format!("{MINIMAL}[algorithm]\n{line}\n"), &parts);
+    }
+    for (line, parts) in [
+        ("arithmetic = \"float\"", ["hardware.arithmetic", "float", "fixed"]),
+        ("coefficient_bits = 19", ["hardware.coefficient_bits", "19", "8 to 18"]),
+        ("data_bits = 15", ["hardware.data_bits", "15", "16 to 27"]),
+        ("lanes = 0", ["hardware.lanes", "is 0", "1 to 64"]),
+        ("lanes = 65", ["hardware.lanes", "65", "1 to 64"]),
+        ("target_us = 0.0", ["hardware.target_us", "is 0", "greater than 0"]),
+        ("target_us = inf", ["hardware.target_us", "inf", "finite"]),
+        ("optimise = \"area\"", ["hardware.optimise", "area", "interval, latency"]),
+        ("skip_zeros = 1", ["skip_zeros", "line 8", "boolean"]),
+        ("full_scale_pa = -1.0", ["hardware.full_scale_pa", "-1", "0"]),
+        ("full_scale_pa = 1e10", ["hardware.full_scale_pa", "10000000000", "1000000000"]),
+        ("clock_mhz = 0.5", ["hardware.clock_mhz", "0.5", "1 to 1000"]),
+        ("part = \"a; rm\"", ["hardware.part", "a; rm", "letters"]),
+        ("part = \"\"", ["hardware.part", "\"\"", "letters"]),
+    ] {
+        refused(&format!("{MINIMAL}[hardware]\n{line}\n"), &parts);
+    }
+}
+
+/// Constants of the joint estimator stay with the sensor, the kernel and the regularisation that they were fitted to.
+#[test]
+fn constants_of_another_sensor_are_refused() {
+    let text = include_str!("../../../../designs/sensor2-joint.toml");
+    let weights =
+        ("sensor2-joint.weights.csv", include_str!("../../../../designs/sensor2-joint.weights.csv").to_owned());
+    let reads = |text: &str| Design::from_parts(text, "joint.toml", std::slice::from_ref(&weights)).is_ok();
+    assert!(reads(text));
+    for (key, value) in [
+        ("pitch_mm = [4.0, 4.0]", "pitch_mm = [4.0, 2.0]"),
+        ("depth_mm = 3.0", "depth_mm = 3.5"),
+        ("kernel = \"point\"", "kernel = \"cell\""),
+        ("kernel = \"point\"", "kernel = \"point\"\nregularisation = 0.01"),
+    ] {
+        let changed = text.replace(key, value);
+        assert_ne!(changed, text, "{key}");
+        refused(
+            &changed,
+            &["algorithm.fitted_to", "10 x 10 taxels of 4 x 4 mm, 3 mm deep, point, 0", "golden calibrate"],
+        );
+    }
+    // What the constants do not depend on may change.
+    assert!(reads(&text.replace("lanes = 16", "lanes = 32")));
+}
+
+#[test]
+fn a_file_that_is_not_there() {
+    let error = Design::load(Path::new("no/such/file.toml")).unwrap_err();
+    assert!(error.to_string().contains("no/such/file.toml"));
+}
