@@ -88,6 +88,11 @@ build: ## The three commands: golden, hdl-gen, testbench
 doc: ## The crates' documentation, in target/doc
 	$(CARGO) doc --workspace --no-deps
 
+.PHONY: book
+book: tools ## README and docs as a site with a search, in target/book
+	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-book.txt
+	@.venv/bin/python tools/book.py
+
 .PHONY: man
 man: build ## Manual pages of the three commands, in target/man
 	@for command in golden hdl-gen testbench; do $(BIN)/$$command man --out $(TARGET)/man; done

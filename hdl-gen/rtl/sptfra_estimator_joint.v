@@ -293,7 +293,8 @@ module sptfra_estimator_joint #(
             assign left_error = 18'sd0;
 
             wire _unused = &{1'b0, correction_bank, HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0,
-                STRESS_LEFT != 0, DOUBT != 0, DOUBT_SHIFT != 0, DOUBT_BASE, UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0,
+                STRESS_LEFT != 0, UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, DOUBT != 0, DOUBT_SHIFT != 0, DOUBT_BASE,
+                EXPECTED_LOOK_LATENCY != 0,
                 EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate

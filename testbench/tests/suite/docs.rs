@@ -114,6 +114,52 @@ fn every_command_of_the_docs_exists() {
     assert!(checked > 20, "only {checked} commands were found");
 }
 
+/// The name that a heading can be linked by: small letters, digits and hyphens for spaces.
+fn anchor(heading: &str) -> String {
+    let kept = heading.chars().filter(|&letter| letter.is_alphanumeric() || matches!(letter, ' ' | '-' | '_'));
+    kept.map(|letter| if letter == ' ' { '-' } else { letter.to_ascii_lowercase() }).collect()
+}
+
+/// What links of a page lead to.
+fn targets(text: &str) -> Vec<&str> {
+    let ends = text.match_indices("](").filter_map(|(at, open)| text[at + open.len()..].split_once(')'));
+    ends.map(|(target, _)| target).collect()
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    let root = workspace("");
+    let pages = ["README.md", "CHANGELOG.md", "data/README.md"].map(|name| root.join(name));
+    let docs = fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
+    let is_page = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "md");
+    let mut checked = 0;
+    for page in pages.into_iter().chain(docs.filter(is_page)) {
+        let text = fs::read_to_string(&page).expect("readable");
+        for target in targets(&text).into_iter().filter(|target| !target.contains("://")) {
+            let (path, heading) = target.split_once('#').unwrap_or((target, ""));
+            let file = if path.is_empty() { page.clone() } else { page.parent().expect("a folder").join(path) };
+            assert!(file.exists(), "{}: there is no {target}", page.display());
+            if !heading.is_empty() {
+                let linked = fs::read_to_string(&file).expect("readable");
+                let headings = linked.lines().filter_map(|line| line.strip_prefix('#'));
+                let known =
+                    headings.map(|line| anchor(line.trim_start_matches('#').trim())).any(|name| name == heading);
+                assert!(known, "{}: {target} has no such heading", page.display());
+            }
+            checked += 1;
+        }
+    }
+    assert!(checked > 40, "only {checked} links were found");
+    // Every page of the docs has its place on the site.
+    let site = fs::read_to_string(root.join("tools/book.yml")).expect("readable");
+    for page in
+        fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path()).filter(is_page)
+    {
+        let name = page.file_name().and_then(|name| name.to_str()).expect("a name");
+        assert!(site.contains(&format!(": {name}\n")), "tools/book.yml has no {name}");
+    }
+}
+
 /// What takes minutes, or is tested elsewhere: the simulation, the training, make and cargo.
 const ELSEWHERE: [&str; 6] = ["make ", "cargo ", "testbench run", "testbench sweep", "golden calibrate", "export "];
 

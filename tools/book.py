@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""The README and docs/ as a site with a search, in target/book: what `make book` runs.
+
+The README becomes the first page. A link to a file that is no page leads to a copy of that file beside the pages; one
+to a folder becomes plain text.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+STAGE = ROOT / "target" / "book-pages"
+SITE = ROOT / "target" / "book"
+LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
+
+
+def pages() -> dict[Path, str]:
+    """Each page's file and its name on the site."""
+    docs = sorted((ROOT / "docs").glob("*.md"))
+    return {ROOT / "README.md": "index.md", **{path: path.name for path in docs}}
+
+
+def rewritten(text: str, page: Path, names: dict[Path, str]) -> str:
+    """A page's text with the links that hold on the site."""
+
+    def link(match: re.Match[str]) -> str:
+        mark, words, target = match.groups()
+        if ":" in target or target.startswith("#"):
+            return match[0]
+        path, _, anchor = target.partition("#")
+        file = (page.parent / path).resolve()
+        if not file.exists():
+            sys.exit(f"{page.relative_to(ROOT)}: there is no {target}")
+        if file.is_dir():
+            return words
+        name = names.get(file)
+        if name is None:
+            name = f"files/{file.relative_to(ROOT)}"
+            copy = STAGE / name
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, copy)
+        return f"{mark}[{words}]({name}{'#' if anchor else ''}{anchor})"
+
+    return LINK.sub(link, text)
+
+
+def main() -> None:
+    shutil.rmtree(STAGE, ignore_errors=True)
+    STAGE.mkdir(parents=True)
+    names = pages()
+    for page, name in names.items():
+        (STAGE / name).write_text(rewritten(page.read_text(encoding="utf-8"), page, names), encoding="utf-8")
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--config-file", ROOT / "tools" / "book.yml"]
+    done = subprocess.run(command, cwd=ROOT, check=False)
+    if done.returncode:
+        sys.exit(done.returncode)
+    print(f"{len(names)} pages in {SITE.relative_to(ROOT)}: open index.html")
+
+
+if __name__ == "__main__":
+    main()
