@@ -255,42 +255,20 @@ module sptfra_network #(
         .accumulator (sum_y)
     );
 
-    // ---- The error that is left, the same for all four images
+    // ---- The error that is left: of four that are not negative half of the sum fits
     generate
         if (DOUBT != 0) begin : gen_doubt
-            localparam integer DOUBT_RIGHT = (DOUBT_SHIFT > 0) ? DOUBT_SHIFT : 0;
-            localparam integer DOUBT_LEFT = (DOUBT_SHIFT < 0) ? -DOUBT_SHIFT : 0;
-            localparam signed [63:0] DOUBT_HALF = (DOUBT_RIGHT == 0) ? 64'sd0 : 64'sd1 <<< (DOUBT_RIGHT - 1);
-            localparam signed [63:0] LEAST = -64'sd40960; // -10
-            localparam signed [63:0] MOST = 64'sd8191; // just below 2
-            // A sum of four that are not negative: half of it fits
-            wire signed [26:0] even_5 = mean_5[1 +: 27];
-            wire signed [47:0] sum_error;
-            wire signed [63:0] wide_error = { {16{sum_error[47]}}, sum_error};
-            wire signed [63:0] base = { {46{DOUBT_BASE[17]}}, DOUBT_BASE};
-            reg signed [63:0] exact_error;
-            reg signed [17:0] limited_error;
-
-            sptfra_mac output_error (
-                .clock       (clock),
-                .reset       (reset),
-                .valid       (unit_there[5]),
-                .first       (first_5),
-                .coefficient (readout_5[53:36]),
-                .data        (even_5),
-                .accumulator (sum_error)
+            sptfra_doubt #(.SHIFT (DOUBT_SHIFT), .BASE (DOUBT_BASE)) doubt (
+                .clock     (clock),
+                .reset     (reset),
+                .valid     (unit_there[5]),
+                .first     (first_5),
+                .weight    (readout_5[53:36]),
+                .unit      (mean_5[1 +: 27]),
+                .error_log (error_log)
             );
-
-            always @(posedge clock) begin
-                exact_error <= (((wide_error + DOUBT_HALF) >>> DOUBT_RIGHT) <<< DOUBT_LEFT) + base;
-                limited_error <= (exact_error > MOST) ? MOST[17:0]
-                               : (exact_error < LEAST) ? LEAST[17:0] : exact_error[17:0];
-            end
-
-            assign error_log = limited_error;
         end else begin : gen_certain
             assign error_log = 18'sd0;
-
             wire _unused_doubt = &{1'b0, DOUBT_SHIFT != 0, DOUBT_BASE};
         end
     endgenerate

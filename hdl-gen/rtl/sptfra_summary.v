@@ -73,8 +73,7 @@ module sptfra_summary #(
     reg forces; // in steps 4 to 39: a sum is chosen
     reg forces_1; // then its half
     reg forces_2; // then it goes into the multiplier
-    reg [1:0] q_1;
-    reg [1:0] q_2;
+    reg [1:0] q_1, q_2;
     reg low_half_1;
     reg [39:0] sum_1;
     reg signed [26:0] half_2;
@@ -88,8 +87,8 @@ module sptfra_summary #(
     reg signed [17:0] mac_coefficient;
     reg signed [26:0] mac_data;
     wire dependent_steps = (DEPENDENT != 0) && (state == FORCES) && (step <= 6'd1);
-    wire error_step = (state == DIVIDE) && (step == 6'd8);
-    wire issue = dependent_steps || forces_2 || ((state == GAIN) && (step <= 6'd1)) || error_step;
+    wire other_steps = ((state == GAIN) && (step <= 6'd1)) || ((state == DIVIDE) && (step == 6'd8));
+    wire issue = dependent_steps || forces_2 || other_steps;
     wire signed [47:0] accumulator;
     wire [33:0] magnitude;
 
@@ -125,9 +124,7 @@ module sptfra_summary #(
         mac_coefficient <= coefficient;
         mac_data <= data;
         if (reset) begin
-            forces <= 1'b0;
-            forces_1 <= 1'b0;
-            forces_2 <= 1'b0;
+            {forces, forces_1, forces_2} <= 3'd0;
             mac_valid <= 1'b0;
         end
     end
@@ -157,37 +154,29 @@ module sptfra_summary #(
     wire [63:0] gained = {high_part[46:0], 17'd0} + {16'd0, accumulator};
     reg [63:0] spread_xy;
     reg [63:0] magnitude_z;
-    reg [6:0] bits_xy;
-    reg [6:0] bits_z;
+    reg [6:0] bits_xy, bits_z;
     reg no_quotient;
-    reg signed [31:0] unit_x;
-    reg signed [31:0] unit_y;
+    reg signed [31:0] unit_x, unit_y;
 
     // Two cycles behind the numbers
     wire [6:0] found_xy;
     wire [6:0] found_z;
 
-    sptfra_leading_bit #(
-        .WIDTH (64)
-    ) leading_bit_xy (
+    sptfra_leading_bit #(.WIDTH (64)) leading_bit_xy (
         .clock (clock),
         .value (spread_xy),
         .bits  (found_xy)
     );
 
-    sptfra_leading_bit #(
-        .WIDTH (64)
-    ) leading_bit_z (
+    sptfra_leading_bit #(.WIDTH (64)) leading_bit_z (
         .clock (clock),
         .value (magnitude_z),
         .bits  (found_z)
     );
 
     // Up to the 64th bit by left shifts, whole bytes first, then down to the width wanted
-    reg [6:0] left_xy;
-    reg [6:0] left_z;
-    reg signed [63:0] bytes_x;
-    reg signed [63:0] bytes_y;
+    reg [6:0] left_xy, left_z;
+    reg signed [63:0] bytes_x, bytes_y;
     reg [63:0] bytes_z;
     wire signed [63:0] shifted_x = bytes_x <<< left_xy[2:0];
     wire signed [63:0] shifted_y = bytes_y <<< left_xy[2:0];
@@ -248,8 +237,7 @@ module sptfra_summary #(
 
     always @(posedge clock) begin
         done <= 1'b0;
-        rotate_start <= 1'b0;
-        divide_start <= 1'b0;
+        {rotate_start, divide_start} <= 2'd0;
         step <= (step == 6'd63) ? step : step + 6'd1;
         dependent_rounded <= accumulator + LINE_HALF;
         if (forces) begin
@@ -322,8 +310,7 @@ module sptfra_summary #(
         if (reset) begin
             state <= IDLE;
             done <= 1'b0;
-            rotate_start <= 1'b0;
-            divide_start <= 1'b0;
+            {rotate_start, divide_start} <= 2'd0;
         end
     end
 

@@ -32,6 +32,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_diagonal_mirror",
     "sptfra_direction",
     "sptfra_divider",
+    "sptfra_doubt",
     "sptfra_estimator_joint",
     "sptfra_estimator_line",
     "sptfra_exponents",

@@ -246,6 +246,9 @@ impl Slot for JointPlan {
         if self.network.is_none() {
             without.push("sptfra_correction");
         }
+        if self.network.as_ref().is_none_or(|network| network.doubt.is_none()) {
+            without.push("sptfra_doubt");
+        }
         without
     }
 

@@ -435,8 +435,7 @@ module small_4x3 #(
     wire x_is_free;
     wire signed [17:0] free;
     wire signed [17:0] other;
-    wire signed [17:0] slope;
-    wire signed [17:0] error_log;
+    wire signed [17:0] slope, error_log;
     wire unknown, at_bound, search_saturated;
     wire [18*40-1:0] answer_sums;
     wire [5:0] answer_flags;
