@@ -7,8 +7,8 @@ use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION};
 use crate::plan::resources::BlockCost;
 use crate::plan::vector_formats::field_shifts;
 
-use super::Parameters;
 use super::latency::{OUTPUT_LATENCY, SUMMARY_LATENCY};
+use super::{Parameters, field};
 
 /// Parameters of `sptfra_op`.
 pub fn parameters(plan: &Plan) -> Parameters {
@@ -24,6 +24,12 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let parameters = match plan.thresholds.doubt {
         Some(limit) => parameters.flag("DOUBT", true).wide("DOUBT_LIMIT", 18, limit),
         None => parameters,
+    };
+    let words = plan.streams().words();
+    let parameters = if words > 1 {
+        parameters.count("WORDS", words).cycles("FIELD_STAGES", field::stages(plan))
+    } else {
+        parameters
     };
     let parameters = match plan.thresholds.slip {
         Some([limit, release]) => {
