@@ -152,6 +152,7 @@ int sptfra_open(sptfra *device, const sptfra_platform *platform, uintptr_t core,
     device->shape.words_out = (uint16_t)FIELD(frame, FRAME__WORDS_OUT);
     device->shape.has_field = (uint8_t)FIELD(features, FEATURES__FIELD_OUT);
     device->shape.has_counts = (uint8_t)FIELD(features, FEATURES__COUNTS);
+    device->shape.stream_bytes = (uint8_t)FIELD(features, FEATURES__STREAM_BYTES);
     follow_number(device);
     return sptfra_reset_dma(device, RESET_POLLS);
 }
@@ -251,9 +252,11 @@ static int fits(const sptfra *device, const sptfra_buffer *buffer, size_t words)
 {
     const sptfra_platform *platform = &device->platform;
     const size_t unit = platform->flush != NULL || platform->invalidate != NULL ? SPTFRA_LINE : 4u;
+    /* The DMA does not realign; a line begins with a beat. */
+    const size_t beat = device->shape.stream_bytes > 4u ? device->shape.stream_bytes : 4u;
 
     return buffer->data != NULL && (uintptr_t)buffer->data % unit == 0 && buffer->address % unit == 0
-        && buffer->bytes % unit == 0 && buffer->bytes / 4u >= words;
+        && buffer->address % beat == 0 && buffer->bytes % unit == 0 && buffer->bytes / 4u >= words;
 }
 
 static size_t whole_lines(size_t bytes)

@@ -67,6 +67,7 @@ typedef struct {
     uint16_t words_in, words_out; /* of a frame */
     uint8_t has_field;            /* three forces of each taxel follow the words of the summary */
     uint8_t has_counts;           /* frames hold counts, else pascals */
+    uint8_t stream_bytes;         /* of a beat: 4, 8 or 16. Buffers begin on a multiple of it; 0 is as 4 */
 } sptfra_shape;
 
 typedef struct {

@@ -71,6 +71,9 @@ extern "C" {
 #define SPTFRA__FEATURES__SKIPS_ZEROS_bm 0x8
 #define SPTFRA__FEATURES__SKIPS_ZEROS_bp 3
 #define SPTFRA__FEATURES__SKIPS_ZEROS_bw 1
+#define SPTFRA__FEATURES__STREAM_BYTES_bm 0xff00
+#define SPTFRA__FEATURES__STREAM_BYTES_bp 8
+#define SPTFRA__FEATURES__STREAM_BYTES_bw 8
 
 // reg - sptfra::CLOCK
 #define SPTFRA__CLOCK__KHZ_bm 0xffffffff

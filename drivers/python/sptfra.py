@@ -101,6 +101,7 @@ class Identity:
     reduced: bool
     has_counts: bool
     skips_zeros: bool
+    stream_bits: int
     clock_mhz: float
     full_scale_pa: float
     latency_cycles: int
@@ -267,6 +268,7 @@ class Sptfra:
             reduced=bool(features & 2),
             has_counts=bool(features & 4),
             skips_zeros=bool(features & 8),
+            stream_bits=8 * (features >> 8 & 0xFF) or 32,
             clock_mhz=read(Register.CLOCK) / 1e3,
             full_scale_pa=float(full_scale),
             latency_cycles=read(Register.PREDICTED_LATENCY),

@@ -22,7 +22,7 @@ module sptfra_exponents #(
     output wire signed [9:0] exponent
 );
 
-    localparam TAXEL_WIDTH = $clog2(TAXELS);
+    localparam TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1;
     localparam [31:0] LAST_WIDE = TAXELS - 1;
     localparam [TAXEL_WIDTH-1:0] LAST = LAST_WIDE[TAXEL_WIDTH-1:0];
 

@@ -24,6 +24,10 @@ module sptfra_op #(
     parameter integer SUM_LSB = -40,
     parameter integer TORQUE_LSB = -45,
     parameter integer FIELD_LSB = -50,
+    // 32-bit words of a beat out: 1, 2 or 4
+    parameter integer WORDS = 1,
+    // Enabled cycles from a step of the field memory to the forces
+    parameter integer FIELD_STAGES = 5,
     // Friction at which a frame slips, and below which it no longer does if the frame before did, 16 fraction bits;
     // 0: none ever slips
     parameter [17:0] SLIP_LIMIT = 18'd0,
@@ -52,7 +56,7 @@ module sptfra_op #(
     input  wire field_start,
     output wire signed [17:0] mu_x, // 16 fraction bits
     output wire signed [17:0] mu_y,
-    // Field memory: the friction of the frame at the output, and its field, a component at a time
+    // Field memory: the friction of the frame at the output, and its field, a beat at a time
     input  wire field_complete, // one cycle: a frame's field is there
     output wire signed [17:0] field_mu_x,
     output wire signed [17:0] field_mu_y,
@@ -60,12 +64,12 @@ module sptfra_op #(
     output wire field_rewind,
     output wire field_step,
     output wire field_release, // the frame's place is free again
-    input  wire signed [63:0] field_value,
+    input  wire [64*WORDS-1:0] field_value,
     // When the oldest frame inside began
     input  wire [31:0] timestamp,
     output wire timestamp_take,
     // Stream out
-    output wire [31:0] m_tdata,
+    output wire [32*WORDS-1:0] m_tdata,
     output wire m_tlast,
     output wire m_tvalid,
     input  wire m_tready
@@ -234,6 +238,8 @@ module sptfra_op #(
         .FORCE_LSB        (SUM_LSB - FRICTION_FRACTION),
         .TORQUE_LSB       (TORQUE_LSB - FRICTION_FRACTION),
         .FIELD_LSB        (FIELD_LSB),
+        .WORDS            (WORDS),
+        .FIELD_STAGES     (FIELD_STAGES),
         .EXPECTED_LATENCY (EXPECTED_OUTPUT_LATENCY)
     ) frame_output (
         .clock             (clock),

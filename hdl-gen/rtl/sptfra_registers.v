@@ -22,7 +22,7 @@ module sptfra_registers #(
     parameter [7:0] ROWS = 8'd3,
     // Multiply-accumulate lanes
     parameter [7:0] LANES = 8'd4,
-    // Beats of a frame
+    // 32-bit words of a frame
     parameter [15:0] WORDS_IN = 16'd12,
     parameter [15:0] WORDS_OUT = 16'd8,
     // The forces of each taxel go out too
@@ -33,6 +33,8 @@ module sptfra_registers #(
     parameter [0:0] HAS_COUNTS = 1'd0,
     // Cycles depend on the data
     parameter [0:0] SKIPS_ZEROS = 1'd0,
+    // Bytes of a beat on either stream
+    parameter [7:0] STREAM_BYTES = 8'd4,
     // The design's clock
     parameter [31:0] CLOCK_KHZ = 32'd125000,
     // Largest stress in Pa, a float32
@@ -114,7 +116,7 @@ module sptfra_registers #(
             HASH_HIGH: read_data = HASH[63:32];
             GEOMETRY: read_data = {8'd0, LANES, ROWS, COLUMNS};
             FRAME: read_data = {WORDS_OUT, WORDS_IN};
-            FEATURES: read_data = {28'd0, SKIPS_ZEROS, HAS_COUNTS, IS_REDUCED, HAS_FIELD};
+            FEATURES: read_data = {16'd0, STREAM_BYTES, 4'd0, SKIPS_ZEROS, HAS_COUNTS, IS_REDUCED, HAS_FIELD};
             CLOCK: read_data = CLOCK_KHZ;
             FULL_SCALE_PASCALS: read_data = FULL_SCALE;
             PREDICTED_LATENCY: read_data = LATENCY_CYCLES;

@@ -30,9 +30,10 @@ module sptfra_samples #(
     parameter signed [26:0] CURVE_LAST = 27'sd33554431,
     // Full scale, in steps of the stress
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
-    // Prefix of the ROM file names, and what they begin with
+    // Prefix of the ROM file names, and what they begin with; those of the taxels
     parameter ROM_DIR = "",
-    parameter ROM_NAME = ""
+    parameter ROM_NAME = "",
+    parameter TAXEL_NAME = ROM_NAME
 ) (
     input  wire clock,
     input  wire reset,
@@ -63,7 +64,7 @@ module sptfra_samples #(
             sptfra_exponents #(
                 .TAXELS   (TAXELS),
                 .ROM_DIR  (ROM_DIR),
-                .ROM_NAME (ROM_NAME)
+                .ROM_NAME (TAXEL_NAME)
             ) exponents (
                 .clock    (clock),
                 .reset    (reset),
@@ -131,7 +132,7 @@ module sptfra_samples #(
                 .FULL_SCALE   (FULL_SCALE),
                 .STRESS_BOUND (STRESS_BOUND),
                 .ROM_DIR      (ROM_DIR),
-                .ROM_NAME     (ROM_NAME)
+                .ROM_NAME     (TAXEL_NAME)
             ) counts (
                 .clock             (clock),
                 .reset             (reset),
@@ -156,7 +157,8 @@ module sptfra_samples #(
 
     generate
         if (EXPONENTS == 0) begin : gen_none
-            wire _unused = reset || accept || last || (TAXELS != 0) || (ROM_DIR != "") || (ROM_NAME != "");
+            wire _unused = reset || accept || last || (TAXELS != 0) || (ROM_DIR != "") || (ROM_NAME != "")
+                || (TAXEL_NAME != "");
         end
     endgenerate
 

@@ -11,8 +11,10 @@ use thiserror::Error;
 pub struct Beat {
     /// `tvalid`.
     pub valid: bool,
-    /// `tdata`.
-    pub data: u32,
+    /// `tdata`, the first word in the lowest bits.
+    pub data: u128,
+    /// `tkeep`, a bit for each byte: of a stream out that has it, all bits of one that has not.
+    pub keep: u16,
     /// `tlast`.
     pub last: bool,
 }
@@ -70,8 +72,16 @@ pub struct PortOutputs {
     pub interrupt: bool,
 }
 
+/// 32-bit words of the widest beat.
+pub const MOST_WORDS: usize = 4;
+
 /// Anything with the two streams of a core: the simulated RTL, or a stand-in in a test of the driver.
 pub trait Core {
+    /// 32-bit words of a beat, of either stream.
+    fn words(&self) -> usize {
+        1
+    }
+
     /// One clock cycle.
     ///
     /// # Errors
@@ -99,7 +109,15 @@ pub enum DutError {
 }
 
 type New = unsafe extern "C" fn(seed: u32, text: *mut c_char, size: usize) -> *mut c_void;
-type Step = unsafe extern "C" fn(dut: *mut c_void, inputs: u64, text: *mut c_char, size: usize) -> u64;
+type Words = unsafe extern "C" fn() -> u32;
+type Step = unsafe extern "C" fn(
+    dut: *mut c_void,
+    inputs: u64,
+    data_in: *const u32,
+    data_out: *mut u32,
+    text: *mut c_char,
+    size: usize,
+) -> u64;
 type DriveControl = unsafe extern "C" fn(dut: *mut c_void, addresses: u32, data: u32, flags: u32);
 type ReadControl = unsafe extern "C" fn(dut: *mut c_void) -> u64;
 type Delete = unsafe extern "C" fn(dut: *mut c_void);
@@ -108,6 +126,7 @@ type OpenTrace = unsafe extern "C" fn(dut: *mut c_void, path: *const c_char) -> 
 /// The RTL as Verilator compiled it.
 pub struct Dut {
     handle: *mut c_void,
+    words: usize,
     step: Step,
     drive_control: DriveControl,
     read_control: ReadControl,
@@ -128,14 +147,15 @@ impl Dut {
         let failed = |source| DutError::Load { path: path.to_owned(), source };
         // SAFETY: the library is our own wrapper, whose functions have exactly these signatures and whose
         // initialisers touch nothing outside it.
-        let (library, new, step, drive_control, read_control, delete) = unsafe {
+        let (library, words, new, step, drive_control, read_control, delete) = unsafe {
             let library = Library::new(path).map_err(failed)?;
+            let words: Words = *library.get(b"dut_words").map_err(failed)?;
             let new: New = *library.get(b"dut_new").map_err(failed)?;
             let step: Step = *library.get(b"dut_step").map_err(failed)?;
             let drive_control: DriveControl = *library.get(b"dut_drive_control").map_err(failed)?;
             let read_control: ReadControl = *library.get(b"dut_read_control").map_err(failed)?;
             let delete: Delete = *library.get(b"dut_delete").map_err(failed)?;
-            (library, new, step, drive_control, read_control, delete)
+            (library, words() as usize, new, step, drive_control, read_control, delete)
         };
         let mut text = [0u8; MESSAGE_SIZE];
         // SAFETY: `text` is writable for its whole size.
@@ -143,7 +163,7 @@ impl Dut {
         if handle.is_null() {
             return Err(DutError::Failed(message(&text)));
         }
-        Ok(Self { handle, step, drive_control, read_control, delete, library })
+        Ok(Self { handle, words, step, drive_control, read_control, delete, library })
     }
 
     /// Drives the AXI4-Lite port from the next cycle on; no effect on a core without one.
@@ -193,23 +213,32 @@ impl Dut {
 }
 
 impl Core for Dut {
+    fn words(&self) -> usize {
+        self.words
+    }
+
     #[inline]
     fn step(&mut self, inputs: Inputs) -> Result<Outputs, DutError> {
-        let word = u64::from(inputs.source.data)
-            | u64::from(inputs.source.valid) << 32
+        let word = u64::from(inputs.source.valid) << 32
             | u64::from(inputs.source.last) << 33
             | u64::from(inputs.ready) << 34
             | u64::from(inputs.run) << 35;
         let mut text = [const { std::mem::MaybeUninit::<u8>::uninit() }; MESSAGE_SIZE];
-        // SAFETY: the handle is live, and `text` is writable for its whole size.
-        let outputs = unsafe { (self.step)(self.handle, word, text.as_mut_ptr().cast(), MESSAGE_SIZE) };
+        let data_in: [u32; MOST_WORDS] = std::array::from_fn(|place| (inputs.source.data >> (32 * place)) as u32);
+        let mut data_out = [0; MOST_WORDS];
+        // SAFETY: the handle is live, no beat has more than `MOST_WORDS` words, and `text` is writable for its whole size.
+        let outputs = unsafe {
+            let (data_in, data_out) = (data_in.as_ptr(), data_out.as_mut_ptr());
+            (self.step)(self.handle, word, data_in, data_out, text.as_mut_ptr().cast(), MESSAGE_SIZE)
+        };
         if outputs & FAILED != 0 {
             // SAFETY: on failure the wrapper wrote a message and its final zero; the rest is never looked at.
             let text = unsafe { std::ffi::CStr::from_ptr(text.as_ptr().cast()) };
             return Err(DutError::Failed(text.to_string_lossy().into_owned()));
         }
         let bit = |position: u32| outputs >> position & 1 != 0;
-        Ok(Outputs { sink: Beat { data: outputs as u32, valid: bit(32), last: bit(33) }, ready: bit(34) })
+        let data = data_out.iter().rev().fold(0, |data, &word| data << 32 | u128::from(word));
+        Ok(Outputs { sink: Beat { data, keep: outputs as u16, valid: bit(32), last: bit(33) }, ready: bit(34) })
     }
 }
 

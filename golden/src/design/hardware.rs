@@ -9,6 +9,9 @@ pub const MAX_LANES: usize = 64;
 /// Key `hardware.full_scale_pa` when absent.
 pub const DEFAULT_FULL_SCALE_PA: f64 = 100_000.0;
 
+/// Widths of a beat on the streams, in bits.
+pub const STREAM_BITS: [u32; 3] = [32, 64, 128];
+
 /// Number system of the hardware.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -49,6 +52,8 @@ pub struct Hardware {
     pub optimise: Optimise,
     /// Whether zeros of |w| are skipped; with the reduced plan and no filter.
     pub skip_zeros: bool,
+    /// Bits of a beat on both streams, one of [`STREAM_BITS`].
+    pub stream_bits: u32,
     /// Whether the core has a register bank on AXI4-Lite.
     pub control: bool,
     /// Clock in megahertz, 1 to 1000.

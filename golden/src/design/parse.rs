@@ -15,7 +15,8 @@ use super::parse_plan::{self, PlanKeys};
 use super::regularisation;
 use super::{
     Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input,
-    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, Sensor, Slip, Tension,
+    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, STREAM_BITS, Sensor, Slip,
+    Tension,
 };
 use crate::words;
 
@@ -92,6 +93,7 @@ struct RawHardware {
     target_us: Option<f64>,
     optimise: Option<String>,
     skip_zeros: Option<bool>,
+    stream_bits: Option<i64>,
     control: Option<bool>,
     clock_mhz: Option<f64>,
     part: Option<String>,
@@ -237,6 +239,12 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         check.optional_word("hardware.arithmetic", raw.arithmetic.as_deref())?.unwrap_or_default();
     let optimise: Optimise = check.optional_word("hardware.optimise", raw.optimise.as_deref())?.unwrap_or_default();
     let target_us = raw.target_us.map(|target| check.above_zero("hardware.target_us", target, f64::MAX, ""));
+    let stream_bits = raw.stream_bits.map_or(Ok(STREAM_BITS[0]), |bits| {
+        STREAM_BITS
+            .into_iter()
+            .find(|&width| i64::from(width) == bits)
+            .ok_or_else(|| check.value("hardware.stream_bits", format!("is {bits}"), "use 32, 64 or 128".to_owned()))
+    })?;
     let part = raw.part.unwrap_or_else(|| "xczu9eg-ffvb1156-2-e".to_owned());
     checks::part(check, &part)?;
     Ok(Hardware {
@@ -255,6 +263,7 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         target_us: target_us.transpose()?,
         optimise,
         skip_zeros: raw.skip_zeros.unwrap_or(false),
+        stream_bits,
         control: raw.control.unwrap_or(false),
         clock_mhz: check.real("hardware.clock_mhz", raw.clock_mhz.unwrap_or(125.0), 1.0, 1000.0, "MHz")?,
         part,

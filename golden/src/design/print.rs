@@ -61,6 +61,10 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
     };
     // Only where it is there: a design without it keeps the hash that it had before there was such a key.
     let control = if hardware.control { "control = true\n" } else { "" };
+    let streams = match hardware.stream_bits {
+        32 => String::new(),
+        bits => format!("stream_bits = {bits}\n"),
+    };
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write!(
@@ -70,7 +74,7 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{control}clock_mhz = {:?}\npart = \"{}\"\n",
+         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{control}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],

@@ -1,4 +1,6 @@
-//! Bz, the stream's frames to fixed point: `sptfra_bz`.
+//! Bz, the stream's frames to fixed point: `sptfra_bz`, or `sptfra_bz_wide` where all samples of a beat are taken at once.
+
+use golden::parity::CLASSES;
 
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
@@ -8,6 +10,7 @@ use crate::plan::dead::WEIGHT_BITS;
 use crate::plan::gain::GAIN_BITS;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
+use crate::plan::streams::{Intake, Streams};
 
 use super::Parameters;
 use super::latency;
@@ -15,17 +18,35 @@ use super::latency;
 /// Numbers of [`LONG_BITS`] on a line.
 const KNOTS_PER_LINE: usize = 7;
 
+/// The module.
+pub fn module(plan: &Plan) -> &'static str {
+    if plan.streams().intake == Intake::Whole { "sptfra_bz_wide" } else { "sptfra_bz" }
+}
+
+/// What the ROM files of taxels' constants are called behind the design's name: one for all, or one for each sample of a
+/// beat.
+pub fn taxel_files(streams: Streams) -> Vec<String> {
+    match streams.intake {
+        Intake::Whole => (0..streams.samples()).map(|sample| format!("_sample{sample}")).collect(),
+        Intake::Single | Intake::Unpacked => vec![String::new()],
+    }
+}
+
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let stress = plan.formats.stress;
+    let (stress, streams) = (plan.formats.stress, plan.streams());
     let (shift, bound) = match &plan.counts {
         Some(counts) => (counts.exponents[0], counts.curve.as_ref().map_or(LARGEST_NUMBER, |curve| curve.limit)),
         None => (-stress.lsb, stress.bound),
     };
-    let parameters = Parameters::new()
-        .count("COLUMNS", plan.design.sensor.columns)
-        .count("ROWS", plan.design.sensor.rows)
-        .count("WAYS", plan.ways())
+    let parameters =
+        Parameters::new().count("COLUMNS", plan.design.sensor.columns).count("ROWS", plan.design.sensor.rows);
+    let parameters = if streams.intake == Intake::Whole {
+        parameters.count("STREAM_BITS", streams.bits).count("SAMPLE_BITS", streams.sample_bits)
+    } else {
+        parameters.count("WAYS", plan.ways())
+    };
+    let parameters = parameters
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .number("NUMBER_SHIFT", shift.into())
         .wide("NUMBER_BOUND", LONG_BITS, bound);
@@ -58,20 +79,55 @@ pub fn beat_to_stress(plan: &Plan) -> u64 {
     latency::beat_to_stress(plan.counts.is_some(), curve.map(CurvePlan::stages))
 }
 
+/// When what a frame brings is there, in cycles after its first beat enters Bz, streams never waiting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Arrival {
+    /// The frame is ready for the lanes.
+    pub ready: u64,
+    /// `CeAn` has its last stress.
+    pub last_stress: u64,
+    /// Nothing of it is in Bz any more.
+    pub done: u64,
+}
+
+/// Cycles of Bz.
+pub fn arrival(plan: &Plan) -> Arrival {
+    let (sensor, streams) = (&plan.design.sensor, plan.streams());
+    let stages = beat_to_stress(plan);
+    if streams.intake != Intake::Whole {
+        let dead = if plan.dead.is_some() { latency::dead_taxels(plan.taxels()) } else { 0 };
+        let last_stress = plan.taxels() as u64 - 1 + stages + dead;
+        let ready = last_stress + latency::stress_to_ready(plan.ways() > 1);
+        return Arrival { ready, last_stress, done: last_stress + 1 };
+    }
+    let beat_there = |taxel: usize| (taxel / streams.samples()) as u64 + stages + 1;
+    // A quad a cycle, from the middle rows on, each when its last taxel is there.
+    let (columns, rows) = (sensor.columns, sensor.rows);
+    let last_taxels = (rows / 2..rows).flat_map(|y| (columns / 2..columns).map(move |x| y * columns + x));
+    let last_quad = last_taxels.fold(0, |before, taxel| beat_there(taxel).max(before + 1));
+    // A taxel a cycle.
+    let last_taxel = (0..plan.taxels()).fold(0, |before, taxel| beat_there(taxel).max(before + 1));
+    let last_stress = last_taxel + latency::TAXEL_TO_CEAN;
+    Arrival { ready: last_quad + latency::QUAD_TO_READY, last_stress, done: last_stress.max(last_quad + 1) + 1 }
+}
+
 /// A multiplier each for a count's slope, a stress's gain and each dead taxel.
 pub fn cost(plan: &Plan) -> BlockCost {
+    let (streams, data) = (plan.streams(), plan.design.hardware.data_bits);
     let (taxels, dead) = (plan.taxels(), plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()));
+    let conversions = streams.conversions();
     let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());
     let mut memories = Vec::new();
     if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
+        let depth = taxels.div_ceil(conversions);
         if curve.is_none() {
-            memories.push(memory("exponents", 1, taxels, EXPONENT_BITS, true));
+            memories.push(memory("exponents", conversions, depth, EXPONENT_BITS, true));
         }
-        memories.push(memory("gains", 1, taxels, GAIN_BITS, true));
-        memories.push(memory("offsets", 1, taxels, counts.offset_bits(), true));
+        memories.push(memory("gains", conversions, depth, GAIN_BITS, true));
+        memories.push(memory("offsets", conversions, depth, counts.offset_bits(), true));
     }
     if let Some(curve) = curve {
-        memories.push(memory("curve", 1, 1 << curve.levels(), SEGMENT_BITS, true));
+        memories.push(memory("curve", conversions, 1 << curve.levels(), SEGMENT_BITS, true));
     }
     if dead > 0 {
         // With a stress, whether it was clipped and whether it was a number.
@@ -79,11 +135,16 @@ pub fn cost(plan: &Plan) -> BlockCost {
         memories.push(memory("neighbours", 1, taxels, WEIGHT_BITS * dead as u32, true));
         memories.push(memory("dead taxels", 1, taxels, 1, true));
     }
-    if plan.ways() > 1 {
-        memories.push(memory("half-folded b", 1, plan.elements(), 2 * plan.design.hardware.data_bits + 2, false));
+    if streams.intake == Intake::Whole {
+        // One for each taxel of a quad, and one for CeAn.
+        let samples = streams.samples();
+        memories.push(memory("frame by quads", CLASSES * samples, streams.beats_in(), data, false));
+        memories.push(memory("frame by taxels", samples, streams.beats_in(), LONG_BITS, false));
+    } else if plan.ways() > 1 {
+        memories.push(memory("half-folded b", 1, plan.elements(), 2 * data + 2, false));
     }
-    let dsp = usize::from(plan.counts.is_some()) + usize::from(curve.is_some()) + dead;
-    BlockCost::new("Bz", &["sptfra_bz"], dsp).with(memories)
+    let dsp = conversions * (usize::from(plan.counts.is_some()) + usize::from(curve.is_some())) + dead;
+    BlockCost::new("Bz", &["sptfra_bz", "sptfra_bz_wide"], dsp).with(memories)
 }
 
 fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {

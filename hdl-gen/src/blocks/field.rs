@@ -1,4 +1,5 @@
-//! The field memory: `sptfra_field` of a folded grid, `sptfra_coefficient_field` where taxels are not folded.
+//! The field memory: `sptfra_field` of a folded grid, `sptfra_field_wide` for several words a beat,
+//! `sptfra_coefficient_field` where taxels are not folded.
 
 use golden::parity::CLASSES;
 
@@ -12,17 +13,28 @@ use super::Parameters;
 
 /// The module.
 pub fn module(plan: &Plan) -> &'static str {
-    if plan.ways() > 1 { "sptfra_field" } else { "sptfra_coefficient_field" }
+    match (plan.ways() > 1, plan.streams().words() > 1) {
+        (true, false) => "sptfra_field",
+        (true, true) => "sptfra_field_wide",
+        (false, _) => "sptfra_coefficient_field",
+    }
+}
+
+/// Cycles from a step to the forces.
+pub fn stages(plan: &Plan) -> u64 {
+    if module(plan) == "sptfra_field_wide" { 6 } else { 5 }
 }
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let data = plan.design.hardware.data_bits.into();
+    let (data, words) = (plan.design.hardware.data_bits.into(), plan.streams().words());
     let Some(folded) = plan.formats.folded else {
-        return Parameters::new().count("TAXELS", plan.taxels()).number("DATA_BITS", data);
+        let parameters = Parameters::new().count("TAXELS", plan.taxels()).number("DATA_BITS", data);
+        return if words > 1 { parameters.count("WORDS", words) } else { parameters };
     };
     let (force, share, _) = field_shifts(&plan.formats, &folded);
-    Parameters::new()
+    let parameters = if words > 1 { Parameters::new().count("WORDS", words) } else { Parameters::new() };
+    parameters
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .number("DATA_BITS", data)
@@ -33,16 +45,27 @@ pub fn parameters(plan: &Plan) -> Parameters {
 /// What a frame's taxels leave until they go out, and the multipliers that put a force together.
 pub fn cost(plan: &Plan) -> BlockCost {
     let (data, elements) = (plan.design.hardware.data_bits, plan.elements());
-    let block = |dsp| BlockCost::new("field", &["sptfra_field", "sptfra_coefficient_field"], dsp);
+    let words = plan.streams().words();
+    let modules = &["sptfra_field", "sptfra_field_wide", "sptfra_coefficient_field"];
+    let block = |dsp| BlockCost::new("field", modules, dsp);
     if plan.ways() == 1 {
         // The memory is there without a field, too: the sums over the frame pass it.
-        let dsp = if plan.field_words() > 0 { 2 } else { 0 };
-        return block(dsp).with([memory("field", 3, 6 * plan.taxels(), data, false)]);
+        let dsp = if plan.field_words() > 0 { 2 * words } else { 0 };
+        let depth = 2 * (3 * plan.taxels()).div_ceil(words);
+        return block(dsp).with([memory("field", 3 * words, depth, data, false)]);
     }
     if plan.field_words() == 0 {
         return block(0);
     }
     let weights = WEIGHT_PLACES * elements.next_power_of_two();
+    if words > 1 {
+        // A copy for a taxel, and one for the next.
+        let forces = 2 * elements.next_power_of_two();
+        return block(words).with([
+            memory("weights", 2 * CLASSES, weights, data, false),
+            memory("field", 2 * 3 * CLASSES, forces, data, false),
+        ]);
+    }
     block(1)
         .with([memory("weights", CLASSES, weights, data, false), memory("field", CLASSES, 6 * elements, data, false)])
 }

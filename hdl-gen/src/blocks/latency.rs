@@ -23,6 +23,11 @@ pub fn stress_to_ready(folded: bool) -> u64 {
     if folded { 4 } else { 1 }
 }
 
+/// In `sptfra_bz_wide`, from a taxel's turn to its stress in `CeAn`.
+pub const TAXEL_TO_CEAN: u64 = 2;
+/// In `sptfra_bz_wide`, from the turn of a frame's last quad to the frame being ready for the lanes.
+pub const QUAD_TO_READY: u64 = 5;
+
 // ---- The array of lanes
 /// From the sequencer's control to the lanes' and the collector's: the register on the way.
 pub const SEQUENCER_TO_LANES: u64 = 1;

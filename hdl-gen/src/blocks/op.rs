@@ -7,8 +7,8 @@ use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION};
 use crate::plan::resources::BlockCost;
 use crate::plan::vector_formats::field_shifts;
 
-use super::Parameters;
 use super::latency::{OUTPUT_LATENCY, SUMMARY_LATENCY};
+use super::{Parameters, field};
 
 /// Parameters of `sptfra_op`.
 pub fn parameters(plan: &Plan) -> Parameters {
@@ -21,6 +21,12 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("SUM_LSB", plan.formats.g.lsb.into())
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into());
+    let words = plan.streams().words();
+    let parameters = if words > 1 {
+        parameters.count("WORDS", words).cycles("FIELD_STAGES", field::stages(plan))
+    } else {
+        parameters
+    };
     let parameters = match plan.thresholds.slip {
         Some([limit, release]) => {
             let friction = |value: i64| format!("{FRICTION_BITS}'d{value}");

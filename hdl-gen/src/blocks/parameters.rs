@@ -100,7 +100,8 @@ impl Serialize for Parameters {
 mod tests {
     use super::Parameters;
     use crate::blocks::latency::{
-        VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, stress_to_ready, taxels_to_write,
+        QUAD_TO_READY, TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, stress_to_ready,
+        taxels_to_write,
     };
     use crate::cores::cordic;
     use crate::estimators::{joint, line};
@@ -126,9 +127,11 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 37] = [
+        let expected: [(&str, &str, i64); 39] = [
             // A cycle more counts the frame.
             ("sptfra_fold", "LAST_TO_WRITTEN", stress_to_ready(true) as i64 - 1),
+            ("sptfra_fold_frame", "TURN_TO_WRITTEN", QUAD_TO_READY as i64 - 1),
+            ("sptfra_bz_wide", "TURN_TO_STRESS", TAXEL_TO_CEAN as i64),
             ("sptfra_spmv_collector", "TAKE_TO_BUS", VISIT_TO_BUS as i64),
             ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
             ("sptfra_direction", "PITCH_FRACTION", line::PITCH_FRACTION.into()),
@@ -144,8 +147,8 @@ mod tests {
             ("sptfra_summary", "ONE", one),
             ("sptfra_op", "FRICTION_FRACTION", FRICTION_FRACTION.into()),
             ("sptfra_op", "PULLING", PULLING),
-            ("sptfra_output", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
-            ("sptfra_output", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
+            ("sptfra_output_word", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
+            ("sptfra_output_word", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
             ("sptfra_plane", "LAST", joint::SIDE as i64 - 1),
             ("sptfra_plane_cell", "POINT_BITS", joint::POINT_BITS.into()),
             ("sptfra_level_set", "REACH", joint::SIDE as i64 / 2),

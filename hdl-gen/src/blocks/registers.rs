@@ -27,6 +27,7 @@ pub struct Constants {
     is_reduced: u8,
     has_counts: u8,
     skips_zeros: u8,
+    stream_bytes: usize,
     clock_khz: u64,
     /// Hexadecimal digits of a float32.
     full_scale: String,
@@ -49,12 +50,13 @@ impl Constants {
             columns: design.sensor.columns,
             rows: design.sensor.rows,
             lanes: hardware.lanes,
-            words_in: plan.taxels(),
-            words_out: plan.beats_out(),
+            words_in: plan.streams().words_in(),
+            words_out: plan.words_out(),
             has_field: u8::from(plan.field_words() > 0),
             is_reduced: u8::from(plan.ways() > 1),
             has_counts: u8::from(plan.counts.is_some()),
             skips_zeros: u8::from(hardware.skip_zeros),
+            stream_bytes: plan.streams().bits / 8,
             clock_khz: (hardware.clock_mhz * 1e3).round() as u64,
             full_scale: format!("{:08x}", (hardware.full_scale_pa as f32).to_bits()),
             latency_cycles: plan.timeline.latency_cycles,
@@ -80,6 +82,7 @@ impl Constants {
             .expression("IS_REDUCED", decimal(1, &self.is_reduced))
             .expression("HAS_COUNTS", decimal(1, &self.has_counts))
             .expression("SKIPS_ZEROS", decimal(1, &self.skips_zeros))
+            .expression("STREAM_BYTES", decimal(8, &self.stream_bytes))
             .expression("CLOCK_KHZ", decimal(32, &self.clock_khz))
             .expression("FULL_SCALE", format!("32'h{}", self.full_scale))
             .expression("LATENCY_CYCLES", decimal(32, &self.latency_cycles))

@@ -7,11 +7,12 @@ use tera::{Context, Tera};
 
 use crate::plan::Plan;
 use crate::plan::resources::BlockResources;
+use crate::plan::streams::WORD_BITS;
 
 use super::{EmitError, FileMap, VERSION};
 
-/// Bytes of a beat on both streams.
-const BEAT_BYTES: usize = 4;
+/// Bytes of a word of memory.
+const WORD_BYTES: usize = WORD_BITS / 8;
 /// Width of the DMA's length register unless frames are longer, in bits.
 const LEAST_LENGTH_BITS: u32 = 14;
 
@@ -52,6 +53,8 @@ struct View {
     ip_version: String,
     /// Revision of the packaged IP.
     revision: u32,
+    /// Bits of a beat on both streams.
+    stream_bits: usize,
     bytes_in: usize,
     bytes_out: usize,
     /// Width of the DMA's length register.
@@ -72,8 +75,9 @@ impl View {
     fn new(plan: &Plan, hash: &str, files: &FileMap) -> Self {
         let design = &plan.design;
         let testbench = format!("sim/{}_tb.v", design.name);
-        let bytes_in = plan.taxels() * BEAT_BYTES;
-        let bytes_out = plan.beats_out() * BEAT_BYTES;
+        let streams = plan.streams();
+        let bytes_in = streams.words_in() * WORD_BYTES;
+        let bytes_out = streams.words_out * WORD_BYTES;
         Self {
             version: VERSION,
             hash: hash.to_owned(),
@@ -87,6 +91,7 @@ impl View {
             period_ns: period_ns(design.hardware.clock_mhz),
             ip_version: format!("{}.{}", env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR")),
             revision: revision(hash),
+            stream_bits: streams.bits,
             bytes_in,
             bytes_out,
             length_bits: (bytes_out.ilog2() + 1).max(LEAST_LENGTH_BITS),

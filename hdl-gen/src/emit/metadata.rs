@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 
 use crate::plan::product::{Product, Vector};
 use crate::plan::schedule::Window;
+use crate::plan::streams::WORD_BITS;
 use crate::plan::{Plan, words};
 
 use super::{EmitError, FileMap, VERSION, registers};
@@ -109,7 +110,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
             json!({ "first_word": first_word, "vectors": names })
         })
         .collect();
-    let estimator = plan.estimator.slot().metadata();
+    let (estimator, streams) = (plan.estimator.slot().metadata(), plan.streams());
     let mut value = json!({
         "format": FORMAT,
         "name": plan.design.name,
@@ -118,8 +119,11 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         "taxels": plan.taxels(),
         "columns": plan.design.sensor.columns,
         "rows": plan.design.sensor.rows,
-        "beats_in": plan.taxels(),
-        "beats_out": plan.beats_out(),
+        "stream_bits": streams.bits,
+        "beats_in": streams.beats_in(),
+        "beats_out": streams.beats_out(),
+        "bytes_in": streams.words_in() * WORD_BITS / 8,
+        "bytes_out": streams.words_out * WORD_BITS / 8,
         "output": output(plan),
         "status_bits": words::status_bits().map(|(bit, name)| (name.to_owned(), json!(bit))).collect::<Map<_, _>>(),
         "clock_mhz": plan.design.hardware.clock_mhz,

@@ -57,6 +57,9 @@ struct View<'a> {
     #[serde(flatten)]
     constants: Constants,
     axi_ports: Vec<AxiPort>,
+    /// Bits and 32-bit words of a beat.
+    stream_bits: usize,
+    words: usize,
     /// Parameters of the bank.
     registers: Parameters,
 }
@@ -74,6 +77,8 @@ impl<'a> View<'a> {
         Self {
             name: &plan.design.name,
             axi_ports: AXI_SIGNALS.iter().map(port).collect(),
+            stream_bits: plan.streams().bits,
+            words: plan.streams().words(),
             registers: constants.parameters(),
             constants,
         }

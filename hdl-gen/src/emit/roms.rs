@@ -1,7 +1,7 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
 use crate::blocks::array::column_bits;
-use crate::blocks::row_width;
+use crate::blocks::{bz, row_width};
 use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
 use crate::plan::counts::EXPONENT_BITS;
@@ -34,14 +34,19 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
     files.insert(format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
     if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
-        if counts.curve.is_none() {
-            let exponents = counts.exponents.iter().map(|&exponent| u128::from(exponent as u32));
-            files.insert(format!("rom/{name}_exponents.mem"), hex(exponents, counts.exponents.len(), EXPONENT_BITS));
+        for (first, kind) in bz::taxel_files(plan.streams()).iter().enumerate() {
+            let step = plan.streams().conversions();
+            let depth = plan.taxels().div_ceil(step);
+            if counts.curve.is_none() {
+                let exponents = counts.exponents.iter().skip(first).step_by(step);
+                let exponents = exponents.map(|&exponent| u128::from(exponent as u32));
+                files.insert(format!("rom/{name}{kind}_exponents.mem"), hex(exponents, depth, EXPONENT_BITS));
+            }
+            let gains = counts.gains.iter().skip(first).step_by(step).map(|&gain| u128::from(gain as u32));
+            files.insert(format!("rom/{name}{kind}_gains.mem"), hex(gains, depth, GAIN_BITS));
+            let offsets = counts.offsets.iter().skip(first).step_by(step).map(|&offset| u128::from(offset as u64));
+            files.insert(format!("rom/{name}{kind}_offsets.mem"), hex(offsets, depth, counts.offset_bits()));
         }
-        let gains = counts.gains.iter().map(|&gain| u128::from(gain as u32));
-        files.insert(format!("rom/{name}_gains.mem"), hex(gains, counts.gains.len(), GAIN_BITS));
-        let offsets = counts.offsets.iter().map(|&offset| u128::from(offset as u64));
-        files.insert(format!("rom/{name}_offsets.mem"), hex(offsets, counts.offsets.len(), counts.offset_bits()));
     }
     if !plan.arms.is_empty() {
         let arms = plan.arms.iter().map(|arms| joined(arms, ARM_BITS));

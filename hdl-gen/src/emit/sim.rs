@@ -23,12 +23,19 @@ const SLACK_CYCLES: u64 = 10_000;
 struct View<'a> {
     name: &'a str,
     frames: usize,
-    words_in: usize,
-    words_out: usize,
-    /// Words of an output frame.
+    /// Bits and bytes of a beat.
+    stream_bits: usize,
+    stream_bytes: usize,
+    /// Beats of all frames.
+    beats_in: usize,
+    beats_out: usize,
+    /// Beats of an output frame.
     beats: usize,
-    /// Which of them is the timestamp.
-    timestamp: usize,
+    /// TKEEP of its last one.
+    last_keep: String,
+    /// Which of them has the timestamp, and in which of its words.
+    timestamp_beat: usize,
+    timestamp_word: usize,
     timeout: u64,
     /// Whether the core has a register bank.
     control: bool,
@@ -44,13 +51,19 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     let packets = packets(plan)?;
     let mut model = Model::new(plan);
     let answers: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
+    let words = plan.streams().words();
+    let beats = |packets: &[Vec<u32>]| packets.iter().map(|packet| packet.len().div_ceil(words)).sum();
     let view = View {
         name,
         frames: packets.len(),
-        words_in: packets.iter().map(Vec::len).sum(),
-        words_out: answers.iter().map(Vec::len).sum(),
-        beats: model.output_words(),
-        timestamp: TIMESTAMP,
+        stream_bits: plan.streams().bits,
+        stream_bytes: plan.streams().bits / 8,
+        beats_in: beats(&packets),
+        beats_out: beats(&answers),
+        beats: plan.streams().beats_out(),
+        last_keep: format!("{:x}", plan.streams().last_keep()),
+        timestamp_beat: TIMESTAMP / words,
+        timestamp_word: TIMESTAMP % words,
         timeout: SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64,
         control: plan.design.hardware.control,
     };
@@ -59,8 +72,8 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
         Context::from_serialize(&view).map_err(|source| EmitError::Template { template: module.clone(), source })?;
     let text = template::design_module(&module, TEMPLATE, &context)?;
     files.insert(format!("sim/{module}.v"), text.into_bytes());
-    files.insert(format!("sim/{name}_stimulus.mem"), words(&packets));
-    files.insert(format!("sim/{name}_expected.mem"), words(&answers));
+    files.insert(format!("sim/{name}_stimulus.mem"), beat_file(&packets, words));
+    files.insert(format!("sim/{name}_expected.mem"), beat_file(&answers, words));
     Ok(())
 }
 
@@ -77,18 +90,23 @@ fn packets(plan: &Plan) -> Result<Vec<Vec<u32>>, SceneError> {
     not_a_number[taxels / 2] = f32::NAN.to_bits();
     packets.insert(1, vec![0; taxels]);
     packets.insert(3, not_a_number);
-    packets.insert(5, vec![0; taxels - 1]);
+    // A beat less than a frame.
+    packets.insert(5, vec![0; taxels - plan.streams().samples().min(taxels - 1)]);
     Ok(packets)
 }
 
-/// Packets as words of 33 bits, the topmost of which is TLAST.
-fn words(packets: &[Vec<u32>]) -> Vec<u8> {
+/// Packets as beats of so many words, the first lowest, with one bit more: TLAST above them. Zeros fill the last beat.
+fn beat_file(packets: &[Vec<u32>], words: usize) -> Vec<u8> {
     let mut text = Vec::new();
     for packet in packets {
-        for (index, &word) in packet.iter().enumerate() {
-            let last = u64::from(index + 1 == packet.len());
-            // Writing to a vector cannot fail.
-            let _ = writeln!(text, "{:09x}", last << 32 | u64::from(word));
+        let last = packet.len().div_ceil(words);
+        for (beat, filled) in (1..).zip(packet.chunks(words)) {
+            let _ = write!(text, "{}", u32::from(beat == last));
+            for place in (0..words).rev() {
+                // Writing to a vector cannot fail.
+                let _ = write!(text, "{:08x}", filled.get(place).copied().unwrap_or(0));
+            }
+            text.push(b'\n');
         }
     }
     text
@@ -96,11 +114,13 @@ fn words(packets: &[Vec<u32>]) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::words;
+    use super::beat_file;
 
     #[test]
     fn the_last_word_of_each_packet_is_marked() {
-        let text = words(&[vec![1, 0xC47A_0000], vec![2]]);
+        let text = beat_file(&[vec![1, 0xC47A_0000], vec![2]], 1);
         assert_eq!(String::from_utf8(text).unwrap(), "000000001\n1c47a0000\n100000002\n");
+        let text = beat_file(&[vec![1, 2, 3]], 2);
+        assert_eq!(String::from_utf8(text).unwrap(), "00000000200000001\n10000000000000003\n");
     }
 }

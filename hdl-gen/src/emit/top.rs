@@ -9,6 +9,7 @@ use crate::blocks::{Parameters, array, bz, cean, co, field, op, row_width, turns
 use crate::plan::Plan;
 use crate::plan::counts::CountsPlan;
 use crate::plan::format::address_bits;
+use crate::plan::streams::Intake;
 
 use super::template::design_module;
 use super::{EmitError, registers};
@@ -29,7 +30,20 @@ struct View {
     estimator: String,
     filter: String,
     counts: bool,
+    /// Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
+    stream_bits: usize,
+    stream_bytes: usize,
+    words: usize,
+    samples: usize,
+    sample_bits: usize,
+    sample: &'static str,
+    beats_in: usize,
     beats: usize,
+    /// TKEEP of the last beat out.
+    last_keep: String,
+    /// Whether samples go to Bz one by one, and what the stream is called that does.
+    unpack: bool,
+    samples_from: &'static str,
     field: bool,
     at_most: &'static str,
     latency_cycles: u64,
@@ -57,6 +71,7 @@ struct View {
     data_bits: u32,
     vector_bits: usize,
 
+    bz_module: &'static str,
     bz: Parameters,
     cean: Parameters,
     turns: Parameters,
@@ -76,6 +91,8 @@ impl View {
         let (design, hardware, timeline) = (&plan.design, &plan.design.hardware, &plan.timeline);
         let slot = plan.estimator.slot();
         let folded = plan.ways() > 1;
+        let streams = plan.streams();
+        let unpack = streams.intake == Intake::Unpacked;
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
             control: hardware.control,
@@ -87,7 +104,17 @@ impl View {
             estimator: slot.module().trim_start_matches("sptfra_estimator_").to_owned(),
             filter: filter_text(&design.algorithm.filter),
             counts: plan.counts.is_some(),
-            beats: plan.beats_out(),
+            stream_bits: streams.bits,
+            stream_bytes: streams.bits / 8,
+            words: streams.words(),
+            samples: streams.samples(),
+            sample_bits: streams.sample_bits,
+            sample: "float32",
+            beats_in: streams.beats_in(),
+            beats: streams.beats_out(),
+            last_keep: format!("{:x}", streams.last_keep()),
+            unpack,
+            samples_from: if unpack { "sample" } else { "in" },
             field: plan.field_words() > 0,
             at_most: if hardware.skip_zeros { "at most " } else { "" },
             latency_cycles: timeline.latency_cycles,
@@ -114,6 +141,7 @@ impl View {
             data_bits: hardware.data_bits,
             vector_bits: plan.ways() * hardware.data_bits as usize,
 
+            bz_module: bz::module(plan),
             bz: bz::parameters(plan),
             cean: cean::parameters(plan),
             turns: turns::parameters(plan),

@@ -82,19 +82,20 @@ impl<'plan> Model<'plan> {
 
     /// Words of every output frame: 16, and for the field 3 m more.
     pub fn output_words(&self) -> usize {
-        self.plan.beats_out()
+        self.plan.words_out()
     }
 
-    /// The output frame for one packet: float32 words in Pa up to and including the one with TLAST. Its timestamp is 0:
-    /// when a packet comes is not the model's to know.
+    /// The output frame for one packet: its words in memory's order, float32 in Pa, up to the last of the beat with TLAST;
+    /// words that are missing in that are 0. Its timestamp is 0: when a packet comes is not the model's to know.
     pub fn process(&mut self, packet: &[u32]) -> Vec<u32> {
         let counter = u32::from(self.frames) << 16;
         self.frames = self.frames.wrapping_add(1);
-        let taxels = self.plan.taxels();
+        let (taxels, streams) = (self.plan.taxels(), self.plan.streams());
+        let words = packet.iter().copied().chain(std::iter::repeat(0)).take(streams.whole_beats(packet.len()));
         let converted: Vec<Stress> =
-            packet.iter().take(taxels).enumerate().map(|(taxel, &word)| self.convert(taxel, word)).collect();
+            words.take(taxels).enumerate().map(|(taxel, word)| self.convert(taxel, word)).collect();
         let mut bad = 0;
-        if packet.len() != taxels {
+        if !streams.is_frame(packet.len()) {
             bad |= BAD_LENGTH;
         }
         if converted.iter().any(|stress| stress.not_finite) {

@@ -11,8 +11,9 @@ use super::Plan;
 use super::places::{self, FIELD_PLACES};
 use super::product::Vector;
 use super::schedule::{Program, Visit};
+use super::streams::Intake;
 use super::timing::{INTERVAL_FRAMES, Timeline, middle_interval};
-use crate::blocks::bz;
+use crate::blocks::bz::{self, Arrival};
 use crate::blocks::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
     SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_BUS, VISIT_TO_RESIDUAL,
@@ -37,12 +38,11 @@ pub(super) fn timeline(plan: &Plan) -> Timeline {
 
 /// Durations that do not depend on the frames under way.
 struct Constants {
-    taxels: u64,
     beats: u64,
-    /// From a beat entering the conversion to its stress entering the fold.
-    beat_to_stress: u64,
-    /// From a frame's last stress to the frame being ready for the lanes.
-    stress_to_ready: u64,
+    /// From a frame's first beat out of the skid buffer to the first that enters Bz.
+    unpacking: u64,
+    /// What a frame brings, counted from there.
+    arrival: Arrival,
     /// From a visit to its taxels having left the unfolding.
     visit_to_taxels: u64,
     /// From the visit to the last sum, or the last g, to the sums being complete.
@@ -77,11 +77,9 @@ impl Constants {
         };
         let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
         Self {
-            taxels: plan.taxels() as u64,
-            beats: plan.beats_out() as u64,
-            beat_to_stress: bz::beat_to_stress(plan)
-                + if plan.dead.is_some() { latency::dead_taxels(plan.taxels()) } else { 0 },
-            stress_to_ready: latency::stress_to_ready(folded),
+            beats: plan.streams().beats_out() as u64,
+            unpacking: u64::from(plan.streams().intake == Intake::Unpacked),
+            arrival: bz::arrival(plan),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
             visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),
             field,
@@ -159,8 +157,9 @@ impl<'a> Control<'a> {
         Self {
             of,
             now: 0,
-            next_open: 0,
-            idle_since: Some(0), // in cycle 1 the first beat has left the skid buffer
+            // In cycle 1 the first beat has left the skid buffer.
+            next_open: 1 + of.unpacking,
+            idle_since: Some(0),
             stress_places: 0,
             cean_idle: 0,
             directions: VecDeque::new(),
@@ -236,12 +235,13 @@ impl<'a> Control<'a> {
             return false;
         }
         self.idle_since = None;
-        let last_stress = self.now + self.of.taxels - 1 + self.of.beat_to_stress;
+        let Arrival { ready, last_stress, done } = self.of.arrival;
+        let last_stress = self.now + last_stress;
         self.stress_places += 1;
-        self.next_open = last_stress + 1;
+        self.next_open = self.now + done;
         self.cean_idle = last_stress + self.of.direction;
         self.directions.push_back(self.cean_idle);
-        self.frames_ready.push_back(last_stress + self.of.stress_to_ready);
+        self.frames_ready.push_back(self.now + ready);
         true
     }
 

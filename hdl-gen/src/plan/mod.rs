@@ -24,6 +24,7 @@ pub mod quantise;
 pub mod resources;
 pub mod savings;
 pub mod schedule;
+pub mod streams;
 pub mod timing;
 pub mod vector_formats;
 pub mod words;
@@ -42,6 +43,7 @@ use matrix::QuantisedMatrix;
 use product::{Block, Product};
 use resources::Resources;
 use schedule::Schedule;
+use streams::Streams;
 use timing::Timeline;
 use vector_formats::Formats;
 pub use words::SUMMARY_WORDS;
@@ -140,9 +142,14 @@ impl Plan {
         self.design.sensor.taxels()
     }
 
+    /// The shape of both streams.
+    pub fn streams(&self) -> Streams {
+        Streams::of(&self.design)
+    }
+
     /// Words of every output frame: 16, and for the field 3 m more.
-    pub fn beats_out(&self) -> usize {
-        SUMMARY_WORDS + self.field_words()
+    pub fn words_out(&self) -> usize {
+        self.streams().words_out
     }
 
     /// Words of the field in an output frame: 3 m, or none.

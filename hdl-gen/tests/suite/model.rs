@@ -76,7 +76,7 @@ pub struct Answer {
 
 pub fn answer(plan: &Plan, frame: &[f32]) -> Answer {
     let words = Model::new(plan).process(&frame.iter().map(|stress| stress.to_bits()).collect::<Vec<_>>());
-    assert_eq!(words.len(), plan.beats_out());
+    assert_eq!(words.len(), plan.words_out());
     let values: Vec<f64> = words.iter().map(|&word| f64::from(f32::from_bits(word))).collect();
     let component = |p: usize| values[SUMMARY_WORDS..].iter().skip(p).step_by(3).copied().collect();
     Answer {
@@ -245,7 +245,7 @@ proptest! {
         let mut model = Model::new(&plan);
         for packet in packets.into_iter().chain([fitting, mixed, full]) {
             let words = model.process(&packet);
-            prop_assert_eq!(words.len(), plan.beats_out());
+            prop_assert_eq!(words.len(), plan.words_out());
             prop_assert!(words[1..].iter().all(|&word| f32::from_bits(word).is_finite()));
         }
     }

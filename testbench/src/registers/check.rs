@@ -95,6 +95,8 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
     let (sensor, hardware) = (&plan.design.sensor, &plan.design.hardware);
     let hash = u64::from_str_radix(&resolved_hash(&plan.design), 16).unwrap_or_default();
     let part = |index| VERSION.split('.').nth(index).and_then(|text| text.parse::<u32>().ok()).unwrap_or_default();
+    // From bit 8 on, behind four features and four bits that are 0.
+    let stream = hardware.stream_bits / 8;
     let features = [plan.field_words() > 0, plan.ways() > 1, plan.counts.is_some(), hardware.skip_zeros];
     vec![
         ("IDENTITY", address::IDENTITY, u32::from_be_bytes(*b"TFRA")),
@@ -102,8 +104,8 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         ("HASH_LOW", address::HASH_LOW, hash as u32),
         ("HASH_HIGH", address::HASH_HIGH, (hash >> 32) as u32),
         ("GEOMETRY", address::GEOMETRY, (hardware.lanes << 16 | sensor.rows << 8 | sensor.columns) as u32),
-        ("FRAME", address::FRAME, (plan.beats_out() << 16 | plan.taxels()) as u32),
-        ("FEATURES", address::FEATURES, features.iter().rev().fold(0, |word, &is| word << 1 | u32::from(is))),
+        ("FRAME", address::FRAME, (plan.words_out() << 16 | plan.streams().words_in()) as u32),
+        ("FEATURES", address::FEATURES, features.iter().rev().fold(stream << 4, |word, &is| word << 1 | u32::from(is))),
         ("CLOCK", address::CLOCK, (hardware.clock_mhz * 1e3).round() as u32),
         ("FULL_SCALE", address::FULL_SCALE, (hardware.full_scale_pa as f32).to_bits()),
         ("PREDICTED_LATENCY", address::PREDICTED_LATENCY, plan.timeline.latency_cycles as u32),

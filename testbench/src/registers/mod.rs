@@ -129,6 +129,10 @@ impl Controlled {
 }
 
 impl Core for Controlled {
+    fn words(&self) -> usize {
+        self.dut.words()
+    }
+
     fn step(&mut self, inputs: Inputs) -> Result<Outputs, DutError> {
         if self.planned.front().is_some_and(|&(cycle, access)| cycle <= self.cycle && self.master.is_free(&access))
             && let Some((_, access)) = self.planned.pop_front()

@@ -13,7 +13,18 @@ pub enum Violation {
         /// When.
         cycle: u64,
         /// The beat that was lost.
-        data: u32,
+        data: u128,
+    },
+    /// Bytes are left out where they must not.
+    #[error(
+        "cycle {cycle}: m_axis_tkeep is {:#x} in {}: whole words from the lowest on, all of them but in a frame's last \
+         beat, and zeros behind", .beat.keep, show(*.beat)
+    )]
+    Keep {
+        /// When.
+        cycle: u64,
+        /// The beat.
+        beat: Beat,
     },
     /// The payload of a waiting beat changed.
     #[error(
@@ -90,8 +101,8 @@ impl Checker {
 mod tests {
     use super::*;
 
-    fn offer(valid: bool, data: u32, last: bool) -> Outputs {
-        Outputs { ready: true, sink: Beat { valid, data, last } }
+    fn offer(valid: bool, data: u128, last: bool) -> Outputs {
+        Outputs { ready: true, sink: Beat { valid, data, last, keep: 0xF } }
     }
 
     fn watch(cycles: &[(bool, bool, Outputs)]) -> Result<(), Violation> {

@@ -20,7 +20,7 @@ pub fn exchange(
     traffic: &Traffic<'_>,
     mut progress: impl FnMut(usize),
 ) -> Result<Outcome, StreamError> {
-    let mut driver = Driver::new(traffic);
+    let mut driver = Driver::new(traffic, core.words());
     for _ in 0..INITIAL_RESET {
         driver.reset_cycle(core)?;
     }
@@ -55,6 +55,8 @@ struct Driver<'a> {
     checker: Checker,
     cycle: u64,
     last_handshake: u64,
+    /// 32-bit words of a beat.
+    width: usize,
     /// Packet being sent and the next word of it.
     packet: usize,
     word: usize,
@@ -71,7 +73,7 @@ struct Driver<'a> {
 }
 
 impl<'a> Driver<'a> {
-    fn new(traffic: &'a Traffic<'a>) -> Self {
+    fn new(traffic: &'a Traffic<'a>, width: usize) -> Self {
         let mut driver = Self {
             traffic,
             source: traffic.source.start(),
@@ -79,6 +81,7 @@ impl<'a> Driver<'a> {
             checker: Checker::default(),
             cycle: 0,
             last_handshake: 0,
+            width,
             packet: 0,
             word: 0,
             offering: false,
@@ -137,8 +140,10 @@ impl<'a> Driver<'a> {
         if !self.offering {
             self.offering = answered && self.source.next_cycle();
         }
-        let data = words.get(self.word).copied().unwrap_or_default();
-        Beat { valid: self.offering, data, last: self.offering && self.word + 1 == words.len() }
+        // Zeros fill the last beat.
+        let rest = words.get(self.word..).unwrap_or_default();
+        let data = rest.iter().take(self.width).rev().fold(0, |data, &word| data << 32 | u128::from(word));
+        Beat { valid: self.offering, data, last: self.offering && rest.len() <= self.width, ..Beat::default() }
     }
 
     fn run_cycle(&mut self, core: &mut impl Core) -> Result<(), StreamError> {
@@ -171,7 +176,7 @@ impl<'a> Driver<'a> {
         if self.word == 0 {
             self.first_in = self.cycle;
         }
-        self.word += 1;
+        self.word += self.width;
         if beat.last {
             self.inside.push_back((self.packet, self.first_in));
             self.next_packet();
@@ -180,7 +185,14 @@ impl<'a> Driver<'a> {
 
     fn received(&mut self, beat: Beat) -> Result<(), StreamError> {
         self.last_handshake = self.cycle;
-        self.words.push(beat.data);
+        let kept = beat.keep.trailing_ones() as usize / 4;
+        let right = u32::from(beat.keep) == (1_u32 << (4 * kept)) - 1
+            && if beat.last { (1..=self.width).contains(&kept) } else { kept == self.width }
+            && beat.data.checked_shr(32 * kept as u32).unwrap_or(0) == 0;
+        if !right {
+            return Err(Violation::Keep { cycle: self.cycle, beat }.into());
+        }
+        self.words.extend((0..kept).map(|place| (beat.data >> (32 * place)) as u32));
         if beat.last {
             let (packet, first_in) = self.inside.pop_front().ok_or(Violation::UnexpectedFrame { cycle: self.cycle })?;
             let mut words = std::mem::take(&mut self.words);
@@ -205,7 +217,7 @@ impl<'a> Driver<'a> {
             cycle: self.cycle,
             received: self.outcome.exchanges.len(),
             expected: self.traffic.packets.len(),
-            inside: format!("{input}, {} beats of the next answer seen", self.words.len()),
+            inside: format!("{input}, {} words of the next answer seen", self.words.len()),
         }
     }
 }

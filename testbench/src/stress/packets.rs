@@ -105,14 +105,15 @@ impl<'a> Packets<'a> {
 /// A packet that chance makes.
 pub fn packet(plan: &Plan, random: &mut ChaCha8Rng) -> (Kind, Vec<u32>) {
     let mut words = good(plan, random);
-    let taxels = words.len();
+    let (taxels, streams) = (words.len(), plan.streams());
     match random.random_range(0..10) {
-        0 => {
-            words.truncate(random.random_range(1..taxels));
+        // Of a frame of one beat none is too short.
+        0 if streams.beats_in() > 1 => {
+            words.truncate(random.random_range(1..=(streams.beats_in() - 1) * streams.words()));
             (Kind::Short, words)
         }
-        1 => {
-            let length = random.random_range(taxels + 1..=3 * taxels);
+        0 | 1 => {
+            let length = random.random_range(streams.whole_beats(words.len()) + 1..=3 * words.len());
             while words.len() < length {
                 words.push(random.random());
             }

@@ -1,7 +1,8 @@
 // The C interface between the stream driver and the simulated core: one call a clock cycle, everything in registers.
 //
-// Input word of dut_step: bits 31:0 s_axis_tdata, 32 s_axis_tvalid, 33 s_axis_tlast, 34 m_axis_tready, 35 aresetn.
-// Output word: bits 31:0 m_axis_tdata, 32 m_axis_tvalid, 33 m_axis_tlast, 34 s_axis_tready, 63 the simulation failed.
+// Input word of dut_step: bits 32 s_axis_tvalid, 33 s_axis_tlast, 34 m_axis_tready, 35 aresetn. Output word: bits 15:0
+// m_axis_tkeep, 32 m_axis_tvalid, 33 m_axis_tlast, 34 s_axis_tready, 63 the simulation failed. The data of both streams
+// are arrays of four words of 32 bits, of which a beat has the first one, two or four.
 //
 // A core with a register bank takes what its AXI4-Lite port is driven with from dut_drive_control, before dut_step, and
 // leaves what the port showed in that cycle to dut_read_control. Inputs: bits 11:0 and 27:16 of `addresses` awaddr and
@@ -77,6 +78,40 @@ struct Control<Model, std::void_t<decltype(std::declval<Model&>().s_axi_ctrl_awv
     }
 };
 
+// The data of a beat, on ports of each width.
+constexpr uint32_t words_of(const IData&) { return 1; }
+constexpr uint32_t words_of(const QData&) { return 2; }
+template <std::size_t Words>
+constexpr uint32_t words_of(const VlWide<Words>&) {
+    return Words;
+}
+void put(IData& port, const uint32_t* words) { port = words[0]; }
+void put(QData& port, const uint32_t* words) { port = words[0] | uint64_t(words[1]) << 32; }
+template <std::size_t Words>
+void put(VlWide<Words>& port, const uint32_t* words) {
+    for (std::size_t word = 0; word < Words; ++word) port[word] = words[word];
+}
+void take(const IData& port, uint32_t* words) { words[0] = port; }
+void take(const QData& port, uint32_t* words) {
+    words[0] = uint32_t(port);
+    words[1] = uint32_t(port >> 32);
+}
+template <std::size_t Words>
+void take(const VlWide<Words>& port, uint32_t* words) {
+    for (std::size_t word = 0; word < Words; ++word) words[word] = port[word];
+}
+
+// Which bytes of a beat out count: all, on a model that does not say.
+template <class Model, class = void>
+struct Keep {
+    static uint64_t read(Model& model) { return (uint64_t(1) << (4 * words_of(model.m_axis_tdata))) - 1; }
+};
+
+template <class Model>
+struct Keep<Model, std::void_t<decltype(std::declval<Model&>().m_axis_tkeep)>> {
+    static uint64_t read(Model& model) { return model.m_axis_tkeep; }
+};
+
 struct Dut {
     VerilatedContext context;
     std::unique_ptr<Vdut> model;
@@ -95,7 +130,8 @@ struct Dut {
         model->aresetn = 0;
         model->s_axis_tvalid = 0;
         model->s_axis_tlast = 0;
-        model->s_axis_tdata = 0;
+        const uint32_t nothing[4] = {};
+        put(model->s_axis_tdata, nothing);
         model->m_axis_tready = 0;
         Control<Vdut>::drive(*model, 0, 0, 0);
         model->eval();
@@ -134,6 +170,9 @@ DUT_API void* dut_new(uint32_t seed, char* text, size_t size) {
     }
 }
 
+// 32-bit words of a beat, of either stream.
+DUT_API uint32_t dut_words() { return sizeof(std::declval<Vdut&>().m_axis_tdata) / sizeof(uint32_t); }
+
 DUT_API void dut_delete(void* handle) {
     try {
         delete static_cast<Dut*>(handle);
@@ -143,17 +182,19 @@ DUT_API void dut_delete(void* handle) {
 }
 
 // One clock cycle: apply the inputs, let them settle, read the outputs, then the rising edge.
-DUT_API uint64_t dut_step(void* handle, uint64_t inputs, char* text, size_t size) {
+DUT_API uint64_t dut_step(void* handle, uint64_t inputs, const uint32_t* data_in, uint32_t* data_out, char* text,
+                          size_t size) {
     try {
         Dut& dut = *static_cast<Dut*>(handle);
         Vdut& model = *dut.model;
-        model.s_axis_tdata = uint32_t(inputs);
+        put(model.s_axis_tdata, data_in);
         model.s_axis_tvalid = (inputs >> 32) & 1;
         model.s_axis_tlast = (inputs >> 33) & 1;
         model.m_axis_tready = (inputs >> 34) & 1;
         model.aresetn = (inputs >> 35) & 1;
         dut.settle(0);
-        const uint64_t outputs = uint64_t(model.m_axis_tdata) | uint64_t(model.m_axis_tvalid) << 32
+        take(model.m_axis_tdata, data_out);
+        const uint64_t outputs = Keep<Vdut>::read(model) | uint64_t(model.m_axis_tvalid) << 32
                                  | uint64_t(model.m_axis_tlast) << 33 | uint64_t(model.s_axis_tready) << 34;
         dut.control = Control<Vdut>::read(model);
         dut.settle(1);

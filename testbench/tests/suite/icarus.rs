@@ -79,7 +79,7 @@ fn icarus_gives_every_word_of_the_model() {
         let files = emitted(design);
         let said = simulate(&design.name, &files);
         // Four directions, and one frame each that is empty, has a NaN, and is short.
-        let words = 7 * planned(design).beats_out();
+        let words = 7 * planned(design).words_out();
         assert_eq!(expected(&design.name, &files).len(), words);
         assert!(said.starts_with(&format!("PASS: 7 frames, {words} words, ")), "{}: {said}", design.name);
     });
@@ -89,7 +89,7 @@ fn icarus_gives_every_word_of_the_model() {
 fn the_frames_of_the_testbench_are_of_every_kind() {
     let design = shipped("small");
     let words = expected(&design.name, &emitted(&design));
-    let frames: Vec<&[String]> = words.chunks(planned(&design).beats_out()).collect();
+    let frames: Vec<&[String]> = words.chunks(planned(&design).words_out()).collect();
     let statuses: Vec<&str> = frames.iter().map(|frame| frame[0].as_str()).collect();
     assert_eq!(
         statuses,

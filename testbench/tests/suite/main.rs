@@ -32,6 +32,7 @@ mod skip_zeros;
 mod standin;
 mod stream_faults;
 mod stream_modes;
+mod streams;
 mod stress;
 mod support;
 mod sweep;

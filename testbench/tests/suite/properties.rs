@@ -48,13 +48,13 @@ fn agrees(plan: &Plan, built: &Built, packets: &[Vec<u32>], mode: &Mode, pacing:
 
 /// A sink that takes a frame in twice the time in which the core makes one: they pile up to the last place.
 fn slow_sink(plan: &Plan) -> Mode {
-    let willing = plan.beats_out() as f64 / (2 * plan.timeline.interval_cycles) as f64;
+    let willing = plan.streams().beats_out() as f64 / (2 * plan.timeline.interval_cycles) as f64;
     Mode { name: "slow sink", source: Pattern::Free, sink: Pattern::Random { seed: 1, willing } }
 }
 
 /// A sink that stands still until every place inside is taken, then takes several frames at full speed.
 fn stuck_sink(plan: &Plan) -> Mode {
-    let longest_run = 3 * plan.beats_out() as u32;
+    let longest_run = 3 * plan.streams().beats_out() as u32;
     let longest_pause = (12 * plan.timeline.interval_cycles) as u32;
     let sink = Pattern::Bursts { seed: 2, longest_run, longest_pause };
     Mode { name: "sink that stands still for long", source: Pattern::Free, sink }

@@ -22,6 +22,7 @@ rtl/sptfra_members.v
 rtl/sptfra_multiply.v
 rtl/sptfra_op.v
 rtl/sptfra_output.v
+rtl/sptfra_output_word.v
 rtl/sptfra_quad_rows.v
 rtl/sptfra_ram.v
 rtl/sptfra_rom.v

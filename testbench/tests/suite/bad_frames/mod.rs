@@ -152,7 +152,7 @@ fn a_bad_frame_costs_that_frame_only() {
             let case = format!("{}, {}, {name}, frame {counter}", plan.design.name, mode.name);
             assert_eq!(words[0], counter << 16 | status, "{case}");
             if status != 0 {
-                assert_eq!(words[1..], vec![0; plan.beats_out() - 1], "{case}");
+                assert_eq!(words[1..], vec![0; plan.words_out() - 1], "{case}");
                 continue;
             }
             // Alone after a reset, the good frame has the same answer.

@@ -92,8 +92,11 @@ fn a_reset_while_frames_pile_up_leaves_no_trace() {
                 Reset { cycle, length: 1 }
             })
             .collect();
-        let sink =
-            Pattern::Bursts { seed: 5, longest_run: 3 * plan.beats_out() as u32, longest_pause: 12 * interval as u32 };
+        let sink = Pattern::Bursts {
+            seed: 5,
+            longest_run: 3 * plan.streams().beats_out() as u32,
+            longest_pause: 12 * interval as u32,
+        };
         let mode = Mode { name: "sink that stands still", source: Pattern::Free, sink };
         let traffic = Traffic::new(&packets, 8 * timeout(plan)).with_resets(&resets).with_mode(&mode);
         let outcome = subject.run(&traffic).unwrap_or_else(|error| panic!("{resets:?}: {error}"));

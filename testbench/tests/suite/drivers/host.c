@@ -1,6 +1,6 @@
 /* The C driver on the host, against the simulated core: frames, names, counters, interrupts, soft reset, refusals.
  *
- *   host CORE.so REGISTERS FRAMES COLUMNS ROWS WORDS_OUT HAS_FIELD
+ *   host CORE.so REGISTERS FRAMES COLUMNS ROWS WORDS_OUT HAS_FIELD STREAM_BYTES
  *
  * FRAMES is binary, little-endian: for each frame the number of words, the words, and words_out words of the answer.
  * With REGISTERS 0 the core has no bank. */
@@ -125,14 +125,16 @@ int main(int count, char **arguments)
     FILE *file;
     uint32_t words, frames = 0, bad = 0, last = 0, events = 0, timestamp = 0;
 
-    CHECK(count == 8);
+    CHECK(count == 9);
     const int has_registers = atoi(arguments[2]);
+    memset(&shape, 0, sizeof shape);
     shape.columns = (uint16_t)atoi(arguments[4]);
     shape.rows = (uint16_t)atoi(arguments[5]);
     shape.words_in = (uint16_t)(shape.columns * shape.rows);
     shape.words_out = (uint16_t)atoi(arguments[6]);
     shape.has_field = (uint8_t)atoi(arguments[7]);
     shape.has_counts = 0;
+    shape.stream_bytes = (uint8_t)atoi(arguments[8]);
     system = machine_open(arguments[1], 7, has_registers);
     CHECK(system != NULL);
     platform.context = system;

@@ -12,6 +12,7 @@
 #define VALID (UINT64_C(1) << 32)
 #define FAILED (UINT64_C(1) << 63)
 #define PATIENCE 1000
+#define MOST_WORDS 4 /* of a beat */
 
 /* One channel of the DMA. */
 struct channel {
@@ -22,7 +23,8 @@ struct channel {
 
 struct machine {
     void *library, *core;
-    uint64_t (*step)(void *, uint64_t, char *, size_t);
+    uint32_t words; /* of a beat */
+    uint64_t (*step)(void *, uint64_t, const uint32_t *, uint32_t *, char *, size_t);
     void (*drive)(void *, uint32_t, uint32_t, uint32_t);
     uint64_t (*port)(void *);
     void (*discard)(void *);
@@ -58,32 +60,41 @@ static void cycle(struct machine *system, int run)
 {
     char text[256];
     uint64_t inputs = run ? RUN : 0, outputs;
+    uint32_t in[MOST_WORDS], out[MOST_WORDS], word, last_word = 0;
     int ready;
 
     system->noise = system->noise * 1664525u + 1013904223u;
     /* Both ends pause now and then, but a beat on offer stays. */
     system->offering = run && system->send.busy && (system->offering || (system->noise >> 28) != 0);
     ready = run && system->receive.busy && (system->noise >> 24 & 3) != 0;
+    /* What fills the last beat behind the transfer is not known. */
+    memset(in, 0xFF, sizeof in);
     if (system->offering) {
-        inputs |= *memory(&system->send) | VALID;
-        inputs |= system->send.moved + 4 == system->send.length ? LAST : 0;
+        const uint32_t left = (system->send.length - system->send.moved) / 4;
+
+        last_word = left < system->words ? left : system->words;
+        memcpy(in, memory(&system->send), 4 * last_word);
+        inputs |= VALID | (left <= system->words ? LAST : 0);
     }
     inputs |= ready ? READY : 0;
-    outputs = system->step(system->core, inputs, text, sizeof text);
+    outputs = system->step(system->core, inputs, in, out, text, sizeof text);
     if (outputs & FAILED) {
         fprintf(stderr, "machine: %s\n", text);
         exit(2);
     }
     if (system->offering && (outputs & READY)) {
         system->offering = 0;
-        system->send.moved += 4;
+        system->send.moved += 4 * last_word;
         if (system->send.moved == system->send.length) {
             finish(&system->send);
         }
     }
     if (ready && (outputs & VALID)) {
-        *memory(&system->receive) = (uint32_t)outputs;
-        system->receive.moved += 4;
+        for (word = 0; word < system->words && (outputs >> (4 * word) & 1) && system->receive.moved < system->receive.length;
+             word++) {
+            *memory(&system->receive) = out[word];
+            system->receive.moved += 4;
+        }
         if (outputs & LAST) {
             finish(&system->receive);
         } else if (system->receive.moved == system->receive.length) {
@@ -100,6 +111,7 @@ machine *machine_open(const char *library, uint32_t seed, int has_registers)
     char text[256] = "";
     struct machine *system = calloc(1, sizeof *system);
     void *(*create)(uint32_t, char *, size_t);
+    uint32_t (*words)(void);
     int index;
 
     system->library = dlopen(library, RTLD_NOW | RTLD_LOCAL);
@@ -109,10 +121,12 @@ machine *machine_open(const char *library, uint32_t seed, int has_registers)
         return NULL;
     }
     *(void **)&create = dlsym(system->library, "dut_new");
+    *(void **)&words = dlsym(system->library, "dut_words");
     *(void **)&system->step = dlsym(system->library, "dut_step");
     *(void **)&system->drive = dlsym(system->library, "dut_drive_control");
     *(void **)&system->port = dlsym(system->library, "dut_read_control");
     *(void **)&system->discard = dlsym(system->library, "dut_delete");
+    system->words = words();
     system->core = create(seed, text, sizeof text);
     if (system->core == NULL) {
         fprintf(stderr, "machine: %s\n", text);
@@ -214,8 +228,8 @@ static void write_dma(struct machine *system, uint32_t offset, uint32_t value)
     } else if (target == &channel->status) {
         channel->status &= ~(value & 0x7000);
     } else if (target == &channel->length) {
-        /* Only a running channel without a transfer takes one. */
-        if ((channel->status & 1) || channel->busy || value == 0) {
+        /* Only a running channel without a transfer takes one, from where a beat may begin. */
+        if ((channel->status & 1) || channel->busy || value == 0 || channel->address % (4 * system->words) != 0) {
             system->faults++;
             return;
         }

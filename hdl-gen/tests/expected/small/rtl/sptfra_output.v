@@ -15,8 +15,9 @@
 // | 13      | bodies in bits 7:0, generation of the calibration 15:8, replaced taxels 23:16 |
 // | 14, 15  | 0                                                                            |
 //
-// A beat a cycle while the sink takes them; the first one 13 cycles after start. Frames without an answer send zeros
-// but for words 0, 1 and 13. A taxel's force comes from the field memory as it goes out.
+// A beat of WORDS words a cycle while the sink takes them, the first word in the lowest bits; the first beat 13 cycles
+// after start. Frames without an answer send zeros but for words 0, 1 and 13; zeros fill the last beat. Taxels' forces
+// come from the field memory as they go out.
 
 `default_nettype none
 
@@ -31,6 +32,10 @@ module sptfra_output #(
     parameter integer FORCE_LSB = -50,
     parameter integer TORQUE_LSB = -55,
     parameter integer FIELD_LSB = -50,
+    // 32-bit words of a beat: 1, 2 or 4
+    parameter integer WORDS = 1,
+    // Enabled cycles from a step of the field memory to the forces
+    parameter integer FIELD_STAGES = 5,
     // From start to the first beat, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0
 ) (
@@ -54,29 +59,39 @@ module sptfra_output #(
     input  wire signed [31:0] angle, // 29 fraction bits
     input  wire signed [17:0] mu_x, // 16 fraction bits
     input  wire signed [17:0] mu_y,
-    // Field memory: after rewind, the first taxel's x; after each step, the next one
+    // Field memory: after rewind, the first beat's forces; after each step, the next ones
     output wire signed [17:0] field_mu_x, // of the frame going out
     output wire signed [17:0] field_mu_y,
     output wire field_enable,
     output wire field_rewind,
     output wire field_step,
     output reg  field_release,
-    input  wire signed [63:0] field_value, // six enabled cycles after its step
+    input  wire [64*WORDS-1:0] field_value, // FIELD_STAGES + 1 enabled cycles after their step
     // Stream out
-    output wire [31:0] m_tdata,
+    output wire [32*WORDS-1:0] m_tdata,
     output wire m_tlast,
     output wire m_tvalid,
     input  wire m_tready
 );
 
-    localparam integer BEATS = (FIELD != 0) ? 16 + 3 * COLUMNS * ROWS : 16;
+    localparam integer SUMMARY_BEATS = 16 / WORDS;
+    localparam integer SUMMARY_WIDTH = $clog2(SUMMARY_BEATS);
+    localparam integer WORD_WIDTH = $clog2(WORDS);
+    localparam integer FIELD_WORDS = 3 * COLUMNS * ROWS;
+    localparam integer FIELD_BEATS = (FIELD_WORDS + WORDS - 1) / WORDS;
+    localparam integer BEATS = (FIELD != 0) ? SUMMARY_BEATS + FIELD_BEATS : SUMMARY_BEATS;
     localparam integer BEAT_WIDTH = $clog2(BEATS);
     localparam integer LAST_BEAT = BEATS - 1;
-    localparam signed [9:0] FORCE_EXPONENT = FORCE_LSB[9:0];
-    localparam signed [9:0] TORQUE_EXPONENT = TORQUE_LSB[9:0];
-    localparam signed [9:0] FIELD_EXPONENT = FIELD_LSB[9:0];
-    localparam signed [9:0] FRICTION_EXPONENT = -10'sd16;
-    localparam signed [9:0] ANGLE_EXPONENT = -10'sd29;
+    localparam integer REST = FIELD_WORDS - (FIELD_BEATS - 1) * WORDS; // words of the field's last beat
+    // The beat before the first one that steps the field memory: its forces arrive at the end of stage 3
+    localparam integer BEFORE_READ = SUMMARY_BEATS + 3 - FIELD_STAGES;
+    localparam [SUMMARY_WIDTH-1:0] BEFORE_READ_BEAT = BEFORE_READ[SUMMARY_WIDTH-1:0];
+
+    generate
+        if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
+            sptfra_error_words_of_a_beat_must_be_1_2_or_4 invalid ();
+        end
+    endgenerate
 
     // ---- The frame, held
     reg busy;
@@ -103,29 +118,23 @@ module sptfra_output #(
     reg [BEAT_WIDTH-1:0] issued_beat;
     reg [11:1] valid;
     reg [11:1] lasts;
-    reg [11:4] statuses; // word 0
-    reg [11:4] raws; // words that are no float32
+    reg [11:1] statuses; // the beat with the status
     reg [3:1] blanks;
     reg [3:1] in_field;
-    reg [3:0] word_1;
-    reg [3:0] word_2;
-    reg [3:0] word_3;
+    reg [SUMMARY_WIDTH-1:0] beat_1; // of the summary
+    reg [SUMMARY_WIDTH-1:0] beat_2;
     reg [15:0] frame_1;
     reg [15:0] frame_2;
-    reg signed [63:0] summary_3;
-    reg signed [9:0] summary_exponent_3;
-    reg signed [63:0] value_4;
-    reg signed [9:0] exponent_4;
 
     reg [BEAT_WIDTH-1:0] beat;
     wire advance = m_tready; // of the skid buffer, a register
-    reg reads; // beat is 15 or more: the field's data come a cycle after the summary's
+    reg reads; // the field memory, some beats ahead
     wire last_beat = (beat == LAST_BEAT[BEAT_WIDTH-1:0]);
     wire beat_in_field;
 
     generate
         if (FIELD != 0) begin : gen_field
-            assign beat_in_field = (issued_beat[BEAT_WIDTH-1:4] != {(BEAT_WIDTH - 4){1'b0}});
+            assign beat_in_field = (issued_beat[BEAT_WIDTH-1:SUMMARY_WIDTH] != {(BEAT_WIDTH - SUMMARY_WIDTH){1'b0}});
         end else begin : gen_summary
             assign beat_in_field = 1'b0;
         end
@@ -142,7 +151,7 @@ module sptfra_output #(
         field_release <= 1'b0;
         if (busy && advance) begin
             beat <= beat + 1'b1;
-            reads <= reads || (beat[3:0] == 4'd14);
+            reads <= reads || (beat[SUMMARY_WIDTH-1:0] == BEFORE_READ_BEAT);
             if (last_beat) begin
                 busy <= 1'b0;
                 frame_count <= frame_count + 16'd1;
@@ -179,10 +188,7 @@ module sptfra_output #(
         end
     end
 
-    // ---- Stages 1 to 4: the summary words, and the field's in stage 4
-    wire status_3 = !in_field[3] && (word_3 == 4'd0);
-    wire raw_3 = !in_field[3] && ((word_3 == 4'd0) || (word_3 == 4'd1) || (word_3 == 4'd13));
-
+    // ---- Stages 1 to 3: which words, of which frame
     always @(posedge clock) begin
         if (advance) begin
             issued <= busy;
@@ -190,62 +196,13 @@ module sptfra_output #(
             issued_beat <= beat;
             valid <= {valid[10:1], issued};
             lasts <= {lasts[10:1], issued_last};
-            statuses <= {statuses[10:4], status_3};
-            raws <= {raws[10:4], raw_3};
+            statuses <= {statuses[10:1], issued_beat == {BEAT_WIDTH{1'b0}}};
             in_field <= {in_field[2:1], beat_in_field};
             blanks <= {blanks[2:1], held_blank};
-            word_1 <= issued_beat[3:0];
-            word_2 <= word_1;
-            word_3 <= word_2;
+            beat_1 <= issued_beat[SUMMARY_WIDTH-1:0];
+            beat_2 <= beat_1;
             frame_1 <= frame_count;
             frame_2 <= frame_1;
-            // Stage 3
-            summary_exponent_3 <= FORCE_EXPONENT;
-            case (word_2)
-                4'd0: summary_3 <= {32'd0, frame_2, held_status};
-                4'd1: summary_3 <= {32'd0, held_timestamp};
-                4'd2: summary_3 <= held_force_x;
-                4'd3: summary_3 <= held_force_y;
-                4'd4: summary_3 <= held_force_z;
-                4'd5: begin
-                    summary_3 <= held_torque_x;
-                    summary_exponent_3 <= TORQUE_EXPONENT;
-                end
-                4'd6: begin
-                    summary_3 <= held_torque_y;
-                    summary_exponent_3 <= TORQUE_EXPONENT;
-                end
-                4'd7: begin
-                    summary_3 <= held_torque_z;
-                    summary_exponent_3 <= TORQUE_EXPONENT;
-                end
-                4'd8: begin
-                    summary_3 <= held_quotient;
-                    summary_exponent_3 <= held_exponent;
-                end
-                4'd9: begin
-                    summary_3 <= { {32{held_angle[31]}}, held_angle};
-                    summary_exponent_3 <= ANGLE_EXPONENT;
-                end
-                4'd10: begin
-                    summary_3 <= { {46{held_mu_x[17]}}, held_mu_x};
-                    summary_exponent_3 <= FRICTION_EXPONENT;
-                end
-                4'd11: begin
-                    summary_3 <= { {46{held_mu_y[17]}}, held_mu_y};
-                    summary_exponent_3 <= FRICTION_EXPONENT;
-                end
-                4'd13: summary_3 <= {32'd0, held_census};
-                default: summary_3 <= 64'sd0;
-            endcase
-            // Stage 4
-            if (in_field[3]) begin
-                value_4 <= blanks[3] ? 64'sd0 : field_value;
-                exponent_4 <= FIELD_EXPONENT;
-            end else begin
-                value_4 <= (blanks[3] && !raw_3) ? 64'sd0 : summary_3;
-                exponent_4 <= summary_exponent_3;
-            end
         end
         if (reset) begin
             issued <= 1'b0;
@@ -253,37 +210,48 @@ module sptfra_output #(
         end
     end
 
-    // ---- Stages 5 to 11: float32; words that are none pass beside it
-    wire [31:0] float_word;
-    reg [31:0] raw_5;
-    reg [31:0] raw_6;
-    reg [31:0] raw_7;
-    reg [31:0] raw_8;
-    reg [31:0] raw_9;
-    reg [31:0] raw_10;
-    reg [31:0] raw_11;
+    // ---- Stages 3 to 11: the words of a beat
+    genvar index;
 
-    sptfra_fixed_to_float fixed_to_float (
-        .clock      (clock),
-        .enable     (advance),
-        .fixed      (value_4),
-        .exponent   (exponent_4),
-        .float_bits (float_word)
-    );
+    generate
+        for (index = 0; index < WORDS; index = index + 1) begin : gen_words
+            localparam [3:0] PLACE = index;
+            wire [31:0] word_wide_2 = {{(32-SUMMARY_WIDTH){1'b0}}, beat_2} << WORD_WIDTH;
+            wire signed [63:0] force_3 = $signed(field_value[64*index +: 64]);
+            wire _unused_word = &{1'b0, word_wide_2};
 
-    always @(posedge clock) begin
-        if (advance) begin
-            raw_5 <= value_4[31:0];
-            raw_6 <= raw_5;
-            raw_7 <= raw_6;
-            raw_8 <= raw_7;
-            raw_9 <= raw_8;
-            raw_10 <= raw_9;
-            raw_11 <= raw_10;
+            sptfra_output_word #(
+                .FORCE_LSB  (FORCE_LSB),
+                .TORQUE_LSB (TORQUE_LSB),
+                .FIELD_LSB  (FIELD_LSB)
+            ) word (
+                .clock             (clock),
+                .advance           (advance),
+                .word_2            (word_wide_2[3:0] | PLACE),
+                .in_field_3        (in_field[3]),
+                .blank_3           (blanks[3]),
+                .behind_3          ((index >= REST) && lasts[3]),
+                .field_value_3     (force_3),
+                .data_11           (m_tdata[32*index +: 32]),
+                .frame_2           (frame_2),
+                .status            (held_status),
+                .timestamp         (held_timestamp),
+                .census            (held_census),
+                .force_x           (held_force_x),
+                .force_y           (held_force_y),
+                .force_z           (held_force_z),
+                .torque_x          (held_torque_x),
+                .torque_y          (held_torque_y),
+                .torque_z          (held_torque_z),
+                .friction_quotient (held_quotient),
+                .friction_exponent (held_exponent),
+                .angle             (held_angle),
+                .mu_x              (held_mu_x),
+                .mu_y              (held_mu_y)
+            );
         end
-    end
+    endgenerate
 
-    assign m_tdata = raws[11] ? raw_11 : float_word;
     assign m_tlast = lasts[11];
     assign m_tvalid = valid[11];
 

@@ -37,6 +37,7 @@ foreach file {
     sptfra_multiply.v
     sptfra_op.v
     sptfra_output.v
+    sptfra_output_word.v
     sptfra_quad_rows.v
     sptfra_ram.v
     sptfra_rom.v
@@ -74,7 +75,7 @@ foreach file {
 set predicted {
     {CeAn {sptfra_cean} 1 0.0}
     {lanes {sptfra_spmv_array} 4 0.0}
-    {field {sptfra_field sptfra_coefficient_field} 1 0.0}
+    {field {sptfra_field sptfra_field_wide sptfra_coefficient_field} 1 0.0}
     {line {sptfra_line} 1 0.0}
     {cells {sptfra_search} 4 0.0}
     {summary {sptfra_summary} 1 0.0}
