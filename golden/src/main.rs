@@ -14,10 +14,12 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use commands::Recording;
+use commands::calibrate::Work;
 use golden::arguments::design_file;
-use golden::calibrate::Settings;
+use golden::design::Family;
 use golden::manual::Manual;
 use golden::output::print_text;
+use golden::words::parser;
 
 /// Reference solver and ground truth for three-axis tactile sensing from normal stress.
 #[derive(Parser)]
@@ -147,6 +149,10 @@ enum Command {
         /// Seed of the contacts and of the training.
         #[arg(long, default_value_t = 1)]
         seed: u64,
+        /// Contacts to fit to: "narrow", round and sliding, "wide", of any shape, tilted, held, over the grid's edge.
+        /// Unless given, what the design says under [algorithm] family.
+        #[arg(long, value_parser = parser::<Family>())]
+        family: Option<Family>,
         /// Hidden units of the correction, 0 to 256; 128 unless given, 24 with --quick; 0 for none.
         #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256))]
         hidden: Option<u16>,
@@ -237,11 +243,14 @@ const CALIBRATE_FILES: &str = r#"In the design file:
 In RESOLVED.toml, besides:
   gain = 1.1                        # factor on all forces
   tangential = [1.0, 0.0]           # friction vector c1 mu + c3 mu |mu|^2
+  family = "wide"                   # contacts that all of it was fitted to, unless "narrow"
+  doubt = 0.06                      # with family "wide": a standard error above this share of F_z is doubtful
   [algorithm.correction]            # of the friction vector, by a small network
   half_window = [3, 7]              # taxels either side of the contact's centre, along x and y
   file = "RESOLVED.weights.csv"     # its weights in steps of 2^-12, written beside RESOLVED.toml: a line for each
                                     # hidden unit, under a header
-  sha256 = "..."                    # of that file"#;
+  sha256 = "..."                    # of that file
+  error_base = -17123               # with family "wide": what is added to the logarithm of the error that is left"#;
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
@@ -254,10 +263,9 @@ fn main() -> ExitCode {
         Command::Check { design, frames, labels, json } => {
             commands::check::run(&design, &Recording { file: &frames, labels }, json)
         }
-        Command::Calibrate { design, out, seed, hidden, quick, json } => {
-            let work = if quick { Settings::quick() } else { Settings::default() };
-            let settings = Settings { seed, hidden: hidden.map_or(work.hidden, usize::from), ..work };
-            commands::calibrate::run(&design, &out, &settings, json)
+        Command::Calibrate { design, out, seed, family, hidden, quick, json } => {
+            let work = Work { seed, hidden: hidden.map(usize::from), quick };
+            commands::calibrate::run(&design, &out, family, work, json)
         }
         Command::Manual(manual) => manual.run(Arguments::command()).and_then(|text| Ok(print_text(&text)?)),
         Command::Bench { designs, json } => commands::bench::run(&designs, json),

@@ -24,6 +24,10 @@ module sptfra_correction #(
     parameter integer STRESS_LEFT = 9,
     parameter integer UNIT_SHIFT = 12,
     parameter integer CORRECTION_SHIFT = 12,
+    // 1: with the error that is left; bits dropped from its sum, and what is added to it then
+    parameter integer DOUBT = 0,
+    parameter integer DOUBT_SHIFT = 12,
+    parameter signed [17:0] DOUBT_BASE = 18'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
@@ -55,6 +59,7 @@ module sptfra_correction #(
     output wire done, // one cycle
     output wire signed [17:0] correction_x,
     output wire signed [17:0] correction_y,
+    output wire signed [17:0] error_log, // of base 2, of the error that is left over |F_z|, 12 fraction bits
     output wire saturated // a stress was clipped
 );
 
@@ -117,6 +122,9 @@ module sptfra_correction #(
         .AT_ONCE          (AT_ONCE),
         .UNIT_SHIFT       (UNIT_SHIFT),
         .CORRECTION_SHIFT (CORRECTION_SHIFT),
+        .DOUBT            (DOUBT),
+        .DOUBT_SHIFT      (DOUBT_SHIFT),
+        .DOUBT_BASE       (DOUBT_BASE),
         .ROM_DIR          (ROM_DIR),
         .ROM_NAME         (ROM_NAME),
         .EXPECTED_LATENCY (EXPECTED_NETWORK_LATENCY)
@@ -129,7 +137,8 @@ module sptfra_correction #(
         .start        (look_done),
         .done         (done),
         .correction_x (correction_x),
-        .correction_y (correction_y)
+        .correction_y (correction_y),
+        .error_log    (error_log)
     );
 
 endmodule

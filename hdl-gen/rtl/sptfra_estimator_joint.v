@@ -46,6 +46,10 @@ module sptfra_estimator_joint #(
     parameter integer STRESS_LEFT = 9,
     parameter integer UNIT_SHIFT = 12,
     parameter integer CORRECTION_SHIFT = 12,
+    // 1: the correction tells the error that is left; bits dropped from its sum, and what is added to it then
+    parameter integer DOUBT = 0,
+    parameter integer DOUBT_SHIFT = 12,
+    parameter signed [17:0] DOUBT_BASE = 18'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
@@ -91,6 +95,7 @@ module sptfra_estimator_joint #(
     output wire signed [17:0] free, // mu_x, 16 fraction bits
     output wire signed [17:0] other, // mu_y
     output wire signed [17:0] slope, // none
+    output wire signed [17:0] error_log, // of base 2, of the error of (F_x, F_y) over |F_z|, 12 fraction bits
     output reg  unknown,
     output wire at_bound,
     output wire saturated,
@@ -238,6 +243,7 @@ module sptfra_estimator_joint #(
     wire signed [17:0] correction_x;
     wire signed [17:0] correction_y;
     wire look_saturated;
+    wire signed [17:0] left_error;
 
     generate
         if (NETWORK != 0) begin : gen_correction
@@ -253,6 +259,9 @@ module sptfra_estimator_joint #(
                 .STRESS_LEFT              (STRESS_LEFT),
                 .UNIT_SHIFT               (UNIT_SHIFT),
                 .CORRECTION_SHIFT         (CORRECTION_SHIFT),
+                .DOUBT                    (DOUBT),
+                .DOUBT_SHIFT              (DOUBT_SHIFT),
+                .DOUBT_BASE               (DOUBT_BASE),
                 .ROM_DIR                  (ROM_DIR),
                 .ROM_NAME                 (ROM_NAME),
                 .EXPECTED_LOOK_LATENCY    (EXPECTED_LOOK_LATENCY),
@@ -273,6 +282,7 @@ module sptfra_estimator_joint #(
                 .done         (correction_done),
                 .correction_x (correction_x),
                 .correction_y (correction_y),
+                .error_log    (left_error),
                 .saturated    (look_saturated)
             );
         end else begin : gen_none
@@ -280,9 +290,11 @@ module sptfra_estimator_joint #(
             assign correction_x = 18'sd0;
             assign correction_y = 18'sd0;
             assign look_saturated = 1'b0;
+            assign left_error = 18'sd0;
 
             wire _unused = &{1'b0, correction_bank, HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0,
-                STRESS_LEFT != 0, UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0,
+                STRESS_LEFT != 0, UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, DOUBT != 0, DOUBT_SHIFT != 0, DOUBT_BASE,
+                EXPECTED_LOOK_LATENCY != 0,
                 EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate
@@ -311,6 +323,7 @@ module sptfra_estimator_joint #(
 
     assign x_is_free = 1'b1;
     assign slope = 18'sd0;
+    assign error_log = unknown ? 18'sd0 : left_error; // without a direction as much as presses
     assign at_bound = on_border || clipped;
     assign saturated = (look_saturated || plane_saturated) && !unknown;
 

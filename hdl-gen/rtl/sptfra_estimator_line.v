@@ -59,6 +59,7 @@ module sptfra_estimator_line #(
     output wire signed [17:0] free, // 16 fraction bits
     output wire signed [17:0] other, // of the other component: offset and slope, 15 fraction bits
     output wire signed [17:0] slope,
+    output wire signed [17:0] error_log, // none
     output reg  unknown,
     output wire at_bound,
     output wire saturated,
@@ -139,6 +140,7 @@ module sptfra_estimator_line #(
     assign answer_valid = search_done || answer_waits;
     assign other = c0;
     assign slope = c1;
+    assign error_log = 18'sd0;
 
     always @(posedge clock) begin
         u_waiting <= u_waiting + {1'b0, fill_complete} - {1'b0, search_start};

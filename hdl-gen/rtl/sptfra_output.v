@@ -11,7 +11,7 @@
 // | 5 to 7  | T_x, T_y, T_z in N m                                                         |
 // | 8, 9    | mu, phi in rad                                                               |
 // | 10, 11  | mu_x, mu_y                                                                   |
-// | 12      | standard error of (F_x, F_y) in N: none                                      |
+// | 12      | standard error of (F_x, F_y) in N                                            |
 // | 13      | bodies in bits 7:0, generation of the calibration 15:8, replaced taxels 23:16 |
 // | 14, 15  | 0                                                                            |
 //
@@ -57,6 +57,8 @@ module sptfra_output #(
     input  wire [63:0] friction_quotient,
     input  wire signed [9:0] friction_exponent,
     input  wire signed [31:0] angle, // 29 fraction bits
+    input  wire [63:0] error_value, // standard error, in steps of a force times 2^error_exponent
+    input  wire signed [9:0] error_exponent,
     input  wire signed [17:0] mu_x, // 16 fraction bits
     input  wire signed [17:0] mu_y,
     // Field memory: after rewind, the first beat's forces; after each step, the next ones
@@ -109,6 +111,8 @@ module sptfra_output #(
     reg [63:0] held_quotient;
     reg signed [9:0] held_exponent;
     reg signed [31:0] held_angle;
+    reg [63:0] held_error;
+    reg signed [9:0] held_error_exponent;
     reg signed [17:0] held_mu_x;
     reg signed [17:0] held_mu_y;
 
@@ -178,6 +182,8 @@ module sptfra_output #(
             held_quotient <= friction_quotient;
             held_exponent <= friction_exponent;
             held_angle <= angle;
+            held_error <= error_value;
+            held_error_exponent <= error_exponent;
             held_mu_x <= mu_x;
             held_mu_y <= mu_y;
         end
@@ -246,6 +252,8 @@ module sptfra_output #(
                 .friction_quotient (held_quotient),
                 .friction_exponent (held_exponent),
                 .angle             (held_angle),
+                .error_value       (held_error),
+                .error_exponent    (held_error_exponent),
                 .mu_x              (held_mu_x),
                 .mu_y              (held_mu_y)
             );

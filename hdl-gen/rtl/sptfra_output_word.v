@@ -37,6 +37,8 @@ module sptfra_output_word #(
     input  wire [63:0] friction_quotient,
     input  wire signed [9:0] friction_exponent,
     input  wire signed [31:0] angle, // 29 fraction bits
+    input  wire [63:0] error_value, // standard error, in steps of a force times 2^error_exponent
+    input  wire signed [9:0] error_exponent,
     input  wire signed [17:0] mu_x, // 16 fraction bits
     input  wire signed [17:0] mu_y
 );
@@ -95,6 +97,10 @@ module sptfra_output_word #(
                 4'd11: begin
                     summary_3 <= { {46{mu_y[17]}}, mu_y};
                     summary_exponent_3 <= FRICTION_EXPONENT;
+                end
+                4'd12: begin
+                    summary_3 <= error_value;
+                    summary_exponent_3 <= error_exponent + FORCE_EXPONENT;
                 end
                 4'd13: summary_3 <= {32'd0, census};
                 default: summary_3 <= 64'sd0;

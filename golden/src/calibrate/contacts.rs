@@ -14,14 +14,15 @@ const LARGEST: f64 = 2.75;
 const LARGEST_SHARE: f64 = 0.6;
 
 /// The range of radii, in metres.
-fn radii(sensor: &Sensor) -> [f64; 2] {
+pub(super) fn radii(sensor: &Sensor) -> [f64; 2] {
     let pitch = 1e-3 * sensor.pitch_mm[0].max(sensor.pitch_mm[1]);
     let smallest = SMALLEST * pitch;
     let short = extent(sensor).into_iter().fold(f64::INFINITY, f64::min);
     [smallest, (LARGEST * pitch).min(LARGEST_SHARE * short).max(smallest)]
 }
 
-fn extent(sensor: &Sensor) -> [f64; 2] {
+/// The grid's sides, in metres.
+pub(super) fn extent(sensor: &Sensor) -> [f64; 2] {
     [(sensor.columns - 1) as f64 * sensor.pitch_mm[0] * 1e-3, (sensor.rows - 1) as f64 * sensor.pitch_mm[1] * 1e-3]
 }
 

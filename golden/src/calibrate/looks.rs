@@ -9,6 +9,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::samples::Sample;
+use super::twins::Diagonal;
 use crate::design::Correction;
 use crate::parity::{CLASSES, Quads, sign};
 
@@ -23,14 +24,17 @@ pub(super) struct Basis {
     vectors: [Vec<Vec<(usize, f64)>>; CLASSES],
     /// Of each class, symmetric: from values in the basis to whitened ones.
     whitening: [DMatrix<f64>; CLASSES],
+    /// Where x and y may change places.
+    pub(super) diagonal: Option<Diagonal>,
 }
 
 impl Basis {
-    /// The basis of a window and the inputs behind it, whitened for the samples.
-    pub(super) fn new(samples: &[Sample], half_window: [usize; 2]) -> Self {
+    /// The basis of a window and the inputs behind it, whitened for the samples; with `square` as symmetric as a square.
+    pub(super) fn new(samples: &[Sample], half_window: [usize; 2], square: bool) -> Self {
         let vectors = vectors(half_window);
-        let mut basis = Self { whitening: [0, 1, 2, 3].map(|_| DMatrix::zeros(0, 0)), vectors };
-        for class in 0..CLASSES {
+        let diagonal = square.then(|| diagonal(half_window));
+        let mut basis = Self { whitening: [0, 1, 2, 3].map(|_| DMatrix::zeros(0, 0)), vectors, diagonal };
+        let mut covariances = [0, 1, 2, 3].map(|class| {
             let size = basis.size(class);
             let mut covariance = DMatrix::zeros(size, size);
             let mut values = DMatrix::zeros(size, 1);
@@ -39,6 +43,13 @@ impl Basis {
                 covariance.syger(1.0 / samples.len() as f64, &values.column(0), &values.column(0), 1.0);
             }
             covariance.fill_upper_triangle_with_lower_triangle();
+            covariance
+        });
+        if let Some(diagonal) = &basis.diagonal {
+            diagonal.symmetrise(&mut covariances);
+        }
+        for (class, mut covariance) in covariances.into_iter().enumerate() {
+            let size = basis.size(class);
             if class == 0 {
                 // The constant input has no variance, and stays apart.
                 covariance.row_mut(size - 1).fill(0.0);
@@ -48,6 +59,9 @@ impl Basis {
             let SymmetricEigen { eigenvectors, eigenvalues } = covariance.symmetric_eigen();
             let scales = eigenvalues.map(|variance| (variance.max(0.0) + LEAST_VARIANCE).sqrt().recip());
             basis.whitening[class] = &eigenvectors * DMatrix::from_diagonal(&scales) * eigenvectors.transpose();
+        }
+        if let Some(diagonal) = &basis.diagonal {
+            diagonal.symmetrise(&mut basis.whitening);
         }
         basis
     }
@@ -92,6 +106,20 @@ impl Basis {
         }
         weights
     }
+}
+
+/// Where the inputs of each class go when x and y change places.
+fn diagonal([half, _]: [usize; 2]) -> Diagonal {
+    let quads = Quads::new(2 * half + 1, 2 * half + 1);
+    let of = |class: usize| (0..quads.count()).filter(move |&quad| quads.exists(class, quad));
+    Diagonal::new([0, 1, 2, 3].map(|class| {
+        let other = [0, 2, 1, 3][class];
+        let transposed = |quad: usize| quad % quads.columns() * quads.columns() + quad / quads.columns();
+        let places = of(class).map(|quad| of(other).position(|at| at == transposed(quad)).unwrap_or(0));
+        // The inputs behind the window come in the same order.
+        let (window, behind) = (of(class).count(), EXTRA_CLASSES.iter().filter(|&&of| of == class).count());
+        places.chain(window..window + behind).collect()
+    }))
 }
 
 /// The basis: places of a quarter of the window, then the inputs behind it.

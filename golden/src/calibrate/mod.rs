@@ -4,17 +4,20 @@
 //! before it is calibrated, then a gain, two constants for the friction, and the weights of the correction.
 
 mod contacts;
+mod doubt;
 mod looks;
 mod samples;
 mod train;
+mod twins;
+mod wide;
 
 pub use contacts::random_contacts;
 
 use crate::design::{Design, Estimator, Input, JointConstants, conditions};
-use crate::estimators::joint::CUBIC_LIMIT;
+use crate::estimators::joint::{CUBIC_LIMIT, Family, Joint};
 use crate::scene::SceneError;
 use crate::solver::SolverError;
-use samples::Sample;
+use samples::{Observer, Sample};
 
 /// How much work the calibration takes on; more of each makes better constants, slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +35,32 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// The work that a family of contacts takes, or a tenth of it, for a first look: errors are up to twice as large.
+    pub fn of(family: Family, quick: bool) -> Self {
+        let work = if quick { Self::quick() } else { Self::default() };
+        match family {
+            Family::Narrow => work,
+            // A body has one direction only, so there are more of them.
+            Family::Wide => Self { contacts: 2 * work.contacts, samples: work.samples + work.samples / 5, ..work },
+        }
+    }
+
+    /// Pieces of work with a family, each of which is reported.
+    pub fn work(&self, family: Family) -> usize {
+        let doubt = if family == Family::Wide && self.hidden > 0 { 2 * self.doubted() + self.doubt_steps() } else { 0 };
+        self.contacts + self.samples + self.steps + doubt
+    }
+
+    /// Frames, each of a body of its own, that tell what to doubt.
+    fn doubted(&self) -> usize {
+        self.samples / 5
+    }
+
+    /// Steps of the training of the doubt.
+    fn doubt_steps(&self) -> usize {
+        self.steps / 4
+    }
+
     /// A tenth of the work, for a first look: errors are up to twice as large.
     pub fn quick() -> Self {
         Self { contacts: 2000, samples: 10_000, hidden: 24, steps: 3000, ..Self::default() }
@@ -127,7 +156,8 @@ pub fn calibrate(
     let tension = design.input.tension;
     let design = &Design { input: Input { tension, ..Input::default() }, ..design.clone() };
     let half_window = contacts::half_window(&design.sensor);
-    let samples = samples::make(design, settings, half_window, tick)?;
+    let mut observer = Observer::new(design, half_window)?;
+    let samples = samples::make(&mut observer, settings, tick)?;
     if samples.is_empty() {
         return Err(CalibrateError::NoAnswer { name: name(), samples: settings.samples });
     }
@@ -138,12 +168,26 @@ pub fn calibrate(
     if !legal {
         return Err(CalibrateError::OutOfRange { name: name(), gain, c1, c3 });
     }
-    let correction =
-        (settings.hidden > 0).then(|| train::train(&samples, &targets, tangential, half_window, settings, tick));
+    let (sensor, family) = (&design.sensor, design.algorithm.joint.family);
+    let mut correction = (settings.hidden > 0)
+        .then(|| train::train((sensor, family), &samples, &targets, tangential, half_window, settings, tick));
+    // What knows one kind of contact alone cannot tell what to doubt.
+    if family == Family::Wide
+        && let Some(found) = correction.take()
+    {
+        drop(samples);
+        let constants =
+            JointConstants { gain, tangential, correction: Some(found.clone()), ..JointConstants::default() };
+        let estimator = Joint::new(&constants, sensor.columns);
+        let samples = doubt::samples(&mut observer, settings, tick)?;
+        let square = twins::has_diagonal(sensor);
+        correction = Some(doubt::train(&estimator, found, &samples, (square, settings), tick));
+    }
     let algorithm = &design.algorithm;
     let grid = algorithm.joint.grid;
     let fitted_to = Some(conditions(&design.sensor, tension, algorithm.kernel, algorithm.regularisation, grid));
-    Ok(JointConstants { grid, gain, tangential, correction, fitted_to })
+    let doubt = algorithm.joint.doubt;
+    Ok(JointConstants { grid, family, gain, tangential, correction, doubt, fitted_to })
 }
 
 /// The constants `c1, c3` that bring `c1 mu + c3 mu |mu|^2` closest to the targets, by least squares.

@@ -3,12 +3,13 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::wide::{self, Body};
 use super::{CalibrateError, Settings, Stage, random_contacts};
-use crate::design::Design;
-use crate::estimators::joint::{self, JointScratch, Look};
+use crate::design::{Design, Sensor};
+use crate::estimators::joint::{self, Family, JointScratch, Look};
 use crate::products::ByPq;
 use crate::scene::{Contact, Medium, Shape, normal, unit_responses};
-use crate::solver::{Solver, Status};
+use crate::solver::{Solver, Status, Workspace};
 
 /// Poisson's ratio of the layers, from and to: rubber, give or take.
 const POISSON: [f64; 2] = [0.45, 0.49];
@@ -39,27 +40,102 @@ pub(super) struct Sample {
     force: [f64; 3],
 }
 
-/// Makes the frames of a design and estimates them; frames without an answer are left out.
-pub(super) fn make(
-    design: &Design,
-    settings: &Settings,
+impl Sample {
+    /// Length of the error of `(F_x, F_y)` over `|F_z|` with a gain and friction components.
+    pub(super) fn error(&self, mu: [f64; 2], gain: f64) -> f64 {
+        let [x, y, z] = [0, 1, 2].map(|p| gain * (self.sums[p][0] + mu[0] * self.sums[p][1] + mu[1] * self.sums[p][2]));
+        (x - self.force[0]).hypot(y - self.force[1]) / z.abs()
+    }
+}
+
+/// What frames are seen with: the estimator of a design, before it is calibrated.
+pub(super) struct Observer<'a> {
+    design: &'a Design,
+    solver: Solver,
+    workspace: Workspace,
+    scratch: JointScratch,
     half_window: [usize; 2],
+}
+
+impl<'a> Observer<'a> {
+    pub(super) fn new(design: &'a Design, half_window: [usize; 2]) -> Result<Self, CalibrateError> {
+        let solver = Solver::new(design)?;
+        Ok(Self { design, workspace: solver.workspace(), solver, scratch: JointScratch::default(), half_window })
+    }
+
+    /// The sensor of the design.
+    pub(super) fn sensor(&self) -> &'a Sensor {
+        &self.design.sensor
+    }
+
+    /// Estimates a frame with its true resultant, of any size, and with noise of a deviation that is a share of its largest
+    /// stress; nothing if it has no answer.
+    pub(super) fn sample(
+        &mut self,
+        mut frame: Vec<f64>,
+        force: [f64; 3],
+        noise: f64,
+        random: &mut ChaCha8Rng,
+    ) -> Result<Option<Sample>, CalibrateError> {
+        // What reads no pull has no noise that pulls either.
+        let tension = self.design.input.tension;
+        for stress in &mut *frame {
+            *stress = tension.of(*stress);
+        }
+        let peak = frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+        let deviation = noise * peak;
+        // The estimator has no scale; the frame is put where neither the full scale nor the noise floor matters.
+        let scale = 0.5 * self.design.hardware.full_scale_pa / peak;
+        for stress in &mut frame {
+            *stress = tension.of(scale * (*stress + deviation * normal(random)));
+        }
+        let Some(seen) = self.solver.see(&mut self.workspace, &frame)? else { return Ok(None) };
+        let found = joint::raw(self.design.algorithm.joint.grid, &seen, &mut self.scratch);
+        if found.status.contains(Status::DIRECTION_UNKNOWN) {
+            return Ok(None);
+        }
+        joint::look(&seen, found.mu, self.design.sensor.columns, self.half_window, 0.0, &mut self.scratch);
+        let force = force.map(|component| scale * component);
+        Ok(Some(Sample { mu: found.mu, look: self.scratch.look.clone(), sums: *seen.sums, force }))
+    }
+}
+
+/// A stream of random numbers of a seed.
+pub(super) fn stream(seed: u64, stream: u64) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(stream);
+    random
+}
+
+/// Makes the frames of a family and estimates them; frames without an answer are left out.
+pub(super) fn make(
+    observer: &mut Observer<'_>,
+    settings: &Settings,
     tick: &mut dyn FnMut(Stage),
 ) -> Result<Vec<Sample>, CalibrateError> {
-    let solver = Solver::new(design)?;
-    let (mut workspace, mut scratch) = (solver.workspace(), JointScratch::default());
-    let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
+    match observer.design.algorithm.joint.family {
+        Family::Narrow => narrow(observer, settings, tick),
+        Family::Wide => wide(observer, settings, tick),
+    }
+}
+
+fn narrow(
+    observer: &mut Observer<'_>,
+    settings: &Settings,
+    tick: &mut dyn FnMut(Stage),
+) -> Result<Vec<Sample>, CalibrateError> {
+    let sensor = &observer.design.sensor;
     // The contacts use stream 0 of the same seed.
-    random.set_stream(1);
+    let mut random = stream(settings.seed, 1);
     let mut responses = Vec::with_capacity(settings.contacts);
-    for (index, contact) in random_contacts(&design.sensor, settings.seed, settings.contacts).iter().enumerate() {
+    for (index, contact) in random_contacts(sensor, settings.seed, settings.contacts).iter().enumerate() {
         let share = (index / 8 % LAYERS) as f64 / (LAYERS - 1) as f64;
         let medium = Medium::BondedLayer { poisson: POISSON[0] + share * (POISSON[1] - POISSON[0]) };
-        let mut response = unit_responses(&design.sensor, medium, contact)?;
+        let mut response = unit_responses(sensor, medium, contact)?;
         if let Some(even) = even_pressure(contact)
             && random.random_range(0..RESHAPED) == 0
         {
-            let even = unit_responses(&design.sensor, medium, &even)?;
+            let even = unit_responses(sensor, medium, &even)?;
             let share = random.random_range(PROFILES[0]..PROFILES[1]);
             for (stress, even) in response.iter_mut().flatten().zip(even.iter().flatten()) {
                 *stress += share * (even - *stress);
@@ -78,27 +154,31 @@ pub(super) fn make(
         let (sin, cos) = (std::f64::consts::TAU * random.random::<f64>()).sin_cos();
         let [x, y] = [friction * cos, friction * sin];
         let load = |kind: usize, taxel: usize| (1.0 - share) * one[kind][taxel] + share * other[kind][taxel];
-        let mut frame: Vec<f64> =
-            (0..solver.taxels()).map(|taxel| load(0, taxel) + x * load(1, taxel) + y * load(2, taxel)).collect();
-        // What reads no pull has no noise that pulls either.
-        let tension = design.input.tension;
-        for stress in &mut *frame {
-            *stress = tension.of(*stress);
-        }
-        let peak = frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
-        let deviation = NOISE * random.random::<f64>() * peak;
-        // The estimator has no scale; the frame is put where neither the full scale nor the noise floor matters.
-        let force = 0.5 * design.hardware.full_scale_pa / peak;
-        for stress in &mut frame {
-            *stress = tension.of(force * (*stress + deviation * normal(&mut random)));
-        }
-        let Some(seen) = solver.see(&mut workspace, &frame)? else { continue };
-        let found = joint::raw(design.algorithm.joint.grid, &seen, &mut scratch);
-        if !found.status.contains(Status::DIRECTION_UNKNOWN) {
-            joint::look(&seen, found.mu, design.sensor.columns, half_window, 0.0, &mut scratch);
-            let force = [force * x, force * y, -force];
-            samples.push(Sample { mu: found.mu, look: scratch.look.clone(), sums: *seen.sums, force });
-        }
+        let frame: Vec<f64> =
+            (0..one[0].len()).map(|taxel| load(0, taxel) + x * load(1, taxel) + y * load(2, taxel)).collect();
+        let noise = NOISE * random.random::<f64>();
+        samples.extend(observer.sample(frame, [x, y, -1.0], noise, &mut random)?);
+    }
+    Ok(samples)
+}
+
+fn wide(
+    observer: &mut Observer<'_>,
+    settings: &Settings,
+    tick: &mut dyn FnMut(Stage),
+) -> Result<Vec<Sample>, CalibrateError> {
+    let mut random = stream(settings.seed, 0);
+    let bodies: Vec<Body> = (0..settings.contacts)
+        .map(|_| {
+            tick(Stage::Contact);
+            Body::random(&observer.design.sensor, &mut random)
+        })
+        .collect();
+    let mut random = stream(settings.seed, 1);
+    let mut samples = Vec::with_capacity(settings.samples);
+    for index in 0..settings.samples {
+        tick(Stage::Sample);
+        samples.extend(wide::sample(&bodies, index, false, observer, &mut random)?);
     }
     Ok(samples)
 }

@@ -6,8 +6,10 @@ use rand_chacha::ChaCha8Rng;
 
 use super::looks::Basis;
 use super::samples::Sample;
-use super::{Settings, Stage};
-use crate::estimators::joint::{self, Correction, WEIGHT_FRACTION, WEIGHT_LIMIT};
+use super::twins::Diagonal;
+use super::{Settings, Stage, twins};
+use crate::design::Sensor;
+use crate::estimators::joint::{self, Correction, Family, LARGEST, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use crate::parity::{CLASSES, butterfly};
 use crate::scene::normal;
 
@@ -24,11 +26,15 @@ const LARGEST_WEIGHT: f64 = 7.9;
 /// The largest sum of a hidden unit's weights. The hardware rounds all units alike, as the largest sum demands, so all
 /// are brought to about the same one; a factor on a unit goes out of its weights in the output, which changes nothing.
 const LARGEST_SUM: f64 = 64.0;
+/// Errors above this count by their size, those below by their square: among contacts of all kinds some cannot be told
+/// from others, and these must not decide the rest.
+const SOFT: f32 = 0.04;
 /// Share of each mirror image in the mean.
 const QUARTER: f32 = 0.25;
 
 /// Trains the network to add what the scaled estimates lack of their targets.
 pub(super) fn train(
+    (sensor, family): (&Sensor, Family),
     samples: &[Sample],
     targets: &[[f64; 2]],
     tangential: [f64; 2],
@@ -41,11 +47,18 @@ pub(super) fn train(
         .zip(targets)
         .map(|(sample, target)| {
             let scaled = joint::scaled(sample.mu, tangential);
-            [0, 1].map(|axis| (target[axis] - scaled[axis]) as f32)
+            let missing = [0, 1].map(|axis| target[axis] - scaled[axis]);
+            match family {
+                Family::Narrow => missing,
+                // More is never added.
+                Family::Wide => missing.map(|part| part.clamp(-LARGEST, LARGEST)),
+            }
+            .map(|part| part as f32)
         })
         .collect();
-    let basis = Basis::new(samples, half_window);
+    let basis = Basis::new(samples, half_window, twins::has_diagonal(sensor));
     let looks = basis.looks(samples);
+    let soft = (family == Family::Wide).then_some(SOFT);
     let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
     // Streams 0 and 1 of the seed made the samples.
     random.set_stream(2);
@@ -62,7 +75,7 @@ pub(super) fn train(
             wanted[(column, 1)] = missing[index][1];
         }
         let rate = 0.5 * RATE * (1.0 + (std::f32::consts::PI * step as f32 / settings.steps as f32).cos());
-        learner.descend(&batch, &wanted, rate, step);
+        learner.descend(&batch, &wanted, soft, (rate, step));
         tick(Stage::Step);
     }
     learner.correction(&basis, half_window)
@@ -78,19 +91,29 @@ struct Learner {
     images: [DMatrix<f32>; CLASSES],
     /// Their part odd in x and odd in y.
     odd: [DMatrix<f32>; 2],
+    /// Where the sensor is square, units have twins.
+    diagonal: Option<Diagonal>,
 }
 
 impl Learner {
     fn new(basis: &Basis, units: usize, random: &mut ChaCha8Rng) -> Self {
         let inputs: usize = (0..CLASSES).map(|class| basis.size(class)).sum();
         let spread = (2.0 / inputs as f64).sqrt();
-        let hidden = [0, 1, 2, 3].map(|class| {
-            Layer::new(DMatrix::from_fn(units, basis.size(class), |_, _| (spread * normal(random)) as f32))
-        });
+        let mut hidden = [0, 1, 2, 3]
+            .map(|class| DMatrix::from_fn(units, basis.size(class), |_, _| (spread * normal(random)) as f32));
         let spread = 0.03 / (units as f64).sqrt();
-        let output = Layer::new(DMatrix::from_fn(units, 2, |_, _| (spread * normal(random)) as f32));
+        let mut output = DMatrix::from_fn(units, 2, |_, _| (spread * normal(random)) as f32);
+        let diagonal = basis.diagonal.clone();
+        if let Some(diagonal) = &diagonal {
+            // A sum of two is longer than either.
+            let shorter = std::f32::consts::FRAC_1_SQRT_2;
+            diagonal.add(&mut hidden);
+            twins::add_output(&mut output);
+            hidden.iter_mut().chain([&mut output]).for_each(|weights| *weights *= shorter);
+        }
         let zeros = || DMatrix::zeros(units, BATCH);
-        Self { hidden, output, images: [0, 1, 2, 3].map(|_| zeros()), odd: [zeros(), zeros()] }
+        let images = [0, 1, 2, 3].map(|_| zeros());
+        Self { hidden: hidden.map(Layer::new), output: Layer::new(output), images, odd: [zeros(), zeros()], diagonal }
     }
 
     /// The correction of each sample (rows) in a batch of whitened looks by class.
@@ -113,9 +136,22 @@ impl Learner {
         found
     }
 
-    /// One step of length `rate` towards the corrections `wanted`, a row for each sample of the batch.
-    fn descend(&mut self, batch: &[DMatrix<f32>; CLASSES], wanted: &DMatrix<f32>, rate: f32, step: usize) {
-        let errors = (self.correct(batch) - wanted) * (QUARTER / BATCH as f32);
+    /// One step, of a length and a number, towards the corrections `wanted`, a row for each sample of the batch. Errors
+    /// above `soft` count by their size.
+    fn descend(
+        &mut self,
+        batch: &[DMatrix<f32>; CLASSES],
+        wanted: &DMatrix<f32>,
+        soft: Option<f32>,
+        (rate, step): (f32, usize),
+    ) {
+        let mut errors = (self.correct(batch) - wanted) * (QUARTER / BATCH as f32);
+        if let Some(soft) = soft {
+            let soft = soft * (QUARTER / BATCH as f32);
+            for mut error in errors.row_iter_mut() {
+                error /= (1.0 + error.norm_squared() / (soft * soft)).sqrt();
+            }
+        }
         let mut slope = DMatrix::zeros(self.output.weights.nrows(), 2);
         for (axis, odd) in self.odd.iter().enumerate() {
             slope.column_mut(axis).gemv(1.0, odd, &errors.column(axis), 0.0);
@@ -136,8 +172,13 @@ impl Learner {
                 [*a, *b, *c, *d] = butterfly(slopes);
             }
         }
-        for ((slopes, layer), batch) in self.images.iter().zip(&mut self.hidden).zip(batch) {
-            layer.descend(&(slopes * batch.transpose()), rate, step);
+        let mut slopes = [0, 1, 2, 3].map(|class| &self.images[class] * batch[class].transpose());
+        if let Some(diagonal) = &self.diagonal {
+            diagonal.add(&mut slopes);
+            twins::add_output(&mut slope);
+        }
+        for (slopes, layer) in slopes.iter().zip(&mut self.hidden) {
+            layer.descend(slopes, rate, step);
         }
         self.output.descend(&slope, rate, step);
     }
@@ -146,37 +187,43 @@ impl Learner {
     fn correction(&self, basis: &Basis, half_window: [usize; 2]) -> Correction {
         let mut hidden = basis.weights(self.hidden.each_ref().map(|layer| &layer.weights));
         let mut output = self.output.weights.map(f64::from);
-        for (mut unit, mut output) in hidden.row_iter_mut().zip(output.row_iter_mut()) {
-            let sum: f64 = unit.iter().map(|weight| weight.abs()).sum();
-            let most = (LARGEST_SUM / sum).min(LARGEST_WEIGHT / unit.amax());
-            // A power of two; of a unit without weights none.
-            let factor = if most.is_finite() { most.log2().floor().exp2() } else { 1.0 };
-            unit *= factor;
-            output /= factor;
-        }
+        scaled_alike(&mut hidden, &mut output);
         let mut output = quantised(&output.transpose()).into_iter();
-        Correction {
-            half_window,
-            hidden: quantised(&hidden),
-            output: [0, 1].map(|_| output.next().unwrap_or_default()),
+        let output = [0, 1].map(|_| output.next().unwrap_or_default());
+        let mut correction = Correction { half_window, hidden: quantised(&hidden), output, doubt: None };
+        if self.diagonal.is_some() {
+            twins::tie(&mut correction);
         }
+        correction
+    }
+}
+
+/// Brings the hidden units (rows) to about the same sum of weights, at the cost of their weights in the output.
+pub(super) fn scaled_alike(hidden: &mut DMatrix<f64>, output: &mut DMatrix<f64>) {
+    for (mut unit, mut output) in hidden.row_iter_mut().zip(output.row_iter_mut()) {
+        let sum: f64 = unit.iter().map(|weight| weight.abs()).sum();
+        let most = (LARGEST_SUM / sum).min(LARGEST_WEIGHT / unit.amax());
+        // A power of two; of a unit without weights none.
+        let factor = if most.is_finite() { most.log2().floor().exp2() } else { 1.0 };
+        unit *= factor;
+        output /= factor;
     }
 }
 
 /// Weights with what the descent remembers of their gradients (Adam: Kingma and Ba, 2015).
-struct Layer {
-    weights: DMatrix<f32>,
+pub(super) struct Layer {
+    pub(super) weights: DMatrix<f32>,
     mean: DMatrix<f32>,
     square: DMatrix<f32>,
 }
 
 impl Layer {
-    fn new(weights: DMatrix<f32>) -> Self {
+    pub(super) fn new(weights: DMatrix<f32>) -> Self {
         let zero = DMatrix::zeros(weights.nrows(), weights.ncols());
         Self { weights, mean: zero.clone(), square: zero }
     }
 
-    fn descend(&mut self, gradient: &DMatrix<f32>, rate: f32, step: usize) {
+    pub(super) fn descend(&mut self, gradient: &DMatrix<f32>, rate: f32, step: usize) {
         const KEPT: [f32; 2] = [0.9, 0.999];
         let [mean_share, square_share] = KEPT.map(|kept| 1.0 - kept.powi(step as i32));
         let state = self.weights.iter_mut().zip(self.mean.iter_mut()).zip(self.square.iter_mut());
@@ -190,7 +237,7 @@ impl Layer {
 }
 
 /// Weights row by row in steps of `2^-WEIGHT_FRACTION`.
-fn quantised(weights: &DMatrix<f64>) -> Vec<Vec<i32>> {
+pub(super) fn quantised(weights: &DMatrix<f64>) -> Vec<Vec<i32>> {
     let limit = f64::from(WEIGHT_LIMIT);
     let steps = f64::from(1 << WEIGHT_FRACTION);
     let whole = |weight: &f64| (weight * steps).round().clamp(-limit, limit - 1.0) as i32;
@@ -200,7 +247,7 @@ fn quantised(weights: &DMatrix<f64>) -> Vec<Vec<i32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibrate::samples;
+    use crate::calibrate::samples::{self, Observer};
     use crate::design::Design;
     use crate::estimators::joint::{Network, NetworkScratch};
 
@@ -212,8 +259,9 @@ mod tests {
                    [algorithm]\nestimator = \"joint\"\n";
         let design = Design::from_toml(pad, "pad.toml").unwrap();
         let settings = Settings { contacts: 40, samples: BATCH, ..Settings::default() };
-        let samples = samples::make(&design, &settings, HALF_WINDOW, &mut |_| ()).unwrap();
-        let basis = Basis::new(&samples, HALF_WINDOW);
+        let mut observer = Observer::new(&design, HALF_WINDOW).unwrap();
+        let samples = samples::make(&mut observer, &settings, &mut |_| ()).unwrap();
+        let basis = Basis::new(&samples, HALF_WINDOW, false);
         let learner = Learner::new(&basis, units, &mut ChaCha8Rng::seed_from_u64(1));
         (samples, basis, learner)
     }
@@ -248,7 +296,7 @@ mod tests {
         let batch = batch(&samples, &basis);
         let wanted = DMatrix::from_fn(BATCH, 2, |sample, axis| 0.1 * ((sample + axis) % 5) as f32 - 0.2);
         // A step of length 0 leaves the weights and keeps a tenth of the slopes; layer 4 is the output.
-        learner.descend(&batch, &wanted, 0.0, 1);
+        learner.descend(&batch, &wanted, None, (0.0, 1));
         for (layer, at) in [(0, (0, 0)), (0, (4, 3)), (1, (2, 1)), (2, (3, 2)), (3, (1, 0)), (4, (0, 0)), (4, (3, 1))] {
             let mut loss = |by: f32| {
                 let weight = |learner: &mut Learner| match layer {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use golden::calibrate::{Settings, calibrate};
 use golden::choose::rebase_scenes;
-use golden::design::{Design, Filter, is_name};
+use golden::design::{Design, Family, Filter, is_name};
 use golden::output::write_together;
 use indicatif::ProgressBar;
 use serde::Serialize;
@@ -16,22 +16,39 @@ use super::{Resolved, folder};
 struct Report<'a> {
     design: &'a str,
     resolved: &'a Path,
+    family: Family,
     gain: f64,
     tangential: [f64; 2],
     half_window: Option<[usize; 2]>,
     weights: usize,
 }
 
+/// What the command's options say of the work.
+#[derive(Clone, Copy, Debug)]
+pub struct Work {
+    pub seed: u64,
+    pub hidden: Option<usize>,
+    pub quick: bool,
+}
+
 /// Calibrates the design in `path` and writes the resolved design to `out`.
-pub fn run(path: &Path, out: &Path, settings: &Settings, json: bool) -> Result<(), Box<dyn Error>> {
+///
+/// A family of contacts takes the place of the one that the design names.
+pub fn run(path: &Path, out: &Path, family: Option<Family>, work: Work, json: bool) -> Result<(), Box<dyn Error>> {
     let mut design = Design::load_unfitted(path)?;
     if let Some(name) = name_of(out) {
         design.name = name;
     }
+    if let Some(family) = family {
+        design.algorithm.joint.family = family;
+    }
+    let family = design.algorithm.joint.family;
+    let settings = Settings::of(family, work.quick);
+    let settings = Settings { seed: work.seed, hidden: work.hidden.unwrap_or(settings.hidden), ..settings };
     let resolved = Resolved::new(&design, path, out)?;
     // Draws on a terminal only.
-    let progress = ProgressBar::new((settings.contacts + settings.samples + settings.steps) as u64);
-    let found = calibrate(&design, settings, &mut |_| progress.inc(1));
+    let progress = ProgressBar::new(settings.work(family) as u64);
+    let found = calibrate(&design, &settings, &mut |_| progress.inc(1));
     progress.finish_and_clear();
     *design.algorithm.joint = found?;
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
@@ -46,6 +63,7 @@ pub fn run(path: &Path, out: &Path, settings: &Settings, json: bool) -> Result<(
     let report = Report {
         design: &design.name,
         resolved: out,
+        family: constants.family,
         gain: constants.gain,
         tangential: constants.tangential,
         half_window: correction.map(|correction| correction.half_window),
@@ -55,6 +73,7 @@ pub fn run(path: &Path, out: &Path, settings: &Settings, json: bool) -> Result<(
         say!("{}", serde_json::to_string_pretty(&report)?);
     } else {
         say!("{}: calibrated design in {}", report.design, out.display());
+        say!("  family      {}", report.family);
         say!("  gain        {:.4}", report.gain);
         say!("  tangential  {:.4} mu + {:.4} mu |mu|^2", report.tangential[0], report.tangential[1]);
         if let Some([x, y]) = report.half_window {

@@ -7,7 +7,9 @@ use serde::Deserialize;
 use super::checks::Check;
 use super::files::{Beside, sha256};
 use super::{DesignError, Kernel, Regularisation, Sensor, Tension};
-use crate::estimators::joint::{CUBIC_LIMIT, Correction, Grid, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT};
+use crate::estimators::joint::{
+    CUBIC_LIMIT, Correction, DEFAULT_DOUBT, Family, Grid, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT,
+};
 
 /// What the constants depend on, for people and for comparison.
 pub fn conditions(
@@ -30,6 +32,7 @@ pub(super) struct RawCorrection {
     half_window: Vec<i64>,
     pub(super) file: Option<String>,
     sha256: Option<String>,
+    error_base: Option<i64>,
     hidden: Option<Vec<Vec<i64>>>,
     output: Option<Vec<Vec<i64>>>,
 }
@@ -37,6 +40,8 @@ pub(super) struct RawCorrection {
 /// The constants as a file has them, without the correction.
 pub(super) struct Raw<'a> {
     pub grid: Grid,
+    pub family: Family,
+    pub doubt: Option<f64>,
     pub gain: Option<f64>,
     pub tangential: Option<&'a [f64]>,
     pub fitted_to: Option<String>,
@@ -70,7 +75,9 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
         check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
         check.real("algorithm.tangential[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
     ];
-    Ok(JointConstants { grid: raw.grid, gain, tangential, correction: None, fitted_to: raw.fitted_to })
+    let doubt = check.real("algorithm.doubt", raw.doubt.unwrap_or(DEFAULT_DOUBT), 0.001, 3.9, "")?;
+    let Raw { grid, family, fitted_to, .. } = raw;
+    Ok(JointConstants { grid, family, gain, tangential, correction: None, doubt, fitted_to })
 }
 
 /// A name for the calibrated design beside the one at `origin`.
@@ -81,8 +88,12 @@ fn resolved_name(origin: &str) -> PathBuf {
 }
 
 /// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
-pub(super) fn refuse(check: &Check, given: [bool; 5]) -> Result<(), DesignError> {
-    match ["grid", "gain", "tangential", "correction", "fitted_to"].into_iter().zip(given).find(|(_, given)| *given) {
+pub(super) fn refuse(check: &Check, given: [bool; 7]) -> Result<(), DesignError> {
+    match ["grid", "family", "doubt", "gain", "tangential", "correction", "fitted_to"]
+        .into_iter()
+        .zip(given)
+        .find(|(_, given)| *given)
+    {
         Some((key, _)) => Err(check.value(
             &format!("algorithm.{key}"),
             "belongs to the joint estimator".to_owned(),
@@ -112,7 +123,14 @@ pub(super) fn correction(
         [half("half_window[0]", x, sensor.columns)? as usize, half("half_window[1]", y, sensor.rows)? as usize];
     let refuse = |name: &str, problem: &str, remedy: String| Err(check.value(&key(name), problem.to_owned(), remedy));
     match (raw.file, raw.sha256, raw.hidden, raw.output) {
-        (Some(file), Some(hash), None, None) => from_file(check, &file, &hash, half_window, beside),
+        (Some(file), Some(hash), None, None) => {
+            let limit = i64::from(WEIGHT_LIMIT);
+            let base = raw.error_base.map(|base| check.integer(&key("error_base"), base, -limit, limit - 1));
+            from_file(check, (&file, &hash), half_window, base.transpose()?.map(|base| base as i32), beside)
+        }
+        (None, ..) if raw.error_base.is_some() => {
+            refuse("error_base", "is given without a file", "add the key file, or remove it".to_owned())
+        }
         (None, None, Some(hidden), Some(output)) => from_table(check, half_window, &hidden, &output),
         (Some(file), None, None, None) => {
             refuse("sha256", "is missing", format!("write what `sha256sum {file}` prints"))
@@ -130,9 +148,9 @@ pub(super) fn correction(
 /// The weights of a file, which must be those that the design was written with.
 fn from_file(
     check: &Check,
-    file: &str,
-    hash: &str,
+    (file, hash): (&str, &str),
     half_window: [usize; 2],
+    error_base: Option<i32>,
     beside: Beside<'_>,
 ) -> Result<Correction, DesignError> {
     let path = beside.path(file);
@@ -146,7 +164,7 @@ fn from_file(
         let problem = format!("is {shown:?}, but {} has {found}: it holds other weights", path.display());
         return Err(check.value(&key("sha256"), problem, RESTORE.to_owned()));
     }
-    Correction::read_csv(&text, half_window).map_err(|error| DesignError::Table {
+    Correction::read_csv(&text, half_window, error_base).map_err(|error| DesignError::Table {
         path,
         line: error.line,
         problem: error.problem,
@@ -180,7 +198,7 @@ fn from_table(
     let [along_x, along_y] = two(check, &key("output"), output, "for x and y")?;
     let output =
         [row("output[0]".to_owned(), &along_x, hidden.len())?, row("output[1]".to_owned(), &along_y, hidden.len())?];
-    Ok(Correction { half_window, hidden, output })
+    Ok(Correction { half_window, hidden, output, doubt: None })
 }
 
 /// Two values, where a TOML reader would drop a third without a word.
@@ -193,15 +211,20 @@ fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<
 
 /// The keys of `[algorithm]`, and the table that follows all of them, with the weights in the file named `weights`.
 pub(super) fn print(constants: &JointConstants, weights: &str) -> [String; 2] {
-    let JointConstants { grid, gain, tangential: [c1, c3], correction, fitted_to } = constants;
+    let JointConstants { grid, family, gain, tangential: [c1, c3], correction, doubt, fitted_to } = constants;
+    let told = correction.as_ref().and_then(|correction| correction.doubt.as_ref());
+    let unusual = doubt.to_bits() != DEFAULT_DOUBT.to_bits();
+    let doubt = if told.is_some() || unusual { format!("doubt = {doubt:?}\n") } else { String::new() };
     // Only where it is another one: a design without it keeps the hash that it had before there was such a key.
     let grid = if *grid == Grid::FINE { String::new() } else { format!("grid = {}\n", grid.side()) };
+    let family = if *family == Family::Narrow { String::new() } else { format!("family = \"{family}\"\n") };
     let fitted_to = fitted_to.as_ref().map_or_else(String::new, |conditions| format!("fitted_to = {conditions:?}\n"));
-    let keys = format!("{grid}{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
+    let keys = format!("{grid}{family}{doubt}{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
     let table = correction.as_ref().map_or_else(String::new, |correction| {
         let ([x, y], hash) = (correction.half_window, sha256(&correction.to_csv()));
         let file = toml::Value::from(weights);
-        format!("\n[algorithm.correction]\nhalf_window = [{x}, {y}]\nfile = {file}\nsha256 = \"{hash}\"\n")
+        let base = told.map_or_else(String::new, |doubt| format!("error_base = {}\n", doubt.base));
+        format!("\n[algorithm.correction]\nhalf_window = [{x}, {y}]\nfile = {file}\nsha256 = \"{hash}\"\n{base}")
     });
     [keys, table]
 }

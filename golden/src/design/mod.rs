@@ -21,7 +21,7 @@ mod regularisation;
 use std::path::{Path, PathBuf};
 
 pub use crate::estimators::Estimator;
-pub use crate::estimators::joint::{Correction, Grid, JointConstants};
+pub use crate::estimators::joint::{Correction, Doubt, Family, Grid, JointConstants};
 pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
 pub use algorithm::{Algorithm, Outputs, PlanKind, Slip};

@@ -66,6 +66,8 @@ struct RawAlgorithm {
     filter: Option<RawFilter>,
     estimator: Option<String>,
     grid: Option<i64>,
+    family: Option<String>,
+    doubt: Option<f64>,
     gain: Option<f64>,
     tangential: Option<Vec<f64>>,
     correction: Option<RawCorrection>,
@@ -210,14 +212,18 @@ fn algorithm(
         check.optional_word("algorithm.estimator", raw.estimator.as_deref())?.unwrap_or_default();
     let joint = if estimator == Estimator::Joint {
         let grid = joint::grid(check, raw.grid)?;
+        let family = check.optional_word("algorithm.family", raw.family.as_deref())?.unwrap_or_default();
         let conditions = joint::conditions(sensor, tension, kernel, regularisation, grid);
         let (gain, tangential, fitted_to) = (raw.gain, raw.tangential.as_deref(), raw.fitted_to);
-        let constants = joint::Raw { grid, gain, tangential, fitted_to };
+        let constants = joint::Raw { grid, family, doubt: raw.doubt, gain, tangential, fitted_to };
         joint::constants(check, constants, &conditions)?
     } else {
         let [gain, tangential] = [raw.gain.is_some(), raw.tangential.is_some()];
         let [correction, fitted_to] = [raw.correction.is_some(), raw.fitted_to.is_some()];
-        joint::refuse(check, [raw.grid.is_some(), gain, tangential, correction, fitted_to])?;
+        joint::refuse(
+            check,
+            [raw.grid.is_some(), raw.family.is_some(), raw.doubt.is_some(), gain, tangential, correction, fitted_to],
+        )?;
         JointConstants::default()
     };
     let outputs: Outputs = check.optional_word("algorithm.outputs", raw.outputs.as_deref())?.unwrap_or_default();

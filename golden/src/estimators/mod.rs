@@ -11,11 +11,10 @@ mod seen;
 use serde::{Deserialize, Serialize};
 
 use crate::sensor::Sensor;
-use crate::status::Status;
 use crate::words::print_as_words;
 use joint::{Joint, JointConstants, JointScratch};
 use line::LineScratch;
-pub(crate) use seen::Seen;
+pub(crate) use seen::{Answer, Seen};
 pub use seen::{Contact, RANGE};
 
 /// How the friction components are found once the optimisation problem is set up.
@@ -74,10 +73,13 @@ impl Friction {
         }
     }
 
-    /// Finds the components `[mu_x, mu_y]`, and the status bits to raise.
-    pub(crate) fn find(&self, seen: &Seen, scratch: &mut FrictionScratch) -> (Status, [f64; 2]) {
+    /// Finds the components `[mu_x, mu_y]`, their error, and the status bits to raise.
+    pub(crate) fn find(&self, seen: &Seen, scratch: &mut FrictionScratch) -> Answer {
         match self {
-            Self::Line => line::friction(&seen.contact, seen.sums, seen.u, line::LEVEL, &mut scratch.line),
+            Self::Line => {
+                let (status, mu) = line::friction(&seen.contact, seen.sums, seen.u, line::LEVEL, &mut scratch.line);
+                Answer { status, mu, error: 0.0 }
+            }
             Self::Joint(joint) => joint.find(seen, &mut scratch.joint),
         }
     }

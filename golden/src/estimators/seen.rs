@@ -1,6 +1,7 @@
 //! What every estimator sees of a frame, and the range of what it finds.
 
 use crate::products::ByPq;
+use crate::status::Status;
 
 /// A friction component found is within this on either side of 0.
 pub const RANGE: f64 = 2.0;
@@ -15,6 +16,17 @@ pub struct Contact {
     /// Centroid of the compressed taxels minus that of the taxels in tension, in metres; its direction is the
     /// direction of push. `None` where no taxel reaches the noise floor on one of the two sides.
     pub direction: Option<[f64; 2]>,
+}
+
+/// What an estimator finds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Answer {
+    /// Bits to raise.
+    pub(crate) status: Status,
+    /// Friction components.
+    pub(crate) mu: [f64; 2],
+    /// Standard error of `(F_x, F_y)` over `|F_z|`; 0 where the estimator has none.
+    pub(crate) error: f64,
 }
 
 /// What an estimator sees of a frame; either plan has all of it.

@@ -7,9 +7,6 @@ use super::traction::{FINE, Points, loads};
 use super::{Contact, Medium, Scene};
 use crate::sensor::Sensor;
 
-/// Points along each side of a taxel that averages.
-const ACROSS: usize = 3;
-
 /// What stays the same from contact to contact: the medium, and where the taxels are.
 pub(crate) struct Field {
     load: Arc<PointLoad>,
@@ -32,7 +29,7 @@ impl Field {
         let within = match taxel_m {
             None => vec![([0.0, 0.0], 1.0)],
             Some([a, b]) => {
-                let (nodes, weights) = gauss_legendre(ACROSS);
+                let (nodes, weights) = gauss_legendre(points.across);
                 let axis = || nodes.iter().zip(&weights);
                 axis()
                     .flat_map(|(y, wy)| axis().map(move |(x, wx)| ([0.5 * a * x, 0.5 * b * y], 0.25 * wx * wy)))
@@ -78,10 +75,37 @@ impl Field {
         }
         exerted
     }
+
+    /// The stress of a contact in its own direction in two parts, which add up: pressed alone, and what a friction of 1
+    /// adds; and the force `[F_x, F_y]` of a friction of 1. All three grow with the friction as it does.
+    pub(crate) fn parts(&self, contact: &Contact) -> ([Vec<f64>; 2], [f64; 2]) {
+        let Contact { shape, centre_m, normal_force_n, traction, direction_deg, .. } = contact;
+        let loads = loads(*shape, traction, *normal_force_n, 1.0, direction_deg.to_radians(), self.points);
+        let scale = 1.0 / self.depth_m;
+        let mut parts = [0, 1].map(|_| Vec::with_capacity(self.places.len() / self.per_taxel));
+        for places in self.places.chunks(self.per_taxel) {
+            let mut sums = [0.0; 2];
+            for ([x, y], weight) in places {
+                let (x, y) = (x - centre_m[0], y - centre_m[1]);
+                let mut values = [0.0; 2];
+                for load in &loads {
+                    let [dx, dy] = [(x - load.place[0]) * scale, (y - load.place[1]) * scale];
+                    let [normal, shear] = self.load.at(dx * dx + dy * dy);
+                    values[0] += load.force[0] * normal;
+                    values[1] += (load.force[1] * dx + load.force[2] * dy) * shear;
+                }
+                sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value * scale * scale);
+            }
+            parts.iter_mut().zip(sums).for_each(|(part, sum)| part.push(sum));
+        }
+        let push = loads.iter().fold([0.0; 2], |[x, y], load| [x + load.force[1], y + load.force[2]]);
+        (parts, push)
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::traction::COARSE;
     use super::super::{Shape, Shear, Traction, spectral};
     use super::*;
 
@@ -132,7 +156,7 @@ mod tests {
 
     #[test]
     fn finer_rules_change_nothing() {
-        let finer = Points { radial: 40, around: 96 };
+        let finer = Points { radial: 40, around: 96, ..FINE };
         let [field, fine] = [FINE, finer].map(|points| Field::new(&sensor(), LAYER, None, points));
         for traction in [
             Traction { tilt: [0.6, 0.3], turn_deg: 30.0, ..Traction::default() },
@@ -143,6 +167,28 @@ mod tests {
             let contact = contact(Shape::Hertz { semi_axes_m: [7e-3, 4e-3] }, traction);
             let error = difference(&stress(&fine, &contact, 40.0), &stress(&field, &contact, 40.0));
             assert!(error < 5e-5, "{traction:?}: {error:e}");
+        }
+    }
+
+    #[test]
+    fn the_coarse_parts_of_a_contact_add_up_to_its_stress() {
+        let taxel = Some([3.2e-3, 1.6e-3]);
+        let [coarse, fine] = [COARSE, FINE].map(|points| Field::new(&sensor(), LAYER, taxel, points));
+        for traction in [
+            Traction { tilt: [0.5, 0.3], turn_deg: 30.0, ..Traction::default() },
+            Traction { shear: Shear::Held { share: 0.5 }, ..Traction::default() },
+            Traction { shear: Shear::Sliding { spin: 1.0 }, edge: Some(-0.4), ..Traction::default() },
+            Traction { shear: Shear::Even, edge: Some(2.0), ..Traction::default() },
+        ] {
+            let direction_deg = 40.0;
+            let contact = Contact { direction_deg, ..contact(Shape::Hertz { semi_axes_m: [7e-3, 4.5e-3] }, traction) };
+            let ([normal, tangential], [x, y]) = coarse.parts(&contact);
+            let parts: Vec<f64> = normal.iter().zip(&tangential).map(|(n, t)| n + 0.5 * t).collect();
+            let mut whole = vec![0.0; 100];
+            let [force, _] = fine.add(&contact, direction_deg, &mut whole);
+            let error = difference(&whole, &parts);
+            assert!(error < 4e-3, "{traction:?}: {error:e}");
+            assert!((0.5 * x - force[0]).abs() < 1e-3 && (0.5 * y - force[1]).abs() < 1e-3, "{traction:?}");
         }
     }
 

@@ -23,8 +23,9 @@ pub use traction::{Shear, Traction};
 pub use transfer::Medium;
 
 use crate::design::{DesignError, Sensor};
-use field::Field;
+pub(crate) use field::Field;
 use spectral::UnitResponses;
+pub(crate) use traction::COARSE;
 
 /// What is wrong with a scene.
 #[derive(Debug, thiserror::Error)]

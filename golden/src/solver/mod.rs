@@ -20,7 +20,7 @@ pub use workspace::Workspace;
 use std::sync::{Arc, OnceLock};
 
 use crate::design::{Design, Outputs, PlanKind, Slip};
-use crate::estimators::{Friction, FrictionScratch, Seen};
+use crate::estimators::{Answer, Friction, FrictionScratch, Seen};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
 use crate::parity::CLASSES;
@@ -116,13 +116,13 @@ impl Solution {
 
     /// Multiplies all forces by a gain.
     fn scale(&mut self, gain: f64) {
-        let resultants = self.resultant.iter_mut().chain(&mut self.torque);
+        let resultants = self.resultant.iter_mut().chain(&mut self.torque).chain([&mut self.standard_error]);
         self.field.iter_mut().flatten().chain(resultants).for_each(|force| *force *= gain);
     }
 
     /// Finds the friction components, and puts them and what follows from them in place.
     fn optimum(&mut self, friction: &Friction, seen: &Seen, scratch: &mut FrictionScratch) -> [f64; 2] {
-        let (status, mu) = friction.find(seen, scratch);
+        let Answer { status, mu, error } = friction.find(seen, scratch);
         self.status.insert(status);
         if !status.contains(Status::DIRECTION_UNKNOWN) && mu[0].abs() + mu[1].abs() < PULLING {
             self.status.remove(Status::NO_TENSION);
@@ -131,6 +131,7 @@ impl Solution {
         let resultant = [fx, fy, fz];
         [self.mu_x, self.mu_y] = mu;
         (self.resultant, self.torque, self.bodies) = (resultant, [tx, ty, tz], 1);
+        self.standard_error = error * fz.abs();
         (self.mu, self.phi) = (op::quotient(resultant), fy.atan2(fx));
         mu
     }

@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use golden::design::{Correction, Design, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind};
+use golden::design::{Correction, Design, Doubt, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind};
 use golden::estimators::line;
 use golden::solver::{Solution, Solver, Status, co, op, we};
 use nalgebra::DVector;
@@ -91,7 +91,8 @@ fn assert_close(one: &Solution, other: &Solution) {
 fn constants() -> JointConstants {
     let hidden = vec![vec![700, -300, 500, 90, -40, 310, -820, 60, 75, 210, -190, 33, 480, 120]; 2];
     let output = [vec![400, -150], vec![90, 260]];
-    let correction = Correction { half_window: [1, 1], hidden, output };
+    let doubt = Some(Doubt { base: -9000, output: vec![300; hidden.len()] });
+    let correction = Correction { half_window: [1, 1], hidden, output, doubt };
     JointConstants { gain: 1.25, tangential: [0.9, -0.1], correction: Some(correction), ..JointConstants::default() }
 }
 

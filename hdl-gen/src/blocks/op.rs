@@ -21,6 +21,10 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("SUM_LSB", plan.formats.g.lsb.into())
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into());
+    let parameters = match plan.thresholds.doubt {
+        Some(limit) => parameters.flag("DOUBT", true).wide("DOUBT_LIMIT", 18, limit),
+        None => parameters,
+    };
     let words = plan.streams().words();
     let parameters = if words > 1 {
         parameters.count("WORDS", words).cycles("FIELD_STAGES", field::stages(plan))

@@ -1,6 +1,8 @@
 //! What every estimator tells the rest of the generator, and what it is given.
 
 use golden::design::Design;
+#[cfg(doc)]
+use golden::estimators::joint::DOUBT_FRACTION;
 use golden::products::ByPq;
 use golden::sensor::Sensor;
 use serde_json::Value;
@@ -73,6 +75,9 @@ pub struct Found {
     pub at_bound: bool,
     /// An intermediate value was clipped.
     pub saturated: bool,
+    /// Logarithm of base 2 of the error of `(F_x, F_y)` over `|F_z|`, [`DOUBT_FRACTION`] fraction bits, for estimators
+    /// that tell it.
+    pub error_log: i64,
 }
 
 /// The cells that hold a frame's `u_q` for the search.

@@ -42,6 +42,8 @@ pub const SATURATED: u32 = Status::SATURATED.0;
 pub const NOT_FINITE: u32 = Status::NOT_FINITE.0;
 /// Early or late TLAST.
 pub const BAD_LENGTH: u32 = Status::FRAME_LENGTH.0;
+/// The error is above the design's limit.
+pub const DOUBTFUL: u32 = Status::DOUBTFUL.0;
 /// A dead taxel was replaced.
 pub const REPLACED: u32 = Status::REPLACED.0;
 /// Too much of the stress is in replaced taxels.
@@ -275,6 +277,13 @@ fn scalars(
     put(words::MU, &[summary.friction_quotient as i64], summary.friction_exponent);
     put(words::MU + 1, &[i64::from(summary.angle)], angle_exponent);
     put(words::MU_XY, &summary.friction, -friction);
+    if let Some(limit) = plan.thresholds.doubt {
+        let (error, exponent) = summary.standard_error(found.error_log);
+        put(words::STANDARD_ERROR, &[error], plan.formats.g.lsb - friction + exponent);
+        if found.error_log > limit {
+            answer[words::STATUS] |= DOUBTFUL;
+        }
+    }
     // One body, and taxels whose readings others replace.
     answer[words::CENSUS] = 1 | plan.dead.as_ref().map_or(0, |dead| (dead.taxels.len() as u32) << 16);
     (answer, summary)

@@ -2,6 +2,7 @@
 
 use crate::cores::{cordic, divider};
 use crate::plan::format::FRICTION_FRACTION;
+use golden::estimators::joint::DOUBT_FRACTION;
 use golden::products::ByPq;
 
 /// Fraction bits of the CORDIC's inverse gain.
@@ -55,6 +56,17 @@ impl Summary {
 }
 
 impl Summary {
+    /// The standard error of `(F_x, F_y)` as a number of steps of the forces times `2^exponent`, from its logarithm of base 2
+    /// over `|F_z|`; `2^(n + f)` is taken as `2^n (1 + f)`.
+    pub fn standard_error(&self, log: i64) -> (i64, i32) {
+        let normal = self.forces[2].unsigned_abs();
+        let normal_bits = bits(normal);
+        let unit = if normal == 0 { 0 } else { (u128::from(normal) << (64 - normal_bits)) >> 32 } as i64;
+        let factor = (1 << DOUBT_FRACTION) + (log & ((1 << DOUBT_FRACTION) - 1));
+        let error = (unit >> 6) * (factor << (FRICTION_FRACTION - DOUBT_FRACTION));
+        (error, normal_bits as i32 - 42 + (log >> DOUBT_FRACTION) as i32)
+    }
+
     /// The friction coefficient with [`FRICTION_FRACTION`] fraction bits, rounded down; one far too large is all ones.
     pub fn friction_coefficient(&self) -> i64 {
         let down = -(self.friction_exponent + FRICTION_FRACTION as i32);

@@ -30,6 +30,8 @@ pub mod vector_formats;
 pub mod words;
 
 use golden::design::{Design, Outputs, PlanKind};
+#[cfg(doc)]
+use golden::estimators::joint::DOUBT_FRACTION;
 use golden::matrices::MatrixName;
 use golden::parity::{CLASSES, Quads};
 use serde::Serialize;
@@ -59,6 +61,10 @@ pub struct Thresholds {
     /// [`format::FRICTION_FRACTION`] fraction bits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slip: Option<[i64; 2]>,
+    /// A frame whose error over `|F_z|` is larger is doubtful: a logarithm of base 2 with [`DOUBT_FRACTION`] fraction bits,
+    /// where the estimator tells its error.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<i64>,
 }
 
 /// Number of entries per filtered matrix.

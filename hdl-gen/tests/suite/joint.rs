@@ -1,6 +1,6 @@
 //! The joint estimator's plan: formats that no frame can leave, ROMs that hold what the plan says.
 
-use golden::design::{Correction, Design, Estimator};
+use golden::design::{Correction, Design, Doubt, Estimator};
 use hdl_gen::emit::emit;
 use hdl_gen::estimators::joint::{CORRECTION_LIMIT, INPUT_BITS, NetworkPlan, POINT_BITS, STRESS_BITS, UNIT_BITS};
 use hdl_gen::model::{Model, SATURATED};
@@ -10,7 +10,7 @@ use super::support::{design_text, plan};
 
 const FRICTION_STEP: f32 = 1.0 / 65_536.0;
 
-/// A design with a correction of one weight all over, of either sign in turn if it alternates.
+/// A design with a correction of one weight all over, of either sign in turn if it alternates; then it knows its error, too.
 fn with_weights(half_window: [usize; 2], units: usize, hidden: i32, output: i32, alternating: bool) -> Plan {
     let text = design_text("pad", [10, 10], [4.0, 2.0], 3.0, "");
     let mut design = Design::from_toml(&text, "test.toml").unwrap();
@@ -19,8 +19,12 @@ fn with_weights(half_window: [usize; 2], units: usize, hidden: i32, output: i32,
     let sign = |index: usize| if alternating && index % 2 == 1 { -1 } else { 1 };
     let row = |shift: usize| (0..inputs).map(|index| sign(index + shift) * hidden).collect();
     let readout = |shift: usize| (0..units).map(|index| sign(index + shift) * output).collect();
-    design.algorithm.joint.correction =
-        Some(Correction { half_window, hidden: (0..units).map(row).collect(), output: [readout(0), readout(1)] });
+    design.algorithm.joint.correction = Some(Correction {
+        half_window,
+        hidden: (0..units).map(row).collect(),
+        output: [readout(0), readout(1)],
+        doubt: alternating.then(|| Doubt { base: -9000, output: readout(0) }),
+    });
     Plan::new(&design).unwrap()
 }
 
@@ -57,6 +61,10 @@ fn no_sum_of_the_network_can_overflow() {
             }
             let total: i64 = network.readout.iter().map(|weights| i64::from(weights[0].abs())).sum();
             assert!(total << (UNIT_BITS) < 1 << 47, "the output fits the accumulator");
+            if let Some(doubt) = &network.doubt {
+                let total: i64 = doubt.readout.iter().map(|weight| i64::from(weight.abs())).sum();
+                assert!(total << (UNIT_BITS) < 1 << 47, "the sum of the error fits the accumulator");
+            }
             // The worst look: every value of the window at its limit, with the signs of the weights.
             let inputs = Correction::inputs(half_window) as i64;
             let unit = i128::from(inputs * i64::from(hidden.abs())) << (STRESS_BITS - 1);
@@ -129,6 +137,45 @@ fn the_correction_is_bounded_and_says_when_it_saw_too_much() {
     assert_eq!(with[0] & SATURATED, 0);
 }
 
+/// A square with hidden units in pairs, each of which sees what the other would see of the transposed frame, answers to
+/// a transposed frame with the transposed forces, to the last bit.
+#[test]
+fn a_square_is_symmetric_about_its_diagonal() {
+    const HALF: usize = 3;
+    const WIDTH: usize = 2 * HALF + 1;
+    let text = design_text("pad", [10, 10], [4.0, 4.0], 3.0, "");
+    let mut design = Design::from_toml(&text, "test.toml").unwrap();
+    design.algorithm.estimator = Estimator::Joint;
+    let inputs = Correction::inputs([HALF; 2]);
+    let unit = |seed: usize| -> Vec<i32> {
+        (0..inputs).map(|index| ((index * index * 31 + index * seed * 17) % 2003) as i32 - 1001).collect()
+    };
+    let transposed = |row: &[i32]| -> Vec<i32> {
+        let window = (0..WIDTH * WIDTH).map(|place| row[place % WIDTH * WIDTH + place / WIDTH]);
+        window.chain([1, 0, 3, 2, 4].map(|extra| row[WIDTH * WIDTH + extra])).collect()
+    };
+    let hidden: Vec<Vec<i32>> = (1..4).flat_map(|seed| [unit(seed), transposed(&unit(seed))]).collect();
+    let output = [vec![300, -500, 90, 20, -700, 40], vec![-500, 300, 20, 90, 40, -700]];
+    let doubt = Some(Doubt { base: -16_000, output: vec![150, 150, -80, -80, 60, 60] });
+    design.algorithm.joint.correction = Some(Correction { half_window: [HALF; 2], hidden, output, doubt });
+    let plan = Plan::new(&design).unwrap();
+    for shift in 0..5 {
+        let frame: Vec<f32> = (0..100)
+            .map(|taxel| {
+                let [x, y] = [taxel % 10, taxel / 10].map(|at| (at as f32 - 3.1 - 0.3 * shift as f32) / 2.0);
+                -2e4 * (1.0 + 0.5 * x - 0.2 * y) * (-x * x - 1.5 * y * y).exp() + 40.0 * (taxel as f32).sin()
+            })
+            .collect();
+        let other: Vec<f32> = (0..100).map(|taxel| frame[taxel % 10 * 10 + taxel / 10]).collect();
+        let [one, other] = [frame, other]
+            .map(|frame| Model::new(&plan).process(&frame.iter().map(|stress| stress.to_bits()).collect::<Vec<u32>>()));
+        for (word, of_other) in [(0, 0), (2, 3), (3, 2), (4, 4), (8, 8), (10, 11), (11, 10), (12, 12)] {
+            assert_eq!(one[word], other[of_other], "word {word}");
+        }
+        assert!(f32::from_bits(one[12]) > 0.0);
+    }
+}
+
 #[test]
 fn the_roms_hold_the_weights() {
     let plan = with_weights([1, 2], 6, 1234, -77, true);
@@ -160,6 +207,8 @@ fn the_roms_hold_the_weights() {
     for (index, line) in readout.iter().enumerate() {
         let wanted = network.readout.get(index).copied().unwrap_or_default();
         assert_eq!([weight(line, 0), weight(line, 1)], wanted);
+        let doubt = network.doubt.as_ref().and_then(|doubt| doubt.readout.get(index)).copied();
+        assert_eq!(weight(line, 2), doubt.unwrap_or_default());
     }
     assert!(files.contains_key("rtl/sptfra_plane.v") && !files.contains_key("rtl/sptfra_line.v"));
     let metadata: serde_json::Value = serde_json::from_slice(&files["metadata.json"]).unwrap();

@@ -9,7 +9,7 @@ use golden::design::{Design, Outputs};
 use golden::metrics::Outcome;
 use golden::scene::{Medium, Shape};
 use golden::solver::Solver;
-use hdl_gen::model::{AT_BOUND, DIRECTION_UNKNOWN, NO_CONTACT, SATURATED};
+use hdl_gen::model::{AT_BOUND, DIRECTION_UNKNOWN, DOUBTFUL, NO_CONTACT, SATURATED};
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -60,6 +60,7 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         (shipped("sensor1-joint"), "sensor1-reduced"),
         (shipped("sensor2-joint"), "sensor2-reduced"),
         (shipped("sensor1-fast"), "sensor1-reduced"),
+        (shipped("sensor2-wide"), "sensor2-reduced"),
         // Sixteen hidden units at a time.
         (with_lanes(shipped("sensor1-fast"), 64), "sensor1-reduced-64"),
         (uncorrected(shipped("sensor1-fast")), "sensor1-reduced"),
@@ -101,9 +102,9 @@ fn seeded(design: &Design) -> Vec<Truth> {
 
 #[test]
 fn the_model_is_close_to_the_solver() {
-    let fast = [shipped("sensor1-fast")];
+    let more = ["sensor1-fast", "sensor2-wide"].map(shipped);
     let all: Vec<Design> =
-        designs().into_iter().chain(fast).flat_map(|design| [uncorrected(design.clone()), design]).collect();
+        designs().into_iter().chain(more).flat_map(|design| [uncorrected(design.clone()), design]).collect();
     let lines = in_parallel(&all, |design| {
         let (plan, solver) = (planned(design), Solver::new(design).expect("a solver"));
         let packets: Vec<Vec<u32>> = seeded(design).iter().map(|truth| encode(&truth.frame)).collect();
@@ -111,7 +112,13 @@ fn the_model_is_close_to_the_solver() {
         for (index, (packet, words)) in packets.iter().zip(model_answers(&plan, &packets)).enumerate() {
             let solution = solver.solve(&as_received(packet)).expect("a frame of the right length");
             let answer = decode(&words).expect("a whole frame");
-            assert_eq!(answer.status, solution.status.0, "{}, frame {index}: status", design.name);
+            // Right at the limit of doubt a digit decides.
+            let limit = design.algorithm.joint.doubt * solution.resultant[2].abs();
+            let undecided = (solution.standard_error - limit).abs() < 0.02 * limit;
+            let doubt = if undecided { DOUBTFUL } else { 0 };
+            assert_eq!(answer.status | doubt, solution.status.0 | doubt, "{}, frame {index}: status", design.name);
+            let apart = (answer.standard_error - solution.standard_error).abs();
+            assert!(apart <= 0.02 * solution.standard_error, "{}, frame {index}: {apart} N", design.name);
             let [x, y] = answer.mu_xy;
             friction = friction.max((x - solution.mu_x).abs()).max((y - solution.mu_y).abs());
             let error = SolverError::new(&[answer], &[solution]);

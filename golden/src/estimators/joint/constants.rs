@@ -1,6 +1,10 @@
 //! What `golden calibrate` finds for the joint estimator.
 
+use serde::{Deserialize, Serialize};
+
+use super::doubt::Doubt;
 use super::grid::Grid;
+use crate::words::print_as_words;
 
 /// Weights of a correction are whole numbers of `2^-WEIGHT_FRACTION`.
 pub const WEIGHT_FRACTION: u32 = 12;
@@ -11,20 +15,39 @@ pub const MAX_HIDDEN: usize = 256;
 /// Largest magnitude of `c3`, less than 4, as far as the hardware's word for it reaches. Sensors that read no tension
 /// need more than 2.
 pub const CUBIC_LIMIT: f64 = 3.9;
+/// Share of the normal force above which a standard error is doubtful, unless a design says otherwise.
+pub const DEFAULT_DOUBT: f64 = 0.06;
 /// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.
 pub const EXTRA_INPUTS: usize = 5;
+
+/// Contacts that the constants are fitted to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Family {
+    /// Round or nearly so, sliding, with a pressure that is the same in front and behind.
+    #[default]
+    Narrow,
+    /// Of any shape, tilted, held, turning, over the grid's edge, on a sensor that is not quite what the design says.
+    Wide,
+}
+
+print_as_words!(Family);
 
 /// Constants of the joint estimator for one design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointConstants {
     /// Points of the plane at which Condition 1 is evaluated.
     pub grid: Grid,
+    /// Contacts that the other constants are fitted to.
+    pub family: Family,
     /// Factor on all forces; what a kernel of point forces lacks at long waves.
     pub gain: f64,
     /// `[c1, c3]`: the friction vector is `c1 mu + c3 mu |mu|^2` of the centroid of the level set.
     pub tangential: [f64; 2],
     /// What a small network adds to that; nothing unless trained.
     pub correction: Option<Correction>,
+    /// A frame whose standard error of `(F_x, F_y)` is a larger share of `|F_z|` is doubtful, if the correction tells it.
+    pub doubt: f64,
     /// What they were fitted to, as [`crate::design::conditions`] states it; a design of other conditions is refused. `None` for
     /// constants of unknown origin.
     pub fitted_to: Option<String>,
@@ -32,7 +55,15 @@ pub struct JointConstants {
 
 impl Default for JointConstants {
     fn default() -> Self {
-        Self { grid: Grid::FINE, gain: 1.0, tangential: [1.0, 0.0], correction: None, fitted_to: None }
+        Self {
+            grid: Grid::FINE,
+            family: Family::default(),
+            gain: 1.0,
+            tangential: [1.0, 0.0],
+            correction: None,
+            doubt: DEFAULT_DOUBT,
+            fitted_to: None,
+        }
     }
 }
 
@@ -48,6 +79,8 @@ pub struct Correction {
     pub hidden: Vec<Vec<i32>>,
     /// Weights of the hidden units in the x and the y component of the correction.
     pub output: [Vec<i32>; 2],
+    /// The error that is left, where that has been found.
+    pub doubt: Option<Doubt>,
 }
 
 impl Correction {

@@ -5,15 +5,21 @@
 //! `docs/estimators.md` gives the steps as the hardware takes them.
 
 mod constants;
+mod doubt;
 mod grid;
 mod level_set;
 mod look;
 mod network;
 mod weights;
 
-use super::seen::{RANGE, Seen};
+use super::seen::{Answer, RANGE, Seen};
 use crate::status::Status;
-pub use constants::{CUBIC_LIMIT, Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION, WEIGHT_LIMIT};
+pub use constants::{
+    CUBIC_LIMIT, Correction, DEFAULT_DOUBT, EXTRA_INPUTS, Family, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION,
+    WEIGHT_LIMIT,
+};
+pub use doubt::{DOUBT_FRACTION, DOUBT_RANGE, Doubt};
+pub(crate) use doubt::{limited, log, ratio};
 pub use grid::Grid;
 pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};
@@ -69,6 +75,8 @@ pub(crate) struct Joint {
     tangential: [f64; 2],
     columns: usize,
     network: Option<Network>,
+    /// A frame whose error has a larger logarithm is doubtful.
+    doubt_log: f64,
 }
 
 impl Joint {
@@ -79,25 +87,45 @@ impl Joint {
             tangential: constants.tangential,
             columns,
             network: constants.correction.as_ref().map(Network::new),
+            doubt_log: log(constants.doubt),
         }
     }
 
-    /// Finds the friction components.
-    pub(crate) fn find(&self, seen: &Seen, scratch: &mut JointScratch) -> (Status, [f64; 2]) {
+    /// Finds the friction components, and the error of `(F_x, F_y)` over `|F_z|` where the network tells it.
+    pub(crate) fn find(&self, seen: &Seen, scratch: &mut JointScratch) -> Answer {
         let Found { status, mu } = raw(self.grid, seen, scratch);
+        let tells = self.network.as_ref().is_some_and(Network::tells_its_error);
         if status.contains(Status::DIRECTION_UNKNOWN) {
-            return (status, mu);
+            // The error is as much as presses.
+            return self.answer(status, mu, tells.then_some(0.0));
         }
-        let scaled = scaled(mu, self.tangential);
-        let Some(network) = &self.network else { return within(status, scaled) };
+        let Some(network) = &self.network else {
+            let (status, mu) = within(status, scaled(mu, self.tangential));
+            return self.answer(status, mu, None);
+        };
         look(seen, mu, self.columns, network.half_window, TIE, scratch);
-        let added = network.correct(&scratch.look, &mut scratch.network);
-        within(status, [scaled[0] + added[0], scaled[1] + added[1]])
+        let (status, mu) = within(status, self.corrected(mu, &scratch.look, &mut scratch.network));
+        self.answer(status, mu, network.error_log(&scratch.network))
+    }
+
+    fn answer(&self, mut status: Status, mu: [f64; 2], error_log: Option<f64>) -> Answer {
+        if error_log.is_some_and(|log| log > self.doubt_log) {
+            status.insert(Status::DOUBTFUL);
+        }
+        Answer { status, mu, error: error_log.map_or(0.0, ratio) }
+    }
+
+    /// The friction components for the centroid of the level set and what the network sees; not clipped.
+    pub(crate) fn corrected(&self, mu: [f64; 2], look: &Look, scratch: &mut NetworkScratch) -> [f64; 2] {
+        let scaled = scaled(mu, self.tangential);
+        let Some(network) = &self.network else { return scaled };
+        let added = network.correct(look, scratch);
+        [scaled[0] + added[0], scaled[1] + added[1]]
     }
 }
 
 /// Keeps the components to their range, which no sensible constants let them leave.
-fn within(mut status: Status, mu: [f64; 2]) -> (Status, [f64; 2]) {
+pub(crate) fn within(mut status: Status, mu: [f64; 2]) -> (Status, [f64; 2]) {
     let clamped = mu.map(|component| component.clamp(-RANGE, RANGE));
     if clamped.iter().zip(mu).any(|(clamped, component)| clamped.to_bits() != component.to_bits()) {
         status.insert(Status::AT_BOUND);

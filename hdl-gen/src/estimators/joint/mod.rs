@@ -22,7 +22,9 @@ use crate::cores::{LONG_BITS, SHORT_BITS};
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
-pub use network::{INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS};
+pub use network::{
+    DoubtPlan, INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS,
+};
 pub use points::PointsPlan;
 
 /// A step of the grid is `2^-STEP_SHIFT`.
@@ -118,6 +120,11 @@ impl JointPlan {
     }
 }
 
+/// Sums of the hidden units: both components, and the error that is left.
+fn readouts(network: &NetworkPlan) -> usize {
+    2 + usize::from(network.doubt.is_some())
+}
+
 impl Slot for JointPlan {
     fn cells(&self) -> Cells {
         self.cells
@@ -157,13 +164,13 @@ impl Slot for JointPlan {
             let look = BlockCost::new("look", &["sptfra_look"], CLASSES + 2);
             // Each member of a place in the window may be in any quarter of the grid.
             blocks.push(look.with([taxels(), memory("look", CLASSES * CLASSES, quads, STRESS_BITS, false)]));
-            // The hidden units' four classes and both components.
-            let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + 2);
+            // The hidden units' four classes, both components, and the error that is left.
+            let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + readouts(network));
             let width = WEIGHT_BITS * classes * network.at_once as u32;
             blocks.push(units.with([
                 memory("look, folded", 1, network.length, classes * INPUT_BITS, false),
                 memory("hinge weights", 1, network.weights.len(), width, true),
-                memory("readout", 1, network.units(), 2 * WEIGHT_BITS, true),
+                memory("readout", 1, network.units(), readouts(network) as u32 * WEIGHT_BITS, true),
             ]));
         }
         // One after the other.
@@ -175,7 +182,10 @@ impl Slot for JointPlan {
         let Some(network) = &self.network else { return Vec::new() };
         let weights = network.weights.iter().map(|units| units.iter().flatten().copied().collect());
         let mut readout: Vec<Vec<i32>> = network.readout.iter().map(|weights| weights.to_vec()).collect();
-        readout.resize(network.units(), vec![0; 2]);
+        if let Some(doubt) = &network.doubt {
+            readout.iter_mut().zip(&doubt.readout).for_each(|(weights, weight)| weights.push(*weight));
+        }
+        readout.resize(network.units(), vec![0; readouts(network)]);
         vec![("weights", weights.collect()), ("readout", readout)]
     }
 
@@ -206,7 +216,7 @@ impl Slot for JointPlan {
             .cycles("EXPECTED_FRICTION_LATENCY", timing::FRICTION);
         let Some(network) = &self.network else { return parameters };
         let [half_x, half_y] = network.half_window;
-        parameters
+        let parameters = parameters
             .count("HALF_X", half_x)
             .count("HALF_Y", half_y)
             .count("LENGTH", network.length)
@@ -214,7 +224,14 @@ impl Slot for JointPlan {
             .count("AT_ONCE", network.at_once)
             .number("STRESS_LEFT", network.stress_left.into())
             .number("UNIT_SHIFT", network.unit_shift.into())
-            .number("CORRECTION_SHIFT", network.correction_shift.into())
+            .number("CORRECTION_SHIFT", network.correction_shift.into());
+        let parameters = match &network.doubt {
+            Some(DoubtPlan { shift, base, .. }) => {
+                parameters.flag("DOUBT", true).number("DOUBT_SHIFT", (*shift).into()).wide("DOUBT_BASE", 18, *base)
+            }
+            None => parameters,
+        };
+        parameters
             .expression("ROM_DIR", "ROM_DIR")
             .expression("ROM_NAME", format!("\"{}\"", design.name))
             .cycles("EXPECTED_LOOK_LATENCY", timing::look(&design.sensor, network))
@@ -228,6 +245,9 @@ impl Slot for JointPlan {
         };
         if self.network.is_none() {
             without.push("sptfra_correction");
+        }
+        if self.network.as_ref().is_none_or(|network| network.doubt.is_none()) {
+            without.push("sptfra_doubt");
         }
         without
     }

@@ -68,6 +68,7 @@ fn designs() -> Vec<Design> {
         tiny,
         shipped("sensor1-joint"),
         shipped("sensor1-fast"),
+        shipped("sensor2-wide"),
         uncorrected,
         broken,
         curved,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use golden::design::{Correction, Design, Estimator, Outputs, PlanKind};
+use golden::design::{Correction, Design, Doubt, Estimator, Outputs, PlanKind};
 use hdl_gen::plan::Plan;
 use testbench::simulate::Simulation;
 use testbench::trial::{Trial, rtl_sources};
@@ -49,6 +49,7 @@ pub fn with_joint(mut design: Design) -> Design {
         half_window: [1, 1],
         hidden: vec![weights(inputs), weights(inputs), weights(inputs)],
         output: [weights(3), weights(3)],
+        doubt: Some(Doubt { base: -9000, output: weights(3) }),
     });
     design
 }

@@ -2,7 +2,7 @@
 
 use std::env;
 
-use golden::design::{Correction, Design, Grid, JointConstants, Sensor};
+use golden::design::{Correction, Design, Doubt, Grid, JointConstants, Sensor};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -162,7 +162,9 @@ fn constants(sensor: &Sensor, correction: bool) -> JointConstants {
         let inputs = Correction::inputs(half_window);
         let hidden = (0..units).map(|_| row(inputs, largest)).collect();
         let output = [row(units, 4096), row(units, 131_071)];
-        constants.correction = Some(Correction { half_window, hidden, output });
+        let doubt = Doubt { base: -12_000, output: row(units, 4096) };
+        let doubt = half_window[0].is_multiple_of(2).then_some(doubt);
+        constants.correction = Some(Correction { half_window, hidden, output, doubt });
     }
     constants
 }

@@ -435,7 +435,7 @@ module small_4x3 #(
     wire x_is_free;
     wire signed [17:0] free;
     wire signed [17:0] other;
-    wire signed [17:0] slope;
+    wire signed [17:0] slope, error_log;
     wire unknown, at_bound, search_saturated;
     wire [18*40-1:0] answer_sums;
     wire [5:0] answer_flags;
@@ -476,6 +476,7 @@ module small_4x3 #(
         .free            (free),
         .other           (other),
         .slope           (slope),
+        .error_log       (error_log),
         .unknown         (unknown),
         .at_bound        (at_bound),
         .saturated       (search_saturated),
@@ -538,6 +539,7 @@ module small_4x3 #(
         .free             (free),
         .other            (other),
         .slope            (slope),
+        .error_log        (error_log),
         .unknown          (unknown),
         .at_bound         (at_bound),
         .search_saturated (search_saturated),

@@ -19,6 +19,9 @@ module sptfra_op #(
     parameter integer DEPENDENT = 1,
     // Dead taxels of the design, whose readings others replace
     parameter integer REPLACED = 0,
+    // 1: the answer has an error, and above DOUBT_LIMIT, a logarithm of base 2 with 12 fraction bits, it is doubtful
+    parameter integer DOUBT = 0,
+    parameter signed [17:0] DOUBT_LIMIT = 18'sd0,
     // A step of the frame sums G is 2^SUM_LSB N, of those of the torques 2^TORQUE_LSB N m, of a taxel's force
     // 2^FIELD_LSB N
     parameter integer SUM_LSB = -40,
@@ -46,6 +49,7 @@ module sptfra_op #(
     input  wire signed [17:0] free,
     input  wire signed [17:0] other,
     input  wire signed [17:0] slope,
+    input  wire signed [17:0] error_log, // of base 2, of the error of (F_x, F_y) over |F_z|, 12 fraction bits
     input  wire unknown,
     input  wire at_bound,
     input  wire search_saturated,
@@ -83,6 +87,7 @@ module sptfra_op #(
     reg signed [17:0] summary_free;
     reg signed [17:0] summary_other;
     reg signed [17:0] summary_slope;
+    reg signed [17:0] summary_error_log;
     reg [18*40-1:0] summary_sums;
     reg [5:0] summary_flags;
     reg summary_at_bound;
@@ -102,6 +107,8 @@ module sptfra_op #(
     wire [63:0] friction_quotient;
     wire signed [9:0] friction_exponent;
     wire signed [31:0] angle;
+    wire [63:0] error_value;
+    wire signed [9:0] error_exponent;
     wire output_idle;
     wire output_start = summary_there && output_idle && ((FIELD == 0) || (fields_there != 2'd0));
 
@@ -116,6 +123,7 @@ module sptfra_op #(
             summary_free <= free;
             summary_other <= other;
             summary_slope <= slope;
+            summary_error_log <= error_log;
             summary_sums <= sums;
             summary_flags <= flags;
             summary_at_bound <= at_bound;
@@ -156,6 +164,7 @@ module sptfra_op #(
         .free              (summary_free),
         .other             (summary_other),
         .slope             (summary_slope),
+        .error_log         (summary_error_log),
         .friction_done     (friction_done),
         .done              (summary_done),
         .mu_x              (mu_x),
@@ -169,7 +178,9 @@ module sptfra_op #(
         .torque_z          (torque_z),
         .friction_quotient (friction_quotient),
         .friction_exponent (friction_exponent),
-        .angle             (angle)
+        .angle             (angle),
+        .error_value       (error_value),
+        .error_exponent    (error_exponent)
     );
 
     // ---- Status: a frame that cannot be trusted says why, and nothing else
@@ -190,7 +201,8 @@ module sptfra_op #(
         answered && slips,
         answered && summary_flags[4],
         answered && (REPLACED != 0),
-        2'b00,
+        1'b0,
+        answered && (DOUBT != 0) && (summary_error_log > DOUBT_LIMIT),
         bad_length,
         not_finite,
         answered && (summary_flags[2] || summary_saturated),
@@ -259,6 +271,8 @@ module sptfra_op #(
         .friction_quotient (friction_quotient),
         .friction_exponent (friction_exponent),
         .angle             (angle),
+        .error_value       ((DOUBT != 0) ? error_value : 64'd0),
+        .error_exponent    (error_exponent),
         .mu_x              (mu_x),
         .mu_y              (mu_y),
         .field_mu_x        (field_mu_x),

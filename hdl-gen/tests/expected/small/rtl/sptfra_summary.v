@@ -6,6 +6,7 @@
 // F_p = G_p0 + mu_x G_p1 + mu_y G_p2, the torques likewise; mu = sqrt(F_x^2 + F_y^2) / |F_z|; phi = atan2(F_y, F_x).
 // A step of F is 2^-16 of one of G; mu is quotient * 2^exponent, a floating-point number; phi has 29 fraction bits.
 // From start to done: 43 cycles, a rotation and a division; the torques are made during the rotation.
+// The standard error is 2^error_log |F_z|, with 2^(n + f) taken as 2^n (1 + f); it is made during the division.
 // Results hold until the next start.
 
 `default_nettype none
@@ -25,6 +26,7 @@ module sptfra_summary #(
     input  wire signed [17:0] free, // 16 fraction bits
     input  wire signed [17:0] other, // 15 fraction bits if DEPENDENT, as slope, else 16
     input  wire signed [17:0] slope,
+    input  wire signed [17:0] error_log, // 12 fraction bits
     output wire friction_done, // one cycle, when mu_x and mu_y are there
     output reg  done, // one cycle
     output reg  signed [17:0] mu_x, // 16 fraction bits
@@ -38,7 +40,9 @@ module sptfra_summary #(
     output reg  signed [63:0] torque_z,
     output wire [63:0] friction_quotient,
     output reg  signed [9:0] friction_exponent,
-    output wire signed [31:0] angle
+    output wire signed [31:0] angle,
+    output reg  [63:0] error_value, // standard error of (F_x, F_y), in steps of F times 2^error_exponent
+    output reg  signed [9:0] error_exponent
 );
 
     localparam [2:0] IDLE = 3'd0, FORCES = 3'd1, ROTATE = 3'd2, GAIN = 3'd3, DIVIDE = 3'd4;
@@ -69,12 +73,12 @@ module sptfra_summary #(
     reg forces; // in steps 4 to 39: a sum is chosen
     reg forces_1; // then its half
     reg forces_2; // then it goes into the multiplier
-    reg [1:0] q_1;
-    reg [1:0] q_2;
+    reg [1:0] q_1, q_2;
     reg low_half_1;
     reg [39:0] sum_1;
     reg signed [26:0] half_2;
 
+    reg [31:0] unit_z; // |F_z|, with its leading bit at the top
     reg signed [17:0] coefficient;
     reg signed [26:0] data;
     reg first;
@@ -83,7 +87,8 @@ module sptfra_summary #(
     reg signed [17:0] mac_coefficient;
     reg signed [26:0] mac_data;
     wire dependent_steps = (DEPENDENT != 0) && (state == FORCES) && (step <= 6'd1);
-    wire issue = dependent_steps || forces_2 || ((state == GAIN) && (step <= 6'd1));
+    wire other_steps = ((state == GAIN) && (step <= 6'd1)) || ((state == DIVIDE) && (step == 6'd8));
+    wire issue = dependent_steps || forces_2 || other_steps;
     wire signed [47:0] accumulator;
     wire [33:0] magnitude;
 
@@ -91,6 +96,10 @@ module sptfra_summary #(
         if (state == GAIN) begin
             coefficient = (step == 6'd0) ? {1'b0, magnitude[33:17]} : {1'b0, magnitude[16:0]};
             data = INVERSE_GAIN;
+            first = 1'b1;
+        end else if (state == DIVIDE) begin
+            coefficient = {2'b01, error_log[11:0], 4'd0};
+            data = {1'b0, unit_z[31:6]};
             first = 1'b1;
         end else if (forces_2) begin
             coefficient = (q_2 == 2'd0) ? ONE : (q_2 == 2'd1) ? mu_x : mu_y;
@@ -115,9 +124,7 @@ module sptfra_summary #(
         mac_coefficient <= coefficient;
         mac_data <= data;
         if (reset) begin
-            forces <= 1'b0;
-            forces_1 <= 1'b0;
-            forces_2 <= 1'b0;
+            {forces, forces_1, forces_2} <= 3'd0;
             mac_valid <= 1'b0;
         end
     end
@@ -147,38 +154,29 @@ module sptfra_summary #(
     wire [63:0] gained = {high_part[46:0], 17'd0} + {16'd0, accumulator};
     reg [63:0] spread_xy;
     reg [63:0] magnitude_z;
-    reg [6:0] bits_xy;
-    reg [6:0] bits_z;
+    reg [6:0] bits_xy, bits_z;
     reg no_quotient;
-    reg signed [31:0] unit_x;
-    reg signed [31:0] unit_y;
-    reg [31:0] unit_z;
+    reg signed [31:0] unit_x, unit_y;
 
     // Two cycles behind the numbers
     wire [6:0] found_xy;
     wire [6:0] found_z;
 
-    sptfra_leading_bit #(
-        .WIDTH (64)
-    ) leading_bit_xy (
+    sptfra_leading_bit #(.WIDTH (64)) leading_bit_xy (
         .clock (clock),
         .value (spread_xy),
         .bits  (found_xy)
     );
 
-    sptfra_leading_bit #(
-        .WIDTH (64)
-    ) leading_bit_z (
+    sptfra_leading_bit #(.WIDTH (64)) leading_bit_z (
         .clock (clock),
         .value (magnitude_z),
         .bits  (found_z)
     );
 
     // Up to the 64th bit by left shifts, whole bytes first, then down to the width wanted
-    reg [6:0] left_xy;
-    reg [6:0] left_z;
-    reg signed [63:0] bytes_x;
-    reg signed [63:0] bytes_y;
+    reg [6:0] left_xy, left_z;
+    reg signed [63:0] bytes_x, bytes_y;
     reg [63:0] bytes_z;
     wire signed [63:0] shifted_x = bytes_x <<< left_xy[2:0];
     wire signed [63:0] shifted_y = bytes_y <<< left_xy[2:0];
@@ -239,8 +237,7 @@ module sptfra_summary #(
 
     always @(posedge clock) begin
         done <= 1'b0;
-        rotate_start <= 1'b0;
-        divide_start <= 1'b0;
+        {rotate_start, divide_start} <= 2'd0;
         step <= (step == 6'd63) ? step : step + 6'd1;
         dependent_rounded <= accumulator + LINE_HALF;
         if (forces) begin
@@ -300,6 +297,10 @@ module sptfra_summary #(
                 end
             end
             default: begin
+                if (step == 6'd12) begin
+                    error_value <= {16'd0, accumulator};
+                    error_exponent <= {3'd0, bits_z} + { {4{error_log[17]}}, error_log[17:12]} - 10'sd42;
+                end
                 if (divide_done) begin
                     done <= 1'b1;
                     state <= IDLE;
@@ -309,8 +310,7 @@ module sptfra_summary #(
         if (reset) begin
             state <= IDLE;
             done <= 1'b0;
-            rotate_start <= 1'b0;
-            divide_start <= 1'b0;
+            {rotate_start, divide_start} <= 2'd0;
         end
     end
 

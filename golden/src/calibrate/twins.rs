@@ -1,0 +1,103 @@
+//! The symmetry of a square: on a square grid with a square pitch, x and y may change places.
+//!
+//! The parity classes take care of both mirrors, whatever the weights. For the diagonal mirror each hidden unit has a
+//! twin, which sees what the unit would see of the transposed look and answers along the other axis. The network is then
+//! as symmetric as the grid, and costs nothing more.
+
+use nalgebra::DMatrix;
+
+use crate::design::Sensor;
+use crate::estimators::joint::Correction;
+use crate::parity::CLASSES;
+
+/// The class that a parity class is of the transposed look.
+const TRANSPOSED: [usize; CLASSES] = [0, 2, 1, 3];
+
+/// Whether x and y may change places on a sensor.
+pub(super) fn has_diagonal(sensor: &Sensor) -> bool {
+    let [x, y] = sensor.pitch_mm;
+    sensor.columns == sensor.rows && x.to_bits() == y.to_bits()
+}
+
+/// The twin of a hidden unit: units stand in pairs, and the last one of an odd number is its own twin.
+pub(super) fn twin(unit: usize, units: usize) -> usize {
+    if unit + 1 == units && unit.is_multiple_of(2) { unit } else { unit ^ 1 }
+}
+
+/// Where the inputs of each class go when a look is transposed.
+#[derive(Clone, Debug)]
+pub(super) struct Diagonal {
+    /// Of each input of a class, its place in the class that it goes to.
+    places: [Vec<usize>; CLASSES],
+}
+
+impl Diagonal {
+    pub(super) fn new(places: [Vec<usize>; CLASSES]) -> Self {
+        Self { places }
+    }
+
+    /// The mean of what is known of each class and of what the transposed looks would say: rows and columns are inputs.
+    pub(super) fn symmetrise(&self, of_classes: &mut [DMatrix<f64>; CLASSES]) {
+        let before = of_classes.clone();
+        for (class, matrix) in of_classes.iter_mut().enumerate() {
+            let (places, other) = (&self.places[class], &before[TRANSPOSED[class]]);
+            for (row, &to_row) in places.iter().enumerate() {
+                for (column, &to_column) in places.iter().enumerate() {
+                    matrix[(row, column)] = 0.5 * (matrix[(row, column)] + other[(to_row, to_column)]);
+                }
+            }
+        }
+    }
+
+    /// Adds to what belongs to each unit (a row) and input what belongs to its twin's; both are then the same.
+    pub(super) fn add(&self, of_classes: &mut [DMatrix<f32>; CLASSES]) {
+        let before = of_classes.clone();
+        for (class, matrix) in of_classes.iter_mut().enumerate() {
+            let (other, units) = (&before[TRANSPOSED[class]], matrix.nrows());
+            for (mut column, &place) in matrix.column_iter_mut().zip(&self.places[class]) {
+                for unit in 0..units {
+                    column[unit] += other[(twin(unit, units), place)];
+                }
+            }
+        }
+    }
+}
+
+/// As [`Diagonal::add`], for the weights of the units (rows) along x and y.
+pub(super) fn add_output(output: &mut DMatrix<f32>) {
+    let (before, units) = (output.clone(), output.nrows());
+    for unit in 0..units {
+        for axis in 0..2 {
+            output[(unit, axis)] += before[(twin(unit, units), 1 - axis)];
+        }
+    }
+}
+
+/// Makes twins of whole weights exact: those of the first of a pair count.
+pub(super) fn tie(correction: &mut Correction) {
+    let (units, width) = (correction.hidden.len(), 2 * correction.half_window[0] + 1);
+    let window = width * width;
+    let transposed = |row: &[i32]| -> Vec<i32> {
+        let places = (0..window).map(|place| row[place % width * width + place / width]);
+        places.chain([1, 0, 3, 2, 4].map(|extra| row[window + extra])).collect()
+    };
+    for unit in 0..units {
+        let other = twin(unit, units);
+        let mirrored = transposed(&correction.hidden[unit]);
+        if let Some(doubt) = &mut correction.doubt {
+            let mean = i32::midpoint(doubt.output[unit], doubt.output[other]);
+            (doubt.output[unit], doubt.output[other]) = (mean, mean);
+        }
+        if other > unit {
+            correction.hidden[other] = mirrored;
+            let [along_x, along_y] = &mut correction.output;
+            (along_x[other], along_y[other]) = (along_y[unit], along_x[unit]);
+        } else if other == unit {
+            let row = &mut correction.hidden[unit];
+            row.iter_mut().zip(mirrored).for_each(|(weight, other)| *weight = i32::midpoint(*weight, other));
+            let [along_x, along_y] = &mut correction.output;
+            let mean = i32::midpoint(along_x[unit], along_y[unit]);
+            (along_x[unit], along_y[unit]) = (mean, mean);
+        }
+    }
+}
