@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Synthesises each of the designs with Yosys, as tools/synth.sh does, unless its Verilog and ROM files are those of the
 # last time. The cells by block are then in target/synth/NAME.cells.json, which `testbench bench --cells` reads.
 # Usage: tools/bench.sh DESIGN.toml …    (make tools and make build first; PROFILE=release for the release build)

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The README and docs/ as a site with a search, in target/book: what `make book` runs.
 
 The README becomes the first page. A link to a file that is no page leads to a copy of that file beside the pages; one

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Installs what building and checking the hardware needs: quick when all is there, asks nothing.
 # Python tools go into .venv with pinned versions; the rest comes from the system's packages.
 set -eu

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Prints the register map of a SystemRDL file as JSON: what the tests hold against the simulated hardware."""
 
 import json

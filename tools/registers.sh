@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # C header and page (Markdown) of a design's register bank, by PeakRDL from the SystemRDL in its generated folder.
 #   tools/registers.sh FOLDER/control/NAME.rdl OUT
 set -eu

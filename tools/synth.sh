@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Synthesises a design with Yosys for UltraScale+ and prints its cells by block beside the generator's prediction.
 # Usage: tools/synth.sh DESIGN.toml    (make tools and make build first; PROFILE=release for the release build)
 set -eu

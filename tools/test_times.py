@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Runs all tests, one topic after the other, and prints how long each takes: test_times.py [TOPIC...]
 
 A topic is a module of a crate's suite, or the unit tests of a crate. CPU seconds count those of Verilator, compilers and

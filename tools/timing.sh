@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Places and routes a design for a Lattice ECP5-85, the largest fabric with an open flow, and says whether it reaches
 # the design's clock (exit code 0) or not (1). Another fabric than the target's, and a slower one, but a real place
 # and route.

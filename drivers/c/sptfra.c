@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* See sptfra.h. */
 #if defined(__linux__) && !defined(SPTFRA_NO_UIO)
 #define _POSIX_C_SOURCE 200809L
@@ -53,7 +54,7 @@ const char *sptfra_error(int code)
     case SPTFRA_NOT_A_CORE: return "no core at this address: IDENTITY is not TFRA";
     case SPTFRA_OTHER_MAP: return "the core's register map is of another version than this driver";
     case SPTFRA_NO_REGISTERS: return "the core was opened without registers";
-    case SPTFRA_BAD_BUFFER: return "a buffer is too small or not on a multiple of four bytes, or of a cache line";
+    case SPTFRA_BAD_BUFFER: return "a buffer is too small or not on a multiple of a beat's bytes, or of a cache line";
     case SPTFRA_TIMEOUT: return "no answer in the polls given";
     case SPTFRA_DMA_FAULT: return "the DMA stopped with an error; its status register says which";
     case SPTFRA_CUT_SHORT: return "the answer is shorter than a frame's";
@@ -63,6 +64,11 @@ const char *sptfra_error(int code)
     case SPTFRA_NOT_STARTED: return "no frame was started";
     default: return "unknown code";
     }
+}
+
+size_t sptfra_frame_bytes(const sptfra_shape *shape)
+{
+    return (shape->samples == SPTFRA_FLOAT32 ? 4u : 2u) * (size_t)shape->columns * shape->rows;
 }
 
 /* ---- Registers */
@@ -153,6 +159,7 @@ int sptfra_open(sptfra *device, const sptfra_platform *platform, uintptr_t core,
     device->shape.has_field = (uint8_t)FIELD(features, FEATURES__FIELD_OUT);
     device->shape.has_counts = (uint8_t)FIELD(features, FEATURES__COUNTS);
     device->shape.stream_bytes = (uint8_t)FIELD(features, FEATURES__STREAM_BYTES);
+    device->shape.samples = (uint8_t)FIELD(features, FEATURES__SAMPLES);
     follow_number(device);
     return sptfra_reset_dma(device, RESET_POLLS);
 }

@@ -1,8 +1,9 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* Driver of a generated core behind an AXI DMA (direct register mode), bare metal or Linux UIO. C11, no allocation.
  *
  *   sptfra core;
  *   sptfra_open(&core, &sptfra_memory_mapped, CORE_BASE, DMA_BASE);
- *   memcpy(stress.data, frame, 4u * core.shape.words_in);
+ *   memcpy(stress.data, frame, sptfra_frame_bytes(&core.shape));
  *   sptfra_process(&core, &stress, &forces, SPTFRA_FOREVER);
  *   sptfra_decode(&core.shape, forces.data, &result);
  *
@@ -24,7 +25,7 @@ enum {
     SPTFRA_NOT_A_CORE = -1, /* IDENTITY has another value */
     SPTFRA_OTHER_MAP = -2,  /* the register map is of another version than this driver */
     SPTFRA_NO_REGISTERS = -3,
-    SPTFRA_BAD_BUFFER = -4, /* too small, or not on a multiple of four bytes, or of SPTFRA_LINE where there is a cache */
+    SPTFRA_BAD_BUFFER = -4, /* too small, or not on a multiple of a beat's bytes, or of SPTFRA_LINE with a cache */
     SPTFRA_TIMEOUT = -5,    /* the frame is still on its way: wait again, or recover */
     SPTFRA_DMA_FAULT = -6,
     SPTFRA_CUT_SHORT = -7,   /* the packet of forces has another length than a frame's */
@@ -68,7 +69,13 @@ typedef struct {
     uint8_t has_field;            /* three forces of each taxel follow the words of the summary */
     uint8_t has_counts;           /* frames hold counts, else pascals */
     uint8_t stream_bytes;         /* of a beat: 4, 8 or 16. Buffers begin on a multiple of it; 0 is as 4 */
+    uint8_t samples;              /* what a value in a frame is: SPTFRA_FLOAT32, _INT16 or _UINT16 */
 } sptfra_shape;
+
+enum { SPTFRA_FLOAT32 = 0, SPTFRA_INT16 = 1, SPTFRA_UINT16 = 2 };
+
+/* Bytes of a frame's values. words_in of them go to the core: what follows the last value should be zero. */
+size_t sptfra_frame_bytes(const sptfra_shape *shape);
 
 typedef struct {
     sptfra_platform platform;
@@ -125,7 +132,8 @@ typedef struct {
     size_t bytes;
 } sptfra_buffer;
 
-/* Sends a frame of words_in float32 and takes words_out words. Returns at once; both buffers belong to the DMA until
+/* Sends a frame of words_in words and takes words_out words. A word is a float32, or two counts of 16 bits, the first in
+ * the lower half: in memory the values stand one behind the other. Returns at once; both buffers belong to the DMA until
  * sptfra_wait says otherwise. One frame is on its way at a time. */
 int sptfra_start(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces);
 /* The same for a packet of any length, of which the core makes an answer with the status BAD_LENGTH. */

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Driver of a generated core in PYNQ's style: numpy arrays in, numpy arrays out.
 
     from pynq import Overlay, allocate

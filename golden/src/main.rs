@@ -153,7 +153,7 @@ enum Command {
         /// Unless given, what the design says under [algorithm] family.
         #[arg(long, value_parser = parser::<Family>())]
         family: Option<Family>,
-        /// Hidden units of the correction, 0 to 256; 128 unless given, 24 with --quick; 0 for none.
+        /// Hidden units of the correction, 0 to 256, with family "wide" 204; 128 unless given, 24 with --quick; 0 for none.
         #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256))]
         hidden: Option<u16>,
         /// Take a tenth of the time, for constants that are half as good.

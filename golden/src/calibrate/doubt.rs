@@ -22,6 +22,8 @@ use crate::scene::normal;
 
 /// One hidden unit for the doubt alone for so many of the correction.
 const SHARE: usize = 4;
+/// Most hidden units of a correction whose doubt finds room beside them.
+pub const MOST_FOUND: usize = MAX_HIDDEN * SHARE / (SHARE + 1);
 /// Samples of a step.
 const BATCH: usize = 256;
 /// Length of the first steps of the hidden units, and of the sum over all of them; they fall to 0 along a cosine.
@@ -66,7 +68,7 @@ pub(super) fn train(
     tick: &mut dyn FnMut(Stage),
 ) -> Correction {
     let found = correction.hidden.len();
-    let units = (found / SHARE).max(1).min(MAX_HIDDEN - found);
+    let units = (found / SHARE).max(1);
     let mut scratch = NetworkScratch::default();
     let mut known = DMatrix::<f32>::zeros(found, samples.len());
     let mut errors = Vec::with_capacity(samples.len());

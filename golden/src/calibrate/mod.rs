@@ -11,6 +11,8 @@ mod train;
 mod twins;
 mod wide;
 
+pub use doubt::MOST_FOUND as MOST_HIDDEN_WIDE;
+
 pub use contacts::random_contacts;
 
 use crate::design::{Design, Estimator, Input, JointConstants, conditions};
@@ -185,7 +187,8 @@ pub fn calibrate(
     }
     let algorithm = &design.algorithm;
     let grid = algorithm.joint.grid;
-    let fitted_to = Some(conditions(&design.sensor, tension, algorithm.kernel, algorithm.regularisation, grid));
+    let of = (grid, algorithm.joint.family);
+    let fitted_to = Some(conditions(&design.sensor, tension, algorithm.kernel, algorithm.regularisation, of));
     let doubt = algorithm.joint.doubt;
     Ok(JointConstants { grid, family, gain, tangential, correction, doubt, fitted_to })
 }

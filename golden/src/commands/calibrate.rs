@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use golden::calibrate::{Settings, calibrate};
+use golden::calibrate::{MOST_HIDDEN_WIDE, Settings, calibrate};
 use golden::choose::rebase_scenes;
 use golden::design::{Design, Family, Filter, is_name};
 use golden::output::write_together;
@@ -43,6 +43,13 @@ pub fn run(path: &Path, out: &Path, family: Option<Family>, work: Work, json: bo
         design.algorithm.joint.family = family;
     }
     let family = design.algorithm.joint.family;
+    if let Some(hidden) = work.hidden.filter(|&hidden| family == Family::Wide && hidden > MOST_HIDDEN_WIDE) {
+        return Err(format!(
+            "--hidden {hidden}: with family \"wide\" a quarter as many units more tell the error, and the hardware has \
+             room for 256; use at most {MOST_HIDDEN_WIDE}"
+        )
+        .into());
+    }
     let settings = Settings::of(family, work.quick);
     let settings = Settings { seed: work.seed, hidden: work.hidden.unwrap_or(settings.hidden), ..settings };
     let resolved = Resolved::new(&design, path, out)?;

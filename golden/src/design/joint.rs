@@ -17,12 +17,14 @@ pub fn conditions(
     tension: Tension,
     kernel: Kernel,
     regularisation: Regularisation,
-    grid: Grid,
+    (grid, family): (Grid, Family),
 ) -> String {
     let reads = if tension == Tension::Clipped { ", tension clipped" } else { "" };
     // Constants of the fine grid were fitted before there was another one.
     let of_grid = if grid == Grid::FINE { String::new() } else { format!(", grid {}", grid.side()) };
-    format!("{sensor}, {kernel}, {}{reads}{of_grid}", regularisation.factor())
+    // Nor was there another family than the narrow one.
+    let of_family = if family == Family::Narrow { String::new() } else { format!(", {family}") };
+    format!("{sensor}, {kernel}, {}{reads}{of_grid}{of_family}", regularisation.factor())
 }
 
 /// The `[algorithm.correction]` table: the weights in a file with its hash, or in the table itself.
@@ -75,6 +77,13 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
         check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
         check.real("algorithm.tangential[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
     ];
+    if raw.doubt.is_some() && raw.family == Family::Narrow {
+        return Err(check.value(
+            "algorithm.doubt",
+            "is a limit for an error that the design does not tell".to_owned(),
+            "remove it, or write family = \"wide\" and run `golden calibrate`".to_owned(),
+        ));
+    }
     let doubt = check.real("algorithm.doubt", raw.doubt.unwrap_or(DEFAULT_DOUBT), 0.001, 3.9, "")?;
     let Raw { grid, family, fitted_to, .. } = raw;
     Ok(JointConstants { grid, family, gain, tangential, correction: None, doubt, fitted_to })

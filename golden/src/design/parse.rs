@@ -213,7 +213,7 @@ fn algorithm(
     let joint = if estimator == Estimator::Joint {
         let grid = joint::grid(check, raw.grid)?;
         let family = check.optional_word("algorithm.family", raw.family.as_deref())?.unwrap_or_default();
-        let conditions = joint::conditions(sensor, tension, kernel, regularisation, grid);
+        let conditions = joint::conditions(sensor, tension, kernel, regularisation, (grid, family));
         let (gain, tangential, fitted_to) = (raw.gain, raw.tangential.as_deref(), raw.fitted_to);
         let constants = joint::Raw { grid, family, doubt: raw.doubt, gain, tangential, fitted_to };
         joint::constants(check, constants, &conditions)?

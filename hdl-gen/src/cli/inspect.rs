@@ -91,6 +91,11 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         key("estimator = "),
         key("outputs = ")
     )?;
+    writeln!(
+        out,
+        "  streams      {} bits a beat, samples {}",
+        plan.design.hardware.stream_bits, plan.design.hardware.samples
+    )?;
     let condition = &plan.condition;
     let verdict = if condition.aat > ILL_CONDITIONED {
         format!(

@@ -63,6 +63,7 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         (shipped("sensor2-wide"), "sensor2-reduced"),
         // Sixteen hidden units at a time.
         (with_lanes(shipped("sensor1-fast"), 64), "sensor1-reduced-64"),
+        (shipped("sensor1-fast-64"), "sensor1-reduced-64"),
         (uncorrected(shipped("sensor1-fast")), "sensor1-reduced"),
         (uncorrected(shipped("sensor1-joint")), "sensor1-reduced"),
         (resultants, "sensor1-resultants"),

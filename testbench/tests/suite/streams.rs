@@ -53,6 +53,9 @@ fn subjects() -> &'static [Subject] {
         (unsigned.sensor.columns, unsigned.sensor.rows) = (3, 3);
         calibrate(&mut unsigned);
         unsigned.hardware.samples = Samples::Uint16;
+        let mut narrow_counts = small("narrow_counts", 32, reduced, Outputs::Field);
+        calibrate(&mut narrow_counts);
+        narrow_counts.hardware.samples = Samples::Uint16;
         let mut dead = small("dead", 128, reduced, Outputs::Field);
         dead.sensor.rows = 5;
         dead.sensor.columns = 3;
@@ -68,6 +71,7 @@ fn subjects() -> &'static [Subject] {
             dead,
             integers,
             unsigned,
+            narrow_counts,
         ];
         in_parallel(&designs, |design| {
             let plan = planned(design);

@@ -125,16 +125,19 @@ int main(int count, char **arguments)
     FILE *file;
     uint32_t words, frames = 0, bad = 0, last = 0, events = 0, timestamp = 0;
 
-    CHECK(count == 9);
+    CHECK(count == 10);
     const int has_registers = atoi(arguments[2]);
     memset(&shape, 0, sizeof shape);
     shape.columns = (uint16_t)atoi(arguments[4]);
     shape.rows = (uint16_t)atoi(arguments[5]);
-    shape.words_in = (uint16_t)(shape.columns * shape.rows);
     shape.words_out = (uint16_t)atoi(arguments[6]);
     shape.has_field = (uint8_t)atoi(arguments[7]);
-    shape.has_counts = 0;
     shape.stream_bytes = (uint8_t)atoi(arguments[8]);
+    shape.samples = (uint8_t)atoi(arguments[9]);
+    shape.has_counts = shape.samples != SPTFRA_FLOAT32;
+    /* Whole beats. */
+    shape.words_in = (uint16_t)((sptfra_frame_bytes(&shape) + shape.stream_bytes - 1u) / shape.stream_bytes);
+    shape.words_in = (uint16_t)(shape.words_in * shape.stream_bytes / 4u);
     system = machine_open(arguments[1], 7, has_registers);
     CHECK(system != NULL);
     platform.context = system;

@@ -4,10 +4,12 @@
 // Triaxial contact forces from normal stress: 4 x 3 taxels, reduced plan, line estimator, filter none.
 //
 // In:  12 beats, float32 stress in Pa, compression negative, taxel order i = iy * 4 + ix, TLAST on the last.
-// Out: 52 beats, by name in metadata.json: status, timestamp, forces, torques, friction, bodies, f_x f_y f_z per taxel;
+// Out: 52 beats, by name in metadata.json: status, timestamp, forces, torques, friction, error, bodies, f_x f_y f_z per
+// taxel;
 //      TLAST on the last. One frame out for each frame in.
 // Status: 0 no contact, 1 direction unknown, 2 optimum at the bound, 3 saturated, 4 NaN or infinity in,
-//      5 frame length wrong, 8 a taxel was replaced, 9 too many were, 10 slip, 11 no tension; 31:16 frame counter.
+//      5 frame length wrong, 6 doubtful, 8 a taxel was replaced, 9 too many were, 10 slip, 11 no tension; 31:16 frame
+//      counter.
 // Latency, first beat in to last beat out, streams never waiting: 986 cycles (7.89 us at 125.0 MHz).
 // Interval between frames: 508 cycles (4.06 us).
 // The lanes' programs take 229 cycles of issue a frame, 800 MACs: they are busy 87.3 % of that time.
