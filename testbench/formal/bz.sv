@@ -93,7 +93,7 @@ module harness (
 `ifndef PAPER
         .\gen_fold.fold.lasts (fold_lasts),
 `endif
-        .\samples.float_to_fixed.stages (stages)
+        .\samples.gen_float.float_to_fixed.stages (stages)
     );
 
     // ---- Each beat with its place in its frame; a place of 31 is that or more

@@ -57,13 +57,12 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         files.insert(format!("rom/{name}_curve.mem"), hex(words.iter().copied(), words.len(), SEGMENT_BITS));
     }
     if let Some(dead) = &plan.dead {
-        let words: String = dead.words().iter().map(|weights| wide_hex(weights, WEIGHT_BITS) + "\n").collect();
-        files.insert(format!("rom/{name}_neighbours.mem"), words.into_bytes());
+        files.insert(format!("rom/{name}_neighbours.mem"), weights(&dead.words()));
         let taxels = (0..plan.taxels()).map(|taxel| u128::from(dead.taxels.contains(&taxel)));
         files.insert(format!("rom/{name}_dead.mem"), hex(taxels, plan.taxels(), 1));
     }
     for (contents, words) in plan.estimator.slot().roms() {
-        files.insert(format!("rom/{name}_{contents}.mem"), network_file(&words));
+        files.insert(format!("rom/{name}_{contents}.mem"), weights(&words));
     }
 }
 
@@ -92,18 +91,9 @@ fn joined(ways: &[i32], bits: u32) -> u128 {
     ways.iter().rev().fold(0, |word, &value| word << bits | u128::from(value as u32 & mask))
 }
 
-/// Words of several weights of 18 bits each, the first lowest: they are wider than any number, but for their digits.
-fn network_file(words: &[Vec<i32>]) -> Vec<u8> {
-    let mut text = Vec::new();
-    for word in words {
-        // Two weights are nine digits.
-        for pair in word.chunks(2).rev() {
-            let digits = hex(std::iter::once(joined(pair, WEIGHT_BITS)), 1, 2 * WEIGHT_BITS);
-            text.extend_from_slice(digits.trim_ascii_end());
-        }
-        text.push(b'\n');
-    }
-    text
+/// Words of several weights each.
+fn weights(words: &[Vec<i32>]) -> Vec<u8> {
+    words.iter().flat_map(|weights| (wide_hex(weights, WEIGHT_BITS) + "\n").into_bytes()).collect()
 }
 
 /// One word of several values of `bits` bits each in two's complement, the first lowest.
