@@ -8,8 +8,8 @@
 //! r = C33 y+ - mu_x C31 |w| - mu_y C32 |w|            f_p = A_p r + [mu_x |w|, mu_y |w|, -|w|]
 //! ```
 //!
-//! and for the line and the resultants the sums `G_pq` and those of the torques, which are dot products. All this is the paper's mathematics (Eqs. 8 to 16) put
-//! together otherwise: without a filter the results are the same but for rounding.
+//! and for the line and the resultants the sums `G_pq` and those of the torques, which are dot products. All this is the
+//! paper's mathematics (Eqs. 8 to 16) put together otherwise: without a filter the results are the same but for rounding.
 
 use nalgebra::{DMatrix, RowDVector};
 

@@ -9,7 +9,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::samples::Sample;
-use super::twins::Diagonal;
+use super::twins::{Diagonal, TRANSPOSED};
 use crate::design::Correction;
 use crate::parity::{CLASSES, Quads, sign};
 
@@ -113,7 +113,7 @@ fn diagonal([half, _]: [usize; 2]) -> Diagonal {
     let quads = Quads::new(2 * half + 1, 2 * half + 1);
     let of = |class: usize| (0..quads.count()).filter(move |&quad| quads.exists(class, quad));
     Diagonal::new([0, 1, 2, 3].map(|class| {
-        let other = [0, 2, 1, 3][class];
+        let other = TRANSPOSED[class];
         let transposed = |quad: usize| quad % quads.columns() * quads.columns() + quad / quads.columns();
         let places = of(class).map(|quad| of(other).position(|at| at == transposed(quad)).unwrap_or(0));
         // The inputs behind the window come in the same order.

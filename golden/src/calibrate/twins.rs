@@ -11,7 +11,7 @@ use crate::estimators::joint::Correction;
 use crate::parity::CLASSES;
 
 /// The class that a parity class is of the transposed look.
-const TRANSPOSED: [usize; CLASSES] = [0, 2, 1, 3];
+pub(super) const TRANSPOSED: [usize; CLASSES] = [0, 2, 1, 3];
 
 /// Whether x and y may change places on a sensor.
 pub(super) fn has_diagonal(sensor: &Sensor) -> bool {

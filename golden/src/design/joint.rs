@@ -222,8 +222,9 @@ fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<
 pub(super) fn print(constants: &JointConstants, weights: &str) -> [String; 2] {
     let JointConstants { grid, family, gain, tangential: [c1, c3], correction, doubt, fitted_to } = constants;
     let told = correction.as_ref().and_then(|correction| correction.doubt.as_ref());
-    let unusual = doubt.to_bits() != DEFAULT_DOUBT.to_bits();
-    let doubt = if told.is_some() || unusual { format!("doubt = {doubt:?}\n") } else { String::new() };
+    // Of the narrow family no error is told, and a limit for one is refused.
+    let says = *family == Family::Wide && (told.is_some() || doubt.to_bits() != DEFAULT_DOUBT.to_bits());
+    let doubt = if says { format!("doubt = {doubt:?}\n") } else { String::new() };
     // Only where it is another one: a design without it keeps the hash that it had before there was such a key.
     let grid = if *grid == Grid::FINE { String::new() } else { format!("grid = {}\n", grid.side()) };
     let family = if *family == Family::Narrow { String::new() } else { format!("family = \"{family}\"\n") };

@@ -1,8 +1,8 @@
 //! The friction estimators, and what all of them have in common.
 //!
 //! An estimator finds the friction components of a frame from what either plan knows of it, [`Seen`]. Each has a folder of
-//! its own; outside of it the registry here, the design file's parser and the
-//! calibration, which is the joint one's, know its name. `docs/estimators.md` compares them.
+//! its own; outside of it the registry here, the design file's parser and the calibration, which is the joint one's, know
+//! its name. `docs/estimators.md` compares them.
 
 pub mod joint;
 pub mod line;

@@ -103,6 +103,8 @@ mod tests {
         QUAD_TO_READY, TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, stress_to_ready,
         taxels_to_write,
     };
+    use golden::estimators::joint::{DOUBT_FRACTION, DOUBT_RANGE};
+
     use crate::cores::cordic;
     use crate::estimators::{joint, line};
     use crate::model::{PULLING, inverse_gain};
@@ -127,7 +129,7 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 39] = [
+        let expected: [(&str, &str, i64); 41] = [
             // A cycle more counts the frame.
             ("sptfra_fold", "LAST_TO_WRITTEN", stress_to_ready(true) as i64 - 1),
             ("sptfra_fold_frame", "TURN_TO_WRITTEN", QUAD_TO_READY as i64 - 1),
@@ -168,6 +170,9 @@ mod tests {
             ("sptfra_look_window", "INPUT_ONE", 1 << joint::INPUT_FRACTION),
             ("sptfra_network", "UNIT_BITS", joint::UNIT_BITS.into()),
             ("sptfra_network", "LIMIT", joint::CORRECTION_LIMIT),
+            // A negative one, and the last step below the other.
+            ("sptfra_doubt", "LEAST", -i64::from(DOUBT_RANGE[0]) << DOUBT_FRACTION),
+            ("sptfra_doubt", "MOST", (i64::from(DOUBT_RANGE[1]) << DOUBT_FRACTION) - 1),
         ];
         for (module, name, value) in expected {
             assert_eq!(constant(module, name), value, "{module}: {name}");

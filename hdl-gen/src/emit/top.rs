@@ -14,7 +14,12 @@ use crate::plan::streams::Intake;
 use super::template::design_module;
 use super::{EmitError, registers};
 
-const TEMPLATE: &str = include_str!("../../templates/rtl/top.v.tera");
+/// One module, cut along the data's way: ports, Bz and CeAn; what shares the lanes; estimator, field and Op.
+const TEMPLATE: &str = concat!(
+    include_str!("../../templates/rtl/top/input.v.tera"),
+    include_str!("../../templates/rtl/top/lanes.v.tera"),
+    include_str!("../../templates/rtl/top/output.v.tera"),
+);
 
 /// The data of the template. Widths end in `_width`.
 #[derive(Serialize)]

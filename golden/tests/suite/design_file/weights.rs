@@ -2,7 +2,7 @@
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
-use golden::design::{Design, Estimator, WEIGHTS_FILE};
+use golden::design::{Design, Estimator, Family, WEIGHTS_FILE};
 use sha2::{Digest, Sha256};
 
 use super::{MINIMAL, refused};
@@ -80,4 +80,26 @@ fn corrections_that_contradict_themselves() {
     ] {
         refused(&corrected(&keys), &parts);
     }
+}
+
+/// A limit for an error that a design does not tell is refused, and so is not written either.
+#[test]
+fn a_doubt_goes_with_the_wide_family() {
+    let joint = |keys: &str| format!("{MINIMAL}[algorithm]\nestimator = \"joint\"\n{keys}");
+    let mut design = Design::from_toml(&joint("family = \"wide\"\ndoubt = 0.1\n"), "pad.toml").unwrap();
+    assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
+    refused(&joint("doubt = 0.1\n"), &["algorithm.doubt", "family = \"wide\"", "golden calibrate"]);
+    design.algorithm.joint.family = Family::Narrow;
+    assert!(!design.to_toml().contains("doubt"), "{}", design.to_toml());
+    assert!(Design::from_toml(&design.to_toml(), "resolved").is_ok());
+}
+
+/// Constants of one family are not those of the other.
+#[test]
+fn the_family_is_part_of_what_constants_were_fitted_to() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/sensor2-wide.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(Design::load(&path).is_ok());
+    let other = text.replace("family = \"wide\"\n", "").replace("doubt = 0.06\n", "");
+    refused(&other, &["algorithm.fitted_to", "wide\"", "golden calibrate"]);
 }

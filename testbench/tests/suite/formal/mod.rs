@@ -1,0 +1,159 @@
+//! Proofs by Yosys and z3 on the generated Verilog: the rules of the streams, and the handshake between the blocks.
+//!
+//! Each harness in `formal/` states properties and, under `INVARIANTS`, what makes them inductive. A proof holds if the
+//! first cycles after reset satisfy both and no cycle can break them. Each has broken copies, whose proof must fail.
+
+mod proofs;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use self::proofs::{Broken, PROOFS, Proof};
+use crate::support::{in_parallel, planned, shipped, workspace};
+use hdl_gen::emit::{FileMap, emit};
+use tempfile::TempDir;
+use testbench::tools;
+
+/// Cycles after reset that are checked: more than the longest induction assumes.
+const FIRST_CYCLES: &str = "6";
+
+/// How a proof ended.
+#[derive(Debug, PartialEq)]
+enum Verdict {
+    Proved,
+    /// What the solver said of the property that fails.
+    Refuted(String),
+}
+
+impl Proof {
+    fn files(&self) -> FileMap {
+        let mut design = shipped("small");
+        "subject".clone_into(&mut design.name);
+        (self.design)(&mut design);
+        emit(&planned(&design)).expect("emitted")
+    }
+
+    /// The design's Verilog, broken if asked, and the harness, as SMT-LIB in a folder.
+    fn translate(&self, files: &FileMap, broken: Option<&Broken>) -> TempDir {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut read = vec!["read_verilog -formal -defer".to_owned()];
+        for (path, contents) in files {
+            // Modules of arithmetic read theirs before they are set free.
+            if let Some(name) = path.strip_prefix("rom/") {
+                fs::write(folder.path().join(name), contents).expect("writable");
+            }
+            let Some(module) = path.strip_prefix("rtl/").and_then(|name| name.strip_suffix(".v")) else { continue };
+            if self.models.iter().any(|&(replaced, _)| replaced == module) {
+                continue;
+            }
+            let mut text = String::from_utf8(contents.clone()).expect("UTF-8");
+            if let Some((_, from, to)) =
+                broken.filter(|(place, ..)| module == *place || module == format!("sptfra_{place}"))
+            {
+                assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
+                text = text.replace(from, to);
+            }
+            fs::write(folder.path().join(format!("{module}.v")), text).expect("writable");
+            read.push(format!("{module}.v"));
+        }
+        for file in self.models.iter().map(|&(_, model)| model).chain([self.harness]) {
+            let name = format!("{file}.sv");
+            fs::copy(workspace("testbench/formal").join(&name), folder.path().join(&name)).expect("a file of formal/");
+            if file != self.harness {
+                read.push(name);
+            }
+        }
+        let harness = fs::read_to_string(folder.path().join(format!("{}.sv", self.harness))).expect("there");
+        let mut script = vec![read.join(" ")];
+        if !self.parameters.is_empty() {
+            // Modules that are read and not elaborated yet have this prefix.
+            script.push(format!("chparam {} $abstract\\{}", self.parameters, self.top));
+        }
+        script.extend([format!("hierarchy -top {}", self.top), "proc".to_owned()]);
+        if !self.free.is_empty() {
+            script.push(format!("cutpoint t:{}", self.free.join(" t:")));
+        }
+        script.push("flatten".to_owned());
+        script.extend(self.free_wires.iter().map(|wire| format!("cutpoint w:{wire}")));
+        script.push("setundef -undriven -anyseq".to_owned());
+        // What the harness looks at inside the subject becomes a port of it.
+        script.push(format!("expose {}", inside(&harness, self.defines)));
+        let defines: String = self.defines.iter().map(|name| format!(" -D{name}")).collect();
+        script.push(format!("read_verilog -formal -DINVARIANTS{defines} {}.sv", self.harness));
+        script.push("prep -flatten -top harness; memory_map; async2sync; dffunmap".to_owned());
+        script.push("write_smt2 -wires proof.smt2".to_owned());
+        fs::write(folder.path().join("proof.ys"), script.join("\n")).expect("writable");
+        let said = run(tools::yosys().expect("installed").args(["-q", "proof.ys"]), folder.path());
+        assert!(folder.path().join("proof.smt2").is_file(), "{}: {said}", self.name);
+        folder
+    }
+
+    fn check(&self, files: &FileMap, broken: Option<&Broken>) -> Verdict {
+        let folder = self.translate(files, broken);
+        let parts: [&[&str]; 2] = [&["-t", FIRST_CYCLES], &["-i", "-t", self.induction]];
+        for part in parts {
+            let mut solver = tools::yosys_smtbmc().expect("installed");
+            let said = run(solver.args(["-s", "z3"]).args(part).arg("proof.smt2"), folder.path());
+            if said.contains("Status: PASSED") {
+                continue;
+            }
+            assert!(said.contains("Status: FAILED"), "{}: {said}", self.name);
+            let reason = said.lines().find_map(|line| Some(line.split_once("Assert failed in ")?.1.to_owned()));
+            return Verdict::Refuted(reason.unwrap_or_else(|| panic!("{}: no property failed:\n{said}", self.name)));
+        }
+        Verdict::Proved
+    }
+}
+
+/// The wires that the harness's instance names below its line `// Inside`, those in the other way of an `ifdef` left
+/// out.
+fn inside(harness: &str, defines: &[&str]) -> String {
+    let (_, rest) = harness.split_once("// Inside\n").expect("a mark");
+    let (ports, _) = rest.split_once(");").expect("an end");
+    let mut taken = true;
+    let mut there = |line: &&str| {
+        match line.trim().split_once(' ').unwrap_or((line.trim(), "")) {
+            ("`ifdef", name) => taken = defines.contains(&name),
+            ("`else", _) => taken = !taken,
+            ("`endif", _) => taken = true,
+            _ => return taken,
+        }
+        false
+    };
+    let lines = ports.lines().filter(|line| there(line));
+    let names = lines.filter_map(|line| line.trim().strip_prefix('.')?.split_whitespace().next());
+    names.map(|name| format!("w:{}", name.trim_start_matches('\\'))).collect::<Vec<_>>().join(" ")
+}
+
+fn run(command: &mut Command, folder: &Path) -> String {
+    let output = command.current_dir(folder).output().expect("starts");
+    (String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr)).into_owned()
+}
+
+#[test]
+fn every_proof_holds_and_every_broken_copy_is_found() {
+    let cases: Vec<(&Proof, Option<&Broken>)> = PROOFS
+        .iter()
+        .flat_map(|proof| {
+            std::iter::once((proof, None)).chain(proof.broken.iter().map(move |copy| (proof, Some(copy))))
+        })
+        .collect();
+    let files: Vec<(&str, FileMap)> = PROOFS.iter().map(|proof| (proof.name, proof.files())).collect();
+    let verdicts = in_parallel(&cases, |&(proof, broken)| {
+        let (_, files) = files.iter().find(|(name, _)| *name == proof.name).expect("emitted above");
+        proof.check(files, broken)
+    });
+    let mut wrong = Vec::new();
+    for ((proof, broken), verdict) in cases.iter().zip(&verdicts) {
+        println!(
+            "{}: {}: {verdict:?}",
+            proof.name,
+            broken.map_or("as generated".to_owned(), |copy| format!("{copy:?}"))
+        );
+        if (*verdict == Verdict::Proved) != broken.is_none() {
+            wrong.push(format!("{}, {broken:?}: {verdict:?}", proof.name));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
