@@ -56,6 +56,8 @@ module sptfra_search #(
     localparam integer LAST_ELEMENT = CELL_ELEMENTS - 1;
     // From the last taxel's address of an evaluation to the decision: the cell, the tree, the decision
     localparam integer DECISION_CYCLES = 5 + $clog2(CELLS);
+    // The other end is read while one waits for its decision; of so many taxels that it is known when they are over
+    localparam [0:0] KNOWN_IN_TIME = (LAST_ELEMENT > DECISION_CYCLES);
     localparam signed [18:0] ONE = 19'sd65536;
     localparam integer LEVEL_LEFT = (LEVEL_SHIFT > 0) ? LEVEL_SHIFT : 0;
     localparam integer LEVEL_RIGHT = (LEVEL_SHIFT < 0) ? -LEVEL_SHIFT : 0;
@@ -168,8 +170,8 @@ module sptfra_search #(
         if (reading) begin
             element <= last_element ? {ELEMENT_WIDTH{1'b0}} : element + 1'b1;
             if (last_element) begin
-                second <= pair;
-                reading <= pair && !second;
+                second <= pair && !second;
+                reading <= (pair && !second) || (KNOWN_IN_TIME && (state == LEVEL) && (step != LAST_STEP));
             end
         end
         resume <= 1'b0;
@@ -246,7 +248,6 @@ module sptfra_search #(
                 high_is_lower <= (floor_high < floor_low);
                 if (step_over) begin
                     floor_high <= total;
-                    second <= 1'b0;
                 end
                 if (compared) begin
                     left_in <= high_is_lower ? high : low;
@@ -262,6 +263,7 @@ module sptfra_search #(
                     end else begin
                         left_out <= {left_sum[18], left_sum[18:1]};
                     end
+                    resume <= !KNOWN_IN_TIME && (step != LAST_STEP);
                 end
                 if (step_over) begin
                     if (fits_level) begin
@@ -269,12 +271,9 @@ module sptfra_search #(
                     end else begin
                         right_out <= {right_sum[18], right_sum[18:1]};
                     end
-                    second <= 1'b0;
                     step <= step + 5'd1;
                     if (step == LAST_STEP) begin
                         state <= FINISH;
-                    end else begin
-                        resume <= 1'b1;
                     end
                 end
             end

@@ -15,10 +15,14 @@ pub fn decision(cells: Cells) -> u32 {
 }
 
 /// Start to end of the search: both passes, the slope bisections, the floor with a comparison, the level bisections; a
-/// cycle between a bisection and the next evaluation, in which the new middle is computed.
+/// cycle between a bisection and the next evaluation, in which the new middle is computed. While one end of the level set
+/// waits for its decision, the other's taxels are read.
 pub fn search(cells: Cells) -> u64 {
     let elements = cells.elements as u64;
     let decision = u64::from(decision(cells));
     let steps = u64::from(SEARCH_STEPS);
-    2 * elements + 9 + steps * (elements + decision) + (steps + 1) * (2 * elements + decision) + 2 * steps - 1
+    let slope = steps * (elements + decision + 1);
+    let pair = 2 * elements + decision;
+    let level = (steps - 1) * (2 * elements).max(elements + decision + 1) + pair;
+    2 * elements + 9 + slope + pair + level
 }
