@@ -68,10 +68,9 @@ fn mirror_side(plan: &Plan) -> usize {
 
 fn products(plan: &Plan, parameters: Parameters) -> Parameters {
     let (products, windows, programs) = (&plan.products, &plan.schedule.windows, &plan.schedule.programs);
-    let begins = |index| programs.iter().any(|program| program.first == index);
+    let gap = |index| programs.iter().find(|program| program.first == index).map_or(0, |next| next.gap - TURN_GAP);
     let length = |index: usize| windows[index].rounds.map_or(windows[index].length, |rounds| rounds.lead).max(1);
-    let wait =
-        |index: usize| windows[index].wait + if begins(index) { plan.schedule.program_gap - TURN_GAP } else { 0 };
+    let wait = |index: usize| windows[index].wait + gap(index);
     let longest = (0..products.len()).map(|index| length(index).max(wait(index))).max().unwrap_or(1);
     let bits = address_bits(longest as usize + 1);
     let name = |index: usize| {

@@ -59,8 +59,6 @@ struct Constants {
     direction: u64,
     /// Of the search.
     stages: Vec<u64>,
-    /// Cycles from a start pulse to the first issue.
-    start_to_issue: u64,
     programs: Vec<Program>,
     /// Visit of the last of the sums, in the first program.
     last_sum: u64,
@@ -89,7 +87,6 @@ impl Constants {
             line: estimator.line_latency(),
             direction: estimator.contact_latency(),
             stages: estimator.stages(&plan.design.sensor),
-            start_to_issue: latency::start_to_issue(schedule.program_gap),
             programs: schedule.programs.clone(),
             last_sum: sums.max().unwrap_or(0),
         }
@@ -271,7 +268,7 @@ impl<'a> Control<'a> {
             self.field_due = true;
             self.residual_there = last_visit + VISIT_TO_RESIDUAL;
         } else if may_frame {
-            let first_issue = self.now + 1 + self.of.start_to_issue;
+            let first_issue = self.first_issue(0);
             let last_visit = self.start(0);
             self.frames_ready.pop_front();
             self.searches_due += 1;
@@ -288,10 +285,15 @@ impl<'a> Control<'a> {
         }
     }
 
+    /// Of a program that is started now, one cycle after the decision.
+    fn first_issue(&self, index: usize) -> u64 {
+        self.now + 1 + latency::start_to_issue(self.of.programs[index].gap)
+    }
+
     /// Starts a program, one cycle after the decision; returns the cycle of its last visit.
     fn start(&mut self, index: usize) -> u64 {
         let program = self.of.programs[index];
-        let first_issue = self.now + 1 + self.of.start_to_issue;
+        let first_issue = self.first_issue(index);
         self.lanes_free = first_issue + program.length - 1 - SEQUENCER_TO_LANES;
         first_issue + program.last_visit
     }

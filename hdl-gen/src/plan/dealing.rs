@@ -20,11 +20,13 @@ struct Piece {
 pub(super) struct Stream<'a> {
     /// Index of the product.
     pub product: u32,
+    /// Index of its stored matrix.
+    pub matrix: usize,
     /// `(number of the result, entries)`.
     pub rows: Vec<(u32, &'a [Entry])>,
     /// Whether the entries go into the ROMs, rather than being there already.
     pub store: bool,
-    /// Cycle of the first issue.
+    /// Cycle of the first issue, at the earliest.
     pub start: u64,
     /// Fewest cycles from taking one of its results to taking the next one.
     pub spacing: u64,
@@ -41,6 +43,19 @@ impl<'a> Stream<'a> {
     }
 }
 
+/// From when on the lanes may read the operand in a column, in cycles of the program; 0 where an earlier one has made it.
+pub(super) type Readable<'a> = &'a dyn Fn(u32) -> u64;
+
+/// When a product runs.
+pub(super) struct Dealt {
+    /// Cycle of the first issue.
+    pub start: u64,
+    /// Issue cycles.
+    pub length: u64,
+    /// Cycle in which the last result is taken.
+    pub last_visit: u64,
+}
+
 /// The lanes' programs while they grow.
 pub(super) struct Dealer {
     pub programs: Vec<LaneProgram>,
@@ -51,6 +66,8 @@ pub(super) struct Dealer {
     collector_free: u64,
     /// Where the dense rows of a stored matrix begin.
     pub rounds_of: BTreeMap<usize, usize>,
+    /// Where the words of a stored matrix begin, in each lane.
+    words_of: BTreeMap<usize, Vec<usize>>,
 }
 
 impl Dealer {
@@ -61,6 +78,7 @@ impl Dealer {
             visits: Vec::new(),
             collector_free: 0,
             rounds_of: BTreeMap::new(),
+            words_of: BTreeMap::new(),
         }
     }
 
@@ -78,15 +96,27 @@ impl Dealer {
         (words, segments, self.visits.len())
     }
 
-    /// Deals one product; returns its length in issue cycles and the cycle in which its last result is taken.
-    pub fn deal(&mut self, stream: &Stream<'_>) -> (u64, u64) {
-        let pieces = self.cut(stream);
-        let used = self.place(stream, pieces);
+    /// Deals one product, which starts as soon as each MAC finds its operand.
+    pub fn deal(&mut self, stream: &Stream<'_>, readable: Readable<'_>) -> Dealt {
+        let pieces = self.cut(stream, readable);
+        let start = stream.start.max(self.soonest(stream.matrix, &pieces, readable));
+        let used = self.place(stream, start, pieces);
         let length = used.iter().copied().max().unwrap_or(0);
         for (program, used) in self.programs.iter_mut().zip(used) {
             push(&mut program.segments, SegmentKind::Idle, length - used);
         }
-        (length, self.visits.last().map_or(stream.start, |visit| visit.cycle))
+        Dealt { start, length, last_visit: self.visits.last().map_or(start, |visit| visit.cycle) }
+    }
+
+    /// The first cycle from which on no MAC is issued before its operand can be read. Idle cycles only delay.
+    fn soonest(&self, matrix: usize, pieces: &[VecDeque<Piece>], readable: Readable<'_>) -> u64 {
+        let lanes = self.programs.iter().zip(&self.words_of[&matrix]).zip(pieces);
+        let cycles = lanes.flat_map(|((lane, &begin), pieces)| {
+            let macs: u64 = pieces.iter().map(|piece| piece.macs).sum();
+            let words = &lane.words[begin..begin + macs as usize];
+            (0..).zip(words).map(|(issue, &(column, _))| readable(column).saturating_sub(issue))
+        });
+        cycles.max().unwrap_or(0)
     }
 
     /// Deals the rows of a product that passes over zeros, whole rows in rounds of one a lane, `start` being the cycle
@@ -122,7 +152,7 @@ impl Dealer {
     }
 
     /// Cuts the product's stream of MACs into equal shares; appends the words to the lanes' ROMs if they are new.
-    fn cut(&mut self, stream: &Stream<'_>) -> Vec<VecDeque<Piece>> {
+    fn cut(&mut self, stream: &Stream<'_>, readable: Readable<'_>) -> Vec<VecDeque<Piece>> {
         let lanes = self.programs.len();
         let total: usize = stream.rows.iter().map(|(_, entries)| entries.len()).sum();
         let longest_row = stream.rows.iter().map(|(_, entries)| entries.len()).max().unwrap_or(1).max(1);
@@ -130,9 +160,14 @@ impl Dealer {
         let active = (total / longest_row).clamp(1, lanes);
         let share = total.div_ceil(active);
         let mut pieces: Vec<VecDeque<Piece>> = (0..lanes).map(|_| VecDeque::new()).collect();
+        if stream.store {
+            let begins = self.programs.iter().map(|lane| lane.words.len()).collect();
+            self.words_of.insert(stream.matrix, begins);
+        }
         let mut begin = 0;
         for &(row, entries) in &stream.rows {
             let end = begin + entries.len();
+            let entries = if stream.store { arranged(entries, share - begin % share, readable) } else { Vec::new() };
             let mut at = begin;
             while at < end {
                 let lane = at / share;
@@ -155,11 +190,11 @@ impl Dealer {
 
     /// Gives every piece its time, results in the order in which they become ready; returns the cycles that each
     /// lane needs.
-    fn place(&mut self, stream: &Stream<'_>, mut pieces: Vec<VecDeque<Piece>>) -> Vec<u64> {
+    fn place(&mut self, stream: &Stream<'_>, start: u64, mut pieces: Vec<VecDeque<Piece>>) -> Vec<u64> {
         let mut used = vec![0_u64; pieces.len()];
         let mut ready = BinaryHeap::new();
         for lane in 0..pieces.len() {
-            if let Some(cycle) = self.next_result(lane, &mut pieces[lane], &mut used[lane], stream.start) {
+            if let Some(cycle) = self.next_result(lane, &mut pieces[lane], &mut used[lane], start) {
                 ready.push(Reverse((cycle, lane)));
             }
         }
@@ -185,7 +220,7 @@ impl Dealer {
                 used[lane] += piece.macs;
                 push(&mut self.programs[lane].segments, piece.kind, piece.macs);
             }
-            if let Some(cycle) = self.next_result(lane, &mut pieces[lane], &mut used[lane], stream.start) {
+            if let Some(cycle) = self.next_result(lane, &mut pieces[lane], &mut used[lane], start) {
                 ready.push(Reverse((cycle, lane)));
             }
         }
@@ -200,6 +235,19 @@ impl Dealer {
         }
         pieces.front().map(|piece| start + *used + piece.macs - 1 + ISSUE_TO_RESULT)
     }
+}
+
+/// The entries of a row in the order in which their operands can be read, of equal ones by column. Of a row that goes on
+/// in the next lane the first `room` stand at the end of a lane's share, the others at the beginning of one: these are
+/// issued first.
+fn arranged(entries: &[Entry], room: usize, readable: Readable<'_>) -> Vec<Entry> {
+    let mut entries = entries.to_vec();
+    if entries.iter().any(|&(column, _)| readable(column) > 0) {
+        entries.sort_by_key(|&(column, _)| readable(column));
+        let early = entries.len().saturating_sub(room);
+        entries.rotate_left(early);
+    }
+    entries
 }
 
 /// Cycles of a round for `columns` columns that are not zero: the collector takes one result a cycle.

@@ -13,10 +13,10 @@
 
 use serde::Serialize;
 
-use super::dealing::{Dealer, Stream, rounds_period};
+use super::dealing::{Dealer, Dealt, Stream, rounds_period};
 pub use super::lane::{LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
-use super::product::{Epilogue, Product, Vector, spacing, visit_to_operand};
+use super::product::{Epilogue, Product, Vector, mirror, spacing, visit_to_operand};
 use crate::blocks::latency::{COLLECTOR_JUMP, ISSUE_TO_RESULT, ROUNDS_FETCH, TURN_GAP, WRITE_TO_LIST};
 
 /// When a product runs, in cycles from the first issue of its program.
@@ -26,7 +26,7 @@ pub struct Window {
     pub start: u64,
     /// Issue cycles.
     pub length: u64,
-    /// Idle cycles before `start`, until the operand is complete.
+    /// Idle cycles before `start`, until every MAC finds its operand.
     pub wait: u64,
     /// MACs of all lanes in this window; with four ways a lane counts once.
     pub macs: u64,
@@ -67,6 +67,8 @@ pub struct Program {
     pub first_visit: u64,
     /// Cycle of its last visit.
     pub last_visit: u64,
+    /// Cycles without issue between the last issue of whatever program runs before and its first, at least.
+    pub gap: u64,
 }
 
 /// The lanes' work for one frame.
@@ -80,8 +82,6 @@ pub struct Schedule {
     pub windows: Vec<Window>,
     /// Every result in the order in which the collector takes them, program after program.
     pub visits: Vec<Visit>,
-    /// Cycles without issue between the last issue of a program and the first of the next, at least.
-    pub program_gap: u64,
 }
 
 impl Schedule {
@@ -94,19 +94,22 @@ impl Schedule {
         let mut first = 0;
         for chunk in products.chunk_by(|one, other| one.program == other.program) {
             let (word, segment, visit) = dealer.begin();
-            let mut complete: Vec<(Vector, u64)> = Vec::new();
+            let mut made: Vec<Made> = Vec::new();
             let mut next_start = 0;
             for (offset, product) in chunk.iter().enumerate() {
-                let start = earliest(product, chunk, &complete).max(next_start);
                 let main = &matrices[product.matrix];
                 let lead = product.lead.as_ref().map(|lead| &matrices[lead.matrix]);
                 let new = |matrix: usize| !std::mem::replace(&mut stored[matrix], true);
                 let index = (first + offset) as u32;
-                let work = Work { product, index, lead, main, start };
-                let (length, last_visit, macs, rounds) =
-                    if product.skips { work.in_rounds(&mut dealer, new) } else { work.in_pieces(&mut dealer, new) };
+                let work = Work { product, index, lead, main, start: next_start.max(addend(product, &made)) };
+                let first_visit = dealer.visits.len();
+                let (Dealt { start, length, last_visit }, macs, rounds) = if product.skips {
+                    work.in_rounds(&mut dealer, &made, new)
+                } else {
+                    work.in_pieces(&mut dealer, &made, new)
+                };
                 windows.push(Window { start, length, wait: start - next_start, macs, rounds });
-                complete.push((product.result, last_visit));
+                made.push(Made::new(product, main.rows.len(), &dealer.visits[first_visit..], last_visit));
                 next_start = start + length;
             }
             let cycles = |visit: Option<&Visit>| visit.map_or(0, |visit| visit.cycle);
@@ -123,11 +126,15 @@ impl Schedule {
                     _ => cycles(dealer.visits.get(visit)),
                 },
                 last_visit: cycles(dealer.visits.last()),
+                gap: 0,
             });
             first += chunk.len();
         }
-        let program_gap = program_gap(&programs, &windows, lanes);
-        Self { lanes: dealer.programs, programs, windows, visits: dealer.visits, program_gap }
+        let longest_drain = programs.iter().map(|program| program.last_visit - program.length).max().unwrap_or(0);
+        for program in &mut programs {
+            program.gap = gap(program, &windows[program.first..program.end], longest_drain, lanes);
+        }
+        Self { lanes: dealer.programs, programs, windows, visits: dealer.visits }
     }
 
     /// Words in the values ROMs: those with a column, then the dense rows.
@@ -166,71 +173,92 @@ struct Work<'a> {
     start: u64,
 }
 
-/// Length, cycle of the last visit, MACs, and the rounds if there are any.
-type Dealt = (u64, u64, u64, Option<Rounds>);
+/// When it runs, MACs, and the rounds if there are any.
+type Worked = (Dealt, u64, Option<Rounds>);
 
 impl<'a> Work<'a> {
     fn stream(&self, mut rows: Vec<(u32, &'a [Entry])>, store: bool, start: u64) -> Stream<'a> {
-        self.product.relabel(&mut rows);
-        Stream { product: self.index, rows, store, start, spacing: spacing(self.product.epilogue) }
+        let Self { product, index, .. } = *self;
+        product.relabel(&mut rows);
+        let spacing = spacing(product.epilogue);
+        Stream { product: index, matrix: product.matrix, rows, store, start, spacing }
     }
 
-    fn in_pieces(&self, dealer: &mut Dealer, mut new: impl FnMut(usize) -> bool) -> Dealt {
+    /// Starts while the operand is still being made, if its MACs find what they need.
+    fn in_pieces(&self, dealer: &mut Dealer, made: &[Made], mut new: impl FnMut(usize) -> bool) -> Worked {
         let rows = Stream::rows_of(self.lead, self.main);
         let macs = rows.iter().map(|(_, entries)| entries.len() as u64).sum();
-        let (length, last_visit) = dealer.deal(&self.stream(rows, new(self.product.matrix), self.start));
-        (length, last_visit, macs, None)
+        let sources: Vec<Option<&Made>> =
+            self.product.operands.iter().map(|&operand| made.iter().find(|made| made.result.holds(operand))).collect();
+        let size = self.main.rows.len();
+        let readable = |column: u32| {
+            let (operand, element) = (column as usize / size, column as usize % size);
+            let element = self.product.mirrored.map_or(element, |side| mirror(element, side));
+            sources[operand].map_or(0, |made| made.readable[element])
+        };
+        let stream = self.stream(rows, new(self.product.matrix), self.start);
+        (dealer.deal(&stream, &readable), macs, None)
     }
 
-    fn in_rounds(&self, dealer: &mut Dealer, mut new: impl FnMut(usize) -> bool) -> Dealt {
+    /// Starts when the operand is complete and the list of what is not zero in it.
+    fn in_rounds(&self, dealer: &mut Dealer, made: &[Made], mut new: impl FnMut(usize) -> bool) -> Worked {
+        let sources = || made.iter().filter(|made| self.product.operands.iter().any(|&part| made.result.holds(part)));
+        let complete = sources().flat_map(|made| made.readable.iter().max()).max();
+        let start = self.start.max(complete.map_or(0, |cycle| cycle + WRITE_TO_LIST));
         let mut rows = Stream::rows_of(self.lead, self.main);
         let main = rows.split_off(rows.len() - self.main.rows.len());
         let macs = rows.iter().chain(&main).map(|(_, entries)| entries.len() as u64).sum();
-        let (lead, _) = if rows.is_empty() { (0, 0) } else { dealer.deal(&self.stream(rows, true, self.start)) };
+        let lead = if rows.is_empty() { 0 } else { dealer.deal(&self.stream(rows, true, start), &|_| 0).length };
         let store = new(self.product.matrix);
         // A matrix that is read again stands where its first product put it.
         let end = dealer.round_words();
         let word = *dealer.rounds_of.entry(self.product.matrix).or_insert(end);
         let count = main.len().div_ceil(dealer.programs.len());
-        let (length, last_visit) = dealer.deal_rounds(&self.stream(main, store, self.start + lead + ROUNDS_FETCH));
-        (lead + ROUNDS_FETCH + length, last_visit, macs, Some(Rounds { lead, count, word }))
+        let (length, last_visit) = dealer.deal_rounds(&self.stream(main, store, start + lead + ROUNDS_FETCH));
+        let length = lead + ROUNDS_FETCH + length;
+        (Dealt { start, length, last_visit }, macs, Some(Rounds { lead, count, word }))
     }
 }
 
-/// When the operands and the addend of a product are there, as far as its own program makes them.
-fn earliest(product: &Product, program: &[Product], complete: &[(Vector, u64)]) -> u64 {
-    let made_by = |vector: Vector| {
-        let (_, visit) = complete.iter().find(|&&(result, _)| result.holds(vector))?;
-        let producer = program.iter().find(|other| other.result.holds(vector))?;
-        Some((producer, *visit))
-    };
-    let operands = product.operands.iter().filter_map(|&operand| made_by(operand)).map(|(producer, visit)| {
-        let list = if product.skips { WRITE_TO_LIST } else { 0 };
-        visit + visit_to_operand(producer.epilogue) + list
-    });
-    let addend = match product.epilogue {
-        Epilogue::Add(partial) => made_by(partial).map(|(_, visit)| visit),
-        _ => None,
-    };
-    operands.chain(addend).max().unwrap_or(0)
+/// What a product of the program under way has made.
+struct Made {
+    result: Vector,
+    /// Cycle in which the last result is taken.
+    last_visit: u64,
+    /// For each element, the first cycle in which a MAC may be issued that reads it.
+    readable: Vec<u64>,
 }
 
-/// Results of one program must have left the lanes before the first of the next is ready, and the collector must have
-/// gone on to the next before the one after that is started: it remembers one. Whichever follow each other.
-fn program_gap(programs: &[Program], windows: &[Window], lanes: usize) -> u64 {
-    let longest_drain = programs.iter().map(|program| program.last_visit - program.length).max().unwrap_or(0);
-    let soonest_result = programs.iter().map(|program| program.first_visit).min().unwrap_or(0);
+impl Made {
+    fn new(product: &Product, size: usize, visits: &[Visit], last_visit: u64) -> Self {
+        let mut readable = vec![0; size];
+        for visit in visits {
+            // Sums over the frame are no operand.
+            if let Some(element) = readable.get_mut(visit.row as usize) {
+                *element = visit.cycle + visit_to_operand(product.epilogue);
+            }
+        }
+        Self { result: product.result, last_visit, readable }
+    }
+}
+
+/// When the addend of a product is there, as far as its own program makes it.
+fn addend(product: &Product, made: &[Made]) -> u64 {
+    let Epilogue::Add(partial) = product.epilogue else { return 0 };
+    made.iter().find(|made| made.result.holds(partial)).map_or(0, |made| made.last_visit)
+}
+
+/// The gap before a program: the results of the one before, `longest_drain` cycles after its last issue at most, must
+/// have left the lanes before the first of this one is ready, and the collector must have gone on to this one before the
+/// one after it is started: it remembers one.
+fn gap(program: &Program, windows: &[Window], longest_drain: u64, lanes: usize) -> u64 {
     let saved = |window: &Window| {
         // An operand of nothing but zeros.
         let shortest = |rounds: Rounds| rounds.lead + ROUNDS_FETCH + rounds.count as u64 * rounds_period(0, lanes);
         window.rounds.map_or(0, |rounds| window.length - shortest(rounds))
     };
-    let shortest = programs
-        .iter()
-        .map(|program| program.length - windows[program.first..program.end].iter().map(saved).sum::<u64>())
-        .min()
-        .unwrap_or(0);
-    let before_result = (longest_drain + COLLECTOR_JUMP).saturating_sub(soonest_result);
+    let shortest = program.length - windows.iter().map(saved).sum::<u64>();
+    let before_result = (longest_drain + COLLECTOR_JUMP).saturating_sub(program.first_visit);
     let before_start = (longest_drain + 1).saturating_sub(shortest);
     before_result.max(before_start).max(TURN_GAP)
 }

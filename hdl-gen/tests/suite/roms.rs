@@ -172,6 +172,8 @@ fn product_in_roms(readers: &mut [Reader], plan: &Plan, index: usize, cycles: u6
         assert_eq!(issued, cycles, "product {index}, lane {lane}");
     }
     assert!(open_head.is_none());
+    // In the ROMs they stand in the order in which the lanes find their operands.
+    rows.iter_mut().for_each(|row| row.sort_by_key(|&(column, _)| column));
     rows
 }
 

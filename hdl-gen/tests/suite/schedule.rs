@@ -6,7 +6,7 @@ use hdl_gen::estimators::Cells;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
 use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, SUM_ROWS, Step, Vector, visit_to_operand};
-use hdl_gen::plan::schedule::{Schedule, SegmentKind, Visit};
+use hdl_gen::plan::schedule::{LaneProgram, Schedule, SegmentKind, Visit};
 use proptest::prelude::*;
 
 use crate::lanes::{RowSums, Sums, execute};
@@ -64,7 +64,7 @@ fn check(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize) -> Sc
     schedule
 }
 
-/// Every coefficient stands in one lane's ROM, once, lane after lane in row order, in equal shares; a program's
+/// Every coefficient stands in one lane's ROM, once, lane after lane row by row, in equal shares; a program's
 /// matrices begin at the same address in every lane.
 fn check_dealing(schedule: &Schedule, products: &[Product], matrices: &[QuantisedMatrix]) {
     let mut stored = vec![false; matrices.len()];
@@ -87,14 +87,23 @@ fn check_dealing(schedule: &Schedule, products: &[Product], matrices: &[Quantise
             let flat: Vec<Entry> = rows.iter().copied().flatten().copied().collect();
             let longest = rows.iter().map(|row| row.len()).max().unwrap();
             let share = flat.len().div_ceil((flat.len() / longest).clamp(1, schedule.lanes.len()));
-            let mut rest = &flat[..];
+            let mut left = flat.len();
+            let mut dealt = Vec::new();
             for (lane, begin) in schedule.lanes.iter().zip(&mut begin) {
-                let (mine, others) = rest.split_at(share.min(rest.len()));
-                assert_eq!(&lane.words[*begin..*begin + mine.len()], mine, "{}", main.name);
-                *begin += mine.len();
-                rest = others;
+                let mine = share.min(left);
+                dealt.extend_from_slice(&lane.words[*begin..*begin + mine]);
+                *begin += mine;
+                left -= mine;
             }
-            assert!(rest.is_empty());
+            // Of a row in the order in which the operands are there.
+            let mut words = &mut dealt[..];
+            for row in rows {
+                let (mine, others) = words.split_at_mut(row.len());
+                mine.sort_by_key(|&(column, _)| column);
+                assert_eq!(mine, &row[..], "{}", main.name);
+                words = others;
+            }
+            assert!(words.is_empty());
         }
     }
     assert!(stored.into_iter().all(|stored| stored));
@@ -144,7 +153,7 @@ fn check_programs(schedule: &Schedule, products: &[Product]) {
         // What is started later in time has later visits, product by product: the last one marks the end.
         assert!(visits.is_sorted_by_key(|visit| (visit.product, visit.cycle)));
         for next in &schedule.programs {
-            let begins = program.length + schedule.program_gap;
+            let begins = program.length + next.gap;
             assert!(program.last_visit + COLLECTOR_JUMP <= begins + next.first_visit, "{index}");
             // The collector remembers one start: it has gone on to the next program before the one after that starts.
             assert!(program.last_visit < begins + next.length, "{index}");
@@ -264,7 +273,7 @@ fn rows_of_one_entry_keep_two_places_enough() {
 
 /// Each product reads first what the one before it wrote last.
 #[test]
-fn a_product_waits_for_the_last_row_of_its_operand() {
+fn a_product_starts_as_soon_as_its_macs_find_their_operands() {
     let reversal =
         |size: usize| matrix(size, (1..=size).map(|row| vec![((size - row) as u32, [3, 5, 7, 9])]).collect());
     let product = |matrix, block, operand, epilogue, result| Product {
@@ -299,9 +308,20 @@ fn a_product_waits_for_the_last_row_of_its_operand() {
         for (size, lanes) in (2..20).flat_map(|size| (1..10).map(move |lanes| (size, lanes))) {
             let schedule = check(&chain(first, second), &vec![reversal(size); 3], lanes);
             for (index, window) in schedule.windows.iter().enumerate().skip(1) {
-                let of_operand = schedule.visits.iter().filter(|visit| visit.product as usize == index - 1);
-                let last = of_operand.map(|visit| visit.cycle).max().unwrap();
-                assert_eq!(window.start, last + delays[index - 1], "no sooner and no later");
+                let there = |column: u32| {
+                    let of_operand = |visit: &&Visit| (visit.product as usize, visit.row) == (index - 1, column);
+                    schedule.visits.iter().find(of_operand).unwrap().cycle + delays[index - 1]
+                };
+                // A row has one entry, and a lane rows in a row: word k of a lane is issued k cycles after the first.
+                let share = size.div_ceil(lanes.min(size));
+                let of_lane = |(number, lane): (usize, &LaneProgram)| {
+                    let mine = share.min(size.saturating_sub(number * share));
+                    let words = &lane.words[index * mine..(index + 1) * mine];
+                    (0..).zip(words).map(|(issue, &(column, _))| there(column).saturating_sub(issue)).max()
+                };
+                let soonest = schedule.lanes.iter().enumerate().filter_map(of_lane).max().unwrap();
+                let before = schedule.windows[index - 1];
+                assert_eq!(window.start, soonest.max(before.start + before.length), "no sooner and no later");
             }
         }
     }
