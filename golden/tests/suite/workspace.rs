@@ -228,8 +228,8 @@ fn all_cores_give_what_one_gives() {
     let slipping = expected.iter().filter(|solution| solution.status.contains(Status::SLIP)).count();
     assert!((1..frames.len()).contains(&slipping), "{slipping}");
     let mut found = vec![Solution::zeros(Status::default(), 0); frames.len()];
-    let put = |place: &mut &mut [Solution], index: usize, solution: &Solution| place[index].clone_from(solution);
-    solver.solve_on_all_cores(&frames.concat(), found.chunks_mut(PIECE), put).unwrap();
+    let places = found.chunks_mut(PIECE);
+    solver.solve_on_all_cores(&frames.concat(), places, |place, index, found| place[index].clone_from(found)).unwrap();
     let mut slips = false;
     solver.follow_slips(
         &mut slips,
