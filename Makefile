@@ -40,11 +40,11 @@ run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a l
 
 # What fails soonest comes first: formatting and lints, then the crates in the order in which they use each other.
 .PHONY: test
-test: lint tools sweep-tools ## Everything: formatting, lints, all tests of all crates
+test: lint tools sweep-tools wheel-tools ## Everything: formatting, lints, all tests of all crates
 	$(CARGO) test --workspace
 
 .PHONY: test-times
-test-times: tools sweep-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
+test-times: tools sweep-tools wheel-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
 	@tools/test_times.py
 
 .PHONY: formal
@@ -87,6 +87,14 @@ build: ## The three commands: golden, hdl-gen, testbench
 .PHONY: doc
 doc: ## The crates' documentation, in target/doc
 	$(CARGO) doc --workspace --no-deps
+
+.PHONY: wheel
+wheel: wheel-tools ## The Python package as a wheel, in target/wheels (docs/python.md)
+	@.venv/bin/maturin build --release --strip --manifest-path python/Cargo.toml --out $(TARGET)/wheels
+
+.PHONY: wheel-tools
+wheel-tools: tools ## Install maturin and matplotlib into .venv, for the Python package and its test
+	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-python.txt
 
 .PHONY: book
 book: tools ## README and docs as a site with a search, in target/book

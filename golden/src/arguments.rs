@@ -9,7 +9,8 @@ pub fn design_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().map(with_ending)
 }
 
-fn with_ending(path: PathBuf) -> PathBuf {
+/// The place of a design file: with the ending `.toml` where there is no file without.
+pub fn with_ending(path: PathBuf) -> PathBuf {
     let mut longer = path.clone().into_os_string();
     longer.push(".toml");
     let longer = PathBuf::from(longer);

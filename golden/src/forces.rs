@@ -72,13 +72,18 @@ fn write(path: &Path, columns: &[String], rows: impl Iterator<Item = Vec<f64>>) 
     let mut text = columns.join(",");
     text.push('\n');
     for row in rows {
-        // A status is a word of bits, so it is written without a point.
-        text.push_str(&(row[0] as u32).to_string());
-        text.push(',');
-        frames::push_row(&mut text, row.into_iter().skip(1));
+        push_line(&mut text, &row);
     }
     output::write_whole(path, text.as_bytes())?;
     Ok(())
+}
+
+/// Appends a line of a force file.
+pub fn push_line(text: &mut String, row: &[f64]) {
+    // A status is a word of bits, so it is written without a point.
+    text.push_str(&(row[0] as u32).to_string());
+    text.push(',');
+    frames::push_row(text, row.iter().skip(1).copied());
 }
 
 /// Reads the resultants, friction and direction of a force file of `frames` lines.

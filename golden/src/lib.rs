@@ -42,6 +42,7 @@ pub mod output;
 pub mod parity;
 pub mod products;
 pub mod reduced;
+pub mod resolved;
 pub mod scene;
 pub mod sensor;
 pub mod solver;

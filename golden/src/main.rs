@@ -14,9 +14,9 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use commands::Recording;
-use commands::calibrate::Work;
 use commands::calibrate_recorded::Recordings;
 use golden::arguments::design_file;
+use golden::calibrate::Work;
 use golden::design::Family;
 use golden::manual::Manual;
 use golden::output::print_text;
@@ -58,19 +58,22 @@ enum Command {
     ///
     /// A line of FORCES.csv has, for one frame: status, `F_x`, `F_y`, `F_z`, mu, phi, `mu_x`, `mu_y`, and with --field then
     /// `f_x`, `f_y`, `f_z` of each taxel. Newtons and radians.
+    ///
+    /// With `--out -` the lines go to standard output, each as soon as its frame is there: with `--frames -`, from standard
+    /// input, the command is a filter for frames as they come from a sensor. Frames are then not checked.
     #[command(after_long_help = ALGORITHM)]
     Solve {
         /// Design file (TOML).
         #[arg(value_parser = design_file())]
         design: PathBuf,
         /// Frames (CSV): one frame a line, stresses in pascals, compression negative; counts for a design with
-        /// `pa_per_count`.
+        /// `pa_per_count`. `-`: standard input.
         #[arg(long, value_name = "FRAMES.csv")]
         frames: PathBuf,
         /// Columns of labels before the values of a frame; the file may then have a header.
         #[arg(long, value_name = "N", default_value_t = 0)]
         labels: usize,
-        /// Where to write the forces (CSV).
+        /// Where to write the forces (CSV). `-`: standard output.
         #[arg(long, value_name = "FORCES.csv")]
         out: PathBuf,
         /// Write the forces of each taxel too.

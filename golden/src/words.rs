@@ -8,15 +8,19 @@ use std::fmt;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::de::{DeserializeOwned, Error, value::StrDeserializer};
 
-/// A word that no variant has.
+/// A word that no variant has; prints the words there are.
 #[derive(Debug)]
-pub(crate) struct Unknown {
+pub struct Unknown {
     /// The words there are.
-    pub(crate) allowed: &'static [&'static str],
+    pub allowed: &'static [&'static str],
 }
 
 /// The variant that a word means.
-pub(crate) fn read<T: DeserializeOwned>(word: &str) -> Result<T, Unknown> {
+///
+/// # Errors
+///
+/// [`Unknown`], with the words there are.
+pub fn read<T: DeserializeOwned>(word: &str) -> Result<T, Unknown> {
     T::deserialize(StrDeserializer::new(word))
 }
 

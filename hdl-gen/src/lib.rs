@@ -8,6 +8,8 @@ pub mod blocks;
 pub mod cores;
 pub mod emit;
 pub mod estimators;
+pub mod inspection;
 pub mod model;
+pub mod new_design;
 pub mod plan;
 pub mod write;

@@ -11,10 +11,12 @@ mod samples;
 mod train;
 mod twins;
 mod wide;
+mod work;
 
 pub use doubt::MOST_FOUND as MOST_HIDDEN_WIDE;
 
 pub use contacts::random_contacts;
+pub use work::Work;
 
 use crate::design::{Design, Estimator, Input, JointConstants, conditions};
 use crate::estimators::joint::{CUBIC_LIMIT, Family, Joint};
@@ -99,6 +101,16 @@ pub enum CalibrateError {
     /// The sensor is too deep or too shallow for scenes.
     #[error("contacts for the calibration: {0}")]
     Scene(#[from] SceneError),
+    /// More hidden units than there is room for.
+    #[error("--hidden {hidden}: {why}the hardware has room for 256; use at most {most}")]
+    Hidden {
+        /// Units asked for.
+        hidden: usize,
+        /// What takes the rest of the room.
+        why: &'static str,
+        /// The most there can be.
+        most: usize,
+    },
     /// No frame had an answer.
     #[error(
         "{name}: none of the {samples} frames made for the calibration has an answer; lower algorithm.noise_floor_pa \

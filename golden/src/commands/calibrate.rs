@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use golden::calibrate::{MOST_HIDDEN_WIDE, Settings, calibrate};
+use golden::calibrate::{Work, calibrate};
 use golden::choose::rebase_scenes;
 use golden::design::{Design, Family, Filter, is_name};
 use golden::output::write_together;
@@ -23,14 +23,6 @@ struct Report<'a> {
     weights: usize,
 }
 
-/// What the command's options say of the work.
-#[derive(Clone, Copy, Debug)]
-pub struct Work {
-    pub seed: u64,
-    pub hidden: Option<usize>,
-    pub quick: bool,
-}
-
 /// Calibrates the design in `path` and writes the resolved design to `out`.
 ///
 /// A family of contacts takes the place of the one that the design names.
@@ -43,15 +35,7 @@ pub fn run(path: &Path, out: &Path, family: Option<Family>, work: Work, json: bo
         design.algorithm.joint.family = family;
     }
     let family = design.algorithm.joint.family;
-    if let Some(hidden) = work.hidden.filter(|&hidden| family == Family::Wide && hidden > MOST_HIDDEN_WIDE) {
-        return Err(format!(
-            "--hidden {hidden}: with family \"wide\" a quarter as many units more tell the error, and the hardware has \
-             room for 256; use at most {MOST_HIDDEN_WIDE}"
-        )
-        .into());
-    }
-    let settings = Settings::of(family, work.quick);
-    let settings = Settings { seed: work.seed, hidden: work.hidden.unwrap_or(settings.hidden), ..settings };
+    let settings = work.settings(family)?;
     let resolved = Resolved::new(&design, path, out)?;
     // Draws on a terminal only.
     let progress = ProgressBar::new(settings.work(family) as u64);

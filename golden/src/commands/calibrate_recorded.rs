@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use golden::calibrate::recorded::{Recorded, fit_forces, fit_uniform, page, read_forces, read_pressures};
-use golden::design::Design;
+use golden::choose::rebase_scenes;
+use golden::design::{Design, Filter};
 use golden::output::write_together;
 use serde::Serialize;
 
 use super::calibrate::name_of;
-use super::{Recording, Resolved, Stage, keep_apart};
+use super::{Recording, Resolved, Stage, folder, keep_apart};
 
 /// What was recorded.
 #[derive(Args, Debug)]
@@ -90,6 +91,9 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> Resu
         results[place] = Some(found);
     }
     drop(stage);
+    if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
+        *scenes = rebase_scenes(scenes, folder(path), folder(out));
+    }
     let mut contents = resolved.contents(&design, "Calibrated by `golden calibrate` from recordings.");
     if let Some(page_file) = page_file {
         let parts = [("Uniform pressure", "Pa", &results[0]), ("Contacts with known forces", "N", &results[1])];

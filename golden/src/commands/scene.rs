@@ -28,7 +28,7 @@ pub fn run(scene: Option<&Path>, design: Option<&Path>, out: &Path, json: bool) 
         keep_apart(file, &inputs)?;
     }
     let design = design.map(Design::load).transpose()?;
-    let scene = scene_for(scene, design.as_ref())?;
+    let scene = Scene::for_design(scene, design.as_ref())?;
     let made = {
         let _stage = Stage::new("computing the stress");
         scene.frames()?
@@ -63,29 +63,4 @@ pub fn run(scene: Option<&Path>, design: Option<&Path>, out: &Path, json: bool) 
         say!("their sensor, {}, in {}", scene.sensor, sensor_file.display());
     }
     Ok(())
-}
-
-/// The scene of the file, which must be one of the design's sensor if there is a design; without a file that sensor's
-/// standing scene.
-fn scene_for(file: Option<&Path>, design: Option<&Design>) -> Result<Scene, Box<dyn Error>> {
-    match (file, design) {
-        (Some(file), None) => Ok(Scene::load(file)?),
-        (Some(file), Some(design)) => {
-            let scene = Scene::load(file)?;
-            if scene.sensor == design.sensor {
-                return Ok(scene);
-            }
-            Err(format!(
-                "{}: the scene has {}, the design {} has {}; write the design's values under [sensor] in the scene, or \
-                 leave the scene out for a contact that suits the design",
-                file.display(),
-                scene.sensor,
-                design.name,
-                design.sensor
-            )
-            .into())
-        }
-        (None, Some(design)) => Ok(Scene::standing(&design.sensor)),
-        (None, None) => Err("nothing to make frames of; name a scene file, or a design with --design".into()),
-    }
 }

@@ -12,7 +12,7 @@ use golden::table::Table;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::{Recording, Stage, keep_apart, warn};
+use super::{Recording, Stage, filter, keep_apart, warn};
 
 #[derive(Serialize)]
 struct StatusCount {
@@ -32,7 +32,7 @@ struct SolveReport<'a> {
     errors: Option<ErrorSummary>,
 }
 
-/// Solves `frames` and writes the forces to `out`.
+/// Solves `frames` and writes the forces to `out`, or prints them where that is `-`.
 pub fn run(
     design: &Path,
     frames: &Recording,
@@ -41,6 +41,15 @@ pub fn run(
     reference: Option<&Path>,
     json: bool,
 ) -> Result<(), Box<dyn Error>> {
+    if filter::is_standard(out) {
+        if reference.is_some() || json {
+            return Err("--out -: standard output has the forces alone; name a file with --reference and --json".into());
+        }
+        return filter::run(design, frames, with_field);
+    }
+    if filter::is_standard(frames.file) {
+        return Err("--frames -: forces of standard input go to standard output; write --out - too".into());
+    }
     let named = Design::files_named_in(design)?;
     let inputs = [Some(design), Some(frames.file), reference].into_iter().flatten();
     keep_apart(out, &inputs.chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;

@@ -5,6 +5,7 @@
 //! have label columns before the values. Or `NumPy`'s `.npy`, of frames by taxels or frames by rows by columns.
 
 mod npy;
+mod stream;
 mod text;
 
 pub(crate) use npy::Array;
@@ -12,6 +13,8 @@ pub(crate) use text::Separator;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+
+pub use stream::{FrameLines, FrameStream};
 
 use crate::design::{Design, Samples};
 use crate::geometry::GeometryError;
@@ -214,7 +217,11 @@ pub(crate) fn read_array(path: &Path) -> Result<Option<Array>, FrameError> {
 }
 
 /// Whether frames of this shape, without the number of frames, are those of the sensor; else what they look like.
-fn of_grid(shape: &[usize], sensor: &Sensor) -> Result<(), String> {
+///
+/// # Errors
+///
+/// What to do, for a grid that is transposed, a single frame, or another sensor's.
+pub fn of_grid(shape: &[usize], sensor: &Sensor) -> Result<(), String> {
     let Sensor { columns, rows, .. } = sensor;
     match shape {
         [_] => Ok(()),

@@ -1,11 +1,14 @@
 //! Tables of numbers as text: one row a line, with or without a header, whatever separates the values.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::{FrameError, is_number, npy};
 
+/// What some programs write before the first line.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// What stands between the values of a line.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Separator {
     /// This character.
     Byte(u8),
@@ -39,8 +42,76 @@ impl Separator {
     }
 }
 
-/// Reads the columns after the labels; `wrong_length` is given the number of all columns. Blank lines, lines that begin
-/// with #, a byte order mark, and a first line without any number after the labels are skipped.
+/// Reads lines one after the other; of each the columns after the labels.
+#[derive(Clone, Debug)]
+pub(super) struct Lines {
+    /// Where they come from, for messages.
+    path: PathBuf,
+    labels: usize,
+    /// That of the first line which has one.
+    separator: Option<Separator>,
+    /// How many there were.
+    number: usize,
+}
+
+impl Lines {
+    pub(super) fn new(path: &Path, labels: usize) -> Self {
+        Self { path: path.to_path_buf(), labels, separator: None, number: 0 }
+    }
+
+    /// Where the lines come from.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The number of the last line, from 1.
+    pub(super) fn number(&self) -> usize {
+        self.number
+    }
+
+    /// Columns before the values.
+    pub(super) fn labels(&self) -> usize {
+        self.labels
+    }
+
+    /// The numbers of the next line. Nothing for a blank one, for one that begins with #, and for a first one without any
+    /// number after the labels; a byte order mark is skipped. `wrong_length` is given the number of all columns.
+    pub(super) fn row(
+        &mut self,
+        line: &[u8],
+        wrong_length: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Option<Vec<f64>>, FrameError> {
+        self.number += 1;
+        let line = if self.number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
+        let content = line.trim_ascii();
+        if content.is_empty() || content.starts_with(b"#") {
+            return Ok(None);
+        }
+        let is_first = self.separator.is_none();
+        let separator = *self.separator.get_or_insert_with(|| Separator::of(content));
+        let fields = separator.split(content);
+        if is_first && fields.iter().skip(self.labels).all(|field| no_number(field)) {
+            return Ok(None);
+        }
+        let mut row = Vec::with_capacity(fields.len());
+        for (index, field) in fields.iter().enumerate().skip(self.labels) {
+            row.push(separator.number(field).ok_or_else(|| FrameError::Value {
+                path: self.path.clone(),
+                line: self.number,
+                column: index + 1,
+                text: String::from_utf8_lossy(field).chars().take(40).collect(),
+            })?);
+        }
+        match wrong_length(fields.len()) {
+            None => Ok(Some(row)),
+            Some(expected) => {
+                Err(FrameError::Length { path: self.path.clone(), line: self.number, found: fields.len(), expected })
+            }
+        }
+    }
+}
+
+/// Reads all rows of a text, see [`Lines::row`].
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
@@ -48,41 +119,14 @@ pub(super) fn read(
     wrong_length: impl Fn(usize) -> Option<usize>,
 ) -> Result<Vec<Vec<f64>>, FrameError> {
     // By hand, since a CSV reader skips blank lines without counting them and a message needs the right line.
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let (mut rows, mut separator) = (Vec::new(), None);
-    for (index, content) in text.split(|&byte| byte == b'\n').enumerate() {
-        let line = index + 1;
-        let content = content.trim_ascii();
-        if content.is_empty() || content.starts_with(b"#") {
-            continue;
-        }
-        let is_first = separator.is_none();
-        let separator = *separator.get_or_insert_with(|| Separator::of(content));
-        let fields = separator.split(content);
-        if is_first && fields.iter().skip(labels).all(|field| no_number(field)) {
-            continue;
-        }
-        let mut row = Vec::with_capacity(fields.len());
-        for (index, field) in fields.iter().enumerate().skip(labels) {
-            row.push(separator.number(field).ok_or_else(|| FrameError::Value {
-                path: path.to_path_buf(),
-                line,
-                column: index + 1,
-                text: String::from_utf8_lossy(field).chars().take(40).collect(),
-            })?);
-        }
-        if let Some(expected) = wrong_length(fields.len()) {
-            return Err(FrameError::Length { path: path.to_path_buf(), line, found: fields.len(), expected });
-        }
-        rows.push(row);
-    }
-    Ok(rows)
+    let mut lines = Lines::new(path, labels);
+    bytes.split(|&byte| byte == b'\n').filter_map(|line| lines.row(line, &wrong_length).transpose()).collect()
 }
 
 /// The line, from 1, on which a frame of a file that was read before stands; none in an array.
 pub(super) fn line_of(path: &Path, labels: usize, frame: usize) -> Option<usize> {
     let bytes = std::fs::read(path).ok().filter(|bytes| !bytes.starts_with(npy::MAGIC))?;
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes);
     let lines = text.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).enumerate();
     let mut rows = lines.filter(|(_, content)| !content.is_empty() && !content.starts_with(b"#"));
     let (first, content) = rows.next()?;

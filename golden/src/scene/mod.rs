@@ -3,6 +3,7 @@
 //! The elastic models here are those of a layer or of loads with an extent, not the estimator's own.
 
 mod bessel;
+mod choice;
 mod field;
 mod green;
 mod parse;
@@ -16,6 +17,7 @@ mod transfer;
 use std::borrow::Cow;
 use std::path::Path;
 
+pub use choice::ChoiceError;
 pub(crate) use sensor_errors::normal;
 pub use sensor_errors::{Converter, SensorErrors};
 pub use shape::Shape;

@@ -9,12 +9,14 @@
 mod batch;
 pub mod cean;
 pub mod co;
+mod cores;
 pub mod op;
 pub(crate) mod reading;
 pub mod we;
 mod workspace;
 
 pub use crate::status::Status;
+pub use cores::PIECE;
 pub use workspace::Workspace;
 
 use std::sync::{Arc, OnceLock};
@@ -239,7 +241,8 @@ impl Solver {
         Ok(solution)
     }
 
-    fn field_length(&self) -> usize {
+    /// Number of forces along each axis in a solution's field: m, or 0 where the design asks for resultants only.
+    pub fn field_length(&self) -> usize {
         match &self.products {
             Products::Reduced(reduced) if !reduced.engine.list.has_forces() => 0,
             _ => self.taxels(),

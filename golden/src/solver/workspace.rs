@@ -82,16 +82,20 @@ impl Solver {
                 self.scale(solution);
             }
         }
-        self.note_slip(&mut workspace.slips, solution);
+        self.note_slip(&mut workspace.slips, &mut solution.status, solution.mu);
         Ok(())
     }
 
-    /// Raises the bit of a frame that slips. Without contact nothing does; a frame that tells nothing changes nothing.
-    fn note_slip(&self, slips: &mut bool, solution: &mut Solution) {
-        let Some(slip) = self.slip.filter(|_| !solution.status.contains(Status::NOT_FINITE)) else { return };
-        *slips = !solution.status.contains(Status::NO_CONTACT) && slip.slips(solution.mu, *slips);
+    /// Sets the bit of a frame that slips. Without contact nothing does; a frame that tells nothing changes nothing.
+    pub(super) fn note_slip(&self, slips: &mut bool, status: &mut Status, mu: f64) {
+        let Some(slip) = self.slip else { return };
+        status.remove(Status::SLIP);
+        if status.contains(Status::NOT_FINITE) {
+            return;
+        }
+        *slips = !status.contains(Status::NO_CONTACT) && slip.slips(mu, *slips);
         if *slips {
-            solution.status.insert(Status::SLIP);
+            status.insert(Status::SLIP);
         }
     }
 
@@ -156,7 +160,7 @@ impl Solver {
             batch.solve(&self.friction, scratch, solutions);
             for solution in solutions {
                 self.scale(solution);
-                self.note_slip(slips, solution);
+                self.note_slip(slips, &mut solution.status, solution.mu);
             }
         }
         Ok(())

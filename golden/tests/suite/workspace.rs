@@ -3,9 +3,11 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use golden::design::{Correction, Design, Doubt, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind};
+use golden::design::{
+    Correction, Design, Doubt, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind, Slip,
+};
 use golden::estimators::line;
-use golden::solver::{Solution, Solver, Status, co, op, we};
+use golden::solver::{PIECE, Solution, Solver, Status, co, op, we};
 use nalgebra::DVector;
 
 /// Counts what this thread asks for; the other topics' tests run on other threads.
@@ -209,4 +211,34 @@ fn the_papers_plan_is_its_stages() {
             assert!((forces.resultant[p] - solution.resultant[p]).abs() < 1e-9 * forces.resultant[2].abs());
         }
     }
+}
+
+#[test]
+fn all_cores_give_what_one_gives() {
+    let mut design = design(5, 4);
+    let solver = Solver::new(&design).unwrap();
+    // Twice and a bit what a core takes at a time.
+    let frames: Vec<Vec<f64>> = frames(&solver).into_iter().cycle().take(2 * PIECE + 7).collect();
+    let mut expected = Vec::new();
+    solver.solve_batch(&mut solver.workspace(), &frames, &mut expected).unwrap();
+    let most = expected.iter().map(|solution| solution.mu).fold(0.0, f64::max);
+    design.algorithm.slip = Some(Slip { limit: 0.7 * most, hysteresis: 0.4 * most });
+    let solver = Solver::new(&design).unwrap();
+    solver.solve_batch(&mut solver.workspace(), &frames, &mut expected).unwrap();
+    let slipping = expected.iter().filter(|solution| solution.status.contains(Status::SLIP)).count();
+    assert!((1..frames.len()).contains(&slipping), "{slipping}");
+    let mut found = vec![Solution::zeros(Status::default(), 0); frames.len()];
+    let places = found.chunks_mut(PIECE);
+    solver.solve_on_all_cores(&frames.concat(), places, |place, index, found| place[index].clone_from(found)).unwrap();
+    let mut slips = false;
+    solver.follow_slips(
+        &mut slips,
+        found.iter_mut().map(|solution| {
+            let mu = solution.mu;
+            (&mut solution.status, mu)
+        }),
+    );
+    assert_eq!(found, expected);
+    let said = solver.solve_on_all_cores(&[0.0; 21], [()], |(), _, _| ()).unwrap_err().to_string();
+    assert!(said.contains("the frame has 1 values, the sensor 20 taxels"), "{said}");
 }

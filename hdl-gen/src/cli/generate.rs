@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use golden::design::Design;
 use hdl_gen::emit::emit;
+use hdl_gen::inspection::warnings;
 use hdl_gen::write::{check_folder, write_folder};
 
 use super::progress::Progress;
@@ -22,8 +23,7 @@ pub fn generate(path: &Path, out: Option<PathBuf>, progress: &Progress) -> Resul
     progress.stage(format!("writing {kibibytes} KiB"));
     write_folder(&folder, &files)?;
     let timeline = &plan.timeline;
-    let warnings = [super::inspect::excess(&plan), super::inspect::narrow(&plan)];
-    let warnings: String = warnings.into_iter().flatten().map(|warning| format!("warning: {warning}\n")).collect();
+    let warnings: String = warnings(&plan).iter().map(|warning| format!("warning: {warning}\n")).collect();
     Ok(format!(
         "{}: {} files, {kibibytes} KiB\n\
          {} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{warnings}",

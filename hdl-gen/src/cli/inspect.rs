@@ -4,21 +4,15 @@ use std::error::Error;
 use std::fmt::Write;
 
 use golden::design::PlanKind;
-use golden::kernel;
 use golden::table::Table;
-use hdl_gen::emit::{nnz, predicted, products};
+use hdl_gen::emit::products;
+use hdl_gen::inspection::{KNOWN_PART, excess, figures, narrow};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::short;
-use hdl_gen::plan::product::Coefficients;
 use hdl_gen::plan::savings::savings;
-use serde_json::json;
 
 /// Condition number of A Aᵀ above which noise of a thousandth of the stress is no longer a small error of the force.
 const ILL_CONDITIONED: f64 = 1e4;
-/// `(beginning of the part's name, DSP48E2, RAMB36)` of the default part.
-const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
-/// Rounding of the coefficients, as a share of their size, from which on it is told.
-const COARSE: f64 = 0.005;
 /// Second lines stand under the values of the first.
 const INDENT: &str = "               ";
 /// Matrix names in one line of the table.
@@ -30,29 +24,7 @@ pub fn report(plan: &Plan, as_json: bool) -> Result<String, Box<dyn Error>> {
 }
 
 fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
-    let sensor = &plan.design.sensor;
-    let mut value = json!({
-        "name": plan.design.name,
-        "geometry": {
-            "columns": sensor.columns,
-            "rows": sensor.rows,
-            "taxels": plan.taxels(),
-            "pitch_mm": sensor.pitch_mm,
-            "depth_mm": sensor.depth_mm,
-        },
-        "nnz": nnz(plan),
-        "condition": plan.condition,
-        "rom_bits": plan.resources.rom_bits,
-        "predicted": predicted(plan),
-        "products": products(plan),
-        "lanes": plan.design.hardware.lanes,
-        "savings": savings(plan),
-        "kernel_gain": kernel::gain(sensor, plan.design.algorithm.kernel),
-    });
-    if let Some((key, own)) = plan.estimator.slot().metadata().own {
-        value[key] = own;
-    }
-    Ok(serde_json::to_string_pretty(&value)? + "\n")
+    Ok(serde_json::to_string_pretty(&figures(plan))? + "\n")
 }
 
 fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
@@ -174,32 +146,6 @@ fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
         table.row([what.to_owned(), cycles.to_string(), format!("{:.2}", cycles as f64 / clock), remark]);
     }
     write!(out, "\n{}", table.text(0, 0))
-}
-
-/// What to tell whose design does not fit its part, if that is one whose size is known.
-pub fn excess(plan: &Plan) -> Option<String> {
-    let (resources, part) = (&plan.resources, &plan.design.hardware.part);
-    let (known, dsp, bram36) = KNOWN_PART;
-    let fits = resources.dsp <= dsp && resources.bram36 <= bram36;
-    (part.starts_with(known) && !fits)
-        .then(|| format!("too much for {part}, which has {dsp} DSP48E2 and {bram36} RAMB36; filter more entries"))
-}
-
-/// What to tell whose coefficients are so narrow that the forces show it.
-pub fn narrow(plan: &Plan) -> Option<String> {
-    // Those of the friction are its components themselves, exact ones and others of more bits.
-    let stored = plan.products.iter().filter(|product| product.coefficients != Coefficients::Friction);
-    let matrices = stored.map(|product| &plan.matrices[product.matrix]);
-    let (rounding, name) =
-        matrices.map(|matrix| (matrix.rounding(), &matrix.name)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (rounding > COARSE).then(|| {
-        format!(
-            "coefficients of {} bits: rounding is {:.1} % of those of {name}, and the forces err by about as much; raise \
-             [hardware] coefficient_bits",
-            plan.design.hardware.coefficient_bits,
-            100.0 * rounding
-        )
-    })
 }
 
 fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {

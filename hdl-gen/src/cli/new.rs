@@ -5,19 +5,11 @@ use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 
 use clap::Args;
-use golden::calibrate::{Settings, calibrate};
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Grid, JointConstants};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Estimator};
 use golden::words;
+use hdl_gen::new_design::{COUNT_BITS, NewDesign};
 
 use super::progress::Progress;
-
-const TEMPLATE: &str = include_str!("../../templates/design.toml");
-/// The line of the template where the joint estimator's constants go.
-const CONSTANTS: &str = "@CONSTANTS@\n";
-/// Depth in pitches beyond which a new design is regularised.
-const DEEP: f64 = 1.5;
-/// Where the comments of the template begin.
-const COMMENTS: usize = 33;
 
 /// What the command line says of the new design.
 #[derive(Args)]
@@ -45,7 +37,7 @@ pub struct New {
     depth_mm: f64,
     /// Frames hold counts of a converter of so many bits: 0 without load, the largest count at the full scale; for one
     /// whose counts fall under load, change the sign of `pa_per_count` in the file
-    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(4..=24))]
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(COUNT_BITS))]
     counts: Option<u32>,
     /// Stress at the end of the sensor's range
     #[arg(long, value_name = "PA", default_value_t = DEFAULT_FULL_SCALE_PA)]
@@ -67,7 +59,17 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     if path.exists() {
         return Err(failed(ErrorKind::AlreadyExists.into()).into());
     }
-    let text = text(new, progress)?;
+    let wanted = NewDesign {
+        name: name.clone(),
+        estimator: new.estimator,
+        columns: new.columns,
+        rows: new.rows,
+        pitch_mm: [new.pitch_mm[0], new.pitch_mm[1]],
+        depth_mm: new.depth_mm,
+        counts: new.counts,
+        full_scale_pa: new.full_scale_pa,
+    };
+    let text = wanted.text(&mut |what| progress.stage(what.to_owned()))?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hdl-gen-");
     #[cfg(unix)]
@@ -90,85 +92,4 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
         path.display(),
         calibrated.display()
     ))
-}
-
-/// Pascals of a count, so that the largest one reaches the full scale, where it is flagged, and no count is beyond.
-fn pa_per_count(new: &New, bits: u32) -> String {
-    let largest = f64::from(bits).exp2() - 1.0;
-    let step = new.full_scale_pa / largest;
-    let step = if step * largest < new.full_scale_pa { step.next_up() } else { step };
-    format!("{:?}", -step)
-}
-
-/// The design file, checked.
-fn text(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
-    // Quoted, so that whatever the name holds reaches the check of names; a JSON string is a TOML string.
-    let mut text = with(TEMPLATE, "name", &serde_json::to_string(&new.name)?);
-    for (key, value) in [
-        ("columns", new.columns.to_string()),
-        ("rows", new.rows.to_string()),
-        ("pitch_mm", format!("{:?}", new.pitch_mm)),
-        ("depth_mm", format!("{:?}", new.depth_mm)),
-        ("full_scale_pa", format!("{:?}", new.full_scale_pa)),
-    ] {
-        text = with(&text, key, &value);
-    }
-    if let Some(bits) = new.counts {
-        text = with(&text.replace("# pa_per_count = ", "pa_per_count = "), "pa_per_count", &pa_per_count(new, bits));
-    }
-    // Where noise would become force, and no plan might be possible without.
-    let [x, y] = [new.pitch_mm[0], new.pitch_mm[1]];
-    if new.depth_mm > DEEP * x.min(y) {
-        text = text.replace("# regularisation = ", "regularisation = ");
-    }
-    let bare = text.replace(CONSTANTS, "");
-    if new.estimator == Estimator::Line {
-        let text = with(&bare, "estimator", "\"line\"");
-        Design::from_toml(&text, "hdl-gen new")?;
-        return Ok(text);
-    }
-    let design =
-        Design::from_toml(&text.replace(CONSTANTS, &format!("grid = {}\n", Grid::COARSE.side())), "hdl-gen new")?;
-    progress.stage("fitting gain and friction to contacts with known forces".to_owned());
-    let found = calibrate(&design, &Settings::constants(), &mut |_| ())
-        .map_err(|error| format!("{error}; or choose --estimator line, which needs no constants"))?;
-    let text = text.replace(CONSTANTS, &constants(&found));
-    Design::from_toml(&text, "hdl-gen new")?;
-    Ok(text)
-}
-
-/// The lines of the joint estimator's constants; four digits, which no processor rounds otherwise and no contact shows.
-fn constants(JointConstants { grid, gain, tangential: [c1, c3], fitted_to, .. }: &JointConstants) -> String {
-    let remarks = [
-        "points of the plane along each axis, a cell of hardware each; 21: finer, walked over",
-        "factor on all forces, fitted to the sensor above",
-        "friction c1 mu + c3 mu |mu|^2, likewise; the correction, which",
-        "  halves the error, is trained by golden calibrate",
-        "what they belong to: for another sensor, kernel or regularisation remove",
-        "  these lines, and run golden calibrate",
-    ];
-    let keys = [
-        format!("grid = {}", grid.side()),
-        format!("gain = {gain:.4}"),
-        format!("tangential = [{c1:.4}, {c3:.4}]"),
-        String::new(),
-        String::new(),
-        String::new(),
-    ];
-    let fitted_to = format!("fitted_to = {:?}\n", fitted_to.as_deref().unwrap_or_default());
-    let constants: String =
-        keys.iter().zip(remarks).map(|(key, remark)| format!("{key:<COMMENTS$}# {remark}\n")).collect();
-    constants + &fitted_to
-}
-
-/// The text with another value of a key, its comment where it was.
-fn with(text: &str, key: &str, value: &str) -> String {
-    let line = |line: &str| match (line.split_once(" = "), line.split_once(" # ")) {
-        (Some((found, _)), Some((_, comment))) if found == key => {
-            let pair = format!("{key} = {value} ");
-            format!("{pair:<COMMENTS$}# {comment}\n")
-        }
-        _ => format!("{line}\n"),
-    };
-    text.lines().map(line).collect()
 }

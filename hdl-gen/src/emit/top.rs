@@ -14,7 +14,7 @@ use crate::plan::streams::Intake;
 use super::template::design_module;
 use super::{EmitError, registers};
 
-/// One module, cut along the data's way: ports, Bz and CeAn; what shares the lanes; estimator, field and Op.
+/// One module, cut along the data's way: ports, Bz and `CeAn`; what shares the lanes; estimator, field and Op.
 const TEMPLATE: &str = concat!(
     include_str!("../../templates/rtl/top/input.v.tera"),
     include_str!("../../templates/rtl/top/lanes.v.tera"),

@@ -26,6 +26,7 @@ mod looking;
 mod netlist;
 mod parameters;
 mod properties;
+mod python;
 mod registers;
 mod simulate;
 mod skip_zeros;

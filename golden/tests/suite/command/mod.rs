@@ -1,6 +1,7 @@
 //! The command and its files, right and wrong.
 
 mod files;
+mod filter;
 mod fitting;
 
 use std::fs;

@@ -13,7 +13,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[4] / "drivers" / "python"))
-from sptfra import LAYOUT, Event, Layout, Sptfra, Status  # noqa: E402
+from sptfra_board import LAYOUT, Event, Layout, Sptfra, Status  # noqa: E402
 
 DMA, CORE, BUS_OFFSET = 0xA0000000, 0xA0010000, 0x100000000000
 

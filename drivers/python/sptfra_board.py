@@ -2,7 +2,7 @@
 """Driver of a generated core in PYNQ's style: numpy arrays in, numpy arrays out.
 
     from pynq import Overlay, allocate
-    from sptfra import Sptfra
+    from sptfra_board import Sptfra
 
     overlay = Overlay("system.bit")
     sensor = Sptfra(overlay.core, overlay.dma, allocate)

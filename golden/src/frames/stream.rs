@@ -1,0 +1,72 @@
+//! Frames of a design that come line by line, as from a sensor.
+
+use std::io::BufRead;
+use std::path::Path;
+
+use super::FrameError;
+use super::text::Lines;
+use crate::design::{Design, Samples};
+
+/// Makes frames of lines of text, one after the other.
+#[derive(Clone, Debug)]
+pub struct FrameLines {
+    lines: Lines,
+    taxels: usize,
+    samples: Samples,
+}
+
+impl FrameLines {
+    /// For frames of the design, whose lines begin with `labels` columns of other things; `origin` is the name to use in
+    /// messages.
+    pub fn new(origin: &Path, design: &Design, labels: usize) -> Self {
+        Self { lines: Lines::new(origin, labels), taxels: design.sensor.taxels(), samples: design.hardware.samples }
+    }
+
+    /// The frame of the next line; nothing for a header, a blank line and a remark.
+    ///
+    /// # Errors
+    ///
+    /// As [`super::read_frames_of`], with the number of the line; the next one may be good again.
+    pub fn frame(&mut self, line: &[u8]) -> Result<Option<Vec<f64>>, FrameError> {
+        let columns = self.lines.labels() + self.taxels;
+        let Some(frame) = self.lines.row(line, |found| (found != columns).then_some(columns))? else { return Ok(None) };
+        let wrong = frame.iter().position(|&value| !self.samples.takes(value));
+        let (Some(column), Some(range)) = (wrong, self.samples.range()) else { return Ok(Some(frame)) };
+        let place = format!("line {}, column {}", self.lines.number(), self.lines.labels() + column + 1);
+        let path = self.lines.path().to_path_buf();
+        Err(FrameError::Sample { path, place, value: frame[column], samples: self.samples, range })
+    }
+}
+
+/// Frames from text that is still being written: each is there as soon as its line is.
+pub struct FrameStream<R> {
+    input: R,
+    lines: FrameLines,
+    line: Vec<u8>,
+}
+
+impl<R: BufRead> FrameStream<R> {
+    /// Frames of `input`.
+    pub fn new(input: R, lines: FrameLines) -> Self {
+        Self { input, lines, line: Vec::new() }
+    }
+
+    /// Waits for the next frame; `None` at the end.
+    ///
+    /// # Errors
+    ///
+    /// As [`FrameLines::frame`], and [`FrameError::Read`].
+    pub fn next_frame(&mut self) -> Result<Option<Vec<f64>>, FrameError> {
+        loop {
+            self.line.clear();
+            let read = self.input.read_until(b'\n', &mut self.line);
+            let path = self.lines.lines.path();
+            if read.map_err(|source| FrameError::Read { path: path.to_path_buf(), source })? == 0 {
+                return Ok(None);
+            }
+            if let Some(frame) = self.lines.frame(&self.line)? {
+                return Ok(Some(frame));
+            }
+        }
+    }
+}

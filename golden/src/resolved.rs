@@ -1,0 +1,136 @@
+//! A design that was made from another one, and the files beside it: where they go, and what they must not overwrite.
+
+use std::path::{Path, PathBuf};
+
+use crate::design::{CALIBRATION_FILE, CURVE_FILE, Design, DesignError, FileNames, JointConstants, WEIGHTS_FILE};
+
+/// Why a design is not written.
+#[derive(Debug, thiserror::Error)]
+pub enum ResolvedError {
+    /// The design that it was made from.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// An output is an input.
+    #[error("{}: the output would overwrite the input {}; choose another name", out.display(), input.display())]
+    Overwrites {
+        /// The output.
+        out: PathBuf,
+        /// The input.
+        input: PathBuf,
+    },
+    /// Another design's calibration is where this one's would be.
+    #[error("{}: is another calibration than that of the design; write --out to another folder", .0.display())]
+    Calibration(PathBuf),
+}
+
+/// Refuses an output that is one of the inputs.
+///
+/// # Errors
+///
+/// [`ResolvedError::Overwrites`].
+pub fn keep_apart(out: &Path, inputs: &[&Path]) -> Result<(), ResolvedError> {
+    let same = |input: &&&Path| match (out.canonicalize(), input.canonicalize()) {
+        (Ok(out), Ok(input)) => out == input,
+        _ => false,
+    };
+    match inputs.iter().find(same) {
+        Some(input) => Err(ResolvedError::Overwrites { out: out.to_path_buf(), input: input.to_path_buf() }),
+        None => Ok(()),
+    }
+}
+
+/// Where a resolved design goes, and the files that it names.
+pub struct Resolved<'a> {
+    design: &'a Path,
+    names: FileNames,
+}
+
+impl<'a> Resolved<'a> {
+    /// The design at `out`, made from the one at `path` and what that names: none of it is overwritten, nor another
+    /// calibration than that of the design.
+    ///
+    /// # Errors
+    ///
+    /// [`ResolvedError`].
+    pub fn new(design: &Design, path: &Path, out: &'a Path) -> Result<Self, ResolvedError> {
+        let named = Design::files_named_in(path)?;
+        let inputs: Vec<&Path> = named.iter().map(AsRef::as_ref).chain([path]).collect();
+        Self::beside(design, &inputs, out)
+    }
+
+    /// The same of a design that was made from these files, of none perhaps.
+    ///
+    /// # Errors
+    ///
+    /// [`ResolvedError::Overwrites`] and [`ResolvedError::Calibration`].
+    pub fn beside(design: &Design, inputs: &[&Path], out: &'a Path) -> Result<Self, ResolvedError> {
+        let FileNames { weights, .. } = FileNames::of(&stem(out));
+        let resolved = Self { design: out, names: FileNames { weights, ..FileNames::default() } };
+        keep_apart(out, inputs)?;
+        keep_apart(&resolved.path(WEIGHTS_FILE), inputs)?;
+        if design.input.calibration.is_some() && resolved.path(CALIBRATION_FILE).exists() {
+            resolved.same_calibration(design)?;
+        }
+        Ok(resolved)
+    }
+
+    /// As [`Resolved::new`], of a design whose calibration is new: all its files have its own name.
+    ///
+    /// # Errors
+    ///
+    /// [`ResolvedError::Design`] and [`ResolvedError::Overwrites`].
+    pub fn anew(path: &Path, out: &'a Path) -> Result<Self, ResolvedError> {
+        let named = Design::files_named_in(path)?;
+        let inputs: Vec<&Path> = named.iter().map(AsRef::as_ref).chain([path]).collect();
+        let resolved = Self { design: out, names: FileNames::of(&stem(out)) };
+        resolved.all().iter().try_for_each(|output| keep_apart(output, &inputs))?;
+        Ok(resolved)
+    }
+
+    /// Every place at which something may be written, whatever the design turns out to name.
+    pub fn all(&self) -> Vec<PathBuf> {
+        let files = [CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE].map(|name| self.path(name));
+        files.into_iter().chain([self.design.to_path_buf()]).collect()
+    }
+
+    /// All that is to be written for a design, the design last, which begins with a remark. A calibration of the common
+    /// name that is there already stays as somebody wrote it.
+    pub fn contents(&self, design: &Design, remark: &str) -> Vec<(PathBuf, String)> {
+        let common = self.names.calibration == CALIBRATION_FILE;
+        let files = design.files().into_iter().map(|(name, content)| (self.path(name), content));
+        let files = files.filter(|(path, _)| !common || *path != self.path(CALIBRATION_FILE) || !path.exists());
+        let text = format!("# {remark}\n{}", design.to_toml_with(&self.names));
+        files.chain([(self.design.to_path_buf(), text)]).collect()
+    }
+
+    /// Whether a file is one of those that are written for a design.
+    pub fn holds(&self, design: &Design, file: &Path) -> bool {
+        file == self.design || design.files().iter().any(|(name, _)| file == self.path(name))
+    }
+
+    /// The place of a file that the design names.
+    fn path(&self, name: &str) -> PathBuf {
+        folder(self.design).join(self.names.of_file(name))
+    }
+
+    fn same_calibration(&self, design: &Design) -> Result<(), ResolvedError> {
+        let mut plain = design.clone();
+        *plain.algorithm.joint = JointConstants::default();
+        match Design::from_toml(&plain.to_toml(), &self.design.display().to_string()) {
+            Ok(again) if again.input.calibration == design.input.calibration => Ok(()),
+            _ => Err(ResolvedError::Calibration(self.path(CALIBRATION_FILE))),
+        }
+    }
+}
+
+fn stem(file: &Path) -> String {
+    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The folder of a file.
+pub fn folder(file: &Path) -> &Path {
+    match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}

@@ -1,0 +1,50 @@
+//! Many frames on all cores.
+
+use rayon::prelude::*;
+
+use super::{Solution, Solver, SolverError, Status};
+
+/// Frames that one core takes at a time.
+pub const PIECE: usize = crate::products::batch::FRAMES;
+
+impl Solver {
+    /// Solves frames that follow each other in `values`, m each, on all cores by [`Solver::solve_batch`].
+    ///
+    /// Every [`PIECE`] frames have a place of their own among `places`, in order; `put` gets it with the frame's index in
+    /// the piece and its solution, on whatever thread. The cores know nothing of each other's frames: let
+    /// [`Solver::follow_slips`] decide which slip.
+    ///
+    /// # Errors
+    ///
+    /// [`SolverError::FrameLength`] for values that are no whole frames.
+    pub fn solve_on_all_cores<P: Send>(
+        &self,
+        values: &[f64],
+        places: impl IntoIterator<Item = P>,
+        put: impl Fn(&mut P, usize, &Solution) + Sync,
+    ) -> Result<(), SolverError> {
+        let taxels = self.taxels();
+        let rest = values.len() % taxels;
+        if rest > 0 {
+            return Err(SolverError::FrameLength { found: rest, expected: taxels });
+        }
+        let pieces: Vec<_> = values.chunks(PIECE * taxels).zip(places).collect();
+        pieces.into_par_iter().try_for_each_init(
+            || (self.workspace(), Vec::new()),
+            |(workspace, solutions), (values, mut place)| {
+                let frames: Vec<&[f64]> = values.chunks(taxels).collect();
+                self.solve_batch(workspace, &frames, solutions)?;
+                solutions.iter().enumerate().for_each(|(index, solution)| put(&mut place, index, solution));
+                Ok(())
+            },
+        )
+    }
+
+    /// Decides for frames that follow each other, each given by its status and friction coefficient, which slip.
+    /// `slips` says whether the one before did, and then whether the last one does.
+    pub fn follow_slips<'a>(&self, slips: &mut bool, frames: impl IntoIterator<Item = (&'a mut Status, f64)>) {
+        for (status, mu) in frames {
+            self.note_slip(slips, status, mu);
+        }
+    }
+}

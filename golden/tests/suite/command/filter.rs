@@ -1,0 +1,61 @@
+//! `golden solve` as a filter: a line in, a line out, at once.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Command, Stdio};
+
+use super::{HEADER, folder_with, golden, repository, row, text};
+
+#[test]
+fn a_line_in_is_a_line_out_before_the_next_one() {
+    let design = repository("designs/small.toml");
+    let mut filter = Command::new(env!("CARGO_BIN_EXE_golden"))
+        .args(["solve", text(&design), "--frames", "-", "--out", "-", "--labels", "1"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = filter.stdin.take().unwrap();
+    let mut lines = BufReader::new(filter.stdout.take().unwrap()).lines();
+    let mut line = || lines.next().unwrap().unwrap();
+    // The header comes before any frame does.
+    assert_eq!(line(), HEADER);
+    let (folder, frames) = folder_with("");
+    let forces = folder.path().join("forces.csv");
+    for value in ["-1000.0", "-2000.0", "0"] {
+        writeln!(input, "# a remark\n\nlabel,{}", row(value)).unwrap();
+        input.flush().unwrap();
+        let said = line();
+        std::fs::write(&frames, row(value)).unwrap();
+        let output = golden(&["solve", text(&design), "--frames", text(&frames), "--out", text(&forces)]);
+        assert!(output.status.success(), "{output:?}");
+        let expected = std::fs::read_to_string(&forces).unwrap();
+        assert_eq!(Some(said.as_str()), expected.lines().nth(1));
+    }
+    // What is wrong with a line says where, and ends the filter after what was good.
+    writeln!(input, "label,1,2").unwrap();
+    drop(input);
+    let output = filter.wait_with_output().unwrap();
+    assert!(!output.status.success());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.starts_with("error: standard input, line 10: the line ends at column 3 where 13"), "{said}");
+}
+
+#[test]
+fn a_file_goes_to_standard_output_as_to_a_file() {
+    let design = repository("designs/small.toml");
+    let (folder, frames) = folder_with(&format!("{}\n{}\n", row("-1000.0"), row("-10.5")));
+    let forces = folder.path().join("forces.csv");
+    let solve = |out: &str, more: &[&str]| {
+        golden(&[&["solve", text(&design), "--frames", text(&frames), "--out", out, "--field"], more].concat())
+    };
+    assert!(solve(text(&forces), &[]).status.success());
+    let output = solve("-", &[]);
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), std::fs::read_to_string(&forces).unwrap());
+    let said = String::from_utf8(solve("-", &["--json"]).stderr).unwrap();
+    assert!(said.contains("standard output has the forces alone"), "{said}");
+    let output = golden(&["solve", text(&design), "--frames", "-", "--out", text(&forces)]);
+    assert!(!output.status.success());
+    assert!(String::from_utf8(output.stderr).unwrap().contains("write --out - too"));
+}

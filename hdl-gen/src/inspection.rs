@@ -1,0 +1,72 @@
+//! What a design will be, before anything is written: its figures, and what to tell its user.
+
+use golden::kernel;
+use serde_json::{Value, json};
+
+use crate::emit::{nnz, predicted, products};
+use crate::plan::Plan;
+use crate::plan::product::Coefficients;
+use crate::plan::savings::savings;
+
+/// `(beginning of the part's name, DSP48E2, RAMB36)` of the default part.
+pub const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
+/// Rounding of the coefficients, as a share of their size, from which on it is told.
+const COARSE: f64 = 0.005;
+
+/// All figures of a plan: what `hdl-gen inspect --json` prints.
+pub fn figures(plan: &Plan) -> Value {
+    let sensor = &plan.design.sensor;
+    let mut value = json!({
+        "name": plan.design.name,
+        "geometry": {
+            "columns": sensor.columns,
+            "rows": sensor.rows,
+            "taxels": plan.taxels(),
+            "pitch_mm": sensor.pitch_mm,
+            "depth_mm": sensor.depth_mm,
+        },
+        "nnz": nnz(plan),
+        "condition": plan.condition,
+        "rom_bits": plan.resources.rom_bits,
+        "predicted": predicted(plan),
+        "products": products(plan),
+        "lanes": plan.design.hardware.lanes,
+        "savings": savings(plan),
+        "kernel_gain": kernel::gain(sensor, plan.design.algorithm.kernel),
+    });
+    if let Some((key, own)) = plan.estimator.slot().metadata().own {
+        value[key] = own;
+    }
+    value
+}
+
+/// What to tell of a plan: that it does not fit its part, that its coefficients are coarse.
+pub fn warnings(plan: &Plan) -> Vec<String> {
+    [excess(plan), narrow(plan)].into_iter().flatten().collect()
+}
+
+/// What to tell whose design does not fit its part, if that is one whose size is known.
+pub fn excess(plan: &Plan) -> Option<String> {
+    let (resources, part) = (&plan.resources, &plan.design.hardware.part);
+    let (known, dsp, bram36) = KNOWN_PART;
+    let fits = resources.dsp <= dsp && resources.bram36 <= bram36;
+    (part.starts_with(known) && !fits)
+        .then(|| format!("too much for {part}, which has {dsp} DSP48E2 and {bram36} RAMB36; filter more entries"))
+}
+
+/// What to tell whose coefficients are so narrow that the forces show it.
+pub fn narrow(plan: &Plan) -> Option<String> {
+    // Those of the friction are its components themselves, exact ones and others of more bits.
+    let stored = plan.products.iter().filter(|product| product.coefficients != Coefficients::Friction);
+    let matrices = stored.map(|product| &plan.matrices[product.matrix]);
+    let (rounding, name) =
+        matrices.map(|matrix| (matrix.rounding(), &matrix.name)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (rounding > COARSE).then(|| {
+        format!(
+            "coefficients of {} bits: rounding is {:.1} % of those of {name}, and the forces err by about as much; raise \
+             [hardware] coefficient_bits",
+            plan.design.hardware.coefficient_bits,
+            100.0 * rounding
+        )
+    })
+}

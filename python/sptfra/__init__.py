@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Three-axis forces on every taxel of a pressure array, from normal stress alone, and the hardware that finds them.
+
+    import sptfra
+
+    design = sptfra.Design.load("designs/sensor1-joint.toml")
+    scene = sptfra.scene(design)
+    forces = sptfra.Solver(design).solve(scene.frames)
+    forces.resultant, forces.field, forces.status
+
+Stress is in pascals and negative in compression, or in the sensor's counts where the design says so; forces are in
+newtons, `F_z < 0` presses. Whatever is wrong with a design, a file or frames raises `sptfra.Error` or, for arrays,
+`ValueError` and `TypeError`, with the text that the commands print.
+"""
+
+from ._native import Design, Error, FrameLines, Solver, calibrate, check, errors, load_frames, scene
+from .forces import Forces, Status
+from .hardware import generate, plan, simulate
+from .plot import plot_field
+from .results import Finding, Plan, Scene, Simulation, Spread
+
+__all__ = [
+    "Design",
+    "Error",
+    "Finding",
+    "Forces",
+    "FrameLines",
+    "Plan",
+    "Scene",
+    "Simulation",
+    "Solver",
+    "Spread",
+    "Status",
+    "calibrate",
+    "check",
+    "errors",
+    "generate",
+    "load_frames",
+    "plan",
+    "plot_field",
+    "scene",
+    "simulate",
+]

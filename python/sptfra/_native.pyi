@@ -1,0 +1,169 @@
+"""The native half of the package."""
+
+import os
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .forces import Forces
+from .results import Finding, Scene, Spread
+
+class Error(ValueError):
+    """What is wrong with a design, with frames, or with a file: what, where, and what to do."""
+
+class Design:
+    """A sensor, the algorithm for it, and its hardware; every key is checked. Designs do not change."""
+
+    def __new__(
+        cls,
+        name: str = "my_sensor",
+        *,
+        columns: int = 10,
+        rows: int = 10,
+        pitch_mm: Sequence[float] = (4.0, 2.0),
+        depth_mm: float = 3.0,
+        estimator: str = "joint",
+        counts: int | None = None,
+        full_scale_pa: float = 100000.0,
+    ) -> Design:
+        """The design that `hdl-gen new` writes: for a grid of taxels, under a layer of `depth_mm`. With `counts` its frames
+        are those of a converter of so many bits. The joint estimator's constants are fitted to it, which takes a second."""
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Design:
+        """The design of a file; the ending `.toml` may be left out."""
+
+    @classmethod
+    def from_toml(cls, text: str, origin: str = "design") -> Design:
+        """The design of a text; messages call it `origin`, and files that it names are looked for in that one's folder."""
+
+    def to_toml(self) -> str:
+        """Every key. Files that it names, such as the weights of a network, are written by `save`."""
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the design and, beside it, the files that it names: all or none, and never over those it came from."""
+
+    @property
+    def name(self) -> str:
+        """A Verilog identifier: top module and folder."""
+
+    @property
+    def columns(self) -> int:
+        """Taxels in x."""
+
+    @property
+    def rows(self) -> int:
+        """Taxels in y."""
+
+    @property
+    def taxels(self) -> int:
+        """Taxels of the grid, m."""
+
+    @property
+    def pitch_mm(self) -> tuple[float, float]:
+        """Distance of neighbouring taxels in x and y."""
+
+    @property
+    def depth_mm(self) -> float:
+        """Thickness of the layer above the taxels."""
+
+    @property
+    def tension(self) -> str:
+        """"read", or "clipped" if the sensor reads pressure alone."""
+
+    @property
+    def counts(self) -> bool:
+        """Whether frames hold counts; else they hold pascals."""
+
+    @property
+    def samples(self) -> str:
+        """What a sample on the stream is: "float32", "int16" or "uint16"."""
+
+    @property
+    def plan(self) -> str:
+        """"reduced" or "paper"."""
+
+    @property
+    def estimator(self) -> str:
+        """"joint" or "line"."""
+
+    @property
+    def outputs(self) -> str:
+        """"field", or "resultants" if there is none."""
+
+    @property
+    def noise_floor_pa(self) -> float:
+        """Stress below which a taxel tells nothing."""
+
+    @property
+    def full_scale_pa(self) -> float:
+        """Stress at the end of the sensor's range."""
+
+    @property
+    def lanes(self) -> int:
+        """Multipliers that work on the products."""
+
+    @property
+    def clock_mhz(self) -> float:
+        """The clock that times assume."""
+
+    @property
+    def part(self) -> str:
+        """The FPGA."""
+
+class Solver:
+    """Forces from frames in double precision, as `golden solve` finds them."""
+
+    def __new__(cls, design: Design) -> Solver: ...
+    @property
+    def design(self) -> Design:
+        """The design that it was made for."""
+
+    def solve(self, frames: npt.ArrayLike, *, slips: bool = False) -> Forces:
+        """Forces of frames that follow each other, on all cores, without Python's lock.
+
+        Frames are numbers of shape (n, rows, columns) or (n, taxels); (rows, columns) and (taxels,) are one frame. In Pa,
+        compression negative, or in counts if the design counts. `slips` says whether the frame before them slipped, for
+        designs with a limit of slip.
+        """
+
+class FrameLines:
+    """Frames from lines of text, as a sensor sends them; messages call it `origin`."""
+
+    def __new__(cls, design: Design, *, labels: int = 0, origin: str = "standard input") -> FrameLines: ...
+    def frame(self, line: bytes) -> npt.NDArray[np.float64] | None:
+        """The frame (rows, columns) of the next line; None for a header, a blank line and a remark."""
+
+def load_frames(path: str | os.PathLike[str], design: Design, *, labels: int = 0) -> npt.NDArray[np.float64]:
+    """Frames (n, rows, columns) of a CSV or .npy file, whose lines begin with so many columns of other things."""
+
+def scene(design: Design | None = None, path: str | os.PathLike[str] | None = None) -> Scene:
+    """Frames with their true forces: of a scene file, else a round contact that suits the design, in 36 directions."""
+
+def check(design: Design, frames: npt.ArrayLike) -> list[Finding]:
+    """What is wrong with frames, as far as they tell: unit, sign, tare, order of the taxels, end of the converter."""
+
+def errors(forces: Forces, truth: Forces) -> dict[str, Spread]:
+    """Errors e_Fx, e_Fy, e_Fz in percent of the normal force, e_mu of 1, e_phi of a turn."""
+
+def calibrate(
+    design: Design | str | os.PathLike[str],
+    *,
+    name: str | None = None,
+    family: str | None = None,
+    seed: int = 1,
+    hidden: int | None = None,
+    quick: bool = False,
+    progress: Callable[[int, int], Any] | None = None,
+) -> Design:
+    """The design with constants and a network fitted to its sensor, in a minute or some; Ctrl-C ends it.
+
+    `family` is "narrow" or "wide"; a path may be that of a design whose constants are those of another sensor.
+    `progress` is called with the pieces of work done and all, ten times a second.
+    """
+
+def inspect(design: Design) -> str: ...
+def generate(design: Design, folder: str | os.PathLike[str] | None = None) -> tuple[str, list[str]]: ...
+def simulate(design: Design, frames: npt.ArrayLike, *, seed: int = 1) -> tuple[Forces, str]: ...

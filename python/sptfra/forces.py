@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Forces of frames as arrays, under the names that the driver of a board (`drivers/python`) has for them too."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+import numpy as np
+
+
+class Status(enum.IntFlag):
+    """Status bits of a frame; what each means stands in `docs/formats.md`."""
+
+    NO_CONTACT = 1
+    DIRECTION_UNKNOWN = 2
+    AT_BOUND = 4
+    SATURATED = 8
+    NOT_FINITE = 16
+    BAD_LENGTH = 32
+    DOUBTFUL = 64
+    MORE_BODIES = 128
+    REPLACED = 256
+    TOO_MANY_REPLACED = 512
+    SLIP = 1024
+    NO_TENSION = 2048
+    DROPPED = 4096
+
+
+@dataclass(frozen=True, eq=False)
+class Forces:
+    """Forces of n frames; of a frame whose status says NOT_FINITE, BAD_LENGTH or NO_CONTACT all are zeros."""
+
+    #: (n,) uint16: bits of `Status`.
+    status: np.ndarray
+    #: (n, 3): F_x, F_y, F_z in N; F_z < 0 presses.
+    resultant: np.ndarray
+    #: (n, 3): T_x, T_y, T_z in N m about the middle of the grid at the surface.
+    torque: np.ndarray
+    #: (n,): friction coefficient, tangential over normal force.
+    friction: np.ndarray
+    #: (n,): direction of the tangential force in rad, atan2(F_y, F_x).
+    direction: np.ndarray
+    #: (n, 2): friction along x and y.
+    friction_xy: np.ndarray
+    #: (n,): standard error of (F_x, F_y) in N; 0 where the design has none.
+    standard_error: np.ndarray
+    #: (n,) uint8: bodies in touch.
+    bodies: np.ndarray
+    #: (n, rows, columns, 3): f_x, f_y, f_z of each taxel in N; None where only resultants are known.
+    field: np.ndarray | None
+
+    @property
+    def mu(self) -> np.ndarray:
+        """`friction`, by the name that force files have for it."""
+        return self.friction
+
+    @property
+    def phi(self) -> np.ndarray:
+        """`direction`, by the name that force files have for it."""
+        return self.direction
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    def __repr__(self) -> str:
+        field = "no field" if self.field is None else f"a field of {self.field.shape[1]} x {self.field.shape[2]} taxels"
+        return f"<sptfra.Forces of {len(self)} frames, {field}>"
+
+    def names(self, index: int) -> list[str]:
+        """Names of a frame's status bits; none for a good one."""
+        return [bit.name for bit in Status if int(self.status[index]) & bit]
+
+    def has(self, bits: Status | int) -> np.ndarray:
+        """(n,) bool: frames that have one of these status bits."""
+        return (self.status & np.uint16(bits)) != 0
+
+    def table(self) -> np.ndarray:
+        """(n,) structured array with the columns of a force file, without the field."""
+        names = "status F_x F_y F_z mu phi mu_x mu_y T_x T_y T_z standard_error bodies".split()
+        columns = [self.status, *self.resultant.T, self.friction, self.direction, *self.friction_xy.T, *self.torque.T]
+        columns += [self.standard_error, self.bodies]
+        table = np.empty(len(self), dtype=[(name, column.dtype) for name, column in zip(names, columns)])
+        for name, column in zip(names, columns):
+            table[name] = column
+        return table

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Shows the forces of frames as they come: `some-sensor | python -m sptfra.live DESIGN`.
+
+A frame is a line on standard input, as in a file of frames. Prints a line for each, or draws the force field in a window.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import time
+from collections.abc import Iterable
+
+from ._native import Design, Error, FrameLines, Solver
+from .forces import Forces, Status
+from .plot import plot_field
+
+#: Seconds between drawings; frames between them are solved, not drawn.
+PAUSE = 0.05
+
+
+def line_of(number: int, forces: Forces) -> str:
+    """A frame's forces for people."""
+    x, y, z = forces.resultant[0]
+    names = ", ".join(forces.names(0)).lower().replace("_", " ") or "good"
+    degrees = math.degrees(forces.direction[0])
+    return f"{number:>6}  F = ({x:8.3f}, {y:8.3f}, {z:8.3f}) N  mu = {forces.friction[0]:5.3f}  phi = {degrees:6.1f}°  {names}"
+
+
+class Window:
+    """The force field of the last frame."""
+
+    def __init__(self, design: Design):
+        import matplotlib.pyplot as plt
+
+        self._pyplot, self._design, self._drawn = plt, design, -math.inf
+        self._figure = plt.figure()
+        plt.ion()
+        self._figure.show()
+
+    def show(self, forces: Forces) -> None:
+        """Draws the frame, unless one was drawn just now."""
+        if time.monotonic() < self._drawn + PAUSE:
+            return
+        self._figure.clear()
+        plot_field(self._design, forces, ax=self._figure.add_subplot())
+        self._figure.canvas.draw_idle()
+        self._figure.canvas.flush_events()
+        self._drawn = time.monotonic()
+
+
+def run(design: Design, lines: Iterable[bytes], labels: int, window: Window | None) -> None:
+    """Solves the frame of each line and shows its forces."""
+    reader, solver = FrameLines(design, labels=labels), Solver(design)
+    number, slips = 0, False
+    for line in lines:
+        frame = reader.frame(line)
+        if frame is None:
+            continue
+        forces = solver.solve(frame, slips=slips)
+        slips = bool(forces.status[0] & Status.SLIP)
+        if window is None:
+            print(line_of(number, forces), flush=True)
+        else:
+            window.show(forces)
+        number += 1
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The command; its exit code."""
+    parser = argparse.ArgumentParser(prog="python -m sptfra.live", description=__doc__)
+    parser.add_argument("design", metavar="DESIGN", help="design file (TOML)")
+    parser.add_argument("--labels", type=int, default=0, metavar="N", help="columns of labels before the values of a frame")
+    parser.add_argument("--plot", action="store_true", help="a window in place of lines, by matplotlib")
+    options = parser.parse_args(arguments)
+    try:
+        design = Design.load(options.design)
+        run(design, sys.stdin.buffer, options.labels, Window(design) if options.plot else None)
+    except (Error, ImportError, ValueError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except (KeyboardInterrupt, BrokenPipeError):
+        # The user has seen enough, or the reader has gone.
+        sys.stderr.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

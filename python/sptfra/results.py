@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""What the package's functions return."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .forces import Forces
+
+
+class Finding(NamedTuple):
+    """One thing that is suspicious in frames, with its likely cause and what to change."""
+
+    #: What it is about: empty, range, sign, no_tension, tare, order or stuck (`docs/formats.md`).
+    kind: str
+    message: str
+
+    def __str__(self) -> str:
+        return self.message
+
+
+class Scene(NamedTuple):
+    """Frames of contacts whose forces are known."""
+
+    #: (n, rows, columns): stress in Pa, or the design's counts.
+    frames: np.ndarray
+    #: The true forces, without a field.
+    truth: Forces
+
+
+class Spread(NamedTuple):
+    """An error over many frames, in percent."""
+
+    max: float
+    #: The standard deviation, which the paper calls the standard error.
+    standard_error: float
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What the hardware of a design will be: cycles are exact, DSP and memories what the modules infer."""
+
+    #: From the first beat in to the last beat out of a frame alone, at `clock_mhz`.
+    latency_cycles: int
+    #: Between frames back to back.
+    interval_cycles: int
+    #: True if a frame may take less than these cycles.
+    worst_case: bool
+    clock_mhz: float
+    lanes: int
+    #: DSP48E2.
+    dsp: int
+    #: RAMB36.
+    bram36: float
+    rom_bits: int
+    #: What to look at before it is built.
+    warnings: tuple[str, ...]
+    #: All that `hdl-gen inspect --json` prints.
+    details: dict[str, Any] = field(repr=False)
+
+    @property
+    def latency_us(self) -> float:
+        """Latency in microseconds."""
+        return self.latency_cycles / self.clock_mhz
+
+    @property
+    def interval_us(self) -> float:
+        """Interval in microseconds."""
+        return self.interval_cycles / self.clock_mhz
+
+    @property
+    def frames_per_second(self) -> float:
+        """Frames a second."""
+        return 1e6 / self.interval_us
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """What the simulated core did."""
+
+    #: Its answers, free-running.
+    forces: Forces = field(repr=False)
+    #: Whether every word, in all stream modes, was that of the integer model.
+    bit_exact: bool
+    latency_cycles: int
+    interval_cycles: int
+    predicted_latency_cycles: int
+    predicted_interval_cycles: int
+    clock_mhz: float
+    #: All that is wrong, in words; empty if the hardware is right.
+    faults: tuple[str, ...]
+
+    @property
+    def latency_us(self) -> float:
+        """Latency in microseconds."""
+        return self.latency_cycles / self.clock_mhz

@@ -1,0 +1,242 @@
+//! Arrays: frames on their way in, forces on their way out.
+
+use golden::design::Design;
+use golden::frames::of_grid;
+use golden::sensor::Sensor;
+use golden::solver::{PIECE, Solution, Status};
+use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Frames, m values each, one after the other.
+pub struct Frames {
+    /// The values in taxel order.
+    pub values: Vec<f64>,
+    taxels: usize,
+}
+
+impl Frames {
+    /// A copy of an array of numbers of shape (n, rows, columns) or (n, taxels); (rows, columns) and (taxels,) are one frame.
+    ///
+    /// # Errors
+    ///
+    /// `TypeError` for something else than numbers, `ValueError` for another shape, and for values that the design's
+    /// integer samples cannot be.
+    pub fn of(design: &Design, frames: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = frames.py();
+        let numpy = py.import(intern!(py, "numpy"))?;
+        let array = numpy.call_method1(intern!(py, "asarray"), (frames,))?;
+        let dtype = array.getattr(intern!(py, "dtype"))?;
+        let kind: String = dtype.getattr(intern!(py, "kind"))?.extract()?;
+        if !matches!(kind.as_str(), "f" | "i" | "u") {
+            return Err(PyTypeError::new_err(format!(
+                "frames are an array of {dtype}; give numbers, such as float32: the stress in pascals or the sensor's counts"
+            )));
+        }
+        let double = numpy.getattr(intern!(py, "float64"))?;
+        // A copy only where the numbers are others.
+        let array = numpy.call_method1(intern!(py, "asarray"), (array, double))?;
+        let array: PyReadonlyArrayDyn<'_, f64> = array.extract()?;
+        let sensor = &design.sensor;
+        check_shape(array.shape(), sensor, &design.name)?;
+        // Whatever the memory's order, the values come in that of the indices.
+        let array = array.as_array();
+        let values = array.as_slice().map_or_else(|| array.iter().copied().collect(), <[f64]>::to_vec);
+        let samples = design.hardware.samples;
+        if let (Some(wrong), Some([low, high])) =
+            (values.iter().position(|&value| !samples.takes(value)), samples.range())
+        {
+            return Err(PyValueError::new_err(format!(
+                "frame {}, taxel {}: {} is no {samples}, as hardware.samples says that the sensor's counts are; give whole \
+                 numbers from {low} to {high}",
+                wrong / sensor.taxels(),
+                wrong % sensor.taxels(),
+                values[wrong]
+            )));
+        }
+        Ok(Self { values, taxels: sensor.taxels() })
+    }
+
+    /// Number of frames.
+    pub fn count(&self) -> usize {
+        self.values.len() / self.taxels
+    }
+
+    /// Each frame by itself, for those who keep them.
+    pub fn rows(&self) -> Vec<Vec<f64>> {
+        self.values.chunks(self.taxels).map(<[f64]>::to_vec).collect()
+    }
+
+    /// Refuses what is no finite number.
+    ///
+    /// # Errors
+    ///
+    /// `ValueError` with frame and taxel.
+    pub fn finite(&self) -> PyResult<()> {
+        match self.values.iter().position(|value| !value.is_finite()) {
+            None => Ok(()),
+            Some(at) => Err(PyValueError::new_err(format!(
+                "frame {}, taxel {}: {} is no finite number; leave such frames out",
+                at / self.taxels,
+                at % self.taxels,
+                self.values[at]
+            ))),
+        }
+    }
+}
+
+fn check_shape(shape: &[usize], sensor: &Sensor, name: &str) -> PyResult<()> {
+    let Sensor { columns, rows, .. } = *sensor;
+    let taxels = sensor.taxels();
+    let grid = [rows, columns];
+    let problem = match shape {
+        [a, b] if [*a, *b] == grid => return Ok(()),
+        [found] | [_, found] if *found == taxels => return Ok(()),
+        [_, grid @ ..] if grid.len() == 2 => match of_grid(grid, sensor) {
+            Ok(()) => return Ok(()),
+            Err(problem) => format!(": {problem}"),
+        },
+        _ => String::new(),
+    };
+    Err(PyValueError::new_err(format!(
+        "frames of shape {}{problem}; {name} takes (n, {rows}, {columns}) or (n, {taxels}), and one frame as \
+         ({rows}, {columns}) or ({taxels},)",
+        tuple(shape)
+    )))
+}
+
+/// A shape as Python prints it.
+fn tuple(shape: &[usize]) -> String {
+    let sides: Vec<String> = shape.iter().map(ToString::to_string).collect();
+    format!("({}{})", sides.join(", "), if sides.len() == 1 { "," } else { "" })
+}
+
+/// Forces of n frames, as arrays have them.
+pub struct Forces {
+    sensor: Sensor,
+    /// Status words.
+    pub status: Vec<Status>,
+    /// Friction coefficients.
+    pub friction: Vec<f64>,
+    direction: Vec<f64>,
+    friction_xy: Vec<f64>,
+    resultant: Vec<f64>,
+    torque: Vec<f64>,
+    standard_error: Vec<f64>,
+    bodies: Vec<u8>,
+    /// Empty where there is none.
+    field: Vec<f64>,
+}
+
+/// Where the forces of [`PIECE`] frames go.
+pub struct Piece<'a> {
+    status: &'a mut [Status],
+    friction: &'a mut [f64],
+    direction: &'a mut [f64],
+    friction_xy: &'a mut [f64],
+    resultant: &'a mut [f64],
+    torque: &'a mut [f64],
+    standard_error: &'a mut [f64],
+    bodies: &'a mut [u8],
+    field: &'a mut [f64],
+}
+
+impl Forces {
+    /// Zeros for so many frames, with a field or without.
+    pub fn zeros(sensor: &Sensor, frames: usize, with_field: bool) -> Self {
+        Self {
+            status: vec![Status::default(); frames],
+            friction: vec![0.0; frames],
+            direction: vec![0.0; frames],
+            friction_xy: vec![0.0; 2 * frames],
+            resultant: vec![0.0; 3 * frames],
+            torque: vec![0.0; 3 * frames],
+            standard_error: vec![0.0; frames],
+            bodies: vec![0; frames],
+            field: vec![0.0; if with_field { 3 * sensor.taxels() * frames } else { 0 }],
+            sensor: sensor.clone(),
+        }
+    }
+
+    /// The places of every [`PIECE`] frames, in order.
+    pub fn pieces(&mut self) -> Vec<Piece<'_>> {
+        let of_frame = if self.field.is_empty() { 0 } else { 3 * self.sensor.taxels() };
+        let mut field = self.field.as_mut_slice();
+        let mut fields = Vec::new();
+        for frames in self.status.chunks(PIECE) {
+            let (first, rest) = field.split_at_mut(of_frame * frames.len());
+            fields.push(first);
+            field = rest;
+        }
+        let places = self.status.chunks_mut(PIECE).zip(self.friction.chunks_mut(PIECE));
+        let places = places.zip(self.direction.chunks_mut(PIECE)).zip(self.friction_xy.chunks_mut(2 * PIECE));
+        let places = places.zip(self.resultant.chunks_mut(3 * PIECE)).zip(self.torque.chunks_mut(3 * PIECE));
+        let places = places.zip(self.standard_error.chunks_mut(PIECE)).zip(self.bodies.chunks_mut(PIECE)).zip(fields);
+        let piece =
+            |((((((((status, friction), direction), friction_xy), resultant), torque), error), bodies), field)| Piece {
+                status,
+                friction,
+                direction,
+                friction_xy,
+                resultant,
+                torque,
+                standard_error: error,
+                bodies,
+                field,
+            };
+        places.map(piece).collect()
+    }
+
+    /// The arrays in the package's class `sptfra.Forces`; single precision throughout if `single`.
+    pub fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let Sensor { columns, rows, .. } = self.sensor;
+        let frames = self.status.len();
+        let kwargs = PyDict::new(py);
+        let put = |name: &str, values: Vec<f64>, shape: &[usize]| kwargs.set_item(name, array(py, values, shape)?);
+        let status: Vec<u16> = self.status.iter().map(|status| status.0 as u16).collect();
+        kwargs.set_item("status", status.into_pyarray(py))?;
+        put("resultant", self.resultant, &[frames, 3])?;
+        put("torque", self.torque, &[frames, 3])?;
+        put("friction", self.friction, &[frames])?;
+        put("direction", self.direction, &[frames])?;
+        put("friction_xy", self.friction_xy, &[frames, 2])?;
+        put("standard_error", self.standard_error, &[frames])?;
+        kwargs.set_item("bodies", self.bodies.into_pyarray(py))?;
+        if self.field.is_empty() && frames > 0 {
+            kwargs.set_item("field", py.None())?;
+        } else {
+            put("field", self.field, &[frames, rows, columns, 3])?;
+        }
+        py.import("sptfra.forces")?.getattr("Forces")?.call((), Some(&kwargs))
+    }
+}
+
+impl Piece<'_> {
+    /// Puts a solution in its place.
+    pub fn put(&mut self, index: usize, solution: &Solution) {
+        let Solution { status, resultant, torque, standard_error, bodies, mu, phi, mu_x, mu_y, field } = solution;
+        self.status[index] = *status;
+        (self.friction[index], self.direction[index]) = (*mu, *phi);
+        self.friction_xy[2 * index..][..2].copy_from_slice(&[*mu_x, *mu_y]);
+        self.resultant[3 * index..][..3].copy_from_slice(resultant);
+        self.torque[3 * index..][..3].copy_from_slice(torque);
+        self.standard_error[index] = *standard_error;
+        self.bodies[index] = *bodies as u8;
+        let taxels = field[0].len();
+        if self.field.is_empty() {
+            return;
+        }
+        let [x, y, z] = field;
+        let place = &mut self.field[3 * taxels * index..][..3 * taxels];
+        for (place, ((x, y), z)) in place.as_chunks_mut::<3>().0.iter_mut().zip(x.iter().zip(y).zip(z)) {
+            *place = [*x, *y, *z];
+        }
+    }
+}
+
+/// An array of this shape.
+pub fn array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> PyResult<Bound<'py, PyAny>> {
+    Ok(PyArray1::from_vec(py, values).reshape(shape.to_vec())?.into_any())
+}

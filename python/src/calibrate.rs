@@ -1,0 +1,70 @@
+//! The joint estimator's constants and network, fitted to a sensor.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use golden::arguments::with_ending;
+use golden::calibrate::{Work, calibrate as fit};
+use golden::design::{Design as Checked, Family};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+use crate::design::{Design, word};
+use crate::errors::{look_up, raised, without_lock};
+
+/// How often Python hears of the progress, and is asked for signals.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// A design with constants and network fitted to its sensor. Ctrl-C ends it.
+#[pyfunction]
+#[pyo3(signature = (design, *, name = None, family = None, seed = 1, hidden = None, quick = false, progress = None))]
+#[allow(clippy::too_many_arguments, reason = "keywords, most of them left out")]
+pub fn calibrate(
+    py: Python<'_>,
+    design: &Bound<'_, PyAny>,
+    name: Option<String>,
+    family: Option<&str>,
+    seed: u64,
+    hidden: Option<usize>,
+    quick: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Design> {
+    let mut design = unfitted(design)?;
+    if let Some(name) = name {
+        design.name = name;
+    }
+    if let Some(family) = family {
+        design.algorithm.joint.family = word::<Family>("family", family)?;
+    }
+    let family = design.algorithm.joint.family;
+    let settings = Work { seed, hidden, quick }.settings(family).map_err(raised)?;
+    let all = settings.work(family);
+    let (mut done, mut told) = (0, Instant::now());
+    let found = without_lock(py, || {
+        fit(&design, &settings, &mut |_| {
+            done += 1;
+            if told.elapsed() >= PAUSE || done == all {
+                told = Instant::now();
+                look_up(|py| progress.as_ref().map_or(Ok(()), |tell| tell.call1(py, (done, all)).map(drop)));
+            }
+        })
+    })?;
+    *design.algorithm.joint = found;
+    // The name is the caller's, so all of it is checked once more.
+    let files = design.files();
+    Ok(Design::new(Checked::from_parts(&design.to_toml(), "calibrate", &files).map_err(raised)?))
+}
+
+/// The design, or that of a file, whose constants may be those of another sensor.
+fn unfitted(design: &Bound<'_, PyAny>) -> PyResult<Checked> {
+    if let Ok(design) = design.cast::<Design>() {
+        return Ok(design.get().inner.clone());
+    }
+    let Ok(path) = design.extract::<PathBuf>() else {
+        let found = design.get_type().name()?;
+        return Err(PyTypeError::new_err(format!(
+            "design is of type {found}; give a Design, or the path of a design file"
+        )));
+    };
+    Checked::load_unfitted(&with_ending(path)).map_err(raised)
+}

@@ -1,0 +1,162 @@
+//! Frames: of files, of scenes, and what is wrong with them.
+
+use std::path::{Path, PathBuf};
+
+use golden::check::check as look_for_faults;
+use golden::frames::read_frames_of;
+use golden::geometry;
+use golden::matrices::Matrices;
+use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
+use golden::scene::{ChoiceError, Scene, SceneFrame};
+use golden::solver::{Solution, Status};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::arrays::{Forces, Frames, array};
+use crate::design::Design;
+use crate::errors::{raised, without_lock};
+
+/// Frames of a file, as the commands read them.
+#[pyfunction]
+#[pyo3(signature = (path, design, *, labels = 0))]
+pub fn load_frames<'py>(py: Python<'py>, path: PathBuf, design: &Design, labels: usize) -> PyResult<Bound<'py, PyAny>> {
+    let design = &design.inner;
+    let frames = without_lock(py, || {
+        geometry::compare(&path, &design.name, &design.sensor)?;
+        read_frames_of(&path, design, labels)
+    })?;
+    let shape = [frames.len(), design.sensor.rows, design.sensor.columns];
+    array(py, frames.concat(), &shape)
+}
+
+/// Frames from lines of text, as a sensor sends them.
+#[pyclass(module = "sptfra")]
+pub struct FrameLines {
+    inner: golden::frames::FrameLines,
+    shape: [usize; 2],
+}
+
+#[pymethods]
+impl FrameLines {
+    #[new]
+    #[pyo3(signature = (design, *, labels = 0, origin = "standard input"))]
+    fn new(design: &Design, labels: usize, origin: &str) -> Self {
+        let sensor = &design.inner.sensor;
+        let inner = golden::frames::FrameLines::new(Path::new(origin), &design.inner, labels);
+        Self { inner, shape: [sensor.rows, sensor.columns] }
+    }
+
+    fn frame<'py>(&mut self, py: Python<'py>, line: &[u8]) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let frame = self.inner.frame(line).map_err(raised)?;
+        frame.map(|values| array(py, values, &self.shape)).transpose()
+    }
+}
+
+/// What is wrong with frames, as far as they tell.
+#[pyfunction]
+pub fn check<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
+    let design = &design.inner;
+    let frames = Frames::of(design, frames)?;
+    frames.finite()?;
+    let findings = without_lock(py, || {
+        let matrices = Matrices::of(design).map_err(|error| format!("{}: {error}", design.name))?;
+        Ok::<_, String>(look_for_faults(design, &frames.rows(), Some(&matrices)))
+    })?;
+    let class = py.import("sptfra.results")?.getattr("Finding")?;
+    let found: Vec<_> = findings
+        .iter()
+        .map(|finding| class.call1((finding.kind.to_string(), finding.to_string())))
+        .collect::<PyResult<_>>()?;
+    PyList::new(py, found)
+}
+
+/// Frames with their true forces.
+#[pyfunction]
+#[pyo3(signature = (design = None, path = None))]
+pub fn scene<'py>(py: Python<'py>, design: Option<&Design>, path: Option<PathBuf>) -> PyResult<Bound<'py, PyAny>> {
+    let design = design.map(|design| &design.inner);
+    if design.is_none() && path.is_none() {
+        return Err(raised("nothing to make frames of; give a design, or the path of a scene file"));
+    }
+    let (scene, made) = without_lock(py, || {
+        let scene = Scene::for_design(path.as_deref(), design)?;
+        let mut frames = scene.frames()?;
+        if let Some(design) = design {
+            for frame in &mut frames {
+                design.deliver(&mut frame.stress);
+            }
+        }
+        Ok::<_, ChoiceError>((scene, frames))
+    })?;
+    let shape = [made.len(), scene.sensor.rows, scene.sensor.columns];
+    let stress: Vec<f64> = made.iter().flat_map(|frame| frame.stress.iter().copied()).collect();
+    let mut truth = Forces::zeros(&scene.sensor, made.len(), false);
+    for (piece, frames) in truth.pieces().iter_mut().zip(made.chunks(golden::solver::PIECE)) {
+        frames.iter().enumerate().for_each(|(index, frame)| piece.put(index, &known(frame)));
+    }
+    let class = py.import("sptfra.results")?.getattr("Scene")?;
+    class.call1((array(py, stress, &shape)?, truth.into_python(py)?))
+}
+
+/// The truth in the form of a solution.
+fn known(frame: &SceneFrame) -> Solution {
+    let [fx, fy, fz] = frame.force;
+    Solution {
+        resultant: frame.force,
+        torque: frame.torque,
+        mu: frame.friction,
+        phi: frame.direction,
+        mu_x: fx / fz.abs(),
+        mu_y: fy / fz.abs(),
+        bodies: frame.bodies,
+        ..Solution::zeros(Status::default(), 0)
+    }
+}
+
+/// Errors of forces against the true ones, in percent.
+#[pyfunction]
+pub fn errors<'py>(
+    py: Python<'py>,
+    forces: &Bound<'py, PyAny>,
+    truth: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (found, truth) = (outcomes(forces)?, outcomes(truth)?);
+    if found.len() != truth.len() {
+        return Err(PyValueError::new_err(format!(
+            "forces of {} frames and true forces of {}; give those of the same frames",
+            found.len(),
+            truth.len()
+        )));
+    }
+    let summary = ErrorSummary::new(&truth.into_iter().zip(found).collect::<Vec<_>>());
+    let class = py.import("sptfra.results")?.getattr("Spread")?;
+    let spreads = PyDict::new(py);
+    for (name, spread) in ERROR_NAMES.iter().zip(summary.spreads()) {
+        spreads.set_item(name, class.call1((spread.max, spread.standard_error))?)?;
+    }
+    Ok(spreads)
+}
+
+/// What the errors are made of.
+fn outcomes(forces: &Bound<'_, PyAny>) -> PyResult<Vec<Outcome>> {
+    let double = |name: &str| {
+        let values = forces.getattr(name)?;
+        values.call_method1("astype", ("float64",))
+    };
+    let resultant: PyReadonlyArray2<'_, f64> = double("resultant")?.extract()?;
+    let friction: PyReadonlyArray1<'_, f64> = double("friction")?.extract()?;
+    let direction: PyReadonlyArray1<'_, f64> = double("direction")?.extract()?;
+    let (resultant, friction, direction) = (resultant.as_array(), friction.as_array(), direction.as_array());
+    if resultant.ncols() != 3 || resultant.nrows() != friction.len() || friction.len() != direction.len() {
+        return Err(PyValueError::new_err("resultant, friction and direction are not those of the same frames"));
+    }
+    let frames = resultant.rows().into_iter().zip(friction).zip(direction);
+    let outcome = |((force, friction), direction): ((numpy::ndarray::ArrayView1<'_, f64>, &f64), &f64)| Outcome {
+        force: [force[0], force[1], force[2]],
+        friction: *friction,
+        direction: *direction,
+    };
+    Ok(frames.map(outcome).collect())
+}

@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""The installed package as a user has it: python -m unittest test_sptfra, in a folder that is no project's."""
+
+import ast
+import inspect
+import os
+import pickle
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+from pathlib import Path
+
+import numpy as np
+import sptfra
+
+ROOT = Path(os.environ["SPTFRA_ROOT"])
+SMALL = "name = 'pad'\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
+
+
+def design(more=""):
+    return sptfra.Design.from_toml(SMALL + more, "pad.toml")
+
+
+class Designs(unittest.TestCase):
+    def test_properties_and_keywords(self):
+        made = sptfra.Design("pad", columns=6, rows=5, pitch_mm=(4, 3.5), depth_mm=3, counts=12)
+        found = (made.name, made.columns, made.rows, made.taxels, made.pitch_mm, made.depth_mm, made.counts)
+        self.assertEqual(found, ("pad", 6, 5, 30, (4.0, 3.5), 3.0, True))
+        self.assertEqual((made.plan, made.estimator, made.outputs, made.tension), ("reduced", "joint", "field", "read"))
+        self.assertEqual((made.samples, made.full_scale_pa, made.clock_mhz), ("float32", 100000.0, 125.0))
+        self.assertIn("6 x 5 taxels", repr(made))
+
+    def test_files_and_pickles_give_the_same_design(self):
+        loaded = sptfra.Design.load(ROOT / "designs" / "sensor1-joint")
+        self.assertEqual(pickle.loads(pickle.dumps(loaded)), loaded)
+        self.assertNotEqual(loaded, design())
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "copy.toml"
+            loaded.save(file)
+            self.assertEqual(sorted(os.listdir(folder)), ["copy.toml", "copy.weights.csv"])
+            again = sptfra.Design.load(file)
+            self.assertEqual(again, loaded)
+            with self.assertRaisesRegex(sptfra.Error, "would overwrite the input"):
+                again.save(file)
+
+    def test_what_is_wrong_is_said_as_the_commands_say_it(self):
+        for call, text in [
+            (lambda: sptfra.Design.load("nothing.toml"), "nothing.toml: cannot read the file"),
+            (lambda: sptfra.Design.from_toml("name = 1"), "line 1, column 8"),
+            (lambda: design("lanes = 3\n"), "pad.toml, line 7"),
+            (lambda: sptfra.Design(columns=1), "sensor.columns is 1; use a whole number from 2 to 64"),
+            (lambda: sptfra.Design(estimator="both"), 'estimator is "both"; choose one of: line, joint'),
+            (lambda: sptfra.Design(counts=3), "counts of 3 bits; use 4 to 24"),
+            (lambda: sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml", design=design()), "the scene has"),
+            (lambda: sptfra.scene(), "nothing to make frames of"),
+            (lambda: sptfra.calibrate(design("[algorithm]\nestimator = 'line'\n")), "nothing to calibrate"),
+            (lambda: sptfra.calibrate(design(), family="odd"), 'family is "odd"; choose one of: narrow, wide'),
+            (lambda: sptfra.load_frames(ROOT / "data" / "bed_mat_64x27.csv", design()), "line 2"),
+            (lambda: sptfra.generate(design(), ROOT), "which hdl-gen did not write; move it away or choose another folder"),
+        ]:
+            with self.assertRaises(sptfra.Error) as raised:
+                call()
+            self.assertIn(text, str(raised.exception))
+        # Python's own words for what is of another type.
+        with self.assertRaises(TypeError):
+            sptfra.Solver("pad.toml")
+        with self.assertRaisesRegex(TypeError, "of type int"):
+            sptfra.calibrate(3)
+
+
+class Solving(unittest.TestCase):
+    def setUp(self):
+        self.design = design()
+        self.solver = sptfra.Solver(self.design)
+        self.frames, self.truth = sptfra.scene(self.design)
+
+    def test_forces_have_shapes_units_and_names(self):
+        forces = self.solver.solve(self.frames)
+        self.assertEqual(self.frames.shape, (36, 3, 4))
+        shapes = [forces.field.shape, forces.resultant.shape, forces.torque.shape, forces.friction_xy.shape]
+        self.assertEqual(shapes, [(36, 3, 4, 3), (36, 3), (36, 3), (36, 2)])
+        np.testing.assert_allclose(forces.field.sum(axis=(1, 2)), forces.resultant, atol=1e-12)
+        tangential = np.hypot(forces.resultant[:, 0], forces.resultant[:, 1])
+        np.testing.assert_allclose(forces.mu, tangential / -forces.resultant[:, 2], atol=1e-12)
+        np.testing.assert_allclose(forces.phi, np.arctan2(forces.resultant[:, 1], forces.resultant[:, 0]), atol=1e-12)
+        self.assertTrue((forces.resultant[:, 2] < 0).all(), "what presses is negative")
+        # The torque is that of the field about the middle of the grid.
+        x, y = np.meshgrid(0.004 * (np.arange(4) - 1.5), 0.002 * (np.arange(3) - 1.0))
+        f = np.moveaxis(forces.field, 3, 0)
+        torque = [(y * f[2]).sum(axis=(1, 2)), (-x * f[2]).sum(axis=(1, 2)), (x * f[1] - y * f[0]).sum(axis=(1, 2))]
+        np.testing.assert_allclose(forces.torque, np.transpose(torque), atol=1e-12)
+        table = forces.table()
+        self.assertEqual(table.dtype.names[:6], ("status", "F_x", "F_y", "F_z", "mu", "phi"))
+        np.testing.assert_array_equal(table["F_z"], forces.resultant[:, 2])
+        self.assertIsNone(self.truth.field)
+        self.assertEqual(set(sptfra.errors(forces, self.truth)), {"e_Fx", "e_Fy", "e_Fz", "e_mu", "e_phi"})
+        self.assertEqual(sptfra.errors(self.truth, self.truth)["e_Fx"].max, 0.0)
+        with self.assertRaisesRegex(ValueError, "36 frames and true forces of 35"):
+            short = self.solver.solve(self.frames[:35])
+            sptfra.errors(forces, short)
+
+    def test_every_layout_gives_the_same_forces(self):
+        forces = self.solver.solve(self.frames)
+        many = np.tile(self.frames, (20, 1, 1))
+        # Five pieces and a bit, on all cores.
+        np.testing.assert_array_equal(self.solver.solve(many).field, np.tile(forces.field, (20, 1, 1, 1)))
+        double = self.frames.astype(np.float32).astype(np.float64)
+        expected = self.solver.solve(double).resultant
+        layouts = [
+            double.astype(np.float32),
+            double.reshape(36, 12),
+            np.asfortranarray(double),
+            np.repeat(double, 2, axis=0)[::2],
+            double.astype(">f8"),
+            double.tolist(),
+        ]
+        for layout in layouts:
+            np.testing.assert_array_equal(self.solver.solve(layout).resultant, expected)
+        one = self.solver.solve(double[3])
+        np.testing.assert_allclose(one.resultant, expected[3:4], rtol=1e-12, atol=1e-12)
+        np.testing.assert_array_equal(self.solver.solve(double[3].ravel()).resultant, one.resultant)
+        self.assertEqual(self.solver.solve(np.zeros((0, 12))).field.shape, (0, 3, 4, 3))
+
+    def test_other_shapes_are_refused_with_those_wanted(self):
+        for shape, text in [
+            ((5, 11), r"\(5, 11\); pad takes \(n, 3, 4\) or \(n, 12\), and one frame as \(3, 4\) or \(12,\)"),
+            ((5, 4, 3), "the transposed grid"),
+            ((11,), r"\(11,\); pad takes"),
+            ((2, 5, 3, 4), r"\(2, 5, 3, 4\)"),
+            ((), r"\(\)"),
+        ]:
+            with self.assertRaisesRegex(ValueError, text):
+                self.solver.solve(np.zeros(shape))
+        for wrong in ("frames", np.zeros((1, 12), dtype=complex), np.zeros((1, 12), dtype=bool), None):
+            with self.assertRaisesRegex(TypeError, "give numbers"):
+                self.solver.solve(wrong)
+
+    def test_statuses_have_names(self):
+        frames = np.zeros((3, 12))
+        frames[1, 4] = np.nan
+        frames[2] = self.frames[0].ravel()
+        forces = self.solver.solve(frames)
+        self.assertEqual([forces.names(index) for index in range(2)], [["NO_CONTACT"], ["NOT_FINITE"]])
+        np.testing.assert_array_equal(forces.has(sptfra.Status.NO_CONTACT | sptfra.Status.NOT_FINITE), [True, True, False])
+        self.assertFalse(forces.field[:2].any())
+        # The driver of a board has the same bits.
+        driver = (ROOT / "drivers" / "python" / "sptfra_board.py").read_text(encoding="utf-8")
+        for bit in sptfra.Status:
+            self.assertIn(f"    {bit.name} = {bit.value}\n", driver)
+        fields = [f"    {name}: np.ndarray" for name in sptfra.Forces.__dataclass_fields__]
+        self.assertEqual([field for field in fields if field not in driver], [])
+
+    def test_slip_follows_the_frames_across_the_cores(self):
+        held = design("[algorithm]\nslip = { limit = 0.4, hysteresis = 0.2 }\n")
+        frames = np.concatenate([self.frames] * 12)
+        forces = sptfra.Solver(held).solve(frames)
+        expected, slips = [], False
+        for mu in forces.mu:
+            slips = bool(mu >= (0.2 if slips else 0.4))
+            expected.append(slips)
+        np.testing.assert_array_equal(forces.has(sptfra.Status.SLIP), expected)
+        low = sptfra.Solver(held).solve(np.zeros(12), slips=True)
+        self.assertFalse(low.has(sptfra.Status.SLIP)[0], "without contact nothing slips")
+
+    def test_counts_are_those_of_the_samples(self):
+        counting = sptfra.Design.from_toml(
+            SMALL.replace("depth_mm", "pa_per_count = -10.0\ndepth_mm") + "[hardware]\nsamples = 'uint16'\n", "counts"
+        )
+        frames, _ = sptfra.scene(counting)
+        np.testing.assert_array_equal(frames, np.round(frames))
+        sptfra.Solver(counting).solve(frames.astype(np.uint16))
+        with self.assertRaisesRegex(ValueError, "frame 1, taxel 2: 0.5 is no uint16"):
+            frames[1, 0, 2] = 0.5
+            sptfra.Solver(counting).solve(frames)
+
+    def test_other_threads_run_meanwhile(self):
+        frames, ticks, done = np.tile(self.frames, (3000, 1, 1)), [], threading.Event()
+        solving = threading.Thread(target=lambda: (self.solver.solve(frames), done.set()))
+        solving.start()
+        while not done.wait(0.001):
+            ticks.append(1)
+        solving.join()
+        self.assertGreater(len(ticks), 10, "the lock is free")
+
+
+class Judging(unittest.TestCase):
+    def test_what_is_wrong_with_frames_is_found(self):
+        small = design()
+        frames, _ = sptfra.scene(small)
+        found = {finding.kind for finding in sptfra.check(small, -frames)}
+        self.assertIn("sign", found)
+        (only,) = sptfra.check(small, np.zeros((2, 12)))
+        self.assertEqual((only.kind, str(only)), ("empty", only.message))
+        frames[1, 2, 3] = np.inf
+        with self.assertRaisesRegex(ValueError, "frame 1, taxel 11: inf"):
+            sptfra.check(small, frames)
+
+    def test_a_calibration_is_the_design_with_constants(self):
+        made, calls = sptfra.Design("pad", columns=4, rows=4), []
+        calibrated = sptfra.calibrate(made, hidden=0, quick=True, progress=lambda *parts: calls.append(parts))
+        self.assertTrue(0 < calls[0][0] < calls[-1][0] <= calls[-1][1], calls)
+        self.assertIn("gain = ", calibrated.to_toml())
+
+        def stop(done, of):
+            raise KeyboardInterrupt
+
+        with self.assertRaises(KeyboardInterrupt):
+            sptfra.calibrate(made, progress=stop)
+
+
+class Hardware(unittest.TestCase):
+    def test_the_plan_is_what_inspect_prints(self):
+        plan = sptfra.plan(sptfra.Design.load(ROOT / "designs" / "small.toml"))
+        self.assertEqual(plan.details["predicted"]["latency_cycles"], plan.latency_cycles)
+        self.assertEqual(plan.latency_us, plan.latency_cycles / 125.0)
+        self.assertAlmostEqual(plan.frames_per_second, 125e6 / plan.interval_cycles)
+        self.assertGreater(plan.dsp, 0)
+
+    def test_the_core_is_bit_exact_and_as_fast_as_planned(self):
+        small = sptfra.Design.load(ROOT / "designs" / "small.toml")
+        frames, _ = sptfra.scene(small)
+        core, plan = sptfra.simulate(small, frames), sptfra.plan(small)
+        self.assertTrue(core.bit_exact)
+        self.assertEqual(core.faults, ())
+        self.assertEqual((core.latency_cycles, core.interval_cycles), (plan.latency_cycles, plan.interval_cycles))
+        solved = sptfra.Solver(small).solve(frames)
+        np.testing.assert_array_equal(core.forces.status, solved.status)
+        np.testing.assert_allclose(core.forces.field, solved.field, atol=3e-4 * np.abs(solved.field).max())
+
+    def test_a_folder_is_generated(self):
+        with tempfile.TemporaryDirectory() as folder:
+            made = sptfra.generate(design(), Path(folder) / "core")
+            self.assertTrue((made / "rtl" / "pad.v").is_file())
+
+
+class Package(unittest.TestCase):
+    def test_the_stubs_say_what_there_is(self):
+        package = Path(sptfra.__file__).parent
+        self.assertTrue((package / "py.typed").is_file())
+        stubs = {node.name: node for node in ast.parse((package / "_native.pyi").read_text()).body if hasattr(node, "name")}
+        native = {name for name in dir(sptfra._native) if not name.startswith("_")}
+        self.assertEqual(native, set(stubs))
+        signatures = 0
+        for name, stub in stubs.items():
+            found, members = getattr(sptfra._native, name), [stub]
+            if isinstance(stub, ast.ClassDef):
+                own = [node for node in stub.body if isinstance(node, ast.FunctionDef)]
+                public = {member for member in vars(found) if not member.startswith("_")}
+                self.assertEqual(public, {node.name for node in own if not node.name.startswith("_")}, name)
+                members = [node for node in own if "property" not in map(ast.unparse, node.decorator_list)]
+            for member in members:
+                owner = found if member is stub or member.name == "__new__" else getattr(found, member.name)
+                names = [argument.arg for argument in member.args.args + member.args.kwonlyargs]
+                names = [argument for argument in names if argument not in ("self", "cls")]
+                real = [argument for argument in inspect.signature(owner).parameters if argument != "self"]
+                self.assertEqual(real, names, f"{name}.{member.name}")
+                signatures += 1
+        self.assertGreater(signatures, 10)
+
+    def test_plots_say_what_they_need(self):
+        forces = sptfra.Solver(design()).solve(sptfra.scene(design()).frames)
+        try:
+            import matplotlib
+        except ImportError:
+            with self.assertRaisesRegex(ImportError, r"pip install 'sptfra\[plot\]'"):
+                sptfra.plot_field(design(), forces)
+            return
+        matplotlib.use("svg")
+        axes = sptfra.plot_field(design(), forces, 9)
+        self.assertEqual(axes.get_xlabel(), "x in mm")
+        self.assertEqual(axes.images[0].get_extent(), [-2.0, 14.0, -1.0, 5.0])
+        with self.assertRaisesRegex(ValueError, "there is no frame 36 of 36"):
+            sptfra.plot_field(design(), forces, 36)
+
+    def test_live_answers_each_line_at_once(self):
+        frames, _ = sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml")
+        command = [sys.executable, "-m", "sptfra.live", str(ROOT / "designs" / "sensor1-reduced.toml")]
+        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as live:
+            for number, frame in enumerate(frames[:3]):
+                live.stdin.write((",".join(map(repr, map(float, frame.ravel()))) + "\n").encode())
+                live.stdin.flush()
+                said = live.stdout.readline().decode()
+                self.assertRegex(said, rf"^ +{number}  F = \(.*\) N  mu = 0\.\d+  phi = .* good$")
+            live.stdin.write(b"1,2\n")
+            live.stdin.close()
+            self.assertEqual(live.wait(), 1)
+            self.assertIn("standard input, line 4", live.stderr.read().decode())
+
+    def test_the_page_of_the_docs_runs(self):
+        page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+        blocks = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+        self.assertTrue(blocks)
+        names = {}
+        for block in blocks:
+            exec(block, names)  # noqa: S102
+        for name in sptfra.__all__:
+            self.assertIn(name, page, "every name has its place on the page")
+
+
+if __name__ == "__main__":
+    unittest.main()
