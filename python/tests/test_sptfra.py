@@ -124,6 +124,9 @@ class Solving(unittest.TestCase):
         np.testing.assert_allclose(one.resultant, expected[3:4], rtol=1e-12, atol=1e-12)
         np.testing.assert_array_equal(self.solver.solve(double[3].ravel()).resultant, one.resultant)
         self.assertEqual(self.solver.solve(np.zeros((0, 12))).field.shape, (0, 3, 4, 3))
+        resultants = sptfra.Solver(design("[algorithm]\noutputs = 'resultants'\n")).solve(double)
+        self.assertIsNone(resultants.field)
+        np.testing.assert_allclose(resultants.resultant, expected, atol=1e-12)
 
     def test_other_shapes_are_refused_with_those_wanted(self):
         for shape, text in [
