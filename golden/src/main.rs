@@ -14,6 +14,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use commands::Recording;
+use commands::calibrate_recorded::Recordings;
 use golden::arguments::design_file;
 use golden::calibrate::Work;
 use golden::design::Family;
@@ -136,11 +137,16 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Find the constants of the joint estimator for a design with estimator "joint".
+    /// Find a design's constants: from simulated contacts, or from recordings of the sensor with measured forces.
     ///
-    /// Makes contacts at random on a bonded layer, from the seed alone, and fits to their known forces a gain, two
-    /// constants of the friction, and the weights of the correction. The design with the constants goes to RESOLVED.toml, the
-    /// weights to RESOLVED.weights.csv beside it: both or none.
+    /// Without --frames and --uniform: those of the estimator "joint". Makes contacts at random on a bonded layer, from the
+    /// seed alone, and fits to their known forces a gain, two constants of the friction, and the weights of the correction. The
+    /// design with the constants goes to RESOLVED.toml, the weights to RESOLVED.weights.csv beside it: both or none.
+    ///
+    /// With --frames and --forces: what a count is worth (a curve, a gain for all taxels, and the taxels' own), and the
+    /// constants of friction where tangential forces are known. Says what the recording could determine, with errors at
+    /// places that were left out, and what it could not, which stays as the design has it. With --uniform and --pressures:
+    /// gains and curve from a bladder's pressure; both may be given.
     #[command(after_long_help = CALIBRATE_FILES)]
     Calibrate {
         /// Design file (TOML).
@@ -149,18 +155,20 @@ enum Command {
         /// Where to write the design with the constants (TOML).
         #[arg(long, value_name = "RESOLVED.toml")]
         out: PathBuf,
+        #[command(flatten)]
+        recordings: Recordings,
         /// Seed of the contacts and of the training.
-        #[arg(long, default_value_t = 1)]
+        #[arg(long, default_value_t = 1, conflicts_with = "recordings")]
         seed: u64,
         /// Contacts to fit to: "narrow", round and sliding, "wide", of any shape, tilted, held, over the grid's edge.
         /// Unless given, what the design says under [algorithm] family.
-        #[arg(long, value_parser = parser::<Family>())]
+        #[arg(long, value_parser = parser::<Family>(), conflicts_with = "recordings")]
         family: Option<Family>,
         /// Hidden units of the correction, 0 to 256, with family "wide" 204; 128 unless given, 24 with --quick; 0 for none.
-        #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256))]
+        #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with = "recordings")]
         hidden: Option<u16>,
         /// Take a tenth of the time, for constants that are half as good.
-        #[arg(long)]
+        #[arg(long, conflicts_with = "recordings")]
         quick: bool,
         /// Report as JSON.
         #[arg(long)]
@@ -239,7 +247,11 @@ In RESOLVED.toml, besides:
 Columns of CANDIDATES.csv: matrix, filter, entries kept (Nnz), error of the friction coefficient in
 percent (e_mu, mean over the frames), e_mu * Nnz, and 1 for the candidate chosen, else 0."#;
 
-const CALIBRATE_FILES: &str = r#"In the design file:
+const CALIBRATE_FILES: &str = r#"FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (N); any of them may be missing, blanks are
+unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
+load, with the force 0, give the offsets. PRESSURES.csv: pressure (kPa), one line a frame.
+
+For the joint estimator's constants from simulated contacts, in the design file:
   [algorithm]
   estimator = "joint"
 
@@ -266,7 +278,10 @@ fn main() -> ExitCode {
         Command::Check { design, frames, labels, json } => {
             commands::check::run(&design, &Recording { file: &frames, labels }, json)
         }
-        Command::Calibrate { design, out, seed, family, hidden, quick, json } => {
+        Command::Calibrate { design, out, recordings, json, .. } if recordings.given() => {
+            commands::calibrate_recorded::run(&design, &out, &recordings, json)
+        }
+        Command::Calibrate { design, out, seed, family, hidden, quick, json, .. } => {
             let work = Work { seed, hidden: hidden.map(usize::from), quick };
             commands::calibrate::run(&design, &out, family, work, json)
         }

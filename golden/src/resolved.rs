@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::design::{CALIBRATION_FILE, Design, DesignError, JointConstants, WEIGHTS_FILE};
+use crate::design::{CALIBRATION_FILE, CURVE_FILE, Design, DesignError, FileNames, JointConstants, WEIGHTS_FILE};
 
 /// Why a design is not written.
 #[derive(Debug, thiserror::Error)]
@@ -42,7 +42,7 @@ pub fn keep_apart(out: &Path, inputs: &[&Path]) -> Result<(), ResolvedError> {
 /// Where a resolved design goes, and the files that it names.
 pub struct Resolved<'a> {
     design: &'a Path,
-    weights: String,
+    names: FileNames,
 }
 
 impl<'a> Resolved<'a> {
@@ -64,8 +64,8 @@ impl<'a> Resolved<'a> {
     ///
     /// [`ResolvedError::Overwrites`] and [`ResolvedError::Calibration`].
     pub fn beside(design: &Design, inputs: &[&Path], out: &'a Path) -> Result<Self, ResolvedError> {
-        let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-        let resolved = Self { design: out, weights: format!("{stem}.weights.csv") };
+        let FileNames { weights, .. } = FileNames::of(&stem(out));
+        let resolved = Self { design: out, names: FileNames { weights, ..FileNames::default() } };
         keep_apart(out, inputs)?;
         keep_apart(&resolved.path(WEIGHTS_FILE), inputs)?;
         if design.input.calibration.is_some() && resolved.path(CALIBRATION_FILE).exists() {
@@ -74,12 +74,32 @@ impl<'a> Resolved<'a> {
         Ok(resolved)
     }
 
-    /// All that is to be written for a design, the design last, which begins with a remark. A calibration that is there
-    /// already stays as somebody wrote it.
+    /// As [`Resolved::new`], of a design whose calibration is new: all its files have its own name.
+    ///
+    /// # Errors
+    ///
+    /// [`ResolvedError::Design`] and [`ResolvedError::Overwrites`].
+    pub fn anew(path: &Path, out: &'a Path) -> Result<Self, ResolvedError> {
+        let named = Design::files_named_in(path)?;
+        let inputs: Vec<&Path> = named.iter().map(AsRef::as_ref).chain([path]).collect();
+        let resolved = Self { design: out, names: FileNames::of(&stem(out)) };
+        resolved.all().iter().try_for_each(|output| keep_apart(output, &inputs))?;
+        Ok(resolved)
+    }
+
+    /// Every place at which something may be written, whatever the design turns out to name.
+    pub fn all(&self) -> Vec<PathBuf> {
+        let files = [CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE].map(|name| self.path(name));
+        files.into_iter().chain([self.design.to_path_buf()]).collect()
+    }
+
+    /// All that is to be written for a design, the design last, which begins with a remark. A calibration of the common
+    /// name that is there already stays as somebody wrote it.
     pub fn contents(&self, design: &Design, remark: &str) -> Vec<(PathBuf, String)> {
+        let common = self.names.calibration == CALIBRATION_FILE;
         let files = design.files().into_iter().map(|(name, content)| (self.path(name), content));
-        let files = files.filter(|(path, _)| *path != self.path(CALIBRATION_FILE) || !path.exists());
-        let text = format!("# {remark}\n{}", design.to_toml_naming(&self.weights));
+        let files = files.filter(|(path, _)| !common || *path != self.path(CALIBRATION_FILE) || !path.exists());
+        let text = format!("# {remark}\n{}", design.to_toml_with(&self.names));
         files.chain([(self.design.to_path_buf(), text)]).collect()
     }
 
@@ -90,7 +110,7 @@ impl<'a> Resolved<'a> {
 
     /// The place of a file that the design names.
     fn path(&self, name: &str) -> PathBuf {
-        folder(self.design).join(if name == WEIGHTS_FILE { &self.weights } else { name })
+        folder(self.design).join(self.names.of_file(name))
     }
 
     fn same_calibration(&self, design: &Design) -> Result<(), ResolvedError> {
@@ -101,6 +121,10 @@ impl<'a> Resolved<'a> {
             _ => Err(ResolvedError::Calibration(self.path(CALIBRATION_FILE))),
         }
     }
+}
+
+fn stem(file: &Path) -> String {
+    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// The folder of a file.

@@ -6,6 +6,7 @@
 mod contacts;
 mod doubt;
 mod looks;
+pub mod recorded;
 mod samples;
 mod train;
 mod twins;
@@ -206,9 +207,9 @@ pub fn calibrate(
 }
 
 /// The constants `c1, c3` that bring `c1 mu + c3 mu |mu|^2` closest to the targets, by least squares.
-fn fit_tangential(samples: &[Sample], targets: &[[f64; 2]]) -> [f64; 2] {
+fn fit_tangential<S: std::borrow::Borrow<Sample>>(samples: &[S], targets: &[[f64; 2]]) -> [f64; 2] {
     let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (sample, target) in samples.iter().zip(targets) {
+    for (sample, target) in samples.iter().map(std::borrow::Borrow::borrow).zip(targets) {
         let square = sample.mu[0].powi(2) + sample.mu[1].powi(2);
         let product = sample.mu[0] * target[0] + sample.mu[1] * target[1];
         a += square;

@@ -218,7 +218,7 @@ pub(super) fn gain_and_targets(samples: &[Sample]) -> (f64, Vec<[f64; 2]>) {
 }
 
 /// Solves the two equations of the tangential resultant for the friction components.
-fn target(sample: &Sample, gain: f64) -> [f64; 2] {
+pub(super) fn target(sample: &Sample, gain: f64) -> [f64; 2] {
     let [[x0, a, b], [y0, c, d], ..] = sample.sums;
     let [x, y] = [sample.force[0] / gain - x0, sample.force[1] / gain - y0];
     let determinant = a * d - b * c;

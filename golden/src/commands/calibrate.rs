@@ -76,7 +76,7 @@ pub fn run(path: &Path, out: &Path, family: Option<Family>, work: Work, json: bo
 
 /// The name of a design in a file: a design of its own, beside whose hardware that of the first one stays. Nothing if the
 /// file is called what no module can be.
-fn name_of(file: &Path) -> Option<String> {
+pub(super) fn name_of(file: &Path) -> Option<String> {
     let name = file.file_stem()?.to_str()?.replace('-', "_");
     is_name(&name).then_some(name)
 }

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod calibrate;
+pub mod calibrate_recorded;
 pub mod check;
 pub mod choose;
 pub mod filter;

@@ -62,7 +62,7 @@ impl Curve {
 
     /// A power law as straight pieces, each as wide for its counts as the others: none is off by more than
     /// `power (power - 1) / 600` of what it should be.
-    fn power_law(power: f64, scale: f64, full_scale: f64) -> Self {
+    pub(crate) fn power_law(power: f64, scale: f64, full_scale: f64) -> Self {
         let largest = (REACH * full_scale / scale.abs()).powf(1.0 / power);
         let knot = |index: usize| match index {
             0 => 0.0,

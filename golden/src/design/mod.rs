@@ -29,7 +29,7 @@ pub use checks::is_name;
 pub use curve::{Curve, MOST_SEGMENTS};
 pub use error::DesignError;
 pub(crate) use files::Beside;
-pub use files::{CALIBRATION_FILE, CURVE_FILE, WEIGHTS_FILE};
+pub use files::{CALIBRATION_FILE, CURVE_FILE, FileNames, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
 pub use hardware::{Arithmetic, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, STREAM_BITS, Samples};
 pub use input::{Calibration, Input, Tension};
@@ -118,12 +118,17 @@ impl Design {
     /// The resolved design as TOML: every key, in a fixed order; parsing it gives this design back. The files that it
     /// names are [`Design::files`]; write them beside it.
     pub fn to_toml(&self) -> String {
-        print::to_toml(self, WEIGHTS_FILE)
+        print::to_toml(self, &FileNames::default())
     }
 
     /// As [`Design::to_toml`], with another name than [`WEIGHTS_FILE`]: several designs of a folder each have weights.
     pub fn to_toml_naming(&self, weights: &str) -> String {
-        print::to_toml(self, weights)
+        self.to_toml_with(&FileNames { weights: weights.to_owned(), ..FileNames::default() })
+    }
+
+    /// As [`Design::to_toml`], with other names for the files beside it.
+    pub fn to_toml_with(&self, names: &FileNames) -> String {
+        print::to_toml(self, names)
     }
 }
 

@@ -5,15 +5,14 @@ use std::fmt::Write;
 use toml::Value;
 
 use super::{
-    Algorithm, CALIBRATION_FILE, CURVE_FILE, Choices, Design, Filter, FilterKind, Hardware, Samples, Slip, Tension,
-    joint, regularisation,
+    Algorithm, Choices, Design, FileNames, Filter, FilterKind, Hardware, Samples, Slip, Tension, joint, regularisation,
 };
 use crate::estimators::Constants;
 use crate::names::MatrixName;
 
 // Written by hand, not by serde, so that the order and the layout are those of the documentation. `{:?}` of an f64
 // always has a point or an exponent, so it reads back as the same float.
-pub(super) fn to_toml(design: &Design, weights: &str) -> String {
+pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
     let Design { name, sensor, input, algorithm, hardware } = design;
     let regularisation = regularisation::print(algorithm.regularisation);
     let Algorithm { plan, kernel, estimator, outputs, .. } = algorithm;
@@ -28,7 +27,7 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
     };
     let [constants, correction] = match algorithm.constants() {
         Constants::Line => [String::new(), String::new()],
-        Constants::Joint(constants) => joint::print(constants, weights),
+        Constants::Joint(constants) => joint::print(constants, &names.weights),
     };
     // As with control below.
     let tension = match input.tension {
@@ -44,11 +43,11 @@ pub(super) fn to_toml(design: &Design, weights: &str) -> String {
     };
     let curve = match input.curve.as_ref().map(|curve| curve.law) {
         Some(Some([power, scale])) => format!("curve = {{ power = {power:?}, scale = {scale:?} }}\n"),
-        Some(None) => format!("curve = \"{CURVE_FILE}\"\n"),
+        Some(None) => format!("curve = {}\n", Value::from(names.curve.as_str())),
         None => String::new(),
     };
     let calibration = match input.calibration {
-        Some(_) => format!("calibration = \"{CALIBRATION_FILE}\"\n"),
+        Some(_) => format!("calibration = {}\n", Value::from(names.calibration.as_str())),
         None => String::new(),
     };
     let dead = match input.dead.as_slice() {

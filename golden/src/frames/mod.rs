@@ -8,6 +8,9 @@ mod npy;
 mod stream;
 mod text;
 
+pub(crate) use npy::Array;
+pub(crate) use text::Separator;
+
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -201,6 +204,16 @@ fn read_table(
         }
     }
     Ok(rows)
+}
+
+/// Shape and values of a `.npy` file, NaN among them; nothing for a file of text.
+pub(crate) fn read_array(path: &Path) -> Result<Option<Array>, FrameError> {
+    let bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
+    if !bytes.starts_with(npy::MAGIC) {
+        return Ok(None);
+    }
+    let array = npy::parse(&bytes).map_err(|problem| FrameError::Array { path: path.to_path_buf(), problem })?;
+    Ok(Some(array))
 }
 
 /// Whether frames of this shape, without the number of frames, are those of the sensor; else what they look like.

@@ -9,7 +9,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// What stands between the values of a line.
 #[derive(Clone, Copy, Debug)]
-enum Separator {
+pub(crate) enum Separator {
     /// This character.
     Byte(u8),
     /// Spaces, as many as there are.
@@ -18,12 +18,12 @@ enum Separator {
 
 impl Separator {
     /// The separator of a line: the first of those that it has, a space being one only where there is no other.
-    fn of(line: &[u8]) -> Self {
+    pub(crate) fn of(line: &[u8]) -> Self {
         let byte = b";\t,".iter().copied().find(|byte| line.contains(byte));
         byte.map_or(Self::Spaces, Self::Byte)
     }
 
-    fn split(self, line: &[u8]) -> Vec<&[u8]> {
+    pub(crate) fn split(self, line: &[u8]) -> Vec<&[u8]> {
         match self {
             Self::Byte(separator) => line.split(|&byte| byte == separator).map(<[u8]>::trim_ascii).collect(),
             Self::Spaces => line.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty()).collect(),

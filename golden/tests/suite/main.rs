@@ -16,6 +16,7 @@ mod joint;
 mod large;
 mod matrices;
 mod products;
+mod recorded;
 mod recording;
 mod reduced;
 mod regularisation;

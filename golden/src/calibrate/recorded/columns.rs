@@ -1,0 +1,104 @@
+//! What the columns of a table mean, by their names and units.
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meaning {
+    /// A component of the force: x, y, z.
+    Force(usize),
+    Pressure,
+    /// Which contact, in words.
+    Contact,
+}
+
+/// Newtons of a kilogram's weight.
+const GRAVITY: f64 = 9.806_65;
+/// What the columns of a header are, and what their unit is worth in newtons or pascals.
+pub(super) fn meanings(
+    names: &[String],
+    units: Option<&[String]>,
+    remarks: &mut Vec<String>,
+) -> Result<Vec<Option<(Meaning, f64)>>, String> {
+    let mut unused = Vec::new();
+    let mut found = Vec::new();
+    for (column, name) in names.iter().enumerate() {
+        let lower = name.to_lowercase();
+        let cut = lower.find(['(', '[', '{', '/']).unwrap_or(lower.len());
+        let (mut base, mut unit) =
+            (lower[..cut].trim(), lower[cut..].trim_matches(|c: char| !c.is_alphanumeric() && c != 'µ'));
+        if unit.is_empty()
+            && let Some((before, after)) = base.rsplit_once(['_', ' '])
+            && worth(after).is_some()
+            && meaning(before).is_some()
+        {
+            (base, unit) = (before, after);
+        }
+        if let Some(below) = units.and_then(|units| units.get(column)).filter(|_| unit.is_empty()) {
+            unit = below.trim_matches(|c: char| !c.is_alphanumeric());
+        }
+        let Some(meaning) = meaning(base) else {
+            unused.push(name.as_str());
+            found.push(None);
+            continue;
+        };
+        let is_mass = base.contains("mass");
+        let factor = match (unit.to_lowercase().as_str(), meaning) {
+            ("", Meaning::Force(_)) if is_mass => return Err(format!("column {name:?} has no unit")),
+            ("", _) | (_, Meaning::Contact) => 1.0,
+            (unit, meaning) => match worth(unit) {
+                Some((factor, pressure)) if pressure == (meaning == Meaning::Pressure) => factor,
+                _ => {
+                    return Err(format!(
+                        "column {name:?}: {unit:?} is no unit of a {}",
+                        if meaning == Meaning::Pressure { "pressure" } else { "force" }
+                    ));
+                }
+            },
+        };
+        found.push(Some((meaning, factor)));
+    }
+    for axis in 0..3 {
+        let same = found.iter().flatten().filter(|(meaning, _)| *meaning == Meaning::Force(axis)).count();
+        if same > 1 {
+            return Err(format!("{same} columns are the force along {}", ["x", "y", "z"][axis]));
+        }
+    }
+    if !unused.is_empty() && unused.len() < names.len() {
+        remarks.push(format!("not used of the file: {}", unused.join(", ")));
+    }
+    Ok(found)
+}
+
+fn meaning(name: &str) -> Option<Meaning> {
+    let letters: String = name.chars().filter(|c| c.is_alphanumeric()).collect();
+    Some(match letters.as_str() {
+        "fx" | "forcex" | "xforce" => Meaning::Force(0),
+        "fy" | "forcey" | "yforce" => Meaning::Force(1),
+        "fz" | "forcez" | "zforce" | "f" | "fn" | "force" | "forces" | "load" | "weight" | "mass" | "normal"
+        | "normalforce" | "normalload" | "axial" | "axialforce" | "axialload" | "appliedforce" | "appliedload" => {
+            Meaning::Force(2)
+        }
+        "p" | "pressure" | "pressures" | "press" => Meaning::Pressure,
+        "contact" | "place" | "hold" | "trial" | "position" | "point" => Meaning::Contact,
+        _ => return None,
+    })
+}
+
+/// What a unit is worth in newtons, or in pascals, and whether it is a pressure.
+fn worth(unit: &str) -> Option<(f64, bool)> {
+    Some(match unit {
+        "n" | "newton" | "newtons" => (1.0, false),
+        "mn" => (1e-3, false),
+        "kn" => (1e3, false),
+        "g" | "gf" | "gram" | "grams" => (1e-3 * GRAVITY, false),
+        "kg" | "kgf" => (GRAVITY, false),
+        "lb" | "lbf" => (4.448_221_615, false),
+        "pa" => (1.0, true),
+        "kpa" => (1e3, true),
+        "mpa" => (1e6, true),
+        "mbar" | "hpa" => (100.0, true),
+        "bar" => (1e5, true),
+        "psi" => (6_894.757_293, true),
+        "mmhg" => (133.322_387, true),
+        _ => return None,
+    })
+}

@@ -1,0 +1,327 @@
+//! Curve and gains from holds, in turns, each with the other as it is.
+
+use nalgebra::DMatrix;
+
+use super::folds::Folds;
+use super::gains::{Evidence, NOISES, Prior, RANGES, Shares};
+use super::holds::Holds;
+use super::readings::Readings;
+use super::rows::Rows;
+use super::shape::{self, Kind, Own, Shape, Terms};
+use crate::design::Design;
+
+/// Loads below this share of the largest count as that much: their relative error is the scale's.
+const LIGHT: f64 = 0.1;
+/// A simpler choice is taken if its error is at most this many times the best,
+pub(super) const AS_GOOD: f64 = 1.05;
+/// and this share of the load more: the model of a contact is no better.
+pub(super) const ALIKE: f64 = 3e-3;
+/// Gains must lower the error to this share to be fitted.
+const BETTER: f64 = 0.95;
+/// Rounds of curve and gains in turns.
+const ROUNDS: usize = 3;
+/// Penalties on the slopes of pieces that are tried.
+const SMOOTH: [f64; 4] = [1.0, 0.1, 0.01, 0.001];
+
+/// Holds with everything that the fits of one recording share.
+pub(super) struct Work<'a> {
+    design: &'a Design,
+    pub(super) holds: &'a Holds,
+    pub(super) loads: Vec<f64>,
+    trust: Vec<f64>,
+    pub(super) readings: Readings,
+    knots: Vec<f64>,
+    /// Gains that the design has already.
+    pub(super) before: Vec<f64>,
+    own: Box<Own>,
+    /// For each hold: newtons for a pascal of each taxel, as the last stress has them.
+    rows: Vec<Vec<f64>>,
+}
+
+/// What was found: a curve, and factors on the taxels' gains.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    pub(super) shape: Shape,
+    pub(super) delta: Vec<f64>,
+}
+
+/// Errors that cross-validation found, as shares of the loads: one a hold.
+#[derive(Clone, Debug)]
+pub(super) struct Validated {
+    pub(super) errors: Vec<f64>,
+    pub(super) rms: f64,
+}
+
+impl<'a> Work<'a> {
+    /// Of holds that the solver can answer; the number of those that it cannot.
+    pub(super) fn new(design: &'a Design, holds: &'a mut Holds, solver: &mut Rows) -> (Self, usize) {
+        let before = (0..design.sensor.taxels()).map(|taxel| {
+            let gain = design.input.calibration.as_ref().map_or(1.0, |calibration| calibration.gain[taxel]);
+            if gain == 0.0 { 1.0 } else { gain }
+        });
+        let before: Vec<f64> = before.collect();
+        let all = holds.all.len();
+        let mut rows = Vec::with_capacity(all);
+        holds.all.retain(|hold| {
+            let stress: Vec<f64> = hold.x.iter().zip(&before).map(|(x, gain)| x * gain).collect();
+            let row = solver.row(&stress);
+            let answered = row.is_some();
+            rows.extend(row);
+            answered
+        });
+        let lost = all - holds.all.len();
+        let holds = &*holds;
+        let loads: Vec<f64> = holds.all.iter().map(|hold| hold.load).collect();
+        let largest = loads.iter().fold(0.0_f64, |most, &load| most.max(load));
+        let of_contact = |contact| holds.all.iter().filter(|hold| hold.contact == contact).count() as f64;
+        let trust =
+            holds.all.iter().map(|hold| 1.0 / (of_contact(hold.contact).sqrt() * hold.load.max(LIGHT * largest)));
+        let trust = trust.collect();
+        let readings = Readings::new(design, holds);
+        let x: Vec<&[f64]> = holds.all.iter().map(|hold| hold.x.as_slice()).collect();
+        let knots = shape::knots(&x, holds.noise.unwrap_or(0.0));
+        let own = readings.own(&design.input);
+        (Self { design, holds, loads, trust, readings, knots, before, own, rows }, lost)
+    }
+
+    /// Readings of the holds.
+    fn x(&self) -> Vec<&[f64]> {
+        self.holds.all.iter().map(|hold| hold.x.as_slice()).collect()
+    }
+
+    fn terms<'b>(&'b self, weights: &'b [Vec<f64>], x: &'b [&'b [f64]]) -> Terms<'b> {
+        let Self { loads, trust, readings, own, knots, .. } = self;
+        Terms { weights, x, loads, trust, rest: &readings.rest, base: readings.base, own: &**own, knots }
+    }
+
+    /// Stress that presses in pascals, of readings above rest.
+    pub(super) fn stress(&self, found: &Found, x: &[f64]) -> Vec<f64> {
+        let terms = self.terms(&[], &[]);
+        let gain = |taxel: usize| self.before[taxel] * (1.0 + found.delta[taxel]);
+        x.iter().enumerate().map(|(taxel, &x)| gain(taxel) * found.shape.at(taxel, x, &terms)).collect()
+    }
+
+    /// What the stress weighs, for a curve and gains.
+    fn look(&mut self, found: &Found, solver: &mut Rows) {
+        for hold in 0..self.rows.len() {
+            let stress = self.stress(found, &self.holds.all[hold].x);
+            // One that has no answer any more keeps its weights.
+            if let Some(row) = solver.row(&stress) {
+                self.rows[hold] = row;
+            }
+        }
+    }
+
+    /// The weights with gains.
+    fn weights(&self, delta: &[f64]) -> Vec<Vec<f64>> {
+        let gains: Vec<f64> = self.before.iter().zip(delta).map(|(before, delta)| before * (1.0 + delta)).collect();
+        self.rows.iter().map(|row| row.iter().zip(&gains).map(|(weight, gain)| weight * gain).collect()).collect()
+    }
+
+    /// Relative errors of the loads of some holds.
+    fn errors(&self, shape: &Shape, weights: &[Vec<f64>], holds: &[usize]) -> Vec<(usize, f64)> {
+        let x = self.x();
+        let terms = self.terms(weights, &x);
+        let load = |h: usize| -> f64 {
+            weights[h]
+                .iter()
+                .zip(x[h])
+                .enumerate()
+                .map(|(taxel, (weight, &x))| weight * shape.at(taxel, x, &terms))
+                .sum()
+        };
+        holds.iter().map(|&h| (h, load(h) / self.loads[h] - 1.0)).collect()
+    }
+
+    /// Errors of all holds as one figure, each contact counting the same.
+    fn figure(&self, errors: Vec<(usize, f64)>) -> Validated {
+        let mut of = vec![0.0; self.loads.len()];
+        let mut sums = [0.0; 2];
+        for (hold, error) in errors {
+            of[hold] = error;
+            let trust = (self.trust[hold] * self.loads[hold]).powi(2);
+            sums[0] += trust * error * error;
+            sums[1] += trust;
+        }
+        Validated { errors: of, rms: (sums[0] / sums[1].max(f64::MIN_POSITIVE)).sqrt() }
+    }
+
+    /// The error of a kind of curve, with gains as they are.
+    fn validate_kind(&self, kind: Kind, weights: &[Vec<f64>], folds: &Folds) -> Validated {
+        let x = self.x();
+        let terms = self.terms(weights, &x);
+        let errors = (0..folds.count).flat_map(|part| {
+            let [kept, left] = folds.part(part);
+            self.errors(&shape::fit(kind, &terms, &kept), weights, &left)
+        });
+        self.figure(errors.collect())
+    }
+
+    /// Chooses the kind of curve among some, in the order of how much they ask: the first that is as good as the best.
+    fn choose_kind(&self, kinds: &[Kind], delta: &[f64], folds: Option<&Folds>) -> Kind {
+        let (Some(folds), [first, _, ..]) = (folds, kinds) else { return kinds[0] };
+        let weights = self.weights(delta);
+        let scores: Vec<f64> = kinds.iter().map(|&kind| self.validate_kind(kind, &weights, folds).rms).collect();
+        let best = scores.iter().fold(f64::INFINITY, |best, &score| best.min(score));
+        let good = scores.iter().position(|&score| score <= AS_GOOD * best + ALIKE);
+        good.map_or(*first, |good| kinds[good])
+    }
+
+    fn fit_shape(&self, kind: Kind, delta: &[f64], holds: &[usize]) -> Shape {
+        let (weights, x) = (self.weights(delta), self.x());
+        shape::fit(kind, &self.terms(&weights, &x), holds)
+    }
+
+    /// The taxels' shares in the loads without deviations of their gains.
+    fn shares(&self, shape: &Shape) -> Shares {
+        let x = self.x();
+        let terms = self.terms(&[], &[]);
+        let row = |h: usize| -> Vec<f64> {
+            let share = |taxel: usize| {
+                self.rows[h][taxel] * self.before[taxel] * shape.at(taxel, x[h][taxel], &terms) / self.loads[h]
+            };
+            (0..self.before.len()).map(share).collect()
+        };
+        let rows: Vec<Vec<f64>> = (0..self.loads.len()).map(row).collect();
+        Shares::new(&rows, self.trust.iter().zip(&self.loads).map(|(trust, load)| (trust * load).powi(-2)).collect())
+    }
+
+    /// The prior under which gains err least, if they make the error clearly less than none do.
+    fn choose_prior(&self, shape: &Shape, folds: &Folds) -> Option<Prior> {
+        let shares = self.shares(shape);
+        let plain: Vec<f64> = shares.loads(&vec![0.0; self.before.len()]);
+        let wanted: Vec<f64> = plain.iter().map(|load| 1.0 - load).collect();
+        let without = self.figure(plain.iter().map(|load| load - 1.0).enumerate().collect()).rms;
+        let mut best = (BETTER * without - ALIKE, None);
+        for range in RANGES {
+            let field = shares.with(&self.design.sensor, range);
+            for noise in NOISES {
+                let errors = (0..folds.count).flat_map(|part| {
+                    let [kept, left] = folds.part(part);
+                    let loads = shares.loads(&field.fit(&kept, &wanted, noise));
+                    left.into_iter().map(move |hold| (hold, loads[hold] - 1.0))
+                });
+                let score = self.figure(errors.collect()).rms;
+                if score < best.0 {
+                    best = (score, Some(Prior { range, noise }));
+                }
+            }
+        }
+        best.1
+    }
+
+    fn fit_gains(&self, shape: &Shape, prior: Prior, holds: &[usize]) -> Vec<f64> {
+        let shares = self.shares(shape);
+        let wanted: Vec<f64> = shares.loads(&vec![0.0; self.before.len()]).iter().map(|load| 1.0 - load).collect();
+        shares.with(&self.design.sensor, prior.range).fit(holds, &wanted, prior.noise)
+    }
+
+    /// What the recording says of each taxel's gain.
+    pub(super) fn told(&self, shape: &Shape, prior: Option<Prior>) -> Vec<Evidence> {
+        let shares = self.shares(shape);
+        let Prior { range, noise } = prior.unwrap_or(Prior { range: 0.0, noise: f64::INFINITY });
+        shares.with(&self.design.sensor, range).told(noise.min(1e12))
+    }
+
+    /// The kinds of curve that loads so many and so far apart may tell.
+    pub(super) fn kinds(&self, levels: usize, span: f64, folds: Option<&Folds>) -> Vec<Kind> {
+        let has_curve = self.design.input.curve.is_some();
+        let mut kinds = if has_curve { vec![Kind::Own, Kind::Line] } else { vec![Kind::Line] };
+        if folds.is_none() || levels < 2 || span < 1.5 {
+            kinds.truncate(1);
+            return kinds;
+        }
+        kinds.push(Kind::Power);
+        if levels > 2 && span >= 2.0 {
+            kinds.extend(SMOOTH.map(Kind::Pieces));
+        }
+        kinds
+    }
+
+    /// The largest reading above rest.
+    pub(super) fn largest(&self) -> f64 {
+        self.knots.last().copied().unwrap_or(1.0)
+    }
+
+    /// Finds curve and gains; the kind of curve and the prior of the gains that were chosen.
+    pub(super) fn find(
+        &mut self,
+        kinds: &[Kind],
+        gains: Option<&Folds>,
+        folds: Option<&Folds>,
+        solver: &mut Rows,
+    ) -> (Found, Kind, Option<Prior>) {
+        let all: Vec<usize> = (0..self.loads.len()).collect();
+        let none = vec![0.0; self.before.len()];
+        let mut found = Found { shape: self.fit_shape(kinds[0], &none, &all), delta: none };
+        let (mut kind, mut prior) = (kinds[0], None);
+        for round in 0..ROUNDS {
+            self.look(&found, solver);
+            if round < 2 {
+                kind = self.choose_kind(kinds, &found.delta, folds);
+            }
+            found.shape = self.fit_shape(kind, &found.delta, &all);
+            if round < 2 {
+                prior = gains.and_then(|folds| self.choose_prior(&found.shape, folds));
+            }
+            if let Some(prior) = prior {
+                found.delta = self.fit_gains(&found.shape, prior, &all);
+                found.shape = self.fit_shape(kind, &found.delta, &all);
+            }
+        }
+        (found, kind, prior)
+    }
+
+    /// The errors at what was left out while everything was fitted to the rest.
+    pub(super) fn validate(&self, kind: Kind, prior: Option<Prior>, folds: &Folds) -> Validated {
+        let errors = (0..folds.count).flat_map(|part| {
+            let [kept, left] = folds.part(part);
+            let mut delta = vec![0.0; self.before.len()];
+            let mut shape = self.fit_shape(kind, &delta, &kept);
+            if let Some(prior) = prior {
+                for _ in 1..ROUNDS {
+                    delta = self.fit_gains(&shape, prior, &kept);
+                    shape = self.fit_shape(kind, &delta, &kept);
+                }
+            }
+            self.errors(&shape, &self.weights(&delta), &left)
+        });
+        self.figure(errors.collect())
+    }
+
+    /// How far the gains differ (standard deviation), and how far those from one half of the parts differ from those of
+    /// the other (root mean square over the square root of two).
+    pub(super) fn halves(&self, found: &Found, prior: Prior, folds: &Folds) -> [f64; 2] {
+        let half = |odd: usize| -> Vec<usize> {
+            (0..folds.count).filter(|part| part % 2 == odd).flat_map(|part| folds.part(part)[1].clone()).collect()
+        };
+        let [a, b] = [0, 1].map(|odd| self.fit_gains(&found.shape, prior, &half(odd)));
+        let touched: Vec<usize> = (0..a.len()).filter(|&taxel| found.delta[taxel] != 0.0).collect();
+        let rms = |of: &dyn Fn(usize) -> f64| {
+            (touched.iter().map(|&taxel| of(taxel).powi(2)).sum::<f64>() / touched.len().max(1) as f64).sqrt()
+        };
+        let mean = touched.iter().map(|&taxel| found.delta[taxel]).sum::<f64>() / touched.len().max(1) as f64;
+        [rms(&|taxel| found.delta[taxel] - mean), rms(&|taxel| a[taxel] - b[taxel]) / 2_f64.sqrt()]
+    }
+
+    /// The errors at what it was fitted to.
+    pub(super) fn fitted(&self, found: &Found) -> Validated {
+        let all: Vec<usize> = (0..self.loads.len()).collect();
+        self.figure(self.errors(&found.shape, &self.weights(&found.delta), &all))
+    }
+
+    /// Whether what is found goes with the loads: their correlation.
+    pub(super) fn follows(&self, found: &Found) -> f64 {
+        let found: Vec<f64> =
+            self.fitted(found).errors.iter().zip(&self.loads).map(|(error, load)| load * (1.0 + error)).collect();
+        let matrix = DMatrix::from_columns(&[found.into(), self.loads.clone().into()]);
+        let mean = matrix.row_mean();
+        let (mut among, mut squares) = (0.0, [0.0; 2]);
+        for row in matrix.row_iter() {
+            let [a, b] = [row[0] - mean[0], row[1] - mean[1]];
+            among += a * b;
+            squares = [squares[0] + a * a, squares[1] + b * b];
+        }
+        if squares.iter().all(|&square| square > 0.0) { among / (squares[0] * squares[1]).sqrt() } else { 0.0 }
+    }
+}

@@ -1,0 +1,123 @@
+//! Constants from frames with measured forces.
+
+use super::fit::Work;
+use super::folds::{Folds, levels};
+use super::gains::Evidence;
+use super::report::{Errors, Hold, Recorded, TaxelGain};
+use super::rows::Rows;
+use super::shape::Kind;
+use super::table::Measured;
+use super::{RecordedError, friction, report};
+use super::{holds, loads};
+use crate::design::Design;
+
+/// Fewer places tell no gains of taxels.
+const PLACES: usize = 6;
+/// A correlation of loads found and measured below this means that they do not belong together.
+const FOLLOWS: f64 = 0.5;
+
+/// Fits curve, common gain, gains of the taxels and constants of friction to frames (values as they are in the file, one
+/// a taxel) and the forces measured with them, and says what they could tell.
+///
+/// # Errors
+///
+/// [`RecordedError::Recording`] for frames and forces that do not belong together or tell nothing at all.
+pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
+    let name = || design.name.clone();
+    let wrong = |(problem, remedy): loads::Wrong| RecordedError::Recording { name: name(), problem, remedy };
+    let (frames, measured, mut remarks) = loads::pair(frames, measured).map_err(wrong)?;
+    remarks.splice(0..0, measured.remarks.iter().cloned());
+    let mut holds = holds::part(design, frames, &measured).map_err(wrong)?;
+    remarks.append(&mut holds.remarks);
+    let mut solver = Rows::new(design)?;
+    let (mut work, lost) = Work::new(design, &mut holds, &mut solver);
+    if lost > 0 {
+        remarks.push(format!("{lost} holds have readings that no contact makes, and are left out: see `golden check`"));
+    }
+    if work.loads.is_empty() {
+        return Err(wrong(("no hold has an answer".to_owned(), "run `golden check` on the frames".to_owned())));
+    }
+    let folds = Folds::new(&work.holds.all);
+    let steps = levels(work.loads.iter().copied());
+    let span = steps.last().map_or(1.0, |last| last[1]) / steps[0][0];
+    let kinds = work.kinds(steps.len(), span, folds.as_ref());
+    let places = work.holds.places;
+    let many = folds.as_ref().filter(|folds| folds.what == "places" && places >= PLACES);
+    let (found, kind, prior) = work.find(&kinds, many, folds.as_ref(), &mut solver);
+    let follows = work.follows(&found);
+    if steps.len() > 1 && span > 1.3 && follows < FOLLOWS {
+        return Err(wrong((
+            format!("what the frames read does not go with the forces (correlation {follows:.2})"),
+            "check that each line of the forces belongs to the frame of the same number".to_owned(),
+        )));
+    }
+    let told = work.told(&found.shape, prior);
+    let fitted = work.fitted(&found);
+    let left_out = folds.as_ref().map(|folds| work.validate(kind, prior, folds));
+    let plain = folds.as_ref().map(|folds| work.validate(kinds[0], None, folds));
+    let stresses: Vec<Vec<f64>> = work.holds.all.iter().map(|hold| work.stress(&found, &hold.x)).collect();
+    let largest = stresses.iter().map(|stress| peak(stress)).fold(0.0, f64::max);
+    let gains: Vec<f64> = found.delta.iter().zip(&work.before).map(|(delta, before)| before * (1.0 + delta)).collect();
+    let mut calibrated = work.readings.calibrated(design, &found.shape, &gains, largest, &mut remarks);
+    let halves = prior.zip(folds.as_ref()).map(|(prior, folds)| work.halves(&found, prior, folds));
+    let friction = friction::fit(&mut calibrated, &work.holds.all, &stresses, folds.as_ref())?;
+    let validated = left_out.as_ref().unwrap_or(&fitted);
+    let shown = work.holds.all.iter().zip(&validated.errors).map(|(hold, error)| Hold {
+        frames: [hold.frames.start, hold.frames.end - 1],
+        place: hold.place,
+        measured_n: hold.load,
+        found_n: hold.load * (1.0 + error),
+    });
+    let gains = gains.iter().zip(&told).map(|(&gain, told)| TaxelGain {
+        gain,
+        touched: *told != Evidence::None,
+        told: *told == Evidence::Good && prior.is_some(),
+    });
+    let mut recorded = Recorded {
+        holds: shown.collect(),
+        gains: gains.collect(),
+        errors: left_out.as_ref().map(|left| Errors::of(left.errors.iter().copied())),
+        errors_as_designed: plain.as_ref().map(|plain| Errors::of(plain.errors.iter().copied())),
+        errors_fitted: Errors::of(fitted.errors.iter().copied()),
+        points: work.readings.points(&calibrated.input),
+        contacts: work.holds.contacts,
+        places,
+        loads: [steps[0][0], steps.last().map_or(0.0, |last| last[1])],
+        determined: Vec::new(),
+        undetermined: Vec::new(),
+        remarks,
+        design: calibrated,
+    };
+    report::say(
+        &mut recorded,
+        &report::Facts {
+            work: &work,
+            kinds: &kinds,
+            kind,
+            found: &found,
+            prior,
+            folds: folds.as_ref(),
+            levels: steps.len(),
+            span,
+            friction,
+            halves,
+        },
+    );
+    Ok(recorded)
+}
+
+fn peak(stress: &[f64]) -> f64 {
+    stress.iter().fold(0.0, |peak, stress| peak.max(stress.abs()))
+}
+
+impl Kind {
+    /// What a report calls it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Own => "the design's own curve",
+            Self::Line => "a straight line",
+            Self::Power => "a power law",
+            Self::Pieces(_) => "straight pieces",
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What pressed in each frame, what the taxels read without load, and where the converter ends.
+
+use super::table::Measured;
+use crate::design::Design;
+
+/// Loads below this share of the largest are rest.
+pub(super) const REST: f64 = 0.01;
+/// Lines of the forces may be so much more or fewer than the frames.
+const LENGTHS: f64 = 0.1;
+
+/// What is wrong with a recording, and what to do.
+pub(super) type Wrong = (String, String);
+
+/// Frames, what was measured with each, and what is to be known of it.
+pub(super) type Pairs<'a> = (&'a [Vec<f64>], Measured, Vec<String>);
+
+/// Frames and lines of the forces, one for one.
+pub(super) fn pair<'a>(frames: &'a [Vec<f64>], measured: &Measured) -> Result<Pairs<'a>, Wrong> {
+    let (count, lines) = (frames.len(), measured.forces.len());
+    let both = count.min(lines);
+    let apart = count.abs_diff(lines);
+    if apart as f64 > LENGTHS * count as f64 {
+        return Err((
+            format!("{count} frames and {lines} lines of forces"),
+            "give one line for each frame; leave blank what is unknown".to_owned(),
+        ));
+    }
+    let mut measured = measured.clone();
+    measured.forces.truncate(both);
+    measured.pressures.truncate(both);
+    if let Some(contacts) = &mut measured.contacts {
+        contacts.truncate(both);
+    }
+    let remark = (apart > 0).then(|| {
+        format!("{count} frames and {lines} lines of forces: paired from the first on, the last {apart} left out; check that the first belong together")
+    });
+    Ok((&frames[..both], measured, remark.into_iter().collect()))
+}
+
+/// Where readings pile up at the largest: many of them, and few just below, seen from what they are at rest.
+pub(super) fn end_of_range<'a>(
+    frames: &(impl Iterator<Item = impl Iterator<Item = f64> + 'a> + Clone),
+    rest: f64,
+) -> Option<f64> {
+    const LEAST: usize = 5;
+    const BELOW: f64 = 0.97;
+    let readings = || frames.clone().flatten();
+    let end = readings().fold(f64::NEG_INFINITY, f64::max);
+    let at = readings().filter(|&x| x >= end).count();
+    let below = readings().filter(|&x| x - rest >= BELOW * (end - rest) && x < end).count();
+    (end > rest && at >= LEAST && at > 2 * below).then_some(end)
+}
+
+/// What presses in each frame, whatever the sign of the file.
+pub(super) fn loads(measured: &Measured, remarks: &mut Vec<String>) -> Result<Vec<Option<f64>>, Wrong> {
+    let known: Vec<f64> = measured.forces.iter().filter_map(|force| force[2]).collect();
+    let largest = known.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    if largest <= 0.0 {
+        return Err((
+            "no normal force other than 0 is known".to_owned(),
+            "give F_z of some frames: weights do, in newtons or grams".to_owned(),
+        ));
+    }
+    let sign = known.iter().sum::<f64>().signum();
+    if sign > 0.0 {
+        remarks.push("F_z is positive in the file: taken for what presses".to_owned());
+    }
+    let against = known.iter().filter(|&&force| -sign * force > REST * largest).count();
+    if against > 0 {
+        remarks.push(format!("{} with an F_z that pulls are left out", frames_of(against)));
+    }
+    Ok(measured
+        .forces
+        .iter()
+        .map(|force| force[2].map(|force| sign * force).filter(|&load| load > -REST * largest))
+        .collect())
+}
+
+/// The readings without load and their noise.
+pub(super) fn rest(
+    design: &Design,
+    frames: &[Vec<f64>],
+    at_rest: &[usize],
+    remarks: &mut Vec<String>,
+) -> (Vec<f64>, Option<f64>) {
+    let taxels = design.sensor.taxels();
+    if at_rest.is_empty() {
+        let rest: Vec<f64> = (0..taxels).map(|taxel| design.input.from_pa(taxel, 0.0)).collect();
+        // What a taxel reads at its least loaded is its rest, if every taxel was unloaded once.
+        let least =
+            |taxel: usize| frames.iter().map(|frame| (frame[taxel] - rest[taxel]).abs()).fold(f64::INFINITY, f64::min);
+        let peak = frames.iter().flatten().fold(0.0_f64, |peak, count| peak.max(count.abs()));
+        let mut far: Vec<f64> = (0..taxels).map(least).collect();
+        far.sort_by(f64::total_cmp);
+        let middle = far[taxels / 2];
+        if middle > 0.02 * peak {
+            remarks.push(format!(
+                "no frame has a force of 0, and half of the taxels never read less than {middle:.0} counts: is the tare \
+                 missing? Record some frames without load and give them the force 0"
+            ));
+        } else {
+            remarks.push("no frame has a force of 0: the offsets stay as the design has them".to_owned());
+        }
+        return (rest, None);
+    }
+    let column = |taxel: usize| {
+        let mut counts: Vec<f64> = at_rest.iter().map(|&k| frames[k][taxel]).collect();
+        counts.sort_by(f64::total_cmp);
+        counts
+    };
+    let middles: Vec<f64> = (0..taxels)
+        .map(|taxel| {
+            let counts = column(taxel);
+            // Of whole counts a median loses what the mean of the middle half keeps.
+            let middle = &counts[counts.len() / 4..counts.len() - counts.len() / 4];
+            middle.iter().sum::<f64>() / middle.len() as f64
+        })
+        .collect();
+    let noise = (at_rest.len() >= 5).then(|| {
+        let of = |taxel: usize| {
+            at_rest.iter().map(|&k| (frames[k][taxel] - middles[taxel]).abs()).sum::<f64>() / at_rest.len() as f64
+        };
+        1.25 * (0..taxels).map(of).sum::<f64>() / taxels as f64
+    });
+    (middles, noise)
+}
+
+pub(super) fn frames_of(count: usize) -> String {
+    if count == 1 { "1 frame".to_owned() } else { format!("{count} frames") }
+}

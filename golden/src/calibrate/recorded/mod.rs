@@ -1,0 +1,61 @@
+//! Constants from recordings: what a count is worth, and what each taxel's is, from frames with measured forces.
+//!
+//! A recording is parted into contacts and holds ([`holds`]). The normal force of a hold is a weighted sum of its stress
+//! ([`rows`]), so that the curve of counts ([`shape`]) and the taxels' gains ([`gains`]) are linear least squares each, in
+//! turns. What is chosen, the curve's kind and how smooth the gains are, is chosen by cross-validation that leaves whole
+//! places out, the simplest that is as good as the best. What it does not better is not fitted.
+
+mod columns;
+mod fit;
+mod folds;
+mod force;
+mod friction;
+mod gains;
+mod holds;
+mod loads;
+mod page;
+
+mod readings;
+mod report;
+mod rows;
+mod shape;
+mod table;
+mod uniform;
+
+use std::path::PathBuf;
+
+pub use force::fit_forces;
+pub use page::page;
+pub use report::{Errors, Hold, Recorded, TaxelGain};
+pub use table::{Measured, read_forces, read_pressures};
+pub use uniform::fit_uniform;
+
+use crate::solver::SolverError;
+
+/// Why constants cannot be found from a recording.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordedError {
+    /// A file of forces or pressures.
+    #[error("{}: {problem}; {remedy}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// Frames and forces that tell nothing.
+    #[error("{name}: {problem}; {remedy}")]
+    Recording {
+        /// Name of the design.
+        name: String,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// The sensor's matrices or the filter.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+}

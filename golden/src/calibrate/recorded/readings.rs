@@ -1,0 +1,176 @@
+//! From readings to the design: what a sensor reads at rest, and the keys that say what its counts mean.
+
+use super::holds::Holds;
+use super::shape::{self, Own, Shape};
+use crate::design::{Calibration, Curve, Design, Input, NOISE_FLOOR_DIVISOR};
+
+/// The full scale is this many times the largest stress seen, and is kept up to so many times that.
+const HEADROOM: [f64; 2] = [1.25, 32.0];
+/// A noise floor of so many deviations.
+const QUIET: f64 = 3.0;
+/// Readings at rest below this share of the largest are 0.
+const TARED: f64 = 0.005;
+/// Pieces that a power law of another base becomes.
+const LAW_PIECES: i32 = 32;
+
+/// What a sensor reads at rest.
+pub(super) struct Readings {
+    /// 1 where pressing raises the readings, else -1.
+    pub(super) sign: f64,
+    /// Readings at rest times the sign, one a taxel.
+    pub(super) rest: Vec<f64>,
+    /// The middle one: curves begin there.
+    pub(super) base: f64,
+    noise: Option<f64>,
+    /// Least and largest reading above rest.
+    range: [f64; 2],
+}
+
+impl Readings {
+    pub(super) fn new(design: &Design, holds: &Holds) -> Self {
+        let rest: Vec<f64> = holds.rest.iter().map(|rest| holds.sign * rest).collect();
+        let mut sorted = rest.clone();
+        sorted.sort_by(f64::total_cmp);
+        let base = sorted[design.sensor.taxels() / 2];
+        let x = || holds.all.iter().flat_map(|hold| hold.x.iter().copied());
+        let range = [x().fold(0.0, f64::min), x().fold(0.0, f64::max)];
+        Self { sign: holds.sign, rest, base, noise: holds.noise, range }
+    }
+
+    /// What a design makes of readings above rest, in pascals that press, before the taxel's gain.
+    pub(super) fn own(&self, input: &Input) -> Box<Own> {
+        let (input, rest, sign) = (input.clone(), self.rest.clone(), self.sign);
+        Box::new(move |taxel, x| {
+            let pascals = |oriented: f64| plain(&input, sign * oriented);
+            pascals(rest[taxel]) - pascals(rest[taxel] + x)
+        })
+    }
+
+    /// Counts above rest and what they mean, of a taxel of gain 1.
+    pub(super) fn points(&self, input: &Input) -> Vec<[f64; 2]> {
+        let at = |x: f64| plain(input, self.sign * self.base) - plain(input, self.sign * (self.base + x));
+        (0..=60).map(|step| self.range[1] * f64::from(step) / 60.0).map(|x| [x, at(x)]).collect()
+    }
+
+    /// The design with a curve and gains, for stress as large as was seen.
+    pub(super) fn calibrated(
+        &self,
+        design: &Design,
+        shape: &Shape,
+        gains: &[f64],
+        largest: f64,
+        remarks: &mut Vec<String>,
+    ) -> Design {
+        let mut calibrated = design.clone();
+        let Input { tension, dead, .. } = design.input.clone();
+        let full_scale = full_scale(design, largest, remarks);
+        let mut input = Input { dead, tension, ..Input::default() };
+        match shape {
+            // Pascals are negative where something presses.
+            Shape::Line(slope) => input.pa_per_count = Some(-self.sign * slope),
+            Shape::Own(factor) => match &design.input.curve {
+                Some(Curve { law: Some([power, scale]), .. }) => {
+                    input.curve = Some(Curve::power_law(*power, factor * scale, full_scale));
+                }
+                Some(Curve { points, .. }) => {
+                    let points = points.iter().map(|&[count, pascals]| [count, factor * pascals]).collect();
+                    input.curve = Some(Curve { points, law: None });
+                }
+                None => input.pa_per_count = Some(factor * design.input.pa_per_count.unwrap_or(1.0)),
+            },
+            &Shape::Power { power, scale, straight } => {
+                let tared = self.rest.iter().all(|rest| rest.abs() < TARED * self.range[1]);
+                // Below 1 a law is infinitely steep at rest.
+                input.curve = Some(if tared && self.sign > 0.0 && power >= 1.0 {
+                    Curve::power_law(power, -scale, full_scale)
+                } else {
+                    let ratio = self.range[1] / straight;
+                    let knot = |index: i32| straight * ratio.powf(f64::from(index) / f64::from(LAW_PIECES));
+                    let knots: Vec<f64> = std::iter::once(0.0).chain((0..=LAW_PIECES).map(knot)).collect();
+                    self.curve(knots.iter().map(|&x| [x, scale * shape::powered(x, power, straight)]).collect())
+                });
+            }
+            Shape::Pieces { knots, slopes } => {
+                let mut points = vec![[0.0, 0.0]];
+                for (pair, slope) in knots.windows(2).zip(slopes) {
+                    let [_, pascals] = points[points.len() - 1];
+                    points.push([pair[1], pascals + slope * (pair[1] - pair[0])]);
+                }
+                input.curve = Some(self.curve(points));
+            }
+        }
+        let offset: Vec<f64> = (0..gains.len())
+            .map(|taxel| {
+                let rest = self.sign * self.rest[taxel];
+                gains[taxel] * if input.curve.is_some() { -plain(&input, rest) } else { -rest }
+            })
+            .collect();
+        let is_plain =
+            gains.iter().all(|gain| gain.to_bits() == 1_f64.to_bits()) && offset.iter().all(|&offset| offset == 0.0);
+        let was_dead = |taxel: usize| design.input.calibration.as_ref().is_some_and(|before| before.gain[taxel] == 0.0);
+        if !is_plain || design.input.calibration.is_some() {
+            let gain =
+                gains.iter().enumerate().map(|(taxel, &gain)| if was_dead(taxel) { 0.0 } else { gain }).collect();
+            // A negative zero would be written as one.
+            input.calibration = Some(Calibration { gain, offset: offset.iter().map(|offset| offset + 0.0).collect() });
+        }
+        let floor = self.noise.map(|noise| {
+            let of = |taxel: usize| {
+                let rest = self.sign * self.rest[taxel];
+                (input.to_pa(taxel, rest + self.sign * noise) - input.to_pa(taxel, rest)).abs()
+            };
+            QUIET * (0..gains.len()).map(of).sum::<f64>() / gains.len() as f64
+        });
+        calibrated.input = input;
+        if calibrated.hardware.full_scale_pa.to_bits() != full_scale.to_bits() {
+            calibrated.hardware.full_scale_pa = full_scale;
+            calibrated.algorithm.noise_floor_pa = full_scale / NOISE_FLOOR_DIVISOR;
+        }
+        let was = calibrated.algorithm.noise_floor_pa;
+        if let Some(floor) = floor.filter(|&floor| floor > was && floor < 0.1 * full_scale) {
+            remarks.push(format!(
+                "algorithm.noise_floor_pa is {floor:.1} now, it was {was:.1}: {QUIET} deviations of the frames without load"
+            ));
+            calibrated.algorithm.noise_floor_pa = floor;
+        }
+        calibrated
+    }
+
+    /// A curve through points of readings above the base and pascals that press. A sensor that reads less than that, a
+    /// pull or another rest, goes on below with the first slope.
+    fn curve(&self, mut points: Vec<[f64; 2]>) -> Curve {
+        let lowest = self.rest.iter().map(|rest| rest - self.base).fold(self.range[0], f64::min);
+        if lowest < 0.0 {
+            let [count, pascals] = points[1];
+            points.insert(0, [1.5 * lowest, 1.5 * lowest * pascals / count]);
+        }
+        let mut points: Vec<[f64; 2]> =
+            points.iter().map(|[x, pascals]| [self.sign * (x + self.base), 0.0 - pascals]).collect();
+        if self.sign < 0.0 {
+            points.reverse();
+        }
+        Curve { points, law: None }
+    }
+}
+
+/// Pascals of a count before the taxel's gain and offset.
+fn plain(input: &Input, count: f64) -> f64 {
+    match &input.curve {
+        Some(curve) => curve.at(count),
+        None => input.pa_per_count.unwrap_or(1.0) * count,
+    }
+}
+
+/// The full scale that the largest stress asks for: the design's, unless that is too small, or far too large.
+fn full_scale(design: &Design, largest: f64, remarks: &mut Vec<String>) -> f64 {
+    let (was, needed) = (design.hardware.full_scale_pa, HEADROOM[0] * largest);
+    if was >= needed && was <= HEADROOM[1] * needed {
+        return was;
+    }
+    let digits = 10_f64.powf(needed.log10().floor() - 1.0);
+    let now = ((needed / digits).ceil() * digits).clamp(1e-3, 1e9);
+    remarks.push(format!(
+        "hardware.full_scale_pa is {now:.0} now, it was {was:.0}: the largest stress recorded is {largest:.0} Pa"
+    ));
+    now
+}

@@ -1,0 +1,305 @@
+//! What a recording could tell, in plain words.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::fit::{Found, Work};
+use super::folds::Folds;
+use super::friction::Verdict;
+use super::gains::Prior;
+use super::shape::{Kind, Shape};
+use crate::design::{Curve, Design};
+
+/// Constants from a recording, and how good they are.
+#[derive(Clone, Debug, Serialize)]
+pub struct Recorded {
+    /// The design with them.
+    #[serde(skip)]
+    pub design: Design,
+    /// Contacts, each from touch to release at one place.
+    pub contacts: usize,
+    /// Places that the contacts were at.
+    pub places: usize,
+    /// Smallest and largest load in newtons.
+    pub loads: [f64; 2],
+    /// Errors at places (or loads) that were left out; nothing if there are too few to leave any out.
+    pub errors: Option<Errors>,
+    /// The same with the design's own curve, or a straight line, and one gain for all taxels.
+    pub errors_as_designed: Option<Errors>,
+    /// Errors at what it was fitted to.
+    pub errors_fitted: Errors,
+    /// What the recording could tell.
+    pub determined: Vec<String>,
+    /// What it could not, and what would.
+    pub undetermined: Vec<String>,
+    /// What else is to be known.
+    pub remarks: Vec<String>,
+    /// Each hold, its load as found when it was left out.
+    pub holds: Vec<Hold>,
+    /// Each taxel's gain.
+    pub gains: Vec<TaxelGain>,
+    /// Counts above rest and the pascals that they mean.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A stretch of frames with one load.
+#[derive(Clone, Debug, Serialize)]
+pub struct Hold {
+    /// First and last frame, from 0.
+    pub frames: [usize; 2],
+    /// Number of its place.
+    pub place: usize,
+    /// Load in newtons, or pressure in pascals.
+    pub measured_n: f64,
+    /// The same as found.
+    pub found_n: f64,
+}
+
+/// The gain of a taxel.
+#[derive(Clone, Debug, Serialize)]
+pub struct TaxelGain {
+    /// Factor on its stress.
+    pub gain: f64,
+    /// Whether a contact was on it.
+    pub touched: bool,
+    /// Whether the recording says more of it than was assumed.
+    pub told: bool,
+}
+
+/// Errors of the load in percent of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Errors {
+    /// Of how many holds.
+    pub holds: usize,
+    /// Half of them err by less.
+    pub median: f64,
+    /// 95 % of them err by less.
+    pub most: f64,
+    /// The largest.
+    pub worst: f64,
+}
+
+impl Errors {
+    /// Of shares.
+    pub fn of(errors: impl Iterator<Item = f64>) -> Self {
+        let mut sorted: Vec<f64> = errors.map(|error| 100.0 * error.abs()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            sorted.get((share * (sorted.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(0.0)
+        };
+        Self { holds: sorted.len(), median: at(0.5), most: at(0.95), worst: at(1.0) }
+    }
+
+    pub(super) fn words(&self) -> String {
+        format!("{:.1} % in the median, {:.1} % in 95 of 100, {:.1} % at worst", self.median, self.most, self.worst)
+    }
+}
+
+/// What the words are made of.
+pub(super) struct Facts<'a> {
+    pub(super) work: &'a Work<'a>,
+    pub(super) kinds: &'a [Kind],
+    pub(super) kind: Kind,
+    pub(super) found: &'a Found,
+    pub(super) prior: Option<Prior>,
+    pub(super) folds: Option<&'a Folds>,
+    pub(super) levels: usize,
+    pub(super) span: f64,
+    pub(super) friction: Verdict,
+    /// How far the gains of taxels differ, and those from one half of the recording from the other's.
+    pub(super) halves: Option<[f64; 2]>,
+}
+
+/// Puts everything into words.
+pub(super) fn say(recorded: &mut Recorded, facts: &Facts<'_>) {
+    force(recorded, facts);
+    curve(recorded, facts);
+    gains(recorded, facts);
+    match &facts.friction {
+        Verdict::Fitted(words) => recorded.determined.push(words.clone()),
+        Verdict::Not(words) => recorded.undetermined.push(words.clone()),
+    }
+    spread(recorded, facts);
+}
+
+fn force(recorded: &mut Recorded, facts: &Facts<'_>) {
+    if let (Some(errors), Some(folds)) = (&recorded.errors, facts.folds) {
+        let before = recorded.errors_as_designed.as_ref().map_or(0.0, |errors| errors.median);
+        let than = facts.kinds[0].name();
+        let better = if facts.kind == facts.kinds[0] && facts.prior.is_none() {
+            String::new()
+        } else {
+            format!("; with {than} and one gain the median is {before:.1} %")
+        };
+        let Folds { what, groups, .. } = folds;
+        let words = errors.words();
+        recorded.determined.push(format!("F_z: errs by {words} at {what} left out, {groups} in turn{better}"));
+    } else {
+        recorded.determined.push("common gain: one factor for all, so that the loads are right in the mean".to_owned());
+        recorded.undetermined.push(
+            "errors: too few places and loads to leave any out, so nothing is checked; record at least four places"
+                .to_owned(),
+        );
+    }
+    if recorded.places < 4 && facts.folds.is_some() {
+        recorded.undetermined.push(format!(
+            "other places: all contacts are at {}; what taxels elsewhere read is not known",
+            if recorded.places == 1 { "one place".to_owned() } else { format!("{} places", recorded.places) }
+        ));
+    }
+}
+
+fn curve(recorded: &mut Recorded, facts: &Facts<'_>) {
+    let loads = {
+        let [low, high] = recorded.loads;
+        if facts.levels == 1 {
+            format!("one load ({} N)", short(low))
+        } else {
+            format!("{} loads from {} to {} N", facts.levels, short(low), short(high))
+        }
+    };
+    let top = facts.work.largest();
+    if facts.kinds.len() == 1 {
+        let why = if facts.folds.is_none() { "nothing could check it" } else { "they are too close to each other" };
+        let why = if facts.levels == 1 { "a curve takes at least two, better five" } else { why };
+        recorded.undetermined.push(format!(
+            "curve: {loads}: {why}; it stays {}. Record loads of which the largest is five times the smallest",
+            facts.kind.name()
+        ));
+        return;
+    }
+    let line = match &facts.found.shape {
+        Shape::Own(factor) => {
+            format!("curve: the design's own, times {:.3}; nothing that was tried is better", factor.abs())
+        }
+        Shape::Line(slope) => format!("curve: a straight line, {slope:.4} Pa a count; nothing that bends is better"),
+        Shape::Power { power, scale, .. } => {
+            format!(
+                "curve: pascals = {scale:.4} |count - {:.0}|^{power:.3}, from {loads}",
+                facts.work.readings.sign * facts.work.readings.base
+            )
+        }
+        Shape::Pieces { slopes, .. } => format!("curve: {} straight pieces, from {loads}", slopes.len()),
+    };
+    recorded.determined.push(line);
+    match (&facts.found.shape, &recorded.design.input.curve) {
+        (Shape::Own(_) | Shape::Line(_), _) => {}
+        (_, Some(Curve { law: Some(_), .. })) => {
+            recorded
+                .remarks
+                .push(format!("the power law goes on beyond the {top:.0} counts above rest that were recorded"));
+        }
+        _ => recorded.undetermined.push(format!(
+            "curve: counts of more than {top:.0} above rest were not recorded: there it ends, and such frames are \
+             \"saturated\". Record heavier loads if there are any"
+        )),
+    }
+    if facts.span < 3.0 {
+        recorded
+            .remarks
+            .push(format!("the largest load is {:.1} times the smallest: the curve is known there only", facts.span));
+    }
+}
+
+/// Three digits behind the point, without zeros at the end.
+fn short(value: f64) -> String {
+    format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn gains(recorded: &mut Recorded, facts: &Facts<'_>) {
+    let count = recorded.gains.len();
+    let untouched: Vec<usize> = (0..count).filter(|&taxel| !recorded.gains[taxel].touched).collect();
+    let told = recorded.gains.iter().filter(|gain| gain.told).count();
+    let list = |taxels: &[usize]| {
+        let shown: Vec<String> = taxels.iter().take(12).map(usize::to_string).collect();
+        format!("{}{}", shown.join(", "), if taxels.len() > 12 { ", …" } else { "" })
+    };
+    let Some(prior) = facts.prior else {
+        let why = match facts.folds {
+            Some(folds) if folds.what == "places" && recorded.places >= 6 => {
+                "taxels' own gains do not make loads at other places righter".to_owned()
+            }
+            _ => format!(
+                "contacts at {} place{} do not tell taxels apart",
+                recorded.places,
+                if recorded.places == 1 { "" } else { "s" }
+            ),
+        };
+        recorded.undetermined.push(format!(
+            "gains: {why}; they stay as they are. Record contacts on every second taxel, or a bladder (--uniform)"
+        ));
+        return;
+    };
+    let smooth = if prior.range > 0.0 {
+        format!("neighbours alike within {} pitches", prior.range)
+    } else {
+        "each for itself".to_owned()
+    };
+    let mut line = format!("gains: {told} of {count} taxels, {smooth}");
+    if let Some([differ, apart]) = facts.halves {
+        let _ = write!(
+            line,
+            "; they differ by {:.1} %, and those from either half of the recording from each other by {:.1} %",
+            100.0 * differ,
+            100.0 * apart
+        );
+        if apart > 0.7 * differ {
+            line.push_str(": a trend more than each taxel's own");
+        }
+    }
+    recorded.determined.push(line);
+    let hardly = count - told - untouched.len();
+    if hardly > 0 {
+        recorded.undetermined.push(format!("gains: {hardly} of {count} taxels are told by less than what was assumed of them; they are drawn towards the others"));
+    }
+    if !untouched.is_empty() {
+        recorded.undetermined.push(format!(
+            "gains: no contact was on {} of {count} taxels ({}): theirs stay as they were",
+            untouched.len(),
+            list(&untouched)
+        ));
+    }
+}
+
+/// How well the sensor repeats, and how it creeps.
+fn spread(recorded: &mut Recorded, facts: &Facts<'_>) {
+    let holds = &facts.work.holds.all;
+    let mut creeps: Vec<f64> = holds.iter().filter_map(|hold| hold.creep).collect();
+    creeps.sort_by(f64::total_cmp);
+    if let Some(&creep) = creeps.get(creeps.len() / 2).filter(|creep| creep.abs() > 0.03) {
+        recorded.remarks.push(format!(
+            "under a constant load the readings {} by {:.0} % (median of {} holds): the sensor creeps. The constants are right for the mean of a hold",
+            if creep > 0.0 { "rise" } else { "fall" }, 100.0 * creep.abs(), creeps.len()
+        ));
+    }
+    // The same load at the same place, another time.
+    let (mut squares, mut count) = (0.0, 0);
+    for (index, (hold, shown)) in holds.iter().zip(&recorded.holds).enumerate() {
+        let again = holds.iter().zip(&recorded.holds).skip(index + 1).find(|(other, _)| {
+            other.place == hold.place && other.contact != hold.contact && (other.load / hold.load - 1.0).abs() < 0.03
+        });
+        if let Some((other, later)) = again {
+            squares += 0.5 * (shown.found_n / hold.load - later.found_n / other.load).powi(2);
+            count += 1;
+        }
+    }
+    if count > 2 {
+        let repeats = 100.0 * (squares / f64::from(count)).sqrt();
+        recorded.remarks.push(format!("the same load at the same place again differs by {repeats:.1} % ({count} pairs): no constants do better than that"));
+    }
+    if let Some(worst) = recorded
+        .holds
+        .iter()
+        .max_by(|a, b| (a.found_n / a.measured_n - 1.0).abs().total_cmp(&(b.found_n / b.measured_n - 1.0).abs()))
+    {
+        let error = worst.found_n / worst.measured_n - 1.0;
+        let typical = recorded.errors.as_ref().unwrap_or(&recorded.errors_fitted).median / 100.0;
+        if error.abs() > 0.15 && error.abs() > 5.0 * typical {
+            recorded.remarks.push(format!(
+                "frames {} to {} look wrong: {:.3} N for {:.3}; a contact over the edge, or a slip of the pen?",
+                worst.frames[0], worst.frames[1], worst.found_n, worst.measured_n
+            ));
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Tables of what was measured beside the frames: forces, or the pressures of a bladder, read leniently.
+//!
+//! One line a frame. A header names the columns and their units; without one the number of columns tells. What is blank, a
+//! dash or a NaN is unknown.
+
+use std::path::Path;
+
+use super::RecordedError;
+use super::columns::{Meaning, meanings};
+use crate::frames::{Array, Separator, read_array};
+
+/// What stands for an unknown value.
+const UNKNOWN: [&str; 6] = ["", "-", "nan", "na", "n/a", "none"];
+
+/// What was measured, frame by frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// `[F_x, F_y, F_z]` in newtons, as far as known, with the signs of the file.
+    pub forces: Vec<[Option<f64>; 3]>,
+    /// Pressure in pascals.
+    pub pressures: Vec<Option<f64>>,
+    /// The name of the contact, where a column has one.
+    pub contacts: Option<Vec<String>>,
+    /// What was taken for what.
+    pub remarks: Vec<String>,
+}
+
+/// A table as it is, before anybody knows what its columns mean.
+struct Raw {
+    names: Option<Vec<String>>,
+    units: Option<Vec<String>>,
+    /// Line number and fields.
+    rows: Vec<(usize, Vec<String>)>,
+    decimal_comma: bool,
+}
+
+/// Reads the forces of a file: columns `F_x`, `F_y`, `F_z`, of which any may be missing, in newtons unless the header
+/// names another unit.
+///
+/// # Errors
+///
+/// [`RecordedError::File`] for a file that cannot be read, a column nobody can tell, and a value that is no number.
+pub fn read_forces(path: &Path) -> Result<Measured, RecordedError> {
+    read(path, "F_x,F_y,F_z", &|count, rising| match (count, rising) {
+        (1, _) => Some(vec![Some(Meaning::Force(2))]),
+        (2, true) => Some(vec![None, Some(Meaning::Force(2))]),
+        (3, _) => Some((0..3).map(|axis| Some(Meaning::Force(axis))).collect()),
+        (4, true) => Some([None].into_iter().chain((0..3).map(|axis| Some(Meaning::Force(axis)))).collect()),
+        // As `golden solve` writes them.
+        (8.., _) => {
+            Some((0..count).map(|column| (1..4).contains(&column).then(|| Meaning::Force(column - 1))).collect())
+        }
+        _ => None,
+    })
+}
+
+/// Reads the pressures of a file, in pascals unless the header names another unit.
+///
+/// # Errors
+///
+/// As [`read_forces`].
+pub fn read_pressures(path: &Path) -> Result<Measured, RecordedError> {
+    read(path, "pressure (kPa)", &|count, rising| match (count, rising) {
+        (1, _) => Some(vec![Some(Meaning::Pressure)]),
+        (2, true) => Some(vec![None, Some(Meaning::Pressure)]),
+        _ => None,
+    })
+}
+
+type Guess = dyn Fn(usize, bool) -> Option<Vec<Option<Meaning>>>;
+
+fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedError> {
+    let wrong = |problem: String, remedy: String| RecordedError::File { path: path.to_path_buf(), problem, remedy };
+    let raw = raw(path)?;
+    let columns = raw.rows.first().map_or(0, |(_, fields)| fields.len());
+    if columns == 0 {
+        return Err(wrong("no line of numbers in it".to_owned(), "write one line for each frame".to_owned()));
+    }
+    let mut remarks = Vec::new();
+    let header = raw.names.as_ref().map(|names| meanings(names, raw.units.as_deref(), &mut remarks));
+    let found = match header {
+        Some(found) => found
+            .map_err(|problem| wrong(problem, "name the unit: N, mN, kN, g, kg, Pa, kPa, mbar, bar, psi".to_owned()))?,
+        None => Vec::new(),
+    };
+    let wanted = |meaning: Meaning| match guess(1, false) {
+        Some(only) if only[0] == Some(Meaning::Pressure) => meaning == Meaning::Pressure,
+        _ => matches!(meaning, Meaning::Force(_)),
+    };
+    let mut named: Vec<Option<(Meaning, f64)>> = found;
+    if !named.iter().flatten().any(|&(meaning, _)| wanted(meaning)) {
+        let rising = rises(&raw);
+        let guessed = guess(columns, rising).filter(|_| raw.names.is_none() || columns == 1).ok_or_else(|| {
+            let seen = raw.names.as_ref().map_or_else(
+                || format!("{columns} columns without a header"),
+                |names| format!("the columns {}", names.join(", ")),
+            );
+            wrong(format!("{seen}: nobody can tell what they are"), format!("write a header such as {example}"))
+        })?;
+        named = guessed.into_iter().map(|meaning| meaning.map(|meaning| (meaning, 1.0))).collect();
+        let what = if named.iter().flatten().any(|&(meaning, _)| meaning == Meaning::Pressure) {
+            "a pressure in pascals"
+        } else if named.iter().flatten().count() == 1 {
+            "F_z in newtons"
+        } else {
+            "F_x, F_y and F_z in newtons"
+        };
+        let at = named.iter().position(Option::is_some).unwrap_or(0) + 1;
+        remarks.push(format!("no header names the columns: from column {at} on they are taken for {what}"));
+    }
+    let contact = named.iter().position(|column| matches!(column, Some((Meaning::Contact, _))));
+    let mut measured = Measured { remarks, ..Measured::default() };
+    let mut contacts = Vec::new();
+    for (line, fields) in &raw.rows {
+        let (mut force, mut pressure) = ([None; 3], None);
+        for (column, told) in named.iter().enumerate() {
+            let text = fields.get(column).map_or("", String::as_str);
+            let &Some((meaning, unit)) = told else { continue };
+            if meaning == Meaning::Contact || UNKNOWN.contains(&text.to_ascii_lowercase().as_str()) {
+                continue;
+            }
+            let parsed = if raw.decimal_comma { text.replace(',', ".").parse() } else { text.parse::<f64>() };
+            let value = parsed.ok().filter(|value| value.is_finite()).ok_or_else(|| {
+                let shown: String = text.chars().take(40).collect();
+                wrong(
+                    format!("line {line}, column {}: {shown:?} is no number", column + 1),
+                    "leave blank what is unknown".to_owned(),
+                )
+            })?;
+            match meaning {
+                Meaning::Force(axis) => force[axis] = Some(unit * value),
+                Meaning::Pressure => pressure = Some(unit * value),
+                Meaning::Contact => {}
+            }
+        }
+        measured.forces.push(force);
+        measured.pressures.push(pressure);
+        contacts.extend(contact.map(|column| fields.get(column).cloned().unwrap_or_default()));
+    }
+    measured.contacts = contact.map(|_| contacts);
+    Ok(measured)
+}
+
+/// Whether the first column counts or tells the time.
+fn rises(raw: &Raw) -> bool {
+    let first: Vec<f64> =
+        raw.rows.iter().filter_map(|(_, fields)| fields.first()?.replace(',', ".").parse().ok()).collect();
+    first.len() == raw.rows.len() && first.len() > 1 && first.windows(2).all(|pair| pair[1] > pair[0])
+}
+
+fn raw(path: &Path) -> Result<Raw, RecordedError> {
+    let wrong = |problem: String| RecordedError::File {
+        path: path.to_path_buf(),
+        problem,
+        remedy: "check the path and the permissions".to_owned(),
+    };
+    if let Some(Array { shape, values }) = read_array(path).map_err(|error| wrong(error.to_string()))? {
+        let columns = shape.get(1..).unwrap_or(&[]).iter().product::<usize>().max(1);
+        let text = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
+        let rows = values.chunks(columns).enumerate();
+        let rows = rows.map(|(row, values)| (row + 1, values.iter().map(text).collect())).collect();
+        return Ok(Raw { names: None, units: None, rows, decimal_comma: false });
+    }
+    let bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let (mut heads, mut comments, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+    let mut separator = None;
+    for (index, content) in bytes.split(|&byte| byte == b'\n').enumerate() {
+        let content = content.trim_ascii();
+        if content.is_empty() {
+            // A file of one column may leave a line blank: the force is unknown.
+            if separator.is_some_and(|_| !rows.is_empty()) {
+                rows.push((index + 1, Vec::new()));
+            }
+            continue;
+        }
+        let is_comment = content.starts_with(b"#");
+        let content = content.strip_prefix(b"#").unwrap_or(content).trim_ascii();
+        let of_line = Separator::of(content);
+        let split = |by: Separator| -> Vec<String> {
+            by.split(content)
+                .into_iter()
+                .map(|field| String::from_utf8_lossy(field).trim().trim_matches('"').to_owned())
+                .collect()
+        };
+        let words = || String::from_utf8_lossy(content).trim_matches('"').to_owned();
+        if is_comment {
+            comments = vec![(of_line, words())];
+            continue;
+        }
+        let fields = split(*separator.get_or_insert(of_line));
+        let number = |field: &String| field.replace(',', ".").parse::<f64>().is_ok_and(f64::is_finite);
+        if rows.is_empty()
+            && heads.len() < 2
+            && !fields.iter().any(number)
+            && fields.iter().any(|field| !field.is_empty())
+            && !fields.iter().all(|field| UNKNOWN.contains(&field.to_ascii_lowercase().as_str()))
+        {
+            // What separates a header of words may be another character than what separates the numbers.
+            heads.push((of_line, words()));
+            separator = None;
+            continue;
+        }
+        rows.push((index + 1, fields));
+    }
+    while rows.last().is_some_and(|(_, fields): &(usize, Vec<String>)| fields.is_empty()) {
+        rows.pop();
+    }
+    let columns = rows.first().map_or(0, |(_, fields)| fields.len());
+    if columns > 1 {
+        // Blank lines between the lines of a table are nothing.
+        rows.retain(|(_, fields)| !fields.is_empty());
+    }
+    let decimal_comma = matches!(separator, Some(Separator::Byte(b';' | b'\t')));
+    // Of one column the whole line is the name, whatever is in it.
+    let fields = |(separator, line): &(Separator, String)| -> Vec<String> {
+        let parts = if columns == 1 { vec![line.as_bytes()] } else { separator.split(line.as_bytes()) };
+        parts.iter().map(|field| String::from_utf8_lossy(field).trim().trim_matches('"').to_owned()).collect()
+    };
+    let mut heads = heads.iter().map(fields);
+    let commented = || comments.first().map(fields).filter(|names| names.len() == columns);
+    let names = heads.next().or_else(commented);
+    Ok(Raw { names, units: heads.next(), rows, decimal_comma })
+}

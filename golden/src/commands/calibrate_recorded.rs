@@ -1,0 +1,150 @@
+//! `golden calibrate` from recordings with measured forces or pressures.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use golden::calibrate::recorded::{Recorded, fit_forces, fit_uniform, page, read_forces, read_pressures};
+use golden::choose::rebase_scenes;
+use golden::design::{Design, Filter};
+use golden::output::write_together;
+use serde::Serialize;
+
+use super::calibrate::name_of;
+use super::{Recording, Resolved, Stage, folder, keep_apart};
+
+/// What was recorded.
+#[derive(Args, Debug)]
+#[group(id = "recordings", multiple = true)]
+pub struct Recordings {
+    /// Frames of contacts, as for `golden solve`.
+    #[arg(long, value_name = "FRAMES.csv", requires = "forces")]
+    frames: Option<PathBuf>,
+    /// Forces measured with them (CSV or .npy), one line a frame.
+    #[arg(long, value_name = "FORCES.csv", requires = "frames")]
+    forces: Option<PathBuf>,
+    /// Frames under uniform pressure, from a bladder over all taxels.
+    #[arg(long, value_name = "FRAMES.csv", requires = "pressures")]
+    uniform: Option<PathBuf>,
+    /// Pressures measured with them (CSV or .npy), one line a frame.
+    #[arg(long, value_name = "P.csv", requires = "uniform")]
+    pressures: Option<PathBuf>,
+    /// Columns of labels before the values of a frame.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    labels: usize,
+    /// Where to write a page with plots (HTML, complete in itself).
+    #[arg(long, value_name = "PAGE.html")]
+    page: Option<PathBuf>,
+}
+
+impl Recordings {
+    /// Whether there is anything recorded.
+    pub fn given(&self) -> bool {
+        self.frames.is_some() || self.uniform.is_some() || self.page.is_some() || self.labels > 0
+    }
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    design: &'a str,
+    resolved: &'a Path,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    uniform: Option<&'a Recorded>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    forces: Option<&'a Recorded>,
+    next: String,
+}
+
+/// Fits the design in `path` to recordings and writes it to `out`.
+pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> Result<(), Box<dyn Error>> {
+    let Recordings { frames, forces, uniform, pressures, labels, page: page_file } = recordings;
+    if frames.is_none() && uniform.is_none() {
+        return Err(
+            "--labels and --page are for recordings: give --frames and --forces, or --uniform and --pressures".into()
+        );
+    }
+    let mut design = Design::load(path)?;
+    let resolved = Resolved::anew(path, out)?;
+    let inputs: Vec<&Path> = [frames, forces, uniform, pressures].into_iter().flatten().map(AsRef::as_ref).collect();
+    let outputs = resolved.all();
+    for output in outputs.iter().chain(page_file) {
+        keep_apart(output, &inputs)?;
+    }
+    if let Some(page_file) = page_file
+        && outputs.contains(page_file)
+    {
+        return Err(format!("{}: named for both the design and the page; choose two names", page_file.display()).into());
+    }
+    if let Some(name) = name_of(out) {
+        design.name = name;
+    }
+    let stage = Stage::new("fitting");
+    let mut results: [Option<Recorded>; 2] = [None, None];
+    for (place, (file, measured)) in [(uniform, pressures), (frames, forces)].into_iter().enumerate() {
+        let (Some(file), Some(measured)) = (file, measured) else { continue };
+        let frames = Recording { file, labels: *labels }.read(&design)?;
+        let found = match place {
+            0 => fit_uniform(&design, &frames, &read_pressures(measured)?),
+            _ => fit_forces(&design, &frames, &read_forces(measured)?),
+        }?;
+        design = found.design.clone();
+        results[place] = Some(found);
+    }
+    drop(stage);
+    if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
+        *scenes = rebase_scenes(scenes, folder(path), folder(out));
+    }
+    let mut contents = resolved.contents(&design, "Calibrated by `golden calibrate` from recordings.");
+    if let Some(page_file) = page_file {
+        let parts = [("Uniform pressure", "Pa", &results[0]), ("Contacts with known forces", "N", &results[1])];
+        let parts: Vec<_> =
+            parts.iter().filter_map(|(title, unit, found)| Some((*title, *unit, found.as_ref()?))).collect();
+        contents.insert(0, (page_file.clone(), page(&design, &parts)));
+    }
+    write_together(&contents)?;
+    let next = match frames {
+        Some(frames) => {
+            let labels = if *labels > 0 { format!(" --labels {labels}") } else { String::new() };
+            format!(
+                "golden solve {} --frames {}{labels} --out {}",
+                out.display(),
+                frames.display(),
+                out.with_extension("forces.csv").display()
+            )
+        }
+        None => {
+            format!("golden calibrate {} --frames FRAMES.csv --forces FORCES.csv --out CHECKED.toml", out.display())
+        }
+    };
+    let [uniform, forces] = &results;
+    let report =
+        Report { design: &design.name, resolved: out, uniform: uniform.as_ref(), forces: forces.as_ref(), next };
+    if json {
+        say!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        print_report(&report)?;
+    }
+    Ok(())
+}
+
+fn print_report(report: &Report<'_>) -> std::io::Result<()> {
+    say!("{}: calibrated design in {}", report.design, report.resolved.display());
+    for (what, found) in [("uniform pressure", report.uniform), ("contacts", report.forces)] {
+        let Some(found) = found else { continue };
+        say!("from {what}: {} holds, {} contacts", found.holds.len(), found.contacts);
+        for (title, lines) in [
+            ("determined", &found.determined),
+            ("not determined", &found.undetermined),
+            ("to be known", &found.remarks),
+        ] {
+            if !lines.is_empty() {
+                say!("  {title}");
+            }
+            for line in lines {
+                say!("    {line}");
+            }
+        }
+    }
+    say!("next: {}", report.next);
+    Ok(())
+}
