@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use golden::calibrate::{CalibrateError, Settings, calibrate};
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Grid, JointConstants};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Grid, JointConstants, Samples};
 
 const TEMPLATE: &str = include_str!("../templates/design.toml");
 /// The line of the template where the joint estimator's constants go.
@@ -67,6 +67,16 @@ pub enum NewDesignError {
     Calibrate(#[from] CalibrateError),
 }
 
+/// The integers that hold counts of so many bits: with a sign, which a tare needs, where there is room for one. None for
+/// wider ones, which stay float32.
+fn samples(bits: u32) -> Option<Samples> {
+    match bits {
+        ..=15 => Some(Samples::Int16),
+        16 => Some(Samples::Uint16),
+        _ => None,
+    }
+}
+
 /// Pascals of a count, so that the largest one reaches the full scale, where it is flagged, and no count is beyond.
 fn pa_per_count(new: &NewDesign, bits: u32) -> String {
     let largest = f64::from(bits).exp2() - 1.0;
@@ -103,6 +113,9 @@ fn text(new: &NewDesign, stage: &mut dyn FnMut(&'static str)) -> Result<String, 
     }
     if let Some(bits) = new.counts {
         text = with(&text.replace("# pa_per_count = ", "pa_per_count = "), "pa_per_count", &pa_per_count(new, bits));
+        if let Some(samples) = samples(bits) {
+            text = with(&text.replace("# samples = ", "samples = "), "samples", &format!("\"{samples}\""));
+        }
     }
     // Where noise would become force, and no plan might be possible without.
     let [x, y] = [new.pitch_mm[0], new.pitch_mm[1]];

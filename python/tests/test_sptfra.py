@@ -31,7 +31,7 @@ class Designs(unittest.TestCase):
         found = (made.name, made.columns, made.rows, made.taxels, made.pitch_mm, made.depth_mm, made.counts)
         self.assertEqual(found, ("pad", 6, 5, 30, (4.0, 3.5), 3.0, True))
         self.assertEqual((made.plan, made.estimator, made.outputs, made.tension), ("reduced", "joint", "field", "read"))
-        self.assertEqual((made.samples, made.full_scale_pa, made.clock_mhz), ("float32", 100000.0, 125.0))
+        self.assertEqual((made.samples, made.full_scale_pa, made.clock_mhz), ("int16", 100000.0, 125.0))
         self.assertIn("6 x 5 taxels", repr(made))
 
     def test_files_and_pickles_give_the_same_design(self):

@@ -36,7 +36,8 @@ pub struct New {
     #[arg(long, default_value_t = 3.0)]
     depth_mm: f64,
     /// Frames hold counts of a converter of so many bits: 0 without load, the largest count at the full scale; for one
-    /// whose counts fall under load, change the sign of `pa_per_count` in the file
+    /// whose counts fall under load, change the sign of `pa_per_count` in the file. Up to 16 bits the stream carries
+    /// integers
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(COUNT_BITS))]
     counts: Option<u32>,
     /// Stress at the end of the sensor's range

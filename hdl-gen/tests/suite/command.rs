@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use golden::design::Estimator;
+use golden::design::{Estimator, Samples};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -130,7 +130,15 @@ fn a_new_design_takes_what_the_sensors_maker_knows() {
     // The largest count may have been clipped, and says so; the one below it has not.
     assert!(design.input.to_pa(0, 4095.0).abs() >= hardware.full_scale_in_frames());
     assert!(design.input.to_pa(0, 4094.0).abs() < hardware.full_scale_in_frames());
-    assert_eq!(new_design(&["--estimator", "line"]).input.pa_per_count, None);
+    let plain = new_design(&["--estimator", "line"]);
+    assert_eq!((plain.input.pa_per_count, plain.hardware.samples), (None, Samples::Float32));
+    // Integers that hold every count, and a negative one after a tare if there is room.
+    assert_eq!(hardware.samples, Samples::Int16);
+    for (bits, samples) in [("15", Samples::Int16), ("16", Samples::Uint16), ("17", Samples::Float32)] {
+        let design = new_design(&["--counts", bits, "--estimator", "line"]);
+        let largest = f64::from(bits.parse::<i32>().expect("bits")).exp2() - 1.0;
+        assert!(design.hardware.samples == samples && samples.takes(largest) && samples.takes(0.0), "{bits} bits");
+    }
 }
 
 #[test]

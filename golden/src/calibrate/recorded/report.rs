@@ -175,10 +175,12 @@ fn curve(recorded: &mut Recorded, facts: &Facts<'_>) {
         }
         Shape::Line(slope) => format!("curve: a straight line, {slope:.4} Pa a count; nothing that bends is better"),
         Shape::Power { power, scale, .. } => {
-            format!(
-                "curve: pascals = {scale:.4} |count - {:.0}|^{power:.3}, from {loads}",
-                facts.work.readings.sign * facts.work.readings.base
-            )
+            // Before a gain of their own, and but for noise.
+            let count = match (facts.work.readings.sign * facts.work.readings.base).round() {
+                0.0 => "count".to_owned(),
+                rest => format!("|count - {rest}|"),
+            };
+            format!("curve: pascals = {scale:.4} {count}^{power:.3}, from {loads}")
         }
         Shape::Pieces { slopes, .. } => format!("curve: {} straight pieces, from {loads}", slopes.len()),
     };
