@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from .results import Finding, Scene, Spread
 class Error(ValueError):
     """What is wrong with a design, with frames, or with a file: what, where, and what to do."""
 
+@final
 class Design:
     """A sensor, the algorithm for it, and its hardware; every key is checked. Designs do not change."""
 
@@ -113,6 +114,7 @@ class Design:
     def part(self) -> str:
         """The FPGA."""
 
+@final
 class Solver:
     """Forces from frames in double precision, as `golden solve` finds them."""
 
@@ -129,6 +131,7 @@ class Solver:
         designs with a limit of slip.
         """
 
+@final
 class FrameLines:
     """Frames from lines of text, as a sensor sends them; messages call it `origin`."""
 

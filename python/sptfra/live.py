@@ -12,9 +12,9 @@ import sys
 import time
 from collections.abc import Iterable
 
-from ._native import Design, Error, FrameLines, Solver
+from ._native import Design, FrameLines, Solver
 from .forces import Forces, Status
-from .plot import plot_field
+from .plot import plot_field, pyplot
 
 #: Seconds between drawings; frames between them are solved, not drawn.
 PAUSE = 0.05
@@ -32,22 +32,33 @@ class Window:
     """The force field of the last frame."""
 
     def __init__(self, design: Design):
-        import matplotlib.pyplot as plt
-
-        self._pyplot, self._design, self._drawn = plt, design, -math.inf
-        self._figure = plt.figure()
-        plt.ion()
+        self._pyplot, self._design = pyplot(), design
+        self._drawn = -math.inf
+        self._waiting: Forces | None = None
+        self._figure = self._pyplot.figure()
+        self._pyplot.ion()
         self._figure.show()
 
     def show(self, forces: Forces) -> None:
         """Draws the frame, unless one was drawn just now."""
-        if time.monotonic() < self._drawn + PAUSE:
+        self._waiting = forces
+        if time.monotonic() >= self._drawn + PAUSE:
+            self._draw()
+
+    def hold(self) -> None:
+        """Draws the last frame and leaves it there until the user closes the window."""
+        self._draw()
+        self._pyplot.ioff()
+        self._pyplot.show()
+
+    def _draw(self) -> None:
+        if self._waiting is None:
             return
         self._figure.clear()
-        plot_field(self._design, forces, ax=self._figure.add_subplot())
+        plot_field(self._design, self._waiting, ax=self._figure.add_subplot())
         self._figure.canvas.draw_idle()
         self._figure.canvas.flush_events()
-        self._drawn = time.monotonic()
+        self._drawn, self._waiting = time.monotonic(), None
 
 
 def run(design: Design, lines: Iterable[bytes], labels: int, window: Window | None) -> None:
@@ -65,6 +76,8 @@ def run(design: Design, lines: Iterable[bytes], labels: int, window: Window | No
         else:
             window.show(forces)
         number += 1
+    if window is not None:
+        window.hold()
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -77,7 +90,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         design = Design.load(options.design)
         run(design, sys.stdin.buffer, options.labels, Window(design) if options.plot else None)
-    except (Error, ImportError, ValueError) as error:
+    except (ImportError, ValueError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     except (KeyboardInterrupt, BrokenPipeError):

@@ -11,6 +11,15 @@ from ._native import Design
 from .forces import Forces
 
 
+def pyplot() -> Any:
+    """`matplotlib.pyplot`, which is no dependency of all. Raises `ImportError` that says how to get it."""
+    try:
+        import matplotlib.pyplot
+    except ImportError as error:
+        raise ImportError("pictures need matplotlib: pip install 'sptfra[plot]'") from error
+    return matplotlib.pyplot
+
+
 def plot_field(design: Design, forces: Forces, index: int = 0, ax: Any = None) -> Any:
     """Draws a frame's forces on the grid in millimetres: normal forces as colours, tangential ones as arrows.
 
@@ -18,10 +27,7 @@ def plot_field(design: Design, forces: Forces, index: int = 0, ax: Any = None) -
     taxel. Raises `ImportError` without matplotlib and `ValueError` where the forces have no field or there is no such
     frame.
     """
-    try:
-        import matplotlib.pyplot as plt
-    except ImportError as error:
-        raise ImportError("plot_field needs matplotlib: pip install 'sptfra[plot]'") from error
+    plt = pyplot()
     if forces.field is None:
         raise ValueError("the forces have no field: the design puts out resultants only, or they are a scene's truth")
     if not -len(forces) <= index < len(forces):

@@ -126,8 +126,8 @@ pub struct Forces {
     torque: Vec<f64>,
     standard_error: Vec<f64>,
     bodies: Vec<u8>,
-    /// Empty where there is none.
     field: Vec<f64>,
+    has_field: bool,
 }
 
 /// Where the forces of [`PIECE`] frames go.
@@ -156,13 +156,14 @@ impl Forces {
             standard_error: vec![0.0; frames],
             bodies: vec![0; frames],
             field: vec![0.0; if with_field { 3 * sensor.taxels() * frames } else { 0 }],
+            has_field: with_field,
             sensor: sensor.clone(),
         }
     }
 
     /// The places of every [`PIECE`] frames, in order.
     pub fn pieces(&mut self) -> Vec<Piece<'_>> {
-        let of_frame = if self.field.is_empty() { 0 } else { 3 * self.sensor.taxels() };
+        let of_frame = if self.has_field { 3 * self.sensor.taxels() } else { 0 };
         let mut field = self.field.as_mut_slice();
         let mut fields = Vec::new();
         for frames in self.status.chunks(PIECE) {
@@ -189,7 +190,7 @@ impl Forces {
         places.map(piece).collect()
     }
 
-    /// The arrays in the package's class `sptfra.Forces`; single precision throughout if `single`.
+    /// The arrays in the package's class `sptfra.Forces`.
     pub fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         let Sensor { columns, rows, .. } = self.sensor;
         let frames = self.status.len();
@@ -204,10 +205,10 @@ impl Forces {
         put("friction_xy", self.friction_xy, &[frames, 2])?;
         put("standard_error", self.standard_error, &[frames])?;
         kwargs.set_item("bodies", self.bodies.into_pyarray(py))?;
-        if self.field.is_empty() && frames > 0 {
-            kwargs.set_item("field", py.None())?;
-        } else {
+        if self.has_field {
             put("field", self.field, &[frames, rows, columns, 3])?;
+        } else {
+            kwargs.set_item("field", py.None())?;
         }
         py.import("sptfra.forces")?.getattr("Forces")?.call((), Some(&kwargs))
     }

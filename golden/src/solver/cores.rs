@@ -8,7 +8,8 @@ use super::{Solution, Solver, SolverError, Status};
 pub const PIECE: usize = crate::products::batch::FRAMES;
 
 impl Solver {
-    /// Solves frames that follow each other in `values`, m each, on all cores by [`Solver::solve_batch`].
+    /// Solves frames that follow each other in `values`, m each, on all cores by [`Solver::solve_batch`]; a single one as
+    /// [`Solver::solve`] does.
     ///
     /// Every [`PIECE`] frames have a place of their own among `places`, in order; `put` gets it with the frame's index in
     /// the piece and its solution, on whatever thread. The cores know nothing of each other's frames: let
@@ -27,6 +28,13 @@ impl Solver {
         let rest = values.len() % taxels;
         if rest > 0 {
             return Err(SolverError::FrameLength { found: rest, expected: taxels });
+        }
+        if values.len() == taxels {
+            // Of a stream: what a batch needs would take longer than the frame.
+            let mut solution = Solution::zeros(Status::default(), 0);
+            self.solve_into(&mut self.workspace(), values, &mut solution)?;
+            places.into_iter().take(1).for_each(|mut place| put(&mut place, 0, &solution));
+            return Ok(());
         }
         let pieces: Vec<_> = values.chunks(PIECE * taxels).zip(places).collect();
         pieces.into_par_iter().try_for_each_init(

@@ -239,6 +239,10 @@ fn all_cores_give_what_one_gives() {
         }),
     );
     assert_eq!(found, expected);
+    // A single one as if it had come alone.
+    let mut alone = Solution::zeros(Status::default(), 0);
+    solver.solve_on_all_cores(&frames[0], [&mut alone], |place, _, found| place.clone_from(found)).unwrap();
+    assert_eq!(alone, solver.solve(&frames[0]).unwrap());
     let said = solver.solve_on_all_cores(&[0.0; 21], [()], |(), _, _| ()).unwrap_err().to_string();
     assert!(said.contains("the frame has 1 values, the sensor 20 taxels"), "{said}");
 }

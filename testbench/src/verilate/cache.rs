@@ -24,11 +24,17 @@ const SEAL: &str = "seal";
 /// Folders whose entry is not finished yet.
 const UNFINISHED: &str = "building-";
 
-/// `verilated` in cargo's target folder.
+/// `verilated` in cargo's target folder; of a program that is away from the workspace it was built in, such as an installed
+/// Python package, `sptfra/verilated` among the user's caches.
 pub fn default_cache() -> PathBuf {
-    let target = env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty()).map(PathBuf::from);
+    let folder = |name: &str| env::var_os(name).filter(|folder| !folder.is_empty()).map(PathBuf::from);
     let workspace = || Path::new(env!("CARGO_MANIFEST_DIR")).parent().filter(|root| root.is_dir());
-    target.or_else(|| workspace().map(|root| root.join("target"))).unwrap_or_else(|| "target".into()).join("verilated")
+    let caches = || folder("XDG_CACHE_HOME").or_else(|| folder("HOME").map(|home| home.join(".cache")));
+    folder("CARGO_TARGET_DIR")
+        .or_else(|| workspace().map(|root| root.join("target")))
+        .or_else(|| caches().map(|caches| caches.join("sptfra")))
+        .unwrap_or_else(|| "target".into())
+        .join("verilated")
 }
 
 /// An open cache folder.

@@ -16,6 +16,10 @@ const LIGHT: f64 = 0.1;
 pub(super) const AS_GOOD: f64 = 1.05;
 /// and this share of the load more: the model of a contact is no better.
 pub(super) const ALIKE: f64 = 3e-3;
+/// A better error that is within so many of its standard deviations is chance.
+const CHANCE: f64 = 1.5;
+/// Straight pieces need so many holds.
+const MANY: usize = 20;
 /// Gains must lower the error to this share to be fitted.
 const BETTER: f64 = 0.95;
 /// Rounds of curve and gains in turns.
@@ -161,10 +165,25 @@ impl<'a> Work<'a> {
     fn choose_kind(&self, kinds: &[Kind], delta: &[f64], folds: Option<&Folds>) -> Kind {
         let (Some(folds), [first, _, ..]) = (folds, kinds) else { return kinds[0] };
         let weights = self.weights(delta);
-        let scores: Vec<f64> = kinds.iter().map(|&kind| self.validate_kind(kind, &weights, folds).rms).collect();
-        let best = scores.iter().fold(f64::INFINITY, |best, &score| best.min(score));
-        let good = scores.iter().position(|&score| score <= AS_GOOD * best + ALIKE);
+        let scores: Vec<Validated> = kinds.iter().map(|&kind| self.validate_kind(kind, &weights, folds)).collect();
+        let Some(best) = scores.iter().min_by(|a, b| a.rms.total_cmp(&b.rms)) else { return *first };
+        let good =
+            scores.iter().position(|score| score.rms <= AS_GOOD * best.rms + ALIKE || self.is_chance(score, best));
         good.map_or(*first, |good| kinds[good])
+    }
+
+    /// Whether the second errs less by chance only: by its squared errors, hold by hold.
+    fn is_chance(&self, simple: &Validated, best: &Validated) -> bool {
+        let gains: Vec<f64> = (0..self.loads.len())
+            .map(|hold| {
+                let trust = (self.trust[hold] * self.loads[hold]).powi(2);
+                trust * (simple.errors[hold].powi(2) - best.errors[hold].powi(2))
+            })
+            .collect();
+        let mean = gains.iter().sum::<f64>() / gains.len() as f64;
+        let variance =
+            gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (gains.len() as f64 - 1.0).max(1.0);
+        mean <= CHANCE * (variance / gains.len() as f64).sqrt()
     }
 
     fn fit_shape(&self, kind: Kind, delta: &[f64], holds: &[usize]) -> Shape {
@@ -191,8 +210,8 @@ impl<'a> Work<'a> {
         let shares = self.shares(shape);
         let plain: Vec<f64> = shares.loads(&vec![0.0; self.before.len()]);
         let wanted: Vec<f64> = plain.iter().map(|load| 1.0 - load).collect();
-        let without = self.figure(plain.iter().map(|load| load - 1.0).enumerate().collect()).rms;
-        let mut best = (BETTER * without - ALIKE, None);
+        let without = self.figure(plain.iter().map(|load| load - 1.0).enumerate().collect());
+        let mut best = (BETTER * without.rms - ALIKE, None);
         for range in RANGES {
             let field = shares.with(&self.design.sensor, range);
             for noise in NOISES {
@@ -201,9 +220,9 @@ impl<'a> Work<'a> {
                     let loads = shares.loads(&field.fit(&kept, &wanted, noise));
                     left.into_iter().map(move |hold| (hold, loads[hold] - 1.0))
                 });
-                let score = self.figure(errors.collect()).rms;
-                if score < best.0 {
-                    best = (score, Some(Prior { range, noise }));
+                let score = self.figure(errors.collect());
+                if score.rms < best.0 && !self.is_chance(&without, &score) {
+                    best = (score.rms, Some(Prior { range, noise }));
                 }
             }
         }
@@ -232,7 +251,7 @@ impl<'a> Work<'a> {
             return kinds;
         }
         kinds.push(Kind::Power);
-        if levels > 2 && span >= 2.0 {
+        if levels > 2 && span >= 2.0 && self.loads.len() >= MANY {
             kinds.extend(SMOOTH.map(Kind::Pieces));
         }
         kinds
