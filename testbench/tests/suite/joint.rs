@@ -28,8 +28,7 @@ const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.8];
 /// Of the largest `|f_z|` of a frame. Most of it is the field's own rounding, which the line estimator has too; the
 /// rest is a friction component off by a few of its steps, 2^-16.
 const MOST_FIELD_ERROR: f64 = 5e-4;
-/// A joint design may take so many cycles more than one with the line, and so many times its multipliers.
-const MOST_CYCLES_MORE: i64 = 3_000;
+/// A joint design may have so many times the multipliers of one with the line.
 const MOST_TIMES_DSP: usize = 2;
 
 fn designs() -> Vec<Design> {
@@ -56,19 +55,20 @@ fn cycles_and_multipliers_keep_to_their_limits() {
     let mut resultants = shipped("sensor1-fast");
     resultants.name += "_resultants";
     resultants.algorithm.outputs = Outputs::Resultants;
+    // Cycles of latency at most, the longer answer included.
     let rows = [
-        (shipped("sensor1-joint"), "sensor1-reduced"),
-        (shipped("sensor2-joint"), "sensor2-reduced"),
-        (shipped("sensor1-fast"), "sensor1-reduced"),
-        (shipped("sensor2-wide"), "sensor2-reduced"),
+        (shipped("sensor1-joint"), "sensor1-reduced", 5_450),
+        (shipped("sensor2-joint"), "sensor2-reduced", 4_950),
+        (shipped("sensor1-fast"), "sensor1-reduced", 2_650),
+        (shipped("sensor2-wide"), "sensor2-reduced", 5_200),
         // Sixteen hidden units at a time.
-        (with_lanes(shipped("sensor1-fast"), 64), "sensor1-reduced-64"),
-        (shipped("sensor1-fast-64"), "sensor1-reduced-64"),
-        (uncorrected(shipped("sensor1-fast")), "sensor1-reduced"),
-        (uncorrected(shipped("sensor1-joint")), "sensor1-reduced"),
-        (resultants, "sensor1-resultants"),
+        (with_lanes(shipped("sensor1-fast"), 64), "sensor1-reduced-64", 1_450),
+        (shipped("sensor1-fast-64"), "sensor1-reduced-64", 1_150),
+        (uncorrected(shipped("sensor1-fast")), "sensor1-reduced", 2_650),
+        (uncorrected(shipped("sensor1-joint")), "sensor1-reduced", 3_950),
+        (resultants, "sensor1-resultants", 1_900),
     ];
-    let lines = in_parallel(&rows, |(design, line)| {
+    let lines = in_parallel(&rows, |(design, line, most)| {
         let (plan, line) = (planned(design), planned(&shipped(line)));
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut packets = crate::support::frames::extremes(&plan, &mut random);
@@ -77,12 +77,12 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         // Latency and interval as predicted is part of what is judged here, and so is every word in every mode.
         let simulation = simulate_exactly(&plan, &built(&plan), &packets, 1)
             .unwrap_or_else(|error| panic!("{}: {error}", design.name));
-        // Without a correction, and with a cell a point, less.
-        let more = simulation.cycles.latency as i64 - line.timeline.latency_cycles as i64;
-        assert!(more <= MOST_CYCLES_MORE, "{}: {more} more", design.name);
+        let latency = simulation.cycles.latency;
+        assert!(latency <= *most, "{}: {latency} cycles", design.name);
+        let more = latency as i64 - line.timeline.latency_cycles as i64;
         assert!(plan.resources.dsp <= MOST_TIMES_DSP * line.resources.dsp, "{}", design.name);
         let (dsp, bram36) = (plan.resources.dsp, plan.resources.bram36);
-        let (latency, interval) = (simulation.cycles.latency, simulation.cycles.interval);
+        let interval = simulation.cycles.interval;
         format!("{:<30}{latency:>10}{more:>10}{interval:>10}{dsp:>6}{bram36:>8}\n", design.name)
     });
     let heads = ["simulated = predicted", "latency", "more", "interval", "DSP", "BRAM"];
