@@ -203,7 +203,7 @@ impl<'a> Work<'a> {
     /// Starts when the operand is complete and the list of what is not zero in it.
     fn in_rounds(&self, dealer: &mut Dealer, made: &[Made], mut new: impl FnMut(usize) -> bool) -> Worked {
         let sources = || made.iter().filter(|made| self.product.operands.iter().any(|&part| made.result.holds(part)));
-        let complete = sources().flat_map(|made| made.readable.iter().max()).max();
+        let complete = sources().filter_map(|made| made.readable.iter().max()).max();
         let start = self.start.max(complete.map_or(0, |cycle| cycle + WRITE_TO_LIST));
         let mut rows = Stream::rows_of(self.lead, self.main);
         let main = rows.split_off(rows.len() - self.main.rows.len());

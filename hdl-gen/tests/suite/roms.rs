@@ -173,7 +173,9 @@ fn product_in_roms(readers: &mut [Reader], plan: &Plan, index: usize, cycles: u6
     }
     assert!(open_head.is_none());
     // In the ROMs they stand in the order in which the lanes find their operands.
-    rows.iter_mut().for_each(|row| row.sort_by_key(|&(column, _)| column));
+    for row in &mut rows {
+        row.sort_by_key(|&(column, _)| column);
+    }
     rows
 }
 
