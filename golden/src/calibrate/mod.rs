@@ -52,8 +52,10 @@ impl Settings {
 
     /// Pieces of work with a family, each of which is reported.
     pub fn work(&self, family: Family) -> usize {
-        let doubt = if family == Family::Wide && self.hidden > 0 { 2 * self.doubted() + self.doubt_steps() } else { 0 };
-        self.contacts + self.samples + self.steps + doubt
+        let doubt = if family == Family::Wide { 2 * self.doubted() + self.doubt_steps() } else { 0 };
+        // Without hidden units nothing is trained.
+        let training = if self.hidden > 0 { self.steps + doubt } else { 0 };
+        self.contacts + self.samples + training
     }
 
     /// Frames, each of a body of its own, that tell what to doubt.

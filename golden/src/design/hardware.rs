@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::words::print_as_words;
 
 /// Largest number of `SpMV` lanes.
-pub const MAX_LANES: usize = 64;
+pub const MAX_LANES: usize = 128;
 /// Key `hardware.full_scale_pa` when absent.
 pub const DEFAULT_FULL_SCALE_PA: f64 = 100_000.0;
 

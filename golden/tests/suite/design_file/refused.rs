@@ -148,7 +148,7 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
         ("data_bits = 15", ["hardware.data_bits", "15", "16 to 27"]),
         ("lanes = 0", ["hardware.lanes", "is 0", "1 to 64"]),
         ("stream_bits = 48", ["hardware.stream_bits", "is 48", "32, 64 or 128"]),
-        ("lanes = 65", ["hardware.lanes", "65", "1 to 64"]),
+        ("lanes = 129", ["hardware.lanes", "129", "1 to 128"]),
         ("target_us = 0.0", ["hardware.target_us", "is 0", "greater than 0"]),
         ("target_us = inf", ["hardware.target_us", "inf", "finite"]),
         ("optimise = \"area\"", ["hardware.optimise", "area", "interval, latency"]),
