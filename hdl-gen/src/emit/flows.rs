@@ -2,7 +2,7 @@
 //!
 //! They name the files that the folder holds, relative to the folder, so they come after everything else.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use tera::{Context, Tera};
 
 use crate::plan::Plan;
@@ -32,6 +32,33 @@ const FILES: [(&str, &str); 10] = [
     ("NAME.core", include_str!("../../templates/vivado/fusesoc.core.tera")),
     ("Bender.yml", include_str!("../../templates/vivado/Bender.yml.tera")),
 ];
+
+/// Boards that `block_design.tcl` knows, by their word on its command line.
+const BOARDS: [(&str, &str); 4] = [
+    ("zcu102", include_str!("../../boards/zcu102.toml")),
+    ("zcu104", include_str!("../../boards/zcu104.toml")),
+    ("kv260", include_str!("../../boards/kv260.toml")),
+    ("pynq-z2", include_str!("../../boards/pynq-z2.toml")),
+];
+
+/// A file of `boards/`.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Board {
+    /// Its word on the command line, from the file's name.
+    #[serde(default)]
+    name: String,
+    title: String,
+    pattern: String,
+    part: String,
+    processor: String,
+}
+
+impl Board {
+    fn all() -> Result<Vec<Self>, toml::de::Error> {
+        BOARDS.iter().map(|&(name, text)| Ok(Self { name: name.to_owned(), ..toml::from_str(text)? })).collect()
+    }
+}
 
 /// The data of the templates.
 #[derive(Serialize)]
@@ -69,16 +96,17 @@ struct View {
     blocks: Vec<BlockResources>,
     /// Whether there is a register bank.
     control: bool,
+    boards: Vec<Board>,
 }
 
 impl View {
-    fn new(plan: &Plan, hash: &str, files: &FileMap) -> Self {
+    fn new(plan: &Plan, hash: &str, files: &FileMap) -> Result<Self, EmitError> {
         let design = &plan.design;
         let testbench = format!("sim/{}_tb.v", design.name);
         let streams = plan.streams();
         let bytes_in = streams.words_in() * WORD_BYTES;
         let bytes_out = streams.words_out * WORD_BYTES;
-        Self {
+        Ok(Self {
             version: VERSION,
             hash: hash.to_owned(),
             columns: design.sensor.columns,
@@ -101,17 +129,18 @@ impl View {
             testbench: files.contains_key(&testbench).then_some(testbench),
             blocks: plan.resources.blocks.clone(),
             control: design.hardware.control,
+            boards: Board::all()?,
             name: design.name.clone(),
-        }
+        })
     }
 }
 
 /// Adds the scripts and lists; `files` holds what they name.
 ///
 /// # Errors
-/// [`EmitError::Template`] if a template does not fit the view.
+/// [`EmitError::Template`] if a template does not fit the view, [`EmitError::Board`] if a board's file is wrong.
 pub fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitError> {
-    let view = View::new(plan, hash, files);
+    let view = View::new(plan, hash, files)?;
     let failed = |path: &str| {
         let template = path.to_owned();
         move |source| EmitError::Template { template, source }

@@ -41,6 +41,9 @@ pub enum EmitError {
     /// Metadata could not be serialised.
     #[error("metadata.json: {0}; please report this design")]
     Metadata(#[from] serde_json::Error),
+    /// A board's file is not what it should be.
+    #[error("boards: {0}; please report this")]
+    Board(#[from] toml::de::Error),
     /// The testbench has no frames.
     #[error("frames of the testbench: {0}")]
     Scene(#[from] SceneError),

@@ -1,4 +1,4 @@
-//! The system for the ZCU102, in the stand-in.
+//! The systems for boards, in the stand-in.
 
 use super::folder::{Folder, files};
 
@@ -35,6 +35,12 @@ fn a_bitstream_is_made_on_request_and_must_meet_timing() {
     let ran = folder.vivado(SCRIPT, &["bitstream"], &[]).succeeded();
     assert!(ran.call("write_hw_platform").contains("-include_bit"));
     assert!(folder.work().join("small_4x3_zcu102.xsa").exists());
+    assert!(ran.call("launch_runs").contains("-jobs 4"));
+    for beside in ["bit", "hwh"] {
+        assert!(folder.work().join(format!("small_4x3_zcu102.{beside}")).exists(), "{beside}");
+    }
+    let ran = folder.vivado(SCRIPT, &["jobs=2", "bitstream"], &[]).succeeded();
+    assert!(ran.call("launch_runs").contains("-jobs 2"));
     let slow = folder.vivado(SCRIPT, &["bitstream"], &[("STANDIN_SLACK", "-1.5")]);
     slow.refused("timing is not met: WNS -1.5 ns");
 }
@@ -49,6 +55,32 @@ fn what_is_not_installed_is_named() {
 
 #[test]
 fn a_design_for_another_device_is_refused() {
-    let ran = Folder::new(&files(Some("xczu7ev-ffvc1156-2-e"))).vivado(SCRIPT, &[], &[]);
+    let folder = Folder::new(&files(Some("xczu7ev-ffvc1156-2-e")));
+    let ran = folder.vivado(SCRIPT, &["zcu102"], &[]);
     ran.refused("the ZCU102 has a xczu9eg-ffvb1156-2-e, the design is for xczu7ev-ffvc1156-2-e");
+    folder
+        .vivado(SCRIPT, &["zcu666"], &[])
+        .refused("no word zcu666: there are bitstream, jobs=N, and the boards zcu102, ");
+    let ran = Folder::new(&files(Some("xc7k70tfbg484-1"))).vivado(SCRIPT, &[], &[]);
+    ran.refused("no board here has a xc7k70tfbg484-1: name one of zcu102, zcu104, kv260, pynq-z2");
+}
+
+/// Each board's own processor, with all of its ports connected; the board is that of the design's device.
+#[test]
+fn every_board_has_a_system() {
+    for (board, part, processor, interrupts) in [
+        ("zcu104", "xczu7ev-ffvc1156-2-e", "zynq_ultra_ps_e", "ps/pl_ps_irq1"),
+        ("kv260", "xck26-sfvc784-2LV-c", "zynq_ultra_ps_e", "ps/pl_ps_irq1"),
+        ("pynq-z2", "xc7z020clg400-1", "processing_system7", "interrupt_concat/dout ps/IRQ_F2P"),
+    ] {
+        let folder = Folder::new(&files(Some(part)));
+        let ran = folder.vivado(SCRIPT, &["bitstream"], &[]).succeeded();
+        assert!(ran.call("set_property board_part").contains(&board.replace("kv260", "kv260_som")), "{board}");
+        assert!(ran.calls.iter().any(|call| call.contains(&format!("-vlnv xilinx.com:ip:{processor}:"))), "{board}");
+        assert!(
+            ran.calls.iter().any(|call| call.starts_with("connect_bd_net") && call.ends_with(interrupts)),
+            "{board}"
+        );
+        assert!(folder.work().join(format!("small_4x3_{board}.hwh")).exists());
+    }
 }

@@ -2,10 +2,15 @@
 
 namespace eval standin {
     # What is installed: more than one version each, and not in order.
-    variable boards {xilinx.com:zcu102:part0:3.10 xilinx.com:zcu102:part0:3.4 xilinx.com:zcu104:part0:1.1}
+    variable boards {
+        xilinx.com:zcu102:part0:3.10 xczu9eg-ffvb1156-2-e xilinx.com:zcu102:part0:3.4 xczu9eg-ffvb1156-2-e
+        xilinx.com:zcu104:part0:1.1 xczu7ev-ffvc1156-2-e xilinx.com:kv260_som:part0:1.4 xck26-sfvc784-2LV-c
+        tul.com.tw:pynq-z2:part0:1.0 xc7z020clg400-1
+    }
     variable catalogue {
         xilinx.com:ip:zynq_ultra_ps_e:3.3 xilinx.com:ip:zynq_ultra_ps_e:3.5 xilinx.com:ip:axi_dma:7.1
         xilinx.com:ip:smartconnect:1.0 xilinx.com:ip:proc_sys_reset:5.0 xilinx.com:ip:xlconcat:2.1
+        xilinx.com:ip:processing_system7:5.5
     }
 
     # Legal parameters and values, by IP.
@@ -15,6 +20,10 @@ namespace eval standin {
             PSU__FPGA_PL0_ENABLE {[01]} PSU__CRL_APB__PL0_REF_CTRL__FREQMHZ {[0-9.]+}
             PSU__USE__M_AXI_GP0 {[01]} PSU__USE__M_AXI_GP1 {[01]} PSU__USE__M_AXI_GP2 {[01]}
             PSU__USE__S_AXI_GP2 {[01]} PSU__USE__IRQ0 {[01]} PSU__USE__IRQ1 {[01]}
+        }
+        processing_system7 {
+            PCW_FPGA0_PERIPHERAL_FREQMHZ {[0-9.]+} PCW_USE_M_AXI_GP0 {[01]} PCW_USE_S_AXI_HP0 {[01]}
+            PCW_USE_FABRIC_INTERRUPT {[01]} PCW_IRQ_F2P_INTR {[01]}
         }
         axi_dma {
             c_include_sg {[01]} c_include_mm2s {[01]} c_include_s2mm {[01]}
@@ -33,6 +42,7 @@ namespace eval standin {
     variable fixed_pins
     array set fixed_pins {
         zynq_ultra_ps_e {pl_clk0 out clock pl_resetn0 out reset}
+        processing_system7 {FCLK_CLK0 out clock FCLK_RESET0_N out reset}
         axi_dma {
             s_axi_lite_aclk in clock m_axi_mm2s_aclk in clock m_axi_s2mm_aclk in clock axi_resetn in reset
             mm2s_introut out interrupt s2mm_introut out interrupt
@@ -54,6 +64,11 @@ namespace eval standin {
             PSU__USE__M_AXI_GP2 0 maxihpm0_lpd_aclk in clock PSU__USE__M_AXI_GP2 0 M_AXI_HPM0_LPD master aximm
             PSU__USE__S_AXI_GP2 0 saxihp0_fpd_aclk in clock PSU__USE__S_AXI_GP2 0 S_AXI_HP0_FPD slave aximm
             PSU__USE__IRQ0 1 pl_ps_irq0 in interrupt PSU__USE__IRQ1 0 pl_ps_irq1 in interrupt
+        }
+        processing_system7 {
+            PCW_USE_M_AXI_GP0 1 M_AXI_GP0_ACLK in clock PCW_USE_M_AXI_GP0 1 M_AXI_GP0 master aximm
+            PCW_USE_S_AXI_HP0 0 S_AXI_HP0_ACLK in clock PCW_USE_S_AXI_HP0 0 S_AXI_HP0 slave aximm
+            PCW_IRQ_F2P_INTR 0 IRQ_F2P in interrupt
         }
         axi_dma {
             c_include_sg 1 M_AXI_SG master aximm c_include_sg 1 m_axi_sg_aclk in clock
@@ -170,10 +185,10 @@ namespace eval standin {
 
 standin::command get_board_parts {} 1 1 {
     set found {}
-    foreach board [standin::installed $::standin::boards] {
+    foreach board [standin::installed [dict keys $::standin::boards]] {
         if {[string match [lindex $words 0] $board]} {
             lappend found $board
-            set ::standin::properties($board,PART_NAME) xczu9eg-ffvb1156-2-e
+            set ::standin::properties($board,PART_NAME) [dict get $::standin::boards $board]
         }
     }
     return $found
@@ -206,8 +221,12 @@ standin::command create_bd_cell {-type= -vlnv=} 1 1 {
     return cell:$cell
 }
 standin::command apply_bd_automation {-rule= -config=} 1 1 {
-    standin::choice "rule" $option(-rule) xilinx.com:bd_rule:zynq_ultra_ps_e
-    standin::choice "preset" [lindex $option(-config) 0] apply_board_preset
+    set kind $::standin::cells([string range [lindex $words 0] 5 end])
+    standin::choice "rule" $option(-rule) xilinx.com:bd_rule:$kind
+    array set legal {zynq_ultra_ps_e apply_board_preset processing_system7 {make_external apply_board_preset Master Slave}}
+    foreach {name value} $option(-config) {
+        standin::choice "setting" $name $legal($kind)
+    }
 }
 standin::command get_bd_pins {} 1 1 {
     standin::choice "kind of pin" [lindex [standin::pin [lindex $words 0]] 1] {clock reset interrupt}

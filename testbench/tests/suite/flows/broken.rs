@@ -10,7 +10,7 @@ const PACKAGE: &str = "vivado/package_ip.tcl";
 const SYSTEM: &str = "vivado/block_design.tcl";
 
 /// Script, text, what stands in its place, what the refusal says.
-const FAULTS: [(&str, &str, &str, &str); 27] = [
+const FAULTS: [(&str, &str, &str, &str); 28] = [
     (SYNTH, "read_mem $rom", "read_memory $rom", "invalid command name"),
     (SYNTH, "read_mem $rom", "", "Synth 8-4445"),
     (SYNTH, "-mode out_of_context", "-mode out-of-context", "mode is out-of-context"),
@@ -38,6 +38,12 @@ const FAULTS: [(&str, &str, &str, &str); 27] = [
     (SYSTEM, "dma/axi_resetn core/aresetn", "dma/axi_resetn", "core/aresetn is not connected"),
     (SYSTEM, "reset/peripheral_aresetn dma", "ps/pl_clk0 dma", "connected already"),
     (SYSTEM, "assign_bd_address\n", "", "assign_bd_address is to come first"),
+    (
+        SYSTEM,
+        "xilinx.com:bd_rule:zynq_ultra_ps_e",
+        "xilinx.com:bd_rule:zynq_ps_e",
+        "rule is xilinx.com:bd_rule:zynq_ps_e",
+    ),
 ];
 
 #[test]

@@ -32,8 +32,8 @@ fn the_ip_has_a_register_port_and_an_interrupt() {
 fn the_system_reaches_the_registers_and_hears_the_interrupt() {
     let ran = Folder::new(&control()).vivado("vivado/block_design.tcl", &[], &[]).succeeded();
     ran.call("connect_bd_intf_net registers/M01_AXI core/s_axi_ctrl");
-    ran.call("connect_bd_net -net interrupt_core core/interrupt interrupt_concat/In1");
-    ran.call("connect_bd_net -net interrupt_both interrupt_concat/dout ps/pl_ps_irq0");
+    ran.call("connect_bd_net -net interrupt_1 core/interrupt interrupt_concat/In1");
+    ran.call("connect_bd_net -net interrupts interrupt_concat/dout ps/pl_ps_irq0");
     ran.call("connect_bd_net -net interrupt_out dma/s2mm_introut ps/pl_ps_irq1");
 }
 
@@ -43,8 +43,8 @@ fn broken_connections_are_refused() {
     for (right, wrong, message) in [
         ("connect_interface registers/M01_AXI core/s_axi_ctrl\n", "", "core/s_axi_ctrl is not connected"),
         ("CONFIG.NUM_SI 1 CONFIG.NUM_MI 2", "CONFIG.NUM_SI 1 CONFIG.NUM_MI 1", "no pin registers/M01_AXI"),
-        ("core/interrupt interrupt_concat/In1", "core/interrupt interrupt_concat/In2", "no pin interrupt_concat/In2"),
-        ("core/interrupt interrupt_concat", "core/irq interrupt_concat", "no pin core/irq"),
+        ("set index 0\n", "set index 1\n", "no pin interrupt_concat/In2"),
+        ("{dma/mm2s_introut core/interrupt} ps", "{dma/mm2s_introut core/irq} ps", "no pin core/irq"),
     ] {
         let folder = Folder::new(&control());
         let text = folder.read(script);

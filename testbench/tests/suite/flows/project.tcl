@@ -17,7 +17,7 @@ namespace eval standin {
     }
 
     proc part {name} {
-        if {![regexp {^xc[a-z0-9]+(-[a-z0-9]+)+$} $name]} {
+        if {![regexp {^xc[a-z0-9]+(-[a-z0-9LV]+)+$} $name]} {
             error "no part $name"
         }
     }
@@ -244,6 +244,11 @@ standin::command wait_on_run {} 1 1 {
     standin::need launch_runs
     set ::standin::properties(run:[lindex $words 0],PROGRESS) 100%
     set ::standin::properties(run:[lindex $words 0],STATUS) "write_bitstream Complete!"
+    foreach path {runs/impl_1/system_wrapper.bit gen/sources_1/bd/system/hw_handoff/system.hwh} {
+        set place [file join [pwd] $::standin::project $::standin::project.$path]
+        file mkdir [file dirname $place]
+        standin::write $place "\n"
+    }
     standin::done wait_on_run
 }
 standin::command open_run {} 1 1 {
