@@ -87,8 +87,8 @@ module sptfra_spmv_array #(
         if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
             sptfra_error_ways_must_be_1_or_4 invalid ();
         end
-        if ((LANES < 1) || (LANES > 128)) begin : gen_check_lanes
-            sptfra_error_lanes_must_be_1_to_128 invalid ();
+        if ((LANES < 1) || (LANES > 100)) begin : gen_check_lanes
+            sptfra_error_lanes_must_be_1_to_100 invalid ();
         end
         if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destinations
             sptfra_error_a_destination_has_3_or_4_bits invalid ();
