@@ -10,7 +10,8 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use super::looks::Basis;
-use super::samples::{Observer, Sample, stream};
+use super::observer::{Observer, Sample};
+use super::samples::stream;
 use super::train::{Layer, quantised, scaled_alike};
 use super::wide::{self, Body};
 use super::{CalibrateError, Settings, Stage, twins};

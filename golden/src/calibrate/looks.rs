@@ -8,7 +8,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::samples::Sample;
+use super::observer::Sample;
 use super::twins::{Diagonal, TRANSPOSED};
 use crate::design::Correction;
 use crate::parity::{CLASSES, Quads, sign};

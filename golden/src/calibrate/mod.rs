@@ -6,6 +6,7 @@
 mod contacts;
 mod doubt;
 mod looks;
+mod observer;
 pub mod recorded;
 mod samples;
 mod train;
@@ -22,7 +23,7 @@ use crate::design::{Design, Estimator, Input, JointConstants, conditions};
 use crate::estimators::joint::{CUBIC_LIMIT, Family, Joint};
 use crate::scene::SceneError;
 use crate::solver::SolverError;
-use samples::{Observer, Sample};
+use observer::{Observer, Sample};
 
 /// How much work the calibration takes on; more of each makes better constants, slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

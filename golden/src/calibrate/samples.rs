@@ -1,15 +1,13 @@
-//! Frames with known forces, and what the estimator sees in them.
+//! Frames with known forces, of either family, and what they say of the gain.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::observer::{Observer, Sample};
 use super::wide::{self, Body};
 use super::{CalibrateError, Settings, Stage, random_contacts};
-use crate::design::{Design, Sensor};
-use crate::estimators::joint::{self, Family, JointScratch, Look};
-use crate::products::ByPq;
-use crate::scene::{Contact, Medium, Shape, normal, unit_responses};
-use crate::solver::{Solver, Status, Workspace};
+use crate::estimators::joint::Family;
+use crate::scene::{Contact, Medium, Shape, unit_responses};
 
 /// Poisson's ratio of the layers, from and to: rubber, give or take.
 const POISSON: [f64; 2] = [0.45, 0.49];
@@ -28,78 +26,6 @@ const RESHAPED: usize = 2;
 /// That pressure's share of the way from Hertz's to an even one; at 2 most of the force is at the edge.
 const PROFILES: [f64; 2] = [0.0, 2.0];
 
-/// One frame as the calibration needs it.
-pub(super) struct Sample {
-    /// Estimate before the calibration.
-    pub(super) mu: [f64; 2],
-    /// The contact as the correction sees it.
-    pub(super) look: Look,
-    /// Sums `G_pq` in newtons.
-    sums: ByPq<f64>,
-    /// True resultant in newtons.
-    force: [f64; 3],
-}
-
-impl Sample {
-    /// Length of the error of `(F_x, F_y)` over `|F_z|` with a gain and friction components.
-    pub(super) fn error(&self, mu: [f64; 2], gain: f64) -> f64 {
-        let [x, y, z] = [0, 1, 2].map(|p| gain * (self.sums[p][0] + mu[0] * self.sums[p][1] + mu[1] * self.sums[p][2]));
-        (x - self.force[0]).hypot(y - self.force[1]) / z.abs()
-    }
-}
-
-/// What frames are seen with: the estimator of a design, before it is calibrated.
-pub(super) struct Observer<'a> {
-    design: &'a Design,
-    solver: Solver,
-    workspace: Workspace,
-    scratch: JointScratch,
-    half_window: [usize; 2],
-}
-
-impl<'a> Observer<'a> {
-    pub(super) fn new(design: &'a Design, half_window: [usize; 2]) -> Result<Self, CalibrateError> {
-        let solver = Solver::new(design)?;
-        Ok(Self { design, workspace: solver.workspace(), solver, scratch: JointScratch::default(), half_window })
-    }
-
-    /// The sensor of the design.
-    pub(super) fn sensor(&self) -> &'a Sensor {
-        &self.design.sensor
-    }
-
-    /// Estimates a frame with its true resultant, of any size, and with noise of a deviation that is a share of its largest
-    /// stress; nothing if it has no answer.
-    pub(super) fn sample(
-        &mut self,
-        mut frame: Vec<f64>,
-        force: [f64; 3],
-        noise: f64,
-        random: &mut ChaCha8Rng,
-    ) -> Result<Option<Sample>, CalibrateError> {
-        // What reads no pull has no noise that pulls either.
-        let tension = self.design.input.tension;
-        for stress in &mut *frame {
-            *stress = tension.of(*stress);
-        }
-        let peak = frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
-        let deviation = noise * peak;
-        // The estimator has no scale; the frame is put where neither the full scale nor the noise floor matters.
-        let scale = 0.5 * self.design.hardware.full_scale_pa / peak;
-        for stress in &mut frame {
-            *stress = tension.of(scale * (*stress + deviation * normal(random)));
-        }
-        let Some(seen) = self.solver.see(&mut self.workspace, &frame)? else { return Ok(None) };
-        let found = joint::raw(self.design.algorithm.joint.grid, &seen, &mut self.scratch);
-        if found.status.contains(Status::DIRECTION_UNKNOWN) {
-            return Ok(None);
-        }
-        joint::look(&seen, found.mu, self.design.sensor.columns, self.half_window, 0.0, &mut self.scratch);
-        let force = force.map(|component| scale * component);
-        Ok(Some(Sample { mu: found.mu, look: self.scratch.look.clone(), sums: *seen.sums, force }))
-    }
-}
-
 /// A stream of random numbers of a seed.
 pub(super) fn stream(seed: u64, stream: u64) -> ChaCha8Rng {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -113,7 +39,7 @@ pub(super) fn make(
     settings: &Settings,
     tick: &mut dyn FnMut(Stage),
 ) -> Result<Vec<Sample>, CalibrateError> {
-    match observer.design.algorithm.joint.family {
+    match observer.family() {
         Family::Narrow => narrow(observer, settings, tick),
         Family::Wide => wide(observer, settings, tick),
     }
@@ -124,7 +50,7 @@ fn narrow(
     settings: &Settings,
     tick: &mut dyn FnMut(Stage),
 ) -> Result<Vec<Sample>, CalibrateError> {
-    let sensor = &observer.design.sensor;
+    let sensor = observer.sensor();
     // The contacts use stream 0 of the same seed.
     let mut random = stream(settings.seed, 1);
     let mut responses = Vec::with_capacity(settings.contacts);
@@ -171,7 +97,7 @@ fn wide(
     let bodies: Vec<Body> = (0..settings.contacts)
         .map(|_| {
             tick(Stage::Contact);
-            Body::random(&observer.design.sensor, &mut random)
+            Body::random(observer.sensor(), &mut random)
         })
         .collect();
     let mut random = stream(settings.seed, 1);

@@ -5,7 +5,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::looks::Basis;
-use super::samples::Sample;
+use super::observer::Sample;
 use super::twins::Diagonal;
 use super::{Settings, Stage, twins};
 use crate::design::Sensor;
@@ -247,7 +247,8 @@ pub(super) fn quantised(weights: &DMatrix<f64>) -> Vec<Vec<i32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibrate::samples::{self, Observer};
+    use crate::calibrate::observer::Observer;
+    use crate::calibrate::samples;
     use crate::design::Design;
     use crate::estimators::joint::{Network, NetworkScratch};
 

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::CalibrateError;
 use super::contacts::{extent, radii};
-use super::samples::{Observer, Sample};
+use super::observer::{Observer, Sample};
 use crate::design::Sensor;
 use crate::scene::{COARSE, Contact, Field, Medium, Shape, Shear, Traction, normal};
 

@@ -2,7 +2,8 @@
 
 use super::folds::Folds;
 use super::holds::Hold;
-use crate::calibrate::samples::{Observer, Sample, stream, target};
+use crate::calibrate::observer::{Observer, Sample};
+use crate::calibrate::samples::{stream, target};
 use crate::calibrate::{CalibrateError, contacts, fit_tangential};
 use crate::design::{Design, Estimator, Input};
 use crate::estimators::joint::{CUBIC_LIMIT, Joint, JointConstants, NetworkScratch};

@@ -1,0 +1,87 @@
+//! One frame as the estimator of a design sees it, before it is calibrated.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::CalibrateError;
+use crate::design::{Design, Sensor};
+use crate::estimators::joint::{self, Family, JointScratch, Look};
+use crate::products::ByPq;
+use crate::scene::normal;
+use crate::solver::{Solver, Status, Workspace};
+
+/// One frame as the calibration needs it.
+pub(super) struct Sample {
+    /// Estimate before the calibration.
+    pub(super) mu: [f64; 2],
+    /// The contact as the correction sees it.
+    pub(super) look: Look,
+    /// Sums `G_pq` in newtons.
+    pub(super) sums: ByPq<f64>,
+    /// True resultant in newtons.
+    pub(super) force: [f64; 3],
+}
+
+impl Sample {
+    /// Length of the error of `(F_x, F_y)` over `|F_z|` with a gain and friction components.
+    pub(super) fn error(&self, mu: [f64; 2], gain: f64) -> f64 {
+        let [x, y, z] = [0, 1, 2].map(|p| gain * (self.sums[p][0] + mu[0] * self.sums[p][1] + mu[1] * self.sums[p][2]));
+        (x - self.force[0]).hypot(y - self.force[1]) / z.abs()
+    }
+}
+
+/// What frames are seen with: the estimator of a design, before it is calibrated.
+pub(super) struct Observer<'a> {
+    design: &'a Design,
+    solver: Solver,
+    workspace: Workspace,
+    scratch: JointScratch,
+    half_window: [usize; 2],
+}
+
+impl<'a> Observer<'a> {
+    pub(super) fn new(design: &'a Design, half_window: [usize; 2]) -> Result<Self, CalibrateError> {
+        let solver = Solver::new(design)?;
+        Ok(Self { design, workspace: solver.workspace(), solver, scratch: JointScratch::default(), half_window })
+    }
+
+    /// The sensor of the design.
+    pub(super) fn sensor(&self) -> &'a Sensor {
+        &self.design.sensor
+    }
+
+    /// The family of contacts that the design is calibrated on.
+    pub(super) fn family(&self) -> Family {
+        self.design.algorithm.joint.family
+    }
+
+    /// Estimates a frame with its true resultant, of any size, and with noise of a deviation that is a share of its largest
+    /// stress; nothing if it has no answer.
+    pub(super) fn sample(
+        &mut self,
+        mut frame: Vec<f64>,
+        force: [f64; 3],
+        noise: f64,
+        random: &mut ChaCha8Rng,
+    ) -> Result<Option<Sample>, CalibrateError> {
+        // What reads no pull has no noise that pulls either.
+        let tension = self.design.input.tension;
+        for stress in &mut *frame {
+            *stress = tension.of(*stress);
+        }
+        let peak = frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+        let deviation = noise * peak;
+        // The estimator has no scale; the frame is put where neither the full scale nor the noise floor matters.
+        let scale = 0.5 * self.design.hardware.full_scale_pa / peak;
+        for stress in &mut frame {
+            *stress = tension.of(scale * (*stress + deviation * normal(random)));
+        }
+        let Some(seen) = self.solver.see(&mut self.workspace, &frame)? else { return Ok(None) };
+        let found = joint::raw(self.design.algorithm.joint.grid, &seen, &mut self.scratch);
+        if found.status.contains(Status::DIRECTION_UNKNOWN) {
+            return Ok(None);
+        }
+        joint::look(&seen, found.mu, self.design.sensor.columns, self.half_window, 0.0, &mut self.scratch);
+        let force = force.map(|component| scale * component);
+        Ok(Some(Sample { mu: found.mu, look: self.scratch.look.clone(), sums: *seen.sums, force }))
+    }
+}
