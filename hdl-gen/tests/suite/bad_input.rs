@@ -68,7 +68,7 @@ fn sizes_make_sense() {
     }
     for (key, value) in [
         ("lanes", "0"),
-        ("lanes", "65"),
+        ("lanes", "101"),
         ("coefficient_bits", "7"),
         ("coefficient_bits", "40"),
         ("data_bits", "12"),

@@ -153,7 +153,8 @@ add_ip reset proc_sys_reset
 # ---- Connections
 
 connect clock [dict get $ports clock] [dict get $ports registers_clock] [dict get $ports memory_clock] \
-    reset/slowest_sync_clk registers/aclk memory/aclk dma/s_axi_lite_aclk dma/m_axi_mm2s_aclk dma/m_axi_s2mm_aclk core/aclk
+    reset/slowest_sync_clk registers/aclk memory/aclk dma/s_axi_lite_aclk dma/m_axi_mm2s_aclk dma/m_axi_s2mm_aclk \
+    core/aclk
 connect reset_in [dict get $ports reset] reset/ext_reset_in
 connect reset_interconnect reset/interconnect_aresetn registers/aresetn memory/aresetn
 connect reset_peripherals reset/peripheral_aresetn dma/axi_resetn core/aresetn
