@@ -1,16 +1,18 @@
 //! Force files: CSV with a header line, one frame a line, or `NumPy`'s `.npy` where the name ends so.
 //!
 //! [`columns`] names the values of a line, [`row`] and [`reference_row`] have them: the status word, the resultants and
-//! what follows from them, and, where asked for, `f_x, f_y, f_z` in newtons for each taxel in turn. A file without a
-//! header, or with the first eight columns alone, is read too.
+//! what follows from them, the records of bodies where there may be several, and, where asked for, `f_x, f_y, f_z` in
+//! newtons for each taxel in turn. A file without a header, or with the first eight columns alone, is read too.
 
 use std::path::{Path, PathBuf};
 
+use crate::bodies::{Body, MOST};
 use crate::frames::{self, FrameError};
 use crate::metrics::Outcome;
 use crate::output;
 use crate::scene::SceneFrame;
-use crate::solver::Solution;
+use crate::sensor::Sensor;
+use crate::solver::{Solution, Status};
 
 /// Values on a line that a reader needs.
 const NEEDED: usize = 8;
@@ -19,13 +21,24 @@ const NEEDED: usize = 8;
 const SUMMARY: [&str; 13] =
     ["status", "F_x", "F_y", "F_z", "mu", "phi", "mu_x", "mu_y", "T_x", "T_y", "T_z", "standard_error", "bodies"];
 
-/// The names of the columns of a file with the forces of so many taxels.
-pub fn columns(taxels: usize) -> Vec<String> {
+/// The columns of each body: a word of bits as above, its centre in metres from the first taxel.
+pub const OF_BODY: [&str; 9] = ["taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"];
+
+/// The names of the columns of a file with so many records of bodies and the forces of so many taxels.
+pub fn columns(records: usize, taxels: usize) -> Vec<String> {
     let summary = SUMMARY.into_iter().map(str::to_owned);
+    let of_body = |body| OF_BODY.map(|name| format!("body{body}_{name}"));
+    let summary = summary.chain((0..records).flat_map(of_body));
     summary.chain((0..taxels).flat_map(|taxel| ["x", "y", "z"].map(|axis| format!("taxel{taxel}_f_{axis}")))).collect()
 }
 
-/// A solution as a line, with the force field of each taxel if `with_field`.
+/// A body as its columns.
+pub fn record(body: &Body) -> [f64; 9] {
+    let Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error } = *body;
+    [taxels as f64, f64::from(status.0), x, y, fx, fy, fz, mu, standard_error]
+}
+
+/// A solution as a line, with its records of bodies, and with the force field of each taxel if `with_field`.
 pub fn row(solution: &Solution, with_field: bool) -> Vec<f64> {
     let [fx, fy, fz] = solution.resultant;
     let [tx, ty, tz] = solution.torque;
@@ -33,15 +46,24 @@ pub fn row(solution: &Solution, with_field: bool) -> Vec<f64> {
     let summary = [fx, fy, fz, *mu, *phi, *mu_x, *mu_y, tx, ty, tz, *standard_error, *bodies as f64];
     let taxels = if with_field { solution.field[0].len() } else { 0 };
     let field = (0..taxels).flat_map(|taxel| solution.field.each_ref().map(|component| component[taxel]));
-    std::iter::once(f64::from(status.0)).chain(summary).chain(field).collect()
+    let bodies = solution.records.iter().flat_map(record);
+    std::iter::once(f64::from(status.0)).chain(summary).chain(bodies).chain(field).collect()
 }
 
-/// The truth of a scene's frame in the form of a solution with status 0.
+/// The truth of a scene's frame in the form of a solution with status 0, with a record of each body if there are several.
 pub fn reference_row(frame: &SceneFrame) -> Vec<f64> {
     let ([fx, fy, fz], [tx, ty, tz]) = (frame.force, frame.torque);
     let normal = fz.abs();
-    let bodies = frame.bodies as f64;
-    vec![0.0, fx, fy, fz, frame.friction, frame.direction, fx / normal, fy / normal, tx, ty, tz, 0.0, bodies]
+    let bodies = frame.bodies.len() as f64;
+    let mut row =
+        vec![0.0, fx, fy, fz, frame.friction, frame.direction, fx / normal, fy / normal, tx, ty, tz, 0.0, bodies];
+    row.extend(frame.bodies.iter().take(records_of(frame)).flat_map(record));
+    row
+}
+
+/// Records of a scene's frame: one of each body, and none of a single one.
+fn records_of(frame: &SceneFrame) -> usize {
+    if frame.bodies.len() > 1 { frame.bodies.len() } else { 0 }
 }
 
 /// Writes solutions, with the force field of each taxel if `with_field`, the whole file or nothing.
@@ -52,7 +74,8 @@ pub fn reference_row(frame: &SceneFrame) -> Vec<f64> {
 pub fn write_solutions(path: &Path, solutions: &[Solution], with_field: bool) -> Result<(), FrameError> {
     let taxels = solutions.first().map_or(0, |solution| solution.field[0].len());
     let rows = solutions.iter().map(|solution| row(solution, with_field));
-    write(path, &columns(if with_field { taxels } else { 0 }), rows)
+    let records = solutions.first().map_or(0, |solution| solution.records.len());
+    write(path, &columns(records, if with_field { taxels } else { 0 }), rows)
 }
 
 /// Writes the true forces of scene frames, in the form of solutions with status 0.
@@ -61,7 +84,8 @@ pub fn write_solutions(path: &Path, solutions: &[Solution], with_field: bool) ->
 ///
 /// [`FrameError::Write`] if the file cannot be written.
 pub fn write_reference(path: &Path, frames: &[SceneFrame]) -> Result<(), FrameError> {
-    write(path, &columns(0), frames.iter().map(reference_row))
+    let records = frames.first().map_or(0, records_of);
+    write(path, &columns(records, 0), frames.iter().map(reference_row))
 }
 
 /// Writes lines of equal length, as `NumPy` does where the name ends in `.npy`, else as CSV.
@@ -93,14 +117,62 @@ pub fn push_line(text: &mut String, row: &[f64]) {
 /// [`FrameError`], with file, line and column, for a line that is too short or holds something else than finite
 /// numbers, and for a file with another number of lines.
 pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameError> {
+    Ok(read_rows(path, frames)?
+        .iter()
+        .map(|row| Outcome { force: [row[1], row[2], row[3]], friction: row[4], direction: row[5] })
+        .collect())
+}
+
+/// Reads the bodies of a force file of `frames` lines, of each line those that there are. Nothing if the file does not tell
+/// them apart: it has no records, and more bodies than one.
+///
+/// In a file of text the names of the columns say how many records there are; a `.npy` file has no field then.
+///
+/// # Errors
+///
+/// As [`read_outcomes`].
+pub fn read_bodies(path: &Path, frames: usize, sensor: &Sensor) -> Result<Option<Vec<Vec<Body>>>, FrameError> {
+    let rows = read_rows(path, frames)?;
+    let records = if let Some(line) = frames::first_line(path)? {
+        line.split([',', ';', '\t', ' ']).filter(|name| is_body_force(name)).count()
+    } else {
+        let more = rows.first().map_or(0, |row| row.len().saturating_sub(SUMMARY.len()));
+        let records = more / OF_BODY.len();
+        if more == records * OF_BODY.len() && records <= MOST { records } else { 0 }
+    };
+    let bodies = |row: &Vec<f64>| match row.get(SUMMARY.len()..).map(|rest| rest.as_chunks::<9>().0) {
+        Some(rest) if records > 0 => {
+            let bodies = rest.iter().take(records).map(body);
+            Some(bodies.filter(|body| *body != Body::default()).collect())
+        }
+        Some(_) if row[SUMMARY.len() - 1] <= 1.0 => {
+            let (force, torque) = ([row[1], row[2], row[3]], [row[8], row[9], row[10]]);
+            let centre_m = Body::centre_of(sensor, force, torque);
+            Some(vec![Body { centre_m, force, mu: row[4], ..Body::default() }])
+        }
+        _ => None,
+    };
+    Ok(rows.iter().map(bodies).collect())
+}
+
+/// Whether a column has the normal force of a body.
+fn is_body_force(name: &str) -> bool {
+    name.trim().strip_prefix("body").and_then(|rest| rest.strip_suffix("_F_z")).is_some()
+}
+
+/// The body of a record's columns.
+fn body(&[taxels, status, x, y, fx, fy, fz, mu, standard_error]: &[f64; 9]) -> Body {
+    let (taxels, status) = (taxels as usize, Status(status as u32));
+    Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error }
+}
+
+/// The lines of a force file, each long enough.
+fn read_rows(path: &Path, frames: usize) -> Result<Vec<Vec<f64>>, FrameError> {
     let rows = frames::read_rows(path, |found| (found < NEEDED).then_some(NEEDED))?;
     if rows.len() != frames {
         return Err(FrameError::Count { path: path.to_path_buf(), found: rows.len(), expected: frames });
     }
-    Ok(rows
-        .iter()
-        .map(|row| Outcome { force: [row[1], row[2], row[3]], friction: row[4], direction: row[5] })
-        .collect())
+    Ok(rows)
 }
 
 /// The place of the reference forces of a frame file: `frames.csv` has them in `frames.forces.csv`, `frames.npy` in

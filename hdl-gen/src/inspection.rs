@@ -1,17 +1,43 @@
 //! What a design will be, before anything is written: its figures, and what to tell its user.
 
+use golden::design::Design;
 use golden::kernel;
 use serde_json::{Value, json};
 
 use crate::emit::{nnz, predicted, products};
-use crate::plan::Plan;
 use crate::plan::product::Coefficients;
 use crate::plan::savings::savings;
+use crate::plan::{Plan, PlanError};
 
 /// `(beginning of the part's name, DSP48E2, RAMB36)` of the default part.
 pub const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
 /// Rounding of the coefficients, as a share of their size, from which on it is told.
 const COARSE: f64 = 0.005;
+
+/// The plan of a design to be looked at: for several bodies, which have no hardware, that of one, with the design as it is.
+///
+/// # Errors
+///
+/// As [`Plan::new`].
+pub fn plan_to_inspect(design: &Design) -> Result<Plan, PlanError> {
+    let contacts = design.algorithm.contacts;
+    let mut of_one = design.clone();
+    of_one.algorithm.contacts = 1;
+    let mut plan = Plan::new(&of_one)?;
+    plan.design.algorithm.contacts = contacts;
+    Ok(plan)
+}
+
+/// What to tell of a design for several bodies.
+pub fn several_bodies(plan: &Plan) -> Option<String> {
+    let contacts = plan.design.algorithm.contacts;
+    (contacts > 1).then(|| {
+        format!(
+            "contacts {contacts}: told apart by golden solve and the Python package; the hardware knows of one body, and \
+             all figures here are those of contacts = 1"
+        )
+    })
+}
 
 /// All figures of a plan: what `hdl-gen inspect --json` prints.
 pub fn figures(plan: &Plan) -> Value {
@@ -34,15 +60,18 @@ pub fn figures(plan: &Plan) -> Value {
         "savings": savings(plan),
         "kernel_gain": kernel::gain(sensor, plan.design.algorithm.kernel),
     });
+    if plan.design.algorithm.contacts > 1 {
+        value["contacts"] = plan.design.algorithm.contacts.into();
+    }
     if let Some((key, own)) = plan.estimator.slot().metadata().own {
         value[key] = own;
     }
     value
 }
 
-/// What to tell of a plan: that it does not fit its part, that its coefficients are coarse.
+/// What to tell of a plan: that it does not fit its part, that its coefficients are coarse, that it knows of one body.
 pub fn warnings(plan: &Plan) -> Vec<String> {
-    [excess(plan), narrow(plan)].into_iter().flatten().collect()
+    [excess(plan), narrow(plan), several_bodies(plan)].into_iter().flatten().collect()
 }
 
 /// What to tell whose design does not fit its part, if that is one whose size is known.

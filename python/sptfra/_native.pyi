@@ -123,12 +123,12 @@ class Solver:
     def design(self) -> Design:
         """The design that it was made for."""
 
-    def solve(self, frames: npt.ArrayLike, *, slips: bool = False) -> Forces:
+    def solve(self, frames: npt.ArrayLike, *, slips: bool | Forces | None = None) -> Forces:
         """Forces of frames that follow each other, on all cores, without Python's lock.
 
         Frames are numbers of shape (n, rows, columns) or (n, taxels); (rows, columns) and (taxels,) are one frame. In Pa,
-        compression negative, or in counts if the design counts. `slips` says whether the frame before them slipped, for
-        designs with a limit of slip.
+        compression negative, or in counts if the design counts. For designs with a limit of
+        slip, `slips` are the forces of the frame before them, or whether that one slipped, with all bodies in it.
         """
 
 @final

@@ -27,6 +27,11 @@ class Status(enum.IntFlag):
     DROPPED = 4096
 
 
+#: What is known of a body, by the names that force files have for it.
+BODY = {name: np.uint16 if name in ("taxels", "status") else np.float64 for name in
+        "taxels status x y F_x F_y F_z mu standard_error".split()}
+
+
 @dataclass(frozen=True, eq=False)
 class Forces:
     """Forces of n frames; of a frame whose status says NOT_FINITE, BAD_LENGTH or NO_CONTACT all are zeros."""
@@ -47,6 +52,9 @@ class Forces:
     standard_error: np.ndarray
     #: (n,) uint8: bodies in touch.
     bodies: np.ndarray
+    #: (n, contacts) structured: `taxels`, `status`, `x`, `y` in m from the first taxel, `F_x`, `F_y`, `F_z` in N, `mu`,
+    #: `standard_error` of each body, the one that presses most first, then zeros; None where only one is known.
+    records: np.ndarray | None
     #: (n, rows, columns, 3): f_x, f_y, f_z of each taxel in N; None where only resultants are known.
     field: np.ndarray | None
 
@@ -80,7 +88,19 @@ class Forces:
         names = "status F_x F_y F_z mu phi mu_x mu_y T_x T_y T_z standard_error bodies".split()
         columns = [self.status, *self.resultant.T, self.friction, self.direction, *self.friction_xy.T, *self.torque.T]
         columns += [self.standard_error, self.bodies]
+        if self.records is not None:
+            for body in range(self.records.shape[1]):
+                names += [f"body{body}_{name}" for name in BODY]
+                columns += [self.records[name][:, body] for name in BODY]
         table = np.empty(len(self), dtype=[(name, column.dtype) for name, column in zip(names, columns)])
         for name, column in zip(names, columns):
             table[name] = column
         return table
+
+
+def _records(values: np.ndarray) -> np.ndarray:
+    """Structured records of (n, contacts, len(BODY)) numbers."""
+    records = np.empty(values.shape[:2], dtype=list(BODY.items()))
+    for index, name in enumerate(BODY):
+        records[name] = values[..., index]
+    return records

@@ -1,5 +1,6 @@
 //! Arrays: frames on their way in, forces on their way out.
 
+use golden::bodies::Body;
 use golden::design::Design;
 use golden::frames::of_grid;
 use golden::sensor::Sensor;
@@ -126,6 +127,9 @@ pub struct Forces {
     torque: Vec<f64>,
     standard_error: Vec<f64>,
     bodies: Vec<u8>,
+    /// So many of each frame.
+    records: Vec<Body>,
+    of_frame: usize,
     field: Vec<f64>,
     has_field: bool,
 }
@@ -140,12 +144,13 @@ pub struct Piece<'a> {
     torque: &'a mut [f64],
     standard_error: &'a mut [f64],
     bodies: &'a mut [u8],
+    records: &'a mut [Body],
     field: &'a mut [f64],
 }
 
 impl Forces {
-    /// Zeros for so many frames, with a field or without.
-    pub fn zeros(sensor: &Sensor, frames: usize, with_field: bool) -> Self {
+    /// Zeros for so many frames, each with so many records of bodies, with a field or without.
+    pub fn zeros(sensor: &Sensor, frames: usize, records: usize, with_field: bool) -> Self {
         Self {
             status: vec![Status::default(); frames],
             friction: vec![0.0; frames],
@@ -155,6 +160,8 @@ impl Forces {
             torque: vec![0.0; 3 * frames],
             standard_error: vec![0.0; frames],
             bodies: vec![0; frames],
+            records: vec![Body::default(); frames * records],
+            of_frame: records,
             field: vec![0.0; if with_field { 3 * sensor.taxels() * frames } else { 0 }],
             has_field: with_field,
             sensor: sensor.clone(),
@@ -164,30 +171,37 @@ impl Forces {
     /// The places of every [`PIECE`] frames, in order.
     pub fn pieces(&mut self) -> Vec<Piece<'_>> {
         let of_frame = if self.has_field { 3 * self.sensor.taxels() } else { 0 };
-        let mut field = self.field.as_mut_slice();
-        let mut fields = Vec::new();
-        for frames in self.status.chunks(PIECE) {
-            let (first, rest) = field.split_at_mut(of_frame * frames.len());
-            fields.push(first);
-            field = rest;
-        }
+        let counts: Vec<usize> = self.status.chunks(PIECE).map(<[Status]>::len).collect();
+        let fields = split(&mut self.field, of_frame, &counts);
+        let records = split(&mut self.records, self.of_frame, &counts);
         let places = self.status.chunks_mut(PIECE).zip(self.friction.chunks_mut(PIECE));
         let places = places.zip(self.direction.chunks_mut(PIECE)).zip(self.friction_xy.chunks_mut(2 * PIECE));
         let places = places.zip(self.resultant.chunks_mut(3 * PIECE)).zip(self.torque.chunks_mut(3 * PIECE));
-        let places = places.zip(self.standard_error.chunks_mut(PIECE)).zip(self.bodies.chunks_mut(PIECE)).zip(fields);
-        let piece =
-            |((((((((status, friction), direction), friction_xy), resultant), torque), error), bodies), field)| Piece {
-                status,
-                friction,
-                direction,
-                friction_xy,
-                resultant,
-                torque,
-                standard_error: error,
-                bodies,
-                field,
-            };
+        let places = places.zip(self.standard_error.chunks_mut(PIECE)).zip(self.bodies.chunks_mut(PIECE));
+        let places = places.zip(records.into_iter().zip(fields));
+        let piece = |(
+            (((((((status, friction), direction), friction_xy), resultant), torque), error), bodies),
+            (records, field),
+        )| Piece {
+            status,
+            friction,
+            direction,
+            friction_xy,
+            resultant,
+            torque,
+            standard_error: error,
+            bodies,
+            records,
+            field,
+        };
         places.map(piece).collect()
+    }
+
+    /// What decides which frames and bodies slip.
+    pub fn of_slips(&mut self) -> impl Iterator<Item = (&mut Status, f64, &mut [Body])> {
+        let records = split(&mut self.records, self.of_frame, &vec![1; self.status.len()]);
+        let frames = self.status.iter_mut().zip(self.friction.iter().copied()).zip(records);
+        frames.map(|((status, friction), records)| (status, friction, records))
     }
 
     /// The arrays in the package's class `sptfra.Forces`.
@@ -205,6 +219,13 @@ impl Forces {
         put("friction_xy", self.friction_xy, &[frames, 2])?;
         put("standard_error", self.standard_error, &[frames])?;
         kwargs.set_item("bodies", self.bodies.into_pyarray(py))?;
+        if self.of_frame > 0 {
+            let values: Vec<f64> = self.records.iter().flat_map(golden::forces::record).collect();
+            let values = array(py, values, &[frames, self.of_frame, golden::forces::OF_BODY.len()])?;
+            kwargs.set_item("records", py.import("sptfra.forces")?.getattr("_records")?.call1((values,))?)?;
+        } else {
+            kwargs.set_item("records", py.None())?;
+        }
         if self.has_field {
             put("field", self.field, &[frames, rows, columns, 3])?;
         } else {
@@ -217,7 +238,8 @@ impl Forces {
 impl Piece<'_> {
     /// Puts a solution in its place.
     pub fn put(&mut self, index: usize, solution: &Solution) {
-        let Solution { status, resultant, torque, standard_error, bodies, mu, phi, mu_x, mu_y, field } = solution;
+        let Solution { status, resultant, torque, standard_error, bodies, records, mu, phi, mu_x, mu_y, field } =
+            solution;
         self.status[index] = *status;
         (self.friction[index], self.direction[index]) = (*mu, *phi);
         self.friction_xy[2 * index..][..2].copy_from_slice(&[*mu_x, *mu_y]);
@@ -225,6 +247,7 @@ impl Piece<'_> {
         self.torque[3 * index..][..3].copy_from_slice(torque);
         self.standard_error[index] = *standard_error;
         self.bodies[index] = *bodies as u8;
+        self.records[records.len() * index..][..records.len()].copy_from_slice(records);
         let taxels = field[0].len();
         if self.field.is_empty() {
             return;
@@ -235,6 +258,17 @@ impl Piece<'_> {
             *place = [*x, *y, *z];
         }
     }
+}
+
+/// The parts of frames that have `each` values, in pieces of so many frames.
+fn split<'a, T>(mut values: &'a mut [T], each: usize, counts: &[usize]) -> Vec<&'a mut [T]> {
+    let mut parts = Vec::with_capacity(counts.len());
+    for count in counts {
+        let (first, rest) = values.split_at_mut(each * count);
+        parts.push(first);
+        values = rest;
+    }
+    parts
 }
 
 /// An array of this shape.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use golden::solver::Solution;
 use hdl_gen::emit::emit;
-use hdl_gen::inspection::{figures, warnings};
+use hdl_gen::inspection::{figures, plan_to_inspect, warnings};
 use hdl_gen::plan::{Plan, PlanError};
 use hdl_gen::write::{check_folder, write_folder};
 use pyo3::prelude::*;
@@ -21,7 +21,7 @@ use crate::errors::without_lock;
 #[pyfunction]
 pub fn inspect(py: Python<'_>, design: &Design) -> PyResult<String> {
     let design = &design.inner;
-    let plan = without_lock(py, || Plan::new(design).map_err(|error| named(design, &error)))?;
+    let plan = without_lock(py, || plan_to_inspect(design).map_err(|error| named(design, &error)))?;
     Ok(json!({ "figures": figures(&plan), "warnings": warnings(&plan), "clock_mhz": design.hardware.clock_mhz })
         .to_string())
 }
@@ -70,7 +70,7 @@ pub fn simulate<'py>(
             "clock_mhz": design.hardware.clock_mhz,
             "faults": faults,
         });
-        let mut forces = Forces::zeros(&design.sensor, frames.count(), plan.field_words() > 0);
+        let mut forces = Forces::zeros(&design.sensor, frames.count(), 0, plan.field_words() > 0);
         let mut places = forces.pieces();
         for (index, words) in verdict.simulation.answers.iter().enumerate() {
             // An answer of another length is a fault already; its forces stay zeros.
@@ -92,5 +92,5 @@ fn named(design: &golden::design::Design, error: &PlanError) -> String {
 fn solution(answer: Answer) -> Solution {
     let Answer { status, resultant, torque, mu, phi, mu_xy: [mu_x, mu_y], standard_error, bodies, field, .. } = answer;
     let status = golden::solver::Status(status);
-    Solution { status, resultant, torque, standard_error, bodies, mu, phi, mu_x, mu_y, field }
+    Solution { status, resultant, torque, standard_error, bodies, records: Vec::new(), mu, phi, mu_x, mu_y, field }
 }

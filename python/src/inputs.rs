@@ -92,7 +92,8 @@ pub fn scene<'py>(py: Python<'py>, design: Option<&Design>, path: Option<PathBuf
     })?;
     let shape = [made.len(), scene.sensor.rows, scene.sensor.columns];
     let stress: Vec<f64> = made.iter().flat_map(|frame| frame.stress.iter().copied()).collect();
-    let mut truth = Forces::zeros(&scene.sensor, made.len(), false);
+    let records = made.iter().map(|frame| known(frame).records.len()).max().unwrap_or(0);
+    let mut truth = Forces::zeros(&scene.sensor, made.len(), records, false);
     for (piece, frames) in truth.pieces().iter_mut().zip(made.chunks(golden::solver::PIECE)) {
         frames.iter().enumerate().for_each(|(index, frame)| piece.put(index, &known(frame)));
     }
@@ -110,7 +111,8 @@ fn known(frame: &SceneFrame) -> Solution {
         phi: frame.direction,
         mu_x: fx / fz.abs(),
         mu_y: fy / fz.abs(),
-        bodies: frame.bodies,
+        bodies: frame.bodies.len(),
+        records: if frame.bodies.len() > 1 { frame.bodies.clone() } else { Vec::new() },
         ..Solution::zeros(Status::default(), 0)
     }
 }

@@ -1,6 +1,7 @@
 //! The f64 solver on all cores.
 
-use golden::solver::{Solver as Inner, SolverError};
+use golden::bodies::Body;
+use golden::solver::{Slips, Solver as Inner, SolverError, Status};
 use pyo3::prelude::*;
 
 use crate::arrays::{Forces, Frames, Piece};
@@ -28,15 +29,21 @@ impl Solver {
         self.design.clone_ref(py)
     }
 
-    #[pyo3(signature = (frames, *, slips = false))]
-    fn solve<'py>(&self, py: Python<'py>, frames: &Bound<'py, PyAny>, slips: bool) -> PyResult<Bound<'py, PyAny>> {
+    #[pyo3(signature = (frames, *, slips = None))]
+    fn solve<'py>(
+        &self,
+        py: Python<'py>,
+        frames: &Bound<'py, PyAny>,
+        slips: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut slips = slips.map_or(Ok(Slips::default()), slips_of)?;
         let design = &self.design.get().inner;
         let frames = Frames::of(design, frames)?;
         let forces = without_lock(py, || {
-            let mut forces = Forces::zeros(&design.sensor, frames.count(), self.inner.field_length() > 0);
+            let (records, has_field) = (self.inner.records(), self.inner.field_length() > 0);
+            let mut forces = Forces::zeros(&design.sensor, frames.count(), records, has_field);
             self.inner.solve_on_all_cores(&frames.values, forces.pieces(), Piece::put)?;
-            let mut slips = slips;
-            self.inner.follow_slips(&mut slips, forces.status.iter_mut().zip(forces.friction.iter().copied()));
+            self.inner.follow_slips(&mut slips, forces.of_slips());
             Ok::<_, SolverError>(forces)
         })?;
         forces.into_python(py)
@@ -45,4 +52,28 @@ impl Solver {
     fn __repr__(&self) -> String {
         format!("<sptfra.Solver of {}>", self.design.get().inner.name)
     }
+}
+
+/// What slipped in the frame before: whether anything did, or the last of these forces.
+fn slips_of(before: &Bound<'_, PyAny>) -> PyResult<Slips> {
+    if let Ok(slips) = before.extract::<bool>() {
+        return Ok(slips.into());
+    }
+    let status: Vec<u32> = before.getattr("status")?.call_method1("tolist", ())?.extract()?;
+    let Some(&status) = status.last() else { return Ok(Slips::default()) };
+    let records = before.getattr("records")?;
+    let mut bodies = Vec::new();
+    if !records.is_none() {
+        for record in records.get_item(-1)?.try_iter()? {
+            let record = record?;
+            let value = |name: &str| record.get_item(name)?.extract::<f64>();
+            bodies.push(Body {
+                taxels: value("taxels")? as usize,
+                status: Status(value("status")? as u32),
+                centre_m: [value("x")?, value("y")?],
+                ..Body::default()
+            });
+        }
+    }
+    Ok(Slips::of(Status(status), &bodies))
 }

@@ -155,7 +155,38 @@ class Solving(unittest.TestCase):
         for bit in sptfra.Status:
             self.assertIn(f"    {bit.name} = {bit.value}\n", driver)
         fields = [f"    {name}: np.ndarray" for name in sptfra.Forces.__dataclass_fields__]
+        # The hardware knows of one body.
+        fields.remove("    records: np.ndarray")
         self.assertEqual([field for field in fields if field not in driver], [])
+
+    def test_bodies_have_records(self):
+        self.assertIsNone(self.solver.solve(self.frames).records)
+        scene = sptfra.scene(path=ROOT / "scenes" / "two-contacts.toml")
+        self.assertEqual(scene.truth.records.shape, (1, 2))
+        np.testing.assert_allclose(scene.truth.records["F_z"], [[-3.0, -2.0]])
+        np.testing.assert_allclose(scene.truth.records["x"], [[0.010, 0.027]])
+        text = (ROOT / "designs" / "sensor1-none.toml").read_text(encoding="utf-8")
+        several = sptfra.Design.from_toml(text.replace("[algorithm]\n", "[algorithm]\ncontacts = 3\n"))
+        forces = sptfra.Solver(several).solve(np.tile(scene.frames, (70, 1, 1)))
+        self.assertEqual(forces.records.shape, (70, 3))
+        np.testing.assert_array_equal(forces.bodies, 2)
+        for name in ("F_x", "F_y", "F_z"):
+            np.testing.assert_allclose(forces.records[name].sum(axis=1), forces.resultant[:, "xyz".index(name[-1])])
+        self.assertFalse(forces.records["taxels"][:, 2].any())
+        self.assertTrue((forces.records["taxels"][:, :2] > 0).all())
+        table = forces.table()
+        self.assertEqual(table.dtype.names[13:15], ("body0_taxels", "body0_status"))
+        self.assertEqual(len(table.dtype), 13 + 3 * 9)
+        np.testing.assert_array_equal(table["body1_F_z"], forces.records["F_z"][:, 1])
+        text = text.replace("[algorithm]\n", "[algorithm]\ncontacts = 3\nslip = { limit = 0.3, hysteresis = 0.25 }\n")
+        solver = sptfra.Solver(sptfra.Design.from_toml(text))
+        first = solver.solve(scene.frames)
+        after = [solver.solve(scene.frames, slips=slips).records["status"] & sptfra.Status.SLIP for slips in (True, first)]
+        self.assertTrue(after[0][0, :2].all())
+        np.testing.assert_array_equal(after[1], first.records["status"] & sptfra.Status.SLIP)
+        self.assertEqual(sptfra.plan(several).details["contacts"], 3)
+        with self.assertRaisesRegex(sptfra.Error, "contacts = 3: the hardware knows of one body"):
+            sptfra.generate(several, "nowhere")
 
     def test_slip_follows_the_frames_across_the_cores(self):
         held = design("[algorithm]\nslip = { limit = 0.4, hysteresis = 0.2 }\n")

@@ -36,7 +36,7 @@ pub fn run(design: &Path, frames: &Recording, with_field: bool) -> Result<(), Bo
     let mut workspace = solver.workspace();
     let mut solution = Solution::zeros(Status::default(), 0);
     let taxels = if with_field { solver.field_length() } else { 0 };
-    let mut line = forces::columns(taxels).join(",") + "\n";
+    let mut line = forces::columns(solver.records(), taxels).join(",") + "\n";
     // Who reads knows the columns before the first frame.
     let mut goes_on = put(&line)?;
     while goes_on && let Some(frame) = next()? {

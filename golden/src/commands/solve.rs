@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
+use golden::bodies::BodyErrors;
 use golden::check::check;
 use golden::design::Design;
 use golden::forces;
@@ -30,6 +31,9 @@ struct SolveReport<'a> {
     /// Errors against the true forces, in percent.
     #[serde(skip_serializing_if = "Option::is_none")]
     errors: Option<ErrorSummary>,
+    /// Those of each body, where the design tells several apart and the true forces do so too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bodies: Option<BodyErrors>,
 }
 
 /// Solves `frames` and writes the forces to `out`, or prints them where that is `-`.
@@ -56,6 +60,11 @@ pub fn run(
     let design = Design::load(design)?;
     let frames = frames.read(&design)?;
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
+    let bodies = reference
+        .filter(|_| design.algorithm.contacts > 1)
+        .map(|path| forces::read_bodies(path, frames.len(), &design.sensor))
+        .transpose()?
+        .flatten();
     let solver = {
         let _stage = Stage::new("matrices");
         Solver::new(&design)?
@@ -81,6 +90,7 @@ pub fn run(
             let found = solutions.iter().map(Outcome::from);
             ErrorSummary::new(&truth.into_iter().zip(found).collect::<Vec<_>>())
         }),
+        bodies: bodies.map(|truth| BodyErrors::new(truth.iter().zip(&solutions))),
     };
     if json {
         say!("{}", serde_json::to_string_pretty(&report)?);
@@ -108,6 +118,19 @@ fn print_report(report: &SolveReport) -> std::io::Result<()> {
         let mut table = Table::new(["errors in %", "max", "std. error"]);
         for (name, spread) in ERROR_NAMES.iter().zip(errors.spreads()) {
             table.row([name.to_string(), format!("{:.2}", spread.max), format!("{:.2}", spread.standard_error)]);
+        }
+        say!("{}", table.text(0, 0));
+    }
+    if let Some(bodies) = &report.bodies {
+        say!("{} of {} frames have the right number of bodies", bodies.right, bodies.frames);
+        let mut table = Table::new(["errors of each body in %", "median", "95 %", "worst"]);
+        for (name, of) in [("along the surface", bodies.tangential), ("normal", bodies.normal)] {
+            table.row([
+                name.to_owned(),
+                format!("{:.2}", of.median),
+                format!("{:.2}", of.most),
+                format!("{:.2}", of.worst),
+            ]);
         }
         say!("{}", table.text(0, 0));
     }

@@ -44,6 +44,8 @@ pub struct Algorithm {
     pub estimator: Estimator,
     /// Constants of the joint estimator; the line estimator has none and leaves them at their default.
     pub joint: Box<JointConstants>,
+    /// Most bodies that are told apart, 1 to [`crate::bodies::MOST`]; with 1 a frame is solved as that of one body.
+    pub contacts: usize,
     /// Contents of the output.
     pub outputs: Outputs,
     /// Stress in pascals below which a taxel tells nothing; full scale / 65536 unless given.

@@ -18,7 +18,7 @@ use super::{
     JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, STREAM_BITS, Samples, Sensor,
     Slip, Tension,
 };
-use crate::words;
+use crate::{bodies, words};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -72,6 +72,7 @@ struct RawAlgorithm {
     tangential: Option<Vec<f64>>,
     correction: Option<RawCorrection>,
     fitted_to: Option<String>,
+    contacts: Option<i64>,
     outputs: Option<String>,
     noise_floor_pa: Option<f64>,
     slip: Option<RawSlip>,
@@ -226,6 +227,9 @@ fn algorithm(
         )?;
         JointConstants::default()
     };
+    let contacts =
+        raw.contacts.map_or(Ok(1), |contacts| check.integer("algorithm.contacts", contacts, 1, bodies::MOST as i64))?;
+    let contacts = contacts as usize;
     let outputs: Outputs = check.optional_word("algorithm.outputs", raw.outputs.as_deref())?.unwrap_or_default();
     let noise_floor_pa = match raw.noise_floor_pa {
         Some(value) => check.above_zero("algorithm.noise_floor_pa", value, full_scale_pa, "Pa")?,
@@ -234,7 +238,8 @@ fn algorithm(
     let plan = parse_plan::kind(check, raw.plan.as_deref(), &filter, hardware)?;
     let slip = raw.slip.map(|raw| slip(check, &raw)).transpose()?;
     let joint = Box::new(joint);
-    let algorithm = Algorithm { plan, kernel, regularisation, filter, estimator, joint, outputs, noise_floor_pa, slip };
+    let algorithm =
+        Algorithm { plan, kernel, regularisation, filter, estimator, joint, contacts, outputs, noise_floor_pa, slip };
     Ok((algorithm, raw.correction))
 }
 

@@ -37,6 +37,10 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
     let slip = algorithm.slip.map_or_else(String::new, |Slip { limit, hysteresis }| {
         format!("slip = {{ limit = {limit:?}, hysteresis = {hysteresis:?} }}\n")
     });
+    let contacts = match algorithm.contacts {
+        1 => String::new(),
+        contacts => format!("contacts = {contacts}\n"),
+    };
     let counts = match input.pa_per_count {
         Some(value) => format!("pa_per_count = {value:?}\n"),
         None => String::new(),
@@ -75,7 +79,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
         "name = \"{name}\"\n\n\
          [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{tension}{counts}{curve}{calibration}{dead}\n\
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
-         {constants}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
+         {constants}{contacts}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
          full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{control}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,

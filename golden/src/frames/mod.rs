@@ -206,6 +206,17 @@ fn read_table(
     Ok(rows)
 }
 
+/// The first line of a file of text that is no remark; nothing for a `.npy` file.
+pub(crate) fn first_line(path: &Path) -> Result<Option<String>, FrameError> {
+    let bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
+    if bytes.starts_with(npy::MAGIC) {
+        return Ok(None);
+    }
+    let text = String::from_utf8_lossy(&bytes);
+    let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
+    Ok(Some(line.unwrap_or("").to_owned()))
+}
+
 /// Shape and values of a `.npy` file, NaN among them; nothing for a file of text.
 pub(crate) fn read_array(path: &Path) -> Result<Option<Array>, FrameError> {
     let bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;

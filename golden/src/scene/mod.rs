@@ -24,6 +24,7 @@ pub use shape::Shape;
 pub use traction::{Shear, Traction};
 pub use transfer::Medium;
 
+use crate::bodies::Body;
 use crate::design::{DesignError, Sensor};
 pub(crate) use field::Field;
 use spectral::UnitResponses;
@@ -98,8 +99,8 @@ pub struct SceneFrame {
     pub friction: f64,
     /// Direction of the tangential resultant in radians, `atan2(F_y, F_x)`.
     pub direction: f64,
-    /// Number of contacts.
-    pub bodies: usize,
+    /// What each contact does, the one that presses most first; taxels, status and standard error are 0.
+    pub bodies: Vec<Body>,
 }
 
 impl Scene {
@@ -227,6 +228,7 @@ impl Scene {
         let mut stress = vec![0.0; self.sensor.taxels()];
         let mut force = [0.0; 3];
         let mut torque = [0.0; 3];
+        let mut bodies = Vec::with_capacity(self.contacts.len());
         for (contact, response) in self.contacts.iter().zip(responses) {
             let angle = contact.direction_deg + sweep_deg.unwrap_or(0.0);
             let [normal, along_x, along_y] = match response {
@@ -236,6 +238,7 @@ impl Scene {
                     for (sums, parts) in [&mut force, &mut torque].into_iter().zip(exerted) {
                         sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
                     }
+                    bodies.push(self.body(exerted));
                     continue;
                 }
             };
@@ -247,11 +250,14 @@ impl Scene {
             }
             // Spread as its shape says, which is its own mirror image in x and in y, the load acts at its centre.
             let own = [fx, fy, -pressing];
-            let own = own.into_iter().zip(self.sensor.torque_of(contact.centre_m, own));
+            let own_torque = self.sensor.torque_of(contact.centre_m, own);
+            bodies.push(self.body([own, own_torque]));
+            let own = own.into_iter().zip(own_torque);
             for ((sum, moment), (part, arm)) in force.iter_mut().zip(&mut torque).zip(own) {
                 (*sum, *moment) = (*sum + part, *moment + arm);
             }
         }
+        Body::largest_first(&mut bodies);
         SceneFrame {
             label: match sweep_deg {
                 Some(angle) => format!("direction {angle} deg"),
@@ -262,7 +268,18 @@ impl Scene {
             torque,
             friction: force[0].hypot(force[1]) / force[2].abs(),
             direction: force[1].atan2(force[0]),
-            bodies: self.contacts.len(),
+            bodies,
+        }
+    }
+
+    /// What a contact of this force and torque does.
+    fn body(&self, [force, torque]: [[f64; 3]; 2]) -> Body {
+        let [x, y, z] = force;
+        Body {
+            centre_m: Body::centre_of(&self.sensor, force, torque),
+            force,
+            mu: x.hypot(y) / z.abs(),
+            ..Body::default()
         }
     }
 }

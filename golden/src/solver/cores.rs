@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::{Solution, Solver, SolverError, Status};
+use super::{Slips, Solution, Solver, SolverError, Status};
+use crate::bodies::Body;
 
 /// Frames that one core takes at a time.
 pub const PIECE: usize = crate::products::batch::FRAMES;
@@ -48,11 +49,15 @@ impl Solver {
         )
     }
 
-    /// Decides for frames that follow each other, each given by its status and friction coefficient, which slip.
-    /// `slips` says whether the one before did, and then whether the last one does.
-    pub fn follow_slips<'a>(&self, slips: &mut bool, frames: impl IntoIterator<Item = (&'a mut Status, f64)>) {
-        for (status, mu) in frames {
-            self.note_slip(slips, status, mu);
+    /// Decides for frames that follow each other, each given by its status, friction coefficient and records of bodies,
+    /// which slip. `slips` says what slipped in the one before, and then in the last one.
+    pub fn follow_slips<'a>(
+        &self,
+        slips: &mut Slips,
+        frames: impl IntoIterator<Item = (&'a mut Status, f64, &'a mut [Body])>,
+    ) {
+        for (status, mu, records) in frames {
+            self.note_slip(slips, status, mu, records);
         }
     }
 }

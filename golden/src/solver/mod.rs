@@ -7,20 +7,24 @@
 //! paper's, with either plan.
 
 mod batch;
+mod bodies;
 pub mod cean;
 pub mod co;
 mod cores;
 pub mod op;
 pub(crate) mod reading;
+mod slips;
 pub mod we;
 mod workspace;
 
 pub use crate::status::Status;
 pub use cores::PIECE;
+pub use slips::Slips;
 pub use workspace::Workspace;
 
 use std::sync::{Arc, OnceLock};
 
+use crate::bodies::{Body, Finder};
 use crate::design::{Design, Outputs, PlanKind, Slip};
 use crate::estimators::{Answer, Friction, FrictionScratch, Seen};
 use crate::filter::{FilterError, FilteredMatrices};
@@ -75,8 +79,11 @@ pub struct Solution {
     pub torque: [f64; 3],
     /// Standard error of `(F_x, F_y)` in newtons; 0 where the estimator has none.
     pub standard_error: f64,
-    /// Number of bodies in touch: 1, and 0 without an answer.
+    /// Number of bodies in touch, 0 without an answer. A design with `contacts = 1` knows of no more than one.
     pub bodies: usize,
+    /// The bodies that were told apart, the one that presses most first, then zeros: as many as the design's `contacts`,
+    /// and none with `contacts = 1`.
+    pub records: Vec<Body>,
     /// `sqrt(F_x^2 + F_y^2) / |F_z|`, 0 where `F_z` is 0 (Eq. 29).
     pub mu: f64,
     /// Direction of the tangential resultant, `atan2(F_y, F_x)`, in radians.
@@ -98,6 +105,7 @@ impl Solution {
             torque: [0.0; 3],
             standard_error: 0.0,
             bodies: 0,
+            records: Vec::new(),
             mu: 0.0,
             phi: 0.0,
             mu_x: 0.0,
@@ -113,13 +121,17 @@ impl Solution {
             component.clear();
             component.resize(taxels, 0.0);
         }
-        *self = Self { field, ..Self::zeros(status, 0) };
+        let mut records = std::mem::take(&mut self.records);
+        records.clear();
+        *self = Self { records, field, ..Self::zeros(status, 0) };
     }
 
     /// Multiplies all forces by a gain.
     fn scale(&mut self, gain: f64) {
         let resultants = self.resultant.iter_mut().chain(&mut self.torque).chain([&mut self.standard_error]);
-        self.field.iter_mut().flatten().chain(resultants).for_each(|force| *force *= gain);
+        let of_bodies =
+            self.records.iter_mut().flat_map(|body| body.force.iter_mut().chain([&mut body.standard_error]));
+        self.field.iter_mut().flatten().chain(resultants).chain(of_bodies).for_each(|force| *force *= gain);
     }
 
     /// Finds the friction components, and puts them and what follows from them in place.
@@ -146,6 +158,10 @@ pub struct Solver {
     matrices: Matrices,
     products: Products,
     friction: Friction,
+    /// Where there may be more bodies than one.
+    finder: Option<Finder>,
+    /// Share of the normal force above which a standard error is doubtful.
+    doubt: f64,
     slip: Option<Slip>,
 }
 
@@ -201,7 +217,11 @@ impl Solver {
 
     fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
         let friction = Friction::new(design.algorithm.constants(), &design.sensor);
-        Self { reader: Reader::new(design), matrices, products, friction, slip: design.algorithm.slip }
+        let contacts = design.algorithm.contacts;
+        let finder = (contacts > 1).then(|| Finder::new(&design.sensor, contacts));
+        let (reader, slip) = (Reader::new(design), design.algorithm.slip);
+        let doubt = design.algorithm.joint.doubt;
+        Self { reader, matrices, products, friction, finder, doubt, slip }
     }
 
     /// The unfiltered matrices.
@@ -239,6 +259,11 @@ impl Solver {
         let mut solution = Solution::zeros(Status::default(), 0);
         self.solve_into(&mut self.workspace(), frame, &mut solution)?;
         Ok(solution)
+    }
+
+    /// Records of bodies in each solution: the design's `contacts`, or 0 where that is 1.
+    pub fn records(&self) -> usize {
+        self.finder.as_ref().map_or(0, Finder::contacts)
     }
 
     /// Number of forces along each axis in a solution's field: m, or 0 where the design asks for resultants only.

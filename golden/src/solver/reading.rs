@@ -49,6 +49,11 @@ impl Reader {
         self.positions.len()
     }
 
+    /// What the contact analysis finds of the stress `b` in pascals.
+    pub(crate) fn analyse(&self, b: &DVector<f64>) -> Contact {
+        cean::cean(b, &self.positions, self.noise_floor)
+    }
+
     /// Checks one frame, converts it to pascals within the full scale, into `b` of length m, and analyses it.
     pub(crate) fn read(&self, frame: &[f64], b: &mut DVector<f64>) -> Result<Reading, SolverError> {
         let taxels = self.taxels();
@@ -74,7 +79,7 @@ impl Reader {
             status.insert(Status::SATURATED);
         }
         b.apply(|stress| *stress = stress.clamp(-self.full_scale, self.full_scale));
-        let contact = cean::cean(b, &self.positions, self.noise_floor);
+        let contact = self.analyse(b);
         if !contact.touched {
             return Ok(Reading::Nothing(Status::NO_CONTACT));
         }

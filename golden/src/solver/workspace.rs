@@ -5,8 +5,9 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::batch::{self, BatchFrame};
+use super::bodies::{Census, Parted};
 use super::reading::Reading;
-use super::{Products, Reduced, Solution, Solver, SolverError, Status};
+use super::{Products, Reduced, Slips, Solution, Solver, SolverError, Status};
 use crate::estimators::{Contact, Friction, FrictionScratch, Seen};
 use crate::parity::{CLASSES, Quads};
 use crate::products::batch::{Blocks, FRAMES};
@@ -17,11 +18,13 @@ use crate::reduced::ReducedMatrices;
 #[derive(Clone, Debug)]
 pub struct Workspace {
     quads: Quads,
-    b: DVector<f64>,
+    pub(super) b: DVector<f64>,
     friction: FrictionScratch,
     products: Scratch,
-    /// Whether the last frame slipped.
-    slips: bool,
+    /// The bodies of the frame.
+    pub(super) parted: Parted,
+    /// What slipped in the last frame.
+    slips: Slips,
     /// For several frames at once, made when first used.
     batch: Option<Box<BatchFrame>>,
 }
@@ -43,7 +46,8 @@ impl Solver {
                 Products::Paper(paper) => Scratch::Paper(Box::new(paper.frame())),
                 Products::Reduced(reduced) => Scratch::Reduced(Box::new(reduced.engine.frame())),
             },
-            slips: false,
+            parted: Parted::default(),
+            slips: Slips::default(),
             batch: None,
         }
     }
@@ -63,46 +67,45 @@ impl Solver {
         solution: &mut Solution,
     ) -> Result<(), SolverError> {
         self.fit(workspace);
-        let Workspace { b, friction: scratch, products, .. } = workspace;
-        match self.reader.read(frame, b)? {
+        let mut census = Census::default();
+        match self.reader.read(frame, &mut workspace.b)? {
             Reading::Nothing(status) => solution.reset(status, self.field_length()),
             Reading::Contact { contact, status } => {
                 solution.reset(status, self.field_length());
-                let b = b.as_slice();
-                match (&self.products, products) {
-                    (Products::Paper(engine), Scratch::Paper(frame)) => {
-                        solve(engine, frame, (b, contact), &self.friction, scratch, solution);
-                    }
-                    (Products::Reduced(reduced), Scratch::Reduced(frame)) => {
-                        solve(&reduced.engine, frame, (b, contact), &self.friction, scratch, solution);
-                    }
-                    // `fit` has seen to it that there is no other case.
-                    _ => {}
+                census = self.part(&workspace.b, &mut workspace.parted);
+                if census.has_several() {
+                    self.solve_bodies(workspace, solution);
+                } else {
+                    self.solve_alone(workspace, contact, solution);
                 }
-                self.scale(solution);
             }
         }
-        self.note_slip(&mut workspace.slips, &mut solution.status, solution.mu);
+        self.finish(workspace, census, solution);
         Ok(())
     }
 
-    /// Sets the bit of a frame that slips. Without contact nothing does; a frame that tells nothing changes nothing.
-    pub(super) fn note_slip(&self, slips: &mut bool, status: &mut Status, mu: f64) {
-        let Some(slip) = self.slip else { return };
-        status.remove(Status::SLIP);
-        if status.contains(Status::NOT_FINITE) {
-            return;
-        }
-        *slips = !status.contains(Status::NO_CONTACT) && slip.slips(mu, *slips);
-        if *slips {
-            status.insert(Status::SLIP);
-        }
-    }
-
-    /// Multiplies the forces by the estimator's gain.
-    fn scale(&self, solution: &mut Solution) {
+    /// What follows from the forces of a frame.
+    fn finish(&self, workspace: &mut Workspace, census: Census, solution: &mut Solution) {
+        self.note_body(census, solution);
         if let Some(gain) = self.friction.gain() {
             solution.scale(gain);
+        }
+        self.note_slip(&mut workspace.slips, &mut solution.status, solution.mu, &mut solution.records);
+    }
+
+    /// Finds the forces of the workspace's stress as those of one body.
+    pub(super) fn solve_alone(&self, workspace: &mut Workspace, contact: Contact, solution: &mut Solution) {
+        let Workspace { b, friction: scratch, products, .. } = workspace;
+        let b = b.as_slice();
+        match (&self.products, products) {
+            (Products::Paper(engine), Scratch::Paper(frame)) => {
+                solve(engine, frame, (b, contact), &self.friction, scratch, solution);
+            }
+            (Products::Reduced(reduced), Scratch::Reduced(frame)) => {
+                solve(&reduced.engine, frame, (b, contact), &self.friction, scratch, solution);
+            }
+            // `fit` has seen to it that there is no other case.
+            _ => {}
         }
     }
 
@@ -144,25 +147,31 @@ impl Solver {
         let blocks = reduced.blocks.get_or_init(|| {
             Arc::new(Blocks::new(&reduced.engine.list, reduced.engine.stored(), self.matrices.quads()))
         });
-        let Workspace { b, friction: scratch, batch, slips, .. } = workspace;
-        let batch = batch.get_or_insert_with(|| Box::new(BatchFrame::new(&reduced.engine.list, blocks)));
+        let batch = workspace.batch.take();
+        let mut batch = batch.unwrap_or_else(|| Box::new(BatchFrame::new(&reduced.engine.list, blocks)));
         for (frames, solutions) in frames.chunks(FRAMES).zip(solutions.chunks_mut(FRAMES)) {
             batch.clear();
+            let mut census = [Census::default(); FRAMES];
             for (index, (frame, solution)) in frames.iter().zip(&mut *solutions).enumerate() {
-                match self.reader.read(frame.as_ref(), b)? {
+                match self.reader.read(frame.as_ref(), &mut workspace.b)? {
                     Reading::Nothing(status) => solution.reset(status, self.field_length()),
                     Reading::Contact { contact, status } => {
                         solution.reset(status, self.field_length());
-                        batch.push(index, contact, b.as_slice());
+                        census[index] = self.part(&workspace.b, &mut workspace.parted);
+                        if census[index].has_several() {
+                            self.solve_bodies(workspace, solution);
+                        } else {
+                            batch.push(index, contact, workspace.b.as_slice());
+                        }
                     }
                 }
             }
-            batch.solve(&self.friction, scratch, solutions);
-            for solution in solutions {
-                self.scale(solution);
-                self.note_slip(slips, &mut solution.status, solution.mu);
+            batch.solve(&self.friction, &mut workspace.friction, solutions);
+            for (solution, census) in solutions.iter_mut().zip(census) {
+                self.finish(workspace, census, solution);
             }
         }
+        workspace.batch = Some(batch);
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// Kinds of frames; one differs from the first in one thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Family {
+pub enum Family {
     /// Round, Hertz's pressure or an even one, sliding, within the grid.
     Sliding,
     TiltedAlong,
@@ -37,7 +37,7 @@ enum Family {
     Wide,
 }
 
-const FAMILIES: [(Family, &str); 18] = [
+pub const FAMILIES: [(Family, &str); 18] = [
     (Family::Sliding, "round, sliding, as ever"),
     (Family::TiltedAlong, "pressure tilted along the push, 0.6"),
     (Family::TiltedAcross, "pressure tilted across the push, 0.5"),
@@ -59,7 +59,7 @@ const FAMILIES: [(Family, &str); 18] = [
 ];
 
 /// One frame of a family; the families of all kinds have a friction of their own.
-fn frame(sensor: &Sensor, family: Family, friction: f64, seed: u64) -> SceneFrame {
+pub fn frame(sensor: &Sensor, family: Family, friction: f64, seed: u64) -> SceneFrame {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     let last = sensor.position_m(sensor.taxels() - 1);

@@ -7,7 +7,7 @@ use golden::design::{
     Correction, Design, Doubt, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind, Slip,
 };
 use golden::estimators::line;
-use golden::solver::{PIECE, Solution, Solver, Status, co, op, we};
+use golden::solver::{PIECE, Slips, Solution, Solver, Status, co, op, we};
 use nalgebra::DVector;
 
 /// Counts what this thread asks for; the other topics' tests run on other threads.
@@ -230,12 +230,12 @@ fn all_cores_give_what_one_gives() {
     let mut found = vec![Solution::zeros(Status::default(), 0); frames.len()];
     let places = found.chunks_mut(PIECE);
     solver.solve_on_all_cores(&frames.concat(), places, |place, index, found| place[index].clone_from(found)).unwrap();
-    let mut slips = false;
+    let mut slips = Slips::default();
     solver.follow_slips(
         &mut slips,
         found.iter_mut().map(|solution| {
             let mu = solution.mu;
-            (&mut solution.status, mu)
+            (&mut solution.status, mu, solution.records.as_mut_slice())
         }),
     );
     assert_eq!(found, expected);

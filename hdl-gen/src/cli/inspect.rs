@@ -6,7 +6,7 @@ use std::fmt::Write;
 use golden::design::PlanKind;
 use golden::table::Table;
 use hdl_gen::emit::products;
-use hdl_gen::inspection::{KNOWN_PART, excess, figures, narrow};
+use hdl_gen::inspection::{KNOWN_PART, excess, figures, narrow, several_bodies};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::short;
 use hdl_gen::plan::savings::savings;
@@ -63,6 +63,9 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         key("estimator = "),
         key("outputs = ")
     )?;
+    if let Some(several) = several_bodies(plan) {
+        writeln!(out, "  bodies       {several}")?;
+    }
     writeln!(
         out,
         "  streams      {} bits a beat, samples {}",

@@ -13,7 +13,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use golden::arguments::design_file;
 use golden::design::Design;
 use golden::manual::Manual;
-use hdl_gen::plan::Plan;
+use hdl_gen::inspection::plan_to_inspect;
+use hdl_gen::plan::{Plan, PlanError};
 
 use progress::Progress;
 
@@ -67,7 +68,8 @@ fn run(command: Command) -> Result<String, Box<dyn Error>> {
     match command {
         Command::New(new) => new::write(&new, &progress),
         Command::Inspect { design, json } => {
-            let plan = plan(&Design::load(&design)?, &design, &progress)?;
+            let loaded = Design::load(&design)?;
+            let plan = planned(&loaded, &design, &progress, plan_to_inspect)?;
             inspect::report(&plan, json)
         }
         Command::Manual(manual) => manual.run(Arguments::command()),
@@ -77,8 +79,18 @@ fn run(command: Command) -> Result<String, Box<dyn Error>> {
 
 /// The plan of a design from file `path`.
 fn plan(design: &Design, path: &Path, progress: &Progress) -> Result<Plan, Box<dyn Error>> {
+    planned(design, path, progress, Plan::new)
+}
+
+/// A design of file `path`, planned in one of the ways there are.
+fn planned(
+    design: &Design,
+    path: &Path,
+    progress: &Progress,
+    way: impl Fn(&Design) -> Result<Plan, PlanError>,
+) -> Result<Plan, Box<dyn Error>> {
     progress.stage(format!("matrices and plan of {} taxels", design.sensor.taxels()));
-    Plan::new(design).map_err(|error| format!("{}: {error}", path.display()).into())
+    way(design).map_err(|error| format!("{}: {error}", path.display()).into())
 }
 
 /// Prints to standard output; a reader that has gone away is no error.

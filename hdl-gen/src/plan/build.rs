@@ -29,7 +29,7 @@ impl Plan {
     /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
     ///
     /// # Errors
-    /// [`PlanError`] if the plan has no hardware for the estimator, the geometry is singular, the filter empties a
+    /// [`PlanError`] if the plan has no hardware for the estimator or for several bodies, the geometry is singular, the filter empties a
     /// matrix, the widths are too small, or no number of lanes meets the target.
     pub fn new(design: &Design) -> Result<Self, PlanError> {
         plan(design)
@@ -37,6 +37,10 @@ impl Plan {
 }
 
 fn plan(design: &Design) -> Result<Plan, PlanError> {
+    let contacts = design.algorithm.contacts;
+    if contacts > 1 {
+        return Err(PlanError::Contacts { contacts });
+    }
     if !estimators::has_hardware(design) {
         return Err(PlanError::JointEstimator);
     }

@@ -20,6 +20,15 @@ pub enum PlanError {
          estimator = \"line\" and remove gain, tangential and correction"
     )]
     JointEstimator,
+    /// Several bodies have no hardware.
+    #[error(
+        "[algorithm] contacts = {contacts}: the hardware knows of one body; `golden solve` and the Python package's Solver \
+         tell up to {contacts} apart with this design as it is; for hardware write contacts = 1"
+    )]
+    Contacts {
+        /// What the design asks for.
+        contacts: usize,
+    },
     /// The matrices of this geometry cannot be computed.
     #[error(transparent)]
     Matrix(#[from] MatrixError),

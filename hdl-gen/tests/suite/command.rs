@@ -68,6 +68,31 @@ fn from_a_new_design_to_a_folder() {
     assert_eq!(beside.len(), 1, "nothing is left beside the folder");
 }
 
+/// Several bodies have no hardware yet: who asks for it is told what works, and what to change.
+#[test]
+fn several_bodies_are_inspected_and_not_generated() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let one = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "");
+    let several = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "[algorithm]\ncontacts = 3\n");
+    fs::write(here.join("one.toml"), &one).unwrap();
+    fs::write(here.join("several.toml"), &several).unwrap();
+    let refused = hdl_gen(here, &["generate", "several.toml"]);
+    assert!(!refused.status.success());
+    let said = String::from_utf8(refused.stderr).unwrap();
+    for part in ["several.toml", "contacts = 3", "golden solve", "Python", "write contacts = 1"] {
+        assert!(said.contains(part), "no {part:?} in: {said}");
+    }
+    assert!(said.lines().count() == 1 && !here.join("rtl-out").exists(), "{said}");
+    let [of_one, of_several] = ["one.toml", "several.toml"].map(|name| good(here, &["inspect", name]));
+    let remark = of_several.lines().find(|line| line.contains("contacts 3")).expect("a remark");
+    assert!(remark.contains("contacts = 1"), "{remark}");
+    assert_eq!(of_several.replacen(&format!("{remark}\n"), "", 1), of_one, "all else is that of one body");
+    let json: serde_json::Value = serde_json::from_str(&good(here, &["inspect", "several.toml", "--json"])).unwrap();
+    assert_eq!(json["contacts"], 3);
+    assert!(!good(here, &["inspect", "one.toml", "--json"]).contains("contacts"));
+}
+
 /// Deeper than 1.5 pitches a new design is regularised: without it there would be no hardware.
 #[test]
 fn a_new_design_of_a_deep_sensor_has_hardware() {

@@ -55,6 +55,21 @@ fn a_register_bank_is_asked_for_and_leaves_no_word_where_it_is_not() {
 }
 
 #[test]
+fn several_bodies_are_asked_for_and_leave_no_word_where_they_are_not() {
+    let of = |text: &str| Design::from_toml(&format!("{MINIMAL}[algorithm]\n{text}\n"), "pad.toml").unwrap();
+    assert_eq!(of("contacts = 1").to_toml(), Design::from_toml(MINIMAL, "pad.toml").unwrap().to_toml());
+    let several = of("contacts = 8");
+    assert!(several.algorithm.contacts == 8 && several.to_toml().contains("\ncontacts = 8\n"));
+    assert_eq!(Design::from_toml(&several.to_toml(), "pad.toml").unwrap(), several);
+    for wrong in ["0", "9", "-1"] {
+        refused(
+            &format!("{MINIMAL}[algorithm]\ncontacts = {wrong}\n"),
+            &["algorithm.contacts", &format!("is {wrong}"), "1 to 8"],
+        );
+    }
+}
+
+#[test]
 fn the_plan_is_the_reduced_one_where_that_changes_nothing_and_fits() {
     for (more, expected) in [
         ("[hardware]\nlanes = 4", PlanKind::Reduced),

@@ -1,0 +1,115 @@
+//! How far each body's forces are from the true ones.
+
+use serde::Serialize;
+
+use super::Body;
+use crate::solver::Solution;
+
+/// Errors in percent of each body's own normal force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spread {
+    /// Half of the errors are at most this,
+    pub median: f64,
+    /// 95 % of them this,
+    pub most: f64,
+    /// and all of them this.
+    pub worst: f64,
+}
+
+impl Spread {
+    /// Of errors in any order; zeros if there are none.
+    pub fn of(mut errors: Vec<f64>) -> Self {
+        errors.sort_by(f64::total_cmp);
+        let share = |share: f64| {
+            let count = (errors.len() as f64 * share).ceil() as usize;
+            errors.get(count.saturating_sub(1)).copied().unwrap_or(0.0)
+        };
+        Self { median: share(0.5), most: share(0.95), worst: share(1.0) }
+    }
+}
+
+/// Errors of bodies over many frames.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BodyErrors {
+    /// Frames,
+    pub frames: usize,
+    /// and those of them that have the right number of bodies: the errors are of these.
+    pub right: usize,
+    /// Length of the error of `(F_x, F_y)`.
+    pub tangential: Spread,
+    /// Of `F_z`.
+    pub normal: Spread,
+    /// Share of the errors of `(F_x, F_y)` that are within two standard errors, in percent.
+    pub within: f64,
+}
+
+impl BodyErrors {
+    /// Compares the true bodies of frames with those that were found.
+    pub fn new<'a>(frames: impl IntoIterator<Item = (&'a Vec<Body>, &'a Solution)>) -> Self {
+        let [mut count, mut right, mut within] = [0; 3];
+        let [mut tangential, mut normal] = [Vec::new(), Vec::new()];
+        for (truth, solution) in frames {
+            count += 1;
+            if truth.len() != solution.bodies || truth.len() > solution.records.len() {
+                continue;
+            }
+            right += 1;
+            for (truth, found) in pairs(truth, &solution.records[..truth.len()]) {
+                let [x, y, z] = [0, 1, 2].map(|axis| found.force[axis] - truth.force[axis]);
+                let percent = 100.0 / truth.force[2].abs();
+                within += usize::from(x.hypot(y) <= 2.0 * found.standard_error);
+                tangential.push(percent * x.hypot(y));
+                normal.push(percent * z.abs());
+            }
+        }
+        let within = 100.0 * within as f64 / tangential.len().max(1) as f64;
+        Self { frames: count, right, tangential: Spread::of(tangential), normal: Spread::of(normal), within }
+    }
+}
+
+/// Pairs of bodies that are the same one, as many of both: the two whose centres are nearest, then the next two.
+fn pairs<'a>(truth: &'a [Body], found: &'a [Body]) -> Vec<(&'a Body, &'a Body)> {
+    let distance = |(a, b): &(&Body, &Body)| (a.centre_m[0] - b.centre_m[0]).hypot(a.centre_m[1] - b.centre_m[1]);
+    let mut all: Vec<(&Body, &Body)> = truth.iter().flat_map(|a| found.iter().map(move |b| (a, b))).collect();
+    all.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let mut pairs: Vec<(&Body, &Body)> = Vec::new();
+    for (a, b) in all {
+        if pairs.iter().all(|(c, d)| !std::ptr::eq(*c, a) && !std::ptr::eq(*d, b)) {
+            pairs.push((a, b));
+        }
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::Status;
+
+    fn body(x: f64, force: [f64; 3]) -> Body {
+        Body { centre_m: [x, 0.0], force, standard_error: 0.1, ..Body::default() }
+    }
+
+    #[test]
+    fn each_body_is_compared_with_that_at_its_place() {
+        // Found in another order; both errors are 1 N of 4 and 0.1 N of 2 along the surface.
+        let truth = vec![body(0.01, [0.0, 0.0, -4.0]), body(0.03, [1.0, 0.0, -2.0])];
+        let records = vec![body(0.031, [1.1, 0.0, -2.5]), body(0.009, [0.0, 1.0, -4.0]), Body::default()];
+        let solution = Solution { bodies: 2, records, ..Solution::zeros(Status::default(), 0) };
+        let wrong = Solution { bodies: 3, ..solution.clone() };
+        let found = BodyErrors::new([(&truth, &solution), (&truth, &wrong)]);
+        assert_eq!((found.frames, found.right), (2, 1));
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-9, "{a} {b}: {found:?}");
+        close(found.tangential.median, 5.0);
+        close(found.tangential.worst, 25.0);
+        close(found.normal.median, 0.0);
+        close(found.normal.most, 25.0);
+        close(found.within, 50.0);
+    }
+
+    #[test]
+    fn no_errors_are_zeros() {
+        assert_eq!(Spread::of(Vec::new()), Spread::default());
+        assert_eq!(BodyErrors::new([]).right, 0);
+    }
+}

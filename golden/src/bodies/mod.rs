@@ -1,0 +1,233 @@
+//! Several bodies on one sensor: told apart, so that each has a friction and forces of its own.
+//!
+//! With `y = C33inv b` a frame is the stress of normal forces alone, `b = C33 y`. What a tangential force does to `y` falls off
+//! around its body within the depth of the layer, so `y` can be parted by regions: `b_k = C33 y_k` is nearly the frame that a body
+//! would cause alone, and is solved as any frame of one body, with the same estimator, its correction and its standard
+//! error. With the friction found so, what each body does beyond its region is known, and only the rest needs to be parted:
+//! `b_k = (mu_x C31 + mu_y C32 - C33) |w|_k + C33 (C33inv rest)_k`. These are solved once more. They add up to the frame as
+//! it is; its forces are the sums.
+//!
+//! [`Finder`] says where the bodies are, from `|w| = max(-y, 0)`: blobs of taxels that touch ([`Labels`]), and the
+//! nearest blob of each taxel. Both take a fixed number of steps on whole numbers, so that hardware can do the same.
+
+mod errors;
+mod labels;
+mod regions;
+
+pub use errors::{BodyErrors, Spread};
+pub use labels::Labels;
+
+use crate::sensor::Sensor;
+use crate::status::Status;
+use regions::{Distances, spread};
+
+/// Most records of bodies that a design can ask for.
+pub const MOST: usize = 8;
+/// A taxel touches if its `|w|` is above this share of the frame's largest, and a blob is a body if it has this share of
+/// all `|w|`: about 8 %, in two shifts and an addition.
+pub const SHARE: f64 = 5.0 / 64.0;
+
+/// What is known of one body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Body {
+    /// Taxels that it touches.
+    pub taxels: usize,
+    /// Bits of the frame's status that are about this body: those of [`Body::BITS`].
+    pub status: Status,
+    /// Where its normal force acts, in metres from the first taxel.
+    pub centre_m: [f64; 2],
+    /// Its force `[F_x, F_y, F_z]` in newtons.
+    pub force: [f64; 3],
+    /// `sqrt(F_x^2 + F_y^2) / |F_z|`, 0 where `F_z` is 0.
+    pub mu: f64,
+    /// Standard error of `(F_x, F_y)` in newtons; 0 where the estimator has none.
+    pub standard_error: f64,
+}
+
+impl Body {
+    /// Status bits that a body can have. A frame has those of its bodies, and others.
+    pub const BITS: [Status; 5] =
+        [Status::DIRECTION_UNKNOWN, Status::AT_BOUND, Status::DOUBTFUL, Status::SLIP, Status::NO_TENSION];
+
+    /// The bits of a frame's status that can be a body's.
+    pub fn bits_of(status: Status) -> Status {
+        let all = Self::BITS.iter().fold(0, |all, bit| all | bit.0);
+        Status(status.0 & all)
+    }
+
+    /// Where a force and its torque about the middle of the grid at the surface say that it acts, in metres from the
+    /// first taxel; the middle if nothing presses or pulls.
+    pub fn centre_of(sensor: &Sensor, force: [f64; 3], torque: [f64; 3]) -> [f64; 2] {
+        let middle = sensor.position_m(sensor.taxels() - 1).map(|last| 0.5 * last);
+        let [_, _, normal] = force;
+        if normal == 0.0 {
+            return middle;
+        }
+        let [about_x, about_y, _] = torque;
+        [middle[0] - about_y / normal, middle[1] + about_x / normal]
+    }
+
+    /// Puts the body that presses most first, and so on; of equal ones the first stays first.
+    pub fn largest_first(bodies: &mut [Self]) {
+        bodies.sort_by(|a, b| b.force[2].abs().total_cmp(&a.force[2].abs()));
+    }
+}
+
+/// Tells the bodies of a sensor's frames apart.
+#[derive(Clone, Debug)]
+pub struct Finder {
+    contacts: usize,
+    columns: usize,
+    distances: Distances,
+}
+
+/// The bodies of a frame, to be used again for the next one.
+#[derive(Clone, Debug, Default)]
+pub struct Found {
+    /// Body of each taxel, the nearest: 0 is the one with most `|w|`. Without any body `None`.
+    pub regions: Vec<Option<usize>>,
+    /// Taxels that each body touches; as many as there are bodies with a region, at most those that were asked for.
+    pub taxels: Vec<usize>,
+    /// Number of bodies, with those that were too many to have a region.
+    pub bodies: usize,
+    touched: Vec<bool>,
+    labels: Labels,
+    /// Of each blob the sum of `|w|`, its number and its taxels.
+    blobs: Vec<(f64, usize, usize)>,
+    /// Of each blob its body.
+    numbers: Vec<Option<usize>>,
+    nearest: Vec<(u64, usize)>,
+}
+
+impl Finder {
+    /// For at most so many bodies.
+    pub fn new(sensor: &Sensor, contacts: usize) -> Self {
+        Self { contacts, columns: sensor.columns, distances: Distances::of(sensor) }
+    }
+
+    /// Most bodies that get a region.
+    pub fn contacts(&self) -> usize {
+        self.contacts
+    }
+
+    /// Tells the bodies apart by `|w|`, one value for each taxel.
+    ///
+    /// Of more bodies than asked for those with the least `|w|` have no region: their taxels go to the nearest of the
+    /// others. If every blob has less than [`SHARE`] of all, the largest is the one body that there is.
+    pub fn find(&self, weight: &[f64], found: &mut Found) {
+        let Found { regions, taxels, bodies, touched, labels, blobs, numbers, nearest } = found;
+        let largest = weight.iter().copied().fold(0.0, f64::max);
+        touched.clear();
+        touched.extend(weight.iter().map(|&weight| weight > SHARE * largest));
+        labels.find(touched, self.columns);
+        blobs.clear();
+        blobs.extend((0..labels.count).map(|blob| (0.0, blob, 0)));
+        for (&blob, weight) in labels.blobs.iter().zip(weight) {
+            if let Some(blob) = blob {
+                blobs[blob].0 += weight;
+                blobs[blob].2 += 1;
+            }
+        }
+        // Of equal ones the first in the raster stays first.
+        blobs.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let least = SHARE * weight.iter().sum::<f64>();
+        *bodies = blobs.iter().filter(|(sum, ..)| *sum >= least).count().max(blobs.len().min(1));
+        let kept = &blobs[..self.contacts.min(*bodies)];
+        taxels.clear();
+        taxels.extend(kept.iter().map(|&(_, _, taxels)| taxels));
+        numbers.clear();
+        numbers.resize(labels.count, None);
+        for (body, &(_, blob, _)) in kept.iter().enumerate() {
+            numbers[blob] = Some(body);
+        }
+        regions.clear();
+        regions.extend(labels.blobs.iter().map(|blob| blob.and_then(|blob| numbers[blob])));
+        spread(regions, self.columns, self.distances, nearest);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn find(contacts: usize, weights: [[f64; 6]; 3]) -> Found {
+        let sensor = Sensor { columns: 6, rows: 3, pitch_mm: [2.0, 2.0], depth_mm: 2.0 };
+        let mut found = Found::default();
+        Finder::new(&sensor, contacts).find(weights.as_flattened(), &mut found);
+        found
+    }
+
+    fn regions(found: &Found) -> String {
+        found.regions.iter().map(|body| body.map_or('.', |body| char::from(b'0' + body as u8))).collect()
+    }
+
+    #[test]
+    fn the_largest_body_is_the_first() {
+        let found = find(4, [[1.0, 1.0, 0.0, 0.0, 2.0, 2.0], [0.0; 6], [0.0; 6]]);
+        assert_eq!(
+            (found.bodies, found.taxels.as_slice(), regions(&found).as_str()),
+            (2, &[2, 2][..], "111000111000111000")
+        );
+    }
+
+    #[test]
+    fn equal_bodies_come_in_raster_order() {
+        let found = find(4, [[1.0, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0; 6], [0.0; 6]]);
+        assert_eq!((found.bodies, regions(&found).as_str()), (2, "000111000111000111"));
+    }
+
+    #[test]
+    fn faint_taxels_do_not_connect_and_small_blobs_are_no_bodies() {
+        // Between the two 7 % of the largest; in the corner a blob of 4 % of all.
+        let found =
+            find(4, [[5.0, 5.0, 0.35, 0.0, 0.0, 0.0], [5.0, 5.0, 0.35, 5.0, 5.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 1.2]]);
+        assert_eq!((found.bodies, found.taxels.as_slice()), (2, &[4, 2][..]));
+        assert!(regions(&found).ends_with('1'), "what is no body belongs to the nearest: {}", regions(&found));
+    }
+
+    #[test]
+    fn too_many_are_counted_and_go_to_their_neighbours() {
+        let row = [[3.0, 0.0, 2.0, 0.0, 4.0, 0.0], [0.0; 6], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
+        let found = find(2, row);
+        assert_eq!(
+            (found.bodies, found.taxels.as_slice(), regions(&found).as_str()),
+            (4, &[1, 1][..], "110000110000110000")
+        );
+        assert_eq!(find(8, row).taxels, [1, 1, 1, 1]);
+    }
+
+    #[test]
+    fn nothing_is_no_body_and_specks_are_one() {
+        let found = find(4, [[0.0; 6]; 3]);
+        assert_eq!((found.bodies, regions(&found).as_str()), (0, ".................."));
+        // Nine blobs, three times as many as could all be large enough.
+        let specks = [[1.0, 0.0, 1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0, 0.0, 1.0], [1.0, 0.0, 1.0, 0.0, 1.0, 0.0]];
+        assert_eq!(find(8, specks).bodies, 9);
+        let found = find(8, specks);
+        assert_eq!((found.taxels.len(), found.regions.iter().flatten().max()), (8, Some(&7)));
+    }
+
+    #[test]
+    fn blobs_that_are_all_too_small_leave_the_largest() {
+        let sensor = Sensor { columns: 10, rows: 6, pitch_mm: [2.0, 2.0], depth_mm: 2.0 };
+        let mut weights = vec![0.0; 60];
+        for (index, weight) in weights.iter_mut().enumerate() {
+            *weight = f64::from(u8::from((index % 10 + index / 10) % 2 == 0));
+        }
+        weights[22] = 1.5;
+        let mut found = Found::default();
+        Finder::new(&sensor, 4).find(&weights, &mut found);
+        assert_eq!((found.bodies, found.taxels.as_slice()), (1, &[1][..]));
+        assert!(found.regions.iter().all(|&body| body == Some(0)));
+    }
+
+    #[test]
+    fn the_centre_is_where_the_torque_says() {
+        let sensor = Sensor { columns: 6, rows: 3, pitch_mm: [2.0, 4.0], depth_mm: 2.0 };
+        let (at, force) = ([3e-3, 7e-3], [1.0, -0.5, -4.0]);
+        let found = Body::centre_of(&sensor, force, sensor.torque_of(at, force));
+        assert!(found.iter().zip(at).all(|(found, at)| (found - at).abs() < 1e-15), "{found:?}");
+        let middle = Body::centre_of(&sensor, [0.0; 3], [0.0; 3]);
+        assert!(middle.iter().zip([5e-3, 4e-3]).all(|(found, at)| (found - at).abs() < 1e-15), "{middle:?}");
+    }
+}

@@ -1,0 +1,180 @@
+//! Frames of several bodies: each solved as a frame of its own, see [`crate::bodies`].
+
+use nalgebra::DVector;
+
+use super::{Solution, Solver, Status, Workspace, op};
+use crate::bodies::{Body, Found};
+use crate::matrices::{Matrices, MatrixName};
+
+/// Times that the bodies are solved: first as if none had friction when the frame is parted, then with what was found. That
+/// halves the errors; more rounds change nothing.
+const ROUNDS: usize = 2;
+
+/// The bodies of a frame, to be used again for the next one.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Parted {
+    found: Found,
+    /// `|w|` of each taxel in newtons.
+    weight: Vec<f64>,
+    /// Friction components of each body, as far as they are known.
+    friction: Vec<[f64; 2]>,
+    /// `(F_x, F_y)` of each body in the round before, in newtons.
+    before: Vec<[f64; 2]>,
+    /// What one of the bodies is found to do.
+    alone: Option<Box<Solution>>,
+}
+
+/// What is to be known of a frame's bodies before they are solved.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Census {
+    /// Bodies that there are,
+    bodies: usize,
+    /// those that have a region,
+    regions: usize,
+    /// and the taxels that the first one touches.
+    taxels: usize,
+}
+
+impl Census {
+    /// Whether the frame has to be parted.
+    pub(super) fn has_several(self) -> bool {
+        self.regions > 1
+    }
+}
+
+impl Solver {
+    /// Finds the bodies of the stress `b`; none for a design that does not ask.
+    pub(super) fn part(&self, b: &DVector<f64>, parted: &mut Parted) -> Census {
+        let Some(finder) = &self.finder else { return Census::default() };
+        let Parted { found, weight, .. } = parted;
+        let forces = &*self.matrices.folded(MatrixName::C33inv) * b;
+        weight.clear();
+        weight.extend(forces.iter().map(|force| (-force).max(0.0)));
+        finder.find(weight, found);
+        let taxels = found.taxels.first().copied().unwrap_or(0);
+        Census { bodies: found.bodies, regions: found.taxels.len(), taxels }
+    }
+
+    /// Finds the forces of each body, by the frame that it would cause alone, and their sums. For a solution that is reset.
+    pub(super) fn solve_bodies(&self, workspace: &mut Workspace, solution: &mut Solution) {
+        let nothing = || Box::new(Solution::zeros(Status::default(), 0));
+        let mut alone = workspace.parted.alone.take().unwrap_or_else(nothing);
+        let whole = workspace.b.clone();
+        let bodies = workspace.parted.found.taxels.len();
+        // That nothing pulls is a matter of the frame and of the friction that is found.
+        let status = Body::bits_of(solution.status);
+        workspace.parted.friction.clear();
+        workspace.parted.friction.resize(bodies, [0.0; 2]);
+        workspace.parted.before.clear();
+        workspace.parted.before.resize(bodies, [0.0; 2]);
+        for round in 1..=ROUNDS {
+            let parts = self.frames_alone(&whole, &workspace.parted);
+            for (body, part) in parts.into_iter().enumerate() {
+                workspace.b = part;
+                let contact = self.reader.analyse(&workspace.b);
+                alone.reset(status, self.field_length());
+                self.solve_alone(workspace, contact, &mut alone);
+                workspace.parted.friction[body] = [alone.mu_x, alone.mu_y];
+                let [x, y, _] = alone.resultant;
+                let [before_x, before_y] = std::mem::replace(&mut workspace.parted.before[body], [x, y]);
+                if round == ROUNDS {
+                    self.doubt_more(&mut alone, (x - before_x).hypot(y - before_y));
+                    solution.records.push(self.body(workspace.parted.found.taxels[body], &alone));
+                    solution.add(&alone);
+                }
+            }
+        }
+        workspace.b = whole;
+        workspace.parted.alone = Some(alone);
+        solution.sum_up();
+        Body::largest_first(&mut solution.records);
+    }
+
+    /// Makes the standard error of one of several bodies larger by what the last round has changed, in newtons: what the
+    /// others do to it is known no better. An estimator without a standard error has none here either.
+    fn doubt_more(&self, alone: &mut Solution, changed: f64) {
+        if alone.standard_error > 0.0 {
+            alone.standard_error = alone.standard_error.hypot(changed);
+            if alone.standard_error > self.doubt * alone.resultant[2].abs() {
+                alone.status.insert(Status::DOUBTFUL);
+            }
+        }
+    }
+
+    /// The frame that each body would cause alone, in pascals; they add up to the `whole` one.
+    ///
+    /// What `|w|` of its region does with its friction is a body's own. What that leaves of the frame is made of normal
+    /// forces, and parted by regions.
+    fn frames_alone(&self, whole: &DVector<f64>, parted: &Parted) -> Vec<DVector<f64>> {
+        let Parted { found, weight, friction, .. } = parted;
+        let Matrices { c31, c32, c33, .. } = &self.matrices;
+        let of = |body: usize, values: &[f64]| {
+            let own = values.iter().zip(&found.regions);
+            DVector::from_iterator(values.len(), own.map(|(&value, &of)| if of == Some(body) { value } else { 0.0 }))
+        };
+        let mut left = whole.clone();
+        let mut parts = Vec::with_capacity(friction.len());
+        for (body, &[mu_x, mu_y]) in friction.iter().enumerate() {
+            let own = of(body, weight);
+            let part = c31 * &(&own * mu_x) + c32 * &(&own * mu_y) - c33 * &own;
+            left -= &part;
+            parts.push(part);
+        }
+        let left = &*self.matrices.folded(MatrixName::C33inv) * &left;
+        for (body, part) in parts.iter_mut().enumerate() {
+            *part += c33 * &of(body, left.as_slice());
+        }
+        parts
+    }
+
+    /// The record of the body that a solution is of.
+    fn body(&self, taxels: usize, solution: &Solution) -> Body {
+        let Solution { status, resultant, torque, mu, standard_error, .. } = solution;
+        Body {
+            taxels,
+            status: Body::bits_of(*status),
+            centre_m: Body::centre_of(self.matrices.sensor(), *resultant, *torque),
+            force: *resultant,
+            mu: *mu,
+            standard_error: *standard_error,
+        }
+    }
+
+    /// Puts the number of bodies and their records in place, where the design asks for them; that of a single body is what
+    /// the frame is.
+    pub(super) fn note_body(&self, census: Census, solution: &mut Solution) {
+        let Some(finder) = &self.finder else { return };
+        if solution.bodies > 0 {
+            if solution.records.is_empty() {
+                solution.records.push(self.body(census.taxels, solution));
+            }
+            solution.bodies = census.bodies.max(1);
+            if census.bodies > finder.contacts() {
+                solution.status.insert(Status::MORE_BODIES);
+            }
+        }
+        solution.records.resize(finder.contacts(), Body::default());
+    }
+}
+
+impl Solution {
+    /// Adds what another body does.
+    fn add(&mut self, other: &Self) {
+        let sums = self.resultant.iter_mut().chain(&mut self.torque).chain(self.field.iter_mut().flatten());
+        let parts = other.resultant.iter().chain(&other.torque).chain(other.field.iter().flatten());
+        sums.zip(parts).for_each(|(sum, part)| *sum += part);
+        // Errors of bodies are independent.
+        self.standard_error = self.standard_error.hypot(other.standard_error);
+        self.bodies += 1;
+    }
+
+    /// What follows from the sums over several bodies: friction and direction of the whole force, and the bits of all
+    /// bodies.
+    fn sum_up(&mut self) {
+        let [x, y, z] = self.resultant;
+        (self.mu, self.phi) = (op::quotient(self.resultant), y.atan2(x));
+        [self.mu_x, self.mu_y] = [x, y].map(|force| if z == 0.0 { 0.0 } else { force / z.abs() });
+        self.status.remove(Body::bits_of(self.status));
+        self.records.iter().for_each(|body| self.status.insert(body.status));
+    }
+}

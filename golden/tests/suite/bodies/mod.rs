@@ -1,0 +1,258 @@
+//! Several bodies on one sensor, each with its own forces: what is left of their accuracy, and what is told of each.
+
+mod command;
+mod kinds;
+
+use golden::bodies::{Body, BodyErrors, Spread};
+use golden::design::{Design, PlanKind, Slip};
+use golden::scene::SceneFrame;
+use golden::solver::{PIECE, Slips, Solution, Solver, Status};
+use kinds::{Kind, frame};
+
+use super::families::{self, FAMILIES};
+
+/// What a solver makes of frames: errors in percent of the normal force.
+struct Judged {
+    /// Of the sum of all bodies, along the surface.
+    total: Spread,
+    /// Of each body.
+    bodies: BodyErrors,
+}
+
+fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
+    let solutions: Vec<Solution> = frames.iter().map(|frame| solver.solve(&frame.stress).unwrap()).collect();
+    let error = |(found, frame): (&Solution, &SceneFrame)| {
+        let [x, y] = [0, 1].map(|axis| found.resultant[axis] - frame.force[axis]);
+        100.0 * x.hypot(y) / frame.force[2].abs()
+    };
+    let total = Spread::of(solutions.iter().zip(frames).map(error).collect());
+    let bodies = BodyErrors::new(frames.iter().map(|frame| &frame.bodies).zip(&solutions));
+    Judged { total, bodies }
+}
+
+fn row(Spread { median, most, worst }: Spread) -> String {
+    format!(" {median:.1} / {most:.1} / {worst:.1} |")
+}
+
+fn design(name: &str, contacts: usize) -> Design {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut design = Design::load(&folder.join(format!("../designs/{name}.toml"))).unwrap();
+    design.algorithm.contacts = contacts;
+    design
+}
+
+#[test]
+fn one_body_is_solved_as_if_there_could_be_no_more() {
+    for name in ["sensor1-joint", "sensor2-wide", "sensor1-none", "sensor1-f2-p30", "sensor1-resultants"] {
+        let [one, several] = [1, 4].map(|contacts| Solver::new(&design(name, contacts)).unwrap());
+        let frames: Vec<Vec<f64>> =
+            (0..8).map(|seed| frame(one.matrices().sensor(), Kind::One, seed).stress).chain([vec![0.0; 100]]).collect();
+        let [mut expected, mut found] = [Vec::new(), Vec::new()];
+        one.solve_batch(&mut one.workspace(), &frames, &mut expected).unwrap();
+        several.solve_batch(&mut several.workspace(), &frames, &mut found).unwrap();
+        for ((frame, batch), expected_of_batch) in frames.iter().zip(found).zip(expected) {
+            let [expected, found] = [&one, &several].map(|solver| solver.solve(frame).unwrap());
+            for (expected, found) in [(expected, found), (expected_of_batch, batch)] {
+                assert!(expected.records.is_empty() && found.records.len() == 4, "{name}");
+                let [first, rest @ ..] = found.records.as_slice() else { panic!("{name}: no record") };
+                assert!(rest.iter().all(|body| *body == Body::default()), "{name}");
+                let status = Body::bits_of(found.status);
+                assert_eq!((first.force, first.mu, first.status), (found.resultant, found.mu, status), "{name}");
+                assert_eq!(first.taxels > 0, expected.bodies > 0, "{name}");
+                assert_eq!(Solution { records: Vec::new(), ..found }, expected, "{name}");
+            }
+        }
+    }
+}
+
+/// What each body's errors may be at most, in percent of its normal force: half of them along the surface, 95 % of them,
+/// and half along z. Solved as one body, half of the frames' sums err by more than twice as much where the bodies are not
+/// pushed the same way.
+#[test]
+fn each_body_has_its_own_forces() {
+    for (name, kind, most) in [
+        ("sensor1-joint", Kind::Same, [7.0, 25.0, 1.6]),
+        ("sensor1-joint", Kind::Opposed, [6.0, 19.0, 1.6]),
+        ("sensor2-joint", Kind::Anyhow, [6.0, 20.0, 1.6]),
+        ("sensor2-wide", Kind::Held, [6.5, 20.0, 1.6]),
+        ("sensor2-wide", Kind::Three, [9.0, 26.0, 1.9]),
+    ] {
+        let [one, several] = [1, 4].map(|contacts| Solver::new(&design(name, contacts)).unwrap());
+        let frames: Vec<SceneFrame> = (0..24).map(|seed| frame(one.matrices().sensor(), kind, 7000 + seed)).collect();
+        let [one, several] = [one, several].map(|solver| judge(&solver, &frames));
+        let BodyErrors { tangential, normal, right, within, .. } = several.bodies;
+        let said = format!("{name}, {kind:?}: {right} of 24, {tangential:.1?}, {normal:.1?}, {within:.0}");
+        let found = [tangential.median, tangential.most, normal.median];
+        assert!(right >= 20 && found.iter().zip(most).all(|(found, most)| *found <= most), "{said}");
+        assert!(kind == Kind::Same || several.total.median < 0.5 * one.total.median, "{said}");
+        assert!(!name.ends_with("wide") || within > 60.0, "{said}");
+    }
+}
+
+#[test]
+fn bodies_add_up_to_the_frame() {
+    for (name, plan) in [("sensor1-joint", PlanKind::Reduced), ("sensor2-none", PlanKind::Paper)] {
+        let mut design = design(name, 3);
+        design.algorithm.plan = plan;
+        let solver = Solver::new(&design).unwrap();
+        for seed in 0..4 {
+            let frame = frame(&design.sensor, Kind::Three, seed);
+            let found = solver.solve(&frame.stress).unwrap();
+            assert_eq!(found.bodies, 3, "{name}");
+            let presses = found.records.iter().map(|body| -body.force[2]);
+            assert!(presses.is_sorted_by(|a, b| a >= b) && found.records[2].force[2] < 0.0, "{name}: largest first");
+            for axis in 0..3 {
+                let [bodies, field]: [f64; 2] =
+                    [found.records.iter().map(|body| body.force[axis]).sum(), found.field[axis].iter().sum::<f64>()];
+                for sum in [bodies, field] {
+                    assert!((sum - found.resultant[axis]).abs() < 1e-9, "{name}: {sum} {:?}", found.resultant);
+                }
+            }
+            let [x, y, z] = found.resultant;
+            assert!((found.mu - x.hypot(y) / z.abs()).abs() < 1e-12 && (found.phi - y.atan2(x)).abs() < 1e-12);
+            assert!((found.mu_x - x / z.abs()).abs() < 1e-12 && (found.mu_y - y / z.abs()).abs() < 1e-12);
+            // The torque is that of the bodies' normal forces at their centres.
+            let sensor = &design.sensor;
+            let about_x: f64 = found.records.iter().map(|body| sensor.torque_of(body.centre_m, body.force)[0]).sum();
+            assert!((about_x - found.torque[0]).abs() < 1e-9, "{name}: {about_x} {:?}", found.torque);
+        }
+    }
+}
+
+#[test]
+fn mirrored_bodies_have_mirrored_forces() {
+    let design = design("sensor1-joint", 2);
+    let solver = Solver::new(&design).unwrap();
+    for seed in 0..4 {
+        let frame = frame(&design.sensor, Kind::Anyhow, seed);
+        let mirrored: Vec<f64> = frame.stress.chunks(10).flat_map(|row| row.iter().rev().copied()).collect();
+        let [found, image] = [&frame.stress, &mirrored].map(|stress| solver.solve(stress).unwrap());
+        for (body, image) in found.records.iter().zip(&image.records) {
+            let ([x, y, z], [image_x, image_y, image_z]) = (body.force, image.force);
+            assert!((x + image_x).abs() < 1e-9 && (y - image_y).abs() < 1e-9 && (z - image_z).abs() < 1e-9);
+            assert!((body.centre_m[0] + image.centre_m[0] - 0.036).abs() < 1e-9, "{body:?} {image:?}");
+        }
+    }
+}
+
+#[test]
+fn bodies_without_a_record_are_told_and_their_forces_kept() {
+    let design = design("sensor2-joint", 2);
+    let solver = Solver::new(&design).unwrap();
+    for seed in 0..4 {
+        let frame = frame(&design.sensor, Kind::Three, seed);
+        let found = solver.solve(&frame.stress).unwrap();
+        assert!(found.status.contains(Status::MORE_BODIES), "{}", found.status);
+        assert_eq!((found.bodies, found.records.len()), (3, 2));
+        let error = (found.resultant[2] / frame.force[2] - 1.0).abs();
+        assert!(error < 0.05, "the third body's force is in the sum: {error}");
+        let enough = Solver::new(&Design {
+            algorithm: golden::design::Algorithm { contacts: 3, ..design.algorithm.clone() },
+            ..design.clone()
+        });
+        assert!(!enough.unwrap().solve(&frame.stress).unwrap().status.contains(Status::MORE_BODIES));
+    }
+}
+
+#[test]
+fn each_body_slips_by_itself() {
+    let mut design = design("sensor2-joint", 2);
+    let frames: Vec<Vec<f64>> = (0..4).map(|seed| frame(&design.sensor, Kind::Held, seed).stress).collect();
+    design.algorithm.slip = Some(Slip { limit: 0.4, hysteresis: 0.3 });
+    let solver = Solver::new(&design).unwrap();
+    let slips = |body: &Body| body.status.contains(Status::SLIP);
+    for frame in &frames {
+        let found = solver.solve(frame).unwrap();
+        // The one that slides has a friction of 0.5, the one that is held half of that.
+        let [a, b] = found.records.as_slice() else { panic!("two records") };
+        assert!((slips(a), slips(b)) == (a.mu >= 0.4, b.mu >= 0.4) && slips(a) != slips(b), "{a:?} {b:?}");
+        assert!(found.status.contains(Status::SLIP));
+    }
+    // Had the frame before slipped, whatever was there, both would still do so.
+    let mut found = vec![solver.solve(&frames[0]).unwrap()];
+    solver.follow_slips(&mut Slips::from(true), of_slips(&mut found));
+    assert!(found[0].records.iter().all(slips), "{:?}", found[0].records);
+    // The same body a frame later slips if it did so before; where nothing touches in between none does.
+    let sequence = [&frames[0], &frames[0], &vec![0.0; 100], &frames[0]].map(Clone::clone);
+    let mut one_by_one = Vec::new();
+    solver.solve_batch(&mut solver.workspace(), &sequence, &mut one_by_one).unwrap();
+    let count = |solution: &Solution| solution.records.iter().filter(|body| slips(body)).count();
+    assert_eq!(one_by_one.iter().map(count).collect::<Vec<_>>(), [1, 1, 0, 1]);
+    let mut on_cores = vec![Solution::zeros(Status::default(), 0); 4];
+    let places = on_cores.chunks_mut(PIECE);
+    solver
+        .solve_on_all_cores(&sequence.concat(), places, |place, index, found| place[index].clone_from(found))
+        .unwrap();
+    solver.follow_slips(&mut Slips::default(), of_slips(&mut on_cores));
+    assert_eq!(on_cores, one_by_one);
+}
+
+fn of_slips(solutions: &mut [Solution]) -> impl Iterator<Item = (&mut Status, f64, &mut [Body])> {
+    solutions.iter_mut().map(|Solution { status, mu, records, .. }| (status, *mu, records.as_mut_slice()))
+}
+
+/// Kinds of the table in `docs/contacts.md`.
+const KINDS: [(Kind, &str); 18] = [
+    (Kind::Same, "two, pushed the same way"),
+    (Kind::Opposed, "two, opposed"),
+    (Kind::Anyhow, "two, anyhow"),
+    (Kind::Small, "4 N, and 1 N on half the radius"),
+    (Kind::Held, "one slides, one is held"),
+    (Kind::Three, "three, anyhow"),
+    (Kind::Row, "three in a row"),
+    (Kind::Apart(8000), "two, 8 mm apart"),
+    (Kind::Apart(6000), "two, 6 mm apart"),
+    (Kind::Apart(4000), "two, 4 mm apart"),
+    (Kind::Apart(3000), "two, 3 mm apart"),
+    (Kind::Apart(2000), "two, 2 mm apart"),
+    (Kind::Apart(0), "two that touch"),
+    (Kind::Heavier(6), "one 6 times as heavy"),
+    (Kind::Heavier(8), "one 8 times as heavy"),
+    (Kind::Heavier(10), "one 10 times as heavy"),
+    (Kind::Heavier(12), "one 12 times as heavy"),
+    (Kind::One, "one alone"),
+];
+
+#[test]
+#[ignore = "prints the table of bodies in docs/contacts.md; minutes"]
+fn table() {
+    for sensor in ["sensor1", "sensor2"] {
+        for (kind, label) in KINDS {
+            let geometry = design(&format!("{sensor}-joint"), 1).sensor;
+            let frames: Vec<SceneFrame> = (0..100).map(|seed| frame(&geometry, kind, 3000 + seed)).collect();
+            let (mut cells, mut right, mut within) = (String::new(), 0, 0.0);
+            for calibration in ["joint", "wide"] {
+                let solvers =
+                    [1, 4].map(|contacts| Solver::new(&design(&format!("{sensor}-{calibration}"), contacts)).unwrap());
+                let [one, several] = solvers.each_ref().map(|solver| judge(solver, &frames));
+                cells += &[one.total, several.total, several.bodies.tangential].map(row).concat();
+                if calibration == "joint" {
+                    cells += &row(several.bodies.normal);
+                }
+                (right, within) = (several.bodies.right, several.bodies.within);
+            }
+            println!("| {} | {label} |{cells} {within:.0} | {right} |", &sensor[6..]);
+        }
+    }
+}
+
+#[test]
+#[ignore = "prints the table of single bodies in docs/contacts.md; minutes"]
+fn table_of_one_body() {
+    for sensor in ["sensor1", "sensor2"] {
+        let names = ["joint", "wide"].map(|calibration| format!("{sensor}-{calibration}"));
+        let pairs = names.map(|name| [1, 4].map(|contacts| Solver::new(&design(&name, contacts)).unwrap()));
+        for (family, label) in FAMILIES {
+            let geometry = pairs[0][0].matrices().sensor();
+            let frames: Vec<SceneFrame> =
+                (0..60).map(|seed| families::frame(geometry, family, 0.5, 1000 + seed)).collect();
+            let (mut cells, mut right) = (String::new(), 0);
+            for solvers in &pairs {
+                let [one, several] = solvers.each_ref().map(|solver| judge(solver, &frames));
+                cells += &[one.total, several.total].map(row).concat();
+                right = several.bodies.right;
+            }
+            println!("| {} | {label} |{cells} {right} of 60 |", &sensor[6..]);
+        }
+    }
+}
