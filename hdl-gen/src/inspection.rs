@@ -32,10 +32,7 @@ pub fn plan_to_inspect(design: &Design) -> Result<Plan, PlanError> {
 pub fn several_bodies(plan: &Plan) -> Option<String> {
     let contacts = plan.design.algorithm.contacts;
     (contacts > 1).then(|| {
-        format!(
-            "contacts {contacts}: told apart by golden solve and the Python package; the hardware knows of one body, and \
-             all figures here are those of contacts = 1"
-        )
+        format!("contacts {contacts} in golden solve and in Python; hardware, and all figures here, with contacts = 1")
     })
 }
 

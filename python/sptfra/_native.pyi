@@ -91,6 +91,10 @@ class Design:
         """"joint" or "line"."""
 
     @property
+    def contacts(self) -> int:
+        """Most bodies that the solver tells apart."""
+
+    @property
     def outputs(self) -> str:
         """"field", or "resultants" if there is none."""
 

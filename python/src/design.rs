@@ -171,6 +171,11 @@ impl Design {
     }
 
     #[getter]
+    fn contacts(&self) -> usize {
+        self.inner.algorithm.contacts
+    }
+
+    #[getter]
     fn outputs(&self) -> String {
         self.inner.algorithm.outputs.to_string()
     }

@@ -167,6 +167,7 @@ class Solving(unittest.TestCase):
         np.testing.assert_allclose(scene.truth.records["x"], [[0.010, 0.027]])
         text = (ROOT / "designs" / "sensor1-none.toml").read_text(encoding="utf-8")
         several = sptfra.Design.from_toml(text.replace("[algorithm]\n", "[algorithm]\ncontacts = 3\n"))
+        self.assertEqual((self.design.contacts, several.contacts), (1, 3))
         forces = sptfra.Solver(several).solve(np.tile(scene.frames, (70, 1, 1)))
         self.assertEqual(forces.records.shape, (70, 3))
         np.testing.assert_array_equal(forces.bodies, 2)

@@ -7,7 +7,7 @@ use crate::solver::Solution;
 
 /// Errors in percent of each body's own normal force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spread {
+pub struct Quantiles {
     /// Half of the errors are at most this,
     pub median: f64,
     /// 95 % of them this,
@@ -16,7 +16,7 @@ pub struct Spread {
     pub worst: f64,
 }
 
-impl Spread {
+impl Quantiles {
     /// Of errors in any order; zeros if there are none.
     pub fn of(mut errors: Vec<f64>) -> Self {
         errors.sort_by(f64::total_cmp);
@@ -36,9 +36,9 @@ pub struct BodyErrors {
     /// and those of them that have the right number of bodies: the errors are of these.
     pub right: usize,
     /// Length of the error of `(F_x, F_y)`.
-    pub tangential: Spread,
+    pub tangential: Quantiles,
     /// Of `F_z`.
-    pub normal: Spread,
+    pub normal: Quantiles,
     /// Share of the errors of `(F_x, F_y)` that are within two standard errors, in percent.
     pub within: f64,
 }
@@ -63,7 +63,7 @@ impl BodyErrors {
             }
         }
         let within = 100.0 * within as f64 / tangential.len().max(1) as f64;
-        Self { frames: count, right, tangential: Spread::of(tangential), normal: Spread::of(normal), within }
+        Self { frames: count, right, tangential: Quantiles::of(tangential), normal: Quantiles::of(normal), within }
     }
 }
 
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn no_errors_are_zeros() {
-        assert_eq!(Spread::of(Vec::new()), Spread::default());
+        assert_eq!(Quantiles::of(Vec::new()), Quantiles::default());
         assert_eq!(BodyErrors::new([]).right, 0);
     }
 }

@@ -14,7 +14,7 @@ mod errors;
 mod labels;
 mod regions;
 
-pub use errors::{BodyErrors, Spread};
+pub use errors::{BodyErrors, Quantiles};
 pub use labels::Labels;
 
 use crate::sensor::Sensor;

@@ -3,7 +3,7 @@
 mod command;
 mod kinds;
 
-use golden::bodies::{Body, BodyErrors, Spread};
+use golden::bodies::{Body, BodyErrors, Quantiles};
 use golden::design::{Design, PlanKind, Slip};
 use golden::scene::SceneFrame;
 use golden::solver::{PIECE, Slips, Solution, Solver, Status};
@@ -14,7 +14,7 @@ use super::families::{self, FAMILIES};
 /// What a solver makes of frames: errors in percent of the normal force.
 struct Judged {
     /// Of the sum of all bodies, along the surface.
-    total: Spread,
+    total: Quantiles,
     /// Of each body.
     bodies: BodyErrors,
 }
@@ -25,12 +25,12 @@ fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
         let [x, y] = [0, 1].map(|axis| found.resultant[axis] - frame.force[axis]);
         100.0 * x.hypot(y) / frame.force[2].abs()
     };
-    let total = Spread::of(solutions.iter().zip(frames).map(error).collect());
+    let total = Quantiles::of(solutions.iter().zip(frames).map(error).collect());
     let bodies = BodyErrors::new(frames.iter().map(|frame| &frame.bodies).zip(&solutions));
     Judged { total, bodies }
 }
 
-fn row(Spread { median, most, worst }: Spread) -> String {
+fn row(Quantiles { median, most, worst }: Quantiles) -> String {
     format!(" {median:.1} / {most:.1} / {worst:.1} |")
 }
 
