@@ -3,6 +3,7 @@
 mod bodies;
 mod check;
 mod choose;
+mod clipped;
 mod command;
 mod contacts;
 mod curve;
