@@ -49,7 +49,8 @@ pub fn parameters(plan: &Plan) -> Parameters {
     };
     let parameters = parameters.number("DATA_BITS", plan.design.hardware.data_bits.into());
     // As in sptfra_samples.
-    let parameters = match streams.sample {
+    let sample = if plan.calibration.is_some() { Samples::Float32 } else { streams.sample };
+    let parameters = match sample {
         Samples::Float32 => parameters,
         Samples::Int16 => parameters.number("SAMPLE", 1),
         Samples::Uint16 => parameters.number("SAMPLE", 2),

@@ -3,6 +3,7 @@
 mod bad_frames;
 mod bench;
 mod build_cache;
+mod calibration;
 mod cells;
 mod checks;
 mod command;
