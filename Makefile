@@ -101,6 +101,20 @@ book: tools ## README and docs as a site with a search, in target/book
 	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-book.txt
 	@.venv/bin/python tools/book.py
 
+# golden and hdl-gen need nothing of the system they run on; testbench loads the cores that it compiles, so it cannot be static.
+HOST = $(shell rustc -vV | sed -n 's/^host: //p')
+.PHONY: dist
+dist: wheel ## A release: commands, manual pages, completions, designs in an archive, and the wheel, in target/dist (minutes)
+	@rm -rf $(TARGET)/dist
+	@mkdir -p $(TARGET)/dist/commands
+	RUSTFLAGS='-C target-feature=+crt-static' $(CARGO) build --release --target $(HOST) -p golden -p hdl-gen --bins
+	$(CARGO) build --release -p testbench --bins
+	@cp $(TARGET)/$(HOST)/release/golden $(TARGET)/$(HOST)/release/hdl-gen $(TARGET)/release/testbench $(TARGET)/dist/commands
+	@strip $(TARGET)/dist/commands/*
+	@cp $(TARGET)/wheels/*.whl $(TARGET)/dist
+	@.venv/bin/python tools/dist.py $(TARGET)/dist/commands $(TARGET)/dist
+	@rm -r $(TARGET)/dist/commands
+
 .PHONY: man
 man: build ## Manual pages of the three commands, in target/man
 	@for command in golden hdl-gen testbench; do $(BIN)/$$command man --out $(TARGET)/man; done

@@ -56,7 +56,7 @@ fn lines_of(file: &Path) -> Vec<Line> {
 }
 
 /// The folder of the three commands, which are built if they are not.
-fn commands() -> PathBuf {
+pub fn commands() -> PathBuf {
     let folder = Path::new(env!("CARGO_BIN_EXE_testbench")).parent().expect("a folder").to_owned();
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["build", "--quiet", "-p", "golden", "-p", "hdl-gen", "--bins"]).current_dir(workspace(""));

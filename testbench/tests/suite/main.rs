@@ -13,6 +13,7 @@ mod contacts;
 mod cores;
 mod counts;
 mod dead_taxels;
+mod dist;
 mod docs;
 mod drivers;
 mod figures;

@@ -68,3 +68,20 @@ fn the_projects_own_workflow_runs_all_tests() {
     let menu = fs::read_to_string(workspace().join("Makefile")).expect("there");
     assert!(menu.contains("\n.PHONY: test\n"), "{menu}");
 }
+
+/// That a release is made of what `make dist` and `tools/dist.py` make; both have tests of their own.
+#[test]
+fn the_release_workflow_calls_what_is_there() {
+    let workflow = yaml(&workspace().join(".github/workflows/release.yml"));
+    let steps = workflow["jobs"]["release"]["steps"].as_array().expect("steps");
+    let commands = steps.iter().filter_map(|step| text(step, "run")).collect::<Vec<_>>().join("\n");
+    let menu = fs::read_to_string(workspace().join("Makefile")).expect("there");
+    for target in ["tools", "dist"] {
+        assert!(commands.lines().any(|line| line == format!("make {target}")), "{commands}");
+        assert!(menu.contains(&format!("\n.PHONY: {target}\n")), "{target}");
+    }
+    let options = fs::read_to_string(workspace().join("tools/dist.py")).expect("there");
+    for option in ["--check", "--notes"] {
+        assert!(commands.contains(&format!("tools/dist.py {option}")) && options.contains(option), "{option}");
+    }
+}

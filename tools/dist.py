@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""A release of the version in Cargo.toml: dist.py COMMANDS OUT
+
+COMMANDS is the folder with the three built commands; the archive goes to OUT. It holds
+them with their manual pages, completions, licences, designs and scenes, docs, drivers, and this version's part of
+CHANGELOG.md. The same files give the same bytes.
+
+    dist.py --notes             prints that part alone, as a release's description
+    dist.py --check TAG         fails unless TAG is the version's and the changelog has it
+"""
+
+import gzip
+import io
+import os
+import platform
+import re
+import subprocess
+import sys
+import tarfile
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+COMMANDS = ["golden", "hdl-gen", "testbench"]
+# Where each shell looks for completions under a prefix.
+SHELLS = {
+    "bash": "share/bash-completion/completions/{}",
+    "zsh": "share/zsh/site-functions/_{}",
+    "fish": "share/fish/vendor_completions.d/{}.fish",
+}
+FILES = ["README.md", "CHANGELOG.md", "CITATION.cff", "LICENSE-MIT", "LICENSE-APACHE"]
+FOLDERS = ["designs", "scenes", "docs", "drivers", "data"]
+
+
+def version() -> str:
+    """The workspace's version, which every crate, generated folder and wheel has."""
+    package = (ROOT / "Cargo.toml").read_text(encoding="utf-8").split("[workspace.package]")[1]
+    found = re.search(r'^version = "(.+)"$', package, flags=re.MULTILINE)
+    return found[1] if found else sys.exit("dist: Cargo.toml has no version under [workspace.package]")
+
+
+def notes(of: str) -> str | None:
+    """The changelog's part on a version, or on what is not released yet; nothing if it has none."""
+    parts = re.split(r"^## \[(.+?)\].*\n", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    sections = dict(zip(parts[1::2], parts[2::2]))
+    text = sections.get(of)
+    return text.strip() + "\n" if text is not None else None
+
+
+def in_git(folder: str) -> list[Path]:
+    """The files of a folder that belong to the project; of an unpacked source, all of them."""
+    listed = subprocess.run(["git", "ls-files", "-z", folder], cwd=ROOT, capture_output=True, check=False)
+    if listed.returncode == 0:
+        return [ROOT / name for name in listed.stdout.decode().split("\0") if name]
+    return [path for path in (ROOT / folder).rglob("*") if path.is_file()]
+
+
+def contents(built: Path) -> dict[str, tuple[bytes, int]]:
+    """Path in the archive, to bytes and mode."""
+    found: dict[str, tuple[bytes, int]] = {}
+    for command in COMMANDS:
+        program = built / command
+        if not program.is_file():
+            sys.exit(f"dist: {program} is missing: run `make dist`")
+        found[f"bin/{command}"] = (program.read_bytes(), 0o755)
+        for shell, place in SHELLS.items():
+            said = subprocess.run([program, "completions", shell], capture_output=True, check=True).stdout
+            found[place.format(command)] = (said, 0o644)
+        with tempfile.TemporaryDirectory() as pages:
+            subprocess.run([program, "man", "--out", pages], check=True, capture_output=True)
+            for page in Path(pages).glob("*.1"):
+                found[f"share/man/man1/{page.name}"] = (page.read_bytes(), 0o644)
+    for path in [ROOT / name for name in FILES] + [path for folder in FOLDERS for path in in_git(folder)]:
+        mode = 0o755 if os.access(path, os.X_OK) else 0o644
+        found[f"share/sptfra/{path.relative_to(ROOT)}"] = (path.read_bytes(), mode)
+    return found
+
+
+def archive(folder: Path, name: str, files: dict[str, tuple[bytes, int]]) -> Path:
+    """Writes the archive, whole or not at all."""
+    packed = io.BytesIO()
+    with tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as tar:
+        for path, (data, mode) in sorted(files.items()):
+            entry = tarfile.TarInfo(f"{name}/{path}")
+            entry.size, entry.mode, entry.mtime = len(data), mode, 0
+            tar.addfile(entry, io.BytesIO(data))
+    place = folder / f"{name}.tar.gz"
+    unfinished = place.with_suffix(".unfinished")
+    unfinished.write_bytes(gzip.compress(packed.getvalue(), mtime=0))
+    unfinished.replace(place)
+    return place
+
+
+def main(arguments: list[str]) -> None:
+    now = version()
+    if arguments == ["--notes"]:
+        print(notes(now) or notes("Unreleased") or "", end="")
+        return
+    if len(arguments) == 2 and arguments[0] == "--check":
+        if arguments[1] != f"v{now}":
+            sys.exit(f"dist: the tag is {arguments[1]}, the version in Cargo.toml {now}: tag v{now}, or change Cargo.toml")
+        if not notes(now):
+            sys.exit(f"dist: CHANGELOG.md has no section [{now}]: rename [Unreleased]")
+        return
+    if len(arguments) != 2:
+        sys.exit(__doc__)
+    folder = Path(arguments[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    name = f"sptfra-{now}-{platform.machine()}-{platform.system().lower()}"
+    files = contents(Path(arguments[0]))
+    files["NOTES.md"] = ((notes(now) or notes("Unreleased") or "").encode(), 0o644)
+    place = archive(folder, name, files)
+    print(f"{place}: {len(files)} files, {place.stat().st_size / 1e6:.1f} MB")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
