@@ -106,7 +106,7 @@ module sptfra_calibrate #(
             in_frame <= !s_tlast;
             bank_held <= bank;
             marked_held <= marked;
-            index <= s_tlast ? {INDEX_WIDTH{1'b0}} : (index != TAXELS) ? index + 1 : index;
+            index <= s_tlast ? {INDEX_WIDTH{1'b0}} : (index_wide != TAXELS) ? index + 1 : index;
         end
         ends_inside <= ends_inside + {1'b0, accept && s_tlast} - {1'b0, end_leaves};
         if (reset) begin
@@ -165,7 +165,7 @@ module sptfra_calibrate #(
             valid <= {valid[STAGES-1:1], accept};
             lasts <= {lasts[STAGES-1:1], s_tlast};
             marks <= {marks[9:1], marked};
-            wrong_lengths <= {wrong_lengths[9:1], (index == TAXELS) || (s_tlast && (index != TAXELS - 1))};
+            wrong_lengths <= {wrong_lengths[9:1], (index_wide == TAXELS) || (s_tlast && (index_wide != TAXELS - 1))};
             taxels <= {taxels[9*TAXEL_WIDTH-1:0], index_wide[TAXEL_WIDTH-1:0]};
         end
         if (reset) begin

@@ -4,7 +4,7 @@
 // The two banks of a calibration: which one acts, writes to the other, its CRC and the change to it, and tare.
 //
 // A bank's words are the taxels' gains, their offsets, then the contact threshold and the noise floor. A commit reads
-// the bank that does not act, six cycles a word; with the CRC that the commit states, this bank acts from the next frame
+// the bank that does not act, six cycles a word; if it has the CRC that the commit states, it acts from the next frame
 // on. Tare writes the acting bank into the other one, with the mean stress taken off the offsets. What acts outlives a
 // reset: only the device's configuration brings the design's content back.
 
@@ -89,7 +89,8 @@ module sptfra_calibration #(
     reg [63:0] contacts; // bank 1, bank 0
     reg [53:0] noises;
     wire copy_writes = (state == COPY) && (step == COPY_WRITES);
-    wire bank = (state == IDLE) ? (index_active ? active : !active) : ((state == COPY) && !copy_writes) ? active : !active;
+    wire of_acting = (state == IDLE) ? index_active : (state == COPY) && !copy_writes; // or of the other one
+    wire bank = of_acting ? active : !active;
 
     // Configuration, not reset, brings the design's content
     initial begin

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// What a frame keeps of the bank that acted at its first beat: the threshold that says whether there is contact, and the
-// bank's generation, which goes out in bits 15:8 of the frame's word 13.
+// What a frame keeps of the bank that acted at its first beat: the threshold that says whether there is contact, and
+// the bank's generation, which goes out in bits 15:8 of the frame's word 13.
 //
 // Flags and words pass in the same cycle. Sixteen frames may be inside; they leave in their order.
 

@@ -1,11 +1,9 @@
 //! A calibration in RAM: `sptfra_calibrate` in the core, the banks' control and its registers beside the core's.
 
-use golden::design::Samples;
-
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
-use crate::plan::counts::{EXPONENT_BITS, LARGEST_NUMBER};
+use crate::plan::counts::EXPONENT_BITS;
 use crate::plan::format::address_bits;
 use crate::plan::gain::GAIN_BITS;
 use crate::plan::memory::memory;
@@ -16,24 +14,14 @@ use super::{Parameters, latency};
 /// Bits of a taxel's sum and extremes while it is tared.
 const TARE_BITS: u32 = 37 + 2 * LONG_BITS;
 
-/// Parameters of `sptfra_calibrate`.
-pub fn datapath(plan: &Plan, of: &CalibrationPlan) -> Parameters {
-    let parameters = Parameters::new().count("TAXELS", of.taxels);
-    let parameters = match plan.streams().sample {
-        Samples::Float32 => parameters,
-        Samples::Int16 => parameters.number("SAMPLE", 1),
-        Samples::Uint16 => parameters.number("SAMPLE", 2),
-    };
+/// Parameters of `sptfra_bz_calibrated` that Bz alone has not.
+pub fn of_frames(parameters: Parameters, of: &CalibrationPlan, words: usize) -> Parameters {
     parameters
-        .wide("NUMBER_BOUND", LONG_BITS, LARGEST_NUMBER)
         .number("OFFSET_BITS", of.offset_bits().into())
         .number("COUNT_SHIFT", of.shift.into())
         .wide("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale)
-        .wide("STRESS_BOUND", LONG_BITS, of.stress.bound)
-        .number("STRESS_LSB", of.stress.lsb.into())
-        .expression("ROM_DIR", "ROM_DIR")
-        .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
-        .cycles("EXPECTED_STAGES", latency::CALIBRATION)
+        .cycles("EXPECTED_CALIBRATION", latency::CALIBRATION)
+        .count("WORDS", words)
 }
 
 /// Parameters of `sptfra_calibration`.

@@ -5,7 +5,7 @@ use tera::Context;
 
 use golden::design::{Filter, Samples};
 
-use crate::blocks::{Parameters, array, bz, calibration, cean, co, field, op, row_width, turns, unfold, we};
+use crate::blocks::{Parameters, array, bz, cean, co, field, op, row_width, turns, unfold, we};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::CountsPlan;
@@ -36,13 +36,10 @@ struct View {
     estimator: String,
     filter: String,
     counts: bool,
-    /// Whether gains and offsets stand in RAM; bits of a taxel's number and of an offset there, and where the samples of
-    /// Bz come from.
+    /// Whether gains and offsets stand in RAM; bits of a taxel's number and of an offset there.
     calibration: bool,
     taxel_width: u32,
     offset_bits: u32,
-    calibrate: Parameters,
-    stress_from: &'static str,
     /// Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
     stream_bits: usize,
     stream_bytes: usize,
@@ -120,12 +117,6 @@ impl View {
             calibration: plan.calibration.is_some(),
             taxel_width: address_bits(plan.taxels()),
             offset_bits: plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
-            calibrate: plan.calibration.as_ref().map(|of| calibration::datapath(plan, of)).unwrap_or_default(),
-            stress_from: match (plan.calibration.is_some(), unpack) {
-                (true, _) => "calibrated",
-                (false, true) => "sample",
-                (false, false) => "in",
-            },
             stream_bits: streams.bits,
             stream_bytes: streams.bits / 8,
             words: streams.words(),
