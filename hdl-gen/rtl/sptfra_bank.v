@@ -2,7 +2,8 @@
 // Part of the SpTFRA hardware generator.
 //
 // Memory with one port that reads and writes and one that reads, filled from FILE by $readmemh when the device is
-// configured; zeros without a FILE. No reset touches it.
+// configured; zeros without a FILE. No reset touches it. Two copies of one write and one read port each: such a memory
+// is a block RAM of half the size, or LUTs.
 //
 // Latency: 1 cycle from address to data, on the second port held while read_enable is low. A word read in the cycle in
 // which it is written is the old one.
@@ -34,19 +35,27 @@ module sptfra_bank #(
     localparam DEPTH = 1 << ADDRESS_WIDTH;
 
     reg [WIDTH-1:0] memory [0:DEPTH-1];
+    reg [WIDTH-1:0] copy [0:DEPTH-1];
 
     generate
         if (FILE != "" && ROM_DIR != "") begin : gen_contents
-            initial $readmemh({ROM_DIR, FILE}, memory);
+            initial begin
+                $readmemh({ROM_DIR, FILE}, memory);
+                $readmemh({ROM_DIR, FILE}, copy);
+            end
         end else if (FILE != "") begin : gen_contents_here
             // An empty prefix would put a null character before the name
-            initial $readmemh(FILE, memory);
+            initial begin
+                $readmemh(FILE, memory);
+                $readmemh(FILE, copy);
+            end
         end else begin : gen_zeros
             integer word;
 
             initial begin
                 for (word = 0; word < DEPTH; word = word + 1) begin
                     memory[word] = {WIDTH{1'b0}};
+                    copy[word] = {WIDTH{1'b0}};
                 end
             end
         end
@@ -60,8 +69,11 @@ module sptfra_bank #(
     end
 
     always @(posedge clock) begin
+        if (write_enable) begin
+            copy[address] <= write_data;
+        end
         if (read_enable) begin
-            read_data <= memory[read_address];
+            read_data <= copy[read_address];
         end
     end
 

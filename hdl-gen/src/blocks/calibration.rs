@@ -50,13 +50,13 @@ pub fn lsb(of: &CalibrationPlan) -> u8 {
     (of.stress.lsb as i8).cast_unsigned()
 }
 
-/// A multiplier, both banks, and what a tare adds up; nothing without one.
+/// A multiplier, both banks, a copy of them for each of two readers, and what a tare adds up; nothing without one.
 pub fn cost(plan: &Plan) -> Option<BlockCost> {
     let of = plan.calibration.as_ref()?;
     let words = 1 << address_bits(of.taxels);
     Some(BlockCost::new("Calibration", &["sptfra_calibrate", "sptfra_tare"], 1).with(vec![
-        memory("gains", 1, 2 * words, GAIN_BITS + EXPONENT_BITS, false),
-        memory("offsets", 1, 2 * words, of.offset_bits(), false),
+        memory("gains", 2, 2 * words, GAIN_BITS + EXPONENT_BITS, false),
+        memory("offsets", 2, 2 * words, of.offset_bits(), false),
         memory("tare", 1, words, TARE_BITS, false),
     ]))
 }
