@@ -40,11 +40,11 @@ run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a l
 
 # What fails soonest comes first: formatting and lints, then the crates in the order in which they use each other.
 .PHONY: test
-test: lint tools sweep-tools wheel-tools ## Everything: formatting, lints, all tests of all crates
+test: lint browser-tools sweep-tools wheel-tools ## Everything: formatting, lints, all tests of all crates
 	$(CARGO) test --workspace
 
 .PHONY: test-times
-test-times: tools sweep-tools wheel-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
+test-times: browser-tools sweep-tools wheel-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
 	@tools/test_times.py
 
 .PHONY: formal
@@ -129,6 +129,10 @@ registers: tools build ## C header and page of a register bank, by PeakRDL, for 
 tools: ## Install Verilator, Yosys and Icarus Verilog where they are missing
 	@tools/install.sh
 
+.PHONY: browser-tools
+browser-tools: ## What `tools` installs, and a browser where there is none, for the test of the pages
+	@tools/install.sh browser
+
 .PHONY: synth
 synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside the predicted ones (minutes)
 	@tools/synth.sh $(DESIGN)
@@ -156,8 +160,10 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, and wri
 
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep
-SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1-l40 f2-p50 f3 joint,designs/$(sensor)-$(kind).toml))
-SWEEP_SCENES  ?= scenes/sensor1-hertz.toml scenes/sensor2-disc.toml scenes/two-contacts.toml scenes/sensor2-punch.toml
+SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1-l40 f2-p50 f3 joint,designs/$(sensor)-$(kind).toml)) \
+	designs/sensor1-fast.toml designs/sensor1-wide.toml designs/sensor2-wide.toml
+SWEEP_SCENES  ?= $(addprefix scenes/,sensor1-hertz.toml sensor1-tilted.toml two-contacts.toml sensor2-disc.toml \
+	sensor2-punch.toml sensor2-held.toml)
 SWEEP_OPTIONS ?= --simulate base --hard
 SNAKEMAKE_OPTIONS ?= --cores all
 

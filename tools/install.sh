@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Installs what building and checking the hardware needs: quick when all is there, asks nothing.
-# Python tools go into .venv with pinned versions; the rest comes from the system's packages.
+# Python tools go into .venv with pinned versions; the rest comes from the system's packages. `install.sh browser` wants a
+# browser too, in which a test looks at the pages.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -19,6 +20,9 @@ have python3 && python3 -c 'import ensurepip, venv' 2> /dev/null || needed="$nee
 have ar || needed="$needed binutils"
 have iverilog || wanted="$wanted iverilog"
 have tclsh || wanted="$wanted tcl"
+if [ "${1:-}" = browser ]; then
+    have chromium || have chromium-browser || have google-chrome || wanted="$wanted chromium"
+fi
 if have "${CXX:-g++}"; then
     header zlib.h || wanted="$wanted zlib1g-dev"
     header lz4.h || wanted="$wanted liblz4-dev"
@@ -47,7 +51,7 @@ if [ -n "$needed$wanted" ]; then
     else
         [ -z "$needed" ] || fail "missing:$needed. Not root, so nothing was installed: please install them (Debian names)"
         say "missing, and not root:$wanted (Debian names). 'make run' works without;"
-        say "'make test' needs iverilog and tcl; zlib and lz4 headers make traces FST in place of VCD"
+        say "'make test' needs iverilog, tcl and chromium; zlib and lz4 headers make traces FST in place of VCD"
     fi
 fi
 

@@ -41,6 +41,7 @@ pub mod names;
 pub mod output;
 pub mod parity;
 pub mod products;
+pub mod progress;
 pub mod reduced;
 pub mod resolved;
 pub mod scene;

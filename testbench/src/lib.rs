@@ -11,7 +11,6 @@ pub mod frame_set;
 pub mod hard;
 pub mod markdown;
 pub mod mutants;
-pub mod progress;
 pub mod registers;
 pub mod run;
 pub mod simulate;

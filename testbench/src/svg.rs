@@ -7,25 +7,39 @@ pub const INK: &str = "#7d8590";
 /// What is not ours.
 pub const MARK: &str = "#d63b5c";
 
+/// Between the lines of a dot's name.
+const NAME_LINE: f64 = 14.0;
+
 /// Text of a picture. Writing to a String cannot fail.
 #[derive(Debug)]
-pub struct Svg(String);
+pub struct Svg {
+    text: String,
+    /// Where names of dots appear.
+    names_at: Option<(f64, f64)>,
+}
 
 impl Svg {
     /// An empty picture with a description for those who do not see it.
     pub fn new(width: f64, height: f64, label: &str) -> Self {
-        Self(format!(
+        let text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
              font-size=\"13\" role=\"img\" aria-label=\"{}\">\n",
             escaped(label)
-        ))
+        );
+        Self { text, names_at: None }
+    }
+
+    /// From here on the name of a dot that is pointed at, touched or reached by the keyboard appears at a place.
+    #[must_use]
+    pub fn with_names_at(self, place: (f64, f64)) -> Self {
+        Self { names_at: Some(place), ..self }
     }
 
     /// A line of the grid.
     pub fn grid(&mut self, from: (f64, f64), to: (f64, f64)) {
         let ((x1, y1), (x2, y2)) = (from, to);
         let _ = writeln!(
-            self.0,
+            self.text,
             "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{INK}\" \
              stroke-opacity=\"0.35\"/>"
         );
@@ -35,7 +49,7 @@ impl Svg {
     pub fn line(&mut self, places: &[(f64, f64)], colour: &str, dashes: &str) {
         let points: Vec<String> = places.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
         let _ = writeln!(
-            self.0,
+            self.text,
             "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" \
              stroke-dasharray=\"{dashes}\"/>",
             points.join(" ")
@@ -44,23 +58,48 @@ impl Svg {
 
     /// A full circle.
     pub fn dot(&mut self, (x, y): (f64, f64), radius: f64, colour: &str) {
-        let _ = writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\"/>");
+        let _ = writeln!(self.text, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\"/>");
     }
 
-    /// A full circle that says what it is when pointed at.
+    /// A full circle that says what it is when it is pointed at, touched or reached by the keyboard; a page shows `.name` of
+    /// the `.dot` that has the focus.
     pub fn named_dot(&mut self, (x, y): (f64, f64), radius: f64, colour: &str, name: &str) {
-        let _ = writeln!(
-            self.0,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\" fill-opacity=\"0.8\">\
-             <title>{}</title></circle>",
-            escaped(name)
+        let shape =
+            format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\" fill-opacity=\"0.8\"/>");
+        self.named(&shape, name);
+    }
+
+    /// The same as a triangle that points up, to what is beyond the picture.
+    pub fn named_triangle(&mut self, (x, y): (f64, f64), radius: f64, colour: &str, name: &str) {
+        let (left, right, low) = (x - radius, x + radius, y + radius);
+        let shape = format!(
+            "<path d=\"M{x:.1} {:.1}L{right:.1} {low:.1}L{left:.1} {low:.1}Z\" fill=\"{colour}\" fill-opacity=\"0.8\"/>",
+            y - radius
         );
+        self.named(&shape, name);
+    }
+
+    fn named(&mut self, shape: &str, name: &str) {
+        let name = escaped(name);
+        // What it is, and below that its figures.
+        let lines = name.split_once(": ").map_or_else(|| vec![name.as_str()], |(what, figures)| vec![what, figures]);
+        let spans = |(x, y): (f64, f64)| -> String {
+            let line = |(index, text): (usize, &&str)| {
+                let y = y + NAME_LINE * index as f64;
+                format!("<tspan x=\"{x:.1}\" y=\"{y:.1}\">{text}</tspan>")
+            };
+            lines.iter().enumerate().map(line).collect()
+        };
+        let shown = self.names_at.map_or_else(String::new, |place| {
+            format!("<text class=\"name\" display=\"none\" fill=\"{INK}\" font-size=\"11\">{}</text>", spans(place))
+        });
+        let _ = writeln!(self.text, "<g class=\"dot\" tabindex=\"0\"><title>{name}</title>{shape}{shown}</g>");
     }
 
     /// An empty circle.
     pub fn ring(&mut self, (x, y): (f64, f64), radius: f64, colour: &str) {
         let _ = writeln!(
-            self.0,
+            self.text,
             "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"none\" \
              stroke=\"{colour}\" stroke-width=\"1.6\"/>"
         );
@@ -69,7 +108,7 @@ impl Svg {
     /// A cross, for [`MARK`]ed places.
     pub fn cross(&mut self, (x, y): (f64, f64)) {
         let _ = writeln!(
-            self.0,
+            self.text,
             "<path d=\"M{:.1} {:.1}l12 12m0 -12l-12 12\" stroke=\"{MARK}\" stroke-width=\"3\"/>",
             x - 6.0,
             y - 6.0
@@ -80,7 +119,7 @@ impl Svg {
     pub fn rectangle(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), colour: &str, opacity: f64) {
         let opacity = if opacity < 1.0 { format!(" fill-opacity=\"{opacity:.2}\"") } else { String::new() };
         let _ = writeln!(
-            self.0,
+            self.text,
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"{opacity}/>"
         );
     }
@@ -96,7 +135,7 @@ impl Svg {
         let wing = |side: f64| (x2 - head * (dx + side * 0.6 * dy), y2 - head * (dy - side * 0.6 * dx));
         let ((ax, ay), (bx, by)) = (wing(1.0), wing(-1.0));
         let _ = writeln!(
-            self.0,
+            self.text,
             "<path d=\"M{x1:.1} {y1:.1}L{x2:.1} {y2:.1}M{ax:.1} {ay:.1}L{x2:.1} {y2:.1}L{bx:.1} {by:.1}\" \
              fill=\"none\" \
              stroke=\"{colour}\" stroke-width=\"1.6\"/>"
@@ -116,7 +155,7 @@ impl Svg {
         let wing = |side: f64| (neck.0 + side * 0.5 * head * across.0, neck.1 + side * 0.5 * head * across.1);
         let ((ax, ay), (bx, by)) = (wing(1.0), wing(-1.0));
         let _ = writeln!(
-            self.0,
+            self.text,
             "<path d=\"M{x1:.1} {y1:.1}L{:.1} {:.1}\" stroke=\"{colour}\" stroke-width=\"3.5\"/>\
              <path d=\"M{x2:.1} {y2:.1}L{ax:.1} {ay:.1}L{bx:.1} {by:.1}Z\" fill=\"{colour}\"/>",
             neck.0, neck.1
@@ -132,7 +171,7 @@ impl Svg {
     pub fn sized_text(&mut self, (x, y): (f64, f64), anchor: &str, colour: &str, size: u32, text: &str) {
         let size = if size == 13 { String::new() } else { format!(" font-size=\"{size}\"") };
         let _ = writeln!(
-            self.0,
+            self.text,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" fill=\"{colour}\"{size}>{}</text>",
             escaped(text)
         );
@@ -140,8 +179,8 @@ impl Svg {
 
     /// The picture's text.
     pub fn finish(mut self) -> String {
-        self.0.push_str("</svg>\n");
-        self.0
+        self.text.push_str("</svg>\n");
+        self.text
     }
 }
 

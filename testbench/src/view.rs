@@ -13,8 +13,8 @@ use thiserror::Error;
 
 use crate::field_plot;
 use crate::frame_set::FrameSet;
-use crate::progress::Progress;
 use crate::stream_words::{Answer, decode};
+use golden::progress::Progress;
 
 /// Towards larger x, then a further eighth of a turn towards larger y each; y is up on the page.
 const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];

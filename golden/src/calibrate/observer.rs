@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 
 use super::CalibrateError;
-use crate::design::{Design, Sensor};
+use crate::design::{Design, Sensor, Tension};
 use crate::estimators::joint::{self, Family, JointScratch, Look};
 use crate::products::ByPq;
 use crate::scene::normal;
@@ -49,6 +49,11 @@ impl<'a> Observer<'a> {
         &self.design.sensor
     }
 
+    /// What the sensor of the design makes of a pull.
+    pub(super) fn tension(&self) -> Tension {
+        self.design.input.tension
+    }
+
     /// The family of contacts that the design is calibrated on.
     pub(super) fn family(&self) -> Family {
         self.design.algorithm.joint.family
@@ -64,7 +69,7 @@ impl<'a> Observer<'a> {
         random: &mut ChaCha8Rng,
     ) -> Result<Option<Sample>, CalibrateError> {
         // What reads no pull has no noise that pulls either.
-        let tension = self.design.input.tension;
+        let tension = self.tension();
         for stress in &mut *frame {
             *stress = tension.of(*stress);
         }

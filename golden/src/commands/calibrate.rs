@@ -7,7 +7,7 @@ use golden::calibrate::{Work, calibrate};
 use golden::choose::rebase_scenes;
 use golden::design::{Design, Family, Filter, is_name};
 use golden::output::write_together;
-use indicatif::ProgressBar;
+use golden::progress::Progress;
 use serde::Serialize;
 
 use super::{Resolved, folder};
@@ -37,11 +37,10 @@ pub fn run(path: &Path, out: &Path, family: Option<Family>, work: Work, json: bo
     let family = design.algorithm.joint.family;
     let settings = work.settings(family)?;
     let resolved = Resolved::new(&design, path, out)?;
-    // Draws on a terminal only.
-    let progress = ProgressBar::new(settings.work(family) as u64);
-    let found = calibrate(&design, &settings, &mut |_| progress.inc(1));
-    progress.finish_and_clear();
-    *design.algorithm.joint = found?;
+    let progress = Progress::new();
+    progress.counted_in("steps", "calibrating", settings.work(family) as u64);
+    *design.algorithm.joint = calibrate(&design, &settings, &mut |_| progress.step())?;
+    drop(progress);
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
         *scenes = rebase_scenes(scenes, folder(path), folder(out));
     }

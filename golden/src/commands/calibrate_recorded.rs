@@ -8,10 +8,11 @@ use golden::calibrate::recorded::{Recorded, fit_forces, fit_uniform, page, read_
 use golden::choose::rebase_scenes;
 use golden::design::{Design, Filter};
 use golden::output::write_together;
+use golden::progress::Progress;
 use serde::Serialize;
 
 use super::calibrate::name_of;
-use super::{Recording, Resolved, Stage, folder, keep_apart};
+use super::{Recording, Resolved, folder, keep_apart};
 
 /// What was recorded.
 #[derive(Args, Debug)]
@@ -78,7 +79,7 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> Resu
     if let Some(name) = name_of(out) {
         design.name = name;
     }
-    let stage = Stage::new("fitting");
+    let progress = Progress::of("fitting");
     let mut results: [Option<Recorded>; 2] = [None, None];
     for (place, (file, measured)) in [(uniform, pressures), (frames, forces)].into_iter().enumerate() {
         let (Some(file), Some(measured)) = (file, measured) else { continue };
@@ -90,7 +91,7 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> Resu
         design = found.design.clone();
         results[place] = Some(found);
     }
-    drop(stage);
+    drop(progress);
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
         *scenes = rebase_scenes(scenes, folder(path), folder(out));
     }

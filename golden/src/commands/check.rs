@@ -6,9 +6,10 @@ use std::path::Path;
 use golden::check::check;
 use golden::design::Design;
 use golden::matrices::Matrices;
+use golden::progress::Progress;
 use serde::Serialize;
 
-use super::{Recording, Stage};
+use super::Recording;
 
 #[derive(Serialize)]
 struct Report<'a> {
@@ -28,7 +29,7 @@ pub fn run(path: &Path, recording: &Recording, json: bool) -> Result<(), Box<dyn
     let design = Design::load(path)?;
     let frames = recording.read(&design)?;
     let matrices = {
-        let _stage = Stage::new("matrices");
+        let _progress = Progress::of("matrices");
         Matrices::of(&design).map_err(|error| format!("{}: {error}", design.name))?
     };
     let findings = check(&design, &frames, Some(&matrices));

@@ -7,8 +7,8 @@ use std::path::Path;
 use golden::choose::{Choice, candidate_count, choose, rebase_scenes, reference_frames};
 use golden::design::{Design, Filter};
 use golden::output::write_together;
+use golden::progress::Progress;
 use golden::table::Table;
-use indicatif::ProgressBar;
 use serde::Serialize;
 
 use super::{Resolved, folder, keep_apart};
@@ -41,11 +41,10 @@ pub fn run(path: &Path, out: &Path, csv: Option<&Path>, json: bool) -> Result<()
         return Err(format!("{}: named for both the design and the table; choose two names", csv.display()).into());
     }
     let frames = reference_frames(&design, from)?;
-    // Draws on a terminal only.
-    let progress = ProgressBar::new(candidate_count(design.sensor.taxels()) as u64);
-    let found = choose(&design, &frames, &|| progress.inc(1));
-    progress.finish_and_clear();
-    let choice = found?;
+    let progress = Progress::new();
+    progress.counted_in("filters", "judging", candidate_count(design.sensor.taxels()) as u64);
+    let choice = choose(&design, &frames, &|| progress.step())?;
+    drop(progress);
 
     design.algorithm.filter =
         Filter::F3 { scenes: rebase_scenes(&scenes, from, folder(out)), choices: Some(Box::new(choice.choices())) };

@@ -10,32 +10,12 @@ pub mod scene;
 pub mod solve;
 
 use std::path::Path;
-use std::time::Duration;
 
 use golden::check::Finding;
 use golden::design::Design;
 use golden::frames::{self, FrameError};
 use golden::geometry;
 pub use golden::resolved::{Resolved, folder, keep_apart};
-use indicatif::ProgressBar;
-
-/// Says what is being done, on a terminal only, until it is dropped.
-pub struct Stage(ProgressBar);
-
-impl Stage {
-    /// Work of unknown length begins.
-    pub fn new(what: &'static str) -> Self {
-        let bar = ProgressBar::new_spinner().with_message(what);
-        bar.enable_steady_tick(Duration::from_millis(100));
-        Self(bar)
-    }
-}
-
-impl Drop for Stage {
-    fn drop(&mut self) {
-        self.0.finish_and_clear();
-    }
-}
 
 /// A file of frames.
 pub struct Recording<'a> {

@@ -5,11 +5,12 @@ use std::path::Path;
 
 use golden::design::Design;
 use golden::output::write_whole;
+use golden::progress::Progress;
 use golden::scene::Scene;
 use golden::{forces, frames, geometry};
 use serde::Serialize;
 
-use super::{Stage, keep_apart};
+use super::keep_apart;
 
 #[derive(Serialize)]
 struct SceneReport<'a> {
@@ -30,7 +31,7 @@ pub fn run(scene: Option<&Path>, design: Option<&Path>, out: &Path, json: bool) 
     let design = design.map(Design::load).transpose()?;
     let scene = Scene::for_design(scene, design.as_ref())?;
     let made = {
-        let _stage = Stage::new("computing the stress");
+        let _progress = Progress::of("computing the stress");
         scene.frames()?
     };
     if forces_file == out {

@@ -7,12 +7,12 @@ use golden::check::check;
 use golden::design::Design;
 use golden::forces;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
+use golden::progress::Progress;
 use golden::solver::{Solution, Solver, Status};
 use golden::table::Table;
-use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::{Recording, Stage, filter, keep_apart, warn};
+use super::{Recording, filter, keep_apart, warn};
 
 #[derive(Serialize)]
 struct StatusCount {
@@ -56,19 +56,16 @@ pub fn run(
     let design = Design::load(design)?;
     let frames = frames.read(&design)?;
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
-    let solver = {
-        let _stage = Stage::new("matrices");
-        Solver::new(&design)?
-    };
-    // Draws on a terminal only.
-    let progress = ProgressBar::new(frames.len() as u64);
+    let progress = Progress::of("matrices");
+    let solver = Solver::new(&design)?;
+    progress.counted("solving", frames.len() as u64);
     let mut workspace = solver.workspace();
     let mut solutions = vec![Solution::zeros(Status::default(), 0); frames.len()];
     for (frame, solution) in frames.iter().zip(&mut solutions) {
         solver.solve_into(&mut workspace, frame, solution)?;
-        progress.inc(1);
+        progress.step();
     }
-    progress.finish_and_clear();
+    drop(progress);
     forces::write_solutions(out, &solutions, with_field)?;
     warn(&check(&design, &frames, Some(solver.matrices())));
 

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// Kinds of frames; one differs from the first in one thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Family {
+pub enum Family {
     /// Round, Hertz's pressure or an even one, sliding, within the grid.
     Sliding,
     TiltedAlong,
@@ -37,7 +37,7 @@ enum Family {
     Wide,
 }
 
-const FAMILIES: [(Family, &str); 18] = [
+pub const FAMILIES: [(Family, &str); 18] = [
     (Family::Sliding, "round, sliding, as ever"),
     (Family::TiltedAlong, "pressure tilted along the push, 0.6"),
     (Family::TiltedAcross, "pressure tilted across the push, 0.5"),
@@ -58,8 +58,8 @@ const FAMILIES: [(Family, &str); 18] = [
     (Family::Wide, "all of it, at random, µ 0.1 to 1, anywhere"),
 ];
 
-/// One frame of a family; the families of all kinds have a friction of their own.
-fn frame(sensor: &Sensor, family: Family, friction: f64, seed: u64) -> SceneFrame {
+/// One frame of a family, pulls and all; the families of all kinds have a friction of their own.
+pub fn frame(sensor: &Sensor, family: Family, friction: f64, seed: u64) -> SceneFrame {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     let last = sensor.position_m(sensor.taxels() - 1);
@@ -145,17 +145,17 @@ fn frame(sensor: &Sensor, family: Family, friction: f64, seed: u64) -> SceneFram
 }
 
 /// What a solver makes of the frames of a family.
-struct Judged {
+pub struct Judged {
     /// Length of the error of the tangential force in percent of the normal force: of each frame, in rising order.
-    errors: Vec<f64>,
+    pub errors: Vec<f64>,
     /// Shares of frames: with another status than good; with an error within two standard errors; doubtful of those with an
     /// error above 10 %, and of those below 5 %.
-    flagged: f64,
-    within: f64,
-    doubtful: [f64; 2],
+    pub flagged: f64,
+    pub within: f64,
+    pub doubtful: [f64; 2],
 }
 
-fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
+pub fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
     let (mut flagged, mut within) = (0, 0);
     let mut doubtful = [[0; 2]; 2];
     let mut errors: Vec<f64> = frames
@@ -183,7 +183,7 @@ fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
     }
 }
 
-fn share(sorted: &[f64], share: f64) -> f64 {
+pub fn share(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() as f64 * share).ceil() as usize).clamp(1, sorted.len()) - 1]
 }
 
@@ -229,7 +229,7 @@ fn the_wide_family_keeps_to_its_figures_within_the_grid() {
     }
 }
 
-fn row(Judged { errors, .. }: &Judged) -> String {
+pub fn row(Judged { errors, .. }: &Judged) -> String {
     let [median, most, worst] = [0.5, 0.95, 1.0].map(|part| share(errors, part));
     format!(" {median:.1} / {most:.1} / {worst:.1} |")
 }

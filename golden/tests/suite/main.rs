@@ -2,6 +2,7 @@
 
 mod check;
 mod choose;
+mod clipped;
 mod command;
 mod contacts;
 mod curve;

@@ -8,7 +8,7 @@ use hdl_gen::emit::emit;
 use hdl_gen::inspection::warnings;
 use hdl_gen::write::{check_folder, write_folder};
 
-use super::progress::Progress;
+use golden::progress::Progress;
 
 /// Writes the folder of the design in file `path`; returns what to tell the user.
 pub fn generate(path: &Path, out: Option<PathBuf>, progress: &Progress) -> Result<String, Box<dyn Error>> {

@@ -3,7 +3,6 @@
 mod generate;
 mod inspect;
 mod new;
-mod progress;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -15,7 +14,7 @@ use golden::design::Design;
 use golden::manual::Manual;
 use hdl_gen::plan::Plan;
 
-use progress::Progress;
+use golden::progress::Progress;
 
 /// Turns a tactile sensor's geometry and a sparse filter into Verilog that reconstructs triaxial contact forces.
 #[derive(Parser)]

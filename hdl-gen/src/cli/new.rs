@@ -9,7 +9,7 @@ use golden::design::{DEFAULT_FULL_SCALE_PA, Estimator};
 use golden::words;
 use hdl_gen::new_design::{COUNT_BITS, NewDesign};
 
-use super::progress::Progress;
+use golden::progress::Progress;
 
 /// What the command line says of the new design.
 #[derive(Args)]

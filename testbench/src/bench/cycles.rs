@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::BenchError;
 use crate::frame_set::FrameSet;
-use crate::progress::Progress;
 use crate::simulate::Cycles;
 use crate::stream_words::packets;
 use crate::trial::{Trial, planned};
+use golden::progress::Progress;
 
 /// Sides of the square sensors.
 pub const SIDES: [usize; 8] = [4, 6, 8, 10, 12, 16, 24, 32];

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::{BenchError, Scope};
 use crate::frame_set::FrameSet;
-use crate::progress::Progress;
 use crate::trial::planned;
+use golden::progress::Progress;
 
 /// F1: outermost diagonals removed, in percent of the block's side. F2: p.
 const F1_PERCENT: [usize; 3] = [10, 40, 70];

@@ -9,8 +9,8 @@ use serde::Serialize;
 use super::cycles::{Kind, SIDES, square};
 use super::machine::{forget_peak_memory, peak_memory};
 use super::{BenchError, Scope, median};
-use crate::progress::Progress;
 use crate::trial::{TrialError, planned};
+use golden::progress::Progress;
 
 /// Repetitions behind a median.
 pub const REPETITIONS: usize = 3;

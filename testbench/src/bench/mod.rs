@@ -19,8 +19,8 @@ use golden::solver::SolverError;
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::progress::Progress;
 use crate::trial::{Fault, TrialError};
+use golden::progress::Progress;
 
 use cells::Cells;
 use cycles::Point;

@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::{BenchError, Scope, median};
 use crate::frame_set::FrameSet;
-use crate::progress::Progress;
 use crate::stream::Pacing;
 use crate::stream_words::packets;
 use crate::trial::{self, TrialError, planned};
+use golden::progress::Progress;
 
 /// Repetitions behind a median.
 pub const REPETITIONS: usize = 5;

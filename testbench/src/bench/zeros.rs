@@ -6,10 +6,10 @@ use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use super::BenchError;
-use crate::progress::Progress;
 use crate::simulate::Cycles;
 use crate::stream::{Exchange, Pacing};
 use crate::trial::{self, TrialError, planned};
+use golden::progress::Progress;
 
 /// Sides of the square sensors.
 const SIDES: [usize; 2] = [10, 20];

@@ -8,8 +8,8 @@ use golden::design::Design;
 use golden::output::write_whole;
 
 use super::shown;
+use golden::progress::Progress;
 use testbench::bench::{self, BenchError, Scope};
-use testbench::progress::Progress;
 
 #[derive(Args)]
 pub struct Arguments {

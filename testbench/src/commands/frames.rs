@@ -8,8 +8,8 @@ use golden::check::check;
 use golden::design::Design;
 use golden::matrices::Matrices;
 
+use golden::progress::Progress;
 use testbench::frame_set::FrameSet;
-use testbench::progress::Progress;
 
 #[derive(Args)]
 pub struct FrameArguments {

@@ -6,8 +6,8 @@ use clap::Args;
 use golden::output::write_whole;
 
 use super::{Said, shown};
+use golden::progress::Progress;
 use testbench::hard::{self, Scope};
-use testbench::progress::Progress;
 
 #[derive(Args)]
 pub struct Arguments {

@@ -6,8 +6,8 @@ use clap::Args;
 use golden::design::Design;
 
 use super::{Said, SeededArguments, shown};
+use golden::progress::Progress;
 use testbench::mutants::{Explained, Options, mutants};
-use testbench::progress::Progress;
 
 #[derive(Args)]
 pub struct Arguments {

@@ -8,7 +8,7 @@ use golden::design::Design;
 
 use super::frames::FrameArguments;
 use super::{Said, shown};
-use testbench::progress::Progress;
+use golden::progress::Progress;
 use testbench::run::{self, Options, page};
 use testbench::verilate::Trace;
 

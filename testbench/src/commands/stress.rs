@@ -4,7 +4,7 @@ use clap::Args;
 use golden::design::Design;
 
 use super::{SeededArguments, shown};
-use testbench::progress::Progress;
+use golden::progress::Progress;
 use testbench::stress::{Options, stress};
 
 #[derive(Args)]

@@ -8,8 +8,8 @@ use golden::design::{Design, Estimator, PlanKind};
 use golden::output::write_whole;
 use golden::words::parser;
 
+use golden::progress::Progress;
 use testbench::hard::{self, Scope};
-use testbench::progress::Progress;
 use testbench::sweep::grid::{Axes, FilterAxis, jobs};
 use testbench::sweep::page;
 use testbench::sweep::point::Verified;
@@ -108,13 +108,16 @@ pub fn run(arguments: &Arguments) -> super::Result {
     write_whole(&place("sweep.json"), json.as_bytes())?;
     write_whole(&place("sweep.csv"), csv_file::csv(&outcomes.points)?.as_bytes())?;
     let mut contents = page::Contents::new(&designs, &sweep, &outcomes.points)?;
+    let page = place("report.html");
     if arguments.hard {
-        contents = contents.with_hard_cases(&hard::table(
-            Scope { large: true, rtl: arguments.simulate != Simulate::None },
-            &progress,
-        )?);
+        // Hard cases take minutes; what is there can be read meanwhile.
+        contents = contents.awaiting_hard_cases();
+        write_whole(&page, page::render(&contents)?.as_bytes())?;
+        progress.say(&format!("{} is there; the hard cases follow", page.display()));
+        let scope = Scope { large: true, rtl: arguments.simulate != Simulate::None };
+        contents = contents.with_hard_cases(&hard::table(scope, &progress)?);
     }
-    write_whole(&place("report.html"), page::render(&contents)?.as_bytes())?;
+    write_whole(&page, page::render(&contents)?.as_bytes())?;
     drop(progress);
     Ok(if arguments.json { json } else { summary(&outcomes, &arguments.out) }.into())
 }

@@ -8,7 +8,7 @@ use golden::design::Design;
 use golden::output::write_whole;
 
 use super::frames::FrameArguments;
-use testbench::progress::Progress;
+use golden::progress::Progress;
 use testbench::view;
 
 #[derive(Args)]

@@ -11,9 +11,9 @@ use golden::scene::SceneError;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use crate::progress::Progress;
 use crate::trial::TrialError;
 use cases::Case;
+use golden::progress::Progress;
 use judge::Row;
 
 /// Why there is no table.

@@ -4,9 +4,9 @@ use golden::design::Design;
 use hdl_gen::plan::Plan;
 
 use super::cases::Case;
-use crate::progress::Progress;
 use crate::stream_words::packets;
 use crate::trial::{Timing, Trial, TrialError, Verdict};
+use golden::progress::Progress;
 
 /// Decides the pauses of the streams and the registers' random start.
 const SEED: u32 = 1;

@@ -20,11 +20,11 @@ pub use explained::{Explained, ExplainedError};
 pub use sites::{Kind, Mutation, all};
 
 use crate::frame_set::FrameSet;
-use crate::progress::Progress;
 use crate::stream_words::packets;
 use crate::stress::{BATCH, run_batch};
 use crate::trial::{Trial, TrialError, planned, rtl_sources};
 use crate::verilate::{BuildError, Built, RtlSources, Verilate, translation};
+use golden::progress::Progress;
 
 /// Batches of `testbench stress` after the standing frames.
 const STRESS_BATCHES: u64 = 3;

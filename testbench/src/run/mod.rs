@@ -13,13 +13,13 @@ use thiserror::Error;
 
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
-use crate::progress::Progress;
 use crate::registers;
 use crate::simulate::frames_to_simulate;
 use crate::stream_words::{Answer, as_received, decode, packets};
 use crate::trial::{Trial, TrialError, planned, rtl_sources};
 use crate::verilate::{Effort, Trace, Verilate, verilator_version};
 use crate::waves;
+use golden::progress::Progress;
 use report::Report;
 
 /// Why a run has no report.

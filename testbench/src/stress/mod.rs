@@ -20,9 +20,9 @@ use packets::Packets;
 pub use packets::{Counts, Kind};
 
 use crate::dut::Core;
-use crate::progress::Progress;
 use crate::stream::{Pattern, Reset, StreamError, Traffic, exchange};
 use crate::trial::{self, TrialError, planned, timeout};
+use golden::progress::Progress;
 use judge::judge;
 
 /// Frames of a batch.

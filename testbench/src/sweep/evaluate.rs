@@ -13,7 +13,7 @@ use hdl_gen::plan::streams::Streams;
 
 use super::distributed::RunReport;
 use super::grid::{Job, filter_text};
-use super::point::{AgainstSolver, Geometry, Hardware, Point, Verified};
+use super::point::{AgainstSolver, Calibration, Geometry, Hardware, Point, Verified};
 use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
@@ -115,6 +115,7 @@ fn described(job: &Job, scene: &SweepScene, solver: &Solver, solutions: &[Soluti
         kernel: algorithm.kernel,
         filter: filter_text(&algorithm.filter),
         estimator: algorithm.estimator,
+        calibration: Calibration::of(algorithm),
         coefficient_bits: hardware.coefficient_bits,
         data_bits: hardware.data_bits,
         lanes: hardware.lanes,

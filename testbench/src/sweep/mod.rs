@@ -22,8 +22,8 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::frame_set::FrameSet;
-use crate::progress::Progress;
 use crate::trial::{Fault, TrialError};
+use golden::progress::Progress;
 
 use evaluate::Proof;
 use grid::Job;
@@ -136,6 +136,14 @@ pub struct SweepScene {
 }
 
 impl SweepScene {
+    /// Whether the sum of forces tells how well each body was found: of bodies that are pushed against each other most of
+    /// it is gone, and an answer of zero is nearly right.
+    pub fn tells(&self) -> bool {
+        let pushed: f64 = self.scene.contacts.iter().map(|body| body.friction * body.normal_force_n).sum();
+        let truth = self.frames.truth.as_deref().unwrap_or_default();
+        truth.iter().all(|truth| truth.force[0].hypot(truth.force[1]) >= 0.5 * pushed)
+    }
+
     /// Reads a scene file and computes its frames.
     ///
     /// # Errors

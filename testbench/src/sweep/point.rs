@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use golden::design::{Estimator, Kernel, PlanKind, Sensor};
+use golden::design::{Algorithm, Estimator, Family, JointConstants, Kernel, PlanKind, Sensor};
 use golden::metrics::ErrorSummary;
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +48,26 @@ impl From<&Sensor> for Geometry {
     fn from(sensor: &Sensor) -> Self {
         let Sensor { columns, rows, pitch_mm, depth_mm } = *sensor;
         Self { columns, rows, pitch_mm, depth_mm }
+    }
+}
+
+/// What tells one joint estimator from another.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Calibration {
+    /// Points along each axis of the plane that is searched.
+    pub grid: usize,
+    /// Hidden units of the correction; 0 without one.
+    pub units: usize,
+    /// Contacts that it was calibrated on.
+    pub family: Family,
+}
+
+impl Calibration {
+    /// That of a design.
+    pub fn of(algorithm: &Algorithm) -> Option<Self> {
+        let JointConstants { grid, family, correction, .. } = algorithm.joint.as_ref();
+        let units = correction.as_ref().map_or(0, |correction| correction.hidden.len());
+        (algorithm.estimator == Estimator::Joint).then_some(Self { grid: grid.side(), units, family: *family })
     }
 }
 
@@ -98,6 +118,8 @@ pub struct Point {
     pub filter: String,
     /// The estimator.
     pub estimator: Estimator,
+    /// Which joint estimator; none for another one.
+    pub calibration: Option<Calibration>,
     /// Width of the coefficients.
     pub coefficient_bits: u32,
     /// Width of the vectors.
@@ -137,14 +159,22 @@ impl Point {
     /// What varies, in a line.
     pub fn label(&self) -> String {
         format!(
-            "{}, {} plan, {} estimator, {} lanes, {} × {} bits",
+            "{}, {} plan, {}, {} lanes, {} × {} bits",
             self.filter_title(),
             self.plan,
-            self.estimator,
+            self.estimator_title(),
             self.lanes,
             self.coefficient_bits,
             self.data_bits
         )
+    }
+
+    /// The estimator with what tells one calibration from another: `joint, 15 × 15 points, 48 units`.
+    pub fn estimator_title(&self) -> String {
+        let Some(Calibration { grid, units, family }) = self.calibration else { return self.estimator.to_string() };
+        let family = if family == Family::Wide { ", wide family" } else { "" };
+        let correction = if units > 0 { format!("{units} units{family}") } else { "no correction".to_owned() };
+        format!("{}, {grid} × {grid} points, {correction}", self.estimator)
     }
 
     /// The filter as people write it: `no filter`, `F1 L = 40`.

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use golden::design::Design;
+use golden::progress::Progress;
 use hdl_gen::plan::Plan;
 use serde_json::Value;
 use testbench::frame_set::FrameSet;
-use testbench::progress::Progress;
 use testbench::run::{Options, page, run_plan};
 use testbench::trial::Timing;
 

@@ -3,11 +3,11 @@
 use std::process::Command;
 
 use golden::design::Estimator;
+use golden::progress::Progress;
 use serde_json::Value;
 use testbench::hard::cases::{self, Case};
 use testbench::hard::judge::{Judged, Row};
 use testbench::hard::{Scope, is_sound, rtl, table};
-use testbench::progress::Progress;
 
 fn rows() -> Vec<Row> {
     table(Scope { large: false, rtl: false }, &Progress::hidden()).expect("a table")

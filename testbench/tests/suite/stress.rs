@@ -4,9 +4,9 @@ use std::path::Path;
 
 use crate::support::{by_plan, in_parallel, planned, shipped};
 use golden::design::{Design, Outputs, PlanKind};
+use golden::progress::Progress;
 use testbench::frame_set::FrameSet;
 use testbench::mutants::{self, Kind, mutants};
-use testbench::progress::Progress;
 use testbench::run::{self, page, run};
 use testbench::stress::{self, StressError, stress};
 use testbench::trial::{Timing, rtl_sources};

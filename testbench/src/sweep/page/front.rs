@@ -1,17 +1,17 @@
 //! Latency against error, and what width and lanes do to both.
 
-use golden::design::{Estimator, PlanKind};
+use golden::design::{Estimator, Family, PlanKind};
 
 use super::paper::TABLE_3;
 use crate::svg::{Axis, INK, MARK, Svg, power};
 use crate::sweep::point::{Hardware, Point, paper_sensor};
 
 const WIDTH: f64 = 760.0;
-const HEIGHT: f64 = 440.0;
+const HEIGHT: f64 = 472.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 36.0;
 const TOP: f64 = 24.0;
-const BOTTOM: f64 = 52.0;
+const BOTTOM: f64 = 84.0;
 /// What a point is drawn in: its name, its colour, and which points they are.
 type Kind = (&'static str, &'static str, fn(&Point) -> bool);
 const KINDS: [Kind; 6] = [
@@ -23,6 +23,7 @@ const KINDS: [Kind; 6] = [
     ("paper's plan, F3", "#8e5bd0", |point| point.filter == "f3"),
 ];
 const JOINT: (&str, &str) = ("joint estimator", "#2a9d5c");
+const WIDE: (&str, &str) = ("joint estimator, wide family", "#8fb821");
 /// Errors above are drawn at the rim.
 const MOST_PERCENT: f64 = 100.0;
 const LEAST_PERCENT: f64 = 1.0;
@@ -33,21 +34,27 @@ pub type Legend = Vec<(&'static str, &'static str)>;
 /// The entries of the fronts' legend that points of a page have.
 pub fn legend(points: &[Point]) -> Legend {
     let used = |colour: &str| points.iter().any(|point| style(point).1 == colour);
-    let ours = KINDS.iter().map(|&(name, colour, _)| (name, colour)).chain([JOINT]);
+    let ours = KINDS.iter().map(|&(name, colour, _)| (name, colour)).chain([JOINT, WIDE]);
     ours.filter(|(_, colour)| used(colour)).chain([("the paper, Table 3", MARK)]).collect()
 }
 
-fn style(point: &Point) -> (&'static str, &'static str) {
+/// The name and colour of a point's kind, the same in all plots.
+pub fn style(point: &Point) -> (&'static str, &'static str) {
     if point.estimator == Estimator::Joint {
-        return JOINT;
+        return if point.calibration.is_some_and(|joint| joint.family == Family::Wide) { WIDE } else { JOINT };
     }
     let kind = KINDS.iter().find(|(_, _, is)| is(point)).unwrap_or(&KINDS[0]);
     (kind.0, kind.1)
 }
 
 /// The front of one scene's points: latency in µs against the largest tangential error in percent, both logarithmic.
-/// `with_paper` marks the paper's points of this sensor.
-pub fn front(points: &[&Point], with_paper: bool) -> String {
+/// `with_paper` marks the paper's points of this sensor; without `tells` no line joins the best.
+///
+/// Narrower words stand in a plot of their own: here they would lie upon each other.
+pub fn front(points: &[&Point], with_paper: bool, tells: bool) -> String {
+    let widest = points.iter().map(|point| (point.coefficient_bits, point.data_bits)).max();
+    let points: Vec<&Point> =
+        points.iter().copied().filter(|point| Some((point.coefficient_bits, point.data_bits)) == widest).collect();
     let built: Vec<(&Point, &Hardware)> =
         points.iter().filter_map(|&point| Some((point, point.hardware.as_ref()?))).collect();
     let paper: Vec<(f64, f64, &str)> = TABLE_3
@@ -59,13 +66,21 @@ pub fn front(points: &[&Point], with_paper: bool) -> String {
     let x = Axis::covering(times, false, LEFT, WIDTH - RIGHT);
     let y = Axis::covering([LEAST_PERCENT, MOST_PERCENT].into_iter(), false, HEIGHT - BOTTOM, TOP);
     let height = |percent: f64| y.place(percent.clamp(LEAST_PERCENT, MOST_PERCENT));
-    let mut svg = Svg::new(WIDTH, HEIGHT, "Largest tangential error against latency");
-    axes(&mut svg, x, y, ["latency, µs (logarithmic)", "largest error of F_x and F_y, %"]);
+    let mut svg =
+        Svg::new(WIDTH, HEIGHT, "Largest tangential error against latency").with_names_at((LEFT, HEIGHT - 20.0));
+    axes(
+        &mut svg,
+        x,
+        y,
+        ["latency, µs (logarithmic); left is faster", "largest error of F_x and F_y, %; lower is more exact"],
+    );
     let mut best: Vec<(f64, f64)> =
         built.iter().map(|(point, hardware)| (hardware.latency_us, point.tangential())).collect();
     let corners: Vec<(f64, f64)> =
         frontier(&mut best).into_iter().map(|(time, e)| (x.place(time), height(e))).collect();
-    svg.line(&corners, INK, "2 3");
+    if tells {
+        svg.line(&corners, INK, "2 3");
+    }
     for (point, hardware) in &built {
         let place = (x.place(hardware.latency_us), height(point.tangential()));
         let name = format!(
@@ -77,7 +92,11 @@ pub fn front(points: &[&Point], with_paper: bool) -> String {
             hardware.dsp,
             point.verified.title()
         );
-        svg.named_dot(place, 4.5, style(point).1, &name);
+        if point.tangential() > MOST_PERCENT {
+            svg.named_triangle(place, 5.5, style(point).1, &name);
+        } else {
+            svg.named_dot(place, 4.5, style(point).1, &name);
+        }
         if point.verified == crate::sweep::point::Verified::Rtl {
             svg.ring(place, 7.5, style(point).1);
         }
@@ -120,38 +139,53 @@ fn frontier(points: &mut [(f64, f64)]) -> Vec<(f64, f64)> {
         .collect()
 }
 
+/// Values over a width, as one line of a plot.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// For people.
+    pub name: String,
+    /// That of the points in all plots.
+    pub colour: &'static str,
+    /// Where another series has the colour.
+    pub dashes: &'static str,
+    /// Bits, and what they come to.
+    pub values: Vec<(u32, f64)>,
+}
+
+/// Dashes of the series of one colour, one after the other.
+pub const DASHES: [&str; 4] = ["", "7 3", "2 3", "9 3 2 3"];
+
 /// Error against the f64 solver over the width of coefficients or vectors; one line for each series.
-pub fn widths(series: &[(String, Vec<(u32, f64)>)], unit: &str) -> String {
-    const COLOURS: [&str; 6] = ["#0b84d8", "#8e5bd0", "#d9730d", "#2a9d5c", "#159aa0", "#d63b5c"];
-    let (width, height) = (480.0, 300.0);
-    let values = series.iter().flat_map(|(_, values)| values);
+pub fn widths(series: &[Series], unit: &str) -> String {
+    let (width, height) = (480.0, 328.0);
+    let values = series.iter().flat_map(|series| &series.values);
     let (low, high) = values.clone().fold((u32::MAX, 0), |(low, high), &(bits, _)| (low.min(bits), high.max(bits)));
-    let y = Axis::covering(values.map(|&(_, error)| error).filter(|&error| error > 0.0), false, height - 46.0, 20.0);
+    let y = Axis::covering(values.map(|&(_, error)| error).filter(|&error| error > 0.0), false, height - 74.0, 20.0);
     let place =
         |bits: u32| LEFT + 20.0 + f64::from(bits - low) / f64::from((high - low).max(1)) * (width - LEFT - 60.0);
-    let mut svg = Svg::new(width, height, &format!("Error of the number format against {unit}"));
+    let label = format!("Error of the number format against {unit}");
+    let mut svg = Svg::new(width, height, &label).with_names_at((LEFT, height - 20.0));
     for decade in y.decades() {
         let line = y.place(10_f64.powi(decade));
         svg.grid((LEFT, line), (width - RIGHT, line));
         svg.text((LEFT - 8.0, line + 4.0), "end", INK, &power(decade));
     }
-    for (number, (name, values)) in series.iter().enumerate() {
-        let colour = COLOURS[number % COLOURS.len()];
+    for (number, Series { name, colour, dashes, values }) in series.iter().enumerate() {
         let places: Vec<(f64, f64)> =
             values.iter().filter(|(_, e)| *e > 0.0).map(|&(bits, e)| (place(bits), y.place(e))).collect();
-        svg.line(&places, colour, "");
+        svg.line(&places, colour, dashes);
         for (&at, (bits, error)) in places.iter().zip(values) {
             svg.named_dot(at, 4.0, colour, &format!("{name}, {bits} bits: {error:.1e}"));
         }
         svg.text((width - RIGHT, 34.0 + 17.0 * number as f64), "end", colour, name);
     }
-    let mut widths: Vec<u32> = series.iter().flat_map(|(_, values)| values.iter().map(|&(bits, _)| bits)).collect();
+    let mut widths: Vec<u32> = series.iter().flat_map(|series| series.values.iter().map(|&(bits, _)| bits)).collect();
     widths.sort_unstable();
     widths.dedup();
     for bits in widths {
-        svg.text((place(bits), height - 28.0), "middle", INK, &bits.to_string());
+        svg.text((place(bits), height - 56.0), "middle", INK, &bits.to_string());
     }
-    svg.text((f64::midpoint(LEFT, width - RIGHT), height - 8.0), "middle", INK, unit);
+    svg.text((f64::midpoint(LEFT, width - RIGHT), height - 38.0), "middle", INK, unit);
     svg.finish()
 }
 
@@ -172,7 +206,7 @@ fn axes(svg: &mut Svg, x: Axis, y: Axis, names: [&str; 2]) {
             svg.text((x.from - 8.0, place + 4.0), "end", INK, &format!("{value}"));
         }
     }
-    svg.text((f64::midpoint(x.from, x.to), HEIGHT - 12.0), "middle", INK, names[0]);
+    svg.text((f64::midpoint(x.from, x.to), HEIGHT - 42.0), "middle", INK, names[0]);
     svg.text((6.0, 14.0), "start", INK, names[1]);
 }
 

@@ -1,7 +1,9 @@
 //! The page of a sweep: one HTML file without a network, with pictures as SVG, for light and dark.
 
+pub mod conclusion;
 pub mod front;
 pub mod hard;
+pub mod lanes;
 pub mod matrices;
 pub mod paper;
 pub mod tables;
@@ -20,6 +22,7 @@ use crate::hard::judge::Row;
 use crate::sweep::evaluate::answers;
 use crate::sweep::point::{Geometry, Point, Verified, sensor_title, sensors};
 use crate::sweep::{Sweep, SweepError, SweepScene};
+use front::{DASHES, Series};
 use golden::table::Table;
 use matrices::Figure;
 
@@ -53,16 +56,20 @@ pub struct Contents {
     ramp: Vec<(String, &'static str)>,
     sensors: Vec<SensorSection>,
     hard: Option<hard::Section>,
+    /// What is not on the page yet.
+    pending: Option<&'static str>,
 }
 
 /// One sensor's part.
 #[derive(Clone, Debug, Serialize)]
 struct SensorSection {
     title: String,
+    conclusion: Option<conclusion::Conclusion>,
     fronts: Vec<Figure>,
     table_1: Option<Table>,
     table_3: Option<Table>,
     lanes: Table,
+    lanes_plot: Option<String>,
     widths: Vec<Figure>,
     field: Vec<Figure>,
     field_caption: String,
@@ -100,6 +107,7 @@ impl Contents {
             ramp: matrices::ramp_legend(),
             sensors: sections,
             hard: None,
+            pending: None,
         })
     }
 }
@@ -109,6 +117,14 @@ impl Contents {
     #[must_use]
     pub fn with_hard_cases(mut self, rows: &[Row]) -> Self {
         self.hard = Some(hard::section(rows));
+        self.pending = None;
+        self
+    }
+
+    /// The same, saying that the table of hard cases is being made.
+    #[must_use]
+    pub fn awaiting_hard_cases(mut self) -> Self {
+        self.pending = Some("The hard cases are still being computed: load this page again in some minutes.");
         self
     }
 }
@@ -136,11 +152,16 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
         .map(|scene| {
             let paper = main.is_some_and(|main| main.name == scene.name);
             let frames = scene.frames.stress.len();
-            let caption = format!("scene {}, {frames} frame{}", scene.name, if frames == 1 { "" } else { "s" });
-            Figure { svg: front::front(&on(scene), paper), caption }
+            let mut caption = format!("scene {}, {frames} frame{}", scene.name, if frames == 1 { "" } else { "s" });
+            if !scene.tells() {
+                caption += "; the bodies are pushed against each other, so that this error is that of a sum near zero, which \
+                            tells nothing of either: no front, no conclusion";
+            }
+            Figure { svg: front::front(&on(scene), paper, scene.tells()), caption }
         })
         .collect();
     let on_main = main.map(on).unwrap_or_default();
+    let telling: Vec<&str> = scenes.iter().filter(|scene| scene.tells()).map(|scene| scene.name.as_str()).collect();
     let small = sensor.columns * sensor.rows <= MOST_TAXELS;
     let pictures = match designs.first().filter(|_| small) {
         Some(design) => Matrices::of(design).ok(),
@@ -157,10 +178,12 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
     };
     Ok(SensorSection {
         title: sensor_title(sensor),
+        conclusion: conclusion::conclusion(&own, &telling),
         fronts,
         table_1: tables::table_1(&on_main),
         table_3: tables::table_3(&on_main),
         lanes: tables::lanes(&on_main),
+        lanes_plot: lanes::plot(&on_main),
         widths: widths(&on_main),
         field,
         field_caption,
@@ -233,20 +256,24 @@ fn field_figures(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec
 /// Error of the number format over the widths, for each plan and filter that was varied.
 fn widths(points: &[&Point]) -> Vec<Figure> {
     let over = |title: &str, bits: fn(&Point) -> u32, other: fn(&Point) -> u32, usual: u32| {
-        let mut series: Vec<(String, Vec<(u32, f64)>)> = Vec::new();
+        let mut series: Vec<Series> = Vec::new();
         for point in points.iter().filter(|point| other(point) == usual && point.lanes == 16) {
             let Some(error) = point.against_solver.and_then(|error| error.field_max) else { continue };
-            let estimator = if point.estimator == Estimator::Line { "" } else { ", joint estimator" };
-            let name = format!("{}, {}{estimator}", point.plan, point.filter_title());
-            match series.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, values)) => values.push((bits(point), error)),
-                None => series.push((name, vec![(bits(point), error)])),
+            let name = format!("{}, {}, {}", point.plan, point.filter_title(), point.estimator_title());
+            if let Some(known) = series.iter_mut().find(|known| known.name == name) {
+                known.values.push((bits(point), error));
+                continue;
             }
+            series.push(Series { name, colour: front::style(point).1, dashes: "", values: vec![(bits(point), error)] });
         }
-        series.retain(|(_, values)| values.len() > 1);
-        for (_, values) in &mut series {
-            values.sort_by_key(|&(bits, _)| bits);
-            values.dedup_by_key(|&mut (bits, _)| bits);
+        series.retain(|series| series.values.len() > 1);
+        let mut used: Vec<&str> = Vec::new();
+        for series in &mut series {
+            series.values.sort_by_key(|&(bits, _)| bits);
+            series.values.dedup_by_key(|&mut (bits, _)| bits);
+            let before = used.iter().filter(|&&colour| colour == series.colour).count();
+            series.dashes = DASHES[before % DASHES.len()];
+            used.push(series.colour);
         }
         let caption = format!("largest error of a force against f64, relative to max |f_z|, over the {title}");
         (!series.is_empty()).then(|| Figure { svg: front::widths(&series, title), caption })

@@ -15,11 +15,17 @@ const BASE: (u32, u32, usize) = (18, 27, 16);
 
 /// The line estimator's point of a filter and a plan, in the usual widths and lanes, on one scene.
 pub fn find<'a>(points: &[&'a Point], filter: &str, plan: PlanKind) -> Option<&'a Point> {
-    find_by(points, filter, plan, Estimator::Line)
+    all_by(points, filter, plan, Estimator::Line).next()
 }
 
-fn find_by<'a>(points: &[&'a Point], filter: &str, plan: PlanKind, estimator: Estimator) -> Option<&'a Point> {
-    points.iter().copied().find(|point| {
+/// The same for each calibration of an estimator.
+fn all_by<'a>(
+    points: &[&'a Point],
+    filter: &str,
+    plan: PlanKind,
+    estimator: Estimator,
+) -> impl Iterator<Item = &'a Point> {
+    points.iter().copied().filter(move |point| {
         (point.filter.as_str(), point.plan, point.estimator) == (filter, plan, estimator)
             && (point.coefficient_bits, point.data_bits, point.lanes) == BASE
     })
@@ -76,8 +82,8 @@ pub fn table_3(points: &[&Point]) -> Option<Table> {
     if let Some(point) = find(points, "none", PlanKind::Reduced) {
         rows.push(of_point("reduced plan, no filter", point, "ours"));
     }
-    if let Some(point) = find_by(points, "none", PlanKind::Reduced, Estimator::Joint) {
-        rows.push(of_point("reduced plan, joint estimator", point, "ours"));
+    for point in all_by(points, "none", PlanKind::Reduced, Estimator::Joint) {
+        rows.push(of_point(&format!("reduced plan, {}", point.estimator_title()), point, "ours"));
     }
     Some(Table::new(header).with(rows))
 }
@@ -120,7 +126,7 @@ pub fn lanes(points: &[&Point]) -> Table {
     for point in points.iter().filter(|point| (point.coefficient_bits, point.data_bits) == (BASE.0, BASE.1)) {
         let Some(hardware) = &point.hardware else { continue };
         let of_lanes = |other: &&&Point| {
-            (&other.plan, &other.filter, &other.estimator) == (&point.plan, &point.filter, &point.estimator)
+            (&other.plan, &other.filter, other.calibration) == (&point.plan, &point.filter, point.calibration)
         };
         let mut varied: Vec<usize> = points.iter().filter(of_lanes).map(|other| other.lanes).collect();
         varied.sort_unstable();
@@ -132,7 +138,7 @@ pub fn lanes(points: &[&Point]) -> Table {
         let cells = [
             point.plan.to_string(),
             point.filter_title(),
-            point.estimator.to_string(),
+            point.estimator_title(),
             point.lanes.to_string(),
             format!("{} ({:.1} µs)", grouped(hardware.latency_cycles), hardware.latency_us),
             grouped(hardware.interval_cycles),
@@ -147,7 +153,7 @@ pub fn lanes(points: &[&Point]) -> Table {
     rows.sort_by(|(a, _), (b, _)| {
         let of = |point: &Point| {
             let (paper, joint) = (point.plan == PlanKind::Paper, point.estimator == Estimator::Joint);
-            (paper, point.filter.clone(), joint, point.lanes)
+            (paper, point.filter.clone(), joint, point.estimator_title(), point.lanes)
         };
         of(a).cmp(&of(b))
     });

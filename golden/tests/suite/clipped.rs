@@ -1,0 +1,121 @@
+//! Sensors that read no tension: what a calibration on clipped frames reaches, on contacts that it has not seen.
+
+use std::path::Path;
+
+use crate::contacts::{Pressed, Truth, frames, inside};
+use crate::families::{FAMILIES, Family, frame, judge as judged, row};
+use golden::design::Design;
+use golden::metrics::Outcome;
+use golden::scene::Medium;
+use golden::solver::Solver;
+
+const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
+/// Of contacts; the calibrations have seed 1 and another way to draw.
+const SEED: u64 = 0x5eed_0ff0;
+const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.8];
+
+fn design(name: &str) -> Design {
+    Design::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(format!("{name}.toml"))).unwrap()
+}
+
+/// Frames as a sensor reads them that knows no pull.
+fn clipped(set: &[Pressed], friction: f64, noise: f64) -> Vec<Truth> {
+    let mut frames = frames(set, friction, noise);
+    for stress in frames.iter_mut().flat_map(|truth| &mut truth.frame) {
+        *stress = stress.min(0.0);
+    }
+    frames
+}
+
+/// Lengths of the errors of the tangential force and errors of the normal one, in percent of the normal force, each in
+/// rising order; and the frames with a status other than good.
+fn judge(solver: &Solver, frames: &[Truth]) -> ([Vec<f64>; 2], usize) {
+    let mut flagged = 0;
+    let mut errors = [Vec::new(), Vec::new()];
+    for Truth { frame, outcome: Outcome { force, .. } } in frames {
+        let found = solver.solve(frame).unwrap();
+        flagged += usize::from(found.status.0 != 0);
+        let [x, y, z] = [0, 1, 2].map(|axis| 100.0 * (found.resultant[axis] - force[axis]) / force[2].abs());
+        errors[0].push(x.hypot(y));
+        errors[1].push(z.abs());
+    }
+    errors.iter_mut().for_each(|errors| errors.sort_by(f64::total_cmp));
+    (errors, flagged)
+}
+
+fn share(sorted: &[f64], share: f64) -> f64 {
+    sorted[((sorted.len() as f64 * share).ceil() as usize).clamp(1, sorted.len()) - 1]
+}
+
+/// What 95 % of 200 contacts keep to at each friction, in percent: of the tangential force, and of the normal one. What a
+/// calibration for sensors that read tension makes of the same frames is beyond any of it.
+#[test]
+fn one_contact_keeps_to_the_figures() {
+    for (sensor, limits) in [("sensor1", [2.0, 4.0, 6.0]), ("sensor2", [3.0, 5.0, 7.0])] {
+        let [clipped_one, reads] = ["clipped", "joint"].map(|kind| design(&format!("{sensor}-{kind}")));
+        let set = inside(&clipped_one.sensor, LAYER, SEED, 200);
+        let [solver, other] = [&clipped_one, &reads].map(|design| Solver::new(design).unwrap());
+        for (friction, limit) in FRICTIONS.into_iter().zip(limits) {
+            let frames = clipped(&set, friction, 0.0);
+            let ([tangential, normal], flagged) = judge(&solver, &frames);
+            let [most, of_normal] = [&tangential, &normal].map(|errors| share(errors, 0.95));
+            assert!(most <= limit && of_normal <= 4.6, "{sensor}, µ = {friction}: {most:.2} {of_normal:.2}");
+            assert_eq!(flagged, 0, "{sensor}, µ = {friction}");
+            let ([elsewhere, _], warned) = judge(&other, &frames);
+            if friction > 0.3 {
+                assert!(share(&elsewhere, 0.5) > 10.0, "{sensor}, µ = {friction}: {:.1}", share(&elsewhere, 0.5));
+                assert!(warned >= 199, "{sensor}, µ = {friction}: {warned} frames say that there is no tension");
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "prints the first table of clipped sensors in docs/contacts.md; seconds"]
+fn table() {
+    for sensor in ["sensor1", "sensor2"] {
+        for kind in ["joint", "clipped", "clipped-wide"] {
+            let design = design(&format!("{sensor}-{kind}"));
+            let solver = Solver::new(&design).unwrap();
+            for (poisson, noise) in [(0.49, 0.0), (0.49, 0.002), (0.47, 0.0)] {
+                let set = inside(&design.sensor, Medium::BondedLayer { poisson }, SEED, 200);
+                let mut row = format!("| {} | {kind} | {poisson} | {} |", &sensor[6..], 100.0 * noise);
+                for friction in FRICTIONS {
+                    let ([tangential, normal], _) = judge(&solver, &clipped(&set, friction, noise));
+                    let [median, most, worst] = [0.5, 0.95, 1.0].map(|part| share(&tangential, part));
+                    row += &format!(" {median:.1} / {most:.1} / {worst:.1} | {:.1} |", share(&normal, 0.95));
+                }
+                println!("{row}");
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "prints the table of clipped families in docs/contacts.md; minutes"]
+fn families() {
+    for sensor in ["sensor1", "sensor2"] {
+        let solvers = ["clipped", "clipped-wide"].map(|kind| {
+            let design = design(&format!("{sensor}-{kind}"));
+            (Solver::new(&design).unwrap(), design.sensor)
+        });
+        for (family, label) in FAMILIES {
+            let all = matches!(family, Family::Wide | Family::WideInside);
+            let mut frames: Vec<_> =
+                (0..if all { 600 } else { 60 }).map(|seed| frame(&solvers[0].1, family, 0.5, 1000 + seed)).collect();
+            for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {
+                *stress = stress.min(0.0);
+            }
+            let [narrow, wide] = solvers.each_ref().map(|(solver, _)| judged(solver, &frames));
+            let [bad, good] =
+                wide.doubtful.map(|share| if share.is_nan() { String::new() } else { format!("{share:.0}") });
+            println!(
+                "| {} | {label} |{}{} {bad} | {good} | {:.0} |",
+                &sensor[6..],
+                row(&narrow),
+                row(&wide),
+                wide.within
+            );
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! What the points of a sensor come to: a design to take, and three sentences that say why.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use golden::design::PlanKind;
+use serde::Serialize;
+
+use super::paper::TABLE_3;
+use crate::figures::grouped;
+use crate::sweep::point::{Calibration, Hardware, Point, paper_sensor};
+
+/// Errors that differ by no more, in percent of the normal force, are taken for equal.
+const AS_GOOD: f64 = 0.5;
+
+/// The head of a sensor's part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Conclusion {
+    sentences: Vec<String>,
+    /// The recommended variant as keys of a design file.
+    keys: String,
+}
+
+/// A variant with the worst of its errors over the scenes that tell.
+struct Variant<'a> {
+    point: &'a Point,
+    hardware: &'a Hardware,
+    /// Largest error along x and y, and along z, in percent of the normal force.
+    tangential: f64,
+    normal: f64,
+}
+
+impl Variant<'_> {
+    /// Cycles times multipliers: what a variant asks of a device for a frame.
+    fn cost(&self) -> u64 {
+        self.hardware.latency_cycles * self.hardware.dsp as u64
+    }
+}
+
+/// The conclusion from a sensor's points on `scenes`, those whose forces tell something; nothing without hardware that
+/// was judged on all of them.
+pub fn conclusion(points: &[&Point], scenes: &[&str]) -> Option<Conclusion> {
+    let variants = variants(points, scenes);
+    let most_exact = variants.iter().min_by(|a, b| a.tangential.total_cmp(&b.tangential))?;
+    let best = variants
+        .iter()
+        .filter(|variant| variant.tangential <= most_exact.tangential + AS_GOOD)
+        .min_by_key(|variant| (variant.cost(), variant.hardware.latency_cycles))?;
+    let fastest = variants.iter().min_by_key(|variant| (variant.hardware.latency_cycles, variant.hardware.dsp))?;
+    let frames: usize = points.iter().filter(|point| point.key == best.point.key).map(|point| point.frames).sum();
+    let mut sentences = vec![format!(
+        "Take {}: of {} variants none errs by half a point less, and of those that err as little it has the least product \
+         of cycles and multipliers. On {} ({frames} frames in the first) it errs by at most {:.1} % of the normal force \
+         along x and y and {:.1} % along z, and takes {} cycles, {:.1} µs, with {} DSP and {:.1} RAMB36; {} frames a \
+         second.",
+        best.point.label(),
+        variants.len(),
+        listed(scenes),
+        best.tangential,
+        best.normal,
+        grouped(best.hardware.latency_cycles),
+        best.hardware.latency_us,
+        best.hardware.dsp,
+        best.hardware.bram36,
+        grouped((1e6 / best.hardware.interval_us).round() as u64),
+    )];
+    sentences.extend(beside_the_paper(best));
+    let mut last = format!(
+        "Faster is {}, {:.1} µs on {} DSP, with errors of {:.1} %",
+        fastest.point.label(),
+        fastest.hardware.latency_us,
+        fastest.hardware.dsp,
+        fastest.tangential
+    );
+    if fastest.point.key == best.point.key {
+        "None is faster".clone_into(&mut last);
+    }
+    let filtered = variants.iter().filter(|variant| variant.point.filter != "none");
+    if let Some(filtered) = filtered.min_by(|a, b| a.tangential.total_cmp(&b.tangential)) {
+        let verdict = match filtered.tangential - best.tangential {
+            more if more > AS_GOOD => "which is less exact",
+            less if less < -AS_GOOD => "which is more exact",
+            _ => "which is as exact",
+        };
+        // Writing to a String cannot fail.
+        let _ = write!(
+            last,
+            "; of the filtered ones the most exact is {}, with {:.1} % in {:.1} µs, {verdict} and takes {:.1} times as long",
+            filtered.point.label(),
+            filtered.tangential,
+            filtered.hardware.latency_us,
+            filtered.hardware.latency_us / best.hardware.latency_us
+        );
+    }
+    sentences.push(last + ".");
+    Some(Conclusion { sentences, keys: keys(best.point) })
+}
+
+/// The variants with hardware and the widest words that were judged on all scenes, by name, so that their order is always
+/// the same. Narrower words cost as much here.
+fn variants<'a>(points: &[&'a Point], scenes: &[&str]) -> Vec<Variant<'a>> {
+    let bits = |point: &Point| (point.coefficient_bits, point.data_bits);
+    let widest = points.iter().map(|&point| bits(point)).max();
+    let mut found: BTreeMap<String, Vec<&'a Point>> = BTreeMap::new();
+    for point in points.iter().filter(|point| scenes.contains(&point.scene.as_str()) && Some(bits(point)) == widest) {
+        found.entry(point.label()).or_default().push(point);
+    }
+    found.retain(|_, points| points.len() == scenes.len() && !scenes.is_empty());
+    let worst = |points: &[&Point], error: fn(&Point) -> f64| points.iter().map(|p| error(p)).fold(0.0, f64::max);
+    found
+        .into_values()
+        .filter_map(|points| {
+            Some(Variant {
+                point: points[0],
+                hardware: points[0].hardware.as_ref()?,
+                tangential: worst(&points, Point::tangential),
+                normal: worst(&points, |point| point.errors.e_fz.max),
+            })
+        })
+        .collect()
+}
+
+/// The paper's hardware without a filter, if the sensor is one of its two.
+fn beside_the_paper(best: &Variant<'_>) -> Option<String> {
+    let number = paper_sensor(&best.point.sensor)?;
+    let row = TABLE_3.iter().find(|row| (row.sensor, row.filter, row.software) == (number, "none", false))?;
+    Some(format!(
+        "The published hardware without a filter errs by {:.1} and {:.1} % there, against finite elements, and takes \
+         {:.2} ms: {} times as long.",
+        row.max[0].max(row.max[1]),
+        row.max[2],
+        row.milliseconds,
+        grouped((1000.0 * row.milliseconds / best.hardware.latency_us).round() as u64)
+    ))
+}
+
+fn listed(names: &[&str]) -> String {
+    match names {
+        [one] => format!("scene {one}"),
+        [rest @ .., last] => format!("scenes {} and {last}", rest.join(", ")),
+        [] => String::new(),
+    }
+}
+
+fn keys(point: &Point) -> String {
+    let filter = match point.filter.split_once('=') {
+        Some((kind, value)) => {
+            let (kind, key) = kind.split_once(' ').unwrap_or((kind, "l"));
+            format!("{{ kind = \"{kind}\", {key} = {value} }}")
+        }
+        None => format!("{{ kind = \"{}\" }}", point.filter),
+    };
+    let calibrated = point.calibration.map_or_else(String::new, |Calibration { grid, units, family }| {
+        let remark = if units > 0 { format!("   # golden calibrate --hidden {units}") } else { String::new() };
+        format!("\ngrid = {grid}\nfamily = \"{family}\"{remark}")
+    });
+    let plan = if point.plan == PlanKind::Paper { "paper" } else { "reduced" };
+    format!(
+        "[algorithm]\nplan = \"{plan}\"\nfilter = {filter}\nestimator = \"{}\"{calibrated}\n\n[hardware]\nlanes = {}\n\
+         coefficient_bits = {}\ndata_bits = {}\n",
+        point.estimator, point.lanes, point.coefficient_bits, point.data_bits
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::StatusCounts;
+    use crate::sweep::point::{Geometry, Verified};
+    use golden::design::{Estimator, Kernel};
+    use golden::metrics::{ErrorSummary, Outcome};
+
+    /// A point on a scene: multipliers, cycles, and its error along x in percent.
+    fn point(scene: &str, lanes: usize, cycles: u64, error: f64) -> Point {
+        let truth = Outcome { force: [0.0, 0.0, -1.0], friction: 0.0, direction: 0.0 };
+        let found = Outcome { force: [0.01 * error, 0.0, -1.0], ..truth };
+        let errors = ErrorSummary::new(&[(truth, found)]);
+        Point {
+            key: format!("{scene}{lanes}"),
+            sensor: Geometry { columns: 10, rows: 10, pitch_mm: [4.0, 2.0], depth_mm: 3.0 },
+            scene: scene.to_owned(),
+            plan: PlanKind::Reduced,
+            kernel: Kernel::Point,
+            filter: "none".to_owned(),
+            estimator: Estimator::Line,
+            calibration: None,
+            coefficient_bits: 18,
+            data_bits: 27,
+            lanes,
+            verified: Verified::Model,
+            refusal: None,
+            hardware: Some(Hardware {
+                latency_cycles: cycles,
+                interval_cycles: cycles,
+                latency_us: cycles as f64 / 125.0,
+                interval_us: cycles as f64 / 125.0,
+                dsp: lanes,
+                bram36: 1.0,
+                rom_bits: 1,
+                macs: 1,
+            }),
+            nnz: BTreeMap::new(),
+            nnz_total: 0,
+            frames: 1,
+            mean_mu: 0.0,
+            errors,
+            solver_errors: errors,
+            against_solver: None,
+            status_counts: StatusCounts::of(&[]),
+        }
+    }
+
+    #[test]
+    fn the_cheapest_of_the_most_exact_is_taken() {
+        let points = [
+            point("a", 4, 9000, 2.4),
+            point("a", 16, 2000, 2.0),
+            point("a", 64, 1000, 2.1),
+            point("a", 8, 1500, 9.0),
+            // Exact on one scene only, and there alone.
+            point("a", 32, 10, 0.1),
+            point("b", 4, 9000, 1.0),
+            point("b", 16, 2000, 2.2),
+            point("b", 64, 1000, 1.0),
+            point("b", 8, 1500, 1.0),
+        ];
+        let points: Vec<&Point> = points.iter().collect();
+        let found = conclusion(&points, &["a", "b"]).unwrap();
+        let [take, paper, others] = found.sentences.as_slice() else { panic!("{found:?}") };
+        assert!(take.starts_with("Take no filter, reduced plan, line, 16 lanes"), "{take}");
+        assert!(take.contains("of 4 variants") && take.contains("at most 2.2 %"), "{take}");
+        assert!(paper.contains("28.76 ms: 1,798 times"), "{paper}");
+        assert!(others.starts_with("Faster is no filter, reduced plan, line, 64 lanes"), "{others}");
+        assert!(found.keys.contains("filter = { kind = \"none\" }") && found.keys.contains("lanes = 16"), "{found:?}");
+        assert_eq!(conclusion(&points, &["a", "b", "c"]), None);
+        assert_eq!(conclusion(&points, &[]), None);
+    }
+
+    #[test]
+    fn filters_are_written_as_a_design_file_has_them() {
+        let of = |filter: &str| keys(&Point { filter: filter.to_owned(), ..point("a", 4, 1, 1.0) });
+        assert!(of("f1 l=40").contains("filter = { kind = \"f1\", l = 40 }"));
+        assert!(of("f2 p=50").contains("filter = { kind = \"f2\", p = 50 }"));
+    }
+}

@@ -1,0 +1,81 @@
+//! What lanes buy: time over multipliers, a pair of lines for each plan, filter and estimator that was varied.
+
+use super::front::{DASHES, style};
+use crate::svg::{Axis, INK, Svg, power};
+use crate::sweep::point::{Hardware, Point};
+
+const WIDTH: f64 = 760.0;
+const HEIGHT: f64 = 410.0;
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 36.0;
+const TOP: f64 = 26.0;
+const BOTTOM: f64 = 84.0;
+/// Dashes of the interval beside those of the latency.
+const INTERVAL: &str = DASHES[2];
+
+/// One variant over its lanes.
+struct Series<'a> {
+    name: String,
+    colour: &'static str,
+    points: Vec<(&'a Point, &'a Hardware)>,
+}
+
+/// Latency and interval in µs over DSP, all logarithmic; nothing if no variant has more than one number of lanes.
+pub fn plot(points: &[&Point]) -> Option<String> {
+    let series = series(points);
+    let all = || series.iter().flat_map(|series| series.points.iter().map(|&(_, hardware)| hardware));
+    all().next()?;
+    let x = Axis::covering(all().map(|hardware| hardware.dsp as f64), false, LEFT, WIDTH - RIGHT);
+    let times = all().flat_map(|hardware| [hardware.latency_us, hardware.interval_us]);
+    let y = Axis::covering(times, false, HEIGHT - BOTTOM, TOP);
+    let mut svg = Svg::new(WIDTH, HEIGHT, "Latency and interval over multipliers").with_names_at((LEFT, HEIGHT - 20.0));
+    for decade in x.decades() {
+        let place = x.place(10_f64.powi(decade));
+        svg.grid((place, y.from), (place, y.to));
+        svg.text((place, y.from + 18.0), "middle", INK, &power(decade));
+    }
+    for decade in y.decades() {
+        let place = y.place(10_f64.powi(decade));
+        svg.grid((x.from, place), (x.to, place));
+        svg.text((x.from - 8.0, place + 4.0), "end", INK, &power(decade));
+    }
+    svg.text((6.0, 14.0), "start", INK, "µs a frame: latency, and dotted the interval");
+    svg.text((f64::midpoint(x.from, x.to), HEIGHT - 42.0), "middle", INK, "DSP (logarithmic)");
+    for (number, Series { name, colour, points }) in series.iter().enumerate() {
+        let places = |time: fn(&Hardware) -> f64| -> Vec<(f64, f64)> {
+            points.iter().map(|(_, hardware)| (x.place(hardware.dsp as f64), y.place(time(hardware)))).collect()
+        };
+        let latency = places(|hardware| hardware.latency_us);
+        svg.line(&latency, colour, "");
+        svg.line(&places(|hardware| hardware.interval_us), colour, INTERVAL);
+        for (&place, (point, hardware)) in latency.iter().zip(points) {
+            let name = format!(
+                "{name}, {} lanes: {:.1} µs, a frame every {:.1} µs, {} DSP, {:.1} RAMB36",
+                point.lanes, hardware.latency_us, hardware.interval_us, hardware.dsp, hardware.bram36
+            );
+            svg.named_dot(place, 4.0, colour, &name);
+        }
+        svg.sized_text((WIDTH - RIGHT, TOP + 14.0 + 15.0 * number as f64), "end", colour, 11, name);
+    }
+    Some(svg.finish())
+}
+
+/// The variants with more than one number of lanes, by the widest words that were swept.
+fn series<'a>(points: &[&'a Point]) -> Vec<Series<'a>> {
+    let widest = points.iter().map(|point| (point.coefficient_bits, point.data_bits)).max();
+    let mut series: Vec<Series<'a>> = Vec::new();
+    for &point in points.iter().filter(|point| Some((point.coefficient_bits, point.data_bits)) == widest) {
+        let Some(hardware) = &point.hardware else { continue };
+        let name = format!("{} plan, {}, {}", point.plan, point.filter_title(), point.estimator_title());
+        match series.iter_mut().find(|known| known.name == name) {
+            Some(known) => known.points.push((point, hardware)),
+            None => series.push(Series { name, colour: style(point).1, points: vec![(point, hardware)] }),
+        }
+    }
+    for series in &mut series {
+        series.points.sort_by_key(|(point, _)| point.lanes);
+        series.points.dedup_by_key(|(point, _)| point.lanes);
+    }
+    series.retain(|series| series.points.len() > 1);
+    series
+}

@@ -1,0 +1,94 @@
+//! The pages as a browser shows them: nothing on the console, and no text outside its box, on a desk and on a telephone.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::workspace;
+
+/// What the page is asked once it is there; names of dots are shown while they are measured.
+const QUESTIONS: &str = r#"<script>
+addEventListener("load", () => {
+  const wrong = [];
+  if (document.documentElement.scrollWidth > innerWidth)
+    wrong.push(`the page is ${document.documentElement.scrollWidth} wide`);
+  const texts = document.querySelectorAll("svg text");
+  for (const text of texts) {
+    text.style.display = "inline";
+    const [own, box] = [text, text.ownerSVGElement].map(element => element.getBoundingClientRect());
+    const slack = 1.5;
+    if (own.left < box.left - slack || own.right > box.right + slack || own.top < box.top - slack
+        || own.bottom > box.bottom + slack) wrong.push(`outside its picture: ${text.textContent}`);
+  }
+  for (const element of document.querySelectorAll("p, h1, h2, h3, figure, figcaption, td, th"))
+    if (element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).overflowX === "visible")
+      wrong.push(`outside its box: ${element.textContent.slice(0, 60)}`);
+  parent.postMessage({ width: innerWidth, texts: texts.length, wrong: wrong.join("\n") }, "*");
+});
+</script></body>"#;
+
+/// What shows the page in a frame, since a window is never as narrow as a telephone, and keeps its answers.
+const FRAME: &str = r#"<!DOCTYPE html><html><body><script>
+addEventListener("message", ({ data }) => Object.assign(document.body.dataset, data));
+</script><iframe src="asked.html" style="border: 0; width: WIDTHpx; height: 900px"></iframe></body></html>"#;
+
+/// The browser's program, by any of its names.
+fn browser() -> &'static str {
+    let there = |name: &&str| Command::new(name).arg("--version").output().is_ok();
+    ["chromium", "chromium-browser", "google-chrome"]
+        .into_iter()
+        .find(there)
+        .expect("a browser: run `make browser-tools`")
+}
+
+/// Opens a page in a frame of a width; what is wrong with it, and what the console says.
+fn wrong(page: &str, folder: &Path, width: u32) -> Vec<String> {
+    fs::write(folder.join("asked.html"), page.replace("</body>", QUESTIONS)).expect("writable");
+    let file = folder.join("frame.html");
+    fs::write(&file, FRAME.replace("WIDTH", &width.to_string())).expect("writable");
+    let mut browser = Command::new(browser());
+    browser.args(["--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--dump-dom"]);
+    browser.arg(format!("--user-data-dir={}", folder.join("profile").display()));
+    // Long enough for the answers, in the browser's own time.
+    browser.args(["--window-size=1400,1000", "--virtual-time-budget=5000"]).arg(format!("file://{}", file.display()));
+    let output = browser.output().expect("starts");
+    let shown = String::from_utf8_lossy(&output.stdout).into_owned();
+    let value = |name: &str| {
+        let (_, rest) = shown.split_once(&format!("data-{name}=\"")).unwrap_or_else(|| panic!("no {name}: {shown}"));
+        rest.split('"').next().expect("a value").to_owned()
+    };
+    assert_eq!(value("width"), width.to_string(), "the frame's width");
+    assert!(value("texts").parse::<usize>().expect("a number") > 20, "the pictures have text");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let console = said.lines().filter(|line| line.contains(":CONSOLE")).map(str::to_owned);
+    value("wrong").lines().map(str::to_owned).chain(console).collect()
+}
+
+fn report(folder: &Path) -> String {
+    let out = folder.join("out");
+    let mut testbench = Command::new(env!("CARGO_BIN_EXE_testbench"));
+    testbench.arg("sweep").arg(workspace("designs/sensor1-fast.toml")).arg(workspace("designs/sensor1-reduced.toml"));
+    testbench.arg("--scene").arg(workspace("scenes/sensor1-tilted.toml")).arg(workspace("scenes/two-contacts.toml"));
+    let output = testbench.arg("--out").arg(&out).output().expect("starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    fs::read_to_string(out.join("report.html")).expect("written")
+}
+
+#[test]
+fn the_report_fits_a_desk_and_a_telephone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = report(folder.path());
+    for width in [1280, 400] {
+        let wrong = wrong(&page, folder.path(), width);
+        assert!(wrong.is_empty(), "{width} wide:\n{}", wrong.join("\n"));
+    }
+    // The questions find what is wrong.
+    let broken = page
+        .replacen("<h1>", "<script>console.error('broken')</script><h1>", 1)
+        .replacen("</h1>", "</h1><p style=\"width: 2em\">incomprehensibilities</p>", 1)
+        .replacen("text-anchor=\"middle\"", "text-anchor=\"middle\" dx=\"2000\"", 1);
+    let found = wrong(&broken, folder.path(), 1280).join("\n");
+    for part in ["broken", "outside its box: incompre", "outside its picture: "] {
+        assert!(found.contains(part), "{part}: {found}");
+    }
+}
