@@ -130,7 +130,7 @@ mod tests {
     fn a_log_says_what_is_done_and_ends_with_the_work() {
         let (say, said) = mpsc::channel();
         let progress = Progress::logged(Duration::from_millis(20), move |line| drop(say.send(line)));
-        let next = || said.recv_timeout(Duration::from_secs(60)).unwrap();
+        let next = || said.recv_timeout(Duration::from_mins(1)).unwrap();
         progress.stage("planning");
         while next() != "planning, 0 s" {}
         progress.counted_in("points", "sweeping", 7);
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn lines_count_where_there_is_something_to_count() {
-        let minute = Duration::from_secs(60);
+        let minute = Duration::from_mins(1);
         assert_eq!(line("matrices", 0, None, minute), "matrices, 60 s");
         assert_eq!(line("sweeping", 12, Some(496), minute), "sweeping: 12 of 496, 60 s");
     }

@@ -1,5 +1,6 @@
 //! Sensors that read no tension: what a calibration on clipped frames reaches, on contacts that it has not seen.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use crate::contacts::{Pressed, Truth, frames, inside};
@@ -39,7 +40,9 @@ fn judge(solver: &Solver, frames: &[Truth]) -> ([Vec<f64>; 2], usize) {
         errors[0].push(x.hypot(y));
         errors[1].push(z.abs());
     }
-    errors.iter_mut().for_each(|errors| errors.sort_by(f64::total_cmp));
+    for errors in &mut errors {
+        errors.sort_by(f64::total_cmp);
+    }
     (errors, flagged)
 }
 
@@ -83,7 +86,8 @@ fn table() {
                 for friction in FRICTIONS {
                     let ([tangential, normal], _) = judge(&solver, &clipped(&set, friction, noise));
                     let [median, most, worst] = [0.5, 0.95, 1.0].map(|part| share(&tangential, part));
-                    row += &format!(" {median:.1} / {most:.1} / {worst:.1} | {:.1} |", share(&normal, 0.95));
+                    // Writing to a String cannot fail.
+                    let _ = write!(row, " {median:.1} / {most:.1} / {worst:.1} | {:.1} |", share(&normal, 0.95));
                 }
                 println!("{row}");
             }
