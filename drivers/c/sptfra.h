@@ -32,7 +32,13 @@ enum {
     SPTFRA_SYSTEM = -8,      /* errno says why */
     SPTFRA_BUSY = -9,        /* a frame is on its way, or the last one failed: wait, or recover */
     SPTFRA_OUT_OF_STEP = -10, /* the answer is that to another frame */
-    SPTFRA_NOT_STARTED = -11
+    SPTFRA_NOT_STARTED = -11,
+    SPTFRA_NO_CALIBRATION = -12,   /* the design's calibration is in ROM */
+    SPTFRA_CALIBRATION_BUSY = -13, /* a commit or a tare is under way */
+    SPTFRA_OUT_OF_RANGE = -14,     /* a value, or an offset that a tare found: nothing has changed */
+    SPTFRA_WRONG_CRC = -15,        /* the bank holds other words than were sent: nothing has changed */
+    SPTFRA_NOT_AT_REST = -16,      /* a taxel spread by more than the noise floor: nothing has changed */
+    SPTFRA_BAD_REST = -17          /* a frame of the tare was clipped, no number, cut or lost: nothing has changed */
 };
 
 /* What went wrong, in words. */
@@ -204,6 +210,23 @@ typedef struct {
 /* Reads the words of an answer, float32 as the processor has it. SPTFRA_BAD_BUFFER if they do not stand on a multiple
  * of four bytes. */
 int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result);
+
+/* ---- Calibration in RAM (calibration = "ram" in the design), in sptfra_calibration.c */
+
+/* Gain and offset (in counts) of each taxel, as in a design's calibration.csv: gains 1e-9 to 16, offsets to 1e6. A gain of
+ * 0 reads 0: for taxels that the design replaces. With a noise floor above 0, in Pa, the thresholds of contact and of rest
+ * are set by it, else they stay. Writes the bank that does not act, has its CRC compared and the bank act from the next
+ * frame on; frames may run. On any error what acted still does. */
+int sptfra_load_calibration(
+    const sptfra *device, const double *gain, const double *offset, double noise_floor_pa, uint32_t polls);
+/* A word of the bank that acts, or of the other one. */
+int sptfra_read_calibration(const sptfra *device, uint16_t index, int acting, uint32_t *word);
+#define SPTFRA_MOST_TARE_LOG2 10u
+/* Begins to average the next 2^log2_frames frames, which are to be at rest; sptfra_calibration_wait says what came of
+ * it, once they were sent. */
+int sptfra_tare(const sptfra *device, unsigned log2_frames);
+/* Waits for the end of a commit or a tare, asking at most so many times; SPTFRA_TIMEOUT: it is still under way. */
+int sptfra_calibration_wait(const sptfra *device, uint32_t polls);
 
 /* ---- Linux user space: a UIO device for each block of registers */
 

@@ -17,6 +17,7 @@ import enum
 import json
 import pathlib
 import time
+import zlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,6 +56,17 @@ class Register(enum.IntEnum):
     LAST_STATUS = 0x05C
     LAST_LATENCY = 0x060
     LAST_INTERVAL = 0x064
+    CALIBRATION = 0x080
+    CALIBRATION_OFFSET_LIMIT = 0x084
+    CALIBRATION_STEPS_LOW = 0x088
+    CALIBRATION_STEPS_HIGH = 0x08C
+    CALIBRATION_INDEX = 0x090
+    CALIBRATION_DATA = 0x094
+    CALIBRATION_COMMIT = 0x098
+    TARE = 0x09C
+    CALIBRATION_STATUS = 0x0A0
+    CALIBRATION_ERRORS = 0x0A4
+    CALIBRATION_CRC = 0x0A8
 
 
 class Status(enum.IntFlag):
@@ -83,8 +95,24 @@ class Event(enum.IntFlag):
     BAD_ACCESS = 4
 
 
+class CalibrationError(enum.IntFlag):
+    """Why a calibration was refused; nothing has changed."""
+
+    OUT_OF_RANGE = 1
+    BUSY = 2
+    WRONG_CRC = 4
+    NOT_AT_REST = 8
+    BAD_FRAME = 16
+
+
 SOFT_RESET = 1
 RESETTING = 1
+CALIBRATION_BUSY = 1 << 9
+#: `CALIBRATION_INDEX`: of the bank that acts.
+INDEX_ACTIVE = 1 << 31
+#: A gain's word: mantissa, and above it the exponent of the counts.
+MANTISSA_BITS, EXPONENT_BITS = 18, 10
+MOST_TARE_LOG2 = 10
 
 
 @dataclass(frozen=True)
@@ -103,6 +131,8 @@ class Identity:
     has_counts: bool
     skips_zeros: bool
     stream_bits: int
+    #: Whether gains and offsets are in RAM: see `Sptfra.load_calibration`.
+    calibration_in_ram: bool
     #: What a sample of a frame is: float32, int16 or uint16.
     samples: np.dtype
     clock_mhz: float
@@ -272,6 +302,7 @@ class Sptfra:
             reduced=bool(features & 2),
             has_counts=bool(features & 4),
             skips_zeros=bool(features & 8),
+            calibration_in_ram=bool(features & 16),
             stream_bits=8 * (features >> 8 & 0xFF) or 32,
             samples=np.dtype((np.float32, np.int16, np.uint16)[features >> 16 & 3]),
             clock_mhz=read(Register.CLOCK) / 1e3,
@@ -383,3 +414,124 @@ class Sptfra:
             self._next = (number + 1) & 0xFFFF
             self._failed = False
         return decode(answers, rows, columns, self.identity.has_field, self._layout)
+
+    def load_calibration(self, path, noise_floor_pa=None, timeout=1.0):
+        """Lets the gains and offsets of a `calibration.csv` act from the next frame on; frames may run meanwhile.
+
+        The file has a line `gain,offset` for each taxel, as the design's own. With `noise_floor_pa` the thresholds of
+        contact and of rest are set by it, else they stay. What is written is compared by its CRC. Raises ValueError on a
+        file or values that no bank takes, RuntimeError if the core refuses, TimeoutError; then what acted still does.
+        """
+        self._needs_calibration()
+        gains, offsets = read_calibration(path, self.identity.rows * self.identity.columns)
+        read, write = self._core.read, self._core.write
+        numbers = read(Register.CALIBRATION)
+        shift, lsb = numbers >> 16 & 0x3F, (numbers >> 24 ^ 0x80) - 0x80
+        bits = read(Register.CALIBRATION_STEPS_HIGH) << 32 | read(Register.CALIBRATION_STEPS_LOW)
+        steps = float(np.array([bits], dtype=np.uint64).view(np.float64)[0])
+        words = bank_words(gains, offsets, steps, shift, read(Register.CALIBRATION_OFFSET_LIMIT))
+        if noise_floor_pa is None:
+            thresholds = [self.read_calibration(len(words) + place) for place in (0, 1)]
+        else:
+            thresholds = [max(1, int(noise_floor_pa * count * 2.0**-lsb + 0.5)) for count in (len(gains), 1)]
+            if not 0 < noise_floor_pa or thresholds[0] >= 1 << 32 or thresholds[1] >= 1 << 26:
+                raise ValueError(f"a noise floor of {noise_floor_pa} Pa: use one above 0, far below the full scale")
+        words = np.append(words, np.array(thresholds, dtype=np.uint32)).astype("<u4")
+        crc = zlib.crc32(words.tobytes())
+        self._calibration_idle()
+        write(Register.CALIBRATION_INDEX, 0)
+        for word in words:
+            write(Register.CALIBRATION_DATA, int(word))
+        write(Register.CALIBRATION_COMMIT, crc)
+        self._calibration_done(timeout)
+        if read(Register.CALIBRATION_CRC) != crc:
+            raise RuntimeError("the bank that acts is not the one that was written")
+
+    def read_calibration(self, index, acting=True):
+        """A word of the bank that acts, or of the other one: gains, offsets, contact threshold, noise floor."""
+        self._needs_calibration()
+        self._core.write(Register.CALIBRATION_INDEX, index | (INDEX_ACTIVE if acting else 0))
+        return self._core.read(Register.CALIBRATION_DATA)
+
+    def tare(self, frames, timeout=1.0):
+        """Takes the mean of 2**n frames at rest, n up to 10, off the offsets; returns their `Forces`, from before.
+
+        Raises ValueError on another number of frames, RuntimeError if they are not at rest, a taxel's stress spreading by
+        more than the noise floor, clipped or no numbers: then nothing has changed.
+        """
+        self._needs_calibration()
+        taxels = self.identity.rows * self.identity.columns
+        count = np.asarray(frames).size // taxels
+        log2 = count.bit_length() - 1
+        if count != 1 << max(log2, 0) or log2 > MOST_TARE_LOG2:
+            raise ValueError(f"{count} frames: a tare takes 1, 2, 4, ... or 1024")
+        self._calibration_idle()
+        self._core.write(Register.TARE, log2)
+        forces = self.reconstruct(frames, timeout)
+        self._calibration_done(timeout)
+        return forces
+
+    def _needs_calibration(self):
+        if not self.identity.calibration_in_ram:
+            raise RuntimeError('the design\'s calibration is in ROM: it needs calibration = "ram"')
+
+    def _calibration_idle(self):
+        if self._core.read(Register.CALIBRATION_STATUS) & CALIBRATION_BUSY:
+            raise RuntimeError("a commit or a tare is under way")
+        self._core.write(Register.CALIBRATION_ERRORS, (1 << len(CalibrationError)) - 1)
+
+    def _calibration_done(self, timeout):
+        end = time.monotonic() + timeout
+        while self._core.read(Register.CALIBRATION_STATUS) & CALIBRATION_BUSY:
+            if time.monotonic() > end:
+                raise TimeoutError(f"the calibration is busy after {timeout} s")
+        errors = CalibrationError(self._core.read(Register.CALIBRATION_ERRORS))
+        self._core.write(Register.CALIBRATION_ERRORS, int(errors))
+        if errors:
+            names = ", ".join(bit.name for bit in CalibrationError if bit & errors)
+            raise RuntimeError(f"the core refuses the calibration, and nothing has changed: {names}")
+
+
+def read_calibration(path, taxels):
+    """Gains and offsets of a file with a line `gain,offset` for each taxel. Raises ValueError, with the line."""
+    gains, offsets = [], []
+    for number, line in enumerate(pathlib.Path(path).read_text(encoding="utf-8-sig").splitlines(), 1):
+        if not line.strip():
+            continue
+        try:
+            gain, offset = map(float, line.split(","))
+        except ValueError:
+            raise ValueError(f"{path}, line {number}: {line.strip()!r} is no gain,offset such as 1.02,-0.5") from None
+        if not (gain == 0 or 1e-9 <= gain <= 16) or not abs(offset) <= 1e6:
+            raise ValueError(f"{path}, line {number}: use a gain from 1e-9 to 16 or 0, an offset from -1e6 to 1e6")
+        gains.append(gain)
+        offsets.append(offset)
+    if len(gains) != taxels:
+        raise ValueError(f"{path}: {len(gains)} lines, and the core has {taxels} taxels")
+    return gains, offsets
+
+
+def bank_words(gains, offsets, count_steps, shift, offset_limit):
+    """The words of gains, then of offsets (in counts), as uint32; `count_steps` are steps of the stress for a count.
+
+    A gain of 0 reads 0: for taxels that the design replaces. Raises ValueError on an offset beyond the limit.
+    """
+    words = np.zeros(2 * len(gains), dtype=np.uint32)
+    for taxel, (gain, offset) in enumerate(zip(gains, offsets)):
+        mantissa, exponent, scaled = 1 << (MANTISSA_BITS - 2), -(1 << (EXPONENT_BITS - 1)), 0
+        if gain != 0:
+            # Ties go away from zero.
+            away = lambda value: int(np.copysign(np.floor(abs(value) + 0.5), value))  # noqa: E731
+            steps = gain * count_steps
+            exponent = int(np.frexp(steps)[1]) + 1 - MANTISSA_BITS
+            while away(abs(steps) * 2.0**-exponent) >= 1 << (MANTISSA_BITS - 1):
+                exponent += 1
+            mantissa = away(steps * 2.0**-exponent)
+            # By the gain as it is stored, so that the count of no stress at all gives none.
+            scaled = away(offset / gain * mantissa * 2.0**exponent)
+            exponent += shift
+            if abs(scaled) > offset_limit:
+                raise ValueError(f"taxel {taxel}: an offset of {offset} counts is beyond what a bank takes")
+        words[taxel] = (exponent & ((1 << EXPONENT_BITS) - 1)) << MANTISSA_BITS | mantissa & ((1 << MANTISSA_BITS) - 1)
+        words[len(gains) + taxel] = scaled & 0xFFFFFFFF
+    return words

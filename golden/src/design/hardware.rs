@@ -72,6 +72,17 @@ impl Samples {
     }
 }
 
+/// Where gains, offsets and the contact threshold stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CalibrationIn {
+    /// Fixed when the hardware is generated.
+    #[default]
+    Rom,
+    /// In two banks of memory, written through the register bank while frames run.
+    Ram,
+}
+
 /// The `[hardware]` table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hardware {
@@ -98,6 +109,8 @@ pub struct Hardware {
     pub samples: Samples,
     /// Whether the core has a register bank on AXI4-Lite.
     pub control: bool,
+    /// Where the calibration stands; in RAM only with `control`, and with counts that `pa_per_count` makes pascals.
+    pub calibration: CalibrationIn,
     /// Clock in megahertz, 1 to 1000.
     pub clock_mhz: f64,
     /// FPGA part name.
@@ -113,4 +126,4 @@ impl Hardware {
     }
 }
 
-print_as_words!(Arithmetic, Optimise, Samples);
+print_as_words!(Arithmetic, Optimise, Samples, CalibrationIn);

@@ -99,6 +99,7 @@ struct RawHardware {
     stream_bits: Option<i64>,
     samples: Option<String>,
     control: Option<bool>,
+    calibration: Option<String>,
     clock_mhz: Option<f64>,
     part: Option<String>,
 }
@@ -161,6 +162,7 @@ fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, D
             "integers are counts: add sensor.pa_per_count or sensor.curve".to_owned(),
         ));
     }
+    checks::calibration(&check, &hardware, &input)?;
     algorithm.joint.correction = correction.map(|raw| joint::correction(&check, raw, &sensor, beside)).transpose()?;
     Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }
@@ -285,6 +287,7 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         stream_bits,
         samples: check.optional_word("hardware.samples", raw.samples.as_deref())?.unwrap_or_default(),
         control: raw.control.unwrap_or(false),
+        calibration: check.optional_word("hardware.calibration", raw.calibration.as_deref())?.unwrap_or_default(),
         clock_mhz: check.real("hardware.clock_mhz", raw.clock_mhz.unwrap_or(125.0), 1.0, 1000.0, "MHz")?,
         part,
     })

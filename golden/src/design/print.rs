@@ -5,7 +5,8 @@ use std::fmt::Write;
 use toml::Value;
 
 use super::{
-    Algorithm, Choices, Design, FileNames, Filter, FilterKind, Hardware, Samples, Slip, Tension, joint, regularisation,
+    Algorithm, CalibrationIn, Choices, Design, FileNames, Filter, FilterKind, Hardware, Samples, Slip, Tension, joint,
+    regularisation,
 };
 use crate::estimators::Constants;
 use crate::names::MatrixName;
@@ -64,6 +65,10 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
     };
     // Only where it is there: a design without it keeps the hash that it had before there was such a key.
     let control = if hardware.control { "control = true\n" } else { "" };
+    let banks = match hardware.calibration {
+        CalibrationIn::Rom => String::new(),
+        place @ CalibrationIn::Ram => format!("calibration = \"{place}\"\n"),
+    };
     let streams = match hardware.stream_bits {
         32 => String::new(),
         bits => format!("stream_bits = {bits}\n"),
@@ -81,7 +86,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}{contacts}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{control}clock_mhz = {:?}\npart = \"{}\"\n",
+         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{control}{banks}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],

@@ -1,6 +1,6 @@
-//! Integer samples: which designs have them, and which frames they take.
+//! Integer samples: which designs have them, and which frames they take. A calibration in RAM: which designs may.
 
-use golden::design::{Design, Samples};
+use golden::design::{CalibrationIn, Design, Samples};
 use golden::frames::read_frames_of;
 
 const PAD: &str = "name = \"pad\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
@@ -53,4 +53,30 @@ fn what_a_sensor_delivers_fits_its_samples() {
     let mut frame = [-1e6, 1e6, -15.0, 0.0];
     pad("pa_per_count = -10.0", "uint16").unwrap().deliver(&mut frame);
     assert_eq!(frame.map(|count| count as i64), [65_535, 0, 2, 0]);
+}
+
+#[test]
+fn a_calibration_in_ram_needs_registers_and_counts() {
+    let design = |sensor: &str, hardware: &str| {
+        let text = format!("{PAD}{sensor}\n[hardware]\ncalibration = \"ram\"\n{hardware}\n");
+        Design::from_toml(&text, "pad.toml").map_err(|error| error.to_string())
+    };
+    let counts = "pa_per_count = -2.0";
+    let good = design(counts, "control = true").unwrap();
+    assert_eq!(good.hardware.calibration, CalibrationIn::Ram);
+    assert_eq!(Design::from_toml(&good.to_toml(), "again.toml").unwrap(), good);
+    for (sensor, hardware, said) in [
+        (counts, "", "no registers"),
+        (counts, "control = false", "add control = true"),
+        ("", "control = true", "add sensor.pa_per_count"),
+        ("curve = { power = 1.2, scale = -1.0 }", "control = true", "a curve stands in ROM only"),
+    ] {
+        let message = design(sensor, hardware).unwrap_err();
+        assert!(message.contains("hardware.calibration") && message.contains(said), "{message}");
+    }
+    // Without the key, or with its default, a resolved design does not name it.
+    for text in ["", "calibration = \"rom\""] {
+        let design = Design::from_toml(&format!("{PAD}\n[hardware]\n{text}\n"), "pad.toml").unwrap();
+        assert!(!design.to_toml().contains("calibration"));
+    }
 }

@@ -13,15 +13,18 @@ use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 use crate::plan::streams::{Intake, Streams};
 
-use super::Parameters;
-use super::latency;
+use super::{Parameters, calibration, latency};
 
 /// Numbers of [`LONG_BITS`] on a line.
 const KNOTS_PER_LINE: usize = 7;
 
 /// The module.
 pub fn module(plan: &Plan) -> &'static str {
-    if plan.streams().intake == Intake::Whole { "sptfra_bz_wide" } else { "sptfra_bz" }
+    match plan.streams().intake {
+        Intake::Whole => "sptfra_bz_wide",
+        Intake::Single | Intake::Unpacked if plan.calibration.is_some() => "sptfra_bz_calibrated",
+        Intake::Single | Intake::Unpacked => "sptfra_bz",
+    }
 }
 
 /// What the ROM files of taxels' constants are called behind the design's name: one for all, or one for each sample of a
@@ -67,7 +70,11 @@ pub fn parameters(plan: &Plan) -> Parameters {
         Some(dead) => parameters.count("DEAD", dead.taxels.len()).number("WEIGHT_SHIFT", dead.shift.into()),
         None => parameters,
     };
-    let parameters = if plan.counts.is_none() && plan.dead.is_none() {
+    let parameters = match &plan.calibration {
+        Some(of) => calibration::of_frames(parameters, of, streams.words()),
+        None => parameters,
+    };
+    let parameters = if plan.counts.is_none() && plan.dead.is_none() && plan.calibration.is_none() {
         parameters
     } else {
         parameters

@@ -3,7 +3,13 @@
 //! the blocks make of one. `folded` says whether vectors are folded by parity. Cycles of an estimator stand with it,
 //! those of a leaf core in [`crate::cores`].
 
-use crate::cores::{axis_skid, cordic, divider, float_to_fixed};
+use crate::cores::{axis_skid, cordic, divider, fixed_to_float, float_to_fixed};
+
+// ---- Calibration in RAM
+/// From a beat of counts to its stress as float32: the memory and a register, the conversion, product, sum, limits, the
+/// conversion to float32, and a skid buffer.
+pub const CALIBRATION: u64 =
+    2 + float_to_fixed::LATENCY as u64 + 3 + fixed_to_float::LATENCY as u64 + axis_skid::LATENCY as u64;
 
 // ---- Bz
 /// From a beat entering the conversion to its stress: of the float conversion, and of the counts' if there is one.

@@ -6,6 +6,7 @@
 
 pub mod array;
 pub mod bz;
+pub mod calibration;
 pub mod cean;
 pub mod co;
 pub mod field;
@@ -28,14 +29,15 @@ pub use parameters::Parameters;
 /// What each block of the design takes, in the data's order.
 pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     let slot = plan.estimator.slot();
-    let mut costs = vec![
+    let mut costs: Vec<BlockCost> = calibration::cost(plan).into_iter().collect();
+    costs.extend([
         bz::cost(plan),
         slot.contact_block(),
         array::cost(plan),
         we::cost(plan),
         co::cost(plan),
         field::cost(plan),
-    ];
+    ]);
     costs.extend(slot.search_blocks(&plan.design.sensor));
     costs.push(op::cost());
     costs

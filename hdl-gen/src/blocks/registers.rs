@@ -60,7 +60,7 @@ impl Constants {
             words_out: plan.words_out(),
             has_field: u8::from(plan.field_words() > 0),
             is_reduced: u8::from(plan.ways() > 1),
-            has_counts: u8::from(plan.counts.is_some()),
+            has_counts: u8::from(plan.design.input.counts()),
             skips_zeros: u8::from(hardware.skip_zeros),
             stream_bytes: plan.streams().bits / 8,
             samples: samples(plan),

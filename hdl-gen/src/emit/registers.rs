@@ -3,9 +3,11 @@
 use serde::Serialize;
 use tera::Context;
 
-use crate::blocks::Parameters;
 use crate::blocks::registers::Constants;
+use crate::blocks::{Parameters, calibration};
 use crate::plan::Plan;
+use crate::plan::calibration::CalibrationPlan;
+use crate::plan::format::address_bits;
 
 use super::template::{design_module, one};
 use super::{EmitError, FileMap};
@@ -62,6 +64,48 @@ struct View<'a> {
     words: usize,
     /// Parameters of the bank.
     registers: Parameters,
+    /// Of a calibration in RAM.
+    calibration: Option<CalibrationView>,
+}
+
+/// What the templates say of a calibration in RAM.
+#[derive(Serialize)]
+struct CalibrationView {
+    control: Parameters,
+    registers: Parameters,
+    /// Highest bits of a taxel's number and of an offset.
+    taxel_top: u32,
+    offset_top: u32,
+    /// Reset values of the map.
+    words: usize,
+    shift: u32,
+    lsb: u8,
+    offset_limit: i64,
+    steps_low: String,
+    steps_high: String,
+    first_word: String,
+    crc: String,
+}
+
+impl CalibrationView {
+    fn new(of: &CalibrationPlan) -> Self {
+        let steps = of.count_steps.to_bits();
+        let first = of.power_up.gain_words().next().unwrap_or_default();
+        Self {
+            control: calibration::control(of),
+            registers: calibration::registers(of),
+            taxel_top: address_bits(of.taxels) - 1,
+            offset_top: of.offset_bits() - 1,
+            words: of.words(),
+            shift: of.shift,
+            lsb: calibration::lsb(of),
+            offset_limit: of.offset_limit,
+            steps_low: format!("{:08x}", steps as u32),
+            steps_high: format!("{:08x}", steps >> 32),
+            first_word: format!("{first:08x}"),
+            crc: format!("{:08x}", of.power_up.crc()),
+        }
+    }
 }
 
 impl<'a> View<'a> {
@@ -80,6 +124,7 @@ impl<'a> View<'a> {
             stream_bits: plan.streams().bits,
             words: plan.streams().words(),
             registers: constants.parameters(),
+            calibration: plan.calibration.as_ref().map(CalibrationView::new),
             constants,
         }
     }

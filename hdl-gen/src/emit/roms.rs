@@ -48,6 +48,19 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
             files.insert(format!("rom/{name}{kind}_offsets.mem"), hex(offsets, depth, counts.offset_bits()));
         }
     }
+    if let Some(calibration) = &plan.calibration {
+        // Both banks, each from a power of two on.
+        let depth = 1 << address_bits(plan.taxels());
+        let bank = &calibration.power_up;
+        let both = |words: Vec<u128>| {
+            let padded = words.into_iter().chain(std::iter::repeat(0)).take(depth);
+            padded.clone().chain(padded)
+        };
+        let gains = both(bank.gain_words().map(u128::from).collect());
+        files.insert(format!("rom/{name}_bank_gains.mem"), hex(gains, 2 * depth, GAIN_BITS + EXPONENT_BITS));
+        let offsets = both(bank.offsets.iter().map(|&offset| u128::from(offset.cast_unsigned())).collect());
+        files.insert(format!("rom/{name}_bank_offsets.mem"), hex(offsets, 2 * depth, calibration.offset_bits()));
+    }
     if !plan.arms.is_empty() {
         let arms = plan.arms.iter().map(|arms| joined(arms, ARM_BITS));
         files.insert(format!("rom/{name}_arms.mem"), hex(arms, plan.arms.len(), 2 * ARM_BITS));

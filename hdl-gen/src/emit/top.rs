@@ -7,6 +7,7 @@ use golden::design::{Filter, Samples};
 
 use crate::blocks::{Parameters, array, bz, cean, co, field, op, row_width, turns, unfold, we};
 use crate::plan::Plan;
+use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::CountsPlan;
 use crate::plan::format::address_bits;
 use crate::plan::streams::Intake;
@@ -35,6 +36,10 @@ struct View {
     estimator: String,
     filter: String,
     counts: bool,
+    /// Whether gains and offsets stand in RAM; bits of a taxel's number and of an offset there.
+    calibration: bool,
+    taxel_width: u32,
+    offset_bits: u32,
     /// Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
     stream_bits: usize,
     stream_bytes: usize,
@@ -108,7 +113,10 @@ impl View {
             plan: if folded { "reduced" } else { "paper's" },
             estimator: slot.module().trim_start_matches("sptfra_estimator_").to_owned(),
             filter: filter_text(&design.algorithm.filter),
-            counts: plan.counts.is_some(),
+            counts: design.input.counts(),
+            calibration: plan.calibration.is_some(),
+            taxel_width: address_bits(plan.taxels()),
+            offset_bits: plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
             stream_bits: streams.bits,
             stream_bytes: streams.bits / 8,
             words: streams.words(),
@@ -188,11 +196,11 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if curve || !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
         without.push("sptfra_exponents");
     }
-    without.push(if plan.streams().sample == Samples::Float32 {
-        "sptfra_int_to_fixed"
-    } else {
-        "sptfra_float_to_fixed"
-    });
+    if plan.streams().sample == Samples::Float32 {
+        without.push("sptfra_int_to_fixed");
+    } else if plan.calibration.is_none() {
+        without.push("sptfra_float_to_fixed");
+    }
     if plan.dead.is_none() {
         without.push("sptfra_dead_taxels");
     }

@@ -16,6 +16,7 @@ use golden::status::Status;
 
 use crate::cores::{fixed_to_float, float_to_fixed};
 use crate::estimators::{Contact, Seen};
+use crate::plan::calibration::Bank;
 use crate::plan::dead::GUESSED_SHARE;
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::product::{Coefficients, Product, Vector};
@@ -69,15 +70,26 @@ pub struct Model<'plan> {
     frames: u16,
     /// Whether the last frame slipped.
     slips: bool,
+    /// Of a calibration in RAM, what acts, and how many have before it.
+    bank: Option<Bank>,
+    generation: u8,
 }
 
 impl<'plan> Model<'plan> {
     /// A model just out of reset.
     pub fn new(plan: &'plan Plan) -> Self {
-        Self { plan, frames: 0, slips: false }
+        let bank = plan.calibration.as_ref().map(|calibration| calibration.power_up.clone());
+        Self { plan, frames: 0, slips: false, bank, generation: 0 }
     }
 
-    /// As after the hardware's reset: the frame counter starts again.
+    /// The bank that acts on the frames from now on, where the design's calibration is in RAM.
+    pub fn commit(&mut self, bank: Bank) {
+        if self.bank.replace(bank).is_some() {
+            self.generation = self.generation.wrapping_add(1);
+        }
+    }
+
+    /// As after the hardware's reset: the frame counter starts again; the calibration stays.
     pub fn reset(&mut self) {
         (self.frames, self.slips) = (0, false);
     }
@@ -90,6 +102,12 @@ impl<'plan> Model<'plan> {
     /// The output frame for one packet: its words in memory's order, float32 in Pa, up to the last of the beat with TLAST;
     /// words that are missing in that are 0. Its timestamp is 0: when a packet comes is not the model's to know.
     pub fn process(&mut self, packet: &[u32]) -> Vec<u32> {
+        let mut words = self.answer_to(packet);
+        words[words::CENSUS] |= u32::from(self.generation) << 8;
+        words
+    }
+
+    fn answer_to(&mut self, packet: &[u32]) -> Vec<u32> {
         let counter = u32::from(self.frames) << 16;
         self.frames = self.frames.wrapping_add(1);
         let (taxels, streams) = (self.plan.taxels(), self.plan.streams());
@@ -117,7 +135,8 @@ impl<'plan> Model<'plan> {
                 noted |= TOO_MANY_REPLACED;
             }
         }
-        if Contact::new(&stress).stress_sum < self.plan.thresholds.contact {
+        let contact = self.bank.as_ref().map_or(self.plan.thresholds.contact, |bank| i64::from(bank.contact));
+        if Contact::new(&stress).stress_sum < contact {
             self.slips = false;
             return self.blank(counter | NO_CONTACT);
         }
@@ -130,6 +149,8 @@ impl<'plan> Model<'plan> {
         if self.plan.dead.as_ref().is_some_and(|dead| dead.taxels.contains(&taxel)) {
             return Stress { steps: 0, saturated: false, not_finite: false };
         }
+        let calibrated = self.plan.calibration.as_ref().zip(self.bank.as_ref());
+        let word = calibrated.map_or(word, |(calibration, bank)| calibration.float_of(bank, taxel, word));
         let Some(counts) = &self.plan.counts else {
             let converted = float_to_fixed::convert(word, -format.lsb, format.bound as u32);
             let steps = i64::from(converted.fixed);

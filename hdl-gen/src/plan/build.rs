@@ -5,6 +5,7 @@ use golden::estimators::joint::DOUBT_FRACTION;
 use golden::matrices::Matrices;
 use golden::parity::CLASSES;
 
+use super::calibration::CalibrationPlan;
 use super::counts::CountsPlan;
 use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
@@ -118,6 +119,7 @@ struct Work {
     products: Vec<Product>,
     formats: Formats,
     counts: Option<CountsPlan>,
+    calibration: Option<CalibrationPlan>,
     dead: Option<DeadPlan>,
     thresholds: Thresholds,
 }
@@ -129,7 +131,8 @@ impl Work {
         // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
         let stress = Format::covering(hardware.full_scale_in_frames(), hardware.data_bits);
         let thresholds = thresholds(design, stress)?;
-        let counts = CountsPlan::new(design, stress)?;
+        let calibration = CalibrationPlan::new(design, stress, &thresholds)?;
+        let counts = if calibration.is_some() { None } else { CountsPlan::new(design, stress)? };
         let dead = DeadPlan::new(design);
         let list = passes::products(design);
         let filtered = Filtered::new(design, &matrices)?;
@@ -139,7 +142,7 @@ impl Work {
         let Quantised { matrices: stored, formats, rounding_n, .. } = quantised;
         let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
         check_force_resolution(design, &formats, condition, rounding_n)?;
-        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, dead, thresholds })
+        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, calibration, dead, thresholds })
     }
 
     /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
@@ -158,6 +161,7 @@ impl Work {
             formats: self.formats,
             arms: if ways == 1 { arms(&design.sensor) } else { Vec::new() },
             counts: self.counts.clone(),
+            calibration: self.calibration.clone(),
             dead: self.dead.clone(),
             thresholds: self.thresholds,
             estimator,

@@ -39,7 +39,7 @@ pub(super) fn timeline(plan: &Plan) -> Timeline {
 /// Durations that do not depend on the frames under way.
 struct Constants {
     beats: u64,
-    /// From a frame's first beat out of the skid buffer to the first that enters Bz.
+    /// From a frame's first beat out of the skid buffer to the first that enters Bz: where it is unpacked, or calibrated.
     unpacking: u64,
     /// What a frame brings, counted from there.
     arrival: Arrival,
@@ -76,7 +76,8 @@ impl Constants {
         let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
         Self {
             beats: plan.streams().beats_out() as u64,
-            unpacking: u64::from(plan.streams().intake == Intake::Unpacked),
+            unpacking: u64::from(plan.streams().intake == Intake::Unpacked)
+                + if plan.calibration.is_some() { latency::CALIBRATION } else { 0 },
             arrival: bz::arrival(plan),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
             visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),

@@ -75,6 +75,17 @@ pub enum PlanError {
         /// The full scale in counts.
         full_scale: f64,
     },
+    /// A contact threshold that has no room in a bank of the calibration.
+    #[error(
+        "[hardware] calibration = \"ram\": with [algorithm] noise_floor_pa = {floor_pa} the threshold of contact has more \
+         than 32 bits; lower it to {most_pa:.0} or less, or write calibration = \"rom\""
+    )]
+    Contact {
+        /// Noise floor of the design.
+        floor_pa: f64,
+        /// The largest one that has room.
+        most_pa: f64,
+    },
     /// A part of the curve that no slope can follow.
     #[error(
         "[sensor] curve: between the counts {from} and {to} it rises so steeply that the hardware's numbers have no step \

@@ -4,6 +4,7 @@
 //! describes it. Nothing here knows Verilog.
 
 mod build;
+pub mod calibration;
 mod control;
 pub mod counts;
 pub mod curve;
@@ -37,6 +38,7 @@ use golden::parity::{CLASSES, Quads};
 use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
+use calibration::CalibrationPlan;
 use counts::CountsPlan;
 use dead::DeadPlan;
 pub use error::PlanError;
@@ -99,8 +101,10 @@ pub struct Plan {
     pub formats: Formats,
     /// Arms of the taxels' forces, where sums of torques are made of them; empty where rows of sums have them.
     pub arms: Vec<[i32; 2]>,
-    /// Conversion of counts, if the frames are not in pascals.
+    /// Conversion of counts, if the frames are not in pascals and it stands in ROM.
     pub counts: Option<CountsPlan>,
+    /// Conversion of counts, if gains and offsets stand in RAM.
+    pub calibration: Option<CalibrationPlan>,
     /// Weights that replace the readings of dead taxels, if there are any.
     pub dead: Option<DeadPlan>,
     /// Status thresholds.

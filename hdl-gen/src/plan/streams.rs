@@ -1,6 +1,6 @@
 //! The two streams of a core: how samples and words fill their beats.
 
-use golden::design::{Design, Outputs, PlanKind, Samples};
+use golden::design::{CalibrationIn, Design, Outputs, PlanKind, Samples};
 
 use super::SUMMARY_WORDS;
 
@@ -11,7 +11,8 @@ pub const WORD_BITS: usize = 32;
 pub enum Intake {
     /// A beat is a sample.
     Single,
-    /// A beat's samples are handed on one by one: where taxels are not folded, or dead ones are replaced.
+    /// A beat's samples are handed on one by one: where taxels are not folded, dead ones are replaced, or gains stand in
+    /// RAM.
     Unpacked,
     /// All samples of a beat at once.
     Whole,
@@ -45,7 +46,10 @@ impl Streams {
         let [bits, sample_bits] = [design.hardware.stream_bits, sample.bits()].map(|bits| bits as usize);
         let intake = if bits == sample_bits {
             Intake::Single
-        } else if design.algorithm.plan == PlanKind::Paper || !design.input.dead.is_empty() {
+        } else if design.algorithm.plan == PlanKind::Paper
+            || !design.input.dead.is_empty()
+            || design.hardware.calibration == CalibrationIn::Ram
+        {
             Intake::Unpacked
         } else {
             Intake::Whole

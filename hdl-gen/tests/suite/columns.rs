@@ -67,6 +67,8 @@ fn standing() -> Vec<Plan> {
     }
     let more = "pa_per_count = -12.5\n[hardware]\nsamples = \"uint16\"";
     plans.push(plan(&design_text("integer_pad", [6, 4], [4.0, 4.0], 3.0, more)));
+    let more = "pa_per_count = -12.5\n[hardware]\ncontrol = true\ncalibration = \"ram\"";
+    plans.push(plan(&design_text("calibrated_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     let more = "curve = { power = 1.25, scale = -0.5 }\n";
     plans.push(plan(&design_text("curved_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     plans

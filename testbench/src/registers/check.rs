@@ -95,9 +95,15 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
     let (sensor, hardware) = (&plan.design.sensor, &plan.design.hardware);
     let hash = u64::from_str_radix(&resolved_hash(&plan.design), 16).unwrap_or_default();
     let part = |index| VERSION.split('.').nth(index).and_then(|text| text.parse::<u32>().ok()).unwrap_or_default();
-    // From bit 8 on, behind four features and four bits that are 0.
+    // From bit 8 on, behind five features and three bits that are 0.
     let stream = (hardware.stream_bits / 8) | (u32::from(registers::samples(plan)) << 8);
-    let features = [plan.field_words() > 0, plan.ways() > 1, plan.counts.is_some(), hardware.skip_zeros];
+    let features = [
+        plan.field_words() > 0,
+        plan.ways() > 1,
+        plan.design.input.counts(),
+        hardware.skip_zeros,
+        plan.calibration.is_some(),
+    ];
     vec![
         ("IDENTITY", address::IDENTITY, u32::from_be_bytes(*b"TFRA")),
         ("VERSION", address::VERSION, u32::from(MAP_VERSION) << 24 | part(0) << 16 | part(1) << 8 | part(2)),
@@ -105,7 +111,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         ("HASH_HIGH", address::HASH_HIGH, (hash >> 32) as u32),
         ("GEOMETRY", address::GEOMETRY, (hardware.lanes << 16 | sensor.rows << 8 | sensor.columns) as u32),
         ("FRAME", address::FRAME, (plan.words_out() << 16 | plan.streams().words_in()) as u32),
-        ("FEATURES", address::FEATURES, features.iter().rev().fold(stream << 4, |word, &is| word << 1 | u32::from(is))),
+        ("FEATURES", address::FEATURES, features.iter().rev().fold(stream << 3, |word, &is| word << 1 | u32::from(is))),
         ("CLOCK", address::CLOCK, (hardware.clock_mhz * 1e3).round() as u32),
         ("FULL_SCALE", address::FULL_SCALE, (hardware.full_scale_pa as f32).to_bits()),
         ("PREDICTED_LATENCY", address::PREDICTED_LATENCY, plan.timeline.latency_cycles as u32),

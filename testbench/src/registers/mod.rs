@@ -35,6 +35,17 @@ pub mod address {
     pub const LAST_STATUS: u32 = 0x05C;
     pub const LAST_LATENCY: u32 = 0x060;
     pub const LAST_INTERVAL: u32 = 0x064;
+    pub const CALIBRATION: u32 = 0x080;
+    pub const CALIBRATION_OFFSET_LIMIT: u32 = 0x084;
+    pub const CALIBRATION_STEPS_LOW: u32 = 0x088;
+    pub const CALIBRATION_STEPS_HIGH: u32 = 0x08C;
+    pub const CALIBRATION_INDEX: u32 = 0x090;
+    pub const CALIBRATION_DATA: u32 = 0x094;
+    pub const CALIBRATION_COMMIT: u32 = 0x098;
+    pub const TARE: u32 = 0x09C;
+    pub const CALIBRATION_STATUS: u32 = 0x0A0;
+    pub const CALIBRATION_ERRORS: u32 = 0x0A4;
+    pub const CALIBRATION_CRC: u32 = 0x0A8;
 }
 
 /// Cycles after which an access that has no reply never gets one.

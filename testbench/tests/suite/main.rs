@@ -4,6 +4,7 @@ mod bad_frames;
 mod bench;
 mod browser;
 mod build_cache;
+mod calibration;
 mod cells;
 mod checks;
 mod command;

@@ -204,4 +204,5 @@ def main():
     print(f"PASS: {count} frames, {len(bad)} bad")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,5 +1,7 @@
 //! The C and Python drivers against the simulated RTL: registers and DMA as a processor sees them.
 
+mod calibration;
+
 #[allow(unused, reason = "another test file uses the rest")]
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -169,9 +171,11 @@ fn the_c_driver_compiles_anywhere() {
     let folder = tempfile::tempdir().expect("a folder");
     let driver = workspace("drivers/c/sptfra.c");
     let strict = ["-Wpedantic", "-Wconversion", "-Wshadow", "-Wcast-align", "-c"];
-    compile(&[&driver], &strict, &folder.path().join("linux.o"));
     let bare = [&strict[..], &["-ffreestanding", "-DSPTFRA_NO_UIO", "-m64"]].concat();
-    compile(&[&driver], &bare, &folder.path().join("bare.o"));
+    for driver in [driver, workspace("drivers/c/sptfra_calibration.c")] {
+        compile(&[&driver], &strict, &folder.path().join("linux.o"));
+        compile(&[&driver], &bare, &folder.path().join("bare.o"));
+    }
     let text = "#include \"sptfra.h\"\nint main() { return sptfra_error(0) == nullptr; }\n";
     let user = folder.path().join("user.cpp");
     fs::write(&user, text).expect("written");

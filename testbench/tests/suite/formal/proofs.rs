@@ -1,6 +1,6 @@
 //! What is proved of which designs, and the broken copies whose proofs must fail.
 
-use golden::design::{Design, Estimator, Optimise, Outputs, PlanKind};
+use golden::design::{CalibrationIn, Design, Estimator, Optimise, Outputs, PlanKind};
 
 /// A module, a text in it, and what takes its place.
 pub type Broken = (&'static str, &'static str, &'static str);
@@ -44,6 +44,13 @@ fn reduced_for_latency(design: &mut Design) {
 fn reduced_with_zeros_skipped(design: &mut Design) {
     reduced(design);
     design.hardware.skip_zeros = true;
+}
+
+fn calibrated(design: &mut Design) {
+    reduced(design);
+    design.hardware.control = true;
+    design.hardware.calibration = CalibrationIn::Ram;
+    design.input.pa_per_count = Some(-12.5);
 }
 
 fn joint(design: &mut Design) {
@@ -190,6 +197,25 @@ pub const PROOFS: &[Proof] = &[
             ("bz", "bank <= !bank;", "bank <= frame_ready;"),
             ("bz", "assign stress_valid = taxel_valid && advance;", "assign stress_valid = taxel_valid;"),
             ("bz", "if (reset || frame_done)", "if (reset)"),
+        ],
+    },
+    Proof {
+        name: "banks of a calibration in RAM",
+        harness: "calibrate",
+        design: calibrated,
+        defines: &[],
+        top: "sptfra_calibrate",
+        parameters: "-set TAXELS 12",
+        models: &[("sptfra_float_to_fixed", "float_model")],
+        free: &["*sptfra_bank*", "*sptfra_multiply*", "*sptfra_fixed_to_float*", "*sptfra_axis_skid*"],
+        free_wires: &[],
+        induction: "3",
+        broken: &[
+            ("calibrate", "in_frame ? bank_held : active", "active"),
+            ("calibrate", "in_frame ? marked_held : tare_run", "tare_run"),
+            ("calibrate", "in_frame <= !s_tlast;", "in_frame <= 1'b1;"),
+            ("calibrate", "in_frame && (bank_held != active)", "1'b0"),
+            ("calibrate", "(ends_inside != 2'd3)", "1'b1"),
         ],
     },
     Proof {

@@ -5,9 +5,12 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
+use crate::calibration;
 use crate::support::random;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
-use golden::design::{Calibration, Curve, Design, Estimator, Input, Outputs, PlanKind, Samples, Slip, Tension};
+use golden::design::{
+    Calibration, CalibrationIn, Curve, Design, Estimator, Input, Outputs, PlanKind, Samples, Slip, Tension,
+};
 use hdl_gen::emit::emit;
 use tempfile::TempDir;
 use testbench::tools;
@@ -49,7 +52,13 @@ fn designs() -> Vec<Design> {
     unpacked.hardware.stream_bits = 64;
     let mut wide_control = by_plan(shipped("small-control"), reduced, Outputs::Resultants);
     wide_control.hardware.stream_bits = 64;
+    let mut in_ram = integers.clone();
+    "in_ram".clone_into(&mut in_ram.name);
+    in_ram.hardware.control = true;
+    in_ram.hardware.calibration = CalibrationIn::Ram;
     vec![
+        calibration::design(Outputs::Field),
+        in_ram,
         wide,
         integers,
         unpacked,

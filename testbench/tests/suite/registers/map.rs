@@ -4,6 +4,7 @@ use std::fs;
 use std::process::Command;
 
 use hdl_gen::emit::emit;
+use hdl_gen::plan::Plan;
 use serde::Deserialize;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::address::{self, INTERRUPT_STATUS};
@@ -59,16 +60,25 @@ fn python() -> std::path::PathBuf {
 }
 
 /// The map as `SystemRDL`'s compiler reads it.
-fn map(subject: &Subject) -> Vec<Register> {
+fn map(plan: &Plan) -> Vec<Register> {
     let folder = tempfile::tempdir().expect("a folder");
-    let name = format!("control/{}.rdl", subject.plan.design.name);
+    let name = format!("control/{}.rdl", plan.design.name);
     let rdl = folder.path().join("map.rdl");
-    fs::write(&rdl, &emit(&subject.plan).expect("emitted")[&name]).expect("written");
+    fs::write(&rdl, &emit(plan).expect("emitted")[&name]).expect("written");
     let output =
         Command::new(python()).arg(workspace("tools/register_map.py")).arg(rdl).output().expect("Python starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
+
+/// The design that has every register.
+fn widest() -> &'static Subject {
+    subjects().iter().find(|subject| subject.plan.calibration.is_some()).expect("one of them")
+}
+
+/// Registers whose writes do something elsewhere, and those whose words are not what was written there.
+const COMMANDS: [&str; 4] = ["CALIBRATION_INDEX", "CALIBRATION_DATA", "CALIBRATION_COMMIT", "TARE"];
+const OTHER_WORDS: &str = "CALIBRATION_DATA";
 
 /// A core out of reset.
 fn core(built: &Built, seed: u64) -> Controlled {
@@ -112,7 +122,7 @@ fn differences(map: &[Register], built: &Built) -> Vec<String> {
         // The bytes of a word lie at four addresses.
         expect(format!("{name}, third byte"), reset, read(&mut fresh, register.address + 2).data);
     }
-    for register in map {
+    for register in map.iter().filter(|register| register.name != OTHER_WORDS) {
         let name = &register.name;
         let kept = register.sum(|field| if field.writable { 0 } else { field.reset << field.low });
         let plain = register
@@ -134,7 +144,7 @@ fn differences(map: &[Register], built: &Built) -> Vec<String> {
         }
     }
     // A write reaches its own register only.
-    for written in map {
+    for written in map.iter().filter(|register| !COMMANDS.contains(&register.name.as_str())) {
         let mut core = core(built, 3);
         write(&mut core, written.address, !0, 0xF);
         for register in map.iter().filter(|register| register.address != written.address) {
@@ -149,13 +159,18 @@ fn differences(map: &[Register], built: &Built) -> Vec<String> {
 #[test]
 fn the_rtl_has_the_map_that_the_rdl_says() {
     for subject in subjects() {
-        assert_eq!(differences(&map(subject), &subject.built), Vec::<String>::new(), "{}", subject.plan.design.name);
+        assert_eq!(
+            differences(&map(&subject.plan), &subject.built),
+            Vec::<String>::new(),
+            "{}",
+            subject.plan.design.name
+        );
     }
 }
 
 #[test]
 fn the_maps_special_fields_are_the_ones_that_other_tests_try() {
-    let map = map(&subjects()[0]);
+    let map = map(&widest().plan);
     let special: Vec<String> = map
         .iter()
         .flat_map(|register| register.fields.iter().map(move |field| (register, field)))
@@ -175,6 +190,16 @@ fn the_maps_special_fields_are_the_ones_that_other_tests_try() {
             "INTERRUPT_STATUS.FRAME_DONE woclr",
             "INTERRUPT_STATUS.FRAME_ERROR woclr",
             "INTERRUPT_STATUS.BAD_ACCESS woclr",
+            "CALIBRATION_INDEX.WORD plain",
+            "CALIBRATION_INDEX.ACTIVE plain",
+            "CALIBRATION_DATA.WORD plain",
+            "CALIBRATION_COMMIT.CRC plain",
+            "TARE.LOG2_FRAMES plain",
+            "CALIBRATION_ERRORS.OUT_OF_RANGE woclr",
+            "CALIBRATION_ERRORS.BUSY woclr",
+            "CALIBRATION_ERRORS.WRONG_CRC woclr",
+            "CALIBRATION_ERRORS.NOT_AT_REST woclr",
+            "CALIBRATION_ERRORS.BAD_FRAME woclr",
         ]
     );
 }
@@ -196,7 +221,7 @@ fn an_access_without_a_register_can_interrupt() {
 /// The testbench's own names of addresses, and the table in the documentation.
 #[test]
 fn addresses_are_the_same_everywhere() {
-    let map = map(&subjects()[0]);
+    let map = map(&widest().plan);
     let page = fs::read_to_string(workspace("docs/control.md")).expect("a page");
     let python = fs::read_to_string(workspace("drivers/python/sptfra_board.py")).expect("a driver");
     let source = include_str!("../../../src/registers/mod.rs");
@@ -211,7 +236,7 @@ fn addresses_are_the_same_everywhere() {
 /// The C driver's header is `PeakRDL`'s, but for the reset values, which are each design's own.
 #[test]
 fn the_c_header_is_the_one_that_peakrdl_makes() {
-    let subject = &subjects()[0];
+    let subject = widest();
     let folder = tempfile::tempdir().expect("a folder");
     let rdl = folder.path().join("small_control.rdl");
     let name = format!("control/{}.rdl", subject.plan.design.name);
@@ -235,7 +260,7 @@ fn the_c_header_is_the_one_that_peakrdl_makes() {
 #[test]
 fn a_wrong_bank_is_noticed() {
     let subject = &subjects()[0];
-    let map = map(subject);
+    let map = map(&subject.plan);
     let faults = [
         ("HASH_HIGH = 10'd3", "HASH_HIGH = 10'd11", "a register that moved"),
         ("IS_REDUCED, HAS_FIELD}", "1'd0, HAS_FIELD}", "a feature that is not there"),

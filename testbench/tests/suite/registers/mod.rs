@@ -6,6 +6,7 @@ mod soft_reset;
 
 use std::sync::OnceLock;
 
+use crate::calibration;
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped};
 use golden::design::{Design, Outputs, PlanKind};
 use hdl_gen::plan::Plan;
@@ -21,12 +22,12 @@ pub struct Subject {
     pub built: Built,
 }
 
-/// The small design in every plan.
+/// The small design in every plan, and with its calibration in RAM.
 pub fn subjects() -> &'static [Subject] {
     static SUBJECTS: OnceLock<Vec<Subject>> = OnceLock::new();
     SUBJECTS.get_or_init(|| {
         let small = |kind, outputs| by_plan(shipped("small-control"), kind, outputs);
-        let designs: [Design; 4] = [
+        let designs: [Design; 5] = [
             shipped("small-control"),
             small(PlanKind::Paper, Outputs::Field),
             small(PlanKind::Reduced, Outputs::Resultants),
@@ -35,6 +36,7 @@ pub fn subjects() -> &'static [Subject] {
                 PlanKind::Reduced,
                 Outputs::Field,
             ),
+            calibration::design(Outputs::Resultants),
         ];
         in_parallel(&designs, |design| {
             let plan = planned(design);

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
+/* Calibration in RAM and tare: see sptfra.h, and docs/control.md for the words of a bank. */
+#include "sptfra.h"
+
+#include <string.h>
+
+#define FIELD(word, name) (((word) & SPTFRA__##name##_bm) >> SPTFRA__##name##_bp)
+#define GET(device, register) get(device, offsetof(sptfra_t, register))
+#define SET(device, register, value) set(device, offsetof(sptfra_t, register), value)
+
+#define MANTISSA_BITS 18
+#define MANTISSA_MASK 0x3FFFFu
+#define EXPONENT_MASK 0x3FFu
+#define LEAST_MANTISSA 65536
+#define MOST_MANTISSA 131071.0
+#define LEAST_EXPONENT (-512)
+/* Of a design file's calibration. */
+#define LEAST_GAIN 1e-9
+#define MOST_GAIN 16.0
+#define MOST_OFFSET 1e6
+#define ALL_ERRORS 0x1Fu
+
+static uint32_t get(const sptfra *device, size_t offset)
+{
+    return device->platform.read(device->platform.context, device->core + offset);
+}
+
+static void set(const sptfra *device, size_t offset, uint32_t value)
+{
+    device->platform.write(device->platform.context, device->core + offset, value);
+}
+
+static int is_there(const sptfra *device)
+{
+    if (!device->has_registers) {
+        return SPTFRA_NO_REGISTERS;
+    }
+    return FIELD(GET(device, FEATURES), FEATURES__CALIBRATION_RAM) ? SPTFRA_OK : SPTFRA_NO_CALIBRATION;
+}
+
+/* ---- Numbers, without a library of mathematics */
+
+/* 2^exponent, of a normal number. */
+static double power(int exponent)
+{
+    const uint64_t bits = (uint64_t)(1023 + exponent) << 52;
+    double value;
+
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* The exponent of the highest bit. */
+static int exponent_of(double value)
+{
+    uint64_t bits;
+
+    memcpy(&bits, &value, sizeof bits);
+    return (int)(bits >> 52 & 0x7FFu) - 1023;
+}
+
+static double magnitude(double value)
+{
+    return value < 0.0 ? -value : value;
+}
+
+/* To the nearest, ties away from zero; of values that an int64_t holds. */
+static int64_t rounded(double value)
+{
+    const int64_t whole = (int64_t)value;
+
+    if (magnitude(value - (double)whole) < 0.5) {
+        return whole;
+    }
+    return value < 0.0 ? whole - 1 : whole + 1;
+}
+
+typedef struct {
+    double count_steps; /* steps of the stress for a count at a gain of 1 */
+    int shift, lsb;
+    double offset_limit;
+    uint32_t taxels;
+} numbers;
+
+static void numbers_of(const sptfra *device, numbers *of)
+{
+    const uint32_t word = GET(device, CALIBRATION);
+    const uint32_t lsb = FIELD(word, CALIBRATION__LSB);
+    const uint64_t bits
+        = (uint64_t)GET(device, CALIBRATION_STEPS_HIGH) << 32 | GET(device, CALIBRATION_STEPS_LOW);
+
+    memcpy(&of->count_steps, &bits, sizeof of->count_steps);
+    of->shift = (int)FIELD(word, CALIBRATION__SHIFT);
+    of->lsb = (int)lsb - (lsb > 127u ? 256 : 0);
+    of->offset_limit = (double)GET(device, CALIBRATION_OFFSET_LIMIT);
+    of->taxels = (uint32_t)device->shape.columns * device->shape.rows;
+}
+
+/* The words of a taxel; 0 if one of the values is none that a bank takes. */
+static int words_of(const numbers *of, double gain, double offset, uint32_t words[2])
+{
+    double steps, scaled;
+    int64_t mantissa;
+    int exponent;
+
+    if (gain == 0.0) {
+        words[0] = ((uint32_t)LEAST_EXPONENT & EXPONENT_MASK) << MANTISSA_BITS | LEAST_MANTISSA;
+        words[1] = 0;
+        return 1;
+    }
+    if (!(gain >= LEAST_GAIN && gain <= MOST_GAIN && magnitude(offset) <= MOST_OFFSET)) {
+        return 0;
+    }
+    steps = gain * of->count_steps;
+    exponent = exponent_of(steps) + 2 - MANTISSA_BITS;
+    while ((double)rounded(magnitude(steps) * power(-exponent)) > MOST_MANTISSA) {
+        exponent++;
+    }
+    mantissa = rounded(steps * power(-exponent));
+    /* By the gain as it is stored, so that the count of no stress at all gives none. */
+    scaled = offset / gain * (double)mantissa * power(exponent);
+    if (!(magnitude(scaled) < of->offset_limit + 0.5)) {
+        return 0;
+    }
+    exponent += of->shift;
+    words[0] = ((uint32_t)exponent & EXPONENT_MASK) << MANTISSA_BITS | ((uint32_t)mantissa & MANTISSA_MASK);
+    words[1] = (uint32_t)rounded(scaled);
+    return 1;
+}
+
+/* CRC-32 as of Ethernet and zlib, a word more. */
+static uint32_t crc_of(uint32_t crc, uint32_t word)
+{
+    int bit;
+
+    crc ^= word;
+    for (bit = 0; bit < 32; bit++) {
+        crc = crc >> 1 ^ (0xEDB88320u & (0u - (crc & 1u)));
+    }
+    return crc;
+}
+
+/* ---- Banks */
+
+int sptfra_read_calibration(const sptfra *device, uint16_t index, int acting, uint32_t *word)
+{
+    const int there = is_there(device);
+
+    if (there != SPTFRA_OK) {
+        return there;
+    }
+    if (FIELD(GET(device, CALIBRATION_STATUS), CALIBRATION_STATUS__BUSY)) {
+        return SPTFRA_CALIBRATION_BUSY;
+    }
+    SET(device, CALIBRATION_INDEX, (acting ? SPTFRA__CALIBRATION_INDEX__ACTIVE_bm : 0u) | index);
+    *word = GET(device, CALIBRATION_DATA);
+    return SPTFRA_OK;
+}
+
+int sptfra_calibration_wait(const sptfra *device, uint32_t polls)
+{
+    const int there = is_there(device);
+    uint32_t errors;
+
+    if (there != SPTFRA_OK) {
+        return there;
+    }
+    while (FIELD(GET(device, CALIBRATION_STATUS), CALIBRATION_STATUS__BUSY)) {
+        if (polls == 0) {
+            return SPTFRA_TIMEOUT;
+        }
+        polls -= polls != SPTFRA_FOREVER;
+    }
+    errors = GET(device, CALIBRATION_ERRORS);
+    SET(device, CALIBRATION_ERRORS, errors);
+    if (errors & SPTFRA__CALIBRATION_ERRORS__BAD_FRAME_bm) {
+        return SPTFRA_BAD_REST;
+    }
+    if (errors & SPTFRA__CALIBRATION_ERRORS__NOT_AT_REST_bm) {
+        return SPTFRA_NOT_AT_REST;
+    }
+    if (errors & SPTFRA__CALIBRATION_ERRORS__WRONG_CRC_bm) {
+        return SPTFRA_WRONG_CRC;
+    }
+    if (errors & SPTFRA__CALIBRATION_ERRORS__BUSY_bm) {
+        return SPTFRA_CALIBRATION_BUSY;
+    }
+    return errors ? SPTFRA_OUT_OF_RANGE : SPTFRA_OK;
+}
+
+int sptfra_load_calibration(
+    const sptfra *device, const double *gain, const double *offset, double noise_floor_pa, uint32_t polls)
+{
+    const int there = is_there(device);
+    numbers of;
+    uint32_t taxel, crc = UINT32_MAX, thresholds[2];
+    uint32_t words[2];
+    int kind, found;
+
+    if (there != SPTFRA_OK) {
+        return there;
+    }
+    numbers_of(device, &of);
+    /* Before anything is written. */
+    for (taxel = 0; taxel < of.taxels; taxel++) {
+        if (!words_of(&of, gain[taxel], offset[taxel], words)) {
+            return SPTFRA_OUT_OF_RANGE;
+        }
+    }
+    if (noise_floor_pa > 0.0) {
+        const double noise = noise_floor_pa * power(-of.lsb);
+        const double contact = noise_floor_pa * (double)of.taxels * power(-of.lsb);
+
+        if (noise > 67108863.0 || contact > 4294967295.0) {
+            return SPTFRA_OUT_OF_RANGE;
+        }
+        thresholds[0] = contact < 1.0 ? 1u : (uint32_t)rounded(contact);
+        thresholds[1] = noise < 1.0 ? 1u : (uint32_t)rounded(noise);
+    } else {
+        for (kind = 0; kind < 2; kind++) {
+            found = sptfra_read_calibration(device, (uint16_t)(2u * of.taxels + (uint32_t)kind), 1, &thresholds[kind]);
+            if (found != SPTFRA_OK) {
+                return found;
+            }
+        }
+    }
+    if (FIELD(GET(device, CALIBRATION_STATUS), CALIBRATION_STATUS__BUSY)) {
+        return SPTFRA_CALIBRATION_BUSY;
+    }
+    SET(device, CALIBRATION_ERRORS, ALL_ERRORS);
+    SET(device, CALIBRATION_INDEX, 0u);
+    for (kind = 0; kind < 2; kind++) {
+        for (taxel = 0; taxel < of.taxels; taxel++) {
+            words_of(&of, gain[taxel], offset[taxel], words);
+            SET(device, CALIBRATION_DATA, words[kind]);
+            crc = crc_of(crc, words[kind]);
+        }
+    }
+    for (kind = 0; kind < 2; kind++) {
+        SET(device, CALIBRATION_DATA, thresholds[kind]);
+        crc = crc_of(crc, thresholds[kind]);
+    }
+    SET(device, CALIBRATION_COMMIT, ~crc);
+    found = sptfra_calibration_wait(device, polls);
+    if (found == SPTFRA_OK && GET(device, CALIBRATION_CRC) != ~crc) {
+        return SPTFRA_WRONG_CRC;
+    }
+    return found;
+}
+
+int sptfra_tare(const sptfra *device, unsigned log2_frames)
+{
+    const int there = is_there(device);
+
+    if (there != SPTFRA_OK) {
+        return there;
+    }
+    if (log2_frames > SPTFRA_MOST_TARE_LOG2) {
+        return SPTFRA_OUT_OF_RANGE;
+    }
+    if (FIELD(GET(device, CALIBRATION_STATUS), CALIBRATION_STATUS__BUSY)) {
+        return SPTFRA_CALIBRATION_BUSY;
+    }
+    SET(device, CALIBRATION_ERRORS, ALL_ERRORS);
+    SET(device, TARE, log2_frames);
+    return SPTFRA_OK;
+}

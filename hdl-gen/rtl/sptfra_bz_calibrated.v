@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Bz with a calibration in RAM: counts become pascals by the bank that acts at a frame's first beat
+// (sptfra_calibrate), a tare listens, Bz takes pascals, and threshold and generation of that bank follow the frame
+// (sptfra_frame_calibration).
+
+`default_nettype none
+
+module sptfra_bz_calibrated #(
+    // As of sptfra_bz, in pascals
+    parameter COLUMNS = 10,
+    parameter ROWS = 10,
+    parameter WAYS = 4,
+    parameter DATA_BITS = 27,
+    parameter NUMBER_SHIFT = 9,
+    parameter [26:0] NUMBER_BOUND = 27'd51200000,
+    parameter DEAD = 0,
+    parameter WEIGHT_SHIFT = 16,
+    parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
+    parameter ROM_DIR = "",
+    parameter ROM_NAME = "",
+    parameter EXPECTED_STAGES = 0,
+    // As of sptfra_calibrate
+    parameter SAMPLE = 0,
+    parameter OFFSET_BITS = 29,
+    parameter COUNT_SHIFT = 14,
+    parameter signed [47:0] FULL_SCALE = 48'sd51200000,
+    parameter EXPECTED_CALIBRATION = 0,
+    // 32-bit words of a beat out: 1, 2 or 4
+    parameter WORDS = 1,
+    // Derived
+    parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16,
+    parameter TAXELS = COLUMNS * ROWS,
+    parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1,
+    parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
+) (
+    input  wire clock,
+    input  wire reset,
+    // Samples in
+    input  wire [SAMPLE_BITS-1:0] s_tdata,
+    input  wire s_tlast,
+    input  wire s_tvalid,
+    output wire s_tready,
+    // As of sptfra_bz
+    output wire write_valid,
+    input  wire write_ready,
+    output wire write_bank,
+    output wire [ROW_WIDTH-1:0] write_row,
+    output wire [WAYS*DATA_BITS-1:0] write_data,
+    input  wire cean_idle,
+    input  wire direction_room,
+    output wire stress_valid,
+    output wire signed [26:0] stress,
+    output wire frame_done,
+    output wire frame_saturated,
+    output wire frame_not_finite,
+    output wire frame_bad_length,
+    output wire [29:0] frame_replaced,
+    output wire frame_ready,
+    input  wire frame_start,
+    input  wire frame_release,
+    // Calibration: {active, generation, contact, noise}
+    input  wire [67:0] calibration_acting,
+    output wire calibration_old_in_use,
+    // {write gain, write offset, bank, taxel, gain, offset}, and the words there: {gain, offset}
+    input  wire [TAXEL_WIDTH+OFFSET_BITS+30:0] bank_command,
+    output wire [OFFSET_BITS+27:0] bank_words,
+    // {run, log2 of frames, taxel}; {finished, restless, bad frame, mean}
+    input  wire [TAXEL_WIDTH+4:0] tare_command,
+    output wire [29:0] tare_result,
+    // Flags and answers with what their frames began with: see sptfra_frame_calibration
+    input  wire direction_take,
+    input  wire [39:0] stress_sum,
+    input  wire [5:0] flags_in,
+    output wire [5:0] flags,
+    input  wire word_taken,
+    input  wire word_last,
+    input  wire [32*WORDS-1:0] words_in,
+    output wire [32*WORDS-1:0] words
+);
+
+    localparam integer STRESS_LSB = -NUMBER_SHIFT;
+
+    wire active;
+    wire [7:0] generation;
+    wire [31:0] contact;
+    wire [26:0] noise;
+    wire write_gain;
+    wire write_offset;
+    wire [TAXEL_WIDTH:0] bank_address;
+    wire [27:0] gain_in;
+    wire [OFFSET_BITS-1:0] offset_in;
+    wire tare_run;
+    wire [3:0] tare_log2;
+    wire [TAXEL_WIDTH-1:0] tare_taxel;
+
+    assign {active, generation, contact, noise} = calibration_acting;
+    assign {write_gain, write_offset, bank_address, gain_in, offset_in} = bank_command;
+    assign {tare_run, tare_log2, tare_taxel} = tare_command;
+
+    // ---- Counts to pascals
+    wire [31:0] pascals_tdata;
+    wire pascals_tlast;
+    wire pascals_tvalid;
+    wire pascals_tready;
+    wire frame_begins;
+    wire reading_valid;
+    wire reading_marked;
+    wire reading_last;
+    wire reading_bad;
+    wire reading_advance;
+    wire [TAXEL_WIDTH-1:0] reading_taxel_8;
+    wire [TAXEL_WIDTH-1:0] reading_taxel;
+    wire signed [26:0] reading;
+
+    sptfra_calibrate #(
+        .TAXELS          (TAXELS),
+        .SAMPLE          (SAMPLE),
+        .OFFSET_BITS     (OFFSET_BITS),
+        .COUNT_SHIFT     (COUNT_SHIFT),
+        .FULL_SCALE      (FULL_SCALE),
+        .STRESS_BOUND    (STRESS_BOUND),
+        .STRESS_LSB      (STRESS_LSB),
+        .ROM_DIR         (ROM_DIR),
+        .ROM_NAME        (ROM_NAME),
+        .EXPECTED_STAGES (EXPECTED_CALIBRATION)
+    ) calibrate (
+        .clock             (clock),
+        .reset             (reset),
+        .s_tdata           (s_tdata),
+        .s_tlast           (s_tlast),
+        .s_tvalid          (s_tvalid),
+        .s_tready          (s_tready),
+        .m_tdata           (pascals_tdata),
+        .m_tlast           (pascals_tlast),
+        .m_tvalid          (pascals_tvalid),
+        .m_tready          (pascals_tready),
+        .active            (active),
+        .old_in_use        (calibration_old_in_use),
+        .frame_begins      (frame_begins),
+        .write_gain        (write_gain),
+        .write_offset      (write_offset),
+        .address           (bank_address),
+        .write_gain_data   (gain_in),
+        .write_offset_data (offset_in),
+        .gain              (bank_words[OFFSET_BITS+27:OFFSET_BITS]),
+        .offset            (bank_words[OFFSET_BITS-1:0]),
+        .tare_run          (tare_run),
+        .reading_valid     (reading_valid),
+        .reading_marked    (reading_marked),
+        .reading_last      (reading_last),
+        .reading_taxel_8   (reading_taxel_8),
+        .reading_taxel     (reading_taxel),
+        .reading           (reading),
+        .reading_bad       (reading_bad),
+        .reading_advance   (reading_advance)
+    );
+
+    sptfra_tare #(
+        .TAXELS (TAXELS)
+    ) tare (
+        .clock       (clock),
+        .reset       (reset),
+        .run         (tare_run),
+        .log2_frames (tare_log2),
+        .most_spread (noise),
+        .advance     (reading_advance),
+        .valid       (reading_valid),
+        .marked      (reading_marked),
+        .last        (reading_last),
+        .bad         (reading_bad),
+        .taxel_ahead (reading_taxel_8),
+        .taxel       (reading_taxel),
+        .reading     (reading),
+        .finished    (tare_result[29]),
+        .restless    (tare_result[28]),
+        .bad_frame   (tare_result[27]),
+        .mean_taxel  (tare_taxel),
+        .mean        (tare_result[26:0])
+    );
+
+    // ---- Pascals to the lanes
+    sptfra_bz #(
+        .COLUMNS         (COLUMNS),
+        .ROWS            (ROWS),
+        .WAYS            (WAYS),
+        .DATA_BITS       (DATA_BITS),
+        .NUMBER_SHIFT    (NUMBER_SHIFT),
+        .NUMBER_BOUND    (NUMBER_BOUND),
+        .DEAD            (DEAD),
+        .WEIGHT_SHIFT    (WEIGHT_SHIFT),
+        .STRESS_BOUND    (STRESS_BOUND),
+        .ROM_DIR         (ROM_DIR),
+        .ROM_NAME        (ROM_NAME),
+        .EXPECTED_STAGES (EXPECTED_STAGES)
+    ) bz (
+        .clock            (clock),
+        .reset            (reset),
+        .s_tdata          (pascals_tdata),
+        .s_tlast          (pascals_tlast),
+        .s_tvalid         (pascals_tvalid),
+        .s_tready         (pascals_tready),
+        .write_valid      (write_valid),
+        .write_ready      (write_ready),
+        .write_bank       (write_bank),
+        .write_row        (write_row),
+        .write_data       (write_data),
+        .cean_idle        (cean_idle),
+        .direction_room   (direction_room),
+        .stress_valid     (stress_valid),
+        .stress           (stress),
+        .frame_done       (frame_done),
+        .frame_saturated  (frame_saturated),
+        .frame_not_finite (frame_not_finite),
+        .frame_bad_length (frame_bad_length),
+        .frame_replaced   (frame_replaced),
+        .frame_ready      (frame_ready),
+        .frame_start      (frame_start),
+        .frame_release    (frame_release)
+    );
+
+    // ---- What frames keep
+    sptfra_frame_calibration #(
+        .WORDS (WORDS)
+    ) frame_calibration (
+        .clock          (clock),
+        .reset          (reset),
+        .begins         (frame_begins),
+        .contact        (contact),
+        .generation     (generation),
+        .direction_take (direction_take),
+        .stress_sum     (stress_sum),
+        .flags_in       (flags_in),
+        .flags          (flags),
+        .word_taken     (word_taken),
+        .word_last      (word_last),
+        .words_in       (words_in),
+        .words          (words)
+    );
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// The two banks of a calibration: which one acts, writes to the other, its CRC and the change to it, and tare.
+//
+// A bank's words are the taxels' gains, their offsets, then the contact threshold and the noise floor. A commit reads
+// the bank that does not act, six cycles a word; if it has the CRC that the commit states, it acts from the next frame
+// on. Tare writes the acting bank into the other one, with the mean stress taken off the offsets. What acts outlives a
+// reset: only the device's configuration brings the design's content back.
+
+`default_nettype none
+
+module sptfra_calibration #(
+    // Taxels of a frame
+    parameter TAXELS = 12,
+    parameter OFFSET_BITS = 29,
+    // Largest magnitude of an offset
+    parameter signed [31:0] OFFSET_LIMIT = 32'sd134217728,
+    // At power-up
+    parameter [31:0] CONTACT = 32'd1,
+    parameter [26:0] NOISE = 27'd1,
+    parameter [31:0] CRC = 32'd0,
+    // Derived
+    parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1
+) (
+    input  wire clock,
+    input  wire reset,
+    input  wire core_reset, // the frames inside are lost
+    // Commands, one at a time, taken while idle
+    output wire idle,
+    output wire taring,
+    input  wire [15:0] index, // the word to be read or written
+    input  wire index_active, // of the bank that acts: read only
+    input  wire write, // to the other one
+    input  wire [31:0] write_data,
+    output wire write_allowed,
+    output reg  [31:0] word, // three cycles after index
+    input  wire commit,
+    input  wire [31:0] commit_crc,
+    input  wire tare,
+    input  wire [3:0] tare_log2,
+    // Errors, one cycle
+    output reg  wrong_crc,
+    output reg  not_at_rest,
+    output reg  bad_frame,
+    output reg  tare_out_of_range,
+    // What acts
+    output reg  active,
+    output reg  [7:0] generation,
+    output reg  [31:0] crc,
+    output wire [31:0] contact,
+    output wire [26:0] noise,
+    // To the core: the banks
+    input  wire old_in_use,
+    output wire bank_write_gain,
+    output wire bank_write_offset,
+    output wire [TAXEL_WIDTH:0] bank_address,
+    output wire [27:0] bank_write_gain_data,
+    output wire [OFFSET_BITS-1:0] bank_write_offset_data,
+    input  wire [27:0] bank_gain,
+    input  wire [OFFSET_BITS-1:0] bank_offset,
+    // To the core: tare
+    output wire tare_run,
+    output reg  [3:0] tare_frames,
+    output wire [TAXEL_WIDTH-1:0] tare_taxel,
+    input  wire tare_finished,
+    input  wire tare_restless,
+    input  wire tare_bad_frame,
+    input  wire signed [26:0] tare_mean
+);
+
+    localparam [31:0] OFFSETS_WIDE = TAXELS;
+    localparam [31:0] CONTACT_WIDE = 2 * TAXELS;
+    localparam [31:0] LAST_TAXEL_WIDE = TAXELS - 1;
+    localparam [15:0] FIRST_OFFSET = OFFSETS_WIDE[15:0];
+    localparam [15:0] CONTACT_WORD = CONTACT_WIDE[15:0];
+    localparam [15:0] NOISE_WORD = CONTACT_WORD + 16'd1;
+    localparam [15:0] LAST_TAXEL = LAST_TAXEL_WIDE[15:0];
+    localparam [2:0] IDLE = 3'd0, WALK = 3'd1, DECIDE = 3'd2, DRAIN = 3'd3, GATHER = 3'd4, COPY = 3'd5;
+    localparam [2:0] LAST_BYTE = 3'd5; // of a word's cycles
+    localparam [2:0] COPY_TAKES = 3'd3, COPY_WRITES = 3'd5;
+
+    reg [2:0] state;
+    reg [2:0] step; // cycles at a word
+    reg [15:0] place;
+    reg checks; // whether the CRC must be the stated one
+    reg [31:0] expected;
+    reg [31:0] sum; // of the CRC
+    reg [63:0] contacts; // bank 1, bank 0
+    reg [53:0] noises;
+    wire copy_writes = (state == COPY) && (step == COPY_WRITES);
+    wire of_acting = (state == IDLE) ? index_active : (state == COPY) && !copy_writes; // or of the other one
+    wire bank = of_acting ? active : !active;
+
+    // Configuration, not reset, brings the design's content
+    initial begin
+        active = 1'b0;
+        generation = 8'd0;
+        crc = CRC;
+        contacts = {CONTACT, CONTACT};
+        noises = {NOISE, NOISE};
+    end
+
+    assign idle = (state == IDLE);
+    assign taring = (state == GATHER) || (state == COPY);
+    assign contact = active ? contacts[63:32] : contacts[31:0];
+    assign noise = active ? noises[53:27] : noises[26:0];
+    assign tare_run = taring;
+    assign tare_taxel = place[TAXEL_WIDTH-1:0];
+
+    // ---- The word of a bank: its place, then its content
+    wire [15:0] position = (state == IDLE) ? index : place;
+    wire of_gain = (position < FIRST_OFFSET);
+    wire of_offset = !of_gain && (position < CONTACT_WORD);
+    wire of_contact = (position == CONTACT_WORD);
+    wire of_noise = (position == NOISE_WORD);
+    wire [15:0] taxel = of_gain ? position : position - FIRST_OFFSET;
+    reg [3:0] kind; // of the word that the memories show
+    reg kind_bank;
+
+    assign bank_address = {bank, taxel[TAXEL_WIDTH-1:0]};
+
+    always @(posedge clock) begin
+        kind <= {of_noise, of_contact, of_offset, of_gain};
+        kind_bank <= bank;
+        word <= (kind[0] ? {4'd0, bank_gain} : 32'd0)
+            | (kind[1] ? {{(32-OFFSET_BITS){bank_offset[OFFSET_BITS-1]}}, bank_offset} : 32'd0)
+            | (kind[2] ? (kind_bank ? contacts[63:32] : contacts[31:0]) : 32'd0)
+            | (kind[3] ? {5'd0, kind_bank ? noises[53:27] : noises[26:0]} : 32'd0);
+    end
+
+    // ---- Bounds: a mantissa has all of its bits in use; the rest is what the numbers behind have room for
+    wire [17:0] mantissa = write_data[17] ? -write_data[17:0] : write_data[17:0];
+    wire gain_fits = (write_data[31:28] == 4'd0) && (mantissa[17:16] == 2'b01);
+    wire offset_fits = ($signed(write_data) <= OFFSET_LIMIT) && ($signed(write_data) >= -OFFSET_LIMIT);
+    wire noise_fits = (write_data[31:26] == 6'd0) && (write_data[25:0] != 26'd0);
+
+    assign write_allowed = (of_gain && gain_fits) || (of_offset && offset_fits)
+        || (of_contact && (write_data != 32'd0)) || (of_noise && noise_fits);
+
+    // ---- Tare: offsets of the acting bank, less what the frames had
+    reg [27:0] copied_gain;
+    reg signed [31:0] new_offset;
+    wire new_offset_fits = (new_offset <= OFFSET_LIMIT) && (new_offset >= -OFFSET_LIMIT);
+    wire writes = write && write_allowed && idle;
+
+    assign bank_write_gain = (writes && of_gain) || (copy_writes && new_offset_fits);
+    assign bank_write_offset = (writes && of_offset) || (copy_writes && new_offset_fits);
+    assign bank_write_gain_data = idle ? write_data[27:0] : copied_gain;
+    assign bank_write_offset_data = idle ? write_data[OFFSET_BITS-1:0] : new_offset[OFFSET_BITS-1:0];
+
+    // ---- CRC-32 as of Ethernet and zlib, a byte a cycle, the lowest first
+    wire [1:0] byte_place = step[1:0] - 2'd2;
+    wire [7:0] next_byte = word[{byte_place, 3'd0} +: 8];
+    wire [31:0] crc_in = sum ^ {24'd0, next_byte};
+    wire [31:0] crc_end = ~sum;
+    wire [287:0] crc_bits;
+    genvar position_bit;
+
+    assign crc_bits[31:0] = crc_in;
+
+    generate
+        for (position_bit = 0; position_bit < 8; position_bit = position_bit + 1) begin : gen_crc
+            wire [31:0] earlier = crc_bits[32*position_bit +: 32];
+
+            assign crc_bits[32*(position_bit+1) +: 32] = {1'b0, earlier[31:1]} ^ (earlier[0] ? 32'hedb88320 : 32'd0);
+        end
+    endgenerate
+
+    // ---- Commands
+    always @(posedge clock) begin
+        wrong_crc <= 1'b0;
+        not_at_rest <= 1'b0;
+        bad_frame <= 1'b0;
+        tare_out_of_range <= 1'b0;
+        step <= step + 3'd1;
+        case (state)
+            IDLE: begin
+                place <= 16'd0;
+                step <= 3'd0;
+                sum <= 32'hffffffff;
+                expected <= commit_crc;
+                checks <= commit;
+                tare_frames <= tare_log2;
+                state <= commit ? WALK : tare ? GATHER : IDLE;
+            end
+            GATHER: begin
+                step <= 3'd0;
+                if (tare_finished) begin
+                    not_at_rest <= tare_restless;
+                    bad_frame <= tare_bad_frame;
+                    state <= (tare_restless || tare_bad_frame) ? IDLE : COPY;
+                end
+            end
+            COPY: begin
+                if (step == COPY_TAKES) begin
+                    copied_gain <= bank_gain;
+                    new_offset <= {{(32-OFFSET_BITS){bank_offset[OFFSET_BITS-1]}}, bank_offset}
+                        - {{5{tare_mean[26]}}, tare_mean};
+                end
+                if (copy_writes) begin
+                    step <= 3'd0;
+                    place <= place + 16'd1;
+                    tare_out_of_range <= !new_offset_fits;
+                    if (!new_offset_fits) begin
+                        state <= IDLE;
+                    end else if (place == LAST_TAXEL) begin
+                        place <= 16'd0;
+                        state <= WALK;
+                    end
+                end
+            end
+            WALK: begin
+                if (step >= 3'd2) begin
+                    sum <= crc_bits[287:256];
+                end
+                if (step == LAST_BYTE) begin
+                    step <= 3'd0;
+                    place <= place + 16'd1;
+                    state <= (place == NOISE_WORD) ? DECIDE : WALK;
+                end
+            end
+            DECIDE: begin
+                wrong_crc <= checks && (crc_end != expected);
+                state <= (checks && (crc_end != expected)) ? IDLE : DRAIN;
+            end
+            // The frame coming in may still need the other bank
+            default: begin
+                if (!old_in_use) begin
+                    state <= IDLE;
+                end
+            end
+        endcase
+        if (core_reset && taring) begin
+            bad_frame <= 1'b1;
+            state <= IDLE;
+        end
+        if (reset) begin
+            state <= IDLE;
+            wrong_crc <= 1'b0;
+            not_at_rest <= 1'b0;
+            bad_frame <= 1'b0;
+            tare_out_of_range <= 1'b0;
+        end
+    end
+
+    // ---- What acts, and both banks' thresholds
+    wire copy_ends = copy_writes && (place == LAST_TAXEL);
+
+    always @(posedge clock) begin
+        if ((state == DECIDE) && !(checks && (crc_end != expected)) && !reset) begin
+            active <= !active;
+            generation <= generation + 8'd1;
+            crc <= crc_end;
+        end
+        if ((writes && of_contact && active) || (copy_ends && active)) begin
+            contacts[31:0] <= idle ? write_data : contacts[63:32];
+        end
+        if ((writes && of_contact && !active) || (copy_ends && !active)) begin
+            contacts[63:32] <= idle ? write_data : contacts[31:0];
+        end
+        if ((writes && of_noise && active) || (copy_ends && active)) begin
+            noises[26:0] <= idle ? write_data[26:0] : noises[53:27];
+        end
+        if ((writes && of_noise && !active) || (copy_ends && !active)) begin
+            noises[53:27] <= idle ? write_data[26:0] : noises[26:0];
+        end
+    end
+
+    wire _unused = &{1'b0, taxel, mantissa[15:0], OFFSETS_WIDE[31:16], CONTACT_WIDE[31:16], LAST_TAXEL_WIDE[31:16]};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// The registers of a calibration in memory, beside those of sptfra_registers: 0x080 to 0x0A8 of the map in the design's
+// control/NAME.rdl, and bit 4 of FEATURES.
+//
+// Reads answer in the same cycle. Words are written whole: fewer strobes than four change nothing but CALIBRATION_INDEX
+// and CALIBRATION_ERRORS.
+
+`default_nettype none
+
+module sptfra_calibration_registers #(
+    // Words of a bank
+    parameter [15:0] WORDS = 16'd26,
+    // Bits that are dropped of gain times count
+    parameter [5:0] SHIFT = 6'd14,
+    // A step of the stress is 2^LSB Pa
+    parameter [7:0] LSB = 8'd0,
+    // Largest magnitude of an offset, in steps of the stress
+    parameter [31:0] OFFSET_LIMIT = 32'd0,
+    // Steps of the stress for a count at a gain of 1, a float64
+    parameter [63:0] COUNT_STEPS = 64'd0
+) (
+    input  wire clock,
+    input  wire reset,
+    // Accesses
+    input  wire write_enable,
+    input  wire [9:0] write_word,
+    input  wire [31:0] write_data,
+    input  wire [31:0] write_mask,
+    output wire write_mapped,
+    input  wire [9:0] read_word,
+    output reg  [31:0] read_data, // zero elsewhere
+    output wire read_mapped,
+    // Commands
+    input  wire idle,
+    input  wire taring,
+    output reg  [15:0] index,
+    output reg  index_active,
+    output wire write,
+    input  wire write_allowed,
+    input  wire [31:0] word,
+    output wire commit,
+    output wire tare,
+    // State and errors
+    input  wire active,
+    input  wire [7:0] generation,
+    input  wire [31:0] crc,
+    input  wire wrong_crc,
+    input  wire not_at_rest,
+    input  wire bad_frame,
+    input  wire tare_out_of_range
+);
+
+    // Addresses, in words
+    localparam [9:0] FEATURES = 10'd6;
+    localparam [9:0] CALIBRATION = 10'd32;
+    localparam [9:0] CALIBRATION_OFFSET_LIMIT = 10'd33;
+    localparam [9:0] CALIBRATION_STEPS_LOW = 10'd34;
+    localparam [9:0] CALIBRATION_STEPS_HIGH = 10'd35;
+    localparam [9:0] CALIBRATION_INDEX = 10'd36;
+    localparam [9:0] CALIBRATION_DATA = 10'd37;
+    localparam [9:0] CALIBRATION_COMMIT = 10'd38;
+    localparam [9:0] TARE = 10'd39;
+    localparam [9:0] CALIBRATION_STATUS = 10'd40;
+    localparam [9:0] CALIBRATION_ERRORS = 10'd41;
+    localparam [9:0] CALIBRATION_CRC = 10'd42;
+    localparam [31:0] MOST_LOG2 = 32'd10; // of tare's frames
+
+    reg [4:0] errors; // bad frame, not at rest, wrong CRC, busy, out of range
+
+    assign write_mapped = (write_word >= CALIBRATION) && (write_word <= CALIBRATION_CRC);
+    assign read_mapped = (read_word >= CALIBRATION) && (read_word <= CALIBRATION_CRC);
+
+    // ---- Reads
+    always @(*) begin
+        case (read_word)
+            FEATURES: read_data = 32'h00000010;
+            CALIBRATION: read_data = {LSB, 2'd0, SHIFT, WORDS};
+            CALIBRATION_OFFSET_LIMIT: read_data = OFFSET_LIMIT;
+            CALIBRATION_STEPS_LOW: read_data = COUNT_STEPS[31:0];
+            CALIBRATION_STEPS_HIGH: read_data = COUNT_STEPS[63:32];
+            CALIBRATION_INDEX: read_data = {index_active, 15'd0, index};
+            CALIBRATION_DATA: read_data = idle ? word : 32'd0;
+            CALIBRATION_STATUS: read_data = {21'd0, taring, !idle, active, generation};
+            CALIBRATION_ERRORS: read_data = {27'd0, errors};
+            CALIBRATION_CRC: read_data = crc;
+            default: read_data = 32'd0; // commands read as zero
+        endcase
+    end
+
+    // ---- Writes
+    wire whole = write_enable && (write_mask == 32'hffffffff);
+    wire to_data = whole && (write_word == CALIBRATION_DATA);
+    wire to_commit = whole && (write_word == CALIBRATION_COMMIT);
+    wire to_tare = whole && (write_word == TARE);
+    wire tare_fits = (write_data <= MOST_LOG2);
+    wire [31:0] index_next = ({index_active, 15'd0, index} & ~write_mask) | (write_data & write_mask);
+    wire [4:0] ones = write_data[4:0] & write_mask[4:0];
+    wire [4:0] cleared = (write_enable && (write_word == CALIBRATION_ERRORS)) ? ones : 5'd0;
+    wire [4:0] events = {
+        bad_frame,
+        not_at_rest,
+        wrong_crc,
+        (to_data || to_commit || to_tare) && !idle,
+        tare_out_of_range || (idle && ((to_data && !write_allowed) || (to_tare && !tare_fits)))
+    };
+
+    assign write = to_data;
+    assign commit = to_commit && idle;
+    assign tare = to_tare && idle && tare_fits;
+
+    always @(posedge clock) begin
+        if (write_enable && (write_word == CALIBRATION_INDEX)) begin
+            index <= index_next[15:0];
+            index_active <= index_next[31];
+        end else if (to_data && idle) begin
+            index <= index + 16'd1;
+        end
+        // An event in the cycle in which its bit is cleared is not lost
+        errors <= (errors & ~cleared) | events;
+        if (reset) begin
+            index <= 16'd0;
+            index_active <= 1'b0;
+            errors <= 5'd0;
+        end
+    end
+
+    wire _unused = &{1'b0, index_next[30:16]};
+
+endmodule
+
+`default_nettype wire

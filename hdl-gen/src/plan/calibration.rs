@@ -1,0 +1,287 @@
+//! A calibration in RAM: the numbers of a taxel's gain and offset as a bank holds them, and the bounds of what it takes.
+
+use golden::design::{Calibration, CalibrationIn, Design};
+use serde::Serialize;
+
+use super::counts::LARGEST_NUMBER;
+use super::format::{Format, largest, pow2, round_shift};
+use super::gain::{GAIN_BITS, Gain};
+use super::{PlanError, Thresholds};
+use crate::cores::{fixed_to_float, float_to_fixed};
+
+/// Bits of a gain in its word: mantissa, then the exponent of the counts.
+const EXPONENT_MASK: u32 = (1 << super::counts::EXPONENT_BITS) - 1;
+/// Offsets are within so many full scales of either sign.
+const OFFSET_FULL_SCALES: i64 = 2;
+/// Bits dropped after the product, at most.
+const MOST_SHIFT: u32 = 40;
+/// Frames of a tare: 2 to the power of this, at most.
+pub const MOST_TARE_LOG2: u32 = 10;
+
+/// How counts become stress where gains and offsets are written while frames run:
+/// `number = round(count * 2^exponent)`, then `stress = round(number * mantissa / 2^shift) + offset`, clipped to the full
+/// scale and handed on as float32.
+///
+/// Mantissas have all of their bits in use and offsets are at most `offset_limit`, so that a number at its bound is beyond
+/// the full scale by every content of a bank. Behind the clipping stand the formats that hold for every stress.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CalibrationPlan {
+    /// Taxels of a frame.
+    pub taxels: usize,
+    /// Steps of the stress for one count at a gain of 1.
+    pub count_steps: f64,
+    /// Bits dropped, with rounding, after the product.
+    pub shift: u32,
+    /// Largest magnitude of an offset, in steps.
+    pub offset_limit: i64,
+    /// Stress from which on a value counts as full scale, in steps: what the rounding of any gain leaves of that.
+    pub full_scale: i64,
+    /// The format of the stress.
+    pub stress: Format,
+    /// What the banks hold at power-up.
+    pub power_up: Bank,
+}
+
+/// What a bank holds, in numbers of the hardware.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Bank {
+    /// Mantissa and exponent of each taxel's gain.
+    pub gains: Vec<(i32, i32)>,
+    /// Each taxel's offset, in steps of the stress.
+    pub offsets: Vec<i32>,
+    /// A frame with a smaller `sum |b|` has no contact, in steps.
+    pub contact: u32,
+    /// Most that a taxel's stress may spread in the frames of a tare, in steps.
+    pub noise: u32,
+}
+
+/// What `CalibrationPlan::stress_of` makes of a count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// Stress, clipped to the full scale.
+    pub steps: i64,
+    /// It was clipped.
+    pub saturated: bool,
+    /// The count was NaN or an infinity.
+    pub not_finite: bool,
+}
+
+impl CalibrationPlan {
+    /// The conversion, if the design's calibration is in RAM.
+    ///
+    /// # Errors
+    /// [`PlanError::Offset`] for an offset beyond what a bank takes; [`PlanError::Contact`] for a contact threshold.
+    pub fn new(design: &Design, stress: Format, thresholds: &Thresholds) -> Result<Option<Self>, PlanError> {
+        let Some(pa_per_count) =
+            design.input.pa_per_count.filter(|_| design.hardware.calibration == CalibrationIn::Ram)
+        else {
+            return Ok(None);
+        };
+        let offset_limit = OFFSET_FULL_SCALES * stress.bound;
+        // The least mantissa times the largest number is beyond full scale and offset.
+        let reach = (offset_limit + stress.bound + 1) as f64;
+        let least = pow2(GAIN_BITS as i32 - 2) * LARGEST_NUMBER as f64;
+        let fits = |&shift: &u32| reach * pow2(shift as i32) <= least;
+        let shift = (0..=MOST_SHIFT).rev().find(fits).unwrap_or(0);
+        // A gain's rounding, that of half a number's step, and those of product and offset.
+        let rounding = (stress.bound >> (GAIN_BITS - 1)) + (1 << (GAIN_BITS - 2)) / (1 << shift.min(16)) + 3;
+        let mut plan = Self {
+            taxels: design.sensor.taxels(),
+            count_steps: pa_per_count * pow2(-stress.lsb),
+            shift,
+            offset_limit,
+            full_scale: (stress.bound - rounding).max(1),
+            stress,
+            power_up: Bank { gains: Vec::new(), offsets: Vec::new(), contact: 1, noise: thresholds.taxel as u32 },
+        };
+        plan.power_up.contact = u32::try_from(thresholds.contact).map_err(|_| PlanError::Contact {
+            floor_pa: design.algorithm.noise_floor_pa,
+            most_pa: f64::from(u32::MAX) * stress.step() / plan.taxels as f64,
+        })?;
+        let calibration = match &design.input.calibration {
+            Some(calibration) => calibration.clone(),
+            None => Calibration { gain: vec![1.0; plan.taxels], offset: vec![0.0; plan.taxels] },
+        };
+        plan.power_up = plan.bank(&calibration, &plan.power_up).map_err(|taxel| PlanError::Offset {
+            taxel,
+            counts: calibration.offset[taxel],
+            full_scale: design.hardware.full_scale_pa / pa_per_count.abs(),
+        })?;
+        Ok(Some(plan))
+    }
+
+    /// The bank of a calibration, with the thresholds of another one. A gain of 0, which only a taxel has that the design
+    /// replaces, is stored as the smallest.
+    ///
+    /// # Errors
+    /// The first taxel whose offset is beyond the limit.
+    pub fn bank(&self, calibration: &Calibration, thresholds: &Bank) -> Result<Bank, usize> {
+        let mut bank = Bank { gains: Vec::new(), offsets: Vec::new(), ..*thresholds };
+        for (taxel, (&gain, &offset)) in calibration.gain.iter().zip(&calibration.offset).enumerate() {
+            if gain == 0.0 {
+                bank.gains.push((1 << (GAIN_BITS - 2), -512));
+                bank.offsets.push(0);
+                continue;
+            }
+            let Gain { mantissa, exponent } = Gain::new(gain * self.count_steps);
+            // By the gain as it is stored, so that the count of no stress at all gives none.
+            let steps = (offset / gain * f64::from(mantissa) * pow2(exponent)).round();
+            if steps.abs() > self.offset_limit as f64 {
+                return Err(taxel);
+            }
+            bank.gains.push((mantissa, exponent + self.shift as i32));
+            bank.offsets.push(steps as i32);
+        }
+        Ok(bank)
+    }
+
+    /// Whether a bank takes all of this.
+    pub fn takes(&self, bank: &Bank) -> bool {
+        let gain = |&(mantissa, exponent): &(i32, i32)| {
+            (1 << (GAIN_BITS - 2)..1 << (GAIN_BITS - 1)).contains(&mantissa.abs()) && (-512..512).contains(&exponent)
+        };
+        bank.gains.iter().all(gain)
+            && bank.offsets.iter().all(|&offset| i64::from(offset).abs() <= self.offset_limit)
+            && bank.contact > 0
+            && (1..1 << 26).contains(&bank.noise)
+    }
+
+    /// The stress of a taxel's count, given as float32.
+    pub fn stress_of(&self, bank: &Bank, taxel: usize, count: u32) -> Reading {
+        let (mantissa, exponent) = bank.gains[taxel];
+        let number = float_to_fixed::convert(count, exponent, LARGEST_NUMBER as u32);
+        let product = i64::from(number.fixed) * i64::from(mantissa);
+        let steps = round_shift(product, self.shift) + i64::from(bank.offsets[taxel]);
+        let saturated = steps.abs() >= self.full_scale;
+        let steps = if saturated { steps.signum() * self.stress.bound } else { steps };
+        Reading { steps, saturated, not_finite: number.not_finite }
+    }
+
+    /// The stress of a count as Bz takes it: float32, NaN for what is no number.
+    pub fn float_of(&self, bank: &Bank, taxel: usize, count: u32) -> u32 {
+        match self.stress_of(bank, taxel, count) {
+            Reading { not_finite: true, .. } => f32::NAN.to_bits(),
+            Reading { steps, .. } => fixed_to_float::convert(steps, self.stress.lsb),
+        }
+    }
+
+    /// Bits of the widest offset, sign included.
+    pub fn offset_bits(&self) -> u32 {
+        let widest = self.offset_limit.unsigned_abs();
+        u64::BITS - widest.leading_zeros() + 1
+    }
+
+    /// Words of a bank.
+    pub fn words(&self) -> usize {
+        2 * self.taxels + 2
+    }
+}
+
+impl Bank {
+    /// The words in their order: gains, offsets, contact threshold, noise floor.
+    pub fn words(&self) -> Vec<u32> {
+        let offsets = self.offsets.iter().map(|&offset| offset.cast_unsigned());
+        self.gain_words().chain(offsets).chain([self.contact, self.noise]).collect()
+    }
+
+    /// The words of the gains.
+    pub fn gain_words(&self) -> impl Iterator<Item = u32> {
+        let mantissa_mask = (1 << GAIN_BITS) - 1;
+        self.gains.iter().map(move |&(mantissa, exponent)| {
+            (exponent.cast_unsigned() & EXPONENT_MASK) << GAIN_BITS | mantissa.cast_unsigned() & mantissa_mask
+        })
+    }
+
+    /// CRC-32 of the words, as of Ethernet and zlib, the lowest byte of a word first.
+    pub fn crc(&self) -> u32 {
+        let bit = |crc: u32, _| crc >> 1 ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };
+        let byte = |crc: u32, byte: u8| (0..8).fold(crc ^ u32::from(byte), bit);
+        !self.words().into_iter().flat_map(u32::to_le_bytes).fold(u32::MAX, byte)
+    }
+
+    /// What a tare makes of a bank: offsets less the mean of each taxel's stress in the frames, a power of two of them.
+    /// None if they do not look like rest, or an offset leaves its bounds.
+    pub fn tared(&self, plan: &CalibrationPlan, frames: &[Vec<u32>]) -> Option<Self> {
+        let log2 = frames.len().trailing_zeros();
+        let mut tared = self.clone();
+        for taxel in 0..self.offsets.len() {
+            let readings: Vec<Reading> = frames.iter().map(|frame| plan.stress_of(self, taxel, frame[taxel])).collect();
+            if readings.iter().any(|reading| reading.saturated || reading.not_finite) {
+                return None;
+            }
+            let steps = || readings.iter().map(|reading| reading.steps);
+            if steps().max()? - steps().min()? > i64::from(self.noise) {
+                return None;
+            }
+            let offset = i64::from(self.offsets[taxel]) - round_shift(steps().sum(), log2);
+            if offset.abs() > plan.offset_limit {
+                return None;
+            }
+            tared.offsets[taxel] = offset as i32;
+        }
+        Some(tared)
+    }
+}
+
+// The bound of an offset has room in a word.
+const _: () = assert!(OFFSET_FULL_SCALES * largest(crate::cores::LONG_BITS) < 1 << 31);
+
+#[cfg(test)]
+mod tests {
+    use super::{Bank, CalibrationPlan};
+    use golden::design::{Calibration, CalibrationIn, Design};
+
+    use crate::plan::Plan;
+
+    fn plan(data_bits: u32) -> CalibrationPlan {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/small-control.toml");
+        let mut design = Design::load(std::path::Path::new(file)).unwrap();
+        design.input.pa_per_count = Some(-12.5);
+        design.hardware.calibration = CalibrationIn::Ram;
+        design.hardware.data_bits = data_bits;
+        Plan::new(&design).unwrap().calibration.unwrap()
+    }
+
+    #[test]
+    fn a_crc_is_that_of_zlib() {
+        let bank = Bank { gains: vec![], offsets: vec![], contact: 0x3433_3231, noise: 0x3837_3635 };
+        assert_eq!(bank.crc(), 0x9AE0_DAAF, "of 12345678");
+    }
+
+    /// By every content: the full scale is read as such, what is below it is not, and no stress leaves its bounds.
+    #[test]
+    fn the_full_scale_is_reached_by_every_content() {
+        for plan in [plan(27), plan(22)] {
+            let gains = [1e-9, 3e-5, 0.7, 0.99999, 1.0, 1.00001, 15.9];
+            // In steps, within a full scale of either side: beyond, one end of the range cannot be read.
+            let shares = [0.0, 0.4, -0.4, 1.9, -1.9];
+            for (gain, share) in gains.iter().flat_map(|gain| shares.map(|share| (*gain, share))) {
+                let counts = plan.stress.bound as f64 / plan.count_steps;
+                let calibration = Calibration { gain: vec![gain; 12], offset: vec![share * counts; 12] };
+                let bank = plan.bank(&calibration, &plan.power_up).unwrap();
+                assert!(plan.takes(&bank));
+                let at = |part: f64| {
+                    let count = (part * counts - share * counts) / gain;
+                    plan.stress_of(&bank, 3, (count as f32).to_bits())
+                };
+                // A float32 of a count far from 0 is off by as much as a step of the stress and more.
+                for (part, saturated) in [(1.00001, true), (-1.00001, true), (0.9999, false), (-0.9999, false)] {
+                    let reading = at(part);
+                    assert_eq!(reading.saturated, saturated, "gain {gain}, offset {share}, {part}");
+                    assert!(reading.steps.abs() <= plan.stress.bound);
+                    let off = (reading.steps as f64 / plan.stress.bound as f64 - part).abs();
+                    assert!(off < 2e-5, "gain {gain}, offset {share}, {part}: {off}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn offsets_beyond_the_bounds_are_refused() {
+        let plan = plan(27);
+        let counts = plan.stress.bound as f64 / plan.count_steps;
+        let mut calibration = Calibration { gain: vec![1.0; 12], offset: vec![0.0; 12] };
+        calibration.offset[7] = 2.1 * counts;
+        assert_eq!(plan.bank(&calibration, &plan.power_up), Err(7));
+    }
+}

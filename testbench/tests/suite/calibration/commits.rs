@@ -1,0 +1,163 @@
+//! Commits while frames run: each frame is computed with the bank that acted at its first beat, all of it.
+
+use hdl_gen::plan::calibration::Bank;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use testbench::stream::{Mode, Pattern, Traffic};
+use testbench::trial::{rtl_sources, timeout};
+use testbench::verilate::{Built, Verilate};
+
+use super::{BUSY, Subject, core, counts, errors, generation, judged, judged_in, load, random_bank, subject};
+use crate::support::in_parallel;
+
+/// Cycles in which the bank is written, before the first commit.
+const LOADED: u64 = 600;
+
+/// A bank of other gains and offsets, and one with another threshold: no frame of it has contact.
+fn others(subject: &Subject) -> [Bank; 2] {
+    let calibration = subject.calibration();
+    let random = random_bank(calibration, &mut ChaCha8Rng::seed_from_u64(1));
+    [random, Bank { contact: u32::MAX, ..calibration.power_up.clone() }]
+}
+
+/// Commits a bank, so that it acts in another cycle each time, over all cycles of a frame; what went wrong.
+fn commits_at_every_moment(
+    subject: &Subject,
+    built: &Built,
+    bank: &Bank,
+    cycles: impl Iterator<Item = u64>,
+) -> Vec<String> {
+    let mut random = ChaCha8Rng::seed_from_u64(2);
+    let calibration = subject.calibration();
+    let interval = subject.plan.timeline.interval_cycles;
+    // Frames before it, while it walks through the bank, and after it.
+    let before = 2 + (LOADED + 7 * calibration.words() as u64) / interval;
+    // Frames are taken in some way ahead of the answers.
+    let packets = counts(&subject.plan, before as usize + 12, &mut random);
+    let accesses = load(bank, bank.crc());
+    let banks = [calibration.power_up.clone(), bank.clone()];
+    let cycles: Vec<u64> = cycles.collect();
+    let told = in_parallel(&cycles, |&cycle| {
+        let mut core = core(built, 1);
+        let (commit, writes) = accesses.split_last().expect("a commit");
+        for &write in writes {
+            core.plan(10, write);
+        }
+        core.plan(LOADED + cycle, *commit);
+        let generations = judged(&subject.plan, &mut core, &packets, &banks)?;
+        match (generations.first(), generations.last(), errors(&mut core), generation(&mut core)) {
+            (Some(0), Some(1), 0, 1) => Ok(generations.iter().sum()),
+            other => Err(format!("{other:?}, first and last generation, errors, generation")),
+        }
+    });
+    let changes: std::collections::BTreeSet<usize> = told.iter().flatten().copied().collect();
+    let wrong = told.into_iter().zip(cycles).filter_map(|(told, cycle)| Some(format!("{cycle}: {}", told.err()?)));
+    let wrong: Vec<String> = wrong.collect();
+    assert!(!wrong.is_empty() || changes.len() > 1, "the change moves from a frame to the next: {changes:?}");
+    wrong
+}
+
+#[test]
+fn a_commit_at_every_moment_of_a_frame() {
+    let subject = subject();
+    let interval = subject.plan.timeline.interval_cycles;
+    for (bank, step) in others(subject).iter().zip([1, 4]) {
+        let cycles = (0..interval + 2).step_by(step);
+        assert_eq!(commits_at_every_moment(subject, &subject.built, bank, cycles), Vec::<String>::new());
+    }
+}
+
+/// Banks come one after the other, as fast as they can be written, while good and bad frames run with pauses.
+#[test]
+fn commits_on_each_others_heels_among_bad_frames() {
+    let subject = subject();
+    let told = in_parallel(&[1, 2, 3, 4], |&seed| {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut core = core(&subject.built, seed);
+        let mut banks = vec![subject.calibration().power_up.clone()];
+        let mut cycle = 10;
+        for _ in 0..16 {
+            let bank = random_bank(subject.calibration(), &mut random);
+            for access in load(&bank, bank.crc()) {
+                core.plan(cycle, access);
+            }
+            // More than its writes take, the walk, and a frame that comes in with pauses.
+            cycle += 1500 + random.random_range(0..200);
+            banks.push(bank);
+        }
+        let mut packets = counts(&subject.plan, 120, &mut random);
+        for packet in &mut packets {
+            match random.random_range(0..8) {
+                0 => packet[random.random_range(0..12)] = f32::NAN.to_bits(),
+                1 => packet.truncate(random.random_range(1..12)),
+                2 => packet.extend([7; 9]),
+                3 => packet.truncate(1),
+                _ => {}
+            }
+        }
+        let modes = Mode::all(seed);
+        let traffic = Traffic::new(&packets, timeout(&subject.plan)).with_mode(&modes[seed as usize % 4]);
+        let generations = judged_in(&subject.plan, &mut core, &traffic, &banks);
+        let errors = errors(&mut core);
+        assert_eq!((errors, generations.as_ref().err()), (0, None), "seed {seed}");
+        generations.ok()?.last().copied()
+    });
+    assert!(told.iter().all(|&last| last > Some(7)), "{told:?}");
+}
+
+/// Packets of one beat must not pile up in the pipeline: more would be inside than there is room for.
+#[test]
+fn packets_of_a_beat_do_not_pile_up() {
+    let subject = subject();
+    let mut packets = counts(&subject.plan, 60, &mut ChaCha8Rng::seed_from_u64(3));
+    for (index, packet) in packets.iter_mut().enumerate() {
+        if index % 20 > 2 {
+            packet.truncate(1 + index % 3 / 2);
+        }
+    }
+    let mut core = subject.core(3);
+    let banks = [subject.calibration().power_up.clone()];
+    judged(&subject.plan, &mut core, &packets, &banks).unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// A copy in which a frame changes its bank within is found, and one in which it does not keep its threshold.
+#[test]
+fn half_a_frame_by_another_bank_is_noticed() {
+    let subject = subject();
+    let [other_gains, other_threshold] = others(subject);
+    for (module, text, broken, bank) in [
+        ("sptfra_calibrate", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", other_gains),
+        ("sptfra_frame_calibration", "contacts[next_contact]", "contact", other_threshold),
+    ] {
+        let mut sources = rtl_sources(&subject.plan).expect("emitted");
+        let path = format!("rtl/{module}.v");
+        let right = String::from_utf8(sources.files[&path].clone()).expect("text");
+        assert_eq!(right.matches(text).count(), 1, "{text}");
+        sources.files.insert(path, right.replace(text, broken).into_bytes());
+        let built = Verilate::default().build(&sources).expect("builds");
+        let cycles = (0..subject.plan.timeline.interval_cycles).step_by(3);
+        assert_ne!(commits_at_every_moment(subject, &built, &bank, cycles), Vec::<String>::new(), "{broken}");
+    }
+}
+
+/// A frame that takes longer to come in than two banks to be written keeps the one that it began with, which is not
+/// written meanwhile.
+#[test]
+fn a_frame_that_takes_its_time_keeps_its_bank() {
+    let subject = subject();
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    let mut core = core(&subject.built, 4);
+    let [first, second] = [0, 1].map(|_| random_bank(subject.calibration(), &mut random));
+    for (cycle, bank) in [(10, &first), (900, &second)] {
+        for access in load(bank, bank.crc()) {
+            core.plan(cycle, access);
+        }
+    }
+    let packets = counts(&subject.plan, 4, &mut random);
+    let slow = Pattern::Bursts { seed: 3, longest_run: 1, longest_pause: 600 };
+    let traffic = Traffic { source: slow, ..Traffic::new(&packets, 100_000) };
+    let banks = [subject.calibration().power_up.clone(), first];
+    let generations = judged_in(&subject.plan, &mut core, &traffic, &banks).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((generations[0], generations[1]), (0, 1));
+    assert!(errors(&mut core) & BUSY != 0);
+}

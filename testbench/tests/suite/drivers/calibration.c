@@ -1,0 +1,113 @@
+/* The C driver's calibration on the host, against the simulated core.
+ *
+ *   calibration CORE.so BANKS COLUMNS ROWS
+ *
+ * BANKS is binary, little-endian: gains and offsets of each taxel (float64), a noise floor in Pa (float64, 0: none), and
+ * the words of the bank (uint32); then the same for the next one. */
+#include "machine.h"
+#include "sptfra.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_TAXELS 64
+#define POLLS 1000000u
+
+_Alignas(SPTFRA_LINE) static uint32_t stress_words[1024], force_words[1024];
+
+#define CHECK(condition)                                                      \
+    do {                                                                      \
+        if (!(condition)) {                                                   \
+            printf("FAIL: line %d: %s\n", __LINE__, #condition);              \
+            exit(1);                                                          \
+        }                                                                     \
+    } while (0)
+
+static void send(sptfra *device, float count, sptfra_result *result)
+{
+    const sptfra_buffer stress = {stress_words, (uintptr_t)stress_words + MACHINE_BUS_OFFSET, sizeof stress_words};
+    const sptfra_buffer forces = {force_words, (uintptr_t)force_words + MACHINE_BUS_OFFSET, sizeof force_words};
+    uint32_t word;
+
+    for (word = 0; word < device->shape.words_in; word++) {
+        memcpy(&stress_words[word], &count, sizeof count);
+    }
+    CHECK(sptfra_process(device, &stress, &forces, POLLS) == SPTFRA_OK);
+    CHECK(sptfra_decode(&device->shape, force_words, result) == SPTFRA_OK);
+}
+
+int main(int count, char **arguments)
+{
+    static double gain[MOST_TAXELS], offset[MOST_TAXELS];
+    static uint32_t words[2 * MOST_TAXELS + 2];
+    sptfra_platform platform = {NULL, machine_read, machine_write, NULL, NULL, NULL};
+    sptfra_result result;
+    sptfra device;
+    machine *system;
+    FILE *file;
+    double noise_floor;
+    uint32_t word, index, banks = 0, taxels;
+
+    CHECK(count == 5);
+    taxels = (uint32_t)atoi(arguments[3]) * (uint32_t)atoi(arguments[4]);
+    CHECK(taxels <= MOST_TAXELS);
+    system = machine_open(arguments[1], 5, 1);
+    CHECK(system != NULL);
+    platform.context = system;
+    CHECK(sptfra_open(&device, &platform, MACHINE_CORE, MACHINE_DMA) == SPTFRA_OK);
+    send(&device, 5.0f, &result);
+    CHECK(result.generation == 0);
+    file = fopen(arguments[2], "rb");
+    CHECK(file != NULL);
+    while (fread(gain, sizeof *gain, taxels, file) == taxels) {
+        CHECK(fread(offset, sizeof *offset, taxels, file) == taxels && fread(&noise_floor, 8, 1, file) == 1);
+        CHECK(fread(words, 4, 2u * taxels + 2u, file) == 2u * taxels + 2u);
+        CHECK(sptfra_load_calibration(&device, gain, offset, noise_floor, POLLS) == SPTFRA_OK);
+        for (index = 0; index < 2u * taxels + 2u; index++) {
+            CHECK(sptfra_read_calibration(&device, (uint16_t)index, 1, &word) == SPTFRA_OK);
+            CHECK(word == words[index]);
+        }
+        banks++;
+        send(&device, 5.0f, &result);
+        CHECK(result.generation == banks);
+    }
+    CHECK(banks > 3);
+    /* What is refused before anything is written, and what the core refuses. */
+    gain[taxels - 1] = 17.0;
+    CHECK(sptfra_load_calibration(&device, gain, offset, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
+    gain[taxels - 1] = 1.0;
+    offset[taxels - 1] = 1e6;
+    CHECK(sptfra_load_calibration(&device, gain, offset, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
+    offset[taxels - 1] = 0.0;
+    CHECK(sptfra_load_calibration(&device, gain, offset, 1e12, POLLS) == SPTFRA_OUT_OF_RANGE);
+    CHECK(sptfra_calibration_wait(&device, POLLS) == SPTFRA_OK);
+    /* Tare: four frames at rest, then nothing is read; then one that is not. */
+    CHECK(sptfra_load_calibration(&device, gain, offset, 20.0, 0) == SPTFRA_TIMEOUT);
+    CHECK(sptfra_tare(&device, 2) == SPTFRA_CALIBRATION_BUSY);
+    CHECK(sptfra_calibration_wait(&device, POLLS) == SPTFRA_OK);
+    CHECK(sptfra_tare(&device, 11) == SPTFRA_OUT_OF_RANGE);
+    CHECK(sptfra_tare(&device, 2) == SPTFRA_OK);
+    CHECK(sptfra_calibration_wait(&device, 10) == SPTFRA_TIMEOUT);
+    CHECK(sptfra_read_calibration(&device, 0, 1, &word) == SPTFRA_CALIBRATION_BUSY);
+    for (index = 0; index < 4; index++) {
+        send(&device, 300.0f, &result);
+        CHECK(result.generation == (uint8_t)(banks + 1) && !(result.status & SPTFRA_NO_CONTACT));
+    }
+    CHECK(sptfra_calibration_wait(&device, POLLS) == SPTFRA_OK);
+    send(&device, 300.0f, &result);
+    CHECK(result.generation == (uint8_t)(banks + 2) && (result.status & SPTFRA_NO_CONTACT));
+    CHECK(sptfra_tare(&device, 1) == SPTFRA_OK);
+    send(&device, 300.0f, &result);
+    send(&device, 310.0f, &result);
+    CHECK(sptfra_calibration_wait(&device, POLLS) == SPTFRA_NOT_AT_REST);
+    CHECK(sptfra_tare(&device, 0) == SPTFRA_OK);
+    send(&device, 1e9f, &result);
+    CHECK(sptfra_calibration_wait(&device, POLLS) == SPTFRA_BAD_REST);
+    CHECK(strcmp(sptfra_error(SPTFRA_NO_CALIBRATION), "unknown code") != 0);
+    CHECK(machine_faults(system) == 0);
+    fclose(file);
+    machine_close(system);
+    printf("PASS: %u banks\n", banks);
+    return 0;
+}

