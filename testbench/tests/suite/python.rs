@@ -72,14 +72,19 @@ fn the_wheel_works_in_an_empty_environment() {
     drawing.env("PYTHONPATH", site).arg(&test).arg("Package.test_plots_say_what_they_need");
     run(&mut drawing);
     let picture = elsewhere.join("mat.svg");
-    let example = workspace("python/examples/recording.py");
-    let said = run(ready(&python()).env("PYTHONPATH", site).arg(example).arg("--picture").arg(&picture));
+    let notebook = workspace("python/examples/recording.ipynb");
+    let mut running = ready(&python());
+    running.env("PYTHONPATH", site).arg(workspace("python/tests/run_notebook.py")).arg(&notebook).arg(&picture);
+    // A notebook is opened where it lies.
+    let said = run(running.current_dir(workspace("python/examples")));
     for stated in [
         "bed_mat: 24 frames of 64 x 27 taxels",
         "stuck: 73 readings of 22 frames are exactly 104",
         "22 frames with a person: ",
         "22 frames have no direction",
         "9335 frames a second on 97 DSP and 648.5 RAMB36",
+        "e_Fx: 1.32 %",
+        "frames simulated",
     ] {
         assert!(said.contains(stated), "no {stated:?} in:\n{said}");
     }
