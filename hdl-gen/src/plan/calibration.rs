@@ -70,7 +70,7 @@ impl CalibrationPlan {
     /// The conversion, if the design's calibration is in RAM.
     ///
     /// # Errors
-    /// [`PlanError::Offset`] for an offset beyond what a bank takes; [`PlanError::Contact`] for a contact threshold.
+    /// [`PlanError::BankOffset`] for an offset beyond what a bank takes; [`PlanError::Contact`] for a contact threshold.
     pub fn new(design: &Design, stress: Format, thresholds: &Thresholds) -> Result<Option<Self>, PlanError> {
         let Some(pa_per_count) =
             design.input.pa_per_count.filter(|_| design.hardware.calibration == CalibrationIn::Ram)
@@ -102,10 +102,10 @@ impl CalibrationPlan {
             Some(calibration) => calibration.clone(),
             None => Calibration { gain: vec![1.0; plan.taxels], offset: vec![0.0; plan.taxels] },
         };
-        plan.power_up = plan.bank(&calibration, &plan.power_up).map_err(|taxel| PlanError::Offset {
+        plan.power_up = plan.bank(&calibration, &plan.power_up).map_err(|taxel| PlanError::BankOffset {
             taxel,
             counts: calibration.offset[taxel],
-            full_scale: design.hardware.full_scale_pa / pa_per_count.abs(),
+            most: offset_limit as f64 / plan.count_steps.abs(),
         })?;
         Ok(Some(plan))
     }
@@ -233,11 +233,16 @@ mod tests {
 
     use crate::plan::Plan;
 
-    fn plan(data_bits: u32) -> CalibrationPlan {
+    fn design() -> Design {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../designs/small-control.toml");
         let mut design = Design::load(std::path::Path::new(file)).unwrap();
         design.input.pa_per_count = Some(-12.5);
         design.hardware.calibration = CalibrationIn::Ram;
+        design
+    }
+
+    fn plan(data_bits: u32) -> CalibrationPlan {
+        let mut design = design();
         design.hardware.data_bits = data_bits;
         Plan::new(&design).unwrap().calibration.unwrap()
     }
@@ -283,5 +288,21 @@ mod tests {
         let mut calibration = Calibration { gain: vec![1.0; 12], offset: vec![0.0; 12] };
         calibration.offset[7] = 2.1 * counts;
         assert_eq!(plan.bank(&calibration, &plan.power_up), Err(7));
+        let mut design = design();
+        design.input.calibration = Some(calibration);
+        let message = Plan::new(&design).unwrap_err().to_string();
+        assert!(
+            ["taxel 7", "at most 16000.0", "calibration = \"rom\""].iter().all(|part| message.contains(part)),
+            "{message}"
+        );
+        // A threshold beyond 32 bits.
+        design.input.calibration = None;
+        (design.sensor.columns, design.sensor.rows) = (10, 10);
+        design.algorithm.noise_floor_pa = 9e4;
+        let message = Plan::new(&design).unwrap_err().to_string();
+        assert!(
+            message.contains("noise_floor_pa = 90000") && message.contains("the threshold of contact"),
+            "{message}"
+        );
     }
 }

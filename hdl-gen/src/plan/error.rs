@@ -75,6 +75,20 @@ pub enum PlanError {
         /// The full scale in counts.
         full_scale: f64,
     },
+    /// An offset that a bank of the calibration does not take.
+    #[error(
+        "[sensor] calibration: the offset of taxel {taxel} is {counts} counts; with [hardware] calibration = \"ram\" at most \
+         {most:.1} of either sign, two full scales, have room; correct the file, state a full_scale_pa that fits the \
+         sensor, or write calibration = \"rom\""
+    )]
+    BankOffset {
+        /// The taxel, from 0.
+        taxel: usize,
+        /// Its offset.
+        counts: f64,
+        /// The largest one that has room.
+        most: f64,
+    },
     /// A contact threshold that has no room in a bank of the calibration.
     #[error(
         "[hardware] calibration = \"ram\": with [algorithm] noise_floor_pa = {floor_pa} the threshold of contact has more \
