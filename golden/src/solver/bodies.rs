@@ -7,7 +7,7 @@ use crate::bodies::{Body, Found};
 use crate::matrices::{Matrices, MatrixName};
 
 /// Times that the bodies are solved: first as if none had friction when the frame is parted, then with what was found. That
-/// halves the errors; more rounds change nothing.
+/// takes four tenths off the errors; more rounds change next to nothing.
 const ROUNDS: usize = 2;
 
 /// The bodies of a frame, to be used again for the next one.
