@@ -59,7 +59,7 @@ module sptfra_calibrate #(
     // Each beat's stress, for tare
     input  wire tare_run,
     output wire reading_valid,
-    output wire reading_marked, // of a frame that began with tare_run
+    output wire reading_marked, // of a frame that began with tare_run, high since then
     output wire reading_last,
     output wire [TAXEL_WIDTH-1:0] reading_taxel_8, // two cycles ahead
     output wire [TAXEL_WIDTH-1:0] reading_taxel,
@@ -109,6 +109,10 @@ module sptfra_calibrate #(
             index <= s_tlast ? {INDEX_WIDTH{1'b0}} : (index_wide != TAXELS) ? index + 1 : index;
         end
         ends_inside <= ends_inside + {1'b0, accept && s_tlast} - {1'b0, end_leaves};
+        // What is left of a frame when its tare ends is none of the next one's
+        if (!tare_run) begin
+            marked_held <= 1'b0;
+        end
         if (reset) begin
             in_frame <= 1'b0;
             bank_held <= 1'b0;
@@ -167,6 +171,9 @@ module sptfra_calibrate #(
             marks <= {marks[9:1], marked};
             wrong_lengths <= {wrong_lengths[9:1], (index_wide == TAXELS) || (s_tlast && (index_wide != TAXELS - 1))};
             taxels <= {taxels[9*TAXEL_WIDTH-1:0], index_wide[TAXEL_WIDTH-1:0]};
+        end
+        if (!tare_run) begin
+            marks <= 10'd0;
         end
         if (reset) begin
             valid <= {STAGES{1'b0}};

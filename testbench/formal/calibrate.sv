@@ -74,6 +74,9 @@ module harness (
             its_bank <= open ? its_bank : active;
             its_mark <= open ? its_mark : tare_run;
         end
+        if (!tare_run) begin
+            its_mark <= 1'b0;
+        end
         if (reset) begin
             open <= 1'b0;
         end
@@ -86,7 +89,7 @@ module harness (
 
     always @(posedge clock) begin
         if (!reset) begin
-            // One bank for a frame, and a tare has it whole or not at all
+            // One bank for a frame, and a tare has it whole or not at all: from its first beat on, without an end between
             assert (!taken || (bank == (open ? its_bank : active)));
             assert (!taken || (marked == (open ? its_mark : tare_run)));
             assert (frame_begins == (taken && !open));

@@ -1,5 +1,9 @@
 //! A calibration in RAM: the numbers of a taxel's gain and offset as a bank holds them, and the bounds of what it takes.
 
+mod bank;
+
+pub use bank::Bank;
+
 use golden::design::{Calibration, CalibrationIn, Design};
 use serde::Serialize;
 
@@ -9,8 +13,6 @@ use super::gain::{GAIN_BITS, Gain};
 use super::{PlanError, Thresholds};
 use crate::cores::{fixed_to_float, float_to_fixed};
 
-/// Bits of a gain in its word: mantissa, then the exponent of the counts.
-const EXPONENT_MASK: u32 = (1 << super::counts::EXPONENT_BITS) - 1;
 /// Offsets are within so many full scales of either sign.
 const OFFSET_FULL_SCALES: i64 = 2;
 /// Bits dropped after the product, at most.
@@ -40,19 +42,6 @@ pub struct CalibrationPlan {
     pub stress: Format,
     /// What the banks hold at power-up.
     pub power_up: Bank,
-}
-
-/// What a bank holds, in numbers of the hardware.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Bank {
-    /// Mantissa and exponent of each taxel's gain.
-    pub gains: Vec<(i32, i32)>,
-    /// Each taxel's offset, in steps of the stress.
-    pub offsets: Vec<i32>,
-    /// A frame with a smaller `sum |b|` has no contact, in steps.
-    pub contact: u32,
-    /// Most that a taxel's stress may spread in the frames of a tare, in steps.
-    pub noise: u32,
 }
 
 /// What `CalibrationPlan::stress_of` makes of a count.
@@ -98,10 +87,14 @@ impl CalibrationPlan {
             floor_pa: design.algorithm.noise_floor_pa,
             most_pa: f64::from(u32::MAX) * stress.step() / plan.taxels as f64,
         })?;
-        let calibration = match &design.input.calibration {
+        let mut calibration = match &design.input.calibration {
             Some(calibration) => calibration.clone(),
             None => Calibration { gain: vec![1.0; plan.taxels], offset: vec![0.0; plan.taxels] },
         };
+        // What is replaced anyway must not keep a tare from finding rest.
+        for &taxel in &design.input.dead {
+            calibration.gain[taxel] = 0.0;
+        }
         plan.power_up = plan.bank(&calibration, &plan.power_up).map_err(|taxel| PlanError::BankOffset {
             taxel,
             counts: calibration.offset[taxel],
@@ -177,58 +170,12 @@ impl CalibrationPlan {
     }
 }
 
-impl Bank {
-    /// The words in their order: gains, offsets, contact threshold, noise floor.
-    pub fn words(&self) -> Vec<u32> {
-        let offsets = self.offsets.iter().map(|&offset| offset.cast_unsigned());
-        self.gain_words().chain(offsets).chain([self.contact, self.noise]).collect()
-    }
-
-    /// The words of the gains.
-    pub fn gain_words(&self) -> impl Iterator<Item = u32> {
-        let mantissa_mask = (1 << GAIN_BITS) - 1;
-        self.gains.iter().map(move |&(mantissa, exponent)| {
-            (exponent.cast_unsigned() & EXPONENT_MASK) << GAIN_BITS | mantissa.cast_unsigned() & mantissa_mask
-        })
-    }
-
-    /// CRC-32 of the words, as of Ethernet and zlib, the lowest byte of a word first.
-    pub fn crc(&self) -> u32 {
-        let bit = |crc: u32, _| crc >> 1 ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };
-        let byte = |crc: u32, byte: u8| (0..8).fold(crc ^ u32::from(byte), bit);
-        !self.words().into_iter().flat_map(u32::to_le_bytes).fold(u32::MAX, byte)
-    }
-
-    /// What a tare makes of a bank: offsets less the mean of each taxel's stress in the frames, a power of two of them.
-    /// None if they do not look like rest, or an offset leaves its bounds.
-    pub fn tared(&self, plan: &CalibrationPlan, frames: &[Vec<u32>]) -> Option<Self> {
-        let log2 = frames.len().trailing_zeros();
-        let mut tared = self.clone();
-        for taxel in 0..self.offsets.len() {
-            let readings: Vec<Reading> = frames.iter().map(|frame| plan.stress_of(self, taxel, frame[taxel])).collect();
-            if readings.iter().any(|reading| reading.saturated || reading.not_finite) {
-                return None;
-            }
-            let steps = || readings.iter().map(|reading| reading.steps);
-            if steps().max()? - steps().min()? > i64::from(self.noise) {
-                return None;
-            }
-            let offset = i64::from(self.offsets[taxel]) - round_shift(steps().sum(), log2);
-            if offset.abs() > plan.offset_limit {
-                return None;
-            }
-            tared.offsets[taxel] = offset as i32;
-        }
-        Some(tared)
-    }
-}
-
 // The bound of an offset has room in a word.
 const _: () = assert!(OFFSET_FULL_SCALES * largest(crate::cores::LONG_BITS) < 1 << 31);
 
 #[cfg(test)]
 mod tests {
-    use super::{Bank, CalibrationPlan};
+    use super::CalibrationPlan;
     use golden::design::{Calibration, CalibrationIn, Design};
 
     use crate::plan::Plan;
@@ -245,12 +192,6 @@ mod tests {
         let mut design = design();
         design.hardware.data_bits = data_bits;
         Plan::new(&design).unwrap().calibration.unwrap()
-    }
-
-    #[test]
-    fn a_crc_is_that_of_zlib() {
-        let bank = Bank { gains: vec![], offsets: vec![], contact: 0x3433_3231, noise: 0x3837_3635 };
-        assert_eq!(bank.crc(), 0x9AE0_DAAF, "of 12345678");
     }
 
     /// By every content: the full scale is read as such, what is below it is not, and no stress leaves its bounds.
@@ -279,6 +220,22 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A taxel that the design replaces does not keep the others from a tare, whatever it reads.
+    #[test]
+    fn a_dead_taxel_is_at_rest() {
+        let mut design = design();
+        design.input.dead = vec![3];
+        let plan = Plan::new(&design).unwrap().calibration.unwrap();
+        let frames: Vec<Vec<u32>> = [1e9, -7.0]
+            .map(|stuck: f32| (0..12).map(|taxel| if taxel == 3 { stuck } else { 20.0 }.to_bits()).collect())
+            .to_vec();
+        let tared = plan.power_up.tared(&plan, &frames).expect("rest");
+        assert_eq!((tared.offsets[3], tared.offsets[2] != 0), (0, true));
+        design.input.dead.clear();
+        let plan = Plan::new(&design).unwrap().calibration.unwrap();
+        assert_eq!(plan.power_up.tared(&plan, &frames), None);
     }
 
     #[test]

@@ -3,12 +3,18 @@
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use testbench::registers::address;
+use testbench::registers::{Access, address};
+use testbench::stream::{Mode, Pattern, Traffic, exchange};
+use testbench::trial::timeout;
 
 use super::{
-    BAD_FRAME, BUSY, NOT_AT_REST, OUT_OF_RANGE, Subject, counts, errors, generation, judge, load, perform, random_bank,
-    read_back, send, subject,
+    BAD_FRAME, BUSY, NOT_AT_REST, OUT_OF_RANGE, Subject, core, counts, errors, generation, judge, load, perform,
+    random_bank, read_back, send, subject,
 };
+use crate::support::in_parallel;
+
+/// Cycles in which the bank is written, before the first tare.
+const LOADED: u64 = 900;
 
 /// What makes frames at rest into others.
 type Change<'a> = &'a dyn Fn(&mut Vec<Vec<u32>>);
@@ -144,7 +150,52 @@ fn a_tare_to_an_offset_out_of_bounds_changes_nothing() {
     assert_eq!((generation(&mut core), read_back(&mut core, true)), (1, bank.words()));
 }
 
-/// A tare counts whole frames that begin after the command; a soft reset ends it.
+/// A tare that begins within a frame, where another one has just failed, takes whole frames that begin after it.
+#[test]
+fn a_tare_again_within_a_frame_leaves_the_rest_of_it_alone() {
+    let subject = subject();
+    let calibration = subject.calibration();
+    let interval = subject.plan.timeline.interval_cycles;
+    let bank = quiet_bank(subject, 3.0);
+    let mut random = ChaCha8Rng::seed_from_u64(12);
+    let mut packets = rest(subject, 16, 1.0, &mut random);
+    // The first tare ends here, in the middle of a frame. The taxel reads next to nothing else, as a NaN does: what the
+    // first tare had of it would not look restless to the second one.
+    for packet in &mut packets {
+        packet[5] = random.random_range(-0.5_f32..0.5).to_bits();
+    }
+    packets[5][5] = f32::NAN.to_bits();
+    let pairs: Vec<Vec<u32>> =
+        packets.windows(2).filter_map(|pair| Some(bank.tared(calibration, pair)?.words())).collect();
+    let cycles: Vec<u64> = (0..4 * interval).step_by(5).collect();
+    let told = in_parallel(&cycles, |&cycle| {
+        let mut core = core(&subject.built, 12);
+        for access in load(&bank, bank.crc()) {
+            core.plan(10, access);
+        }
+        let tare = |data| Access::Write { address: address::TARE, data, strobes: 0xF };
+        core.plan(LOADED, tare(3));
+        core.plan(LOADED + interval + cycle, tare(1));
+        // A source that takes its time, so that there is a rest of the frame.
+        let pattern = Pattern::Random { seed: 3, willing: 12.0 / interval as f64 };
+        let slow = Mode { name: "slow source", source: pattern, sink: Pattern::Free };
+        let traffic = Traffic::new(&packets, timeout(&subject.plan)).with_mode(&slow);
+        exchange(&mut core, &traffic, |_| ()).expect("answers");
+        let errors = errors(&mut core);
+        let tared = read_back(&mut core, true);
+        match generation(&mut core) {
+            // Refused while the first one ran, or not at an end yet.
+            1 => Ok(false),
+            2 if pairs.contains(&tared) => Ok(errors & BAD_FRAME != 0),
+            other => Err(format!("cycle {cycle}: generation {other}, errors {errors:#x}, offsets of no two frames")),
+        }
+    });
+    let wrong: Vec<&String> = told.iter().filter_map(|told| told.as_ref().err()).collect();
+    assert!(wrong.is_empty(), "{} of {}: {}", wrong.len(), told.len(), wrong[0]);
+    assert!(told.iter().filter(|told| **told == Ok(true)).count() > 40, "{told:?}");
+}
+
+/// A soft reset ends a tare.
 #[test]
 fn a_soft_reset_ends_a_tare() {
     let subject = subject();

@@ -213,6 +213,7 @@ pub const PROOFS: &[Proof] = &[
         broken: &[
             ("calibrate", "in_frame ? bank_held : active", "active"),
             ("calibrate", "in_frame ? marked_held : tare_run", "tare_run"),
+            ("calibrate", "if (!tare_run) begin\n            marked_held", "if (1'b0) begin\n            marked_held"),
             ("calibrate", "in_frame <= !s_tlast;", "in_frame <= 1'b1;"),
             ("calibrate", "in_frame && (bank_held != active)", "1'b0"),
             ("calibrate", "(ends_inside != 2'd3)", "1'b1"),

@@ -1,0 +1,79 @@
+//! What a bank holds, its words and their CRC, and what a tare makes of it.
+
+use serde::Serialize;
+
+use super::{CalibrationPlan, Reading};
+use crate::plan::format::round_shift;
+use crate::plan::gain::GAIN_BITS;
+
+/// Bits of a gain in its word: mantissa, then the exponent of the counts.
+const EXPONENT_MASK: u32 = (1 << crate::plan::counts::EXPONENT_BITS) - 1;
+/// What a bank holds, in numbers of the hardware.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Bank {
+    /// Mantissa and exponent of each taxel's gain.
+    pub gains: Vec<(i32, i32)>,
+    /// Each taxel's offset, in steps of the stress.
+    pub offsets: Vec<i32>,
+    /// A frame with a smaller `sum |b|` has no contact, in steps.
+    pub contact: u32,
+    /// Most that a taxel's stress may spread in the frames of a tare, in steps.
+    pub noise: u32,
+}
+
+impl Bank {
+    /// The words in their order: gains, offsets, contact threshold, noise floor.
+    pub fn words(&self) -> Vec<u32> {
+        let offsets = self.offsets.iter().map(|&offset| offset.cast_unsigned());
+        self.gain_words().chain(offsets).chain([self.contact, self.noise]).collect()
+    }
+
+    /// The words of the gains.
+    pub fn gain_words(&self) -> impl Iterator<Item = u32> {
+        let mantissa_mask = (1 << GAIN_BITS) - 1;
+        self.gains.iter().map(move |&(mantissa, exponent)| {
+            (exponent.cast_unsigned() & EXPONENT_MASK) << GAIN_BITS | mantissa.cast_unsigned() & mantissa_mask
+        })
+    }
+
+    /// CRC-32 of the words, as of Ethernet and zlib, the lowest byte of a word first.
+    pub fn crc(&self) -> u32 {
+        let bit = |crc: u32, _| crc >> 1 ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };
+        let byte = |crc: u32, byte: u8| (0..8).fold(crc ^ u32::from(byte), bit);
+        !self.words().into_iter().flat_map(u32::to_le_bytes).fold(u32::MAX, byte)
+    }
+
+    /// What a tare makes of a bank: offsets less the mean of each taxel's stress in the frames, a power of two of them.
+    /// None if they do not look like rest, or an offset leaves its bounds.
+    pub fn tared(&self, plan: &CalibrationPlan, frames: &[Vec<u32>]) -> Option<Self> {
+        let log2 = frames.len().trailing_zeros();
+        let mut tared = self.clone();
+        for taxel in 0..self.offsets.len() {
+            let readings: Vec<Reading> = frames.iter().map(|frame| plan.stress_of(self, taxel, frame[taxel])).collect();
+            if readings.iter().any(|reading| reading.saturated || reading.not_finite) {
+                return None;
+            }
+            let steps = || readings.iter().map(|reading| reading.steps);
+            if steps().max()? - steps().min()? > i64::from(self.noise) {
+                return None;
+            }
+            let offset = i64::from(self.offsets[taxel]) - round_shift(steps().sum(), log2);
+            if offset.abs() > plan.offset_limit {
+                return None;
+            }
+            tared.offsets[taxel] = offset as i32;
+        }
+        Some(tared)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Bank;
+
+    #[test]
+    fn a_crc_is_that_of_zlib() {
+        let bank = Bank { gains: vec![], offsets: vec![], contact: 0x3433_3231, noise: 0x3837_3635 };
+        assert_eq!(bank.crc(), 0x9AE0_DAAF, "of 12345678");
+    }
+}
