@@ -387,6 +387,10 @@ class Sptfra:
         TimeoutError if a frame takes longer than so many seconds, RuntimeError if the DMA stops or an answer is that to
         another frame; after the last three nothing is sent before `recover`.
         """
+        return self._process(self._samples_of(frames), timeout)
+
+    def _samples_of(self, frames):
+        """Frames as the core takes them, (n, taxels). Raises as `reconstruct` does, before anything is sent."""
         rows, columns, samples = self.identity.rows, self.identity.columns, self.identity.samples
         taxels = rows * columns
         values = np.asarray(frames)
@@ -397,7 +401,10 @@ class Sptfra:
             raise ValueError(f"the core takes counts as {samples}: whole numbers within its range")
         if self._failed:
             raise RuntimeError("the last frame has failed: recover()")
-        frames = frames.reshape(-1, taxels)
+        return frames.reshape(-1, taxels)
+
+    def _process(self, frames, timeout):
+        rows, columns, taxels = self.identity.rows, self.identity.columns, frames.shape[1]
         answers = np.empty((len(frames), self.identity.words_out), dtype=np.uint32)
         for frame, answer in zip(frames, answers):
             self._stress[:taxels] = frame
@@ -456,18 +463,18 @@ class Sptfra:
     def tare(self, frames, timeout=1.0):
         """Takes the mean of 2**n frames at rest, n up to 10, off the offsets; returns their `Forces`, from before.
 
-        Raises ValueError on another number of frames, RuntimeError if they are not at rest, a taxel's stress spreading by
+        Raises ValueError on another number of frames or another shape, before the core knows of a tare, RuntimeError if they are not at rest, a taxel's stress spreading by
         more than the noise floor, clipped or no numbers: then nothing has changed.
         """
         self._needs_calibration()
-        taxels = self.identity.rows * self.identity.columns
-        count = np.asarray(frames).size // taxels
+        samples = self._samples_of(frames)
+        count = len(samples)
         log2 = count.bit_length() - 1
         if count != 1 << max(log2, 0) or log2 > MOST_TARE_LOG2:
             raise ValueError(f"{count} frames: a tare takes 1, 2, 4, ... or 1024")
         self._calibration_idle()
         self._core.write(Register.TARE, log2)
-        forces = self.reconstruct(frames, timeout)
+        forces = self._process(samples, timeout)
         self._calibration_done(timeout)
         return forces
 

@@ -53,6 +53,10 @@ def main():
     rest[5, 1, 1] = np.nan
     assert "BAD_FRAME" in refused(RuntimeError, lambda: sensor.tare(rest))
     assert "a tare takes" in refused(ValueError, lambda: sensor.tare(rest[:3]))
+    # Frames of another shape are refused before the core tares: what follows is no rest, and no tare.
+    assert "the core has" in refused(ValueError, lambda: sensor.tare(np.full((8, columns, rows), 300.0)))
+    sensor.reconstruct(np.linspace(0.0, 4000.0, 16 * rows * columns).reshape(-1, rows, columns))
+    sensor.load_calibration(wrong)
     assert machine.calls.machine_faults(machine.handle) == 0
     print(f"PASS: {len(files)} banks")
 
