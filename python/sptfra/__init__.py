@@ -16,7 +16,7 @@ newtons, `F_z < 0` presses. Whatever is wrong with a design, a file or frames ra
 from ._native import Design, Error, FrameLines, Solver, calibrate, check, errors, load_frames, scene
 from .forces import Forces, Status
 from .hardware import generate, plan, simulate
-from .plot import plot_field
+from .plot import plot_bodies, plot_field
 from .results import Finding, Plan, Scene, Simulation, Spread
 
 __all__ = [
@@ -37,6 +37,7 @@ __all__ = [
     "generate",
     "load_frames",
     "plan",
+    "plot_bodies",
     "plot_field",
     "scene",
     "simulate",

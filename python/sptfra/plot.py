@@ -30,8 +30,7 @@ def plot_field(design: Design, forces: Forces, index: int = 0, ax: Any = None) -
     plt = pyplot()
     if forces.field is None:
         raise ValueError("the forces have no field: the design puts out resultants only, or they are a scene's truth")
-    if not -len(forces) <= index < len(forces):
-        raise ValueError(f"there is no frame {index} of {len(forces)}")
+    _has(forces, index)
     field = np.asarray(forces.field[index], dtype=float)
     if field.shape[:2] != (design.rows, design.columns):
         raise ValueError(
@@ -42,7 +41,7 @@ def plot_field(design: Design, forces: Forces, index: int = 0, ax: Any = None) -
         _, ax = plt.subplots()
     pitch_x, pitch_y = design.pitch_mm
     x, y = np.arange(design.columns) * pitch_x, np.arange(design.rows) * pitch_y
-    edges = (x[0] - pitch_x / 2, x[-1] + pitch_x / 2, y[0] - pitch_y / 2, y[-1] + pitch_y / 2)
+    edges = _edges(design)
     # Pressing is blue and pulling red, zero is white.
     largest = float(np.abs(field[..., 2]).max()) or 1.0
     image = ax.imshow(
@@ -59,8 +58,63 @@ def plot_field(design: Design, forces: Forces, index: int = 0, ax: Any = None) -
             edgecolor="white", linewidth=0.4,
         )
         ax.quiverkey(arrows, 0.8, 1.05, longest, f"{longest:.3g} N", labelpos="E")
+    _label(ax, forces, index)
+    return ax
+
+
+def plot_bodies(design: Design, forces: Forces, index: int = 0, ax: Any = None) -> Any:
+    """Draws the bodies of a frame on the grid in millimetres, of a design with `contacts` of 2 or more.
+
+    A dot is a body's centre, as wide as its normal force is large, an arrow its tangential force; the circle around the
+    arrow's tip is its standard error, where the design tells one. Returns the matplotlib axes, `ax` if given. Raises
+    `ImportError` without matplotlib and `ValueError` where no bodies are known or there is no such frame.
+    """
+    plt = pyplot()
+    if forces.records is None:
+        raise ValueError(
+            f"the forces tell no bodies: write contacts = 2, or more, under [algorithm] of {design.name}, or draw plot_field"
+        )
+    _has(forces, index)
+    if ax is None:
+        _, ax = plt.subplots()
+    left, right, low, high = _edges(design)
+    ax.add_patch(plt.Rectangle((left, low), right - left, high - low, fill=False, edgecolor="0.6"))
+    bodies = forces.records[index]
+    # What is true of a scene is known of no taxels.
+    bodies = bodies[bodies["F_z"] != 0.0]
+    largest = float(np.abs(bodies["F_z"]).max(initial=0.0)) or 1.0
+    # The longest arrow is a third of the grid's shorter side.
+    longest = float(np.hypot(bodies["F_x"], bodies["F_y"]).max(initial=0.0)) or 1.0
+    scale = min(right - left, high - low) / (3.0 * longest)
+    for number, body in enumerate(bodies):
+        x, y = 1e3 * body["x"], 1e3 * body["y"]
+        tip = (x + scale * body["F_x"], y + scale * body["F_y"])
+        colour = f"C{number}"
+        ax.scatter([x], [y], s=200.0 * abs(body["F_z"]) / largest, color=colour, alpha=0.6)
+        ax.annotate("", tip, (x, y), arrowprops={"arrowstyle": "->", "color": colour, "shrinkA": 0, "shrinkB": 0})
+        if body["standard_error"] > 0.0:
+            ax.add_patch(plt.Circle(tip, scale * body["standard_error"], fill=False, edgecolor=colour, linestyle=":"))
+        ax.annotate(
+            f"{abs(body['F_z']):.2f} N, µ {body['mu']:.2f}", (x, y), (6, -14), textcoords="offset points", fontsize="small"
+        )
+    ax.set(xlim=(left, right), ylim=(low, high))
+    _label(ax, forces, index)
+    return ax
+
+
+def _has(forces: Forces, index: int) -> None:
+    if not -len(forces) <= index < len(forces):
+        raise ValueError(f"there is no frame {index} of {len(forces)}")
+
+
+def _edges(design: Design) -> tuple[float, float, float, float]:
+    """Left, right, lower and upper edge of the grid in mm from the first taxel."""
+    pitch_x, pitch_y = design.pitch_mm
+    return (-pitch_x / 2, (design.columns - 0.5) * pitch_x, -pitch_y / 2, (design.rows - 0.5) * pitch_y)
+
+
+def _label(ax: Any, forces: Forces, index: int) -> None:
     ax.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
     force = forces.resultant[index]
     names = ", ".join(forces.names(index)).lower().replace("_", " ") or "good"
     ax.set_title(f"F = ({force[0]:.2f}, {force[1]:.2f}, {force[2]:.2f}) N, {names}", loc="left", fontsize="medium")
-    return ax

@@ -54,17 +54,20 @@ impl Solver {
     }
 }
 
-/// What slipped in the frame before: whether anything did, or the last of these forces.
+/// What slipped in the frame before: whether anything did, or the last of these forces that is of a finite frame.
 fn slips_of(before: &Bound<'_, PyAny>) -> PyResult<Slips> {
     if let Ok(slips) = before.extract::<bool>() {
         return Ok(slips.into());
     }
     let status: Vec<u32> = before.getattr("status")?.call_method1("tolist", ())?.extract()?;
-    let Some(&status) = status.last() else { return Ok(Slips::default()) };
+    // A frame that is not finite says nothing of slip: the one before it does.
+    let unread = Status::NOT_FINITE.0 | Status::FRAME_LENGTH.0;
+    let Some(last) = status.iter().rposition(|status| status & unread == 0) else { return Ok(Slips::default()) };
+    let status = status[last];
     let records = before.getattr("records")?;
     let mut bodies = Vec::new();
     if !records.is_none() {
-        for record in records.get_item(-1)?.try_iter()? {
+        for record in records.get_item(last)?.try_iter()? {
             let record = record?;
             let value = |name: &str| record.get_item(name)?.extract::<f64>();
             bodies.push(Body {

@@ -198,6 +198,13 @@ class Solving(unittest.TestCase):
             slips = bool(mu >= (0.2 if slips else 0.4))
             expected.append(slips)
         np.testing.assert_array_equal(forces.has(sptfra.Status.SLIP), expected)
+        # A frame that is not finite is forgotten: in the band the one before it decides.
+        solver = sptfra.Solver(held)
+        band = frames[np.flatnonzero((forces.mu > 0.2) & (forces.mu < 0.4))[:1]]
+        lost = solver.solve(np.concatenate([frames[forces.mu >= 0.4][:1], np.full_like(band, np.nan)]))
+        self.assertEqual(lost.has(sptfra.Status.SLIP).tolist(), [True, False])
+        for before, slips in [(lost, True), (lost.__class__(**{**vars(lost), "status": lost.status[1:]}), False)]:
+            self.assertEqual(bool(solver.solve(band, slips=before).has(sptfra.Status.SLIP)[0]), slips)
         low = sptfra.Solver(held).solve(np.zeros(12), slips=True)
         self.assertFalse(low.has(sptfra.Status.SLIP)[0], "without contact nothing slips")
 
@@ -315,6 +322,16 @@ class Package(unittest.TestCase):
         self.assertEqual(axes.images[0].get_extent(), [-2.0, 14.0, -1.0, 5.0])
         with self.assertRaisesRegex(ValueError, "there is no frame 36 of 36"):
             sptfra.plot_field(design(), forces, 36)
+        with self.assertRaisesRegex(ValueError, "contacts = 2"):
+            sptfra.plot_bodies(design(), forces)
+        pad = sptfra.Design.load(ROOT / "designs" / "sensor1-joint.toml")
+        truth = sptfra.scene(path=ROOT / "scenes" / "two-contacts.toml").truth
+        axes = sptfra.plot_bodies(pad, truth)
+        centres = [tuple(map(float, dots.get_offsets()[0])) for dots in axes.collections]
+        np.testing.assert_allclose(centres, [(10.0, 6.0), (27.0, 12.0)])
+        self.assertIn("3.00 N, µ 0.40", [text.get_text() for text in axes.texts])
+        with self.assertRaisesRegex(ValueError, "there is no frame 1 of 1"):
+            sptfra.plot_bodies(pad, truth, 1)
         # The window of a stream, on a display that draws into memory.
         lines = [",".join(map(repr, frame.ravel().tolist())).encode() for frame in sptfra.scene(design()).frames[:3]]
         window = live.Window(design())
