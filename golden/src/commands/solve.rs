@@ -120,6 +120,10 @@ fn print_report(report: &SolveReport) -> std::io::Result<()> {
     }
     if let Some(bodies) = &report.bodies {
         say!("{} of {} frames have the right number of bodies", bodies.right, bodies.frames);
+        if bodies.right == 0 {
+            say!("there is no body to compare with a true one");
+            return Ok(());
+        }
         let mut table = Table::new(["errors of each body in %", "median", "95 %", "worst"]);
         for (name, of) in [("along the surface", bodies.tangential), ("normal", bodies.normal)] {
             table.row([

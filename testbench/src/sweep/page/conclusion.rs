@@ -125,8 +125,8 @@ fn beside_the_paper(best: &Variant<'_>) -> Option<String> {
     let number = paper_sensor(&best.point.sensor)?;
     let row = TABLE_3.iter().find(|row| (row.sensor, row.filter, row.software) == (number, "none", false))?;
     Some(format!(
-        "The published hardware without a filter errs by {:.1} and {:.1} % there, against finite elements, and takes \
-         {:.2} ms: {} times as long.",
+        "The published hardware without a filter errs by {:.1} and {:.1} % on a contact of its own, against finite elements, \
+         and takes {:.2} ms: {} times as long.",
         row.max[0].max(row.max[1]),
         row.max[2],
         row.milliseconds,
@@ -148,6 +148,10 @@ fn keys(point: &Point) -> String {
             let (kind, key) = kind.split_once(' ').unwrap_or((kind, "l"));
             format!("{{ kind = \"{kind}\", {key} = {value} }}")
         }
+        // The choices of F3 are the design's.
+        None if point.filter == "f3" => {
+            "{ kind = \"f3\", scenes = [\"SCENE.toml\"] }   # your own, then golden choose".to_owned()
+        }
         None => format!("{{ kind = \"{}\" }}", point.filter),
     };
     let calibrated = point.calibration.map_or_else(String::new, |Calibration { grid, units, family }| {
@@ -167,7 +171,7 @@ mod tests {
     use super::*;
     use crate::accuracy::StatusCounts;
     use crate::sweep::point::{Geometry, Verified};
-    use golden::design::{Estimator, Kernel};
+    use golden::design::{Design, Estimator, Kernel};
     use golden::metrics::{ErrorSummary, Outcome};
 
     /// A point on a scene: multipliers, cycles, and its error along x in percent.
@@ -239,6 +243,12 @@ mod tests {
     #[test]
     fn filters_are_written_as_a_design_file_has_them() {
         let of = |filter: &str| keys(&Point { filter: filter.to_owned(), ..point("a", 4, 1, 1.0) });
+        for filter in ["none", "f1 l=10", "f2 p=50", "f3"] {
+            let sensor = "name = \"pad\"\n[sensor]\ncolumns = 4\nrows = 4\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+            // The reduced plan does not know F3.
+            let text = format!("{sensor}{}", of(filter)).replace("plan = \"reduced\"", "plan = \"paper\"");
+            assert!(Design::from_toml(&text, "pad.toml").is_ok(), "{text}");
+        }
         assert!(of("f1 l=40").contains("filter = { kind = \"f1\", l = 40 }"));
         assert!(of("f2 p=50").contains("filter = { kind = \"f2\", p = 50 }"));
     }
