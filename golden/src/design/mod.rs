@@ -3,6 +3,7 @@
 //! A [`Design`] that exists has passed every check, so code that takes one need not check again.
 
 mod algorithm;
+mod calibration_in_ram;
 pub(crate) mod checks;
 mod curve;
 mod error;

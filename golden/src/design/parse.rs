@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
+use super::calibration_in_ram::calibration_in_ram;
 use super::checks::{self, Check};
 use super::curve::RawCurve;
 use super::files::Beside;
@@ -162,7 +163,7 @@ fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, D
             "integers are counts: add sensor.pa_per_count or sensor.curve".to_owned(),
         ));
     }
-    checks::calibration(&check, &hardware, &input)?;
+    calibration_in_ram(&check, &hardware, &input)?;
     algorithm.joint.correction = correction.map(|raw| joint::correction(&check, raw, &sensor, beside)).transpose()?;
     Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }
