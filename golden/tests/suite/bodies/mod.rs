@@ -31,7 +31,8 @@ fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
 }
 
 fn row(Quantiles { median, most, worst }: Quantiles) -> String {
-    format!(" {median:.1} / {most:.1} / {worst:.1} |")
+    // Of no body there is no error.
+    if median.is_nan() { " – |".to_owned() } else { format!(" {median:.1} / {most:.1} / {worst:.1} |") }
 }
 
 fn design(name: &str, contacts: usize) -> Design {
@@ -231,7 +232,8 @@ fn table() {
                 }
                 (right, within) = (several.bodies.right, several.bodies.within);
             }
-            println!("| {} | {label} |{cells} {within:.0} | {right} |", &sensor[6..]);
+            let within = if within.is_nan() { "–".to_owned() } else { format!("{within:.0}") };
+            println!("| {} | {label} |{cells} {within} | {right} |", &sensor[6..]);
         }
     }
 }
