@@ -13,7 +13,7 @@ import time
 from collections.abc import Iterable
 
 from ._native import Design, FrameLines, Solver
-from .forces import Forces, Status
+from .forces import Forces
 from .plot import plot_field, pyplot
 
 #: Seconds between drawings; frames between them are solved, not drawn.
@@ -64,15 +64,12 @@ class Window:
 def run(design: Design, lines: Iterable[bytes], labels: int, window: Window | None) -> None:
     """Solves the frame of each line and shows its forces."""
     reader, solver = FrameLines(design, labels=labels), Solver(design)
-    number, before = 0, None
+    number, forces = 0, None
     for line in lines:
         frame = reader.frame(line)
         if frame is None:
             continue
-        forces = solver.solve(frame, slips=before)
-        # A frame that is not finite neither begins nor ends a slip.
-        if not forces.has(Status.NOT_FINITE)[0]:
-            before = forces
+        forces = solver.solve(frame, slips=forces)
         if window is None:
             print(line_of(number, forces), flush=True)
         else:

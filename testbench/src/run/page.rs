@@ -46,7 +46,7 @@ fn speed(page: &mut String, report: &Report) {
     let other = |show: &dyn Fn(Published) -> String| published.map_or_else(String::new, show);
     let predicted = &report.predicted;
     let clock = |cycles: u64| decimals(cycles as f64 / report.clock_mhz, 2);
-    let rate = |cycles: u64| grouped((report.clock_mhz * 1e6 / cycles.max(1) as f64) as u64);
+    let rate = |cycles: u64| grouped((report.clock_mhz * 1e6 / cycles.max(1) as f64).round() as u64);
     let both = |simulated, predicted, show: &dyn Fn(u64) -> String| [show(simulated), show(predicted)];
     let latency = |show| both(report.latency_cycles, predicted.latency_cycles, show);
     let interval = |show| both(report.interval_cycles, predicted.interval_cycles, show);

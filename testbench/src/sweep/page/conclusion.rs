@@ -167,7 +167,7 @@ fn keys(point: &Point) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::accuracy::StatusCounts;
     use crate::sweep::point::{Geometry, Verified};
@@ -175,7 +175,7 @@ mod tests {
     use golden::metrics::{ErrorSummary, Outcome};
 
     /// A point on a scene: multipliers, cycles, and its error along x in percent.
-    fn point(scene: &str, lanes: usize, cycles: u64, error: f64) -> Point {
+    pub(in crate::sweep::page) fn point(scene: &str, lanes: usize, cycles: u64, error: f64) -> Point {
         let truth = Outcome { force: [0.0, 0.0, -1.0], friction: 0.0, direction: 0.0 };
         let found = Outcome { force: [0.01 * error, 0.0, -1.0], ..truth };
         let errors = ErrorSummary::new(&[(truth, found)]);

@@ -212,11 +212,23 @@ fn axes(svg: &mut Svg, x: Axis, y: Axis, names: [&str; 2]) {
 
 #[cfg(test)]
 mod tests {
-    use super::frontier;
+    use super::super::conclusion::tests::point;
+    use super::{DASHES, front, frontier};
 
     #[test]
     fn the_front_has_no_dominated_point() {
         let mut points = [(3.0, 1.0), (1.0, 5.0), (2.0, 5.0), (2.0, 2.0), (4.0, 1.5)];
         assert_eq!(frontier(&mut points), [(1.0, 5.0), (2.0, 2.0), (3.0, 1.0)]);
+    }
+
+    /// Where forces cancel nothing is best; what lies beyond the plot is no dot at its rim.
+    #[test]
+    fn the_best_are_joined_where_the_scene_tells_and_what_is_beyond_is_marked() {
+        let points = [point("a", 16, 2000, 2.0), point("a", 64, 1000, 3.0), point("a", 8, 4000, 150.0)];
+        let points: Vec<_> = points.iter().collect();
+        let line = format!("stroke-dasharray=\"{}\"", DASHES[2]);
+        let [joined, alone] = [true, false].map(|tells| front(&points, false, tells));
+        assert_eq!((joined.matches(&line).count(), alone.matches(&line).count()), (1, 0));
+        assert_eq!((joined.matches("<circle").count(), joined.matches("<path").count()), (2, 1));
     }
 }

@@ -79,3 +79,17 @@ fn series<'a>(points: &[&'a Point]) -> Vec<Series<'a>> {
     series.retain(|series| series.points.len() > 1);
     series
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::conclusion::tests::point;
+    use super::plot;
+
+    #[test]
+    fn a_variant_of_one_number_of_lanes_is_no_line() {
+        let points = [point("a", 16, 2000, 2.0), point("a", 64, 1000, 2.0)];
+        assert_eq!(plot(&[&points[0]]), None);
+        let both = plot(&[&points[1], &points[0]]).expect("a plot");
+        assert_eq!((both.matches("<polyline").count(), both.matches("<circle").count()), (2, 2));
+    }
+}

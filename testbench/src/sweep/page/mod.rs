@@ -286,3 +286,17 @@ fn widths(points: &[&Point]) -> Vec<Figure> {
     .flatten()
     .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Contents, render};
+    use crate::sweep::{Simulate, Sweep};
+
+    #[test]
+    fn a_page_says_that_hard_cases_follow_until_they_are_there() {
+        let sweep = Sweep { jobs: Vec::new(), scenes: Vec::new(), simulate: Simulate::None, runs: None };
+        let waiting = Contents::new(&[], &sweep, &[]).expect("nothing to compute").awaiting_hard_cases();
+        let says = |contents: &Contents| render(contents).expect("a page").contains("still being computed");
+        assert!(says(&waiting) && !says(&waiting.clone().with_hard_cases(&[])));
+    }
+}
