@@ -62,7 +62,7 @@ enum Command {
     ///
     /// STATISTICS is what `stat -json` prints after a synthesis without -flatten; `tools/synth.sh` does both.
     Cells(cells::Arguments),
-    /// Show the forces of a frame in the terminal.
+    /// Show the forces of a frame in the terminal, or play several.
     ///
     /// One cell a taxel, y upwards: an arrow for the direction of the shear, a digit for its share of the largest
     /// force, and a digit for that of the normal force. In colour on a terminal, unless `NO_COLOR` is set. The forces
