@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use golden::design::{Estimator, Samples};
+use golden::design::{Estimator, Samples, Tension};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -164,6 +164,17 @@ fn a_new_design_takes_what_the_sensors_maker_knows() {
         let largest = f64::from(bits.parse::<i32>().expect("bits")).exp2() - 1.0;
         assert!(design.hardware.samples == samples && samples.takes(largest) && samples.takes(0.0), "{bits} bits");
     }
+}
+
+#[test]
+fn a_new_design_without_tension_is_fitted_to_what_such_taxels_read() {
+    let sensor = ["--columns", "8", "--rows", "8", "--pitch-mm", "4", "4"];
+    let [reads, clipped] =
+        ["read", "clipped"].map(|tension| new_design(&[&sensor[..], &["--tension", tension]].concat()));
+    assert_eq!([reads.input.tension, clipped.input.tension], [Tension::Read, Tension::Clipped]);
+    let joint = &clipped.algorithm.joint;
+    assert!(joint.fitted_to.as_deref().is_some_and(|sensor| sensor.contains("tension clipped")), "{joint:?}");
+    assert_ne!(joint.tangential, reads.algorithm.joint.tangential, "fitted to other frames");
 }
 
 #[test]
