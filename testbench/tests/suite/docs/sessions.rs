@@ -117,7 +117,7 @@ fn recording(frames: &[SceneFrame]) -> (Vec<Vec<f64>>, String) {
     (stress, weights)
 }
 
-/// An array of NumPy's format, version 1.0.
+/// An array of `NumPy`'s format, version 1.0.
 fn npy(frames: &[Vec<f64>]) -> Vec<u8> {
     let shape = format!("({}, {})", frames.len(), frames[0].len());
     let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
