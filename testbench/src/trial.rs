@@ -7,6 +7,7 @@ use std::path::Path;
 use golden::design::Design;
 use hdl_gen::emit::{EmitError, emit};
 use hdl_gen::model::Model;
+use hdl_gen::plan::timing::Timeline;
 use hdl_gen::plan::{Plan, PlanError};
 use serde::Serialize;
 use thiserror::Error;
@@ -62,6 +63,17 @@ pub fn rtl_sources(plan: &Plan) -> Result<RtlSources, TrialError> {
 /// [`TrialError::Emit`] and [`TrialError::Build`].
 pub fn build(plan: &Plan, cycles: u64) -> Result<Built, TrialError> {
     Ok(Verilate::default().with_effort(Effort::for_cycles(cycles)).build(&rtl_sources(plan)?)?)
+}
+
+/// When packets follow each other so that none is lost: back to back, and to a core that drops frames as it can take
+/// them.
+pub fn pacing(plan: &Plan) -> Pacing {
+    let Timeline { latency_cycles, interval_cycles, .. } = plan.timeline;
+    if plan.streams().drops {
+        Pacing::Spaced { cycles: interval_cycles, inside: latency_cycles.div_ceil(interval_cycles) as usize + 1 }
+    } else {
+        Pacing::BackToBack
+    }
 }
 
 /// Sends packets through a core, both streams free-running.
@@ -173,6 +185,7 @@ impl<'a> Trial<'a> {
             packets: &self.packets,
             expected: &self.expected,
             columns: self.plan.design.sensor.columns,
+            pacing: pacing(self.plan),
             timeout: timeout(self.plan),
             seed: self.seed,
             trace,
