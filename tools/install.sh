@@ -20,6 +20,7 @@ have python3 && python3 -c 'import ensurepip, venv' 2> /dev/null || needed="$nee
 have ar || needed="$needed binutils"
 have iverilog || wanted="$wanted iverilog"
 have tclsh || wanted="$wanted tcl"
+have dtc && have fdtoverlay || wanted="$wanted device-tree-compiler"
 if [ "${1:-}" = browser ]; then
     have chromium || have chromium-browser || have google-chrome || wanted="$wanted chromium"
 fi
@@ -51,7 +52,7 @@ if [ -n "$needed$wanted" ]; then
     else
         [ -z "$needed" ] || fail "missing:$needed. Not root, so nothing was installed: please install them (Debian names)"
         say "missing, and not root:$wanted (Debian names). 'make run' works without;"
-        say "'make test' needs iverilog, tcl and chromium; zlib and lz4 headers make traces FST in place of VCD"
+        say "'make test' needs iverilog, tcl, dtc and chromium; zlib and lz4 headers make traces FST in place of VCD"
     fi
 fi
 

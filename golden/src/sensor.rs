@@ -37,6 +37,13 @@ impl Sensor {
         [ix as f64 * self.pitch_mm[0] * 1e-3, iy as f64 * self.pitch_mm[1] * 1e-3]
     }
 
+    /// The taxel whose cell, a pitch along each axis, holds a position in metres from the first taxel.
+    pub fn taxel_at(&self, position_m: [f64; 2]) -> Option<usize> {
+        let [x, y] = [0, 1].map(|axis| (position_m[axis] / (self.pitch_mm[axis] * 1e-3) + 0.5).floor());
+        let within = |place: f64, count: usize| (0.0..count as f64).contains(&place);
+        (within(x, self.columns) && within(y, self.rows)).then(|| y as usize * self.columns + x as usize)
+    }
+
     /// Position of taxel `index` in metres about the middle of the grid: the arm of its force's torque.
     pub fn arm_m(&self, index: usize) -> [f64; 2] {
         let (ix, iy) = (index % self.columns, index / self.columns);

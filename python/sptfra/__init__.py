@@ -17,7 +17,8 @@ from ._native import Design, Error, FrameLines, Solver, calibrate, check, errors
 from .forces import Forces, Status
 from .hardware import generate, plan, simulate
 from .plot import plot_bodies, plot_field
-from .results import Finding, Plan, Scene, Simulation, Spread
+from .recorded import calibrate_forces, calibrate_uniform
+from .results import Finding, Plan, Recorded, Scene, Simulation, Spread
 
 __all__ = [
     "Design",
@@ -26,12 +27,15 @@ __all__ = [
     "Forces",
     "FrameLines",
     "Plan",
+    "Recorded",
     "Scene",
     "Simulation",
     "Solver",
     "Spread",
     "Status",
     "calibrate",
+    "calibrate_forces",
+    "calibrate_uniform",
     "check",
     "errors",
     "generate",

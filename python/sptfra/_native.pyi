@@ -128,7 +128,7 @@ class Solver:
         """The design that it was made for."""
 
     def solve(self, frames: npt.ArrayLike, *, slips: bool | Forces | None = None) -> Forces:
-        """Forces of frames that follow each other, on all cores, without Python's lock.
+        """Forces of frames that follow each other, on all cores, without Python's lock; Ctrl-C ends it.
 
         Frames are numbers of shape (n, rows, columns) or (n, taxels); (rows, columns) and (taxels,) are one frame. In Pa,
         compression negative, or in counts if the design counts. For designs with a limit of
@@ -171,6 +171,12 @@ def calibrate(
     `progress` is called with the pieces of work done and all, ten times a second.
     """
 
+def calibrate_forces(
+    design: Design, frames: npt.ArrayLike, forces: npt.ArrayLike | str | os.PathLike[str], *, name: str | None = None
+) -> tuple[Design, str, str]: ...
+def calibrate_uniform(
+    design: Design, frames: npt.ArrayLike, pressures: npt.ArrayLike | str | os.PathLike[str], *, name: str | None = None
+) -> tuple[Design, str, str]: ...
 def inspect(design: Design) -> str: ...
 def generate(design: Design, folder: str | os.PathLike[str] | None = None) -> tuple[str, list[str]]: ...
 def simulate(design: Design, frames: npt.ArrayLike, *, seed: int = 1) -> tuple[Forces, str]: ...

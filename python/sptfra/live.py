@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """Shows the forces of frames as they come: `some-sensor | python -m sptfra.live DESIGN`.
 
-A frame is a line on standard input, as in a file of frames. Prints a line for each, or draws the force field in a window.
+A frame is a line, as in a file of frames: on standard input, or from a socket (`--connect`, `--listen`). Prints a line for
+each, or draws the force field in a window.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import socket
 import sys
 import time
 from collections.abc import Iterable
+from typing import BinaryIO
 
 from ._native import Design, FrameLines, Solver
 from .forces import Forces
@@ -61,9 +64,9 @@ class Window:
         self._drawn, self._waiting = time.monotonic(), None
 
 
-def run(design: Design, lines: Iterable[bytes], labels: int, window: Window | None) -> None:
+def run(design: Design, lines: Iterable[bytes], origin: str, labels: int, window: Window | None) -> None:
     """Solves the frame of each line and shows its forces."""
-    reader, solver = FrameLines(design, labels=labels), Solver(design)
+    reader, solver = FrameLines(design, labels=labels, origin=origin), Solver(design)
     number, forces = 0, None
     for line in lines:
         frame = reader.frame(line)
@@ -79,22 +82,53 @@ def run(design: Design, lines: Iterable[bytes], labels: int, window: Window | No
         window.hold()
 
 
+def place(text: str) -> tuple[str, int]:
+    """Host and port of `HOST:PORT`; without a host, this machine."""
+    host, _, port = text.rpartition(":")
+    if not port.isdecimal() or int(port) > 65535:
+        raise argparse.ArgumentTypeError(f"{text!r}: write HOST:PORT, or a port of this machine alone")
+    return host.strip("[]") or "localhost", int(port)
+
+
+def stream(options: argparse.Namespace) -> tuple[BinaryIO, str]:
+    """Where the lines come from, and what messages call it."""
+    if options.connect is not None:
+        with socket.create_connection(options.connect) as connection:
+            return connection.makefile("rb"), "{}:{}".format(*options.connect)
+    if options.listen is not None:
+        with socket.create_server(options.listen) as server:
+            host, port = server.getsockname()[:2]
+            print(f"waiting for frames at {host}:{port}", file=sys.stderr, flush=True)
+            connection, sender = server.accept()
+        with connection:
+            return connection.makefile("rb"), "{}:{}".format(*sender[:2])
+    return sys.stdin.buffer, "standard input"
+
+
 def main(arguments: list[str] | None = None) -> int:
     """The command; its exit code."""
     parser = argparse.ArgumentParser(prog="python -m sptfra.live", description=__doc__)
     parser.add_argument("design", metavar="DESIGN", help="design file (TOML)")
     parser.add_argument("--labels", type=int, default=0, metavar="N", help="columns of labels before the values of a frame")
     parser.add_argument("--plot", action="store_true", help="a window in place of lines, by matplotlib")
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument("--connect", type=place, metavar="HOST:PORT", help="read from a TCP server that sends the lines")
+    source.add_argument("--listen", type=place, metavar="[HOST:]PORT", help="wait for one that connects and sends them")
     options = parser.parse_args(arguments)
     try:
         design = Design.load(options.design)
-        run(design, sys.stdin.buffer, options.labels, Window(design) if options.plot else None)
+        window = Window(design) if options.plot else None
+        lines, origin = stream(options)
+        run(design, lines, origin, options.labels, window)
     except (ImportError, ValueError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     except (KeyboardInterrupt, BrokenPipeError):
         # The user has seen enough, or the reader has gone.
         sys.stderr.close()
+    except OSError as error:
+        print(f"error: {error}; is there somebody at the other end, and is the port free?", file=sys.stderr)
+        return 1
     return 0
 
 

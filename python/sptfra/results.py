@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ._native import Design
 from .forces import Forces
 
 
@@ -75,6 +76,25 @@ class Plan:
     def frames_per_second(self) -> float:
         """Frames a second."""
         return 1e6 / self.interval_us
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What a recording with measured forces or pressures could tell."""
+
+    #: The design with the constants from it.
+    design: Design
+    #: What the recording determined, what it could not and why, and what else is to be known; in words.
+    determined: tuple[str, ...]
+    undetermined: tuple[str, ...]
+    remarks: tuple[str, ...]
+    #: In percent of the load where that was left out: `median`, `most` (95 %), `worst`, of so many `holds`; None if there
+    #: was too little to leave any out.
+    errors: dict[str, float] | None
+    #: An HTML page with plots.
+    page: str = field(repr=False)
+    #: All that `golden calibrate --json` prints of it.
+    details: dict[str, Any] = field(repr=False)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ use golden::design::{Design as Checked, Family};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-use crate::design::{Design, word};
+use crate::design::{Design, named_anew, word};
 use crate::errors::{look_up, raised, without_lock};
 
 /// How often Python hears of the progress, and is asked for signals.
@@ -30,9 +30,6 @@ pub fn calibrate(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Design> {
     let mut design = unfitted(design)?;
-    if let Some(name) = name {
-        design.name = name;
-    }
     if let Some(family) = family {
         design.algorithm.joint.family = word::<Family>("family", family)?;
     }
@@ -50,9 +47,7 @@ pub fn calibrate(
         })
     })?;
     *design.algorithm.joint = found;
-    // The name is the caller's, so all of it is checked once more.
-    let files = design.files();
-    Ok(Design::new(Checked::from_parts(&design.to_toml(), "calibrate", &files).map_err(raised)?))
+    named_anew(design, name)
 }
 
 /// The design, or that of a file, whose constants may be those of another sensor.

@@ -38,6 +38,15 @@ impl Design {
     }
 }
 
+/// A design that was fitted, under another name if there is one. That is the caller's, so all of it is checked once more.
+pub fn named_anew(mut design: Checked, name: Option<String>) -> PyResult<Design> {
+    if let Some(name) = name {
+        design.name = name;
+    }
+    let files = design.files();
+    Ok(Design::new(Checked::from_parts(&design.to_toml(), "calibrate", &files).map_err(raised)?))
+}
+
 /// The word as the value that it means; `key` says in a message what it was given for.
 pub fn word<T: serde::de::DeserializeOwned>(key: &str, word: &str) -> PyResult<T> {
     words::read(word).map_err(|allowed| Error::new_err(format!("{key} is {word:?}; choose one of: {allowed}")))

@@ -12,6 +12,7 @@ mod design;
 mod errors;
 mod hardware;
 mod inputs;
+mod recorded;
 mod solver;
 
 /// The module `sptfra._native`.
@@ -27,6 +28,8 @@ mod native {
     use super::hardware::{generate, inspect, simulate};
     #[pymodule_export]
     use super::inputs::{FrameLines, check, errors, load_frames, scene};
+    #[pymodule_export]
+    use super::recorded::{calibrate_forces, calibrate_uniform};
     #[pymodule_export]
     use super::solver::Solver;
 }

@@ -1,18 +1,23 @@
 //! The f64 solver on all cores.
 
 use golden::bodies::Body;
-use golden::solver::{Slips, Solver as Inner, SolverError, Status};
+use golden::solver::{PIECE, Slips, Solver as Inner, SolverError, Status};
 use pyo3::prelude::*;
 
 use crate::arrays::{Forces, Frames, Piece};
 use crate::design::Design;
-use crate::errors::without_lock;
+use crate::errors::{look_up, without_lock};
+
+/// Values, and for each core pieces of frames, that are solved before Python is asked for signals: tenths of a second.
+const VALUES: usize = 1 << 18;
+const PIECES: usize = 4;
 
 /// Forces from frames in double precision.
 #[pyclass(frozen, module = "sptfra")]
 pub struct Solver {
     design: Py<Design>,
     inner: Inner,
+    cores: usize,
 }
 
 #[pymethods]
@@ -21,7 +26,8 @@ impl Solver {
     fn new(py: Python<'_>, design: Py<Design>) -> PyResult<Self> {
         let of = &design.get().inner;
         let inner = without_lock(py, || Inner::new(of))?;
-        Ok(Self { design, inner })
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        Ok(Self { design, inner, cores })
     }
 
     #[getter]
@@ -42,7 +48,13 @@ impl Solver {
         let forces = without_lock(py, || {
             let (records, has_field) = (self.inner.records(), self.inner.field_length() > 0);
             let mut forces = Forces::zeros(&design.sensor, frames.count(), records, has_field);
-            self.inner.solve_on_all_cores(&frames.values, forces.pieces(), Piece::put)?;
+            let (mut pieces, taxels) = (forces.pieces().into_iter(), design.sensor.taxels());
+            let at_a_time = (VALUES / (PIECE * taxels)).max(PIECES * self.cores);
+            for values in frames.values.chunks(at_a_time * PIECE * taxels) {
+                self.inner.solve_on_all_cores(values, pieces.by_ref().take(at_a_time), Piece::put)?;
+                look_up(|_| Ok(()));
+            }
+            drop(pieces);
             self.inner.follow_slips(&mut slips, forces.of_slips());
             Ok::<_, SolverError>(forces)
         })?;

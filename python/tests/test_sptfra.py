@@ -6,6 +6,8 @@ import inspect
 import os
 import pickle
 import re
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -234,6 +236,25 @@ class Solving(unittest.TestCase):
         self.assertGreater(len(ticks), 3, "the lock is free")
 
 
+    def test_an_interrupt_ends_it(self):
+        frames, heard = np.tile(self.frames, (6000, 1, 1)), []
+
+        def hear(*_):
+            heard.append(True)
+            # Once a signal is heard without a look at it: when the call is over.
+            if len(heard) == 5:
+                raise KeyboardInterrupt
+
+        before = signal.signal(signal.SIGALRM, hear)
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001)
+                self.solver.solve(frames)
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, before)
+
+
 class Judging(unittest.TestCase):
     def test_what_is_wrong_with_frames_is_found(self):
         small = design()
@@ -257,6 +278,59 @@ class Judging(unittest.TestCase):
 
         with self.assertRaises(KeyboardInterrupt):
             sptfra.calibrate(made, progress=stop)
+
+
+class Recordings(unittest.TestCase):
+    def pressed(self, reads=0.8):
+        """Frames of a sensor that reads too little, touched five times, and the true normal forces."""
+        made = sptfra.Design("pad", columns=6, rows=6, pitch_mm=(4, 4), depth_mm=3)
+        scene = sptfra.scene(made)
+        touch, force = reads * scene.frames[0], scene.truth.resultant[0, 2]
+        loads = np.repeat([0, 1, 0, 2, 0, 3, 0, 1.5, 0, 2.5, 0], 8)
+        return made, loads[:, None, None] * touch, loads * force
+
+    def test_forces_tell_what_a_reading_is_worth(self):
+        made, frames, forces = self.pressed()
+        found = sptfra.calibrate_forces(made, frames, forces, name="pad_as_recorded")
+        self.assertEqual(found.design.name, "pad_as_recorded")
+        before, after = (sptfra.Solver(one).solve(frames).resultant[:, 2] for one in (made, found.design))
+        largest = abs(forces).max()
+        self.assertGreater(abs(before - forces).max(), 0.15 * largest)
+        self.assertLess(abs(after - forces).max(), 0.01 * largest)
+        self.assertTrue(found.determined and found.undetermined, found)
+        self.assertIn("one place", " ".join(found.undetermined))
+        self.assertTrue(found.page.startswith("<!DOCTYPE html>") and "<svg" in found.page)
+        self.assertEqual(len(found.details["gains"]), 36)
+        # The same from a file, and with what is not known.
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "forces.csv"
+            file.write_text("F_z (N)\n" + "\n".join(map(repr, map(float, forces))) + "\n", encoding="utf-8")
+            self.assertEqual(sptfra.calibrate_forces(made, frames, file, name="pad_as_recorded").design, found.design)
+        three = np.full((len(forces), 3), np.nan)
+        three[:, 2] = forces
+        again = sptfra.calibrate_forces(made, frames, three, name="pad_as_recorded")
+        self.assertEqual(again.design, found.design)
+
+    def test_a_bladder_tells_each_taxels_gain(self):
+        made = sptfra.Design("pad", columns=4, rows=3, pitch_mm=(4, 4), depth_mm=3)
+        gains = np.linspace(0.8, 1.2, 12).reshape(3, 4)
+        pressures = np.repeat([0, 5e3, 0, 10e3, 0, 20e3, 0, 40e3, 0], 8)
+        found = sptfra.calibrate_uniform(made, -pressures[:, None, None] / gains, pressures)
+        told = np.array([taxel["gain"] for taxel in found.details["gains"]]).reshape(3, 4)
+        np.testing.assert_allclose(told / told.mean(), gains / gains.mean(), rtol=0.01)
+
+    def test_what_does_not_belong_together_is_refused(self):
+        made, frames, forces = self.pressed()
+        for given, text in [
+            (forces[:40], "88 frames and 40 lines"),
+            (np.zeros((len(forces), 2)), r"\(n, 3\)"),
+            ("nowhere.csv", "nowhere.csv"),
+            (np.repeat([0, 3, 0, 1.5, 0, 1, 0, 2.5, 0, 2, 0], 8), "does not go with the forces"),
+        ]:
+            with self.assertRaisesRegex(ValueError, text):
+                sptfra.calibrate_forces(made, frames, given)
+        with self.assertRaisesRegex(ValueError, "NaN where it is not known"):
+            sptfra.calibrate_uniform(made, frames, np.zeros((3, 3)))
 
 
 class Hardware(unittest.TestCase):
@@ -335,7 +409,7 @@ class Package(unittest.TestCase):
         # The window of a stream, on a display that draws into memory.
         lines = [",".join(map(repr, frame.ravel().tolist())).encode() for frame in sptfra.scene(design()).frames[:3]]
         window = live.Window(design())
-        live.run(design(), lines, 0, window)
+        live.run(design(), lines, "here", 0, window)
         (axes, _) = window._figure.axes
         self.assertIn("F = (", axes.get_title(loc="left"))
 
@@ -352,6 +426,37 @@ class Package(unittest.TestCase):
             running.stdin.close()
             self.assertEqual(running.wait(), 1)
             self.assertIn("standard input, line 4", running.stderr.read().decode())
+
+    def test_live_reads_from_a_socket(self):
+        frames, _ = sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml")
+        lines = b"".join((",".join(map(repr, map(float, frame.ravel()))) + "\n").encode() for frame in frames[:2])
+        command = [sys.executable, "-m", "sptfra.live", str(ROOT / "designs" / "sensor1-reduced.toml")]
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+
+        with subprocess.Popen([*command, "--listen", "0"], **pipes) as running:
+            said = running.stderr.readline().decode()
+            host, port = re.fullmatch(r"waiting for frames at (.*):(\d+)\n", said).groups()
+            with socket.create_connection((host, int(port))) as connection:
+                connection.sendall(lines + b"1,2\n")
+            out, wrong = running.communicate()
+            self.assertEqual((len(out.splitlines()), running.returncode), (2, 1), wrong)
+            self.assertRegex(wrong.decode(), rf"error: {re.escape(host)}:\d+, line 3")
+
+        with socket.create_server(("localhost", 0)) as server:
+            port = server.getsockname()[1]
+            with subprocess.Popen([*command, "--connect", f"localhost:{port}"], **pipes) as running:
+                connection, _ = server.accept()
+                with connection:
+                    connection.sendall(lines)
+                again, wrong = running.communicate()
+            self.assertEqual((again, running.returncode), (out, 0), wrong)
+        # Nobody is there any more.
+        refused = subprocess.run([*command, "--connect", str(port)], capture_output=True, check=False)
+        self.assertEqual(refused.returncode, 1)
+        self.assertRegex(refused.stderr.decode(), "error: .*somebody at the other end")
+        for wrong in ["nowhere", "localhost:", "localhost:70000"]:
+            refused = subprocess.run([*command, "--connect", wrong], capture_output=True, check=False)
+            self.assertIn("write HOST:PORT", refused.stderr.decode())
 
     def test_the_page_of_the_docs_runs(self):
         page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")

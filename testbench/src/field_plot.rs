@@ -1,11 +1,12 @@
-//! Pictures of one frame: the stress that the taxels feel, and the forces found from it; in millimetres, with scales.
+//! Pictures of one frame: the stress that the taxels feel, the forces found from it and what they are off; in
+//! millimetres, with scales.
 
 use golden::sensor::Sensor;
 
 use crate::stream_words::Answer;
 use crate::svg::{INK, Svg};
 
-/// Width of one picture; two stand side by side.
+/// Width of one picture; two or three stand side by side.
 const WIDTH: f64 = 410.0;
 /// Room left of the grid for the axis, right of it for the colour bar, above it for the title, below it for axis and
 /// scale.
@@ -168,28 +169,52 @@ fn draw_stress(svg: &mut Svg, sensor: &Sensor, stress: &[f64]) {
     grid.colours(svg, stress, "kPa", 1e-3);
 }
 
-fn draw_forces(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, truth: Option<[f64; 3]>) {
+/// What is known of the forces that a frame was made with.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// Their sum, in newtons.
+    pub force: [f64; 3],
+    /// `[f_x, f_y, f_z]` of each taxel, where that is known.
+    pub field: Option<[Vec<f64>; 3]>,
+}
+
+fn tangential([fx, fy, _]: &[Vec<f64>; 3]) -> impl Iterator<Item = (f64, f64)> {
+    fx.iter().copied().zip(fy.iter().copied())
+}
+
+/// An arrow for each taxel of each field, the last one on top, all to one scale, and a sample of it.
+fn arrows(svg: &mut Svg, grid: &Grid, fields: &[(&[Vec<f64>; 3], &str)]) {
+    let lengths = fields.iter().flat_map(|(field, _)| tangential(field)).map(|(x, y)| x.hypot(y));
+    let longest = lengths.fold(0.0, f64::max);
+    if longest == 0.0 {
+        return;
+    }
+    let (width, height) = grid.cell();
+    let scale = ARROW * width.min(height).max(0.6 * width.max(height)) / longest;
+    for (field, colour) in fields {
+        for (taxel, (x, y)) in tangential(field).enumerate() {
+            let from = grid.middle(taxel);
+            svg.arrow(from, (from.0 + scale * x, from.1 - scale * y), colour);
+        }
+    }
+    let [_, right, _, bottom] = grid.edges();
+    let (sample, place) = (nice(longest), bottom + 34.0);
+    svg.arrow((right + 10.0, place), (right + 10.0 + scale * sample, place), INK);
+    svg.sized_text((right + 16.0 + scale * sample, place + 4.0), "start", INK, 11, &format!("{} N", short(sample)));
+}
+
+fn draw_forces(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, truth: Option<&Truth>) {
     let grid = Grid::new(sensor, x);
-    let [fx, fy, fz] = &answer.field;
+    let [_, _, fz] = &answer.field;
     grid.frame(svg, "forces found: f_z as colour, f_x and f_y as arrows");
     grid.colours(svg, fz, "N", 1.0);
-    let [left, right, _, bottom] = grid.edges();
-    let longest = fx.iter().zip(fy).map(|(x, y)| x.hypot(*y)).fold(0.0, f64::max);
-    let (width, height) = grid.cell();
+    let known = truth.and_then(|truth| truth.field.as_ref()).map(|field| (field, TRUE));
+    arrows(svg, &grid, &known.into_iter().chain([(&answer.field, FOUND)]).collect::<Vec<_>>());
+    let [left, _, _, bottom] = grid.edges();
     let place = bottom + 34.0;
-    if longest > 0.0 {
-        let scale = ARROW * width.min(height).max(0.6 * width.max(height)) / longest;
-        for (taxel, (x, y)) in fx.iter().zip(fy).enumerate() {
-            let from = grid.middle(taxel);
-            svg.arrow(from, (from.0 + scale * x, from.1 - scale * y), FOUND);
-        }
-        let sample = nice(longest);
-        svg.arrow((right + 10.0, place), (right + 10.0 + scale * sample, place), INK);
-        svg.sized_text((right + 16.0 + scale * sample, place + 4.0), "start", INK, 11, &format!("{} N", short(sample)));
-    }
     let sum = |force: [f64; 3]| format!("({:.2}, {:.2}, {:.2}) N", force[0], force[1], force[2]);
     svg.text((left, place + 4.0), "start", INK, &format!("F found {}", sum(answer.resultant)));
-    let Some(truth) = truth else { return };
+    let Some(&Truth { force: truth, .. }) = truth else { return };
     svg.text((left, place + 22.0), "start", TRUE, &format!("F true   {}", sum(truth)));
     // Both sums from where the contact is.
     let pressed: f64 = fz.iter().sum();
@@ -207,6 +232,24 @@ fn draw_forces(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, truth: O
     }
 }
 
+fn draw_errors(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, field: &[Vec<f64>; 3]) {
+    let grid = Grid::new(sensor, x);
+    let off = [0, 1, 2].map(|axis| {
+        let pairs = answer.field[axis].iter().zip(&field[axis]);
+        pairs.map(|(found, exact)| found - exact).collect::<Vec<f64>>()
+    });
+    grid.frame(svg, "errors: found less true");
+    grid.colours(svg, &off[2], "N", 1.0);
+    arrows(svg, &grid, &[(&off, FOUND)]);
+    let [left, _, _, bottom] = grid.edges();
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let share = 100.0 * off.iter().map(|values| largest(values)).fold(0.0, f64::max) / largest(&field[2]);
+    if share.is_finite() {
+        let text = format!("largest: {} % of the largest f_z", short(share));
+        svg.text((left, bottom + 38.0), "start", INK, &text);
+    }
+}
+
 /// The stress of a frame in Pa.
 pub fn stress(sensor: &Sensor, stress: &[f64]) -> String {
     let mut svg = Svg::new(WIDTH, height(sensor), "Stress that the taxels feel");
@@ -214,18 +257,30 @@ pub fn stress(sensor: &Sensor, stress: &[f64]) -> String {
     svg.finish()
 }
 
-/// The field of an answer, with the true sum of forces if that is known.
-pub fn forces(sensor: &Sensor, answer: &Answer, truth: Option<[f64; 3]>) -> String {
+/// The field of an answer, with the true forces as far as they are known.
+pub fn forces(sensor: &Sensor, answer: &Answer, truth: Option<&Truth>) -> String {
     let mut svg = Svg::new(WIDTH, height(sensor), "Forces that the hardware finds");
     draw_forces(&mut svg, sensor, 0.0, answer, truth);
     svg.finish()
 }
 
-/// Both beside each other.
-pub fn frame(sensor: &Sensor, stress: &[f64], answer: &Answer, truth: Option<[f64; 3]>) -> String {
-    let mut svg = Svg::new(2.0 * WIDTH, height(sensor), "Stress that the taxels feel, and the forces found from it");
+/// What the field of an answer is off the true one, `[f_x, f_y, f_z]` of each taxel in newtons.
+pub fn errors(sensor: &Sensor, answer: &Answer, field: &[Vec<f64>; 3]) -> String {
+    let mut svg = Svg::new(WIDTH, height(sensor), "What the forces found are off the true ones");
+    draw_errors(&mut svg, sensor, 0.0, answer, field);
+    svg.finish()
+}
+
+/// Stress and forces beside each other, and the errors where each taxel's true force is known.
+pub fn frame(sensor: &Sensor, stress: &[f64], answer: &Answer, truth: Option<&Truth>) -> String {
+    let field = truth.and_then(|truth| truth.field.as_ref());
+    let width = if field.is_some() { 3.0 * WIDTH } else { 2.0 * WIDTH };
+    let mut svg = Svg::new(width, height(sensor), "Stress that the taxels feel, and the forces found from it");
     draw_stress(&mut svg, sensor, stress);
     draw_forces(&mut svg, sensor, WIDTH, answer, truth);
+    if let Some(field) = field {
+        draw_errors(&mut svg, sensor, 2.0 * WIDTH, answer, field);
+    }
     svg.finish()
 }
 
@@ -249,8 +304,20 @@ mod tests {
     fn nothing_pressed_has_a_picture_too() {
         let sensor = Sensor { columns: 3, rows: 2, pitch_mm: [4.0, 2.0], depth_mm: 3.0 };
         let answer = Answer { field: [(); 3].map(|()| vec![0.0; 6]), ..Answer::default() };
-        let text = frame(&sensor, &[0.0; 6], &answer, Some([0.0; 3]));
+        let truth = Truth { force: [0.0; 3], field: Some(answer.field.clone()) };
+        let text = frame(&sensor, &[0.0; 6], &answer, Some(&truth));
         assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
-        assert_eq!(text.matches("<rect").count(), 12, "a cell a taxel in both, and no bar");
+        assert_eq!(text.matches("<rect").count(), 18, "a cell a taxel in each, and no bar");
+    }
+    #[test]
+    fn errors_are_what_is_found_less_what_is_true() {
+        let sensor = Sensor { columns: 2, rows: 2, pitch_mm: [4.0; 2], depth_mm: 3.0 };
+        let field = [vec![0.0; 4], vec![0.0; 4], vec![-2.0, 0.0, 0.0, 0.0]];
+        let mut answer = Answer { field: field.clone(), ..Answer::default() };
+        assert!(errors(&sensor, &answer, &field).contains("largest: 0 %"));
+        answer.field[2][3] = 0.1;
+        let text = errors(&sensor, &answer, &field);
+        assert!(text.contains("largest: 5 %") && text.contains("0.1 N") && !text.contains("2 N"), "{text}");
+        assert!(!frame(&sensor, &[0.0; 4], &answer, None).contains("errors:"));
     }
 }

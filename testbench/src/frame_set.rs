@@ -9,6 +9,8 @@ use golden::geometry;
 use golden::metrics::Outcome;
 use golden::scene::{Scene, SceneError};
 
+use crate::field_plot::Truth;
+
 /// Frames of one sensor.
 #[derive(Clone, Debug)]
 pub struct FrameSet {
@@ -18,6 +20,8 @@ pub struct FrameSet {
     pub stress: Vec<Vec<f64>>,
     /// True forces, one for each frame.
     pub truth: Option<Vec<Outcome>>,
+    /// The scene that the frames are of, where that is known: it knows each taxel's true force.
+    pub scene: Option<Scene>,
 }
 
 impl FrameSet {
@@ -37,7 +41,13 @@ impl FrameSet {
         let frames = scene.frames()?;
         let truth = frames.iter().map(Outcome::from).collect();
         let stress = frames.into_iter().map(|frame| frame.stress).collect();
-        Ok(Self { origin: origin.into(), stress, truth: Some(truth) })
+        Ok(Self { origin: origin.into(), stress, truth: Some(truth), scene: Some(scene.clone()) })
+    }
+
+    /// What is known of the forces of a frame.
+    pub fn truth_of(&self, frame: usize) -> Option<Truth> {
+        let force = self.truth.as_ref()?.get(frame)?.force;
+        Some(Truth { force, field: self.scene.as_ref().and_then(|scene| scene.surface(frame)) })
     }
 
     /// The same frames as the design's sensor delivers them: in counts, whole ones, if it counts.
@@ -58,6 +68,6 @@ impl FrameSet {
         geometry::compare(frames, &design.name, &design.sensor)?;
         let stress = read_frames_of(frames, design, labels)?;
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
-        Ok(Self { origin: frames.display().to_string(), stress, truth })
+        Ok(Self { origin: frames.display().to_string(), stress, truth, scene: None })
     }
 }

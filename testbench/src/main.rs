@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use golden::manual::Manual;
 
-use commands::{Said, bench, cells, hard, mutants, run, stress, sweep, view};
+use commands::{Said, bench, build, cells, hard, mutants, run, stress, sweep, view};
 
 /// Simulates generated hardware and compares it with software.
 #[derive(Parser)]
@@ -27,6 +27,11 @@ enum Command {
     /// word is the model's, latency and interval are the predicted ones (with `skip_zeros`: no more), and every
     /// register of a design with `control = true` has the value that it should have.
     Run(run::Arguments),
+    /// Compile a design's RTL for a program of your own, and print the path of the shared object.
+    ///
+    /// `drivers/simulated` gives the drivers, and the programs above them, registers and memory of that core. It stays in
+    /// the cache for as long as it is used.
+    Build(build::Arguments),
     /// Measure: time to generate, speed of the simulation, cycles against lanes and taxels.
     ///
     /// With --solver and --cells the page has the figures of `golden bench` and of Yosys too; `make bench` does all of
@@ -57,7 +62,7 @@ enum Command {
     ///
     /// STATISTICS is what `stat -json` prints after a synthesis without -flatten; `tools/synth.sh` does both.
     Cells(cells::Arguments),
-    /// Show the forces of a frame in the terminal.
+    /// Show the forces of a frame in the terminal, or play several.
     ///
     /// One cell a taxel, y upwards: an arrow for the direction of the shear, a digit for its share of the largest
     /// force, and a digit for that of the normal force. In colour on a terminal, unless `NO_COLOR` is set. The forces
@@ -70,6 +75,7 @@ enum Command {
 fn main() -> ExitCode {
     let said = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Build(arguments) => build::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Hard(arguments) => hard::run(&arguments),

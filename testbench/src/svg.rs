@@ -79,6 +79,21 @@ impl Svg {
         self.named(&shape, name);
     }
 
+    /// A full rectangle that says what it is.
+    pub fn named_rectangle(
+        &mut self,
+        (x, y): (f64, f64),
+        (width, height): (f64, f64),
+        (colour, opacity): (&str, f64),
+        name: &str,
+    ) {
+        let shape = format!(
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\" \
+             fill-opacity=\"{opacity:.2}\"/>"
+        );
+        self.named(&shape, name);
+    }
+
     fn named(&mut self, shape: &str, name: &str) {
         let name = escaped(name);
         // What it is, and below that its figures.
@@ -121,6 +136,19 @@ impl Svg {
         let _ = writeln!(
             self.text,
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"{opacity}/>"
+        );
+    }
+
+    /// The edge of a rectangle; what lies below it is still pointed at.
+    pub fn frame(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), colour: &str) {
+        let _ = writeln!(
+            self.text,
+            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"none\" stroke=\"{colour}\" \
+             stroke-width=\"2\" pointer-events=\"none\"/>",
+            x + 1.0,
+            y + 1.0,
+            width - 2.0,
+            height - 2.0
         );
     }
 

@@ -11,6 +11,7 @@ mod parse_traction;
 mod sensor_errors;
 mod shape;
 mod spectral;
+mod surface;
 mod traction;
 mod transfer;
 

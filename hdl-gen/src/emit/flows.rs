@@ -2,13 +2,14 @@
 //!
 //! They name the files that the folder holds, relative to the folder, so they come after everything else.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use tera::{Context, Tera};
 
 use crate::plan::Plan;
 use crate::plan::resources::BlockResources;
 use crate::plan::streams::WORD_BITS;
 
+use super::boards::Board;
 use super::{EmitError, FileMap, VERSION};
 
 /// Bytes of a word of memory.
@@ -33,30 +34,19 @@ const FILES: [(&str, &str); 10] = [
     ("Bender.yml", include_str!("../../templates/vivado/Bender.yml.tera")),
 ];
 
-/// Boards that `block_design.tcl` knows, by their word on its command line.
-const BOARDS: [(&str, &str); 4] = [
-    ("zcu102", include_str!("../../boards/zcu102.toml")),
-    ("zcu104", include_str!("../../boards/zcu104.toml")),
-    ("kv260", include_str!("../../boards/kv260.toml")),
-    ("pynq-z2", include_str!("../../boards/pynq-z2.toml")),
-];
-
-/// A file of `boards/`.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Board {
-    /// Its word on the command line, from the file's name.
-    #[serde(default)]
-    name: String,
-    title: String,
-    pattern: String,
-    part: String,
-    processor: String,
+/// A board with the addresses of its registers as the script writes them.
+#[derive(Serialize)]
+struct Placed {
+    #[serde(flatten)]
+    board: Board,
+    dma_address: String,
+    core_address: String,
 }
 
-impl Board {
-    fn all() -> Result<Vec<Self>, toml::de::Error> {
-        BOARDS.iter().map(|&(name, text)| Ok(Self { name: name.to_owned(), ..toml::from_str(text)? })).collect()
+impl Placed {
+    fn new(board: Board) -> Self {
+        let [dma_address, core_address] = [board.registers, board.core_registers()].map(|at| format!("{at:#010X}"));
+        Self { board, dma_address, core_address }
     }
 }
 
@@ -96,7 +86,7 @@ struct View {
     blocks: Vec<BlockResources>,
     /// Whether there is a register bank.
     control: bool,
-    boards: Vec<Board>,
+    boards: Vec<Placed>,
 }
 
 impl View {
@@ -129,7 +119,7 @@ impl View {
             testbench: files.contains_key(&testbench).then_some(testbench),
             blocks: plan.resources.blocks.clone(),
             control: design.hardware.control,
-            boards: Board::all()?,
+            boards: Board::all()?.into_iter().map(Placed::new).collect(),
             name: design.name.clone(),
         })
     }

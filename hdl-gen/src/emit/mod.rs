@@ -1,7 +1,9 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
+mod boards;
 mod columns;
 mod flows;
+mod linux;
 mod mcsr;
 mod metadata;
 mod modules;
@@ -52,8 +54,8 @@ pub enum EmitError {
 /// Version of the generator, as printed into every file.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, `control/`, file lists,
-/// `metadata.json`, `design.toml` and the files that it names.
+/// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, `linux/`, `control/`, file
+/// lists, `metadata.json`, `design.toml` and the files that it names.
 ///
 /// # Errors
 /// [`EmitError`] if a template and its data do not fit each other.
@@ -74,6 +76,7 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
     }
     // After every file that a list or script names.
     flows::insert(plan, &hash, &mut files)?;
+    linux::insert(plan, &mut files)?;
     origin::insert(&plan.design.name, &hash, &mut files);
     let metadata = metadata::metadata(plan, &hash, &files)?;
     files.insert("metadata.json".to_owned(), metadata);

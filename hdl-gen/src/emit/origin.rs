@@ -34,7 +34,7 @@ pub fn insert(name: &str, hash: &str, files: &mut FileMap) {
 /// What begins a comment in a file of this name.
 fn comment_mark(path: &str) -> Option<&'static str> {
     match path.rsplit_once('.')?.1 {
-        "v" | "rdl" => Some("//"),
+        "v" | "rdl" | "dtso" => Some("//"),
         "tcl" | "xdc" | "yml" | "core" | "txt" => Some("#"),
         _ => None,
     }

@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 pub mod bench;
+pub mod build;
 pub mod cells;
 pub mod frames;
 pub mod hard;

@@ -79,9 +79,14 @@ fn the_report_fits_a_desk_and_a_telephone() {
     let folder = tempfile::tempdir().expect("a folder");
     let page = report(folder.path());
     // What it concludes, and from what it does not: two bodies that are pushed against each other.
-    for (part, times) in
-        [("Take no filter", 1), ("tells nothing of either", 1), ("[hardware]\nlanes = ", 1), ("µs a frame: latency", 1)]
-    {
+    for (part, times) in [
+        ("Take no filter", 1),
+        ("tells nothing of either", 1),
+        ("Told apart in f64", 1),
+        ("errors: found less true", 1),
+        ("[hardware]\nlanes = ", 1),
+        ("µs a frame: latency", 1),
+    ] {
         assert_eq!(page.matches(part).count(), times, "{part}");
     }
     for width in [1280, 400] {

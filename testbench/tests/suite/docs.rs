@@ -7,14 +7,14 @@ use std::process::{Command, Output};
 use crate::support::workspace;
 
 /// A line of a block of commands, without its comment.
-struct Line {
-    file: PathBuf,
-    number: usize,
-    text: String,
+pub struct Line {
+    pub file: PathBuf,
+    pub number: usize,
+    pub text: String,
 }
 
 impl Line {
-    fn place(&self) -> String {
+    pub fn place(&self) -> String {
         format!("{}, line {}: {}", self.file.display(), self.number, self.text)
     }
 }
@@ -29,7 +29,7 @@ fn lines() -> Vec<Line> {
     files.iter().flat_map(|file| lines_of(file)).collect()
 }
 
-fn lines_of(file: &Path) -> Vec<Line> {
+pub fn lines_of(file: &Path) -> Vec<Line> {
     let text = fs::read_to_string(file).expect("readable");
     let (mut found, mut inside, mut open): (Vec<Line>, bool, bool) = (Vec::new(), false, false);
     for (number, line) in (1..).zip(text.lines()) {
@@ -95,6 +95,15 @@ fn every_command_of_the_docs_exists() {
                 for file in files {
                     assert!(root.join(file).exists(), "{}: there is no {file}", line.place());
                 }
+            }
+            ("make", Some(&"-C")) => {
+                let inner = fs::read_to_string(root.join(words[2]).join("Makefile")).expect("a Makefile");
+                let mut targets = words[3..].iter().filter(|word| !word.contains('='));
+                assert!(
+                    targets.all(|target| inner.contains(&format!("\n{target}:"))),
+                    "{}: no such target",
+                    line.place()
+                );
             }
             ("make", Some(target)) => {
                 assert!(makefile.contains(&format!("\n{target}:")), "{}: no such target", line.place());

@@ -159,6 +159,80 @@ fn a_frame_is_shown_plainly_where_there_is_no_terminal() {
     assert_eq!(message, "error: --frame 36: the sensor's standing scene has 36 frames; choose 0 to 35\n");
 }
 
+/// What a command writes to a terminal of so many columns.
+fn on_a_terminal(columns: u32, arguments: &[&str]) -> String {
+    const TERMINAL: &str = "
+import fcntl, os, pty, struct, sys, termios
+columns, command = int(sys.argv[1]), sys.argv[2:]
+child, terminal = pty.fork()
+if child == 0:
+    fcntl.ioctl(1, termios.TIOCSWINSZ, struct.pack('HHHH', 40, columns, 0, 0))
+    os.execv(command[0], command)
+try:
+    while text := os.read(terminal, 4096):
+        sys.stdout.buffer.write(text)
+except OSError:
+    pass
+sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+";
+    let ran = Command::new("python3")
+        .args(["-c", TERMINAL, &columns.to_string(), env!("CARGO_BIN_EXE_testbench")])
+        .args(arguments)
+        .env("TERM", "xterm-256color")
+        .env_remove("NO_COLOR")
+        .output()
+        .expect("python3");
+    assert!(ran.status.success(), "{}", text(&ran.stderr));
+    text(&ran.stdout)
+}
+
+#[test]
+fn several_frames_play_in_one_place_of_a_terminal_and_are_pages_elsewhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let design = workspace("designs/small.toml").display().to_string();
+    let view = |more: &[&str]| testbench(folder.path(), &[&["view", &design], more].concat());
+    let pages = text(&view(&["--frame", "3-5"]).stdout);
+    assert_eq!(pages.matches("frame ").count(), 3, "{pages}");
+    assert!(pages.contains("\n\nsmall_4x3, frame 4 of") && !pages.contains('\x1b'), "{pages}");
+    // One scale for all of them: that of the largest force, which has the only nine of a normal force.
+    let scale = |page: &str| page.split("9 is ").nth(1).and_then(|rest| rest.split(' ').next()).map(str::to_owned);
+    let scales: Vec<_> = pages.split("\n\nsmall").map(scale).collect();
+    assert!(scales[0].is_some() && scales.iter().all(|each| *each == scales[0]), "{scales:?}");
+    let all: serde_json::Value = serde_json::from_slice(&view(&["--frame", "all", "--json"]).stdout).expect("JSON");
+    let numbers: Vec<_> = all.as_array().expect("a list").iter().filter_map(|view| view["frame"].as_u64()).collect();
+    assert_eq!(numbers, (0..36).collect::<Vec<_>>());
+    for (wrong, why) in [("5-3", "write a frame as 4"), ("30-40", "--frame 36: the sensor's standing scene has 36")] {
+        let refused = view(&["--frame", wrong]);
+        assert!(!refused.status.success() && text(&refused.stderr).contains(why), "{}", text(&refused.stderr));
+    }
+    let refused = view(&["--frame", "3-5", "--svg", "frame.svg"]);
+    assert!(!refused.status.success() && !folder.path().join("frame.svg").exists());
+
+    let played = on_a_terminal(80, &["view", &design, "--frame", "3-5", "--rate", "100"]);
+    assert_eq!((played.matches("\x1b[H").count(), played.matches("\x1b[2J").count()), (3, 1), "{played:?}");
+    assert!(played.contains("48;5;"), "in colour: {played:?}");
+    // Four characters a taxel where there is room, one where there is none.
+    let legends = [20, 19].map(|columns| {
+        let shown = on_a_terminal(columns, &["view", &design]);
+        assert!(!shown.contains("\x1b[H"), "one frame stays where it is: {shown:?}");
+        shown.contains("second digit")
+    });
+    assert_eq!(legends, [true, false]);
+}
+
+/// The standing scene knows the force on each taxel.
+#[test]
+fn a_picture_of_the_standing_scene_shows_errors() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let design = workspace("designs/sensor1-reduced.toml").display().to_string();
+    assert!(testbench(folder.path(), &["view", &design, "--frame", "4", "--svg", "frame.svg"]).status.success());
+    let drawn = fs::read_to_string(folder.path().join("frame.svg")).expect("drawn");
+    assert_eq!(drawn.matches("<rect").count(), 3 * (100 + 24), "a cell a taxel and a bar each");
+    let share = drawn.split("largest: ").nth(1).and_then(|rest| rest.split(' ').next()).expect("an error");
+    let share: f64 = share.parse().expect("a number");
+    assert!((5.0..40.0).contains(&share), "{share} % of the largest f_z");
+}
+
 /// The picture of the README. `UPDATE_EXPECTED=1` draws it anew.
 #[test]
 fn the_readmes_picture_is_what_view_draws() {

@@ -12,7 +12,7 @@ use crate::frames::{Array, Separator, read_array};
 /// What stands for an unknown value.
 const UNKNOWN: [&str; 6] = ["", "-", "nan", "na", "n/a", "none"];
 
-/// What was measured, frame by frame.
+/// What was measured, frame by frame: forces and pressures have an entry for each, known or not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measured {
     /// `[F_x, F_y, F_z]` in newtons, as far as known, with the signs of the file.
@@ -23,6 +23,18 @@ pub struct Measured {
     pub contacts: Option<Vec<String>>,
     /// What was taken for what.
     pub remarks: Vec<String>,
+}
+
+impl Measured {
+    /// Forces `[F_x, F_y, F_z]` in newtons of each frame, as far as they are known.
+    pub fn of_forces(forces: Vec<[Option<f64>; 3]>) -> Self {
+        Self { pressures: vec![None; forces.len()], forces, ..Self::default() }
+    }
+
+    /// The pressure in pascals of each frame, where it is known.
+    pub fn of_pressures(pressures: Vec<Option<f64>>) -> Self {
+        Self { forces: vec![[None; 3]; pressures.len()], pressures, ..Self::default() }
+    }
 }
 
 /// A table as it is, before anybody knows what its columns mean.

@@ -127,14 +127,19 @@ fn pixels(side: usize, colours: &[&str], ground: usize, level: impl Fn(usize, us
     svg + "</svg>\n"
 }
 
-/// `e_mu * Nnz` in thousands for every filter of every matrix; the least of a matrix in orange, as in Figure 11.
+/// A filter that multiplies the error of friction by more is none to take, however few entries it keeps.
+const WORTH: f64 = 2.0;
+
+/// `e_mu * Nnz` in thousands for every filter of every matrix; the least of a matrix in orange, as in Figure 11, full
+/// where its error is one to live with.
 pub fn costs(choice: &Choice) -> String {
     const CELL: (f64, f64) = (42.0, 24.0);
     const NAMES: f64 = 62.0;
     let count = choice.candidates.len() / MatrixName::ALL.len();
     let width = NAMES + CELL.0 * count as f64 + 4.0;
     let height = 46.0 + CELL.1 * MatrixName::ALL.len() as f64;
-    let mut svg = Svg::new(width, height, "Error of friction times entries kept, for each matrix and filter");
+    let mut svg = Svg::new(width, height + 18.0, "Error of friction times entries kept, for each matrix and filter")
+        .with_names_at((4.0, height + 12.0));
     for (number, candidate) in choice.candidates[..count].iter().enumerate() {
         let (kind, value) = match candidate.filter {
             MatrixFilter::F1 { l } => ("L", l as f64),
@@ -152,20 +157,34 @@ pub fn costs(choice: &Choice) -> String {
     for (row, candidates) in choice.candidates.chunks(count).enumerate() {
         let y = 44.0 + CELL.1 * row as f64;
         svg.text((NAMES - 8.0, y + 16.0), "end", "currentColor", &symbol(candidates[0].matrix));
-        cost_row(&mut svg, candidates, NAMES, y, CELL);
+        cost_row(&mut svg, candidates, choice.e_mu_unfiltered, (NAMES, y), CELL);
     }
     svg.finish()
 }
 
-fn cost_row(svg: &mut Svg, candidates: &[Candidate], left: f64, y: f64, (width, height): (f64, f64)) {
+fn cost_row(
+    svg: &mut Svg,
+    candidates: &[Candidate],
+    unfiltered: f64,
+    (left, y): (f64, f64),
+    (width, height): (f64, f64),
+) {
+    const LEAST: &str = "#d9730d";
     let costs = || candidates.iter().map(|candidate| candidate.cost);
     let (low, high) = (costs().fold(f64::INFINITY, f64::min), costs().fold(0.0, f64::max));
     for (column, candidate) in candidates.iter().enumerate() {
         let x = left + width * column as f64;
         let share = if high > low { (candidate.cost - low) / (high - low) } else { 0.0 };
-        let (colour, opacity) = if candidate.chosen { ("#d9730d", 1.0) } else { (KEPT, 0.06 + 0.5 * share) };
-        svg.rectangle((x, y), (width - 1.5, height - 1.5), colour, opacity);
-        let ink = if candidate.chosen { "#ffffff" } else { "currentColor" };
+        let taken = candidate.chosen && candidate.e_mu <= WORTH * unfiltered;
+        let (colour, opacity) = if taken { (LEAST, 1.0) } else { (KEPT, 0.06 + 0.5 * share) };
+        let (place, sides) = ((x, y), (width - 1.5, height - 1.5));
+        let Candidate { matrix, filter, nnz, e_mu, .. } = candidate;
+        let name = format!("{} {filter}, e_µ {e_mu:.2} %, {nnz} entries kept", symbol(*matrix));
+        svg.named_rectangle(place, sides, (colour, opacity), &name);
+        if candidate.chosen && !taken {
+            svg.frame(place, sides, LEAST);
+        }
+        let ink = if taken { "#ffffff" } else { "currentColor" };
         svg.sized_text((x + width / 2.0, y + 15.5), "middle", ink, 11, &thousands(candidate.cost));
     }
 }

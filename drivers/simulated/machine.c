@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* See machine.h. The core is the shared object that the testbench builds, driven through its C interface. */
 #include "machine.h"
 
@@ -114,7 +115,10 @@ machine *machine_open(const char *library, uint32_t seed, int has_registers)
     uint32_t (*words)(void);
     int index;
 
-    system->library = dlopen(library, RTLD_NOW | RTLD_LOCAL);
+    /* A name without a folder would be looked for among the system's libraries. */
+    snprintf(text, sizeof text, "./%s", library);
+    system->library = dlopen(strchr(library, '/') == NULL ? text : library, RTLD_NOW | RTLD_LOCAL);
+    text[0] = '\0';
     if (system->library == NULL) {
         fprintf(stderr, "machine: %s\n", dlerror());
         free(system);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* A processor's view of a simulated system: the core's registers, an AXI DMA and memory. Time passes only while
  * registers are accessed, a few cycles each. */
 #ifndef MACHINE_H

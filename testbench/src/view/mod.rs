@@ -1,0 +1,216 @@
+//! The forces of frames to look at: on a terminal, as a picture, and for machines.
+
+mod page;
+mod range;
+mod terminal;
+
+use golden::design::Design;
+use golden::sensor::Sensor;
+use golden::solver::Status;
+use hdl_gen::model::Model;
+use hdl_gen::plan::{Plan, PlanError};
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::field_plot::{self, Truth};
+use crate::frame_set::FrameSet;
+use crate::stream_words::{Answer, decode};
+use golden::progress::Progress;
+use page::Look;
+pub use range::FrameRange;
+pub use terminal::{Rate, RateError, play};
+
+/// Why there is nothing to see.
+#[derive(Debug, Error)]
+pub enum ViewError {
+    /// The design cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// There is no such frame.
+    #[error("--frame {frame}: {origin} has {count} frames; choose 0 to {}", .count.saturating_sub(1))]
+    NoFrame {
+        /// The one asked for.
+        frame: usize,
+        /// How many there are.
+        count: usize,
+        /// Where they are.
+        origin: String,
+    },
+}
+
+/// A frame with what the hardware answers to it.
+pub struct View {
+    design: String,
+    origin: String,
+    frame: usize,
+    sensor: Sensor,
+    /// In Pa.
+    stress: Vec<f64>,
+    answer: Answer,
+    truth: Option<Truth>,
+}
+
+/// A view for machines; values have the names of the output stream, fields go in taxel order.
+#[derive(Serialize)]
+struct Json<'a> {
+    design: &'a str,
+    /// Where the frames come from.
+    origin: &'a str,
+    frame: usize,
+    columns: usize,
+    status: u32,
+    /// The status in words.
+    meaning: String,
+    #[serde(rename = "F_x")]
+    force_x: f64,
+    #[serde(rename = "F_y")]
+    force_y: f64,
+    #[serde(rename = "F_z")]
+    force_z: f64,
+    mu: f64,
+    phi: f64,
+    mu_x: f64,
+    mu_y: f64,
+    /// Not there if the design puts out resultants only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    field: Option<Field<'a>>,
+}
+
+#[derive(Serialize)]
+struct Field<'a> {
+    #[serde(rename = "f_x")]
+    x: &'a [f64],
+    #[serde(rename = "f_y")]
+    y: &'a [f64],
+    #[serde(rename = "f_z")]
+    z: &'a [f64],
+}
+
+impl View {
+    /// Which frame it is, from 0.
+    pub fn number(&self) -> usize {
+        self.frame
+    }
+
+    /// The largest component of a taxel's force, in newtons; 0 where there are resultants only.
+    pub fn largest(&self) -> f64 {
+        page::largest(&self.answer)
+    }
+
+    /// The page for a terminal, on which the digit 9 stands for `largest` newtons; one character a taxel where that is
+    /// asked for, or where the terminal is too narrow for four.
+    pub fn page(&self, largest: f64, compact: bool) -> String {
+        let title = format!("{}, frame {} of {}", self.design, self.frame, self.origin);
+        let columns = self.sensor.columns;
+        let compact = compact || terminal::columns().is_some_and(|wide| wide < page::width(columns));
+        page::render(&title, &self.answer, columns, Look { colour: terminal::wants_colour(), compact, largest })
+    }
+
+    /// The same as a picture: the stress, and the forces with the true sum if that is known. `None` where the design puts
+    /// out resultants only.
+    pub fn svg(&self) -> Option<String> {
+        let has_field = !self.answer.field[2].is_empty();
+        has_field.then(|| field_plot::frame(&self.sensor, &self.stress, &self.answer, self.truth.as_ref()))
+    }
+
+    /// The same for machines.
+    fn json(&self) -> Json<'_> {
+        let Answer { status, resultant: [force_x, force_y, force_z], mu, phi, mu_xy: [mu_x, mu_y], .. } = self.answer;
+        let [x, y, z] = &self.answer.field;
+        Json {
+            design: &self.design,
+            origin: &self.origin,
+            frame: self.frame,
+            columns: self.sensor.columns,
+            status,
+            meaning: Status(status).to_string(),
+            force_x,
+            force_y,
+            force_z,
+            mu,
+            phi,
+            mu_x,
+            mu_y,
+            field: (!z.is_empty()).then_some(Field { x, y, z }),
+        }
+    }
+}
+
+/// All values of the answers for machines, forces in N, angles in rad: an object for one frame, a list for several.
+///
+/// # Errors
+/// That of the JSON writer.
+pub fn json(views: &[View]) -> Result<String, serde_json::Error> {
+    let text = match views {
+        [view] => serde_json::to_string_pretty(&view.json())?,
+        views => serde_json::to_string_pretty(&views.iter().map(View::json).collect::<Vec<_>>())?,
+    };
+    Ok(text + "\n")
+}
+
+/// Frames as the hardware answers them.
+///
+/// # Errors
+/// [`ViewError`] if the design has no plan or a frame does not exist.
+pub fn frames(
+    design: &Design,
+    frames: &FrameSet,
+    range: FrameRange,
+    progress: &Progress,
+) -> Result<Vec<View>, ViewError> {
+    let count = frames.stress.len();
+    let range =
+        range.within(count).map_err(|frame| ViewError::NoFrame { frame, count, origin: frames.origin.clone() })?;
+    progress.stage("planning");
+    let plan = Plan::new(design)?;
+    progress.stage("computing the forces");
+    let mut model = Model::new(&plan);
+    let view = |frame: usize| {
+        let stress = &frames.stress[frame];
+        let words = model.process(&plan.streams().packet(stress));
+        View {
+            design: design.name.clone(),
+            origin: frames.origin.clone(),
+            frame,
+            sensor: design.sensor.clone(),
+            stress: stress.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect(),
+            truth: frames.truth_of(frame),
+            // The model's answers have the length that it was made for.
+            answer: decode(&words).unwrap_or_default(),
+        }
+    };
+    Ok(range.map(view).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    pub(super) fn answer(forces: &[[f64; 3]]) -> Answer {
+        let field = [0, 1, 2].map(|axis| forces.iter().map(|force| force[axis]).collect());
+        Answer { resultant: [1.0, 2.0, -3.0], mu: 0.5, phi: 1.0, mu_xy: [0.3, 0.4], field, ..Answer::default() }
+    }
+
+    #[test]
+    fn resultants_have_no_field() {
+        let sensor = Sensor { columns: 2, rows: 2, pitch_mm: [4.0; 2], depth_mm: 3.0 };
+        let [design, origin] = ["d", "o"].map(str::to_owned);
+        let view = |answer| View {
+            design: design.clone(),
+            origin: origin.clone(),
+            frame: 3,
+            sensor: sensor.clone(),
+            stress: vec![0.0; 4],
+            answer,
+            truth: None,
+        };
+        let alone = view(answer(&[]));
+        assert!(alone.page(1.0, false).contains("resultants only"));
+        assert_eq!((alone.svg(), alone.largest()), (None, 0.0));
+        let read = |views: &[View]| serde_json::from_str::<serde_json::Value>(&json(views).unwrap()).unwrap();
+        let one = read(&[alone]);
+        assert!(one.get("field").is_none() && one["F_z"] == -3.0 && one["mu_y"] == 0.4, "{one}");
+        let two = read(&[view(answer(&[[1.0, 2.0, 3.0]])), view(answer(&[]))]);
+        assert_eq!((&two[0]["field"]["f_y"], &two[1]["frame"]), (&serde_json::json!([2.0]), &serde_json::json!(3)));
+    }
+}

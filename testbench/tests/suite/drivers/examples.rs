@@ -1,0 +1,153 @@
+//! The example programs: the recipe of docs/board.md as far as a desk goes, and what they say when something is wrong.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use golden::design::Design;
+use hdl_gen::plan::Plan;
+use testbench::trial::model_answers;
+
+use crate::docs::{commands, lines_of};
+use crate::support::{built, workspace};
+
+const PAGE: &str = "docs/board.md";
+const DESIGN: &str = "designs/small-control.toml";
+
+/// What the recipe is run with: a folder of its own, with what a checkout or a release has.
+fn desk() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["designs", "scenes"] {
+        std::os::unix::fs::symlink(workspace(name), folder.path().join(name)).expect("a link");
+    }
+    // Programs are built in it.
+    copy(&workspace("drivers"), &folder.path().join("drivers"));
+    folder
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(from).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+        let place = to.join(entry.file_name().expect("a name"));
+        if entry.is_dir() {
+            copy(&entry, &place);
+        } else {
+            fs::copy(&entry, place).expect("copied");
+        }
+    }
+}
+
+fn bash(folder: &Path, text: &str) -> Output {
+    let path = format!("{}:{}", commands().display(), std::env::var("PATH").unwrap_or_default());
+    Command::new("bash").args(["-c", text]).current_dir(folder).env("PATH", path).output().expect("bash starts")
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+/// Sanitized, and warnings are errors.
+const MAKE: &str = "make -C drivers/c/examples CFLAGS='-O1 -g -Werror -fsanitize=address,undefined \
+    -fno-sanitize-recover=all'";
+
+/// The forces of the model for the frames that the recipe made.
+fn model(folder: &Path) -> Vec<Vec<u32>> {
+    let plan = Plan::new(&Design::load(&workspace(DESIGN)).expect("right")).expect("a plan");
+    let text = fs::read_to_string(folder.join("frames.csv")).expect("frames");
+    let frame = |line: &str| line.split(',').map(|value| value.parse::<f32>().expect("a value").to_bits()).collect();
+    let frames: Vec<Vec<u32>> = text.lines().filter(|line| !line.starts_with('#')).map(frame).collect();
+    model_answers(&plan, &frames)
+}
+
+#[test]
+fn the_recipe_comes_to_forces_on_the_terminal() {
+    let desk = desk();
+    let page = fs::read_to_string(workspace(PAGE)).expect("readable");
+    let on_the_board = page.lines().position(|line| line == "## On the board").expect("its part");
+    let mut last = String::new();
+    for line in lines_of(&workspace(PAGE)).iter().filter(|line| line.number < on_the_board) {
+        let output = bash(desk.path(), &line.text);
+        assert!(output.status.success(), "{}: {}", line.place(), said(&output));
+        last = String::from_utf8_lossy(&output.stdout).into_owned();
+    }
+    // What stands there as printed, and every force, as the model has them.
+    let stated = page.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("stated forces");
+    assert!(last.starts_with(stated), "{last}");
+    let answers = model(desk.path());
+    assert_eq!(last.lines().count(), answers.len() + 1);
+    for (line, words) in last.lines().skip(1).zip(answers) {
+        let values: Vec<&str> = line.split(',').collect();
+        assert_eq!(values[0], (words[0] >> 16).to_string());
+        for (value, index) in values[1..6].iter().zip([2, 3, 4, 8, 9]) {
+            assert_eq!(value.parse::<f32>().expect("a force").to_bits(), words[index], "{line}");
+        }
+        assert_eq!(values[6].is_empty(), words[0] as u16 == 0, "{line}");
+    }
+    let overlay = bash(desk.path(), "ls rtl-out/small_control/linux");
+    assert_eq!(said(&overlay).trim(), "small_control_zcu102.dtso");
+}
+
+/// Bad lines, a core that is none, and the bare metal program; under the sanitizers.
+#[test]
+fn the_examples_say_what_is_wrong() {
+    let desk = desk();
+    let made = bash(desk.path(), MAKE);
+    assert!(made.status.success() && made.stderr.is_empty(), "{}", said(&made));
+    let core = built(&Plan::new(&Design::load(&workspace(DESIGN)).expect("right")).expect("a plan")).library;
+    let examples = "drivers/c/examples/build";
+    let refused = |text: &str, message: &str| {
+        let output = bash(desk.path(), &text.replace("CORE", &core.display().to_string()));
+        assert!(!output.status.success() && said(&output).contains(message), "{text}: {}", said(&output));
+    };
+    let simulated = format!("{examples}/forces_simulated");
+    refused(&format!("printf '1,2\\n' | {simulated} CORE"), "line 1: 2 values, and the core has 12 taxels");
+    refused(&format!("seq -s, 13 | {simulated} CORE"), "line 1: more than 12 values");
+    refused(&format!("{simulated} CORE none.csv"), "none.csv: No such file");
+    refused(&format!("{simulated} none.so"), "none.so");
+    refused(&simulated, "usage: ");
+    // A header, a comment, a blank line, another separator: no trouble.
+    let fine = format!("printf 'a;b\\n# c\\n\\n0;0;0;0;0;0;0;0;0;0;0;0\\n' | {simulated} {}", core.display());
+    assert!(said(&bash(desk.path(), &fine)).ends_with("0,0,0,0,0,0,no contact\n"));
+
+    let bare = bash(desk.path(), &format!("{examples}/bare_metal_simulated {}", core.display()));
+    let lines = said(&bare);
+    assert!(bare.status.success() && lines.lines().count() == 4 && lines.contains("frame 3: F_x "), "{lines}");
+    assert!(lines.lines().all(|line| line.contains("F_z -") && line.contains("status 0x")), "{lines}");
+    refused(&format!("{examples}/bare_metal_simulated"), "IDENTITY is not TFRA");
+}
+
+/// The program for the board, on files in place of `/sys` and `/dev`: it finds each by its node's name.
+#[test]
+fn the_linux_program_finds_core_dma_and_buffer() {
+    let desk = desk();
+    assert!(bash(desk.path(), &format!("{MAKE} linux")).status.success());
+    let root = desk.path().join("root");
+    let program = "SPTFRA_ROOT=root drivers/c/examples/build/forces_linux";
+    let refused = |message: &str| {
+        let output = bash(desk.path(), &format!("echo 0 | {program}"));
+        assert!(!output.status.success() && said(&output).contains(message), "{message}: {}", said(&output));
+    };
+    let write = |path: &str, bytes: &[u8]| {
+        let place = root.join(path);
+        fs::create_dir_all(place.parent().expect("a folder")).expect("made");
+        fs::write(place, bytes).expect("written");
+    };
+    refused("no UIO device sptfra-core: is the overlay loaded");
+    let identity: Vec<u8> = [0x5446_5241_u32, 0x0200_0000].iter().flat_map(|word| word.to_le_bytes()).collect();
+    let core = [identity, vec![0; 0x1000 - 8]].concat();
+    for (device, name) in [("uio0", "other"), ("uio1", "sptfra-dma"), ("uio2", "sptfra-core")] {
+        write(&format!("sys/class/uio/{device}/name"), format!("{name}\n").as_bytes());
+    }
+    write("dev/uio2", &core);
+    refused("root/dev/uio1: No such file");
+    write("dev/uio1", &vec![0; 0x10000]);
+    refused("no buffer sptfra-buffer: is the module u-dma-buf loaded?");
+    write("sys/class/u-dma-buf/sptfra-buffer/phys_addr", b"0x0000000070000000\n");
+    write("sys/class/u-dma-buf/sptfra-buffer/size", b"65536\n");
+    write("dev/sptfra-buffer", &vec![0; 65536]);
+    // The core is there, and the DMA, a file, never ends its reset.
+    refused("core: no answer in the polls given");
+    assert_eq!(fs::read(root.join("dev/uio1")).expect("there")[0], 4, "the reset is in the DMA's register");
+    write("dev/uio2", &[0; 0x1000]);
+    refused("core: no core at this address");
+}
