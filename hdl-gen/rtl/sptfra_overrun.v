@@ -4,7 +4,7 @@
 // The door of a core whose source cannot be held: two frames wait here, and one that begins while neither of them has
 // left is dropped whole. The first answer behind dropped frames says so: bit 12 of its status.
 //
-// Latency 2 cycles, one beat a cycle. A frame is handed on while it comes in. Of the beats that it has too many only the
+// Latency 2 cycles, one beat a cycle. A frame is handed on while it comes in. Of beats that it has too many only the
 // last one goes on, so that it stays too long and yet has room. Sixteen frames may be inside the core; answers pass in
 // the same cycle, in their frames' order.
 

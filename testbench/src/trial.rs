@@ -76,11 +76,12 @@ pub fn pacing(plan: &Plan) -> Pacing {
     }
 }
 
-/// Sends packets through a core, both streams free-running.
+/// Sends packets through a core, both streams free-running; back to back means as [`pacing`] has it.
 ///
 /// # Errors
 /// [`TrialError::Simulation`].
 pub fn send(core: &mut Dut, plan: &Plan, packets: &[Vec<u32>], pacing: Pacing) -> Result<Outcome, TrialError> {
+    let pacing = if pacing == Pacing::BackToBack { self::pacing(plan) } else { pacing };
     let traffic = Traffic::new(packets, timeout(plan)).with_pacing(pacing);
     let sent = exchange(core, &traffic, |_| ());
     Ok(sent.map_err(|source| SimulationError::Stream { mode: "free-running", source })?)

@@ -114,7 +114,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         ("HASH_HIGH", address::HASH_HIGH, (hash >> 32) as u32),
         ("GEOMETRY", address::GEOMETRY, (hardware.lanes << 16 | sensor.rows << 8 | sensor.columns) as u32),
         ("FRAME", address::FRAME, (plan.words_out() << 16 | plan.streams().words_in()) as u32),
-        ("FEATURES", address::FEATURES, features.iter().rev().fold(stream << 3, |word, &is| word << 1 | u32::from(is))),
+        ("FEATURES", address::FEATURES, features.iter().rev().fold(stream << 2, |word, &is| word << 1 | u32::from(is))),
         ("CLOCK", address::CLOCK, (hardware.clock_mhz * 1e3).round() as u32),
         ("FULL_SCALE", address::FULL_SCALE, (hardware.full_scale_pa as f32).to_bits()),
         ("PREDICTED_LATENCY", address::PREDICTED_LATENCY, plan.timeline.latency_cycles as u32),

@@ -91,7 +91,8 @@ impl fmt::Display for Report {
             ("dropped", self.dropped),
             ("lost to resets", self.lost_to_resets),
         ];
-        for (name, counts) in rows {
+        // Only a core that may drop frames has that row.
+        for (name, counts) in rows.into_iter().filter(|(name, counts)| *name != "dropped" || counts.total() > 0) {
             let Counts { good, short, long, not_finite } = counts;
             writeln!(out, "{name:>16} {good:>10} {short:>10} {long:>10} {not_finite:>10}")?;
         }

@@ -6,7 +6,7 @@ mod resets;
 
 use std::sync::OnceLock;
 
-use golden::design::{Calibration, CalibrationIn, Design, Outputs, Overrun, PlanKind, Samples};
+use golden::design::{Design, Outputs, Overrun, PlanKind, Samples};
 use hdl_gen::model::{DROPPED, Model};
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
@@ -40,19 +40,13 @@ fn subjects() -> &'static [Subject] {
             design
         };
         let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
-        let mut calibrated = small("calibrated", 32, Samples::Int16, reduced, Outputs::Resultants);
-        calibrated.hardware.control = true;
-        calibrated.hardware.calibration = CalibrationIn::Ram;
-        let gain = (0..12).map(|taxel| 0.7 + 0.05 * f64::from(taxel)).collect();
-        let offset = (0..12).map(|taxel| f64::from(taxel) - 5.0).collect();
-        calibrated.input.calibration = Some(Calibration { gain, offset });
         let mut controlled = small("controlled", 64, Samples::Float32, reduced, Outputs::Field);
         controlled.hardware.control = true;
         let designs = [
             small("single", 32, Samples::Float32, reduced, Outputs::Field),
             small("paper", 64, Samples::Uint16, paper, Outputs::Field),
             small("whole", 128, Samples::Int16, reduced, Outputs::Resultants),
-            calibrated,
+            shipped("small-scanner"),
             controlled,
         ];
         in_parallel(&designs, |design: &Design| {

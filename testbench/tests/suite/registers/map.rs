@@ -4,7 +4,6 @@ use std::fs;
 use std::process::Command;
 use std::sync::OnceLock;
 
-use golden::design::{Outputs, Overrun};
 use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
 use serde::Deserialize;
@@ -16,8 +15,7 @@ use testbench::trial::rtl_sources;
 use testbench::verilate::{Built, Verilate};
 
 use super::{Subject, subjects};
-use crate::calibration;
-use crate::support::{built, planned, workspace};
+use crate::support::{built, planned, shipped, workspace};
 
 /// Words in the port's 4 KiB.
 const WORDS: u32 = 1024;
@@ -78,10 +76,7 @@ fn map(plan: &Plan) -> Vec<Register> {
 fn widest() -> &'static Subject {
     static WIDEST: OnceLock<Subject> = OnceLock::new();
     WIDEST.get_or_init(|| {
-        let mut design = calibration::design(Outputs::Resultants);
-        design.name += "_drops";
-        design.hardware.overrun = Overrun::Drop;
-        let plan = planned(&design);
+        let plan = planned(&shipped("small-scanner"));
         Subject { built: built(&plan), plan }
     })
 }
