@@ -178,7 +178,7 @@ report-full: tools build ## The same over every combination of filters, plans, w
 
 .PHONY: hard
 hard: tools build ## Sensors, contacts and frames at the limits, all through the RTL (minutes): docs/hard-cases.md
-	@$(BIN)/testbench hard --page docs/hard-cases.md
+	@$(BIN)/testbench hard --page docs/hard-cases.md --plot docs/depth.svg
 
 .PHONY: sweep-tools
 sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one machine

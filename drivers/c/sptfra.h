@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* Driver of a generated core behind an AXI DMA (direct register mode), bare metal or Linux UIO. C11, no allocation.
+/* Driver of a generated core behind an AXI DMA, bare metal or Linux UIO: one frame on its way at a time, or many by
+ * sptfra_queue.h. C11, no allocation.
  *
  *   sptfra core;
  *   sptfra_open(&core, &sptfra_memory_mapped, CORE_BASE, DMA_BASE);
@@ -38,7 +39,9 @@ enum {
     SPTFRA_OUT_OF_RANGE = -14,     /* a value, or an offset that a tare found: nothing has changed */
     SPTFRA_WRONG_CRC = -15,        /* the bank holds other words than were sent: nothing has changed */
     SPTFRA_NOT_AT_REST = -16,      /* a taxel spread by more than the noise floor: nothing has changed */
-    SPTFRA_BAD_REST = -17          /* a frame of the tare was clipped, no number, cut or lost: nothing has changed */
+    SPTFRA_BAD_REST = -17,         /* a frame of the tare was clipped, no number, cut or lost: nothing has changed */
+    SPTFRA_QUEUE_ONLY = -18,       /* the DMA goes by descriptors: sptfra_queue.h */
+    SPTFRA_NO_QUEUE = -19          /* the DMA has none */
 };
 
 /* What went wrong, in words. */
@@ -88,6 +91,7 @@ typedef struct {
     uintptr_t core; /* base of the registers; not used if has_registers is 0 */
     uintptr_t dma;
     int has_registers;
+    int scatter_gather; /* the DMA goes by descriptors: frames go through a queue, sptfra_queue.h */
     sptfra_shape shape;
     int busy;             /* a frame was started whose answer has not come as it should */
     int knows_number;     /* whether next_number is known: not before the first answer of a core without registers */

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* Calibration in RAM and tare: see sptfra.h, and docs/control.md for the words of a bank. */
-#include "sptfra.h"
+#include "sptfra_private.h"
 
 #include <string.h>
-
-#define FIELD(word, name) (((word) & SPTFRA__##name##_bm) >> SPTFRA__##name##_bp)
-#define GET(device, register) get(device, offsetof(sptfra_t, register))
-#define SET(device, register, value) set(device, offsetof(sptfra_t, register), value)
 
 #define MANTISSA_BITS 18
 #define MANTISSA_MASK 0x3FFFFu
@@ -19,16 +15,6 @@
 #define MOST_GAIN 16.0
 #define MOST_OFFSET 1e6
 #define ALL_ERRORS 0x1Fu
-
-static uint32_t get(const sptfra *device, size_t offset)
-{
-    return device->platform.read(device->platform.context, device->core + offset);
-}
-
-static void set(const sptfra *device, size_t offset, uint32_t value)
-{
-    device->platform.write(device->platform.context, device->core + offset, value);
-}
 
 static int is_there(const sptfra *device)
 {

@@ -2,6 +2,8 @@
 /* See machine.h. The core is the shared object that the testbench builds, driven through its C interface. */
 #include "machine.h"
 
+#include "dma.h"
+
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,13 +17,6 @@
 #define PATIENCE 1000
 #define MOST_WORDS 4 /* of a beat */
 
-/* One channel of the DMA. */
-struct channel {
-    uint32_t control, status, address, address_high, length;
-    uint32_t moved; /* bytes */
-    int busy;
-};
-
 struct machine {
     void *library, *core;
     uint32_t words; /* of a beat */
@@ -29,53 +24,40 @@ struct machine {
     void (*drive)(void *, uint32_t, uint32_t, uint32_t);
     uint64_t (*port)(void *);
     void (*discard)(void *);
-    struct channel send, receive;
+    dma dma;
+    uint64_t cycles;
+    uint32_t access; /* cycles of an access to the DMA's registers */
+    int even;        /* neither end of the streams pauses */
     int has_registers;
     int offering; /* a beat is on offer and stays until taken */
     uint32_t noise, faults;
     int interrupt;
 };
 
-/* Halted, idle. */
-static void reset_channel(struct channel *channel)
-{
-    memset(channel, 0, sizeof *channel);
-    channel->status = 1;
-}
-
-static uint32_t *memory(const struct channel *channel)
-{
-    const uint64_t bus = (uint64_t)channel->address_high << 32 | channel->address;
-
-    return (uint32_t *)(uintptr_t)(bus - MACHINE_BUS_OFFSET + channel->moved);
-}
-
-static void finish(struct channel *channel)
-{
-    channel->busy = 0;
-    channel->length = channel->moved;
-    channel->status |= 0x1002; /* idle, interrupt on completion */
-}
-
 static void cycle(struct machine *system, int run)
 {
     char text[256];
     uint64_t inputs = run ? RUN : 0, outputs;
     uint32_t in[MOST_WORDS], out[MOST_WORDS], word, last_word = 0;
+    const dma_channel *send = &system->dma.channels[DMA_SEND], *receive = &system->dma.channels[DMA_RECEIVE];
     int ready;
 
+    system->cycles++;
+    if (run) {
+        dma_cycle(&system->dma);
+    }
     system->noise = system->noise * 1664525u + 1013904223u;
     /* Both ends pause now and then, but a beat on offer stays. */
-    system->offering = run && system->send.busy && (system->offering || (system->noise >> 28) != 0);
-    ready = run && system->receive.busy && (system->noise >> 24 & 3) != 0;
+    system->offering = run && send->busy && (system->offering || system->even || (system->noise >> 28) != 0);
+    ready = run && receive->busy && (system->even || (system->noise >> 24 & 3) != 0);
     /* What fills the last beat behind the transfer is not known. */
     memset(in, 0xFF, sizeof in);
     if (system->offering) {
-        const uint32_t left = (system->send.length - system->send.moved) / 4;
+        const uint32_t left = (send->bytes - send->moved) / 4;
 
         last_word = left < system->words ? left : system->words;
-        memcpy(in, memory(&system->send), 4 * last_word);
-        inputs |= VALID | (left <= system->words ? LAST : 0);
+        memcpy(in, dma_memory(&system->dma, DMA_SEND), 4 * last_word);
+        inputs |= VALID | (left <= system->words && send->at_end ? LAST : 0);
     }
     inputs |= ready ? READY : 0;
     outputs = system->step(system->core, inputs, in, out, text, sizeof text);
@@ -85,24 +67,18 @@ static void cycle(struct machine *system, int run)
     }
     if (system->offering && (outputs & READY)) {
         system->offering = 0;
-        system->send.moved += 4 * last_word;
-        if (system->send.moved == system->send.length) {
-            finish(&system->send);
-        }
+        dma_moved(&system->dma, DMA_SEND, 4 * last_word, 0);
     }
     if (ready && (outputs & VALID)) {
-        for (word = 0; word < system->words && (outputs >> (4 * word) & 1) && system->receive.moved < system->receive.length;
-             word++) {
-            *memory(&system->receive) = out[word];
-            system->receive.moved += 4;
+        for (word = 0; word < system->words && (outputs >> (4 * word) & 1); word++) {
+            if (receive->moved + 4 * word < receive->bytes) {
+                dma_memory(&system->dma, DMA_RECEIVE)[word] = out[word];
+            }
         }
-        if (outputs & LAST) {
-            finish(&system->receive);
-        } else if (system->receive.moved == system->receive.length) {
-            /* A packet longer than the transfer stops the DMA with an internal error. */
-            finish(&system->receive);
-            system->receive.status |= 0x11;
+        if (receive->moved + 4 * word > receive->bytes) {
+            word = (receive->bytes - receive->moved) / 4;
         }
+        dma_moved(&system->dma, DMA_RECEIVE, 4 * word, (outputs & LAST) != 0);
     }
     system->interrupt = system->has_registers && run && (system->port(system->core) >> 37 & 1);
 }
@@ -140,8 +116,11 @@ machine *machine_open(const char *library, uint32_t seed, int has_registers)
     }
     system->has_registers = has_registers;
     system->noise = seed;
-    reset_channel(&system->send);
-    reset_channel(&system->receive);
+    system->access = 3;
+    system->dma.noise = seed;
+    system->dma.beat = 4 * system->words;
+    system->dma.offset = MACHINE_BUS_OFFSET;
+    dma_reset(&system->dma);
     for (index = 0; index < 8; index++) {
         cycle(system, 0);
     }
@@ -164,9 +143,31 @@ void machine_run(machine *system, uint64_t cycles)
 
 int machine_interrupt(const machine *system) { return system->interrupt; }
 
-int machine_sends(const machine *system) { return system->send.busy; }
+int machine_sends(const machine *system) { return system->dma.channels[DMA_SEND].busy; }
 
-uint32_t machine_faults(const machine *system) { return system->faults; }
+uint32_t machine_faults(const machine *system) { return system->faults + system->dma.faults; }
+
+uint64_t machine_cycles(const machine *system) { return system->cycles; }
+
+void machine_scatter_gather(machine *system)
+{
+    system->dma.scatter_gather = 1;
+    dma_reset(&system->dma);
+}
+
+void machine_dma_cycles(machine *system, uint32_t most) { system->dma.step = most; }
+
+void machine_even(machine *system, uint32_t access, uint32_t step)
+{
+    system->even = system->dma.even = 1;
+    system->access = access;
+    system->dma.step = step;
+}
+
+void machine_fail(machine *system, int receiving, uint32_t error)
+{
+    dma_fail(&system->dma, receiving ? DMA_RECEIVE : DMA_SEND, error);
+}
 
 /* One access on the register port: address and data of a write together, then the reply. */
 static uint32_t access_core(struct machine *system, uint32_t offset, int is_write, uint32_t value)
@@ -202,63 +203,21 @@ static uint32_t access_core(struct machine *system, uint32_t offset, int is_writ
     return value;
 }
 
-static uint32_t *dma_register(struct machine *system, uint32_t offset)
-{
-    struct channel *channel = offset < 0x30 ? &system->send : &system->receive;
-
-    switch (offset < 0x30 ? offset : offset - 0x30) {
-    case 0x00: return &channel->control;
-    case 0x04: return &channel->status;
-    case 0x18: return &channel->address;
-    case 0x1C: return &channel->address_high;
-    case 0x28: return &channel->length;
-    default: return NULL;
-    }
-}
-
-static void write_dma(struct machine *system, uint32_t offset, uint32_t value)
-{
-    struct channel *channel = offset < 0x30 ? &system->send : &system->receive;
-    uint32_t *target = dma_register(system, offset);
-
-    if (target == NULL) {
-        system->faults++;
-    } else if (target == &channel->control && (value & 4)) {
-        reset_channel(&system->send);
-        reset_channel(&system->receive);
-    } else if (target == &channel->control) {
-        channel->control = value;
-        channel->status = (channel->status & ~1u) | !(value & 1);
-    } else if (target == &channel->status) {
-        channel->status &= ~(value & 0x7000);
-    } else if (target == &channel->length) {
-        /* Only a running channel without a transfer takes one, from where a beat may begin. */
-        if ((channel->status & 1) || channel->busy || value == 0 || channel->address % (4 * system->words) != 0) {
-            system->faults++;
-            return;
-        }
-        channel->length = value;
-        channel->moved = 0;
-        channel->busy = 1;
-        channel->status &= ~2u;
-    } else {
-        *target = value;
-    }
-}
+static int is_dma(uintptr_t address) { return address >= MACHINE_DMA && address < MACHINE_DMA + 0x60u; }
 
 uint32_t machine_read(void *context, uintptr_t address)
 {
     struct machine *system = context;
-    uint32_t *source;
 
     if (address >= MACHINE_CORE && address < MACHINE_CORE + 0x1000u && system->has_registers) {
         return access_core(system, (uint32_t)(address - MACHINE_CORE), 0, 0);
     }
-    machine_run(system, 3);
-    source = address >= MACHINE_DMA && address < MACHINE_DMA + 0x60u
-        ? dma_register(system, (uint32_t)(address - MACHINE_DMA)) : NULL;
-    system->faults += source == NULL;
-    return source == NULL ? 0 : *source;
+    machine_run(system, system->access);
+    if (!is_dma(address)) {
+        system->faults++;
+        return 0;
+    }
+    return dma_read(&system->dma, (uint32_t)(address - MACHINE_DMA));
 }
 
 void machine_write(void *context, uintptr_t address, uint32_t value)
@@ -269,9 +228,9 @@ void machine_write(void *context, uintptr_t address, uint32_t value)
         access_core(system, (uint32_t)(address - MACHINE_CORE), 1, value);
         return;
     }
-    machine_run(system, 3);
-    if (address >= MACHINE_DMA && address < MACHINE_DMA + 0x60u) {
-        write_dma(system, (uint32_t)(address - MACHINE_DMA), value);
+    machine_run(system, system->access);
+    if (is_dma(address)) {
+        dma_write(&system->dma, (uint32_t)(address - MACHINE_DMA), value);
     } else {
         system->faults++;
     }

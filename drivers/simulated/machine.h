@@ -26,4 +26,18 @@ int machine_sends(const machine *system);
 /* Accesses that were answered by an error or hit nothing. */
 uint32_t machine_faults(const machine *system);
 
+/* Since it was opened. */
+uint64_t machine_cycles(const machine *system);
+
+/* ---- How the DMA and the streams behave; at first transfers start at once, and both ends pause at random */
+
+/* The DMA goes by descriptors, before anything else is done with it. */
+void machine_scatter_gather(machine *system);
+/* A transfer starts, a descriptor is fetched and closed in so many cycles at most, at random. */
+void machine_dma_cycles(machine *system, uint32_t most);
+/* For measuring: no pauses, so many cycles for each access to a register of the DMA and for each of its steps. */
+void machine_even(machine *system, uint32_t access, uint32_t step);
+/* Stops a channel with an error: a bit of its status, as in dma.h. */
+void machine_fail(machine *system, int receiving, uint32_t error);
+
 #endif

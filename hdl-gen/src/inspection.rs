@@ -66,9 +66,10 @@ pub fn figures(plan: &Plan) -> Value {
     value
 }
 
-/// What to tell of a plan: that it does not fit its part, that its coefficients are coarse, that it knows of one body.
+/// What to tell of a plan: that its layer is too thin, that it does not fit its part, that its coefficients are coarse, that
+/// it knows of one body.
 pub fn warnings(plan: &Plan) -> Vec<String> {
-    [excess(plan), narrow(plan), several_bodies(plan)].into_iter().flatten().collect()
+    [plan.design.thin_layer(), excess(plan), narrow(plan), several_bodies(plan)].into_iter().flatten().collect()
 }
 
 /// What to tell whose design does not fit its part, if that is one whose size is known.

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use golden::calibrate::{CalibrateError, Settings, calibrate};
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Grid, JointConstants, Samples};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Grid, JointConstants, Samples, Tension};
 
 const TEMPLATE: &str = include_str!("../templates/design.toml");
 /// The line of the template where the joint estimator's constants go.
@@ -31,6 +31,8 @@ pub struct NewDesign {
     pub pitch_mm: [f64; 2],
     /// Thickness of the layer above the taxels, in millimetres.
     pub depth_mm: f64,
+    /// What taxels read of a pull.
+    pub tension: Tension,
     /// Bits of the converter whose counts the frames hold, one of [`COUNT_BITS`]; without, they hold pascals.
     pub counts: Option<u32>,
     /// Stress at the end of the sensor's range.
@@ -47,6 +49,7 @@ impl Default for NewDesign {
             rows: 10,
             pitch_mm: [4.0, 2.0],
             depth_mm: 3.0,
+            tension: Tension::Read,
             counts: None,
             full_scale_pa: DEFAULT_FULL_SCALE_PA,
         }
@@ -110,6 +113,10 @@ fn text(new: &NewDesign, stage: &mut dyn FnMut(&'static str)) -> Result<String, 
         ("full_scale_pa", format!("{:?}", new.full_scale_pa)),
     ] {
         text = with(&text, key, &value);
+    }
+    if new.tension == Tension::Clipped {
+        text = text.replace("# tension = ", "tension = ");
+        text = with(&text, "tension", &format!("\"{}\"", new.tension));
     }
     if let Some(bits) = new.counts {
         text = with(&text.replace("# pa_per_count = ", "pa_per_count = "), "pa_per_count", &pa_per_count(new, bits));

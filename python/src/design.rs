@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use golden::arguments::with_ending;
-use golden::design::{Design as Checked, Estimator, Samples};
+use golden::design::{Design as Checked, Estimator, Samples, Tension};
 use golden::output::write_together;
 use golden::resolved::Resolved;
 use golden::words;
@@ -57,7 +57,7 @@ impl Design {
     #[new]
     #[pyo3(signature = (
         name = "my_sensor", *, columns = 10, rows = 10, pitch_mm = [4.0, 2.0], depth_mm = 3.0, estimator = "joint",
-        counts = None, full_scale_pa = golden::design::DEFAULT_FULL_SCALE_PA
+        tension = "read", counts = None, full_scale_pa = golden::design::DEFAULT_FULL_SCALE_PA
     ))]
     #[allow(clippy::too_many_arguments, reason = "keywords, most of them left out")]
     fn of_sensor(
@@ -68,12 +68,14 @@ impl Design {
         pitch_mm: [f64; 2],
         depth_mm: f64,
         estimator: &str,
+        tension: &str,
         counts: Option<u32>,
         full_scale_pa: f64,
     ) -> PyResult<Self> {
         let estimator: Estimator = word("estimator", estimator)?;
+        let tension: Tension = word("tension", tension)?;
         let name = name.to_owned();
-        let new = NewDesign { name, estimator, columns, rows, pitch_mm, depth_mm, counts, full_scale_pa };
+        let new = NewDesign { name, estimator, columns, rows, pitch_mm, depth_mm, tension, counts, full_scale_pa };
         let text = without_lock(py, || new.text(&mut |_| ()))?;
         Ok(Self::new(Checked::from_toml(&text, &new.name).map_err(raised)?))
     }

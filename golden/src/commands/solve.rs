@@ -65,6 +65,9 @@ pub fn run(
         .map(|path| forces::read_bodies(path, frames.len(), &design.sensor))
         .transpose()?
         .flatten();
+    if let Some(thin) = design.thin_layer() {
+        eprintln!("warning: {thin}");
+    }
     let progress = Progress::of("matrices");
     let solver = Solver::new(&design)?;
     progress.counted("solving", frames.len() as u64);

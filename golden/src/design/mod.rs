@@ -18,6 +18,7 @@ mod parse_filter;
 mod parse_plan;
 mod print;
 mod regularisation;
+mod thin;
 
 use std::path::{Path, PathBuf};
 

@@ -24,4 +24,5 @@ mod reduced;
 mod regularisation;
 mod samples;
 mod scene_file;
+mod thin;
 mod workspace;

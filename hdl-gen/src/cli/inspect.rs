@@ -81,7 +81,11 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         "well conditioned".to_owned()
     };
     writeln!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat))?;
-    writeln!(out, "  kernel       {}", plan.estimator.slot().kernel_advice(&plan.design, INDENT))
+    writeln!(out, "  kernel       {}", plan.estimator.slot().kernel_advice(&plan.design, INDENT))?;
+    if let Some((layer, remedy)) = plan.design.thin_layer().as_deref().and_then(|thin| thin.split_once(": ")) {
+        writeln!(out, "  thin         {layer}:\n{INDENT}{remedy}")?;
+    }
+    Ok(())
 }
 
 fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {

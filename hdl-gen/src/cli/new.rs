@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 
 use clap::Args;
-use golden::design::{DEFAULT_FULL_SCALE_PA, Estimator};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Estimator, Tension};
 use golden::words;
 use hdl_gen::new_design::{COUNT_BITS, NewDesign};
 
@@ -35,6 +35,9 @@ pub struct New {
     /// Thickness of the layer above the taxels
     #[arg(long, default_value_t = 3.0)]
     depth_mm: f64,
+    /// What taxels read of a pull: its stress, or nothing, as most resistive and capacitive arrays
+    #[arg(long, value_parser = words::parser::<Tension>(), default_value = "read")]
+    tension: Tension,
     /// Frames hold counts of a converter of so many bits: 0 without load, the largest count at the full scale; for one
     /// whose counts fall under load, change the sign of `pa_per_count` in the file. Up to 16 bits the stream carries
     /// integers
@@ -67,6 +70,7 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
         rows: new.rows,
         pitch_mm: [new.pitch_mm[0], new.pitch_mm[1]],
         depth_mm: new.depth_mm,
+        tension: new.tension,
         counts: new.counts,
         full_scale_pa: new.full_scale_pa,
     };

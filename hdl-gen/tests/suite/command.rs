@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use golden::design::{Estimator, Samples};
+use golden::design::{Estimator, Samples, Tension};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -167,6 +167,18 @@ fn a_new_design_takes_what_the_sensors_maker_knows() {
 }
 
 #[test]
+fn a_new_design_without_tension_is_fitted_to_what_such_taxels_read() {
+    let sensor = ["--columns", "8", "--rows", "8", "--pitch-mm", "4", "4"];
+    let [reads, clipped] =
+        ["read", "clipped"].map(|tension| new_design(&[&sensor[..], &["--tension", tension]].concat()));
+    assert_eq!([reads.input.tension, clipped.input.tension], [Tension::Read, Tension::Clipped]);
+    let joint = &clipped.algorithm.joint;
+    assert!(joint.fitted_to.as_deref().is_some_and(|sensor| sensor.contains("tension clipped")), "{joint:?}");
+    let [c1, other] = [joint, &reads.algorithm.joint].map(|joint| joint.tangential[0]);
+    assert!((c1 - other).abs() > 0.01, "fitted to other frames: {c1} {other}");
+}
+
+#[test]
 fn new_writes_into_another_folder() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("designs")).unwrap();
@@ -255,6 +267,12 @@ fn inspect_warns_of_what_will_not_work_well() {
     let huge = design_text("huge", [20, 20], [4.0, 4.0], 3.0, paper);
     fs::write(folder.path().join("huge.toml"), huge).unwrap();
     assert!(good(folder.path(), &["inspect", "huge.toml"]).contains("too much for xczu9eg-ffvb1156-2-e"));
+    let thin = design_text("thin", [10, 10], [4.0, 4.0], 1.2, "");
+    fs::write(folder.path().join("thin.toml"), thin).unwrap();
+    for command in ["inspect", "generate"] {
+        let said = good(folder.path(), &[command, "thin.toml"]);
+        assert!(said.contains("the layer is 0.30 of a pitch thin"), "{said}");
+    }
 }
 
 #[test]

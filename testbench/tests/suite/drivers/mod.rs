@@ -2,8 +2,10 @@
 
 mod calibration;
 mod examples;
+mod queue;
 
 #[allow(unused, reason = "another test file uses the rest")]
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -98,6 +100,10 @@ fn subjects() -> Vec<(Subject, usize)> {
     floats.into_iter().chain([(Subject::of_integers(), 0)]).collect()
 }
 
+/// The driver's files but the calibration and the queue, and the machine that a test puts under it.
+const DRIVER: [&str; 3] = ["drivers/c/sptfra.c", "drivers/c/sptfra_result.c", "drivers/c/sptfra_uio.c"];
+const MACHINE: [&str; 2] = ["drivers/simulated/machine.c", "drivers/simulated/dma.c"];
+
 /// Flags for a program that stops at the first wrong access.
 const SANITIZED: [&str; 4] = ["-D_GNU_SOURCE", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
 
@@ -129,26 +135,41 @@ fn run(mut command: Command) -> String {
     said.into_owned()
 }
 
-fn run_c(subject: &Subject, driver: &Path) -> Command {
-    let sources = ["testbench/tests/suite/drivers/host.c", "drivers/simulated/machine.c"].map(workspace);
+/// The host program with a driver's files.
+fn run_c(subject: &Subject, driver: &[PathBuf]) -> Command {
     let host = subject.file("host");
-    compile(&[driver, &sources[0], &sources[1]], &SANITIZED, &host);
-    let plan = &subject.plan;
+    let mut sources: Vec<PathBuf> = MACHINE.map(workspace).into();
+    sources.push(workspace("testbench/tests/suite/drivers/host.c"));
+    sources.extend_from_slice(driver);
+    compile(&sources.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &SANITIZED, &host);
     let mut command = Command::new(host);
-    command.arg(&subject.built.library).arg(u8::from(plan.design.hardware.control).to_string());
+    command.args(arguments(subject));
     command
-        .arg(subject.file("frames"))
-        .args([plan.design.sensor.columns, plan.design.sensor.rows].map(|n| n.to_string()));
-    command.arg(plan.words_out().to_string()).arg(u8::from(plan.field_words() > 0).to_string());
-    command.arg((plan.streams().bits / 8).to_string());
-    command.arg((plan.design.hardware.samples as u8).to_string());
-    command
+}
+
+/// What a host program is told: core, registers, frames, and the shape of a core without registers.
+fn arguments(subject: &Subject) -> Vec<OsString> {
+    let plan = &subject.plan;
+    let mut arguments = vec![subject.built.library.clone().into_os_string()];
+    arguments.push(u8::from(plan.design.hardware.control).to_string().into());
+    arguments.push(subject.file("frames").into());
+    let sensor = &plan.design.sensor;
+    let numbers = [
+        sensor.columns,
+        sensor.rows,
+        plan.words_out(),
+        usize::from(plan.field_words() > 0),
+        plan.streams().bits / 8,
+        plan.design.hardware.samples as usize,
+    ];
+    arguments.extend(numbers.map(|number| number.to_string().into()));
+    arguments
 }
 
 #[test]
 fn the_c_driver_gets_every_word_and_knows_the_core() {
     for (subject, bad) in subjects() {
-        let said = run(run_c(&subject, &workspace("drivers/c/sptfra.c")));
+        let said = run(run_c(&subject, &DRIVER.map(workspace)));
         let (plan, timeline) = (&subject.plan, &subject.plan.timeline);
         let identity = format!(
             "hash {} lanes {} clock 125000 latency {} interval {} full scale 100000\n",
@@ -165,21 +186,21 @@ fn the_c_driver_gets_every_word_and_knows_the_core() {
 
 #[test]
 fn the_c_driver_does_without_registers() {
-    run(run_c(&Subject::new(false, Outputs::Field), &workspace("drivers/c/sptfra.c")));
+    run(run_c(&Subject::new(false, Outputs::Field), &DRIVER.map(workspace)));
 }
 
 /// Bare metal and C++: the driver alone, without an operating system's headers, with every warning.
 #[test]
 fn the_c_driver_compiles_anywhere() {
     let folder = tempfile::tempdir().expect("a folder");
-    let driver = workspace("drivers/c/sptfra.c");
     let strict = ["-Wpedantic", "-Wconversion", "-Wshadow", "-Wcast-align", "-c"];
     let bare = [&strict[..], &["-ffreestanding", "-DSPTFRA_NO_UIO", "-m64"]].concat();
-    for driver in [driver, workspace("drivers/c/sptfra_calibration.c")] {
+    let more = ["drivers/c/sptfra_calibration.c", "drivers/c/sptfra_queue.c"];
+    for driver in DRIVER.into_iter().chain(more).map(workspace) {
         compile(&[&driver], &strict, &folder.path().join("linux.o"));
         compile(&[&driver], &bare, &folder.path().join("bare.o"));
     }
-    let text = "#include \"sptfra.h\"\nint main() { return sptfra_error(0) == nullptr; }\n";
+    let text = "#include \"sptfra_queue.h\"\nint main() { return sptfra_error(0) == nullptr; }\n";
     let user = folder.path().join("user.cpp");
     fs::write(&user, text).expect("written");
     let mut compiler = tools::cxx().expect("installed");
@@ -192,12 +213,14 @@ fn the_c_driver_compiles_anywhere() {
 #[test]
 fn a_wrong_c_driver_is_noticed() {
     let subject = Subject::new(true, Outputs::Field);
-    let text = fs::read_to_string(workspace("drivers/c/sptfra.c")).expect("is there");
     for (right, wrong) in [
         ("#define DMA_ADDRESS_HIGH 0x1Cu", "#define DMA_ADDRESS_HIGH 0x20u"),
         ("values + SPTFRA_WORD_FRICTION_XY, sizeof", "values + SPTFRA_WORD_FRICTION, sizeof"),
         ("SET(device, INTERRUPT_STATUS, *events);", ""),
-        ("SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);\n    return reset_over", "return reset_over"),
+        (
+            "SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);\n    return sptfra_reset_over",
+            "return sptfra_reset_over",
+        ),
         ("buffer->bytes / 4u >= words", "buffer->bytes / 4u + 32u >= words"),
         ("buffer->bytes / 4u >= words", "buffer->bytes >= 4u * words"),
         ("&& number != device->next_number", "&& number > device->next_number + 9u"),
@@ -205,9 +228,14 @@ fn a_wrong_c_driver_is_noticed() {
         ("    transfer(device, SEND, stress->address, 4u);\n", ""),
         ("    for (packets = 0; packets < MOST_PACKETS", "    for (packets = MOST_PACKETS; packets < MOST_PACKETS"),
     ] {
-        assert_eq!(text.matches(right).count(), 1, "{right}");
-        let driver = subject.file("sptfra.c");
-        fs::write(&driver, text.replace(right, wrong)).expect("written");
+        let driver = DRIVER.map(|name| {
+            let copy = subject.file(name.rsplit('/').next().expect("a name"));
+            let text = fs::read_to_string(workspace(name)).expect("is there");
+            fs::write(&copy, text.replace(right, wrong)).expect("written");
+            (copy, text.matches(right).count())
+        });
+        assert_eq!(driver.iter().map(|(_, count)| count).sum::<usize>(), 1, "{right}");
+        let driver = driver.map(|(copy, _)| copy);
         let output = run_c(&subject, &driver).output().expect("starts");
         assert!(!output.status.success(), "{right}: {}", String::from_utf8_lossy(&output.stdout));
     }
@@ -219,7 +247,8 @@ fn the_python_driver_gets_every_word_and_knows_the_core() {
     let python = python.ancestors().nth(4).expect("a virtual environment").join("bin/python");
     for (subject, bad) in subjects() {
         let machine = subject.file("machine.so");
-        compile(&[&workspace("drivers/simulated/machine.c")], &["-fPIC", "-shared"], &machine);
+        let sources = MACHINE.map(workspace);
+        compile(&sources.each_ref().map(PathBuf::as_path), &["-fPIC", "-shared"], &machine);
         let mut command = Command::new(&python);
         command.arg("-B").arg(workspace("testbench/tests/suite/drivers/host.py"));
         let said = run({

@@ -1,5 +1,7 @@
 //! The systems for boards, in the stand-in.
 
+use std::fs;
+
 use super::folder::{Folder, files};
 
 const SCRIPT: &str = "vivado/block_design.tcl";
@@ -60,9 +62,34 @@ fn a_design_for_another_device_is_refused() {
     ran.refused("the ZCU102 has a xczu9eg-ffvb1156-2-e, the design is for xczu7ev-ffvc1156-2-e");
     folder
         .vivado(SCRIPT, &["zcu666"], &[])
-        .refused("no word zcu666: there are bitstream, jobs=N, and the boards zcu102, ");
+        .refused("no word zcu666: there are bitstream, queue, jobs=N, and the boards zcu102, ");
     let ran = Folder::new(&files(Some("xc7k70tfbg484-1"))).vivado(SCRIPT, &[], &[]);
     ran.refused("no board here has a xc7k70tfbg484-1: name one of zcu102, zcu104, kv260, pynq-z2");
+}
+
+/// A DMA with descriptors reaches memory for them too, and offers no streams that nobody takes.
+#[test]
+fn a_queue_has_descriptors() {
+    let folder = Folder::small();
+    let ran = folder.vivado(SCRIPT, &["queue"], &[]).succeeded();
+    ran.call("connect_bd_intf_net dma/M_AXI_SG memory/S02_AXI");
+    assert!(ran.call("connect_bd_net -net clock").ends_with("core/aclk dma/m_axi_sg_aclk"));
+    assert!(!folder.vivado(SCRIPT, &[], &[]).succeeded().calls.iter().any(|call| call.contains("M_AXI_SG")));
+    for (right, wrong, message) in [
+        (
+            "CONFIG.c_sg_include_stscntrl_strm 0",
+            "CONFIG.c_sg_include_stscntrl_strm 1",
+            "dma/M_AXIS_CNTRL is not connected",
+        ),
+        ("{2 + $queue}", "2", "no pin memory/S02_AXI"),
+        ("core/aclk {*}$descriptors", "core/aclk", "dma/m_axi_sg_aclk is not connected"),
+    ] {
+        let folder = Folder::small();
+        let text = folder.read(SCRIPT);
+        assert_eq!(text.matches(right).count(), 1, "{right}");
+        fs::write(folder.design().join(SCRIPT), text.replace(right, wrong)).expect("written");
+        folder.vivado(SCRIPT, &["queue"], &[]).refused(message);
+    }
 }
 
 /// Each board's own processor, with all of its ports connected; the board is that of the design's device.

@@ -26,7 +26,7 @@ namespace eval standin {
             PCW_USE_FABRIC_INTERRUPT {[01]} PCW_IRQ_F2P_INTR {[01]}
         }
         axi_dma {
-            c_include_sg {[01]} c_include_mm2s {[01]} c_include_s2mm {[01]}
+            c_include_sg {[01]} c_sg_include_stscntrl_strm {[01]} c_include_mm2s {[01]} c_include_s2mm {[01]}
             c_include_mm2s_dre {[01]} c_include_s2mm_dre {[01]}
             c_m_axis_mm2s_tdata_width {8|16|32|64|128} c_m_axi_mm2s_data_width {32|64|128}
             c_m_axi_s2mm_data_width {32|64|128}
@@ -136,7 +136,12 @@ namespace eval standin {
             }
         }
         switch $kind {
-            axi_dma { lappend pins S_AXI_LITE slave aximm }
+            axi_dma {
+                lappend pins S_AXI_LITE slave aximm
+                if {[value $cell c_include_sg 1] && [value $cell c_sg_include_stscntrl_strm 1]} {
+                    lappend pins M_AXIS_CNTRL master axis S_AXIS_STS slave axis
+                }
+            }
             core {
                 # As packaged.
                 lappend pins s_axis slave axis m_axis master axis

@@ -7,7 +7,8 @@
 #   vivado -mode batch -source FOLDER/vivado/block_design.tcl -tclargs bitstream    up to bitstream and .xsa
 #
 # Further words after -tclargs: a board (zcu102, zcu104, kv260, pynq-z2), by default the one with the
-# design's device, and jobs=N, the runs at a time (4).
+# design's device; queue, for a DMA with descriptors, which has many frames on their way; and
+# jobs=N, the runs at a time (4).
 #
 # Packages the IP first, then makes the project small_4x3_BOARD, both in the working directory.
 # One DMA transfer is one frame: 48 bytes to the core, 208 bytes from it.
@@ -58,14 +59,17 @@ proc device {part} {
 
 set board {}
 set bitstream 0
+set queue 0
 set jobs 4
 foreach word $argv {
     if {$word eq "bitstream"} {
         set bitstream 1
+    } elseif {$word eq "queue"} {
+        set queue 1
     } elseif {[dict exists $boards $word]} {
         set board $word
     } elseif {![regexp {^jobs=([1-9][0-9]*)$} $word -> jobs]} {
-        error "no word $word: there are bitstream, jobs=N, and the boards [join [dict keys $boards] {, }]"
+        error "no word $word: there are bitstream, queue, jobs=N, and the boards [join [dict keys $boards] {, }]"
     }
 }
 if {$board eq ""} {
@@ -131,11 +135,12 @@ if {[dict get $boards $board processor] eq "zynq_ultra_ps_e"} {
     set address_bits 32
 }
 
-# ---- DMA: both streams as wide as the core's, no descriptors
+# ---- DMA: both streams as wide as the core's; with descriptors for a queue, without the streams that describe packets
 
 set dma [add_ip dma axi_dma]
 set_property -dict [list \
-    CONFIG.c_include_sg 0 \
+    CONFIG.c_include_sg $queue \
+    CONFIG.c_sg_include_stscntrl_strm 0 \
     CONFIG.c_include_mm2s 1 \
     CONFIG.c_include_s2mm 1 \
     CONFIG.c_include_mm2s_dre 0 \
@@ -151,14 +156,15 @@ set_property -dict [list \
 
 create_bd_cell -type ip -vlnv user.org:tactile:$design:0.1 core
 set_property -dict [list CONFIG.NUM_SI 1 CONFIG.NUM_MI 1] [add_ip registers smartconnect]
-set_property -dict [list CONFIG.NUM_SI 2 CONFIG.NUM_MI 1] [add_ip memory smartconnect]
+set_property -dict [list CONFIG.NUM_SI [expr {2 + $queue}] CONFIG.NUM_MI 1] [add_ip memory smartconnect]
 add_ip reset proc_sys_reset
 
 # ---- Connections
 
+set descriptors [expr {$queue ? "dma/m_axi_sg_aclk" : ""}]
 connect clock [dict get $ports clock] [dict get $ports registers_clock] [dict get $ports memory_clock] \
     reset/slowest_sync_clk registers/aclk memory/aclk dma/s_axi_lite_aclk dma/m_axi_mm2s_aclk dma/m_axi_s2mm_aclk \
-    core/aclk
+    core/aclk {*}$descriptors
 connect reset_in [dict get $ports reset] reset/ext_reset_in
 connect reset_interconnect reset/interconnect_aresetn registers/aresetn memory/aresetn
 connect reset_peripherals reset/peripheral_aresetn dma/axi_resetn core/aresetn
@@ -167,6 +173,9 @@ connect_interface [dict get $ports registers] registers/S00_AXI
 connect_interface registers/M00_AXI dma/S_AXI_LITE
 connect_interface dma/M_AXI_MM2S memory/S00_AXI
 connect_interface dma/M_AXI_S2MM memory/S01_AXI
+if {$queue} {
+    connect_interface dma/M_AXI_SG memory/S02_AXI
+}
 connect_interface memory/M00_AXI [dict get $ports memory]
 connect_interface dma/M_AXIS_MM2S core/s_axis
 connect_interface core/m_axis dma/S_AXIS_S2MM

@@ -2,9 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 use crate::support::workspace;
+
+mod sessions;
 
 /// A line of a block of commands, without its comment.
 pub struct Line {
@@ -166,46 +168,5 @@ fn every_link_leads_somewhere() {
     {
         let name = page.file_name().and_then(|name| name.to_str()).expect("a name");
         assert!(site.contains(&format!(": {name}\n")), "tools/book.yml has no {name}");
-    }
-}
-
-/// What takes minutes, or is tested elsewhere: the simulation, the training, make and cargo.
-const ELSEWHERE: [&str; 6] = ["make ", "cargo ", "testbench run", "testbench sweep", "golden calibrate", "export "];
-
-#[test]
-fn the_session_of_the_readme_does_what_it_says() {
-    let commands = commands();
-    let folder = tempfile::tempdir().expect("a folder");
-    for name in ["designs", "scenes", "data"] {
-        std::os::unix::fs::symlink(workspace(name), folder.path().join(name)).expect("a link");
-    }
-    let path = format!("{}:{}", commands.display(), std::env::var("PATH").unwrap_or_default());
-    let run = |line: &Line| -> Output {
-        Command::new("bash")
-            .args(["-c", &line.text])
-            .current_dir(folder.path())
-            .env("PATH", &path)
-            .output()
-            .expect("bash starts")
-    };
-    let readme = workspace("README.md");
-    let stated = fs::read_to_string(&readme).expect("readable");
-    let mut said = String::new();
-    let mut count = 0;
-    for line in lines_of(&readme).iter().filter(|line| !ELSEWHERE.iter().any(|other| line.text.starts_with(other))) {
-        let output = run(line);
-        let wrong = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success() && wrong.is_empty(), "{}\n{wrong}", line.place());
-        said += &String::from_utf8_lossy(&output.stdout);
-        count += 1;
-    }
-    assert!(count >= 7, "only {count} lines were run");
-    // What the README says that the session prints.
-    let results = stated.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("stated results");
-    for result in results.lines() {
-        assert!(said.lines().any(|line| line.trim_end() == result), "the README says {result:?}, the session:\n{said}");
-    }
-    for name in ["my_sensor.toml", "frames.csv", "forces.csv", "rtl-out/my_sensor/rtl/my_sensor.v"] {
-        assert!(folder.path().join(name).exists(), "no {name}");
     }
 }
