@@ -9,27 +9,40 @@ use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut};
 
 use super::interpreter::{Arithmetic, ByPq};
 use super::list::{ProductList, Source};
+use super::scalar::put_moments;
 use super::step::Step;
+use crate::filter::FilteredMatrices;
+use crate::matrices::Matrices;
 use crate::parity::{CLASSES, Quads, butterfly};
 use crate::reduced::{ReducedMatrices, SumRows};
 
 /// Frames in a batch: so many that fetching a coefficient costs less than using it.
 pub(crate) const FRAMES: usize = 128;
 
-/// What all batches of a folded list share.
+/// What all batches of a list share. Vectors have `W` values an element, as those of [`super::scalar::Number`].
 #[derive(Clone, Debug)]
-pub(crate) struct Blocks {
-    /// The matrices, dense, by class of the operand, with their signs. Entries that the filter has dropped are zeros.
-    matrices: Vec<[DMatrix<f64>; CLASSES]>,
-    sums: SumRows,
-    /// The taxels of every quad by member.
-    members: Vec<[usize; CLASSES]>,
+pub(crate) struct Blocks<const W: usize> {
+    /// The matrices, dense, by class of the operand, as the list multiplies with them. Entries that the filter has dropped
+    /// are zeros.
+    matrices: Vec<[DMatrix<f64>; W]>,
+    sums: Sums,
+    /// The taxels of every element.
+    members: Vec<[usize; W]>,
     taxels: usize,
 }
 
-impl Blocks {
+/// How the sums `G_pq` of a frame are found.
+#[derive(Clone, Debug)]
+enum Sums {
+    /// From y+ and the weights, at once.
+    Rows(SumRows),
+    /// From the vectors `g_pq`, and with the arms of the taxels in metres those of the torques.
+    Arms(Vec<[f64; 2]>),
+}
+
+impl Blocks<CLASSES> {
     /// For a folded list and its matrices.
-    pub(crate) fn new(list: &ProductList, stored: &ReducedMatrices, quads: &Quads) -> Self {
+    pub(crate) fn folded(list: &ProductList, stored: &ReducedMatrices, quads: &Quads) -> Self {
         let blocks = list.matrices.iter().map(|form| {
             let Source::Ten(name) = form.source else { return [0; CLASSES].map(|_| DMatrix::zeros(0, 0)) };
             let rows = &stored.get(name).rows;
@@ -43,36 +56,76 @@ impl Blocks {
             }
             blocks
         });
-        let sums = stored.sum_rows().clone();
+        let sums = Sums::Rows(stored.sum_rows().clone());
         Self { matrices: blocks.collect(), sums, members: quads.all(), taxels: quads.taxels() }
     }
 }
 
-impl Blocks {
+impl Blocks<1> {
+    /// For the paper's list and its matrices.
+    pub(crate) fn whole(list: &ProductList, filtered: &FilteredMatrices, matrices: &Matrices) -> Self {
+        let blocks = list.matrices.iter().map(|form| {
+            let mut whole = match form.source {
+                Source::Thirteen(name) => DMatrix::from(filtered.get(name)),
+                Source::Ten(_) => matrices.c33.dense(),
+                Source::Friction => DMatrix::zeros(0, 0),
+            };
+            if form.with_identity {
+                for place in 0..whole.nrows() {
+                    whole[(place, place)] += 1.0;
+                }
+            }
+            [whole * form.sign]
+        });
+        let sensor = matrices.sensor();
+        let arms = (0..sensor.taxels()).map(|taxel| sensor.arm_m(taxel)).collect();
+        let members = (0..sensor.taxels()).map(|taxel| [taxel]).collect();
+        Self { matrices: blocks.collect(), sums: Sums::Arms(arms), members, taxels: sensor.taxels() }
+    }
+}
+
+impl<const W: usize> Blocks<W> {
     /// Number of taxels.
     pub(crate) fn taxels(&self) -> usize {
         self.taxels
     }
 }
 
-/// Up to [`FRAMES`] frames of a folded list.
+/// Up to [`FRAMES`] frames of a list.
 #[derive(Clone, Debug)]
-pub(crate) struct Batch {
-    blocks: Arc<Blocks>,
+pub(crate) struct Batch<const W: usize> {
+    blocks: Arc<Blocks<W>>,
     /// Friction components of each, once they are known; as many as there are frames.
     pub(crate) friction: Vec<[f64; 2]>,
 }
 
 /// By class: the values of one frame after the other.
-type Columns = [Vec<f64>; CLASSES];
+#[derive(Clone, Debug)]
+pub(crate) struct Columns<const W: usize>(pub(crate) [Vec<f64>; W]);
 
-impl Batch {
+impl<const W: usize> Default for Columns<W> {
+    fn default() -> Self {
+        Self(std::array::from_fn(|_| Vec::new()))
+    }
+}
+
+impl<const W: usize> Batch<W> {
     /// Of no frames yet.
-    pub(crate) fn new(blocks: Arc<Blocks>) -> Self {
+    pub(crate) fn new(blocks: Arc<Blocks<W>>) -> Self {
         Self { blocks, friction: Vec::with_capacity(FRAMES) }
     }
 
-    fn quads(&self) -> usize {
+    /// Which blocks they are computed with.
+    pub(crate) fn is_of(&self, blocks: &Arc<Blocks<W>>) -> bool {
+        Arc::ptr_eq(&self.blocks, blocks)
+    }
+
+    /// What each class of a folded vector has of a taxel.
+    fn share(&self) -> f64 {
+        1.0 / W as f64
+    }
+
+    fn elements(&self) -> usize {
         self.blocks.members.len()
     }
 
@@ -81,29 +134,29 @@ impl Batch {
     }
 
     /// One frame's values of a vector, by class.
-    fn column<'v>(&self, vector: &'v Columns, frame: usize) -> [&'v [f64]; CLASSES] {
-        let n = self.quads();
-        vector.each_ref().map(|class| &class[frame * n..][..n])
+    fn column<'v>(&self, vector: &'v Columns<W>, frame: usize) -> [&'v [f64]; W] {
+        let n = self.elements();
+        vector.0.each_ref().map(|class| &class[frame * n..][..n])
     }
 
     /// The same, to be changed.
-    fn column_mut<'v>(&self, vector: &'v mut Columns, frame: usize) -> [&'v mut [f64]; CLASSES] {
-        let n = self.quads();
-        vector.each_mut().map(|class| &mut class[frame * n..][..n])
+    fn column_mut<'v>(&self, vector: &'v mut Columns<W>, frame: usize) -> [&'v mut [f64]; W] {
+        let n = self.elements();
+        vector.0.each_mut().map(|class| &mut class[frame * n..][..n])
     }
 
     /// Calls `each` for every frame and quad with the number of the value in each class.
-    fn for_each(&self, mut each: impl FnMut(usize, usize, &[usize; CLASSES])) {
+    fn for_each(&self, mut each: impl FnMut(usize, usize, &[usize; W])) {
         for frame in 0..self.frames() {
             for (quad, taxels) in self.blocks.members.iter().enumerate() {
-                each(frame * self.quads() + quad, frame * self.blocks.taxels, taxels);
+                each(frame * self.elements() + quad, frame * self.blocks.taxels, taxels);
             }
         }
     }
 }
 
-impl Arithmetic for Batch {
-    type Vector = Columns;
+impl<const W: usize> Arithmetic for Batch<W> {
+    type Vector = Columns<W>;
     /// One frame's after the other.
     type Taxels = Vec<f64>;
     type Sums = Vec<ByPq<f64>>;
@@ -111,8 +164,8 @@ impl Arithmetic for Batch {
     type Friction = ();
     type Scratch = ();
 
-    fn vector(&self) -> Columns {
-        std::array::from_fn(|_| vec![0.0; self.quads() * FRAMES])
+    fn vector(&self) -> Columns<W> {
+        Columns(std::array::from_fn(|_| vec![0.0; self.elements() * FRAMES]))
     }
 
     fn taxels(&self) -> Vec<f64> {
@@ -125,23 +178,23 @@ impl Arithmetic for Batch {
 
     fn scratch(&self) {}
 
-    fn load(&self, stress: &Vec<f64>, operand: &mut Columns) {
+    fn load(&self, stress: &Vec<f64>, operand: &mut Columns<W>) {
         self.for_each(|at, first, taxels| {
             let sums = butterfly(taxels.map(|taxel| stress[first + taxel]));
-            operand.iter_mut().zip(sums).for_each(|(class, sum)| class[at] = sum);
+            operand.0.iter_mut().zip(sums).for_each(|(class, sum)| class[at] = sum);
         });
     }
 
-    fn multiply(&self, _: usize, step: &Step, operand: &Columns, result: &mut Columns, (): &mut ()) {
-        let n = self.quads();
+    fn multiply(&self, _: usize, step: &Step, operand: &Columns<W>, result: &mut Columns<W>, (): &mut ()) {
+        let n = self.elements();
         for (class, block) in self.blocks.matrices[step.matrix].iter().enumerate() {
-            let operand = DMatrixView::from_slice(&operand[class], n, self.frames());
-            let mut result = DMatrixViewMut::from_slice(&mut result[class ^ step.parity], n, self.frames());
+            let operand = DMatrixView::from_slice(&operand.0[class], n, self.frames());
+            let mut result = DMatrixViewMut::from_slice(&mut result.0[class ^ step.parity], n, self.frames());
             result.gemm(1.0, block, &operand, 0.0);
         }
     }
 
-    fn combine(&self, _: usize, [a, b, c]: [&Columns; 3], (): (), result: &mut Columns) {
+    fn combine(&self, _: usize, [a, b, c]: [&Columns<W>; 3], (): (), result: &mut Columns<W>) {
         for (frame, [mu_x, mu_y]) in self.friction.iter().enumerate() {
             let parts = [a, b, c].map(|part| self.column(part, frame));
             for (class, result) in self.column_mut(result, frame).into_iter().enumerate() {
@@ -153,45 +206,58 @@ impl Arithmetic for Batch {
         }
     }
 
-    fn part(&self, y: &mut Columns, pull: &mut Columns, weight: &mut Vec<f64>) {
+    fn part(&self, y: &mut Columns<W>, pull: &mut Columns<W>, weight: &mut Vec<f64>) {
         self.for_each(|at, first, taxels| {
-            let values = butterfly(y.each_ref().map(|class| class[at])).map(|sum| 0.25 * sum);
+            let values = butterfly(y.0.each_ref().map(|class| class[at])).map(|sum| self.share() * sum);
             let magnitudes = values.map(|value| (-value).max(0.0));
             for (taxel, magnitude) in taxels.iter().zip(magnitudes) {
                 weight[first + taxel] = magnitude;
             }
-            y.iter_mut().zip(butterfly(magnitudes)).for_each(|(class, sum)| class[at] = sum);
+            y.0.iter_mut().zip(butterfly(magnitudes)).for_each(|(class, sum)| class[at] = sum);
             let pulls = butterfly(values.map(|value| value.max(0.0)));
-            pull.iter_mut().zip(pulls).for_each(|(class, sum)| class[at] = sum);
+            pull.0.iter_mut().zip(pulls).for_each(|(class, sum)| class[at] = sum);
         });
     }
 
-    fn clip_negate(&self, y: &mut Columns) {
-        y.iter_mut().flatten().for_each(|value| *value = (-*value).max(0.0));
+    fn clip_negate(&self, y: &mut Columns<W>) {
+        y.0.iter_mut().flatten().for_each(|value| *value = (-*value).max(0.0));
     }
 
-    fn add(&self, result: &mut Columns, other: &Columns) {
-        result.iter_mut().flatten().zip(other.iter().flatten()).for_each(|(value, other)| *value += other);
+    fn add(&self, result: &mut Columns<W>, other: &Columns<W>) {
+        result.0.iter_mut().flatten().zip(other.0.iter().flatten()).for_each(|(value, other)| *value += other);
     }
 
-    fn add_stress(&self, _: usize, result: &mut Columns, stress: &Columns) {
+    fn add_stress(&self, _: usize, result: &mut Columns<W>, stress: &Columns<W>) {
         self.add(result, stress);
     }
 
-    fn unfold(&self, vector: &Columns, values: &mut Vec<f64>) {
+    fn unfold(&self, vector: &Columns<W>, values: &mut Vec<f64>) {
         self.for_each(|at, first, taxels| {
-            for (taxel, sum) in taxels.iter().zip(butterfly(vector.each_ref().map(|class| class[at]))) {
-                values[first + taxel] = 0.25 * sum;
+            for (taxel, sum) in taxels.iter().zip(butterfly(vector.0.each_ref().map(|class| class[at]))) {
+                values[first + taxel] = self.share() * sum;
             }
         });
     }
 
-    fn sums(&self, _: usize, pull: &Columns, weight: &Columns, sums: &mut Vec<ByPq<f64>>) {
+    fn sums(&self, _: usize, pull: &Columns<W>, weight: &Columns<W>, sums: &mut Vec<ByPq<f64>>) {
+        let Sums::Rows(rows) = &self.blocks.sums else { return };
         for (frame, sums) in sums[..self.frames()].iter_mut().enumerate() {
             let [pull, weight] = [pull, weight].map(|vector| self.column(vector, frame));
-            *sums = self.blocks.sums.of(|quad, class| pull[class][quad], |quad, class| weight[class][quad]);
+            *sums = rows.of(|quad, class| pull[class][quad], |quad, class| weight[class][quad]);
         }
     }
 
-    fn sum(&self, _: &Columns, _: usize, _: usize, _: &mut Vec<ByPq<f64>>) {}
+    fn sum(&self, g: &Columns<W>, p: usize, q: usize, sums: &mut Vec<ByPq<f64>>) {
+        let Sums::Arms(arms) = &self.blocks.sums else { return };
+        for (frame, sums) in sums[..self.frames()].iter_mut().enumerate() {
+            let mut totals = [0.0; 3];
+            for (&value, [x, y]) in self.column(g, frame)[0].iter().zip(arms) {
+                for (total, part) in totals.iter_mut().zip([value, x * value, y * value]) {
+                    *total += part;
+                }
+            }
+            let [sum, along_x, along_y] = totals;
+            put_moments(sums, (p, q), sum, [along_x, along_y]);
+        }
+    }
 }

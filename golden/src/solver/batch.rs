@@ -4,35 +4,53 @@ use std::sync::Arc;
 
 use super::Solution;
 use crate::estimators::{Contact, Friction, FrictionScratch, Seen};
+use crate::filter::FilteredMatrices;
+use crate::matrices::MatrixName;
 use crate::names::ReducedName;
 use crate::parity::{CLASSES, Quads};
 use crate::products::batch::{Batch, Blocks};
-use crate::products::{Frame, ProductList};
+use crate::products::{Frame, ProductList, Vector};
 use crate::reduced::ReducedMatrices;
 
-/// Whether frames together are faster than one by one: the blocks hold zeros for what a filter has dropped, so at
-/// least a quarter of the entries must be left.
-pub(super) fn pays(matrices: &ReducedMatrices, quads: &Quads) -> bool {
-    let kept: usize = ReducedName::ALL.into_iter().map(|name| matrices.nnz(name)).sum();
-    4 * kept >= ReducedName::ALL.len() * CLASSES * quads.count() * quads.count()
+/// Whether frames together are faster than one by one, where so many entries of `all` are kept: the blocks hold zeros for
+/// what a filter has dropped, so at least a quarter must be left.
+fn pays(kept: usize, all: usize) -> bool {
+    4 * kept >= all
+}
+
+/// Whether it pays in the reduced plan.
+pub(super) fn pays_folded(matrices: &ReducedMatrices, quads: &Quads) -> bool {
+    let kept = ReducedName::ALL.into_iter().map(|name| matrices.nnz(name)).sum();
+    pays(kept, ReducedName::ALL.len() * CLASSES * quads.count() * quads.count())
+}
+
+/// Whether it pays in the paper's plan.
+pub(super) fn pays_whole(matrices: &FilteredMatrices, taxels: usize) -> bool {
+    let kept = MatrixName::ALL.into_iter().map(|name| matrices.nnz(name)).sum();
+    pays(kept, MatrixName::ALL.len() * taxels * taxels)
 }
 
 /// Memory of a batch.
 #[derive(Clone, Debug)]
-pub(super) struct BatchFrame {
+pub(super) struct BatchFrame<const W: usize> {
     list: ProductList,
-    batch: Batch,
-    frame: Frame<Batch>,
+    batch: Batch<W>,
+    frame: Frame<Batch<W>>,
     taxels: usize,
     /// Place among the solutions, and what the contact analysis found. Only frames with a contact take part.
     contacts: Vec<(usize, Contact)>,
 }
 
-impl BatchFrame {
-    pub(super) fn new(list: &ProductList, blocks: &Arc<Blocks>) -> Self {
+impl<const W: usize> BatchFrame<W> {
+    pub(super) fn new(list: &ProductList, blocks: &Arc<Blocks<W>>) -> Self {
         let batch = Batch::new(Arc::clone(blocks));
         let frame = Frame::new(&batch, &list.steps);
         Self { list: list.clone(), frame, taxels: blocks.taxels(), batch, contacts: Vec::new() }
+    }
+
+    /// Whether it computes with these matrices.
+    pub(super) fn is_of(&self, blocks: &Arc<Blocks<W>>) -> bool {
+        self.batch.is_of(blocks)
     }
 
     /// Begins anew.
@@ -61,9 +79,15 @@ impl BatchFrame {
             self.batch.friction[column] = solutions[*index].optimum(friction, &seen, scratch);
         }
         self.run(before_friction..self.list.steps.len());
-        if !self.list.has_forces() {
-            return;
+        if self.list.has_forces() {
+            self.put_forces(solutions);
+        } else {
+            self.put_parts(solutions);
         }
+    }
+
+    /// Each taxel's force from `A_p r` and the weights.
+    fn put_forces(&self, solutions: &mut [Solution]) {
         for (column, (index, _)) in self.contacts.iter().enumerate() {
             let of_frame = column * self.taxels..(column + 1) * self.taxels;
             let [mu_x, mu_y] = self.batch.friction[column];
@@ -72,6 +96,21 @@ impl BatchFrame {
             for ((component, force), share) in components.zip([mu_x, mu_y, -1.0]) {
                 for ((result, force), weight) in component.iter_mut().zip(&force[of_frame.clone()]).zip(weight) {
                     *result = force + share * weight;
+                }
+            }
+        }
+    }
+
+    /// Each taxel's force from the `g_pq`, if the list makes any.
+    fn put_parts(&self, solutions: &mut [Solution]) {
+        for p in 0..3 {
+            let parts = [0, 1, 2].map(|q| self.frame.get(Vector::G(1 + p as u8, q)).0[0].as_slice());
+            for (column, (index, _)) in self.contacts.iter().enumerate() {
+                let [mu_x, mu_y] = self.batch.friction[column];
+                let first = column * self.taxels;
+                let [g0, g1, g2] = parts.map(|part| part.get(first..first + self.taxels).unwrap_or_default());
+                for (result, ((g0, g1), g2)) in solutions[*index].field[p].iter_mut().zip(g0.iter().zip(g1).zip(g2)) {
+                    *result = g0 + mu_x * g1 + mu_y * g2;
                 }
             }
         }

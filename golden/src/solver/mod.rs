@@ -168,16 +168,23 @@ pub struct Solver {
 /// The products of the design's plan.
 #[derive(Clone, Debug)]
 enum Products {
-    Paper(Box<Engine<f64, PaperMatrices, 1>>),
+    Paper(Box<Paper>),
     Reduced(Box<Reduced>),
 }
 
-/// Those of the reduced plan, and what several frames at once need.
+/// Those of the paper's plan, and what several frames at once need.
+#[derive(Clone, Debug)]
+struct Paper {
+    engine: Engine<f64, PaperMatrices, 1>,
+    /// Made when first used.
+    blocks: OnceLock<Arc<Blocks<1>>>,
+}
+
+/// Those of the reduced plan, likewise.
 #[derive(Clone, Debug)]
 struct Reduced {
     engine: Engine<f64, ReducedMatrices, CLASSES>,
-    /// Made when first used.
-    blocks: OnceLock<Arc<Blocks>>,
+    blocks: OnceLock<Arc<Blocks<CLASSES>>>,
 }
 
 impl Solver {
@@ -212,7 +219,7 @@ impl Solver {
         let stored = PaperMatrices::new(&matrices, filtered);
         let members = (0..taxels).map(|taxel| [taxel]).collect();
         let engine = Engine::new(ProductList::paper(), stored, members, taxels);
-        Self::with(design, matrices, Products::Paper(Box::new(engine)))
+        Self::with(design, matrices, Products::Paper(Box::new(Paper { engine, blocks: OnceLock::new() })))
     }
 
     fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
@@ -232,7 +239,7 @@ impl Solver {
     /// The matrices the solver uses, with the paper's plan.
     pub fn filtered(&self) -> Option<&FilteredMatrices> {
         match &self.products {
-            Products::Paper(paper) => Some(&paper.stored().filtered),
+            Products::Paper(paper) => Some(&paper.engine.stored().filtered),
             Products::Reduced(_) => None,
         }
     }

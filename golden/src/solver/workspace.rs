@@ -7,11 +7,11 @@ use nalgebra::DVector;
 use super::batch::{self, BatchFrame};
 use super::bodies::{Census, Parted};
 use super::reading::Reading;
-use super::{Products, Reduced, Slips, Solution, Solver, SolverError, Status};
+use super::{Paper, Products, Reduced, Slips, Solution, Solver, SolverError, Status};
 use crate::estimators::{Contact, Friction, FrictionScratch, Seen};
 use crate::parity::{CLASSES, Quads};
 use crate::products::batch::{Blocks, FRAMES};
-use crate::products::{Engine, PaperMatrices, RealFrame, Stored};
+use crate::products::{Engine, PaperMatrices, ProductList, RealFrame, Stored};
 use crate::reduced::ReducedMatrices;
 
 /// Memory for solving frames with one solver; see [`Solver::workspace`].
@@ -26,7 +26,14 @@ pub struct Workspace {
     /// What slipped in the last frame.
     slips: Slips,
     /// For several frames at once, made when first used.
-    batch: Option<Box<BatchFrame>>,
+    batches: Batches,
+}
+
+/// Memory for batches of either plan.
+#[derive(Clone, Debug, Default)]
+struct Batches {
+    paper: Option<Box<BatchFrame<1>>>,
+    reduced: Option<Box<BatchFrame<CLASSES>>>,
 }
 
 #[derive(Clone, Debug)]
@@ -43,12 +50,12 @@ impl Solver {
             b: DVector::zeros(self.taxels()),
             friction: FrictionScratch::default(),
             products: match &self.products {
-                Products::Paper(paper) => Scratch::Paper(Box::new(paper.frame())),
+                Products::Paper(paper) => Scratch::Paper(Box::new(paper.engine.frame())),
                 Products::Reduced(reduced) => Scratch::Reduced(Box::new(reduced.engine.frame())),
             },
             parted: Parted::default(),
             slips: Slips::default(),
-            batch: None,
+            batches: Batches::default(),
         }
     }
 
@@ -98,8 +105,8 @@ impl Solver {
         let Workspace { b, friction: scratch, products, .. } = workspace;
         let b = b.as_slice();
         match (&self.products, products) {
-            (Products::Paper(engine), Scratch::Paper(frame)) => {
-                solve(engine, frame, (b, contact), &self.friction, scratch, solution);
+            (Products::Paper(paper), Scratch::Paper(frame)) => {
+                solve(&paper.engine, frame, (b, contact), &self.friction, scratch, solution);
             }
             (Products::Reduced(reduced), Scratch::Reduced(frame)) => {
                 solve(&reduced.engine, frame, (b, contact), &self.friction, scratch, solution);
@@ -116,15 +123,15 @@ impl Solver {
         let Reading::Contact { contact, .. } = self.reader.read(frame, b)? else { return Ok(None) };
         let b = b.as_slice();
         Ok(match (&self.products, products) {
-            (Products::Paper(engine), Scratch::Paper(frame)) => Some(see(engine, frame, b, contact)),
+            (Products::Paper(paper), Scratch::Paper(frame)) => Some(see(&paper.engine, frame, b, contact)),
             (Products::Reduced(reduced), Scratch::Reduced(frame)) => Some(see(&reduced.engine, frame, b, contact)),
             // As above.
             _ => None,
         })
     }
 
-    /// Solves many frames. With the reduced plan and no strong filter they share the products, which is faster the
-    /// larger the sensor; the results then differ from those of [`Solver::solve`] by rounding.
+    /// Solves many frames. Without a strong filter they share the products, which is faster the larger the sensor; the
+    /// results then differ from those of [`Solver::solve`] by rounding.
     ///
     /// # Errors
     ///
@@ -137,18 +144,40 @@ impl Solver {
     ) -> Result<(), SolverError> {
         self.fit(workspace);
         solutions.resize_with(frames.len(), || Solution::zeros(Status::default(), 0));
-        let reduced: &Reduced = match &self.products {
-            Products::Reduced(reduced) if batch::pays(reduced.engine.stored(), self.matrices.quads()) => reduced,
+        let quads = self.matrices.quads();
+        match &self.products {
+            Products::Paper(paper) if batch::pays_whole(&paper.engine.stored().filtered, quads.taxels()) => {
+                let Paper { engine, blocks } = &**paper;
+                let whole = || Arc::new(Blocks::whole(&engine.list, &engine.stored().filtered, &self.matrices));
+                let blocks = blocks.get_or_init(whole);
+                let mut batch = made(workspace.batches.paper.take(), &engine.list, blocks);
+                let result = self.solve_together(workspace, &mut batch, frames, solutions);
+                workspace.batches.paper = Some(batch);
+                result
+            }
+            Products::Reduced(reduced) if batch::pays_folded(reduced.engine.stored(), quads) => {
+                let Reduced { engine, blocks } = &**reduced;
+                let blocks = blocks.get_or_init(|| Arc::new(Blocks::folded(&engine.list, engine.stored(), quads)));
+                let mut batch = made(workspace.batches.reduced.take(), &engine.list, blocks);
+                let result = self.solve_together(workspace, &mut batch, frames, solutions);
+                workspace.batches.reduced = Some(batch);
+                result
+            }
             _ => {
                 let mut pairs = frames.iter().zip(solutions);
-                return pairs.try_for_each(|(frame, solution)| self.solve_into(workspace, frame.as_ref(), solution));
+                pairs.try_for_each(|(frame, solution)| self.solve_into(workspace, frame.as_ref(), solution))
             }
-        };
-        let blocks = reduced.blocks.get_or_init(|| {
-            Arc::new(Blocks::new(&reduced.engine.list, reduced.engine.stored(), self.matrices.quads()))
-        });
-        let batch = workspace.batch.take();
-        let mut batch = batch.unwrap_or_else(|| Box::new(BatchFrame::new(&reduced.engine.list, blocks)));
+        }
+    }
+
+    /// Solves many frames with shared products.
+    fn solve_together<F: AsRef<[f64]>, const W: usize>(
+        &self,
+        workspace: &mut Workspace,
+        batch: &mut BatchFrame<W>,
+        frames: &[F],
+        solutions: &mut [Solution],
+    ) -> Result<(), SolverError> {
         for (frames, solutions) in frames.chunks(FRAMES).zip(solutions.chunks_mut(FRAMES)) {
             batch.clear();
             let mut census = [Census::default(); FRAMES];
@@ -171,7 +200,6 @@ impl Solver {
                 self.finish(workspace, census, solution);
             }
         }
-        workspace.batch = Some(batch);
         Ok(())
     }
 
@@ -211,4 +239,13 @@ fn see<'a, S: Stored<W>, const W: usize>(
     frame.stress.copy_from_slice(b);
     engine.until_friction(frame);
     Seen { b, contact, sums: &frame.sums, u: frame.u.each_ref().map(Vec::as_slice) }
+}
+
+/// Memory of a batch with these matrices: that of before, if it is.
+fn made<const W: usize>(
+    before: Option<Box<BatchFrame<W>>>,
+    list: &ProductList,
+    blocks: &Arc<Blocks<W>>,
+) -> Box<BatchFrame<W>> {
+    before.filter(|batch| batch.is_of(blocks)).unwrap_or_else(|| Box::new(BatchFrame::new(list, blocks)))
 }

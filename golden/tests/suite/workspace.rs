@@ -172,6 +172,26 @@ fn batches_have_the_same_results() {
     }
 }
 
+/// Memory of a batch holds the matrices that it was made with.
+#[test]
+fn a_workspace_serves_another_solver_of_the_same_sensor() {
+    for plan in [PlanKind::Paper, PlanKind::Reduced] {
+        let [plain, filtered] = [Filter::None, Filter::F2 { p: 0.1 }].map(|filter| {
+            let mut design = design(6, 5);
+            (design.algorithm.plan, design.algorithm.filter) = (plan, filter);
+            Solver::new(&design).unwrap()
+        });
+        let frames = frames(&plain);
+        let (mut workspace, mut solutions) = (plain.workspace(), Vec::new());
+        for solver in [&plain, &filtered, &plain] {
+            solver.solve_batch(&mut workspace, &frames[..5], &mut solutions).unwrap();
+            for (frame, solution) in frames.iter().zip(&solutions) {
+                assert_close(&solver.solve(frame).unwrap(), solution);
+            }
+        }
+    }
+}
+
 #[test]
 fn frames_ask_for_no_memory() {
     for solver in solvers() {

@@ -8,6 +8,7 @@ use golden::table::Table;
 use hdl_gen::emit::products;
 use hdl_gen::inspection::{KNOWN_PART, excess, figures, narrow, several_bodies};
 use hdl_gen::plan::Plan;
+use hdl_gen::plan::energy::Energy;
 use hdl_gen::plan::format::short;
 use hdl_gen::plan::savings::savings;
 
@@ -37,6 +38,7 @@ fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
     speed(&mut text, plan)?;
     text += &plan.estimator.slot().report(&plan.design);
     resources(&mut text, plan)?;
+    energy(&mut text, plan)?;
     numbers(&mut text, plan)?;
     Ok(text)
 }
@@ -186,6 +188,17 @@ fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
         ]);
     }
     write!(out, "\n{}", table.text(0, 0))
+}
+
+fn energy(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let energy = Energy::of(plan);
+    let rate = plan.design.hardware.clock_mhz * 1e6 / plan.timeline.interval_cycles as f64;
+    let (microjoules, watts) = (energy.fabric_nj / 1e3, energy.watts(rate));
+    writeln!(
+        out,
+        "\nEnergy, estimated: {microjoules:.1} uJ a frame, {watts:.2} W at {rate:.0} frames a second, without static power"
+    )?;
+    writeln!(out, "  from counted products and memory accesses; nothing of it was measured")
 }
 
 fn numbers(out: &mut String, plan: &Plan) -> std::fmt::Result {

@@ -10,6 +10,7 @@ pub mod counts;
 pub mod curve;
 pub mod dead;
 mod dealing;
+pub mod energy;
 mod error;
 pub mod filtered;
 pub mod format;

@@ -5,6 +5,7 @@ mod columns;
 mod command;
 mod counts;
 mod emission;
+mod energy;
 mod expected;
 mod folded_formats;
 mod formats;
