@@ -35,7 +35,7 @@ pub(crate) struct Blocks<const W: usize> {
 #[derive(Clone, Debug)]
 enum Sums {
     /// From y+ and the weights, at once.
-    Rows(SumRows),
+    Rows(Box<SumRows>),
     /// From the vectors `g_pq`, and with the arms of the taxels in metres those of the torques.
     Arms(Vec<[f64; 2]>),
 }
@@ -56,7 +56,7 @@ impl Blocks<CLASSES> {
             }
             blocks
         });
-        let sums = Sums::Rows(stored.sum_rows().clone());
+        let sums = Sums::Rows(Box::new(stored.sum_rows().clone()));
         Self { matrices: blocks.collect(), sums, members: quads.all(), taxels: quads.taxels() }
     }
 }
@@ -110,6 +110,9 @@ impl<const W: usize> Default for Columns<W> {
 }
 
 impl<const W: usize> Batch<W> {
+    /// What each class of a folded vector has of a taxel.
+    const SHARE: f64 = 1.0 / W as f64;
+
     /// Of no frames yet.
     pub(crate) fn new(blocks: Arc<Blocks<W>>) -> Self {
         Self { blocks, friction: Vec::with_capacity(FRAMES) }
@@ -118,11 +121,6 @@ impl<const W: usize> Batch<W> {
     /// Which blocks they are computed with.
     pub(crate) fn is_of(&self, blocks: &Arc<Blocks<W>>) -> bool {
         Arc::ptr_eq(&self.blocks, blocks)
-    }
-
-    /// What each class of a folded vector has of a taxel.
-    fn share(&self) -> f64 {
-        1.0 / W as f64
     }
 
     fn elements(&self) -> usize {
@@ -208,7 +206,7 @@ impl<const W: usize> Arithmetic for Batch<W> {
 
     fn part(&self, y: &mut Columns<W>, pull: &mut Columns<W>, weight: &mut Vec<f64>) {
         self.for_each(|at, first, taxels| {
-            let values = butterfly(y.0.each_ref().map(|class| class[at])).map(|sum| self.share() * sum);
+            let values = butterfly(y.0.each_ref().map(|class| class[at])).map(|sum| Self::SHARE * sum);
             let magnitudes = values.map(|value| (-value).max(0.0));
             for (taxel, magnitude) in taxels.iter().zip(magnitudes) {
                 weight[first + taxel] = magnitude;
@@ -234,7 +232,7 @@ impl<const W: usize> Arithmetic for Batch<W> {
     fn unfold(&self, vector: &Columns<W>, values: &mut Vec<f64>) {
         self.for_each(|at, first, taxels| {
             for (taxel, sum) in taxels.iter().zip(butterfly(vector.0.each_ref().map(|class| class[at]))) {
-                values[first + taxel] = self.share() * sum;
+                values[first + taxel] = Self::SHARE * sum;
             }
         });
     }
