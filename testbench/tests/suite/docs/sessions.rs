@@ -13,7 +13,7 @@ use super::{Line, commands, lines, lines_of};
 use crate::support::workspace;
 
 /// What is not run here, by how the line begins, and why.
-const ELSEWHERE: [(&str, &str); 24] = [
+const ELSEWHERE: [(&str, &str); 25] = [
     ("make ", "installs tools, builds all, or takes minutes; the targets are looked up"),
     ("cargo ", "builds all, or runs tests of minutes; topics are looked up"),
     ("export ", "of the shell that the next lines are typed into"),
@@ -36,6 +36,7 @@ const ELSEWHERE: [(&str, &str); 24] = [
     ("golden scene --design designs/small-control.toml", "likewise"),
     ("ln -sf", "likewise"),
     ("drivers/c/examples/", "likewise"),
+    ("python3 drivers/python/forces.py", "likewise"),
     ("testbench view DESIGN", "a synopsis"),
     ("testbench view …", "a synopsis"),
 ];

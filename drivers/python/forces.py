@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Frames in, forces out, on the board or on the desk:
+
+    forces.py NAME_BOARD.bit FRAMES.csv       on a PYNQ image, as root
+    forces.py core.so FRAMES.csv              the simulated core that `testbench build DESIGN` names
+    forces.py ... --plot forces.png           F_x, F_y and F_z over the frames, with matplotlib
+"""
+
+import argparse
+import sys
+
+import numpy as np
+
+from sptfra_board import Sptfra
+
+
+def opened(path):
+    """The core behind a bitstream, or the simulated one."""
+    if path.endswith(".so"):
+        from sptfra_desk import Overlay, allocate
+    else:
+        from pynq import Overlay, allocate
+    overlay = Overlay(path)
+    return Sptfra(overlay.core, overlay.dma, allocate)
+
+
+def plot(forces, path):
+    """Writes the resultants over the frames as a picture."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(layout="constrained")
+    for index, name in enumerate(("F_x", "F_y", "F_z")):
+        axes.plot(forces.resultant[:, index], label=name)
+    axes.set_xlabel("frame")
+    axes.set_ylabel("force (N)")
+    axes.legend()
+    figure.savefig(path)
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("core")
+    arguments.add_argument("frames")
+    arguments.add_argument("--plot", metavar="FILE")
+    wanted = arguments.parse_args()
+    try:
+        frames = np.loadtxt(wanted.frames, delimiter=",", ndmin=2)
+        forces = opened(wanted.core).reconstruct(frames)
+    except (OSError, RuntimeError, ValueError) as error:
+        sys.exit(f"error: {error}")
+    print("frame,F_x,F_y,F_z,mu,phi,status")
+    for index, number in enumerate(forces.number):
+        values = [*forces.resultant[index], forces.friction[index], forces.direction[index]]
+        print(number, *(f"{value:.9g}" for value in values), "; ".join(forces.names(index)), sep=",")
+    if wanted.plot:
+        plot(forces, wanted.plot)
+
+
+if __name__ == "__main__":
+    main()
