@@ -115,6 +115,7 @@ int sptfra_count(const sptfra *device, sptfra_counters *counters)
     counters->frames_in = GET(device, FRAMES_IN);
     counters->frames_out = GET(device, FRAMES_OUT);
     counters->frames_bad = GET(device, FRAMES_BAD);
+    counters->frames_dropped = FIELD(GET(device, FEATURES), FEATURES__DROPS) ? GET(device, FRAMES_DROPPED) : 0;
     counters->last_status = GET(device, LAST_STATUS);
     counters->last_latency = GET(device, LAST_LATENCY);
     counters->last_interval = GET(device, LAST_INTERVAL);

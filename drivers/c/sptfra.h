@@ -115,6 +115,7 @@ int sptfra_identify(const sptfra *device, sptfra_identity *identity);
 
 typedef struct {
     uint32_t frames_in, frames_out, frames_bad;
+    uint32_t frames_dropped; /* that found no room: 0 without overrun = "drop" */
     uint32_t last_status, last_latency, last_interval;
 } sptfra_counters;
 

@@ -74,6 +74,9 @@ extern "C" {
 #define SPTFRA__FEATURES__CALIBRATION_RAM_bm 0x10
 #define SPTFRA__FEATURES__CALIBRATION_RAM_bp 4
 #define SPTFRA__FEATURES__CALIBRATION_RAM_bw 1
+#define SPTFRA__FEATURES__DROPS_bm 0x20
+#define SPTFRA__FEATURES__DROPS_bp 5
+#define SPTFRA__FEATURES__DROPS_bw 1
 #define SPTFRA__FEATURES__STREAM_BYTES_bm 0xff00
 #define SPTFRA__FEATURES__STREAM_BYTES_bp 8
 #define SPTFRA__FEATURES__STREAM_BYTES_bw 8
@@ -211,6 +214,11 @@ extern "C" {
 #define SPTFRA__LAST_INTERVAL__CYCLES_bp 0
 #define SPTFRA__LAST_INTERVAL__CYCLES_bw 32
 
+// reg - sptfra::FRAMES_DROPPED
+#define SPTFRA__FRAMES_DROPPED__COUNT_bm 0xffffffff
+#define SPTFRA__FRAMES_DROPPED__COUNT_bp 0
+#define SPTFRA__FRAMES_DROPPED__COUNT_bw 32
+
 // reg - sptfra::CALIBRATION
 #define SPTFRA__CALIBRATION__WORDS_bm 0xffff
 #define SPTFRA__CALIBRATION__WORDS_bp 0
@@ -320,7 +328,8 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t LAST_STATUS;
     uint32_t LAST_LATENCY;
     uint32_t LAST_INTERVAL;
-    uint8_t RESERVED_68_7f[0x18];
+    uint32_t FRAMES_DROPPED;
+    uint8_t RESERVED_6c_7f[0x14];
     uint32_t CALIBRATION;
     uint32_t CALIBRATION_OFFSET_LIMIT;
     uint32_t CALIBRATION_STEPS_LOW;

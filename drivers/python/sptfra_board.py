@@ -56,6 +56,7 @@ class Register(enum.IntEnum):
     LAST_STATUS = 0x05C
     LAST_LATENCY = 0x060
     LAST_INTERVAL = 0x064
+    FRAMES_DROPPED = 0x068
     CALIBRATION = 0x080
     CALIBRATION_OFFSET_LIMIT = 0x084
     CALIBRATION_STEPS_LOW = 0x088
@@ -133,6 +134,8 @@ class Identity:
     stream_bits: int
     #: Whether gains and offsets are in RAM: see `Sptfra.load_calibration`.
     calibration_in_ram: bool
+    #: Whether frames that find no room are dropped, and the source never held.
+    drops_frames: bool
     #: What a sample of a frame is: float32, int16 or uint16.
     samples: np.dtype
     clock_mhz: float
@@ -148,6 +151,8 @@ class Counters:
     frames_in: int
     frames_out: int
     frames_bad: int
+    #: Those that found no room: 0 without `overrun = "drop"`.
+    frames_dropped: int
     last_status: Status
     last_latency: int
     last_interval: int
@@ -303,6 +308,7 @@ class Sptfra:
             has_counts=bool(features & 4),
             skips_zeros=bool(features & 8),
             calibration_in_ram=bool(features & 16),
+            drops_frames=bool(features & 32),
             stream_bits=8 * (features >> 8 & 0xFF) or 32,
             samples=np.dtype((np.float32, np.int16, np.uint16)[features >> 16 & 3]),
             clock_mhz=read(Register.CLOCK) / 1e3,
@@ -318,6 +324,7 @@ class Sptfra:
             frames_in=read(Register.FRAMES_IN),
             frames_out=read(Register.FRAMES_OUT),
             frames_bad=read(Register.FRAMES_BAD),
+            frames_dropped=read(Register.FRAMES_DROPPED) if read(Register.FEATURES) & 32 else 0,
             last_status=Status(read(Register.LAST_STATUS) & 0xFFFF),
             last_latency=read(Register.LAST_LATENCY),
             last_interval=read(Register.LAST_INTERVAL),

@@ -26,6 +26,8 @@ pub struct Job<'a> {
     pub expected: &'a [Vec<u32>],
     /// Columns of the sensor, to name words.
     pub columns: usize,
+    /// When packets follow each other, where they are not sent one at a time.
+    pub pacing: Pacing,
     /// See [`Traffic::timeout`].
     pub timeout: u64,
     /// Decides the pauses and the registers' random start.
@@ -141,7 +143,7 @@ fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResu
     if let (Some(path), true) = (job.trace, mode.is_free()) {
         core.trace(path)?;
     }
-    let traffic = Traffic::new(job.packets, job.timeout).with_mode(&mode);
+    let traffic = Traffic::new(job.packets, job.timeout).with_mode(&mode).with_pacing(job.pacing);
     let outcome = exchange(&mut core, &traffic, |_| progress())
         .map_err(|source| SimulationError::Stream { mode: mode.name, source })?;
     let answers: Vec<Vec<u32>> = outcome.exchanges.into_iter().map(|exchange| exchange.words).collect();
@@ -160,6 +162,12 @@ fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<Cycles, SimulationErro
     };
     // Both are there: more than one frame was answered, or `run` had failed.
     let latency = run(LATENCY_FRAMES, Pacing::OneAtATime)?.latency().unwrap_or_default();
-    let interval = run(INTERVAL_FRAMES, Pacing::BackToBack)?.interval().unwrap_or_default();
+    let many = run(INTERVAL_FRAMES, job.pacing)?;
+    let interval = match job.pacing {
+        // At a given distance each frame may be a cycle sooner or later.
+        Pacing::Spaced { .. } => many.mean_interval(),
+        Pacing::BackToBack | Pacing::OneAtATime => many.interval(),
+    };
+    let interval = interval.unwrap_or_default();
     Ok(Cycles { latency, interval })
 }

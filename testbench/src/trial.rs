@@ -7,6 +7,7 @@ use std::path::Path;
 use golden::design::Design;
 use hdl_gen::emit::{EmitError, emit};
 use hdl_gen::model::Model;
+use hdl_gen::plan::timing::Timeline;
 use hdl_gen::plan::{Plan, PlanError};
 use serde::Serialize;
 use thiserror::Error;
@@ -64,11 +65,23 @@ pub fn build(plan: &Plan, cycles: u64) -> Result<Built, TrialError> {
     Ok(Verilate::default().with_effort(Effort::for_cycles(cycles)).build(&rtl_sources(plan)?)?)
 }
 
-/// Sends packets through a core, both streams free-running.
+/// When packets follow each other so that none is lost: back to back, and to a core that drops frames as it can take
+/// them.
+pub fn pacing(plan: &Plan) -> Pacing {
+    let Timeline { latency_cycles, interval_cycles, .. } = plan.timeline;
+    if plan.streams().drops {
+        Pacing::Spaced { cycles: interval_cycles, inside: latency_cycles.div_ceil(interval_cycles) as usize + 1 }
+    } else {
+        Pacing::BackToBack
+    }
+}
+
+/// Sends packets through a core, both streams free-running; back to back means as [`pacing`] has it.
 ///
 /// # Errors
 /// [`TrialError::Simulation`].
 pub fn send(core: &mut Dut, plan: &Plan, packets: &[Vec<u32>], pacing: Pacing) -> Result<Outcome, TrialError> {
+    let pacing = if pacing == Pacing::BackToBack { self::pacing(plan) } else { pacing };
     let traffic = Traffic::new(packets, timeout(plan)).with_pacing(pacing);
     let sent = exchange(core, &traffic, |_| ());
     Ok(sent.map_err(|source| SimulationError::Stream { mode: "free-running", source })?)
@@ -173,6 +186,7 @@ impl<'a> Trial<'a> {
             packets: &self.packets,
             expected: &self.expected,
             columns: self.plan.design.sensor.columns,
+            pacing: pacing(self.plan),
             timeout: timeout(self.plan),
             seed: self.seed,
             trace,

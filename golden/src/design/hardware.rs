@@ -83,6 +83,17 @@ pub enum CalibrationIn {
     Ram,
 }
 
+/// What becomes of a frame for which the core has no room.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Overrun {
+    /// It waits: the source is held.
+    #[default]
+    Stall,
+    /// It is dropped whole, and counted: the source is never held.
+    Drop,
+}
+
 /// The `[hardware]` table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hardware {
@@ -107,6 +118,8 @@ pub struct Hardware {
     pub stream_bits: u32,
     /// What a sample on the stream is; integers only with counts.
     pub samples: Samples,
+    /// What becomes of a frame for which there is no room.
+    pub overrun: Overrun,
     /// Whether the core has a register bank on AXI4-Lite.
     pub control: bool,
     /// Where the calibration stands; in RAM only with `control`, and with counts that `pa_per_count` makes pascals.
@@ -126,4 +139,4 @@ impl Hardware {
     }
 }
 
-print_as_words!(Arithmetic, Optimise, Samples, CalibrationIn);
+print_as_words!(Arithmetic, Optimise, Samples, Overrun, CalibrationIn);

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use toml::Value;
 
 use super::{
-    Algorithm, CalibrationIn, Choices, Design, FileNames, Filter, FilterKind, Hardware, Samples, Slip, Tension, joint,
-    regularisation,
+    Algorithm, CalibrationIn, Choices, Design, FileNames, Filter, FilterKind, Hardware, Overrun, Samples, Slip,
+    Tension, joint, regularisation,
 };
 use crate::estimators::Constants;
 use crate::names::MatrixName;
@@ -77,6 +77,10 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
         Samples::Float32 => String::new(),
         samples => format!("samples = \"{samples}\"\n"),
     };
+    let overrun = match hardware.overrun {
+        Overrun::Stall => String::new(),
+        overrun @ Overrun::Drop => format!("overrun = \"{overrun}\"\n"),
+    };
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write!(
@@ -86,7 +90,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}{contacts}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{control}{banks}clock_mhz = {:?}\npart = \"{}\"\n",
+         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{overrun}{control}{banks}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],

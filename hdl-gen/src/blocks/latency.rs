@@ -5,6 +5,10 @@
 
 use crate::cores::{axis_skid, cordic, divider, fixed_to_float, float_to_fixed};
 
+// ---- Intake
+/// What a door that drops frames takes more than the skid buffer in its place: a memory is written, then read.
+pub const OVERRUN: u64 = 2 - axis_skid::LATENCY as u64;
+
 // ---- Calibration in RAM
 /// From a beat of counts to its stress as float32: the memory and a register, the conversion, product, sum, limits, the
 /// conversion to float32, and a skid buffer.

@@ -10,6 +10,7 @@ pub mod calibration;
 pub mod cean;
 pub mod co;
 pub mod field;
+pub mod intake;
 pub mod latency;
 pub mod op;
 pub mod parameters;
@@ -29,7 +30,7 @@ pub use parameters::Parameters;
 /// What each block of the design takes, in the data's order.
 pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     let slot = plan.estimator.slot();
-    let mut costs: Vec<BlockCost> = calibration::cost(plan).into_iter().collect();
+    let mut costs: Vec<BlockCost> = intake::cost(plan).into_iter().chain(calibration::cost(plan)).collect();
     costs.extend([
         bz::cost(plan),
         slot.contact_block(),

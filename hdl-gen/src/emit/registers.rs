@@ -62,6 +62,8 @@ struct View<'a> {
     /// Bits and 32-bit words of a beat.
     stream_bits: usize,
     words: usize,
+    /// Whether frames that find no room are dropped.
+    overrun: bool,
     /// Parameters of the bank.
     registers: Parameters,
     /// Of a calibration in RAM.
@@ -123,6 +125,7 @@ impl<'a> View<'a> {
             axi_ports: AXI_SIGNALS.iter().map(port).collect(),
             stream_bits: plan.streams().bits,
             words: plan.streams().words(),
+            overrun: plan.streams().drops,
             registers: constants.parameters(),
             calibration: plan.calibration.as_ref().map(CalibrationView::new),
             constants,

@@ -71,6 +71,8 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_op",
     "sptfra_output",
     "sptfra_output_word",
+    "sptfra_overrun",
+    "sptfra_overrun_registers",
     "sptfra_plane",
     "sptfra_plane_cell",
     "sptfra_plane_search",
@@ -104,6 +106,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_unfold",
     "sptfra_unpack",
     "sptfra_we",
+    "sptfra_whole_frames",
 ];
 
 /// Other implementations of some of them, for ECP5.

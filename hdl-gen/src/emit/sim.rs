@@ -37,6 +37,8 @@ struct View<'a> {
     timestamp_beat: usize,
     timestamp_word: usize,
     timeout: u64,
+    /// Whether it drops frames for which it has no room.
+    overrun: bool,
     /// Whether the core has a register bank.
     control: bool,
 }
@@ -65,6 +67,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
         timestamp_beat: TIMESTAMP / words,
         timestamp_word: TIMESTAMP % words,
         timeout: SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64,
+        overrun: plan.streams().drops,
         control: plan.design.hardware.control,
     };
     let module = format!("{name}_tb");

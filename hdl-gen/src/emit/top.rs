@@ -5,7 +5,7 @@ use tera::Context;
 
 use golden::design::{Filter, Samples};
 
-use crate::blocks::{Parameters, array, bz, cean, co, field, op, row_width, turns, unfold, we};
+use crate::blocks::{Parameters, array, bz, cean, co, field, intake, op, row_width, turns, unfold, we};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::CountsPlan;
@@ -40,6 +40,8 @@ struct View {
     calibration: bool,
     taxel_width: u32,
     offset_bits: u32,
+    /// Of a door that drops frames, its parameters.
+    overrun: Option<Parameters>,
     /// Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
     stream_bits: usize,
     stream_bytes: usize,
@@ -117,6 +119,7 @@ impl View {
             calibration: plan.calibration.is_some(),
             taxel_width: address_bits(plan.taxels()),
             offset_bits: plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
+            overrun: streams.drops.then(|| intake::parameters(plan)),
             stream_bits: streams.bits,
             stream_bytes: streams.bits / 8,
             words: streams.words(),

@@ -53,6 +53,8 @@ pub const TOO_MANY_REPLACED: u32 = Status::TOO_MANY_REPLACED.0;
 pub const SLIP: u32 = Status::SLIP.0;
 /// Nothing pulls, where the design says that tension is read and the friction that something should.
 pub const NO_TENSION: u32 = Status::NO_TENSION.0;
+/// Frames were dropped before this one: no frame's own matter, and in no answer of the model.
+pub const DROPPED: u32 = Status::DROPPED.0;
 
 pub use crate::plan::SUMMARY_WORDS;
 

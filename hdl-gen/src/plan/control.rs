@@ -12,7 +12,7 @@ use super::places::{self, FIELD_PLACES};
 use super::product::Vector;
 use super::schedule::{Program, Visit};
 use super::streams::Intake;
-use super::timing::{INTERVAL_FRAMES, Timeline, middle_interval};
+use super::timing::{INTERVAL_FRAMES, Timeline, longest_interval, middle_interval};
 use crate::blocks::bz::{self, Arrival};
 use crate::blocks::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
@@ -28,9 +28,10 @@ const FOREVER: u64 = 100_000_000;
 pub(super) fn timeline(plan: &Plan) -> Timeline {
     let constants = Constants::new(plan);
     let ends = |frames| Control::new(&constants).play(frames);
+    let interval = if plan.streams().drops { longest_interval } else { middle_interval };
     Timeline {
         latency_cycles: ends(1)[0],
-        interval_cycles: middle_interval(&ends(INTERVAL_FRAMES)),
+        interval_cycles: interval(&ends(INTERVAL_FRAMES)),
         spmv_cycles: plan.schedule.issue_cycles(),
         search_cycles: constants.stages.iter().sum(),
     }
@@ -39,7 +40,8 @@ pub(super) fn timeline(plan: &Plan) -> Timeline {
 /// Durations that do not depend on the frames under way.
 struct Constants {
     beats: u64,
-    /// From a frame's first beat out of the skid buffer to the first that enters Bz: where it is unpacked, or calibrated.
+    /// From a frame's first beat out of the skid buffer to the first that enters Bz: where it waits for room, is unpacked,
+    /// or calibrated.
     unpacking: u64,
     /// What a frame brings, counted from there.
     arrival: Arrival,
@@ -76,7 +78,8 @@ impl Constants {
         let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
         Self {
             beats: plan.streams().beats_out() as u64,
-            unpacking: u64::from(plan.streams().intake == Intake::Unpacked)
+            unpacking: if plan.streams().drops { latency::OVERRUN } else { 0 }
+                + u64::from(plan.streams().intake == Intake::Unpacked)
                 + if plan.calibration.is_some() { latency::CALIBRATION } else { 0 },
             arrival: bz::arrival(plan),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),

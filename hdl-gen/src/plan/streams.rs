@@ -1,6 +1,6 @@
 //! The two streams of a core: how samples and words fill their beats.
 
-use golden::design::{CalibrationIn, Design, Outputs, PlanKind, Samples};
+use golden::design::{CalibrationIn, Design, Outputs, Overrun, PlanKind, Samples};
 
 use super::SUMMARY_WORDS;
 
@@ -31,6 +31,8 @@ pub struct Streams {
     pub words_out: usize,
     /// How samples get to the lanes.
     pub intake: Intake,
+    /// Whether a frame that finds no room is dropped, and the source never held.
+    pub drops: bool,
     taxels: usize,
 }
 
@@ -54,7 +56,8 @@ impl Streams {
         } else {
             Intake::Whole
         };
-        Self { bits, sample, sample_bits, words_out: SUMMARY_WORDS + field, intake, taxels }
+        let drops = design.hardware.overrun == Overrun::Drop;
+        Self { bits, sample, sample_bits, words_out: SUMMARY_WORDS + field, intake, drops, taxels }
     }
 
     /// Words of a beat.

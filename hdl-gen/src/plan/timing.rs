@@ -14,12 +14,19 @@ pub fn middle_interval(ends: &[u64]) -> u64 {
     }
 }
 
+/// Longest distance between the ends of frames from the middle on: what every frame keeps, where they take turns in how
+/// long they take.
+pub fn longest_interval(ends: &[u64]) -> u64 {
+    ends.windows(2).skip((ends.len() / 2).saturating_sub(1)).map(|pair| pair[1] - pair[0]).max().unwrap_or(0)
+}
+
 /// Predicted times of one design, in clock cycles.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Timeline {
     /// First beat in to last beat out of a single frame, both included, with streams that never wait.
     pub latency_cycles: u64,
-    /// Distance of consecutive frames' last beats, input always there, sink always ready.
+    /// Distance of consecutive frames' last beats, input always there, sink always ready; the longest of them where
+    /// frames are dropped that come sooner.
     pub interval_cycles: u64,
     /// First to last issue of the lanes.
     pub spmv_cycles: u64,

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::simulate::SimulationError;
 use crate::stream::{Mode, Traffic, exchange};
-use crate::trial::{Trial, timeout};
+use crate::trial::{Trial, pacing, timeout};
 use crate::verilate::Built;
 
 use super::{Access, Controlled, address};
@@ -40,7 +40,7 @@ pub fn check(trial: &Trial<'_>, built: &Built, progress: impl Fn()) -> Result<Re
     for cycle in (0..cycles).step_by(READ_EVERY as usize) {
         core.plan(cycle, Access::Read { address: address::FRAMES_OUT });
     }
-    let traffic = Traffic::new(packets, timeout(plan)).with_mode(&mode);
+    let traffic = Traffic::new(packets, timeout(plan)).with_mode(&mode).with_pacing(pacing(plan));
     let outcome = exchange(&mut core, &traffic, |_| progress())
         .map_err(|source| SimulationError::Stream { mode: "with register accesses", source })?;
 
@@ -72,7 +72,9 @@ pub fn check(trial: &Trial<'_>, built: &Built, progress: impl Fn()) -> Result<Re
         ("LAST_LATENCY", address::LAST_LATENCY, latency),
         ("LAST_INTERVAL", address::LAST_INTERVAL, interval),
     ];
-    for (name, address, expected) in constants(plan).into_iter().chain(figures) {
+    // Elsewhere an address without a register, which the check of the port looks at.
+    let dropped = plan.streams().drops.then_some(("FRAMES_DROPPED", address::FRAMES_DROPPED, 0));
+    for (name, address, expected) in constants(plan).into_iter().chain(figures).chain(dropped) {
         report.accesses += 1;
         let found = core.read(address)?;
         if found != expected {
@@ -95,7 +97,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
     let (sensor, hardware) = (&plan.design.sensor, &plan.design.hardware);
     let hash = u64::from_str_radix(&resolved_hash(&plan.design), 16).unwrap_or_default();
     let part = |index| VERSION.split('.').nth(index).and_then(|text| text.parse::<u32>().ok()).unwrap_or_default();
-    // From bit 8 on, behind five features and three bits that are 0.
+    // From bit 8 on, behind six features and two bits that are 0.
     let stream = (hardware.stream_bits / 8) | (u32::from(registers::samples(plan)) << 8);
     let features = [
         plan.field_words() > 0,
@@ -103,6 +105,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         plan.design.input.counts(),
         hardware.skip_zeros,
         plan.calibration.is_some(),
+        plan.streams().drops,
     ];
     vec![
         ("IDENTITY", address::IDENTITY, u32::from_be_bytes(*b"TFRA")),
@@ -111,7 +114,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         ("HASH_HIGH", address::HASH_HIGH, (hash >> 32) as u32),
         ("GEOMETRY", address::GEOMETRY, (hardware.lanes << 16 | sensor.rows << 8 | sensor.columns) as u32),
         ("FRAME", address::FRAME, (plan.words_out() << 16 | plan.streams().words_in()) as u32),
-        ("FEATURES", address::FEATURES, features.iter().rev().fold(stream << 3, |word, &is| word << 1 | u32::from(is))),
+        ("FEATURES", address::FEATURES, features.iter().rev().fold(stream << 2, |word, &is| word << 1 | u32::from(is))),
         ("CLOCK", address::CLOCK, (hardware.clock_mhz * 1e3).round() as u32),
         ("FULL_SCALE", address::FULL_SCALE, (hardware.full_scale_pa as f32).to_bits()),
         ("PREDICTED_LATENCY", address::PREDICTED_LATENCY, plan.timeline.latency_cycles as u32),

@@ -35,6 +35,7 @@ pub mod address {
     pub const LAST_STATUS: u32 = 0x05C;
     pub const LAST_LATENCY: u32 = 0x060;
     pub const LAST_INTERVAL: u32 = 0x064;
+    pub const FRAMES_DROPPED: u32 = 0x068;
     pub const CALIBRATION: u32 = 0x080;
     pub const CALIBRATION_OFFSET_LIMIT: u32 = 0x084;
     pub const CALIBRATION_STEPS_LOW: u32 = 0x088;

@@ -46,6 +46,12 @@ pub enum Violation {
         /// When.
         cycle: u64,
     },
+    /// A core that drops frames held its source.
+    #[error("cycle {cycle}: s_axis_tready is low, though the source cannot be held")]
+    Held {
+        /// When.
+        cycle: u64,
+    },
     /// A frame came out that no frame in accounts for.
     #[error("cycle {cycle}: the core sends a frame that nothing was sent in for")]
     UnexpectedFrame {

@@ -43,6 +43,7 @@ pub fn exchange(
         }
         quiet = if driver.done() { quiet + 1 } else { 0 };
     }
+    driver.outcome.dropped.extend(driver.inside);
     driver.outcome.cycles = driver.cycle;
     Ok(driver.outcome)
 }
@@ -63,6 +64,8 @@ struct Driver<'a> {
     /// True once the current word is on offer: it stays until taken.
     offering: bool,
     first_in: u64,
+    /// Cycle in which the packet was first on offer.
+    begun: Option<u64>,
     /// First cycle out of the last reset.
     released: u64,
     /// Packets sent whose answer is not complete: index and cycle of the first beat.
@@ -86,6 +89,7 @@ impl<'a> Driver<'a> {
             word: 0,
             offering: false,
             first_in: 0,
+            begun: None,
             released: 0,
             inside: VecDeque::new(),
             words: Vec::new(),
@@ -96,7 +100,8 @@ impl<'a> Driver<'a> {
     }
 
     fn done(&self) -> bool {
-        self.packet >= self.traffic.packets.len() && self.inside.is_empty()
+        let silent = self.traffic.drops && self.cycle - self.last_handshake >= self.traffic.timeout;
+        self.packet >= self.traffic.packets.len() && (self.inside.is_empty() || silent)
     }
 
     fn skip_empty(&mut self) {
@@ -136,9 +141,18 @@ impl<'a> Driver<'a> {
         let Some(words) = self.traffic.packets.get(self.packet) else {
             return Beat::default();
         };
-        let answered = self.traffic.pacing == Pacing::BackToBack || self.word > 0 || self.inside.is_empty();
-        if !self.offering {
-            self.offering = answered && self.source.next_cycle();
+        let may_begin = match self.traffic.pacing {
+            Pacing::BackToBack => true,
+            Pacing::OneAtATime => self.inside.is_empty(),
+            Pacing::Spaced { cycles, inside } => {
+                self.begun.is_none_or(|begun| self.cycle >= begun + cycles) && self.inside.len() < inside
+            }
+        };
+        if !self.offering && (may_begin || self.word > 0) {
+            self.offering = self.source.next_cycle();
+            if self.offering && self.word == 0 {
+                self.begun = Some(self.cycle);
+            }
         }
         // Zeros fill the last beat.
         let rest = words.get(self.word..).unwrap_or_default();
@@ -156,6 +170,10 @@ impl<'a> Driver<'a> {
         let sending = offer.valid || self.word > 0;
         if output.valid && self.inside.is_empty() && !sending {
             return Err(Violation::UnexpectedFrame { cycle: self.cycle }.into());
+        }
+        // It rises one cycle after the reset.
+        if self.traffic.drops && !outputs.ready && self.cycle > self.released {
+            return Err(Violation::Held { cycle: self.cycle }.into());
         }
         if offer.valid && outputs.ready {
             self.taken(offer);
@@ -194,8 +212,11 @@ impl<'a> Driver<'a> {
         }
         self.words.extend((0..kept).map(|place| (beat.data >> (32 * place)) as u32));
         if beat.last {
-            let (packet, first_in) = self.inside.pop_front().ok_or(Violation::UnexpectedFrame { cycle: self.cycle })?;
             let mut words = std::mem::take(&mut self.words);
+            if self.traffic.drops {
+                self.skip_dropped(&words);
+            }
+            let (packet, first_in) = self.inside.pop_front().ok_or(Violation::UnexpectedFrame { cycle: self.cycle })?;
             // Cores made up for tests of this driver have shorter answers, without a summary.
             let summary = words.get_mut(..SUMMARY_WORDS);
             if let Some(timestamp) = summary.and_then(|summary| summary.get_mut(TIMESTAMP)) {
@@ -204,6 +225,14 @@ impl<'a> Driver<'a> {
             self.outcome.exchanges.push(Exchange { packet, first_in, last_out: self.cycle, words });
         }
         Ok(())
+    }
+
+    /// Leaves out the packets that were dropped: those that began before what the answer's timestamp says.
+    fn skip_dropped(&mut self, words: &[u32]) {
+        let began = self.released + u64::from(words.get(TIMESTAMP).copied().unwrap_or(0));
+        while let Some(packet) = self.inside.pop_front_if(|&mut (_, first_in)| first_in < began) {
+            self.outcome.dropped.push(packet);
+        }
     }
 
     fn timeout(&self, offer: Beat) -> StreamError {

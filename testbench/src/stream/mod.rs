@@ -26,6 +26,14 @@ pub enum Pacing {
     BackToBack,
     /// When the output of the one before is complete: each packet's latency is its own.
     OneAtATime,
+    /// So many cycles after the one before began, at the earliest, and while fewer than so many are inside: what a core
+    /// that drops frames has room for.
+    Spaced {
+        /// Cycles from one packet's first offer to the next one's.
+        cycles: u64,
+        /// Packets sent and not answered.
+        inside: usize,
+    },
 }
 
 /// A reset in the middle of the traffic. The packet being sent is given up and not sent again; those inside the core
@@ -51,6 +59,9 @@ pub struct Traffic<'a> {
     pub pacing: Pacing,
     /// In order of their cycles.
     pub resets: &'a [Reset],
+    /// Whether packets may be dropped: which of them an answer belongs to is told by its timestamp, and the traffic is
+    /// over when the timeout is.
+    pub drops: bool,
     /// Give up after so many cycles without a handshake on either stream.
     pub timeout: u64,
 }
@@ -58,7 +69,15 @@ pub struct Traffic<'a> {
 impl<'a> Traffic<'a> {
     /// Both ends free-running, packets back to back, no reset.
     pub fn new(packets: &'a [Vec<u32>], timeout: u64) -> Self {
-        Self { packets, source: Pattern::Free, sink: Pattern::Free, pacing: Pacing::BackToBack, resets: &[], timeout }
+        Self {
+            packets,
+            source: Pattern::Free,
+            sink: Pattern::Free,
+            pacing: Pacing::BackToBack,
+            resets: &[],
+            drops: false,
+            timeout,
+        }
     }
 
     /// With the pauses of a mode.
@@ -71,6 +90,12 @@ impl<'a> Traffic<'a> {
     #[must_use]
     pub fn with_pacing(self, pacing: Pacing) -> Self {
         Self { pacing, ..self }
+    }
+
+    /// To a core that drops what it has no room for.
+    #[must_use]
+    pub fn with_drops(self) -> Self {
+        Self { drops: true, ..self }
     }
 
     /// With resets.
@@ -106,6 +131,8 @@ impl Exchange {
 pub struct Outcome {
     /// Completed exchanges, in order. Packets lost to a reset have none.
     pub exchanges: Vec<Exchange>,
+    /// Packets that were dropped, and the cycles in which their first beats were taken. Of a core that drops frames only.
+    pub dropped: Vec<(usize, u64)>,
     /// By reset that took place: the first packet that was sent after it.
     pub resumed: Vec<usize>,
     /// Cycles simulated.
@@ -135,6 +162,13 @@ impl Outcome {
     pub fn interval(&self) -> Option<u64> {
         let ends: Vec<u64> = self.exchanges.iter().map(|exchange| exchange.last_out).collect();
         (ends.len() > 1).then(|| middle_interval(&ends))
+    }
+
+    /// Mean distance between the ends of the packets, to the nearest cycle.
+    pub fn mean_interval(&self) -> Option<u64> {
+        let [first, .., last] = self.exchanges.as_slice() else { return None };
+        let distances = self.exchanges.len() as u64 - 1;
+        Some((last.last_out - first.last_out + distances / 2) / distances)
     }
 }
 

@@ -1,30 +1,43 @@
 //! What came out of a batch against what went in.
 
-use hdl_gen::model::Model;
+use std::ops::Range;
+
+use hdl_gen::model::{DROPPED, Model};
 use hdl_gen::plan::Plan;
 
 use super::{Kind, Report};
 use crate::stream::{Exchange, Outcome};
 
 /// Between two resets the core is a new one, and answers the packets in turn; those that were on their way when a reset
-/// came have no answer.
+/// came have no answer. A core that drops frames may leave out those that it had no room for, and says so in the next
+/// answer.
 ///
 /// # Errors
 /// The first packet that is wrong, and how.
 pub fn judge(plan: &Plan, kinds: &[Kind], packets: &[Vec<u32>], outcome: &Outcome) -> Result<Report, String> {
     let mut report = Report { cycles: outcome.cycles, resets: outcome.resumed.len() as u64, ..Report::default() };
-    for (mut sent, exchanges) in outcome.between_resets(packets.len()) {
+    for (resets, (mut sent, exchanges)) in (0..).zip(outcome.between_resets(packets.len())) {
         let mut model = Model::new(plan);
         for exchange in exchanges {
+            let dropped = drop_before(exchange.packet, &mut sent, exchanges, outcome)?;
+            for &packet in &dropped {
+                report.dropped.add(kinds[packet]);
+            }
             let next = sent.start;
             if exchange.packet != next {
                 return Err(format!("packet {} was answered where packet {next} should have been", exchange.packet));
             }
-            check(exchange, kinds, packets, &mut model)?;
+            check(exchange, kinds, packets, &mut model, !dropped.is_empty())?;
             report.answered.add(kinds[next]);
             sent.next();
         }
-        if sent.end == packets.len() && !sent.is_empty() {
+        let to_the_end = resets == outcome.resumed.len();
+        if to_the_end {
+            for packet in drop_before(packets.len(), &mut sent, exchanges, outcome)? {
+                report.dropped.add(kinds[packet]);
+            }
+        }
+        if to_the_end && !sent.is_empty() {
             return Err(format!("packet {} has no answer", sent.start));
         }
         sent.for_each(|lost| report.lost_to_resets.add(kinds[lost]));
@@ -35,9 +48,41 @@ pub fn judge(plan: &Plan, kinds: &[Kind], packets: &[Vec<u32>], outcome: &Outcom
     Ok(report)
 }
 
-fn check(exchange: &Exchange, kinds: &[Kind], packets: &[Vec<u32>], model: &mut Model<'_>) -> Result<(), String> {
+/// Takes the packets before this one that were dropped from those that were sent, up to one that was not.
+///
+/// # Errors
+/// One was dropped though the door, where two wait, had room: fewer than two that began before it had no answer yet.
+fn drop_before(
+    packet: usize,
+    sent: &mut Range<usize>,
+    exchanges: &[Exchange],
+    outcome: &Outcome,
+) -> Result<Vec<usize>, String> {
+    let mut dropped = Vec::new();
+    while sent.start < packet {
+        let Some(&(lost, first_in)) = outcome.dropped.iter().find(|&&(lost, _)| lost == sent.start) else { break };
+        let inside = exchanges.iter().filter(|other| other.first_in < first_in && other.last_out >= first_in).count();
+        if inside < 2 {
+            return Err(format!("packet {lost} was dropped with {inside} inside"));
+        }
+        dropped.push(lost);
+        sent.next();
+    }
+    Ok(dropped)
+}
+
+fn check(
+    exchange: &Exchange,
+    kinds: &[Kind],
+    packets: &[Vec<u32>],
+    model: &mut Model<'_>,
+    after_dropped: bool,
+) -> Result<(), String> {
     let (packet, kind) = (exchange.packet, kinds[exchange.packet]);
-    let expected = model.process(&packets[packet]);
+    let mut expected = model.process(&packets[packet]);
+    if after_dropped {
+        expected[0] |= DROPPED;
+    }
     // The flag is known from how the packet was made, whatever the model thinks of it.
     let bad = Kind::ALL.map(Kind::status).into_iter().fold(0, |bits, bit| bits | bit);
     let flags = expected[0] & bad;
@@ -79,7 +124,7 @@ mod tests {
                 exchanges.push(Exchange { packet, first_in, last_out, words: model.process(&packets[packet]) });
             }
         }
-        (kinds, packets, Outcome { exchanges, resumed: vec![12], cycles: 5000 })
+        (kinds, packets, Outcome { exchanges, resumed: vec![12], cycles: 5000, ..Outcome::default() })
     }
 
     fn judged(change: impl Fn(&mut Vec<Exchange>)) -> Result<Report, String> {
@@ -94,6 +139,28 @@ mod tests {
         let report = judged(|_| ()).unwrap();
         assert_eq!((report.sent.total(), report.answered.total(), report.lost_to_resets.total()), (40, 38, 2));
         assert_eq!((report.resets, report.sent), (1, report.answered.plus(report.lost_to_resets)));
+    }
+
+    /// A packet without an answer in the middle of the traffic, while so many others have none yet.
+    fn with_one_dropped(inside: u64) -> Result<Report, String> {
+        let plan = Plan::new(&Design::from_toml(DESIGN, "tiny.toml").unwrap()).unwrap();
+        let (kinds, packets, mut outcome) = right(&plan);
+        outcome.exchanges.remove(20);
+        let mut model = Model::new(&plan);
+        for exchange in &mut outcome.exchanges[10..] {
+            exchange.words = model.process(&packets[exchange.packet]);
+            exchange.last_out += inside * 100;
+        }
+        outcome.exchanges[20].words[0] |= DROPPED;
+        outcome.dropped = vec![(22, 2200)];
+        judge(&plan, &kinds, &packets, &outcome)
+    }
+
+    #[test]
+    fn a_packet_is_dropped_for_want_of_room_only() {
+        let report = with_one_dropped(2).unwrap();
+        assert_eq!((report.answered.total(), report.dropped.total(), report.lost_to_resets.total()), (37, 1, 2));
+        assert!(with_one_dropped(1).unwrap_err().contains("dropped with 1 inside"));
     }
 
     #[test]

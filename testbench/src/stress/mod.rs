@@ -20,7 +20,7 @@ use packets::Packets;
 pub use packets::{Counts, Kind};
 
 use crate::dut::Core;
-use crate::stream::{Pattern, Reset, StreamError, Traffic, exchange};
+use crate::stream::{Pacing, Pattern, Reset, StreamError, Traffic, exchange};
 use crate::trial::{self, TrialError, planned, timeout};
 use golden::progress::Progress;
 use judge::judge;
@@ -52,6 +52,8 @@ pub struct Report {
     pub sent: Counts,
     /// Packets answered: each with every word of the integer model, in the order in which they were sent.
     pub answered: Counts,
+    /// Packets that found no room, in a core that drops them: none that did while fewer than two had no answer yet.
+    pub dropped: Counts,
     /// Packets inside, or on their way in, when a reset came.
     pub lost_to_resets: Counts,
     /// Resets in the middle of the traffic.
@@ -64,6 +66,7 @@ impl Report {
     fn add(&mut self, other: &Self) {
         self.sent = self.sent.plus(other.sent);
         self.answered = self.answered.plus(other.answered);
+        self.dropped = self.dropped.plus(other.dropped);
         self.lost_to_resets = self.lost_to_resets.plus(other.lost_to_resets);
         self.resets += other.resets;
         self.cycles += other.cycles;
@@ -82,9 +85,14 @@ impl fmt::Display for Report {
             self.seed
         )?;
         writeln!(out, "{:>16} {:>10} {:>10} {:>10} {:>10}", "", "good", "short", "long", "NaN")?;
-        for (name, counts) in
-            [("sent", self.sent), ("answered", self.answered), ("lost to resets", self.lost_to_resets)]
-        {
+        let rows = [
+            ("sent", self.sent),
+            ("answered", self.answered),
+            ("dropped", self.dropped),
+            ("lost to resets", self.lost_to_resets),
+        ];
+        // Only a core that may drop frames has that row.
+        for (name, counts) in rows.into_iter().filter(|(name, counts)| *name != "dropped" || counts.total() > 0) {
             let Counts { good, short, long, not_finite } = counts;
             writeln!(out, "{name:>16} {good:>10} {short:>10} {long:>10} {not_finite:>10}")?;
         }
@@ -165,9 +173,12 @@ pub fn run_batch(
     let mixed = Packets::new(plan, &mut random);
     let (kinds, packets): (Vec<Kind>, Vec<Vec<u32>>) = (0..frames).map(|_| mixed.next(&mut random)).unzip();
     let resets = resets(plan, frames, &mut random);
+    let pacing = if plan.streams().drops { scanner(plan, &mut random) } else { Pacing::BackToBack };
     let traffic = Traffic {
         source: if batch % 3 == 1 { paced(plan, &mut random) } else { pattern(&mut random) },
         sink: pattern(&mut random),
+        drops: plan.streams().drops,
+        pacing,
         ..Traffic::new(&packets, 20 * timeout(plan))
     };
     let outcome = exchange(core, &traffic.with_resets(&resets), |_| progress())
@@ -182,6 +193,11 @@ fn resets(plan: &Plan, frames: u64, random: &mut ChaCha8Rng) -> Vec<Reset> {
     let mut cycles: Vec<u64> = (0..frames / FRAMES_PER_RESET).map(|_| random.random_range(0..end)).collect();
     cycles.sort_unstable();
     cycles.into_iter().map(|cycle| Reset { cycle, length: random.random_range(1..=4) }).collect()
+}
+
+/// A scanner that is a little slower than the core, or up to as fast as beats can follow each other.
+fn scanner(plan: &Plan, random: &mut ChaCha8Rng) -> Pacing {
+    Pacing::Spaced { cycles: random.random_range(0..=plan.timeline.interval_cycles * 5 / 4), inside: usize::MAX }
 }
 
 /// A source that pauses about once a frame, for up to as long as the core has a frame: so frames meet each other

@@ -27,6 +27,7 @@ mod layered;
 mod lint;
 mod looking;
 mod netlist;
+mod overrun;
 mod parameters;
 mod properties;
 mod python;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::support::{by_plan, in_parallel, planned, shipped};
-use golden::design::{Design, Outputs, PlanKind};
+use golden::design::{Design, Outputs, Overrun, PlanKind};
 use golden::progress::Progress;
 use testbench::frame_set::FrameSet;
 use testbench::mutants::{self, Kind, mutants};
@@ -33,6 +33,29 @@ fn every_answer_is_right_and_none_is_lost() {
         }
         // A reset costs the frames inside, eight at most.
         assert!(report.lost_to_resets.total() <= 8 * report.resets, "{report}");
+    });
+}
+
+/// Cores that drop what they have no room for: no frame is lost without a reason, no part of one is left behind.
+#[test]
+fn what_is_dropped_had_no_room() {
+    let [mut one_by_one, mut at_once] =
+        [PlanKind::Paper, PlanKind::Reduced].map(|kind| by_plan(shipped("small"), kind, Outputs::Field));
+    one_by_one.hardware.stream_bits = 64;
+    at_once.hardware.stream_bits = 128;
+    for design in [&mut one_by_one, &mut at_once] {
+        design.name += "_scanned";
+        design.hardware.overrun = Overrun::Drop;
+    }
+    let options = stress::Options { frames: FRAMES, seed: 5 };
+    in_parallel(&[one_by_one, at_once], |design| {
+        let report = stress(design, &options, &Progress::hidden()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(report.sent, report.answered.plus(report.dropped).plus(report.lost_to_resets));
+        for counts in [report.answered, report.dropped] {
+            for count in [counts.good, counts.short, counts.long, counts.not_finite] {
+                assert!(count > FRAMES / 100, "{report}");
+            }
+        }
     });
 }
 

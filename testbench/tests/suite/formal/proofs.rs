@@ -1,6 +1,6 @@
 //! What is proved of which designs, and the broken copies whose proofs must fail.
 
-use golden::design::{CalibrationIn, Design, Estimator, Optimise, Outputs, PlanKind};
+use golden::design::{CalibrationIn, Design, Estimator, Optimise, Outputs, Overrun, PlanKind};
 
 /// A module, a text in it, and what takes its place.
 pub type Broken = (&'static str, &'static str, &'static str);
@@ -51,6 +51,11 @@ fn calibrated(design: &mut Design) {
     design.hardware.control = true;
     design.hardware.calibration = CalibrationIn::Ram;
     design.input.pa_per_count = Some(-12.5);
+}
+
+fn scanned(design: &mut Design) {
+    reduced(design);
+    design.hardware.overrun = Overrun::Drop;
 }
 
 fn joint(design: &mut Design) {
@@ -154,6 +159,25 @@ pub const PROOFS: &[Proof] = &[
             ("sptfra_axis_skid", "if (!blocked) begin", "if (1'b1) begin"),
             ("sptfra_axis_skid", "!(spare_needed || reset)", "!reset"),
             ("sptfra_axis_skid", "if (ready) begin", "if (!blocked) begin"),
+        ],
+    },
+    Proof {
+        name: "door that drops frames",
+        harness: "overrun",
+        design: scanned,
+        defines: &[],
+        top: "sptfra_overrun",
+        parameters: "-set BEATS 2",
+        models: &[("sptfra_ram", "ram_model")],
+        free: &[],
+        free_wires: &[],
+        induction: "2",
+        broken: &[
+            ("whole_frames", "in_frame ? keeps : room", "room"),
+            ("overrun", "(frames != FRAMES)", "(1'b1)"),
+            ("overrun", "((index != END) || s_tlast)", "(index != END)"),
+            ("overrun", " && (!valid || m_tready)", ""),
+            ("overrun", "marks[oldest] && !in_answer", "marks[oldest]"),
         ],
     },
     Proof {

@@ -9,7 +9,7 @@ use crate::calibration;
 use crate::support::random;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
 use golden::design::{
-    Calibration, CalibrationIn, Curve, Design, Estimator, Input, Outputs, PlanKind, Samples, Slip, Tension,
+    Calibration, CalibrationIn, Curve, Design, Estimator, Input, Outputs, Overrun, PlanKind, Samples, Slip, Tension,
 };
 use hdl_gen::emit::emit;
 use tempfile::TempDir;
@@ -56,9 +56,19 @@ fn designs() -> Vec<Design> {
     "in_ram".clone_into(&mut in_ram.name);
     in_ram.hardware.control = true;
     in_ram.hardware.calibration = CalibrationIn::Ram;
+    // Frames dropped, with and without registers, samples one by one and at once.
+    let mut dropping = in_ram.clone();
+    "dropping".clone_into(&mut dropping.name);
+    let mut scanned = by_plan(shipped("small"), paper, Outputs::Field);
+    "scanned".clone_into(&mut scanned.name);
+    for design in [&mut dropping, &mut scanned] {
+        design.hardware.overrun = Overrun::Drop;
+    }
     vec![
         calibration::design(Outputs::Field),
         in_ram,
+        dropping,
+        scanned,
         wide,
         integers,
         unpacked,

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// The door of a core whose source cannot be held: two frames wait here, and one that begins while neither of them has
+// left is dropped whole. The first answer behind dropped frames says so: bit 12 of its status.
+//
+// Latency 2 cycles, one beat a cycle. A frame is handed on while it comes in. Of beats that it has too many only the
+// last one goes on, so that it stays too long and yet has room. Sixteen frames may be inside the core; answers pass in
+// the same cycle, in their frames' order.
+
+`default_nettype none
+
+module sptfra_overrun #(
+    // Beats of a frame
+    parameter BEATS = 12,
+    // 32-bit words of a beat: 1, 2 or 4
+    parameter WORDS = 1
+) (
+    input  wire clock,
+    input  wire reset,
+    // Stream in, always ready
+    input  wire [32*WORDS-1:0] s_tdata,
+    input  wire s_tlast,
+    input  wire s_tvalid,
+    output wire s_tready,
+    output wire kept, // the beat taken now is one of a frame that has room
+    output wire dropped, // a frame that had none ends now
+    // Frames that have room
+    output wire [32*WORDS-1:0] m_tdata,
+    output wire m_tlast,
+    output wire m_tvalid,
+    input  wire m_tready,
+    // Answers
+    input  wire word_taken,
+    input  wire word_last,
+    input  wire [32*WORDS-1:0] words_in,
+    output wire [32*WORDS-1:0] words
+);
+
+    localparam FRAMES = 2; // that wait
+    localparam LENGTH = BEATS + 1; // stored of a frame, at most
+    localparam DEPTH = FRAMES * LENGTH;
+    localparam ADDRESS_WIDTH = $clog2(DEPTH);
+    localparam COUNT_WIDTH = $clog2(DEPTH + 1);
+    localparam INDEX_WIDTH = $clog2(BEATS + 1);
+    localparam [31:0] END_WIDE = BEATS;
+    localparam [31:0] TOP_WIDE = DEPTH - 1;
+    localparam [INDEX_WIDTH-1:0] END = END_WIDE[INDEX_WIDTH-1:0];
+    localparam [ADDRESS_WIDTH-1:0] TOP = TOP_WIDE[ADDRESS_WIDTH-1:0];
+    localparam DROPPED = 12; // bit of the status, the first word of an answer
+
+    generate
+        if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
+            sptfra_error_words_must_be_1_2_or_4 invalid ();
+        end
+    endgenerate
+
+    // ---- In
+    reg [1:0] frames; // that wait, or are coming in
+    reg [INDEX_WIDTH-1:0] index; // of the next beat of the frame, stops at BEATS
+    wire begins;
+    wire dropping;
+    wire store = kept && ((index != END) || s_tlast);
+
+    sptfra_whole_frames whole_frames (
+        .clock    (clock),
+        .reset    (reset),
+        .s_tvalid (s_tvalid),
+        .s_tlast  (s_tlast),
+        .s_tready (s_tready),
+        .room     (frames != FRAMES),
+        .kept     (kept),
+        .begins   (begins),
+        .dropping (dropping),
+        .dropped  (dropped)
+    );
+
+    // ---- Frames that wait, in a ring
+    reg [ADDRESS_WIDTH-1:0] write_address;
+    reg [ADDRESS_WIDTH-1:0] read_address;
+    reg [COUNT_WIDTH-1:0] waiting; // beats there
+    reg valid; // one more has been read
+    wire read = (waiting != {COUNT_WIDTH{1'b0}}) && (!valid || m_tready);
+    wire leaves = m_tvalid && m_tready && m_tlast;
+
+    assign m_tvalid = valid;
+
+    sptfra_ram #(
+        .WIDTH         (32 * WORDS + 1),
+        .DEPTH         (DEPTH),
+        .ADDRESS_WIDTH (ADDRESS_WIDTH)
+    ) ring (
+        .clock         (clock),
+        .write_enable  (store),
+        .write_address (write_address),
+        .write_data    ({s_tlast, s_tdata}),
+        .read_enable   (read),
+        .read_address  (read_address),
+        .read_data     ({m_tlast, m_tdata})
+    );
+
+    always @(posedge clock) begin
+        if (kept) begin
+            index <= s_tlast ? {INDEX_WIDTH{1'b0}} : (index != END) ? index + 1'b1 : index;
+        end
+        if (store) begin
+            write_address <= (write_address == TOP) ? {ADDRESS_WIDTH{1'b0}} : write_address + 1'b1;
+        end
+        if (read) begin
+            read_address <= (read_address == TOP) ? {ADDRESS_WIDTH{1'b0}} : read_address + 1'b1;
+        end
+        waiting <= waiting + {{(COUNT_WIDTH-1){1'b0}}, store} - {{(COUNT_WIDTH-1){1'b0}}, read};
+        valid <= read || (valid && !m_tready);
+        frames <= frames + {1'b0, begins} - {1'b0, leaves};
+        if (reset) begin
+            index <= {INDEX_WIDTH{1'b0}};
+            write_address <= {ADDRESS_WIDTH{1'b0}};
+            read_address <= {ADDRESS_WIDTH{1'b0}};
+            waiting <= {COUNT_WIDTH{1'b0}};
+            valid <= 1'b0;
+            frames <= 2'd0;
+        end
+    end
+
+    // ---- Which frames inside have dropped ones before them
+    reg [15:0] marks;
+    reg [3:0] newest;
+    reg [3:0] oldest;
+    reg mark; // the next one
+    reg in_answer;
+    wire [32*WORDS-1:0] bit_of_status = {{(32*WORDS-1){1'b0}}, marks[oldest] && !in_answer};
+
+    assign words = words_in | (bit_of_status << DROPPED);
+
+    always @(posedge clock) begin
+        if (begins) begin
+            marks[newest] <= mark;
+            newest <= newest + 4'd1;
+            mark <= 1'b0;
+        end
+        if (dropped) begin
+            mark <= 1'b1;
+        end
+        if (word_taken) begin
+            in_answer <= !word_last;
+            if (word_last) begin
+                oldest <= oldest + 4'd1;
+            end
+        end
+        if (reset) begin
+            newest <= 4'd0;
+            oldest <= 4'd0;
+            mark <= 1'b0;
+            in_answer <= 1'b0;
+        end
+    end
+
+    wire _unused = dropping;
+
+`ifdef SIMULATION
+    // A frame that is kept has room for all of it
+    always @(posedge clock) begin
+        if (!reset && ((store && (waiting == DEPTH)) || (begins && (frames == FRAMES)))) begin
+            $fdisplay(32'h80000002, "%m: a frame is kept that has no room");
+            $finish;
+        end
+    end
+`endif
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,26 @@
+//! The door of a core whose source cannot be held, `sptfra_overrun`; other cores have a skid buffer there.
+
+use crate::plan::Plan;
+use crate::plan::memory::memory;
+use crate::plan::resources::BlockCost;
+use crate::plan::streams::WORD_BITS;
+
+use super::Parameters;
+
+/// Frames that wait.
+pub const FRAMES: usize = 2;
+
+/// The instance's parameters.
+pub fn parameters(plan: &Plan) -> Parameters {
+    let streams = plan.streams();
+    Parameters::new().count("BEATS", streams.beats_in()).count("WORDS", streams.words())
+}
+
+/// The frames that wait, each with room for a beat too many, and for each beat whether it is the last; nothing where the
+/// source is held.
+pub fn cost(plan: &Plan) -> Option<BlockCost> {
+    let streams = plan.streams();
+    let depth = FRAMES * (streams.beats_in() + 1);
+    let ring = memory("waiting frames", 1, depth, (streams.words() * WORD_BITS + 1) as u32, false);
+    streams.drops.then(|| BlockCost::new("Intake", &["sptfra_overrun"], 0).with([ring]))
+}
