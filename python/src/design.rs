@@ -47,6 +47,13 @@ pub fn named_anew(mut design: Checked, name: Option<String>) -> PyResult<Design>
     Ok(Design::new(Checked::from_parts(&design.to_toml(), "calibrate", &files).map_err(raised)?))
 }
 
+/// What is given as a pitch.
+#[derive(FromPyObject)]
+enum Pitch {
+    Both([f64; 2]),
+    One(f64),
+}
+
 /// The word as the value that it means; `key` says in a message what it was given for.
 pub fn word<T: serde::de::DeserializeOwned>(key: &str, word: &str) -> PyResult<T> {
     words::read(word).map_err(|allowed| Error::new_err(format!("{key} is {word:?}; choose one of: {allowed}")))
@@ -56,7 +63,7 @@ pub fn word<T: serde::de::DeserializeOwned>(key: &str, word: &str) -> PyResult<T
 impl Design {
     #[new]
     #[pyo3(signature = (
-        name = "my_sensor", *, columns = 10, rows = 10, pitch_mm = [4.0, 2.0], depth_mm = 3.0, estimator = "joint",
+        name = "my_sensor", *, columns = 10, rows = 10, pitch_mm = Pitch::Both([4.0, 2.0]), depth_mm = 3.0, estimator = "joint",
         tension = "read", counts = None, full_scale_pa = golden::design::DEFAULT_FULL_SCALE_PA
     ))]
     #[allow(clippy::too_many_arguments, reason = "keywords, most of them left out")]
@@ -65,7 +72,7 @@ impl Design {
         name: &str,
         columns: usize,
         rows: usize,
-        pitch_mm: [f64; 2],
+        pitch_mm: Pitch,
         depth_mm: f64,
         estimator: &str,
         tension: &str,
@@ -74,6 +81,13 @@ impl Design {
     ) -> PyResult<Self> {
         let estimator: Estimator = word("estimator", estimator)?;
         let tension: Tension = word("tension", tension)?;
+        let pitch_mm = match pitch_mm {
+            Pitch::Both(pitch) => pitch,
+            Pitch::One(pitch) => {
+                let problem = format!("pitch_mm is one number, {pitch}; write two, for x and y: ({pitch}, {pitch})");
+                return Err(Error::new_err(problem));
+            }
+        };
         let name = name.to_owned();
         let new = NewDesign { name, estimator, columns, rows, pitch_mm, depth_mm, tension, counts, full_scale_pa };
         let text = without_lock(py, || new.text(&mut |_| ()))?;

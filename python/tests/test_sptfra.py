@@ -55,6 +55,7 @@ class Designs(unittest.TestCase):
             (lambda: sptfra.Design.from_toml("name = 1"), "line 1, column 8"),
             (lambda: design("lanes = 3\n"), "pad.toml, line 7"),
             (lambda: sptfra.Design(columns=1), "sensor.columns is 1; use a whole number from 2 to 64"),
+            (lambda: sptfra.Design(pitch_mm=3.4), "write two, for x and y: (3.4, 3.4)"),
             (lambda: sptfra.Design(tension="some"), 'tension is "some"; choose one of: read, clipped'),
             (lambda: sptfra.Design(estimator="both"), 'estimator is "both"; choose one of: line, joint'),
             (lambda: sptfra.Design(counts=3), "counts of 3 bits; use 4 to 24"),

@@ -69,11 +69,12 @@ impl Svg {
         self.named(&shape, name);
     }
 
-    /// The same as a triangle that points up, to what is beyond the picture.
+    /// The same as a triangle that points to what is beyond the picture: up, or down with a negative `radius`.
     pub fn named_triangle(&mut self, (x, y): (f64, f64), radius: f64, colour: &str, name: &str) {
-        let (left, right, low) = (x - radius, x + radius, y + radius);
+        let (left, right, base) = (x - radius, x + radius, y + radius);
         let shape = format!(
-            "<path d=\"M{x:.1} {:.1}L{right:.1} {low:.1}L{left:.1} {low:.1}Z\" fill=\"{colour}\" fill-opacity=\"0.8\"/>",
+            "<path d=\"M{x:.1} {:.1}L{right:.1} {base:.1}L{left:.1} {base:.1}Z\" fill=\"{colour}\" \
+             fill-opacity=\"0.8\"/>",
             y - radius
         );
         self.named(&shape, name);

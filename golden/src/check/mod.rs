@@ -53,6 +53,8 @@ impl fmt::Display for Finding {
 const TOO_SMALL: f64 = 1000.0;
 /// So is one this many times above it: more than any converter is overdriven by.
 const TOO_LARGE: f64 = 10.0;
+/// Whole numbers with a peak this many times below it are counts of a converter of 12 bits or so, not pascals.
+const WHOLE: f64 = 16.0;
 /// A frame counts as loaded if its peak is this share of the largest.
 const LOADED: f64 = 0.1;
 /// What a finding holds for: this share of the loaded frames.
@@ -76,13 +78,28 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
         return findings;
     }
     let counts = design.input.counts();
-    if let Some(message) = range(design.hardware.full_scale_pa, peak, counts) {
+    let full_scale = design.hardware.full_scale_pa;
+    let whole = !counts && WHOLE * peak <= full_scale && frames.iter().flatten().all(|value| value.fract() == 0.0);
+    if let Some(message) = range(full_scale, peak, counts) {
         found(Kind::Range, message);
+    } else if whole {
+        found(
+            Kind::Range,
+            format!(
+                "all readings are whole numbers, the largest {peak:.0}, {:.0} times below hardware.full_scale_pa: counts of a \
+                 converter? Say what one is worth in sensor.pa_per_count, negative where larger counts press",
+                full_scale / peak
+            ),
+        );
     }
     let mut loaded: Vec<Vec<f64>> = stress.into_iter().filter(|frame| largest(frame) >= LOADED * peak).collect();
     let pulling = loaded.iter().filter(|frame| frame.iter().sum::<f64>() > 0.0).count();
     if holds(pulling, loaded.len()) {
-        let remedy = if counts { "change the sign of sensor.pa_per_count" } else { "write sensor.pa_per_count = -1.0" };
+        let remedy = match (counts, whole) {
+            (true, _) => "change the sign of sensor.pa_per_count",
+            (false, true) => "write sensor.pa_per_count, what a count is worth, with a minus",
+            (false, false) => "write sensor.pa_per_count = -1.0",
+        };
         found(
             Kind::Sign,
             format!(

@@ -101,7 +101,15 @@ fn other_units() {
     // Counts of a converter that a design in pascals takes for pascals, and the other way round.
     let counts = changed(&pascals, |pa| (pa / -24.4).round());
     found(&counting, &counts, &[], &[]);
-    found(&design, &counts, &[Kind::Sign], &["F_z > 0", "sensor.pa_per_count"]);
+    found(
+        &design,
+        &counts,
+        &[Kind::Range, Kind::Sign],
+        &["counts of a converter", "what a count is worth, with a minus"],
+    );
+    let pressing = changed(&counts, |count| -count);
+    found(&design, &pressing, &[Kind::Range], &["whole numbers, the largest 2", "sensor.pa_per_count"]);
+    found(&design, &changed(&pascals, f64::round), &[], &[]);
     found(&counting, &pascals, &[Kind::Range, Kind::Sign], &["in pascals already", "change the sign"]);
     found(&design, &changed(&pascals, |_| 0.0), &[Kind::Empty], &["connected"]);
 }

@@ -31,9 +31,15 @@ struct Variant<'a> {
 }
 
 impl Variant<'_> {
-    /// Cycles times multipliers: what a variant asks of a device for a frame.
-    fn cost(&self) -> u64 {
-        self.hardware.latency_cycles * self.hardware.dsp as u64
+    /// Cycles times multipliers: what a variant asks of a device for a frame. Of those that ask as much, that with fewer
+    /// memories, in halves, and with all entries.
+    fn cost(&self) -> (u64, u64, u64, bool) {
+        let Hardware { latency_cycles, dsp, bram36, .. } = *self.hardware;
+        (latency_cycles * dsp as u64, latency_cycles, (2.0 * bram36) as u64, self.is_filtered())
+    }
+
+    fn is_filtered(&self) -> bool {
+        self.point.filter != "none"
     }
 }
 
@@ -45,17 +51,18 @@ pub fn conclusion(points: &[&Point], scenes: &[&str]) -> Option<Conclusion> {
     let best = variants
         .iter()
         .filter(|variant| variant.tangential <= most_exact.tangential + AS_GOOD)
-        .min_by_key(|variant| (variant.cost(), variant.hardware.latency_cycles))?;
-    let fastest = variants.iter().min_by_key(|variant| (variant.hardware.latency_cycles, variant.hardware.dsp))?;
+        .min_by_key(|variant| variant.cost())?;
+    let fastest = variants.iter().min_by_key(|variant| (variant.hardware.latency_cycles, variant.cost()))?;
     let frames: usize = points.iter().filter(|point| point.key == best.point.key).map(|point| point.frames).sum();
     let mut sentences = vec![format!(
         "Take {}: of {} variants none errs by half a point less, and of those that err as little it has the least product \
-         of cycles and multipliers. On {} ({frames} frames in the first) it errs by at most {:.1} % of the normal force \
+         of cycles and multipliers. On {} ({frames} frames{}) it errs by at most {:.1} % of the normal force \
          along x and y and {:.1} % along z, and takes {} cycles, {:.1} µs, with {} DSP and {:.1} RAMB36; {} frames a \
          second.",
         best.point.label(),
         variants.len(),
         listed(scenes),
+        if scenes.len() > 1 { " in the first" } else { "" },
         best.tangential,
         best.normal,
         grouped(best.hardware.latency_cycles),
@@ -75,7 +82,7 @@ pub fn conclusion(points: &[&Point], scenes: &[&str]) -> Option<Conclusion> {
     if fastest.point.key == best.point.key {
         "None is faster".clone_into(&mut last);
     }
-    let filtered = variants.iter().filter(|variant| variant.point.filter != "none");
+    let filtered = variants.iter().filter(|variant| variant.is_filtered() && variant.point.key != best.point.key);
     if let Some(filtered) = filtered.min_by(|a, b| a.tangential.total_cmp(&b.tangential)) {
         let verdict = match filtered.tangential - best.tangential {
             more if more > AS_GOOD => "which is less exact",
@@ -238,6 +245,20 @@ pub(super) mod tests {
         assert!(found.keys.contains("filter = { kind = \"none\" }") && found.keys.contains("lanes = 16"), "{found:?}");
         assert_eq!(conclusion(&points, &["a", "b", "c"]), None);
         assert_eq!(conclusion(&points, &[]), None);
+    }
+
+    /// A filter that saves neither cycles nor multipliers is none to take, nor one to speak of.
+    #[test]
+    fn of_equal_variants_that_with_fewer_memories_is_taken() {
+        let plain = point("a", 16, 2000, 2.0);
+        let mut filtered = point("a", 16, 2000, 2.0);
+        ("f2 p=50".clone_into(&mut filtered.filter), "filtered".clone_into(&mut filtered.key));
+        filtered.hardware.as_mut().expect("hardware").bram36 += 6.0;
+        let found = conclusion(&[&filtered, &plain], &["a"]).expect("a conclusion");
+        assert!(found.sentences[0].starts_with("Take no filter"), "{:?}", found.sentences);
+        assert!(found.sentences[0].contains("(36 frames)") || !found.sentences[0].contains("in the first"));
+        let alone = conclusion(&[&filtered], &["a"]).expect("a conclusion");
+        assert!(!alone.sentences.concat().contains("of the filtered ones"), "{:?}", alone.sentences);
     }
 
     #[test]

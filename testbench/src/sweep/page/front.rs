@@ -92,10 +92,10 @@ pub fn front(points: &[&Point], with_paper: bool, tells: bool) -> String {
             hardware.dsp,
             point.verified.title()
         );
-        if point.tangential() > MOST_PERCENT {
-            svg.named_triangle(place, 5.5, style(point).1, &name);
-        } else {
-            svg.named_dot(place, 4.5, style(point).1, &name);
+        match point.tangential() {
+            more if more > MOST_PERCENT => svg.named_triangle(place, 5.5, style(point).1, &name),
+            less if less < LEAST_PERCENT => svg.named_triangle(place, -5.5, style(point).1, &name),
+            _ => svg.named_dot(place, 4.5, style(point).1, &name),
         }
         if point.verified == crate::sweep::point::Verified::Rtl {
             svg.ring(place, 7.5, style(point).1);
@@ -230,5 +230,7 @@ mod tests {
         let [joined, alone] = [true, false].map(|tells| front(&points, false, tells));
         assert_eq!((joined.matches(&line).count(), alone.matches(&line).count()), (1, 0));
         assert_eq!((joined.matches("<circle").count(), joined.matches("<path").count()), (2, 1));
+        let exact = front(&[&point("a", 16, 2000, 0.3)], false, true);
+        assert_eq!((exact.matches("<circle").count(), exact.matches("<path").count()), (0, 1), "below the plot");
     }
 }
