@@ -252,7 +252,8 @@ pub(super) mod tests {
     fn of_equal_variants_that_with_fewer_memories_is_taken() {
         let plain = point("a", 16, 2000, 2.0);
         let mut filtered = point("a", 16, 2000, 2.0);
-        ("f2 p=50".clone_into(&mut filtered.filter), "filtered".clone_into(&mut filtered.key));
+        "f2 p=50".clone_into(&mut filtered.filter);
+        "filtered".clone_into(&mut filtered.key);
         filtered.hardware.as_mut().expect("hardware").bram36 += 6.0;
         let found = conclusion(&[&filtered, &plain], &["a"]).expect("a conclusion");
         assert!(found.sentences[0].starts_with("Take no filter"), "{:?}", found.sentences);
