@@ -139,6 +139,10 @@ int sptfra_soft_reset(sptfra *device, uint32_t polls)
     if (!device->has_registers) {
         return SPTFRA_NO_REGISTERS;
     }
+    if (device->scatter_gather) {
+        /* What is on its way would be numbered anew. */
+        return SPTFRA_QUEUE_ONLY;
+    }
     SET(device, CONTROL, SPTFRA__CONTROL__SOFT_RESET_bm);
     return sptfra_reset_over(device, polls);
 }

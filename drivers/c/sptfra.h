@@ -41,7 +41,8 @@ enum {
     SPTFRA_NOT_AT_REST = -16,      /* a taxel spread by more than the noise floor: nothing has changed */
     SPTFRA_BAD_REST = -17,         /* a frame of the tare was clipped, no number, cut or lost: nothing has changed */
     SPTFRA_QUEUE_ONLY = -18,       /* the DMA goes by descriptors: sptfra_queue.h */
-    SPTFRA_NO_QUEUE = -19          /* the DMA has none */
+    SPTFRA_NO_QUEUE = -19,         /* the DMA has none */
+    SPTFRA_DROPS = -20             /* the core drops frames that come too fast: send it one at a time */
 };
 
 /* What went wrong, in words. */
@@ -122,7 +123,7 @@ typedef struct {
 int sptfra_count(const sptfra *device, sptfra_counters *counters);
 
 /* Resets the core without cutting a packet, see docs/control.md. Frames inside are lost; the packet going out still
- * needs a transfer that takes it. */
+ * needs a transfer that takes it. With a queue SPTFRA_QUEUE_ONLY: sptfra_queue_recover does it. */
 int sptfra_soft_reset(sptfra *device, uint32_t polls);
 
 /* Events of the registers INTERRUPT_ENABLE and INTERRUPT_STATUS. */

@@ -119,6 +119,7 @@ static int begin(sptfra_queue *queue)
         code = sptfra_run_dma(queue->device, channels[index], RESET_POLLS);
     }
     queue->sent = queue->taken = 0;
+    queue->next_in = queue->next_out = 0;
     queue->held = 0;
     queue->failed = code != SPTFRA_OK;
     if (code == SPTFRA_OK) {
@@ -130,10 +131,14 @@ static int begin(sptfra_queue *queue)
 int sptfra_queue_open(sptfra_queue *queue, sptfra *device, const sptfra_buffer *memory, uint32_t depth)
 {
     memset(queue, 0, sizeof *queue);
+    queue->failed = 1;
     if (depth < SPTFRA_LEAST_QUEUED || depth > SPTFRA_MOST_QUEUED || memory->data == NULL
         || (uintptr_t)memory->data % SPTFRA_LINE != 0 || memory->address % SPTFRA_LINE != 0
         || memory->bytes < sptfra_queue_bytes(&device->shape, depth)) {
         return SPTFRA_BAD_BUFFER;
+    }
+    if (device->has_registers && FIELD(GET(device, FEATURES), FEATURES__DROPS)) {
+        return SPTFRA_DROPS;
     }
     queue->device = device;
     queue->memory = *memory;
@@ -153,7 +158,7 @@ void *sptfra_queue_room(const sptfra_queue *queue)
     if (queue->failed || queue->sent - queue->taken == queue->depth) {
         return NULL;
     }
-    return at(queue, queue->stress + queue->sent % queue->depth * queue->stride_in);
+    return at(queue, queue->stress + queue->next_in * queue->stride_in);
 }
 
 uint32_t sptfra_queue_length(const sptfra_queue *queue)
@@ -166,8 +171,9 @@ int sptfra_queue_send(sptfra_queue *queue)
     if (sptfra_queue_room(queue) == NULL) {
         return SPTFRA_BUSY;
     }
-    send(queue, queue->sent % queue->depth, bytes_in(&queue->device->shape));
+    send(queue, queue->next_in, bytes_in(&queue->device->shape));
     queue->sent++;
+    queue->next_in = (queue->next_in + 1u) % queue->depth;
     return SPTFRA_OK;
 }
 
@@ -175,8 +181,9 @@ int sptfra_queue_send(sptfra_queue *queue)
 static void release(sptfra_queue *queue)
 {
     if (queue->held) {
-        offer_answer(queue, queue->taken % queue->depth);
+        offer_answer(queue, queue->next_out);
         queue->taken++;
+        queue->next_out = (queue->next_out + 1u) % queue->depth;
         queue->held = 0;
     }
 }
@@ -208,8 +215,8 @@ static int await(const sptfra_queue *queue, uint32_t slot, uint32_t polls, uint3
 
 int sptfra_queue_take(sptfra_queue *queue, const void **answer, uint32_t polls)
 {
-    const size_t bytes = bytes_out(&queue->device->shape);
-    uint32_t slot, received;
+    uint32_t slot, received, status;
+    size_t bytes;
     void *forces;
     int code;
 
@@ -220,7 +227,8 @@ int sptfra_queue_take(sptfra_queue *queue, const void **answer, uint32_t polls)
     if (queue->sent == queue->taken) {
         return SPTFRA_NOT_STARTED;
     }
-    slot = queue->taken % queue->depth;
+    bytes = bytes_out(&queue->device->shape);
+    slot = queue->next_out;
     code = await(queue, slot, polls, &received);
     if (code == SPTFRA_TIMEOUT) {
         return code;
@@ -233,7 +241,9 @@ int sptfra_queue_take(sptfra_queue *queue, const void **answer, uint32_t polls)
         /* Nothing of the answer is read before its descriptor was. */
         barrier(queue->device);
         invalidate_lines(queue->device, forces, queue->stride_out);
-        code = sptfra_in_step(queue->device, forces) ? SPTFRA_OK : SPTFRA_OUT_OF_STEP;
+        memcpy(&status, forces, sizeof status);
+        /* A core without registers does not say beforehand that it drops frames; its numbers leave those out. */
+        code = sptfra_in_step(queue->device, forces) && !(status & SPTFRA_DROPPED) ? SPTFRA_OK : SPTFRA_OUT_OF_STEP;
     }
     if (code != SPTFRA_OK) {
         queue->failed = 1;
@@ -242,6 +252,14 @@ int sptfra_queue_take(sptfra_queue *queue, const void **answer, uint32_t polls)
     queue->held = 1;
     *answer = forces;
     return SPTFRA_OK;
+}
+
+void sptfra_queue_acknowledge(const sptfra_queue *queue)
+{
+    if (queue->device != NULL) {
+        dma_set(queue->device, SEND + DMA_STATUS, STATUS_INTERRUPTS);
+        dma_set(queue->device, RECEIVE + DMA_STATUS, STATUS_INTERRUPTS);
+    }
 }
 
 /* ---- After an error */
@@ -274,6 +292,10 @@ int sptfra_queue_recover(sptfra_queue *queue, uint32_t polls, uint32_t *lost)
     const uint32_t without = sptfra_queue_length(queue);
     int code;
 
+    *lost = 0;
+    if (device == NULL) {
+        return SPTFRA_BAD_BUFFER;
+    }
     if (polls == SPTFRA_FOREVER) {
         polls = RECOVERY_POLLS;
     }

@@ -33,6 +33,7 @@ typedef struct {
     size_t stress, forces;   /* where the frames and answers begin in the memory, behind the descriptors */
     size_t stride_in, stride_out;
     uint32_t sent, taken;    /* frames since the last recovery, modulo 2^32 */
+    uint32_t next_in, next_out; /* their places in the rings */
     int held;                /* the answer of frame `taken` is the caller's */
     int failed;
 } sptfra_queue;
@@ -41,7 +42,8 @@ typedef struct {
 size_t sptfra_queue_bytes(const sptfra_shape *shape, uint32_t depth);
 /* Takes over the DMA of an open device. The memory, which the DMA reaches and which begins on a multiple of SPTFRA_LINE
  * for either side, belongs to the queue until the device is opened anew. 2 to 256 frames. SPTFRA_NO_QUEUE if the DMA has
- * no descriptors, SPTFRA_BAD_BUFFER for memory or a depth that will not do. */
+ * no descriptors, SPTFRA_BAD_BUFFER for memory or a depth that will not do, SPTFRA_DROPS for a core that drops frames, whose
+ * answers nobody could tell apart. */
 int sptfra_queue_open(sptfra_queue *queue, sptfra *device, const sptfra_buffer *memory, uint32_t depth);
 /* Where to write the next frame, words_in words; NULL while as many are on their way as there may be, or after an error. */
 void *sptfra_queue_room(const sptfra_queue *queue);
@@ -50,6 +52,9 @@ int sptfra_queue_send(sptfra_queue *queue);
 /* Waits for the answer to the oldest frame, asking at most so many times: words_out words, the caller's until the next
  * call but sptfra_queue_send and _room. SPTFRA_NOT_STARTED if no frame is on its way. */
 int sptfra_queue_take(sptfra_queue *queue, const void **answer, uint32_t polls);
+/* Lets the DMA's interrupts come again. To wait by them: this, then _take with 0 polls, and if that is SPTFRA_TIMEOUT wait
+ * for the interrupt, and once more from the beginning. */
+void sptfra_queue_acknowledge(const sptfra_queue *queue);
 /* Frames that were sent and whose answers were not taken. */
 uint32_t sptfra_queue_length(const sptfra_queue *queue);
 /* After any error: resets DMA and core, drops what the core still sends, and begins anew with an empty queue. `lost`

@@ -25,6 +25,7 @@ const char *sptfra_error(int code)
     case SPTFRA_WRONG_CRC: return "the bank holds other words than were sent; nothing has changed";
     case SPTFRA_NOT_AT_REST: return "a taxel moved by more than the noise floor during the tare; nothing has changed";
     case SPTFRA_BAD_REST: return "a frame of the tare was clipped, no number, cut or lost; nothing has changed";
+    case SPTFRA_DROPS: return "the core drops frames that come too fast (overrun = \"drop\"): send it one at a time";
     case SPTFRA_QUEUE_ONLY: return "the DMA goes by descriptors: use the queue (sptfra_queue.h)";
     case SPTFRA_NO_QUEUE: return "the DMA has no descriptors: make the block design with the word queue";
     default: return "unknown code";

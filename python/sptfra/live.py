@@ -15,19 +15,25 @@ import time
 from collections.abc import Iterable
 from typing import BinaryIO
 
-from ._native import Design, FrameLines, Solver
+import numpy as np
+
+from ._native import Design, FrameLines, Solver, check
 from .forces import Forces
 from .plot import plot_field, pyplot
 
 #: Seconds between drawings; frames between them are solved, not drawn.
 PAUSE = 0.05
+#: So many frames are looked at, whether they are wrong.
+LOOKED_AT = 32
 
 
 def line_of(number: int, forces: Forces) -> str:
     """A frame's forces for people."""
     x, y, z = forces.resultant[0]
     names = ", ".join(forces.names(0)).lower().replace("_", " ") or "good"
-    degrees = math.degrees(forces.direction[0])
+    # Without the sign of a zero.
+    x, y, z = (round(value, 3) + 0.0 for value in (x, y, z))
+    degrees = round(math.degrees(forces.direction[0]), 1) + 0.0
     return f"{number:>6}  F = ({x:8.3f}, {y:8.3f}, {z:8.3f}) N  mu = {forces.friction[0]:5.3f}  phi = {degrees:6.1f}°  {names}"
 
 
@@ -64,20 +70,32 @@ class Window:
         self._drawn, self._waiting = time.monotonic(), None
 
 
+def warn(design: Design, frames: list[np.ndarray]) -> None:
+    """Says what is suspicious in the first frames."""
+    for finding in check(design, np.array(frames)):
+        print(f"warning: {finding}", file=sys.stderr, flush=True)
+
+
 def run(design: Design, lines: Iterable[bytes], origin: str, labels: int, window: Window | None) -> None:
     """Solves the frame of each line and shows its forces."""
     reader, solver = FrameLines(design, labels=labels, origin=origin), Solver(design)
-    number, forces = 0, None
+    number, forces, first = 0, None, []
     for line in lines:
         frame = reader.frame(line)
         if frame is None:
             continue
+        if number < LOOKED_AT:
+            first.append(frame)
+        if number + 1 == LOOKED_AT:
+            warn(design, first)
         forces = solver.solve(frame, slips=forces)
         if window is None:
             print(line_of(number, forces), flush=True)
         else:
             window.show(forces)
         number += 1
+    if 0 < number < LOOKED_AT:
+        warn(design, first)
     if window is not None:
         window.hold()
 

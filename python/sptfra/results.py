@@ -15,7 +15,7 @@ from .forces import Forces
 class Finding(NamedTuple):
     """One thing that is suspicious in frames, with its likely cause and what to change."""
 
-    #: What it is about: empty, range, sign, no_tension, tare, order or stuck (`docs/formats.md`).
+    #: What it is about: empty, range, sign, no_tension, tension, tare, order or stuck (`docs/formats.md`).
     kind: str
     message: str
 

@@ -67,7 +67,9 @@ static int process(sptfra *device, const sptfra_buffer *stress, const sptfra_buf
     int code = sptfra_start(device, stress, forces);
 
     code = code == SPTFRA_OK ? system_wait() : code;
-    code = code == SPTFRA_OK ? sptfra_wait(device, forces, POLLS) : code;
+    /* No interrupt comes of a transfer that failed: the DMA says why. */
+    code = code == SPTFRA_OK ? sptfra_wait(device, forces, POLLS)
+        : code == SPTFRA_TIMEOUT ? sptfra_wait(device, forces, 0) : code;
     code = code == SPTFRA_OK ? sptfra_decode(&device->shape, forces->data, &result) : code;
     if (code != SPTFRA_OK) {
         const int recovered = sptfra_recover(device, stress, forces, POLLS);

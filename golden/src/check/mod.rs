@@ -25,6 +25,8 @@ pub enum Kind {
     Sign,
     /// No reading is positive.
     NoTension,
+    /// Readings are positive where the design says that none is.
+    Tension,
     /// Every taxel is loaded, those beside the contact too.
     Tare,
     /// The taxels stand in another order.
@@ -59,6 +61,8 @@ const WHOLE: f64 = 16.0;
 const LOADED: f64 = 0.1;
 /// What a finding holds for: this share of the loaded frames.
 const MOST: f64 = 0.9;
+/// A pull of this share of a frame's peak is one, and no noise.
+const PULL: f64 = 0.01;
 /// Readings below this share of a frame's peak are as good as zero.
 const FAINT: f64 = 2e-3;
 
@@ -121,6 +125,18 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
                 "no reading of {} is a pull: where the sensor cannot read tension, or a converter clips it, the force \
                  along the surface comes out too small; let the converter's range reach below 0, or write \
                  sensor.tension = \"clipped\" with estimator = \"joint\" and run `golden calibrate`",
+                count(loaded.len())
+            ),
+        );
+    }
+    let pulled = |frame: &Vec<f64>| frame.iter().any(|&stress| stress >= PULL * largest(frame));
+    let pulled = loaded.iter().filter(|frame| pulled(frame)).count();
+    if design.input.tension == Tension::Clipped && holds(pulled, loaded.len()) {
+        found(
+            Kind::Tension,
+            format!(
+                "readings pull in {pulled} of {}, and the design says that the sensor reads none: if it does, remove \
+                 sensor.tension and calibrate for it, the forces are more exact then",
                 count(loaded.len())
             ),
         );

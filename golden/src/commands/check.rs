@@ -10,6 +10,7 @@ use golden::progress::Progress;
 use serde::Serialize;
 
 use super::Recording;
+use super::filter::is_standard;
 
 #[derive(Serialize)]
 struct Report<'a> {
@@ -26,6 +27,9 @@ struct Line {
 
 /// Checks the frames of a file; an error if anything is found.
 pub fn run(path: &Path, recording: &Recording, json: bool) -> Result<(), Box<dyn Error>> {
+    if is_standard(recording.file) {
+        return Err("--frames -: this looks at all frames of a recording; write them into a file first".into());
+    }
     let design = Design::load(path)?;
     let frames = recording.read(&design)?;
     let matrices = {

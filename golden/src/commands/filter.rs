@@ -4,12 +4,13 @@ use std::error::Error;
 use std::io::{self, Write};
 use std::path::Path;
 
+use golden::check::check;
 use golden::design::Design;
 use golden::forces;
 use golden::frames::{FrameError, FrameLines, FrameStream};
 use golden::solver::{Solution, Solver, Status};
 
-use super::Recording;
+use super::{Recording, warn};
 
 /// The name of standard input and output.
 pub const STANDARD: &str = "-";
@@ -19,9 +20,11 @@ pub fn is_standard(path: &Path) -> bool {
     path == STANDARD
 }
 
-/// Solves frames, of a file or of standard input, and prints a header and a line for each.
-///
-/// Whether frames look wrong is not asked: that takes all of them.
+/// Of a stream so many frames are looked at, whether they are wrong.
+const LOOKED_AT: usize = 32;
+
+/// Solves frames, of a file or of standard input, and prints a header and a line for each. Says on standard error what is
+/// suspicious: of a file at once, of a stream after its first frames.
 pub fn run(design: &Path, frames: &Recording, with_field: bool) -> Result<(), Box<dyn Error>> {
     let design = Design::load(design)?;
     let solver = Solver::new(&design)?;
@@ -30,7 +33,9 @@ pub fn run(design: &Path, frames: &Recording, with_field: bool) -> Result<(), Bo
     let mut next: Box<dyn FnMut() -> Result<Option<Vec<f64>>, FrameError>> = if is_standard(frames.file) {
         Box::new(|| stream.next_frame())
     } else {
-        let mut all = frames.read(&design)?.into_iter();
+        let all = frames.read(&design)?;
+        warn(&check(&design, &all, Some(solver.matrices())));
+        let mut all = all.into_iter();
         Box::new(move || Ok(all.next()))
     };
     let mut workspace = solver.workspace();
@@ -39,11 +44,22 @@ pub fn run(design: &Path, frames: &Recording, with_field: bool) -> Result<(), Bo
     let mut line = forces::columns(solver.records(), taxels).join(",") + "\n";
     // Who reads knows the columns before the first frame.
     let mut goes_on = put(&line)?;
+    let mut first = is_standard(frames.file).then(Vec::new);
     while goes_on && let Some(frame) = next()? {
         solver.solve_into(&mut workspace, &frame, &mut solution)?;
         line.clear();
         forces::push_line(&mut line, &forces::row(&solution, with_field));
         goes_on = put(&line)?;
+        if let Some(some) = &mut first {
+            some.push(frame);
+            if some.len() == LOOKED_AT {
+                warn(&check(&design, some, Some(solver.matrices())));
+                first = None;
+            }
+        }
+    }
+    if let Some(some) = first.filter(|some| !some.is_empty()) {
+        warn(&check(&design, &some, Some(solver.matrices())));
     }
     Ok(())
 }

@@ -74,6 +74,19 @@ pub enum FrameError {
         /// What is there.
         text: String,
     },
+    /// A character between the values that separates none.
+    #[error(
+        "{}, line {line}: {separator} separates the values; separate them by commas, semicolons, tabs or spaces",
+        path.display()
+    )]
+    Separator {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What does, in words.
+        separator: &'static str,
+    },
     /// A value that the design's integer samples cannot be.
     #[error(
         "{}, {place}: {value} is no {samples}, as hardware.samples says that the sensor's counts are; \

@@ -89,7 +89,14 @@ impl Lines {
         }
         let is_first = self.separator.is_none();
         let separator = *self.separator.get_or_insert_with(|| Separator::of(content));
-        let fields = separator.split(content);
+        let mut fields = separator.split(content);
+        // Of those that end each value with the separator.
+        if fields.len() > 1 && fields.last().is_some_and(|field| field.is_empty()) {
+            fields.pop();
+        }
+        if let Some(separator) = foreign(content) {
+            return Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator });
+        }
         if is_first && fields.iter().skip(self.labels).all(|field| no_number(field)) {
             return Ok(None);
         }
@@ -135,6 +142,24 @@ pub(super) fn line_of(path: &Path, labels: usize, frame: usize) -> Option<usize>
     let (index, _) =
         if has_header { rows.nth(frame)? } else { std::iter::once((first, content)).chain(rows).nth(frame)? };
     Some(index + 1)
+}
+
+/// What separates the numbers of a line, where that is nothing that separates values here.
+fn foreign(content: &[u8]) -> Option<&'static str> {
+    const SEPARATORS: [(char, &str); 5] = [
+        ('|', "\"|\""),
+        (':', "\":\""),
+        ('/', "\"/\""),
+        ('\u{a0}', "a no-break space"),
+        ('\u{202f}', "a narrow no-break space"),
+    ];
+    let text = std::str::from_utf8(content).ok()?;
+    let separates = |&(separator, _): &(char, &str)| {
+        let ends = |c: char| c == separator || c.is_whitespace();
+        let mut fields = text.trim_matches(ends).split(separator);
+        fields.clone().nth(1).is_some() && fields.all(|field| field.trim().parse::<f64>().is_ok())
+    };
+    SEPARATORS.iter().find(|&separator| separates(separator)).map(|&(_, name)| name)
 }
 
 /// Whether a field is that of a header: text and no number of any kind.

@@ -129,6 +129,16 @@ fn a_converter_without_a_sign_clips_tension() {
 }
 
 #[test]
+fn a_pull_where_the_design_says_that_none_is_read() {
+    let reads = design("sensor1-joint");
+    let pulls = frames(&reads);
+    found(&design("sensor1-clipped"), &pulls, &[Kind::Tension], &["36 of 36 frames", "remove sensor.tension"]);
+    // Noise about zero is no pull.
+    let noisy = changed(&pulls, |pa| if pa > 0.0 { 0.004 * pa.min(5e4) } else { pa });
+    found(&design("sensor1-clipped"), &noisy, &[], &[]);
+}
+
+#[test]
 fn a_missing_tare_is_found_where_the_answer_still_looks_good() {
     let design = design("sensor1-joint");
     let frames = frames(&design);

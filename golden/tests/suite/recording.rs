@@ -139,11 +139,16 @@ fn any_usual_separator_with_a_header_or_without() {
         "\u{feff}r0,r1\n-1.5,2\n3e3,4\n",
         "left side;right\n-1.5;2\n3e3;4\n",
         "# of a pad, 2 x 1\n-1.5 2.0\n# a remark\n3e3 4\n",
+        "-1.5,2,\n3e3,4,\n",
+        "-1.5;2;\n3e3;4\n",
     ] {
         assert_eq!(read(text), two, "{text:?}");
     }
     for (text, parts) in [
-        ("1|2\n3|4\n5|6\n", ["line 2, column 1: \"3|4\"", "commas, semicolons, tabs or spaces"]),
+        ("1|2\n3|4\n5|6\n", ["line 1: \"|\" separates the values", "commas, semicolons, tabs or spaces"]),
+        ("r0|r1\n1 | 2\n", ["line 2: \"|\" separates the values", "commas"]),
+        ("1,2\n3:4\n", ["line 2: \":\" separates", "commas"]),
+        ("-1\u{a0}2\n", ["line 1: a no-break space separates", "commas"]),
         ("1,2\n3;4\n", ["line 2, column 1: \"3;4\"", "commas, semicolons"]),
         ("1;2\n3;4;5\n", ["line 2", "column 3 where 2"]),
     ] {

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use golden::design::PlanKind;
+use golden::design::{Overrun, PlanKind};
 use golden::table::Table;
 use hdl_gen::emit::products;
 use hdl_gen::inspection::{KNOWN_PART, excess, figures, narrow, several_bodies};
@@ -144,11 +144,15 @@ fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
     let timeline = &plan.timeline;
     let busy = 100.0 * plan.schedule.busy_fraction();
     let rate = clock * 1e6 / timeline.interval_cycles as f64;
+    let faster = match plan.design.hardware.overrun {
+        Overrun::Stall => "",
+        Overrun::Drop => "; of faster ones some are dropped",
+    };
     let header = [format!("Speed at {clock} MHz"), "cycles".to_owned(), "us".to_owned(), String::new()];
     let mut table = Table::new(header).ending_in_words();
     for (what, cycles, remark) in [
         ("latency", timeline.latency_cycles, "first beat in to last beat out".to_owned()),
-        ("interval", timeline.interval_cycles, format!("between frames, {rate:.0} frames a second")),
+        ("interval", timeline.interval_cycles, format!("between frames, {rate:.0} frames a second{faster}")),
         ("products", timeline.spmv_cycles, format!("{} busy {busy:.1} %", count(plan.design.hardware.lanes, "lane"))),
         ("search", timeline.search_cycles, count(plan.estimator.slot().cells().cells, "evaluation cell")),
     ] {

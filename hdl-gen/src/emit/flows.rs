@@ -112,7 +112,7 @@ impl View {
             stream_bits: streams.bits,
             bytes_in,
             bytes_out,
-            length_bits: (bytes_out.ilog2() + 1).max(LEAST_LENGTH_BITS),
+            length_bits: (bytes_in.max(bytes_out).ilog2() + 1).max(LEAST_LENGTH_BITS),
             rtl: names(files, "rtl/", ".v"),
             rom: names(files, "rom/", ".mem"),
             sim_data: names(files, "sim/", ".mem"),

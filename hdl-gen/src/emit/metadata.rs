@@ -123,6 +123,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         "rows": plan.design.sensor.rows,
         "stream_bits": streams.bits,
         "samples": streams.sample,
+        "overrun": plan.design.hardware.overrun,
         "beats_in": streams.beats_in(),
         "beats_out": streams.beats_out(),
         "bytes_in": streams.words_in() * WORD_BITS / 8,

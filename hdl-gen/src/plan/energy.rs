@@ -1,7 +1,8 @@
 //! An estimate of a frame's energy, from counted operations. **Nothing of it was measured.**
 //!
-//! Products of the lanes are counted; of all else no more is known than that a multiplier and a memory do one thing a
-//! cycle, so these are bounds at the full rate of frames. What an operation takes on a chip of 45 nm at 0.9 V is from
+//! Products of the lanes are counted (all of them, where zeros may be skipped); of all else one thing a cycle is taken, at
+//! the full rate of frames: much for a multiplier, which rests between frames, little for a memory that is read and
+//! written at once. What an operation takes on a chip of 45 nm at 0.9 V is from
 //! Horowitz, "Computing's energy problem", ISSCC 2014. An FPGA takes some 14 times the dynamic energy of a chip of the
 //! same generation, less with hard blocks: Kuon and Rose, "Measuring the gap between FPGAs and ASICs", IEEE TCAD 26(2),
 //! 2007. Adders in LUTs, registers, clock and wires have no count of their own; static power is not in it.
@@ -29,9 +30,9 @@ const LANES: &str = "sptfra_spmv_array";
 pub struct Energy {
     /// Products that the lanes form in a frame.
     pub lane_products: u64,
-    /// Those of all other blocks, at most.
+    /// Those of all other blocks, one a multiplier and cycle.
     pub other_products: u64,
-    /// Bits that memories read or take, at most.
+    /// Bits that memories read or take, one access a cycle.
     pub memory_bits: u64,
     /// Of these operations on a chip of 45 nm, in nJ.
     pub chip_nj: f64,

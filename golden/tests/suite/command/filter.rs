@@ -41,6 +41,27 @@ fn a_line_in_is_a_line_out_before_the_next_one() {
     assert!(said.starts_with("error: standard input, line 10: the line ends at column 3 where 13"), "{said}");
 }
 
+/// In kilopascals: after the first frames of a stream, and of a file before them.
+#[test]
+fn frames_that_look_wrong_are_told_of_on_the_way() {
+    let design = repository("designs/small.toml");
+    let frames: String = (0..40).map(|_| row("-1.0") + "\n").collect();
+    let (_folder, file) = folder_with(&frames);
+    for (from, piped) in [("-", Stdio::from(std::fs::File::open(&file).unwrap())), (text(&file), Stdio::null())] {
+        let output = Command::new(env!("CARGO_BIN_EXE_golden"))
+            .args(["solve", text(&design), "--frames", from, "--out", "-"])
+            .stdin(piped)
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success() && said.matches("warning: the largest reading").count() == 1, "{said}");
+        assert_eq!(String::from_utf8(output.stdout).unwrap().lines().count(), 41);
+    }
+    let refused = golden(&["check", text(&design), "--frames", "-"]);
+    assert!(!refused.status.success());
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("write them into a file first"));
+}
+
 #[test]
 fn a_file_goes_to_standard_output_as_to_a_file() {
     let design = repository("designs/small.toml");

@@ -7,7 +7,9 @@
 #include "machine.h"
 #include "sptfra.h"
 #include "sptfra_queue.h"
+#include "sptfra_registers.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +20,7 @@
 #define RECOVERY 1000u
 #define STEPS 2500
 #define DMA_STEP 60u
+#define EVENTS 0x7000u /* interrupts of the DMA's status */
 
 #define CHECK(condition)                                                      \
     do {                                                                      \
@@ -46,6 +49,14 @@ static void lines(void *context, const void *start, size_t count)
 {
     (void)context;
     CHECK((uintptr_t)start % SPTFRA_LINE == 0 && count % SPTFRA_LINE == 0);
+}
+
+/* The registers of a core that drops frames. */
+static uint32_t read_dropping(void *system, uintptr_t address)
+{
+    const uint32_t word = machine_read(system, address);
+
+    return address == MACHINE_CORE + offsetof(sptfra_t, FEATURES) ? word | SPTFRA__FEATURES__DROPS_bm : word;
 }
 
 static void lines_back(void *context, void *start, size_t count) { lines(context, start, count); }
@@ -134,6 +145,15 @@ int main(int count, char **arguments)
     memory.address -= 4;
     memory.bytes = sptfra_queue_bytes(&shape, 3) - 1u;
     CHECK(sptfra_queue_open(&queue, &device, &memory, 3) == SPTFRA_BAD_BUFFER);
+    /* One that was not opened answers, too. */
+    CHECK(sptfra_queue_take(&queue, &answer, 0) == SPTFRA_BUSY && sptfra_queue_room(&queue) == NULL);
+    CHECK(sptfra_queue_recover(&queue, RECOVERY, &lost) == SPTFRA_BAD_BUFFER && lost == 0);
+    sptfra_queue_acknowledge(&queue);
+    CHECK(sptfra_soft_reset(&device, POLLS) == (has_registers ? SPTFRA_QUEUE_ONLY : SPTFRA_NO_REGISTERS));
+    memory.bytes = sizeof bytes;
+    device.platform.read = read_dropping;
+    CHECK(!has_registers || sptfra_queue_open(&queue, &device, &memory, 4) == SPTFRA_DROPS);
+    device.platform.read = machine_read;
 
     for (depth = 2; depth <= 9; depth += depth == 2 ? 1 : 6) {
         memory.bytes = sptfra_queue_bytes(&shape, depth);
@@ -141,6 +161,8 @@ int main(int count, char **arguments)
         memset(bytes + memory.bytes, 0x5A, SPTFRA_LINE);
         CHECK(sptfra_queue_open(&queue, &device, &memory, depth) == SPTFRA_OK);
         CHECK(sptfra_queue_take(&queue, &answer, 0) == SPTFRA_NOT_STARTED);
+        /* As after four thousand million frames. */
+        queue.sent = queue.taken = 0xFFFFFFF0u;
         for (step = 0; step < STEPS; step++) {
             const uint32_t what = random_below(400);
 
@@ -186,6 +208,15 @@ int main(int count, char **arguments)
         CHECK(sptfra_queue_recover(&queue, RECOVERY, &lost) == SPTFRA_OK && lost == waiting);
         missing += lost;
         waiting = 0;
+        /* Nothing is on its way after this one: its interrupts are the last. */
+        send(&queue, &shape);
+        sent++;
+        CHECK(sptfra_queue_take(&queue, &answer, POLLS) == SPTFRA_OK);
+        check(&shape, answer);
+        taken++;
+        CHECK((machine_read(system, MACHINE_DMA + 0x04) & machine_read(system, MACHINE_DMA + 0x34) & EVENTS) != 0);
+        sptfra_queue_acknowledge(&queue);
+        CHECK(((machine_read(system, MACHINE_DMA + 0x04) | machine_read(system, MACHINE_DMA + 0x34)) & EVENTS) == 0);
         for (step = 0; step < SPTFRA_LINE; step++) {
             CHECK(bytes[memory.bytes + step] == 0x5A);
         }

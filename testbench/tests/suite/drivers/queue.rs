@@ -42,12 +42,17 @@ fn a_wrong_queue_is_noticed() {
         ("    words[STATUS] = 0;\n", ""),
         // An answer before it was there, and one whose frame's descriptor is not yet free.
         ("sent & *received & COMPLETE", "sent & COMPLETE"),
-        ("        offer_answer(queue, queue->taken % queue->depth);\n", ""),
+        ("        offer_answer(queue, queue->next_out);\n", ""),
         ("queue->sent - queue->taken == queue->depth", "queue->sent - queue->taken == queue->depth + 1u"),
         ("code = drop_answers(queue, polls);", "code = drop_answers(queue, 0u * polls);"),
         ("    *lost = code == SPTFRA_OK ? without : 0u;", "    *lost = 0u * without;"),
         ("& (STATUS_FAULTS | STATUS_HALTED)", "& STATUS_FAULTS"),
-        ("sptfra_in_step(queue->device, forces) ?", "sptfra_in_step(queue->device, forces) || 1 ?"),
+        ("sptfra_in_step(queue->device, forces) &&", "(sptfra_in_step(queue->device, forces) || 1) &&"),
+        // A place by a number that wraps.
+        ("queue->next_in * queue->stride_in", "queue->sent % queue->depth * queue->stride_in"),
+        ("DMA_STATUS, STATUS_INTERRUPTS);\n        dma_set", "DMA_STATUS, 0);\n        dma_set"),
+        ("        return SPTFRA_DROPS;\n", ""),
+        ("    queue->failed = 1;\n    if (depth", "    if (depth"),
         ("queue->forces + slot * queue->stride_out)\n", "queue->forces)\n"),
     ] {
         let text = fs::read_to_string(workspace("drivers/c/sptfra_queue.c")).expect("is there");
