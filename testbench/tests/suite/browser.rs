@@ -19,6 +19,7 @@ addEventListener("load", () => {
     const slack = 1.5;
     if (own.left < box.left - slack || own.right > box.right + slack || own.top < box.top - slack
         || own.bottom > box.bottom + slack) wrong.push(`outside its picture: ${text.textContent}`);
+    if (own.height < 10) wrong.push(`${own.height} px high, too small to read: ${text.textContent}`);
   }
   for (const element of document.querySelectorAll("p, h1, h2, h3, figure, figcaption, td, th"))
     if (element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).overflowX === "visible")
