@@ -1,6 +1,7 @@
 //! The page of a sweep: one HTML file without a network, with pictures as SVG, for light and dark.
 
 pub mod conclusion;
+pub mod forces;
 pub mod front;
 pub mod hard;
 pub mod lanes;
@@ -8,19 +9,14 @@ pub mod matrices;
 pub mod paper;
 pub mod tables;
 
-use golden::bodies::BodyErrors;
 use golden::choose::choose;
-use golden::design::{Design, Estimator, Filter, Input, MatrixFilter, Outputs};
+use golden::design::{Design, Filter, MatrixFilter};
 use golden::matrices::Matrices;
-use golden::solver::Solver;
-use hdl_gen::plan::Plan;
 use serde::Serialize;
 use tera::{Context, Tera};
 use thiserror::Error;
 
-use crate::field_plot;
 use crate::hard::judge::Row;
-use crate::sweep::evaluate::answers;
 use crate::sweep::point::{Geometry, Point, Verified, sensor_title, sensors};
 use crate::sweep::{Sweep, SweepError, SweepScene};
 use front::{DASHES, Series};
@@ -32,8 +28,6 @@ const TEMPLATE: &str = include_str!("../../../templates/report.html.tera");
 const NAME: &str = "report.html";
 /// Larger sensors have too many entries for a picture of each.
 const MOST_TAXELS: usize = 256;
-/// The frame whose field is drawn, if the scene has so many: 40° in a sweep of tens.
-const DRAWN_FRAME: usize = 4;
 
 /// Why there is no page.
 #[derive(Debug, Error)]
@@ -158,7 +152,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
                 caption += "; the bodies are pushed against each other, so that this error is that of a sum near zero, which \
                             tells nothing of either: no front, no conclusion";
             }
-            if let Some(bodies) = bodies(&designs, scene) {
+            if let Some(bodies) = forces::bodies(&designs, scene) {
                 caption += &bodies;
             }
             Figure { svg: front::front(&on(scene), paper, scene.tells()), caption }
@@ -171,7 +165,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
         Some(design) => Matrices::of(design).ok(),
         None => None,
     };
-    let (field, field_caption) = field_figures(&designs, main)?;
+    let (field, field_caption) = forces::field(&designs, main)?;
     let filters = |kinds: [MatrixFilter; 4]| {
         // F1 has no more diagonals than the matrix.
         let legal =
@@ -203,29 +197,6 @@ fn is_of(design: &Design, sensor: &Geometry) -> bool {
     Geometry::from(&design.sensor) == *sensor
 }
 
-/// How well the bodies of a scene are told apart, by the estimator that new designs have where there is a design with it.
-fn bodies(designs: &[&Design], scene: &SweepScene) -> Option<String> {
-    let contacts = scene.scene.contacts.len();
-    let of_joint = |design: &&&Design| design.algorithm.estimator == Estimator::Joint;
-    let mut design =
-        (*designs.iter().find(of_joint).filter(|_| (2..=golden::bodies::MOST).contains(&contacts))?).clone();
-    // Scenes are in pascals, whatever the sensor counts.
-    design.input = Input::default();
-    design.algorithm.contacts = contacts;
-    let (solver, frames) = (Solver::new(&design).ok()?, scene.scene.frames().ok()?);
-    let solutions: Vec<_> = frames.iter().map(|frame| solver.solve(&frame.stress)).collect::<Result<_, _>>().ok()?;
-    let errors = BodyErrors::new(frames.iter().map(|frame| &frame.bodies).zip(&solutions));
-    let number = format!("number right in {} of {} frames", errors.right, errors.frames);
-    let own = match errors.right {
-        0 => String::new(),
-        _ => format!(
-            "; the force along the surface of each of them errs by {:.1} % of its own F_z (median; worst: {:.1})",
-            errors.tangential.median, errors.tangential.worst
-        ),
-    };
-    Some(format!(". Told apart in f64, by {} with contacts = {contacts}: {number}{own}", design.name))
-}
-
 /// What each filter of each matrix costs, on the scene of the sensor's tables.
 fn costs(designs: &[&Design], scene: Option<&SweepScene>, small: bool) -> Option<Figure> {
     let frames = scene?.scene.frames().ok()?;
@@ -241,49 +212,6 @@ fn costs(designs: &[&Design], scene: Option<&SweepScene>, small: bool) -> Option
         choice.frames, scene?.name, choice.e_mu_unfiltered, choice.e_mu_chosen
     );
     Some(Figure { svg: matrices::costs(&choice), caption })
-}
-
-/// The field of one frame, by the estimator that new designs have where there is a design with it.
-fn field_figures(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Figure>, String), PageError> {
-    let shows = |design: &&&Design| design.algorithm.outputs == Outputs::Field && Plan::new(design).is_ok();
-    let of_joint = |design: &&&Design| design.algorithm.estimator == Estimator::Joint && shows(design);
-    let shown = designs.iter().find(of_joint).or_else(|| designs.iter().find(shows));
-    let (Some(design), Some(scene)) = (shown, scene) else {
-        return Ok((Vec::new(), String::new()));
-    };
-    let frame = DRAWN_FRAME.min(scene.frames.stress.len() - 1);
-    let mut frames = scene.frames.clone();
-    frames.stress = vec![frames.stress.swap_remove(frame)];
-    let found = answers(design, &frames)?;
-    let (Some(answer), Some(truth)) = (found.first(), scene.frames.truth_of(frame)) else {
-        return Ok((Vec::new(), String::new()));
-    };
-    let force = truth.force;
-    let caption = format!(
-        "Frame {frame} of scene {}: pushed with ({:.2}, {:.2}, {:.2}) N; the hardware of {} finds \
-         ({:.2}, {:.2}, {:.2}) N.",
-        scene.name,
-        force[0],
-        force[1],
-        force[2],
-        design.name,
-        answer.resultant[0],
-        answer.resultant[1],
-        answer.resultant[2]
-    );
-    let sensor = &design.sensor;
-    let felt: Vec<f64> =
-        frames.stress[0].iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect();
-    let found = field_plot::forces(sensor, answer, Some(&truth));
-    let mut figures = vec![
-        Figure { svg: field_plot::stress(sensor, &felt), caption: "what the taxels feel".to_owned() },
-        Figure { svg: found, caption: "what the hardware finds, and in orange what is true".to_owned() },
-    ];
-    if let Some(field) = &truth.field {
-        let caption = "what each taxel's force is off the true load of its cell of the surface".to_owned();
-        figures.push(Figure { svg: field_plot::errors(sensor, answer, field), caption });
-    }
-    Ok((figures, caption))
 }
 
 /// Error of the number format over the widths, for each plan and filter that was varied.

@@ -1,0 +1,83 @@
+//! What is found of a scene's forces: the field of a frame beside the true one, and how well its bodies are told apart.
+
+use golden::bodies::{BodyErrors, MOST};
+use golden::design::{Design, Estimator, Input, Outputs};
+use golden::solver::Solver;
+use hdl_gen::plan::Plan;
+
+use super::PageError;
+use super::matrices::Figure;
+use crate::field_plot;
+use crate::sweep::SweepScene;
+use crate::sweep::evaluate::answers;
+
+/// The frame whose field is drawn, if the scene has so many: 40° in a sweep of tens.
+const DRAWN_FRAME: usize = 4;
+
+/// The field of one frame, by the estimator that new designs have where there is a design with it.
+///
+/// # Errors
+/// [`PageError::Sweep`] if the design has no answer.
+pub fn field(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Figure>, String), PageError> {
+    let shows = |design: &&&Design| design.algorithm.outputs == Outputs::Field && Plan::new(design).is_ok();
+    let of_joint = |design: &&&Design| design.algorithm.estimator == Estimator::Joint && shows(design);
+    let shown = designs.iter().find(of_joint).or_else(|| designs.iter().find(shows));
+    let (Some(design), Some(scene)) = (shown, scene) else {
+        return Ok((Vec::new(), String::new()));
+    };
+    let frame = DRAWN_FRAME.min(scene.frames.stress.len() - 1);
+    let mut frames = scene.frames.clone();
+    frames.stress = vec![frames.stress.swap_remove(frame)];
+    let found = answers(design, &frames)?;
+    let (Some(answer), Some(truth)) = (found.first(), scene.frames.truth_of(frame)) else {
+        return Ok((Vec::new(), String::new()));
+    };
+    let force = truth.force;
+    let caption = format!(
+        "Frame {frame} of scene {}: pushed with ({:.2}, {:.2}, {:.2}) N; the hardware of {} finds \
+         ({:.2}, {:.2}, {:.2}) N.",
+        scene.name,
+        force[0],
+        force[1],
+        force[2],
+        design.name,
+        answer.resultant[0],
+        answer.resultant[1],
+        answer.resultant[2]
+    );
+    let sensor = &design.sensor;
+    let felt: Vec<f64> =
+        frames.stress[0].iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect();
+    let found = field_plot::forces(sensor, answer, Some(&truth));
+    let mut figures = vec![
+        Figure { svg: field_plot::stress(sensor, &felt), caption: "what the taxels feel".to_owned() },
+        Figure { svg: found, caption: "what the hardware finds, and in orange what is true".to_owned() },
+    ];
+    if let Some(field) = &truth.field {
+        let caption = "what each taxel's force is off the true load of its cell of the surface".to_owned();
+        figures.push(Figure { svg: field_plot::errors(sensor, answer, field), caption });
+    }
+    Ok((figures, caption))
+}
+
+/// How well the bodies of a scene are told apart, by the estimator that new designs have where there is a design with it.
+pub fn bodies(designs: &[&Design], scene: &SweepScene) -> Option<String> {
+    let contacts = scene.scene.contacts.len();
+    let of_joint = |design: &&&Design| design.algorithm.estimator == Estimator::Joint;
+    let mut design = (*designs.iter().find(of_joint).filter(|_| (2..=MOST).contains(&contacts))?).clone();
+    // Scenes are in pascals, whatever the sensor counts.
+    design.input = Input::default();
+    design.algorithm.contacts = contacts;
+    let (solver, frames) = (Solver::new(&design).ok()?, scene.scene.frames().ok()?);
+    let solutions: Vec<_> = frames.iter().map(|frame| solver.solve(&frame.stress)).collect::<Result<_, _>>().ok()?;
+    let errors = BodyErrors::new(frames.iter().map(|frame| &frame.bodies).zip(&solutions));
+    let number = format!("number right in {} of {} frames", errors.right, errors.frames);
+    let own = match errors.right {
+        0 => String::new(),
+        _ => format!(
+            "; the force along the surface of each of them errs by {:.1} % of its own F_z (median; worst: {:.1})",
+            errors.tangential.median, errors.tangential.worst
+        ),
+    };
+    Some(format!(". Told apart in f64, by {} with contacts = {contacts}: {number}{own}", design.name))
+}
