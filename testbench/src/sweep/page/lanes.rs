@@ -10,6 +10,11 @@ const LEFT: f64 = 62.0;
 const RIGHT: f64 = 36.0;
 const TOP: f64 = 26.0;
 const BOTTOM: f64 = 84.0;
+/// Height of a line's name, above the plot.
+const NAME: f64 = 15.0;
+/// Radius of the last line's dots; those below it are larger, so that they show where lines are the same.
+const DOT: f64 = 4.0;
+const LARGER: f64 = 2.0;
 /// Dashes of the interval beside those of the latency.
 const INTERVAL: &str = DASHES[2];
 
@@ -27,8 +32,10 @@ pub fn plot(points: &[&Point]) -> Option<String> {
     all().next()?;
     let x = Axis::covering(all().map(|hardware| hardware.dsp as f64), false, LEFT, WIDTH - RIGHT);
     let times = all().flat_map(|hardware| [hardware.latency_us, hardware.interval_us]);
-    let y = Axis::covering(times, false, HEIGHT - BOTTOM, TOP);
-    let mut svg = Svg::new(WIDTH, HEIGHT, "Latency and interval over multipliers").with_names_at((LEFT, HEIGHT - 20.0));
+    let top = TOP + NAME * series.len() as f64;
+    let height = HEIGHT + top - TOP;
+    let y = Axis::covering(times, false, height - BOTTOM, top);
+    let mut svg = Svg::new(WIDTH, height, "Latency and interval over multipliers").with_names_at((LEFT, height - 20.0));
     for decade in x.decades() {
         let place = x.place(10_f64.powi(decade));
         svg.grid((place, y.from), (place, y.to));
@@ -40,7 +47,7 @@ pub fn plot(points: &[&Point]) -> Option<String> {
         svg.text((x.from - 8.0, place + 4.0), "end", INK, &power(decade));
     }
     svg.text((6.0, 14.0), "start", INK, "µs a frame: latency, and dotted the interval");
-    svg.text((f64::midpoint(x.from, x.to), HEIGHT - 42.0), "middle", INK, "DSP (logarithmic)");
+    svg.text((f64::midpoint(x.from, x.to), height - 42.0), "middle", INK, "DSP (logarithmic)");
     for (number, Series { name, colour, points }) in series.iter().enumerate() {
         let places = |time: fn(&Hardware) -> f64| -> Vec<(f64, f64)> {
             points.iter().map(|(_, hardware)| (x.place(hardware.dsp as f64), y.place(time(hardware)))).collect()
@@ -53,9 +60,9 @@ pub fn plot(points: &[&Point]) -> Option<String> {
                 "{name}, {} lanes: {:.1} µs, a frame every {:.1} µs, {} DSP, {:.1} RAMB36",
                 point.lanes, hardware.latency_us, hardware.interval_us, hardware.dsp, hardware.bram36
             );
-            svg.named_dot(place, 4.0, colour, &name);
+            svg.named_dot(place, DOT + LARGER * (series.len() - 1 - number) as f64, colour, &name);
         }
-        svg.sized_text((WIDTH - RIGHT, TOP + 14.0 + 15.0 * number as f64), "end", colour, 11, name);
+        svg.sized_text((WIDTH - RIGHT, TOP + NAME * number as f64), "end", colour, 11, name);
     }
     Some(svg.finish())
 }
