@@ -10,109 +10,35 @@
     forces.resultant, forces.field, forces.status
 
 `core` is the IP with the register bank (`control = true` in the design): anything with `read(offset)` and
-`write(offset, value)`. `dma` is an AXI DMA without descriptors as PYNQ presents it.
+`write(offset, value)`. `dma` is an AXI DMA without descriptors as PYNQ presents it. Beside this file belong `sptfra_registers.py`,
+`sptfra_forces.py` (answers) and `sptfra_bank.py` (calibration in RAM).
 """
 
-import enum
-import json
-import pathlib
 import time
 import zlib
 from dataclasses import dataclass
 
 import numpy as np
+from sptfra_bank import bank_words, read_calibration
+from sptfra_forces import LAYOUT, Forces, Layout, Status, decode
+from sptfra_registers import (
+    CALIBRATION_BUSY,
+    INDEX_ACTIVE,
+    MAGIC,
+    MAP_VERSION,
+    RESETTING,
+    SOFT_RESET,
+    CalibrationError,
+    Event,
+    Register,
+)
 
-MAGIC = 0x54465241
-MAP_VERSION = 2
+__all__ = ["LAYOUT", "CalibrationError", "Counters", "Event", "Forces", "Identity", "Layout", "Register", "Sptfra", "Status"]
+
 #: Bit of the DMA's control register.
 DMA_RESET = 4
 #: More than a core holds.
 MOST_PACKETS = 32
-#: Edition of metadata.json, and of the streams that it describes.
-FORMAT = 2
-
-
-class Register(enum.IntEnum):
-    """Offsets of the registers, as in control/NAME.rdl."""
-
-    IDENTITY = 0x000
-    VERSION = 0x004
-    HASH_LOW = 0x008
-    HASH_HIGH = 0x00C
-    GEOMETRY = 0x010
-    FRAME = 0x014
-    FEATURES = 0x018
-    CLOCK = 0x01C
-    FULL_SCALE = 0x020
-    PREDICTED_LATENCY = 0x024
-    PREDICTED_INTERVAL = 0x028
-    CONTROL = 0x040
-    STATUS = 0x044
-    INTERRUPT_ENABLE = 0x048
-    INTERRUPT_STATUS = 0x04C
-    FRAMES_IN = 0x050
-    FRAMES_OUT = 0x054
-    FRAMES_BAD = 0x058
-    LAST_STATUS = 0x05C
-    LAST_LATENCY = 0x060
-    LAST_INTERVAL = 0x064
-    FRAMES_DROPPED = 0x068
-    CALIBRATION = 0x080
-    CALIBRATION_OFFSET_LIMIT = 0x084
-    CALIBRATION_STEPS_LOW = 0x088
-    CALIBRATION_STEPS_HIGH = 0x08C
-    CALIBRATION_INDEX = 0x090
-    CALIBRATION_DATA = 0x094
-    CALIBRATION_COMMIT = 0x098
-    TARE = 0x09C
-    CALIBRATION_STATUS = 0x0A0
-    CALIBRATION_ERRORS = 0x0A4
-    CALIBRATION_CRC = 0x0A8
-
-
-class Status(enum.IntFlag):
-    """Status bits of a frame."""
-
-    NO_CONTACT = 1
-    DIRECTION_UNKNOWN = 2
-    AT_BOUND = 4
-    SATURATED = 8
-    NOT_FINITE = 16
-    BAD_LENGTH = 32
-    DOUBTFUL = 64
-    MORE_BODIES = 128
-    REPLACED = 256
-    TOO_MANY_REPLACED = 512
-    SLIP = 1024
-    NO_TENSION = 2048
-    DROPPED = 4096
-
-
-class Event(enum.IntFlag):
-    """Events that can interrupt."""
-
-    FRAME_DONE = 1
-    FRAME_ERROR = 2
-    BAD_ACCESS = 4
-
-
-class CalibrationError(enum.IntFlag):
-    """Why a calibration was refused; nothing has changed."""
-
-    OUT_OF_RANGE = 1
-    BUSY = 2
-    WRONG_CRC = 4
-    NOT_AT_REST = 8
-    BAD_FRAME = 16
-
-
-SOFT_RESET = 1
-RESETTING = 1
-CALIBRATION_BUSY = 1 << 9
-#: `CALIBRATION_INDEX`: of the bank that acts.
-INDEX_ACTIVE = 1 << 31
-#: A gain's word: mantissa, and above it the exponent of the counts.
-MANTISSA_BITS, EXPONENT_BITS = 18, 10
 MOST_TARE_LOG2 = 10
 
 
@@ -156,110 +82,6 @@ class Counters:
     last_status: Status
     last_latency: int
     last_interval: int
-
-
-class Layout:
-    """Where the values stand in an answer's words, by name: (index of the word, its lowest bit, mask; None: float32)."""
-
-    def __init__(self, values, field):
-        """`field` is the first word of the taxels' forces."""
-        self.values, self.field = values, field
-
-    @classmethod
-    def load(cls, path):
-        """That of a design, from its metadata.json. Raises ValueError for one of another edition."""
-        metadata = json.loads(pathlib.Path(path).read_text())
-        if metadata.get("format") != FORMAT:
-            raise ValueError(f"{path}: format {metadata.get('format')}, this driver knows {FORMAT}")
-        values, field = {}, None
-        for value in metadata["output"]:
-            high, low = value.get("bits", (31, 0))
-            mask = None if value["type"] == "float32" else (1 << (high - low + 1)) - 1
-            if value["name"] == "field":
-                field = value["index"]
-            else:
-                values[value["name"]] = (value["index"], low, mask)
-        return cls(values, field)
-
-    def get(self, words, name):
-        """The value of each answer in (n, words_out) uint32."""
-        index, low, mask = self.values[name]
-        column = words[:, index]
-        return column.copy().view(np.float32) if mask is None else column >> low & mask
-
-    def vector(self, words, *names):
-        """Several values of each answer, side by side."""
-        return np.column_stack([self.get(words, name) for name in names])
-
-
-_FLOATS = {"F_x": 2, "F_y": 3, "F_z": 4, "T_x": 5, "T_y": 6, "T_z": 7, "mu": 8, "phi": 9, "mu_x": 10, "mu_y": 11}
-#: The layout of every core with one body and no more.
-LAYOUT = Layout(
-    {name: (index, 0, None) for name, index in (_FLOATS | {"standard_error": 12}).items()}
-    | {"status": (0, 0, 0xFFFF), "frame": (0, 16, 0xFFFF), "timestamp": (1, 0, 0xFFFFFFFF)}
-    | {"bodies": (13, 0, 0xFF), "generation": (13, 8, 0xFF), "replaced_taxels": (13, 16, 0xFF)},
-    field=16,
-)
-
-
-@dataclass(frozen=True)
-class Forces:
-    """Answers to n frames; of a frame whose status says NOT_FINITE, BAD_LENGTH or NO_CONTACT all results are zeros."""
-
-    #: (n,) uint16: bits of `Status`.
-    status: np.ndarray
-    #: (n,) uint16: number of the frame since the core was reset, modulo 65536.
-    number: np.ndarray
-    #: (n,) uint32: when its first beat came in, in cycles since the reset, modulo 2**32.
-    timestamp: np.ndarray
-    #: (n, 3) float32: F_x, F_y, F_z in N.
-    resultant: np.ndarray
-    #: (n, 3) float32: T_x, T_y, T_z in N m about the middle of the grid.
-    torque: np.ndarray
-    #: (n,) float32: friction coefficient.
-    friction: np.ndarray
-    #: (n,) float32: direction of the push in rad.
-    direction: np.ndarray
-    #: (n, 2) float32: friction along x and y.
-    friction_xy: np.ndarray
-    #: (n,) float32: standard error of (F_x, F_y) in N; 0 where the design has none.
-    standard_error: np.ndarray
-    #: (n,) uint8: bodies in touch.
-    bodies: np.ndarray
-    #: (n,) uint8: generation of the calibration.
-    generation: np.ndarray
-    #: (n,) uint8: taxels whose stress was made up.
-    replaced: np.ndarray
-    #: (n, rows, columns, 3) float32: f_x, f_y, f_z of each taxel in N; None if the design has resultants only.
-    field: np.ndarray | None
-
-    def names(self, index):
-        """Names of a frame's status bits."""
-        return [bit.name for bit in Status if int(self.status[index]) & bit]
-
-
-def decode(words, rows, columns, has_field, layout=LAYOUT):
-    """Forces from (n, words_out) words of uint32 as the core sends them."""
-    words = np.ascontiguousarray(words, dtype=np.uint32)
-    field = None
-    if has_field:
-        taxels = words[:, layout.field : layout.field + 3 * rows * columns]
-        field = np.ascontiguousarray(taxels).view(np.float32).reshape(len(words), rows, columns, 3)
-    return Forces(
-        status=layout.get(words, "status").astype(np.uint16),
-        number=layout.get(words, "frame").astype(np.uint16),
-        timestamp=layout.get(words, "timestamp"),
-        resultant=layout.vector(words, "F_x", "F_y", "F_z"),
-        torque=layout.vector(words, "T_x", "T_y", "T_z"),
-        friction=layout.get(words, "mu"),
-        direction=layout.get(words, "phi"),
-        friction_xy=layout.vector(words, "mu_x", "mu_y"),
-        standard_error=layout.get(words, "standard_error"),
-        bodies=layout.get(words, "bodies").astype(np.uint8),
-        generation=layout.get(words, "generation").astype(np.uint8),
-        replaced=layout.get(words, "replaced_taxels").astype(np.uint8),
-        field=field,
-    )
 
 
 class Sptfra:
@@ -390,8 +212,7 @@ class Sptfra:
         """Forces of frames (n, rows, columns), (n, taxels), (rows, columns) or (taxels,), in pascals or counts.
 
         Returns `Forces` of n frames, in new arrays; a single frame is n = 1. Raises ValueError on another shape, and on
-        counts that the core's samples cannot be,
-        TimeoutError if a frame takes longer than so many seconds, RuntimeError if the DMA stops or an answer is that to
+        counts that the core's samples cannot be, TimeoutError if a frame takes longer than so many seconds, RuntimeError if the DMA stops or an answer is that to
         another frame; after the last three nothing is sent before `recover`.
         """
         return self._process(self._samples_of(frames), timeout)
@@ -470,8 +291,9 @@ class Sptfra:
     def tare(self, frames, timeout=1.0):
         """Takes the mean of 2**n frames at rest, n up to 10, off the offsets; returns their `Forces`, from before.
 
-        Raises ValueError on another number of frames or another shape, before the core knows of a tare, RuntimeError if they are not at rest, a taxel's stress spreading by
-        more than the noise floor, clipped or no numbers: then nothing has changed.
+        Raises ValueError on another number of frames or another shape, before the core knows of a tare, RuntimeError if
+        they are not at rest, a taxel's stress spreading by more than the noise floor, clipped or no numbers: then nothing
+        has changed.
         """
         self._needs_calibration()
         samples = self._samples_of(frames)
@@ -504,48 +326,3 @@ class Sptfra:
         if errors:
             names = ", ".join(bit.name for bit in CalibrationError if bit & errors)
             raise RuntimeError(f"the core refuses the calibration, and nothing has changed: {names}")
-
-
-def read_calibration(path, taxels):
-    """Gains and offsets of a file with a line `gain,offset` for each taxel. Raises ValueError, with the line."""
-    gains, offsets = [], []
-    for number, line in enumerate(pathlib.Path(path).read_text(encoding="utf-8-sig").splitlines(), 1):
-        if not line.strip():
-            continue
-        try:
-            gain, offset = map(float, line.split(","))
-        except ValueError:
-            raise ValueError(f"{path}, line {number}: {line.strip()!r} is no gain,offset such as 1.02,-0.5") from None
-        if not (gain == 0 or 1e-9 <= gain <= 16) or not abs(offset) <= 1e6:
-            raise ValueError(f"{path}, line {number}: use a gain from 1e-9 to 16 or 0, an offset from -1e6 to 1e6")
-        gains.append(gain)
-        offsets.append(offset)
-    if len(gains) != taxels:
-        raise ValueError(f"{path}: {len(gains)} lines, and the core has {taxels} taxels")
-    return gains, offsets
-
-
-def bank_words(gains, offsets, count_steps, shift, offset_limit):
-    """The words of gains, then of offsets (in counts), as uint32; `count_steps` are steps of the stress for a count.
-
-    A gain of 0 reads 0: for taxels that the design replaces. Raises ValueError on an offset beyond the limit.
-    """
-    words = np.zeros(2 * len(gains), dtype=np.uint32)
-    for taxel, (gain, offset) in enumerate(zip(gains, offsets)):
-        mantissa, exponent, scaled = 1 << (MANTISSA_BITS - 2), -(1 << (EXPONENT_BITS - 1)), 0
-        if gain != 0:
-            # Ties go away from zero.
-            away = lambda value: int(np.copysign(np.floor(abs(value) + 0.5), value))  # noqa: E731
-            steps = gain * count_steps
-            exponent = int(np.frexp(steps)[1]) + 1 - MANTISSA_BITS
-            while away(abs(steps) * 2.0**-exponent) >= 1 << (MANTISSA_BITS - 1):
-                exponent += 1
-            mantissa = away(steps * 2.0**-exponent)
-            # By the gain as it is stored, so that the count of no stress at all gives none.
-            scaled = away(offset / gain * mantissa * 2.0**exponent)
-            exponent += shift
-            if abs(scaled) > offset_limit:
-                raise ValueError(f"taxel {taxel}: an offset of {offset} counts is beyond what a bank takes")
-        words[taxel] = (exponent & ((1 << EXPONENT_BITS) - 1)) << MANTISSA_BITS | mantissa & ((1 << MANTISSA_BITS) - 1)
-        words[len(gains) + taxel] = scaled & 0xFFFFFFFF
-    return words

@@ -57,4 +57,13 @@ mod tests {
         let joint = said(1.9, "joint").expect("thin");
         assert!(joint.contains("0.47 of a pitch") && joint.contains("golden calibrate"), "{joint}");
     }
+    #[test]
+    fn a_correction_carries_further() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/sensor1-joint.toml");
+        let mut design = Design::load(&path).expect("a design");
+        for (depth_mm, thin) in [(1.7, false), (1.5, true)] {
+            design.sensor.depth_mm = depth_mm;
+            assert_eq!(design.thin_layer().is_some_and(|said| said.contains("no direction")), thin, "{depth_mm} mm");
+        }
+    }
 }

@@ -3,10 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::contacts::{Pressed, Truth, frames, inside};
-use crate::families::{FAMILIES, Family, frame, judge as judged, row};
+use crate::contacts::{Pressed, Truth, errors_of as judge, frames, inside};
+use crate::families::{FAMILIES, Family, frame, judge as judged, row, share};
 use golden::design::Design;
-use golden::metrics::Outcome;
 use golden::scene::Medium;
 use golden::solver::Solver;
 
@@ -26,28 +25,6 @@ fn clipped(set: &[Pressed], friction: f64, noise: f64) -> Vec<Truth> {
         *stress = stress.min(0.0);
     }
     frames
-}
-
-/// Lengths of the errors of the tangential force and errors of the normal one, in percent of the normal force, each in
-/// rising order; and the frames with a status other than good.
-fn judge(solver: &Solver, frames: &[Truth]) -> ([Vec<f64>; 2], usize) {
-    let mut flagged = 0;
-    let mut errors = [Vec::new(), Vec::new()];
-    for Truth { frame, outcome: Outcome { force, .. } } in frames {
-        let found = solver.solve(frame).unwrap();
-        flagged += usize::from(found.status.0 != 0);
-        let [x, y, z] = [0, 1, 2].map(|axis| 100.0 * (found.resultant[axis] - force[axis]) / force[2].abs());
-        errors[0].push(x.hypot(y));
-        errors[1].push(z.abs());
-    }
-    for errors in &mut errors {
-        errors.sort_by(f64::total_cmp);
-    }
-    (errors, flagged)
-}
-
-fn share(sorted: &[f64], share: f64) -> f64 {
-    sorted[((sorted.len() as f64 * share).ceil() as usize).clamp(1, sorted.len()) - 1]
 }
 
 /// What 95 % of 200 contacts keep to at each friction, in percent: of the tangential force, and of the normal one. What a

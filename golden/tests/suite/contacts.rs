@@ -155,3 +155,21 @@ pub fn judged(frames: &[Truth], answers: impl Iterator<Item = (u32, Outcome)>) -
     larger.sort_by(f64::total_cmp);
     Worst { error, median: larger[larger.len() / 2], flagged }
 }
+
+/// Lengths of the errors of the tangential force and errors of the normal one, in percent of the normal force, each in
+/// rising order; and the frames with a status other than good.
+pub fn errors_of(solver: &Solver, frames: &[Truth]) -> ([Vec<f64>; 2], usize) {
+    let mut flagged = 0;
+    let mut errors = [Vec::new(), Vec::new()];
+    for Truth { frame, outcome: Outcome { force, .. } } in frames {
+        let found = solver.solve(frame).unwrap();
+        flagged += usize::from(found.status.0 != 0);
+        let [x, y, z] = [0, 1, 2].map(|axis| 100.0 * (found.resultant[axis] - force[axis]) / force[2].abs());
+        errors[0].push(x.hypot(y));
+        errors[1].push(z.abs());
+    }
+    for errors in &mut errors {
+        errors.sort_by(f64::total_cmp);
+    }
+    (errors, flagged)
+}

@@ -7,7 +7,8 @@ use golden::design::Design;
 use golden::scene::Medium;
 use golden::solver::Solver;
 
-use crate::contacts::{Pressed, Truth, frames, inside};
+use crate::contacts::{errors_of, frames, inside};
+use crate::families::share;
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 /// Of contacts; calibrations have another seed and another way to draw.
@@ -29,28 +30,6 @@ fn design(depth_by_pitch: f64, settings: Option<&Settings>) -> Design {
     design
 }
 
-/// Errors of the tangential and of the normal force in percent of the normal one, each in rising order, and frames that are
-/// said to be anything but good.
-fn judge(design: &Design, set: &[Pressed]) -> ([Vec<f64>; 2], usize) {
-    let solver = Solver::new(design).unwrap();
-    let (mut errors, mut flagged) = ([Vec::new(), Vec::new()], 0);
-    for Truth { frame, outcome } in frames(set, 0.5, 0.0) {
-        let found = solver.solve(&frame).unwrap();
-        flagged += usize::from(found.status.0 != 0);
-        let off = [0, 1, 2].map(|axis| 100.0 * (found.resultant[axis] - outcome.force[axis]) / outcome.force[2].abs());
-        errors[0].push(off[0].hypot(off[1]));
-        errors[1].push(off[2].abs());
-    }
-    for errors in &mut errors {
-        errors.sort_by(f64::total_cmp);
-    }
-    (errors, flagged)
-}
-
-fn share(sorted: &[f64], share: f64) -> f64 {
-    sorted[((sorted.len() as f64 * share).ceil() as usize).clamp(1, sorted.len()) - 1]
-}
-
 #[test]
 #[ignore = "prints the table of thin layers in docs/contacts.md; minutes"]
 fn table() {
@@ -58,7 +37,8 @@ fn table() {
         let kinds = [None, Some(Settings::constants()), Some(Settings::default())];
         for (name, settings) in ["line", "joint, as new", "joint, calibrated"].into_iter().zip(kinds) {
             let design = design(ratio, settings.as_ref());
-            let ([tangential, normal], flagged) = judge(&design, &inside(&design.sensor, LAYER, SEED, 200));
+            let frames = frames(&inside(&design.sensor, LAYER, SEED, 200), 0.5, 0.0);
+            let ([tangential, normal], flagged) = errors_of(&Solver::new(&design).unwrap(), &frames);
             let mut row = format!("| {ratio} | {name} |");
             for errors in [tangential, normal] {
                 let [median, most, worst] = [0.5, 0.95, 1.0].map(|part| share(&errors, part));

@@ -112,7 +112,7 @@ impl View {
             stream_bits: streams.bits,
             bytes_in,
             bytes_out,
-            length_bits: (bytes_in.max(bytes_out).ilog2() + 1).max(LEAST_LENGTH_BITS),
+            length_bits: length_bits(bytes_in, bytes_out),
             rtl: names(files, "rtl/", ".v"),
             rom: names(files, "rom/", ".mem"),
             sim_data: names(files, "sim/", ".mem"),
@@ -163,6 +163,11 @@ fn revision(hash: &str) -> u32 {
     hash.chars().take(7).filter_map(|digit| digit.to_digit(16)).fold(0, |value, digit| value << 4 | digit)
 }
 
+/// Width of the DMA's length register: a transfer is a frame or an answer.
+fn length_bits(bytes_in: usize, bytes_out: usize) -> u32 {
+    (bytes_in.max(bytes_out).ilog2() + 1).max(LEAST_LENGTH_BITS)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -173,6 +178,12 @@ mod tests {
         assert_eq!(period_ns(300.0), "3.333");
         assert_eq!(period_ns(1.0), "1000.000");
         assert_eq!(period_ns(160.5), "6.230");
+    }
+
+    #[test]
+    fn lengths_are_those_of_the_longer_transfer() {
+        // 10 × 10 with a field; 64 × 64 with resultants only, whose frame is 2^14 bytes; 64 × 64 with a field.
+        assert_eq!([(400, 1264), (16_384, 64), (16_384, 49_216)].map(|(a, b)| length_bits(a, b)), [14, 15, 16]);
     }
 
     #[test]

@@ -76,3 +76,15 @@ pub fn play(views: &[View], compact: bool, rate: Rate) -> io::Result<()> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_is_a_pause() {
+        let pause = |text: &str| text.parse::<Rate>().ok().map(|rate| rate.0);
+        assert_eq!(["10", "0.5"].map(pause), [100, 2000].map(|ms| Some(Duration::from_millis(ms))));
+        assert_eq!(["0", "-1", "2000", "nan", "fast"].map(pause), [None; 5]);
+    }
+}

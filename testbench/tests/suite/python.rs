@@ -56,20 +56,22 @@ fn the_wheel_works_in_an_empty_environment() {
     let own = installed(&wheel(folder.path()), &environment);
     let elsewhere = folder.path().join("elsewhere");
     fs::create_dir(&elsewhere).expect("a folder");
-    let test = workspace("python/tests/test_sptfra.py");
+    let [test, package] = ["test_sptfra.py", "test_package.py"].map(|name| workspace("python/tests").join(name));
     let ready = |program: &Path| {
         let mut command = Command::new(program);
         command.current_dir(&elsewhere).env("SPTFRA_ROOT", workspace("")).env_remove("PYTHONPATH");
         command
     };
-    let said = run(ready(&own).arg(&test));
-    assert!(said.contains("\nOK"), "{said}");
+    for test in [&test, &package] {
+        let said = run(ready(&own).arg(test));
+        assert!(said.contains("\nOK"), "{said}");
+    }
 
     // Matplotlib is where the tools are: the same package, found beside it, draws.
     let site = run(Command::new(&own).args(["-c", "import sptfra; print(sptfra.__path__[0])"]));
     let site = Path::new(site.trim()).parent().expect("a folder");
     let mut drawing = ready(&python());
-    drawing.env("PYTHONPATH", site).arg(&test).arg("Package.test_plots_say_what_they_need");
+    drawing.env("PYTHONPATH", site).arg(&package).arg("Package.test_plots_say_what_they_need");
     run(&mut drawing);
     let picture = elsewhere.join("mat.svg");
     let notebook = workspace("python/examples/recording.ipynb");

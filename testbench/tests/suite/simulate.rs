@@ -15,21 +15,17 @@ fn expected(packets: &[Vec<u32>]) -> Vec<Vec<u32>> {
     (0..).zip(packets).map(|(counter, packet)| answer(counter, packet)).collect()
 }
 
+fn job<'a>(built: &'a Built, packets: &'a [Vec<u32>], expected: &'a [Vec<u32>]) -> Job<'a> {
+    let pacing = Pacing::BackToBack;
+    Job { built, packets, expected, columns: 4, pacing, timeout: 500, seed: 1, trace: None }
+}
+
 #[test]
 fn a_right_core_is_exact_in_all_modes() {
     let packets = vec![vec![9, 8, 7]; 10];
     let expected = expected(&packets);
     let built = built(0);
-    let job = Job {
-        built: &built,
-        packets: &packets,
-        expected: &expected,
-        columns: 4,
-        pacing: Pacing::BackToBack,
-        timeout: 500,
-        seed: 1,
-        trace: None,
-    };
+    let job = job(&built, &packets, &expected);
     let answered = AtomicU64::new(0);
     let count = || {
         answered.fetch_add(1, Ordering::Relaxed);
@@ -52,16 +48,7 @@ fn a_wrong_word_is_counted_in_every_mode_and_named() {
     let mut expected = expected(&packets);
     expected[4][2] ^= 1;
     let built = built(0);
-    let job = Job {
-        built: &built,
-        packets: &packets,
-        expected: &expected,
-        columns: 4,
-        pacing: Pacing::BackToBack,
-        timeout: 500,
-        seed: 1,
-        trace: None,
-    };
+    let job = job(&built, &packets, &expected);
     let simulation = simulate(&job, &|| ()).expect("runs");
     assert_eq!((simulation.is_exact(), simulation.mismatches()), (false, 4));
     let mismatch = &simulation.modes[3].comparison.first[0];
@@ -73,16 +60,7 @@ fn a_core_that_breaks_under_stalls_is_refused_by_mode() {
     let packets = packets(10);
     let expected = expected(&packets);
     let built = built(1);
-    let job = Job {
-        built: &built,
-        packets: &packets,
-        expected: &expected,
-        columns: 4,
-        pacing: Pacing::BackToBack,
-        timeout: 500,
-        seed: 1,
-        trace: None,
-    };
+    let job = job(&built, &packets, &expected);
     let error = simulate(&job, &|| ()).expect_err("must fail");
     assert!(matches!(error, SimulationError::Stream { mode: "stalled sink", .. }), "{error}");
     let nothing = Job { packets: &[], expected: &[], ..job };
@@ -97,16 +75,7 @@ fn the_free_running_mode_is_traced() {
     let expected = expected(&packets);
     let built = Verilate::default().with_trace(PLAIN_TRACE).build(&packet_sum(0)).expect("builds");
     let trace = Some(file.as_path());
-    let job = Job {
-        built: &built,
-        packets: &packets,
-        expected: &expected,
-        columns: 4,
-        pacing: Pacing::BackToBack,
-        timeout: 500,
-        seed: 1,
-        trace,
-    };
+    let job = Job { trace, ..job(&built, &packets, &expected) };
     assert!(simulate(&job, &|| ()).expect("runs").is_exact());
     assert!(std::fs::read_to_string(&file).expect("written").contains("s_axis_tvalid"));
 }

@@ -32,16 +32,29 @@ fn folder_with(frames: &str) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// The first line of every force file.
 /// So many taxels in a row.
 fn line_of(columns: usize) -> Sensor {
     Sensor { columns, rows: 1, pitch_mm: [4.0, 4.0], depth_mm: 3.0 }
 }
 
+/// The first line of every force file.
 const HEADER: &str = "status,F_x,F_y,F_z,mu,phi,mu_x,mu_y,T_x,T_y,T_z,standard_error,bodies";
 
 fn row(value: &str) -> String {
     [value; 12].join(",")
+}
+
+#[test]
+fn a_layer_that_is_too_thin_is_told_of() {
+    let (folder, frames) = folder_with(&row("-1000.5"));
+    let [design, forces] = ["thin.toml", "out.csv"].map(|name| folder.path().join(name));
+    for (depth, told) in [("1.2", true), ("3.0", false)] {
+        let sensor = format!("[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth}\n");
+        fs::write(&design, format!("name = \"thin\"\n{sensor}")).unwrap();
+        let output = golden(&["solve", text(&design), "--frames", text(&frames), "--out", text(&forces)]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(said.contains("warning: the layer is 0.30 of a pitch thin"), told, "{said}");
+    }
 }
 
 #[test]

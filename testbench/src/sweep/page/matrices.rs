@@ -205,3 +205,22 @@ pub fn symbol(name: MatrixName) -> String {
 fn scientific(value: f64) -> String {
     format!("≤ {value:.1e}")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_is_full_where_its_error_is_one_to_live_with() {
+        let candidate = |(number, matrix): (usize, MatrixName)| {
+            // Twice the error without a filter, and a little more.
+            let e_mu = if number < 5 { 2.0 } else { 2.1 };
+            Candidate { matrix, filter: MatrixFilter::F1 { l: 10 }, nnz: 90, e_mu, cost: 90.0 * e_mu, chosen: true }
+        };
+        let candidates = MatrixName::ALL.into_iter().enumerate().map(candidate).collect();
+        let choice = Choice { candidates, frames: 1, e_mu_unfiltered: 1.0, e_mu_chosen: 3.0, nnz_chosen: 1170 };
+        let svg = costs(&choice);
+        let count = |part: &str| svg.matches(part).count();
+        assert_eq!((count("fill=\"#d9730d\""), count("stroke=\"#d9730d\"")), (5, 8));
+    }
+}

@@ -4,6 +4,7 @@
  *
  * BANKS is binary, little-endian: gains and offsets of each taxel (float64), a noise floor in Pa (float64, 0: none), and
  * the words of the bank (uint32); then the same for the next one. */
+#include "check.h"
 #include "machine.h"
 #include "sptfra.h"
 
@@ -15,14 +16,6 @@
 #define POLLS 1000000u
 
 _Alignas(SPTFRA_LINE) static uint32_t stress_words[1024], force_words[1024];
-
-#define CHECK(condition)                                                      \
-    do {                                                                      \
-        if (!(condition)) {                                                   \
-            printf("FAIL: line %d: %s\n", __LINE__, #condition);              \
-            exit(1);                                                          \
-        }                                                                     \
-    } while (0)
 
 static void send(sptfra *device, float count, sptfra_result *result)
 {

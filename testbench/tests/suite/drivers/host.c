@@ -4,6 +4,7 @@
  *
  * FRAMES is binary, little-endian: for each frame the number of words, the words, and words_out words of the answer.
  * With REGISTERS 0 the core has no bank. */
+#include "check.h"
 #include "machine.h"
 #include "sptfra.h"
 
@@ -21,14 +22,6 @@
 _Alignas(SPTFRA_LINE) static uint32_t stress_words[MOST_WORDS], force_words[MOST_WORDS];
 static uint32_t expected[MOST_WORDS];
 static int flushed, invalidated, fenced;
-
-#define CHECK(condition)                                                      \
-    do {                                                                      \
-        if (!(condition)) {                                                   \
-            printf("FAIL: line %d: %s\n", __LINE__, #condition);              \
-            exit(1);                                                          \
-        }                                                                     \
-    } while (0)
 
 static void flush(void *context, const void *start, size_t bytes)
 {

@@ -48,6 +48,7 @@ fn a_wrong_queue_is_noticed() {
         ("    *lost = code == SPTFRA_OK ? without : 0u;", "    *lost = 0u * without;"),
         ("& (STATUS_FAULTS | STATUS_HALTED)", "& STATUS_FAULTS"),
         ("sptfra_in_step(queue->device, forces) &&", "(sptfra_in_step(queue->device, forces) || 1) &&"),
+        (" && !(status & SPTFRA_DROPPED)", ""),
         // A place by a number that wraps.
         ("queue->next_in * queue->stride_in", "queue->sent % queue->depth * queue->stride_in"),
         ("DMA_STATUS, STATUS_INTERRUPTS);\n        dma_set", "DMA_STATUS, 0);\n        dma_set"),

@@ -228,7 +228,7 @@ fn an_access_without_a_register_can_interrupt() {
 fn addresses_are_the_same_everywhere() {
     let map = map(&widest().plan);
     let page = fs::read_to_string(workspace("docs/control.md")).expect("a page");
-    let python = fs::read_to_string(workspace("drivers/python/sptfra_board.py")).expect("a driver");
+    let python = fs::read_to_string(workspace("drivers/python/sptfra_registers.py")).expect("a driver");
     let source = include_str!("../../../src/registers/mod.rs");
     for Register { name, address, .. } in &map {
         assert!(source.contains(&format!("pub const {name}: u32 = 0x{address:03X};")), "{name} in the testbench");

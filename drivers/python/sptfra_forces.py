@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""A core's answers as numpy arrays."""
+
+import enum
+import json
+import pathlib
+from dataclasses import dataclass
+
+import numpy as np
+
+#: Edition of metadata.json, and of the streams that it describes.
+FORMAT = 2
+
+
+class Status(enum.IntFlag):
+    """Status bits of a frame."""
+
+    NO_CONTACT = 1
+    DIRECTION_UNKNOWN = 2
+    AT_BOUND = 4
+    SATURATED = 8
+    NOT_FINITE = 16
+    BAD_LENGTH = 32
+    DOUBTFUL = 64
+    MORE_BODIES = 128
+    REPLACED = 256
+    TOO_MANY_REPLACED = 512
+    SLIP = 1024
+    NO_TENSION = 2048
+    DROPPED = 4096
+
+
+class Layout:
+    """Where the values stand in an answer's words, by name: (index of the word, its lowest bit, mask; None: float32)."""
+
+    def __init__(self, values, field):
+        """`field` is the first word of the taxels' forces."""
+        self.values, self.field = values, field
+
+    @classmethod
+    def load(cls, path):
+        """That of a design, from its metadata.json. Raises ValueError for one of another edition."""
+        metadata = json.loads(pathlib.Path(path).read_text())
+        if metadata.get("format") != FORMAT:
+            raise ValueError(f"{path}: format {metadata.get('format')}, this driver knows {FORMAT}")
+        values, field = {}, None
+        for value in metadata["output"]:
+            high, low = value.get("bits", (31, 0))
+            mask = None if value["type"] == "float32" else (1 << (high - low + 1)) - 1
+            if value["name"] == "field":
+                field = value["index"]
+            else:
+                values[value["name"]] = (value["index"], low, mask)
+        return cls(values, field)
+
+    def get(self, words, name):
+        """The value of each answer in (n, words_out) uint32."""
+        index, low, mask = self.values[name]
+        column = words[:, index]
+        return column.copy().view(np.float32) if mask is None else column >> low & mask
+
+    def vector(self, words, *names):
+        """Several values of each answer, side by side."""
+        return np.column_stack([self.get(words, name) for name in names])
+
+
+_FLOATS = {"F_x": 2, "F_y": 3, "F_z": 4, "T_x": 5, "T_y": 6, "T_z": 7, "mu": 8, "phi": 9, "mu_x": 10, "mu_y": 11}
+#: The layout of every core with one body and no more.
+LAYOUT = Layout(
+    {name: (index, 0, None) for name, index in (_FLOATS | {"standard_error": 12}).items()}
+    | {"status": (0, 0, 0xFFFF), "frame": (0, 16, 0xFFFF), "timestamp": (1, 0, 0xFFFFFFFF)}
+    | {"bodies": (13, 0, 0xFF), "generation": (13, 8, 0xFF), "replaced_taxels": (13, 16, 0xFF)},
+    field=16,
+)
+
+
+@dataclass(frozen=True)
+class Forces:
+    """Answers to n frames; of a frame whose status says NOT_FINITE, BAD_LENGTH or NO_CONTACT all results are zeros."""
+
+    #: (n,) uint16: bits of `Status`.
+    status: np.ndarray
+    #: (n,) uint16: number of the frame since the core was reset, modulo 65536.
+    number: np.ndarray
+    #: (n,) uint32: when its first beat came in, in cycles since the reset, modulo 2**32.
+    timestamp: np.ndarray
+    #: (n, 3) float32: F_x, F_y, F_z in N.
+    resultant: np.ndarray
+    #: (n, 3) float32: T_x, T_y, T_z in N m about the middle of the grid.
+    torque: np.ndarray
+    #: (n,) float32: friction coefficient.
+    friction: np.ndarray
+    #: (n,) float32: direction of the push in rad.
+    direction: np.ndarray
+    #: (n, 2) float32: friction along x and y.
+    friction_xy: np.ndarray
+    #: (n,) float32: standard error of (F_x, F_y) in N; 0 where the design has none.
+    standard_error: np.ndarray
+    #: (n,) uint8: bodies in touch.
+    bodies: np.ndarray
+    #: (n,) uint8: generation of the calibration.
+    generation: np.ndarray
+    #: (n,) uint8: taxels whose stress was made up.
+    replaced: np.ndarray
+    #: (n, rows, columns, 3) float32: f_x, f_y, f_z of each taxel in N; None if the design has resultants only.
+    field: np.ndarray | None
+
+    def names(self, index):
+        """Names of a frame's status bits."""
+        return [bit.name for bit in Status if int(self.status[index]) & bit]
+
+
+def decode(words, rows, columns, has_field, layout=LAYOUT):
+    """Forces from (n, words_out) words of uint32 as the core sends them."""
+    words = np.ascontiguousarray(words, dtype=np.uint32)
+    field = None
+    if has_field:
+        taxels = words[:, layout.field : layout.field + 3 * rows * columns]
+        field = np.ascontiguousarray(taxels).view(np.float32).reshape(len(words), rows, columns, 3)
+    return Forces(
+        status=layout.get(words, "status").astype(np.uint16),
+        number=layout.get(words, "frame").astype(np.uint16),
+        timestamp=layout.get(words, "timestamp"),
+        resultant=layout.vector(words, "F_x", "F_y", "F_z"),
+        torque=layout.vector(words, "T_x", "T_y", "T_z"),
+        friction=layout.get(words, "mu"),
+        direction=layout.get(words, "phi"),
+        friction_xy=layout.vector(words, "mu_x", "mu_y"),
+        standard_error=layout.get(words, "standard_error"),
+        bodies=layout.get(words, "bodies").astype(np.uint8),
+        generation=layout.get(words, "generation").astype(np.uint8),
+        replaced=layout.get(words, "replaced_taxels").astype(np.uint8),
+        field=field,
+    )
