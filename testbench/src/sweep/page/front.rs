@@ -2,6 +2,7 @@
 
 use golden::design::{Estimator, Family, PlanKind};
 
+use super::dots::{self, Dot, Rim};
 use super::paper::TABLE_3;
 use crate::svg::{Axis, INK, MARK, Svg, power};
 use crate::sweep::point::{Hardware, Point, paper_sensor};
@@ -81,26 +82,18 @@ pub fn front(points: &[&Point], with_paper: bool, tells: bool) -> String {
     if tells {
         svg.line(&corners, INK, "2 3");
     }
-    for (point, hardware) in &built {
-        let place = (x.place(hardware.latency_us), height(point.tangential()));
-        let name = format!(
-            "{}: {} cycles, {:.1} % tangential, e_mu {:.1} %, {} DSP; {}",
-            point.label(),
-            hardware.latency_cycles,
-            point.tangential(),
-            point.errors.e_mu.max,
-            hardware.dsp,
-            point.verified.title()
-        );
-        match point.tangential() {
-            more if more > MOST_PERCENT => svg.named_triangle(place, 5.5, style(point).1, &name),
-            less if less < LEAST_PERCENT => svg.named_triangle(place, -5.5, style(point).1, &name),
-            _ => svg.named_dot(place, 4.5, style(point).1, &name),
-        }
-        if point.verified == crate::sweep::point::Verified::Rtl {
-            svg.ring(place, 7.5, style(point).1);
-        }
-    }
+    let dots = built.iter().map(|&(point, hardware)| Dot {
+        place: (x.place(hardware.latency_us), height(point.tangential())),
+        rim: match point.tangential() {
+            more if more > MOST_PERCENT => Rim::Above,
+            less if less < LEAST_PERCENT => Rim::Below,
+            _ => Rim::Within,
+        },
+        kind: style(point),
+        point,
+        hardware,
+    });
+    dots::draw(&mut svg, dots.collect());
     // What has an error and no latency.
     for point in points.iter().filter(|point| point.hardware.is_none()) {
         let (name, colour) = style(point);

@@ -1,6 +1,7 @@
 //! The page of a sweep: one HTML file without a network, with pictures as SVG, for light and dark.
 
 pub mod conclusion;
+mod dots;
 pub mod forces;
 pub mod front;
 pub mod hard;
