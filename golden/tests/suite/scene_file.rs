@@ -312,3 +312,22 @@ fn keys_of_contacts_that_contradict_themselves() {
     refused(&with("depth_mm = 3.0", "depth_mm = 3.0\ntaxel_mm = [5.0, 1.0]"), &["sensor.taxel_mm[0]", "pitch"]);
     refused(&with("depth_mm = 3.0", "depth_mm = 3.0\ntaxel_mm = 2.0"), &["sensor.taxel_mm", "[2.0, 2.0]"]);
 }
+
+/// The scene that the docs show has every key that they speak of, and makes frames.
+#[test]
+fn the_scene_of_the_docs_is_one() {
+    let page =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/formats.md")).expect("a page");
+    let mut blocks = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let text = blocks.find(|block| block.contains("[medium]")).expect("a scene");
+    let mut scene = Scene::from_toml(text, "docs/formats.md").expect("a scene as it is written");
+    assert_eq!(scene.frames().expect("frames").len(), 36);
+    // What it has as a remark is the other way to be held.
+    let held = text
+        .replace("shear = \"sliding\"", "shear = \"held\"")
+        .replace("spin = 1.0", "")
+        .replace("# held = 0.5", "held = 0.5");
+    scene = Scene::from_toml(&held.replace("edge = 2.0", "").replace("tilt = [0.6, 0.0]", ""), "held").expect("held");
+    scene.sweep_deg.truncate(1);
+    assert_eq!(scene.frames().expect("frames").len(), 1);
+}

@@ -49,6 +49,13 @@ fn installed(wheel: &Path, folder: &Path) -> PathBuf {
     own
 }
 
+/// The session of docs/python.md, as it is written.
+fn session() -> String {
+    let page = fs::read_to_string(workspace("docs/python.md")).expect("a page");
+    let block = page.split("```python\n").nth(1).and_then(|rest| rest.split("```").next());
+    block.expect("a session").to_owned()
+}
+
 #[test]
 fn the_wheel_works_in_an_empty_environment() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -65,6 +72,10 @@ fn the_wheel_works_in_an_empty_environment() {
     for test in [&test, &package] {
         let said = run(ready(&own).arg(test));
         assert!(said.contains("\nOK"), "{said}");
+    }
+    let said = run(ready(&own).args(["-c", &session()]));
+    for stated in ["Spread(max=", "Plan(latency_cycles="] {
+        assert!(said.contains(stated), "no {stated:?} in:\n{said}");
     }
 
     // Matplotlib is where the tools are: the same package, found beside it, draws.

@@ -170,3 +170,29 @@ fn every_link_leads_somewhere() {
         assert!(site.contains(&format!(": {name}\n")), "tools/book.yml has no {name}");
     }
 }
+
+/// `make book`: every page has its place, and the search knows what is on it.
+#[test]
+fn the_site_has_every_page_and_finds_its_words() {
+    let root = workspace("");
+    let mkdocs = root.join(".venv/bin/mkdocs");
+    assert!(mkdocs.exists(), "{} is missing: run `make book-tools`", mkdocs.display());
+    let python = root.join(".venv/bin/python");
+    let made = Command::new(python).arg(root.join("tools/book.py")).output().expect("runs");
+    assert!(
+        made.status.success(),
+        "{}{}",
+        String::from_utf8_lossy(&made.stdout),
+        String::from_utf8_lossy(&made.stderr)
+    );
+    let site = root.join("target/book");
+    let pages = fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
+    for page in pages.filter(|path| path.extension().is_some_and(|ending| ending == "md")) {
+        let made = site.join(page.file_name().expect("a name")).with_extension("html");
+        assert!(made.is_file(), "{} is missing", made.display());
+    }
+    let index = fs::read_to_string(site.join("search/search_index.json")).expect("readable");
+    for word in ["taxel", "skid buffer", "sptfra_overrun", "device-tree"] {
+        assert!(index.contains(word), "the search does not know {word}");
+    }
+}
