@@ -50,4 +50,5 @@ pub mod sensor;
 pub mod solver;
 pub mod status;
 pub mod table;
+pub mod unread;
 pub mod words;

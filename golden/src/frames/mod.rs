@@ -25,7 +25,7 @@ use crate::sensor::Sensor;
 #[derive(Debug, thiserror::Error)]
 pub enum FrameError {
     /// The file could not be read.
-    #[error("{}: cannot read the frames: {source}; check the path and the permissions", path.display())]
+    #[error("{}: cannot read the frames: {source}; {}", path.display(), crate::unread::remedy(path, source))]
     Read {
         /// The file.
         path: PathBuf,
