@@ -168,7 +168,7 @@ SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1
 	designs/sensor1-fast.toml designs/sensor1-wide.toml designs/sensor2-wide.toml
 SWEEP_SCENES  ?= $(addprefix scenes/,sensor1-hertz.toml sensor1-tilted.toml two-contacts.toml sensor2-disc.toml \
 	sensor2-punch.toml sensor2-held.toml)
-SWEEP_OPTIONS ?= --simulate base --hard
+SWEEP_OPTIONS ?= --simulate base --hard --kinds
 SNAKEMAKE_OPTIONS ?= --cores all
 
 .PHONY: report

@@ -15,11 +15,13 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use commands::Recording;
 use commands::calibrate_recorded::Recordings;
+use commands::scene::RandomContacts;
 use golden::arguments::design_file;
 use golden::calibrate::Work;
 use golden::design::Family;
 use golden::manual::Manual;
 use golden::output::print_text;
+use golden::scene::Kind;
 use golden::words::parser;
 
 /// Reference solver and ground truth for three-axis tactile sensing from normal stress.
@@ -38,7 +40,8 @@ enum Command {
     /// columns of `golden solve`. FRAMES.sensor.toml says what sensor they belong to: `golden solve`, `golden check`,
     /// `testbench run` and `testbench view` refuse them for a design of another one.
     ///
-    /// With --design alone: a round contact in the middle of the design's sensor, friction 0.5, in 36 directions.
+    /// With --design alone: a round contact in the middle of the design's sensor, friction 0.5, in 36 directions. With
+    /// --kind, too: contacts that the calibration may not have seen, to judge an estimator by.
     #[command(after_long_help = SCENE_FILE)]
     Scene {
         /// Scene file (TOML).
@@ -47,6 +50,11 @@ enum Command {
         /// Design file (TOML) whose sensor the frames are for; in counts, if it counts.
         #[arg(long, value_name = "DESIGN.toml", value_parser = design_file())]
         design: Option<PathBuf>,
+        /// Contacts of a kind, anywhere on the design's sensor and pushed in any direction, in place of a scene.
+        #[arg(long, value_parser = parser::<Kind>(), requires = "design", conflicts_with = "scene")]
+        kind: Option<Kind>,
+        #[command(flatten)]
+        random: RandomContacts,
         /// Where to write the frames (CSV).
         #[arg(long, value_name = "FRAMES.csv")]
         out: PathBuf,
@@ -269,8 +277,9 @@ In RESOLVED.toml, besides:
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Scene { scene, design, out, json } => {
-            commands::scene::run(scene.as_deref(), design.as_deref(), &out, json)
+        Command::Scene { scene, design, kind, random, out, json } => {
+            let kind = kind.map(|kind| (kind, random));
+            commands::scene::run(scene.as_deref(), design.as_deref(), kind, &out, json)
         }
         Command::Solve { design, frames, labels, out, field, reference, json } => {
             commands::solve::run(&design, &Recording { file: &frames, labels }, &out, field, reference.as_deref(), json)

@@ -147,8 +147,20 @@ class FrameLines:
 def load_frames(path: str | os.PathLike[str], design: Design, *, labels: int = 0) -> npt.NDArray[np.float64]:
     """Frames (n, rows, columns) of a CSV or .npy file, whose lines begin with so many columns of other things."""
 
-def scene(design: Design | None = None, path: str | os.PathLike[str] | None = None) -> Scene:
-    """Frames with their true forces: of a scene file, else a round contact that suits the design, in 36 directions."""
+def scene(
+    design: Design | None = None,
+    path: str | os.PathLike[str] | None = None,
+    *,
+    kind: str | None = None,
+    count: int = 60,
+    friction: float = 0.5,
+    seed: int = 1,
+) -> Scene:
+    """Frames with their true forces: of a scene file, else a round contact that suits the design, in 36 directions.
+
+    With `kind`, such as "held" or "mixed-inside", so many contacts of that kind on the design's sensor, one of each seed:
+    what `golden scene --kind` makes.
+    """
 
 def check(design: Design, frames: npt.ArrayLike) -> list[Finding]:
     """What is wrong with frames, as far as they tell: unit, sign, tare, order of the taxels, end of the converter."""

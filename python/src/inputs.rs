@@ -7,8 +7,9 @@ use golden::frames::read_frames_of;
 use golden::geometry;
 use golden::matrices::Matrices;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
-use golden::scene::{ChoiceError, Scene, SceneFrame};
+use golden::scene::{ChoiceError, Kind, Scene, SceneFrame};
 use golden::solver::{Solution, Status};
+use golden::words;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -74,26 +75,52 @@ pub fn check<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) 
 
 /// Frames with their true forces.
 #[pyfunction]
-#[pyo3(signature = (design = None, path = None))]
-pub fn scene<'py>(py: Python<'py>, design: Option<&Design>, path: Option<PathBuf>) -> PyResult<Bound<'py, PyAny>> {
+#[pyo3(signature = (design = None, path = None, *, kind = None, count = 60, friction = 0.5, seed = 1))]
+pub fn scene<'py>(
+    py: Python<'py>,
+    design: Option<&Design>,
+    path: Option<PathBuf>,
+    kind: Option<&str>,
+    count: u32,
+    friction: f64,
+    seed: u32,
+) -> PyResult<Bound<'py, PyAny>> {
     let design = design.map(|design| &design.inner);
     if design.is_none() && path.is_none() {
         return Err(raised("nothing to make frames of; give a design, or the path of a scene file"));
     }
-    let (scene, made) = without_lock(py, || {
-        let scene = Scene::for_design(path.as_deref(), design)?;
-        let mut frames = scene.frames()?;
+    let kind = kind.map(|word| {
+        words::read::<Kind>(word)
+            .map_err(|words| raised(format!("kind = {word:?} is no kind of contact; use one of {words}")))
+    });
+    let kind = match (kind.transpose()?, design) {
+        (Some(_), None) => return Err(raised("contacts of a kind are for the sensor of a design; give one")),
+        (Some(_), Some(_)) if path.is_some() => return Err(raised("a scene file or a kind of contact, not both")),
+        (Some(_), Some(_)) if !(0.0..=2.0).contains(&friction) => return Err(raised("friction is from 0 to 2")),
+        (kind, design) => kind.zip(design),
+    };
+    let (sensor, made) = without_lock(py, || {
+        let (sensor, mut frames) = match kind {
+            Some((kind, design)) => {
+                let seeds = u64::from(seed)..u64::from(seed) + u64::from(count);
+                (design.sensor.clone(), kind.frames(&design.sensor, friction, seeds)?)
+            }
+            None => {
+                let scene = Scene::for_design(path.as_deref(), design)?;
+                (scene.sensor.clone(), scene.frames()?)
+            }
+        };
         if let Some(design) = design {
             for frame in &mut frames {
                 design.deliver(&mut frame.stress);
             }
         }
-        Ok::<_, ChoiceError>((scene, frames))
+        Ok::<_, ChoiceError>((sensor, frames))
     })?;
-    let shape = [made.len(), scene.sensor.rows, scene.sensor.columns];
+    let shape = [made.len(), sensor.rows, sensor.columns];
     let stress: Vec<f64> = made.iter().flat_map(|frame| frame.stress.iter().copied()).collect();
     let records = made.iter().map(|frame| known(frame).records.len()).max().unwrap_or(0);
-    let mut truth = Forces::zeros(&scene.sensor, made.len(), records, false);
+    let mut truth = Forces::zeros(&sensor, made.len(), records, false);
     for (piece, frames) in truth.pieces().iter_mut().zip(made.chunks(golden::solver::PIECE)) {
         frames.iter().enumerate().for_each(|(index, frame)| piece.put(index, &known(frame)));
     }

@@ -6,6 +6,7 @@ mod bessel;
 mod choice;
 mod field;
 mod green;
+mod kind;
 mod parse;
 mod parse_traction;
 mod sensor_errors;
@@ -19,6 +20,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 pub use choice::ChoiceError;
+pub use kind::Kind;
 pub(crate) use sensor_errors::normal;
 pub use sensor_errors::{Converter, SensorErrors};
 pub use shape::Shape;

@@ -4,9 +4,9 @@ use std::fmt::Write;
 use std::path::Path;
 
 use crate::contacts::{Pressed, Truth, errors_of as judge, frames, inside};
-use crate::families::{FAMILIES, Family, frame, judge as judged, row, share};
+use crate::families::{judge as judged, row, share};
 use golden::design::Design;
-use golden::scene::Medium;
+use golden::scene::{Kind, Medium};
 use golden::solver::Solver;
 
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
@@ -80,10 +80,9 @@ fn families() {
             let design = design(&format!("{sensor}-{kind}"));
             (Solver::new(&design).unwrap(), design.sensor)
         });
-        for (family, label) in FAMILIES {
-            let all = matches!(family, Family::Wide | Family::WideInside);
-            let mut frames: Vec<_> =
-                (0..if all { 600 } else { 60 }).map(|seed| frame(&solvers[0].1, family, 0.5, 1000 + seed)).collect();
+        for kind in Kind::ALL {
+            let (label, count) = (kind.title(), if kind.has_own_friction() { 600 } else { 60 });
+            let mut frames = kind.frames(&solvers[0].1, 0.5, 1000..1000 + count).unwrap();
             for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {
                 *stress = stress.min(0.0);
             }

@@ -56,6 +56,9 @@ pub struct Arguments {
     /// Add the table of hard cases to the page, as `testbench hard` makes it; through the RTL too with --simulate.
     #[arg(long)]
     hard: bool,
+    /// Add a table of contacts of other kinds to the page, on so many frames of each; 40 if nothing is said.
+    #[arg(long, value_name = "FRAMES", num_args = 0..=1, default_missing_value = "40", default_value_t = 0, hide_default_value = true)]
+    kinds: u64,
     /// Folder for the points and for sweep.json, sweep.csv and report.html.
     #[arg(long, value_name = "FOLDER", default_value = OUT)]
     out: PathBuf,
@@ -89,7 +92,8 @@ pub fn run(arguments: &Arguments) -> super::Result {
         full: arguments.full,
     };
     let jobs = jobs(&designs, &axes, &mut scenes)?;
-    let sweep = Sweep { jobs, scenes, simulate: arguments.simulate, runs: arguments.runs.clone() };
+    let sweep =
+        Sweep { jobs, scenes, simulate: arguments.simulate, runs: arguments.runs.clone(), kinds: arguments.kinds };
     if arguments.prepare {
         let count = sweep.prepare(&arguments.out)?;
         return Ok(format!(

@@ -3,7 +3,7 @@
 use golden::calibrate::{Settings, calibrate};
 use golden::design::{Design, DesignError, Estimator, JointConstants, Sensor};
 use golden::metrics::Outcome;
-use golden::scene::{Contact, Converter, Medium, Scene, SensorErrors, Shape, Traction};
+use golden::scene::{Contact, Converter, Kind, Medium, Scene, SensorErrors, Shape, Traction};
 
 use super::HardError;
 use crate::frame_set::FrameSet;
@@ -133,6 +133,9 @@ pub fn all(large: bool) -> Result<Vec<Case>, HardError> {
         cases.scene("size", "32 × 32 taxels", "", &swept)?;
     }
     contacts(&mut cases)?;
+    if large {
+        kinds(&mut cases)?;
+    }
     directions(&mut cases)?;
     errors(&mut cases)?;
     ends_of_range(&mut cases)?;
@@ -225,6 +228,19 @@ fn contacts(cases: &mut Cases) -> Result<(), HardError> {
     for friction in [0.2, 0.8, 1.5] {
         let name = format!("µ = {friction}");
         cases.scene("contact", name, "", &swept(vec![Contact { friction, ..contact(&sensor, 7.0) }]))?;
+    }
+    Ok(())
+}
+
+/// Contacts anywhere within the grid of kinds that no constant was fitted to.
+fn kinds(cases: &mut Cases) -> Result<(), HardError> {
+    let sensor = sensor_1();
+    for kind in Kind::ALL {
+        let made = kind.frames(&sensor, 0.5, 0..DIRECTIONS as u64)?;
+        let truth = Some(made.iter().map(Outcome::from).collect());
+        let frames = made.into_iter().map(|frame| frame.stress).collect();
+        let design = design(&sensor, "")?;
+        cases.0.push(Case { group: "kind", name: kind.title().to_owned(), design, frames, truth });
     }
     Ok(())
 }

@@ -144,7 +144,8 @@ pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
          limits, solved in f64, in float32, and by the hardware of 18 × 27 bits, without a filter; by the line \
          estimator and, in tables of their own, by the joint one. If nothing else is said: sensor 1, a Hertz contact \
          of 7 mm and 6 N in its middle, µ = 0.5, on a bonded layer of ν = 0.49, in 12 directions; under depth over \
-         pitch 10 × 10 taxels of 4 × 4 mm and a contact of 10 mm.",
+         pitch 10 × 10 taxels of 4 × 4 mm and a contact of 10 mm; contacts of other kinds are 12 of each, anywhere within \
+         the grid, of 3 N.",
     );
     page.line(
         "* **cond**: 2-norm condition numbers of C33 and A Aᵀ.\n\
@@ -191,6 +192,7 @@ fn title(row: &Row) -> &'static str {
     match row.group {
         "size" => "Size",
         "contact" => "Contacts",
+        "kind" => "Contacts of other kinds",
         "direction" => "Directions",
         "sensor" => "The sensor's errors",
         "range" => "Ends of the range",

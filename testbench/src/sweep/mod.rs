@@ -191,6 +191,8 @@ pub struct Sweep {
     pub simulate: Simulate,
     /// Folder with reports of `testbench run --json`, `KEY.json` each, that stand for the simulation of their points.
     pub runs: Option<PathBuf>,
+    /// Frames of each kind of contact in the page's table of kinds; without it for 0.
+    pub kinds: u64,
 }
 
 /// What a sweep came to.

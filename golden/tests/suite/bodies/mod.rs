@@ -5,11 +5,9 @@ mod kinds;
 
 use golden::bodies::{Body, BodyErrors, Quantiles};
 use golden::design::{Design, PlanKind, Slip};
-use golden::scene::SceneFrame;
+use golden::scene::{self, SceneFrame};
 use golden::solver::{PIECE, Slips, Solution, Solver, Status};
 use kinds::{Kind, frame};
-
-use super::families::{self, FAMILIES};
 
 /// What a solver makes of frames: errors in percent of the normal force.
 struct Judged {
@@ -244,10 +242,9 @@ fn table_of_one_body() {
     for sensor in ["sensor1", "sensor2"] {
         let names = ["joint", "wide"].map(|calibration| format!("{sensor}-{calibration}"));
         let pairs = names.map(|name| [1, 4].map(|contacts| Solver::new(&design(&name, contacts)).unwrap()));
-        for (family, label) in FAMILIES {
-            let geometry = pairs[0][0].matrices().sensor();
-            let frames: Vec<SceneFrame> =
-                (0..60).map(|seed| families::frame(geometry, family, 0.5, 1000 + seed)).collect();
+        for kind in scene::Kind::ALL {
+            let label = kind.title();
+            let frames = kind.frames(pairs[0][0].matrices().sensor(), 0.5, 1000..1060).unwrap();
             let (mut cells, mut right) = (String::new(), 0);
             for solvers in &pairs {
                 let [one, several] = solvers.each_ref().map(|solver| judge(solver, &frames));

@@ -5,6 +5,7 @@ mod dots;
 pub mod forces;
 pub mod front;
 pub mod hard;
+mod kinds;
 pub mod lanes;
 pub mod matrices;
 pub mod paper;
@@ -64,6 +65,7 @@ struct SensorSection {
     fronts: Vec<Figure>,
     table_1: Option<Table>,
     table_3: Option<Table>,
+    kinds: Option<Table>,
     lanes: Table,
     lanes_plot: Option<String>,
     widths: Vec<Figure>,
@@ -181,6 +183,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
         fronts,
         table_1: tables::table_1(&on_main),
         table_3: tables::table_3(&on_main),
+        kinds: kinds::table(&designs, sweep.kinds)?,
         lanes: tables::lanes(&on_main),
         lanes_plot: lanes::plot(&on_main),
         widths: widths(&on_main),
@@ -256,7 +259,7 @@ mod tests {
 
     #[test]
     fn a_page_says_that_hard_cases_follow_until_they_are_there() {
-        let sweep = Sweep { jobs: Vec::new(), scenes: Vec::new(), simulate: Simulate::None, runs: None };
+        let sweep = Sweep { jobs: Vec::new(), scenes: Vec::new(), simulate: Simulate::None, runs: None, kinds: 0 };
         let waiting = Contents::new(&[], &sweep, &[]).expect("nothing to compute").awaiting_hard_cases();
         let says = |contents: &Contents| render(contents).expect("a page").contains("still being computed");
         assert!(says(&waiting) && !says(&waiting.clone().with_hard_cases(&[])));

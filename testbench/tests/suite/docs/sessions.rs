@@ -187,6 +187,7 @@ fn the_commands_of_the_docs_run() {
     let found: Vec<(String, Vec<&str>)> = pages.collect();
     let expected = [
         ("calibrating.md", vec!["pad-june.toml", "june.html"]),
+        ("contacts.md", vec!["forces.csv"]),
         ("estimators.md", vec!["pad-joint.toml", "forces.csv"]),
         ("looking.md", vec!["frame.svg"]),
         ("python.md", vec![]),
