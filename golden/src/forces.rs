@@ -115,7 +115,7 @@ pub fn push_line(text: &mut String, row: &[f64]) {
 /// # Errors
 ///
 /// [`FrameError`], with file, line and column, for a line that is too short or holds something else than finite
-/// numbers, and for a file with another number of lines.
+/// numbers, for a file with another number of lines, and for one of something else.
 pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameError> {
     Ok(read_rows(path, frames)?
         .iter()
@@ -172,7 +172,28 @@ fn read_rows(path: &Path, frames: usize) -> Result<Vec<Vec<f64>>, FrameError> {
     if rows.len() != frames {
         return Err(FrameError::Count { path: path.to_path_buf(), found: rows.len(), expected: frames });
     }
-    Ok(rows)
+    match rows.iter().enumerate().find_map(|(index, row)| Some((index, no_forces(row)?))) {
+        Some((index, problem)) => Err(FrameError::NoForces { path: path.to_path_buf(), line: index + 1, problem }),
+        None => Ok(rows),
+    }
+}
+
+/// What no row of forces can have: frames are taken for forces else, and every error is one of thousands of percent.
+fn no_forces(row: &[f64]) -> Option<String> {
+    let (status, mu, phi) = (row[0], row[4], row[5]);
+    if status.fract() != 0.0 || !(0.0..=f64::from(u16::MAX)).contains(&status) {
+        return Some(format!("the first value, {status}, is no status of 16 bits"));
+    }
+    if mu < 0.0 {
+        return Some(format!("the friction, {mu}, is negative"));
+    }
+    // Written with nine digits.
+    (phi.abs() > std::f64::consts::PI + 1e-6).then(|| format!("the direction, {phi}, is no angle in radians"))
+}
+
+/// The frame file whose reference forces these are, without its ending: its sensor lies beside it.
+pub fn frames_of(reference: &Path) -> PathBuf {
+    reference.with_extension("")
 }
 
 /// The place of the reference forces of a frame file: `frames.csv` has them in `frames.forces.csv`, `frames.npy` in

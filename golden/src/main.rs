@@ -55,7 +55,7 @@ enum Command {
         kind: Option<Kind>,
         #[command(flatten)]
         random: RandomContacts,
-        /// Where to write the frames (CSV).
+        /// Where to write the frames (CSV, or .npy by its ending).
         #[arg(long, value_name = "FRAMES.csv")]
         out: PathBuf,
         /// Report as JSON.
@@ -68,20 +68,20 @@ enum Command {
     /// `f_x`, `f_y`, `f_z` of each taxel. Newtons and radians.
     ///
     /// With `--out -` the lines go to standard output, each as soon as its frame is there: with `--frames -`, from standard
-    /// input, the command is a filter for frames as they come from a sensor. Frames are then not checked.
+    /// input, the command is a filter for frames as they come from a sensor. The first frames are checked.
     #[command(after_long_help = ALGORITHM)]
     Solve {
         /// Design file (TOML).
         #[arg(value_parser = design_file())]
         design: PathBuf,
-        /// Frames (CSV): one frame a line, stresses in pascals, compression negative; counts for a design with
+        /// Frames (CSV or .npy): one frame a line, stresses in pascals, compression negative; counts for a design with
         /// `pa_per_count`. `-`: standard input.
         #[arg(long, value_name = "FRAMES.csv")]
         frames: PathBuf,
         /// Columns of labels before the values of a frame; the file may then have a header.
         #[arg(long, value_name = "N", default_value_t = 0)]
         labels: usize,
-        /// Where to write the forces (CSV). `-`: standard output.
+        /// Where to write the forces (CSV, or .npy by its ending). `-`: standard output.
         #[arg(long, value_name = "FORCES.csv")]
         out: PathBuf,
         /// Write the forces of each taxel too.
@@ -103,7 +103,7 @@ enum Command {
         /// Design file (TOML).
         #[arg(value_parser = design_file())]
         design: PathBuf,
-        /// Frames (CSV), as for `golden solve`.
+        /// Frames (CSV or .npy), as for `golden solve`.
         #[arg(long, value_name = "FRAMES.csv")]
         frames: PathBuf,
         /// Columns of labels before the values of a frame; the file may then have a header.

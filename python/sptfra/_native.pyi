@@ -180,7 +180,8 @@ def calibrate(
 ) -> Design:
     """The design with constants and a network fitted to its sensor, in a minute or some; Ctrl-C ends it.
 
-    `family` is "narrow" or "wide"; a path may be that of a design whose constants are those of another sensor.
+    `family` is "narrow" or "wide"; a path may be that of a design whose constants are those of another sensor. Without a
+    `name` it is that of the design with `_calibrated` behind it.
     `progress` is called with the pieces of work done and all, ten times a second.
     """
 

@@ -17,7 +17,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from ._native import Design, FrameLines, Solver, check
+from ._native import Design, Error, FrameLines, Solver, check
 from .forces import Forces
 from .plot import plot_field, pyplot
 
@@ -80,8 +80,15 @@ def run(design: Design, lines: Iterable[bytes], origin: str, labels: int, window
     """Solves the frame of each line and shows its forces."""
     reader, solver = FrameLines(design, labels=labels, origin=origin), Solver(design)
     number, forces, first = 0, None, []
-    for line in lines:
-        frame = reader.frame(line)
+    for index, line in enumerate(lines):
+        try:
+            frame = reader.frame(line)
+        except Error as error:
+            # Who opens a port while a frame goes through it gets the end of one.
+            if index > 0:
+                raise
+            print(f"warning: {error}; the first line is passed over", file=sys.stderr, flush=True)
+            continue
         if frame is None:
             continue
         if number < LOOKED_AT:

@@ -38,11 +38,16 @@ impl Design {
     }
 }
 
-/// A design that was fitted, under another name if there is one. That is the caller's, so all of it is checked once more.
+/// What the name of a design that was fitted ends with, if it is given none: its folder is not that of the one before.
+const FITTED: &str = "_calibrated";
+
+/// A design that was fitted, under a name of its own. That may be the caller's, so all of it is checked once more.
 pub fn named_anew(mut design: Checked, name: Option<String>) -> PyResult<Design> {
-    if let Some(name) = name {
-        design.name = name;
-    }
+    design.name = match name {
+        Some(name) => name,
+        None if design.name.ends_with(FITTED) => design.name,
+        None => design.name + FITTED,
+    };
     let files = design.files();
     Ok(Design::new(Checked::from_parts(&design.to_toml(), "calibrate", &files).map_err(raised)?))
 }

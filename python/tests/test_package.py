@@ -112,6 +112,14 @@ class Package(unittest.TestCase):
             self.assertEqual(running.wait(), 1)
             self.assertIn("standard input, line 4", running.stderr.read().decode())
 
+    def test_live_passes_over_a_first_line_that_is_cut_off(self):
+        frames, _ = sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml")
+        command = [sys.executable, "-m", "sptfra.live", str(ROOT / "designs" / "sensor1-reduced.toml")]
+        line = ",".join(map(repr, map(float, frames[0].ravel()))) + "\n"
+        done = subprocess.run(command, input=("5,-1.5\n" + line).encode(), capture_output=True, check=True)
+        self.assertIn("line 1", done.stderr.decode())
+        self.assertEqual(len(done.stdout.splitlines()), 1)
+
     def test_live_says_what_is_wrong_with_the_first_frames(self):
         frames, _ = sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml")
         command = [sys.executable, "-m", "sptfra.live", str(ROOT / "designs" / "sensor1-reduced.toml")]

@@ -274,6 +274,7 @@ class Judging(unittest.TestCase):
         calibrated = sptfra.calibrate(made, hidden=0, quick=True, progress=lambda *parts: calls.append(parts))
         self.assertTrue(0 < calls[0][0] < calls[-1][0] <= calls[-1][1], calls)
         self.assertIn("gain = ", calibrated.to_toml())
+        self.assertEqual(calibrated.name, "pad_calibrated")
 
         def stop(done, of):
             raise KeyboardInterrupt
@@ -318,6 +319,7 @@ class Recordings(unittest.TestCase):
         gains = np.linspace(0.8, 1.2, 12).reshape(3, 4)
         pressures = np.repeat([0, 5e3, 0, 10e3, 0, 20e3, 0, 40e3, 0], 8)
         found = sptfra.calibrate_uniform(made, -pressures[:, None, None] / gains, pressures)
+        self.assertEqual(found.design.name, "pad_calibrated")
         told = np.array([taxel["gain"] for taxel in found.details["gains"]]).reshape(3, 4)
         np.testing.assert_allclose(told / told.mean(), gains / gains.mean(), rtol=0.01)
 

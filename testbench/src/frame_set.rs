@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use golden::design::{Design, Sensor};
-use golden::forces::read_outcomes;
+use golden::forces::{self, read_outcomes};
 use golden::frames::{FrameError, read_frames_of};
 use golden::geometry;
 use golden::metrics::Outcome;
@@ -67,6 +67,9 @@ impl FrameSet {
     pub fn load(frames: &Path, labels: usize, reference: Option<&Path>, design: &Design) -> Result<Self, FrameError> {
         geometry::compare(frames, &design.name, &design.sensor)?;
         let stress = read_frames_of(frames, design, labels)?;
+        if let Some(reference) = reference {
+            geometry::compare(&forces::frames_of(reference), &design.name, &design.sensor)?;
+        }
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
         Ok(Self { origin: frames.display().to_string(), stress, truth, scene: None })
     }

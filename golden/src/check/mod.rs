@@ -3,7 +3,10 @@
 //! Each check knows one usual mistake of those who connect a sensor. A frame that passes may still be wrong: a square
 //! grid that is transposed looks like another contact.
 
+mod dead;
+pub(crate) mod ends;
 mod order;
+mod rest;
 
 use std::fmt;
 
@@ -27,8 +30,10 @@ pub enum Kind {
     NoTension,
     /// Readings are positive where the design says that none is.
     Tension,
-    /// Every taxel is loaded, those beside the contact too.
+    /// Every taxel is loaded, or pulls, those beside the contact too.
     Tare,
+    /// Taxels that read the same whatever presses around them.
+    Dead,
     /// The taxels stand in another order.
     Order,
     /// Readings at the end of the converter's range, below the full scale.
@@ -97,7 +102,9 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
         );
     }
     let mut loaded: Vec<Vec<f64>> = stress.into_iter().filter(|frame| largest(frame) >= LOADED * peak).collect();
-    let pulling = loaded.iter().filter(|frame| frame.iter().sum::<f64>() > 0.0).count();
+    // Where the largest reading presses, the sum pulls for an offset.
+    let pulls = |frame: &&Vec<f64>| frame.iter().sum::<f64>() > 0.0 && farthest(frame) > 0.0;
+    let pulling = loaded.iter().filter(pulls).count();
     if holds(pulling, loaded.len()) {
         let remedy = match (counts, whole) {
             (true, _) => "change the sign of sensor.pa_per_count",
@@ -114,7 +121,7 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
         // What else is wrong shows with the right sign.
         loaded.iter_mut().flatten().for_each(|stress| *stress = -*stress);
     }
-    if let Some(message) = tare(&loaded) {
+    if let Some(message) = rest::check(&design.sensor, &loaded, full_scale) {
         found(Kind::Tare, message);
     } else if design.input.tension == Tension::Read
         && loaded.iter().all(|frame| frame.iter().all(|&stress| stress <= FAINT * largest(frame)))
@@ -141,10 +148,12 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
             ),
         );
     }
-    if let Some(message) = matrices.and_then(|matrices| order::check(&design.sensor, matrices, &loaded)) {
+    if let Some(message) = dead::check(design, frames, &loaded) {
+        found(Kind::Dead, message);
+    } else if let Some(message) = matrices.and_then(|matrices| order::check(design, matrices, &loaded)) {
         found(Kind::Order, message);
     }
-    if let Some(message) = stuck(design, frames, &loaded, peak) {
+    if let Some(message) = ends::check(design, frames, loaded.len(), peak) {
         found(Kind::Stuck, message);
     }
     findings
@@ -172,53 +181,17 @@ fn range(full_scale: f64, peak: f64, counts: bool) -> Option<String> {
     })
 }
 
-/// A load that even the least loaded quarter of the taxels has.
-fn tare(loaded: &[Vec<f64>]) -> Option<String> {
-    let rest = |frame: &Vec<f64>| {
-        let mut sorted = frame.clone();
-        sorted.sort_by(|a, b| b.total_cmp(a));
-        let quarter = &sorted[..sorted.len().div_ceil(4)];
-        quarter.iter().sum::<f64>() / quarter.len() as f64
-    };
-    let rests: Vec<f64> = loaded.iter().map(rest).collect();
-    let pressed = rests.iter().zip(loaded).filter(|(rest, frame)| **rest < -FAINT * largest(frame)).count();
-    let mean = rests.iter().sum::<f64>() / rests.len() as f64;
-    holds(pressed, loaded.len()).then(|| {
-        format!(
-            "every taxel is loaded in {pressed} of {}, the least loaded quarter by {:.0} Pa: is the tare missing? \
-             Subtract a frame without contact, or write its offsets into the file of sensor.calibration",
-            count(loaded.len()),
-            -mean
-        )
-    })
-}
-
-/// Readings that pile up at one extreme value.
-fn stuck(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], peak: f64) -> Option<String> {
-    // Of smooth readings few share the largest value, and many are just below it.
-    const LEAST: usize = 5;
-    const BELOW: f64 = 0.97;
-    if peak >= design.hardware.full_scale_in_frames() {
-        return None;
-    }
-    // By the values of the file, which a gain of each taxel has not touched yet.
-    let extreme =
-        frames.iter().flatten().fold(0.0_f64, |far, &value| if value.abs() > far.abs() { value } else { far });
-    let near = |value: &&f64| **value * extreme > 0.0 && value.abs() >= BELOW * extreme.abs();
-    let (at, close): (Vec<&f64>, Vec<&f64>) =
-        frames.iter().flatten().filter(near).partition(|value| value.to_bits() == extreme.to_bits());
-    (at.len() >= LEAST && at.len() > 2 * close.len()).then(|| {
-        format!(
-            "{} readings of {} are exactly {extreme}, the largest: the end of the converter? Write the stress there, \
-             {peak:.0} Pa, as hardware.full_scale_pa, so that such frames get the status \"saturated\"",
-            at.len(),
-            count(loaded.len()),
-        )
-    })
-}
-
 fn largest(frame: &[f64]) -> f64 {
-    frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()))
+    largest_of(frame.iter().copied())
+}
+
+/// The value that is farthest from 0.
+fn farthest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |far: f64, &value| if value.abs() > far.abs() { value } else { far })
+}
+
+fn largest_of(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0_f64, |peak, value| peak.max(value.abs()))
 }
 
 fn holds(frames: usize, of: usize) -> bool {

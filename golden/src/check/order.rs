@@ -2,15 +2,23 @@
 
 use nalgebra::DVector;
 
-use crate::design::Sensor;
+use crate::design::{Design, Sensor, Tension};
 use crate::matrices::Matrices;
 use crate::names::MatrixName;
 use crate::parity::FoldedMatrix;
+use crate::scene::{Scene, SensorErrors};
 
 /// Frames looked at; more tell no more.
 const FRAMES: usize = 32;
-/// Share of pulls among the normal forces above which something is wrong: contacts reach an eighth, by friction.
+/// Share of pulls among the normal forces above which something is wrong: contacts reach an eighth, by friction, and where
+/// the layer is deep for the pitch more, as noise makes them alternate.
 const SUSPICIOUS: f64 = 0.13;
+/// Noise that frames may have, a share of their peak,
+const NOISE: f64 = 0.01;
+/// and how many times as many pulls as a contact with that noise has are suspicious.
+const MORE: f64 = 1.3;
+/// Directions in degrees in which that contact is pushed.
+const DIRECTIONS: [f64; 3] = [0.0, 45.0, 90.0];
 /// Another order explains the frames if it leaves this share of the pulls,
 const BETTER: f64 = 0.6;
 /// and no order does where pulls make up this share without one: the forces alternate like a checkerboard.
@@ -33,13 +41,19 @@ const OTHERS: [(Order, &str); 2] = [
 ];
 
 /// Normal forces press; where the stress is put on the wrong taxels, its inverse alternates between push and pull.
-pub(super) fn check(sensor: &Sensor, matrices: &Matrices, loaded: &[Vec<f64>]) -> Option<String> {
+pub(super) fn check(design: &Design, matrices: &Matrices, loaded: &[Vec<f64>]) -> Option<String> {
+    let sensor = &design.sensor;
     let inverse = matrices.folded(MatrixName::C33inv);
     let step = loaded.len().div_ceil(FRAMES);
     let frames: Vec<&Vec<f64>> = loaded.iter().step_by(step.max(1)).collect();
     let pulls = |order: Order| pulls(sensor, &inverse, &frames, order);
     let found = pulls(|sensor, ix, iy| iy * sensor.columns + ix);
     if found < SUSPICIOUS {
+        return None;
+    }
+    // Of good frames of this sensor, which the deeper it is say the less.
+    let usual = MORE * usual(design, &inverse);
+    if found < usual {
         return None;
     }
     let percent = 100.0 * found;
@@ -54,12 +68,27 @@ pub(super) fn check(sensor: &Sensor, matrices: &Matrices, loaded: &[Vec<f64>]) -
         }
     }
     (found > ALTERNATING).then(|| {
-        format!(
-            "the normal forces alternate like a checkerboard, {percent:.0} % of them pull: are the taxels in another \
-             order than i = iy * columns + ix, is sensor.depth_mm too large, or the noise for lack of \
-             algorithm.regularisation?"
-        )
+        let [order, depth] = [
+            "are the taxels in another order than i = iy * columns + ix",
+            "is sensor.depth_mm too large, or the noise for lack of algorithm.regularisation",
+        ];
+        // What is likelier comes first.
+        let [first, second] = if usual > SUSPICIOUS { [depth, order] } else { [order, depth] };
+        format!("the normal forces alternate like a checkerboard, {percent:.0} % of them pull: {first}, or {second}?")
     })
+}
+
+/// The share of pulls of a contact that suits the sensor, with noise; 0 if there is none.
+fn usual(design: &Design, inverse: &FoldedMatrix) -> f64 {
+    let mut scene = Scene::standing(&design.sensor);
+    scene.sweep_deg = DIRECTIONS.to_vec();
+    scene.sensor_errors = SensorErrors { seed: 1, noise: NOISE, ..SensorErrors::default() };
+    let Ok(mut frames) = scene.frames() else { return 0.0 };
+    if design.input.tension == Tension::Clipped {
+        frames.iter_mut().flat_map(|frame| &mut frame.stress).for_each(|stress| *stress = stress.min(0.0));
+    }
+    let frames: Vec<&Vec<f64>> = frames.iter().map(|frame| &frame.stress).collect();
+    pulls(&design.sensor, inverse, &frames, |sensor, ix, iy| iy * sensor.columns + ix)
 }
 
 /// The share of pulls in the normal forces, the mean over frames.

@@ -45,7 +45,20 @@ pub fn run(design: &Path, frames: &Recording, with_field: bool) -> Result<(), Bo
     // Who reads knows the columns before the first frame.
     let mut goes_on = put(&line)?;
     let mut first = is_standard(frames.file).then(Vec::new);
-    while goes_on && let Some(frame) = next()? {
+    let mut lines = 0;
+    while goes_on {
+        let frame = match next() {
+            Ok(Some(frame)) => frame,
+            Ok(None) => break,
+            // Who opens a port while a frame goes through it gets the end of one.
+            Err(error) if lines == 0 && is_standard(frames.file) && error.is_of_a_line() => {
+                eprintln!("warning: {error}; the first line is passed over");
+                lines += 1;
+                continue;
+            }
+            Err(error) => return Err(error.into()),
+        };
+        lines += 1;
         solver.solve_into(&mut workspace, &frame, &mut solution)?;
         line.clear();
         forces::push_line(&mut line, &forces::row(&solution, with_field));

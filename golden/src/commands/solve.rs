@@ -6,11 +6,11 @@ use std::path::Path;
 use golden::bodies::BodyErrors;
 use golden::check::check;
 use golden::design::Design;
-use golden::forces;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
 use golden::progress::Progress;
 use golden::solver::{Solution, Solver, Status};
 use golden::table::Table;
+use golden::{forces, geometry};
 use serde::Serialize;
 
 use super::{Recording, filter, keep_apart, warn};
@@ -59,6 +59,9 @@ pub fn run(
     keep_apart(out, &inputs.chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
     let design = Design::load(design)?;
     let frames = frames.read(&design)?;
+    if let Some(reference) = reference {
+        geometry::compare(&forces::frames_of(reference), &design.name, &design.sensor)?;
+    }
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
     let bodies = reference
         .filter(|_| design.algorithm.contacts > 1)

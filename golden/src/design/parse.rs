@@ -180,8 +180,15 @@ pub(crate) fn syntax_position(error: &toml::de::Error, text: &str, origin: &str)
         line: before.matches('\n').count() + 1,
         column: before.get(line_start..).map_or(0, |text| text.chars().count()) + 1,
         context: context.chars().take(80).collect(),
-        message: error.message().replace('\n', ", "),
+        message: plain(error.message()),
     }
+}
+
+/// A message of the parser without the names that types have in Rust.
+fn plain(message: &str) -> String {
+    const WORDS: [(&str, &str); 3] =
+        [("expected f64", "expected a number"), ("expected i64", "expected a whole number"), ("\n", ", ")];
+    WORDS.iter().fold(message.to_owned(), |message, (rust, word)| message.replace(rust, word))
 }
 
 impl RawSensor {

@@ -114,6 +114,19 @@ pub enum FrameError {
         /// What is wrong.
         problem: String,
     },
+    /// A file of forces that holds something else.
+    #[error(
+        "{}, line {line}: {problem}, so these are no forces; true forces lie beside the frames of `golden scene`, in \
+         FRAMES.forces.csv, a line each that begins with status, F_x, F_y, F_z, mu and phi", path.display()
+    )]
+    NoForces {
+        /// The file.
+        path: PathBuf,
+        /// Which of the lines with numbers, from 1.
+        line: usize,
+        /// What is wrong.
+        problem: String,
+    },
     /// A force file that does not belong to the frames.
     #[error(
         "{}: forces of {found} frames where there are {expected}; give the file that was made with these frames",
@@ -133,6 +146,13 @@ pub enum FrameError {
     /// The file could not be written.
     #[error(transparent)]
     Write(#[from] OutputError),
+}
+
+impl FrameError {
+    /// Whether it is about one line of text, after which the next one may be good.
+    pub fn is_of_a_line(&self) -> bool {
+        matches!(self, Self::Length { .. } | Self::Value { .. } | Self::Separator { .. } | Self::Sample { .. })
+    }
 }
 
 /// Reads all frames of a file; each has a finite value for each taxel of the sensor.

@@ -31,7 +31,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Array, String> {
     let described = entry("descr").ok_or_else(incomplete)?;
     let number = described.strip_prefix('\'').and_then(|rest| rest.split_once('\'')).map(|(number, _)| number);
     let Some(kind) = number.and_then(Kind::new) else {
-        let shown: String = described.chars().take(20).collect();
+        let shown: String = described.chars().filter(|letter| !letter.is_control()).take(20).collect();
         return Err(format!("its values, {shown}, are no plain numbers; use an array of floats or integers"));
     };
     let fortran_order = entry("fortran_order").ok_or_else(incomplete)?.starts_with("True");
@@ -147,6 +147,13 @@ mod tests {
             let message = read(descr, &[0; 4]).unwrap_err();
             assert!(message.contains(part), "{message}");
         }
+    }
+
+    #[test]
+    fn a_message_is_one_line_whatever_the_header_holds() {
+        let header = "{'descr': '\n<f8\u{7}', 'fortran_order': False, 'shape': (2,), }";
+        let said = parse(&of(header, &[0; 16])).map(|array| array.values).expect_err("no kind of number");
+        assert!(said.contains("'<f8'") && !said.contains(char::is_control), "{said:?}");
     }
 
     #[test]

@@ -202,3 +202,70 @@ fn the_end_of_a_converter_below_full_scale() {
     scene.contacts[0].normal_force_n /= 2.5;
     found(&design, &stress(&design, &scene), &[], &[]);
 }
+
+/// A pad as `hdl-gen new` makes it: taxels of 4 mm, so deep.
+fn pad(columns: usize, rows: usize, depth_mm: f64) -> Design {
+    let text = format!(
+        "name = \"pad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth_mm:?}\n"
+    );
+    Design::from_toml(&text, "pad.toml").unwrap()
+}
+
+/// Grids with a taxel in the middle, where a contact that stays there has its peak; and layers that are deep.
+#[test]
+fn good_frames_of_any_grid_and_depth_are_left_alone() {
+    let sizes = [(5, 5), (9, 9), (7, 5), (4, 3), (6, 6), (10, 10), (15, 15)];
+    let pads = sizes.map(|(columns, rows)| pad(columns, rows, 3.0)).into_iter();
+    let depths = [2.0, 4.0, 5.0, 6.0].into_iter().flat_map(|depth| [pad(10, 10, depth), pad(6, 6, depth)]);
+    for design in pads.chain(depths) {
+        let mut scene = Scene::standing(&design.sensor);
+        for noise in [0.0, 0.002, 0.01] {
+            scene.sensor_errors = SensorErrors { seed: 3, noise, ..SensorErrors::default() };
+            let findings = look(&design, &stress(&design, &scene));
+            assert!(findings.is_empty(), "{}, noise {noise}: {findings:?}", design.sensor);
+        }
+        // One frame again and again.
+        scene.sweep_deg.truncate(1);
+        let same = vec![stress(&design, &scene).remove(0); 20];
+        assert_eq!(look(&design, &same), [], "{}", design.sensor);
+        // At rest, in counts of a converter.
+        let rest: Vec<Vec<f64>> = (0..20)
+            .map(|frame| (0..design.sensor.taxels()).map(|taxel| -24.4 * ((frame + taxel) % 3) as f64).collect())
+            .collect();
+        assert!(look(&design, &rest).iter().all(|finding| finding.kind != Kind::Stuck), "{}", design.sensor);
+    }
+}
+
+#[test]
+fn an_offset_of_either_sign_is_one() {
+    for (name, share) in [("sensor1-joint", 0.05), ("sensor2-joint", 0.05), ("sensor2-joint", 0.1)] {
+        let design = design(name);
+        let frames = frames(&design);
+        let peak = frames.iter().flatten().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
+        let lifted = look(&design, &changed(&frames, |pa| pa + share * peak));
+        let tare = lifted.iter().find(|finding| finding.kind == Kind::Tare);
+        assert!(tare.is_some_and(|finding| finding.to_string().contains("drifted")), "{name}: {lifted:?}");
+    }
+    let design = design("sensor2-joint");
+    let falling = changed(&frames(&design), |pa| -100_000.0 - pa);
+    assert!(look(&design, &falling)[0].to_string().contains("do the readings fall"), "{:?}", look(&design, &falling));
+}
+
+#[test]
+fn dead_taxels_within_a_contact_are_named() {
+    let mut design = design("sensor2-joint");
+    let frames = frames(&design);
+    let without = |dead: &[usize], reads: f64| -> Vec<Vec<f64>> {
+        let mut frames = frames.clone();
+        frames.iter_mut().for_each(|frame| dead.iter().for_each(|&taxel| frame[taxel] = reads));
+        frames
+    };
+    found(&design, &without(&[44], 0.0), &[Kind::Dead], &["taxel 44 (4, 4) reads", "sensor.dead"]);
+    found(&design, &without(&[54], -300.0), &[Kind::Dead], &["taxel 54 (4, 5) reads"]);
+    let row: Vec<usize> = (50..60).collect();
+    found(&design, &without(&row, 0.0), &[Kind::Dead], &["taxels 5", "(4, 5)", "read the same"]);
+    // One far from the contact may well read nothing, and the design knows of this one.
+    found(&design, &without(&[0], 0.0), &[], &[]);
+    design.input.dead = vec![44];
+    assert!(look(&design, &without(&[44], 0.0)).iter().all(|finding| finding.kind != Kind::Dead));
+}

@@ -66,7 +66,7 @@ pub fn render(points: &[Point]) -> String {
     }
     let published = (x.place(PUBLISHED_TAXELS as f64), y.place(PUBLISHED.latency_cycles as f64));
     svg.cross(published);
-    svg.text((published.0 + 11.0, published.1 + 4.0), "start", MARK, "published, 7,335,000 cycles");
+    svg.text((published.0 + 11.0, published.1 + 4.0), "start", MARK, "the paper's sparse designs, 7,335,000 cycles");
     svg.finish()
 }
 

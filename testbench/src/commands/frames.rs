@@ -13,7 +13,7 @@ use testbench::frame_set::FrameSet;
 
 #[derive(Args)]
 pub struct FrameArguments {
-    /// Frames (CSV): one frame a line, stresses in pascals, compression negative, or counts if the design has
+    /// Frames (CSV or .npy): one frame a line, stresses in pascals, compression negative, or counts if the design has
     /// `pa_per_count`. Without it, the ground-truth frames made for the sensor.
     #[arg(long)]
     frames: Option<PathBuf>,

@@ -52,6 +52,7 @@ fn speed(page: &mut String, report: &Report) {
     let interval = |show| both(report.interval_cycles, predicted.interval_cycles, show);
     let with = |[simulated, predicted]: [String; 2], other| [simulated, predicted, other];
     let only = |predicted: String| [String::new(), predicted];
+    let count = |count: Option<u32>| count.map_or_else(String::new, |count| count.to_string());
     let rows = [
         row("latency, cycles", with(latency(&grouped), other(&|them| grouped(them.latency_cycles)))),
         row("latency, µs", with(latency(&clock), other(&|them| decimals(1000.0 * them.milliseconds, 2)))),
@@ -59,13 +60,16 @@ fn speed(page: &mut String, report: &Report) {
         row("interval, µs", interval(&clock)),
         row("frames per second", interval(&rate)),
         row("lanes busy in SpMV", only(format!("{} %", decimals(100.0 * report.lanes_busy, 1)))),
-        row("DSP48E2", with(only(grouped(predicted.dsp as u64)), other(&|them| them.dsp.to_string()))),
-        row("BRAM36", with(only(decimals(predicted.bram36, 1)), other(&|them| them.bram36.to_string()))),
+        row("DSP48E2", with(only(grouped(predicted.dsp as u64)), other(&|them| count(them.dsp)))),
+        row("BRAM36", with(only(decimals(predicted.bram36, 1)), other(&|them| count(them.bram36)))),
         row("ROM, bits", only(grouped(report.rom_bits))),
         row("MACs a frame", only(grouped(report.macs))),
     ];
     let heading = if published.is_some() { "published" } else { "" };
     section(page, "Speed and size", &["simulated", "predicted", heading], rows);
+    if let Some(them) = published {
+        line(page, &format!("  published: {}", them.what));
+    }
 }
 
 fn streams(page: &mut String, report: &Report) {
@@ -115,7 +119,7 @@ fn verdict(page: &mut String, report: &Report) {
     *page += &rule(NAMES + COLUMNS * VALUES);
     let times = report.published.map_or_else(String::new, |them| {
         let factor = 1000.0 * them.milliseconds / report.microseconds.latency;
-        format!(", {} times as fast as published", grouped(factor.round() as u64))
+        format!(", {} times as fast as {}", grouped(factor.round() as u64), them.what)
     });
     if report.bit_exact {
         line(page, &format!("Bit-exact in all {} stream modes{times}.", report.modes.len()));

@@ -5,8 +5,9 @@
 
 use std::ops::Range;
 
-use super::loads::{REST, Wrong, end_of_range, frames_of, loads, rest};
+use super::loads::{REST, Wrong, frames_of, loads, rest};
 use super::table::Measured;
+use crate::check::ends::end_of_range;
 use crate::design::Design;
 
 /// A contact ends where the centre of pressure has moved by this many pitches.
@@ -78,7 +79,8 @@ pub(super) fn part(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     let above =
         |k: usize| -> Vec<f64> { frames[k].iter().zip(&rest).map(|(count, rest)| sign * (count - rest)).collect() };
     let middle = rest.iter().sum::<f64>() / rest.len() as f64;
-    let end = end_of_range(&loaded.iter().map(|&k| frames[k].iter().map(|count| sign * count)), sign * middle);
+    let under_load = loaded.iter().map(|&k| frames[k].iter().map(|count| sign * count));
+    let end = end_of_range(&under_load, sign * middle).map(|(end, _)| end);
     let is_clipped = |k: usize| end.is_some_and(|end| frames[k].iter().any(|count| sign * count >= end));
     let clipped = loaded.iter().filter(|&&k| is_clipped(k)).count();
     if let Some(end) = end {

@@ -37,20 +37,6 @@ pub(super) fn pair<'a>(frames: &'a [Vec<f64>], measured: &Measured) -> Result<Pa
     Ok((&frames[..both], measured, remark.into_iter().collect()))
 }
 
-/// Where readings pile up at the largest: many of them, and few just below, seen from what they are at rest.
-pub(super) fn end_of_range<'a>(
-    frames: &(impl Iterator<Item = impl Iterator<Item = f64> + 'a> + Clone),
-    rest: f64,
-) -> Option<f64> {
-    const LEAST: usize = 5;
-    const BELOW: f64 = 0.97;
-    let readings = || frames.clone().flatten();
-    let end = readings().fold(f64::NEG_INFINITY, f64::max);
-    let at = readings().filter(|&x| x >= end).count();
-    let below = readings().filter(|&x| x - rest >= BELOW * (end - rest) && x < end).count();
-    (end > rest && at >= LEAST && at > 2 * below).then_some(end)
-}
-
 /// What presses in each frame, whatever the sign of the file.
 pub(super) fn loads(measured: &Measured, remarks: &mut Vec<String>) -> Result<Vec<Option<f64>>, Wrong> {
     let known: Vec<f64> = measured.forces.iter().filter_map(|force| force[2]).collect();

@@ -116,3 +116,38 @@ fn an_input_is_never_overwritten() {
     assert!(said.contains("overwrite the input"), "{said}");
     assert_eq!(fs::read(&frames).unwrap(), before);
 }
+
+/// Frames are not taken for true forces, nor those of another sensor: the errors would be of thousands of percent.
+#[test]
+fn what_is_no_reference_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let design = repository("designs/small.toml");
+    let [frames, out] = ["frames.csv", "out.csv"].map(|name| folder.path().join(name));
+    let made = golden(&["scene", "--design", text(&design), "--out", text(&frames)]);
+    assert!(made.status.success(), "{made:?}");
+    let solve = |reference: &Path| {
+        let given = ["--frames", text(&frames), "--reference", text(reference), "--out", text(&out)];
+        let output = golden(&[&["solve", text(&design)], &given[..]].concat());
+        (output.status.success(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert!(solve(&folder.path().join("frames.forces.csv")).0);
+    let long = folder.path().join("long.csv");
+    let rows = 36;
+    let file = |line: String| fs::write(&long, (line + "\n").repeat(rows)).unwrap();
+    for (line, why) in [
+        (vec!["-120.5"; 13].join(","), "is no status"),
+        (["70000", "1", "1", "-3", "0.5", "0.1"].join(",") + ",0,0,0,0,0,0,1", "is no status"),
+        (["0", "1", "1", "-3", "-0.5", "0.1"].join(",") + ",0,0,0,0,0,0,1", "is negative"),
+        (["0", "1", "1", "-3", "0.5", "40"].join(",") + ",0,0,0,0,0,0,1", "is no angle"),
+    ] {
+        file(line);
+        let (good, said) = solve(&long);
+        assert!(!good && said.contains("long.csv, line 1") && said.contains(why), "{said}");
+    }
+    // Forces of a sensor that is not the design's.
+    let other = folder.path().join("other.csv");
+    let made = golden(&["scene", text(&repository("scenes/sensor1-hertz.toml")), "--out", text(&other)]);
+    assert!(made.status.success(), "{made:?}");
+    let (good, said) = solve(&folder.path().join("other.forces.csv"));
+    assert!(!good && said.contains("other.sensor.toml"), "{said}");
+}

@@ -62,6 +62,30 @@ fn frames_that_look_wrong_are_told_of_on_the_way() {
     assert!(String::from_utf8(refused.stderr).unwrap().contains("write them into a file first"));
 }
 
+/// Who opens a port while a frame goes through it gets the end of one.
+#[test]
+fn a_first_line_that_is_cut_off_is_passed_over() {
+    let design = repository("designs/small.toml");
+    for (lines, good) in [
+        (format!("3,-4.5\n{0}\n{0}\n", row("-1000.5")), true),
+        (format!("0.5e,{0}\n{0}\n{0}\n", row("-1000.5")), true),
+        (format!("{0}\n3,-4.5\n{0}\n", row("-1000.5")), false),
+        (format!("3,-4.5\n3,-4.5\n{}\n", row("-1000.5")), false),
+    ] {
+        let (_folder, file) = folder_with(&lines);
+        let output = Command::new(env!("CARGO_BIN_EXE_golden"))
+            .args(["solve", text(&design), "--frames", "-", "--out", "-"])
+            .stdin(Stdio::from(std::fs::File::open(&file).unwrap()))
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.success(), good, "{lines}{said}");
+        let forces = String::from_utf8(output.stdout).unwrap().lines().count() - 1;
+        assert_eq!(forces, if good { 2 } else { usize::from(!lines.starts_with('3')) }, "{lines}");
+        assert_eq!(said.contains("line 1") && said.contains("passed over"), good || lines.starts_with('3'), "{said}");
+    }
+}
+
 #[test]
 fn a_file_goes_to_standard_output_as_to_a_file() {
     let design = repository("designs/small.toml");

@@ -119,7 +119,9 @@ mod tests {
         let svg = front(&points.each_ref(), false, false);
         // Two in one, one of another kind upon it, one apart.
         assert_eq!(svg.matches("<g class=\"dot\"").count(), 3, "{svg}");
-        assert!(svg.contains(">2</text>") && svg.contains("2 variants of reduced plan, no filter, 16.0 to 16.0 µs"));
+        assert!(
+            svg.contains(">2</text>") && svg.contains("2 variants of line, reduced plan, no filter, 16.0 to 16.0 µs")
+        );
         let radius: Vec<&str> = ["r=\"7\"", "r=\"4.5\""].into_iter().filter(|radius| svg.contains(radius)).collect();
         assert_eq!(radius.len(), 2, "{svg}");
     }

@@ -1,6 +1,7 @@
 //! Latency against error, and what width and lanes do to both.
 
 use golden::design::{Estimator, Family, PlanKind};
+use hdl_gen::estimators::joint::points::MOST_POINTS;
 
 use super::dots::{self, Dot, Rim};
 use super::paper::TABLE_3;
@@ -16,14 +17,15 @@ const BOTTOM: f64 = 84.0;
 /// What a point is drawn in: its name, its colour, and which points they are.
 type Kind = (&'static str, &'static str, fn(&Point) -> bool);
 const KINDS: [Kind; 6] = [
-    ("reduced plan, no filter", "#0b84d8", |point| point.plan == PlanKind::Reduced && point.filter == "none"),
-    ("reduced plan, F1 or F2", "#62b6f0", |point| point.plan == PlanKind::Reduced),
-    ("paper's plan, no filter", "#8a6d3b", |point| point.filter == "none"),
-    ("paper's plan, F1", "#d9730d", |point| point.filter.starts_with("f1")),
-    ("paper's plan, F2", "#e0a800", |point| point.filter.starts_with("f2")),
-    ("paper's plan, F3", "#8e5bd0", |point| point.filter == "f3"),
+    ("line, reduced plan, no filter", "#0b84d8", |point| point.plan == PlanKind::Reduced && point.filter == "none"),
+    ("line, reduced plan, F1 or F2", "#62b6f0", |point| point.plan == PlanKind::Reduced),
+    ("line, paper's plan, no filter", "#8a6d3b", |point| point.filter == "none"),
+    ("line, paper's plan, F1", "#d9730d", |point| point.filter.starts_with("f1")),
+    ("line, paper's plan, F2", "#e0a800", |point| point.filter.starts_with("f2")),
+    ("line, paper's plan, F3", "#8e5bd0", |point| point.filter == "f3"),
 ];
 const JOINT: (&str, &str) = ("joint estimator", "#2a9d5c");
+const POINTS: (&str, &str) = ("joint estimator, a cell a point", "#10a3a3");
 const WIDE: (&str, &str) = ("joint estimator, wide family", "#8fb821");
 /// Errors above are drawn at the rim.
 const MOST_PERCENT: f64 = 100.0;
@@ -35,14 +37,18 @@ pub type Legend = Vec<(&'static str, &'static str)>;
 /// The entries of the fronts' legend that points of a page have.
 pub fn legend(points: &[Point]) -> Legend {
     let used = |colour: &str| points.iter().any(|point| style(point).1 == colour);
-    let ours = KINDS.iter().map(|&(name, colour, _)| (name, colour)).chain([JOINT, WIDE]);
+    let ours = KINDS.iter().map(|&(name, colour, _)| (name, colour)).chain([JOINT, POINTS, WIDE]);
     ours.filter(|(_, colour)| used(colour)).chain([("the paper, Table 3", MARK)]).collect()
 }
 
 /// The name and colour of a point's kind, the same in all plots.
 pub fn style(point: &Point) -> (&'static str, &'static str) {
     if point.estimator == Estimator::Joint {
-        return if point.calibration.is_some_and(|joint| joint.family == Family::Wide) { WIDE } else { JOINT };
+        return match point.calibration {
+            Some(joint) if joint.family == Family::Wide => WIDE,
+            Some(joint) if joint.grid * joint.grid <= MOST_POINTS => POINTS,
+            _ => JOINT,
+        };
     }
     let kind = KINDS.iter().find(|(_, _, is)| is(point)).unwrap_or(&KINDS[0]);
     (kind.0, kind.1)
@@ -145,15 +151,20 @@ pub struct Series {
     pub values: Vec<(u32, f64)>,
 }
 
+/// Height of a series' name above its plot, and length of the piece of line in front of it.
+const NAME: f64 = 17.0;
+const SAMPLE: f64 = 28.0;
 /// Dashes of the series of one colour, one after the other.
 pub const DASHES: [&str; 4] = ["", "7 3", "2 3", "9 3 2 3"];
 
 /// Error against the f64 solver over the width of coefficients or vectors; one line for each series.
 pub fn widths(series: &[Series], unit: &str) -> String {
-    let (width, height) = (480.0, 328.0);
+    // Names stand above the plot, each in its line.
+    let top = 20.0 + NAME * series.len() as f64;
+    let (width, height) = (480.0, 308.0 + top);
     let values = series.iter().flat_map(|series| &series.values);
     let (low, high) = values.clone().fold((u32::MAX, 0), |(low, high), &(bits, _)| (low.min(bits), high.max(bits)));
-    let y = Axis::covering(values.map(|&(_, error)| error).filter(|&error| error > 0.0), false, height - 74.0, 20.0);
+    let y = Axis::covering(values.map(|&(_, error)| error).filter(|&error| error > 0.0), false, height - 74.0, top);
     let place =
         |bits: u32| LEFT + 20.0 + f64::from(bits - low) / f64::from((high - low).max(1)) * (width - LEFT - 60.0);
     let label = format!("Error of the number format against {unit}");
@@ -170,7 +181,9 @@ pub fn widths(series: &[Series], unit: &str) -> String {
         for (&at, (bits, error)) in places.iter().zip(values) {
             svg.named_dot(at, 4.0, colour, &format!("{name}, {bits} bits: {error:.1e}"));
         }
-        svg.text((width - RIGHT, 34.0 + 17.0 * number as f64), "end", colour, name);
+        let line = 16.0 + NAME * number as f64;
+        svg.line(&[(LEFT, line - 4.0), (LEFT + SAMPLE, line - 4.0)], colour, dashes);
+        svg.text((LEFT + SAMPLE + 8.0, line), "start", colour, name);
     }
     let mut widths: Vec<u32> = series.iter().flat_map(|series| series.values.iter().map(|&(bits, _)| bits)).collect();
     widths.sort_unstable();

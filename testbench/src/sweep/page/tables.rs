@@ -59,28 +59,27 @@ pub fn table_1(points: &[&Point]) -> Option<Table> {
 pub fn table_3(points: &[&Point]) -> Option<Table> {
     let number = paper_sensor(&points.first()?.sensor)?;
     let names = ["e_Fx", "e_Fy", "e_Fz", "e_µ", "e_φ"];
-    let mut header = vec!["hardware".to_owned()];
+    let mut header = vec!["hardware".to_owned(), "time".to_owned()];
     header.extend(names.map(|name| format!("max {name}")));
     header.extend(names.map(|name| format!("SE {}", name.trim_start_matches("e_"))));
-    header.push("time".to_owned());
     header.push("verified by".to_owned());
     let mut rows = Vec::new();
     for row in TABLE_3.iter().filter(|row| row.sensor == number) {
-        let mut paper = vec![Cell::new(format!("{}, paper", row.name), "paper")];
+        let time = format!("{:.2} ms", row.milliseconds);
+        let mut paper = vec![Cell::new(format!("{}, paper", row.name), "paper"), Cell::new(time, "paper")];
         paper.extend(row.max.iter().chain(&row.standard_error).map(|error| Cell::new(format!("{error:.2}"), "paper")));
-        paper.push(Cell::new(format!("{:.2} ms", row.milliseconds), "paper"));
         paper.push(Cell::new(if row.software { "software" } else { "" }, "paper"));
         rows.push(paper);
         if let Some(point) = find(points, row.filter, PlanKind::Paper) {
             if row.software {
-                rows.push(errors("f64 solver, no filter", &point.solver_errors, "", "software"));
+                rows.push(errors("f64 solver, line, no filter", &point.solver_errors, "", "software"));
             } else {
-                rows.push(of_point(&format!("paper's plan, {}", point.filter_title()), point, ""));
+                rows.push(of_point(&format!("paper's plan, line, {}", point.filter_title()), point, ""));
             }
         }
     }
     if let Some(point) = find(points, "none", PlanKind::Reduced) {
-        rows.push(of_point("reduced plan, no filter", point, "ours"));
+        rows.push(of_point("reduced plan, line, no filter", point, "ours"));
     }
     for point in all_by(points, "none", PlanKind::Reduced, Estimator::Joint) {
         rows.push(of_point(&format!("reduced plan, {}", point.estimator_title()), point, "ours"));
@@ -91,18 +90,16 @@ pub fn table_3(points: &[&Point]) -> Option<Table> {
 fn of_point(name: &str, point: &Point, class: &'static str) -> Vec<Cell> {
     let mut row = errors(name, &point.errors, class, point.verified.title());
     if let Some(hardware) = &point.hardware {
-        let time = row.len() - 2;
-        row[time] = Cell::new(format!("{:.1} µs", hardware.latency_us), class);
+        row[1] = Cell::new(format!("{:.1} µs", hardware.latency_us), class);
     }
     row
 }
 
 fn errors(name: &str, errors: &ErrorSummary, class: &'static str, verified: &str) -> Vec<Cell> {
     let spreads = errors.spreads();
-    let mut row = vec![Cell::new(name, class)];
+    let mut row = vec![Cell::new(name, class), Cell::new("", class)];
     row.extend(spreads.iter().map(|spread| Cell::new(format!("{:.2}", spread.max), class)));
     row.extend(spreads.iter().map(|spread| Cell::new(format!("{:.2}", spread.standard_error), class)));
-    row.push(Cell::new("", class));
     row.push(Cell::new(verified, class));
     row
 }

@@ -1,0 +1,49 @@
+//! Taxels that read the same whatever presses around them.
+
+use super::largest;
+use crate::design::{Design, Tension};
+
+/// A taxel lies within a contact where those on two opposite sides of it read this share of the frame's peak,
+const WITHIN: f64 = 0.2;
+/// and is dead if it reads less than this share of either: one in the middle of a contact that stays reads the most.
+const LESS: f64 = 0.5;
+/// Names of taxels in a message.
+const NAMED: usize = 8;
+
+/// Taxels that lie within a contact and have one reading in all frames; those that the design knows of are left out.
+pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>]) -> Option<String> {
+    let columns = design.sensor.columns;
+    let constant = |taxel: usize| {
+        let first = frames[0][taxel];
+        // Of one frame alone, or of the same one again and again, only a reading of 0 tells.
+        first == 0.0 && frames.iter().all(|frame| frame[taxel] == 0.0)
+            || frames.iter().any(|frame| frame != &frames[0]) && frames.iter().all(|frame| frame[taxel] == first)
+    };
+    let within = |taxel: usize| {
+        let (x, y) = (taxel % columns, taxel / columns);
+        loaded.iter().any(|frame| {
+            let least = (WITHIN * largest(frame)).max(frame[taxel].abs() / LESS);
+            let pressed = |x: usize, y: usize| frame[y * columns + x] < -least;
+            let along = x > 0 && x + 1 < columns && pressed(x - 1, y) && pressed(x + 1, y);
+            let across = y > 0 && y + 1 < design.sensor.rows && pressed(x, y - 1) && pressed(x, y + 1);
+            // Between two bodies a taxel that cannot read a pull reads 0 for good.
+            if design.input.tension == Tension::Clipped { along && across } else { along || across }
+        })
+    };
+    let known = |taxel: &usize| !design.input.dead.contains(taxel);
+    let dead: Vec<usize> =
+        (0..design.sensor.taxels()).filter(known).filter(|&taxel| constant(taxel) && within(taxel)).collect();
+    (!dead.is_empty()).then(|| {
+        let name = |&taxel: &usize| format!("{taxel} ({}, {})", taxel % columns, taxel / columns);
+        let mut names: Vec<String> = dead.iter().take(NAMED).map(name).collect();
+        if dead.len() > NAMED {
+            names.push(format!("and {} more", dead.len() - NAMED));
+        }
+        let (plural, verb) = if dead.len() == 1 { ("", "reads") } else { ("s", "read") };
+        format!(
+            "taxel{plural} {} {verb} the same in all frames, with something pressing on both sides: dead? Name up to 8 of \
+             them in sensor.dead, and their neighbours stand for them",
+            names.join(", ")
+        )
+    })
+}

@@ -1,0 +1,62 @@
+//! Readings that pile up at one extreme value: the end of a converter.
+
+use super::{count, farthest, largest_of};
+use crate::design::Design;
+
+/// Of smooth readings few share the largest value, and many are just below it.
+const LEAST: usize = 5;
+const BELOW: f64 = 0.97;
+/// A converter that ends this many times below the full scale is none.
+const WITHIN: f64 = 8.0;
+/// A taxel that reads the same in frames whose loads differ by this share reads no more than that.
+const OTHER_LOAD: f64 = 0.1;
+
+/// Where readings of several taxels, or of one under several loads, share the value that is the largest by far.
+pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: usize, peak: f64) -> Option<String> {
+    let full_scale = design.hardware.full_scale_in_frames();
+    if peak >= full_scale || WITHIN * peak < full_scale {
+        return None;
+    }
+    // By the values of the file, which a gain of each taxel has not touched yet.
+    let sign = farthest(&frames.iter().map(|frame| farthest(frame)).collect::<Vec<_>>()).signum();
+    let magnitudes = || frames.iter().map(|frame| frame.iter().map(|&value| value * sign));
+    let (end, readings) = end_of_range(&magnitudes(), 0.0)?;
+    Some(format!(
+        "{readings} readings of {} are exactly {}, the largest: the end of the converter? Write the stress there, \
+         {peak:.0} Pa, as hardware.full_scale_pa, so that such frames get the status \"saturated\"",
+        count(loaded),
+        end * sign,
+    ))
+}
+
+/// The value at which readings of frames pile up above their rest, and how many do.
+///
+/// One contact that stays where it is has its peak at one taxel, the same in every frame: that alone is no end.
+pub(crate) fn end_of_range<Frame: Iterator<Item = f64>>(
+    frames: &(impl Iterator<Item = Frame> + Clone),
+    rest: f64,
+) -> Option<(f64, usize)> {
+    let end = frames.clone().flatten().fold(f64::NEG_INFINITY, f64::max);
+    let (mut at, mut below) = (0, 0);
+    let mut places: Vec<usize> = Vec::new();
+    let mut loads: Vec<f64> = Vec::new();
+    for frame in frames.clone() {
+        let (before, mut sum) = (at, 0.0);
+        for (taxel, value) in frame.enumerate() {
+            sum += value - rest;
+            if value >= end {
+                at += 1;
+                places.push(taxel);
+            } else if value - rest >= BELOW * (end - rest) {
+                below += 1;
+            }
+        }
+        if at > before {
+            loads.push(sum);
+        }
+    }
+    let several = places.iter().any(|&place| place != places[0]);
+    let [least, most] = [f64::min, f64::max].map(|pick| loads.iter().copied().reduce(pick).unwrap_or(0.0));
+    let other = most - least > OTHER_LOAD * largest_of([least, most]);
+    (end > rest && at >= LEAST && at > 2 * below && (several || other)).then_some((end, at))
+}
