@@ -293,10 +293,10 @@ module sptfra_estimator_joint #(
             assign {centre_done, window_done, correction_done, look_saturated} = 4'd0;
             assign {correction_x, correction_y, left_error} = 54'd0;
 
-            wire _unused = &{1'b0, look_bank, look_x, look_y, read_valid, read_quad, read_values, HALF_X != 0,
-                HALF_Y != 0, LENGTH != 0, PASSES != 0, STRESS_LEFT != 0, UNIT_SHIFT != 0, CORRECTION_SHIFT != 0,
-                DOUBT != 0, DOUBT_SHIFT != 0, DOUBT_BASE, EXPECTED_LOOK_LATENCY != 0, EXPECTED_NETWORK_LATENCY != 0,
-                AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
+            wire _unused = &{1'b0, look_start, look_bank, look_x, look_y, read_valid, read_quad, read_values,
+                HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0, STRESS_LEFT != 0, UNIT_SHIFT != 0,
+                CORRECTION_SHIFT != 0, DOUBT != 0, DOUBT_SHIFT != 0, DOUBT_BASE, EXPECTED_LOOK_LATENCY != 0,
+                EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate
 
