@@ -22,6 +22,8 @@ module sptfra_co #(
     parameter OPERAND_DEPTH = 200,
     parameter [63:0] STORE_BASES = 64'd0,
     parameter [3:0] STORE_IN_BANK = 4'd0,
+    // Words from r0, r1 and r2 to their other bank, if they have two
+    parameter [15:0] RESIDUAL_BANK = 16'd0,
     // Prefix of the ROM file names, and what they begin with: taxels' arms, where they are not folded
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -38,6 +40,7 @@ module sptfra_co #(
     input  wire [WAYS*DATA_BITS-1:0] result_value,
     // Operand memories
     input  wire bank, // of the frame's stress
+    input  wire residual_bank, // of the residual
     output wire write_next, // write_valid of the next cycle
     output wire write_valid,
     output wire [OPERAND_WIDTH-1:0] write_address,
@@ -225,6 +228,9 @@ module sptfra_co #(
             // ---- What is stored as it comes
             localparam [31:0] LENGTH = ELEMENTS;
             wire [31:0] row_wide = {{(32-ROW_WIDTH){1'b0}}, result_row};
+            localparam [47:0] OTHER_BASES = {STORE_BASES[47:32] + RESIDUAL_BANK, STORE_BASES[31:16] + RESIDUAL_BANK,
+                STORE_BASES[15:0] + RESIDUAL_BANK};
+            wire [47:0] bases = residual_bank ? OTHER_BASES : STORE_BASES[47:0];
             reg [15:0] base;
             reg stored_valid;
             reg [OPERAND_WIDTH-1:0] stored_address;
@@ -233,13 +239,13 @@ module sptfra_co #(
             always @(*) begin
                 base = STORE_BASES[63:48];
                 if (stored[5]) begin
-                    base = STORE_BASES[15:0];
+                    base = bases[15:0];
                 end
                 if (stored[6]) begin
-                    base = STORE_BASES[31:16];
+                    base = bases[31:16];
                 end
                 if (stored[7]) begin
-                    base = STORE_BASES[47:32];
+                    base = bases[47:32];
                 end
             end
 
@@ -291,6 +297,7 @@ module sptfra_co #(
             );
 
             assign g_last = sums_there;
+            wire _unused = &{1'b0, residual_bank, RESIDUAL_BANK}; // here nothing is left of the stress
 
 `ifdef SIMULATION
             // By the schedule a frame's sums are taken before the next ones grow

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The correction of a frame's friction: a look at its contact, and what the network makes of it. It has a copy of u_q
-// of its own, so that the next frame may be searched meanwhile.
+// The correction of a frame's friction: a look at its contact, and what the network makes of a window around the centre
+// that the look found. The look has u_q of its own, so that the next frame may be searched meanwhile; while one is
+// corrected another may be looked at. From start to done: 11 cycles, a cycle for each word of each pass, one for each
+// unit of a pass, and 14.
 
 `default_nettype none
 
 module sptfra_correction #(
+    // 1: the search hands u_q on as it reads them; 0: they are kept as they arrive, two frames of them
+    parameter integer HANDED_ON = 1,
     // Taxels along x
     parameter integer COLUMNS = 10,
     // Taxels along y
@@ -32,9 +36,9 @@ module sptfra_correction #(
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
     parameter ROM_NAME = "design",
-    // Checked in simulation, 0: unchecked: cycles from the start to the last input of the network
+    // Checked in simulation, 0: unchecked: cycles from the look's start to its end
     parameter integer EXPECTED_LOOK_LATENCY = 0,
-    // ... from there to the correction
+    // ... from the first input of the network to the correction
     parameter integer EXPECTED_NETWORK_LATENCY = 0,
     // Derived: quads, and the bits of their number
     parameter integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
@@ -47,20 +51,28 @@ module sptfra_correction #(
     input  wire fill_bank,
     input  wire [ROW_WIDTH-1:0] u_quad,
     input  wire [4*DATA_BITS-1:0] u_values,
-    // A frame is searched, with its sum |b| held from the next cycle on until its correction starts
+    // All of a quad, as the search reads it
+    input  wire read_valid,
+    input  wire [ROW_WIDTH-1:0] read_quad,
+    input  wire [3*4*27-1:0] read_values,
+    // A frame is searched, with its sum |b| held from the next cycle on until the look starts
     input  wire search_start,
     input  wire [39:0] stress_sum,
-    // Start, with these held from the next cycle on
-    input  wire start,
-    input  wire bank, // of its u_q
+    // Look, with these held from the next cycle on until the window is done
+    input  wire look_start,
+    input  wire look_bank, // of its u_q
     input  wire signed [17:0] mu_x, // the centroid of its level set, 16 fraction bits
     input  wire signed [17:0] mu_y,
+    output wire look_done, // one cycle
+    output wire saturated, // a stress was clipped; held until the next look
+    // Correction of what the look found: a window is shown, then the next look may start
+    input  wire start,
+    output wire window_done, // one cycle
     // Result, held until the next start: within 1/4, 16 fraction bits
     output wire done, // one cycle
     output wire signed [17:0] correction_x,
     output wire signed [17:0] correction_y,
-    output wire signed [17:0] error_log, // of base 2, of the error that is left over |F_z|, 12 fraction bits
-    output wire saturated // a stress was clipped
+    output wire signed [17:0] error_log // of base 2, of the error that is left over |F_z|, 12 fraction bits
 );
 
     localparam integer WORD_WIDTH = $clog2(LENGTH);
@@ -68,25 +80,52 @@ module sptfra_correction #(
     wire input_valid;
     wire [WORD_WIDTH-1:0] input_word;
     wire [4*27-1:0] input_values;
-    wire look_done;
+    wire first_input;
     wire [ROW_WIDTH-1:0] look_quad;
     wire [3*4*27-1:0] look_values;
 
-    sptfra_taxel_memory #(
-        .COLUMNS   (COLUMNS),
-        .ROWS      (ROWS),
-        .DATA_BITS (DATA_BITS),
-        .ROW_WIDTH (ROW_WIDTH)
-    ) taxels (
-        .clock       (clock),
-        .u_valid     (u_valid),
-        .fill_bank   (fill_bank),
-        .u_quad      (u_quad),
-        .u_values    (u_values),
-        .read_bank   (bank),
-        .read_quad   (look_quad),
-        .read_values (look_values)
-    );
+    genvar index;
+
+    generate
+        if (HANDED_ON != 0) begin : gen_handed_on
+            // A search that begins after a look is behind it all the way: four cycles a quad
+            for (index = 0; index < 3; index = index + 1) begin : gen_memories
+                sptfra_ram #(
+                    .WIDTH         (4 * 27),
+                    .DEPTH         (QUADS),
+                    .ADDRESS_WIDTH (ROW_WIDTH)
+                ) of_q (
+                    .clock         (clock),
+                    .write_enable  (read_valid),
+                    .write_address (read_quad),
+                    .write_data    (read_values[4*27*index +: 4*27]),
+                    .read_enable   (1'b1),
+                    .read_address  (look_quad),
+                    .read_data     (look_values[4*27*index +: 4*27])
+                );
+            end
+
+            wire _unused = &{1'b0, u_valid, fill_bank, u_quad, u_values, look_bank};
+        end else begin : gen_kept
+            sptfra_taxel_memory #(
+                .COLUMNS   (COLUMNS),
+                .ROWS      (ROWS),
+                .DATA_BITS (DATA_BITS),
+                .ROW_WIDTH (ROW_WIDTH)
+            ) taxels (
+                .clock       (clock),
+                .u_valid     (u_valid),
+                .fill_bank   (fill_bank),
+                .u_quad      (u_quad),
+                .u_values    (u_values),
+                .read_bank   (look_bank),
+                .read_quad   (look_quad),
+                .read_values (look_values)
+            );
+
+            wire _unused = &{1'b0, read_valid, read_quad, read_values};
+        end
+    endgenerate
 
     sptfra_look #(
         .COLUMNS          (COLUMNS),
@@ -103,16 +142,19 @@ module sptfra_correction #(
         .reset        (reset),
         .start        (search_start),
         .stress_sum   (stress_sum),
-        .look_start   (start),
+        .look_start   (look_start),
         .mu_x         (mu_x),
         .mu_y         (mu_y),
         .u_quad       (look_quad),
         .u_values     (look_values),
+        .look_done    (look_done),
+        .saturated    (saturated),
+        .window_start (start),
         .input_valid  (input_valid),
+        .input_first  (first_input),
         .input_word   (input_word),
         .input_values (input_values),
-        .done         (look_done),
-        .saturated    (saturated)
+        .window_done  (window_done)
     );
 
     sptfra_network #(
@@ -134,7 +176,7 @@ module sptfra_correction #(
         .input_valid  (input_valid),
         .input_word   (input_word),
         .input_values (input_values),
-        .start        (look_done),
+        .start        (first_input),
         .done         (done),
         .correction_x (correction_x),
         .correction_y (correction_y),

@@ -3,10 +3,10 @@
 //
 // Estimator: both friction components at once, from the level set of Condition 1 in the (mu_x, mu_y) plane.
 //
-// Two stages, each with a frame of its own. The search takes a frame when its u_q, its sums and what CeAn knows are
-// there: Condition 1 over the plane, and the level set's centroid. The correction takes what the search has found: with
-// NETWORK a look at the contact and what the network makes of it, and the friction. u_q of the next frame may arrive
-// while two are under way in turn, one searched, one corrected. The answer are both components as they are.
+// Three stages, each with a frame of its own (sptfra_joint_stages). The search: Condition 1 over the plane, and the
+// level set's centroid. With NETWORK the look: the contact's stress, and where its centre is. The correction: what the
+// network makes of a window around it, and the friction. u_q of the next frame may arrive meanwhile. The answer are
+// both components as they are.
 
 `default_nettype none
 
@@ -58,11 +58,11 @@ module sptfra_estimator_joint #(
     parameter integer EXPECTED_PLANE_LATENCY = 0,
     // ... from that row, or the last value, to the centroid
     parameter integer EXPECTED_LEVEL_LATENCY = 0,
-    // ... from the centroid to the last input of the network
+    // ... from the centroid to the contact's centre
     parameter integer EXPECTED_LOOK_LATENCY = 0,
-    // ... from there to the correction
+    // ... from the first input of the network to the correction
     parameter integer EXPECTED_NETWORK_LATENCY = 0,
-    // ... from the centroid or the correction to the friction
+    // ... from the centroid, or the correction, to the friction
     parameter integer EXPECTED_FRICTION_LATENCY = 0,
     // Derived: quads, and the bits of their number
     parameter integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
@@ -88,6 +88,8 @@ module sptfra_estimator_joint #(
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
     input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
+    // One cycle: the place of a frame's u_q is free
+    output wire u_released,
     // The answer, held until taken
     output wire answer_valid,
     input  wire answer_take, // only with answer_valid
@@ -102,7 +104,6 @@ module sptfra_estimator_joint #(
     output reg  [18*40-1:0] sums,
     output reg  [5:0] flags
 );
-
 
     generate
         if (WAYS != 4) begin : gen_check
@@ -127,87 +128,73 @@ module sptfra_estimator_joint #(
         end
     end
 
-    // ---- Search: takes a frame when u_q, sums and what CeAn knows are there
-    reg [1:0] u_waiting; // frames whose u_q wait to be searched
-    reg fill_bank;
-    reg search_bank;
-    reg searching;
-    reg centroid_waits; // for the correction
+    // ---- Stages: which frame is where
+    wire fill_bank, search_bank, look_bank;
+    wire search_start, look_start, correction_start;
+    wire level_done, centre_done, window_done;
+    wire search_done; // the answer is there
+
+    assign sums_take = search_start;
+    assign direction_take = search_start;
+
+    sptfra_joint_stages #(
+        .LOOK      (NETWORK),
+        .HANDED_ON (POINTS)
+    ) stages (
+        .clock            (clock),
+        .reset            (reset),
+        .u_complete       (fill_complete),
+        .sums_complete    (sums_complete),
+        .contact_valid    (direction_valid),
+        .search_done      (level_done),
+        .look_done        (centre_done),
+        .window_done      (window_done),
+        .correction_done  (search_done),
+        .answer_take      (answer_take),
+        .search_start     (search_start),
+        .look_start       (look_start),
+        .correction_start (correction_start),
+        .answer_valid     (answer_valid),
+        .u_released       (u_released),
+        .fill_bank        (fill_bank),
+        .search_bank      (search_bank),
+        .look_bank        (look_bank)
+    );
+
+    // ---- What goes with a frame from stage to stage
     reg [39:0] search_stress_sum;
     reg [26:0] search_largest;
     reg [18*40-1:0] search_sums;
     reg [5:0] search_flags;
-    wire level_done;
-    wire search_start = sums_complete && direction_valid && (u_waiting != 2'd0) && !searching;
-    // ---- Correction: takes what the search has found
-    reg correcting;
-    reg correction_bank;
-    reg answer_waits; // to be taken
-    wire search_done; // the answer is there
-    wire signed [17:0] found_x;
-    wire signed [17:0] found_y;
-    wire found_unknown;
-    wire found_on_border;
-    wire found_saturated;
-    reg signed [17:0] centroid_x;
-    reg signed [17:0] centroid_y;
-    reg on_border;
-    reg plane_saturated; // a value of the search was clipped
-    wire correction_start = (level_done || centroid_waits) && !correcting;
-
-    assign sums_take = search_start;
-    assign direction_take = search_start;
-    assign answer_valid = search_done || answer_waits;
+    wire signed [17:0] found_x, found_y;
+    wire found_unknown, found_on_border, found_saturated;
+    localparam integer WITH_FRAME = 18 * 40 + 6 + 2 * 18 + 3;
+    wire [WITH_FRAME-1:0] searched = {search_sums, search_flags, found_x, found_y, found_unknown, found_on_border,
+        found_saturated};
+    wire [WITH_FRAME-1:0] seen; // of the frame in the look, or that was searched
+    wire look_saturated;
+    reg signed [17:0] centroid_x, centroid_y;
+    reg on_border, before_saturated; // a value of search or look was clipped
+    wire signed [17:0] look_x = seen[21 +: 18];
+    wire signed [17:0] look_y = seen[3 +: 18];
 
     always @(posedge clock) begin
-        u_waiting <= u_waiting + {1'b0, fill_complete} - {1'b0, search_start};
-        if (fill_complete) begin
-            fill_bank <= !fill_bank;
-        end
-        if (level_done) begin
-            centroid_waits <= 1'b1;
-        end
         if (search_start) begin
-            searching <= 1'b1;
             search_sums <= sums_in;
             search_stress_sum <= stress_sum;
             search_largest <= largest;
             search_flags <= flags_in;
         end
         if (correction_start) begin
-            searching <= 1'b0;
-            centroid_waits <= 1'b0;
-            search_bank <= !search_bank;
-            correcting <= 1'b1;
-            sums <= search_sums;
-            flags <= search_flags;
-            centroid_x <= found_x;
-            centroid_y <= found_y;
-            unknown <= found_unknown;
-            on_border <= found_on_border;
-            plane_saturated <= found_saturated;
-        end
-        if (search_done) begin
-            answer_waits <= 1'b1;
-        end
-        if (answer_take) begin
-            correcting <= 1'b0;
-            answer_waits <= 1'b0;
-            correction_bank <= !correction_bank;
-        end
-        if (reset) begin
-            u_waiting <= 2'd0;
-            fill_bank <= 1'b0;
-            search_bank <= 1'b0;
-            searching <= 1'b0;
-            centroid_waits <= 1'b0;
-            correcting <= 1'b0;
-            correction_bank <= 1'b0;
-            answer_waits <= 1'b0;
+            {sums, flags, centroid_x, centroid_y, unknown, on_border, before_saturated} <= seen
+                | { {(WITH_FRAME - 1){1'b0}}, look_saturated};
         end
     end
 
     // ---- The plane, and the level set
+    wire read_valid;
+    wire [ROW_WIDTH-1:0] read_quad;
+    wire [3*4*27-1:0] read_values;
     sptfra_plane_search #(
         .COLUMNS                (COLUMNS),
         .ROWS                   (ROWS),
@@ -230,6 +217,9 @@ module sptfra_estimator_joint #(
         .start       (search_start),
         .stress_sum  (search_stress_sum),
         .largest     (search_largest),
+        .read_valid  (read_valid),
+        .read_quad   (read_quad),
+        .read_values (read_values),
         .done        (level_done),
         .mu_x        (found_x),
         .mu_y        (found_y),
@@ -238,16 +228,23 @@ module sptfra_estimator_joint #(
         .saturated   (found_saturated)
     );
 
-    // ---- Correction
-    wire correction_done;
-    wire signed [17:0] correction_x;
-    wire signed [17:0] correction_y;
-    wire look_saturated;
-    wire signed [17:0] left_error;
+    // ---- Look and correction
+    wire correction_done, clipped;
+    wire signed [17:0] correction_x, correction_y, left_error;
 
     generate
         if (NETWORK != 0) begin : gen_correction
+            reg [WITH_FRAME-1:0] look_frame;
+
+            assign seen = look_frame;
+            always @(posedge clock) begin
+                if (look_start) begin
+                    look_frame <= searched;
+                end
+            end
+
             sptfra_correction #(
+                .HANDED_ON                (POINTS),
                 .COLUMNS                  (COLUMNS),
                 .ROWS                     (ROWS),
                 .DATA_BITS                (DATA_BITS),
@@ -273,46 +270,50 @@ module sptfra_estimator_joint #(
                 .fill_bank    (fill_bank),
                 .u_quad       (fill_row),
                 .u_values     (fill_values),
+                .read_valid   (read_valid),
+                .read_quad    (read_quad),
+                .read_values  (read_values),
                 .search_start (search_start),
                 .stress_sum   (search_stress_sum),
+                .look_start   (look_start),
+                .look_bank    (look_bank),
+                .mu_x         (look_x),
+                .mu_y         (look_y),
+                .look_done    (centre_done),
+                .saturated    (look_saturated),
                 .start        (correction_start),
-                .bank         (correction_bank),
-                .mu_x         (centroid_x),
-                .mu_y         (centroid_y),
+                .window_done  (window_done),
                 .done         (correction_done),
                 .correction_x (correction_x),
                 .correction_y (correction_y),
-                .error_log    (left_error),
-                .saturated    (look_saturated)
+                .error_log    (left_error)
             );
         end else begin : gen_none
-            assign correction_done = correction_start;
-            assign correction_x = 18'sd0;
-            assign correction_y = 18'sd0;
-            assign look_saturated = 1'b0;
-            assign left_error = 18'sd0;
+            assign seen = searched;
+            assign {centre_done, window_done, correction_done, look_saturated} = 4'd0;
+            assign {correction_x, correction_y, left_error} = 54'd0;
 
-            wire _unused = &{1'b0, correction_bank, HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0,
-                STRESS_LEFT != 0, UNIT_SHIFT != 0, CORRECTION_SHIFT != 0, DOUBT != 0, DOUBT_SHIFT != 0, DOUBT_BASE,
-                EXPECTED_LOOK_LATENCY != 0,
+            wire _unused = &{1'b0, look_start, look_bank, look_x, look_y, read_valid, read_quad, read_values,
+                HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0, STRESS_LEFT != 0, UNIT_SHIFT != 0,
+                CORRECTION_SHIFT != 0, DOUBT != 0, DOUBT_SHIFT != 0, DOUBT_BASE, EXPECTED_LOOK_LATENCY != 0,
                 EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate
 
     // ---- Friction
-    wire clipped;
-
     sptfra_friction #(
+        .CORRECTED        (NETWORK),
         .LINEAR           (LINEAR),
         .CUBIC            (CUBIC),
         .EXPECTED_LATENCY (EXPECTED_FRICTION_LATENCY)
     ) friction (
         .clock        (clock),
         .reset        (reset),
-        .start        (correction_done),
+        .start        (correction_start),
         .centroid_x   (centroid_x),
         .centroid_y   (centroid_y),
         .unknown      (unknown),
+        .corrected    (correction_done),
         .correction_x (correction_x),
         .correction_y (correction_y),
         .done         (search_done),
@@ -325,10 +326,9 @@ module sptfra_estimator_joint #(
     assign slope = 18'sd0;
     assign error_log = unknown ? 18'sd0 : left_error; // without a direction as much as presses
     assign at_bound = on_border || clipped;
-    assign saturated = (look_saturated || plane_saturated) && !unknown;
+    assign saturated = before_saturated && !unknown;
 
-    // The direction of the push is not needed
-    wire _unused = &{1'b0, direction_x, direction_y, no_direction};
+    wire _unused = &{1'b0, direction_x, direction_y, no_direction}; // the direction of the push is not needed
 
 endmodule
 

@@ -3,16 +3,19 @@
 //
 // Friction from the centroid of the level set: mu = c1 mu^ + c3 mu^ |mu^|^2 + correction, clipped to [-2, 2).
 //
-// One multiplier, step by step. All friction components have 16 fraction bits. From start to done: 20 cycles.
+// One multiplier, step by step. All friction components have 16 fraction bits. From start to done: 20 cycles; where a
+// correction comes later than 18 cycles after start, 2 from the correction.
 
 `default_nettype none
 
 module sptfra_friction #(
+    // 1: there is a correction, which comes 18 cycles after start or later; 0: none
+    parameter integer CORRECTED = 0,
     // c1, 22 fraction bits
     parameter signed [26:0] LINEAR = 27'sd4194304,
     // c3, 15 fraction bits
     parameter signed [17:0] CUBIC = 18'sd0,
-    // From start to done, checked in simulation; 0: unchecked
+    // From start, or from the correction, to done, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0
 ) (
     input  wire clock,
@@ -21,6 +24,7 @@ module sptfra_friction #(
     input  wire signed [17:0] centroid_x,
     input  wire signed [17:0] centroid_y,
     input  wire unknown, // the components are zero then
+    input  wire corrected, // one cycle: these are there
     input  wire signed [17:0] correction_x,
     input  wire signed [17:0] correction_y,
     // Result, held until the next start
@@ -52,6 +56,7 @@ module sptfra_friction #(
     reg signed [26:0] factor; // c1 + c3 |mu^|^2
     reg signed [27:0] sum_x;
     reg signed [27:0] sum_y;
+    reg summed; // with the correction
     wire fits_x = (sum_x[27:17] == {11{sum_x[17]}});
     wire fits_y = (sum_y[27:17] == {11{sum_y[17]}});
 
@@ -114,17 +119,24 @@ module sptfra_friction #(
             case (step)
                 5'd5: square <= accumulator[SQUARE_SHIFT +: 27];
                 5'd11: factor <= accumulator[FACTOR_SHIFT +: 27];
-                5'd16: sum_x <= product + { {10{correction_x[17]}}, correction_x};
-                5'd17: sum_y <= product + { {10{correction_y[17]}}, correction_y};
-                5'd18: begin
-                    mu_x <= unknown ? 18'sd0 : fits_x ? sum_x[17:0] : {sum_x[27], {17{!sum_x[27]}}};
-                    mu_y <= unknown ? 18'sd0 : fits_y ? sum_y[17:0] : {sum_y[27], {17{!sum_y[27]}}};
-                    clipped <= !unknown && !(fits_x && fits_y);
-                    done <= 1'b1;
+                5'd16: sum_x <= product;
+                5'd17: begin
+                    sum_y <= product;
                     running <= 1'b0;
                 end
                 default: ;
             endcase
+        end
+        if (corrected) begin
+            sum_x <= sum_x + { {10{correction_x[17]}}, correction_x};
+            sum_y <= sum_y + { {10{correction_y[17]}}, correction_y};
+        end
+        summed <= (CORRECTED != 0) ? corrected : running && (step == 5'd17);
+        if (summed) begin
+            mu_x <= unknown ? 18'sd0 : fits_x ? sum_x[17:0] : {sum_x[27], {17{!sum_x[27]}}};
+            mu_y <= unknown ? 18'sd0 : fits_y ? sum_y[17:0] : {sum_y[27], {17{!sum_y[27]}}};
+            clipped <= !unknown && !(fits_x && fits_y);
+            done <= 1'b1;
         end
         if (start) begin
             running <= 1'b1;
@@ -132,6 +144,7 @@ module sptfra_friction #(
         end
         if (reset) begin
             running <= 1'b0;
+            summed <= 1'b0;
             done <= 1'b0;
         end
     end
@@ -142,7 +155,7 @@ module sptfra_friction #(
     ) check_latency (
         .clock (clock),
         .reset (reset),
-        .start (start),
+        .start ((CORRECTED != 0) ? corrected : start),
         .done  (done)
     );
 `else

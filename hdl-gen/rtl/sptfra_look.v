@@ -4,8 +4,9 @@
 // What the correction sees of a contact: the stress of the normal forces alone, in a window around its centre.
 //
 // Along its way: scale (1 / sum |b|, while the plane is searched), stress (a quad in two cycles, its compression's
-// moments), their centroid, window (folded into parity classes, for the network). While one frame is looked at the next
-// one may start. From look_start to done: two cycles a quad, one a word, and 43.
+// moments), their centroid; when the network is free for it the window (folded into parity classes). While one frame is
+// looked at the next one may start. From look_start to look_done: two cycles a quad, and 33; from window_start to
+// window_done: 10, and one a word.
 
 `default_nettype none
 
@@ -25,7 +26,7 @@ module sptfra_look #(
     parameter integer WORD_WIDTH = 5,
     // Left shift of a stress times the reciprocal, before the right shift by the bits of sum |b|
     parameter integer STRESS_LEFT = 9,
-    // From look_start to done, checked in simulation; 0: unchecked
+    // From look_start to look_done, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0
 ) (
     input  wire clock,
@@ -33,19 +34,22 @@ module sptfra_look #(
     // A frame, with its sum |b| held from the next cycle on until its centroid of the level set is there
     input  wire start,
     input  wire [39:0] stress_sum,
-    // It is, and held from the next cycle on until the next one is
+    // It is, and held from the next cycle on until the window is done
     input  wire look_start,
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
     // u_q of a quad's taxels, a cycle after they are asked for
     output wire [ROW_WIDTH-1:0] u_quad,
     input  wire [3*4*27-1:0] u_values,
+    output wire look_done, // one cycle: the contact's centre is there, and held
+    output wire saturated, // a share was clipped; held until the next look
     // Inputs of the network
+    input  wire window_start,
     output wire input_valid,
+    output wire input_first, // with the first of them
     output wire [WORD_WIDTH-1:0] input_word,
     output wire [4*27-1:0] input_values, // class 0 in the lowest bits
-    output wire done, // one cycle, with the last of them
-    output wire saturated // a share was clipped; held until the next look
+    output wire window_done // one cycle, with the last of them
 );
 
     // Of the centre: taxels, and fraction of a pitch
@@ -109,7 +113,6 @@ module sptfra_look #(
     );
 
     // ---- Centroid of the compression; without any the first taxel does
-    wire centroid_there;
     wire [CENTRE_BITS-1:0] ratio_x;
     wire [CENTRE_BITS-1:0] ratio_y;
     wire nothing = (weight_sum == 48'd0);
@@ -125,7 +128,7 @@ module sptfra_look #(
         .numerator_x (moment_x),
         .numerator_y (moment_y),
         .denominator (weight_sum),
-        .done        (centroid_there),
+        .done        (look_done),
         .quotient_x  (ratio_x),
         .quotient_y  (ratio_y)
     );
@@ -145,15 +148,16 @@ module sptfra_look #(
         .share_valid  (share_valid),
         .share_quad   (share_quad),
         .shares       (shares),
-        .start        (centroid_there),
+        .start        (window_start),
         .centroid_x   (nothing ? {CENTRE_BITS{1'b0}} : ratio_x),
         .centroid_y   (nothing ? {CENTRE_BITS{1'b0}} : ratio_y),
         .mu_x         (mu_x),
         .mu_y         (mu_y),
         .input_valid  (input_valid),
+        .input_first  (input_first),
         .input_word   (input_word),
         .input_values (input_values),
-        .done         (done)
+        .done         (window_done)
     );
 
 `ifdef SIMULATION
@@ -163,7 +167,7 @@ module sptfra_look #(
         .clock (clock),
         .reset (reset),
         .start (look_start),
-        .done  (done)
+        .done  (look_done)
     );
 `else
     wire _unused_check = (EXPECTED_LATENCY != 0);

@@ -5,7 +5,7 @@
 //
 // The centroid of the compression, to the next taxel, is the middle of a window of 2 HALF_X + 1 by 2 HALF_Y + 1 taxels.
 // A word of four classes for each of its places comes first; then follow 1, mu_x, mu_y and what is left of a pitch. All
-// have 19 fraction bits. From start to done: 10 cycles, and one for each word.
+// have 19 fraction bits. From start to the first of them: 11 cycles; then one a cycle, the last with done.
 
 `default_nettype none
 
@@ -38,6 +38,7 @@ module sptfra_look_window #(
     input  wire signed [17:0] mu_y,
     // Inputs of the network
     output reg  input_valid,
+    output reg  input_first, // with the first of them
     output reg  [WORD_WIDTH-1:0] input_word,
     output reg  [4*27-1:0] input_values, // class 0 in the lowest bits
     output reg  done // one cycle, with the last of them
@@ -238,6 +239,7 @@ module sptfra_look_window #(
 
     always @(posedge clock) begin
         input_valid <= next_word;
+        input_first <= next_word && first_word;
         done <= (state == REST) && last_word;
         if (next_word) begin
             input_word <= first_word ? {WORD_WIDTH{1'b0}} : input_word + 1'b1;
@@ -258,6 +260,7 @@ module sptfra_look_window #(
         end
         if (reset) begin
             input_valid <= 1'b0;
+            input_first <= 1'b0;
             done <= 1'b0;
         end
     end

@@ -41,7 +41,7 @@ module sptfra_network #(
     input  wire input_valid,
     input  wire [WORD_WIDTH-1:0] input_word,
     input  wire [4*27-1:0] input_values,
-    input  wire start, // with the last of them
+    input  wire start, // with the first of them; they come word by word, one a cycle
     // Result, held until the next start: within 1/4, 16 fraction bits
     output reg  done, // one cycle
     output reg  signed [17:0] correction_x,

@@ -45,6 +45,10 @@ module sptfra_plane_search #(
     input  wire start,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest, // max |b|
+    // All of a quad as it is read, of points only: u_0 in the lowest bits
+    output wire read_valid,
+    output wire [ROW_WIDTH-1:0] read_quad,
+    output wire [3*4*27-1:0] read_values,
     // Result, held until the next start
     output wire done, // one cycle
     output wire signed [17:0] mu_x, // 16 fraction bits
@@ -86,6 +90,9 @@ module sptfra_plane_search #(
                 .stress_sum  (stress_sum),
                 .largest     (largest),
                 .margin      (margin),
+                .read_valid  (read_valid),
+                .read_quad   (read_quad),
+                .read_values (read_values),
                 .row_valid   (row_valid),
                 .row_values  (row_values),
                 .clipped     (clipped_u)
@@ -159,6 +166,9 @@ module sptfra_plane_search #(
             );
 
             assign saturated = 1'b0;
+            assign read_valid = 1'b0;
+            assign read_quad = {ROW_WIDTH{1'b0}};
+            assign read_values = {(3 * 4 * 27){1'b0}};
 
             wire _unused = &{1'b0, U_LEFT != 0};
         end

@@ -40,6 +40,10 @@ module sptfra_points #(
     input  wire [26:0] largest, // max |b|
     // 2^-8 sum |b|, in the steps of B
     output wire [15:0] margin,
+    // All of a quad as it is read, u_0 in the lowest bits
+    output reg  read_valid,
+    output reg  [ROW_WIDTH-1:0] read_quad,
+    output reg  [3*4*27-1:0] read_values,
     // B, a row of points at a time, mu_x from the least one on in the lowest bits
     output wire row_valid,
     output wire [SIDE*28-1:0] row_values,
@@ -97,6 +101,9 @@ module sptfra_points #(
         end
         member_1 <= member;
         taxel_2 <= taxel_1;
+        read_valid <= valids[1] && (member_1 == 2'd0);
+        read_quad <= quad; // of the same: it is read for four cycles
+        read_values <= quad_1;
         valids <= {valids[STAGES-1:1], reading};
         firsts <= {firsts[STAGES-1:1], (quad == {ROW_WIDTH{1'b0}}) && (member == 2'd0)};
         lasts <= {lasts[STAGES-1:1], reading && last_taxel};
@@ -104,6 +111,7 @@ module sptfra_points #(
             reading <= 1'b0;
             valids <= {STAGES{1'b0}};
             lasts <= {STAGES{1'b0}};
+            read_valid <= 1'b0;
         end
     end
 

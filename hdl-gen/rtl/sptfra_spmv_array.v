@@ -37,6 +37,7 @@ module sptfra_spmv_array #(
     parameter [PRODUCTS-1:0] REWINDS = {PRODUCTS{1'b0}},
     parameter [PRODUCTS-1:0] MIRRORED = {PRODUCTS{1'b0}},
     parameter [PRODUCTS-1:0] FRICTIONS = {PRODUCTS{1'b0}},
+    parameter [15:0] RESIDUAL_BANK = 16'd0,
     parameter [PRODUCTS-1:0] LASTS = {1'b1, {(PRODUCTS-1){1'b0}}},
     parameter PROGRAMS = 1,
     parameter [PROGRAMS*8-1:0] FIRSTS = {(PROGRAMS*8){1'b0}},
@@ -64,6 +65,7 @@ module sptfra_spmv_array #(
     input  wire [PROGRAMS-1:0] start, // of the programs, one at a time
     output wire issued, // with the last issue of a program
     input  wire bank, // of the stress of the frame whose weights are computed
+    input  wire field_bank, // of the residual of the frame whose field is
     // Quads that are not zero
     output wire list_pull,
     output wire [ROW_WIDTH-1:0] list_address,
@@ -94,7 +96,6 @@ module sptfra_spmv_array #(
             sptfra_error_a_destination_has_3_or_4_bits invalid ();
         end
     endgenerate
-
     localparam WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1;
     localparam VALUE_WIDTH = (VALUE_DEPTH > 2) ? $clog2(VALUE_DEPTH) : 1;
     localparam VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1;
@@ -182,6 +183,7 @@ module sptfra_spmv_array #(
         .REWINDS        (REWINDS),
         .MIRRORED       (MIRRORED),
         .FRICTIONS      (FRICTIONS),
+        .RESIDUAL_BANK  (RESIDUAL_BANK),
         .LASTS          (LASTS),
         .PROGRAMS       (PROGRAMS),
         .FIRSTS         (FIRSTS),
@@ -200,6 +202,7 @@ module sptfra_spmv_array #(
         .start           (start),
         .issued          (issued),
         .bank            (bank),
+        .field_bank      (field_bank),
         .restart         (next_restart),
         .start_word      (next_start_word),
         .restart_segment (next_restart_segment),

@@ -2,13 +2,19 @@
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
 // Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever. With JOINT the
-// search is that of the joint estimator, which has no line before it, and a stage of its own behind it: search and
-// correction have a frame each; with LATENCY frames wait for fields.
+// search is that of the joint estimator, which has no line before it, and stages of their own behind it: search, LOOK and
+// correction have a frame each. With HANDED_ON a frame's u are free for another when they were searched; else, with a
+// LOOK, when they were looked at. With LATENCY frames wait for fields; with ONE_RESIDUAL only one has a place.
 module harness (
     input wire clock
 );
 
     localparam [5:0] LAST_BEAT = 6'd51;
+`ifdef ONE_RESIDUAL
+    localparam [1:0] RESIDUALS = 2'd1;
+`else
+    localparam [1:0] RESIDUALS = 2'd2;
+`endif
 
     reg started = 1'b0;
     wire reset = !started;
@@ -27,9 +33,12 @@ module harness (
     wire turns_busy;
     wire residual_due;
     wire residual_written;
-    wire residual_there;
-    wire field_due;
-    wire [1:0] searches_due;
+    wire [1:0] residuals_there;
+    wire [1:0] fields_due;
+    wire residual_bank;
+    wire field_bank;
+    wire [1:0] u_held;
+    wire u_released;
     wire [2:0] frames_held;
     wire [1:0] fields_held;
     wire u_complete;
@@ -51,17 +60,34 @@ module harness (
     wire direction_valid;
     wire level_done;
     wire centroid_waits;
+    wire looking;
+    wire showing;
+    wire centre_waits;
+    wire look_done;
+    wire window_done;
     wire correcting;
+    wire look_start;
     wire correction_start;
     wire fill_bank;
     wire search_bank;
-    wire correction_bank;
+    wire look_bank;
+`ifdef HANDED_ON
+    wire u_seen = 1'b0; // by the look: the frame in it needs its u
+`else
+    wire u_seen = looking;
+`endif
     wire found_waits = centroid_waits; // of what is searched
     wire answering = correcting; // what an answer is of
 `else
     wire line_valid;
     wire [2:0] line_state;
     wire level_done = 1'b0;
+    wire looking = 1'b0;
+    wire showing = 1'b0;
+    wire centre_waits = 1'b0;
+    wire look_done = 1'b0;
+    wire window_done = 1'b0;
+    wire u_seen = 1'b0;
     wire correcting = 1'b0;
     wire found_waits = answer_waits;
     wire answering = searching;
@@ -91,20 +117,20 @@ module harness (
         .field_release (field_release),
         .out_tready (out_tready),
         .friction_known (friction_known),
-        .search_over (search_over),
+        .answer_take (search_over),
+        .u_released (u_released),
         .\spmv_array.issuing_now (issuing),
         .\turns.busy (turns_busy),
         .\turns.gen_field.residual_due (residual_due),
         .\turns.residual_written (residual_written),
-        .\turns.gen_field.residual_there (residual_there),
-        .\turns.gen_field.field_due (field_due),
-        .\turns.searches_due (searches_due),
+        .\turns.gen_field.residuals_there (residuals_there),
+        .\turns.gen_field.fields_due (fields_due),
+        .residual_bank (residual_bank),
+        .field_bank (field_bank),
+        .\turns.u_held (u_held),
         .\turns.frames_held (frames_held),
         .\turns.gen_field.fields_held (fields_held),
         .\estimator.fill_complete (u_complete),
-        .\estimator.u_waiting (u_waiting),
-        .\estimator.searching (searching),
-        .\estimator.answer_waits (answer_waits),
         .\estimator.search_start (search_start),
         .\estimator.search_done (search_done),
         .\op.summary_busy (summary_busy),
@@ -116,13 +142,25 @@ module harness (
 `ifdef JOINT
         .direction_valid (direction_valid),
         .\estimator.level_done (level_done),
-        .\estimator.centroid_waits (centroid_waits),
-        .\estimator.correcting (correcting),
+        .\estimator.centre_done (look_done),
+        .\estimator.window_done (window_done),
+        .\estimator.stages.u_waiting (u_waiting),
+        .\estimator.stages.searching (searching),
+        .\estimator.stages.centroid_waits (centroid_waits),
+        .\estimator.stages.looking (looking),
+        .\estimator.stages.showing (showing),
+        .\estimator.stages.centre_waits (centre_waits),
+        .\estimator.stages.correcting (correcting),
+        .\estimator.stages.answer_waits (answer_waits),
+        .\estimator.look_start (look_start),
         .\estimator.correction_start (correction_start),
         .\estimator.fill_bank (fill_bank),
         .\estimator.search_bank (search_bank),
-        .\estimator.correction_bank (correction_bank),
+        .\estimator.look_bank (look_bank),
 `else
+        .\estimator.u_waiting (u_waiting),
+        .\estimator.searching (searching),
+        .\estimator.answer_waits (answer_waits),
         .\estimator.line_valid (line_valid),
         .\estimator.line.state (line_state),
 `endif
@@ -150,6 +188,8 @@ module harness (
     reg at_output; // a frame whose field is still needed
     reg [2:0] young; // program 0 began in one of the last cycles
     wire sums_written = $anyseq;
+    // Frames that wait for an answer
+    wire [3:0] frames_due = {3'd0, open[0]} + u_there + searching + looking + correcting;
 
     always @(posedge clock) begin
         started <= 1'b1;
@@ -191,6 +231,8 @@ module harness (
             assume (direction_valid || (u_waiting == 2'd0));
             assume (!sums_written || (young == 3'd0));
             assume (!level_done || (searching && !centroid_waits));
+            assume (!look_done || (looking && !centre_waits));
+            assume (!window_done || showing);
 `endif
             assume (!coefficients_complete || (open[0] && summed));
             assume (!residual_written || open[1]);
@@ -211,30 +253,40 @@ module harness (
             // Nothing is overwritten before it was used: sums, u, residual, friction, field
             assert (!sums_written || !sums_wait);
             assert (!coefficients_complete || (u_there < 3'd2));
-            assert (!residual_written || !residual_there);
+            assert (!residual_written || (residuals_there < RESIDUALS));
+`ifndef ONE_RESIDUAL
+            // A residual is not written where one is read, or waits to be read
+            assert (!open[1] || !(issuing[2] || start[2]) || (residual_bank != field_bank));
+            assert (!open[1] || (residuals_there == 2'd0) || (residual_bank == field_bank));
+`endif
             assert (!friction_done || !friction_known);
             assert (!field_complete || !field_there);
             // A field has the friction of its own frame
             assert (!start[2] || (friction_known && summary_busy));
 `ifdef LATENCY
             // No frame goes ahead of a field
-            assert (!start[0] || !field_due);
+            assert (!start[0] || (fields_due == 2'd0));
 `endif
-            // Places: two searches, two fields, four frames' weights, one output
-            assert (!start[0] || (searches_due < 2'd2));
-            assert (!search_over || (searches_due != 2'd0));
+            // Places: two frames' u, two fields, four frames' weights, one output
+            assert (!start[0] || (u_held < 2'd2));
+            assert (!u_released || (u_held != 2'd0));
             assert (!field_release || ((fields_held != 2'd0) && (frames_held != 3'd0)));
             assert ((fields_held <= 2'd2) && (frames_held <= 3'd4));
             assert (!output_start || !at_output);
 `ifdef JOINT
             // A frame passes on when there is one, to a stage that has none
+`ifdef LOOK
+            assert (!look_start || (searching && !looking && !showing));
+            assert (!correction_start || (looking && !showing && !correcting));
+`else
             assert (!correction_start || (searching && !correcting));
+`endif
             assert (!search_start || !searching);
-            // The bank that is filled is neither searched nor corrected, and those two are not the same one
-            assert (!open[0] || (u_there + searching + correcting < 3'd2));
+            // The bank that is filled is neither searched nor looked at, and those two are not the same one
+            assert (!open[0] || (u_there + searching + u_seen < 3'd2));
             assert (!open[0] || !searching || (fill_bank != search_bank));
-            assert (!open[0] || !correcting || (fill_bank != correction_bank));
-            assert (!searching || !correcting || (search_bank != correction_bank));
+            assert (!open[0] || !u_seen || (fill_bank != look_bank));
+            assert (!searching || !u_seen || (search_bank != look_bank));
 `endif
         end
     end
@@ -242,17 +294,17 @@ module harness (
 `ifdef INVARIANTS
     always @(posedge clock) begin
         if (!reset) begin
-            assert ({2'd0, searches_due} == {3'd0, open[0]} + u_there + searching + correcting);
-            assert ({1'b0, frames_held} == {2'd0, searches_due} + summary_busy + at_output);
+            assert ({2'd0, u_held} == {3'd0, open[0]} + u_there + searching + u_seen);
+            assert ({1'b0, frames_held} == frames_due + summary_busy + at_output);
             assert ({2'd0, fields_held} == {3'd0, field_started} + at_output);
-            assert ({3'd0, residual_due} + field_due + start[2]
-                == {2'd0, searches_due} + (summary_busy && !field_started) + start[0]);
+            assert ({3'd0, residual_due} + fields_due + start[2]
+                == frames_due + (summary_busy && !field_started) + start[0]);
 `ifdef JOINT
             assert ({3'd0, sums_wait} == {3'd0, open[0] && summed} + u_there);
             assert (!sums_take || sums_wait);
             // Banks are taken in turn
             assert (fill_bank == (search_bank ^ searching ^ u_waiting[0]));
-            assert (search_bank == (correction_bank ^ correcting));
+            assert (search_bank == (look_bank ^ looking));
             // The frame before is searched at once
             assert (!open[0] || (u_there == 3'd0) || searching || (young != 3'd0));
 `else
@@ -267,15 +319,23 @@ module harness (
             assert ((last & (last - 3'd1)) == 3'd0);
             assert ((open & ~(last | ((issuing != 3'd0) ? before : 3'd0))) == 3'd0);
             assert (!(last[0] && (start == 3'd0)) || residual_due);
-            assert (!(last[1] && (start == 3'd0)) || (field_due && !residual_due));
+            assert (!(last[1] && (start == 3'd0)) || ((fields_due != 2'd0) && !residual_due));
             assert (!start[0] || residual_due);
-            assert (!start[1] || (field_due && !residual_due));
-            assert (!(issuing[2] || start[2]) || !field_due);
-            assert (!residual_there || field_due);
-            assert ((open[1] || start[1]) == (field_due && !residual_there));
+            assert (!start[1] || ((fields_due != 2'd0) && !residual_due));
+            assert (!(issuing[2] || start[2]) || (fields_due < RESIDUALS));
+            assert ({1'b0, residuals_there} + (open[1] || start[1]) == {1'b0, fields_due});
+            assert (fields_due <= RESIDUALS);
+`ifndef ONE_RESIDUAL
+            assert ((residual_bank ^ field_bank) == fields_due[0]);
+`endif
             // Op
             assert (!answer_waits || answering);
             assert (!found_waits || searching);
+            assert (!centre_waits || looking);
+            assert (!looking || !showing);
+`ifndef LOOK
+            assert (!looking && !showing);
+`endif
             assert (!friction_due || summary_due);
             assert (!summary_due || summary_busy);
             assert (summary_there == (summary_busy && !summary_due));
@@ -300,19 +360,20 @@ module harness (
     // ---- Progress: what is left to do for the frames inside. It never grows but by a new frame, and shrinks within
     // three cycles in which those do something who may: so with a sink that is not for ever stalled, every frame ends
     wire [9:0] left_of_turns = (residual_due ? 10'd30 : 10'd0)
-        + (field_due ? (residual_there ? 10'd15 : 10'd20) : 10'd0)
+        + 10'd20 * fields_due - 10'd5 * residuals_there
         + (start[2] ? 10'd14 : (start != 3'd0) ? 10'd4 : (issuing != 3'd0) ? 10'd2 : 10'd0)
         + (field_there ? 10'd5 : field_started ? 10'd10 : 10'd0);
-    wire [9:0] left_of_search = (open[0] ? (summed ? 10'd107 : 10'd108) : 10'd0) + 10'd98 * u_there
-        + (searching ? (found_waits ? 10'd91 : 10'd94) : 10'd0)
+    wire [9:0] left_of_search = (open[0] ? (summed ? 10'd125 : 10'd126) : 10'd0) + 10'd116 * u_there
+        + (searching ? (found_waits ? 10'd109 : 10'd112) : 10'd0)
+        + (looking ? (centre_waits ? 10'd102 : 10'd105) : 10'd0) + (showing ? 10'd5 : 10'd0)
         + (correcting ? (answer_waits ? 10'd83 : 10'd88) : 10'd0)
         + (friction_due ? 10'd68 : summary_due ? 10'd63 : summary_busy ? 10'd58 : 10'd0);
     wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : {9'd0, field_release};
     wire [9:0] left = left_of_turns + left_of_search + left_at_output;
     wire asked = (issuing != 3'd0) || (open != 3'd0) || (searching && !found_waits)
-        || (correcting && !answer_waits) || summary_due;
+        || (looking && !centre_waits) || showing || (correcting && !answer_waits) || summary_due;
     wire answered = issued || sums_written || coefficients_complete || residual_written || field_complete
-        || level_done || search_done || friction_done || summary_done;
+        || level_done || look_done || window_done || search_done || friction_done || summary_done;
     wire line_willing = (u_waiting == 2'd0) || searching || line_valid;
     reg [3:1] watched = 3'd0;
     reg [3:1] willing = 3'd0;

@@ -8,7 +8,7 @@ module sptfra_spmv_array #(
     = 0, COUNT_BITS = 0, LENGTHS = 0, WAITS = 0, BASES = 0, OF_STRESS = 0, MARKS = 0, REWINDS = 0,
     MIRRORED = 0, FRICTIONS = 0, LASTS = 0, PROGRAMS = 0, FIRSTS = 0, START_WORDS = 0, START_SEGMENTS =
     0, START_VISITS = 0, SKIPS = 0, IN_ROUNDS = 0, ROUNDS_ONLY = 0, PULLS = 0, ROUND_WORDS = 0,
-    DESTINATION_BITS = 0, SHIFTS = 0, ROM_NAME = 0
+    RESIDUAL_BANK = 0, DESTINATION_BITS = 0, SHIFTS = 0, ROM_NAME = 0
 ) (
     input wire clock,
     input wire reset,

@@ -1,5 +1,6 @@
 // The frame handshake of a design with one program a frame: resultants only, with up to three frames between it and the
-// output, or, with FIELD, the paper's plan, whose two fields have a place until they have left.
+// output, or, with FIELD, the paper's plan, whose two fields have a place until they have left. With JOINT the search is
+// that of the joint estimator, whose search, look and correction have a frame each: up to five.
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
 // Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever.
@@ -27,7 +28,8 @@ module harness (
     wire search_over;
     wire issuing;
     wire turns_busy;
-    wire [1:0] searches_due;
+    wire [1:0] u_held;
+    wire u_released;
     wire u_complete;
     wire [1:0] u_waiting;
     wire searching;
@@ -37,8 +39,38 @@ module harness (
     wire summary_there;
     wire summary_done;
     wire output_start;
+`ifdef JOINT
+    wire line_valid = 1'b1;
+    wire [2:0] line_state = 3'd0;
+    wire direction_valid;
+    wire level_done;
+    wire centroid_waits;
+    wire looking;
+    wire showing;
+    wire centre_waits;
+    wire look_done;
+    wire window_done;
+    wire correcting;
+    wire search_start;
+    wire look_start;
+    wire correction_start;
+    wire fill_bank;
+    wire search_bank;
+    wire found_waits = centroid_waits; // of what is searched
+    wire answering = correcting; // what an answer is of
+`else
     wire line_valid;
     wire [2:0] line_state;
+    wire level_done = 1'b0;
+    wire looking = 1'b0;
+    wire showing = 1'b0;
+    wire centre_waits = 1'b0;
+    wire look_done = 1'b0;
+    wire window_done = 1'b0;
+    wire correcting = 1'b0;
+    wire found_waits = answer_waits;
+    wire answering = searching;
+`endif
     wire busy;
 `ifdef FIELD
     wire field_complete;
@@ -67,21 +99,42 @@ module harness (
         .sums_take (sums_take),
         .coefficients_complete (coefficients_complete),
         .out_tready (out_tready),
-        .search_over (search_over),
+        .answer_take (search_over),
+        .u_released (u_released),
         .\spmv_array.issuing_now (issuing),
         .\turns.busy (turns_busy),
-        .\turns.searches_due (searches_due),
+        .\turns.u_held (u_held),
         .\estimator.fill_complete (u_complete),
-        .\estimator.u_waiting (u_waiting),
-        .\estimator.searching (searching),
-        .\estimator.answer_waits (answer_waits),
         .\estimator.search_done (search_done),
         .\op.summary_busy (summary_busy),
         .\op.summary_there (summary_there),
         .\op.summary_done (summary_done),
         .\op.output_start (output_start),
+`ifdef JOINT
+        .direction_valid (direction_valid),
+        .\estimator.level_done (level_done),
+        .\estimator.centre_done (look_done),
+        .\estimator.window_done (window_done),
+        .\estimator.stages.u_waiting (u_waiting),
+        .\estimator.stages.searching (searching),
+        .\estimator.stages.centroid_waits (centroid_waits),
+        .\estimator.stages.looking (looking),
+        .\estimator.stages.showing (showing),
+        .\estimator.stages.centre_waits (centre_waits),
+        .\estimator.stages.correcting (correcting),
+        .\estimator.stages.answer_waits (answer_waits),
+        .\estimator.search_start (search_start),
+        .\estimator.look_start (look_start),
+        .\estimator.correction_start (correction_start),
+        .\estimator.fill_bank (fill_bank),
+        .\estimator.search_bank (search_bank),
+`else
+        .\estimator.u_waiting (u_waiting),
+        .\estimator.searching (searching),
+        .\estimator.answer_waits (answer_waits),
         .\estimator.line_valid (line_valid),
         .\estimator.line.state (line_state),
+`endif
 `ifdef FIELD
         .field_complete (field_complete),
         .field_release (field_release),
@@ -107,6 +160,7 @@ module harness (
     reg sums_wait; // and not taken
     reg summary_due;
     reg [3:0] recent; // sums were written in one of the last cycles
+    reg [3:0] completed; // the last results came in one of the last cycles
     wire sums_written = $anyseq;
 `ifdef FIELD
     reg at_output; // a frame whose field is still needed
@@ -125,12 +179,14 @@ module harness (
         summed <= (summed || sums_written) && !coefficients_complete;
         sums_wait <= sums_written || (sums_wait && !sums_take);
         recent <= {recent[2:0], sums_written};
+        completed <= {completed[2:0], coefficients_complete};
         summary_due <= search_over || (summary_due && !summary_done);
         if (reset) begin
             arriving <= 1'b0;
             summed <= 1'b0;
             sums_wait <= 1'b0;
             recent <= 4'd0;
+            completed <= 4'd0;
             summary_due <= 1'b0;
         end
     end
@@ -149,7 +205,16 @@ module harness (
             assume (!sums_written || (recent == 4'd0));
             assume (!coefficients_complete || (arriving && summed));
             assume (!issued || !arriving);
-            assume (!search_done || (searching && !answer_waits));
+            assume (!search_done || (answering && !answer_waits));
+`ifdef JOINT
+            // Sums stand in Co until the search takes them. By then the direction is there, and the next ones are not
+            // written in the first cycles after the last results of their frame
+            assume (direction_valid || (u_waiting == 2'd0));
+            assume (!sums_written || (completed == 4'd0));
+            assume (!level_done || (searching && !centroid_waits));
+            assume (!look_done || (looking && !centre_waits));
+            assume (!window_done || showing);
+`endif
             assume (!summary_done || summary_due);
         end
     end
@@ -163,9 +228,16 @@ module harness (
             assert (!coefficients_complete || (u_there < 3'd2));
             assert (!search_over || !summary_busy);
             assert (!output_start || !(busy || beat_issued || valid[1] || valid[2]));
-            // Places: two searches
-            assert (!start || (searches_due < 2'd2));
-            assert (!search_over || (searches_due != 2'd0));
+            // Places: two frames' u
+            assert (!start || (u_held < 2'd2));
+            assert (!u_released || (u_held != 2'd0));
+`ifdef JOINT
+            // A frame passes on when there is one, to a stage that has none; the bank that is filled is not searched
+            assert (!search_start || !searching);
+            assert (!look_start || (searching && !looking && !showing));
+            assert (!correction_start || (looking && !showing && !correcting));
+            assert (!(issuing || arriving) || !searching || (fill_bank != search_bank));
+`endif
 `ifdef FIELD
             // And two fields, which are never given back twice
             assert (frames_held <= 3'd2);
@@ -179,22 +251,33 @@ module harness (
 `ifdef INVARIANTS
     always @(posedge clock) begin
         if (!reset) begin
-            assert ({2'd0, searches_due} == {3'd0, issuing} + arriving + u_there + searching);
-            assert ((searches_due <= 2'd2) && !(start && (searches_due == 2'd2)));
+            assert ({2'd0, u_held} == {3'd0, issuing} + arriving + u_there + searching);
+            assert ((u_held <= 2'd2) && !(start && (u_held == 2'd2)));
+            assert (!found_waits || searching);
+            assert (!centre_waits || looking);
+            assert (!looking || !showing);
+`ifdef JOINT
+            assert ({3'd0, sums_wait} == {3'd0, summed} + u_there);
+            assert (!sums_take || sums_wait);
+            // Banks are taken in turn, and the frame before is searched at once
+            assert (fill_bank == (search_bank ^ searching ^ u_waiting[0]));
+            assert (!(issuing || arriving) || (u_there == 3'd0) || searching || (completed != 4'd0));
+`else
             assert ({3'd0, sums_stand} + (line_state != 3'd0) == {3'd0, summed} + u_there);
             assert (!sums_take || (sums_wait && (line_state != 3'd0)));
             assert (line_state <= 3'd4);
             // A line that is free takes sums at once
             assert (!sums_stand || (line_state != 3'd0) || searching || (recent != 4'd0));
             assert (!sums_take || searching || !issuing || summed || (recent != 4'd0));
+`endif
             assert (!summed || issuing || arriving);
             assert (turns_busy == (start || issuing));
             // Op
-            assert (!answer_waits || searching);
+            assert (!answer_waits || answering);
             assert (!summary_due || summary_busy);
             assert (summary_there == (summary_busy && !summary_due));
 `ifdef FIELD
-            assert ({1'b0, frames_held} == {2'd0, searches_due} + summary_busy + at_output);
+            assert ({1'b0, frames_held} == {2'd0, u_held} + summary_busy + at_output);
             assert ({2'd0, fields_there} == {3'd0, summed} + u_there + searching + summary_busy);
             assert (at_output == (busy || beat_issued || field_release));
             assert (!field_release || !(busy || beat_issued));
@@ -212,15 +295,19 @@ module harness (
 
     // ---- Progress: what is left to do for the frames inside. It never grows but by a new frame, and shrinks within
     // three cycles in which those do something who may: so with a sink that is not for ever stalled, every frame ends
-    wire [9:0] left_in_lanes = (start ? 10'd118 : 10'd0) + (issuing ? 10'd115 : 10'd0) + (arriving ? 10'd110 : 10'd0)
+    wire [9:0] left_in_lanes = (start ? 10'd136 : 10'd0) + (issuing ? 10'd133 : 10'd0) + (arriving ? 10'd128 : 10'd0)
         - {9'd0, summed};
-    wire [9:0] left_of_search = 10'd98 * u_there + (searching ? (answer_waits ? 10'd83 : 10'd88) : 10'd0)
+    wire [9:0] left_of_search = 10'd116 * u_there + (searching ? (found_waits ? 10'd109 : 10'd112) : 10'd0)
+        + (looking ? (centre_waits ? 10'd102 : 10'd105) : 10'd0) + (showing ? 10'd5 : 10'd0)
+        + (correcting ? (answer_waits ? 10'd83 : 10'd88) : 10'd0)
         + (summary_due ? 10'd63 : summary_busy ? 10'd58 : 10'd0);
     wire [9:0] left_at_output = busy ? 10'd5 + LAST_BEAT - beat : beat_issued ? 10'd3 : valid[1] ? 10'd2
         : {9'd0, valid[2]};
     wire [9:0] left = left_in_lanes + left_of_search + left_at_output;
-    wire asked = issuing || arriving || (searching && !answer_waits) || summary_due;
-    wire answered = issued || sums_written || coefficients_complete || search_done || summary_done;
+    wire asked = issuing || arriving || (searching && !found_waits) || (looking && !centre_waits) || showing
+        || (correcting && !answer_waits) || summary_due;
+    wire answered = issued || sums_written || coefficients_complete || level_done || look_done || window_done
+        || search_done || summary_done;
     wire line_willing = (u_waiting == 2'd0) || searching || line_valid;
     reg [3:1] watched = 3'd0;
     reg [3:1] willing = 3'd0;

@@ -63,7 +63,7 @@ const OF_CORE: [(&str, &[&str]); 3] = [
             "sums_take",
             "answer_valid",
             "answer_take",
-            "search_over",
+            "u_released",
             "friction_known",
             "field_complete",
             "field_release",

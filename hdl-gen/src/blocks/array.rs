@@ -105,6 +105,7 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
         .mask("REWINDS", &mask(&|index| rereads(index).is_some()))
         .mask("MIRRORED", &mask(&|index| products[index].mirrored.is_some()))
         .mask("FRICTIONS", &mask(&|index| products[index].coefficients == Coefficients::Friction))
+        .wide("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64)
         .mask("LASTS", &mask(&|index| programs.iter().any(|program| program.end == index + 1)));
     if windows.iter().all(|window| window.rounds.is_none()) {
         return parameters;

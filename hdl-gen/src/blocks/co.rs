@@ -26,7 +26,8 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("DATA_BITS", plan.design.hardware.data_bits.into())
         .count("OPERAND_DEPTH", plan.operands.words())
         .table("STORE_BASES", 16, &bases)
-        .mask("STORE_IN_BANK", &in_bank);
+        .mask("STORE_IN_BANK", &in_bank)
+        .wide("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64);
     if plan.arms.is_empty() {
         return parameters;
     }

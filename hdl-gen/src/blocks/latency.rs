@@ -3,7 +3,7 @@
 //! the blocks make of one. `folded` says whether vectors are folded by parity. Cycles of an estimator stand with it,
 //! those of a leaf core in [`crate::cores`].
 
-use crate::cores::{axis_skid, cordic, divider, fixed_to_float, float_to_fixed};
+use crate::cores::{axis_skid, cordic, fixed_to_float, float_to_fixed};
 
 // ---- Intake
 /// What a door that drops frames takes more than the skid buffer in its place: a memory is written, then read.
@@ -96,7 +96,9 @@ pub const TAXELS_TO_FIELD: u64 = 2;
 /// From the end of the search to the friction being known to the lanes.
 pub const SEARCH_TO_FRICTION: u64 = 9;
 /// From the answer's taking to the end of the summary.
-pub const SUMMARY_LATENCY: u64 = 43 + cordic::LATENCY as u64 + divider::LATENCY as u64;
+pub const SUMMARY_LATENCY: u64 = 37 + cordic::LATENCY as u64 + QUOTIENT;
+/// Of its division, for 33 bits of the quotient.
+const QUOTIENT: u64 = 34;
 /// From the start of the output to the first beat leaving Op.
 pub const OUTPUT_LATENCY: u64 = 13;
 /// From a beat leaving Op to its leaving the core.

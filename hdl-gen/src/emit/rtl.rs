@@ -57,6 +57,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_grid_centroid",
     "sptfra_int_to_fixed",
     "sptfra_leading_bit",
+    "sptfra_joint_stages",
     "sptfra_level_set",
     "sptfra_line",
     "sptfra_look",

@@ -102,6 +102,15 @@ impl Cells {
     }
 }
 
+/// A stage of the search: it has a frame of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stage {
+    /// From start to end, in cycles.
+    pub cycles: u64,
+    /// Cycles for which the next stage still needs it, from when it has taken the frame. One cycle later it may begin anew.
+    pub shows: u64,
+}
+
 /// An estimator's part of `metadata.json`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metadata {
@@ -125,9 +134,11 @@ pub trait Slot {
     /// the search waits for all that it needs at once.
     fn line_latency(&self) -> Option<u64>;
 
-    /// The stages of the search, each with a frame of its own, from start to end in cycles. A stage holds what it found
-    /// until the next one takes it, and begins anew in the cycle after.
-    fn stages(&self, sensor: &Sensor) -> Vec<u64>;
+    /// The stages of the search, in the data's order. A stage holds what it found until the next one takes it.
+    fn stages(&self, sensor: &Sensor) -> Vec<Stage>;
+
+    /// The stage of which a frame, when it leaves, frees the place of its `u_q`, of which there are two.
+    fn releases(&self) -> usize;
 
     /// `CeAn`.
     fn contact_block(&self) -> BlockCost;

@@ -165,7 +165,7 @@ impl Work {
             dead: self.dead.clone(),
             thresholds: self.thresholds,
             estimator,
-            operands: OperandLayout::new(&self.products, elements),
+            operands: OperandLayout::new(&self.products, elements, ways as u32 * hardware.data_bits),
             schedule,
             timeline: Timeline::default(),
             resources: Resources::default(),

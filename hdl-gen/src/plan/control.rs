@@ -18,6 +18,7 @@ use crate::blocks::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
     SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_BUS, VISIT_TO_RESIDUAL,
 };
+use crate::estimators;
 
 /// Frames whose stress, whose search, and whose field have a place.
 const PLACES: u64 = FIELD_PLACES as u64;
@@ -33,7 +34,7 @@ pub(super) fn timeline(plan: &Plan) -> Timeline {
         latency_cycles: ends(1)[0],
         interval_cycles: interval(&ends(INTERVAL_FRAMES)),
         spmv_cycles: plan.schedule.issue_cycles(),
-        search_cycles: constants.stages.iter().sum(),
+        search_cycles: constants.stages.iter().map(|stage| stage.cycles).sum(),
     }
 }
 
@@ -55,12 +56,15 @@ struct Constants {
     /// Frames that have a place from their start until they have left, if any is needed.
     places: Option<u64>,
     interval: bool,
+    /// Frames whose residual has a place.
+    residuals: usize,
     /// Of the stage before the search, if there is one: without it the search waits for all that it needs at once.
     line: Option<u64>,
     /// From the last stress to what `CeAn` knows of the frame.
     direction: u64,
-    /// Of the search.
-    stages: Vec<u64>,
+    /// Of the search, and that behind which a frame's `u_q` has no place any more.
+    stages: Vec<estimators::Stage>,
+    releases: usize,
     programs: Vec<Program>,
     /// Visit of the last of the sums, in the first program.
     last_sum: u64,
@@ -88,9 +92,11 @@ impl Constants {
             composed: field && folded,
             places: places::places(field, folded).map(|places| places as u64),
             interval: plan.design.hardware.optimise == Optimise::Interval,
+            residuals: plan.operands.residuals(),
             line: estimator.line_latency(),
             direction: estimator.contact_latency(),
             stages: estimator.stages(&plan.design.sensor),
+            releases: estimator.releases(),
             programs: schedule.programs.clone(),
             last_sum: sums.max().unwrap_or(0),
         }
@@ -110,10 +116,10 @@ struct Control<'a> {
     frames_ready: VecDeque<u64>,
     // Turns
     lanes_free: u64,
-    searches_due: u64,
+    u_held: u64,
     residual_due: bool,
-    field_due: bool,
-    residual_there: u64,
+    /// When the residuals are there whose fields are due.
+    residuals_there: VecDeque<u64>,
     frames_held: u64,
     fields_held: u64,
     // Op
@@ -148,7 +154,7 @@ enum Line {
 #[derive(Clone, Copy)]
 enum Change {
     StressReleased,
-    SearchOver,
+    Released,
     FrameReleased,
     SummaryFree,
 }
@@ -166,10 +172,9 @@ impl<'a> Control<'a> {
             directions: VecDeque::new(),
             frames_ready: VecDeque::new(),
             lanes_free: 0,
-            searches_due: 0,
+            u_held: 0,
             residual_due: false,
-            field_due: false,
-            residual_there: 0,
+            residuals_there: VecDeque::new(),
             frames_held: 0,
             fields_held: 0,
             sums_there: VecDeque::new(),
@@ -214,7 +219,7 @@ impl<'a> Control<'a> {
         for (_, change) in due {
             match change {
                 Change::StressReleased => self.stress_places -= 1,
-                Change::SearchOver => self.searches_due -= 1,
+                Change::Released => self.u_held -= 1,
                 Change::FrameReleased => {
                     self.frames_held -= 1;
                     if self.of.composed {
@@ -253,29 +258,28 @@ impl<'a> Control<'a> {
         }
         let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
         let friction = self.friction_known.is_some_and(|cycle| cycle <= self.now);
-        let may_field = self.field_due && self.residual_there <= self.now && friction && self.fields_held < PLACES;
-        let may_residual = self.residual_due && !self.field_due;
+        let may_field = there(&self.residuals_there) && friction && self.fields_held < PLACES;
+        let may_residual = self.residual_due && self.residuals_there.len() < self.of.residuals;
         let may_frame = there(&self.frames_ready)
-            && self.searches_due < PLACES
+            && self.u_held < PLACES
             && self.of.places.is_none_or(|places| self.frames_held < places)
             && !self.residual_due
-            && (self.of.interval || !self.field_due);
+            && (self.of.interval || self.residuals_there.is_empty());
         if may_field {
             let last_visit = self.start(2);
-            self.field_due = false;
+            self.residuals_there.pop_front();
             self.friction_known = None;
             self.fields_held += 1;
             self.field_there.push_back(last_visit + self.of.visit_to_taxels + TAXELS_TO_FIELD);
         } else if may_residual {
             let last_visit = self.start(1);
             self.residual_due = false;
-            self.field_due = true;
-            self.residual_there = last_visit + VISIT_TO_RESIDUAL;
+            self.residuals_there.push_back(last_visit + VISIT_TO_RESIDUAL);
         } else if may_frame {
             let first_issue = self.first_issue(0);
             let last_visit = self.start(0);
             self.frames_ready.pop_front();
-            self.searches_due += 1;
+            self.u_held += 1;
             self.residual_due = self.of.composed;
             self.frames_held += u64::from(self.of.places.is_some());
             let sums_there = first_issue + self.of.last_sum + self.of.visit_to_sums;
@@ -323,16 +327,15 @@ impl<'a> Control<'a> {
         let may_begin = |stage: &Stage| stage.ends.is_none() && stage.free <= now;
         let last = self.stages.len() - 1;
         if done(&self.stages[last]) && !self.summary_busy {
-            self.stages[last] = Stage { ends: None, free: now + 1 };
+            self.leave(last);
             self.summary_busy = true;
-            self.pending.push((now + 1, Change::SearchOver));
             self.summary_there = Some(now + SUMMARY_LATENCY + 1);
             self.friction_known = self.of.composed.then_some(now + SEARCH_TO_FRICTION);
         }
         for stage in (0..last).rev() {
             if done(&self.stages[stage]) && may_begin(&self.stages[stage + 1]) {
-                self.stages[stage] = Stage { ends: None, free: now + 1 };
-                self.stages[stage + 1].ends = Some(now + self.of.stages[stage + 1]);
+                self.leave(stage);
+                self.stages[stage + 1].ends = Some(now + self.of.stages[stage + 1].cycles);
             }
         }
         let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
@@ -348,7 +351,15 @@ impl<'a> Control<'a> {
                 self.sums_there.pop_front();
                 self.directions.pop_front();
             }
-            self.stages[0].ends = Some(now + self.of.stages[0]);
+            self.stages[0].ends = Some(now + self.of.stages[0].cycles);
+        }
+    }
+
+    /// A frame leaves a stage of the search.
+    fn leave(&mut self, stage: usize) {
+        self.stages[stage] = Stage { ends: None, free: self.now + self.of.stages[stage].shows + 1 };
+        if stage == self.of.releases {
+            self.pending.push((self.now + 1, Change::Released));
         }
     }
 

@@ -157,8 +157,8 @@ impl Outcome {
         self.exchanges.iter().map(Exchange::latency).max()
     }
 
-    /// Distance between the ends of the two packets in the middle: the interval of the core, full before and after
-    /// them, if there were enough packets and they were sent back to back.
+    /// Mean distance between the ends of the packets around the middle, rounded up: the interval of the core, full before
+    /// and after them, if there were enough packets and they were sent back to back.
     pub fn interval(&self) -> Option<u64> {
         let ends: Vec<u64> = self.exchanges.iter().map(|exchange| exchange.last_out).collect();
         (ends.len() > 1).then(|| middle_interval(&ends))

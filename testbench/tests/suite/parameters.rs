@@ -7,7 +7,7 @@ use testbench::tools;
 use crate::support::workspace;
 
 /// Module, parameter, value, what the tool must name.
-const SENSELESS: [(&str, &str, &str, &str); 17] = [
+const SENSELESS: [(&str, &str, &str, &str); 18] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("bz", "WAYS", "2", "ways_must_be_1_or_4"),
     ("bz", "DATA_BITS", "28", "data_bits_must_be_16_to_27"),
@@ -23,6 +23,7 @@ const SENSELESS: [(&str, &str, &str, &str); 17] = [
     ("we", "WAYS", "2", "ways_must_be_1_or_4"),
     ("co", "WAYS", "2", "ways_must_be_1_or_4"),
     ("turns", "PROGRAMS", "4", "programs_must_be_1_to_3"),
+    ("turns", "RESIDUALS", "3", "one_or_two_residuals_have_a_place"),
     ("field", "COLUMNS", "65", "columns_and_rows_must_be_2_to_64"),
     ("estimator_joint", "WAYS", "1", "the_joint_estimator_needs_four_ways"),
 ];

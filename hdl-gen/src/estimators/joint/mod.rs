@@ -16,7 +16,7 @@ use golden::sensor::Sensor;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Cells, Found, Given, Metadata, Seen, Slot, WEIGHT_BITS};
+use super::{Cells, Found, Given, Metadata, Seen, Slot, Stage, WEIGHT_BITS};
 use crate::blocks::parameters::Parameters;
 use crate::cores::{LONG_BITS, SHORT_BITS};
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
@@ -138,8 +138,12 @@ impl Slot for JointPlan {
         None
     }
 
-    fn stages(&self, sensor: &Sensor) -> Vec<u64> {
-        timing::stages(sensor, self).to_vec()
+    fn stages(&self, sensor: &Sensor) -> Vec<Stage> {
+        timing::stages(sensor, self)
+    }
+
+    fn releases(&self) -> usize {
+        timing::releases(self)
     }
 
     fn contact_block(&self) -> BlockCost {
@@ -149,8 +153,9 @@ impl Slot for JointPlan {
     fn search_blocks(&self, sensor: &Sensor) -> Vec<BlockCost> {
         let quads = Quads::new(sensor.columns, sensor.rows).count();
         let classes = CLASSES as u32;
-        // Two frames.
+        // Of two frames, or one of them handed on.
         let taxels = || memory("u", 3, 2 * quads.max(4).next_power_of_two(), classes * U_BITS, false);
+        let handed_on = || memory("u", 3, quads, classes * U_BITS, false);
         // The squares of five depths, or of one; and both moments.
         let plane = |dsp| BlockCost::new("plane", &["sptfra_plane_search"], dsp);
         let mut blocks = vec![match self.points {
@@ -163,7 +168,8 @@ impl Slot for JointPlan {
             // The stresses of a quad, and two of their shares of all.
             let look = BlockCost::new("look", &["sptfra_look"], CLASSES + 2);
             // Each member of a place in the window may be in any quarter of the grid.
-            blocks.push(look.with([taxels(), memory("look", CLASSES * CLASSES, quads, STRESS_BITS, false)]));
+            let seen = if self.points.is_some() { handed_on() } else { taxels() };
+            blocks.push(look.with([seen, memory("look", CLASSES * CLASSES, quads, STRESS_BITS, false)]));
             // The hidden units' four classes, both components, and the error that is left.
             let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + readouts(network));
             let width = WEIGHT_BITS * classes * network.at_once as u32;
@@ -213,7 +219,10 @@ impl Slot for JointPlan {
             .flag("NETWORK", self.network.is_some())
             .cycles("EXPECTED_PLANE_LATENCY", timing::first_value(&design.sensor, self))
             .cycles("EXPECTED_LEVEL_LATENCY", timing::level(self))
-            .cycles("EXPECTED_FRICTION_LATENCY", timing::FRICTION);
+            .cycles(
+                "EXPECTED_FRICTION_LATENCY",
+                if self.network.is_some() { timing::CORRECTED } else { timing::FRICTION },
+            );
         let Some(network) = &self.network else { return parameters };
         let [half_x, half_y] = network.half_window;
         let parameters = parameters
@@ -234,7 +243,7 @@ impl Slot for JointPlan {
         parameters
             .expression("ROM_DIR", "ROM_DIR")
             .expression("ROM_NAME", format!("\"{}\"", design.name))
-            .cycles("EXPECTED_LOOK_LATENCY", timing::look(&design.sensor, network))
+            .cycles("EXPECTED_LOOK_LATENCY", timing::look(&design.sensor))
             .cycles("EXPECTED_NETWORK_LATENCY", timing::network(network))
     }
 

@@ -47,24 +47,22 @@ fn grid(plan: &JointPlan) -> String {
     }
 }
 
-/// What the search spends its cycles on. Search and correction have a frame each; the lanes work beside both.
+/// What the search spends its cycles on. Each stage has a frame of its own; the lanes work beside them.
 fn stages(plan: &JointPlan, design: &Design) -> String {
     let sensor = &design.sensor;
-    let [search, correction] = timing::stages(sensor, plan);
+    let cycles: Vec<u64> = timing::stages(sensor, plan).iter().map(|stage| stage.cycles).collect();
     let level = timing::level(plan);
-    let parts = match &plan.network {
-        Some(network) => format!(
-            "look {}, network {}, friction {}",
-            timing::look(sensor, network),
+    let after = match (&plan.network, &cycles[1..]) {
+        (Some(network), [look, correction]) => format!(
+            "  look         {look} cycles, and a window of {}\n  correction   {correction} cycles: first word of the window {}, network {}, friction {}\n",
+            timing::window(network),
+            timing::FIRST_WORD,
             timing::network(network),
-            timing::FRICTION
+            timing::CORRECTED
         ),
-        None => format!("friction {}", timing::FRICTION),
+        _ => format!("  correction   {} cycles: friction\n", timing::FRICTION),
     };
-    format!(
-        "  search       {search} cycles: plane {}, level set {level}\n  correction   {correction} cycles: {parts}\n",
-        search - level
-    )
+    format!("  search       {} cycles: plane {}, level set {level}\n{after}", cycles[0], cycles[0] - level)
 }
 
 /// Forces are divided by the gain, which should be the kernel's.

@@ -3,13 +3,18 @@
 use golden::parity::Quads;
 use golden::sensor::Sensor;
 
+use super::super::Stage;
 use super::points::{self, PointsPlan};
 use super::{JointPlan, NetworkPlan, POINTS};
 
 /// From the last stress of a frame to its sum and maximum.
 pub const CONTACT_LATENCY: u64 = 4;
-/// From the centroid, or from the correction, to the friction.
+/// From the centroid to the friction, without a correction.
 pub const FRICTION: u64 = 20;
+/// From the correction to the friction: the rest of it is done while the network is at work.
+pub const CORRECTED: u64 = 2;
+/// From the start of the window to its first word.
+pub const FIRST_WORD: u64 = 11;
 
 /// From the first row of points, or from the last value of the walk, to the centroid: the level, the depths below it,
 /// the divisions.
@@ -35,20 +40,39 @@ fn search(sensor: &Sensor, plan: &JointPlan) -> u64 {
     first_value(sensor, plan) + walk + level(plan)
 }
 
-/// Centroid to the last input of the network: two cycles a quad, the divisions, a cycle a word.
-pub fn look(sensor: &Sensor, network: &NetworkPlan) -> u64 {
-    2 * quads(sensor) + network.length as u64 + 43
+/// Centroid of the level set to that of the contact: two cycles a quad, the divisions.
+pub fn look(sensor: &Sensor) -> u64 {
+    2 * quads(sensor) + 33
 }
 
-/// First to last of the network: its words, and the way of the last unit to the output.
+/// Start of the window to its last word.
+pub fn window(network: &NetworkPlan) -> u64 {
+    FIRST_WORD + network.length as u64 - 1
+}
+
+/// First word of the window to the correction: a cycle for each word of each pass, and the way of the last unit.
 pub fn network(network: &NetworkPlan) -> u64 {
     (network.weights.len() + network.at_once) as u64 + 14
 }
 
-/// The stages, each with a frame of its own: the search of the plane, then look, network and friction.
-pub fn stages(sensor: &Sensor, plan: &JointPlan) -> [u64; 2] {
-    let correction = plan.network.as_ref().map_or(0, |of| look(sensor, of) + network(of));
-    [search(sensor, plan), correction + FRICTION]
+/// The stages, each with a frame of its own: the search of the plane, the look, and the correction from its window to the
+/// friction. Without a network there is no look.
+pub fn stages(sensor: &Sensor, plan: &JointPlan) -> Vec<Stage> {
+    let stage = |cycles| Stage { cycles, shows: 0 };
+    let search = stage(search(sensor, plan));
+    match &plan.network {
+        Some(of) => {
+            let look = Stage { cycles: look(sensor), shows: window(of) };
+            vec![search, look, stage(FIRST_WORD + network(of) + CORRECTED)]
+        }
+        None => vec![search, stage(FRICTION)],
+    }
+}
+
+/// The stage of which a frame, when it leaves, frees the place of its `u_q`: points hand them on as they are searched, after
+/// a walk the look has the same ones.
+pub fn releases(plan: &JointPlan) -> usize {
+    usize::from(plan.points.is_none() && plan.network.is_some())
 }
 
 fn quads(sensor: &Sensor) -> u64 {

@@ -10,7 +10,7 @@ use golden::design::Design;
 use golden::sensor::Sensor;
 use serde_json::json;
 
-use super::{Cells, Found, Given, Metadata, Seen, Slot};
+use super::{Cells, Found, Given, Metadata, Seen, Slot, Stage};
 use crate::blocks::parameters::Parameters;
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS};
 use crate::plan::resources::BlockCost;
@@ -71,8 +71,12 @@ impl Slot for LinePlan {
         Some(timing::LINE_LATENCY)
     }
 
-    fn stages(&self, _sensor: &Sensor) -> Vec<u64> {
-        vec![timing::search(self.cells)]
+    fn stages(&self, _sensor: &Sensor) -> Vec<Stage> {
+        vec![Stage { cycles: timing::search(self.cells), shows: 0 }]
+    }
+
+    fn releases(&self) -> usize {
+        0
     }
 
     fn contact_block(&self) -> BlockCost {

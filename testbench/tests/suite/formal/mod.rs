@@ -48,9 +48,8 @@ impl Proof {
                 continue;
             }
             let mut text = String::from_utf8(contents.clone()).expect("UTF-8");
-            if let Some((_, from, to)) =
-                broken.filter(|(place, ..)| module == *place || module == format!("sptfra_{place}"))
-            {
+            let changes = self.altered.iter().chain(broken);
+            for (_, from, to) in changes.filter(|(place, ..)| module == *place || module == format!("sptfra_{place}")) {
                 assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
                 text = text.replace(from, to);
             }

@@ -1,6 +1,7 @@
 //! What is proved of which designs, and the broken copies whose proofs must fail.
 
-use golden::design::{CalibrationIn, Design, Estimator, Optimise, Outputs, Overrun, PlanKind};
+use golden::design::{CalibrationIn, Correction, Design, Estimator, Optimise, Outputs, Overrun, PlanKind};
+use golden::estimators::joint::Grid;
 
 /// A module, a text in it, and what takes its place.
 pub type Broken = (&'static str, &'static str, &'static str);
@@ -23,6 +24,8 @@ pub struct Proof {
     pub free_wires: &'static [&'static str],
     /// Cycles that an induction step assumes to be right, at most.
     pub induction: &'static str,
+    /// Texts that are others here than in the generated design.
+    pub altered: &'static [Broken],
     /// Copies that break a property.
     pub broken: &'static [Broken],
 }
@@ -63,6 +66,28 @@ fn joint(design: &mut Design) {
     design.algorithm.estimator = Estimator::Joint;
 }
 
+/// One hidden unit that sees one taxel.
+fn corrected(design: &mut Design) {
+    joint(design);
+    let inputs = Correction::inputs([0, 0]);
+    design.algorithm.joint.correction = Some(Correction {
+        half_window: [0, 0],
+        hidden: vec![vec![1; inputs]],
+        output: [vec![1], vec![1]],
+        doubt: None,
+    });
+}
+
+fn corrected_after_points(design: &mut Design) {
+    corrected(design);
+    design.algorithm.joint.grid = Grid::COARSE;
+}
+
+fn corrected_resultants(design: &mut Design) {
+    corrected_after_points(design);
+    design.algorithm.outputs = Outputs::Resultants;
+}
+
 fn resultants(design: &mut Design) {
     reduced(design);
     design.algorithm.outputs = Outputs::Resultants;
@@ -81,6 +106,7 @@ const FREE: &[&str] = &[
     "*sptfra_search*",
     "*sptfra_plane*",
     "*sptfra_level_set*",
+    "*sptfra_correction*",
     "*sptfra_friction*",
     "*sptfra_summary*",
     "*sptfra_we*",
@@ -89,37 +115,51 @@ const FREE: &[&str] = &[
     "*sptfra_unfold*",
 ];
 const REDUCED_BROKEN: &[Broken] = &[
+    ("turns", "(fields_due != RESIDUALS[1:0])", "1'b1"),
+    ("turns", "                    next_field_bank <= !next_field_bank;\n", ""),
     ("turns", "field_waits = residual_due || (", "field_waits = ("),
-    ("turns", "field_due && residual_there && friction_known", "field_due && residual_there"),
+    ("turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
     ("turns", "friction_known && (fields", "friction_known && frame_ready && (fields"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "summary_there && output_idle && ", "summary_there && "),
 ];
 const LATENCY_BROKEN: &[Broken] = &[
-    ("turns", "(INTERVAL == 0) && field_due", "1'b0"),
-    ("turns", "field_due && residual_there && friction_known", "field_due && friction_known"),
+    ("turns", "(INTERVAL == 0) && (fields_due != 2'd0)", "1'b0"),
+    ("turns", "(residuals_there != 2'd0) && friction_known", "(fields_due != 2'd0) && friction_known"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
     ("sptfra_op", "output_idle && ((FIELD == 0) || (fields_there != 2'd0))", "output_idle"),
     ("sptfra_output", "issued && issued_last && advance", "issued && issued_last"),
 ];
 const JOINT_BROKEN: &[Broken] = &[
-    ("turns", "field_due && residual_there && friction_known", "field_due && residual_there"),
+    ("turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
     ("sptfra_estimator_joint", "assign sums_take = search_start;", "assign sums_take = answer_take;"),
-    ("sptfra_estimator_joint", "(u_waiting != 2'd0) && !searching", "!searching"),
-    ("sptfra_estimator_joint", "(level_done || centroid_waits) && !correcting", "(level_done || centroid_waits)"),
-    (
-        "sptfra_estimator_joint",
-        "            search_bank <= !search_bank;\n            correcting",
-        "            correcting",
-    ),
-    (
-        "sptfra_estimator_joint",
-        "            centroid_waits <= 1'b0;\n            search_bank",
-        "            search_bank",
-    ),
+    ("sptfra_joint_stages", "(u_waiting != 2'd0) && !searching", "!searching"),
+    ("sptfra_joint_stages", "!looking && !showing : !correcting", "!looking && !showing : 1'b1"),
+    ("sptfra_joint_stages", "            search_bank <= !search_bank;\n", ""),
+    ("sptfra_joint_stages", "            centroid_waits <= 1'b0;\n            search_bank", "            search_bank"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
+];
+const LOOK_BROKEN: &[Broken] = &[
+    ("sptfra_joint_stages", "centre_waits) && !correcting : look_start", "centre_waits) : look_start"),
+    ("sptfra_joint_stages", "!looking && !showing : !correcting", "!showing : !correcting"),
+    ("sptfra_joint_stages", "!looking && !showing : !correcting", "!looking : !correcting"),
+    ("sptfra_joint_stages", "            centre_waits <= 1'b0;\n            look_bank", "            look_bank"),
+    (
+        "sptfra_joint_stages",
+        "            showing <= 1'b0;\n        end\n        if (correction_start)",
+        "        end\n        if (correction_start)",
+    ),
+];
+/// The memory that is filled is the look's, too.
+const KEPT_BROKEN: &[Broken] = &[
+    ("sptfra_joint_stages", "            look_bank <= !look_bank;\n", ""),
+    (
+        "sptfra_joint_stages",
+        "? look_start : correction_start;\n\n    always",
+        "? look_start : look_start;\n\n    always",
+    ),
 ];
 const PAPER_BROKEN: &[Broken] = &[
     ("turns", "(PLACES == 0) || (frames_held != PLACES)", "1'b1"),
@@ -150,6 +190,7 @@ pub const PROOFS: &[Proof] = &[
         free: &[],
         free_wires: &[],
         induction: "3",
+        altered: &[],
         broken: &[
             ("sptfra_axis_skid", "blocked && (spare_full || taken)", "blocked && taken"),
             ("sptfra_axis_skid", "if (spare_full) begin", "if (!spare_full) begin"),
@@ -172,6 +213,7 @@ pub const PROOFS: &[Proof] = &[
         free: &[],
         free_wires: &[],
         induction: "2",
+        altered: &[],
         broken: &[
             ("whole_frames", "in_frame ? keeps : room", "room"),
             ("overrun", "(frames != FRAMES)", "(1'b1)"),
@@ -191,6 +233,7 @@ pub const PROOFS: &[Proof] = &[
         free: &["*sptfra_ram*"],
         free_wires: &[],
         induction: "3",
+        altered: &[],
         broken: &[
             ("bz", "index != TAXELS - ", "index < TAXELS - "),
             ("bz", "(banks_taken != 2'd2)", "(banks_taken != 2'd3)"),
@@ -215,6 +258,7 @@ pub const PROOFS: &[Proof] = &[
         free: &[],
         free_wires: &[],
         induction: "3",
+        altered: &[],
         broken: &[
             ("bz", "(banks_taken != 2'd2)", "(banks_taken != 2'd3)"),
             ("bz", "wire advance = write_ready;", "wire advance = 1'b1;"),
@@ -234,6 +278,7 @@ pub const PROOFS: &[Proof] = &[
         free: &["*sptfra_bank*", "*sptfra_multiply*", "*sptfra_fixed_to_float*", "*sptfra_axis_skid*"],
         free_wires: &[],
         induction: "3",
+        altered: &[],
         broken: &[
             ("calibrate", "in_frame ? bank_held : active", "active"),
             ("calibrate", "in_frame ? marked_held : tare_run", "tare_run"),
@@ -254,6 +299,7 @@ pub const PROOFS: &[Proof] = &[
         free: FREE,
         free_wires: &[],
         induction: "5",
+        altered: &[],
         broken: PAPER_BROKEN,
     },
     Proof {
@@ -267,7 +313,22 @@ pub const PROOFS: &[Proof] = &[
         free: FREE,
         free_wires: &["turns.residual_written"],
         induction: "5",
+        altered: &[],
         broken: REDUCED_BROKEN,
+    },
+    Proof {
+        name: "frame handshake, reduced plan, a place for one residual",
+        harness: "reduced",
+        design: reduced,
+        defines: &["ONE_RESIDUAL"],
+        top: "subject",
+        parameters: "",
+        models: &[("sptfra_spmv_array", "reduced_lanes")],
+        free: FREE,
+        free_wires: &["turns.residual_written"],
+        induction: "5",
+        altered: &[("subject", ".RESIDUALS (2)", ".RESIDUALS (1)")],
+        broken: &[("turns", "(fields_due != RESIDUALS[1:0])", "1'b1")],
     },
     Proof {
         name: "frame handshake, reduced plan, for the latency",
@@ -280,6 +341,7 @@ pub const PROOFS: &[Proof] = &[
         free: FREE,
         free_wires: &["turns.residual_written"],
         induction: "5",
+        altered: &[],
         broken: LATENCY_BROKEN,
     },
     Proof {
@@ -293,7 +355,8 @@ pub const PROOFS: &[Proof] = &[
         free: FREE,
         free_wires: &["turns.residual_written"],
         induction: "5",
-        broken: &[("turns", "residual_there && friction_known", "friction_known")],
+        altered: &[],
+        broken: &[("turns", "(residuals_there != 2'd0) && friction_known", "(fields_due != 2'd0) && friction_known")],
     },
     Proof {
         name: "frame handshake, joint estimator",
@@ -306,7 +369,50 @@ pub const PROOFS: &[Proof] = &[
         free: FREE,
         free_wires: &["turns.residual_written"],
         induction: "5",
+        altered: &[],
         broken: JOINT_BROKEN,
+    },
+    Proof {
+        name: "frame handshake, joint estimator with a correction after a walk",
+        harness: "reduced",
+        design: corrected,
+        defines: &["JOINT", "LOOK"],
+        top: "subject",
+        parameters: "",
+        models: &[("sptfra_spmv_array", "reduced_lanes")],
+        free: FREE,
+        free_wires: &["turns.residual_written"],
+        induction: "5",
+        altered: &[],
+        broken: KEPT_BROKEN,
+    },
+    Proof {
+        name: "frame handshake, joint estimator with a correction after points",
+        harness: "reduced",
+        design: corrected_after_points,
+        defines: &["JOINT", "LOOK", "HANDED_ON"],
+        top: "subject",
+        parameters: "",
+        models: &[("sptfra_spmv_array", "reduced_lanes")],
+        free: FREE,
+        free_wires: &["turns.residual_written"],
+        induction: "5",
+        altered: &[],
+        broken: &[("sptfra_joint_stages", "(LOOK == 0) || (HANDED_ON != 0)", "(LOOK == 0)")],
+    },
+    Proof {
+        name: "frame handshake, resultants only by the joint estimator with a correction",
+        harness: "resultants",
+        design: corrected_resultants,
+        defines: &["JOINT"],
+        top: "subject",
+        parameters: "",
+        models: &[("sptfra_spmv_array", "resultants_lanes")],
+        free: FREE,
+        free_wires: &[],
+        induction: "5",
+        altered: &[],
+        broken: LOOK_BROKEN,
     },
     Proof {
         name: "frame handshake, resultants only",
@@ -319,6 +425,7 @@ pub const PROOFS: &[Proof] = &[
         free: FREE,
         free_wires: &[],
         induction: "5",
+        altered: &[],
         broken: RESULTANTS_BROKEN,
     },
 ];

@@ -10,7 +10,7 @@
 // Status: 0 no contact, 1 direction unknown, 2 optimum at the bound, 3 saturated, 4 NaN or infinity in,
 //      5 frame length wrong, 6 doubtful, 8 a taxel was replaced, 9 too many were, 10 slip, 11 no tension; 31:16 frame
 //      counter.
-// Latency, first beat in to last beat out, streams never waiting: 922 cycles (7.38 us at 125.0 MHz).
+// Latency, first beat in to last beat out, streams never waiting: 885 cycles (7.08 us at 125.0 MHz).
 // Interval between frames: 444 cycles (3.55 us).
 // The lanes' programs take 223 cycles of issue a frame, 800 MACs: they are busy 89.7 % of that time.
 // One step of the stress is 2^-9 Pa, of a taxel's weight 2^-24 N, of u 2^-8 Pa, of the sums G 2^-20 N, of the torques'
@@ -40,7 +40,7 @@ module small_4x3 #(
 
     localparam ROW_WIDTH = 3; // of the number of a quad
     localparam VECTOR_BITS = 108; // of what 4 ways have in a cycle
-    localparam OPERAND_WIDTH = 5; // of a place in the lanes' operand memories
+    localparam OPERAND_WIDTH = 6; // of a place in the lanes' operand memories
 
     wire reset = !aresetn;
 
@@ -188,23 +188,17 @@ module small_4x3 #(
     );
 
     // ---- Turns: We, Co and Op share one array of lanes
-    wire issued;
-    wire bank;
-    wire search_over;
-    wire friction_known;
-    wire field_release;
-    wire signed [17:0] mu_x;
-    wire signed [17:0] mu_y;
+    wire issued, bank, residual_bank, field_bank;
+    wire u_released, friction_known, field_release;
+    wire signed [17:0] mu_x, mu_y;
     wire [15:0] result_route;
     wire [ROW_WIDTH-1:0] result_row;
     wire [VECTOR_BITS-1:0] result_value;
     wire result_last;
-    wire we_write_next;
-    wire we_write;
+    wire we_write_next, we_write;
     wire [OPERAND_WIDTH-1:0] we_write_address;
     wire [VECTOR_BITS-1:0] we_write_data;
-    wire co_write_next;
-    wire co_write;
+    wire co_write_next, co_write;
     wire [OPERAND_WIDTH-1:0] co_write_address;
     wire [VECTOR_BITS-1:0] co_write_data;
     wire list_pull;
@@ -212,23 +206,26 @@ module small_4x3 #(
     wire [ROW_WIDTH-1:0] list_quad;
     wire [ROW_WIDTH+7:0] list_count;
     wire [31:0] bz_row_wide = { {(32-ROW_WIDTH){1'b0}}, bz_write_row};
-    wire [OPERAND_WIDTH-1:0] bz_write_address = (bz_write_bank ? 5'd4 : 5'd0) + bz_row_wide[OPERAND_WIDTH-1:0];
+    wire [OPERAND_WIDTH-1:0] bz_write_address = (bz_write_bank ? 6'd4 : 6'd0) + bz_row_wide[OPERAND_WIDTH-1:0];
 
     sptfra_turns #(
-        .PROGRAMS (3),
-        .PLACES   (4),
-        .INTERVAL (1)
+        .PROGRAMS  (3),
+        .RESIDUALS (2),
+        .PLACES    (4),
+        .INTERVAL  (1)
     ) turns (
         .clock            (aclk),
         .reset            (reset),
         .frame_ready      (frame_ready),
-        .search_over      (search_over),
+        .u_released       (u_released),
         .residual_written (result_last && (result_route[7:5] != 3'd0)),
         .friction_known   (friction_known),
         .frame_released   (field_release),
         .issued           (issued),
         .start            (start),
-        .bank             (bank)
+        .bank             (bank),
+        .residual_bank    (residual_bank),
+        .field_bank       (field_bank)
     );
 
     // Results never wait; the stress of the next frame does, a cycle at a time
@@ -249,7 +246,7 @@ module small_4x3 #(
         .VALUE_DEPTH      (200),
         .WORD_DEPTH       (200),
         .SEGMENT_DEPTH    (51),
-        .OPERAND_DEPTH    (32),
+        .OPERAND_DEPTH    (44),
         .VISIT_DEPTH      (51),
         .MIRROR_SIDE      (0),
         .PRODUCTS         (11),
@@ -274,6 +271,7 @@ module small_4x3 #(
         .REWINDS          (11'b00000000000),
         .MIRRORED         (11'b00000000000),
         .FRICTIONS        (11'b00010000000),
+        .RESIDUAL_BANK    (16'sd24),
         .LASTS            (11'b10001001000),
         .PROGRAMS         (3),
         .FIRSTS           ({8'd7, 8'd4, 8'd0}),
@@ -307,6 +305,7 @@ module small_4x3 #(
         .start         (start),
         .issued        (issued),
         .bank          (bank),
+        .field_bank    (field_bank),
         .list_pull     (list_pull),
         .list_address  (list_address),
         .list_quad     (list_quad),
@@ -367,7 +366,7 @@ module small_4x3 #(
         .ELEMENTS      (4),
         .DATA_BITS     (27),
         .FOLD_SHIFT    (2),
-        .OPERAND_DEPTH (32),
+        .OPERAND_DEPTH (44),
         .WEIGHT_BASE   (24),
         .SKIPS         (0)
     ) we (
@@ -403,14 +402,15 @@ module small_4x3 #(
         .WAYS          (4),
         .ELEMENTS      (4),
         .DATA_BITS     (27),
-        .OPERAND_DEPTH (32),
+        .OPERAND_DEPTH (44),
         .STORE_BASES   ({
             16'd28, // 3: r
             16'd16, // 2: r2
             16'd12, // 1: r1
             16'd8 // 0: r0
         }),
-        .STORE_IN_BANK (4'b0000)
+        .STORE_IN_BANK (4'b0000),
+        .RESIDUAL_BANK (16'sd24)
     ) co (
         .clock         (aclk),
         .reset         (reset),
@@ -418,6 +418,7 @@ module small_4x3 #(
         .result_row    (result_row),
         .result_value  (result_value),
         .bank          (bank),
+        .residual_bank (residual_bank),
         .write_next    (co_write_next),
         .write_valid   (co_write),
         .write_address (co_write_address),
@@ -441,8 +442,6 @@ module small_4x3 #(
     wire unknown, at_bound, search_saturated;
     wire [18*40-1:0] answer_sums;
     wire [5:0] answer_flags;
-
-    assign search_over = answer_valid && answer_take;
 
     sptfra_estimator_line #(
         .COLUMNS                 (4),
@@ -472,6 +471,7 @@ module small_4x3 #(
         .stress_sum      (stress_sum),
         .largest         (largest),
         .flags_in        (frame_flags),
+        .u_released      (u_released),
         .answer_valid    (answer_valid),
         .answer_take     (answer_take),
         .x_is_free       (x_is_free),
@@ -530,7 +530,7 @@ module small_4x3 #(
         .SUM_LSB                  (-20),
         .TORQUE_LSB               (-27),
         .FIELD_LSB                (-40),
-        .EXPECTED_SUMMARY_LATENCY (170),
+        .EXPECTED_SUMMARY_LATENCY (133),
         .EXPECTED_OUTPUT_LATENCY  (13)
     ) op (
         .clock            (aclk),

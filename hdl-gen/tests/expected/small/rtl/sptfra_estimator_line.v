@@ -52,6 +52,8 @@ module sptfra_estimator_line #(
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
     input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
+    // One cycle: the place of a frame's u_q is free
+    output wire u_released,
     // The answer, held until taken
     output wire answer_valid,
     input  wire answer_take, // only with answer_valid
@@ -137,6 +139,7 @@ module sptfra_estimator_line #(
     wire search_start = line_valid && (u_waiting != 2'd0) && !searching;
 
     assign line_take = search_start;
+    assign u_released = answer_take;
     assign answer_valid = search_done || answer_waits;
     assign other = c0;
     assign slope = c1;

@@ -33,8 +33,10 @@ module sptfra_spmv_sequencer #(
     parameter [PRODUCTS-1:0] MARKS = {PRODUCTS{1'b0}},
     parameter [PRODUCTS-1:0] REWINDS = {PRODUCTS{1'b0}},
     parameter [PRODUCTS-1:0] MIRRORED = {PRODUCTS{1'b0}},
-    // Products whose coefficients are friction components
+    // Products whose coefficients are friction components: of the residual, which stands so many words further in its
+    // other bank, if it has two
     parameter [PRODUCTS-1:0] FRICTIONS = {PRODUCTS{1'b0}},
+    parameter [15:0] RESIDUAL_BANK = 16'd0,
     // Last products of their programs
     parameter [PRODUCTS-1:0] LASTS = {1'b1, {(PRODUCTS-1){1'b0}}},
     // Programs: first product, and addresses of their data in the ROMs of words, of row segments, of visits
@@ -66,6 +68,7 @@ module sptfra_spmv_sequencer #(
     output wire issued,
     // To the lanes
     input  wire bank, // of the stress of the frame whose weights are computed
+    input  wire field_bank, // of the residual of the frame whose field is
     output wire restart, // one or two cycles before the first issue of a program, with the addresses of its data
     output reg  [WORD_WIDTH-1:0] start_word,
     output wire restart_segment, // one cycle before restart, with
@@ -217,7 +220,8 @@ module sptfra_spmv_sequencer #(
         if (OF_STRESS[product]) begin
             base <= bank ? SECOND_BANK[OPERAND_WIDTH-1:0] : {OPERAND_WIDTH{1'b0}};
         end else begin
-            base <= BASES[16*product +: OPERAND_WIDTH];
+            base <= BASES[16*product +: OPERAND_WIDTH]
+                + ((FRICTIONS[product] && field_bank) ? RESIDUAL_BANK[OPERAND_WIDTH-1:0] : {OPERAND_WIDTH{1'b0}});
         end
         mirrored <= MIRRORED[product];
         frictions <= {frictions[2:1], FRICTIONS[product]};

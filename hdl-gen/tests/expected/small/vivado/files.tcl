@@ -40,6 +40,7 @@ foreach file {
     sptfra_output_word.v
     sptfra_quad_rows.v
     sptfra_ram.v
+    sptfra_ratio.v
     sptfra_rom.v
     sptfra_row_sequencer.v
     sptfra_samples.v

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Which frame is where in the joint estimator: three stages, each with a frame of its own.
+//
+// The search takes a frame when its u_q, its sums and what CeAn knows are there; the look what the search has found,
+// the correction what the look has. A stage holds what it found until the next one takes it, and may begin anew in the
+// cycle after; but the look shows the correction its window first. Without a look the correction comes after the
+// search.
+
+`default_nettype none
+
+module sptfra_joint_stages #(
+    // 1: there is a look; 0: none
+    parameter integer LOOK = 1,
+    // 1: the search hands u_q on to the look as it reads them; 0: the look has the memory that is filled, too
+    parameter integer HANDED_ON = 1
+) (
+    input  wire clock,
+    input  wire reset,
+    // What a frame needs: its u_q, one cycle; sums and contact, held until the search starts
+    input  wire u_complete,
+    input  wire sums_complete,
+    input  wire contact_valid,
+    // Ends, one cycle each: of the search, of the look, of the window that it shows, of the correction
+    input  wire search_done,
+    input  wire look_done,
+    input  wire window_done,
+    input  wire correction_done,
+    input  wire answer_take, // only with answer_valid
+    // Starts, one cycle each
+    output wire search_start,
+    output wire look_start,
+    output wire correction_start,
+    output wire answer_valid,
+    // One cycle: no stage needs the u_q of its frame any more
+    output wire u_released,
+    // Of u_q: that which is filled, searched, looked at
+    output reg  fill_bank,
+    output reg  search_bank,
+    output reg  look_bank
+);
+
+    reg [1:0] u_waiting; // frames whose u_q wait to be searched
+    reg searching;
+    reg centroid_waits; // for the look
+    reg looking; // until the correction takes what was found
+    reg showing; // the window, to the correction
+    reg centre_waits; // for the correction
+    reg correcting;
+    reg answer_waits; // to be taken
+    wire centroid_there = search_done || centroid_waits;
+
+    assign search_start = sums_complete && contact_valid && (u_waiting != 2'd0) && !searching;
+    assign look_start = centroid_there && ((LOOK != 0) ? !looking && !showing : !correcting);
+    assign correction_start = (LOOK != 0) ? (look_done || centre_waits) && !correcting : look_start;
+    assign answer_valid = correction_done || answer_waits;
+    assign u_released = ((LOOK == 0) || (HANDED_ON != 0)) ? look_start : correction_start;
+
+    always @(posedge clock) begin
+        u_waiting <= u_waiting + {1'b0, u_complete} - {1'b0, search_start};
+        if (u_complete) begin
+            fill_bank <= !fill_bank;
+        end
+        if (search_start) begin
+            searching <= 1'b1;
+        end
+        if (search_done) begin
+            centroid_waits <= 1'b1;
+        end
+        if (look_start) begin
+            searching <= 1'b0;
+            centroid_waits <= 1'b0;
+            search_bank <= !search_bank;
+            looking <= (LOOK != 0);
+        end
+        if (look_done) begin
+            centre_waits <= 1'b1;
+        end
+        if (window_done) begin
+            showing <= 1'b0;
+        end
+        if (correction_start) begin
+            looking <= 1'b0;
+            showing <= (LOOK != 0);
+            centre_waits <= 1'b0;
+            look_bank <= !look_bank;
+            correcting <= 1'b1;
+        end
+        if (correction_done) begin
+            answer_waits <= 1'b1;
+        end
+        if (answer_take) begin
+            correcting <= 1'b0;
+            answer_waits <= 1'b0;
+        end
+        if (reset) begin
+            u_waiting <= 2'd0;
+            fill_bank <= 1'b0;
+            search_bank <= 1'b0;
+            look_bank <= 1'b0;
+            searching <= 1'b0;
+            centroid_waits <= 1'b0;
+            looking <= 1'b0;
+            showing <= 1'b0;
+            centre_waits <= 1'b0;
+            correcting <= 1'b0;
+            answer_waits <= 1'b0;
+        end
+    end
+
+endmodule
+
+`default_nettype wire
