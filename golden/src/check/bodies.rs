@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::count;
 use crate::bodies::{Finder, Found};
 use crate::design::Design;
-use crate::matrices::{MatrixName, Matrices};
+use crate::matrices::{Matrices, MatrixName};
 use crate::solver::reading::{Reader, Reading};
 
 /// What is to be said of a design that counts bodies and is solved as if there were one: in how many frames there are

@@ -213,7 +213,7 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if plan.ways() > 1 {
         without.push("sptfra_coefficients");
     } else {
-        without.extend(["sptfra_fold", "sptfra_butterfly"]);
+        without.extend(["sptfra_fold", "sptfra_butterfly", "sptfra_taxel_walk"]);
     }
     if !plan.design.hardware.skip_zeros {
         without.push("sptfra_nonzeros");

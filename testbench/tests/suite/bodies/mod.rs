@@ -8,7 +8,7 @@ mod module;
 use std::collections::BTreeMap;
 
 use golden::design::{Design, Outputs, PlanKind};
-use golden::matrices::{MatrixName, Matrices};
+use golden::matrices::{Matrices, MatrixName};
 use golden::solver::{Solver, Status};
 use hdl_gen::model::{BAD_LENGTH, MORE_BODIES, NO_CONTACT, NOT_FINITE};
 use hdl_gen::plan::{Plan, words};
@@ -159,7 +159,10 @@ fn the_solver_counts_as_the_hardware_does() {
         let (plan, solver) = pair(name);
         for (kind, marked) in [(Kind::One, 0..=0), (Kind::Anyhow, 11..=12), (Kind::Three, 12..=12)] {
             let [same, right, several] = agreement(&plan, &solver, kind, 12, 500);
-            assert!(same == 12 && right >= 10 && marked.contains(&several), "{name}, {kind:?}: {same} {right} {several}");
+            assert!(
+                same == 12 && right >= 10 && marked.contains(&several),
+                "{name}, {kind:?}: {same} {right} {several}"
+            );
         }
     }
 }
