@@ -3,9 +3,9 @@
 //
 // Adds up |w| of each blob and counts the blobs that have the least sum, a taxel a cycle.
 //
-// A run of taxels adds its own and, where it joins another blob, what that one has. Between the end of a run and the
-// next one a taxel passes that does not count, so that a sum is written before anything can join it. Sums only grow: one
-// that reaches the least is one more, two of them that join are one less. From a taxel to the count: 3 cycles.
+// A run of taxels adds its own and, where it joins another blob, what that one has. Between two runs a taxel passes
+// that does not count, so that a sum is written before anything can join it. Sums only grow: one that reaches the
+// least is one more, two of them that join are one less. From a taxel to the count: 3 cycles.
 
 `default_nettype none
 

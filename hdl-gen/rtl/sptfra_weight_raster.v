@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Keeps |w| of two frames as the weights come, and passes one of them taxel by taxel in raster order: whether it touches,
-// which is above a limit, and the label of a blob that would begin there. A step that touches nothing ends each row.
+// Keeps |w| of two frames as the weights come, and passes one of them taxel by taxel in raster order: whether it
+// touches, which is above a limit, and the label of a blob that would begin there. A step that touches nothing ends
+// each row.
 //
 // From start to the first step: 5 cycles, then a step a cycle; weight is a cycle behind its step.
 

@@ -14,7 +14,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::tools;
 
-use crate::support::workspace;
+use crate::support::{in_parallel, workspace};
 
 /// Bits of `|w|`.
 const BITS: u32 = 12;
@@ -68,6 +68,34 @@ impl Case {
     }
 }
 
+/// Drawings on any grid, then blobs at random: equal weights, and any.
+fn fill(case: &mut Case, taxels: usize, random: &mut ChaCha8Rng) {
+    let Sensor { columns, rows, .. } = case.sensor;
+    let shapes: [fn(usize, usize) -> bool; 9] = [
+        |_, _| false,
+        |_, _| true,
+        // A board, combs with the teeth up, down and sideways, steps, columns, rings.
+        |x, y| (x + y) % 2 == 0,
+        |x, y| x % 2 == 0 || y % 5 == 4,
+        |x, y| x % 2 == 0 || y == 0,
+        |x, y| y % 2 == 0 || x == 2,
+        |x, y| (x + 2 * y) % 4 < 2 || (x / 2 + y) % 3 == 0,
+        |x, _| x % 3 == 0,
+        |x, y| x.max(y) % 4 < 2 && x % 7 != 3,
+    ];
+    for shape in shapes {
+        case.touch(shape, None);
+        case.touch(shape, Some(random));
+    }
+    for _ in 0..taxels / (columns * rows) {
+        let density: f64 = random.random_range(0.05..0.9);
+        let pattern: Vec<bool> = (0..columns * rows).map(|_| random.random_bool(density)).collect();
+        let equal = random.random_bool(0.2);
+        case.touch(|x, y| pattern[y * columns + x], if equal { None } else { Some(random) });
+    }
+    case.frames.push(vec![0; columns * rows]);
+}
+
 /// Each case in a player of its own: all frames, now with room between them, now two in a hurry.
 #[test]
 fn blobs_are_counted_as_the_model_counts_them() {
@@ -85,35 +113,12 @@ fn blobs_are_counted_as_the_model_counts_them() {
         Case::new("folded_33x17", 4, [33, 17]),
     ];
     for case in &mut cases {
-        let Sensor { columns, rows, .. } = case.sensor;
         if case.name.ends_with("_4x3") {
             (0..1 << 12).for_each(|pattern: u32| case.touch(|x, y| pattern >> (4 * y + x) & 1 == 1, None));
         }
-        let shapes: [fn(usize, usize) -> bool; 9] = [
-            |_, _| false,
-            |_, _| true,
-            // A board, combs with the teeth up, down and sideways, steps, columns, rings.
-            |x, y| (x + y) % 2 == 0,
-            |x, y| x % 2 == 0 || y % 5 == 4,
-            |x, y| x % 2 == 0 || y == 0,
-            |x, y| y % 2 == 0 || x == 2,
-            |x, y| (x + 2 * y) % 4 < 2 || (x / 2 + y) % 3 == 0,
-            |x, _| x % 3 == 0,
-            |x, y| x.max(y) % 4 < 2 && x % 7 != 3,
-        ];
-        for shape in shapes {
-            case.touch(shape, None);
-            case.touch(shape, Some(&mut random));
-        }
-        for _ in 0..20_000 / (columns * rows) {
-            let density: f64 = random.random_range(0.05..0.9);
-            let pattern: Vec<bool> = (0..columns * rows).map(|_| random.random_bool(density)).collect();
-            let equal = random.random_bool(0.2);
-            case.touch(|x, y| pattern[y * columns + x], if equal { None } else { Some(&mut random) });
-        }
-        case.frames.push(vec![0; columns * rows]);
+        fill(case, 12_000, &mut random);
     }
-    let found = play(&cases, &mut random);
+    let found = play(&cases, None, &mut random).expect("no check of the module fails");
     for (case, found) in cases.iter().zip(found) {
         let Sensor { columns, .. } = case.sensor;
         let finder = Finder::new(&case.sensor, 1);
@@ -131,8 +136,35 @@ fn blobs_are_counted_as_the_model_counts_them() {
     }
 }
 
-/// Plays all cases at once; the counts of each.
-fn play(cases: &[Case], random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
+/// Copies of the module that are wrong somewhere count wrong.
+#[test]
+fn faults_are_noticed() {
+    let faults = [
+        // One taxel of a blob that is joined gets its new name.
+        ("blob_labels", "meets && (old == above)", "meets && (old == above) && (index == COLUMNS)"),
+        ("blob_labels", "(above != own)", "1'b1"),
+        ("blob_sums", "joins ? sums[joined] : NOTHING", "NOTHING"),
+        ("blob_sums", "(joined_1 >= least)", "1'b0"),
+        ("blob_sums", "was_body && !begins_2", "was_body"),
+        ("weight_raster", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
+        ("weight_totals", "counts_1[index] ?", "1'b1 ?"),
+        ("bodies", "left + {2'd0, done}", "left"),
+    ];
+    let missed = in_parallel(&faults, |fault| {
+        let mut random = ChaCha8Rng::seed_from_u64(9);
+        let mut case = Case::new("folded_9x7", 4, [9, 7]);
+        fill(&mut case, 8_000, &mut random);
+        let expected: Vec<u32> = case.frames.iter().map(|frame| count(frame, 9)).collect();
+        let found = play(&[case], Some(fault), &mut random);
+        found.is_ok_and(|found| found[0] == expected)
+    });
+    let missed: Vec<_> = faults.iter().zip(missed).filter(|(_, missed)| *missed).collect();
+    assert!(missed.is_empty(), "{missed:?}");
+}
+
+/// Plays all cases at once; the counts of each, or what a check of the module says. A fault is a module, a text in it and
+/// what takes its place.
+fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8Rng) -> Result<Vec<Vec<u32>>, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: String| folder.path().join(name);
     let mut bench = "module bench(input clock);\n".to_owned();
@@ -181,15 +213,23 @@ fn play(cases: &[Case], random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     fs::write(place("main.cpp".to_owned()), main).expect("writable");
     let mut build = tools::verilator().expect("installed");
     build.args(["--cc", "--exe", "--build", "-Wno-fatal", "-DSIMULATION", "-CFLAGS", "-O1", "--top-module", "bench"]);
-    build.args(["--Mdir", "model", "-y"]).arg(workspace("hdl-gen/rtl")).args(["bench.v", "main.cpp"]);
+    if let Some((module, from, to)) = fault {
+        let name = format!("sptfra_{module}.v");
+        let text = fs::read_to_string(workspace("hdl-gen/rtl").join(&name)).expect("is there");
+        assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
+        fs::write(place(name), text.replace(from, to)).expect("writable");
+    }
+    build.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).args(["bench.v", "main.cpp"]);
     succeed(build.current_dir(&folder));
     let said = succeed(Command::new(place("model/Vbench".to_owned())).current_dir(&folder));
-    assert!(said.is_empty(), "a check of the module failed: {}", &said[said.len().saturating_sub(300)..]);
+    if !said.is_empty() {
+        return Err(said);
+    }
     let counts = |case: &Case| {
         let text = fs::read_to_string(place(format!("{}.out", case.name))).expect("written");
         text.lines().map(|line| line.parse().expect("a number")).collect()
     };
-    cases.iter().map(counts).collect()
+    Ok(cases.iter().map(counts).collect())
 }
 
 /// A line for each cycle: reset, take, valid, row, weights.

@@ -559,6 +559,7 @@ module small_4x3 #(
         .field_step       (field_step),
         .field_release    (field_release),
         .field_value      (field_value),
+        .bodies           (8'd1),
         .timestamp        (timestamp),
         .timestamp_take   (timestamp_take),
         .m_tdata          (out_tdata),
