@@ -41,7 +41,7 @@ module sptfra_bodies #(
         end
     endgenerate
 
-    localparam SUM_BITS = DATA_BITS + $clog2(COLUMNS * ROWS);
+    localparam SUM_BITS = DATA_BITS + $clog2(COLUMNS * ROWS) + 1;
     localparam LABEL_WIDTH = (COLUMNS > 4) ? $clog2((COLUMNS + 1) / 2) + 1 : 2;
     localparam [31:0] LAST_ELEMENT = ELEMENTS - 1;
 

@@ -33,8 +33,8 @@ module sptfra_weight_totals #(
 );
 
     generate
-        if (SUM_BITS < DATA_BITS + 2) begin : gen_check_sum
-            sptfra_error_sums_must_have_two_bits_more_than_weights invalid ();
+        if (SUM_BITS < DATA_BITS + 3) begin : gen_check_sum
+            sptfra_error_sums_must_have_three_bits_more_than_weights invalid ();
         end
     endgenerate
 

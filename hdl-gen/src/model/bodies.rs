@@ -7,7 +7,7 @@ use golden::bodies::Labels;
 const SHARE: i64 = 5;
 const SHARE_OF: i64 = 64;
 
-const _: () = assert!(golden::bodies::SHARE * SHARE_OF as f64 == SHARE as f64);
+const _: () = assert!((golden::bodies::SHARE * SHARE_OF as f64) as i64 == SHARE);
 
 /// Bodies by the steps of each taxel's `|w|` on a grid of `columns`: blobs of touching taxels that have a share of all, and
 /// one where none has.

@@ -23,7 +23,7 @@ const SENSELESS: [(&str, &str, &str, &str); 22] = [
     ("we", "WAYS", "2", "ways_must_be_1_or_4"),
     ("bodies", "WAYS", "2", "ways_must_be_1_or_4"),
     ("weight_raster", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
-    ("weight_totals", "SUM_BITS", "28", "sums_must_have_two_bits_more_than_weights"),
+    ("weight_totals", "SUM_BITS", "29", "sums_must_have_three_bits_more_than_weights"),
     ("blob_labels", "COLUMNS", "65", "columns_must_be_2_to_64"),
     ("blob_sums", "SUM_BITS", "27", "sums_must_be_wider_than_weights"),
     ("co", "WAYS", "2", "ways_must_be_1_or_4"),
