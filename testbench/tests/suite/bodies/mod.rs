@@ -63,7 +63,7 @@ fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     let c33 = |row: usize, column: usize| c33[(row, column)];
     let shapes: [fn(usize, usize) -> bool; 10] = [
         |x, y| x < 2 && y < 2,
-        |x, y| (x < 2 || x > 3) && y < 2,
+        |x, y| !(2..=3).contains(&x) && y < 2,
         |x, y| x != 2 && y != 2 && y < 4,
         |x, y| x % 4 < 2 && y % 4 < 2,
         // U, comb, rings that do not touch, a board, stripes, all.
@@ -87,7 +87,9 @@ fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     }
     packets.push(frames::contact(plan, random));
     packets.push(frames::noise(plan, 0.5, random));
-    packets.iter_mut().for_each(|packet| packet.resize(plan.streams().whole_beats(packet.len()), 0));
+    for packet in &mut packets {
+        packet.resize(plan.streams().whole_beats(packet.len()), 0);
+    }
     packets
 }
 

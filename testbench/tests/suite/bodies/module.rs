@@ -56,9 +56,12 @@ impl Case {
         let random = random.unwrap_or(&mut plain);
         // 5/64 of the largest do not touch yet.
         let least = if any { 320 } else { MOST };
-        let weight = |taxel: usize| match touched(taxel % columns, taxel / columns) {
-            true => random.random_range(least..=MOST),
-            false => random.random_range(0..if any { 319 } else { 320 }),
+        let weight = |taxel: usize| {
+            if touched(taxel % columns, taxel / columns) {
+                random.random_range(least..=MOST)
+            } else {
+                random.random_range(0..320)
+            }
         };
         let mut frame: Vec<i64> = (0..self.sensor.taxels()).map(weight).collect();
         if any && let Some(first) = frame.iter_mut().find(|weight| **weight >= 320) {

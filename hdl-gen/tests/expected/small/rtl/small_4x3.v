@@ -489,8 +489,7 @@ module small_4x3 #(
     // ---- Field memory
     wire signed [17:0] field_mu_x;
     wire signed [17:0] field_mu_y;
-    wire field_complete;
-    wire field_enable, field_rewind, field_step;
+    wire field_complete, field_enable, field_rewind, field_step;
     wire signed [63:0] field_value;
 
     sptfra_field #(
