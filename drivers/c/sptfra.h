@@ -206,7 +206,7 @@ typedef struct {
     float direction;      /* phi in rad */
     float friction_xy[2];
     float standard_error; /* of (F_x, F_y) in N; 0 where the design has none */
-    uint8_t bodies;
+    uint8_t bodies;       /* in touch; at most 1 in a design without count_bodies */
     uint8_t generation;   /* of the calibration */
     uint8_t replaced;     /* taxels */
     /* f_x, f_y, f_z in N of taxel iy * columns + ix, taxel after taxel, in the buffer; NULL without a field. */

@@ -96,7 +96,7 @@ class Forces:
     friction_xy: np.ndarray
     #: (n,) float32: standard error of (F_x, F_y) in N; 0 where the design has none.
     standard_error: np.ndarray
-    #: (n,) uint8: bodies in touch.
+    #: (n,) uint8: bodies in touch; at most 1 in a design that neither tells them apart nor counts them.
     bodies: np.ndarray
     #: (n,) uint8: generation of the calibration.
     generation: np.ndarray

@@ -69,6 +69,8 @@ module sptfra_op #(
     output wire field_step,
     output wire field_release, // the frame's place is free again
     input  wire [64*WORDS-1:0] field_value,
+    // Bodies of the oldest frame of which no output has begun, which is taken with its timestamp: 1 at least
+    input  wire [7:0] bodies,
     // When the oldest frame inside began
     input  wire [31:0] timestamp,
     output wire timestamp_take,
@@ -201,7 +203,7 @@ module sptfra_op #(
         answered && slips,
         answered && summary_flags[4],
         answered && (REPLACED != 0),
-        1'b0,
+        answered && (bodies > 8'd1),
         answered && (DOUBT != 0) && (summary_error_log > DOUBT_LIMIT),
         bad_length,
         not_finite,
@@ -240,7 +242,7 @@ module sptfra_op #(
 
     // Replaced taxels, generation of the calibration, bodies
     wire [7:0] replaced = REPLACED[7:0];
-    wire [31:0] census = {8'd0, answered ? replaced : 8'd0, 8'd0, 7'd0, answered};
+    wire [31:0] census = {8'd0, answered ? replaced : 8'd0, 8'd0, answered ? bodies : 8'd0};
 
     // ---- Output
     sptfra_output #(

@@ -37,8 +37,9 @@ module sptfra_taxel_walk #(
     reg [ROW_WIDTH-1:0] row_base; // first quad of the row
     wire [X_WIDTH-1:0] reached = column + {{(X_WIDTH-2){1'b0}}, taxels};
     wire row_ends = (reached > LAST_X[X_WIDTH-1:0]);
-    wire upper_row = (row < UPPER_Y[Y_WIDTH-1:0]);
-    wire middle_row = (row == UPPER_Y[Y_WIDTH-1:0]); // the last of the quads' rows
+    wire [Y_WIDTH:0] behind_middle = {1'b0, row} - {1'b0, UPPER_Y[Y_WIDTH-1:0]}; // the last of the quads' rows
+    wire upper_row = behind_middle[Y_WIDTH];
+    wire middle_row = (behind_middle == {(Y_WIDTH+1){1'b0}});
     wire mirrored_x = (column > LEFT_X[X_WIDTH-1:0]);
     wire mirrored_y = !upper_row && !middle_row;
     wire [X_WIDTH-1:0] quad_x = mirrored_x ? LAST_X[X_WIDTH-1:0] - column : column;

@@ -32,7 +32,7 @@ module sptfra_we #(
     input  wire taxel_y,
     input  wire [ROW_WIDTH-1:0] taxel_row,
     input  wire [WAYS*DATA_BITS-1:0] taxels, // y, member 0 in the lowest bits
-    // Weights of the taxels, to the field
+    // Weights of the taxels, to the field and the count of bodies
     output wire weights_valid,
     output wire [ROW_WIDTH-1:0] weights_row,
     output wire [WAYS*DATA_BITS-1:0] weights,
@@ -197,13 +197,16 @@ module sptfra_we #(
             wire signed [DATA_BITS-1:0] y = taxels[DATA_BITS-1:0];
             wire [31:0] row_wide = {{(32-ROW_WIDTH){1'b0}}, taxel_row};
 
-            assign weights_valid = 1'b0; // the field has no use for them
-            assign weights_row = {ROW_WIDTH{1'b0}};
-            assign weights = {(WAYS*DATA_BITS){1'b0}};
+            reg [ROW_WIDTH-1:0] row;
+
+            assign weights_valid = write_valid;
+            assign weights_row = row;
+            assign weights = write_data;
             assign write_next = taxel_y;
 
             always @(posedge clock) begin
                 write_valid <= taxel_y;
+                row <= taxel_row;
                 write_address <= BASE[OPERAND_WIDTH-1:0] + row_wide[OPERAND_WIDTH-1:0];
                 write_data <= y[DATA_BITS-1] ? -y : ZERO;
                 if (reset) begin

@@ -4,6 +4,7 @@ use golden::design::Design;
 use golden::kernel;
 use serde_json::{Value, json};
 
+use crate::blocks::bodies;
 use crate::emit::{nnz, predicted, products};
 use crate::plan::product::Coefficients;
 use crate::plan::savings::savings;
@@ -33,6 +34,15 @@ pub fn several_bodies(plan: &Plan) -> Option<String> {
     let contacts = plan.design.algorithm.contacts;
     (contacts > 1).then(|| {
         format!("contacts {contacts} in golden solve and in Python; hardware, and all figures here, with contacts = 1")
+    })
+}
+
+/// What to tell of a design whose hardware counts bodies.
+pub fn counted_bodies(plan: &Plan) -> Option<String> {
+    let Plan { design, .. } = plan;
+    (design.algorithm.contacts == 1 && design.algorithm.count_bodies).then(|| {
+        let cycles = bodies::latency(&design.sensor);
+        format!("solved as one, counted in {cycles} cycles beside the search: status bit 7 tells of more than one")
     })
 }
 

@@ -50,7 +50,7 @@ class Forces:
     friction_xy: np.ndarray
     #: (n,): standard error of (F_x, F_y) in N; 0 where the design has none.
     standard_error: np.ndarray
-    #: (n,) uint8: bodies in touch.
+    #: (n,) uint8: bodies in touch; at most 1 in a design that neither tells them apart nor counts them.
     bodies: np.ndarray
     #: (n, contacts) structured: `taxels`, `status`, `x`, `y` in m from the first taxel, `F_x`, `F_y`, `F_z` in N, `mu`,
     #: `standard_error` of each body, the one that presses most first, then zeros; None where only one is known.

@@ -110,12 +110,34 @@ impl Finder {
         self.contacts
     }
 
+    /// Records of bodies in a solution: none where there is but one region, which is the frame.
+    pub fn records(&self) -> usize {
+        if self.contacts > 1 { self.contacts } else { 0 }
+    }
+
     /// Tells the bodies apart by `|w|`, one value for each taxel.
     ///
     /// Of more bodies than asked for those with the least `|w|` have no region: their taxels go to the nearest of the
     /// others. If every blob has less than [`SHARE`] of all, the largest is the one body that there is.
     pub fn find(&self, weight: &[f64], found: &mut Found) {
-        let Found { regions, taxels, bodies, touched, labels, blobs, numbers, nearest } = found;
+        self.count(weight, found);
+        let Found { regions, taxels, bodies, labels, blobs, numbers, nearest, .. } = found;
+        let kept = &blobs[..self.contacts.min(*bodies)];
+        taxels.clear();
+        taxels.extend(kept.iter().map(|&(_, _, taxels)| taxels));
+        numbers.clear();
+        numbers.resize(labels.count, None);
+        for (body, &(_, blob, _)) in kept.iter().enumerate() {
+            numbers[blob] = Some(body);
+        }
+        regions.clear();
+        regions.extend(labels.blobs.iter().map(|blob| blob.and_then(|blob| numbers[blob])));
+        spread(regions, self.columns, self.distances, nearest);
+    }
+
+    /// Counts the bodies by `|w|`, one value for each taxel, and no more: of what is found only the number is new.
+    pub fn count(&self, weight: &[f64], found: &mut Found) {
+        let Found { bodies, touched, labels, blobs, .. } = found;
         let largest = weight.iter().copied().fold(0.0, f64::max);
         touched.clear();
         touched.extend(weight.iter().map(|&weight| weight > SHARE * largest));
@@ -132,17 +154,6 @@ impl Finder {
         blobs.sort_by(|a, b| b.0.total_cmp(&a.0));
         let least = SHARE * weight.iter().sum::<f64>();
         *bodies = blobs.iter().filter(|(sum, ..)| *sum >= least).count().max(blobs.len().min(1));
-        let kept = &blobs[..self.contacts.min(*bodies)];
-        taxels.clear();
-        taxels.extend(kept.iter().map(|&(_, _, taxels)| taxels));
-        numbers.clear();
-        numbers.resize(labels.count, None);
-        for (body, &(_, blob, _)) in kept.iter().enumerate() {
-            numbers[blob] = Some(body);
-        }
-        regions.clear();
-        regions.extend(labels.blobs.iter().map(|blob| blob.and_then(|blob| numbers[blob])));
-        spread(regions, self.columns, self.distances, nearest);
     }
 }
 

@@ -3,6 +3,7 @@
 //! Each check knows one usual mistake of those who connect a sensor. A frame that passes may still be wrong: a square
 //! grid that is transposed looks like another contact.
 
+mod bodies;
 mod dead;
 pub(crate) mod ends;
 mod order;
@@ -38,6 +39,8 @@ pub enum Kind {
     Order,
     /// Readings at the end of the converter's range, below the full scale.
     Stuck,
+    /// More bodies press than one, in a design that counts them and solves one.
+    Bodies,
 }
 
 print_as_words!(Kind);
@@ -155,6 +158,9 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     }
     if let Some(message) = ends::check(design, frames, loaded.len(), peak) {
         found(Kind::Stuck, message);
+    }
+    if let Some(message) = matrices.and_then(|matrices| bodies::check(design, frames, matrices)) {
+        found(Kind::Bodies, message);
     }
     findings
 }

@@ -74,6 +74,7 @@ struct RawAlgorithm {
     correction: Option<RawCorrection>,
     fitted_to: Option<String>,
     contacts: Option<i64>,
+    count_bodies: Option<bool>,
     outputs: Option<String>,
     noise_floor_pa: Option<f64>,
     slip: Option<RawSlip>,
@@ -241,6 +242,7 @@ fn algorithm(
     let contacts =
         raw.contacts.map_or(Ok(1), |contacts| check.integer("algorithm.contacts", contacts, 1, bodies::MOST as i64))?;
     let contacts = contacts as usize;
+    let count_bodies = raw.count_bodies.unwrap_or(false);
     let outputs: Outputs = check.optional_word("algorithm.outputs", raw.outputs.as_deref())?.unwrap_or_default();
     let noise_floor_pa = match raw.noise_floor_pa {
         Some(value) => check.above_zero("algorithm.noise_floor_pa", value, full_scale_pa, "Pa")?,
@@ -249,8 +251,19 @@ fn algorithm(
     let plan = parse_plan::kind(check, raw.plan.as_deref(), &filter, hardware)?;
     let slip = raw.slip.map(|raw| slip(check, &raw)).transpose()?;
     let joint = Box::new(joint);
-    let algorithm =
-        Algorithm { plan, kernel, regularisation, filter, estimator, joint, contacts, outputs, noise_floor_pa, slip };
+    let algorithm = Algorithm {
+        plan,
+        kernel,
+        regularisation,
+        filter,
+        estimator,
+        joint,
+        contacts,
+        count_bodies,
+        outputs,
+        noise_floor_pa,
+        slip,
+    };
     Ok((algorithm, raw.correction))
 }
 

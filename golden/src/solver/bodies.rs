@@ -50,6 +50,10 @@ impl Solver {
         let forces = &*self.matrices.folded(MatrixName::C33inv) * b;
         weight.clear();
         weight.extend(forces.iter().map(|force| (-force).max(0.0)));
+        if finder.records() == 0 {
+            finder.count(weight, found);
+            return Census { bodies: found.bodies, ..Census::default() };
+        }
         finder.find(weight, found);
         let taxels = found.taxels.first().copied().unwrap_or(0);
         Census { bodies: found.bodies, regions: found.taxels.len(), taxels }
@@ -145,7 +149,7 @@ impl Solver {
     pub(super) fn note_body(&self, census: Census, solution: &mut Solution) {
         let Some(finder) = &self.finder else { return };
         if solution.bodies > 0 {
-            if solution.records.is_empty() {
+            if finder.records() > 0 && solution.records.is_empty() {
                 solution.records.push(self.body(census.taxels, solution));
             }
             solution.bodies = census.bodies.max(1);
@@ -153,7 +157,7 @@ impl Solver {
                 solution.status.insert(Status::MORE_BODIES);
             }
         }
-        solution.records.resize(finder.contacts(), Body::default());
+        solution.records.resize(finder.records(), Body::default());
     }
 }
 

@@ -79,7 +79,8 @@ pub struct Solution {
     pub torque: [f64; 3],
     /// Standard error of `(F_x, F_y)` in newtons; 0 where the estimator has none.
     pub standard_error: f64,
-    /// Number of bodies in touch, 0 without an answer. A design with `contacts = 1` knows of no more than one.
+    /// Number of bodies in touch, 0 without an answer. A design with `contacts = 1` knows of no more than one, but
+    /// for one that counts them.
     pub bodies: usize,
     /// The bodies that were told apart, the one that presses most first, then zeros: as many as the design's `contacts`,
     /// and none with `contacts = 1`.
@@ -158,7 +159,7 @@ pub struct Solver {
     matrices: Matrices,
     products: Products,
     friction: Friction,
-    /// Where there may be more bodies than one.
+    /// Where bodies are told apart, or counted.
     finder: Option<Finder>,
     /// Share of the normal force above which a standard error is doubtful.
     doubt: f64,
@@ -225,7 +226,7 @@ impl Solver {
     fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
         let friction = Friction::new(design.algorithm.constants(), &design.sensor);
         let contacts = design.algorithm.contacts;
-        let finder = (contacts > 1).then(|| Finder::new(&design.sensor, contacts));
+        let finder = (contacts > 1 || design.algorithm.count_bodies).then(|| Finder::new(&design.sensor, contacts));
         let (reader, slip) = (Reader::new(design), design.algorithm.slip);
         let doubt = design.algorithm.joint.doubt;
         Self { reader, matrices, products, friction, finder, doubt, slip }
@@ -270,7 +271,7 @@ impl Solver {
 
     /// Records of bodies in each solution: the design's `contacts`, or 0 where that is 1.
     pub fn records(&self) -> usize {
-        self.finder.as_ref().map_or(0, Finder::contacts)
+        self.finder.as_ref().map_or(0, Finder::records)
     }
 
     /// Number of forces along each axis in a solution's field: m, or 0 where the design asks for resultants only.

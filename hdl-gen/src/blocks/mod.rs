@@ -5,6 +5,7 @@
 //! there is an instance, stand in [`latency`].
 
 pub mod array;
+pub mod bodies;
 pub mod bz;
 pub mod calibration;
 pub mod cean;
@@ -39,6 +40,7 @@ pub fn costs(plan: &Plan) -> Vec<BlockCost> {
         co::cost(plan),
         field::cost(plan),
     ]);
+    costs.extend(bodies::cost(plan));
     costs.extend(slot.search_blocks(&plan.design.sensor));
     costs.push(op::cost());
     costs

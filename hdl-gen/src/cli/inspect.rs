@@ -6,7 +6,7 @@ use std::fmt::Write;
 use golden::design::{Overrun, PlanKind};
 use golden::table::Table;
 use hdl_gen::emit::products;
-use hdl_gen::inspection::{KNOWN_PART, excess, figures, narrow, several_bodies};
+use hdl_gen::inspection::{KNOWN_PART, counted_bodies, excess, figures, narrow, several_bodies};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::energy::Energy;
 use hdl_gen::plan::format::short;
@@ -65,7 +65,7 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         key("estimator = "),
         key("outputs = ")
     )?;
-    if let Some(several) = several_bodies(plan) {
+    if let Some(several) = several_bodies(plan).or_else(|| counted_bodies(plan)) {
         writeln!(out, "  bodies       {several}")?;
     }
     writeln!(

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use crate::blocks::bodies;
 use crate::plan::energy::Energy;
 use crate::plan::product::{Product, Vector};
 use crate::plan::schedule::Window;
@@ -154,6 +155,9 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
     });
     if plan.design.hardware.control {
         value["registers"] = json!(registers::map_path(plan));
+    }
+    if plan.design.algorithm.count_bodies {
+        value["bodies"] = json!({ "cycles": bodies::latency(&plan.design.sensor) });
     }
     if let Some(dead) = &plan.dead {
         value["dead_taxels"] = json!({ "taxels": dead.taxels, "weight_lsb": -i64::from(dead.shift) });

@@ -18,6 +18,9 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_axis_skid",
     "sptfra_axis_skids",
     "sptfra_bank",
+    "sptfra_blob_labels",
+    "sptfra_blob_sums",
+    "sptfra_bodies",
     "sptfra_butterfly",
     "sptfra_bz",
     "sptfra_bz_calibrated",
@@ -107,6 +110,8 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_unfold",
     "sptfra_unpack",
     "sptfra_we",
+    "sptfra_weight_raster",
+    "sptfra_weight_totals",
     "sptfra_whole_frames",
 ];
 

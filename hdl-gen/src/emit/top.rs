@@ -5,7 +5,7 @@ use tera::Context;
 
 use golden::design::{Filter, Samples};
 
-use crate::blocks::{Parameters, array, bz, cean, co, field, intake, op, row_width, turns, unfold, we};
+use crate::blocks::{Parameters, array, bodies, bz, cean, co, field, intake, op, row_width, turns, unfold, we};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::CountsPlan;
@@ -95,6 +95,8 @@ struct View {
     estimator_parameters: Parameters,
     field_module: &'static str,
     field_parameters: Parameters,
+    /// Of the count of bodies, if there is one.
+    bodies: Option<Parameters>,
     op: Parameters,
 }
 
@@ -169,6 +171,7 @@ impl View {
             estimator_parameters: slot.parameters(design, plan.ways()),
             field_module: field::module(plan),
             field_parameters: field::parameters(plan),
+            bodies: design.algorithm.count_bodies.then(|| bodies::parameters(plan)),
             op: op::parameters(plan),
         }
     }
@@ -210,7 +213,7 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if plan.ways() > 1 {
         without.push("sptfra_coefficients");
     } else {
-        without.extend(["sptfra_fold", "sptfra_butterfly"]);
+        without.extend(["sptfra_fold", "sptfra_butterfly", "sptfra_taxel_walk"]);
     }
     if !plan.design.hardware.skip_zeros {
         without.push("sptfra_nonzeros");

@@ -3,6 +3,7 @@
 //! One packet of input words in, one frame of output words out. Order of summation does not matter: every sum is
 //! exact in its width, by the bounds of the plan.
 
+pub mod bodies;
 mod integer;
 mod summary;
 #[cfg(test)]
@@ -45,6 +46,8 @@ pub const NOT_FINITE: u32 = Status::NOT_FINITE.0;
 pub const BAD_LENGTH: u32 = Status::FRAME_LENGTH.0;
 /// The error is above the design's limit.
 pub const DOUBTFUL: u32 = Status::DOUBTFUL.0;
+/// More bodies press than the one that is solved.
+pub const MORE_BODIES: u32 = Status::MORE_BODIES.0;
 /// A dead taxel was replaced.
 pub const REPLACED: u32 = Status::REPLACED.0;
 /// Too much of the stress is in replaced taxels.
@@ -198,12 +201,28 @@ impl<'plan> Model<'plan> {
         let search = products.iter().position(needs_friction).unwrap_or(products.len());
         let mut frame = frame(self.plan, integers, stress);
         run(self.plan, integers, 0..search, [0, 0], &mut frame);
+        let bodies = self.count_bodies(&frame);
         let (mut words, summary) = scalars(self.plan, counter, stress, saturated, &frame.sums, &frame.u);
+        words[words::CENSUS] |= bodies;
+        words[words::STATUS] |= if bodies > 1 { MORE_BODIES } else { 0 };
         run(self.plan, integers, search..products.len(), summary.friction, &mut frame);
         if self.plan.field_words() > 0 {
             words.extend(self.field(&frame, summary.friction));
         }
         (words, summary)
+    }
+
+    /// Bodies of a frame whose weights are there: one, where the design does not count them.
+    fn count_bodies<const W: usize>(&self, frame: &Integers<'_, W>) -> u32 {
+        let Plan { design, formats, .. } = self.plan;
+        if !design.algorithm.count_bodies {
+            return 1;
+        }
+        let weight = match formats.folded {
+            None => frame.get(Vector::Weight).as_flattened(),
+            Some(_) => &frame.weight,
+        };
+        bodies::count(weight, design.sensor.columns)
     }
 
     /// Forces of every taxel, from what the plan's products have left of them.
@@ -307,7 +326,7 @@ fn scalars(
             answer[words::STATUS] |= DOUBTFUL;
         }
     }
-    // One body, and taxels whose readings others replace.
-    answer[words::CENSUS] = 1 | plan.dead.as_ref().map_or(0, |dead| (dead.taxels.len() as u32) << 16);
+    // Taxels whose readings others replace.
+    answer[words::CENSUS] = plan.dead.as_ref().map_or(0, |dead| (dead.taxels.len() as u32) << 16);
     (answer, summary)
 }

@@ -2,6 +2,7 @@
 
 mod bad_frames;
 mod bench;
+mod bodies;
 mod browser;
 mod build_cache;
 mod calibration;

@@ -7,7 +7,7 @@ use testbench::tools;
 use crate::support::workspace;
 
 /// Module, parameter, value, what the tool must name.
-const SENSELESS: [(&str, &str, &str, &str); 18] = [
+const SENSELESS: [(&str, &str, &str, &str); 23] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("bz", "WAYS", "2", "ways_must_be_1_or_4"),
     ("bz", "DATA_BITS", "28", "data_bits_must_be_16_to_27"),
@@ -21,6 +21,11 @@ const SENSELESS: [(&str, &str, &str, &str); 18] = [
     ("spmv_way", "COEFFICIENT_BITS", "19", "a_multiplier_has_18_by_27_bits"),
     ("unfold", "WAYS", "2", "ways_must_be_1_or_4"),
     ("we", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("bodies", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("weight_raster", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
+    ("weight_totals", "SUM_BITS", "29", "sums_must_have_three_bits_more_than_weights"),
+    ("blob_labels", "COLUMNS", "65", "columns_must_be_2_to_64"),
+    ("blob_sums", "SUM_BITS", "27", "sums_must_be_wider_than_weights"),
     ("co", "WAYS", "2", "ways_must_be_1_or_4"),
     ("turns", "PROGRAMS", "4", "programs_must_be_1_to_3"),
     ("turns", "RESIDUALS", "3", "one_or_two_residuals_have_a_place"),

@@ -64,6 +64,66 @@ fn one_body_is_solved_as_if_there_could_be_no_more() {
     }
 }
 
+/// Counted, a frame has the forces that it ever had, the number of bodies that telling them apart finds, and a bit.
+#[test]
+fn bodies_are_counted_where_they_are_solved_as_one() {
+    for (name, plan) in [("sensor1-fast", PlanKind::Reduced), ("sensor2-none", PlanKind::Paper)] {
+        let [mut plain, mut counting, mut several] = [1, 1, 4].map(|contacts| design(name, contacts));
+        counting.algorithm.count_bodies = true;
+        several.algorithm.count_bodies = true;
+        for design in [&mut plain, &mut counting, &mut several] {
+            design.algorithm.plan = plan;
+        }
+        let kinds = [Kind::One, Kind::Anyhow, Kind::Three, Kind::Apart(0)];
+        let frames: Vec<Vec<f64>> = kinds
+            .into_iter()
+            .flat_map(|kind| (0..4).map(move |seed| (kind, seed)))
+            .map(|(kind, seed)| frame(&plain.sensor, kind, 40 + seed).stress)
+            .chain([vec![0.0; 100], vec![f64::NAN; 100], vec![9.0; 100]])
+            .collect();
+        let [plain, counted, several] = [&plain, &counting, &several].map(|design| {
+            let solver = Solver::new(design).unwrap();
+            let mut together = Vec::new();
+            solver.solve_batch(&mut solver.workspace(), &frames, &mut together).unwrap();
+            let alone: Vec<Solution> = frames.iter().map(|frame| solver.solve(frame).unwrap()).collect();
+            assert_eq!(solver.records(), if design.algorithm.contacts > 1 { 4 } else { 0 });
+            [together, alone].concat()
+        });
+        let marked = counted.iter().filter(|found| found.status.contains(Status::MORE_BODIES)).count();
+        assert!((14..=24).contains(&marked), "{name}: {marked}");
+        for ((mut plain, counted), several) in plain.into_iter().zip(counted).zip(several) {
+            assert_eq!(counted.bodies, several.bodies, "{name}");
+            assert!(!several.status.contains(Status::MORE_BODIES), "{name}");
+            if counted.bodies > 1 {
+                plain.status.insert(Status::MORE_BODIES);
+                plain.bodies = counted.bodies;
+            }
+            assert_eq!(format!("{plain:?}"), format!("{counted:?}"), "{name}");
+        }
+        let findings = |design: &Design| -> Vec<String> {
+            let matrices = golden::matrices::Matrices::of(design).unwrap();
+            let findings = golden::check::check(design, &frames[..16], Some(&matrices));
+            findings
+                .into_iter()
+                .filter(|found| found.kind == golden::check::Kind::Bodies)
+                .map(|found| found.to_string())
+                .collect()
+        };
+        let said = findings(&counting);
+        let several = Design {
+            algorithm: golden::design::Algorithm { contacts: 2, ..counting.algorithm.clone() },
+            ..counting.clone()
+        };
+        assert!(said.len() == 1 && said[0].contains(&format!("in {} of 16 frames", marked / 2)), "{said:?}");
+        assert!(said[0].contains("contacts = 4") && findings(&several).is_empty(), "{said:?}");
+        let uncounted = Design {
+            algorithm: golden::design::Algorithm { count_bodies: false, ..counting.algorithm.clone() },
+            ..counting
+        };
+        assert!(findings(&uncounted).is_empty());
+    }
+}
+
 /// What each body's errors may be at most, in percent of its normal force: half of them along the surface, 95 % of them,
 /// and half along z. Solved as one body, half of the frames' sums err by more than twice as much where the bodies are not
 /// pushed the same way.

@@ -136,6 +136,7 @@ lanes = {lanes}
 "
         );
         let mut design = Design::from_toml(&text, name).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        design.algorithm.count_bodies = (columns + lanes) % 2 == 0;
         if let Kind::Joint { correction, .. } = self.kind {
             *design.algorithm.joint = constants(&design.sensor, correction);
         }

@@ -489,8 +489,7 @@ module small_4x3 #(
     // ---- Field memory
     wire signed [17:0] field_mu_x;
     wire signed [17:0] field_mu_y;
-    wire field_complete;
-    wire field_enable, field_rewind, field_step;
+    wire field_complete, field_enable, field_rewind, field_step;
     wire signed [63:0] field_value;
 
     sptfra_field #(
@@ -559,6 +558,7 @@ module small_4x3 #(
         .field_step       (field_step),
         .field_release    (field_release),
         .field_value      (field_value),
+        .bodies           (8'd1),
         .timestamp        (timestamp),
         .timestamp_take   (timestamp_take),
         .m_tdata          (out_tdata),

@@ -1,0 +1,34 @@
+//! Frames of more bodies than they are solved for.
+
+use nalgebra::DVector;
+
+use super::count;
+use crate::bodies::{Finder, Found};
+use crate::design::Design;
+use crate::matrices::{Matrices, MatrixName};
+use crate::solver::reading::{Reader, Reading};
+
+/// What is to be said of a design that counts bodies and is solved as if there were one: in how many frames there are
+/// more, which are those with [`crate::status::Status::MORE_BODIES`].
+pub(super) fn check(design: &Design, frames: &[Vec<f64>], matrices: &Matrices) -> Option<String> {
+    if design.algorithm.contacts > 1 || !design.algorithm.count_bodies {
+        return None;
+    }
+    let (reader, finder) = (Reader::new(design), Finder::new(&design.sensor, 1));
+    let inverse = matrices.folded(MatrixName::C33inv);
+    let (mut b, mut found) = (DVector::zeros(reader.taxels()), Found::default());
+    let several = |frame: &&Vec<f64>| {
+        let Ok(Reading::Contact { .. }) = reader.read(frame, &mut b) else { return false };
+        let weight: Vec<f64> = (&*inverse * &b).iter().map(|force| (-force).max(0.0)).collect();
+        finder.count(&weight, &mut found);
+        found.bodies > 1
+    };
+    let several = frames.iter().filter(several).count();
+    (several > 0).then(|| {
+        format!(
+            "several bodies press in {several} of {}, which algorithm.contacts = 1 solves as one: their forces may be off by a \
+             tenth to a quarter; with contacts = 4 golden solve and the Python package tell them apart",
+            count(frames.len())
+        )
+    })
+}

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Counts the bodies of a frame by |w|: taxels above 5/64 of the frame's largest touch, touching neighbours along x or y
+// are one blob, and blobs with 5/64 of all |w| are bodies. Where none has so much, and without any |w|, it counts one.
+//
+// Takes the weights as We makes them, in any order, a quad or a taxel a cycle; two frames have a place. Then the taxels
+// pass in raster order, one a cycle, with a step between rows: from the last weights to the count it is (COLUMNS + 1) *
+// ROWS + 12 cycles. The search takes longer, for any design, so that nothing ever waits here; simulations check it.
+
+`default_nettype none
+
+module sptfra_bodies #(
+    // 4: weights come by quads of a folded grid; 1: by taxels
+    parameter WAYS = 4,
+    // Taxels in x and y
+    parameter COLUMNS = 10,
+    parameter ROWS = 10,
+    // Bits of |w|
+    parameter DATA_BITS = 27,
+    // From the last weights of a frame to its count, if none is counted just then, checked in simulation; 0: unchecked
+    parameter integer EXPECTED_LATENCY = 0,
+    // Derived
+    parameter ELEMENTS = (WAYS == 4) ? ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2) : COLUMNS * ROWS,
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
+) (
+    input  wire clock,
+    input  wire reset,
+    // Weights, from We
+    input  wire weights_valid,
+    input  wire [ROW_WIDTH-1:0] weights_row,
+    input  wire [WAYS*DATA_BITS-1:0] weights, // member 0 in the lowest bits
+    // To Op: bodies of the oldest frame of which no output has begun
+    output wire [7:0] bodies,
+    input  wire bodies_take
+);
+
+    generate
+        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
+            sptfra_error_ways_must_be_1_or_4 invalid ();
+        end
+    endgenerate
+
+    localparam SUM_BITS = DATA_BITS + $clog2(COLUMNS * ROWS) + 1;
+    localparam LABEL_WIDTH = (COLUMNS > 4) ? $clog2((COLUMNS + 1) / 2) + 1 : 2;
+    localparam [31:0] LAST_ELEMENT = ELEMENTS - 1;
+
+    // ---- Weights as they come: which frame they are of, their sum and the largest
+    reg fill_bank;
+    reg [ROW_WIDTH-1:0] filled;
+    wire first_weights = (filled == {ROW_WIDTH{1'b0}});
+    wire last_weights = weights_valid && (filled == LAST_ELEMENT[ROW_WIDTH-1:0]);
+    wire totals_there; // one cycle, with those of a frame
+    wire [SUM_BITS-1:0] total;
+    wire [DATA_BITS-1:0] largest;
+
+    sptfra_weight_totals #(
+        .WAYS      (WAYS),
+        .COLUMNS   (COLUMNS),
+        .ROWS      (ROWS),
+        .DATA_BITS (DATA_BITS),
+        .SUM_BITS  (SUM_BITS),
+        .ROW_WIDTH (ROW_WIDTH)
+    ) totals (
+        .clock   (clock),
+        .reset   (reset),
+        .valid   (weights_valid),
+        .first   (first_weights),
+        .last    (last_weights),
+        .row     (weights_row),
+        .weights (weights),
+        .there   (totals_there),
+        .total   (total),
+        .largest (largest)
+    );
+
+    always @(posedge clock) begin
+        if (weights_valid) begin
+            filled <= last_weights ? {ROW_WIDTH{1'b0}} : filled + 1'b1;
+        end
+        if (last_weights) begin
+            fill_bank <= !fill_bank;
+        end
+        if (reset) begin
+            filled <= {ROW_WIDTH{1'b0}};
+            fill_bank <= 1'b0;
+        end
+    end
+
+    // ---- A frame's turn: 5/64 of the largest and of all, then its taxels
+    reg waits; // a frame is there, and another one is counted
+    reg busy;
+    reg read_bank;
+    reg [DATA_BITS-1:0] limit;
+    reg [SUM_BITS-1:0] least;
+    reg [4:1] lasts; // behind the last step
+    wire last_step;
+    wire done = lasts[4];
+    wire start = (totals_there || waits) && !busy;
+    wire [DATA_BITS+2:0] largest_5 = {1'b0, largest, 2'b00} + {3'b000, largest};
+    wire [SUM_BITS+2:0] total_5 = {1'b0, total, 2'b00} + {3'b000, total} + {{(SUM_BITS-3){1'b0}}, 6'd63};
+
+    always @(posedge clock) begin
+        waits <= (totals_there || waits) && busy;
+        lasts <= {lasts[3:1], last_step};
+        if (start) begin
+            busy <= 1'b1;
+            limit <= {3'b000, largest_5[DATA_BITS+2:6]};
+            least <= {3'b000, total_5[SUM_BITS+2:6]};
+        end
+        if (done) begin
+            busy <= 1'b0;
+            read_bank <= !read_bank;
+        end
+        if (reset) begin
+            waits <= 1'b0;
+            busy <= 1'b0;
+            read_bank <= 1'b0;
+            lasts <= 4'd0;
+        end
+    end
+
+    wire step;
+    wire touches;
+    wire [LABEL_WIDTH-1:0] fresh;
+    wire [DATA_BITS-1:0] weight;
+
+    sptfra_weight_raster #(
+        .WAYS        (WAYS),
+        .COLUMNS     (COLUMNS),
+        .ROWS        (ROWS),
+        .DATA_BITS   (DATA_BITS),
+        .ROW_WIDTH   (ROW_WIDTH),
+        .LABEL_WIDTH (LABEL_WIDTH)
+    ) raster (
+        .clock         (clock),
+        .reset         (reset),
+        .weights_valid (weights_valid),
+        .weights_bank  (fill_bank),
+        .weights_row   (weights_row),
+        .weights       (weights),
+        .start         (start),
+        .bank          (read_bank),
+        .limit         (limit),
+        .step          (step),
+        .touches       (touches),
+        .fresh         (fresh),
+        .weight        (weight),
+        .last          (last_step)
+    );
+
+    // ---- A cycle behind: its blob. Three more: the sums of the blobs, and the count
+    wire is_of_blob;
+    wire begins;
+    wire [LABEL_WIDTH-1:0] label;
+    wire joins;
+    wire [LABEL_WIDTH-1:0] joined;
+    wire [3:0] found;
+
+    sptfra_blob_labels #(
+        .COLUMNS (COLUMNS)
+    ) blob_labels (
+        .clock   (clock),
+        .clear   (start),
+        .step    (step),
+        .touches (touches),
+        .fresh   (fresh),
+        .counts  (is_of_blob),
+        .begins  (begins),
+        .label   (label),
+        .joins   (joins),
+        .joined  (joined)
+    );
+
+    sptfra_blob_sums #(
+        .DATA_BITS   (DATA_BITS),
+        .SUM_BITS    (SUM_BITS),
+        .LABEL_WIDTH (LABEL_WIDTH)
+    ) blob_sums (
+        .clock  (clock),
+        .clear  (start),
+        .least  (least),
+        .counts (is_of_blob),
+        .begins (begins),
+        .label  (label),
+        .joins  (joins),
+        .joined (joined),
+        .weight (weight),
+        .bodies (found)
+    );
+
+    // ---- Counts until their frames go out: three at most
+    reg [15:0] counts;
+    reg [2:0] waiting; // counts there
+    wire [3:0] next_count = (found == 4'd0) ? 4'd1 : found;
+    wire [2:0] left = waiting - {2'd0, bodies_take};
+    wire [15:0] counts_left = bodies_take ? counts >> 4 : counts;
+
+    assign bodies = {4'd0, counts[3:0]};
+
+    always @(posedge clock) begin
+        waiting <= left + {2'd0, done};
+        counts <= counts_left;
+        if (done) begin
+            counts[{left[1:0], 2'd0} +: 4] <= next_count;
+        end
+        if (reset) begin
+            waiting <= 3'd0;
+        end
+    end
+
+`ifdef SIMULATION
+    reg [1:0] frames_inside; // whose weights are there and that are not counted
+
+    always @(posedge clock) begin
+        frames_inside <= frames_inside + {1'b0, last_weights} - {1'b0, done};
+        if (!reset && bodies_take && (waiting == 3'd0)) begin
+            $fdisplay(32'h80000002, "%m: a frame goes out before its bodies are counted");
+            $finish;
+        end
+        if (!reset && weights_valid && (frames_inside == 2'd2)) begin
+            $fdisplay(32'h80000002, "%m: weights of a third frame come before the first one is counted");
+            $finish;
+        end
+        if (reset) begin
+            frames_inside <= 2'd0;
+        end
+    end
+
+    sptfra_check_latency #(
+        .CYCLES (EXPECTED_LATENCY)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset),
+        .start (last_weights && (frames_inside == 2'd0)),
+        .done  (done)
+    );
+`else
+    wire _unused_check = (EXPECTED_LATENCY != 0);
+`endif
+
+    wire _unused = &{1'b0, largest_5[5:0], total_5[5:0]};
+
+endmodule
+
+`default_nettype wire

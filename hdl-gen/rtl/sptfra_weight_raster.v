@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Keeps |w| of two frames as the weights come, and passes one of them taxel by taxel in raster order: whether it
+// touches, which is above a limit, and the label of a blob that would begin there. A step that touches nothing ends
+// each row.
+//
+// From start to the first step: 5 cycles, then a step a cycle; weight is a cycle behind its step.
+
+`default_nettype none
+
+module sptfra_weight_raster #(
+    // 4: weights come by quads of a folded grid; 1: by taxels
+    parameter WAYS = 4,
+    // Taxels in x and y
+    parameter COLUMNS = 10,
+    parameter ROWS = 10,
+    // Bits of |w|, of a quad's or taxel's number, and of a label
+    parameter DATA_BITS = 27,
+    parameter ROW_WIDTH = 5,
+    parameter LABEL_WIDTH = 4
+) (
+    input  wire clock,
+    input  wire reset,
+    // Weights, and which of the two frames they are of
+    input  wire weights_valid,
+    input  wire weights_bank,
+    input  wire [ROW_WIDTH-1:0] weights_row,
+    input  wire [WAYS*DATA_BITS-1:0] weights, // member 0 in the lowest bits
+    // The frame that passes, held until its last step
+    input  wire start,
+    input  wire bank,
+    input  wire [DATA_BITS-1:0] limit, // from the cycle after start
+    // Its steps
+    output wire step,
+    output reg  touches,
+    output wire [LABEL_WIDTH-1:0] fresh,
+    output reg  [DATA_BITS-1:0] weight,
+    output wire last
+);
+
+    generate
+        if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+            sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+        end
+    endgenerate
+
+    localparam X_WIDTH = $clog2(COLUMNS + 1);
+    localparam Y_WIDTH = $clog2(ROWS);
+    localparam [31:0] BORDER = COLUMNS;
+    localparam [31:0] LAST_Y = ROWS - 1;
+
+    // ---- Where the step is: a border behind each row
+    reg walks;
+    reg [X_WIDTH-1:0] column;
+    reg [Y_WIDTH-1:0] row;
+    wire border = (column == BORDER[X_WIDTH-1:0]);
+    wire last_step = border && (row == LAST_Y[Y_WIDTH-1:0]);
+    wire [31:0] column_wide = {{(32-X_WIDTH){1'b0}}, column};
+
+    always @(posedge clock) begin
+        if (start) begin
+            walks <= 1'b1;
+            column <= {X_WIDTH{1'b0}};
+            row <= {Y_WIDTH{1'b0}};
+        end else if (walks) begin
+            column <= border ? {X_WIDTH{1'b0}} : column + 1'b1;
+            if (border) begin
+                row <= row + 1'b1;
+            end
+            walks <= !last_step;
+        end
+        if (reset) begin
+            walks <= 1'b0;
+        end
+    end
+
+    // ---- Stages 1 and 2: the weights of its quad. Stage 3: its own. Stage 4: whether it touches
+    wire [ROW_WIDTH-1:0] element;
+    wire [1:0] member;
+    reg [ROW_WIDTH:0] address_1;
+    wire [WAYS*DATA_BITS-1:0] weights_2;
+    wire [DATA_BITS-1:0] weight_2;
+    reg [1:0] member_1;
+    reg [1:0] member_2;
+    reg [DATA_BITS-1:0] weight_3;
+    reg [DATA_BITS-1:0] weight_4;
+    reg [3:1] borders;
+    reg [4:1] steps;
+    reg [4:1] lasts;
+    reg [4*LABEL_WIDTH-1:0] names; // of stages 1 to 4: the row, odd or even, and half the column
+
+    assign step = steps[4];
+    assign last = lasts[4];
+    assign fresh = names[3*LABEL_WIDTH +: LABEL_WIDTH];
+
+    generate
+        if (WAYS == 4) begin : gen_quads
+            sptfra_taxel_walk #(
+                .COLUMNS (COLUMNS),
+                .ROWS    (ROWS)
+            ) walk (
+                .clock  (clock),
+                .rewind (start),
+                .step   (walks && !border),
+                .taxels (2'd1),
+                .quad   (element),
+                .member (member)
+            );
+
+            assign weight_2 = weights_2[DATA_BITS*member_2 +: DATA_BITS];
+        end else begin : gen_taxels
+            reg [ROW_WIDTH-1:0] taxel;
+
+            assign element = taxel;
+            assign member = 2'd0;
+            assign weight_2 = weights_2[DATA_BITS-1:0];
+
+            always @(posedge clock) begin
+                if (walks && !border) begin
+                    taxel <= taxel + 1'b1;
+                end
+                if (start) begin
+                    taxel <= {ROW_WIDTH{1'b0}};
+                end
+            end
+
+            wire _unused_member = &{1'b0, member_2};
+        end
+    endgenerate
+
+    sptfra_ram #(
+        .WIDTH         (WAYS * DATA_BITS),
+        .DEPTH         (2 << ROW_WIDTH),
+        .ADDRESS_WIDTH (ROW_WIDTH + 1)
+    ) frames (
+        .clock         (clock),
+        .write_enable  (weights_valid),
+        .write_address ({weights_bank, weights_row}),
+        .write_data    (weights),
+        .read_enable   (1'b1),
+        .read_address  (address_1),
+        .read_data     (weights_2)
+    );
+
+    always @(posedge clock) begin
+        address_1 <= {bank, element};
+        member_1 <= member;
+        member_2 <= member_1;
+        weight_3 <= weight_2;
+        weight_4 <= weight_3;
+        weight <= weight_4;
+        touches <= !borders[3] && (weight_3 > limit);
+        borders <= {borders[2:1], border};
+        steps <= {steps[3:1], walks};
+        lasts <= {lasts[3:1], walks && last_step};
+        names <= {names[3*LABEL_WIDTH-1:0], row[0], column_wide[LABEL_WIDTH-1:1]};
+        if (reset) begin
+            steps <= 4'd0;
+            lasts <= 4'd0;
+        end
+    end
+
+    wire _unused = &{1'b0, column_wide};
+
+endmodule
+
+`default_nettype wire

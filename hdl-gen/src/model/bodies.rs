@@ -1,0 +1,27 @@
+//! How many bodies press, in integers: what `sptfra_bodies` finds of `|w|`.
+
+use golden::bodies::Labels;
+
+/// [`golden::bodies::SHARE`], which is over 64: of the largest `|w|`, above which a taxel touches, and of all `|w|`, from
+/// which on a blob is a body.
+const SHARE: i64 = 5;
+const SHARE_OF: i64 = 64;
+
+const _: () = assert!((golden::bodies::SHARE * SHARE_OF as f64) as i64 == SHARE);
+
+/// Bodies by the steps of each taxel's `|w|` on a grid of `columns`: blobs of touching taxels that have a share of all, and
+/// one where none has.
+pub fn count(weight: &[i64], columns: usize) -> u32 {
+    let largest = weight.iter().copied().max().unwrap_or(0);
+    let touched: Vec<bool> = weight.iter().map(|&weight| SHARE_OF * weight > SHARE * largest).collect();
+    let mut labels = Labels::default();
+    labels.find(&touched, columns);
+    let mut sums = vec![0; labels.count];
+    for (&blob, &weight) in labels.blobs.iter().zip(weight) {
+        if let Some(blob) = blob {
+            sums[blob] += weight;
+        }
+    }
+    let all: i64 = weight.iter().sum();
+    (sums.iter().filter(|&&sum| SHARE_OF * sum >= SHARE * all).count() as u32).max(1)
+}

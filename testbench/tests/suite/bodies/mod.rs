@@ -1,0 +1,199 @@
+//! Bodies counted in hardware: the module by itself, whole designs against the model, the model against the solver.
+
+#[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
+#[path = "../../../../golden/tests/suite/bodies/kinds.rs"]
+mod kinds;
+mod module;
+
+use std::collections::BTreeMap;
+
+use golden::design::{Design, Outputs, PlanKind};
+use golden::matrices::{Matrices, MatrixName};
+use golden::solver::{Solver, Status};
+use hdl_gen::model::{BAD_LENGTH, MORE_BODIES, NO_CONTACT, NOT_FINITE};
+use hdl_gen::plan::{Plan, words};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use testbench::stress::{self, stress};
+use testbench::trial::model_answers;
+
+use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
+use kinds::{Kind, frame};
+
+fn counting(mut design: Design) -> Design {
+    design.name += "_counting";
+    design.algorithm.count_bodies = true;
+    design
+}
+
+fn wide(mut design: Design, bits: usize) -> Design {
+    design.name += "_wide";
+    design.hardware.stream_bits = bits as u32;
+    design
+}
+
+/// Both plans, both estimators, narrow and wide streams, odd sides; and what has the shortest search of all.
+fn designs() -> Vec<Design> {
+    vec![
+        shipped("odd"),
+        counting(wide(by_plan(shipped("odd"), PlanKind::Reduced, Outputs::Field), 64)),
+        counting(wide(by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants), 128)),
+        counting(with_joint(shipped("small"))),
+        counting(shipped("sensor1-fast-64")),
+    ]
+}
+
+/// Stress whose `|w|` touches where a drawing has no dot, with as many bodies as blobs, or fewer.
+fn drawn(plan: &Plan, c33: &impl Fn(usize, usize) -> f64, touched: impl Fn(usize, usize) -> bool) -> Vec<u32> {
+    let columns = plan.design.sensor.columns;
+    let weight: Vec<f64> = (0..plan.taxels())
+        .map(|taxel| if touched(taxel % columns, taxel / columns) { 1.0 + 0.3 * (taxel % 5) as f64 } else { 0.0 })
+        .collect();
+    let row = |taxel: usize| weight.iter().enumerate().map(|(of, weight)| c33(taxel, of) * weight).sum();
+    let stress: Vec<f64> = (0..plan.taxels()).map(row).collect();
+    let largest = stress.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
+    let to = -0.4 * plan.design.hardware.full_scale_pa / largest.max(f64::MIN_POSITIVE);
+    plan.streams().packet(&stress.iter().map(|stress| to * stress).collect::<Vec<_>>())
+}
+
+/// Blobs that are one late, boards, one to four bodies; between them frames without an answer.
+fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
+    let matrices = Matrices::of(&plan.design).expect("matrices");
+    let c33 = matrices.dense(MatrixName::C33inv).try_inverse().expect("an inverse");
+    let c33 = |row: usize, column: usize| c33[(row, column)];
+    let shapes: [fn(usize, usize) -> bool; 10] = [
+        |x, y| x < 2 && y < 2,
+        |x, y| !(2..=3).contains(&x) && y < 2,
+        |x, y| x != 2 && y != 2 && y < 4,
+        |x, y| x % 4 < 2 && y % 4 < 2,
+        // U, comb, rings that do not touch, a board, stripes, all.
+        |x, y| x == 0 || y == 3 || x == 3,
+        |x, y| x % 2 == 0 || y == 4,
+        |x, y| x.max(y) % 3 == 0,
+        |x, y| (x + y) % 2 == 0,
+        |x, _| x % 3 == 0,
+        |_, _| true,
+    ];
+    let mut packets: Vec<Vec<u32>> = Vec::new();
+    for (index, shape) in shapes.into_iter().enumerate() {
+        packets.push(drawn(plan, &c33, shape));
+        let whole = packets[packets.len() - 1].clone();
+        match index % 4 {
+            0 => packets.push(vec![0; whole.len()]),
+            1 => packets.push(whole[..whole.len() / 2].to_vec()),
+            2 => packets.push([&[f32::NAN.to_bits()], &whole[1..]].concat()),
+            _ => packets.push([whole.clone(), whole].concat()),
+        }
+    }
+    packets.push(frames::contact(plan, random));
+    packets.push(frames::noise(plan, 0.5, random));
+    for packet in &mut packets {
+        packet.resize(plan.streams().whole_beats(packet.len()), 0);
+    }
+    packets
+}
+
+#[test]
+fn the_hardware_counts_as_the_model_does() {
+    let failures: Vec<String> = in_parallel(&designs(), |design| {
+        let plan = planned(design);
+        let packets = packets(&plan, &mut ChaCha8Rng::seed_from_u64(11));
+        let mut seen = BTreeMap::new();
+        for answer in model_answers(&plan, &packets) {
+            let (status, bodies) = (answer[words::STATUS] & 0xFFFF, answer[words::CENSUS] & 0xFF);
+            let blank = status & (NO_CONTACT | NOT_FINITE | BAD_LENGTH) != 0;
+            assert_eq!((status & MORE_BODIES != 0, blank), (bodies > 1, bodies == 0), "{}", design.name);
+            *seen.entry(bodies).or_insert(0) += 1;
+        }
+        let most = if plan.taxels() < 20 { 2 } else { 4 };
+        assert!((0..=most).all(|bodies| seen.contains_key(&bodies)), "{}: {seen:?}", design.name);
+        simulate_exactly(&plan, &built(&plan), &packets, 3).err().map(|error| format!("{}: {error}", design.name))
+    })
+    .into_iter()
+    .flatten()
+    .collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Counting takes no time: the stage of the search that a count must be over before is longer, on every grid.
+#[test]
+fn counting_is_over_before_the_search() {
+    for design in designs() {
+        let mut plain = design.clone();
+        plain.algorithm.count_bodies = false;
+        let [plain, counted] = [&plain, &design].map(|design| planned(design).timeline);
+        assert_eq!(plain, counted, "{}", design.name);
+    }
+}
+
+#[test]
+fn streams_with_pauses_faults_and_resets_are_counted() {
+    let design = counting(by_plan(shipped("odd"), PlanKind::Reduced, Outputs::Field));
+    let report = stress(&design, &stress::Options { frames: 600, seed: 3 }, &golden::progress::Progress::hidden());
+    let report = report.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(report.sent, report.answered.plus(report.lost_to_resets));
+}
+
+/// Frames of a kind, and in how many of them the hardware counts as many bodies as the solver, as the scene has, and more
+/// than one.
+fn agreement(plan: &Plan, solver: &Solver, kind: Kind, frames: u64, seed: u64) -> [usize; 3] {
+    let scenes: Vec<_> = (0..frames).map(|number| frame(&plan.design.sensor, kind, seed + number)).collect();
+    let packets: Vec<Vec<u32>> = scenes.iter().map(|scene| plan.streams().packet(&scene.stress)).collect();
+    let mut counts = [0; 3];
+    for (answer, scene) in model_answers(plan, &packets).iter().zip(&scenes) {
+        let found = solver.solve(&scene.stress).expect("a whole frame");
+        assert_eq!(found.status.contains(Status::MORE_BODIES), found.bodies > 1);
+        let bodies = (answer[words::CENSUS] & 0xFF) as usize;
+        let told = [bodies == found.bodies, bodies == scene.bodies.len(), bodies > 1];
+        counts.iter_mut().zip(told).for_each(|(count, told)| *count += usize::from(told));
+    }
+    counts
+}
+
+fn pair(name: &str) -> (Plan, Solver) {
+    let design = counting(shipped(name));
+    (planned(&design), Solver::new(&design).expect("matrices"))
+}
+
+#[test]
+fn the_solver_counts_as_the_hardware_does() {
+    for name in ["sensor1-fast", "sensor2-none"] {
+        let (plan, solver) = pair(name);
+        for (kind, marked) in [(Kind::One, 0..=0), (Kind::Anyhow, 11..=12), (Kind::Three, 12..=12)] {
+            let [same, right, several] = agreement(&plan, &solver, kind, 12, 500);
+            assert!(
+                same == 12 && right >= 10 && marked.contains(&several),
+                "{name}, {kind:?}: {same} {right} {several}"
+            );
+        }
+    }
+}
+
+#[test]
+#[ignore = "prints the table of marked frames in docs/contacts.md; a minute"]
+fn table() {
+    let kinds = [
+        (Kind::One, "one alone"),
+        (Kind::Same, "two, pushed the same way"),
+        (Kind::Opposed, "two, opposed"),
+        (Kind::Anyhow, "two, anyhow"),
+        (Kind::Small, "4 N, and 1 N on half the radius"),
+        (Kind::Held, "one slides, one is held"),
+        (Kind::Three, "three, anyhow"),
+        (Kind::Row, "three in a row"),
+        (Kind::Apart(6000), "two, 6 mm apart"),
+        (Kind::Apart(4000), "two, 4 mm apart"),
+        (Kind::Apart(2000), "two, 2 mm apart"),
+        (Kind::Apart(0), "two that touch"),
+        (Kind::Heavier(6), "one 6 times as heavy"),
+        (Kind::Heavier(10), "one 10 times as heavy"),
+    ];
+    let pairs = ["sensor1-joint", "sensor2-joint"].map(pair);
+    for (kind, label) in kinds {
+        let cells = pairs.iter().map(|(plan, solver)| {
+            let [same, right, several] = agreement(plan, solver, kind, 100, 3000);
+            format!(" {several} | {right} | {same} |")
+        });
+        println!("| {label} |{}", cells.collect::<String>());
+    }
+}
