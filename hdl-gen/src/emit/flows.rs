@@ -21,10 +21,11 @@ const LEAST_LENGTH_BITS: u32 = 14;
 const SIMULATION: &str = "vivado/simulate.tcl";
 
 /// `(path, template)`; `NAME` stands for the design's name.
-const FILES: [(&str, &str); 10] = [
+const FILES: [(&str, &str); 11] = [
     ("vivado/files.tcl", include_str!("../../templates/vivado/files.tcl.tera")),
     ("vivado/NAME.xdc", include_str!("../../templates/vivado/constraints.xdc.tera")),
     ("vivado/synth.tcl", include_str!("../../templates/vivado/synth.tcl.tera")),
+    ("vivado/power.tcl", include_str!("../../templates/vivado/power.tcl.tera")),
     (SIMULATION, include_str!("../../templates/vivado/simulate.tcl.tera")),
     ("vivado/package_ip.tcl", include_str!("../../templates/vivado/package_ip.tcl.tera")),
     ("vivado/block_design.tcl", include_str!("../../templates/vivado/block_design.tcl.tera")),
@@ -74,6 +75,8 @@ struct View {
     stream_bits: usize,
     bytes_in: usize,
     bytes_out: usize,
+    /// Predicted cycles from frame to frame.
+    interval_cycles: u64,
     /// Width of the DMA's length register.
     length_bits: u32,
     /// Names of the files in `rtl/` and `rom/`.
@@ -112,6 +115,7 @@ impl View {
             stream_bits: streams.bits,
             bytes_in,
             bytes_out,
+            interval_cycles: plan.timeline.interval_cycles,
             length_bits: length_bits(bytes_in, bytes_out),
             rtl: names(files, "rtl/", ".v"),
             rom: names(files, "rom/", ".mem"),

@@ -10,6 +10,7 @@ mod folder;
 mod fusesoc;
 mod linux;
 mod lists;
+mod power;
 mod scripts;
 mod simulation;
 mod workflow;
