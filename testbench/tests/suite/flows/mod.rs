@@ -8,6 +8,7 @@ mod broken;
 mod control;
 mod folder;
 mod fusesoc;
+mod ila;
 mod linux;
 mod lists;
 mod power;
