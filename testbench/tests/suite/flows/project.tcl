@@ -18,6 +18,9 @@ namespace eval standin {
             ALL_PROBE_SAME_MU_CNT
         }
         debug_port {port_width PROBE_TYPE}
+        address_block {range width}
+        register {address_offset size}
+        field {bit_offset bit_width access description}
         core {name version core_revision display_name description}
     }
 
