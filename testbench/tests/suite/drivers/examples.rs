@@ -141,7 +141,7 @@ fn a_fault_of_the_dma_is_said_and_cleared_away() {
     let frames = "-900,-1000,-900,-800,-500,300,-900,-800,20,-10,-5,-1\n".repeat(4);
     let said = |fault: [u32; 5]| {
         let numbers = fault.map(|number| number.to_string()).join(" ");
-        let output = bash(folder.path(), &format!("printf '{frames}' | ./faulty {} {numbers}", core.display()));
+        let output = bash(folder.path(), &format!("printf -- '{frames}' | ./faulty {} {numbers}", core.display()));
         (output.status.success(), said(&output))
     };
     for receiving in [0, 1] {

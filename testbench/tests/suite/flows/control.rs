@@ -102,6 +102,7 @@ fn the_system_reaches_the_registers_and_hears_the_interrupt() {
     ran.call("connect_bd_intf_net registers/M01_AXI core/s_axi_ctrl");
     ran.call("connect_bd_net -net interrupt_1 core/interrupt interrupt_concat/In1");
     ran.call("connect_bd_net -net interrupts interrupt_concat/dout ps/pl_ps_irq0");
+    assert!(ran.stdout.contains("interrupt ps/pl_ps_irq0[1]: core/interrupt\n"), "{}", ran.stdout);
     ran.call("connect_bd_net -net interrupt_out dma/s2mm_introut ps/pl_ps_irq1");
     assert!(ran.stdout.contains("SEG_core_s_axi_ctrl: offset 0xA0010000, range 4K"), "{}", ran.stdout);
 }

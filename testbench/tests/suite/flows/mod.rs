@@ -5,6 +5,7 @@
 
 mod block_design;
 mod broken;
+mod cocotb;
 mod control;
 mod folder;
 mod fusesoc;
