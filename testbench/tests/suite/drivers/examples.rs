@@ -138,10 +138,12 @@ fn a_fault_of_the_dma_is_said_and_cleared_away() {
     let sources: Vec<&Path> = sources.iter().map(std::path::PathBuf::as_path).collect();
     compile(&sources, &[&SANITIZED[..], &include].concat(), &program);
     let core = built(&Plan::new(&Design::load(&workspace(DESIGN)).expect("right")).expect("a plan")).library;
-    let frames = "-900,-1000,-900,-800,-500,300,-900,-800,20,-10,-5,-1\n".repeat(4);
+    let frames = folder.path().join("frames.csv");
+    fs::write(&frames, "-900,-1000,-900,-800,-500,300,-900,-800,20,-10,-5,-1\n".repeat(4)).expect("written");
     let said = |fault: [u32; 5]| {
-        let numbers = fault.map(|number| number.to_string()).join(" ");
-        let output = bash(folder.path(), &format!("printf -- '{frames}' | ./faulty {} {numbers}", core.display()));
+        let mut command = Command::new(&program);
+        command.arg(&core).args(fault.map(|number| number.to_string())).arg(&frames);
+        let output = command.output().expect("starts");
         (output.status.success(), said(&output))
     };
     for receiving in [0, 1] {
