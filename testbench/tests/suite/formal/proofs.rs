@@ -306,6 +306,7 @@ pub const PROOFS: &[Proof] = &[
         free: &["*sptfra_mac*", "*sptfra_ram*"],
         free_wires: &[],
         induction: "3",
+        altered: &[],
         broken: &[
             ("replace", "takes ? place + 1 : place", "place + 1"),
             ("replace", "pending <= complete && !start;", "pending <= 1'b0;"),
