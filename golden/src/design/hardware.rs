@@ -130,6 +130,8 @@ pub struct Hardware {
     /// Dead taxels that a bank of a calibration in RAM can have replaced, one of [`REPLACEABLE`]; 0: those of the design,
     /// for good.
     pub replaceable: usize,
+    /// Whether nets are marked for a logic analyser in the FPGA.
+    pub debug: bool,
     /// Clock in megahertz, 1 to 1000.
     pub clock_mhz: f64,
     /// FPGA part name.
