@@ -114,25 +114,14 @@ module sptfra_bz_calibrated #(
 
     // ---- Counts to pascals
     wire [31:0] pascals_tdata;
-    wire pascals_tlast;
-    wire pascals_tvalid;
-    wire pascals_tready;
-    wire frame_begins;
-    wire reading_valid;
-    wire reading_marked;
-    wire reading_last;
-    wire reading_bad;
-    wire reading_advance;
+    wire pascals_tlast, pascals_tvalid, pascals_tready;
+    wire frame_begins, bank_held, hold;
+    wire reading_valid, reading_marked, reading_last, reading_bad, reading_not_finite, reading_advance;
     wire [TAXEL_WIDTH-1:0] reading_taxel_8;
     wire [TAXEL_WIDTH-1:0] reading_taxel;
     wire signed [26:0] reading;
-    wire reading_not_finite;
-    wire bank_held;
-    wire hold;
-    wire back_valid;
-    wire back_last;
+    wire back_valid, back_last, back_not_finite;
     wire signed [26:0] back_stress;
-    wire back_not_finite;
 
     sptfra_calibrate #(
         .TAXELS          (TAXELS),
