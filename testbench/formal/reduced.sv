@@ -187,6 +187,7 @@ module harness (
     reg field_started; // of the frame in the summary
     reg at_output; // a frame whose field is still needed
     reg [2:0] young; // program 0 began in one of the last cycles
+    reg [3:0] recent; // sums were written in one of the last cycles
     wire sums_written = $anyseq;
     // Frames that wait for an answer
     wire [3:0] frames_due = {3'd0, open[0]} + u_there + searching + looking + correcting;
@@ -199,6 +200,7 @@ module harness (
             last <= start;
         end
         young <= {young[1:0], start[0]};
+        recent <= {recent[2:0], sums_written};
         summed <= (summed || sums_written) && !coefficients_complete && !start[0];
         sums_wait <= sums_written || (sums_wait && !sums_take);
         friction_due <= search_over || (friction_due && !friction_done);
@@ -210,6 +212,7 @@ module harness (
             last <= 3'd0;
             before <= 3'd0;
             young <= 3'd0;
+            recent <= 4'd0;
             summed <= 1'b0;
             sums_wait <= 1'b0;
             friction_due <= 1'b0;
@@ -234,6 +237,8 @@ module harness (
             assume (!look_done || (looking && !centre_waits));
             assume (!window_done || showing);
 `endif
+            // The next ones are not written in the first cycles after those of the frame before
+            assume (!sums_written || (recent == 4'd0));
             assume (!coefficients_complete || (open[0] && summed));
             assume (!residual_written || open[1]);
             assume (!field_complete || open[2]);
@@ -295,6 +300,7 @@ module harness (
     always @(posedge clock) begin
         if (!reset) begin
             assert ({2'd0, u_held} == {3'd0, open[0]} + u_there + searching + u_seen);
+            assert ((u_held <= 2'd2) && !(start[0] && (u_held == 2'd2)));
             assert ({1'b0, frames_held} == frames_due + summary_busy + at_output);
             assert ({2'd0, fields_held} == {3'd0, field_started} + at_output);
             assert ({3'd0, residual_due} + fields_due + start[2]
@@ -310,6 +316,9 @@ module harness (
 `else
             assert ({3'd0, sums_stand} + (line_state != 3'd0) == {3'd0, open[0] && summed} + u_there);
             assert (!sums_take || (sums_wait && (line_state != 3'd0)));
+            // A line that is free takes sums at once
+            assert (!sums_stand || (line_state != 3'd0) || searching || (recent != 4'd0));
+            assert (!sums_take || searching || !open[0] || summed || (recent != 4'd0));
 `endif
             assert (line_state <= 3'd4);
             assert (!summed || open[0]);
