@@ -60,7 +60,9 @@ fn random_map(of: &CalibrationPlan, random: &mut ChaCha8Rng) -> DeadMap {
                 .map(|_| if random.random_bool(0.5) { 131_071 } else { random.random_range(-131_071..131_072) })
                 .map(|weight: i32| weight * sign)
                 .collect();
-            taxels.iter().for_each(|&taxel| weights[taxel] = 0);
+            for &taxel in &taxels {
+                weights[taxel] = 0;
+            }
             weights
         })
         .collect();
@@ -130,8 +132,7 @@ fn a_map_of_any_content_acts_once_it_is_committed() {
     }
     banks.extend((0..16).map(|_| Bank { dead: random_map(of, &mut random), ..random_bank(of, &mut random) }));
     let mut core = subject.core(2);
-    for expected in 1..banks.len() {
-        let bank = &banks[expected];
+    for (expected, bank) in banks.iter().enumerate().skip(1) {
         perform(&mut core, &load(bank, bank.crc()));
         assert_eq!((errors(&mut core), generation(&mut core)), (0, expected as u32), "{:?}", bank.dead);
         assert_eq!(read_back(&mut core, true), bank.words());

@@ -59,7 +59,7 @@ fn banks(plan: &Plan) -> Vec<Given> {
             let gain: Vec<f64> = (0..of.taxels).map(gain).collect();
             let offset = (0..of.taxels).map(|_| random.random_range(-9000.0..9000.0)).collect();
             let calibration = Calibration { gain, offset };
-            let noise = if index % 2 == 0 { 0.0 } else { random.random_range(1e-3..900.0) };
+            let noise = if index.is_multiple_of(2) { 0.0 } else { random.random_range(1e-3..900.0) };
             if noise > 0.0 {
                 let steps = |pascals: f64| ((pascals / of.stress.step()).round() as u32).max(1);
                 (thresholds.contact, thresholds.noise) = (steps(noise * of.taxels as f64), steps(noise));
