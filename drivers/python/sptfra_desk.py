@@ -19,6 +19,7 @@ import tempfile
 
 import numpy as np
 
+PAGE = 4096
 # As in machine.h.
 DMA, CORE, BUS_OFFSET = 0xA0000000, 0xA0010000, 0x100000000000
 SIMULATED = pathlib.Path(__file__).resolve().parent.parent / "simulated"
@@ -36,9 +37,10 @@ def build(folder):
 
 
 class Machine:
-    """The shared object of machine.c, above that of a core with registers. Raises RuntimeError if there is none."""
+    """The shared object of machine.c, above that of a core with registers or without; with `queue` its DMA has
+    descriptors. Raises RuntimeError if there is no core."""
 
-    def __init__(self, library, core):
+    def __init__(self, library, core, registers=True, queue=False):
         self.calls = ctypes.CDLL(str(library))
         self.calls.machine_open.restype = ctypes.c_void_p
         self.calls.machine_open.argtypes = [ctypes.c_char_p, ctypes.c_uint32, ctypes.c_int]
@@ -49,9 +51,13 @@ class Machine:
         self.calls.machine_interrupt.argtypes = [ctypes.c_void_p]
         self.calls.machine_faults.restype = ctypes.c_uint32
         self.calls.machine_faults.argtypes = [ctypes.c_void_p]
-        self.handle = self.calls.machine_open(str(core).encode(), 3, 1)
+        self.calls.machine_scatter_gather.argtypes = [ctypes.c_void_p]
+        self.calls.machine_fail.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_uint32]
+        self.handle = self.calls.machine_open(str(core).encode(), 3, registers)
         if not self.handle:
             raise RuntimeError(f"{core}: no simulated core; `testbench build DESIGN` names one")
+        if queue:
+            self.calls.machine_scatter_gather(self.handle)
 
     def read(self, address):
         return self.calls.machine_read(self.handle, address)
@@ -84,9 +90,11 @@ class Buffer(np.ndarray):
 
 
 def allocate(shape, dtype):
-    """As pynq.allocate."""
+    """As pynq.allocate: whole pages."""
     buffer = np.zeros(shape, dtype).view(Buffer)
-    buffer.memory = np.zeros(shape, dtype)
+    pages = np.zeros(buffer.nbytes + PAGE, np.uint8)
+    begin = -pages.ctypes.data % PAGE
+    buffer.memory = pages[begin : begin + buffer.nbytes].view(dtype).reshape(shape)
     buffer.device_address = buffer.memory.ctypes.data + BUS_OFFSET
     return buffer
 
@@ -116,16 +124,20 @@ class Channel:
 
 
 class Overlay:
-    """A core and its DMA, as PYNQ's Overlay of a bitstream; `core` is the path of the simulated one, or a `Machine`."""
+    """A core and its DMA, as PYNQ's Overlay of a bitstream; `core` is the path of the simulated one, or a `Machine`.
 
-    def __init__(self, core):
+    `registers` is False for a core without any (`control = false`), `queue` True for a DMA with descriptors.
+    """
+
+    def __init__(self, core, registers=True, queue=False):
         if isinstance(core, Machine):
             machine = core
         else:
             with tempfile.TemporaryDirectory() as folder:
-                machine = Machine(build(folder), core)
+                machine = Machine(build(folder), core, registers, queue)
         self.machine = machine
-        self.core = Block(machine, CORE)
+        if registers:
+            self.core = Block(machine, CORE)
         self.dma = Block(machine, DMA)
         self.dma.sendchannel = Channel(machine, DMA)
         self.dma.recvchannel = Channel(machine, DMA + 0x30)

@@ -30,6 +30,14 @@ class Status(enum.IntFlag):
     DROPPED = 4096
 
 
+def read_metadata(path):
+    """A design's metadata.json. Raises ValueError for one of another edition."""
+    metadata = json.loads(pathlib.Path(path).read_text())
+    if metadata.get("format") != FORMAT:
+        raise ValueError(f"{path}: format {metadata.get('format')}, this driver knows {FORMAT}")
+    return metadata
+
+
 class Layout:
     """Where the values stand in an answer's words, by name: (index of the word, its lowest bit, mask; None: float32)."""
 
@@ -40,11 +48,8 @@ class Layout:
     @classmethod
     def load(cls, path):
         """That of a design, from its metadata.json. Raises ValueError for one of another edition."""
-        metadata = json.loads(pathlib.Path(path).read_text())
-        if metadata.get("format") != FORMAT:
-            raise ValueError(f"{path}: format {metadata.get('format')}, this driver knows {FORMAT}")
         values, field = {}, None
-        for value in metadata["output"]:
+        for value in read_metadata(path)["output"]:
             high, low = value.get("bits", (31, 0))
             mask = None if value["type"] == "float32" else (1 << (high - low + 1)) - 1
             if value["name"] == "field":

@@ -121,7 +121,7 @@ type Step = unsafe extern "C" fn(
 type DriveControl = unsafe extern "C" fn(dut: *mut c_void, addresses: u32, data: u32, flags: u32);
 type ReadControl = unsafe extern "C" fn(dut: *mut c_void) -> u64;
 type Delete = unsafe extern "C" fn(dut: *mut c_void);
-type OpenTrace = unsafe extern "C" fn(dut: *mut c_void, path: *const c_char) -> i32;
+type OpenTrace = unsafe extern "C" fn(dut: *mut c_void, path: *const c_char, half_period: u64) -> i32;
 
 /// The RTL as Verilator compiled it.
 pub struct Dut {
@@ -196,17 +196,18 @@ impl Dut {
         })
     }
 
-    /// Writes every signal to `path` from now on; the file is complete when the core is dropped.
+    /// Writes every signal to `path` from now on, at a clock with this half period in ps; the file is complete when the core
+    /// is dropped.
     ///
     /// # Errors
     /// [`DutError::Trace`] if the design was built without tracing or the file cannot be created.
-    pub fn trace(&mut self, path: &Path) -> Result<(), DutError> {
+    pub fn trace(&mut self, path: &Path, half_period: u64) -> Result<(), DutError> {
         let failed = || DutError::Trace(path.to_owned());
         let name = CString::new(path.as_os_str().as_encoded_bytes()).map_err(|_| failed())?;
         // SAFETY: the signature is the wrapper's; the handle is live and the name ends with a zero.
         let opened = unsafe {
             let open: OpenTrace = *self.library.get(b"dut_trace").map_err(|_| failed())?;
-            open(self.handle, name.as_ptr())
+            open(self.handle, name.as_ptr(), half_period)
         };
         if opened == 0 { Err(failed()) } else { Ok(()) }
     }

@@ -34,6 +34,8 @@ pub struct Job<'a> {
     pub seed: u32,
     /// Where to write the signals of the free-running mode.
     pub trace: Option<&'a Path>,
+    /// Half a period of the clock in a trace, ps.
+    pub half_period: u64,
 }
 
 /// One stream mode's result.
@@ -141,7 +143,7 @@ fn join<T>(thread: thread::ScopedJoinHandle<'_, T>) -> T {
 fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResult, Vec<Vec<u32>>), SimulationError> {
     let mut core = job.built.load(job.seed)?;
     if let (Some(path), true) = (job.trace, mode.is_free()) {
-        core.trace(path)?;
+        core.trace(path, job.half_period)?;
     }
     let traffic = Traffic::new(job.packets, job.timeout).with_mode(&mode).with_pacing(job.pacing);
     let outcome = exchange(&mut core, &traffic, |_| progress())

@@ -190,6 +190,7 @@ impl<'a> Trial<'a> {
             timeout: timeout(self.plan),
             seed: self.seed,
             trace,
+            half_period: (5e5 / self.plan.design.hardware.clock_mhz).round() as u64,
         };
         let simulation = simulate(&job, progress)?;
         let timing = Timing::of(self.plan, simulation.cycles);

@@ -124,6 +124,8 @@ pub struct Hardware {
     pub control: bool,
     /// Where the calibration stands; in RAM only with `control`, and with counts that `pa_per_count` makes pascals.
     pub calibration: CalibrationIn,
+    /// Whether nets are marked for a logic analyser in the FPGA.
+    pub debug: bool,
     /// Clock in megahertz, 1 to 1000.
     pub clock_mhz: f64,
     /// FPGA part name.

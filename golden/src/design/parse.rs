@@ -103,6 +103,7 @@ struct RawHardware {
     overrun: Option<String>,
     control: Option<bool>,
     calibration: Option<String>,
+    debug: Option<bool>,
     clock_mhz: Option<f64>,
     part: Option<String>,
 }
@@ -304,6 +305,7 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         overrun: check.optional_word("hardware.overrun", raw.overrun.as_deref())?.unwrap_or_default(),
         control: raw.control.unwrap_or(false),
         calibration: check.optional_word("hardware.calibration", raw.calibration.as_deref())?.unwrap_or_default(),
+        debug: raw.debug.unwrap_or(false),
         clock_mhz: check.real("hardware.clock_mhz", raw.clock_mhz.unwrap_or(125.0), 1.0, 1000.0, "MHz")?,
         part,
     })

@@ -82,6 +82,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
         Overrun::Stall => String::new(),
         overrun @ Overrun::Drop => format!("overrun = \"{overrun}\"\n"),
     };
+    let debug = if hardware.debug { "debug = true\n" } else { "" };
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write!(
@@ -91,7 +92,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}{contacts}{count_bodies}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{overrun}{control}{banks}clock_mhz = {:?}\npart = \"{}\"\n",
+         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{overrun}{control}{banks}{debug}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],

@@ -10,7 +10,8 @@ use crate::plan::resources::BlockResources;
 use crate::plan::streams::WORD_BITS;
 
 use super::boards::Board;
-use super::{EmitError, FileMap, VERSION};
+use super::registers::core_module;
+use super::{EmitError, FileMap, VERSION, debug};
 
 /// Bytes of a word of memory.
 const WORD_BYTES: usize = WORD_BITS / 8;
@@ -20,11 +21,16 @@ const LEAST_LENGTH_BITS: u32 = 14;
 /// Only where there is a testbench to run.
 const SIMULATION: &str = "vivado/simulate.tcl";
 
+/// Only where nets are marked.
+const ANALYSER: &str = "vivado/ila.tcl";
+
 /// `(path, template)`; `NAME` stands for the design's name.
-const FILES: [(&str, &str); 10] = [
+const FILES: [(&str, &str); 12] = [
     ("vivado/files.tcl", include_str!("../../templates/vivado/files.tcl.tera")),
     ("vivado/NAME.xdc", include_str!("../../templates/vivado/constraints.xdc.tera")),
     ("vivado/synth.tcl", include_str!("../../templates/vivado/synth.tcl.tera")),
+    ("vivado/power.tcl", include_str!("../../templates/vivado/power.tcl.tera")),
+    (ANALYSER, include_str!("../../templates/vivado/ila.tcl.tera")),
     (SIMULATION, include_str!("../../templates/vivado/simulate.tcl.tera")),
     ("vivado/package_ip.tcl", include_str!("../../templates/vivado/package_ip.tcl.tera")),
     ("vivado/block_design.tcl", include_str!("../../templates/vivado/block_design.tcl.tera")),
@@ -74,6 +80,8 @@ struct View {
     stream_bits: usize,
     bytes_in: usize,
     bytes_out: usize,
+    /// Predicted cycles from frame to frame.
+    interval_cycles: u64,
     /// Width of the DMA's length register.
     length_bits: u32,
     /// Names of the files in `rtl/` and `rom/`.
@@ -86,6 +94,10 @@ struct View {
     blocks: Vec<BlockResources>,
     /// Whether there is a register bank.
     control: bool,
+    /// Nets that a logic analyser is for, where the design marks them.
+    debug: Option<Vec<&'static str>>,
+    /// Its samples.
+    samples: u64,
     boards: Vec<Placed>,
 }
 
@@ -93,6 +105,8 @@ impl View {
     fn new(plan: &Plan, hash: &str, files: &FileMap) -> Result<Self, EmitError> {
         let design = &plan.design;
         let testbench = format!("sim/{}_tb.v", design.name);
+        let core = files.get(&format!("rtl/{}.v", core_module(plan)));
+        let core = core.map_or_else(String::new, |text| String::from_utf8_lossy(text).into_owned());
         let streams = plan.streams();
         let bytes_in = streams.words_in() * WORD_BYTES;
         let bytes_out = streams.words_out * WORD_BYTES;
@@ -112,6 +126,7 @@ impl View {
             stream_bits: streams.bits,
             bytes_in,
             bytes_out,
+            interval_cycles: plan.timeline.interval_cycles,
             length_bits: length_bits(bytes_in, bytes_out),
             rtl: names(files, "rtl/", ".v"),
             rom: names(files, "rom/", ".mem"),
@@ -119,6 +134,8 @@ impl View {
             testbench: files.contains_key(&testbench).then_some(testbench),
             blocks: plan.resources.blocks.clone(),
             control: design.hardware.control,
+            debug: design.hardware.debug.then(|| debug::nets(&core)),
+            samples: debug::samples(plan.timeline.latency_cycles),
             boards: Board::all()?.into_iter().map(Placed::new).collect(),
             name: design.name.clone(),
         })
@@ -137,7 +154,7 @@ pub fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitEr
     };
     let context = Context::from_serialize(&view).map_err(failed("view"))?;
     for (path, template) in FILES {
-        if path == SIMULATION && view.testbench.is_none() {
+        if (path == SIMULATION && view.testbench.is_none()) || (path == ANALYSER && view.debug.is_none()) {
             continue;
         }
         let text = Tera::one_off(template, &context, false).map_err(failed(path))?;

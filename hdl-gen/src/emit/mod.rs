@@ -2,6 +2,7 @@
 
 mod boards;
 mod columns;
+mod debug;
 mod flows;
 mod linux;
 mod mcsr;

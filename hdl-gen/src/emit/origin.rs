@@ -35,7 +35,7 @@ pub fn insert(name: &str, hash: &str, files: &mut FileMap) {
 fn comment_mark(path: &str) -> Option<&'static str> {
     match path.rsplit_once('.')?.1 {
         "v" | "rdl" | "dtso" => Some("//"),
-        "tcl" | "xdc" | "yml" | "core" | "txt" => Some("#"),
+        "tcl" | "xdc" | "yml" | "core" | "txt" | "py" => Some("#"),
         _ => None,
     }
 }

@@ -13,6 +13,10 @@ use crate::plan::words::TIMESTAMP;
 use super::{EmitError, FileMap, template};
 
 const TEMPLATE: &str = include_str!("../../templates/sim/tb.v.tera");
+/// The same frames from Python.
+const COCOTB: &str = include_str!("../../templates/sim/cocotb.py.tera");
+/// A cycle of the clock there, in microseconds.
+const COCOTB_CYCLE: f64 = 0.01;
 /// Directions of the push, off the axes and in all four quadrants.
 const DIRECTIONS_DEG: [f64; 4] = [20.0, 110.0, 200.0, 290.0];
 /// Cycles that a core may take beyond its predicted ones, for the pauses of the streams.
@@ -33,17 +37,22 @@ struct View<'a> {
     beats: usize,
     /// TKEEP of its last one.
     last_keep: String,
-    /// Which of them has the timestamp, and in which of its words.
+    /// Words of an output frame, and which has the timestamp.
+    words_out: usize,
+    timestamp: usize,
+    /// Which of the beats has it, and in which of its words.
     timestamp_beat: usize,
     timestamp_word: usize,
     timeout: u64,
+    /// The same as time, in microseconds.
+    timeout_us: f64,
     /// Whether it drops frames for which it has no room.
     overrun: bool,
     /// Whether the core has a register bank.
     control: bool,
 }
 
-/// Adds `sim/NAME_tb.v`, `sim/NAME_stimulus.mem` and `sim/NAME_expected.mem`.
+/// Adds `sim/NAME_tb.v`, `sim/NAME_cocotb.py`, `sim/NAME_stimulus.mem` and `sim/NAME_expected.mem`.
 ///
 /// # Errors
 /// [`EmitError::Template`] if the template does not fit the view; [`EmitError::Scene`] if no frames can be made for
@@ -55,6 +64,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     let answers: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
     let words = plan.streams().words();
     let beats = |packets: &[Vec<u32>]| packets.iter().map(|packet| packet.len().div_ceil(words)).sum();
+    let timeout = SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64;
     let view = View {
         name,
         frames: packets.len(),
@@ -64,9 +74,12 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
         beats_out: beats(&answers),
         beats: plan.streams().beats_out(),
         last_keep: format!("{:x}", plan.streams().last_keep()),
+        words_out: plan.words_out(),
+        timestamp: TIMESTAMP,
         timestamp_beat: TIMESTAMP / words,
         timestamp_word: TIMESTAMP % words,
-        timeout: SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64,
+        timeout,
+        timeout_us: timeout as f64 * COCOTB_CYCLE,
         overrun: plan.streams().drops,
         control: plan.design.hardware.control,
     };
@@ -75,6 +88,9 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
         Context::from_serialize(&view).map_err(|source| EmitError::Template { template: module.clone(), source })?;
     let text = template::design_module(&module, TEMPLATE, &context)?;
     files.insert(format!("sim/{module}.v"), text.into_bytes());
+    let module = format!("{name}_cocotb");
+    let text = template::one(&module, COCOTB, &context)?;
+    files.insert(format!("sim/{module}.py"), text.into_bytes());
     files.insert(format!("sim/{name}_stimulus.mem"), beat_file(&packets, words));
     files.insert(format!("sim/{name}_expected.mem"), beat_file(&answers, words));
     Ok(())

@@ -13,7 +13,7 @@ use crate::plan::format::address_bits;
 use crate::plan::streams::Intake;
 
 use super::template::design_module;
-use super::{EmitError, registers};
+use super::{EmitError, debug, registers};
 
 /// One module, cut along the data's way: ports, Bz and `CeAn`; what shares the lanes; estimator, field and Op.
 const TEMPLATE: &str = concat!(
@@ -186,6 +186,7 @@ pub(super) fn render(plan: &Plan) -> Result<(String, String), EmitError> {
     let context =
         Context::from_serialize(&view).map_err(|source| EmitError::Template { template: "top".to_owned(), source })?;
     let text = design_module(&view.core_module, TEMPLATE, &context)?;
+    let text = if plan.design.hardware.debug { debug::marked(&text) } else { text };
     Ok((view.core_module, text))
 }
 

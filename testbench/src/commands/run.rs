@@ -28,6 +28,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     #[allow(clippy::option_option, reason = "absent, without a name, with one: how clap tells them apart")]
     trace: Option<Option<PathBuf>>,
+    /// Write how often each net changes in the free-running mode at the design's clock (SAIF), from which Vivado estimates
+    /// power (`vivado/power.tcl`); without a name NAME.saif, in the current folder.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with = "trace")]
+    #[allow(clippy::option_option, reason = "as above")]
+    saif: Option<Option<PathBuf>>,
     /// Seed of the streams' pauses and of the registers' random start.
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u32,
@@ -41,10 +46,17 @@ pub fn run(arguments: &Arguments) -> super::Result {
     let design = Design::load(&arguments.design)?;
     let progress = Progress::new();
     let frames = arguments.frames.load(arguments.reference.as_deref(), &design, &progress)?;
-    let trace = arguments.trace.as_ref().map(|file| match file {
+    let named = |file: &Option<PathBuf>, format: Trace| match file {
         Some(file) => file.clone(),
-        None => Path::new(&design.name).with_extension(Trace::best().extension()),
-    });
+        None => Path::new(&design.name).with_extension(format.extension()),
+    };
+    let activity = arguments.saif.as_ref().map(|file| named(file, Trace::Saif));
+    if let Some(file) = &activity
+        && file.extension().is_none_or(|ending| ending != "saif")
+    {
+        return Err(format!("{}: the name of a SAIF file ends in .saif", file.display()).into());
+    }
+    let trace = activity.or_else(|| arguments.trace.as_ref().map(|file| named(file, Trace::best())));
     let options = Options { trace: trace.as_deref(), seed: arguments.seed };
     let report = run::run(&design, &frames, &options, &progress)?;
     Ok(Said { text: shown(&report, arguments.json, page::render)?, faults: report.faults })

@@ -45,7 +45,7 @@ pub enum RunError {
 /// What to do besides comparing.
 #[derive(Clone, Copy, Debug)]
 pub struct Options<'a> {
-    /// File for the signals of the free-running mode: VCD if its name ends so, FST otherwise.
+    /// File for the signals of the free-running mode: VCD or SAIF if its name ends so, FST otherwise.
     pub trace: Option<&'a Path>,
     /// Decides the pauses of the streams and the registers' random start.
     pub seed: u32,
@@ -106,7 +106,10 @@ pub fn run_plan(
     report.frames_from.clone_from(&frames.origin);
     report.error = SolverError::new(&answers, &solutions);
     if let Some(trace) = options.trace {
-        report.traces = [trace.to_owned()].into_iter().chain(waves::write(trace, &sources)?).collect();
+        report.traces.push(trace.to_owned());
+        if format_of(trace) != Trace::Saif {
+            report.traces.extend(waves::write(trace, &sources)?);
+        }
     }
     report.status_counts = StatusCounts::new(&answers);
     report.true_force_errors = frames.truth.as_ref().map(|truth| against_truth(&answers, truth));
@@ -117,8 +120,12 @@ fn trace_format(file: Option<&Path>) -> Result<Trace, RunError> {
     let Some(file) = file else {
         return Ok(Trace::Off);
     };
-    if file.extension().is_some_and(|ending| ending == "vcd") {
-        return Ok(Trace::Vcd);
-    }
-    if Trace::best() == Trace::Fst { Ok(Trace::Fst) } else { Err(RunError::NoFst(file.to_owned())) }
+    let format = format_of(file);
+    if format == Trace::Fst && Trace::best() != Trace::Fst { Err(RunError::NoFst(file.to_owned())) } else { Ok(format) }
+}
+
+/// By the ending of a file's name.
+fn format_of(file: &Path) -> Trace {
+    let named = |format: &Trace| file.extension().is_some_and(|ending| ending == format.extension());
+    [Trace::Vcd, Trace::Saif].into_iter().find(named).unwrap_or(Trace::Fst)
 }

@@ -133,6 +133,9 @@ fn verdict(page: &mut String, report: &Report) {
             ),
         );
     }
+    if let [activity] = &report.traces[..] {
+        line(page, &format!("Activity of the nets in {}, for vivado/power.tcl.", activity.display()));
+    }
     match report.timing {
         Timing::AsPredicted => {}
         Timing::WithinBound => {

@@ -94,12 +94,13 @@ impl Toolchain {
     fn cxx_flags(&self, effort: Effort) -> Vec<String> {
         let traced = |format| u8::from(self.trace == format);
         let mut flags: Vec<String> = CXX_FLAGS.iter().chain([&effort.flag()]).map(ToString::to_string).collect();
-        for off in ["COVERAGE", "SC", "TIMING", "TRACE_SAIF"] {
+        for off in ["COVERAGE", "SC", "TIMING"] {
             flags.push(format!("-DVM_{off}=0"));
         }
         flags.push(format!("-DVM_TRACE={}", u8::from(self.trace != Trace::Off)));
         flags.push(format!("-DVM_TRACE_VCD={}", traced(Trace::Vcd)));
         flags.push(format!("-DVM_TRACE_FST={}", traced(Trace::Fst)));
+        flags.push(format!("-DVM_TRACE_SAIF={}", traced(Trace::Saif)));
         flags
     }
 
@@ -113,6 +114,7 @@ impl Toolchain {
         let tracer: &[&str] = match self.trace {
             Trace::Off => &[],
             Trace::Vcd => &["verilated_vcd_c.cpp"],
+            Trace::Saif => &["verilated_saif_c.cpp"],
             Trace::Fst => &["verilated_fst_c.cpp", "fstcpp/fstcpp_writer.cpp", "fstcpp/fstcpp_variable_info.cpp"],
         };
         ["verilated.cpp", "verilated_threads.cpp"].iter().chain(tracer).map(|name| self.include.join(name)).collect()
@@ -219,6 +221,7 @@ pub fn translate(
         Trace::Off => {}
         Trace::Vcd => drop(command.arg("--trace-vcd")),
         Trace::Fst => drop(command.arg("--trace-fst")),
+        Trace::Saif => drop(command.arg("--trace-saif")),
     }
     command.args(sources.verilog().map(|path| folder.join(path)));
     output(command, "Verilator", &sources.top).map(drop)

@@ -28,7 +28,7 @@ const RTL_FOLDER: &str = "rtl/";
 /// Folder of the ROM files in a generated design.
 const ROM_FOLDER: &str = "rom/";
 
-/// What the simulation writes for a waveform viewer. Tracing costs speed and is a build of its own.
+/// What the simulation writes of its signals. Tracing costs speed and is a build of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trace {
     /// Nothing.
@@ -38,6 +38,8 @@ pub enum Trace {
     Vcd,
     /// Compressed; needs the headers and libraries of zlib and LZ4.
     Fst,
+    /// No waveform: how often each net changed, for an estimate of power.
+    Saif,
 }
 
 impl Trace {
@@ -48,7 +50,11 @@ impl Trace {
 
     /// The usual ending of the file's name, without the dot.
     pub fn extension(self) -> &'static str {
-        if self == Self::Fst { "fst" } else { "vcd" }
+        match self {
+            Self::Fst => "fst",
+            Self::Saif => "saif",
+            Self::Vcd | Self::Off => "vcd",
+        }
     }
 }
 

@@ -17,6 +17,9 @@ using Trace = VerilatedFstC;
 #elif VM_TRACE_VCD
 #include "verilated_vcd_c.h"
 using Trace = VerilatedVcdC;
+#elif VM_TRACE_SAIF
+#include "verilated_saif_c.h"
+using Trace = VerilatedSaifC;
 #endif
 
 #include <cstdint>
@@ -41,7 +44,6 @@ void vl_warn(const char* file, int line, const char*, const char* message) { vl_
 namespace {
 
 constexpr uint64_t FAILED = uint64_t(1) << 63;
-constexpr uint64_t HALF_PERIOD = 1;
 constexpr uint64_t NO_CONTROL = uint64_t(1) << 63;
 
 // The AXI4-Lite port, on a model that has one.
@@ -118,7 +120,8 @@ struct Dut {
 #if VM_TRACE
     std::unique_ptr<Trace> trace;
 #endif
-    uint64_t time = 0;
+    uint64_t time = 0;         // in a trace, ps
+    uint64_t half_period = 1;  // of the clock, ps
     uint64_t control = NO_CONTROL;  // what the port showed in the last cycle
 
     explicit Dut(uint32_t seed) {
@@ -150,7 +153,7 @@ struct Dut {
 #if VM_TRACE
         if (trace) trace->dump(time);
 #endif
-        time += HALF_PERIOD;
+        time += half_period;
     }
 };
 
@@ -214,10 +217,11 @@ DUT_API void dut_drive_control(void* handle, uint32_t addresses, uint32_t data, 
 DUT_API uint64_t dut_read_control(void* handle) { return static_cast<Dut*>(handle)->control; }
 
 #if VM_TRACE
-// Writes every signal to `path` from now on. False if the file cannot be created.
-DUT_API int dut_trace(void* handle, const char* path) {
+// Writes every signal to `path` from now on, at a clock with this half period in ps. False if the file cannot be created.
+DUT_API int dut_trace(void* handle, const char* path, uint64_t half_period) {
     try {
         Dut& dut = *static_cast<Dut*>(handle);
+        dut.half_period = half_period;
         dut.context.traceEverOn(true);
         dut.trace = std::make_unique<Trace>();
         dut.model->trace(dut.trace.get(), 99);

@@ -138,15 +138,15 @@ fn sources_outside_the_folder_and_empty_designs_are_refused() {
 fn a_trace_is_written_by_a_build_with_tracing_only() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("wave.vcd");
-    assert!(matches!(load(0).trace(&file), Err(DutError::Trace(_))));
+    assert!(matches!(load(0).trace(&file, 4000), Err(DutError::Trace(_))));
 
     let verilate = Verilate::default().with_trace(PLAIN_TRACE);
     let mut core = verilate.build(&packet_sum(0)).expect("builds").load(1).expect("loads");
-    core.trace(&file).expect("opens");
+    core.trace(&file, 4000).expect("opens");
     exchange(&mut core, &Traffic::new(&[vec![1, 2]], 100), |_| ()).expect("runs");
     drop(core);
     let text = fs::read_to_string(&file).expect("written");
-    assert!(text.contains("$var") && text.contains("m_axis_tdata") && text.contains("\n#10\n"));
+    assert!(text.contains("$var") && text.contains("m_axis_tdata") && text.contains("\n#40000\n"));
     assert!(matches!(Trace::best(), Trace::Vcd | Trace::Fst));
 }
 

@@ -174,3 +174,10 @@ fn a_compiler_that_does_not_run_is_named_with_the_remedy() {
     assert!(message.starts_with("error: the C++ compiler (false) does not run: "), "{message}");
     assert!(message.contains("set CXX"), "{message}");
 }
+
+#[test]
+fn activity_is_written_to_files_that_say_so() {
+    let message = refused(&["run", &design("small.toml"), "--saif", "activity.txt"]);
+    assert!(message.contains("activity.txt: the name of a SAIF file ends in .saif"), "{message}");
+    assert!(refused(&["run", &design("small.toml"), "--saif", "--trace"]).contains("cannot be used with"));
+}

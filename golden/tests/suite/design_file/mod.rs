@@ -41,6 +41,7 @@ fn everything_but_name_and_sensor_has_a_default() {
     assert_eq!((design.algorithm.plan, design.algorithm.outputs), (PlanKind::Reduced, Outputs::Field));
     assert_eq!((design.hardware.target_us, design.hardware.optimise), (None, Optimise::Interval));
     assert!(!design.hardware.skip_zeros);
+    assert!(!design.hardware.debug && !design.to_toml().contains("debug"));
     assert_eq!(design.hardware.stream_bits, 32);
 }
 
@@ -96,6 +97,7 @@ fn keys_of_the_reduced_plan_read_back_the_same() {
         ("[hardware]\noptimise = \"latency\"\nskip_zeros = true", ["optimise = \"latency\"", "skip_zeros = true"]),
         ("[algorithm]\nplan = \"paper\"", ["plan = \"paper\"", "skip_zeros = false"]),
         ("[hardware]\nstream_bits = 64", ["stream_bits = 64\n", "plan = \"reduced\""]),
+        ("[hardware]\ndebug = true", ["debug = true\n", "plan = \"reduced\""]),
     ] {
         let design = Design::from_toml(&format!("{MINIMAL}{more}\n"), "pad.toml").unwrap();
         let resolved = design.to_toml();

@@ -9,6 +9,7 @@ use hdl_gen::plan::Plan;
 use testbench::tools;
 use testbench::trial::model_answers;
 
+use super::{DRIVER, MACHINE, SANITIZED, compile};
 use crate::docs::{commands, lines_of};
 use crate::support::{built, workspace};
 
@@ -123,6 +124,41 @@ fn the_examples_say_what_is_wrong() {
     assert!(bare.status.success() && lines.lines().count() == 4 && lines.contains("frame 3: F_x "), "{lines}");
     assert!(lines.lines().all(|line| line.contains("F_z -") && line.contains("status 0x")), "{lines}");
     refused(&format!("{examples}/bare_metal_simulated"), "IDENTITY is not TFRA");
+}
+
+/// A DMA that stops in the middle of a frame: the program says so and ends, and leaves a core that answers.
+#[test]
+fn a_fault_of_the_dma_is_said_and_cleared_away() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let program = folder.path().join("faulty");
+    let own = ["drivers/c/examples/forces.c", "testbench/tests/suite/drivers/faulty.c"];
+    let sources: Vec<_> = DRIVER.iter().chain(&MACHINE).chain(&own).map(|path| workspace(path)).collect();
+    let examples = workspace("drivers/c/examples");
+    let include = ["-I", examples.to_str().expect("UTF-8"), "-lm"];
+    let sources: Vec<&Path> = sources.iter().map(std::path::PathBuf::as_path).collect();
+    compile(&sources, &[&SANITIZED[..], &include].concat(), &program);
+    let core = built(&Plan::new(&Design::load(&workspace(DESIGN)).expect("right")).expect("a plan")).library;
+    let frames = folder.path().join("frames.csv");
+    fs::write(&frames, "-900,-1000,-900,-800,-500,300,-900,-800,20,-10,-5,-1\n".repeat(4)).expect("written");
+    let said = |fault: [u32; 5]| {
+        let mut command = Command::new(&program);
+        command.arg(&core).args(fault.map(|number| number.to_string())).arg(&frames);
+        let output = command.output().expect("starts");
+        (output.status.success(), said(&output))
+    };
+    // Either channel, each error, with and without an interrupt, at the beginning, on the way and when all but done.
+    for [receiving, error, cycles, wakes] in
+        [[0, 1 << 4, 0, 0], [0, 1 << 5, 100, 1], [1, 1 << 6, 7, 0], [1, 1 << 4, 900, 1]]
+    {
+        let (good, text) = said([2, receiving, error, cycles, wakes]);
+        // The first frame has its answer, the second one none, the others are not sent.
+        assert!(!good && text.contains("frame: the DMA stopped with an error"), "{text}");
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines.contains(&"afterwards: no contact"), "{text}");
+        assert_eq!(lines.iter().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())).count(), 1);
+    }
+    let (good, text) = said([9, 0, 16, 0, 0]);
+    assert!(good && text.lines().count() == 6 && text.ends_with("afterwards: no contact\n"), "{text}");
 }
 
 /// The program for the board, on files in place of `/sys` and `/dev`: it finds each by its node's name.

@@ -95,7 +95,7 @@ def main():
     assert "recover()" in refused(TimeoutError, lambda: sensor.reconstruct(stress[0], timeout=0))
     assert "has failed" in refused(RuntimeError, lambda: sensor.reconstruct(stress[0]))
     machine.calls.machine_run(machine.handle, 100)
-    sensor._reset_dma(1.0)
+    sensor._transfers.reset(1.0)
     sensor._failed, sensor._next = False, sensor._next + 1
     assert "to frame 3, not 4" in refused(RuntimeError, lambda: sensor.reconstruct(stress[0]))
     for cycles in range(0, 1200, 60):

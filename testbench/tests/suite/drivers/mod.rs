@@ -1,5 +1,6 @@
 //! The C and Python drivers against the simulated RTL: registers and DMA as a processor sees them.
 
+mod batches;
 mod calibration;
 mod examples;
 mod queue;

@@ -17,6 +17,8 @@ fn the_system_is_complete_and_uses_the_newest_parts() {
     }
     ran.call("connect_bd_net -net interrupt_out dma/s2mm_introut ps/pl_ps_irq1");
     assert!(ran.stdout.contains("SEG_dma_S_AXI_LITE: offset 0xA0000000, range 64K"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("interrupt ps/pl_ps_irq0[0]: dma/mm2s_introut\n"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("interrupt ps/pl_ps_irq1[0]: dma/s2mm_introut\n"), "{}", ran.stdout);
     assert!(!ran.calls.iter().any(|call| call.starts_with("launch_runs")));
 }
 

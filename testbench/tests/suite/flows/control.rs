@@ -1,5 +1,6 @@
 //! The scripts and lists of a design with a register bank.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::process::Command;
 
@@ -28,12 +29,80 @@ fn the_ip_has_a_register_port_and_an_interrupt() {
     blind.refused("the attributes on the ports of small_control made no interface s_axi_ctrl");
 }
 
+/// Name, lowest bit, width, and what software may do.
+type Field = (String, u32, u32, String);
+
+fn python() -> Command {
+    Command::new(super::folder::environment().join("bin/python"))
+}
+
+/// Address and fields of each register, as `SystemRDL`'s compiler reads the map in the folder.
+fn map(folder: &Folder) -> BTreeMap<String, (u32, Vec<Field>)> {
+    let rdl = folder.design().join(format!("control/{NAME}.rdl"));
+    let said = run(python().arg(workspace().join("tools/register_map.py")).arg(rdl)).succeeded();
+    let registers: Vec<serde_json::Value> = serde_json::from_str(&said.stdout).expect("JSON");
+    let number = |of: &serde_json::Value| u32::try_from(of.as_u64().expect("a number")).expect("32 bits");
+    let field = |of: &serde_json::Value| {
+        let access = match (of["readable"] == true, of["writable"] == true) {
+            (true, true) => "read-write",
+            (true, false) => "read-only",
+            (false, _) => "write-only",
+        };
+        let (low, high) = (number(&of["low"]), number(&of["high"]));
+        (of["name"].as_str().expect("a name").to_owned(), low, high + 1 - low, access.to_owned())
+    };
+    let register = |of: &serde_json::Value| {
+        let fields = of["fields"].as_array().expect("fields").iter().map(field).collect();
+        (of["name"].as_str().expect("a name").to_owned(), (number(&of["address"]), fields))
+    };
+    registers.iter().map(register).collect()
+}
+
+#[test]
+fn the_ip_has_the_registers_of_the_map() {
+    let folder = Folder::new(&control());
+    let ran = folder.vivado("vivado/package_ip.tcl", &[], &[]).succeeded();
+    let set = |object: &str, property: &str| {
+        let start = format!("set_property {property} ");
+        let mut calls = ran.calls.iter().filter_map(|call| call.strip_prefix(&start)?.strip_suffix(object));
+        calls.next().unwrap_or_else(|| panic!("no {property} of {object}")).trim().to_owned()
+    };
+    let map = map(&folder);
+    for (name, (address, fields)) in &map {
+        assert_eq!(set(&format!("register:{name}"), "address_offset"), format!("0x{address:03X}"));
+        for (field, low, width, access) in fields {
+            let object = format!(" field:{name}.{field}");
+            let found = ["bit_offset", "bit_width", "access"].map(|property| set(&object, property));
+            assert_eq!(found, [low.to_string(), width.to_string(), access.clone()], "{object}");
+        }
+    }
+    let added = |kind: &str| ran.calls.iter().filter(|call| call.starts_with(&format!("ipx::add_{kind} "))).count();
+    let fields: usize = map.values().map(|(_, fields)| fields.len()).sum();
+    assert_eq!((added("register"), added("field")), (map.len(), fields));
+    let made = folder.vivado("vivado/package_ip.tcl", &[], &[("STANDIN_BLOCKLESS", "1")]).succeeded();
+    made.call("ipx::add_address_block reg0 map:s_axi_ctrl");
+    for (right, wrong, message) in [
+        ("set_property size 32 $register", "set_property width 32 $register", "no property width"),
+        ("set_property address_offset $offset", "set_property address_offset 0x10", "size or address is wrong"),
+        ("{$high - $low + 1}", "{$high + 1}", "overlaps another or leaves its register"),
+        ("$access($software)", "$software", "access of field:"),
+        ("reg \\{\\n", "register \\{\\n", "has no register"),
+    ] {
+        let folder = Folder::new(&control());
+        let text = folder.read("vivado/package_ip.tcl");
+        assert_eq!(text.matches(right).count(), 1, "{right:?}");
+        fs::write(folder.design().join("vivado/package_ip.tcl"), text.replace(right, wrong)).expect("can be written");
+        folder.vivado("vivado/package_ip.tcl", &[], &[]).refused(message);
+    }
+}
+
 #[test]
 fn the_system_reaches_the_registers_and_hears_the_interrupt() {
     let ran = Folder::new(&control()).vivado("vivado/block_design.tcl", &[], &[]).succeeded();
     ran.call("connect_bd_intf_net registers/M01_AXI core/s_axi_ctrl");
     ran.call("connect_bd_net -net interrupt_1 core/interrupt interrupt_concat/In1");
     ran.call("connect_bd_net -net interrupts interrupt_concat/dout ps/pl_ps_irq0");
+    assert!(ran.stdout.contains("interrupt ps/pl_ps_irq0[1]: core/interrupt\n"), "{}", ran.stdout);
     ran.call("connect_bd_net -net interrupt_out dma/s2mm_introut ps/pl_ps_irq1");
     assert!(ran.stdout.contains("SEG_core_s_axi_ctrl: offset 0xA0010000, range 4K"), "{}", ran.stdout);
 }
@@ -133,6 +202,19 @@ fn the_register_map_is_in_the_folder() {
         .expect("a shell");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(folder.work().join("registers/sptfra_registers.h").is_file());
+    // The IP-XACT file is what the standard's schema allows, and a copy with one word more is not.
+    let ipxact = folder.work().join("registers/registers.xml");
+    let said = run(python().arg(workspace().join("testbench/tests/suite/flows/ipxact.py")).arg(&ipxact)).succeeded();
+    let listed: BTreeMap<String, (u32, Vec<Field>)> = serde_json::from_str(&said.stdout).expect("JSON");
+    assert_eq!(listed, map(&folder));
+    let text = fs::read_to_string(&ipxact).expect("readable");
+    assert!(text.contains("<ipxact:name>small_control</ipxact:name>"));
+    fs::write(
+        &ipxact,
+        text.replace("<ipxact:access>", "<ipxact:acces>").replace("</ipxact:access>", "</ipxact:acces>"),
+    )
+    .expect("written");
+    run(python().arg(workspace().join("testbench/tests/suite/flows/ipxact.py")).arg(&ipxact)).refused("acces");
     let metadata: serde_json::Value = serde_json::from_str(&folder.read("metadata.json")).expect("JSON");
     assert_eq!(metadata["registers"], "control/small_control.rdl");
     let none =

@@ -5,6 +5,8 @@ namespace eval standin {
     variable interfaces
     variable associated
     variable core_root
+    # Registers and fields that were added, by the object that has them.
+    variable registers
     variable page
 
     proc interface_names {} {
@@ -52,6 +54,7 @@ standin::command ipx::package_project {
     set ::standin::core_id [list $option(-vendor) $option(-library)]
     array unset ::standin::interfaces
     array unset ::standin::associated
+    array unset ::standin::registers
     set ::standin::page ROM_DIR
     file mkdir [file join $option(-root_dir) src]
     foreach path [concat $::standin::sources $::standin::memories] {
@@ -84,6 +87,55 @@ standin::command ipx::get_memory_maps {-of_objects=} 1 1 {
         return map:$name
     }
     return {}
+}
+# A memory map that was inferred has a block, unless STANDIN_BLOCKLESS is set.
+standin::command ipx::get_address_blocks {-of_objects=} 0 1 {
+    standin::choice "memory map" $option(-of_objects) map:s_axi_ctrl
+    return [expr {[info exists ::env(STANDIN_BLOCKLESS)] ? {} : "address_block:reg0"}]
+}
+standin::command ipx::add_address_block {} 2 2 {
+    standin::choice "memory map" [lindex $words 1] map:s_axi_ctrl
+    return address_block:[lindex $words 0]
+}
+standin::command ipx::add_register {} 2 2 {
+    foreach {name block} $words {}
+    standin::choice "address block" $block address_block:reg0
+    if {[info exists ::standin::registers($name)]} {
+        error "register $name is there already"
+    }
+    set ::standin::registers($name) {}
+    return register:$name
+}
+standin::command ipx::add_field {} 2 2 {
+    foreach {name register} $words {}
+    set register [regsub {^register:} $register ""]
+    if {$name in $::standin::registers($register)} {
+        error "field $name of $register is there already"
+    }
+    lappend ::standin::registers($register) $name
+    return field:$register.$name
+}
+# Registers of 32 bits at addresses of their own, fields that do not overlap.
+proc standin::check_registers {} {
+    variable registers
+    set taken {}
+    foreach register [lsort [array names registers]] {
+        set offset [expr {[get_property address_offset register:$register] + 0}]
+        if {$offset % 4 != 0 || $offset in $taken || [get_property size register:$register] != 32} {
+            error "register $register: size or address is wrong"
+        }
+        lappend taken $offset
+        set bits 0
+        foreach name $registers($register) {
+            set field field:$register.$name
+            standin::choice "access of $field" [get_property access $field] {read-only write-only read-write}
+            set mask [expr {((1 << [get_property bit_width $field]) - 1) << [get_property bit_offset $field]}]
+            if {($mask & $bits) != 0 || $mask >= (1 << 32)} {
+                error "$field overlaps another or leaves its register"
+            }
+            set bits [expr {$bits | $mask}]
+        }
+    }
 }
 standin::command ipx::infer_bus_interface {} 3 3 {
     foreach {ports vlnv core} $words {}
@@ -163,6 +215,7 @@ standin::command ipx::check_integrity {} 1 1 {
             error "interface $name is in another clock domain"
         }
     }
+    standin::check_registers
     foreach name {name version core_revision display_name description} {
         get_property $name core:current
     }

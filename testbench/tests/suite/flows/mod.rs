@@ -5,11 +5,14 @@
 
 mod block_design;
 mod broken;
+mod cocotb;
 mod control;
 mod folder;
 mod fusesoc;
+mod ila;
 mod linux;
 mod lists;
+mod power;
 mod scripts;
 mod simulation;
 mod workflow;

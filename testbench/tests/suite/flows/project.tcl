@@ -12,7 +12,15 @@ namespace eval standin {
     array set legal_properties {
         fileset {top include_dirs}
         project {part board_part ip_repo_paths source_mgmt_mode}
-        run {{STEPS.SYNTH_DESIGN.ARGS.MORE OPTIONS}}
+        run {{STEPS.SYNTH_DESIGN.ARGS.MORE OPTIONS} STEPS.OPT_DESIGN.TCL.PRE}
+        debug_core {
+            C_DATA_DEPTH C_INPUT_PIPE_STAGES C_TRIGIN_EN C_TRIGOUT_EN C_ADV_TRIGGER C_EN_STRG_QUAL ALL_PROBE_SAME_MU
+            ALL_PROBE_SAME_MU_CNT
+        }
+        debug_port {port_width PROBE_TYPE}
+        address_block {range width}
+        register {address_offset size}
+        field {bit_offset bit_width access description}
         core {name version core_revision display_name description}
     }
 
@@ -244,7 +252,13 @@ standin::command wait_on_run {} 1 1 {
     standin::need launch_runs
     set ::standin::properties(run:[lindex $words 0],PROGRESS) 100%
     set ::standin::properties(run:[lindex $words 0],STATUS) "write_bitstream Complete!"
-    foreach path {runs/impl_1/system_wrapper.bit gen/sources_1/bd/system/hw_handoff/system.hwh} {
+    set left {}
+    if {[info exists ::standin::properties(run:impl_1,STEPS.OPT_DESIGN.TCL.PRE)]} {
+        standin::implement_with $::standin::properties(run:impl_1,STEPS.OPT_DESIGN.TCL.PRE)
+        set left {runs/impl_1/system_wrapper.ltx runs/impl_1/debug_nets.ltx}
+    }
+    lappend left runs/impl_1/system_wrapper.bit gen/sources_1/bd/system/hw_handoff/system.hwh
+    foreach path $left {
         set place [file join [pwd] $::standin::project $::standin::project.$path]
         file mkdir [file dirname $place]
         standin::write $place "\n"

@@ -132,7 +132,7 @@ namespace eval standin {
     }
 }
 
-foreach part {project.tcl ip_packager.tcl block_design.tcl} {
+foreach part {project.tcl ip_packager.tcl block_design.tcl ila.tcl power.tcl} {
     source [file join $standin::folder $part]
 }
 

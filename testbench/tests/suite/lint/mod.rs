@@ -64,6 +64,10 @@ fn designs() -> Vec<Design> {
     for design in [&mut dropping, &mut scanned] {
         design.hardware.overrun = Overrun::Drop;
     }
+    // Nets marked for a logic analyser, in every kind of core.
+    for design in [&mut curved, &mut uncorrected, &mut unpacked, &mut wide_control, &mut dropping] {
+        design.hardware.debug = true;
+    }
     vec![
         calibration::design(Outputs::Field),
         in_ram,

@@ -186,6 +186,7 @@ proc concatenate {interrupts input} {
     set index 0
     foreach interrupt $interrupts {
         connect interrupt_$index $interrupt interrupt_concat/In$index
+        puts "interrupt $input\[$index\]: $interrupt"
         incr index
     }
     connect interrupts interrupt_concat/dout $input
@@ -196,7 +197,9 @@ if {[dict get $boards $board processor] ne "zynq_ultra_ps_e"} {
 } else {
     # One interrupt on each of the processor's two inputs spares a concatenation.
     connect interrupt_in dma/mm2s_introut ps/pl_ps_irq0
+    puts {interrupt ps/pl_ps_irq0[0]: dma/mm2s_introut}
     connect interrupt_out dma/s2mm_introut ps/pl_ps_irq1
+    puts {interrupt ps/pl_ps_irq1[0]: dma/s2mm_introut}
 }
 
 # ---- Addresses: registers where drivers and device tree look for them, memory where it is

@@ -1,0 +1,79 @@
+//! Nets that a logic analyser in the FPGA should see: marked in the core's Verilog where the design says `debug = true`.
+
+/// Nets of the core in the order of the probes, each a wire that a line of its own declares: the handshakes of both
+/// streams, the lanes' turns, what leaves the lanes, answers and what is said of a frame.
+const NETS: [&str; 16] = [
+    "in_tvalid",
+    "in_tready",
+    "in_tlast",
+    "frame_ready",
+    "frame_done",
+    "frame_flags",
+    "start",
+    "issued",
+    "result_route",
+    "result_last",
+    "coefficients_complete",
+    "answer_valid",
+    "out_tvalid",
+    "out_tready",
+    "out_tlast",
+    "out_tdata",
+];
+
+/// What Vivado keeps a net for.
+const MARK: &str = "(* mark_debug = \"true\" *)";
+/// Samples that an analyser may have, powers of two between these.
+const LEAST_SAMPLES: u64 = 1024;
+const MOST_SAMPLES: u64 = 16_384;
+
+/// The net of [`NETS`] that a line declares, alone or with a value.
+fn declared(line: &str) -> Option<&'static str> {
+    let mut words = line.split_whitespace();
+    if words.next()? != "wire" {
+        return None;
+    }
+    let name = words.find(|word| *word != "signed" && !word.starts_with('['))?.trim_end_matches(';');
+    NETS.into_iter().find(|net| *net == name)
+}
+
+/// The nets of a core that are marked, or would be, in the order of the probes.
+pub fn nets(core: &str) -> Vec<&'static str> {
+    let there: Vec<&str> = core.lines().filter_map(declared).collect();
+    NETS.into_iter().filter(|net| there.contains(net)).collect()
+}
+
+/// The core with a mark above each of its [`nets`].
+pub fn marked(core: &str) -> String {
+    let mark = |line: &str| match declared(line) {
+        Some(_) => format!("    {MARK}\n{line}\n"),
+        None => format!("{line}\n"),
+    };
+    core.lines().map(mark).collect()
+}
+
+/// Samples of an analyser that sees a frame from its first beat to its answer, as far as there is memory for it.
+pub fn samples(latency_cycles: u64) -> u64 {
+    latency_cycles.next_power_of_two().clamp(LEAST_SAMPLES, MOST_SAMPLES)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wires_of_these_names_are_marked_and_nothing_else() {
+        let core = "module m (\n    output wire out_tdata_2\n);\n    wire in_tvalid;\n    wire [2:0] start;\n    \
+                    wire signed [4:0] out_tdata; // words\n    reg issued;\n    assign in_tready = start[0];\n";
+        assert_eq!(nets(core), ["in_tvalid", "start", "out_tdata"]);
+        let marked = marked(core);
+        assert_eq!(marked.matches(MARK).count(), 3);
+        assert!(marked.contains("    (* mark_debug = \"true\" *)\n    wire [2:0] start;\n"), "{marked}");
+        assert_eq!(marked.replace("    (* mark_debug = \"true\" *)\n", ""), core);
+    }
+
+    #[test]
+    fn a_whole_frame_fits_unless_it_takes_too_much_memory() {
+        assert_eq!([10, 1024, 1640, 9000, 70_000].map(samples), [1024, 1024, 2048, 16_384, 16_384]);
+    }
+}
