@@ -17,7 +17,8 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>]) -
         let first = frames[0][taxel];
         // Of one frame alone, or of the same one again and again, only a reading of 0 tells.
         first == 0.0 && frames.iter().all(|frame| frame[taxel] == 0.0)
-            || frames.iter().any(|frame| frame != &frames[0]) && frames.iter().all(|frame| frame[taxel] == first)
+            || frames.iter().any(|frame| frame != &frames[0])
+                && frames.iter().all(|frame| frame[taxel].to_bits() == first.to_bits())
     };
     let within = |taxel: usize| {
         let (x, y) = (taxel % columns, taxel / columns);
