@@ -100,15 +100,12 @@ pub fn scene<'py>(
         (kind, design) => kind.zip(design),
     };
     let (sensor, made) = without_lock(py, || {
-        let (sensor, mut frames) = match kind {
-            Some((kind, design)) => {
-                let seeds = u64::from(seed)..u64::from(seed) + u64::from(count);
-                (design.sensor.clone(), kind.frames(&design.sensor, friction, seeds)?)
-            }
-            None => {
-                let scene = Scene::for_design(path.as_deref(), design)?;
-                (scene.sensor.clone(), scene.frames()?)
-            }
+        let (sensor, mut frames) = if let Some((kind, design)) = kind {
+            let seeds = u64::from(seed)..u64::from(seed) + u64::from(count);
+            (design.sensor.clone(), kind.frames(&design.sensor, friction, seeds)?)
+        } else {
+            let scene = Scene::for_design(path.as_deref(), design)?;
+            (scene.sensor.clone(), scene.frames()?)
         };
         if let Some(design) = design {
             for frame in &mut frames {

@@ -56,14 +56,11 @@ pub fn run(
     let design = design.map(Design::load).transpose()?;
     let (sensor, made) = {
         let _progress = Progress::of("computing the stress");
-        match (kind, &design) {
-            (Some((kind, RandomContacts { count, friction, seed })), Some(design)) => {
-                (design.sensor.clone(), kind.frames(&design.sensor, friction, seed..seed + count)?)
-            }
-            _ => {
-                let scene = Scene::for_design(scene, design.as_ref())?;
-                (scene.sensor.clone(), scene.frames()?)
-            }
+        if let (Some((kind, RandomContacts { count, friction, seed })), Some(design)) = (kind, &design) {
+            (design.sensor.clone(), kind.frames(&design.sensor, friction, seed..seed + count)?)
+        } else {
+            let scene = Scene::for_design(scene, design.as_ref())?;
+            (scene.sensor.clone(), scene.frames()?)
         }
     };
     if forces_file == out {

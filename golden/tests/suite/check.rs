@@ -257,7 +257,11 @@ fn dead_taxels_within_a_contact_are_named() {
     let frames = frames(&design);
     let without = |dead: &[usize], reads: f64| -> Vec<Vec<f64>> {
         let mut frames = frames.clone();
-        frames.iter_mut().for_each(|frame| dead.iter().for_each(|&taxel| frame[taxel] = reads));
+        for frame in &mut frames {
+            for &taxel in dead {
+                frame[taxel] = reads;
+            }
+        }
         frames
     };
     found(&design, &without(&[44], 0.0), &[Kind::Dead], &["taxel 44 (4, 4) reads", "sensor.dead"]);

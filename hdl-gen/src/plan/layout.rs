@@ -57,7 +57,7 @@ impl OperandLayout {
         }
         let bram36 = |words| memory("operands", 1, words, bits, false).bram36;
         let words = layout.words();
-        if layout.fixed.starts_with(&RESIDUAL) && bram36(words + RESIDUAL.len() * elements) == bram36(words) {
+        if layout.fixed.starts_with(&RESIDUAL) && bram36(words + RESIDUAL.len() * elements) <= bram36(words) {
             layout.residuals = 2;
         }
         layout
