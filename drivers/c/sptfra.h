@@ -42,7 +42,8 @@ enum {
     SPTFRA_BAD_REST = -17,         /* a frame of the tare was clipped, no number, cut or lost: nothing has changed */
     SPTFRA_QUEUE_ONLY = -18,       /* the DMA goes by descriptors: sptfra_queue.h */
     SPTFRA_NO_QUEUE = -19,         /* the DMA has none */
-    SPTFRA_DROPS = -20             /* the core drops frames that come too fast: send it one at a time */
+    SPTFRA_DROPS = -20,            /* the core drops frames that come too fast: send it one at a time */
+    SPTFRA_CONTRADICTION = -21     /* the words of a bank do not go together: nothing has changed */
 };
 
 /* What went wrong, in words. */
@@ -225,6 +226,17 @@ int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *r
  * frame on; frames may run. On any error what acted still does. */
 int sptfra_load_calibration(
     const sptfra *device, const double *gain, const double *offset, double noise_floor_pa, uint32_t polls);
+/* Dead taxels, ascending, and the weights of all taxels in the stress of each, one after the other: the columns of a
+ * file of `golden bank`. */
+typedef struct {
+    uint32_t count;
+    const uint16_t *taxels; /* count of them */
+    const double *weights;  /* count times as many as there are taxels; 0 of dead ones */
+} sptfra_replaced;
+/* The same, and from then on these taxels are replaced, with a count of 0 none; SPTFRA_OUT_OF_RANGE if there are more
+ * than a bank has room for. Without this, or with NULL, those are that were before. */
+int sptfra_load_bank(const sptfra *device, const double *gain, const double *offset, const sptfra_replaced *replaced,
+    double noise_floor_pa, uint32_t polls);
 /* A word of the bank that acts, or of the other one. */
 int sptfra_read_calibration(const sptfra *device, uint16_t index, int acting, uint32_t *word);
 #define SPTFRA_MOST_TARE_LOG2 10u

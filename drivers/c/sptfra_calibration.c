@@ -14,7 +14,10 @@
 #define LEAST_GAIN 1e-9
 #define MOST_GAIN 16.0
 #define MOST_OFFSET 1e6
-#define ALL_ERRORS 0x1Fu
+#define ALL_ERRORS 0x3Fu
+/* Of the weights of dead taxels. */
+#define MOST_WEIGHT_SHIFT 17u
+#define MOST_WEIGHTS 2097151.0
 
 static int is_there(const sptfra *device)
 {
@@ -66,6 +69,7 @@ typedef struct {
     int shift, lsb;
     double offset_limit;
     uint32_t taxels;
+    uint32_t room; /* dead taxels that a bank has room for */
 } numbers;
 
 static void numbers_of(const sptfra *device, numbers *of)
@@ -79,6 +83,7 @@ static void numbers_of(const sptfra *device, numbers *of)
     of->shift = (int)FIELD(word, CALIBRATION__SHIFT);
     of->lsb = (int)lsb - (lsb > 127u ? 256 : 0);
     of->offset_limit = (double)GET(device, CALIBRATION_OFFSET_LIMIT);
+    of->room = FIELD(GET(device, FEATURES), FEATURES__REPLACEABLE);
     of->taxels = (uint32_t)device->shape.columns * device->shape.rows;
 }
 
@@ -168,18 +173,110 @@ int sptfra_calibration_wait(const sptfra *device, uint32_t polls)
     if (errors & SPTFRA__CALIBRATION_ERRORS__WRONG_CRC_bm) {
         return SPTFRA_WRONG_CRC;
     }
+    if (errors & SPTFRA__CALIBRATION_ERRORS__CONTRADICTION_bm) {
+        return SPTFRA_CONTRADICTION;
+    }
     if (errors & SPTFRA__CALIBRATION_ERRORS__BUSY_bm) {
         return SPTFRA_CALIBRATION_BUSY;
     }
     return errors ? SPTFRA_OUT_OF_RANGE : SPTFRA_OK;
 }
 
+/* ---- Dead taxels */
+
+/* Fraction bits that the weights have: the most with which each, and all of a sum together, have room. */
+static uint32_t weight_shift(const numbers *of, const sptfra_replaced *replaced)
+{
+    uint32_t shift, dead, taxel;
+
+    for (shift = MOST_WEIGHT_SHIFT; shift > 0; shift--) {
+        int fits = 1;
+
+        for (dead = 0; dead < replaced->count && fits; dead++) {
+            double sum = 0.0;
+
+            for (taxel = 0; taxel < of->taxels; taxel++) {
+                const double weight = magnitude(replaced->weights[dead * of->taxels + taxel]) * power((int)shift);
+
+                fits = fits && weight < MOST_MANTISSA + 0.5;
+                sum += fits ? (double)rounded(weight) : 0.0;
+            }
+            fits = fits && sum <= MOST_WEIGHTS;
+        }
+        if (fits) {
+            break;
+        }
+    }
+    return shift;
+}
+
+/* Whether a bank takes it; with a shift of 0 it may still be too much. */
+static int replaceable(const numbers *of, const sptfra_replaced *replaced)
+{
+    uint32_t dead, taxel, other;
+
+    if (replaced->count > of->room) {
+        return 0;
+    }
+    for (dead = 0; dead < replaced->count; dead++) {
+        double sum = 0.0;
+
+        if (replaced->taxels[dead] >= of->taxels || (dead > 0 && replaced->taxels[dead] <= replaced->taxels[dead - 1])) {
+            return 0;
+        }
+        for (taxel = 0; taxel < of->taxels; taxel++) {
+            const double weight = replaced->weights[dead * of->taxels + taxel];
+
+            if (!(magnitude(weight) < MOST_MANTISSA + 0.5)) {
+                return 0;
+            }
+            sum += (double)rounded(magnitude(weight));
+        }
+        for (other = 0; other < replaced->count; other++) {
+            if (replaced->weights[dead * of->taxels + replaced->taxels[other]] != 0.0) {
+                return 0;
+            }
+        }
+        if (sum > MOST_WEIGHTS) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Word by word: count and shift, numbers, then each taxel's weights. */
+static uint32_t word_of_map(const numbers *of, const sptfra_replaced *replaced, uint32_t shift, uint32_t place)
+{
+    uint32_t dead, taxel;
+
+    if (place == 0) {
+        return replaced->count | shift << 8;
+    }
+    if (place <= of->room) {
+        return place <= replaced->count ? replaced->taxels[place - 1] : 0u;
+    }
+    dead = (place - 1u - of->room) % of->room;
+    taxel = (place - 1u - of->room) / of->room;
+    if (dead >= replaced->count) {
+        return 0u;
+    }
+    return (uint32_t)rounded(replaced->weights[dead * of->taxels + taxel] * power((int)shift));
+}
+
+/* ---- A whole bank */
+
 int sptfra_load_calibration(
     const sptfra *device, const double *gain, const double *offset, double noise_floor_pa, uint32_t polls)
 {
+    return sptfra_load_bank(device, gain, offset, NULL, noise_floor_pa, polls);
+}
+
+int sptfra_load_bank(const sptfra *device, const double *gain, const double *offset, const sptfra_replaced *replaced,
+    double noise_floor_pa, uint32_t polls)
+{
     const int there = is_there(device);
     numbers of;
-    uint32_t taxel, crc = UINT32_MAX, thresholds[2];
+    uint32_t taxel, place, word, in_map, shift = 0, crc = UINT32_MAX, thresholds[2];
     uint32_t words[2];
     int kind, found;
 
@@ -192,6 +289,12 @@ int sptfra_load_calibration(
         if (!words_of(&of, gain[taxel], offset[taxel], words)) {
             return SPTFRA_OUT_OF_RANGE;
         }
+    }
+    if (replaced != NULL) {
+        if (!replaceable(&of, replaced)) {
+            return SPTFRA_OUT_OF_RANGE;
+        }
+        shift = weight_shift(&of, replaced);
     }
     if (noise_floor_pa > 0.0) {
         const double noise = noise_floor_pa * power(-of.lsb);
@@ -225,6 +328,22 @@ int sptfra_load_calibration(
     for (kind = 0; kind < 2; kind++) {
         SET(device, CALIBRATION_DATA, thresholds[kind]);
         crc = crc_of(crc, thresholds[kind]);
+    }
+    in_map = of.room > 0 ? 1u + of.room * (1u + of.taxels) : 0u;
+    for (place = 0; place < in_map; place++) {
+        const uint32_t index = 2u * of.taxels + 2u + place;
+
+        if (replaced != NULL) {
+            word = word_of_map(&of, replaced, shift, place);
+        } else {
+            found = sptfra_read_calibration(device, (uint16_t)index, 1, &word);
+            if (found != SPTFRA_OK) {
+                return found;
+            }
+            SET(device, CALIBRATION_INDEX, index);
+        }
+        SET(device, CALIBRATION_DATA, word);
+        crc = crc_of(crc, word);
     }
     SET(device, CALIBRATION_COMMIT, ~crc);
     found = sptfra_calibration_wait(device, polls);

@@ -7,25 +7,44 @@ import numpy as np
 
 #: A gain's word: mantissa, and above it the exponent of the counts.
 MANTISSA_BITS, EXPONENT_BITS = 18, 10
+#: What the weights of a dead taxel add up to at most, in their steps.
+MOST_WEIGHTS = (1 << 21) - 1
 
 
 def read_calibration(path, taxels):
-    """Gains and offsets of a file with a line `gain,offset` for each taxel. Raises ValueError, with the line."""
-    gains, offsets = [], []
+    """Gains and offsets of a file with a line `gain,offset` for each taxel, and what it says of dead taxels.
+
+    A file of `golden bank` has a header, `gain,offset,taxel 37,...`, and in each line the taxel's weight in the stress of
+    each dead one: `{37: [weights], ...}`, of other files None. Raises ValueError, with the line.
+    """
+    gains, offsets, dead = [], [], None
     for number, line in enumerate(pathlib.Path(path).read_text(encoding="utf-8-sig").splitlines(), 1):
         if not line.strip():
             continue
+        if dead is None and not gains and line.startswith("gain,offset"):
+            names = [name.split() for name in line.strip().split(",")[2:]]
+            if any(len(name) != 2 or name[0] != "taxel" or not name[1].isdecimal() for name in names):
+                raise ValueError(f"{path}, line {number}: a header is gain,offset,taxel 37,... as golden bank writes it")
+            dead = {int(name[1]): [] for name in names}
+            if list(dead) != sorted(dead) or len(dead) != len(names) or any(taxel >= taxels for taxel in dead):
+                raise ValueError(f"{path}, line {number}: dead taxels ascend, and the core has {taxels} taxels")
+            continue
         try:
-            gain, offset = map(float, line.split(","))
+            gain, offset, *weights = map(float, line.split(","))
+            if len(weights) != len(dead or {}):
+                raise ValueError
         except ValueError:
-            raise ValueError(f"{path}, line {number}: {line.strip()!r} is no gain,offset such as 1.02,-0.5") from None
+            like = "gain,offset such as 1.02,-0.5" + " and a weight for each dead taxel" * bool(dead)
+            raise ValueError(f"{path}, line {number}: {line.strip()!r} is no {like}") from None
+        for of_taxel, weight in zip((dead or {}).values(), weights):
+            of_taxel.append(weight)
         if not (gain == 0 or 1e-9 <= gain <= 16) or not abs(offset) <= 1e6:
             raise ValueError(f"{path}, line {number}: use a gain from 1e-9 to 16 or 0, an offset from -1e6 to 1e6")
         gains.append(gain)
         offsets.append(offset)
     if len(gains) != taxels:
         raise ValueError(f"{path}: {len(gains)} lines, and the core has {taxels} taxels")
-    return gains, offsets
+    return gains, offsets, dead
 
 
 def bank_words(gains, offsets, count_steps, shift, offset_limit):
@@ -52,3 +71,30 @@ def bank_words(gains, offsets, count_steps, shift, offset_limit):
         words[taxel] = (exponent & ((1 << EXPONENT_BITS) - 1)) << MANTISSA_BITS | mantissa & ((1 << MANTISSA_BITS) - 1)
         words[len(gains) + taxel] = scaled & 0xFFFFFFFF
     return words
+
+
+def map_words(dead, room, taxels):
+    """The words of dead taxels, `{taxel: weights of all taxels}`, in a bank with room for so many, as uint32.
+
+    Raises ValueError where there are more, or where weights are none that a bank takes.
+    """
+    if len(dead) > room:
+        raise ValueError(f"{len(dead)} dead taxels, and the core has room for {room}: [hardware] replaceable")
+    if room == 0:
+        return np.zeros(0, dtype=np.uint32)
+    weights = np.zeros((taxels, room))
+    for place, of_taxel in enumerate(dead.values()):
+        weights[:, place] = of_taxel
+    if not np.all(np.isfinite(weights)) or np.any(weights[list(dead)]):
+        raise ValueError("a dead taxel has no weight, and others have a number")
+    for shift in reversed(range(MANTISSA_BITS)):
+        # Ties go away from zero.
+        steps = np.copysign(np.floor(np.abs(weights) * 2.0**shift + 0.5), weights)
+        if np.max(np.abs(steps)) < 1 << (MANTISSA_BITS - 1) and np.max(np.sum(np.abs(steps), axis=0)) <= MOST_WEIGHTS:
+            break
+    else:
+        raise ValueError("weights of dead taxels so large that no bank takes them")
+    numbers = np.zeros(room, dtype=np.uint32)
+    numbers[: len(dead)] = list(dead)
+    head = np.array([len(dead) | shift << 8], dtype=np.uint32)
+    return np.concatenate([head, numbers, steps.astype(np.int64).astype(np.uint32).ravel()])

@@ -25,7 +25,7 @@ import time
 import zlib
 
 import numpy as np
-from sptfra_bank import bank_words, read_calibration
+from sptfra_bank import bank_words, map_words, read_calibration
 from sptfra_dma import Batches, OneByOne
 from sptfra_forces import LAYOUT, Forces, Layout, Status, decode
 from sptfra_identity import Counters, Identity
@@ -162,12 +162,15 @@ class Sptfra:
     def load_calibration(self, path, noise_floor_pa=None, timeout=1.0):
         """Lets the gains and offsets of a `calibration.csv` act from the next frame on; frames may run meanwhile.
 
-        The file has a line `gain,offset` for each taxel, as the design's own. With `noise_floor_pa` the thresholds of
+        The file has a line `gain,offset` for each taxel, as the design's own, or is one of `golden bank`: then the dead
+        taxels of its header are replaced, and no others; else those that were. With `noise_floor_pa` the thresholds of
         contact and of rest are set by it, else they stay. What is written is compared by its CRC. Raises ValueError on a
         file or values that no bank takes, RuntimeError if the core refuses, TimeoutError; then what acted still does.
         """
         self._needs_calibration()
-        gains, offsets = read_calibration(path, self.identity.rows * self.identity.columns)
+        gains, offsets, dead = read_calibration(path, self.identity.rows * self.identity.columns)
+        room = self.identity.replaceable
+        in_map = [] if dead is None else map_words(dead, room, len(gains))
         read, write = self._core.read, self._core.write
         numbers = read(Register.CALIBRATION)
         shift, lsb = numbers >> 16 & 0x3F, (numbers >> 24 ^ 0x80) - 0x80
@@ -180,7 +183,15 @@ class Sptfra:
             thresholds = [max(1, int(noise_floor_pa * count * 2.0**-lsb + 0.5)) for count in (len(gains), 1)]
             if not 0 < noise_floor_pa or thresholds[0] >= 1 << 32 or thresholds[1] >= 1 << 26:
                 raise ValueError(f"a noise floor of {noise_floor_pa} Pa: use one above 0, far below the full scale")
-        words = np.append(words, np.array(thresholds, dtype=np.uint32)).astype("<u4")
+        if dead is None and room:
+            first = len(words) + 2
+            in_map = [self.read_calibration(first + place) for place in range(1 + room * (1 + len(gains)))]
+        if room:
+            replaced = {int(taxel) for taxel in in_map[1 : 1 + (int(in_map[0]) & 15)]}
+            bare = [taxel for taxel, gain in enumerate(gains) if gain == 0 and taxel not in replaced]
+            if bare:
+                raise ValueError(f"{path}: nothing replaces the taxels {bare} of gain 0: write it with golden bank")
+        words = np.concatenate([words, np.array([*thresholds, *in_map], dtype=np.uint32)]).astype("<u4")
         crc = zlib.crc32(words.tobytes())
         self._calibration_idle()
         write(Register.CALIBRATION_INDEX, 0)

@@ -27,6 +27,8 @@ class Identity:
     stream_bits: int
     #: Whether gains and offsets are in RAM: see `Sptfra.load_calibration`.
     calibration_in_ram: bool
+    #: Dead taxels that a calibration can have replaced.
+    replaceable: int
     #: Whether frames that find no room are dropped, and the source never held.
     drops_frames: bool
     #: What a sample of a frame is: float32, int16 or uint16.
@@ -61,6 +63,7 @@ class Identity:
             has_counts=bool(features & 4),
             skips_zeros=bool(features & 8),
             calibration_in_ram=bool(features & 16),
+            replaceable=features >> 20 & 15,
             drops_frames=bool(features & 32),
             stream_bits=8 * (features >> 8 & 0xFF) or 32,
             samples=np.dtype((np.float32, np.int16, np.uint16)[features >> 16 & 3]),
@@ -88,6 +91,7 @@ class Identity:
             has_counts=None,
             skips_zeros=predicted["worst_case"],
             calibration_in_ram=False,
+            replaceable=0,
             drops_frames=metadata["overrun"] == "drop",
             stream_bits=metadata["stream_bits"],
             samples=np.dtype(metadata["samples"]),

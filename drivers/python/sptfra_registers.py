@@ -67,3 +67,4 @@ class CalibrationError(enum.IntFlag):
     WRONG_CRC = 4
     NOT_AT_REST = 8
     BAD_FRAME = 16
+    CONTRADICTION = 32

@@ -22,6 +22,7 @@
 //! presses on the sensor and `(f_x, f_y)` is the force the object exerts along the surface.
 
 pub mod arguments;
+pub mod bank;
 pub mod bodies;
 pub mod calibrate;
 pub mod check;

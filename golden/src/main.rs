@@ -174,6 +174,23 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Write what a board loads into a bank of its calibration.
+    ///
+    /// For a design with [hardware] calibration = "ram": each taxel's gain and offset and, with `replaceable`, its weights in
+    /// the stress of the dead taxels that the design names. `load_calibration` of the Python driver reads the file; nothing
+    /// is synthesized.
+    #[command(after_long_help = BANK_FILE)]
+    Bank {
+        /// Design file (TOML), with the calibration and the dead taxels of today.
+        #[arg(value_parser = design_file())]
+        design: PathBuf,
+        /// Where to write the bank (CSV).
+        #[arg(long, value_name = "BANK.csv")]
+        out: PathBuf,
+        /// Report as JSON.
+        #[arg(long)]
+        json: bool,
+    },
     #[command(flatten)]
     Manual(Manual),
 }
@@ -267,6 +284,19 @@ In RESOLVED.toml, besides:
   sha256 = "..."                    # of that file
   error_base = -17123               # with family "wide": what is added to the logarithm of the error that is left"#;
 
+const BANK_FILE: &str = r#"BANK.csv: a header line, gain,offset,taxel 37,taxel 38, that names the dead taxels; then a line for each taxel: its gain
+(0 of a dead one), its offset in counts, and its weight in the stress of each dead taxel.
+
+In the design file:
+  [sensor]
+  calibration = "calibration.csv"   # a line gain,offset for each taxel, such as golden calibrate writes; gain 0: dead
+  dead = [37, 38]                   # others that read nothing
+
+  [hardware]
+  control = true
+  calibration = "ram"
+  replaceable = 8                   # dead taxels for which a bank has room: 1, 2, 4 or 8"#;
+
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Scene { scene, design, out, json } => {
@@ -285,6 +315,7 @@ fn main() -> ExitCode {
             let work = Work { seed, hidden: hidden.map(usize::from), quick };
             commands::calibrate::run(&design, &out, family, work, json)
         }
+        Command::Bank { design, out, json } => commands::bank::run(&design, &out, json),
         Command::Manual(manual) => manual.run(Arguments::command()).and_then(|text| Ok(print_text(&text)?)),
         Command::Bench { designs, json } => commands::bench::run(&designs, json),
         Command::Choose { design, out, csv, json } => commands::choose::run(&design, &out, csv.as_deref(), json),

@@ -2,8 +2,8 @@
 // Part of the SpTFRA hardware generator.
 //
 // Bz with a calibration in RAM: counts become pascals by the bank that acts at a frame's first beat
-// (sptfra_calibrate), a tare listens, Bz takes pascals, and threshold and generation of that bank follow the frame
-// (sptfra_frame_calibration).
+// (sptfra_calibrate), a tare listens, taxels that the bank says are dead are replaced (sptfra_replace), Bz takes
+// pascals, and threshold and generation of that bank follow the frame (sptfra_frame_calibration).
 
 `default_nettype none
 
@@ -27,6 +27,12 @@ module sptfra_bz_calibrated #(
     parameter COUNT_SHIFT = 14,
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
     parameter EXPECTED_CALIBRATION = 0,
+    // Dead taxels that a bank can have replaced, and what does at power-up: see sptfra_dead_bank
+    parameter REPLACEABLE = 0,
+    parameter [3:0] REPLACED_COUNT = 4'd0,
+    parameter [4:0] REPLACED_SHIFT = 5'd17,
+    parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
+        = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
     // 32-bit words of a beat out: 1, 2 or 4
     parameter WORDS = 1,
     // Derived
@@ -34,7 +40,9 @@ module sptfra_bz_calibrated #(
     parameter TAXELS = COLUMNS * ROWS,
     parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1,
     parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
+    parameter COMMAND_BITS = TAXEL_WIDTH + OFFSET_BITS + 31 + ((REPLACEABLE != 0) ? 56 : 0),
+    parameter RESULT_BITS = OFFSET_BITS + 28 + ((REPLACEABLE != 0) ? 34 : 0)
 ) (
     input  wire clock,
     input  wire reset,
@@ -64,9 +72,10 @@ module sptfra_bz_calibrated #(
     // Calibration: {active, generation, contact, noise}
     input  wire [67:0] calibration_acting,
     output wire calibration_old_in_use,
-    // {write gain, write offset, bank, taxel, gain, offset}, and the words there: {gain, offset}
-    input  wire [TAXEL_WIDTH+OFFSET_BITS+30:0] bank_command,
-    output wire [OFFSET_BITS+27:0] bank_words,
+    // {write gain, write offset, bank, taxel, gain, offset}, and the words there: {gain, offset}; in front of each,
+    // where dead taxels stand in the banks, what sptfra_dead_bank has of that
+    input  wire [COMMAND_BITS-1:0] bank_command,
+    output wire [RESULT_BITS-1:0] bank_words,
     // {run, log2 of frames, taxel}; {finished, restless, bad frame, mean}
     input  wire [TAXEL_WIDTH+4:0] tare_command,
     output wire [29:0] tare_result,
@@ -82,6 +91,9 @@ module sptfra_bz_calibrated #(
 );
 
     localparam integer STRESS_LSB = -NUMBER_SHIFT;
+    // Word of a bank with which dead taxels begin, and the cycles that a frame takes for them
+    localparam [31:0] FIRST_OF_DEAD = 2 * TAXELS + 2;
+    localparam REPLACING = (REPLACEABLE != 0) ? TAXELS + 6 : 0;
 
     wire active;
     wire [7:0] generation;
@@ -97,23 +109,19 @@ module sptfra_bz_calibrated #(
     wire [TAXEL_WIDTH-1:0] tare_taxel;
 
     assign {active, generation, contact, noise} = calibration_acting;
-    assign {write_gain, write_offset, bank_address, gain_in, offset_in} = bank_command;
+    assign {write_gain, write_offset, bank_address, gain_in, offset_in} = bank_command[TAXEL_WIDTH+OFFSET_BITS+30:0];
     assign {tare_run, tare_log2, tare_taxel} = tare_command;
 
     // ---- Counts to pascals
     wire [31:0] pascals_tdata;
-    wire pascals_tlast;
-    wire pascals_tvalid;
-    wire pascals_tready;
-    wire frame_begins;
-    wire reading_valid;
-    wire reading_marked;
-    wire reading_last;
-    wire reading_bad;
-    wire reading_advance;
+    wire pascals_tlast, pascals_tvalid, pascals_tready;
+    wire frame_begins, bank_held, hold;
+    wire reading_valid, reading_marked, reading_last, reading_bad, reading_not_finite, reading_advance;
     wire [TAXEL_WIDTH-1:0] reading_taxel_8;
     wire [TAXEL_WIDTH-1:0] reading_taxel;
     wire signed [26:0] reading;
+    wire back_valid, back_last, back_not_finite;
+    wire signed [26:0] back_stress;
 
     sptfra_calibrate #(
         .TAXELS          (TAXELS),
@@ -125,7 +133,7 @@ module sptfra_bz_calibrated #(
         .STRESS_LSB      (STRESS_LSB),
         .ROM_DIR         (ROM_DIR),
         .ROM_NAME        (ROM_NAME),
-        .EXPECTED_STAGES (EXPECTED_CALIBRATION)
+        .EXPECTED_STAGES ((EXPECTED_CALIBRATION != 0) ? EXPECTED_CALIBRATION - REPLACING : 0)
     ) calibrate (
         .clock             (clock),
         .reset             (reset),
@@ -140,6 +148,8 @@ module sptfra_bz_calibrated #(
         .active            (active),
         .old_in_use        (calibration_old_in_use),
         .frame_begins      (frame_begins),
+        .bank_held         (bank_held),
+        .hold              (hold),
         .write_gain        (write_gain),
         .write_offset      (write_offset),
         .address           (bank_address),
@@ -155,8 +165,87 @@ module sptfra_bz_calibrated #(
         .reading_taxel     (reading_taxel),
         .reading           (reading),
         .reading_bad       (reading_bad),
-        .reading_advance   (reading_advance)
+        .reading_nan       (reading_not_finite),
+        .reading_advance   (reading_advance),
+        .back_valid        (back_valid),
+        .back_last         (back_last),
+        .back_stress       (back_stress),
+        .back_not_finite   (back_not_finite)
     );
+
+    // ---- Dead taxels, of the bank's map
+    wire [3:0] replaced_count;
+    wire [29:0] bz_replaced;
+
+    generate
+        if (REPLACEABLE != 0) begin : gen_replace
+            wire [18*REPLACEABLE-1:0] weights;
+            wire [3:0] count;
+            wire [4:0] weight_shift;
+            wire [16*REPLACEABLE-1:0] taxels;
+
+            sptfra_dead_bank #(
+                .TAXELS       (TAXELS),
+                .REPLACEABLE  (REPLACEABLE),
+                .FIRST        (FIRST_OF_DEAD[15:0]),
+                .COUNT        (REPLACED_COUNT),
+                .WEIGHT_SHIFT (REPLACED_SHIFT),
+                .NUMBERS      (REPLACED_TAXELS),
+                .ROM_DIR      (ROM_DIR),
+                .ROM_NAME     (ROM_NAME)
+            ) dead_bank (
+                .clock        (clock),
+                .command      (bank_command[COMMAND_BITS-1 -: 56]),
+                .result       (bank_words[RESULT_BITS-1 -: 34]),
+                .active       (active),
+                .acting_count (replaced_count),
+                .read_enable  (reading_advance),
+                .read_bank    (bank_held),
+                .read_taxel   (reading_taxel_8),
+                .read_weights (weights),
+                .read_count   (count),
+                .read_shift   (weight_shift),
+                .read_numbers (taxels)
+            );
+
+            sptfra_replace #(
+                .TAXELS       (TAXELS),
+                .REPLACEABLE  (REPLACEABLE),
+                .STRESS_BOUND (STRESS_BOUND)
+            ) replace (
+                .clock          (clock),
+                .reset          (reset),
+                .advance        (reading_advance),
+                .begins         (frame_begins),
+                .hold           (hold),
+                .in_valid       (reading_valid),
+                .in_last        (reading_last),
+                .in_stress      (reading),
+                .in_not_finite  (reading_not_finite),
+                .weights_ahead  (weights),
+                .count          (count),
+                .weight_shift   (weight_shift),
+                .taxels         (taxels),
+                .out_valid      (back_valid),
+                .out_last       (back_last),
+                .out_stress     (back_stress),
+                .out_not_finite (back_not_finite),
+                .replaced       (frame_replaced),
+                .replaced_take  (frame_done)
+            );
+
+            wire _unused_replaced = &{1'b0, bz_replaced};
+        end else begin : gen_as_read
+            assign hold = 1'b0;
+            assign back_valid = reading_valid;
+            assign back_last = reading_last;
+            assign back_stress = reading;
+            assign back_not_finite = reading_not_finite;
+            assign replaced_count = 4'd0;
+            assign frame_replaced = bz_replaced;
+            wire _unused_map = &{1'b0, bank_held, FIRST_OF_DEAD, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS};
+        end
+    endgenerate
 
     sptfra_tare #(
         .TAXELS (TAXELS)
@@ -215,7 +304,7 @@ module sptfra_bz_calibrated #(
         .frame_saturated  (frame_saturated),
         .frame_not_finite (frame_not_finite),
         .frame_bad_length (frame_bad_length),
-        .frame_replaced   (frame_replaced),
+        .frame_replaced   (bz_replaced),
         .frame_ready      (frame_ready),
         .frame_start      (frame_start),
         .frame_release    (frame_release)
@@ -230,6 +319,7 @@ module sptfra_bz_calibrated #(
         .begins         (frame_begins),
         .contact        (contact),
         .generation     (generation),
+        .replaced       (replaced_count),
         .direction_take (direction_take),
         .stress_sum     (stress_sum),
         .flags_in       (flags_in),

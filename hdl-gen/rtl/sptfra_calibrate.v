@@ -5,7 +5,8 @@
 // a stream of counts in, one of float32 out, for a Bz that takes pascals.
 //
 // A frame takes its gains and offsets from the bank that acts at its first beat, whatever happens meanwhile. Beat to
-// beat: 18 cycles, one beat a cycle. Names end in the number of cycles since the beat came in.
+// beat: 18 cycles, one beat a cycle. Names end in the number of cycles since the beat came in. On the way readings go
+// out and come back: at once, or when dead taxels among them are replaced (sptfra_replace).
 
 `default_nettype none
 
@@ -27,7 +28,7 @@ module sptfra_calibrate #(
     // Prefix of the names of the files with the content at power-up, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
-    // Cycles that the plan counts on; 0: any
+    // Cycles that the plan counts on, but for those of the readings' way; 0: any
     parameter EXPECTED_STAGES = 0,
     // Derived
     parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16,
@@ -49,6 +50,8 @@ module sptfra_calibrate #(
     input  wire active, // of the frames that begin
     output wire old_in_use, // the frame coming in began with the other one
     output wire frame_begins,
+    output reg  bank_held, // of the frame that began last
+    input  wire hold, // that frame is not whole yet: none may begin
     input  wire write_gain,
     input  wire write_offset,
     input  wire [TAXEL_WIDTH:0] address, // bank, taxel
@@ -65,7 +68,13 @@ module sptfra_calibrate #(
     output wire [TAXEL_WIDTH-1:0] reading_taxel,
     output wire signed [26:0] reading,
     output wire reading_bad, // clipped, no number, or of a frame of another length
-    output wire reading_advance
+    output wire reading_nan, // no number
+    output wire reading_advance,
+    // Readings as they come back
+    input  wire back_valid,
+    input  wire back_last,
+    input  wire signed [26:0] back_stress,
+    input  wire back_not_finite
 );
 
     localparam INDEX_WIDTH = $clog2(TAXELS + 1);
@@ -85,7 +94,6 @@ module sptfra_calibrate #(
     // ---- Which taxel, of which bank
     wire advance; // of the skid buffer behind, a register
     reg in_frame;
-    reg bank_held;
     reg marked_held;
     reg [INDEX_WIDTH-1:0] index; // of the next beat, stops at TAXELS
     reg [1:0] ends_inside; // last beats on their way: packets of a beat must not pile up here
@@ -97,9 +105,9 @@ module sptfra_calibrate #(
     wire accept = s_tvalid && s_tready;
     wire [31:0] index_wide = {{(32-INDEX_WIDTH){1'b0}}, index};
 
-    assign s_tready = advance && (in_frame || (ends_inside != 2'd3));
+    assign s_tready = advance && (in_frame || (!hold && (ends_inside != 2'd3)));
     assign frame_begins = accept && !in_frame;
-    assign old_in_use = in_frame && (bank_held != active);
+    assign old_in_use = (in_frame || hold) && (bank_held != active);
 
     always @(posedge clock) begin
         if (accept) begin
@@ -166,8 +174,8 @@ module sptfra_calibrate #(
 
     always @(posedge clock) begin
         if (advance) begin
-            valid <= {valid[STAGES-1:1], accept};
-            lasts <= {lasts[STAGES-1:1], s_tlast};
+            valid <= {valid[STAGES-1:11], back_valid, valid[9:1], accept};
+            lasts <= {lasts[STAGES-1:11], back_last, lasts[9:1], s_tlast};
             marks <= {marks[9:1], marked};
             wrong_lengths <= {wrong_lengths[9:1], (index_wide == TAXELS) || (s_tlast && (index_wide != TAXELS - 1))};
             taxels <= {taxels[9*TAXEL_WIDTH-1:0], index_wide[TAXEL_WIDTH-1:0]};
@@ -257,7 +265,7 @@ module sptfra_calibrate #(
             sum_9 <= (product_half >>> COUNT_SHIFT) + offset_wide_8;
             stress_10 <= above ? STRESS_BOUND : below ? -STRESS_BOUND : sum_9[26:0];
             clipped_10 <= above || below;
-            not_finite <= {not_finite[STAGES-1:8], number_not_finite_7};
+            not_finite <= {not_finite[STAGES-1:11], back_not_finite, not_finite[9:8], number_not_finite_7};
         end
     end
 
@@ -268,6 +276,7 @@ module sptfra_calibrate #(
     assign reading_taxel = taxels[10*TAXEL_WIDTH-1 -: TAXEL_WIDTH];
     assign reading = stress_10;
     assign reading_bad = clipped_10 || not_finite[10] || wrong_lengths[10];
+    assign reading_nan = not_finite[10];
     assign reading_advance = advance;
 
     // ---- Out, as float32
@@ -279,7 +288,7 @@ module sptfra_calibrate #(
     sptfra_fixed_to_float fixed_to_float (
         .clock      (clock),
         .enable     (advance),
-        .fixed      ({{37{stress_10[26]}}, stress_10}),
+        .fixed      ({{37{back_stress[26]}}, back_stress}),
         .exponent   (LSB),
         .float_bits (float_17)
     );

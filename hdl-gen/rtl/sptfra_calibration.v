@@ -3,10 +3,11 @@
 //
 // The two banks of a calibration: which one acts, writes to the other, its CRC and the change to it, and tare.
 //
-// A bank's words are the taxels' gains, their offsets, then the contact threshold and the noise floor. A commit reads
-// the bank that does not act, six cycles a word; if it has the CRC that the commit states, it acts from the next frame
-// on. Tare writes the acting bank into the other one, with the mean stress taken off the offsets. What acts outlives a
-// reset: only the device's configuration brings the design's content back.
+// A bank's words are the taxels' gains, their offsets, the contact threshold and the noise floor, then what
+// sptfra_dead_bank has of dead taxels. A commit reads the bank that does not act, six cycles a word; if it has the CRC
+// that the commit states, and does not contradict itself, it acts from the next frame on. Tare writes the acting bank
+// into the other one, with the mean stress taken off the offsets. What acts outlives a reset: only the device's
+// configuration brings the design's content back.
 
 `default_nettype none
 
@@ -20,6 +21,8 @@ module sptfra_calibration #(
     parameter [31:0] CONTACT = 32'd1,
     parameter [26:0] NOISE = 27'd1,
     parameter [31:0] CRC = 32'd0,
+    // Places of the map of dead taxels
+    parameter REPLACEABLE = 0,
     // Derived
     parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1
 ) (
@@ -44,6 +47,7 @@ module sptfra_calibration #(
     output reg  not_at_rest,
     output reg  bad_frame,
     output reg  tare_out_of_range,
+    output reg  contradiction,
     // What acts
     output reg  active,
     output reg  [7:0] generation,
@@ -66,7 +70,10 @@ module sptfra_calibration #(
     input  wire tare_finished,
     input  wire tare_restless,
     input  wire tare_bad_frame,
-    input  wire signed [26:0] tare_mean
+    input  wire signed [26:0] tare_mean,
+    // To the core: what banks say of dead taxels, see sptfra_dead_bank
+    output wire [55:0] dead_command,
+    input  wire [33:0] dead_result
 );
 
     localparam [31:0] OFFSETS_WIDE = TAXELS;
@@ -75,6 +82,8 @@ module sptfra_calibration #(
     localparam [15:0] FIRST_OFFSET = OFFSETS_WIDE[15:0];
     localparam [15:0] CONTACT_WORD = CONTACT_WIDE[15:0];
     localparam [15:0] NOISE_WORD = CONTACT_WORD + 16'd1;
+    localparam [31:0] DEAD_WORDS = (REPLACEABLE != 0) ? 1 + REPLACEABLE + REPLACEABLE * TAXELS : 0;
+    localparam [15:0] LAST_WORD = NOISE_WORD + DEAD_WORDS[15:0];
     localparam [15:0] LAST_TAXEL = LAST_TAXEL_WIDE[15:0];
     localparam [2:0] IDLE = 3'd0, WALK = 3'd1, DECIDE = 3'd2, DRAIN = 3'd3, GATHER = 3'd4, COPY = 3'd5;
     localparam [2:0] LAST_BYTE = 3'd5; // of a word's cycles
@@ -114,19 +123,21 @@ module sptfra_calibration #(
     wire of_offset = !of_gain && (position < CONTACT_WORD);
     wire of_contact = (position == CONTACT_WORD);
     wire of_noise = (position == NOISE_WORD);
+    wire of_dead = (position > NOISE_WORD) && (position <= LAST_WORD);
     wire [15:0] taxel = of_gain ? position : position - FIRST_OFFSET;
-    reg [3:0] kind; // of the word that the memories show
+    reg [4:0] kind; // of the word that the memories show
     reg kind_bank;
 
     assign bank_address = {bank, taxel[TAXEL_WIDTH-1:0]};
 
     always @(posedge clock) begin
-        kind <= {of_noise, of_contact, of_offset, of_gain};
+        kind <= {of_dead, of_noise, of_contact, of_offset, of_gain};
         kind_bank <= bank;
         word <= (kind[0] ? {4'd0, bank_gain} : 32'd0)
             | (kind[1] ? {{(32-OFFSET_BITS){bank_offset[OFFSET_BITS-1]}}, bank_offset} : 32'd0)
             | (kind[2] ? (kind_bank ? contacts[63:32] : contacts[31:0]) : 32'd0)
-            | (kind[3] ? {5'd0, kind_bank ? noises[53:27] : noises[26:0]} : 32'd0);
+            | (kind[3] ? {5'd0, kind_bank ? noises[53:27] : noises[26:0]} : 32'd0)
+            | (kind[4] ? dead_result[31:0] : 32'd0);
     end
 
     // ---- Bounds: a mantissa has all of its bits in use; the rest is what the numbers behind have room for
@@ -136,7 +147,7 @@ module sptfra_calibration #(
     wire noise_fits = (write_data[31:26] == 6'd0) && (write_data[25:0] != 26'd0);
 
     assign write_allowed = (of_gain && gain_fits) || (of_offset && offset_fits)
-        || (of_contact && (write_data != 32'd0)) || (of_noise && noise_fits);
+        || (of_contact && (write_data != 32'd0)) || (of_noise && noise_fits) || (of_dead && dead_result[32]);
 
     // ---- Tare: offsets of the acting bank, less what the frames had
     reg [27:0] copied_gain;
@@ -144,10 +155,25 @@ module sptfra_calibration #(
     wire new_offset_fits = (new_offset <= OFFSET_LIMIT) && (new_offset >= -OFFSET_LIMIT);
     wire writes = write && write_allowed && idle;
 
+    wire copy_ends = copy_writes && (place == LAST_TAXEL);
+
     assign bank_write_gain = (writes && of_gain) || (copy_writes && new_offset_fits);
     assign bank_write_offset = (writes && of_offset) || (copy_writes && new_offset_fits);
     assign bank_write_gain_data = idle ? write_data[27:0] : copied_gain;
     assign bank_write_offset_data = idle ? write_data[OFFSET_BITS-1:0] : new_offset[OFFSET_BITS-1:0];
+
+    assign dead_command = {
+        state == COPY,
+        (state == COPY) && (step == COPY_TAKES),
+        copy_writes && new_offset_fits,
+        copy_ends,
+        state == IDLE,
+        (state == WALK) && (step == LAST_BYTE) && of_dead,
+        write && idle && of_dead,
+        bank,
+        position,
+        write_data
+    };
 
     // ---- CRC-32 as of Ethernet and zlib, a byte a cycle, the lowest first
     wire [1:0] byte_place = step[1:0] - 2'd2;
@@ -167,12 +193,15 @@ module sptfra_calibration #(
         end
     endgenerate
 
+    wire wrong = checks && (crc_end != expected);
+
     // ---- Commands
     always @(posedge clock) begin
         wrong_crc <= 1'b0;
         not_at_rest <= 1'b0;
         bad_frame <= 1'b0;
         tare_out_of_range <= 1'b0;
+        contradiction <= 1'b0;
         step <= step + 3'd1;
         case (state)
             IDLE: begin
@@ -217,12 +246,13 @@ module sptfra_calibration #(
                 if (step == LAST_BYTE) begin
                     step <= 3'd0;
                     place <= place + 16'd1;
-                    state <= (place == NOISE_WORD) ? DECIDE : WALK;
+                    state <= (place == LAST_WORD) ? DECIDE : WALK;
                 end
             end
             DECIDE: begin
-                wrong_crc <= checks && (crc_end != expected);
-                state <= (checks && (crc_end != expected)) ? IDLE : DRAIN;
+                wrong_crc <= wrong;
+                contradiction <= !wrong && dead_result[33];
+                state <= (wrong || dead_result[33]) ? IDLE : DRAIN;
             end
             // The frame coming in may still need the other bank
             default: begin
@@ -241,14 +271,14 @@ module sptfra_calibration #(
             not_at_rest <= 1'b0;
             bad_frame <= 1'b0;
             tare_out_of_range <= 1'b0;
+            contradiction <= 1'b0;
         end
     end
 
     // ---- What acts, and both banks' thresholds
-    wire copy_ends = copy_writes && (place == LAST_TAXEL);
 
     always @(posedge clock) begin
-        if ((state == DECIDE) && !(checks && (crc_end != expected)) && !reset) begin
+        if ((state == DECIDE) && !wrong && !dead_result[33] && !reset) begin
             active <= !active;
             generation <= generation + 8'd1;
             crc <= crc_end;
@@ -267,7 +297,8 @@ module sptfra_calibration #(
         end
     end
 
-    wire _unused = &{1'b0, taxel, mantissa[15:0], OFFSETS_WIDE[31:16], CONTACT_WIDE[31:16], LAST_TAXEL_WIDE[31:16]};
+    wire _unused = &{1'b0, taxel, mantissa[15:0], OFFSETS_WIDE[31:16], CONTACT_WIDE[31:16], LAST_TAXEL_WIDE[31:16],
+        DEAD_WORDS[31:16]};
 
 endmodule
 

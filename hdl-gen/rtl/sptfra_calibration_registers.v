@@ -2,7 +2,7 @@
 // Part of the SpTFRA hardware generator.
 //
 // The registers of a calibration in memory, beside those of sptfra_registers: 0x080 to 0x0A8 of the map in the design's
-// control/NAME.rdl, and bit 4 of FEATURES.
+// control/NAME.rdl, and bits 4 and 23:20 of FEATURES.
 //
 // Reads answer in the same cycle. Words are written whole: fewer strobes than four change nothing but CALIBRATION_INDEX
 // and CALIBRATION_ERRORS.
@@ -19,7 +19,9 @@ module sptfra_calibration_registers #(
     // Largest magnitude of an offset, in steps of the stress
     parameter [31:0] OFFSET_LIMIT = 32'd0,
     // Steps of the stress for a count at a gain of 1, a float64
-    parameter [63:0] COUNT_STEPS = 64'd0
+    parameter [63:0] COUNT_STEPS = 64'd0,
+    // Most dead taxels that a bank can have replaced
+    parameter [3:0] REPLACEABLE = 4'd0
 ) (
     input  wire clock,
     input  wire reset,
@@ -49,7 +51,8 @@ module sptfra_calibration_registers #(
     input  wire wrong_crc,
     input  wire not_at_rest,
     input  wire bad_frame,
-    input  wire tare_out_of_range
+    input  wire tare_out_of_range,
+    input  wire contradiction
 );
 
     // Addresses, in words
@@ -67,7 +70,7 @@ module sptfra_calibration_registers #(
     localparam [9:0] CALIBRATION_CRC = 10'd42;
     localparam [31:0] MOST_LOG2 = 32'd10; // of tare's frames
 
-    reg [4:0] errors; // bad frame, not at rest, wrong CRC, busy, out of range
+    reg [5:0] errors; // contradiction, bad frame, not at rest, wrong CRC, busy, out of range
 
     assign write_mapped = (write_word >= CALIBRATION) && (write_word <= CALIBRATION_CRC);
     assign read_mapped = (read_word >= CALIBRATION) && (read_word <= CALIBRATION_CRC);
@@ -75,7 +78,7 @@ module sptfra_calibration_registers #(
     // ---- Reads
     always @(*) begin
         case (read_word)
-            FEATURES: read_data = 32'h00000010;
+            FEATURES: read_data = {8'd0, REPLACEABLE, 20'h00010};
             CALIBRATION: read_data = {LSB, 2'd0, SHIFT, WORDS};
             CALIBRATION_OFFSET_LIMIT: read_data = OFFSET_LIMIT;
             CALIBRATION_STEPS_LOW: read_data = COUNT_STEPS[31:0];
@@ -83,7 +86,7 @@ module sptfra_calibration_registers #(
             CALIBRATION_INDEX: read_data = {index_active, 15'd0, index};
             CALIBRATION_DATA: read_data = idle ? word : 32'd0;
             CALIBRATION_STATUS: read_data = {21'd0, taring, !idle, active, generation};
-            CALIBRATION_ERRORS: read_data = {27'd0, errors};
+            CALIBRATION_ERRORS: read_data = {26'd0, errors};
             CALIBRATION_CRC: read_data = crc;
             default: read_data = 32'd0; // commands read as zero
         endcase
@@ -96,9 +99,10 @@ module sptfra_calibration_registers #(
     wire to_tare = whole && (write_word == TARE);
     wire tare_fits = (write_data <= MOST_LOG2);
     wire [31:0] index_next = ({index_active, 15'd0, index} & ~write_mask) | (write_data & write_mask);
-    wire [4:0] ones = write_data[4:0] & write_mask[4:0];
-    wire [4:0] cleared = (write_enable && (write_word == CALIBRATION_ERRORS)) ? ones : 5'd0;
-    wire [4:0] events = {
+    wire [5:0] ones = write_data[5:0] & write_mask[5:0];
+    wire [5:0] cleared = (write_enable && (write_word == CALIBRATION_ERRORS)) ? ones : 6'd0;
+    wire [5:0] events = {
+        contradiction,
         bad_frame,
         not_at_rest,
         wrong_crc,
@@ -122,7 +126,7 @@ module sptfra_calibration_registers #(
         if (reset) begin
             index <= 16'd0;
             index_active <= 1'b0;
-            errors <= 5'd0;
+            errors <= 6'd0;
         end
     end
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// What a frame keeps of the bank that acted at its first beat: the threshold that says whether there is contact, and
-// the bank's generation, which goes out in bits 15:8 of the frame's word 13.
+// What a frame keeps of the bank that acted at its first beat: the threshold that says whether there is contact, the
+// bank's generation, which goes out in bits 15:8 of the frame's word 13, and how many taxels it replaces: bits 23:16 of
+// that word, and bit 8 of the status, of frames that are answered.
 //
 // Flags and words pass in the same cycle. Sixteen frames may be inside; they leave in their order.
 
@@ -18,6 +19,7 @@ module sptfra_frame_calibration #(
     input  wire begins,
     input  wire [31:0] contact, // least sum |b|, in steps of the stress
     input  wire [7:0] generation,
+    input  wire [3:0] replaced, // taxels
     // CeAn's result, in the frames' order
     input  wire direction_take,
     input  wire [39:0] stress_sum,
@@ -37,21 +39,31 @@ module sptfra_frame_calibration #(
 
     reg [31:0] contacts [0:15];
     reg [7:0] generations [0:15];
+    reg [3:0] replaces [0:15];
     reg [3:0] newest;
     reg [3:0] next_contact;
     reg [3:0] oldest;
     reg [3:0] beat; // of the answer going out, stops behind the one with the generation
     wire leaves = word_taken && word_last;
     wire [7:0] oldest_generation = generations[oldest];
-    wire [32*WORDS-1:0] generation_wide = {{(32*WORDS-8){1'b0}}, oldest_generation};
+    wire [3:0] oldest_replaces = replaces[oldest];
+    // Of the first beat: no contact, NaN or infinity, bad length
+    wire blank = words_in[0] || words_in[4] || words_in[5];
+    reg blank_held;
+    wire [3:0] counted = blank_held ? 4'd0 : oldest_replaces;
+    wire [32*WORDS-1:0] census = {{(32*WORDS-12){1'b0}}, counted, oldest_generation};
+    wire [32*WORDS-1:0] status = {{(32*WORDS-9){1'b0}}, !blank && (oldest_replaces != 4'd0), 8'd0};
+    wire [32*WORDS-1:0] more = (beat == HERE) ? census << (32 * CENSUS_PLACE + 8)
+        : (beat == 4'd0) ? status : {32*WORDS{1'b0}};
 
     assign flags = {flags_in[5:4], stress_sum < {8'd0, contacts[next_contact]}, flags_in[2:0]};
-    assign words = (beat == HERE) ? words_in | (generation_wide << (32 * CENSUS_PLACE + 8)) : words_in;
+    assign words = words_in | more;
 
     always @(posedge clock) begin
         if (begins) begin
             contacts[newest] <= contact;
             generations[newest] <= generation;
+            replaces[newest] <= replaced;
             newest <= newest + 4'd1;
         end
         if (direction_take) begin
@@ -59,6 +71,7 @@ module sptfra_frame_calibration #(
         end
         if (word_taken) begin
             beat <= word_last ? 4'd0 : (beat != 4'd15) ? beat + 4'd1 : beat;
+            blank_held <= (beat == 4'd0) ? blank : blank_held;
         end
         if (leaves) begin
             oldest <= oldest + 4'd1;

@@ -1,5 +1,5 @@
 // Calibration in RAM: every beat of a frame reads the bank that acted at the frame's first one, nothing is written there
-// meanwhile, and no more ends of frames are on their way than are counted.
+// meanwhile, no frame begins while the one before is held, and no more ends of frames are on their way than are counted.
 //
 // The banks' control is what is assumed here: it writes the bank that does not act, and changes banks, only while no
 // frame coming in needs the other one.
@@ -13,7 +13,8 @@ module harness (
     input wire change,
     input wire write_gain,
     input wire write_offset,
-    input wire [4:0] address
+    input wire [4:0] address,
+    input wire whole // the frame that began last is held no more: where dead taxels are replaced, once its sums are there
 );
 
     reg started = 1'b0;
@@ -29,6 +30,9 @@ module harness (
     wire marked_held;
     wire in_frame;
     wire [1:0] ends_inside;
+    wire reading_valid;
+    wire reading_last;
+    reg held;
     wire [17:1] valid;
     wire [17:1] lasts;
 
@@ -43,6 +47,12 @@ module harness (
         .active       (active),
         .old_in_use   (old_in_use),
         .frame_begins (frame_begins),
+        .bank_held    (bank_held),
+        .hold         (held),
+        .reading_valid (reading_valid),
+        .reading_last (reading_last),
+        .back_valid   (reading_valid),
+        .back_last    (reading_last),
         .write_gain   (write_gain),
         .write_offset (write_offset),
         .address      (address),
@@ -50,7 +60,6 @@ module harness (
         // Inside
         .advance      (advance),
         .bank         (bank),
-        .bank_held    (bank_held),
         .marked       (marked),
         .marked_held  (marked_held),
         .in_frame     (in_frame),
@@ -80,6 +89,7 @@ module harness (
         if (reset) begin
             open <= 1'b0;
         end
+        held <= !reset && (held || frame_begins) && !whole;
     end
 
     always @(*) begin
@@ -94,10 +104,11 @@ module harness (
             assert (!taken || (marked == (open ? its_mark : tare_run)));
             assert (frame_begins == (taken && !open));
             // What it needs is not written
-            assert (!(writes && open && (address[4] == its_bank)));
-            assert (old_in_use == (open && (its_bank != active)));
+            assert (!(writes && (open || held) && (address[4] == its_bank)));
+            assert (old_in_use == ((open || held) && (its_bank != active)));
+            assert (!(frame_begins && held));
             // Whoever waits is served
-            assert (s_tready || !advance || (!in_frame && (ends_inside == 2'd3)));
+            assert (s_tready || !advance || (!in_frame && (held || (ends_inside == 2'd3))));
         end
     end
 
@@ -109,7 +120,7 @@ module harness (
     always @(posedge clock) begin
         if (!reset) begin
             assert (in_frame == open);
-            assert (!open || (bank_held == its_bank));
+            assert (!(open || held) || (bank_held == its_bank));
             assert (!open || (marked_held == its_mark));
             assert (!open || (count <= 5'd2));
             assert ({3'd0, ends_inside} == count);

@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+pub mod bank;
 pub mod bench;
 pub mod calibrate;
 pub mod calibrate_recorded;

@@ -13,6 +13,9 @@ pub const DEFAULT_FULL_SCALE_PA: f64 = 100_000.0;
 /// Widths of a beat on the streams, in bits.
 pub const STREAM_BITS: [u32; 3] = [32, 64, 128];
 
+/// Numbers of dead taxels for which a bank of a calibration can have room.
+pub const REPLACEABLE: [usize; 5] = [0, 1, 2, 4, 8];
+
 /// Number system of the hardware.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -124,6 +127,9 @@ pub struct Hardware {
     pub control: bool,
     /// Where the calibration stands; in RAM only with `control`, and with counts that `pa_per_count` makes pascals.
     pub calibration: CalibrationIn,
+    /// Dead taxels that a bank of a calibration in RAM can have replaced, one of [`REPLACEABLE`]; 0: those of the design,
+    /// for good.
+    pub replaceable: usize,
     /// Whether nets are marked for a logic analyser in the FPGA.
     pub debug: bool,
     /// Clock in megahertz, 1 to 1000.

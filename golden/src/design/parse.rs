@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
-use super::calibration_in_ram::calibration_in_ram;
+use super::calibration_in_ram::{calibration_in_ram, replaceable};
 use super::checks::{self, Check};
 use super::curve::RawCurve;
 use super::files::Beside;
@@ -103,6 +103,7 @@ struct RawHardware {
     overrun: Option<String>,
     control: Option<bool>,
     calibration: Option<String>,
+    replaceable: Option<i64>,
     debug: Option<bool>,
     clock_mhz: Option<f64>,
     part: Option<String>,
@@ -305,6 +306,7 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         overrun: check.optional_word("hardware.overrun", raw.overrun.as_deref())?.unwrap_or_default(),
         control: raw.control.unwrap_or(false),
         calibration: check.optional_word("hardware.calibration", raw.calibration.as_deref())?.unwrap_or_default(),
+        replaceable: replaceable(check, raw.replaceable)?,
         debug: raw.debug.unwrap_or(false),
         clock_mhz: check.real("hardware.clock_mhz", raw.clock_mhz.unwrap_or(125.0), 1.0, 1000.0, "MHz")?,
         part,

@@ -70,6 +70,10 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
         CalibrationIn::Rom => String::new(),
         place @ CalibrationIn::Ram => format!("calibration = \"{place}\"\n"),
     };
+    let map = match hardware.replaceable {
+        0 => String::new(),
+        room => format!("replaceable = {room}\n"),
+    };
     let streams = match hardware.stream_bits {
         32 => String::new(),
         bits => format!("stream_bits = {bits}\n"),
@@ -92,7 +96,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}{contacts}{count_bodies}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{overrun}{control}{banks}{debug}clock_mhz = {:?}\npart = \"{}\"\n",
+         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{overrun}{control}{banks}{map}{debug}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],

@@ -1,5 +1,6 @@
 //! Tests of the solver through its public interface, one module a topic.
 
+mod bank;
 mod bodies;
 mod check;
 mod choose;

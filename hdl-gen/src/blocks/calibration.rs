@@ -4,6 +4,7 @@ use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::EXPONENT_BITS;
+use crate::plan::dead::WEIGHT_BITS;
 use crate::plan::format::address_bits;
 use crate::plan::gain::GAIN_BITS;
 use crate::plan::memory::memory;
@@ -11,17 +12,51 @@ use crate::plan::resources::BlockCost;
 
 use super::{Parameters, latency};
 
+/// Modules of a calibration in the core; the last two only with a map of dead taxels.
+const MODULES: [&str; 4] = ["sptfra_calibrate", "sptfra_tare", "sptfra_dead_bank", "sptfra_replace"];
 /// Bits of a taxel's sum and extremes while it is tared.
 const TARE_BITS: u32 = 37 + 2 * LONG_BITS;
 
 /// Parameters of `sptfra_bz_calibrated` that Bz alone has not.
 pub fn of_frames(parameters: Parameters, of: &CalibrationPlan, words: usize) -> Parameters {
-    parameters
+    let parameters = parameters
         .number("OFFSET_BITS", of.offset_bits().into())
         .number("COUNT_SHIFT", of.shift.into())
         .wide("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale)
-        .cycles("EXPECTED_CALIBRATION", latency::CALIBRATION)
-        .count("WORDS", words)
+        .cycles("EXPECTED_CALIBRATION", cycles(of))
+        .count("WORDS", words);
+    let map = &of.power_up.dead;
+    if map.room == 0 {
+        return parameters;
+    }
+    let numbers: Vec<String> = map.numbers().map(|number| format!("16'd{number}")).collect();
+    let numbers: Vec<&str> = numbers.iter().rev().map(String::as_str).collect();
+    parameters
+        .count("REPLACEABLE", map.room)
+        .expression("REPLACED_COUNT", format!("4'd{}", map.dead.taxels.len()))
+        .expression("REPLACED_SHIFT", format!("5'd{}", map.dead.shift))
+        .expression("REPLACED_TAXELS", format!("{{{}}}", numbers.join(", ")))
+}
+
+/// Bits that go between the banks' control and what they say of dead taxels, there and back.
+pub fn dead_bits(of: &CalibrationPlan) -> [u32; 2] {
+    if of.power_up.dead.room == 0 { [0, 0] } else { [56, 34] }
+}
+
+/// Cycles from a frame's first beat to the first of its stress.
+fn cycles(of: &CalibrationPlan) -> u64 {
+    latency::CALIBRATION + if of.power_up.dead.room > 0 { latency::replacing(of.taxels) } else { 0 }
+}
+
+/// What a calibration in RAM adds to a frame's way to Bz, in cycles; 0 without one.
+pub fn latency(plan: &Plan) -> u64 {
+    plan.calibration.as_ref().map_or(0, cycles)
+}
+
+/// Cycles from a frame's first beat to the next one's, at least, as far as the calibration keeps it.
+pub fn interval(plan: &Plan) -> u64 {
+    let replaces = plan.calibration.as_ref().filter(|of| of.power_up.dead.room > 0);
+    replaces.map_or(0, |of| latency::replaced_frame(of.taxels))
 }
 
 /// Parameters of `sptfra_calibration`.
@@ -33,6 +68,7 @@ pub fn control(of: &CalibrationPlan) -> Parameters {
         .expression("CONTACT", format!("32'd{}", of.power_up.contact))
         .expression("NOISE", format!("{LONG_BITS}'d{}", of.power_up.noise))
         .expression("CRC", format!("32'h{:08x}", of.power_up.crc()))
+        .count("REPLACEABLE", of.power_up.dead.room)
 }
 
 /// Parameters of `sptfra_calibration_registers`.
@@ -43,6 +79,7 @@ pub fn registers(of: &CalibrationPlan) -> Parameters {
         .expression("LSB", format!("8'd{}", lsb(of)))
         .expression("OFFSET_LIMIT", format!("32'd{}", of.offset_limit))
         .expression("COUNT_STEPS", format!("64'h{:016x}", of.count_steps.to_bits()))
+        .expression("REPLACEABLE", format!("4'd{}", of.power_up.dead.room))
 }
 
 /// The exponent of the stress' step as eight bits of two's complement.
@@ -50,13 +87,21 @@ pub fn lsb(of: &CalibrationPlan) -> u8 {
     (of.stress.lsb as i8).cast_unsigned()
 }
 
-/// A multiplier, both banks, a copy of them for each of two readers, and what a tare adds up; nothing without one.
+/// A multiplier, both banks, a copy of them for each of two readers, and what a tare adds up; for dead taxels a frame, and
+/// for each place of the map a multiplier and weights; nothing without a calibration in RAM.
 pub fn cost(plan: &Plan) -> Option<BlockCost> {
     let of = plan.calibration.as_ref()?;
     let words = 1 << address_bits(of.taxels);
-    Some(BlockCost::new("Calibration", &["sptfra_calibrate", "sptfra_tare"], 1).with(vec![
+    let mut memories = vec![
         memory("gains", 2, 2 * words, GAIN_BITS + EXPONENT_BITS, false),
         memory("offsets", 2, 2 * words, of.offset_bits(), false),
         memory("tare", 1, words, TARE_BITS, false),
-    ]))
+    ];
+    let room = of.power_up.dead.room;
+    if room > 0 {
+        memories.push(memory("neighbours", 2 * room, 2 * words, WEIGHT_BITS, false));
+        // With a stress, whether it was a number.
+        memories.push(memory("whole frame", 1, of.taxels, LONG_BITS + 1, false));
+    }
+    Some(BlockCost::new("Calibration", &MODULES, 1 + room).with(memories))
 }

@@ -15,6 +15,16 @@ pub const OVERRUN: u64 = 2 - axis_skid::LATENCY as u64;
 pub const CALIBRATION: u64 =
     2 + float_to_fixed::LATENCY as u64 + 3 + fixed_to_float::LATENCY as u64 + axis_skid::LATENCY as u64;
 
+/// What replacing dead taxels of a bank's map adds to that: the frame is read once more.
+pub fn replacing(taxels: usize) -> u64 {
+    taxels as u64 + 6
+}
+
+/// There, from a frame's first beat to the first beat of the next, at least.
+pub fn replaced_frame(taxels: usize) -> u64 {
+    taxels as u64 + 13
+}
+
 // ---- Bz
 /// From a beat entering the conversion to its stress: of the float conversion, and of the counts' if there is one.
 pub fn beat_to_stress(counts: bool, curve: Option<u64>) -> u64 {

@@ -162,6 +162,10 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
     if let Some(dead) = &plan.dead {
         value["dead_taxels"] = json!({ "taxels": dead.taxels, "weight_lsb": -i64::from(dead.shift) });
     }
+    if let Some(map) = plan.calibration.as_ref().map(|of| &of.power_up.dead).filter(|map| map.room > 0) {
+        let weight_lsb = -i64::from(map.dead.shift);
+        value["dead_taxels"] = json!({ "taxels": map.dead.taxels, "weight_lsb": weight_lsb, "replaceable": map.room });
+    }
     if let Some((key, own)) = estimator.own {
         value[key] = own;
     }

@@ -87,6 +87,8 @@ struct CalibrationView {
     steps_high: String,
     first_word: String,
     crc: String,
+    /// Dead taxels that a bank has room for.
+    replaceable: usize,
 }
 
 impl CalibrationView {
@@ -106,6 +108,7 @@ impl CalibrationView {
             steps_high: format!("{:08x}", steps >> 32),
             first_word: format!("{first:08x}"),
             crc: format!("{:08x}", of.power_up.crc()),
+            replaceable: of.power_up.dead.room,
         }
     }
 }

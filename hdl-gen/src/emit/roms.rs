@@ -61,6 +61,14 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         let offsets = both(bank.offsets.iter().map(|&offset| u128::from(offset.cast_unsigned())).collect());
         files.insert(format!("rom/{name}_bank_offsets.mem"), hex(offsets, 2 * depth, calibration.offset_bits()));
     }
+    if let Some(bank) = plan.calibration.as_ref().map(|calibration| &calibration.power_up) {
+        let depth = 1 << address_bits(plan.taxels());
+        for place in 0..bank.dead.room {
+            let one = (0..depth).map(|taxel| if taxel < plan.taxels() { bank.dead.weight(place, taxel) } else { 0 });
+            let both = one.clone().chain(one).map(|weight| u128::from(weight as u32));
+            files.insert(format!("rom/{name}_bank_weights{place}.mem"), hex(both, 2 * depth, WEIGHT_BITS));
+        }
+    }
     if !plan.arms.is_empty() {
         let arms = plan.arms.iter().map(|arms| joined(arms, ARM_BITS));
         files.insert(format!("rom/{name}_arms.mem"), hex(arms, plan.arms.len(), 2 * ARM_BITS));

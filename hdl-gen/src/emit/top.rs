@@ -5,7 +5,9 @@ use tera::Context;
 
 use golden::design::{Filter, Samples};
 
-use crate::blocks::{Parameters, array, bodies, bz, cean, co, field, intake, op, row_width, turns, unfold, we};
+use crate::blocks::{
+    Parameters, array, bodies, bz, calibration, cean, co, field, intake, op, row_width, turns, unfold, we,
+};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::CountsPlan;
@@ -40,6 +42,9 @@ struct View {
     calibration: bool,
     taxel_width: u32,
     offset_bits: u32,
+    /// Bits of what goes between the banks' control and what they say of dead taxels, there and back.
+    dead_command_bits: u32,
+    dead_result_bits: u32,
     /// Of a door that drops frames, its parameters.
     overrun: Option<Parameters>,
     /// Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
@@ -107,6 +112,7 @@ impl View {
         let folded = plan.ways() > 1;
         let streams = plan.streams();
         let unpack = streams.intake == Intake::Unpacked;
+        let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
             control: hardware.control,
@@ -121,6 +127,8 @@ impl View {
             calibration: plan.calibration.is_some(),
             taxel_width: address_bits(plan.taxels()),
             offset_bits: plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
+            dead_command_bits,
+            dead_result_bits,
             overrun: streams.drops.then(|| intake::parameters(plan)),
             stream_bits: streams.bits,
             stream_bytes: streams.bits / 8,
@@ -210,6 +218,9 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     }
     if plan.dead.is_none() {
         without.push("sptfra_dead_taxels");
+    }
+    if calibration::interval(plan) == 0 {
+        without.extend(["sptfra_dead_bank", "sptfra_replace"]);
     }
     if plan.ways() > 1 {
         without.push("sptfra_coefficients");

@@ -117,8 +117,14 @@ impl<'plan> Model<'plan> {
         self.frames = self.frames.wrapping_add(1);
         let (taxels, streams) = (self.plan.taxels(), self.plan.streams());
         let words = packet.iter().copied().chain(std::iter::repeat(0)).take(streams.whole_beats(packet.len()));
+        let samples = streams.samples_of(words).take(taxels);
+        // With a calibration in RAM these are pascals from here on.
+        let (samples, in_banks) = match self.plan.calibration.as_ref().zip(self.bank.as_ref()) {
+            Some((calibration, bank)) => calibration.floats_of(bank, samples),
+            None => (samples.collect(), 0),
+        };
         let converted: Vec<Stress> =
-            streams.samples_of(words).take(taxels).enumerate().map(|(taxel, word)| self.convert(taxel, word)).collect();
+            samples.into_iter().enumerate().map(|(taxel, word)| self.convert(taxel, word)).collect();
         let mut bad = 0;
         if !streams.is_frame(packet.len()) {
             bad |= BAD_LENGTH;
@@ -131,21 +137,30 @@ impl<'plan> Model<'plan> {
         }
         let mut saturated = converted.iter().any(|stress| stress.saturated);
         let mut stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
-        let mut noted = 0;
+        let mut replaced_sum = in_banks;
         if let Some(dead) = &self.plan.dead {
             let replaced = dead.replace(&mut stress, self.plan.formats.stress);
             saturated |= replaced.saturated;
-            noted = REPLACED;
-            if GUESSED_SHARE * replaced.sum > Contact::new(&stress).stress_sum {
-                noted |= TOO_MANY_REPLACED;
-            }
+            replaced_sum = replaced.sum;
+        }
+        let mut noted = if self.replaced() > 0 { REPLACED } else { 0 };
+        if GUESSED_SHARE * replaced_sum > Contact::new(&stress).stress_sum {
+            noted |= TOO_MANY_REPLACED;
         }
         let contact = self.bank.as_ref().map_or(self.plan.thresholds.contact, |bank| i64::from(bank.contact));
         if Contact::new(&stress).stress_sum < contact {
             self.slips = false;
             return self.blank(counter | NO_CONTACT);
         }
-        self.answer(counter | noted, &stress, saturated)
+        let mut words = self.answer(counter | noted, &stress, saturated);
+        words[words::CENSUS] |= (self.replaced() as u32) << 16;
+        words
+    }
+
+    /// Taxels whose readings others replace.
+    fn replaced(&self) -> usize {
+        let of_bank = self.bank.as_ref().map_or(0, |bank| bank.dead.dead.taxels.len());
+        self.plan.dead.as_ref().map_or(of_bank, |dead| dead.taxels.len())
     }
 
     /// One input word as stress.
@@ -154,8 +169,6 @@ impl<'plan> Model<'plan> {
         if self.plan.dead.as_ref().is_some_and(|dead| dead.taxels.contains(&taxel)) {
             return Stress { steps: 0, saturated: false, not_finite: false };
         }
-        let calibrated = self.plan.calibration.as_ref().zip(self.bank.as_ref());
-        let word = calibrated.map_or(word, |(calibration, bank)| calibration.float_of(bank, taxel, word));
         let Some(counts) = &self.plan.counts else {
             let converted = float_to_fixed::convert(word, -format.lsb, format.bound as u32);
             let steps = i64::from(converted.fixed);
@@ -326,7 +339,5 @@ fn scalars(
             answer[words::STATUS] |= DOUBTFUL;
         }
     }
-    // Taxels whose readings others replace.
-    answer[words::CENSUS] = plan.dead.as_ref().map_or(0, |dead| (dead.taxels.len() as u32) << 16);
     (answer, summary)
 }

@@ -1,13 +1,16 @@
 //! A calibration in RAM: the numbers of a taxel's gain and offset as a bank holds them, and the bounds of what it takes.
 
 mod bank;
+mod dead_map;
 
 pub use bank::Bank;
+pub use dead_map::DeadMap;
 
 use golden::design::{Calibration, CalibrationIn, Design};
 use serde::Serialize;
 
 use super::counts::LARGEST_NUMBER;
+use super::dead::DeadPlan;
 use super::format::{Format, largest, pow2, round_shift};
 use super::gain::{GAIN_BITS, Gain};
 use super::{PlanError, Thresholds};
@@ -81,7 +84,13 @@ impl CalibrationPlan {
             offset_limit,
             full_scale: (stress.bound - rounding).max(1),
             stress,
-            power_up: Bank { gains: Vec::new(), offsets: Vec::new(), contact: 1, noise: thresholds.taxel as u32 },
+            power_up: Bank {
+                gains: Vec::new(),
+                offsets: Vec::new(),
+                contact: 1,
+                noise: thresholds.taxel as u32,
+                dead: Self::dead_map(design),
+            },
         };
         plan.power_up.contact = u32::try_from(thresholds.contact).map_err(|_| PlanError::Contact {
             floor_pa: design.algorithm.noise_floor_pa,
@@ -103,13 +112,20 @@ impl CalibrationPlan {
         Ok(Some(plan))
     }
 
-    /// The bank of a calibration, with the thresholds of another one. A gain of 0, which only a taxel has that the design
+    /// The design's own dead taxels, where banks have room for them.
+    fn dead_map(design: &Design) -> DeadMap {
+        let room = design.hardware.replaceable;
+        let dead = if room == 0 { &[][..] } else { &design.input.dead };
+        DeadMap { room, dead: DeadPlan::of(design, dead) }
+    }
+
+    /// The bank of a calibration, with the thresholds and the dead taxels of another one. A gain of 0, which only a taxel has that the design
     /// replaces, is stored as the smallest.
     ///
     /// # Errors
     /// The first taxel whose offset is beyond the limit.
     pub fn bank(&self, calibration: &Calibration, thresholds: &Bank) -> Result<Bank, usize> {
-        let mut bank = Bank { gains: Vec::new(), offsets: Vec::new(), ..*thresholds };
+        let mut bank = Bank { gains: Vec::new(), offsets: Vec::new(), ..thresholds.clone() };
         for (taxel, (&gain, &offset)) in calibration.gain.iter().zip(&calibration.offset).enumerate() {
             if gain == 0.0 {
                 bank.gains.push((1 << (GAIN_BITS - 2), -512));
@@ -137,6 +153,7 @@ impl CalibrationPlan {
             && bank.offsets.iter().all(|&offset| i64::from(offset).abs() <= self.offset_limit)
             && bank.contact > 0
             && (1..1 << 26).contains(&bank.noise)
+            && bank.dead.fits(self.taxels)
     }
 
     /// The stress of a taxel's count, given as float32.
@@ -150,12 +167,20 @@ impl CalibrationPlan {
         Reading { steps, saturated, not_finite: number.not_finite }
     }
 
-    /// The stress of a count as Bz takes it: float32, NaN for what is no number.
-    pub fn float_of(&self, bank: &Bank, taxel: usize, count: u32) -> u32 {
-        match self.stress_of(bank, taxel, count) {
-            Reading { not_finite: true, .. } => f32::NAN.to_bits(),
-            Reading { steps, .. } => fixed_to_float::convert(steps, self.stress.lsb),
-        }
+    /// The stress of a frame's counts as Bz takes it, float32, NaN for what is no number; dead taxels of the bank's map
+    /// are replaced. And the sum of the magnitudes that took a reading's place.
+    pub fn floats_of(&self, bank: &Bank, counts: impl Iterator<Item = u32>) -> (Vec<u32>, i64) {
+        let readings: Vec<Reading> =
+            counts.enumerate().map(|(taxel, count)| self.stress_of(bank, taxel, count)).collect();
+        let mut steps: Vec<i64> = readings.iter().map(|reading| reading.steps).collect();
+        let dead = &bank.dead.dead;
+        // Of a frame that is too short nothing is asked.
+        let replaced = if steps.len() == self.taxels { dead.replace(&mut steps, self.stress).sum } else { 0 };
+        let float = |(taxel, steps): (usize, i64)| {
+            let is_nan = readings[taxel].not_finite && !dead.taxels.contains(&taxel);
+            if is_nan { f32::NAN.to_bits() } else { fixed_to_float::convert(steps, self.stress.lsb) }
+        };
+        (steps.into_iter().enumerate().map(float).collect(), replaced)
     }
 
     /// Bits of the widest offset, sign included.
@@ -166,7 +191,7 @@ impl CalibrationPlan {
 
     /// Words of a bank.
     pub fn words(&self) -> usize {
-        2 * self.taxels + 2
+        2 * self.taxels + 2 + DeadMap::length(self.power_up.dead.room, self.taxels)
     }
 }
 

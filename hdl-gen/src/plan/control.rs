@@ -14,6 +14,7 @@ use super::schedule::{Program, Visit};
 use super::streams::Intake;
 use super::timing::{INTERVAL_FRAMES, Timeline, longest_interval, middle_interval};
 use crate::blocks::bz::{self, Arrival};
+use crate::blocks::calibration as bank;
 use crate::blocks::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
     SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_BUS, VISIT_TO_RESIDUAL,
@@ -43,6 +44,8 @@ struct Constants {
     /// From a frame's first beat out of the skid buffer to the first that enters Bz: where it waits for room, is unpacked,
     /// or calibrated.
     unpacking: u64,
+    /// Least from one frame's first beat there to the next one's.
+    interval_of_beats: u64,
     /// What a frame brings, counted from there.
     arrival: Arrival,
     /// From a visit to its taxels having left the unfolding.
@@ -80,7 +83,8 @@ impl Constants {
             beats: plan.streams().beats_out() as u64,
             unpacking: if plan.streams().drops { latency::OVERRUN } else { 0 }
                 + u64::from(plan.streams().intake == Intake::Unpacked)
-                + if plan.calibration.is_some() { latency::CALIBRATION } else { 0 },
+                + bank::latency(plan),
+            interval_of_beats: bank::interval(plan),
             arrival: bz::arrival(plan),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
             visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),
@@ -103,6 +107,8 @@ struct Control<'a> {
     now: u64,
     // Bz and CeAn
     next_open: u64,
+    /// When the next frame's first beat is at its door.
+    beat_there: u64,
     idle_since: Option<u64>,
     stress_places: u64,
     cean_idle: u64,
@@ -160,6 +166,7 @@ impl<'a> Control<'a> {
             now: 0,
             // In cycle 1 the first beat has left the skid buffer.
             next_open: 1 + of.unpacking,
+            beat_there: 1 + of.unpacking,
             idle_since: Some(0),
             stress_places: 0,
             cean_idle: 0,
@@ -235,7 +242,11 @@ impl<'a> Control<'a> {
         if *self.idle_since.get_or_insert(self.now) == self.now {
             return false;
         }
+        if self.now < self.beat_there {
+            return false;
+        }
         self.idle_since = None;
+        self.beat_there = self.now + self.of.interval_of_beats;
         let Arrival { ready, last_stress, done } = self.of.arrival;
         let last_stress = self.now + last_stress;
         self.stress_places += 1;

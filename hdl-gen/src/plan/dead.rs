@@ -10,7 +10,7 @@ use crate::cores::SHORT_BITS;
 /// Width of a weight: the shorter operand of a multiplier.
 pub const WEIGHT_BITS: u32 = SHORT_BITS;
 /// Most that the magnitudes of a sum's weights add up to: with it the accumulator holds any frame.
-const MOST_WEIGHT: i64 = (1 << 21) - 1;
+pub const MOST_WEIGHT: i64 = (1 << 21) - 1;
 /// One in this many of a frame's stress is the most that may be replaced: [`golden::dead_taxels::GUESSED`].
 pub const GUESSED_SHARE: i64 = (1.0 / golden::dead_taxels::GUESSED) as i64;
 
@@ -35,12 +35,15 @@ pub struct Replaced {
 }
 
 impl DeadPlan {
-    /// The weights, if the design has dead taxels.
+    /// The weights, if the design has dead taxels and they stand in ROM.
     pub fn new(design: &Design) -> Option<Self> {
-        if design.input.dead.is_empty() {
-            return None;
-        }
-        let dead = DeadTaxels::new(&design.sensor, design.algorithm.kernel, &design.input.dead);
+        let given = !design.input.dead.is_empty() && design.hardware.replaceable == 0;
+        given.then(|| Self::of(design, &design.input.dead))
+    }
+
+    /// The weights for dead taxels of a design's sensor, in ascending order.
+    pub fn of(design: &Design, dead: &[usize]) -> Self {
+        let dead = DeadTaxels::new(&design.sensor, design.algorithm.kernel, dead);
         let rounded = |weight: f64, shift: u32| (weight * pow2(shift as i32)).round() as i64;
         let fits = |shift: &u32| {
             dead.weights().iter().all(|weights| {
@@ -50,7 +53,7 @@ impl DeadPlan {
         };
         let shift = (0..WEIGHT_BITS).rev().find(fits).unwrap_or(0);
         let of = |weights: &Vec<f64>| weights.iter().map(|&weight| rounded(weight, shift) as i32).collect();
-        Some(Self { taxels: dead.taxels().to_vec(), weights: dead.weights().iter().map(of).collect(), shift })
+        Self { taxels: dead.taxels().to_vec(), weights: dead.weights().iter().map(of).collect(), shift }
     }
 
     /// Replaces the readings of a frame.

@@ -69,6 +69,8 @@ fn standing() -> Vec<Plan> {
     plans.push(plan(&design_text("integer_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     let more = "pa_per_count = -12.5\n[hardware]\ncontrol = true\ncalibration = \"ram\"";
     plans.push(plan(&design_text("calibrated_pad", [6, 4], [4.0, 4.0], 3.0, more)));
+    let more = "pa_per_count = -12.5\n[hardware]\ncontrol = true\ncalibration = \"ram\"\nreplaceable = 8";
+    plans.push(plan(&design_text("mapped_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     let more = "pa_per_count = -12.5\n[hardware]\noverrun = \"drop\"\ncontrol = true\ncalibration = \"ram\"";
     plans.push(plan(&design_text("scanned_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     plans.push(plan(&design_text("scanned_pad", [7, 5], [4.0, 4.0], 3.0, "[hardware]\noverrun = \"drop\"")));

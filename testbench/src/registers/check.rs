@@ -107,6 +107,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         plan.calibration.is_some(),
         plan.streams().drops,
     ];
+    let stream = stream | (plan.design.hardware.replaceable as u32) << 12;
     vec![
         ("IDENTITY", address::IDENTITY, u32::from_be_bytes(*b"TFRA")),
         ("VERSION", address::VERSION, u32::from(MAP_VERSION) << 24 | part(0) << 16 | part(1) << 8 | part(2)),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{CalibrationPlan, Reading};
+use super::{CalibrationPlan, DeadMap, Reading};
 use crate::plan::format::round_shift;
 use crate::plan::gain::GAIN_BITS;
 
@@ -19,13 +19,16 @@ pub struct Bank {
     pub contact: u32,
     /// Most that a taxel's stress may spread in the frames of a tare, in steps.
     pub noise: u32,
+    /// Taxels that are replaced.
+    pub dead: DeadMap,
 }
 
 impl Bank {
-    /// The words in their order: gains, offsets, contact threshold, noise floor.
+    /// The words in their order: gains, offsets, contact threshold, noise floor, dead taxels.
     pub fn words(&self) -> Vec<u32> {
         let offsets = self.offsets.iter().map(|&offset| offset.cast_unsigned());
-        self.gain_words().chain(offsets).chain([self.contact, self.noise]).collect()
+        let dead = self.dead.words(self.gains.len());
+        self.gain_words().chain(offsets).chain([self.contact, self.noise]).chain(dead).collect()
     }
 
     /// The words of the gains.
@@ -69,11 +72,13 @@ impl Bank {
 
 #[cfg(test)]
 mod tests {
-    use super::Bank;
+    use super::{Bank, DeadMap};
+    use crate::plan::dead::DeadPlan;
 
     #[test]
     fn a_crc_is_that_of_zlib() {
-        let bank = Bank { gains: vec![], offsets: vec![], contact: 0x3433_3231, noise: 0x3837_3635 };
+        let dead = DeadMap { room: 0, dead: DeadPlan { taxels: vec![], weights: vec![], shift: 0 } };
+        let bank = Bank { gains: vec![], offsets: vec![], contact: 0x3433_3231, noise: 0x3837_3635, dead };
         assert_eq!(bank.crc(), 0x9AE0_DAAF, "of 12345678");
     }
 }

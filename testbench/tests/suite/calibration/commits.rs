@@ -10,8 +10,10 @@ use testbench::verilate::{Built, Verilate};
 use super::{BUSY, Subject, core, counts, errors, generation, judged, judged_in, load, random_bank, subject};
 use crate::support::in_parallel;
 
-/// Cycles in which the bank is written, before the first commit.
-const LOADED: u64 = 600;
+/// Cycles in which a bank of so many words is written, before the first commit.
+fn loaded(words: usize) -> u64 {
+    600 * words as u64 / 26
+}
 
 /// A bank of other gains and offsets, and one with another threshold: no frame of it has contact.
 fn others(subject: &Subject) -> [Bank; 2] {
@@ -21,7 +23,7 @@ fn others(subject: &Subject) -> [Bank; 2] {
 }
 
 /// Commits a bank, so that it acts in another cycle each time, over all cycles of a frame; what went wrong.
-fn commits_at_every_moment(
+pub(super) fn commits_at_every_moment(
     subject: &Subject,
     built: &Built,
     bank: &Bank,
@@ -31,7 +33,7 @@ fn commits_at_every_moment(
     let calibration = subject.calibration();
     let interval = subject.plan.timeline.interval_cycles;
     // Frames before it, while it walks through the bank, and after it.
-    let before = 2 + (LOADED + 7 * calibration.words() as u64) / interval;
+    let before = 2 + (loaded(calibration.words()) + 7 * calibration.words() as u64) / interval;
     // Frames are taken in some way ahead of the answers.
     let packets = counts(&subject.plan, before as usize + 12, &mut random);
     let accesses = load(bank, bank.crc());
@@ -43,7 +45,7 @@ fn commits_at_every_moment(
         for &write in writes {
             core.plan(10, write);
         }
-        core.plan(LOADED + cycle, *commit);
+        core.plan(loaded(calibration.words()) + cycle, *commit);
         let generations = judged(&subject.plan, &mut core, &packets, &banks)?;
         match (generations.first(), generations.last(), errors(&mut core), generation(&mut core)) {
             (Some(0), Some(1), 0, 1) => Ok(generations.iter().sum()),

@@ -3,6 +3,7 @@
 
 mod banks;
 mod commits;
+pub mod dead;
 mod tare;
 
 use std::sync::OnceLock;
@@ -28,6 +29,7 @@ const BUSY: u32 = 1 << 1;
 const WRONG_CRC: u32 = 1 << 2;
 const NOT_AT_REST: u32 = 1 << 3;
 const BAD_FRAME: u32 = 1 << 4;
+const CONTRADICTION: u32 = 1 << 5;
 /// Of `CALIBRATION_STATUS`.
 const STATUS_BUSY: u32 = 1 << 9;
 /// `CALIBRATION_INDEX`: of the bank that acts.
@@ -91,7 +93,7 @@ fn random_bank(plan: &CalibrationPlan, random: &mut ChaCha8Rng) -> Bank {
             .iter()
             .map(|&(_, exponent)| {
                 let mantissa = random.random_range(1 << 16..1 << 17);
-                let near = exponent + random.random_range(-2..=1);
+                let near = (exponent + random.random_range(-2..=1)).clamp(-512, 511);
                 let exponent = if far { random.random_range(-512..512) } else { near };
                 (if random.random_bool(0.2) { mantissa } else { -mantissa }, exponent)
             })
@@ -104,6 +106,7 @@ fn random_bank(plan: &CalibrationPlan, random: &mut ChaCha8Rng) -> Bank {
             .collect(),
         contact: random.random_range(1..=usual.contact * 50),
         noise: random.random_range(1..1 << 26),
+        dead: usual.dead.clone(),
     };
     assert!(plan.takes(&bank));
     bank

@@ -23,7 +23,7 @@ type Change<'a> = &'a dyn Fn(&mut Vec<Vec<u32>>);
 const TARING: u32 = 1 << 10;
 
 /// Frames of a sensor at rest that reads something in each taxel, and noise of so many counts on that.
-fn rest(subject: &Subject, frames: usize, noise: f64, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
+pub(super) fn rest(subject: &Subject, frames: usize, noise: f64, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     let level: Vec<f64> = (0..subject.plan.taxels()).map(|_| random.random_range(-200.0..200.0)).collect();
     (0..frames)
         .map(|_| {
@@ -34,7 +34,7 @@ fn rest(subject: &Subject, frames: usize, noise: f64, random: &mut ChaCha8Rng) -
 }
 
 /// A bank with a noise floor of about so many counts.
-fn quiet_bank(subject: &Subject, counts: f64) -> Bank {
+pub(super) fn quiet_bank(subject: &Subject, counts: f64) -> Bank {
     let calibration = subject.calibration();
     Bank { noise: (counts * calibration.count_steps.abs()) as u32, ..calibration.power_up.clone() }
 }

@@ -158,8 +158,15 @@ fn prepare(session: &Session) {
 }
 
 /// What the pages' commands make.
-const MADE: [&str; 6] =
-    ["pad-june.toml", "june.html", "pad-joint.toml", "forces.csv", "frame.svg", "target/sweep/report.html"];
+const MADE: [&str; 7] = [
+    "pad-june.toml",
+    "june.html",
+    "pad-joint.toml",
+    "forces.csv",
+    "frame.svg",
+    "scanner.bank.csv",
+    "target/sweep/report.html",
+];
 
 /// What takes a minute as it is written, and seconds so.
 fn quick(line: &str) -> String {
@@ -190,6 +197,7 @@ fn the_commands_of_the_docs_run() {
         ("estimators.md", vec!["pad-joint.toml", "forces.csv"]),
         ("looking.md", vec!["frame.svg"]),
         ("python.md", vec![]),
+        ("sensor.md", vec!["scanner.bank.csv"]),
         ("sweep.md", vec!["target/sweep/report.html"]),
     ];
     assert_eq!(found, expected.map(|(page, made)| (page.to_owned(), made)));

@@ -2,8 +2,9 @@
  *
  *   calibration CORE.so BANKS COLUMNS ROWS
  *
- * BANKS is binary, little-endian: gains and offsets of each taxel (float64), a noise floor in Pa (float64, 0: none), and
- * the words of the bank (uint32); then the same for the next one. */
+ * BANKS is binary, little-endian: gains and offsets of each taxel (float64), a noise floor in Pa (float64, 0: none), the
+ * count of dead taxels (-1: nothing is said of them), two numbers and two weights of each taxel (float64), and the words of
+ * the bank (uint32); then the same for the next one. */
 #include "check.h"
 #include "machine.h"
 #include "sptfra.h"
@@ -33,14 +34,17 @@ static void send(sptfra *device, float count, sptfra_result *result)
 int main(int count, char **arguments)
 {
     static double gain[MOST_TAXELS], offset[MOST_TAXELS];
-    static uint32_t words[2 * MOST_TAXELS + 2];
+    static double map[3 + 2 * MOST_TAXELS];
+    static uint32_t words[4 * MOST_TAXELS + 5];
+    uint16_t dead[2];
+    sptfra_replaced replaced = {0, dead, map + 3};
     sptfra_platform platform = {NULL, machine_read, machine_write, NULL, NULL, NULL};
     sptfra_result result;
     sptfra device;
     machine *system;
     FILE *file;
     double noise_floor;
-    uint32_t word, index, banks = 0, taxels;
+    uint32_t word, index, banks = 0, taxels, length;
 
     CHECK(count == 5);
     taxels = (uint32_t)atoi(arguments[3]) * (uint32_t)atoi(arguments[4]);
@@ -50,14 +54,20 @@ int main(int count, char **arguments)
     platform.context = system;
     CHECK(sptfra_open(&device, &platform, MACHINE_CORE, MACHINE_DMA) == SPTFRA_OK);
     send(&device, 5.0f, &result);
-    CHECK(result.generation == 0);
+    CHECK(result.generation == 0 && result.replaced == 1);
+    length = 4u * taxels + 5u;
     file = fopen(arguments[2], "rb");
     CHECK(file != NULL);
     while (fread(gain, sizeof *gain, taxels, file) == taxels) {
         CHECK(fread(offset, sizeof *offset, taxels, file) == taxels && fread(&noise_floor, 8, 1, file) == 1);
-        CHECK(fread(words, 4, 2u * taxels + 2u, file) == 2u * taxels + 2u);
-        CHECK(sptfra_load_calibration(&device, gain, offset, noise_floor, POLLS) == SPTFRA_OK);
-        for (index = 0; index < 2u * taxels + 2u; index++) {
+        CHECK(fread(map, 8, 3u + 2u * taxels, file) == 3u + 2u * taxels);
+        CHECK(fread(words, 4, length, file) == length);
+        replaced.count = map[0] < 0.0 ? 0u : (uint32_t)map[0];
+        dead[0] = (uint16_t)map[1];
+        dead[1] = (uint16_t)map[2];
+        CHECK(map[0] < 0.0 ? sptfra_load_calibration(&device, gain, offset, noise_floor, POLLS) == SPTFRA_OK
+                           : sptfra_load_bank(&device, gain, offset, &replaced, noise_floor, POLLS) == SPTFRA_OK);
+        for (index = 0; index < length; index++) {
             CHECK(sptfra_read_calibration(&device, (uint16_t)index, 1, &word) == SPTFRA_OK);
             CHECK(word == words[index]);
         }
@@ -70,13 +80,33 @@ int main(int count, char **arguments)
     gain[taxels - 1] = 17.0;
     CHECK(sptfra_load_calibration(&device, gain, offset, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
     gain[taxels - 1] = 1.0;
+    memset(map, 0, sizeof map);
+    dead[0] = 3;
+    dead[1] = 3;
+    replaced.count = 2;
+    CHECK(sptfra_load_bank(&device, gain, offset, &replaced, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
+    dead[1] = (uint16_t)taxels;
+    CHECK(sptfra_load_bank(&device, gain, offset, &replaced, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
+    dead[1] = 4;
+    map[3 + 4] = 0.1;
+    CHECK(sptfra_load_bank(&device, gain, offset, &replaced, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
+    map[3 + 4] = 0.0;
+    map[3 + 5] = 2e5;
+    CHECK(sptfra_load_bank(&device, gain, offset, &replaced, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
+    replaced.count = 3;
+    CHECK(sptfra_load_bank(&device, gain, offset, &replaced, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
+    replaced.count = 0;
     offset[taxels - 1] = 1e6;
     CHECK(sptfra_load_calibration(&device, gain, offset, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
     offset[taxels - 1] = 0.0;
     CHECK(sptfra_load_calibration(&device, gain, offset, 1e12, POLLS) == SPTFRA_OUT_OF_RANGE);
     CHECK(sptfra_calibration_wait(&device, POLLS) == SPTFRA_OK);
+    for (index = 0; index < taxels; index++) {
+        gain[index] = 1.0;
+        offset[index] = 0.0;
+    }
     /* Tare: four frames at rest, then nothing is read; then one that is not. */
-    CHECK(sptfra_load_calibration(&device, gain, offset, 20.0, 0) == SPTFRA_TIMEOUT);
+    CHECK(sptfra_load_bank(&device, gain, offset, &replaced, 20.0, 0) == SPTFRA_TIMEOUT);
     CHECK(sptfra_tare(&device, 2) == SPTFRA_CALIBRATION_BUSY);
     CHECK(sptfra_calibration_wait(&device, POLLS) == SPTFRA_OK);
     CHECK(sptfra_tare(&device, 11) == SPTFRA_OUT_OF_RANGE);

@@ -23,7 +23,7 @@ def main():
     overlay = Overlay(machine)
     sensor = Sptfra(overlay.core, overlay.dma, allocate)
     rows, columns = sensor.identity.rows, sensor.identity.columns
-    assert sensor.identity.calibration_in_ram
+    assert sensor.identity.calibration_in_ram and sensor.identity.replaceable == 2
     files = sorted(pathlib.Path(folder).glob("*.csv"))
     assert len(files) > 3
     for generation, path in enumerate(files, 1):
@@ -41,7 +41,20 @@ def main():
     ]:
         wrong.write_text(text)
         assert message in refused(ValueError, lambda: sensor.load_calibration(wrong))
-    wrong.write_text("1,0\n" * rows * columns)
+    header = "gain,offset,taxel 3,taxel 4\n"
+    for text, message in [
+        ("gain,offset,3\n" + "1,0,0\n" * 12, "line 1: a header is gain,offset,taxel 37"),
+        ("gain,offset,taxel 4,taxel 3\n" + "1,0,0,0\n" * 12, "line 1: dead taxels ascend"),
+        ("gain,offset,taxel 12\n" + "1,0,0\n" * 12, "line 1: dead taxels ascend"),
+        (header + "1,0,0\n" * 12, "line 2: '1,0,0' is no gain,offset such as 1.02,-0.5 and a weight"),
+        (header + "1,0,0.5,0\n" * 12, "a dead taxel has no weight"),
+        (header + "1,0,0,0\n" * 3 + "0,0,0,0\n" * 2 + "1,0,2e5,0\n" * 7, "so large that no bank takes them"),
+        ("gain,offset,taxel 1,taxel 3,taxel 4\n" + "1,0,0,0,0\n" * 12, "3 dead taxels, and the core has room for 2"),
+        ("gain,offset\n" + "1,0\n" * 11 + "0,0\n", "nothing replaces the taxels [11] of gain 0"),
+    ]:
+        wrong.write_text(text)
+        assert message in refused(ValueError, lambda: sensor.load_calibration(wrong))
+    wrong.write_text("gain,offset\n" + "1,0\n" * rows * columns)
     for noise in (-1.0, 0.0, 1e12):
         assert "noise floor" in refused(ValueError, lambda: sensor.load_calibration(wrong, noise))
     sensor.load_calibration(wrong, 20.0)

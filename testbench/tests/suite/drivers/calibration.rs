@@ -4,9 +4,13 @@ use std::fmt::Write;
 use std::fs;
 use std::process::Command;
 
-use golden::design::{Calibration, Outputs};
+use golden::bank;
+use golden::dead_taxels::DeadTaxels;
+use golden::design::Calibration;
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::calibration::Bank;
+use hdl_gen::plan::calibration::{Bank, DeadMap};
+use hdl_gen::plan::dead::DeadPlan;
+use rand::seq::index::sample;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::tools;
@@ -17,36 +21,52 @@ use crate::calibration;
 use crate::support::{built, planned, workspace};
 
 fn subject() -> (Plan, Built) {
-    let plan = planned(&calibration::design(Outputs::Resultants));
+    let plan = planned(&calibration::dead::design_with_map());
     let built = built(&plan);
     (plan, built)
 }
 
-/// Calibrations with their noise floors in Pa (0: none is given) and the banks that they make, one after the other.
-fn banks(plan: &Plan) -> Vec<(Calibration, f64, Bank)> {
+/// What a driver is given, and the bank that it makes.
+struct Given {
+    calibration: Calibration,
+    /// In Pa; 0: none is given.
+    noise: f64,
+    /// Dead taxels; none: those that were before.
+    dead: Option<Vec<usize>>,
+    bank: Bank,
+}
+
+/// Calibrations one after the other.
+fn banks(plan: &Plan) -> Vec<Given> {
     let of = plan.calibration.as_ref().expect("in RAM");
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut thresholds = of.power_up.clone();
     (0..6)
-        .map(|index| {
-            let gain = |_| match random.random_range(0..5) {
+        .map(|index: usize| {
+            let dead = (index % 3 != 2).then(|| {
+                let mut dead = sample(&mut random, of.taxels, 2 - index % 3).into_vec();
+                dead.sort_unstable();
+                thresholds.dead = DeadMap { room: 2, dead: DeadPlan::of(&plan.design, &dead) };
+                dead
+            });
+            let gain = |taxel| match random.random_range(0..5) {
+                _ if thresholds.dead.dead.taxels.contains(&taxel) => 0.0,
                 0 => 2_f64.powi(random.random_range(-20..5)),
                 // Just below a power of two: the mantissa is rounded up to the next.
                 1 => 2_f64.powi(random.random_range(-20..4)) * (1.0 - 1e-9),
-                2 => 0.0,
                 _ => 10_f64.powf(random.random_range(-8.0..1.2)),
             };
             let gain: Vec<f64> = (0..of.taxels).map(gain).collect();
             let offset = (0..of.taxels).map(|_| random.random_range(-9000.0..9000.0)).collect();
             let calibration = Calibration { gain, offset };
-            let noise = if index % 2 == 0 { 0.0 } else { random.random_range(1e-3..900.0) };
+            let noise = if index.is_multiple_of(2) { 0.0 } else { random.random_range(1e-3..900.0) };
             if noise > 0.0 {
                 let steps = |pascals: f64| ((pascals / of.stress.step()).round() as u32).max(1);
                 (thresholds.contact, thresholds.noise) = (steps(noise * of.taxels as f64), steps(noise));
             }
             let bank = of.bank(&calibration, &thresholds).expect("within bounds");
             assert!(of.takes(&bank));
-            (calibration, noise, bank)
+            Given { calibration, noise, dead, bank }
         })
         .collect()
 }
@@ -56,8 +76,15 @@ fn the_c_driver_loads_calibrations_and_tares() {
     let (plan, built) = subject();
     let folder = tempfile::tempdir().expect("a folder");
     let mut bytes = Vec::new();
-    for (calibration, noise, bank) in banks(&plan) {
-        let values = calibration.gain.iter().chain(&calibration.offset).chain([&noise]);
+    for Given { calibration, noise, dead, bank } in banks(&plan) {
+        // Count, numbers and weights of dead taxels: room for two; a count of -1 says nothing of them.
+        let count = dead.as_ref().map_or(-1.0, |dead| dead.len() as f64);
+        let dead = dead.unwrap_or_default();
+        let weights = DeadTaxels::new(&plan.design.sensor, plan.design.algorithm.kernel, &dead).weights().concat();
+        let padded = |values: Vec<f64>, length: usize| values.into_iter().chain(std::iter::repeat(0.0)).take(length);
+        let numbers = padded(dead.into_iter().map(|taxel| taxel as f64).collect(), 2);
+        let map: Vec<f64> = [count].into_iter().chain(numbers).chain(padded(weights, 2 * plan.taxels())).collect();
+        let values = calibration.gain.iter().chain(&calibration.offset).chain([&noise]).chain(&map);
         bytes.extend(values.flat_map(|value| value.to_le_bytes()));
         bytes.extend(bank.words().into_iter().flat_map(u32::to_le_bytes));
     }
@@ -77,10 +104,16 @@ fn the_c_driver_loads_calibrations_and_tares() {
 fn the_python_driver_loads_calibrations_and_tares() {
     let (plan, built) = subject();
     let folder = tempfile::tempdir().expect("a folder");
-    for (index, (calibration, noise, bank)) in banks(&plan).into_iter().enumerate() {
+    for (index, Given { calibration, noise, dead, bank }) in banks(&plan).into_iter().enumerate() {
         let mut text = String::new();
-        for (gain, offset) in calibration.gain.iter().zip(&calibration.offset) {
-            writeln!(text, "{gain:?}, {offset:?}").expect("to a string");
+        if let Some(dead) = dead {
+            let mut design = plan.design.clone();
+            (design.input.calibration, design.input.dead) = (Some(calibration), dead);
+            text = bank::to_csv(&design).expect("in RAM");
+        } else {
+            for (gain, offset) in calibration.gain.iter().zip(&calibration.offset) {
+                writeln!(text, "{gain:?}, {offset:?}").expect("to a string");
+            }
         }
         fs::write(folder.path().join(format!("{index}.csv")), text).expect("written");
         let words = bank.words().into_iter().flat_map(u32::to_le_bytes);

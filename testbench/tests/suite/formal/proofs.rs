@@ -53,6 +53,11 @@ fn calibrated(design: &mut Design) {
     design.input.pa_per_count = Some(-12.5);
 }
 
+fn mapped(design: &mut Design) {
+    calibrated(design);
+    design.hardware.replaceable = 1;
+}
+
 fn scanned(design: &mut Design) {
     reduced(design);
     design.hardware.overrun = Overrun::Drop;
@@ -239,8 +244,31 @@ pub const PROOFS: &[Proof] = &[
             ("calibrate", "in_frame ? marked_held : tare_run", "tare_run"),
             ("calibrate", "if (!tare_run) begin\n            marked_held", "if (1'b0) begin\n            marked_held"),
             ("calibrate", "in_frame <= !s_tlast;", "in_frame <= 1'b1;"),
-            ("calibrate", "in_frame && (bank_held != active)", "1'b0"),
+            ("calibrate", "(in_frame || hold) && (bank_held != active)", "in_frame && (bank_held != active)"),
+            ("calibrate", "(in_frame || hold) && (bank_held != active)", "1'b0"),
+            ("calibrate", "!hold && ", ""),
             ("calibrate", "(ends_inside != 2'd3)", "1'b1"),
+        ],
+    },
+    Proof {
+        name: "dead taxels of a bank's map",
+        harness: "replace",
+        design: mapped,
+        defines: &[],
+        top: "sptfra_replace",
+        parameters: "-set TAXELS 4 -set REPLACEABLE 1",
+        models: &[],
+        free: &["*sptfra_mac*", "*sptfra_ram*"],
+        free_wires: &[],
+        induction: "3",
+        broken: &[
+            ("replace", "takes ? place + 1 : place", "place + 1"),
+            ("replace", "pending <= complete && !start;", "pending <= 1'b0;"),
+            ("replace", "hold <= 1'b1;", "hold <= 1'b0;"),
+            ("replace", "(!replays || replays_last)", "1'b1"),
+            ("replace", "ends_at <= place;", "ends_at <= place - 1;"),
+            ("replace", "if (advance && out_valid && out_last)", "if (out_valid && out_last)"),
+            ("replace", "if (holds) begin\n                hold <=", "if (start) begin\n                hold <="),
         ],
     },
     Proof {

@@ -56,6 +56,14 @@ fn designs() -> Vec<Design> {
     "in_ram".clone_into(&mut in_ram.name);
     in_ram.hardware.control = true;
     in_ram.hardware.calibration = CalibrationIn::Ram;
+    // Without a place for dead taxels, with one, with many.
+    let mut mapped = in_ram.clone();
+    "mapped".clone_into(&mut mapped.name);
+    mapped.hardware.replaceable = 8;
+    mapped.input.dead = vec![0, 1, 7];
+    let mut mapped_once = calibration::design(Outputs::Resultants);
+    "mapped_once".clone_into(&mut mapped_once.name);
+    mapped_once.hardware.replaceable = 1;
     // Frames dropped, with and without registers, samples one by one and at once.
     let mut dropping = in_ram.clone();
     "dropping".clone_into(&mut dropping.name);
@@ -71,6 +79,8 @@ fn designs() -> Vec<Design> {
     vec![
         calibration::design(Outputs::Field),
         in_ram,
+        mapped,
+        mapped_once,
         dropping,
         scanned,
         wide,

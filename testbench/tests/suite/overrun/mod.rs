@@ -2,6 +2,7 @@
 //! that was sent, in order, and every frame without one was dropped for want of room and counted.
 
 mod calibrated;
+mod others;
 mod resets;
 
 use std::sync::OnceLock;

@@ -205,6 +205,7 @@ fn the_maps_special_fields_are_the_ones_that_other_tests_try() {
             "CALIBRATION_ERRORS.WRONG_CRC woclr",
             "CALIBRATION_ERRORS.NOT_AT_REST woclr",
             "CALIBRATION_ERRORS.BAD_FRAME woclr",
+            "CALIBRATION_ERRORS.CONTRADICTION woclr",
         ]
     );
 }

@@ -1,0 +1,48 @@
+//! What a board loads into a bank of its calibration: gains, offsets, and the weights that replace dead taxels.
+
+use std::fmt::Write;
+
+use crate::dead_taxels::DeadTaxels;
+use crate::design::{CalibrationIn, Design};
+
+/// Why a design has no bank.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{design}: the design's calibration is in ROM, and no board can load another one; add [hardware] calibration = \"ram\" \
+     and control = true, and synthesize it once"
+)]
+pub struct NoBank {
+    design: String,
+}
+
+/// The file that the drivers load, for a design whose calibration is in RAM. A header line `gain,offset,taxel 37,…` names
+/// the dead taxels, ascending; then follows a line for each taxel: its gain, 0 of a dead one, its offset in counts, and its
+/// weight in the stress of each dead taxel. Where banks have no room for dead taxels, gain and offset alone.
+///
+/// # Errors
+/// [`NoBank`] for a calibration in ROM.
+pub fn to_csv(design: &Design) -> Result<String, NoBank> {
+    if design.hardware.calibration == CalibrationIn::Rom {
+        return Err(NoBank { design: design.name.clone() });
+    }
+    let (input, taxels) = (&design.input, design.sensor.taxels());
+    let replaced = if design.hardware.replaceable == 0 { &[][..] } else { &input.dead };
+    let dead = DeadTaxels::new(&design.sensor, design.algorithm.kernel, replaced);
+    let mut text = "gain,offset".to_owned();
+    // Writing to a String cannot fail.
+    for taxel in dead.taxels() {
+        let _ = write!(text, ",taxel {taxel}");
+    }
+    for taxel in 0..taxels {
+        let of_taxel = |values: fn(&crate::design::Calibration) -> &Vec<f64>, absent: f64| {
+            input.calibration.as_ref().map_or(absent, |calibration| values(calibration)[taxel])
+        };
+        let gain = if input.dead.contains(&taxel) { 0.0 } else { of_taxel(|of| &of.gain, 1.0) };
+        let _ = write!(text, "\n{gain:?},{:?}", of_taxel(|of| &of.offset, 0.0));
+        for weights in dead.weights() {
+            let _ = write!(text, ",{:?}", weights[taxel]);
+        }
+    }
+    text.push('\n');
+    Ok(text)
+}

@@ -1,0 +1,83 @@
+//! `golden bank`: what a board loads, and which designs have room for dead taxels.
+
+use std::fs;
+use std::process::Command;
+
+use golden::bank;
+use golden::dead_taxels::DeadTaxels;
+use golden::design::Design;
+
+const PAD: &str = "name = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n\
+    pa_per_count = -2.0\n";
+
+fn design(sensor: &str, hardware: &str) -> Result<Design, String> {
+    let text = format!("{PAD}{sensor}\n[hardware]\ncontrol = true\ncalibration = \"ram\"\n{hardware}\n");
+    Design::from_toml(&text, "pad.toml").map_err(|error| error.to_string())
+}
+
+#[test]
+fn room_for_dead_taxels_is_one_two_four_or_eight() {
+    let good = design("dead = [1, 4]", "replaceable = 2").unwrap();
+    assert_eq!(good.hardware.replaceable, 2);
+    assert_eq!(Design::from_toml(&good.to_toml(), "again.toml").unwrap(), good);
+    assert!(!design("", "replaceable = 0").unwrap().to_toml().contains("replaceable"));
+    for (sensor, hardware, said) in [
+        ("", "replaceable = 3", "use 1, 2, 4 or 8"),
+        ("", "replaceable = -1", "use 1, 2, 4 or 8"),
+        ("dead = [1, 4]", "replaceable = 1", "2 taxels are dead"),
+    ] {
+        let message = design(sensor, hardware).unwrap_err();
+        assert!(message.contains("hardware.replaceable") && message.contains(said), "{message}");
+    }
+    let in_rom = Design::from_toml(&format!("{PAD}[hardware]\nreplaceable = 1\n"), "pad.toml").unwrap_err().to_string();
+    assert!(in_rom.contains("stands in ROM") && in_rom.contains("calibration = \"ram\""), "{in_rom}");
+}
+
+/// The header names the dead taxels; their gains are 0, and so are their weights; the others' are those of the prior.
+#[test]
+fn a_bank_has_the_weights_of_the_dead_taxels() {
+    let text = bank::to_csv(&design("dead = [4, 1]", "replaceable = 8").unwrap()).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!((lines[0], lines.len()), ("gain,offset,taxel 1,taxel 4", 7));
+    let table: Vec<Vec<f64>> =
+        lines[1..].iter().map(|line| line.split(',').map(|value| value.parse().unwrap()).collect()).collect();
+    for (taxel, line) in table.iter().enumerate() {
+        let dead = [1, 4].contains(&taxel);
+        assert_eq!(line[..2], [if dead { 0.0 } else { 1.0 }, 0.0], "taxel {taxel}");
+        assert_eq!(line[2..] == [0.0, 0.0], dead, "taxel {taxel}");
+    }
+    let both = design("dead = [1, 4]", "replaceable = 8").unwrap();
+    let dead = DeadTaxels::new(&both.sensor, both.algorithm.kernel, &[1, 4]);
+    for (place, weights) in dead.weights().iter().enumerate() {
+        assert_eq!(table.iter().map(|line| line[2 + place]).collect::<Vec<_>>(), *weights, "place {place}");
+    }
+    // Where banks have no room, and where nothing is dead.
+    for hardware in ["", "replaceable = 2"] {
+        let text = bank::to_csv(&design("", hardware).unwrap()).unwrap();
+        assert_eq!(text, format!("gain,offset\n{}", "1.0,0.0\n".repeat(6)));
+    }
+    let of_rom = bank::to_csv(&design("dead = [1]", "").unwrap()).unwrap();
+    assert!(of_rom.starts_with("gain,offset\n1.0,0.0\n0.0,0.0\n"), "{of_rom}");
+}
+
+#[test]
+fn the_command_writes_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, rom, out] = ["pad.toml", "rom.toml", "pad.bank.csv"].map(|name| folder.path().join(name));
+    let design = design("dead = [1]", "replaceable = 1").unwrap();
+    fs::write(&file, design.to_toml()).unwrap();
+    fs::write(&rom, PAD).unwrap();
+    let golden = |design: &std::path::Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_golden"));
+        command.arg("bank").arg(design).arg("--out").arg(&out).arg("--json").output().unwrap()
+    };
+    let refused = golden(&rom);
+    assert!(!refused.status.success() && !out.exists());
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(message.contains("is in ROM") && message.contains("calibration = \"ram\""), "{message}");
+    let done = golden(&file);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    assert_eq!(fs::read_to_string(&out).unwrap(), bank::to_csv(&design).unwrap());
+    let report: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!((&report["taxels"], &report["replaced"]), (&6.into(), &serde_json::json!([1])));
+}
