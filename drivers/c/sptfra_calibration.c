@@ -263,6 +263,35 @@ static uint32_t word_of_map(const numbers *of, const sptfra_replaced *replaced, 
     return (uint32_t)rounded(replaced->weights[dead * of->taxels + taxel] * power((int)shift));
 }
 
+/* Whether nothing would take the place of a taxel of gain 0: its contact would read nothing, and nobody would know. */
+static int is_bare(const numbers *of, const double *gain, const uint16_t *dead, uint32_t count)
+{
+    uint32_t taxel, next = 0;
+
+    for (taxel = 0; taxel < of->taxels; taxel++) {
+        if (next < count && dead[next] == taxel) {
+            next++;
+        } else if (gain[taxel] == 0.0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* The dead taxels of the map that acts, at most as many as fit into the count's four bits. */
+static int acting_map(const sptfra *device, const numbers *of, uint16_t dead[15], uint32_t *count)
+{
+    uint32_t place, word;
+    int found = sptfra_read_calibration(device, (uint16_t)(2u * of->taxels + 2u), 1, &word);
+
+    *count = found == SPTFRA_OK ? word & 15u : 0u;
+    for (place = 0; place < *count && found == SPTFRA_OK; place++) {
+        found = sptfra_read_calibration(device, (uint16_t)(2u * of->taxels + 3u + place), 1, &word);
+        dead[place] = (uint16_t)word;
+    }
+    return found;
+}
+
 /* ---- A whole bank */
 
 int sptfra_load_calibration(
@@ -295,6 +324,20 @@ int sptfra_load_bank(const sptfra *device, const double *gain, const double *off
             return SPTFRA_OUT_OF_RANGE;
         }
         shift = weight_shift(&of, replaced);
+        if (is_bare(&of, gain, replaced->taxels, replaced->count)) {
+            return SPTFRA_OUT_OF_RANGE;
+        }
+    } else if (of.room > 0) {
+        uint16_t dead[15];
+        uint32_t count;
+
+        found = acting_map(device, &of, dead, &count);
+        if (found != SPTFRA_OK) {
+            return found;
+        }
+        if (is_bare(&of, gain, dead, count)) {
+            return SPTFRA_OUT_OF_RANGE;
+        }
     }
     if (noise_floor_pa > 0.0) {
         const double noise = noise_floor_pa * power(-of.lsb);

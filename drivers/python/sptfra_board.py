@@ -68,6 +68,10 @@ class Sptfra:
         self._has_registers = core is not None
         self._core = NoRegisters() if core is None else core
         self.identity = Identity.load(metadata) if core is None else Identity.read(core)
+        if metadata is not None and core is not None:
+            told = Identity.load(metadata).design_hash
+            if told != self.identity.design_hash:
+                raise RuntimeError(f"{metadata} is of the design {told}, the core is {self.identity.design_hash}")
         if queue:
             self._transfers = Batches(dma, allocate, self.identity, queue)
         else:
@@ -168,6 +172,8 @@ class Sptfra:
         file or values that no bank takes, RuntimeError if the core refuses, TimeoutError; then what acted still does.
         """
         self._needs_calibration()
+        # What is kept of the bank that acts is read from it, and reads 0 while it changes.
+        self._calibration_idle()
         gains, offsets, dead = read_calibration(path, self.identity.rows * self.identity.columns)
         room = self.identity.replaceable
         in_map = [] if dead is None else map_words(dead, room, len(gains))
@@ -193,7 +199,6 @@ class Sptfra:
                 raise ValueError(f"{path}: nothing replaces the taxels {bare} of gain 0: write it with golden bank")
         words = np.concatenate([words, np.array([*thresholds, *in_map], dtype=np.uint32)]).astype("<u4")
         crc = zlib.crc32(words.tobytes())
-        self._calibration_idle()
         write(Register.CALIBRATION_INDEX, 0)
         for word in words:
             write(Register.CALIBRATION_DATA, int(word))
@@ -203,8 +208,10 @@ class Sptfra:
             raise RuntimeError("the bank that acts is not the one that was written")
 
     def read_calibration(self, index, acting=True):
-        """A word of the bank that acts, or of the other one: gains, offsets, contact threshold, noise floor."""
+        """A word of the bank that acts, or of the other one: gains, offsets, contact threshold, noise floor, then the map of
+        dead taxels. Raises RuntimeError while a commit or a tare is under way."""
         self._needs_calibration()
+        self._refuse_while_busy()
         self._core.write(Register.CALIBRATION_INDEX, index | (INDEX_ACTIVE if acting else 0))
         return self._core.read(Register.CALIBRATION_DATA)
 
@@ -231,9 +238,12 @@ class Sptfra:
         if not self.identity.calibration_in_ram:
             raise RuntimeError('the design\'s calibration is in ROM: it needs calibration = "ram"')
 
-    def _calibration_idle(self):
+    def _refuse_while_busy(self):
         if self._core.read(Register.CALIBRATION_STATUS) & CALIBRATION_BUSY:
             raise RuntimeError("a commit or a tare is under way")
+
+    def _calibration_idle(self):
+        self._refuse_while_busy()
         self._core.write(Register.CALIBRATION_ERRORS, (1 << len(CalibrationError)) - 1)
 
     def _calibration_done(self, timeout):

@@ -98,7 +98,8 @@ module sptfra_calibration #(
     reg [63:0] contacts; // bank 1, bank 0
     reg [53:0] noises;
     wire copy_writes = (state == COPY) && (step == COPY_WRITES);
-    wire of_acting = (state == IDLE) ? index_active : (state == COPY) && !copy_writes; // or of the other one
+    // Or of the other one: what acts is read, and never written.
+    wire of_acting = (state == IDLE) ? (index_active && !write) : (state == COPY) && !copy_writes;
     wire bank = of_acting ? active : !active;
 
     // Configuration, not reset, brings the design's content

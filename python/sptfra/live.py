@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 import socket
 import sys
 import time
@@ -76,18 +77,26 @@ def warn(design: Design, frames: list[np.ndarray]) -> None:
         print(f"warning: {finding}", file=sys.stderr, flush=True)
 
 
+def is_cut(message: str) -> bool:
+    """Whether a line is wrong as one is that was cut off at its beginning."""
+    ends = re.search(r"ends at column (\d+) where (\d+) values", message)
+    return ", column 1: " in message if ends is None else int(ends[1]) < int(ends[2])
+
+
 def run(design: Design, lines: Iterable[bytes], origin: str, labels: int, window: Window | None) -> None:
     """Solves the frame of each line and shows its forces."""
     reader, solver = FrameLines(design, labels=labels, origin=origin), Solver(design)
     number, forces, first = 0, None, []
+    cut = None
     for index, line in enumerate(lines):
         try:
             frame = reader.frame(line)
         except Error as error:
             # Who opens a port while a frame goes through it gets the end of one.
-            if index > 0:
+            if index > 0 or not is_cut(str(error)):
                 raise
             print(f"warning: {error}; the first line is passed over", file=sys.stderr, flush=True)
+            cut = error
             continue
         if frame is None:
             continue
@@ -101,6 +110,8 @@ def run(design: Design, lines: Iterable[bytes], origin: str, labels: int, window
         else:
             window.show(forces)
         number += 1
+    if number == 0 and cut is not None:
+        raise cut
     if 0 < number < LOOKED_AT:
         warn(design, first)
     if window is not None:

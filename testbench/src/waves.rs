@@ -142,7 +142,7 @@ fn groups(sources: &RtlSources) -> Vec<(&'static str, Vec<Signal>)> {
     groups
 }
 
-/// Name and range of every net, register and port that a line of its own declares, as the emitter prints them. Ranges
+/// Name and range of every net, register and port that a line declares, as the emitter prints them. Ranges
 /// are numbers, as in a trace; one that is not to be known leaves its signal out.
 fn declared(verilog: &str) -> BTreeMap<&str, String> {
     let mut found = BTreeMap::new();
@@ -155,14 +155,19 @@ fn declared(verilog: &str) -> BTreeMap<&str, String> {
             }
             continue;
         }
-        words.next_if(|word| ["input", "output"].contains(word));
+        let is_port = words.next_if(|word| ["input", "output"].contains(word)).is_some();
         if words.next_if(|word| ["wire", "reg"].contains(word)).is_none() {
             continue;
         }
         words.next_if_eq(&"signed");
         let range = words.next_if(|word| word.starts_with('[')).map(|range| numbers(range, &constants));
-        if let (Some(name), Some(range)) = (words.next(), range.unwrap_or_else(|| Some(String::new()))) {
-            found.insert(name.trim_end_matches([',', ';']), range);
+        let Some(range) = range.unwrap_or_else(|| Some(String::new())) else { continue };
+        // Nets of one kind may share a line; a port's comma ends its own.
+        for name in words {
+            found.insert(name.trim_end_matches([',', ';']), range.clone());
+            if is_port || !name.ends_with(',') {
+                break;
+            }
         }
     }
     found

@@ -1,7 +1,7 @@
 //! Taxels that read the same whatever presses around them.
 
 use super::largest;
-use crate::design::{Design, Tension};
+use crate::design::Design;
 
 /// A taxel lies within a contact where those on two opposite sides of it read this share of the frame's peak,
 const WITHIN: f64 = 0.2;
@@ -11,7 +11,9 @@ const LESS: f64 = 0.5;
 const NAMED: usize = 8;
 
 /// Taxels that lie within a contact and have one reading in all frames; those that the design knows of are left out.
-pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>]) -> Option<String> {
+///
+/// `clipped` says that no frame shows a pull, whatever the design says.
+pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], clipped: bool) -> Option<String> {
     let columns = design.sensor.columns;
     let constant = |taxel: usize| {
         let first = frames[0][taxel];
@@ -28,7 +30,7 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>]) -
             let along = x > 0 && x + 1 < columns && pressed(x - 1, y) && pressed(x + 1, y);
             let across = y > 0 && y + 1 < design.sensor.rows && pressed(x, y - 1) && pressed(x, y + 1);
             // Between two bodies a taxel that cannot read a pull reads 0 for good.
-            if design.input.tension == Tension::Clipped { along && across } else { along || across }
+            if clipped { along && across } else { along || across }
         })
     };
     let known = |taxel: &usize| !design.input.dead.contains(taxel);

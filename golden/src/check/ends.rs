@@ -6,6 +6,8 @@ use crate::design::Design;
 /// Of smooth readings few share the largest value, and many are just below it.
 const LEAST: usize = 5;
 const BELOW: f64 = 0.97;
+/// Of coarse readings just below is that many steps of them.
+const STEPS: f64 = 3.0;
 /// A converter that ends this many times below the full scale is none.
 const WITHIN: f64 = 8.0;
 /// A taxel that reads the same in frames whose loads differ by this share reads no more than that.
@@ -37,6 +39,7 @@ pub(crate) fn end_of_range<Frame: Iterator<Item = f64>>(
     rest: f64,
 ) -> Option<(f64, usize)> {
     let end = frames.clone().flatten().fold(f64::NEG_INFINITY, f64::max);
+    let close = (BELOW * (end - rest)).min(end - rest - STEPS * step(frames.clone().flatten(), rest, end));
     let (mut at, mut below) = (0, 0);
     let mut places: Vec<usize> = Vec::new();
     let mut loads: Vec<f64> = Vec::new();
@@ -47,7 +50,7 @@ pub(crate) fn end_of_range<Frame: Iterator<Item = f64>>(
             if value >= end {
                 at += 1;
                 places.push(taxel);
-            } else if value - rest >= BELOW * (end - rest) {
+            } else if value - rest >= close {
                 below += 1;
             }
         }
@@ -59,4 +62,12 @@ pub(crate) fn end_of_range<Frame: Iterator<Item = f64>>(
     let [least, most] = [f64::min, f64::max].map(|pick| loads.iter().copied().reduce(pick).unwrap_or(0.0));
     let other = most - least > OTHER_LOAD * largest_of([least, most]);
     (end > rest && at >= LEAST && at > 2 * below && (several || other)).then_some((end, at))
+}
+
+/// The least distance of two readings in the upper half of the range: a count, where they are counts.
+fn step(readings: impl Iterator<Item = f64>, rest: f64, end: f64) -> f64 {
+    let mut upper: Vec<f64> = readings.filter(|&value| value - rest >= 0.5 * (end - rest)).collect();
+    upper.sort_by(f64::total_cmp);
+    let distances = upper.windows(2).map(|pair| pair[1] - pair[0]).filter(|&distance| distance > 0.0);
+    distances.reduce(f64::min).unwrap_or(0.0)
 }

@@ -124,11 +124,11 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
         // What else is wrong shows with the right sign.
         loaded.iter_mut().flatten().for_each(|stress| *stress = -*stress);
     }
+    let clipped = design.input.tension == Tension::Clipped
+        || loaded.iter().all(|frame| frame.iter().all(|&stress| stress <= FAINT * largest(frame)));
     if let Some(message) = rest::check(&design.sensor, &loaded, full_scale) {
         found(Kind::Tare, message);
-    } else if design.input.tension == Tension::Read
-        && loaded.iter().all(|frame| frame.iter().all(|&stress| stress <= FAINT * largest(frame)))
-    {
+    } else if design.input.tension == Tension::Read && clipped {
         found(
             Kind::NoTension,
             format!(
@@ -151,7 +151,7 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
             ),
         );
     }
-    if let Some(message) = dead::check(design, frames, &loaded) {
+    if let Some(message) = dead::check(design, frames, &loaded, clipped) {
         found(Kind::Dead, message);
     } else if let Some(message) = matrices.and_then(|matrices| order::check(design, matrices, &loaded)) {
         found(Kind::Order, message);

@@ -8,6 +8,8 @@ use golden::design::Design;
 use golden::output::write_whole;
 use serde::Serialize;
 
+use super::keep_apart;
+
 #[derive(Serialize)]
 struct Report<'a> {
     design: &'a str,
@@ -18,6 +20,8 @@ struct Report<'a> {
 
 /// Writes the bank of the design in `path` to `out`.
 pub fn run(path: &Path, out: &Path, json: bool) -> Result<(), Box<dyn Error>> {
+    let named = Design::files_named_in(path)?;
+    keep_apart(out, &[path].into_iter().chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
     let design = Design::load(path)?;
     let text = bank::to_csv(&design)?;
     write_whole(out, text.as_bytes())?;

@@ -45,15 +45,20 @@ pub fn run(design: &Path, frames: &Recording, with_field: bool) -> Result<(), Bo
     // Who reads knows the columns before the first frame.
     let mut goes_on = put(&line)?;
     let mut first = is_standard(frames.file).then(Vec::new);
-    let mut lines = 0;
+    let (mut lines, mut cut): (u64, Option<FrameError>) = (0, None);
     while goes_on {
         let frame = match next() {
             Ok(Some(frame)) => frame,
-            Ok(None) => break,
+            // A stream of that line alone has told nothing.
+            Ok(None) => match cut.filter(|_| lines == 1) {
+                Some(error) => return Err(error.into()),
+                None => break,
+            },
             // Who opens a port while a frame goes through it gets the end of one.
-            Err(error) if lines == 0 && is_standard(frames.file) && error.is_of_a_line() => {
+            Err(error) if lines == 0 && is_standard(frames.file) && error.is_of_a_cut_line() => {
                 eprintln!("warning: {error}; the first line is passed over");
                 lines += 1;
+                cut = Some(error);
                 continue;
             }
             Err(error) => return Err(error.into()),

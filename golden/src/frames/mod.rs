@@ -149,9 +149,13 @@ pub enum FrameError {
 }
 
 impl FrameError {
-    /// Whether it is about one line of text, after which the next one may be good.
-    pub fn is_of_a_line(&self) -> bool {
-        matches!(self, Self::Length { .. } | Self::Value { .. } | Self::Separator { .. } | Self::Sample { .. })
+    /// Whether a line of text is one that was cut off at its beginning: too few values, or a first one that is none.
+    pub fn is_of_a_cut_line(&self) -> bool {
+        match self {
+            Self::Length { found, expected, .. } => found < expected,
+            Self::Value { column, .. } => *column == 1,
+            _ => false,
+        }
     }
 }
 

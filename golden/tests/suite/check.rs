@@ -273,3 +273,22 @@ fn dead_taxels_within_a_contact_are_named() {
     design.input.dead = vec![44];
     assert!(look(&design, &without(&[44], 0.0)).iter().all(|finding| finding.kind != Kind::Dead));
 }
+
+/// Whole counts of a coarse converter, while something slides over the taxels.
+#[test]
+fn coarse_counts_are_not_at_an_end() {
+    let mut design = pad(10, 10, 3.0);
+    design.input.pa_per_count = Some(-400.0);
+    for peak in [32.4, 40.4, 50.4, 64.4, 100.4] {
+        let frame = |place: f64| -> Vec<f64> {
+            let bump = |taxel: usize| {
+                let [x, y] = [(taxel % 10) as f64 - place, (taxel / 10) as f64 - 4.5];
+                (peak * (-(x * x + y * y) / 3.0).exp()).round()
+            };
+            (0..100).map(bump).collect()
+        };
+        let frames: Vec<Vec<f64>> = (0..60).map(|step| frame(2.5 + 5.0 * f64::from(step) / 60.0)).collect();
+        let findings = look(&design, &frames);
+        assert!(findings.iter().all(|finding| finding.kind != Kind::Stuck), "{peak}: {findings:?}");
+    }
+}

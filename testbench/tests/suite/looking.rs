@@ -121,7 +121,7 @@ fn every_signal_of_the_views_is_in_the_trace() {
         for end in ["aclk", "s_axis_tvalid", "s_axis_tready", "m_axis_tvalid", "m_axis_tready", "frame_ready"] {
             assert!(added.iter().any(|path| path.ends_with(&format!(".{end}"))), "{end} in {added:?}");
         }
-        for signal in ["start", "result_row", "taxel_u", "answer_valid"] {
+        for signal in ["start", "result_row", "taxel_u", "answer_valid", "friction_known", "we_write", "co_write"] {
             assert!(added.iter().any(|path| path.ends_with(&format!(".{signal}"))), "{signal} in {added:?}");
         }
     }

@@ -210,6 +210,21 @@ fn while_busy_writes_are_refused() {
     assert_eq!((generation(&mut core), read_back(&mut core, true)), (1, bank.words()));
 }
 
+/// The bit that reads what acts writes the other bank all the same: what acts has a CRC, and frames inside.
+#[test]
+fn what_acts_is_never_written() {
+    let subject = subject();
+    let power_up = subject.calibration().power_up.words();
+    let bank = random_bank(subject.calibration(), &mut ChaCha8Rng::seed_from_u64(10)).words();
+    let mut core = subject.core(9);
+    for (index, &word) in bank.iter().enumerate() {
+        core.write(address::CALIBRATION_INDEX, ACTIVE | index as u32).expect("a reply");
+        core.write(address::CALIBRATION_DATA, word).expect("a reply");
+    }
+    assert_eq!(errors(&mut core), 0);
+    assert_eq!((read_back(&mut core, true), read_back(&mut core, false)), (power_up, bank));
+}
+
 /// The model's CRC is that of the words' bytes.
 #[test]
 fn the_crc_covers_every_word() {

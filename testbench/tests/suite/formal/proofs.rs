@@ -176,7 +176,7 @@ const PAPER_BROKEN: &[Broken] = &[
     ("sptfra_output", "issued && issued_last && advance", "issued && issued_last"),
 ];
 const RESULTANTS_BROKEN: &[Broken] = &[
-    ("turns", "frame_ready && (searches_due != 2'd2)", "frame_ready"),
+    ("turns", "(u_held != 2'd2) && ", ""),
     ("turns", "wire free = !busy || issued;", "wire free = 1'b1;"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
     ("sptfra_op", "answer_valid && !summary_busy", "answer_valid"),
