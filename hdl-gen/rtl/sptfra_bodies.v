@@ -189,23 +189,23 @@ module sptfra_bodies #(
         .bodies (found)
     );
 
-    // ---- Counts until their frames go out: three at most
-    reg [15:0] counts;
-    reg [2:0] waiting; // counts there
+    // ---- Counts until their frames go out: of two frames that are searched, of one at each later stage; five at most
+    reg [31:0] counts;
+    reg [3:0] waiting; // counts there
     wire [3:0] next_count = (found == 4'd0) ? 4'd1 : found;
-    wire [2:0] left = waiting - {2'd0, bodies_take};
-    wire [15:0] counts_left = bodies_take ? counts >> 4 : counts;
+    wire [3:0] left = waiting - {3'd0, bodies_take};
+    wire [31:0] counts_left = bodies_take ? counts >> 4 : counts;
 
     assign bodies = {4'd0, counts[3:0]};
 
     always @(posedge clock) begin
-        waiting <= left + {2'd0, done};
+        waiting <= left + {3'd0, done};
         counts <= counts_left;
         if (done) begin
-            counts[{left[1:0], 2'd0} +: 4] <= next_count;
+            counts[{left[2:0], 2'd0} +: 4] <= next_count;
         end
         if (reset) begin
-            waiting <= 3'd0;
+            waiting <= 4'd0;
         end
     end
 
@@ -214,7 +214,11 @@ module sptfra_bodies #(
 
     always @(posedge clock) begin
         frames_inside <= frames_inside + {1'b0, last_weights} - {1'b0, done};
-        if (!reset && bodies_take && (waiting == 3'd0)) begin
+        if (!reset && done && (left == 4'd8)) begin
+            $fdisplay(32'h80000002, "%m: a ninth count has no place");
+            $finish;
+        end
+        if (!reset && bodies_take && (waiting == 4'd0)) begin
             $fdisplay(32'h80000002, "%m: a frame goes out before its bodies are counted");
             $finish;
         end

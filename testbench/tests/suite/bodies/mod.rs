@@ -14,8 +14,9 @@ use hdl_gen::model::{BAD_LENGTH, MORE_BODIES, NO_CONTACT, NOT_FINITE};
 use hdl_gen::plan::{Plan, words};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use testbench::stream::{Mode, Pattern, Traffic, exchange};
 use testbench::stress::{self, stress};
-use testbench::trial::model_answers;
+use testbench::trial::{model_answers, timeout};
 
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
 use kinds::{Kind, frame};
@@ -132,6 +133,34 @@ fn streams_with_pauses_faults_and_resets_are_counted() {
     let report = stress(&design, &stress::Options { frames: 600, seed: 3 }, &golden::progress::Progress::hidden());
     let report = report.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(report.sent, report.answered.plus(report.lost_to_resets));
+}
+
+/// A sink that stands still until every place inside is taken: counts wait for frames that wait at every stage.
+#[test]
+fn counts_wait_for_their_frames() {
+    let mut design = counting(with_joint(shipped("small")));
+    design.algorithm.outputs = Outputs::Resultants;
+    design.name += "_resultants";
+    let plan = planned(&design);
+    let matrices = Matrices::of(&plan.design).expect("matrices");
+    let c33 = matrices.dense(MatrixName::C33inv).try_inverse().expect("an inverse");
+    let c33 = |row: usize, column: usize| c33[(row, column)];
+    let of = |several: bool| drawn(&plan, &c33, |x, _| x == 0 || (several && x == 3));
+    let packets: Vec<Vec<u32>> = (0..24).map(|frame| of(frame % 3 == 0 || frame % 7 == 1)).collect();
+    let sink = Pattern::Bursts {
+        seed: 2,
+        longest_run: 3 * plan.streams().beats_out() as u32,
+        longest_pause: (16 * plan.timeline.interval_cycles) as u32,
+    };
+    let mode = Mode { name: "sink that stands still for long", source: Pattern::Free, sink };
+    let traffic = Traffic::new(&packets, 40 * timeout(&plan)).with_mode(&mode);
+    let mut core = built(&plan).load(1).expect("loaded");
+    let outcome = exchange(&mut core, &traffic, |_| ()).expect("all frames come out");
+    let expected = model_answers(&plan, &packets);
+    let counts = |answer: &[u32]| (answer[words::STATUS] & MORE_BODIES, answer[words::CENSUS] & 0xFF);
+    let found: Vec<_> = outcome.exchanges.iter().map(|exchange| counts(&exchange.words)).collect();
+    assert_eq!(found, expected.iter().map(|answer| counts(answer)).collect::<Vec<_>>());
+    assert!([1, 2].iter().all(|&bodies| found.iter().any(|found| found.1 == bodies)), "{found:?}");
 }
 
 /// Frames of a kind, and in how many of them the hardware counts as many bodies as the solver, as the scene has, and more
