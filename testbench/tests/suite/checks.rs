@@ -66,7 +66,7 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (reduced(), "line", "(step == 4'd14)", "(step == 4'd15)", "check_latency.v"),
         (joint(), "cean", "settled <= (state == MEASURE);", &late("settled", "(state == MEASURE)"), "check_latency.v"),
         (joint(), "plane", "value_valid = ends[TOTAL_DEPTH];", "value_valid = ends[TOTAL_DEPTH-1];", "check_latency.v"),
-        (joint(), "friction", "5'd17: begin", "5'd18: begin", "check_latency.v"),
+        (joint(), "friction", "running && (step == 5'd17);", "running && (step == 5'd16);", "check_latency.v"),
         (shipped("sensor1-fast"), "network", "== SUMMING[4:0])", "== SUMMING[4:0] + 5'd1)", "check_latency.v"),
         (reduced(), "fold", "lasts[3] && advance", "lasts[2] && advance", "check_latency.v"),
         // More frames are begun than Op has places for.
