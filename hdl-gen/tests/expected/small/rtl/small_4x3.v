@@ -188,8 +188,8 @@ module small_4x3 #(
     );
 
     // ---- Turns: We, Co and Op share one array of lanes
-    wire issued, bank, residual_bank, field_bank;
-    wire u_released, friction_known, field_release;
+    wire issued;
+    wire bank, residual_bank, field_bank, u_released, friction_known, field_release;
     wire signed [17:0] mu_x, mu_y;
     wire [15:0] result_route;
     wire [ROW_WIDTH-1:0] result_row;
