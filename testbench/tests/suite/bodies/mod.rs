@@ -126,11 +126,11 @@ fn counting_is_over_before_the_search() {
         plain.algorithm.count_bodies = false;
         let [plain, counted] = [&plain, &design].map(planned);
         assert_eq!(plain.timeline, counted.timeline, "{}", design.name);
-        // Of the joint estimator on any other grid, too; a line's cells are those of its own.
+        // With a cell a point on any other grid, too; walk and line have as many cells as the grid at hand needs.
         let slot = counted.estimator.slot();
         let own = &counted.design.sensor;
         let mut sensors = vec![own.clone()];
-        if design.algorithm.estimator == Estimator::Joint {
+        if design.algorithm.estimator == Estimator::Joint && design.algorithm.joint.grid == Grid::COARSE {
             let grids = (2..=64).flat_map(|columns| (2..=64).map(move |rows| (columns, rows)));
             sensors.extend(grids.map(|(columns, rows)| Sensor { columns, rows, ..own.clone() }));
         }

@@ -151,7 +151,7 @@ fn faults_are_noticed() {
         ("blob_sums", "was_body && !begins_2", "was_body"),
         ("weight_raster", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
         ("weight_totals", "counts_1[index] ?", "1'b1 ?"),
-        ("bodies", "left + {2'd0, done}", "left"),
+        ("bodies", "left + {3'd0, done}", "left"),
     ];
     let missed = in_parallel(&faults, |fault| {
         let mut random = ChaCha8Rng::seed_from_u64(9);
