@@ -144,15 +144,17 @@ synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside t
 # Times are measured with a release build. Its page is docs/benchmarks.md.
 BENCH_BIN     := $(TARGET)/release
 BENCH_FOLDER  := $(TARGET)/bench
-BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml bed-mat.toml)
-BENCH_DESIGNS := designs/sensor1-reduced.toml designs/sensor2-reduced.toml designs/bed-mat.toml
-BENCH_CELLS   := sensor1-reduced sensor1-reduced-64 sensor1-resultants
+BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml sensor1-joint.toml \
+	sensor1-fast.toml bed-mat.toml)
+BENCH_DESIGNS := designs/sensor1-reduced.toml designs/sensor2-reduced.toml designs/sensor1-fast.toml designs/sensor1-fast-64.toml \
+	designs/bed-mat.toml
+BENCH_CELLS   := sensor1-reduced sensor1-reduced-64 sensor1-resultants sensor1-fast sensor1-fast-64
 
 .PHONY: bench
-bench: tools ## Measure solver, generator, simulation, cycles and cells, and write docs/benchmarks.md (Yosys: a quarter of an hour)
+bench: tools ## Measure solver, generator, simulation, cycles and cells, and write docs/benchmarks.md (Yosys: half an hour)
 	@echo 'bench: a release build'
 	@$(CARGO) build --quiet --release $(PACKAGES) --bins
-	@echo 'bench: Yosys, three designs'
+	@echo 'bench: Yosys, five designs'
 	@PROFILE=release tools/bench.sh $(BENCH_CELLS:%=designs/%.toml)
 	@mkdir -p $(BENCH_FOLDER)
 	@echo 'bench: the f64 solver (a minute)'

@@ -128,8 +128,9 @@ module sptfra_search #(
         .x_is_free  (x_is_free),
         .want_slope (state == SLOPE),
         .factor     (factor),
+        .round      (3'd0),
         .level      (level),
-        .total      (total),
+        .totals     (total),
         .fits_level (fits_level),
         .saturated  (cells_saturated)
     );

@@ -3,7 +3,8 @@
 //
 // The cells of the search side by side, as many for each way, and the tree that adds their sums.
 //
-// Every taxel's u_q goes to its own cell. Last taxel's address to total: 5 cycles and one for each level of the tree.
+// Every taxel's u_q goes to its own cell. Last taxel's address to totals: 5 cycles, with four points 6, and one for
+// each level of the tree.
 
 `default_nettype none
 
@@ -23,7 +24,9 @@ module sptfra_search_cells #(
     // Taxels of a cell, a power of two
     parameter integer CELL_ELEMENTS = 8,
     // Bits of a taxel's place in its cell
-    parameter integer ELEMENT_WIDTH = 3
+    parameter integer ELEMENT_WIDTH = 3,
+    // Points at a time, 1 or 4, a tree each
+    parameter integer POINTS = 1
 ) (
     input  wire clock,
     input  wire reset,
@@ -41,10 +44,11 @@ module sptfra_search_cells #(
     input  wire x_is_free,
     input  wire want_slope,
     input  wire signed [17:0] factor,
+    input  wire [2:0] round, // of points: their distance
     // Results
     input  wire signed [47:0] level,
-    output wire signed [47:0] total, // of all taxels
-    output wire fits_level, // total <= level
+    output wire [48*POINTS-1:0] totals, // of all taxels
+    output wire [POINTS-1:0] fits_level, // total <= level
     output wire saturated // an alpha or beta in the cycle before
 );
 
@@ -77,7 +81,7 @@ module sptfra_search_cells #(
     );
 
     // ---- Cells
-    wire [48*CELLS-1:0] sums;
+    wire [48*POINTS*CELLS-1:0] sums;
     wire [CELLS-1:0] cell_saturated;
 
     genvar index;
@@ -90,7 +94,8 @@ module sptfra_search_cells #(
             sptfra_search_cell #(
                 .CELL_ELEMENTS (CELL_ELEMENTS),
                 .ELEMENT_WIDTH (ELEMENT_WIDTH),
-                .COUNT         ((index / WAYS == GROUPS - 1) ? LAST_COUNT : CELL_ELEMENTS)
+                .COUNT         ((index / WAYS == GROUPS - 1) ? LAST_COUNT : CELL_ELEMENTS),
+                .POINTS        (POINTS)
             ) hinges (
                 .clock        (clock),
                 .reset        (reset),
@@ -107,7 +112,8 @@ module sptfra_search_cells #(
                 .x_is_free    (x_is_free),
                 .want_slope   (want_slope),
                 .factor       (factor),
-                .sum          (sums[48*index +: 48]),
+                .round        (round),
+                .sums         (sums[48*POINTS*index +: 48*POINTS]),
                 .saturated    (cell_saturated[index])
             );
         end
@@ -115,39 +121,50 @@ module sptfra_search_cells #(
 
     assign saturated = (cell_saturated != {CELLS{1'b0}});
 
-    // ---- Sum, and whether it is within the level
-    wire signed [47:0] total_left;
-    wire signed [47:0] total_right;
-
-    sptfra_adder_tree #(
-        .COUNT (CELLS),
-        .WIDTH (48)
-    ) tree (
-        .clock (clock),
-        .terms (sums),
-        .left  (total_left),
-        .right (total_right),
-        .sum   (total)
-    );
-
+    // ---- Sums, and whether they are within the level
+    genvar point;
     generate
-        if (CELLS == 1) begin : gen_compare
-            assign fits_level = (total <= level);
+        for (point = 0; point < POINTS; point = point + 1) begin : gen_trees
+            wire [48*CELLS-1:0] terms;
+            wire signed [47:0] total;
+            wire signed [47:0] total_left;
+            wire signed [47:0] total_right;
 
-            wire _unused = &{1'b0, total_left, total_right};
-        end else begin : gen_compare_beside
-            // Beside the root of the tree, rather than behind it
-            wire signed [49:0] room = { {2{level[47]}}, level} - { {2{total_left[47]}}, total_left}
-                - { {2{total_right[47]}}, total_right};
-            reg fits;
-
-            always @(posedge clock) begin
-                fits <= !room[49];
+            for (index = 0; index < CELLS; index = index + 1) begin : gen_terms
+                assign terms[48*index +: 48] = sums[48*(POINTS*index + point) +: 48];
             end
 
-            assign fits_level = fits;
+            sptfra_adder_tree #(
+                .COUNT (CELLS),
+                .WIDTH (48)
+            ) tree (
+                .clock (clock),
+                .terms (terms),
+                .left  (total_left),
+                .right (total_right),
+                .sum   (total)
+            );
 
-            wire _unused = &{1'b0, room[48:0]};
+            assign totals[48*point +: 48] = total;
+
+            if (CELLS == 1) begin : gen_compare
+                assign fits_level[point] = (total <= level);
+
+                wire _unused = &{1'b0, total_left, total_right};
+            end else begin : gen_compare_beside
+                // Beside the root of the tree, rather than behind it
+                wire signed [49:0] room = { {2{level[47]}}, level} - { {2{total_left[47]}}, total_left}
+                    - { {2{total_right[47]}}, total_right};
+                reg fits;
+
+                always @(posedge clock) begin
+                    fits <= !room[49];
+                end
+
+                assign fits_level[point] = fits;
+
+                wire _unused = &{1'b0, room[48:0]};
+            end
         end
     endgenerate
 

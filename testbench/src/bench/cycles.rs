@@ -16,7 +16,7 @@ pub const SIDES: [usize; 8] = [4, 6, 8, 10, 12, 16, 24, 32];
 /// Numbers of lanes.
 pub const LANES: [usize; 5] = [4, 8, 16, 32, 64];
 /// What is simulated too: kind, side, lanes.
-const SIMULATED: [(Kind, usize, usize); 8] = [
+const SIMULATED: [(Kind, usize, usize); 10] = [
     (Kind::Reduced, 4, 16),
     (Kind::Reduced, 10, 4),
     (Kind::Reduced, 10, 16),
@@ -25,6 +25,8 @@ const SIMULATED: [(Kind, usize, usize); 8] = [
     (Kind::Filtered, 10, 16),
     (Kind::Filtered, 16, 16),
     (Kind::Paper, 10, 16),
+    (Kind::Joint, 10, 16),
+    (Kind::Joint, 10, 64),
 ];
 const SEED: u32 = 1;
 
@@ -38,11 +40,13 @@ pub enum Kind {
     Filtered,
     /// The paper's plan, no filter.
     Paper,
+    /// The reduced plan with the joint estimator, no filter and no network: one is trained for a sensor.
+    Joint,
 }
 
 impl Kind {
     /// In the order of the page.
-    pub const ALL: [Self; 3] = [Self::Reduced, Self::Filtered, Self::Paper];
+    pub const ALL: [Self; 4] = [Self::Reduced, Self::Filtered, Self::Paper, Self::Joint];
 
     /// For people.
     pub fn title(self) -> &'static str {
@@ -50,6 +54,7 @@ impl Kind {
             Self::Reduced => "reduced plan, no filter",
             Self::Filtered => "reduced plan, F2 with p = 1",
             Self::Paper => "the paper's plan, no filter",
+            Self::Joint => "reduced plan, no filter, the joint estimator on 15 × 15 points without a network",
         }
     }
 
@@ -59,6 +64,7 @@ impl Kind {
             Self::Reduced => "plan = \"reduced\"",
             Self::Filtered => "plan = \"reduced\"\nfilter = { kind = \"f2\", p = 1.0 }",
             Self::Paper => "plan = \"paper\"",
+            Self::Joint => "plan = \"reduced\"\nestimator = \"joint\"\ngrid = 15",
         }
     }
 }

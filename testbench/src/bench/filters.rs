@@ -41,6 +41,8 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Filtered
     let mut rows = Vec::new();
     let unfiltered =
         |design: &Design| design.algorithm.plan == PlanKind::Reduced && design.algorithm.filter == Filter::None;
+    // A network belongs to the plan that it was trained with.
+    let unfiltered = |design: &Design| unfiltered(design) && design.algorithm.joint.correction.is_none();
     for (path, design) in scope.designs.iter().filter(|(_, design)| unfiltered(design)) {
         progress.stage(format!("filtering the folded blocks of {path}"));
         let frames = FrameSet::standing(&design.sensor)?.as_delivered(design).stress;

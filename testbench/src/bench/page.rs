@@ -141,6 +141,10 @@ fn cycles(page: &mut Page, points: &[Point], command: &str, plot: Option<&str>) 
              input and the output take.",
         );
     }
+    page.line(
+        "The first three tables have the line estimator. The joint one takes a network too where a sensor has been \
+         calibrated; [estimators.md](estimators.md#step-by-step) has what that adds, step by step.",
+    );
     for kind in Kind::ALL {
         page.line(&format!("Latency / interval, {}:", kind.title()));
         let mut header = vec!["taxels".to_owned(), "MACs a frame".to_owned()];

@@ -49,7 +49,7 @@ fn a_tiny_bench_has_a_page_a_plot_and_exact_cycles() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let figures: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let points = figures["cycles"].as_array().expect("points");
-    assert_eq!(points.len(), 3 * 5, "three kinds, five numbers of lanes");
+    assert_eq!(points.len(), 4 * 5, "four kinds, five numbers of lanes");
     let simulated: Vec<&Value> = points.iter().filter(|point| !point["simulated"].is_null()).collect();
     assert_eq!(simulated.len(), 1);
     assert_eq!(simulated[0]["simulated"], simulated[0]["predicted"]);

@@ -54,11 +54,17 @@ fn the_reduced_plan_keeps_to_its_limits() {
         design.hardware.optimise = Optimise::Latency;
         design
     };
+    let wide = |mut design: Design| {
+        design.name += "_wide";
+        design.hardware.stream_bits = 128;
+        design
+    };
     let limits = |latency, interval, dsp, bram36| Some(Limits { latency, interval, dsp, bram36 });
     let rows = [
         (shipped("sensor1-reduced"), limits(3_000, 2_000, 40, 40.0)),
         (latency(shipped("sensor1-reduced")), None),
-        (shipped("sensor1-reduced-64"), limits(1_600, 700, 100, 80.0)),
+        (shipped("sensor1-reduced-64"), limits(1_150, 480, 100, 45.0)),
+        (wide(shipped("sensor1-reduced-64")), limits(850, 480, 110, 45.0)),
         (shipped("sensor1-resultants"), limits(1_900, 1_100, 40, 30.0)),
         (shipped("sensor2-reduced"), limits(3_000, 2_000, 40, 40.0)),
         (mat, None),

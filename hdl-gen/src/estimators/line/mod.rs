@@ -29,12 +29,20 @@ pub const HINGE_DROP: u32 = 8;
 pub const LEVEL_SHIFT: i32 = 9;
 /// Bisections of an interval of the search variable.
 pub const SEARCH_STEPS: u32 = 17;
+/// Of rounds that cut an interval into eight parts, the last one into four: logarithm of a part, in steps of the variable.
+pub const PART_BITS: [u32; 6] = [14, 11, 8, 5, 2, 0];
+/// Lanes beyond which a round of the search cuts its interval into eight parts: fewer lanes take longer than the search.
+pub const BISECTING_LANES: usize = 32;
+/// Taxels of a cell beyond which it does not: they, not the way to a decision, take most of a bisection's time.
+pub const EIGHTHS_ELEMENTS: usize = 8;
 
 /// Constants of the direction of push and of the search on its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinePlan {
     /// Evaluation cells, one multiplier each.
     pub cells: Cells,
+    /// Whether a round of the search cuts its interval into eight parts, by four points at a time, rather than in half.
+    pub eighths: bool,
     /// Left shift (negative: right) that turns `sum |b|` into the level above `B_min`.
     pub level_shift: i32,
     /// Pitch in x and y over the larger of the two, with [`PITCH_FRACTION`] fraction bits.
@@ -52,6 +60,7 @@ impl LinePlan {
         let one = f64::from(1_u32 << PITCH_FRACTION);
         Self {
             cells: Cells::new(given.elements, given.ways, per_cell),
+            eighths: given.design.hardware.lanes > BISECTING_LANES && per_cell <= EIGHTHS_ELEMENTS,
             level_shift: given.stress.lsb - LEVEL_SHIFT - hinge_lsb,
             pitch: pitch_mm.map(|pitch| (pitch / larger * one).round() as i64),
         }
@@ -72,7 +81,7 @@ impl Slot for LinePlan {
     }
 
     fn stages(&self, _sensor: &Sensor) -> Vec<Stage> {
-        vec![Stage { cycles: timing::search(self.cells), shows: 0 }]
+        vec![Stage { cycles: timing::search(self), shows: 0 }]
     }
 
     fn releases(&self) -> usize {
@@ -84,7 +93,8 @@ impl Slot for LinePlan {
     }
 
     fn search_blocks(&self, _sensor: &Sensor) -> Vec<BlockCost> {
-        vec![BlockCost::new("line", &["sptfra_line"], 1), BlockCost::new("cells", &["sptfra_search"], self.cells.cells)]
+        let search: &[_] = if self.eighths { &["sptfra_search_eighths"] } else { &["sptfra_search"] };
+        vec![BlockCost::new("line", &["sptfra_line"], 1), BlockCost::new("cells", search, self.cells.cells)]
     }
 
     fn module(&self) -> &'static str {
@@ -92,16 +102,22 @@ impl Slot for LinePlan {
     }
 
     fn parameters(&self, design: &Design, ways: usize) -> Parameters {
-        Parameters::new()
+        let parameters = Parameters::new()
             .count("COLUMNS", design.sensor.columns)
             .count("ROWS", design.sensor.rows)
             .count("WAYS", ways)
             .number("DATA_BITS", design.hardware.data_bits.into())
             .count("CELLS", self.cells.cells)
             .count("CELL_ELEMENTS", self.cells.elements)
-            .number("LEVEL_SHIFT", self.level_shift.into())
+            .number("LEVEL_SHIFT", self.level_shift.into());
+        let parameters = if self.eighths { parameters.count("EIGHTHS", 1) } else { parameters };
+        parameters
             .cycles("EXPECTED_LINE_LATENCY", timing::LINE_LATENCY)
-            .cycles("EXPECTED_SEARCH_LATENCY", timing::search(self.cells))
+            .cycles("EXPECTED_SEARCH_LATENCY", timing::search(self))
+    }
+
+    fn without(&self) -> Vec<&'static str> {
+        vec![if self.eighths { "sptfra_search" } else { "sptfra_search_eighths" }]
     }
 
     fn pitch(&self) -> Option<[i64; 2]> {
@@ -115,7 +131,10 @@ impl Slot for LinePlan {
     fn metadata(&self) -> Metadata {
         let Cells { cells, elements } = self.cells;
         Metadata {
-            search: json!({ "cells": cells, "elements": elements, "level_shift": self.level_shift }),
+            search: json!({
+                "cells": cells, "elements": elements, "parts": if self.eighths { 8 } else { 2 },
+                "level_shift": self.level_shift,
+            }),
             direction: json!({ "pitch": self.pitch }),
             own: None,
         }

@@ -4,7 +4,7 @@ use golden::products::ByPq;
 
 use super::super::{Found, Seen};
 use super::direction::Direction;
-use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, SEARCH_STEPS};
+use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, PART_BITS, SEARCH_STEPS};
 use crate::cores::{LONG_BITS, divider};
 use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
 
@@ -54,7 +54,7 @@ fn ratio(numerator: i64, denominator: i64) -> Option<i64> {
 /// Finds the friction on the line of the push.
 pub fn friction(plan: &LinePlan, seen: &Seen) -> Found {
     let line = Line::new(seen.sums, &Direction::new(seen, plan.pitch));
-    let Optimum { t, at_bound, saturated } = search(&line, seen, plan.level_shift);
+    let Optimum { t, at_bound, saturated } = search(&Hinges::new(&line, seen.u), seen.contact.stress_sum, plan);
     let exact = round_shift((line.c0 << FRICTION_FRACTION) + line.c1 * t, LINE_FRACTION);
     let dependent = exact.clamp(-largest(FRICTION_BITS) - 1, largest(FRICTION_BITS));
     let friction = match (line.unknown, line.x_is_free) {
@@ -76,9 +76,32 @@ pub struct Optimum {
     pub saturated: bool,
 }
 
-/// Bisects for the minimum of `B(t)` and for both ends of its level set, in the hardware's steps.
-fn search(line: &Line, seen: &Seen, level_shift: i32) -> Optimum {
-    let hinges = Hinges::new(line, seen.u);
+/// Searches for the minimum of `B(t)` and for both ends of its level set, in the hardware's steps.
+fn search(hinges: &Hinges, stress_sum: i64, plan: &LinePlan) -> Optimum {
+    let (low, high) = if plan.eighths {
+        let low = last_place(|t| hinges.slope(t) < 0);
+        (low, low + 1)
+    } else {
+        bisected_minimum(hinges)
+    };
+    let (at_low, at_high) = (hinges.value(low), hinges.value(high));
+    let (lowest, floor) = if at_high < at_low { (high, at_high) } else { (low, at_low) };
+    let margin = match plan.level_shift {
+        shift if shift >= 0 => stress_sum << shift,
+        shift => stress_sum >> -shift,
+    };
+    let below = |t| hinges.value(t) <= floor + margin;
+    let [left, right] = if plan.eighths {
+        let left = last_place(|t| t < lowest && !below(t));
+        let right = last_place(|t| t <= lowest || below(t));
+        [(left + 1).min(lowest), right.max(lowest)]
+    } else {
+        bisected_ends(lowest, below)
+    };
+    Optimum { t: (left + right) >> 1, at_bound: low == -ONE || high == ONE, saturated: hinges.saturated }
+}
+
+fn bisected_minimum(hinges: &Hinges) -> (i64, i64) {
     let (mut low, mut high) = (-ONE, ONE);
     for _ in 0..SEARCH_STEPS {
         let middle = (low + high) >> 1;
@@ -88,13 +111,11 @@ fn search(line: &Line, seen: &Seen, level_shift: i32) -> Optimum {
             high = middle;
         }
     }
-    let (at_low, at_high) = (hinges.value(low), hinges.value(high));
-    let (lowest, floor) = if at_high < at_low { (high, at_high) } else { (low, at_low) };
-    let margin = match level_shift {
-        shift if shift >= 0 => seen.contact.stress_sum << shift,
-        shift => seen.contact.stress_sum >> -shift,
-    };
-    let below = |t| hinges.value(t) <= floor + margin;
+    (low, high)
+}
+
+/// The ends of the places around `lowest` that are below the level.
+fn bisected_ends(lowest: i64, below: impl Fn(i64) -> bool) -> [i64; 2] {
     let (mut left_out, mut left_in, mut right_in, mut right_out) = (-ONE, lowest, lowest, ONE);
     for _ in 0..SEARCH_STEPS {
         let left = (left_out + left_in) >> 1;
@@ -102,7 +123,21 @@ fn search(line: &Line, seen: &Seen, level_shift: i32) -> Optimum {
         let right = (right_in + right_out) >> 1;
         *(if below(right) { &mut right_in } else { &mut right_out }) = right;
     }
-    Optimum { t: (left_in + right_in) >> 1, at_bound: low == -ONE || high == ONE, saturated: hinges.saturated }
+    [left_in, right_in]
+}
+
+/// The last place in [-1, 1) of those before which all places are `before`, -1 if none is. Each round cuts the interval
+/// into parts and counts the points between them.
+fn last_place(before: impl Fn(i64) -> bool) -> i64 {
+    let mut place = -ONE;
+    let mut width = 2 * ONE;
+    for bits in PART_BITS {
+        let part = 1 << bits;
+        let passed = (1..width / part).filter(|count| before(place + count * part)).count();
+        place += passed as i64 * part;
+        width = part;
+    }
+    place
 }
 
 /// `alpha_i + t beta_i` for every taxel.
@@ -139,5 +174,50 @@ impl Hinges {
 
     fn value(&self, t: i64) -> i64 {
         self.positive(t).map(|(hinge, _)| hinge >> HINGE_DROP).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::estimators::Cells;
+
+    fn found(hinges: &Hinges, stress_sum: i64, eighths: bool) -> Optimum {
+        let cells = Cells { cells: 28, elements: 4 };
+        search(hinges, stress_sum, &LinePlan { cells, eighths, level_shift: -1, pitch: [1 << 16; 2] })
+    }
+
+    proptest! {
+        /// Both searches look at the same places, of which each finds the same one; only the first place of all, -1, is
+        /// none that the rounds of eight parts look at.
+        #[test]
+        fn eight_parts_find_what_halves_find(
+            lines in proptest::collection::vec((-1_i64 << 22..1 << 22, -1_i64 << 22..1 << 22), 1..60),
+            stress_sum in 0_i64..1 << 30,
+        ) {
+            let hinges = Hinges { lines, saturated: false };
+            let [halves, eighths] = [false, true].map(|eighths| found(&hinges, stress_sum, eighths));
+            prop_assert!((halves.t - eighths.t).abs() <= 1, "{halves:?} {eighths:?}");
+            prop_assert_eq!(halves.at_bound, eighths.at_bound);
+        }
+    }
+
+    #[test]
+    fn eight_parts_find_ends_and_flat_valleys() {
+        let hinges = |lines: &[(i64, i64)]| Hinges { lines: lines.to_vec(), saturated: false };
+        // No hinge at all; one that rises, one that falls throughout; a valley between both.
+        let valley = [(-1 << 19, 1 << 20), (-1 << 19, -1 << 20)];
+        let cases = [
+            (hinges(&[]), 0, true),
+            (hinges(&[(1 << 24, 1 << 22)]), -ONE, true),
+            (hinges(&[(1 << 24, -1 << 22)]), ONE, true),
+            (hinges(&valley), 0, false),
+        ];
+        for (hinges, t, at_bound) in cases {
+            let of = found(&hinges, 0, true);
+            assert!((of.t - t).abs() <= 1 && of.at_bound == at_bound, "{of:?} for {t}");
+        }
     }
 }

@@ -5,8 +5,8 @@
 //
 // a mu_x + e mu_y = k with a = G11 d_y - G21 d_x, e = G12 d_y - G22 d_x, k = G20 d_x - G10 d_y. The component of
 // the larger of |d_x|, |d_y| becomes the free variable t; the other is c0 + c1 t. c0 and c1 have 15 fraction bits.
-// The sums are taken when they are complete, and held; the line follows 18 cycles and a division after both sums and
-// direction are there.
+// The sums are taken when they are complete, and held; the line follows 18 cycles and a division, which takes as many,
+// after both sums and direction are there.
 
 `default_nettype none
 
@@ -133,36 +133,31 @@ module sptfra_line #(
     reg [47:0] offset_magnitude;
     reg divide_start;
     wire divide_done;
-    wire divide_done_offset; // at the same time
-    wire [63:0] slope_quotient;
-    wire [63:0] offset_quotient;
+    wire [LINE_FRACTION+1:0] slope_quotient;
+    wire [LINE_FRACTION+1:0] offset_quotient;
     // No push, or a ratio of 4 or more, or a denominator of zero
     reg no_line;
-    wire too_large = (slope_quotient[63:17] != 47'd0) || (offset_quotient[63:17] != 47'd0);
+    reg too_large;
     reg divided;
     reg slope_negative;
     reg offset_negative;
-    wire signed [17:0] slope_ratio = slope_negative ? -slope_quotient[17:0] : slope_quotient[17:0];
-    wire signed [17:0] offset_ratio = offset_negative ? -offset_quotient[17:0] : offset_quotient[17:0];
+    wire signed [17:0] slope_ratio = slope_negative ? -{1'b0, slope_quotient} : {1'b0, slope_quotient};
+    wire signed [17:0] offset_ratio = offset_negative ? -{1'b0, offset_quotient} : {1'b0, offset_quotient};
 
-    sptfra_divider divider_slope (
+    sptfra_ratio #(
+        .WIDTH        (48),
+        .INTEGER_BITS (2),
+        .BITS         (LINE_FRACTION + 2)
+    ) divider (
         .clock       (clock),
         .reset       (reset),
         .start       (divide_start),
-        .numerator   ({1'b0, slope_magnitude, {LINE_FRACTION{1'b0}}}),
+        .numerator_x (slope_magnitude),
+        .numerator_y (offset_magnitude),
         .denominator (denominator_magnitude),
-        .quotient    (slope_quotient),
-        .done        (divide_done)
-    );
-
-    sptfra_divider divider_offset (
-        .clock       (clock),
-        .reset       (reset),
-        .start       (divide_start),
-        .numerator   ({1'b0, offset_magnitude, {LINE_FRACTION{1'b0}}}),
-        .denominator (denominator_magnitude),
-        .quotient    (offset_quotient),
-        .done        (divide_done_offset)
+        .done        (divide_done),
+        .quotient_x  (slope_quotient),
+        .quotient_y  (offset_quotient)
     );
 
     // ---- Sequence
@@ -211,6 +206,8 @@ module sptfra_line #(
                 end
             end
             DIVIDE: begin
+                too_large <= ({2'd0, slope_magnitude} >= {denominator_magnitude, 2'd0})
+                    || ({2'd0, offset_magnitude} >= {denominator_magnitude, 2'd0});
                 no_line <= no_push || too_large;
                 slope_negative <= !slope[47] ^ denominator[47];
                 offset_negative <= k[47] ^ denominator[47];
@@ -250,7 +247,7 @@ module sptfra_line #(
 `endif
 
     // Shifted sums have 18 bits, sign included
-    wire _unused = &{1'b0, factor_shifted[39:18], divide_done_offset};
+    wire _unused = &{1'b0, factor_shifted[39:18]};
 
 endmodule
 

@@ -6,6 +6,7 @@
 // Fill: u0, u1, u2 of its taxels arrive, also of the next frame while this one is searched. Passes: alpha = u0 + c0
 // u_dependent, then beta = u_free + c1 u_dependent. Search: for each taxel with alpha + t beta > 0 either beta (slope
 // of B) or alpha + t beta without its last 8 bits (B itself) is summed. Address to sum: 5 cycles; one taxel a cycle.
+// With four points also those at t - h, t - 2 h, t - 3 h, h the round's part of an interval: a cycle more.
 
 `default_nettype none
 
@@ -15,7 +16,9 @@ module sptfra_search_cell #(
     // Bits of a taxel's place
     parameter integer ELEMENT_WIDTH = 3,
     // Taxels of this cell
-    parameter integer COUNT = 8
+    parameter integer COUNT = 8,
+    // Points at a time: 1 or 4
+    parameter integer POINTS = 1
 ) (
     input  wire clock,
     input  wire reset,
@@ -34,8 +37,9 @@ module sptfra_search_cell #(
     input  wire x_is_free,
     input  wire want_slope, // rather than B
     input  wire signed [17:0] factor, // t, c0 or c1
+    input  wire [2:0] round, // of points: their distance
     // Results
-    output reg  signed [47:0] sum,
+    output wire [48*POINTS-1:0] sums, // the last one that of t
     output reg  saturated // alpha or beta in the cycle before
 );
 
@@ -51,9 +55,9 @@ module sptfra_search_cell #(
     (* ram_style = "distributed" *) reg signed [26:0] betas [0:CELL_ELEMENTS-1];
 
     // ---- Stage 1: operands
-    reg [3:1] valid;
-    reg [4:1] firsts;
-    reg [3:1] slopes;
+    reg [4:1] valid;
+    reg [5:1] firsts;
+    reg [4:1] slopes;
     reg [3:1] alpha_passes;
     reg [3:1] beta_passes;
     reg [ELEMENT_WIDTH-1:0] element_1;
@@ -70,9 +74,9 @@ module sptfra_search_cell #(
     wire signed [26:0] u_dependent = x_is_free ? memory_2[address] : memory_1[address];
 
     always @(posedge clock) begin
-        valid <= {valid[2:1], read && in_cell};
-        firsts <= {firsts[3:1], first};
-        slopes <= {slopes[2:1], want_slope};
+        valid <= {valid[3:1], read && in_cell};
+        firsts <= {firsts[4:1], first};
+        slopes <= {slopes[3:1], want_slope};
         alpha_passes <= {alpha_passes[2:1], alpha_pass};
         beta_passes <= {beta_passes[2:1], beta_pass};
         element_1 <= element;
@@ -82,7 +86,7 @@ module sptfra_search_cell #(
         multiplicand_1 <= !passing ? betas[element] : u_dependent;
         factor_1 <= factor;
         if (reset) begin
-            valid <= 3'd0;
+            valid <= 4'd0;
         end
     end
 
@@ -143,21 +147,84 @@ module sptfra_search_cell #(
         end
     end
 
-    // ---- Stage 4: what this taxel adds; stage 5: sum
-    reg signed [47:0] term_4;
+    // ---- With four points a stage between: hinges at the others
+    wire [45*POINTS-1:0] point_hinges;
+    wire signed [26:0] slope_term;
+    wire term_valid;
+    wire term_slope;
+    wire term_first;
 
-    always @(posedge clock) begin
-        if (!valid[3] || hinge_3[44]) begin
-            term_4 <= 48'sd0;
-        end else if (slopes[3]) begin
-            term_4 <= { {21{multiplicand_3[26]}}, multiplicand_3};
-        end else begin
-            term_4 <= { {(3 + HINGE_DROP){1'b0}}, hinge_3[44:HINGE_DROP]};
+    generate
+        if (POINTS == 1) begin : gen_point
+            assign point_hinges = hinge_3;
+            assign slope_term = multiplicand_3;
+            assign term_valid = valid[3];
+            assign term_slope = slopes[3];
+            assign term_first = firsts[4];
+
+            wire _unused = &{1'b0, valid[4], slopes[4], firsts[5], round};
+        end else begin : gen_points
+            reg [2:0] round_1;
+            reg signed [41:0] part_2; // beta times the points' distance, in steps of a hinge
+            reg signed [41:0] part_3;
+            reg signed [43:0] parts_3; // three of them
+            reg signed [44:0] hinge_4;
+            reg signed [44:0] hinge_less_4;
+            reg signed [44:0] hinge_less_2_4;
+            reg signed [44:0] hinge_less_3_4;
+            reg signed [26:0] multiplicand_4;
+
+            always @(posedge clock) begin
+                round_1 <= round;
+                case (round_1)
+                    3'd0: part_2 <= { {1{multiplicand_1[26]}}, multiplicand_1, 14'd0};
+                    3'd1: part_2 <= { {4{multiplicand_1[26]}}, multiplicand_1, 11'd0};
+                    3'd2: part_2 <= { {7{multiplicand_1[26]}}, multiplicand_1, 8'd0};
+                    3'd3: part_2 <= { {10{multiplicand_1[26]}}, multiplicand_1, 5'd0};
+                    3'd4: part_2 <= { {13{multiplicand_1[26]}}, multiplicand_1, 2'd0};
+                    default: part_2 <= { {15{multiplicand_1[26]}}, multiplicand_1};
+                endcase
+                part_3 <= part_2;
+                parts_3 <= { {2{part_2[41]}}, part_2} + {part_2[41], part_2, 1'b0};
+                hinge_4 <= hinge_3;
+                hinge_less_4 <= hinge_3 - { {3{part_3[41]}}, part_3};
+                hinge_less_2_4 <= hinge_3 - { {2{part_3[41]}}, part_3, 1'b0};
+                hinge_less_3_4 <= hinge_3 - {parts_3[43], parts_3};
+                multiplicand_4 <= multiplicand_3;
+            end
+
+            assign point_hinges = {hinge_4, hinge_less_4, hinge_less_2_4, hinge_less_3_4};
+            assign slope_term = multiplicand_4;
+            assign term_valid = valid[4];
+            assign term_slope = slopes[4];
+            assign term_first = firsts[5];
         end
-        sum <= (firsts[4] ? 48'sd0 : sum) + term_4;
-    end
+    endgenerate
 
-    wire _unused = &{1'b0, hinge_3[HINGE_DROP-1:0]};
+    // ---- Last stages: what this taxel adds to a point, and the point's sum
+    genvar point;
+    generate
+        for (point = 0; point < POINTS; point = point + 1) begin : gen_sums
+            wire [44:0] hinge = point_hinges[45*point +: 45];
+            reg signed [47:0] term;
+            reg signed [47:0] sum;
+
+            always @(posedge clock) begin
+                if (!term_valid || hinge[44]) begin
+                    term <= 48'sd0;
+                end else if (term_slope) begin
+                    term <= { {21{slope_term[26]}}, slope_term};
+                end else begin
+                    term <= { {(3 + HINGE_DROP){1'b0}}, hinge[44:HINGE_DROP]};
+                end
+                sum <= (term_first ? 48'sd0 : sum) + term;
+            end
+
+            assign sums[48*point +: 48] = sum;
+
+            wire _unused = &{1'b0, hinge[HINGE_DROP-1:0]};
+        end
+    endgenerate
 
 endmodule
 
