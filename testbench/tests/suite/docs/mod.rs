@@ -7,6 +7,7 @@ use std::process::Command;
 use crate::support::workspace;
 
 mod sessions;
+mod stated;
 
 /// A line of a block of commands, without its comment.
 pub struct Line {
