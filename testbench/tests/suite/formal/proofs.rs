@@ -104,6 +104,7 @@ const FREE: &[&str] = &[
     "*sptfra_timestamp*",
     "*sptfra_fixed_to_float*",
     "*sptfra_divider*",
+    "*sptfra_ratio*",
     "*sptfra_mac*",
     "*sptfra_leading_bit*",
     "*sptfra_bz*",
