@@ -18,6 +18,10 @@ use testbench::tools;
 /// Cycles after reset that are checked: more than the longest induction assumes.
 const FIRST_CYCLES: &str = "6";
 
+/// Without functions to be interpreted and without a stack of assertions z3 has plain bit vectors, for which it is
+/// fifteen times as quick.
+const SOLVER: [&str; 5] = ["-s", "z3", "--unroll", "--noincr", "--noprogress"];
+
 /// How a proof ended.
 #[derive(Debug, PartialEq)]
 enum Verdict {
@@ -93,7 +97,7 @@ impl Proof {
         let parts: [&[&str]; 2] = [&["-t", FIRST_CYCLES], &["-i", "-t", self.induction]];
         for part in parts {
             let mut solver = tools::yosys_smtbmc().expect("installed");
-            let said = run(solver.args(["-s", "z3"]).args(part).arg("proof.smt2"), folder.path());
+            let said = run(solver.args(SOLVER).args(part).arg("proof.smt2"), folder.path());
             if said.contains("Status: PASSED") {
                 continue;
             }

@@ -122,7 +122,6 @@ const FREE: &[&str] = &[
 const REDUCED_BROKEN: &[Broken] = &[
     ("turns", "(fields_due != RESIDUALS[1:0])", "1'b1"),
     ("turns", "                    next_field_bank <= !next_field_bank;\n", ""),
-    ("turns", "field_waits = residual_due || (", "field_waits = ("),
     ("turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
     ("turns", "friction_known && (fields", "friction_known && frame_ready && (fields"),
     ("sptfra_estimator_line", "(u_waiting != 2'd0) && !searching", "(u_waiting != 2'd0)"),
@@ -138,6 +137,8 @@ const LATENCY_BROKEN: &[Broken] = &[
     ("sptfra_output", "issued && issued_last && advance", "issued && issued_last"),
 ];
 const JOINT_BROKEN: &[Broken] = &[
+    // The line has no third frame whose residual could wait for a place.
+    ("turns", "field_waits = residual_due || (", "field_waits = ("),
     ("turns", "(residuals_there != 2'd0) && friction_known", "(residuals_there != 2'd0)"),
     ("sptfra_estimator_joint", "assign sums_take = search_start;", "assign sums_take = answer_take;"),
     ("sptfra_joint_stages", "(u_waiting != 2'd0) && !searching", "!searching"),
@@ -357,7 +358,10 @@ pub const PROOFS: &[Proof] = &[
         free_wires: &["turns.residual_written"],
         induction: "5",
         altered: &[("subject", ".RESIDUALS (2)", ".RESIDUALS (1)")],
-        broken: &[("turns", "(fields_due != RESIDUALS[1:0])", "1'b1")],
+        broken: &[
+            ("turns", "(fields_due != RESIDUALS[1:0])", "1'b1"),
+            ("turns", "field_waits = residual_due || (", "field_waits = ("),
+        ],
     },
     Proof {
         name: "frame handshake, reduced plan, for the latency",
