@@ -72,7 +72,7 @@ def cut(of: str, day: str) -> None:
         sys.exit(f"dist: {of} is older than {before}, the version in Cargo.toml")
     if notes(of) is not None:
         sys.exit(f"dist: CHANGELOG.md has a section [{of}] already; choose the next version")
-    if not notes("Unreleased"):
+    if not (notes("Unreleased") or "").strip():
         sys.exit("dist: CHANGELOG.md says nothing under [Unreleased]; write down what is new first")
     names = ["CHANGELOG.md", "Cargo.toml", "Cargo.lock", "CITATION.cff"]
     texts = {name: (ROOT / name).read_text(encoding="utf-8") for name in names}

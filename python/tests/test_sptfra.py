@@ -169,7 +169,7 @@ class Solving(unittest.TestCase):
         driver = (ROOT / "drivers" / "python" / "sptfra_forces.py").read_text(encoding="utf-8")
         for bit in sptfra.Status:
             self.assertIn(f"    {bit.name} = {bit.value}\n", driver)
-        fields = [f"    {name}: np.ndarray" for name in sptfra.Forces.__dataclass_fields__]
+        fields = [f"    {field.name}: np.ndarray" for field in dataclasses.fields(sptfra.Forces)]
         # The hardware knows of one body.
         fields.remove("    records: np.ndarray")
         self.assertEqual([field for field in fields if field not in driver], [])

@@ -2,9 +2,10 @@
 
 use std::error::Error;
 use std::io::{ErrorKind, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use golden::bodies::Quantiles;
 use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension};
 use golden::words;
 use hdl_gen::new_design::{self, COUNT_BITS, NewDesign};
@@ -115,36 +116,40 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     file.write_all(text.as_bytes()).map_err(failed)?;
     file.persist_noclobber(&path).map_err(|error| failed(error.error))?;
     let design = Design::from_toml(&text, "hdl-gen new")?;
-    let mut said = format!("{}: {}; edit it, then run\n", path.display(), design.sensor);
-    let (shown, calibrated) = (path.display(), folder.join(format!("{name}-calibrated.toml")));
-    said += &format!("  hdl-gen inspect {shown}\n  hdl-gen generate {shown}\n");
+    Ok(lines(new, &design, &path, &assumed, progress).join("\n") + "\n")
+}
+
+/// What to tell of a new design at `path`, with the options that were `assumed`.
+fn lines(new: &New, design: &Design, path: &Path, assumed: &[String], progress: &Progress) -> Vec<String> {
+    let shown = path.display();
+    let mut lines = vec![
+        format!("{shown}: {}; edit it, then run", design.sensor),
+        format!("  hdl-gen inspect {shown}"),
+        format!("  hdl-gen generate {shown}"),
+    ];
     if design.algorithm.estimator == Estimator::Joint {
-        said += &format!("  golden calibrate {shown} --out {}\n", calibrated.display());
+        let calibrated = new.dir.join(format!("{}-calibrated.toml", new.name));
+        lines.push(format!("  golden calibrate {shown} --out {}", calibrated.display()));
         progress.stage("trying it on other contacts");
-        said += &match new_design::errors(&design) {
-            Some(errors) => format!(
-                "Gain and friction are fitted to this sensor. On {} round contacts that slide anywhere on it the forces\n\
-                 along the surface err by {:.1} % of the normal force (median; 95 %: {:.1}); golden calibrate trains a\n\
-                 network against what is left.\n",
-                new_design::TRIED,
-                errors.median,
-                errors.most
-            ),
-            None => {
-                "Gain and friction are fitted to this sensor; golden calibrate trains a network against what is left.\n"
-                    .to_owned()
-            }
-        };
+        let errors = new_design::errors(design).map(|Quantiles { median, most, .. }| {
+            format!(
+                " On {} round contacts that slide anywhere on it, forces along\n\
+                 the surface err by {median:.1} % of the normal force (median; 95 %: {most:.1}).",
+                new_design::TRIED
+            )
+        });
+        lines.push(format!("Gain and friction are fitted to this sensor.{}", errors.unwrap_or_default()));
+        lines.push("golden calibrate trains a network against what is left.".to_owned());
     }
     if !assumed.is_empty() {
-        said += &format!("Not said, and taken from the paper's first sensor: {}\n", assumed.join(", "));
+        lines.push(format!("Not said, and taken from the paper's first sensor: {}", assumed.join(", ")));
     }
     if design.algorithm.regularisation.factor() > 0.0 {
-        said +=
-            "Deeper than 1.5 pitches: noise is kept down by `regularisation`, whose `noise` is to be your sensor's.\n";
+        lines.push(
+            "Deeper than 1.5 pitches: `regularisation` keeps noise down; its `noise` is to be your sensor's."
+                .to_owned(),
+        );
     }
-    if let Some(thin) = design.thin_layer() {
-        said += &format!("warning: {thin}\n");
-    }
-    Ok(said)
+    lines.extend(design.thin_layer().map(|thin| format!("warning: {thin}")));
+    lines
 }
