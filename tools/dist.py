@@ -8,8 +8,11 @@ CHANGELOG.md. The same files give the same bytes.
 
     dist.py --notes             prints that part alone, as a release's description
     dist.py --check TAG         fails unless TAG is the version's and the changelog has it
+    dist.py --cut VERSION [DAY] makes the changelog's unreleased part that of VERSION, of today or of DAY (2026-01-31), and
+                                writes VERSION into Cargo.toml, Cargo.lock and CITATION.cff
 """
 
+import datetime
 import gzip
 import io
 import os
@@ -46,6 +49,48 @@ def notes(of: str) -> str | None:
     sections = dict(zip(parts[1::2], parts[2::2]))
     text = sections.get(of)
     return text.strip() + "\n" if text is not None else None
+
+
+def numbers(of: str) -> tuple[int, ...]:
+    """A version's numbers, to compare by."""
+    if not re.fullmatch(r"\d+\.\d+\.\d+", of):
+        sys.exit(f"dist: {of} is no version; give three numbers, such as 1.2.0")
+    return tuple(map(int, of.split(".")))
+
+
+def with_version(text: str, before: str, pattern: str, of: str, place: str) -> str:
+    """The text with another version where the pattern, whose groups stand around it, finds the one before."""
+    pattern = pattern.replace("VERSION", re.escape(before))
+    changed, found = re.subn(pattern, lambda match: match[1] + of + match[2], text, flags=re.MULTILINE)
+    return changed if found else sys.exit(f"dist: {place} has no version {before}")
+
+
+def cut(of: str, day: str) -> None:
+    """Makes what is not released yet the release `of`: all four files, or none."""
+    before = version()
+    if numbers(of) < numbers(before):
+        sys.exit(f"dist: {of} is older than {before}, the version in Cargo.toml")
+    if notes(of) is not None:
+        sys.exit(f"dist: CHANGELOG.md has a section [{of}] already; choose the next version")
+    if not (notes("Unreleased") or "").strip():
+        sys.exit("dist: CHANGELOG.md says nothing under [Unreleased]; write down what is new first")
+    names = ["CHANGELOG.md", "Cargo.toml", "Cargo.lock", "CITATION.cff"]
+    texts = {name: (ROOT / name).read_text(encoding="utf-8") for name in names}
+    heading = "## [Unreleased]\n"
+    texts["CHANGELOG.md"] = texts["CHANGELOG.md"].replace(heading, f"{heading}\n## [{of}] - {day}\n", 1)
+    # A crate of the workspace is a package without a source.
+    for name, pattern in [
+        ("Cargo.toml", r'(^\[workspace\.package\](?:\n[^[].*)*?\nversion = ")VERSION(")'),
+        ("Cargo.lock", r'(^name = ".+"\nversion = ")VERSION("\n(?!source))'),
+        ("CITATION.cff", r"(^version: )VERSION($)"),
+    ]:
+        texts[name] = with_version(texts[name], before, pattern, of, name)
+    for name, text in texts.items():
+        unfinished = ROOT / f"{name}.unfinished"
+        unfinished.write_text(text, encoding="utf-8")
+    for name in names:
+        (ROOT / f"{name}.unfinished").replace(ROOT / name)
+    print(f"dist: {of}, {day}, in {', '.join(names)}; look at them, commit, and tag v{of}")
 
 
 def in_git(folder: str) -> list[Path]:
@@ -103,7 +148,15 @@ def main(arguments: list[str]) -> None:
         if not notes(now):
             sys.exit(f"dist: CHANGELOG.md has no section [{now}]: rename [Unreleased]")
         return
-    if len(arguments) != 2:
+    if len(arguments) in (2, 3) and arguments[0] == "--cut":
+        day = arguments[2] if len(arguments) == 3 else datetime.date.today().isoformat()
+        try:
+            datetime.date.fromisoformat(day)
+        except ValueError:
+            sys.exit(f"dist: {day} is no day; write it as 2026-01-31")
+        cut(arguments[1], day)
+        return
+    if len(arguments) != 2 or arguments[0].startswith("--"):
         sys.exit(__doc__)
     folder = Path(arguments[1])
     folder.mkdir(parents=True, exist_ok=True)

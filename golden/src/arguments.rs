@@ -9,6 +9,16 @@ pub fn design_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().map(with_ending)
 }
 
+/// Parses the place of a file of frames or forces to write: CSV, or `NumPy`'s by the ending `.npy`.
+pub fn rows_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.extension().and_then(|ending| ending.to_str()) {
+        Some(ending) if ["npz", "xlsx", "mat", "h5"].contains(&ending) => {
+            Err(format!("no .{ending} is written; the file is CSV, or NumPy's with the ending .npy"))
+        }
+        _ => Ok(path),
+    })
+}
+
 /// The place of a design file: with the ending `.toml` where there is no file without.
 pub fn with_ending(path: PathBuf) -> PathBuf {
     let mut longer = path.clone().into_os_string();

@@ -16,7 +16,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use commands::Recording;
 use commands::calibrate_recorded::Recordings;
 use commands::scene::RandomContacts;
-use golden::arguments::design_file;
+use golden::arguments::{design_file, rows_file};
 use golden::calibrate::Work;
 use golden::design::Family;
 use golden::manual::Manual;
@@ -55,8 +55,9 @@ enum Command {
         kind: Option<Kind>,
         #[command(flatten)]
         random: RandomContacts,
-        /// Where to write the frames (CSV, or .npy by its ending).
-        #[arg(long, value_name = "FRAMES.csv")]
+        /// Where to write the frames (CSV, or .npy by its ending), the forces and the sensor beside them. `-`: the frames
+        /// alone, on standard output.
+        #[arg(long, value_name = "FRAMES.csv", value_parser = rows_file())]
         out: PathBuf,
         /// Report as JSON.
         #[arg(long)]
@@ -82,7 +83,7 @@ enum Command {
         #[arg(long, value_name = "N", default_value_t = 0)]
         labels: usize,
         /// Where to write the forces (CSV, or .npy by its ending). `-`: standard output.
-        #[arg(long, value_name = "FORCES.csv")]
+        #[arg(long, value_name = "FORCES.csv", value_parser = rows_file())]
         out: PathBuf,
         /// Write the forces of each taxel too.
         #[arg(long)]

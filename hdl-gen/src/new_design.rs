@@ -2,8 +2,13 @@
 
 use std::ops::RangeInclusive;
 
+use golden::bodies::Quantiles;
 use golden::calibrate::{CalibrateError, Settings, calibrate};
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Grid, JointConstants, Samples, Tension};
+use golden::design::{
+    DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Grid, Input, JointConstants, Samples, Tension,
+};
+use golden::scene::{Kind, SceneFrame};
+use golden::solver::Solver;
 
 const TEMPLATE: &str = include_str!("../templates/design.toml");
 /// The line of the template where the joint estimator's constants go.
@@ -68,6 +73,30 @@ pub enum NewDesignError {
     /// The estimator cannot be fitted to the sensor.
     #[error("{0}; or choose --estimator line, which needs no constants")]
     Calibrate(#[from] CalibrateError),
+}
+
+/// Contacts that [`errors`] tries.
+pub const TRIED: u64 = 40;
+/// Their friction.
+const FRICTION: f64 = 0.5;
+/// The first of their seeds: those of the fit's contacts are others.
+const FIRST_SEED: u64 = 5000;
+
+/// Errors along the surface, in percent of the normal force, on [`TRIED`] round contacts at random that slide with a
+/// friction of 0.5 on a bonded layer (`Kind::Sliding`), which no constants were fitted to; `None` on a sensor for which there
+/// are no such frames.
+pub fn errors(design: &Design) -> Option<Quantiles> {
+    let frames = Kind::Sliding.frames(&design.sensor, FRICTION, FIRST_SEED..FIRST_SEED + TRIED).ok()?;
+    // In pascals, whatever the sensor counts and wherever its range ends.
+    let tension = design.input.tension;
+    let solver = Solver::new(&Design { input: Input { tension, ..Input::default() }, ..design.clone() }).ok()?;
+    let error = |frame: &SceneFrame| {
+        let read: Vec<f64> = frame.stress.iter().map(|&stress| tension.of(stress)).collect();
+        let found = solver.solve(&read).ok()?;
+        let [x, y] = [0, 1].map(|axis| found.resultant[axis] - frame.force[axis]);
+        Some(100.0 * x.hypot(y) / frame.force[2].abs())
+    };
+    Some(Quantiles::of(frames.iter().map(error).collect::<Option<_>>()?))
 }
 
 /// The integers that hold counts of so many bits: with a sign, which a tare needs, where there is room for one. None for

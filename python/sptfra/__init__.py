@@ -13,12 +13,17 @@ newtons, `F_z < 0` presses. Whatever is wrong with a design, a file or frames ra
 `ValueError` and `TypeError`, with the text that the commands print.
 """
 
+from importlib.metadata import version as _version
+
 from ._native import Design, Error, FrameLines, Solver, calibrate, check, errors, load_frames, scene
 from .forces import Forces, Status
 from .hardware import generate, plan, simulate
 from .plot import plot_bodies, plot_field
 from .recorded import calibrate_forces, calibrate_uniform
 from .results import Finding, Plan, Recorded, Scene, Simulation, Spread
+
+#: That of the package, which is that of the commands.
+__version__ = _version("sptfra")
 
 __all__ = [
     "Design",
@@ -33,6 +38,7 @@ __all__ = [
     "Solver",
     "Spread",
     "Status",
+    "__version__",
     "calibrate",
     "calibrate_forces",
     "calibrate_uniform",

@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,10 +34,23 @@ class Status(enum.IntFlag):
 BODY = {name: np.uint16 if name in ("taxels", "status") else np.float64 for name in
         "taxels status x y F_x F_y F_z mu standard_error".split()}
 
+#: Names with a unit, by unit.
+_NAMES = {
+    "N": "resultant field standard_error F_x F_y F_z f_x f_y f_z",
+    "N m": "torque T_x T_y T_z",
+    "rad": "direction phi",
+    "m": "x y",
+    "": "status friction mu friction_xy mu_x mu_y bodies taxels",
+}
+_UNITS = MappingProxyType({name: unit for unit, names in _NAMES.items() for name in names.split()})
+
 
 @dataclass(frozen=True, eq=False)
 class Forces:
     """Forces of n frames; of a frame whose status says NOT_FINITE, BAD_LENGTH or NO_CONTACT all are zeros."""
+
+    #: The unit of each array, of each column of `table()` and of each name of `records`; "" for plain numbers.
+    UNITS: ClassVar[Mapping[str, str]] = _UNITS
 
     #: (n,) uint16: bits of `Status`.
     status: np.ndarray

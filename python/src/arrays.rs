@@ -46,15 +46,13 @@ impl Frames {
         let array = array.as_array();
         let values = array.as_slice().map_or_else(|| array.iter().copied().collect(), <[f64]>::to_vec);
         let samples = design.hardware.samples;
-        if let (Some(wrong), Some([low, high])) =
-            (values.iter().position(|&value| !samples.takes(value)), samples.range())
-        {
+        if let Some(wrong) = values.iter().position(|&value| !samples.takes(value)) {
             return Err(PyValueError::new_err(format!(
-                "frame {}, taxel {}: {} is no {samples}, as hardware.samples says that the sensor's counts are; give whole \
-                 numbers from {low} to {high}",
+                "frame {}, taxel {}: {} is no {samples}, as hardware.samples says that the sensor's counts are; {}",
                 wrong / sensor.taxels(),
                 wrong % sensor.taxels(),
-                values[wrong]
+                values[wrong],
+                samples.remedy()
             )));
         }
         Ok(Self { values, taxels: sensor.taxels() })

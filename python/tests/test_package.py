@@ -44,6 +44,9 @@ class Hardware(unittest.TestCase):
 
 
 class Package(unittest.TestCase):
+    def test_the_version_is_that_of_the_workspace(self):
+        self.assertIn(f'\nversion = "{sptfra.__version__}"\n', (ROOT / "Cargo.toml").read_text())
+
     def test_the_stubs_say_what_there_is(self):
         package = Path(sptfra.__file__).parent
         self.assertTrue((package / "py.typed").is_file())

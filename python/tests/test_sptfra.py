@@ -2,6 +2,7 @@
 """The installed package as a user has it: python -m unittest test_sptfra, in a folder that is no project's."""
 
 import ast
+import dataclasses
 import inspect
 import os
 import pickle
@@ -107,6 +108,16 @@ class Solving(unittest.TestCase):
             short = self.solver.solve(self.frames[:35])
             sptfra.errors(forces, short)
 
+    def test_each_name_has_a_unit(self):
+        forces = sptfra.Solver(design()).solve(sptfra.scene(design()).frames)
+        arrays = {field.name for field in dataclasses.fields(forces)} - {"records"} | {"mu", "phi"}
+        bodies = {"taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"}
+        self.assertEqual((arrays | set(forces.table().dtype.names) | bodies) - set(sptfra.Forces.UNITS), set())
+        units = [sptfra.Forces.UNITS[name] for name in ("resultant", "T_z", "phi", "x", "status")]
+        self.assertEqual(units, ["N", "N m", "rad", "m", ""])
+        with self.assertRaises(TypeError):
+            sptfra.Forces.UNITS["resultant"] = "kN"
+
     def test_every_layout_gives_the_same_forces(self):
         forces = self.solver.solve(self.frames)
         many = np.tile(self.frames, (20, 1, 1))
@@ -158,7 +169,7 @@ class Solving(unittest.TestCase):
         driver = (ROOT / "drivers" / "python" / "sptfra_forces.py").read_text(encoding="utf-8")
         for bit in sptfra.Status:
             self.assertIn(f"    {bit.name} = {bit.value}\n", driver)
-        fields = [f"    {name}: np.ndarray" for name in sptfra.Forces.__dataclass_fields__]
+        fields = [f"    {field.name}: np.ndarray" for field in dataclasses.fields(sptfra.Forces)]
         # The hardware knows of one body.
         fields.remove("    records: np.ndarray")
         self.assertEqual([field for field in fields if field not in driver], [])

@@ -4,12 +4,13 @@ use std::error::Error;
 use std::path::Path;
 
 use golden::design::Design;
-use golden::output::write_whole;
+use golden::output::{print_text, write_whole};
 use golden::progress::Progress;
 use golden::scene::{Kind, Scene};
 use golden::{forces, frames, geometry};
 use serde::Serialize;
 
+use super::filter::is_standard;
 use super::keep_apart;
 
 #[derive(Serialize)]
@@ -40,7 +41,8 @@ fn friction(text: &str) -> Result<f64, String> {
     if (0.0..=2.0).contains(&friction) { Ok(friction) } else { Err("from 0 to 2".to_owned()) }
 }
 
-/// Makes the frames of `scene`, those of a kind of contacts, or the standing ones of `design`, in `out`, and their forces and sensor beside it.
+/// Makes the frames of `scene`, those of a kind of contacts, or the standing ones of `design`, in `out`, and their forces and
+/// sensor beside it; for `-` prints the frames alone.
 pub fn run(
     scene: Option<&Path>,
     design: Option<&Path>,
@@ -48,10 +50,16 @@ pub fn run(
     out: &Path,
     json: bool,
 ) -> Result<(), Box<dyn Error>> {
+    let to_a_pipe = is_standard(out);
+    if to_a_pipe && json {
+        return Err("--json and --out - both write to standard output; name a file, or leave --json out".into());
+    }
     let (forces_file, sensor_file) = (forces::reference_path(out), geometry::beside(out));
     let inputs: Vec<&Path> = [scene, design].into_iter().flatten().collect();
-    for file in [out, &forces_file, &sensor_file] {
-        keep_apart(file, &inputs)?;
+    if !to_a_pipe {
+        for file in [out, &forces_file, &sensor_file] {
+            keep_apart(file, &inputs)?;
+        }
     }
     let design = design.map(Design::load).transpose()?;
     let (sensor, made) = {
@@ -68,14 +76,19 @@ pub fn run(
             format!("{}: the true forces would overwrite the frames; choose another name", out.display()).into()
         );
     }
-    // The forces first: a frame file always has its forces and its sensor beside it.
-    forces::write_reference(&forces_file, &made)?;
-    write_whole(&sensor_file, geometry::to_toml(&sensor).as_bytes())?;
+    if !to_a_pipe {
+        // The forces first: a frame file always has its forces and its sensor beside it.
+        forces::write_reference(&forces_file, &made)?;
+        write_whole(&sensor_file, geometry::to_toml(&sensor).as_bytes())?;
+    }
     let mut stresses: Vec<Vec<f64>> = made.into_iter().map(|frame| frame.stress).collect();
     if let Some(design) = &design {
         for frame in &mut stresses {
             design.deliver(frame);
         }
+    }
+    if to_a_pipe {
+        return Ok(print_text(&frames::to_text(&stresses))?);
     }
     frames::write_frames(out, &stresses)?;
     if json {

@@ -59,6 +59,15 @@ impl Samples {
         }
     }
 
+    /// What to do about a value that is none of them.
+    pub fn remedy(self) -> String {
+        let [low, high] = self.range().unwrap_or([f64::from(f32::MIN), f64::from(f32::MAX)]);
+        format!(
+            "give whole numbers from {low} to {high}; if these are pascals, divide them by pa_per_count, or leave that out and \
+             write samples = \"float32\""
+        )
+    }
+
     /// Bits of a sample.
     pub fn bits(self) -> u32 {
         if self.range().is_none() { 32 } else { 16 }

@@ -118,7 +118,8 @@ impl Input {
         }
         if self.counts() {
             for (taxel, value) in frame.iter_mut().enumerate() {
-                *value = self.from_pa(taxel, *value).round();
+                // No count is -0.
+                *value = self.from_pa(taxel, *value).round() + 0.0;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The plan of a design, and the keys that only one of the plans has.
 
 use super::checks::Check;
-use super::{Algorithm, DesignError, Filter, Hardware, MAX_SIDE_PAPER, Optimise, Outputs, PlanKind, Sensor};
+use super::{Algorithm, DesignError, Filter, Hardware, MAX_LANES, MAX_SIDE_PAPER, Optimise, Outputs, PlanKind, Sensor};
 
 /// Lanes of the reduced plan come in fours, one for each class of parity.
 const LANES_MULTIPLE: usize = 4;
@@ -89,7 +89,7 @@ fn reduced(check: &Check, algorithm: &Algorithm, hardware: &Hardware) -> Result<
         return Err(check.value(
             "hardware.lanes",
             format!("is {} with the reduced plan", hardware.lanes),
-            "use a multiple of 4 from 4 to 64, or write plan = \"paper\" under [algorithm]".to_owned(),
+            format!("use a multiple of 4 from 4 to {MAX_LANES}, or write plan = \"paper\" under [algorithm]"),
         ));
     }
     if hardware.skip_zeros && algorithm.filter != Filter::None {

@@ -4,6 +4,7 @@
 //! As text, one frame a line, with a header line or none, separated by commas, semicolons, tabs or spaces; recordings may
 //! have label columns before the values. Or `NumPy`'s `.npy`, of frames by taxels or frames by rows by columns.
 
+mod format;
 mod npy;
 mod stream;
 mod text;
@@ -89,8 +90,8 @@ pub enum FrameError {
     },
     /// A value that the design's integer samples cannot be.
     #[error(
-        "{}, {place}: {value} is no {samples}, as hardware.samples says that the sensor's counts are; \
-         give whole numbers from {} to {}", path.display(), range[0], range[1]
+        "{}, {place}: {value} is no {samples}, as hardware.samples says that the sensor's counts are; {}",
+        path.display(), samples.remedy()
     )]
     Sample {
         /// The file.
@@ -101,8 +102,6 @@ pub enum FrameError {
         value: f64,
         /// What it should be.
         samples: Samples,
-        /// Least and largest count.
-        range: [f64; 2],
     },
     /// A `.npy` file that holds something else than frames.
     #[error(
@@ -113,6 +112,16 @@ pub enum FrameError {
         path: PathBuf,
         /// What is wrong.
         problem: String,
+    },
+    /// A file of another format.
+    #[error("{}: the file is {what}; {remedy}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What it is, in words.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
     },
     /// A file of forces that holds something else.
     #[error(
@@ -193,13 +202,13 @@ pub fn read_frames_of(path: &Path, design: &Design, labels: usize) -> Result<Vec
     let samples = design.hardware.samples;
     let wrong = |values: &Vec<f64>| values.iter().position(|&value| !samples.takes(value));
     let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
-    let (Some((frame, column)), Some(range)) = (found, samples.range()) else { return Ok(frames) };
+    let Some((frame, column)) = found else { return Ok(frames) };
     let at = text::line_of(path, labels, frame);
     let place = match at {
         Some(line) => format!("line {line}, column {}", labels + column + 1),
         None => format!("[{frame}, {}]", labels + column),
     };
-    Err(FrameError::Sample { path: path.to_path_buf(), place, value: frames[frame][column], samples, range })
+    Err(FrameError::Sample { path: path.to_path_buf(), place, value: frames[frame][column], samples })
 }
 
 /// Reads the rows of a file of finite numbers, which may have a header. `wrong_length` is given the number of values of a
@@ -218,8 +227,7 @@ fn read_table(
     wrong_length: impl Fn(usize) -> Option<usize>,
     check: impl Fn(&[usize]) -> Result<(), String>,
 ) -> Result<Vec<Vec<f64>>, FrameError> {
-    let unreadable = |source| FrameError::Read { path: path.to_path_buf(), source };
-    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let bytes = bytes_of(path)?;
     if !bytes.starts_with(npy::MAGIC) {
         return text::read(path, &bytes, labels, wrong_length);
     }
@@ -243,9 +251,18 @@ fn read_table(
     Ok(rows)
 }
 
+/// The content of a file that may be one of frames.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, FrameError> {
+    let bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
+    match format::other(&bytes) {
+        Some((what, remedy)) => Err(FrameError::Format { path: path.to_path_buf(), what, remedy }),
+        None => Ok(bytes),
+    }
+}
+
 /// The first line of a file of text that is no remark; nothing for a `.npy` file.
 pub(crate) fn first_line(path: &Path) -> Result<Option<String>, FrameError> {
-    let bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
+    let bytes = bytes_of(path)?;
     if bytes.starts_with(npy::MAGIC) {
         return Ok(None);
     }
@@ -256,7 +273,7 @@ pub(crate) fn first_line(path: &Path) -> Result<Option<String>, FrameError> {
 
 /// Shape and values of a `.npy` file, NaN among them; nothing for a file of text.
 pub(crate) fn read_array(path: &Path) -> Result<Option<Array>, FrameError> {
-    let bytes = std::fs::read(path).map_err(|source| FrameError::Read { path: path.to_path_buf(), source })?;
+    let bytes = bytes_of(path)?;
     if !bytes.starts_with(npy::MAGIC) {
         return Ok(None);
     }
@@ -298,12 +315,26 @@ pub fn write_frames(path: &Path, frames: &[Vec<f64>]) -> Result<(), FrameError> 
     if is_npy(path) {
         return write_array(path, frames.first().map_or(0, Vec::len), frames);
     }
+    output::write_whole(path, to_text(frames).as_bytes())?;
+    Ok(())
+}
+
+/// Frames as text, a line each. Counts, and stresses if all are whole, have no point.
+pub fn to_text(frames: &[Vec<f64>]) -> String {
     let mut text = String::new();
+    let whole =
+        |value: &f64| value.fract() == 0.0 && value.abs() < 1e15 && !(*value == 0.0 && value.is_sign_negative());
+    if frames.iter().flatten().all(whole) {
+        for frame in frames {
+            let line: Vec<String> = frame.iter().map(f64::to_string).collect();
+            text += &(line.join(",") + "\n");
+        }
+        return text;
+    }
     for frame in frames {
         push_row(&mut text, frame.iter().copied());
     }
-    output::write_whole(path, text.as_bytes())?;
-    Ok(())
+    text
 }
 
 /// Whether a file's name asks for `NumPy`'s format.

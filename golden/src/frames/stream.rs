@@ -31,10 +31,10 @@ impl FrameLines {
         let columns = self.lines.labels() + self.taxels;
         let Some(frame) = self.lines.row(line, |found| (found != columns).then_some(columns))? else { return Ok(None) };
         let wrong = frame.iter().position(|&value| !self.samples.takes(value));
-        let (Some(column), Some(range)) = (wrong, self.samples.range()) else { return Ok(Some(frame)) };
+        let Some(column) = wrong else { return Ok(Some(frame)) };
         let place = format!("line {}, column {}", self.lines.number(), self.lines.labels() + column + 1);
         let path = self.lines.path().to_path_buf();
-        Err(FrameError::Sample { path, place, value: frame[column], samples: self.samples, range })
+        Err(FrameError::Sample { path, place, value: frame[column], samples: self.samples })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Integer samples: which designs have them, and which frames they take. A calibration in RAM: which designs may.
 
 use golden::design::{CalibrationIn, Design, Samples};
-use golden::frames::read_frames_of;
+use golden::frames::{read_frames_of, to_text};
 
 const PAD: &str = "name = \"pad\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n";
 
@@ -38,7 +38,7 @@ fn frames_hold_what_samples_can_be() {
     };
     assert_eq!(read("1,2,3,-4\n", "int16").unwrap(), [[1.0, 2.0, 3.0, -4.0]]);
     for (text, samples, parts) in [
-        ("1,2,3,4\n\n1,2.5,3,4\n", "int16", ["line 3, column 2", "2.5", "from -32768 to 32767"]),
+        ("1,2,3,4\n\n1,2.5,3,4\n", "int16", ["line 3, column 2", "2.5", "from -32768 to 32767; if these are pascals"]),
         ("a,b,c,d\n# none\n1,2,3,40000\n", "int16", ["line 3, column 4", "40000", "int16"]),
         ("1,2,3,4\n-1,2,3,4\n", "uint16", ["line 2, column 1", "-1", "from 0 to 65535"]),
     ] {
@@ -52,7 +52,10 @@ fn frames_hold_what_samples_can_be() {
 fn what_a_sensor_delivers_fits_its_samples() {
     let mut frame = [-1e6, 1e6, -15.0, 0.0];
     pad("pa_per_count = -10.0", "uint16").unwrap().deliver(&mut frame);
-    assert_eq!(frame.map(|count| count as i64), [65_535, 0, 2, 0]);
+    assert_eq!(frame.map(f64::to_bits), [65_535.0_f64, 0.0, 2.0, 0.0].map(f64::to_bits));
+    assert_eq!(to_text(&[frame.to_vec()]), "65535,0,2,0\n");
+    // Bits are kept where they are not those of a whole number.
+    assert_eq!(to_text(&[vec![1.0, -0.0], vec![2.0, 0.5]]), "1.0,-0.0\n2.0,0.5\n");
 }
 
 #[test]

@@ -2,12 +2,13 @@
 
 use std::error::Error;
 use std::io::{ErrorKind, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use golden::design::{DEFAULT_FULL_SCALE_PA, Estimator, Tension};
+use golden::bodies::Quantiles;
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension};
 use golden::words;
-use hdl_gen::new_design::{COUNT_BITS, NewDesign};
+use hdl_gen::new_design::{self, COUNT_BITS, NewDesign};
 
 use golden::progress::Progress;
 
@@ -23,18 +24,18 @@ pub struct New {
     /// as in the paper
     #[arg(long, value_parser = words::parser::<Estimator>(), default_value = "joint")]
     estimator: Estimator,
-    /// Taxels in x
-    #[arg(long, default_value_t = 10)]
-    columns: usize,
-    /// Taxels in y
-    #[arg(long, default_value_t = 10)]
-    rows: usize,
-    /// Distance of neighbouring taxels in x and in y
-    #[arg(long, num_args = 2, value_names = ["X", "Y"], default_values_t = [4.0, 2.0])]
-    pitch_mm: Vec<f64>,
-    /// Thickness of the layer above the taxels
-    #[arg(long, default_value_t = 3.0)]
-    depth_mm: f64,
+    /// Taxels in x; 10 if it is not said, as all that follows of the paper's first sensor
+    #[arg(long)]
+    columns: Option<usize>,
+    /// Taxels in y; 10 if it is not said
+    #[arg(long)]
+    rows: Option<usize>,
+    /// Distance of neighbouring taxels in x and in y, one number if they are the same; 4 2 if it is not said
+    #[arg(long, num_args = 1..=2, value_delimiter = ',', value_names = ["X", "Y"], value_parser = length)]
+    pitch_mm: Option<Vec<f64>>,
+    /// Thickness of the layer above the taxels; 3 if it is not said
+    #[arg(long, value_parser = length)]
+    depth_mm: Option<f64>,
     /// What taxels read of a pull: its stress, or nothing, as most resistive and capacitive arrays
     #[arg(long, value_parser = words::parser::<Tension>(), default_value = "read")]
     tension: Tension,
@@ -46,6 +47,44 @@ pub struct New {
     /// Stress at the end of the sensor's range
     #[arg(long, value_name = "PA", default_value_t = DEFAULT_FULL_SCALE_PA)]
     full_scale_pa: f64,
+}
+
+/// A length of the command line.
+fn length(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length: &f64| length.is_finite());
+    length.ok_or_else(|| "a length in mm, such as 4; a pitch may have two, for x and y, as 4 2 or 4,2".to_owned())
+}
+
+impl New {
+    /// The sensor, and the options that were left out.
+    fn design(&self) -> Result<(NewDesign, Vec<String>), String> {
+        let paper = NewDesign::default();
+        let pitch_mm = match self.pitch_mm.as_deref() {
+            None => paper.pitch_mm,
+            Some(&[pitch]) => [pitch; 2],
+            Some(&[x, y]) => [x, y],
+            Some(more) => return Err(format!("--pitch-mm: {} lengths; give one or two, for x and y", more.len())),
+        };
+        let [x, y] = paper.pitch_mm;
+        let assumed = [
+            (self.columns.is_none(), format!("--columns {}", paper.columns)),
+            (self.rows.is_none(), format!("--rows {}", paper.rows)),
+            (self.pitch_mm.is_none(), format!("--pitch-mm {x} {y}")),
+            (self.depth_mm.is_none(), format!("--depth-mm {}", paper.depth_mm)),
+        ];
+        let wanted = NewDesign {
+            name: self.name.clone(),
+            estimator: self.estimator,
+            columns: self.columns.unwrap_or(paper.columns),
+            rows: self.rows.unwrap_or(paper.rows),
+            pitch_mm,
+            depth_mm: self.depth_mm.unwrap_or(paper.depth_mm),
+            tension: self.tension,
+            counts: self.counts,
+            full_scale_pa: self.full_scale_pa,
+        };
+        Ok((wanted, assumed.into_iter().filter(|(left_out, _)| *left_out).map(|(_, option)| option).collect()))
+    }
 }
 
 /// Writes `NAME.toml` into the folder, the whole file or none, never over an existing one; returns what to do next.
@@ -63,17 +102,7 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     if path.exists() {
         return Err(failed(ErrorKind::AlreadyExists.into()).into());
     }
-    let wanted = NewDesign {
-        name: name.clone(),
-        estimator: new.estimator,
-        columns: new.columns,
-        rows: new.rows,
-        pitch_mm: [new.pitch_mm[0], new.pitch_mm[1]],
-        depth_mm: new.depth_mm,
-        tension: new.tension,
-        counts: new.counts,
-        full_scale_pa: new.full_scale_pa,
-    };
+    let (wanted, assumed) = new.design()?;
     let text = wanted.text(&mut |what| progress.stage(what.to_owned()))?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hdl-gen-");
@@ -86,15 +115,41 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
     let mut file = builder.tempfile_in(folder).map_err(failed)?;
     file.write_all(text.as_bytes()).map_err(failed)?;
     file.persist_noclobber(&path).map_err(|error| failed(error.error))?;
-    let said = format!("{}: edit it, then run hdl-gen inspect {0} and hdl-gen generate {0}\n", path.display());
-    if new.estimator == Estimator::Line {
-        return Ok(said);
+    let design = Design::from_toml(&text, "hdl-gen new")?;
+    Ok(lines(new, &design, &path, &assumed, progress).join("\n") + "\n")
+}
+
+/// What to tell of a new design at `path`, with the options that were `assumed`.
+fn lines(new: &New, design: &Design, path: &Path, assumed: &[String], progress: &Progress) -> Vec<String> {
+    let shown = path.display();
+    let mut lines = vec![
+        format!("{shown}: {}; edit it, then run", design.sensor),
+        format!("  hdl-gen inspect {shown}"),
+        format!("  hdl-gen generate {shown}"),
+    ];
+    if design.algorithm.estimator == Estimator::Joint {
+        let calibrated = new.dir.join(format!("{}-calibrated.toml", new.name));
+        lines.push(format!("  golden calibrate {shown} --out {}", calibrated.display()));
+        progress.stage("trying it on other contacts");
+        let errors = new_design::errors(design).map(|Quantiles { median, most, .. }| {
+            format!(
+                " On {} round contacts that slide anywhere on it, forces along\n\
+                 the surface err by {median:.1} % of the normal force (median; 95 %: {most:.1}).",
+                new_design::TRIED
+            )
+        });
+        lines.push(format!("Gain and friction are fitted to this sensor.{}", errors.unwrap_or_default()));
+        lines.push("golden calibrate trains a network against what is left.".to_owned());
     }
-    let calibrated = folder.join(format!("{name}-calibrated.toml"));
-    Ok(format!(
-        "{said}gain and friction are fitted to this sensor, which leaves errors of up to 10 % of the normal force where\n\
-         the contact's edge lies between taxels; golden calibrate {} --out {} trains the correction, which halves them\n",
-        path.display(),
-        calibrated.display()
-    ))
+    if !assumed.is_empty() {
+        lines.push(format!("Not said, and taken from the paper's first sensor: {}", assumed.join(", ")));
+    }
+    if design.algorithm.regularisation.factor() > 0.0 {
+        lines.push(
+            "Deeper than 1.5 pitches: `regularisation` keeps noise down; its `noise` is to be your sensor's."
+                .to_owned(),
+        );
+    }
+    lines.extend(design.thin_layer().map(|thin| format!("warning: {thin}")));
+    lines
 }

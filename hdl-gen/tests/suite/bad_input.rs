@@ -95,7 +95,10 @@ fn keys_fit_the_plan() {
     };
     let reduced = "plan = \"reduced\"";
     for lanes in ["1", "6", "63"] {
-        check_design(&with(reduced, &format!("lanes = {lanes}")), &["hardware.lanes", lanes, "multiple of 4"]);
+        check_design(
+            &with(reduced, &format!("lanes = {lanes}")),
+            &["hardware.lanes", lanes, "multiple of 4 from 4 to 100"],
+        );
     }
     check_design(&with("plan = \"quick\"", ""), &["algorithm.plan", "quick", "paper, reduced"]);
     let paper = "plan = \"paper\"";

@@ -14,6 +14,7 @@ mod joint;
 mod lanes;
 mod model;
 mod need;
+mod new_command;
 mod reduced;
 mod roms;
 mod rounds;

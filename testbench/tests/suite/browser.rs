@@ -87,6 +87,9 @@ fn the_report_fits_a_desk_and_a_telephone() {
         ("errors: found less true", 1),
         ("[hardware]\nlanes = ", 1),
         ("µs a frame: latency", 1),
+        // The field that is shown is that of the recommended design.
+        ("Take no filter, reduced plan, joint, 15 × 15 points, 48 units", 1),
+        ("the hardware of sensor1_fast finds", 1),
     ] {
         assert_eq!(page.matches(part).count(), times, "{part}");
     }

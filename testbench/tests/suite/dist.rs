@@ -78,6 +78,55 @@ fn a_tag_of_another_version_is_refused() {
     assert_eq!(own.status.success(), released, "{}", text(&own.stderr));
 }
 
+/// In a copy: the unreleased part becomes the version's, and all that knows the version has it.
+#[test]
+fn a_release_is_cut_by_the_script() {
+    const FILES: [&str; 4] = ["CHANGELOG.md", "Cargo.toml", "Cargo.lock", "CITATION.cff"];
+    let folder = tempfile::tempdir().expect("a folder");
+    let here = folder.path();
+    fs::create_dir(here.join("tools")).expect("a folder");
+    for name in FILES.iter().chain(&["tools/dist.py"]) {
+        fs::copy(workspace(name), here.join(name)).expect("copied");
+    }
+    let run = |arguments: &[&str]| {
+        tools::python().expect("installed").arg(here.join("tools/dist.py")).args(arguments).output().expect("starts")
+    };
+    let read = |name: &str| fs::read_to_string(here.join(name)).expect("readable");
+    let before = FILES.map(read);
+    for (arguments, part) in [
+        (["--cut", "0.0.1", "2031-04-05"], "0.0.1 is older"),
+        (["--cut", "9.1", "2031-04-05"], "9.1 is no version"),
+        (["--cut", "9.1.0", "yesterday"], "yesterday is no day"),
+    ] {
+        let refused = run(&arguments);
+        let said = text(&refused.stderr);
+        assert!(!refused.status.success() && said.contains(part) && FILES.map(read) == before, "{said}");
+    }
+    let unreleased = |text: &str| {
+        let part = text.split("\n## [Unreleased]\n").nth(1).and_then(|rest| rest.split("\n## [").next());
+        part.expect("a part").trim().to_owned()
+    };
+    let done = run(&["--cut", "9.1.0", "2031-04-05"]);
+    assert!(done.status.success(), "{}", text(&done.stderr));
+    let [changelog, manifest, lock, citation] = FILES.map(read);
+    assert_eq!(unreleased(&changelog), "");
+    assert_eq!(changelog.replacen("\n## [9.1.0] - 2031-04-05\n", "", 1), before[0]);
+    assert!(run(&["--check", "v9.1.0"]).status.success());
+    assert_eq!(text(&run(&["--notes"]).stdout).trim(), unreleased(&before[0]));
+    let version = hdl_gen::emit::VERSION;
+    assert_eq!(manifest, before[1].replacen(&format!("\nversion = \"{version}\""), "\nversion = \"9.1.0\"", 1));
+    assert_eq!(citation, before[3].replace(&format!("version: {version}"), "version: 9.1.0"));
+    for name in ["golden", "hdl-cores", "hdl-gen", "sptfra-python", "testbench"] {
+        assert!(lock.contains(&format!("name = \"{name}\"\nversion = \"9.1.0\"\n")), "{name}");
+    }
+    assert_eq!(lock.matches("version = \"9.1.0\"").count(), 5);
+    let again = run(&["--cut", "9.1.0", "2031-04-05"]);
+    let said = text(&again.stderr);
+    assert!(!again.status.success() && said.contains("[9.1.0] already"), "{said}");
+    let empty = run(&["--cut", "9.2.0"]);
+    assert!(!empty.status.success() && text(&empty.stderr).contains("nothing under [Unreleased]"));
+}
+
 #[test]
 fn the_citation_has_the_version() {
     let citation = fs::read_to_string(workspace("CITATION.cff")).expect("there");

@@ -151,3 +151,22 @@ fn what_is_no_reference_is_refused() {
     let (good, said) = solve(&folder.path().join("other.forces.csv"));
     assert!(!good && said.contains("other.sensor.toml"), "{said}");
 }
+
+#[test]
+fn files_of_other_programs_get_a_word_of_what_to_do() {
+    let design = repository("designs/small.toml");
+    for (begin, part) in [
+        (&b"PK\x03\x04"[..], "numpy.save(\"frames.npy\", numpy.load(\"frames.npz\")[\"NAME\"])"),
+        (b"\x89HDF\r\n\x1a\n", "HDF5"),
+        (b"MATLAB 5.0 MAT-file", "writematrix"),
+        (b"\x1f\x8b\x08", "gunzip"),
+        (b"\xff\xfe1\x00", "UTF-8"),
+    ] {
+        let (_folder, file) = folder_with("");
+        fs::write(&file, begin).unwrap();
+        let output = golden(&["check", text(&design), "--frames", text(&file)]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.lines().count() == 1, "{said}");
+        assert!(said.contains("frames.csv: the file is ") && said.contains(part), "{said}");
+    }
+}

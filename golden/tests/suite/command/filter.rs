@@ -107,3 +107,26 @@ fn a_file_goes_to_standard_output_as_to_a_file() {
     assert!(!output.status.success());
     assert!(String::from_utf8(output.stderr).unwrap().contains("write --out - too"));
 }
+
+/// Frames of a scene, made and solved without a file.
+#[test]
+fn frames_of_a_scene_go_through_a_pipe() {
+    let design = repository("designs/small.toml");
+    let folder = tempfile::tempdir().unwrap();
+    let made = folder.path().join("made.csv");
+    assert!(golden(&["scene", "--design", text(&design), "--out", text(&made)]).status.success());
+    let piped = Command::new(env!("CARGO_BIN_EXE_golden"))
+        .args(["scene", "--design", text(&design), "--out", "-"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert!(piped.status.success() && piped.stderr.is_empty(), "{piped:?}");
+    assert_eq!(piped.stdout, std::fs::read(&made).unwrap());
+    // The frames' own file and the two beside it, and none of the pipe.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+    for (options, part) in [(["-", "--json"], "--json and --out -"), (["x.npz", "--json"], "the ending .npy")] {
+        let output = golden(&[&["scene", "--design", text(&design), "--out"][..], &options].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.contains(part), "{said}");
+    }
+}

@@ -47,11 +47,7 @@ impl Variant<'_> {
 /// was judged on all of them.
 pub fn conclusion(points: &[&Point], scenes: &[&str]) -> Option<Conclusion> {
     let variants = variants(points, scenes);
-    let most_exact = variants.iter().min_by(|a, b| a.tangential.total_cmp(&b.tangential))?;
-    let best = variants
-        .iter()
-        .filter(|variant| variant.tangential <= most_exact.tangential + AS_GOOD)
-        .min_by_key(|variant| variant.cost())?;
+    let best = best(&variants)?;
     let fastest = variants.iter().min_by_key(|variant| (variant.hardware.latency_cycles, variant.cost()))?;
     let frames: usize = points.iter().filter(|point| point.key == best.point.key).map(|point| point.frames).sum();
     let mut sentences = vec![format!(
@@ -101,6 +97,18 @@ pub fn conclusion(points: &[&Point], scenes: &[&str]) -> Option<Conclusion> {
     }
     sentences.push(last + ".");
     Some(Conclusion { sentences, keys: keys(best.point) })
+}
+
+/// The point of the variant that is recommended, as [`conclusion`] names it.
+pub fn recommended<'a>(points: &[&'a Point], scenes: &[&str]) -> Option<&'a Point> {
+    best(&variants(points, scenes)).map(|variant| variant.point)
+}
+
+/// Of those that err least the one that asks least of a device.
+fn best<'v, 'a>(variants: &'v [Variant<'a>]) -> Option<&'v Variant<'a>> {
+    let most_exact = variants.iter().min_by(|a, b| a.tangential.total_cmp(&b.tangential))?;
+    let as_good = variants.iter().filter(|variant| variant.tangential <= most_exact.tangential + AS_GOOD);
+    as_good.min_by_key(|variant| variant.cost())
 }
 
 /// The variants with hardware and the widest words that were judged on all scenes, by name, so that their order is always

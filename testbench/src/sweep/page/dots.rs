@@ -8,6 +8,8 @@ use crate::sweep::point::{Hardware, Point, Verified};
 const RADIUS: f64 = 4.5;
 /// How much wider the dot below is.
 const WIDER: f64 = 2.5;
+/// Room that the number beside a dot takes.
+const NUMBER: [f64; 2] = [18.0, 12.0];
 /// From the dot to the ring around what went through the RTL.
 const RING: f64 = 3.0;
 
@@ -41,6 +43,7 @@ pub fn draw(svg: &mut Svg, dots: Vec<Dot>) {
     let mut clusters = clusters(dots);
     // What is below comes first.
     clusters.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    let mut numbers: Vec<(f64, f64)> = Vec::new();
     for Cluster { dots, radius } in &clusters {
         let Dot { place, rim, kind: (_, colour), .. } = dots[0];
         let name = name(dots);
@@ -53,8 +56,12 @@ pub fn draw(svg: &mut Svg, dots: Vec<Dot>) {
             svg.ring(place, radius + RING, colour);
         }
         if dots.len() > 1 {
+            // Above the dot, or below it where that would hide another number.
             let above = (place.0, place.1 - radius - 3.0);
-            svg.text(above, "middle", INK, &dots.len().to_string());
+            let hides = |&(x, y): &(f64, f64)| (x - above.0).abs() < NUMBER[0] && (y - above.1).abs() < NUMBER[1];
+            let free = if numbers.iter().any(hides) { (place.0, place.1 + radius + NUMBER[1]) } else { above };
+            numbers.push(free);
+            svg.text(free, "middle", INK, &dots.len().to_string());
         }
     }
 }

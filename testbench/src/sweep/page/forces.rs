@@ -10,18 +10,34 @@ use super::matrices::Figure;
 use crate::field_plot;
 use crate::sweep::SweepScene;
 use crate::sweep::evaluate::answers;
+use crate::sweep::point::{Calibration, Point};
 
 /// The frame whose field is drawn, if the scene has so many: 40° in a sweep of tens.
 const DRAWN_FRAME: usize = 4;
 
-/// The field of one frame, by the estimator that new designs have where there is a design with it.
+/// The designs with those first that a page speaks of first: the recommended point's, then those by the estimator that new
+/// designs have.
+pub fn in_order<'a>(designs: &[&'a Design], recommended: Option<&Point>) -> Vec<&'a Design> {
+    let rank = |design: &&Design| {
+        let algorithm = &design.algorithm;
+        let is_recommended = recommended.is_some_and(|point| {
+            (point.plan, point.estimator, point.kernel) == (algorithm.plan, algorithm.estimator, algorithm.kernel)
+                && point.calibration == Calibration::of(algorithm)
+        });
+        (!is_recommended, algorithm.estimator != Estimator::Joint)
+    };
+    let mut designs = designs.to_vec();
+    designs.sort_by_key(rank);
+    designs
+}
+
+/// The field of one frame, by the first design that has one.
 ///
 /// # Errors
 /// [`PageError::Sweep`] if the design has no answer.
 pub fn field(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Figure>, String), PageError> {
     let shows = |design: &&&Design| design.algorithm.outputs == Outputs::Field && Plan::new(design).is_ok();
-    let of_joint = |design: &&&Design| design.algorithm.estimator == Estimator::Joint && shows(design);
-    let shown = designs.iter().find(of_joint).or_else(|| designs.iter().find(shows));
+    let shown = designs.iter().find(shows);
     let (Some(design), Some(scene)) = (shown, scene) else {
         return Ok((Vec::new(), String::new()));
     };
@@ -60,7 +76,7 @@ pub fn field(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Fig
     Ok((figures, caption))
 }
 
-/// How well the bodies of a scene are told apart, by the estimator that new designs have where there is a design with it.
+/// How well the bodies of a scene are told apart, by the first design with the joint estimator.
 pub fn bodies(designs: &[&Design], scene: &SweepScene) -> Option<String> {
     let contacts = scene.scene.contacts.len();
     let of_joint = |design: &&&Design| design.algorithm.estimator == Estimator::Joint;
@@ -80,4 +96,28 @@ pub fn bodies(designs: &[&Design], scene: &SweepScene) -> Option<String> {
         ),
     };
     Some(format!(". Told apart in f64, by {} with contacts = {contacts}: {number}{own}", design.name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::conclusion::tests::point;
+    use super::*;
+
+    #[test]
+    fn the_recommended_design_comes_first() {
+        let designs = ["sensor1-reduced", "sensor1-fast", "sensor1-joint"].map(|name| {
+            let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs");
+            Design::load(&folder.join(format!("{name}.toml"))).expect("a design")
+        });
+        let names = |point: Option<&Point>| {
+            let ordered = in_order(&designs.each_ref(), point);
+            ordered.iter().map(|design| design.name.clone()).collect::<Vec<_>>()
+        };
+        let mut recommended = point("a", 16, 2000, 2.0);
+        recommended.estimator = Estimator::Joint;
+        recommended.calibration = Calibration::of(&designs[2].algorithm);
+        assert_eq!(names(Some(&recommended)), ["sensor1_joint", "sensor1_fast", "sensor1_reduced"]);
+        assert_eq!(names(Some(&point("a", 16, 2000, 2.0)))[0], "sensor1_reduced");
+        assert_eq!(names(None), ["sensor1_fast", "sensor1_joint", "sensor1_reduced"]);
+    }
 }

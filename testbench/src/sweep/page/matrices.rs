@@ -49,11 +49,7 @@ pub fn magnitudes(matrices: &Matrices) -> Vec<Figure> {
 /// The colours of [`magnitudes`] with what they mean, from large to small.
 pub fn ramp_legend() -> Vec<(String, &'static str)> {
     let decade = |step: usize| DECADES * (1.0 - step as f64 / (RAMP.len() - 1) as f64);
-    (0..RAMP.len())
-        .rev()
-        .step_by(2)
-        .map(|step| (format!("10^−{:.1}", decade(step)).replace(".0", ""), RAMP[step]))
-        .collect()
+    (0..RAMP.len()).rev().step_by(2).map(|step| (format!("{:.0e}", 10_f64.powf(-decade(step))), RAMP[step])).collect()
 }
 
 /// What a filter keeps of `C33inv`.

@@ -145,6 +145,8 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
     // The paper's contacts are swept over all directions: its tables stand beside the first such scene.
     let main = scenes.iter().copied().find(|scene| scene.frames.stress.len() > 1).or(scenes.first().copied());
     let on = |scene: &SweepScene| own.iter().copied().filter(|point| point.scene == scene.name).collect::<Vec<_>>();
+    let telling: Vec<&str> = scenes.iter().filter(|scene| scene.tells()).map(|scene| scene.name.as_str()).collect();
+    let foremost = forces::in_order(&designs, conclusion::recommended(&own, &telling));
     let fronts = scenes
         .iter()
         .map(|scene| {
@@ -155,20 +157,19 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
                 caption += "; the bodies are pushed against each other, so that this error is that of a sum near zero, which \
                             tells nothing of either: no front, no conclusion";
             }
-            if let Some(bodies) = forces::bodies(&designs, scene) {
+            if let Some(bodies) = forces::bodies(&foremost, scene) {
                 caption += &bodies;
             }
             Figure { svg: front::front(&on(scene), paper, scene.tells()), caption }
         })
         .collect();
     let on_main = main.map(on).unwrap_or_default();
-    let telling: Vec<&str> = scenes.iter().filter(|scene| scene.tells()).map(|scene| scene.name.as_str()).collect();
     let small = sensor.columns * sensor.rows <= MOST_TAXELS;
     let pictures = match designs.first().filter(|_| small) {
         Some(design) => Matrices::of(design).ok(),
         None => None,
     };
-    let (field, field_caption) = forces::field(&designs, main)?;
+    let (field, field_caption) = forces::field(&foremost, main)?;
     let filters = |kinds: [MatrixFilter; 4]| {
         // F1 has no more diagonals than the matrix.
         let legal =

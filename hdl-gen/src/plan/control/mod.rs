@@ -3,23 +3,19 @@
 //! When a program starts depends on the frames under way, so latency and interval come from playing frames through
 //! what decides it. Counts of pipeline registers stand with the blocks; tests compare with simulation.
 
+mod durations;
+
 use std::collections::VecDeque;
 
-use golden::design::Optimise;
-
+use self::durations::Durations;
 use super::Plan;
-use super::places::{self, FIELD_PLACES};
-use super::product::Vector;
-use super::schedule::{Program, Visit};
-use super::streams::Intake;
+use super::places::FIELD_PLACES;
 use super::timing::{INTERVAL_FRAMES, Timeline, longest_interval, middle_interval};
-use crate::blocks::bz::{self, Arrival};
-use crate::blocks::calibration as bank;
+use crate::blocks::bz::Arrival;
 use crate::blocks::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
-    SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_BUS, VISIT_TO_RESIDUAL,
+    SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_RESIDUAL,
 };
-use crate::estimators;
 
 /// Frames whose stress, whose search, and whose field have a place.
 const PLACES: u64 = FIELD_PLACES as u64;
@@ -28,88 +24,20 @@ const FOREVER: u64 = 100_000_000;
 
 /// Predicts latency and interval; of the plan everything else is there.
 pub(super) fn timeline(plan: &Plan) -> Timeline {
-    let constants = Constants::new(plan);
-    let ends = |frames| Control::new(&constants).play(frames);
+    let durations = Durations::new(plan);
+    let ends = |frames| Control::new(&durations).play(frames);
     let interval = if plan.streams().drops { longest_interval } else { middle_interval };
     Timeline {
         latency_cycles: ends(1)[0],
         interval_cycles: interval(&ends(INTERVAL_FRAMES)),
         spmv_cycles: plan.schedule.issue_cycles(),
-        search_cycles: constants.stages.iter().map(|stage| stage.cycles).sum(),
-    }
-}
-
-/// Durations that do not depend on the frames under way.
-struct Constants {
-    beats: u64,
-    /// From a frame's first beat out of the skid buffer to the first that enters Bz: where it waits for room, is unpacked,
-    /// or calibrated.
-    unpacking: u64,
-    /// Least from one frame's first beat there to the next one's.
-    interval_of_beats: u64,
-    /// What a frame brings, counted from there.
-    arrival: Arrival,
-    /// From a visit to its taxels having left the unfolding.
-    visit_to_taxels: u64,
-    /// From the visit to the last sum, or the last g, to the sums being complete.
-    visit_to_sums: u64,
-    field: bool,
-    /// Whether the lanes put the field together, once the friction is known; else it is there with the sums.
-    composed: bool,
-    /// Frames that have a place from their start until they have left, if any is needed.
-    places: Option<u64>,
-    interval: bool,
-    /// Frames whose residual has a place.
-    residuals: usize,
-    /// Of the stage before the search, if there is one: without it the search waits for all that it needs at once.
-    line: Option<u64>,
-    /// From the last stress to what `CeAn` knows of the frame.
-    direction: u64,
-    /// Of the search, and that behind which a frame's `u_q` has no place any more.
-    stages: Vec<estimators::Stage>,
-    releases: usize,
-    programs: Vec<Program>,
-    /// Visit of the last of the sums, in the first program.
-    last_sum: u64,
-}
-
-impl Constants {
-    fn new(plan: &Plan) -> Self {
-        let (schedule, estimator) = (&plan.schedule, plan.estimator.slot());
-        let (field, folded) = (plan.field_words() > 0, plan.ways() > 1);
-        let is_sum = |visit: &&Visit| {
-            let product = &plan.products[visit.product as usize];
-            let leads = product.lead.is_some() && visit.row as usize >= plan.elements();
-            leads || matches!(product.result, Vector::G(..))
-        };
-        let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
-        Self {
-            beats: plan.streams().beats_out() as u64,
-            unpacking: if plan.streams().drops { latency::OVERRUN } else { 0 }
-                + u64::from(plan.streams().intake == Intake::Unpacked)
-                + bank::latency(plan),
-            interval_of_beats: bank::interval(plan),
-            arrival: bz::arrival(plan),
-            visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
-            visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),
-            field,
-            composed: field && folded,
-            places: places::places(field, folded).map(|places| places as u64),
-            interval: plan.design.hardware.optimise == Optimise::Interval,
-            residuals: plan.operands.residuals(),
-            line: estimator.line_latency(),
-            direction: estimator.contact_latency(),
-            stages: estimator.stages(&plan.design.sensor),
-            releases: estimator.releases(),
-            programs: schedule.programs.clone(),
-            last_sum: sums.max().unwrap_or(0),
-        }
+        search_cycles: durations.stages.iter().map(|stage| stage.cycles).sum(),
     }
 }
 
 /// The registers, as they stand in the current cycle. Times are cycles in which something happens or is first seen.
 struct Control<'a> {
-    of: &'a Constants,
+    of: &'a Durations,
     now: u64,
     // Bz and CeAn
     next_open: u64,
@@ -166,7 +94,7 @@ enum Change {
 }
 
 impl<'a> Control<'a> {
-    fn new(of: &'a Constants) -> Self {
+    fn new(of: &'a Durations) -> Self {
         Self {
             of,
             now: 0,
