@@ -159,8 +159,10 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     if let Some(message) = ends::check(design, frames, loaded.len(), peak) {
         found(Kind::Stuck, message);
     }
-    if let Some(message) = matrices.and_then(|matrices| bodies::check(design, frames, matrices)) {
-        found(Kind::Bodies, message);
+    // Frames that are wrong in these ways seem to have bodies that nobody pressed.
+    let misread = findings.iter().any(|finding| matches!(finding.kind, Kind::Sign | Kind::Tare | Kind::Order));
+    if let Some(message) = matrices.filter(|_| !misread).and_then(|matrices| bodies::check(design, frames, matrices)) {
+        findings.push(Finding { kind: Kind::Bodies, message });
     }
     findings
 }

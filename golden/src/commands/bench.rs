@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use golden::design::{Design, PlanKind};
+use golden::progress::Progress;
 use golden::solver::{Solution, Solver, SolverError, Status};
 use golden::table::Table;
-use indicatif::ProgressBar;
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -45,12 +45,11 @@ struct Speed {
 
 /// Measures each of the designs.
 pub fn run(designs: &[PathBuf], json: bool) -> Result<(), Box<dyn Error>> {
-    // Draws on a terminal only, and nothing while time is measured.
-    let progress = ProgressBar::new(designs.len() as u64);
-    progress.tick();
-    let measured = designs.iter().map(|path| measure(path).inspect(|_| progress.inc(1))).collect::<Result<Vec<_>, _>>();
-    progress.finish_and_clear();
-    let reports = measured?;
+    let progress = Progress::new();
+    progress.counted_in("designs", "measuring", designs.len() as u64);
+    let reports =
+        designs.iter().map(|path| measure(path).inspect(|_| progress.step())).collect::<Result<Vec<_>, _>>()?;
+    drop(progress);
     if json {
         say!("{}", serde_json::to_string_pretty(&reports)?);
         return Ok(());

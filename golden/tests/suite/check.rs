@@ -116,7 +116,9 @@ fn other_units() {
 
 #[test]
 fn a_wrong_sign_hides_nothing_else() {
-    let design = design("sensor2-joint");
+    let mut design = design("sensor2-joint");
+    // Nor does it make bodies out of one.
+    design.algorithm.count_bodies = true;
     let frames = frames(&design);
     found(&design, &changed(&frames, |pa| -pa), &[Kind::Sign], &["36 of 36 frames", "sensor.pa_per_count = -1.0"]);
     found(&design, &changed(&frames, |pa| (-pa).max(0.0)), &[Kind::Sign, Kind::NoTension], &["cannot read tension"]);
@@ -170,7 +172,9 @@ fn transposed_grids_and_rows_that_run_back() {
             };
             frames.iter().map(order).collect()
         };
-        found(&design, &reordered(&|x, y| x * rows + y), &[Kind::Order], &["column after column"]);
+        let mut counting = design.clone();
+        counting.algorithm.count_bodies = true;
+        found(&counting, &reordered(&|x, y| x * rows + y), &[Kind::Order], &["column after column"]);
         let back = |x, y| y * columns + if y % 2 == 1 { columns - 1 - x } else { x };
         // A contact in the middle of rows that run back is nearly its own mirror image; put it aside.
         let mut scene = Scene::standing(&design.sensor);

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 use golden::bodies::{Finder, Found};
@@ -121,7 +122,7 @@ fn blobs_are_counted_as_the_model_counts_them() {
         }
         fill(case, 12_000, &mut random);
     }
-    let found = play(&cases, None, &mut random).expect("no check of the module fails");
+    let found = play(&cases, verilator, None, &mut random).expect("no check of the module fails");
     for (case, found) in cases.iter().zip(found) {
         let Sensor { columns, .. } = case.sensor;
         let finder = Finder::new(&case.sensor, 1);
@@ -153,21 +154,27 @@ fn faults_are_noticed() {
         ("weight_totals", "counts_1[index] ?", "1'b1 ?"),
         ("bodies", "left + {3'd0, done}", "left"),
     ];
-    let missed = in_parallel(&faults, |fault| {
+    let copies: Vec<_> = std::iter::once(None).chain(faults.iter().map(Some)).collect();
+    let found = in_parallel(&copies, |fault| {
         let mut random = ChaCha8Rng::seed_from_u64(9);
         let mut case = Case::new("folded_9x7", 4, [9, 7]);
         fill(&mut case, 8_000, &mut random);
         let expected: Vec<u32> = case.frames.iter().map(|frame| count(frame, 9)).collect();
-        let found = play(&[case], Some(fault), &mut random);
+        let found = play(&[case], icarus, *fault, &mut random);
         found.is_ok_and(|found| found[0] == expected)
     });
-    let missed: Vec<_> = faults.iter().zip(missed).filter(|(_, missed)| *missed).collect();
-    assert!(missed.is_empty(), "{missed:?}");
+    let wrong: Vec<_> = copies.iter().zip(found).filter(|(fault, right)| fault.is_none() != *right).collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// Plays all cases at once; the counts of each, or what a check of the module says. A fault is a module, a text in it and
-/// what takes its place.
-fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8Rng) -> Result<Vec<Vec<u32>>, String> {
+/// Plays all cases at once in a simulator; the counts of each, or what a check of the module says. A fault is a module, a
+/// text in it and what takes its place.
+fn play(
+    cases: &[Case],
+    simulator: fn(&Path, usize) -> String,
+    fault: Option<&(&str, &str, &str)>,
+    random: &mut ChaCha8Rng,
+) -> Result<Vec<Vec<u32>>, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: String| folder.path().join(name);
     let mut bench = "module bench(input clock);\n".to_owned();
@@ -208,31 +215,48 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
         );
     }
     fs::write(place("bench.v".to_owned()), bench + "endmodule\n").expect("writable");
-    let main = format!(
-        "#include \"Vbench.h\"\nint main() {{\n    Vbench bench;\n    for (long edge = 0; edge < 2L * {}; ++edge) {{\n        \
-         bench.clock = edge & 1;\n        bench.eval();\n    }}\n    bench.final();\n}}\n",
-        longest + 1
-    );
-    fs::write(place("main.cpp".to_owned()), main).expect("writable");
-    let mut build = tools::verilator().expect("installed");
-    build.args(["--cc", "--exe", "--build", "-Wno-fatal", "-DSIMULATION", "-CFLAGS", "-O1", "--top-module", "bench"]);
     if let Some((module, from, to)) = fault {
         let name = format!("sptfra_{module}.v");
         let text = fs::read_to_string(workspace("hdl-gen/rtl").join(&name)).expect("is there");
         assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
         fs::write(place(name), text.replace(from, to)).expect("writable");
     }
-    build.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).args(["bench.v", "main.cpp"]);
-    succeed(build.current_dir(&folder));
-    let said = succeed(Command::new(place("model/Vbench".to_owned())).current_dir(&folder));
+    let said = simulator(folder.path(), longest + 1);
     if !said.is_empty() {
         return Err(said);
     }
     let counts = |case: &Case| {
         let text = fs::read_to_string(place(format!("{}.out", case.name))).expect("written");
-        text.lines().map(|line| line.parse().expect("a number")).collect()
+        text.lines().map(|line| line.parse().map_err(|_| format!("{}: {line} bodies", case.name))).collect()
     };
-    Ok(cases.iter().map(counts).collect())
+    cases.iter().map(counts).collect()
+}
+
+/// What is printed by `bench.v` and the modules of a folder, those of the project where it has none, in so many cycles.
+/// Verilator's program is quick, and Icarus' is quickly made.
+fn verilator(folder: &Path, cycles: usize) -> String {
+    let main = format!(
+        "#include \"Vbench.h\"\nint main() {{\n    Vbench bench;\n    for (long edge = 0; edge < 2L * {cycles}; ++edge) {{\n        \
+         bench.clock = edge & 1;\n        bench.eval();\n    }}\n    bench.final();\n}}\n"
+    );
+    fs::write(folder.join("main.cpp"), main).expect("writable");
+    let mut build = tools::verilator().expect("installed");
+    build.args(["--cc", "--exe", "--build", "-Wno-fatal", "-DSIMULATION", "-CFLAGS", "-O1", "--top-module", "bench"]);
+    build.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).args(["bench.v", "main.cpp"]);
+    succeed(build.current_dir(folder));
+    succeed(Command::new(folder.join("model/Vbench")).current_dir(folder))
+}
+
+fn icarus(folder: &Path, cycles: usize) -> String {
+    let clock = format!(
+        "module clock_of_bench;\n    reg clock = 0;\n    bench bench (.clock(clock));\n    \
+         initial begin\n        repeat (2 * {cycles}) #1 clock = !clock;\n        $finish(0);\n    end\nendmodule\n"
+    );
+    fs::write(folder.join("clock.v"), clock).expect("writable");
+    let mut build = tools::icarus().expect("installed");
+    build.args(["-g2005", "-DSIMULATION", "-s", "clock_of_bench", "-o", "bench", "-y", ".", "-y"]);
+    succeed(build.arg(workspace("hdl-gen/rtl")).args(["bench.v", "clock.v"]).current_dir(folder));
+    succeed(tools::icarus_runtime().expect("installed").args(["-n", "bench"]).current_dir(folder))
 }
 
 /// A line for each cycle: reset, take, valid, row, weights.
