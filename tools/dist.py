@@ -151,7 +151,7 @@ def main(arguments: list[str]) -> None:
     if len(arguments) in (2, 3) and arguments[0] == "--cut":
         day = arguments[2] if len(arguments) == 3 else datetime.date.today().isoformat()
         try:
-            datetime.date.fromisoformat(day)
+            day = datetime.date.fromisoformat(day).isoformat()
         except ValueError:
             sys.exit(f"dist: {day} is no day; write it as 2026-01-31")
         cut(arguments[1], day)

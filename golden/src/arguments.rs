@@ -12,7 +12,7 @@ pub fn design_file() -> impl TypedValueParser<Value = PathBuf> {
 /// Parses the place of a file of frames or forces to write: CSV, or `NumPy`'s by the ending `.npy`.
 pub fn rows_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| match path.extension().and_then(|ending| ending.to_str()) {
-        Some(ending) if ["npz", "xlsx", "mat", "h5"].contains(&ending) => {
+        Some(ending) if ["npz", "xlsx", "mat", "h5"].contains(&ending.to_ascii_lowercase().as_str()) => {
             Err(format!("no .{ending} is written; the file is CSV, or NumPy's with the ending .npy"))
         }
         _ => Ok(path),

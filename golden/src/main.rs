@@ -129,8 +129,8 @@ enum Command {
     /// Choose the filter of each matrix for a design with filter f3.
     ///
     /// Tries, one matrix at a time, the bands f1 with l = 10 to 90 and the row thresholds f2 with p = 10 to 90 on the
-    /// frames of the design's reference scenes, and chooses the one with the least product of friction error and entries
-    /// kept. The design with the choices goes to RESOLVED.toml, from which hardware is generated without a search.
+    /// frames of the design's reference scenes, and chooses the one with the least product of friction error, by the design's
+    /// estimator, and entries kept. The design with the choices goes to RESOLVED.toml, from which hardware is generated without a search.
     #[command(after_long_help = CHOOSE_FILES)]
     Choose {
         /// Design file (TOML).

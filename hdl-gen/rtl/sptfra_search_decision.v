@@ -10,7 +10,7 @@
 `default_nettype none
 
 module sptfra_search_decision #(
-    // From the last taxel's address of a pass to its sums, two or more
+    // From the last taxel's address of a pass to its sums, three or more
     parameter integer CYCLES = 11,
     // Number of the round that cuts its interval into four parts only
     parameter [2:0] LAST_ROUND = 3'd5

@@ -56,7 +56,7 @@ module sptfra_search_eighths #(
     // From the last taxel's address of a pass to the decision: the cell, the tree, the decision
     localparam integer DECISION_CYCLES = 6 + $clog2(CELLS);
     // The right end is read while the left one waits for its decision, in so many taxels that it is known behind them
-    localparam [0:0] KNOWN_IN_TIME = (2 * CELL_ELEMENTS - 1 > DECISION_CYCLES);
+    localparam [0:0] KNOWN_IN_TIME = (2 * CELL_ELEMENTS - 1 >= DECISION_CYCLES);
     localparam [17:0] ONE = 18'd65536;
     localparam integer LEVEL_LEFT = (LEVEL_SHIFT > 0) ? LEVEL_SHIFT : 0;
     localparam integer LEVEL_RIGHT = (LEVEL_SHIFT < 0) ? -LEVEL_SHIFT : 0;

@@ -1,7 +1,8 @@
 //! The search behind filter F3: for each matrix the filter that costs friction least for the entries it keeps.
 //!
 //! With only that matrix filtered, every candidate is judged by `e_mu * Nnz`, where `e_mu` is the error of the
-//! friction coefficient averaged over reference frames (Pinto-Salamanca et al., Sensors 2024, Eqs. 27 to 29).
+//! friction coefficient averaged over reference frames (Pinto-Salamanca et al., Sensors 2024, Eqs. 27 to 29), by the
+//! design's own estimator.
 
 mod scenes;
 mod trial;
@@ -13,7 +14,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
-use crate::design::{Choices, Design, Estimator, Filter, Input, MatrixFilter};
+use crate::design::{Choices, Design, Filter, Input, MatrixFilter};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError, MatrixName};
 use crate::scene::{SceneError, SceneFrame};
@@ -151,10 +152,8 @@ fn candidate_filters(taxels: usize) -> Vec<MatrixFilter> {
 /// [`ChooseError::Matrices`] for a sensor whose matrices are singular, [`ChooseError::Frames`] for frames of another
 /// sensor.
 pub fn choose(design: &Design, frames: &[SceneFrame], tick: &(dyn Fn() + Sync)) -> Result<Choice, ChooseError> {
-    // Scenes are in pascals, whatever the sensor counts, and filters are judged by the paper's estimator.
-    let mut design = Design { input: Input::default(), ..design.clone() };
-    design.algorithm.estimator = Estimator::Line;
-    let design = &design;
+    // Scenes are in pascals, whatever the sensor counts.
+    let design = &Design { input: Input::default(), ..design.clone() };
     let matrices = Matrices::of(design)?;
     let trial = Trial::new(design, &matrices, frames)?;
     let filters = candidate_filters(design.sensor.taxels());

@@ -3,9 +3,10 @@
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use crate::design::{Design, MatrixFilter};
-use crate::estimators::line::{self, LineScratch};
+use crate::estimators::{Friction, FrictionScratch, Seen};
 use crate::filter;
 use crate::matrices::{Matrices, MatrixName};
+use crate::products::ByPq;
 use crate::scene::SceneFrame;
 use crate::solver::SolverError;
 use crate::solver::cean::Contact;
@@ -63,6 +64,7 @@ pub(super) struct Trial {
     /// The 13 matrices, and C33.
     matrices: Vec<DMatrix<f64>>,
     c33: DMatrix<f64>,
+    friction: Friction,
     contacts: Vec<Contact>,
     /// True friction.
     truth: Vec<f64>,
@@ -106,6 +108,7 @@ impl Trial {
             column_sums: matrices.iter().map(DMatrix::row_sum).collect(),
             matrices,
             c33,
+            friction: Friction::new(design.algorithm.constants(), &design.sensor),
             contacts,
             truth,
             unsolved,
@@ -198,11 +201,17 @@ impl Trial {
     /// Mean error of friction over all frames, in percent.
     fn mean_error(&self, sums: &[Sums], u: [&DMatrix<f64>; 3]) -> f64 {
         let mut total = self.unsolved;
-        let mut scratch = LineScratch::default();
+        let mut scratch = FrictionScratch::default();
         let m = self.stress.nrows();
         for (index, ((contact, sums), truth)) in self.contacts.iter().zip(sums).zip(&self.truth).enumerate() {
-            let stresses = u.map(|u| &u.as_slice()[index * m..(index + 1) * m]);
-            let (_, [mu_x, mu_y]) = line::friction(contact, sums, stresses, line::LEVEL, &mut scratch);
+            let of_frame = index * m..(index + 1) * m;
+            let b = &self.stress.as_slice()[of_frame.clone()];
+            let u = u.map(|u| &u.as_slice()[of_frame.clone()]);
+            // No estimator asks for torques.
+            let mut with_torques = ByPq::default();
+            with_torques[..3].copy_from_slice(sums);
+            let seen = Seen { b, contact: *contact, sums: &with_torques, u };
+            let [mu_x, mu_y] = self.friction.find(&seen, &mut scratch).mu;
             let resultant = sums.map(|[g0, g1, g2]| g0 + g1 * mu_x + g2 * mu_y);
             total += 100.0 * (truth - op::quotient(resultant)).abs();
         }

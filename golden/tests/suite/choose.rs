@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use golden::choose::{self, Choice, candidate_count, mean_error, reference_frames};
-use golden::design::{Choices, Design, Filter, MatrixFilter};
+use golden::design::{Choices, Design, Estimator, Filter, MatrixFilter};
 use golden::filter::FilteredMatrices;
 use golden::matrices::{Matrices, MatrixName};
 use golden::scene::{Scene, SceneFrame};
@@ -67,7 +67,18 @@ fn by_the_solver(design: &Design, frames: &[SceneFrame], matrix: MatrixName, fil
 
 #[test]
 fn every_candidate_is_judged_as_the_solver_would() {
-    let design = design("small");
+    judged_as_by_the_solver(&design("small"));
+}
+
+#[test]
+fn the_designs_own_estimator_judges() {
+    let mut design = design("small");
+    let by_line = judged_as_by_the_solver(&design);
+    design.algorithm.estimator = Estimator::Joint;
+    assert_ne!(judged_as_by_the_solver(&design), by_line);
+}
+
+fn judged_as_by_the_solver(design: &Design) -> Choice {
     let mut scene = Scene::standing(&design.sensor);
     scene.sweep_deg = vec![7.0, 100.0, 256.0];
     scene.sensor_errors.noise = 0.01;
@@ -76,14 +87,15 @@ fn every_candidate_is_judged_as_the_solver_would() {
     for stress in [0.0, f64::NAN, -900.0] {
         frames.push(SceneFrame { stress: vec![stress; 12], ..frames[0].clone() });
     }
-    let choice = search(&design, &frames);
+    let choice = search(design, &frames);
     // On 12 taxels the only band of the sweep is L = 10.
     assert_eq!(choice.candidates.len(), 13 * 10);
     for candidate in &choice.candidates {
-        let (nnz, e_mu) = by_the_solver(&design, &frames, candidate.matrix, candidate.filter);
+        let (nnz, e_mu) = by_the_solver(design, &frames, candidate.matrix, candidate.filter);
         assert_eq!(candidate.nnz, nnz, "{candidate:?}");
         assert!((candidate.e_mu - e_mu).abs() < 1e-9, "{candidate:?}: {e_mu}");
     }
+    choice
 }
 
 #[test]

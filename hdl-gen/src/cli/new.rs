@@ -52,7 +52,11 @@ pub struct New {
 /// A length of the command line.
 fn length(text: &str) -> Result<f64, String> {
     let length = text.parse().ok().filter(|length: &f64| length.is_finite());
-    length.ok_or_else(|| "a length in mm, such as 4; a pitch may have two, for x and y, as 4 2 or 4,2".to_owned())
+    length.ok_or_else(|| {
+        let is_name = text.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_');
+        let remedy = if is_name { "; the design's name goes before --pitch-mm" } else { "" };
+        format!("a length in mm, such as 4; a pitch may have two, for x and y, as 4 2 or 4,2{remedy}")
+    })
 }
 
 impl New {

@@ -92,6 +92,9 @@ fn a_release_is_cut_by_the_script() {
         tools::python().expect("installed").arg(here.join("tools/dist.py")).args(arguments).output().expect("starts")
     };
     let read = |name: &str| fs::read_to_string(here.join(name)).expect("readable");
+    // Just behind a release nothing is unreleased yet.
+    let changelog = read("CHANGELOG.md").replacen("## [Unreleased]\n", "## [Unreleased]\n\n### Added\n\n- More.\n", 1);
+    fs::write(here.join("CHANGELOG.md"), changelog).expect("writable");
     let before = FILES.map(read);
     for (arguments, part) in [
         (["--cut", "0.0.1", "2031-04-05"], "0.0.1 is older"),

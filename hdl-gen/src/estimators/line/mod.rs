@@ -31,7 +31,8 @@ pub const LEVEL_SHIFT: i32 = 9;
 pub const SEARCH_STEPS: u32 = 17;
 /// Of rounds that cut an interval into eight parts, the last one into four: logarithm of a part, in steps of the variable.
 pub const PART_BITS: [u32; 6] = [14, 11, 8, 5, 2, 0];
-/// Lanes beyond which a round of the search cuts its interval into eight parts: fewer lanes take longer than the search.
+/// Lanes beyond which a round of the search cuts its interval into eight parts: from 10 × 10 taxels on fewer lanes take
+/// longer than the search, and smaller grids keep the smaller one.
 pub const BISECTING_LANES: usize = 32;
 /// Taxels of a cell beyond which it does not: they, not the way to a decision, take most of a bisection's time.
 pub const EIGHTHS_ELEMENTS: usize = 8;

@@ -10,6 +10,7 @@ use super::matrices::Figure;
 use crate::field_plot;
 use crate::sweep::SweepScene;
 use crate::sweep::evaluate::answers;
+use crate::sweep::grid::filter_text;
 use crate::sweep::point::{Calibration, Point};
 
 /// The frame whose field is drawn, if the scene has so many: 40° in a sweep of tens.
@@ -24,7 +25,9 @@ pub fn in_order<'a>(designs: &[&'a Design], recommended: Option<&Point>) -> Vec<
             (point.plan, point.estimator, point.kernel) == (algorithm.plan, algorithm.estimator, algorithm.kernel)
                 && point.calibration == Calibration::of(algorithm)
         });
-        (!is_recommended, algorithm.estimator != Estimator::Joint)
+        // Of a sweep over filters the point may have one that no design has.
+        let filtered_alike = recommended.is_some_and(|point| point.filter == filter_text(&algorithm.filter));
+        (!is_recommended, !filtered_alike, algorithm.estimator != Estimator::Joint)
     };
     let mut designs = designs.to_vec();
     designs.sort_by_key(rank);

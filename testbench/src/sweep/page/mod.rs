@@ -190,7 +190,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
         widths: widths(&on_main),
         field,
         field_caption,
-        costs: costs(&designs, main, small),
+        costs: costs(&foremost, main, small),
         magnitudes: pictures.as_ref().map(matrices::magnitudes).unwrap_or_default(),
         rows: pictures.as_ref().map(|matrices| matrices::rows(matrices, sensor.columns)),
         bands: filters([10, 40, 50, 90].map(|l| MatrixFilter::F1 { l })),
@@ -210,11 +210,11 @@ fn costs(designs: &[&Design], scene: Option<&SweepScene>, small: bool) -> Option
     design.algorithm.filter = Filter::None;
     let choice = choose(&design, &frames, &|| ()).ok()?;
     let caption = format!(
-        "e_µ · Nnz in thousands, with only that matrix filtered, by the line estimator, the one whose 13 matrices these are; \
+        "e_µ · Nnz in thousands, with only that matrix filtered, by the estimator {} of {}; \
          mean over {} frames of scene {}. Orange: the least of the matrix, which is F3; only framed where its e_µ is more \
          than twice that without a filter, {:.2} %, and the entries that it saves are dear. With all of these choices e_µ \
          is {:.2} %.",
-        choice.frames, scene?.name, choice.e_mu_unfiltered, choice.e_mu_chosen
+        design.algorithm.estimator, design.name, choice.frames, scene?.name, choice.e_mu_unfiltered, choice.e_mu_chosen
     );
     Some(Figure { svg: matrices::costs(&choice), caption })
 }

@@ -83,8 +83,9 @@ fn commits_on_each_others_heels_among_bad_frames() {
             for access in load(&bank, bank.crc()) {
                 core.plan(cycle, access);
             }
-            // More than its writes take, the walk, and a frame that comes in with pauses.
-            cycle += 1500 + random.random_range(0..200);
+            // More than its writes and the walk take, and the frame that is coming in: short packets may stand before it,
+            // as many as there is room for their ends.
+            cycle += 600 + 4 * subject.plan.timeline.interval_cycles + random.random_range(0..200);
             banks.push(bank);
         }
         let mut packets = counts(&subject.plan, 120, &mut random);

@@ -18,8 +18,8 @@ use testbench::tools;
 /// Cycles after reset that are checked: more than the longest induction assumes.
 const FIRST_CYCLES: &str = "6";
 
-/// Without functions to be interpreted and without a stack of assertions z3 has plain bit vectors, for which it is
-/// fifteen times as quick.
+/// Without functions to be interpreted and without a stack of assertions z3 has plain bit vectors, for which it is four
+/// times as quick.
 const SOLVER: [&str; 5] = ["-s", "z3", "--unroll", "--noincr", "--noprogress"];
 
 /// How a proof ended.
