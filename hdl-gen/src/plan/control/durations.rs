@@ -42,6 +42,9 @@ pub(super) struct Durations {
     pub(super) stages: Vec<estimators::Stage>,
     pub(super) releases: usize,
     pub(super) programs: Vec<Program>,
+    /// Of each program, counted from its first issue: when its results are written to the operand memories, and the stress
+    /// that comes in stands still.
+    pub(super) writes: Vec<Vec<u64>>,
     /// Visit of the last of the sums, in the first program.
     pub(super) last_sum: u64,
 }
@@ -75,7 +78,30 @@ impl Durations {
             stages: estimator.stages(&plan.design.sensor),
             releases: estimator.releases(),
             programs: schedule.programs.clone(),
+            writes: writes(plan),
             last_sum: sums.max().unwrap_or(0),
         }
     }
+}
+
+/// When each program's results take the operand memories' port.
+fn writes(plan: &Plan) -> Vec<Vec<u64>> {
+    let folded = plan.ways() > 1;
+    let mut writes = vec![Vec::new(); plan.schedule.programs.len()];
+    for visit in plan.schedule.visits.iter().filter(|visit| (visit.row as usize) < plan.elements()) {
+        let product = &plan.products[visit.product as usize];
+        let on_bus = visit.cycle + VISIT_TO_BUS;
+        let of_program = &mut writes[product.program];
+        match product.result {
+            Vector::Weight => {
+                let last = on_bus + latency::bus_to_taxels(folded) + latency::taxels_to_write(folded);
+                // Of a folded grid |w|, and y+ behind it.
+                of_program.extend(last - u64::from(folded)..=last);
+            }
+            Vector::Residual(_) | Vector::Explained => of_program.push(on_bus + latency::bus_to_write(folded)),
+            Vector::G(3, _) if !folded => of_program.push(on_bus + latency::bus_to_write(folded)),
+            _ => {}
+        }
+    }
+    writes
 }

@@ -5,7 +5,7 @@
 
 mod durations;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 use self::durations::Durations;
 use super::Plan;
@@ -45,6 +45,10 @@ struct Control<'a> {
     beat_there: u64,
     idle_since: Option<u64>,
     stress_places: u64,
+    /// Frames on their way through Bz: cycles since their first beat in which it did not stand still.
+    arriving: VecDeque<u64>,
+    /// Cycles in which results are written, and it does.
+    writes: BTreeSet<u64>,
     cean_idle: u64,
     directions: VecDeque<u64>,
     frames_ready: VecDeque<u64>,
@@ -103,6 +107,8 @@ impl<'a> Control<'a> {
             beat_there: 1 + of.unpacking,
             idle_since: Some(0),
             stress_places: 0,
+            arriving: VecDeque::new(),
+            writes: BTreeSet::new(),
             cean_idle: 0,
             directions: VecDeque::new(),
             frames_ready: VecDeque::new(),
@@ -132,7 +138,11 @@ impl<'a> Control<'a> {
         let mut left = frames;
         while self.ends.len() < frames && self.now < FOREVER {
             self.show_changes();
-            if left > 0 && self.opens() {
+            let stands_still = self.writes.remove(&self.now);
+            if !stands_still {
+                self.arrive();
+            }
+            if left > 0 && self.opens(stands_still) {
                 left -= 1;
             }
             self.give_turn();
@@ -167,7 +177,7 @@ impl<'a> Control<'a> {
     }
 
     /// Bz lets a frame in: a register says so, one cycle after the conditions hold.
-    fn opens(&mut self) -> bool {
+    fn opens(&mut self, stands_still: bool) -> bool {
         let room = self.directions.iter().filter(|&&there| there <= self.now).count() < PLACES as usize;
         if self.now < self.next_open || self.now < self.cean_idle || self.stress_places == PLACES || !room {
             return false;
@@ -175,19 +185,35 @@ impl<'a> Control<'a> {
         if *self.idle_since.get_or_insert(self.now) == self.now {
             return false;
         }
-        if self.now < self.beat_there {
+        if self.now < self.beat_there || stands_still {
             return false;
         }
         self.idle_since = None;
         self.beat_there = self.now + self.of.interval_of_beats;
-        let Arrival { ready, last_stress, done } = self.of.arrival;
-        let last_stress = self.now + last_stress;
         self.stress_places += 1;
-        self.next_open = self.now + done;
-        self.cean_idle = last_stress + self.of.direction;
-        self.directions.push_back(self.cean_idle);
-        self.frames_ready.push_back(self.now + ready);
+        (self.next_open, self.cean_idle) = (FOREVER, FOREVER);
+        self.arriving.push_back(0);
         true
+    }
+
+    /// Frames move on in Bz.
+    fn arrive(&mut self) {
+        let Arrival { ready, last_stress, done } = self.of.arrival;
+        for moved in &mut self.arriving {
+            *moved += 1;
+            if *moved == ready {
+                self.frames_ready.push_back(self.now);
+            }
+            if *moved == last_stress {
+                self.cean_idle = self.now + self.of.direction;
+                self.directions.push_back(self.cean_idle);
+            }
+            if *moved + 1 == done {
+                self.next_open = self.now + 1;
+            }
+        }
+        let through = ready.max(last_stress).max(done - 1);
+        self.arriving.retain(|&moved| moved < through);
     }
 
     /// The lanes' next program.
@@ -241,6 +267,7 @@ impl<'a> Control<'a> {
     fn start(&mut self, index: usize) -> u64 {
         let program = self.of.programs[index];
         let first_issue = self.first_issue(index);
+        self.writes.extend(self.of.writes[index].iter().map(|cycle| first_issue + cycle));
         self.lanes_free = first_issue + program.length - 1 - SEQUENCER_TO_LANES;
         first_issue + program.last_visit
     }
