@@ -47,7 +47,7 @@ pub enum FrameError {
     /// A line with too few or too many values.
     #[error(
         "{}, line {line}: the line ends at column {found} where {expected} values are needed; \
-         give one stress for each taxel of the sensor", path.display()
+         give one stress for each taxel of the sensor{}", path.display(), surplus(*found, *expected)
     )]
     Length {
         /// The file.
@@ -155,6 +155,15 @@ pub enum FrameError {
     /// The file could not be written.
     #[error(transparent)]
     Write(#[from] OutputError),
+}
+
+/// What to do with a line that has a few values too many: a time, a number of the frame.
+fn surplus(found: usize, expected: usize) -> String {
+    match found.saturating_sub(expected) {
+        0 => String::new(),
+        more @ 1..=8 => format!("; if the first {more} are a time or a name, say so with --labels {more}"),
+        _ => "; columns before the values need --labels".to_owned(),
+    }
 }
 
 impl FrameError {

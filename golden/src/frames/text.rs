@@ -27,8 +27,8 @@ impl Separator {
 
     pub(crate) fn split(self, line: &[u8]) -> Vec<&[u8]> {
         match self {
-            Self::Byte(separator) => line.split(|&byte| byte == separator).map(<[u8]>::trim_ascii).collect(),
-            Self::Spaces => line.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty()).collect(),
+            Self::Byte(separator) => line.split(|&byte| byte == separator).map(bare).collect(),
+            Self::Spaces => line.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty()).map(bare).collect(),
         }
     }
 
@@ -42,6 +42,12 @@ impl Separator {
         };
         is_number(value).then_some(value)
     }
+}
+
+/// A field without the quotes that some programs put around each.
+fn bare(field: &[u8]) -> &[u8] {
+    let field = field.trim_ascii();
+    field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field)
 }
 
 /// Reads lines one after the other; of each the columns after the labels.
