@@ -12,7 +12,7 @@ use crate::parity::{CLASSES, Quads, butterfly};
 /// The correction of a component is at most this, so that an unforeseen contact is never made much worse.
 pub const LARGEST: f64 = 1.0 / 4.0;
 /// Classes of the inputs behind the window: odd in x, odd in y, the same again, even.
-const EXTRA_CLASSES: [usize; 5] = [1, 2, 1, 2, 0];
+pub(crate) const EXTRA_CLASSES: [usize; 5] = [1, 2, 1, 2, 0];
 
 /// The network: one layer of hinges, then two sums.
 ///

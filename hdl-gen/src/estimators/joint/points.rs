@@ -15,8 +15,6 @@ pub const FRACTION: u32 = 23;
 pub const U_BITS: u32 = 25;
 /// Width of a value, unsigned; a sum that leaves it is the largest number.
 pub const VALUE_BITS: u32 = 28;
-/// Bits dropped from the square of a depth.
-pub const WEIGHT_DROP: u32 = 8;
 /// Points weighed in a cycle.
 pub const AT_ONCE: usize = 5;
 /// The squares, and both moments.
