@@ -90,6 +90,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_ratio",
     "sptfra_registers",
     "sptfra_replace",
+    "sptfra_reset",
     "sptfra_rom",
     "sptfra_row_sequencer",
     "sptfra_samples",

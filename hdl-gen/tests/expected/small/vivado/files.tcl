@@ -41,6 +41,7 @@ foreach file {
     sptfra_quad_rows.v
     sptfra_ram.v
     sptfra_ratio.v
+    sptfra_reset.v
     sptfra_rom.v
     sptfra_row_sequencer.v
     sptfra_samples.v
