@@ -92,6 +92,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_replace",
     "sptfra_reset",
     "sptfra_rom",
+    "sptfra_rom_bank",
     "sptfra_row_sequencer",
     "sptfra_samples",
     "sptfra_search",
