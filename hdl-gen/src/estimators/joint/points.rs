@@ -1,11 +1,12 @@
 //! A cell for each point of the grid: formats of its values, by the frame's own scale.
 
+use golden::design::Design;
 use golden::estimators::joint::Grid;
 use serde::Serialize;
 
 use super::SHARE_SHIFT;
 use crate::estimators::Contact;
-use crate::plan::format::{largest, round_shift};
+use crate::plan::format::{MANY_LANES, largest, round_shift};
 
 /// Most points that have a cell each: 15 x 15 take about as many LUTs as all else, 21 x 21 twice as many.
 pub const MOST_POINTS: usize = 256;
@@ -17,10 +18,10 @@ pub const U_BITS: u32 = 25;
 pub const VALUE_BITS: u32 = 28;
 /// Bits dropped from the square of a depth.
 pub const WEIGHT_DROP: u32 = 8;
-/// Points weighed in a cycle.
-pub const AT_ONCE: usize = 5;
-/// The squares, and both moments.
-pub const DSP: usize = AT_ONCE + 2;
+/// Points weighed in a cycle, where they see one taxel in one; else all of a row.
+const FIVE: usize = 5;
+/// Multipliers of both moments.
+const MOMENTS: usize = 2;
 
 /// The cells of the points of a design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -30,6 +31,8 @@ pub struct PointsPlan {
     /// The grid.
     #[serde(skip)]
     pub grid: Grid,
+    /// Taxels that they see in a cycle: two where lanes are many, and then a row of them is weighed in one, not five.
+    pub taxels: usize,
     /// Left shift of `u` before the right shift by the bits of `sum |b|`: to one bit finer than a value.
     pub u_left: u32,
 }
@@ -46,15 +49,28 @@ pub struct Values {
 
 impl PointsPlan {
     /// The cells of a grid, if they are few enough, for `u` with steps `2^-finer` times those of `b`.
-    pub(super) fn new(grid: Grid, finer: i32) -> Option<Self> {
+    pub(super) fn new(grid: Grid, finer: i32, design: &Design) -> Option<Self> {
         // `u` holds the stress and more: its steps are those of the stress but for a few bits.
         let u_left = (FRACTION as i32 + 1 - finer).max(1) as u32;
-        (grid.points() <= MOST_POINTS).then_some(Self { side: grid.side(), grid, u_left })
+        // A count of bodies, a taxel a cycle, must be there before the search is.
+        let quick = design.hardware.lanes > MANY_LANES && !design.algorithm.count_bodies;
+        let taxels = if quick { 2 } else { 1 };
+        (grid.points() <= MOST_POINTS).then_some(Self { side: grid.side(), grid, taxels, u_left })
+    }
+
+    /// Points weighed in a cycle.
+    pub fn weighed(&self) -> usize {
+        if self.taxels > 1 { self.side } else { FIVE }
+    }
+
+    /// The squares, and both moments.
+    pub fn dsp(&self) -> usize {
+        self.weighed() + MOMENTS
     }
 
     /// Condition 1 at every point.
     pub(super) fn values(&self, u: &[Vec<i64>; 3], contact: Contact) -> Values {
-        let Self { side, grid, u_left } = *self;
+        let Self { side, grid, u_left, .. } = *self;
         let sum_bits = 64 - contact.stress_sum.leading_zeros();
         let share = |value: i64| (value << (FRACTION - SHARE_SHIFT as u32)) >> sum_bits;
         let mut clipped = false;

@@ -4,7 +4,7 @@ use golden::parity::Quads;
 use golden::sensor::Sensor;
 
 use super::super::Stage;
-use super::points::{self, PointsPlan};
+use super::points::PointsPlan;
 use super::{JointPlan, NetworkPlan, POINTS};
 
 /// From the last stress of a frame to its sum and maximum.
@@ -20,7 +20,8 @@ pub const FIRST_WORD: u64 = 11;
 /// the divisions.
 pub fn level(plan: &JointPlan) -> u64 {
     match &plan.points {
-        Some(PointsPlan { side, .. }) => (side + side * side / points::AT_ONCE) as u64 + 37,
+        // All of a row need one more stage to be added up.
+        Some(of) => (of.side + of.side * of.side / of.weighed()) as u64 + if of.weighed() == of.side { 38 } else { 37 },
         None => POINTS as u64 + 34,
     }
 }
@@ -29,7 +30,8 @@ pub fn level(plan: &JointPlan) -> u64 {
 /// two starts and a point, then the sums.
 pub fn first_value(sensor: &Sensor, plan: &JointPlan) -> u64 {
     match plan.points {
-        Some(_) => 4 * quads(sensor) + 11,
+        // The tensions of several taxels are added up before they are in the sums.
+        Some(PointsPlan { taxels, .. }) => 4 * quads(sensor) / taxels as u64 + 10 + taxels as u64,
         None => 3 * plan.cells.elements as u64 + 3 + u64::from(plan.cells.tree_levels()),
     }
 }
