@@ -1,8 +1,8 @@
 //! The sensor that a file of frames belongs to, in a small file beside it.
 //!
 //! Frames are numbers and do not tell how far apart their taxels lie. `golden scene` writes `FRAMES.sensor.toml` beside
-//! its frames, with the `[sensor]` table of the scene; who reads the frames compares it with the design. Where there is
-//! no such file, there is nothing to compare.
+//! its frames, with the `[sensor]` table of the scene; who reads the frames compares it with the design. Frames in a pipe
+//! have no file beside them, so a remark above them says the same. Where there is neither, there is nothing to compare.
 
 use std::path::{Path, PathBuf};
 
@@ -23,6 +23,21 @@ pub enum GeometryError {
         .0.path.display(), .0.frames, .0.design_name, .0.design, beside = .0.beside.display()
     )]
     Other(Box<OtherSensor>),
+    /// A remark above the frames names another sensor.
+    #[error(
+        "{}, line {line}: the frames belong to {frames}, as this remark says, and the design to {design}; make frames for \
+         the design with `golden scene --design`, or leave the remark out if the frames are others", path.display()
+    )]
+    Remark {
+        /// The frames.
+        path: PathBuf,
+        /// Line of the remark, from 1.
+        line: usize,
+        /// Their sensor.
+        frames: Box<Sensor>,
+        /// The design's.
+        design: Box<Sensor>,
+    },
 }
 
 /// Frames and a design that do not belong together.
@@ -52,6 +67,31 @@ pub fn to_toml(sensor: &Sensor) -> String {
         "# The sensor of the frames beside this file; who reads them compares it with the design.\n\
          [sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [{x:?}, {y:?}]\ndepth_mm = {depth_mm:?}\n"
     )
+}
+
+/// What a remark above the frames begins with.
+const REMARK: &str = "# sensor = ";
+
+/// The sensor as a line above frames as text, for those that have no file beside them.
+pub fn remark(sensor: &Sensor) -> String {
+    let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
+    format!("{REMARK}{{ columns = {columns}, rows = {rows}, pitch_mm = [{x:?}, {y:?}], depth_mm = {depth_mm:?} }}\n")
+}
+
+/// Compares the sensor that a remark names, if it is a line of [`remark`], with the one that frames are read for. `path` and
+/// `line` are where it stands.
+///
+/// # Errors
+///
+/// [`GeometryError`], for another sensor and for a remark of that kind that names none.
+pub fn compare_remark(remark: &[u8], path: &Path, line: usize, design: &Sensor) -> Result<(), GeometryError> {
+    let Some(text) = std::str::from_utf8(remark).ok().filter(|text| text.starts_with(REMARK)) else { return Ok(()) };
+    let found = parse(text.trim_start_matches("# "), &format!("{}, line {line}", path.display()))?;
+    if found == *design {
+        return Ok(());
+    }
+    let (frames, design) = (Box::new(found), Box::new(design.clone()));
+    Err(GeometryError::Remark { path: path.to_path_buf(), line, frames, design })
 }
 
 /// Compares the sensor of a frame file, if it is known, with a design's.
@@ -116,6 +156,19 @@ mod tests {
             }
             assert!(said.contains(&other.to_string()), "{said}");
         }
+        let remark = remark(&sensor());
+        let compared =
+            |sensor: &Sensor| compare_remark(remark.trim_end().as_bytes(), Path::new("standard input"), 1, sensor);
+        compared(&sensor()).expect("the same");
+        let said = compared(&Sensor { pitch_mm: [2.1, 4.0], ..sensor() }).expect_err("another sensor").to_string();
+        for part in
+            ["standard input, line 1", "10 x 7 taxels of 4 x 2.1 mm", "10 x 7 taxels of 2.1 x 4 mm", "golden scene"]
+        {
+            assert!(said.contains(part), "no {part:?} in: {said}");
+        }
+        let said = compare_remark(b"# sensor = 3", &frames, 7, &sensor()).expect_err("no sensor").to_string();
+        assert!(said.contains("line 7"), "{said}");
+        compare_remark(b"# sensor: the old one", &frames, 7, &sensor()).expect("somebody's words");
         std::fs::write(beside(&frames), "[sensor]\ncolumns = 3\n").expect("writable");
         let said = compare(&frames, "pad", &sensor()).expect_err("no sensor").to_string();
         assert!(said.contains("push.sensor.toml"), "{said}");

@@ -23,7 +23,7 @@ class Design:
         *,
         columns: int = 10,
         rows: int = 10,
-        pitch_mm: Sequence[float] = (4.0, 2.0),
+        pitch_mm: Sequence[float] | float = (4.0, 2.0),
         depth_mm: float = 3.0,
         estimator: str = "joint",
         tension: str = "read",

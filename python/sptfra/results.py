@@ -15,7 +15,8 @@ from .forces import Forces
 class Finding(NamedTuple):
     """One thing that is suspicious in frames, with its likely cause and what to change."""
 
-    #: What it is about: empty, range, sign, no_tension, tension, tare, order or stuck (`docs/formats.md`).
+    #: What it is about: empty, rest, range, sign, no_tension, tension, tare, dead, order, stuck or bodies
+    #: (`docs/formats.md`).
     kind: str
     message: str
 

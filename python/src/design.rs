@@ -52,7 +52,7 @@ pub fn named_anew(mut design: Checked, name: Option<String>) -> PyResult<Design>
     Ok(Design::new(Checked::from_parts(&design.to_toml(), "calibrate", &files).map_err(raised)?))
 }
 
-/// What is given as a pitch.
+/// What is given as a pitch: along x and along y, or the same along both.
 #[derive(FromPyObject)]
 enum Pitch {
     Both([f64; 2]),
@@ -88,12 +88,8 @@ impl Design {
         let tension: Tension = word("tension", tension)?;
         let pitch_mm = match pitch_mm {
             Pitch::Both(pitch) => pitch,
-            Pitch::One(pitch) => {
-                let problem = format!("pitch_mm is one number, {pitch}; write two, for x and y: ({pitch}, {pitch})");
-                return Err(Error::new_err(problem));
-            }
+            Pitch::One(pitch) => [pitch; 2],
         };
-        let name = name.to_owned();
         let new = NewDesign { name, estimator, columns, rows, pitch_mm, depth_mm, tension, counts, full_scale_pa };
         let text = without_lock(py, || new.text(&mut |_| ()))?;
         Ok(Self::new(Checked::from_toml(&text, &new.name).map_err(raised)?))

@@ -9,15 +9,15 @@ use crate::matrices::{Matrices, MatrixName};
 use crate::solver::reading::{Reader, Reading};
 
 /// What is to be said of a design that counts bodies and is solved as if there were one: in how many frames there are
-/// more, which are those with [`crate::status::Status::MORE_BODIES`].
-pub(super) fn check(design: &Design, frames: &[Vec<f64>], matrices: &Matrices) -> Option<String> {
+/// more. `frames` are the loaded ones: noise has many bodies.
+pub(super) fn check(design: &Design, frames: &[&Vec<f64>], matrices: &Matrices) -> Option<String> {
     if design.algorithm.contacts > 1 || !design.algorithm.count_bodies {
         return None;
     }
     let (reader, finder) = (Reader::new(design), Finder::new(&design.sensor, 1));
     let inverse = matrices.folded(MatrixName::C33inv);
     let (mut b, mut found) = (DVector::zeros(reader.taxels()), Found::default());
-    let several = |frame: &&Vec<f64>| {
+    let several = |frame: &&&Vec<f64>| {
         let Ok(Reading::Contact { .. }) = reader.read(frame, &mut b) else { return false };
         let weight: Vec<f64> = (&*inverse * &b).iter().map(|force| (-force).max(0.0)).collect();
         finder.count(&weight, &mut found);

@@ -23,6 +23,8 @@ use crate::words::print_as_words;
 pub enum Kind {
     /// Every reading is zero.
     Empty,
+    /// Readings of both signs that add up to next to nothing, as noise does where nothing presses.
+    Rest,
     /// Readings far below or above the full scale.
     Range,
     /// The stresses add up to a pull.
@@ -71,6 +73,13 @@ const LOADED: f64 = 0.1;
 const MOST: f64 = 0.9;
 /// A pull of this share of a frame's peak is one, and no noise.
 const PULL: f64 = 0.01;
+/// Stresses that add up to less than this share of their magnitudes press as much as they pull: a contact that is dragged with
+/// a friction of 1 has twice as much.
+const PRESSES: f64 = 0.2;
+/// Noise that is this share of the full scale is none.
+const LOUD: f64 = 0.01;
+/// A floor above the noise is this many times its mean.
+const ABOVE_NOISE: f64 = 1.5;
 /// Readings below this share of a frame's peak are as good as zero.
 const FAINT: f64 = 2e-3;
 
@@ -89,8 +98,13 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
         found(Kind::Empty, format!("all readings of {} are 0: is the sensor connected?", count(frames.len())));
         return findings;
     }
-    let counts = design.input.counts();
+    let is_loaded: Vec<bool> = stress.iter().map(|frame| largest(frame) >= LOADED * peak).collect();
     let full_scale = design.hardware.full_scale_pa;
+    if let Some(message) = at_rest(&stress, &is_loaded).filter(|_| peak < LOUD * full_scale) {
+        found(Kind::Rest, message);
+        return findings;
+    }
+    let counts = design.input.counts();
     let whole = !counts && WHOLE * peak <= full_scale && frames.iter().flatten().all(|value| value.fract() == 0.0);
     if let Some(message) = range(full_scale, peak, counts) {
         found(Kind::Range, message);
@@ -104,7 +118,8 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
             ),
         );
     }
-    let mut loaded: Vec<Vec<f64>> = stress.into_iter().filter(|frame| largest(frame) >= LOADED * peak).collect();
+    let with_load = |(stress, &loaded): (Vec<f64>, &bool)| loaded.then_some(stress);
+    let mut loaded: Vec<Vec<f64>> = stress.into_iter().zip(&is_loaded).filter_map(with_load).collect();
     // Where the largest reading presses, the sum pulls for an offset.
     let pulls = |frame: &&Vec<f64>| frame.iter().sum::<f64>() > 0.0 && farthest(frame) > 0.0;
     let pulling = loaded.iter().filter(pulls).count();
@@ -161,10 +176,31 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     }
     // Frames that are wrong in these ways seem to have bodies that nobody pressed.
     let misread = findings.iter().any(|finding| matches!(finding.kind, Kind::Sign | Kind::Tare | Kind::Order));
-    if let Some(message) = matrices.filter(|_| !misread).and_then(|matrices| bodies::check(design, frames, matrices)) {
+    let frames: Vec<&Vec<f64>> =
+        frames.iter().zip(&is_loaded).filter_map(|(frame, &loaded)| loaded.then_some(frame)).collect();
+    if let Some(message) = matrices.filter(|_| !misread).and_then(|matrices| bodies::check(design, &frames, matrices)) {
         findings.push(Finding { kind: Kind::Bodies, message });
     }
     findings
+}
+
+/// Frames of which the loaded ones are noise, in pascals.
+fn at_rest(stress: &[Vec<f64>], is_loaded: &[bool]) -> Option<String> {
+    let loaded: Vec<&Vec<f64>> =
+        stress.iter().zip(is_loaded).filter(|(_, loaded)| **loaded).map(|(frame, _)| frame).collect();
+    let all = |frame: &[f64]| frame.iter().map(|stress| stress.abs()).sum::<f64>();
+    let is_noise = |frame: &&&Vec<f64>| frame.iter().sum::<f64>().abs() < PRESSES * all(frame);
+    let noise = loaded.iter().filter(is_noise).count();
+    holds(noise, loaded.len()).then(|| {
+        let mean = loaded.iter().map(|frame| all(frame) / frame.len() as f64).fold(0.0, f64::max);
+        format!(
+            "nothing presses in {noise} of {}: readings of either sign, {mean:.3} Pa in the mean, add up to nothing. If that \
+             is the sensor at rest, write algorithm.noise_floor_pa = {:.1}, and such frames have the status \"no contact\"",
+            count(loaded.len()),
+            // Rounded up, and not to 0.
+            (10.0 * ABOVE_NOISE * mean).ceil() / 10.0
+        )
+    })
 }
 
 /// Readings in another unit.

@@ -21,7 +21,11 @@ const MORE: f64 = 1.3;
 const DIRECTIONS: [f64; 3] = [0.0, 45.0, 90.0];
 /// Another order explains the frames if it leaves this share of the pulls,
 const BETTER: f64 = 0.6;
-/// and no order does where pulls make up this share without one: the forces alternate like a checkerboard.
+/// or, of fewer than are suspicious, but more than this share,
+const FEW: f64 = 0.015;
+/// next to none.
+const FAR_BETTER: f64 = 0.3;
+/// No order does where pulls make up this share without one: the forces alternate like a checkerboard.
 const ALTERNATING: f64 = 0.2;
 
 /// An order of taxels: the index in a frame of the value that belongs to taxel `iy * columns + ix`.
@@ -48,26 +52,26 @@ pub(super) fn check(design: &Design, matrices: &Matrices, loaded: &[Vec<f64>]) -
     let frames: Vec<&Vec<f64>> = loaded.iter().step_by(step.max(1)).collect();
     let pulls = |order: Order| pulls(sensor, &inverse, &frames, order);
     let found = pulls(|sensor, ix, iy| iy * sensor.columns + ix);
-    if found < SUSPICIOUS {
+    if found < FEW {
         return None;
+    }
+    if found < SUSPICIOUS {
+        let far_better = |&(other, _): &(f64, &str)| other < FAR_BETTER * found;
+        return OTHERS.map(|(order, cause)| (pulls(order), cause)).into_iter().find(far_better).map(explained(found));
     }
     // Of good frames of this sensor, which the deeper it is say the less.
     let usual = MORE * usual(design, &inverse);
     if found < usual {
         return None;
     }
-    let percent = 100.0 * found;
     for (order, cause) in OTHERS {
         let other = pulls(order);
         if other < BETTER * found {
-            return Some(format!(
-                "the normal forces alternate, {percent:.0} % of them pull, as if the frames held {cause} (which would \
-                 leave {:.0} %)",
-                100.0 * other
-            ));
+            return Some(explained(found)((other, cause)));
         }
     }
     (found > ALTERNATING).then(|| {
+        let percent = 100.0 * found;
         let [order, depth] = [
             "are the taxels in another order than i = iy * columns + ix",
             "is sensor.depth_mm too large, or the noise for lack of algorithm.regularisation",
@@ -76,6 +80,17 @@ pub(super) fn check(design: &Design, matrices: &Matrices, loaded: &[Vec<f64>]) -
         let [first, second] = if usual > SUSPICIOUS { [depth, order] } else { [order, depth] };
         format!("the normal forces alternate like a checkerboard, {percent:.0} % of them pull: {first}, or {second}?")
     })
+}
+
+/// What is to be said of frames with so large a share of pulls, of which another order leaves so many.
+fn explained(found: f64) -> impl Fn((f64, &str)) -> String {
+    move |(other, cause)| {
+        format!(
+            "the normal forces alternate, {:.0} % of them pull, as if the frames held {cause} (which would leave {:.0} %)",
+            100.0 * found,
+            100.0 * other
+        )
+    }
 }
 
 /// The share of pulls of a contact that suits the sensor, with noise; 0 if there is none.

@@ -42,7 +42,7 @@ fn friction(text: &str) -> Result<f64, String> {
 }
 
 /// Makes the frames of `scene`, those of a kind of contacts, or the standing ones of `design`, in `out`, and their forces and
-/// sensor beside it; for `-` prints the frames alone.
+/// sensor beside it; for `-` prints the frames under a remark with their sensor.
 pub fn run(
     scene: Option<&Path>,
     design: Option<&Path>,
@@ -88,7 +88,7 @@ pub fn run(
         }
     }
     if to_a_pipe {
-        return Ok(print_text(&frames::to_text(&stresses))?);
+        return Ok(print_text(&(geometry::remark(&sensor) + &frames::to_text(&stresses)))?);
     }
     frames::write_frames(out, &stresses)?;
     if json {

@@ -19,10 +19,12 @@ impl Design {
         let (limit, remedy) = match self.algorithm.estimator {
             Estimator::Line => {
                 let short = 100.0 * (1.0 - 1.0 / kernel::gain(&self.sensor, self.algorithm.kernel));
-                (
-                    LINE,
-                    format!("by the line estimator F_z comes out {short:.0} % too small; write estimator = \"joint\""),
-                )
+                let wrong = match short {
+                    1.0.. => format!("F_z comes out {short:.0} % too small"),
+                    // With the "cell" kernel.
+                    _ => "tangential forces are off by tenths of F_z".to_owned(),
+                };
+                (LINE, format!("by the line estimator {wrong}; write estimator = \"joint\""))
             }
             Estimator::Joint if corrected => {
                 (CORRECTED, "many frames have no direction, and tangential forces are off by half of F_z".to_owned())
@@ -42,9 +44,13 @@ mod tests {
     use super::*;
 
     fn said(depth_mm: f64, estimator: &str) -> Option<String> {
+        by_kernel(depth_mm, estimator, "point")
+    }
+
+    fn by_kernel(depth_mm: f64, estimator: &str, kernel: &str) -> Option<String> {
         let text = format!(
             "name = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = {depth_mm:?}\n\
-             [algorithm]\nestimator = \"{estimator}\"\n"
+             [algorithm]\nestimator = \"{estimator}\"\nkernel = \"{kernel}\"\n"
         );
         Design::from_toml(&text, "thin").expect("a design").thin_layer()
     }
@@ -54,9 +60,13 @@ mod tests {
         assert_eq!([said(3.0, "line"), said(2.0, "joint")], [None, None]);
         let line = said(2.8, "line").expect("thin");
         assert!(line.contains("0.70 of a pitch") && line.contains("write estimator = \"joint\""), "{line}");
+        assert!(line.contains("F_z comes out"), "{line}");
+        let line = by_kernel(2.8, "line", "cell").expect("thin");
+        assert!(line.contains("line estimator tangential forces are off"), "{line}");
         let joint = said(1.9, "joint").expect("thin");
         assert!(joint.contains("0.47 of a pitch") && joint.contains("golden calibrate"), "{joint}");
     }
+
     #[test]
     fn a_correction_carries_further() {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/sensor1-joint.toml");

@@ -47,7 +47,7 @@ pub enum FrameError {
     /// A line with too few or too many values.
     #[error(
         "{}, line {line}: the line ends at column {found} where {expected} values are needed; \
-         give one stress for each taxel of the sensor", path.display()
+         give one stress for each taxel of the sensor{}", path.display(), surplus(*found, *expected)
     )]
     Length {
         /// The file.
@@ -157,6 +157,15 @@ pub enum FrameError {
     Write(#[from] OutputError),
 }
 
+/// What to do with a line that has a few values too many: a time, a number of the frame.
+fn surplus(found: usize, expected: usize) -> String {
+    match found.saturating_sub(expected) {
+        0 => String::new(),
+        more @ 1..=8 => format!("; if the first {more} are a time or a name, say so with --labels {more}"),
+        _ => "; columns before the values need --labels".to_owned(),
+    }
+}
+
 impl FrameError {
     /// Whether a line of text is one that was cut off at its beginning: too few values, or a first one that is none.
     pub fn is_of_a_cut_line(&self) -> bool {
@@ -185,7 +194,7 @@ pub fn read_frames(path: &Path, sensor: &Sensor) -> Result<Vec<Vec<f64>>, FrameE
 pub fn read_labelled_frames(path: &Path, sensor: &Sensor, labels: usize) -> Result<Vec<Vec<f64>>, FrameError> {
     let taxels = sensor.taxels();
     let wrong_length = |found| (found != labels + taxels).then_some(labels + taxels);
-    let frames = read_table(path, labels, wrong_length, |shape| of_grid(shape, sensor))?;
+    let frames = read_table(path, labels, Some(sensor), wrong_length, |shape| of_grid(shape, sensor))?;
     if frames.is_empty() {
         return Err(FrameError::Empty { path: path.to_path_buf(), expected: taxels });
     }
@@ -217,19 +226,21 @@ pub(crate) fn read_rows(
     path: &Path,
     wrong_length: impl Fn(usize) -> Option<usize>,
 ) -> Result<Vec<Vec<f64>>, FrameError> {
-    read_table(path, 0, wrong_length, |_| Ok(()))
+    read_table(path, 0, None, wrong_length, |_| Ok(()))
 }
 
-/// Reads the columns after the labels; `wrong_length` is given the number of all columns, `check` an array's shape.
+/// Reads the columns after the labels; `wrong_length` is given the number of all columns, `check` an array's shape, and a
+/// remark about the sensor has to be of `sensor`.
 fn read_table(
     path: &Path,
     labels: usize,
+    sensor: Option<&Sensor>,
     wrong_length: impl Fn(usize) -> Option<usize>,
     check: impl Fn(&[usize]) -> Result<(), String>,
 ) -> Result<Vec<Vec<f64>>, FrameError> {
     let bytes = bytes_of(path)?;
     if !bytes.starts_with(npy::MAGIC) {
-        return text::read(path, &bytes, labels, wrong_length);
+        return text::read(path, &bytes, labels, sensor, wrong_length);
     }
     let wrong = |problem| FrameError::Array { path: path.to_path_buf(), problem };
     let array = npy::parse(&bytes).map_err(wrong)?;

@@ -19,7 +19,8 @@ impl FrameLines {
     /// For frames of the design, whose lines begin with `labels` columns of other things; `origin` is the name to use in
     /// messages.
     pub fn new(origin: &Path, design: &Design, labels: usize) -> Self {
-        Self { lines: Lines::new(origin, labels), taxels: design.sensor.taxels(), samples: design.hardware.samples }
+        let lines = Lines::new(origin, labels, Some(&design.sensor));
+        Self { lines, taxels: design.sensor.taxels(), samples: design.hardware.samples }
     }
 
     /// The frame of the next line; nothing for a header, a blank line and a remark.

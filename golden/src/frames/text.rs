@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::{FrameError, is_number, npy};
+use crate::geometry;
+use crate::sensor::Sensor;
 
 /// What some programs write before the first line.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -25,8 +27,8 @@ impl Separator {
 
     pub(crate) fn split(self, line: &[u8]) -> Vec<&[u8]> {
         match self {
-            Self::Byte(separator) => line.split(|&byte| byte == separator).map(<[u8]>::trim_ascii).collect(),
-            Self::Spaces => line.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty()).collect(),
+            Self::Byte(separator) => line.split(|&byte| byte == separator).map(bare).collect(),
+            Self::Spaces => line.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty()).map(bare).collect(),
         }
     }
 
@@ -42,12 +44,20 @@ impl Separator {
     }
 }
 
+/// A field without the quotes that some programs put around each.
+fn bare(field: &[u8]) -> &[u8] {
+    let field = field.trim_ascii();
+    field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field)
+}
+
 /// Reads lines one after the other; of each the columns after the labels.
 #[derive(Clone, Debug)]
 pub(super) struct Lines {
     /// Where they come from, for messages.
     path: PathBuf,
     labels: usize,
+    /// The sensor that they are read for, if it is to be that of a remark.
+    sensor: Option<Sensor>,
     /// That of the first line which has one.
     separator: Option<Separator>,
     /// How many there were.
@@ -55,8 +65,8 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    pub(super) fn new(path: &Path, labels: usize) -> Self {
-        Self { path: path.to_path_buf(), labels, separator: None, number: 0 }
+    pub(super) fn new(path: &Path, labels: usize, sensor: Option<&Sensor>) -> Self {
+        Self { path: path.to_path_buf(), labels, sensor: sensor.cloned(), separator: None, number: 0 }
     }
 
     /// Where the lines come from.
@@ -84,6 +94,11 @@ impl Lines {
         self.number += 1;
         let line = if self.number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
         let content = line.trim_ascii();
+        if content.starts_with(b"#")
+            && let Some(sensor) = &self.sensor
+        {
+            geometry::compare_remark(content, &self.path, self.number, sensor)?;
+        }
         if content.is_empty() || content.starts_with(b"#") {
             return Ok(None);
         }
@@ -123,10 +138,11 @@ pub(super) fn read(
     path: &Path,
     bytes: &[u8],
     labels: usize,
+    sensor: Option<&Sensor>,
     wrong_length: impl Fn(usize) -> Option<usize>,
 ) -> Result<Vec<Vec<f64>>, FrameError> {
     // By hand, since a CSV reader skips blank lines without counting them and a message needs the right line.
-    let mut lines = Lines::new(path, labels);
+    let mut lines = Lines::new(path, labels, sensor);
     bytes.split(|&byte| byte == b'\n').filter_map(|line| lines.row(line, &wrong_length).transpose()).collect()
 }
 

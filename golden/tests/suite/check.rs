@@ -296,3 +296,44 @@ fn coarse_counts_are_not_at_an_end() {
         assert!(findings.iter().all(|finding| finding.kind != Kind::Stuck), "{peak}: {findings:?}");
     }
 }
+
+/// Of contacts of every kind the order that they have is left alone, and a transposed grid is found: always where the layer
+/// is deep enough for the pitch, mostly at half of the longer one.
+#[test]
+fn the_order_shows_on_contacts_of_every_kind() {
+    for (depth_mm, least) in [(3.0, 18), (2.0, 12)] {
+        let (mut design, mut found) = (design("sensor1-joint"), 0);
+        (design.sensor.rows, design.sensor.depth_mm) = (6, depth_mm);
+        let (columns, rows) = (design.sensor.columns, design.sensor.rows);
+        for kind in golden::scene::Kind::ALL {
+            let frames = kind.frames(&design.sensor, 0.8, 500..508).unwrap();
+            let good: Vec<Vec<f64>> = frames.into_iter().map(|frame| frame.stress).collect();
+            let turn = |frame: &Vec<f64>| (0..frame.len()).map(|at| frame[(at % rows) * columns + at / rows]).collect();
+            let turned: Vec<Vec<f64>> = good.iter().map(turn).collect();
+            let [good, turned] = [good, turned]
+                .map(|frames| look(&design, &frames).into_iter().find(|finding| finding.kind == Kind::Order));
+            assert_eq!(good, None, "{depth_mm} mm deep, {}", kind.title());
+            found += usize::from(turned.is_some_and(|finding| finding.to_string().contains("column after column")));
+        }
+        assert!(found >= least, "{depth_mm} mm deep: found in {found} of 18 kinds");
+    }
+}
+
+/// Frames at rest are no contact in another unit, in another order, or of several bodies; beside contacts they are nothing.
+#[test]
+fn rest_is_told_and_no_contact_is_made_of_it() {
+    let mut design = design("sensor1-joint");
+    design.algorithm.count_bodies = true;
+    // As even as a generator of a line makes it: from -8 to 8 Pa.
+    let noise = |frame: usize, taxel: usize| f64::from(((frame * 7919 + taxel * 104_729) % 1601) as u32) / 100.0 - 8.0;
+    let rest: Vec<Vec<f64>> =
+        (0..30).map(|frame| (0..design.sensor.taxels()).map(|taxel| noise(frame, taxel)).collect()).collect();
+    found(&design, &rest, &[Kind::Rest], &["nothing presses in 30 of 30 frames", "algorithm.noise_floor_pa = 6."]);
+    let solver = |design: &Design| Solver::new(design).unwrap();
+    let status = |design: &Design| solver(design).solve(&rest[0]).unwrap().status;
+    assert!(!status(&design).contains(golden::solver::Status::NO_CONTACT));
+    design.algorithm.noise_floor_pa = 6.5;
+    assert!(status(&design).contains(golden::solver::Status::NO_CONTACT), "as the message says");
+    let contacts = frames(&design);
+    found(&design, &[rest, contacts].concat(), &[], &[]);
+}

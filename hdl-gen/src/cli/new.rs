@@ -126,14 +126,21 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
 /// What to tell of a new design at `path`, with the options that were `assumed`.
 fn lines(new: &New, design: &Design, path: &Path, assumed: &[String], progress: &Progress) -> Vec<String> {
     let shown = path.display();
-    let mut lines = vec![
-        format!("{shown}: {}; edit it, then run", design.sensor),
-        format!("  hdl-gen inspect {shown}"),
-        format!("  hdl-gen generate {shown}"),
+    let mut next = vec![
+        (format!("golden check {shown} --frames FRAMES"), "is anything wrong with a recording?"),
+        (format!("golden solve {shown} --frames FRAMES --out FORCES.csv"), "its forces, no hardware needed"),
+        (format!("hdl-gen inspect {shown}"), "cycles and resources"),
+        (format!("hdl-gen generate {shown}"), "the hardware"),
     ];
-    if design.algorithm.estimator == Estimator::Joint {
+    let is_joint = design.algorithm.estimator == Estimator::Joint;
+    if is_joint {
         let calibrated = new.dir.join(format!("{}-calibrated.toml", new.name));
-        lines.push(format!("  golden calibrate {shown} --out {}", calibrated.display()));
+        next.push((format!("golden calibrate {shown} --out {}", calibrated.display()), "smaller errors, in a minute"));
+    }
+    let widest = next.iter().map(|(command, _)| command.len()).max().unwrap_or(0);
+    let mut lines = vec![format!("{shown}: {}; edit it, then run", design.sensor)];
+    lines.extend(next.iter().map(|(command, what)| format!("  {command:<widest$}  {what}")));
+    if is_joint {
         progress.stage("trying it on other contacts");
         let errors = new_design::errors(design).map(|Quantiles { median, most, .. }| {
             format!(

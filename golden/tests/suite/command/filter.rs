@@ -1,6 +1,7 @@
 //! `golden solve` as a filter: a line in, a line out, at once.
 
 use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::{HEADER, folder_with, golden, repository, row, text};
@@ -108,6 +109,44 @@ fn a_file_goes_to_standard_output_as_to_a_file() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("write --out - too"));
 }
 
+/// Frames that say above them which sensor they are of go through its design and no other, from a pipe and from a file.
+#[test]
+fn piped_frames_of_another_sensor_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let design = repository("designs/small.toml");
+    let wider = folder.path().join("wider.toml");
+    let text_of = std::fs::read_to_string(&design).unwrap();
+    let mut table = toml::from_str::<toml::Table>(&text_of).unwrap();
+    table["sensor"]["pitch_mm"] = toml::Value::from(vec![7.0, 5.0]);
+    std::fs::write(&wider, toml::to_string(&table).unwrap()).unwrap();
+    let frames = golden(&["scene", "--design", text(&design), "--out", "-"]).stdout;
+    let file = folder.path().join("redirected.csv");
+    std::fs::write(&file, &frames).unwrap();
+    let solve = |design: &Path, from: &str| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_golden"))
+            .args(["solve", text(design), "--frames", from, "--out", "-"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // The other end may be closed before all is written: it has seen enough.
+        let _ = child.stdin.take().unwrap().write_all(&frames);
+        child.wait_with_output().unwrap()
+    };
+    for (from, place) in [("-", "standard input, line 1"), (text(&file), "redirected.csv, line 1")] {
+        let output = solve(&design, from);
+        assert!(output.status.success(), "{output:?}");
+        let output = solve(&wider, from);
+        let said = String::from_utf8(output.stderr).unwrap();
+        // The header at most, and no forces.
+        assert!(!output.status.success() && output.stdout.iter().filter(|&&byte| byte == b'\n').count() <= 1, "{said}");
+        for part in [place, "7 x 5 mm", "golden scene --design"] {
+            assert!(said.contains(part), "no {part:?} in: {said}");
+        }
+    }
+}
+
 /// Frames of a scene, made and solved without a file.
 #[test]
 fn frames_of_a_scene_go_through_a_pipe() {
@@ -121,7 +160,10 @@ fn frames_of_a_scene_go_through_a_pipe() {
         .output()
         .unwrap();
     assert!(piped.status.success() && piped.stderr.is_empty(), "{piped:?}");
-    assert_eq!(piped.stdout, std::fs::read(&made).unwrap());
+    // A remark above the frames in place of the file beside them.
+    let (remark, frames) = piped.stdout.split_at(piped.stdout.iter().position(|&byte| byte == b'\n').unwrap() + 1);
+    assert!(remark.starts_with(b"# sensor = {"), "{}", String::from_utf8_lossy(remark));
+    assert_eq!(frames, std::fs::read(&made).unwrap());
     // The frames' own file and the two beside it, and none of the pipe.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
     for (options, part) in [(["-", "--json"], "--json and --out -"), (["x.npz", "--json"], "the ending .npy")] {
