@@ -168,12 +168,11 @@ module sptfra_estimator_joint #(
     reg [18*40-1:0] search_sums;
     reg [5:0] search_flags;
     wire signed [17:0] found_x, found_y;
-    wire found_unknown, found_on_border, found_saturated;
+    wire found_unknown, found_on_border, found_saturated, look_saturated;
     localparam integer WITH_FRAME = 18 * 40 + 6 + 2 * 18 + 3;
     wire [WITH_FRAME-1:0] searched = {search_sums, search_flags, found_x, found_y, found_unknown, found_on_border,
         found_saturated};
     wire [WITH_FRAME-1:0] seen; // of the frame in the look, or that was searched
-    wire look_saturated;
     reg signed [17:0] centroid_x, centroid_y;
     reg on_border, before_saturated; // a value of search or look was clipped
     wire signed [17:0] look_x = seen[21 +: 18], look_y = seen[3 +: 18];

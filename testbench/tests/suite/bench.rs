@@ -61,7 +61,8 @@ fn a_tiny_bench_has_a_page_a_plot_and_exact_cycles() {
     for part in [
         "## Frames a second of the f64 solver",
         "| `slow` | paper | 12 | 0.10 | 1,000 | 1.00 | 2,000 | 2.00 |",
-        "800 frames a second in batches; 2.5 times as many here.",
+        "(`tools/bench_numpy.py`): 800 frames a",
+        "2.5 times as many here.",
         "1 of 1 gave exactly",
         "plot.svg",
         "not as predicted: lanes",

@@ -34,7 +34,7 @@ module sptfra_spmv_collector #(
     parameter DESTINATION_BITS = 4,
     // Bits dropped of a result by destination, 6 each, destination 0 lowest
     parameter [95:0] SHIFTS = {16{6'd16}},
-    // 1: while a program's last visit waits, the ROM's address is that of the first one of the next program, if that has
+    // 1: while a program's last visit waits, the ROM's address is that of the next program's first one, if that has
     // begun: two cycles from one visit to the other. 0: four
     parameter AHEAD = 0,
     // Words of the ROM
