@@ -101,13 +101,17 @@ pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64,
     evaluate(side, |row, column| hinges(&columns[at(column)], &rows[at(row)]), allowance, values);
 
     // The least value inside the grid and on its border.
-    let mut least = [f64::INFINITY; 2];
-    for (index, value) in values.iter().enumerate() {
-        let on_border = [index % side, index / side].iter().any(|&at| at == 0 || at == side - 1);
-        let least = &mut least[usize::from(on_border)];
-        *least = least.min(*value);
+    let (mut inside, mut on_border) = (f64::INFINITY, f64::INFINITY);
+    let least = |least: f64, values: &[f64]| values.iter().copied().fold(least, f64::min);
+    for (row, values) in values.chunks_exact(side).enumerate() {
+        let ends = 1..side - 1;
+        if ends.contains(&row) {
+            inside = least(inside, &values[ends]);
+            on_border = on_border.min(values[0]).min(values[side - 1]);
+        } else {
+            on_border = least(on_border, values);
+        }
     }
-    let [inside, on_border] = least;
     let level = inside.min(on_border) + allowance;
     let mut status = Status::default();
     if [0, side - 1, side * (side - 1), side * side - 1].iter().all(|&corner| values[corner] < level) {
@@ -118,12 +122,14 @@ pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64,
         status.insert(Status::AT_BOUND);
     }
     let mut sums = [0.0; 3];
-    for (index, value) in values.iter().enumerate() {
-        // A point at the edge of the level set weighs nothing, so that the grid can be coarse.
-        let weight = (level - value).max(0.0).powi(2);
-        sums[0] += weight;
-        sums[1] += weight * ((index % side) as f64 - reach);
-        sums[2] += weight * ((index / side) as f64 - reach);
+    for (row, values) in values.chunks_exact(side).enumerate() {
+        for (column, value) in values.iter().enumerate().filter(|(_, value)| **value < level) {
+            // A point at the edge of the level set weighs nothing, so that the grid can be coarse.
+            let weight = (level - value).powi(2);
+            sums[0] += weight;
+            sums[1] += weight * (column as f64 - reach);
+            sums[2] += weight * (row as f64 - reach);
+        }
     }
     // With an allowance above 0 the best point has a weight.
     let mu = if sums[0] > 0.0 { [sums[1], sums[2]].map(|sum| grid.step() * sum / sums[0]) } else { [0.0; 2] };
