@@ -2,9 +2,12 @@
 
 use golden::design::Design;
 use golden::estimators::joint::Grid;
+use golden::parity::{CLASSES, Quads};
+use golden::sensor::Sensor;
 use serde::Serialize;
 
 use super::SHARE_SHIFT;
+use crate::blocks::bodies;
 use crate::estimators::Contact;
 use crate::plan::format::{MANY_LANES, largest, round_shift};
 
@@ -52,10 +55,30 @@ impl PointsPlan {
     pub(super) fn new(grid: Grid, finer: i32, design: &Design) -> Option<Self> {
         // `u` holds the stress and more: its steps are those of the stress but for a few bits.
         let u_left = (FRACTION as i32 + 1 - finer).max(1) as u32;
+        let one = Self { side: grid.side(), grid, taxels: 1, u_left };
+        let two = Self { taxels: 2, ..one.clone() };
         // A count of bodies, a taxel a cycle, must be there before the search is.
-        let quick = design.hardware.lanes > MANY_LANES && !design.algorithm.count_bodies;
-        let taxels = if quick { 2 } else { 1 };
-        (grid.points() <= MOST_POINTS).then_some(Self { side: grid.side(), grid, taxels, u_left })
+        let counted = || !design.algorithm.count_bodies || bodies::latency(&design.sensor) < two.search(&design.sensor);
+        let quick = design.hardware.lanes > MANY_LANES && counted();
+        (grid.points() <= MOST_POINTS).then_some(if quick { two } else { one })
+    }
+
+    /// Cycles from the start of the search to the first row of points: the tensions of several taxels are added up before
+    /// they are in the sums.
+    pub(super) fn first_row(&self, sensor: &Sensor) -> u64 {
+        let quads = Quads::new(sensor.columns, sensor.rows).count();
+        ((CLASSES * quads) / self.taxels + 10 + self.taxels) as u64
+    }
+
+    /// From there to the centroid: the weights of all of a row need one more stage to be added up.
+    pub(super) fn level(&self) -> u64 {
+        let weighing = self.side * self.side / self.weighed();
+        (self.side + weighing) as u64 + if self.weighed() == self.side { 38 } else { 37 }
+    }
+
+    /// Start to end of the search.
+    pub(super) fn search(&self, sensor: &Sensor) -> u64 {
+        self.first_row(sensor) + self.level()
     }
 
     /// Points weighed in a cycle.

@@ -41,7 +41,7 @@ fn grid(plan: &JointPlan, lanes: usize) -> String {
     match &plan.points {
         Some(points) => {
             let taxels = match points.taxels {
-                1 if lanes > MANY_LANES => "a taxel a cycle, as bodies are counted".to_owned(),
+                1 if lanes > MANY_LANES => "a taxel a cycle: bodies are counted as slowly".to_owned(),
                 1 => "a taxel a cycle".to_owned(),
                 taxels => format!("{taxels} taxels a cycle with more than {MANY_LANES} lanes"),
             };

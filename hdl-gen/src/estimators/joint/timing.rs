@@ -19,21 +19,14 @@ pub const FIRST_WORD: u64 = 11;
 /// From the first row of points, or from the last value of the walk, to the centroid: the level, the depths below it,
 /// the divisions.
 pub fn level(plan: &JointPlan) -> u64 {
-    match &plan.points {
-        // All of a row need one more stage to be added up.
-        Some(of) => (of.side + of.side * of.side / of.weighed()) as u64 + if of.weighed() == of.side { 38 } else { 37 },
-        None => POINTS as u64 + 34,
-    }
+    plan.points.as_ref().map_or(POINTS as u64 + 34, PointsPlan::level)
 }
 
 /// From the start of the search to the first row of points, when all taxels are in; or to the first value of the walk:
 /// two starts and a point, then the sums.
 pub fn first_value(sensor: &Sensor, plan: &JointPlan) -> u64 {
-    match plan.points {
-        // The tensions of several taxels are added up before they are in the sums.
-        Some(PointsPlan { taxels, .. }) => 4 * quads(sensor) / taxels as u64 + 10 + taxels as u64,
-        None => 3 * plan.cells.elements as u64 + 3 + u64::from(plan.cells.tree_levels()),
-    }
+    let walk = || 3 * plan.cells.elements as u64 + 3 + u64::from(plan.cells.tree_levels());
+    plan.points.as_ref().map_or_else(walk, |points| points.first_row(sensor))
 }
 
 /// Start to end of the search.
