@@ -70,12 +70,12 @@ module sptfra_points #(
 
     // ---- Taxels: the members of a quad one after the other, or two. Index k: k cycles after the address
     reg reading;
+    reg clear; // all sums
     reg [ROW_WIDTH-1:0] quad;
     reg [1:0] member;
     reg [1:0] member_1;
     wire last_taxel = (quad == LAST_QUAD[ROW_WIDTH-1:0]) && (member == LAST_MEMBER);
     reg [STAGES:1] valids;
-    reg [STAGES:1] firsts;
     reg [STAGES:1] lasts;
     wire [3*4*27-1:0] quad_1;
     wire [TAXELS*3*27-1:0] taxels_1;
@@ -110,13 +110,13 @@ module sptfra_points #(
             quad <= {ROW_WIDTH{1'b0}};
             member <= 2'd0;
         end
+        clear <= start;
         member_1 <= member;
         taxels_2 <= taxels_1;
         read_valid <= valids[1] && (member_1 == 2'd0);
         read_quad <= quad; // of the same: it is read for two cycles at least
         read_values <= quad_1;
         valids <= {valids[STAGES-1:1], reading};
-        firsts <= {firsts[STAGES-1:1], (quad == {ROW_WIDTH{1'b0}}) && (member == 2'd0)};
         lasts <= {lasts[STAGES-1:1], reading && last_taxel};
         if (reset) begin
             reading <= 1'b0;
@@ -142,11 +142,12 @@ module sptfra_points #(
     generate
         for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
             localparam [1:0] MEMBER = taxel;
+            wire [1:0] of_quad_1 = member_1 | MEMBER;
 
             for (index = 0; index < 3; index = index + 1) begin : gen_select
                 wire [4*27-1:0] of_q = quad_1[4*27*index +: 4*27];
 
-                assign taxels_1[27*(3*taxel + index) +: 27] = of_q[27*(member_1 | MEMBER) +: 27];
+                assign taxels_1[27*(3*taxel + index) +: 27] = of_q[27*of_quad_1 +: 27];
             end
 
             sptfra_points_taxel #(
@@ -170,7 +171,8 @@ module sptfra_points #(
         end
     endgenerate
 
-    // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed
+    // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed. A sum begins with
+    // its register's reset: another input of its adders would take as many LUTs again
     wire [SIDE*SIDE*(VALUE_BITS+1)-1:0] sums;
 
     generate
@@ -180,7 +182,7 @@ module sptfra_points #(
                 wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle, before they are in the sum
                 reg [VALUE_BITS-1:0] sum;
                 reg over;
-                wire [VALUE_BITS:0] next = {1'b0, firsts[STAGES] ? {VALUE_BITS{1'b0}} : sum}
+                wire [VALUE_BITS:0] next = {1'b0, sum}
                     + { {(VALUE_BITS + 1 - TENSION_BITS){1'b0}}, tension};
 
                 for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_tensions
@@ -213,9 +215,12 @@ module sptfra_points #(
                 end
 
                 always @(posedge clock) begin
-                    if (valids[STAGES]) begin
+                    if (clear) begin
+                        sum <= {VALUE_BITS{1'b0}};
+                        over <= 1'b0;
+                    end else if (valids[STAGES]) begin
                         sum <= next[VALUE_BITS-1:0];
-                        over <= next[VALUE_BITS] || (over && !firsts[STAGES]);
+                        over <= next[VALUE_BITS] || over;
                     end
                 end
 
