@@ -58,7 +58,8 @@ def main() -> None:
     done = subprocess.run(command, cwd=ROOT, check=False)
     if done.returncode:
         sys.exit(done.returncode)
-    print(f"{len(names)} pages in {SITE.relative_to(ROOT)}: open index.html")
+    site = SITE.relative_to(ROOT)
+    print(f"{len(names)} pages in {site}: open index.html; the search wants a server: python3 -m http.server -d {site}")
 
 
 if __name__ == "__main__":

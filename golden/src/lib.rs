@@ -50,6 +50,7 @@ pub mod scene;
 pub mod sensor;
 pub mod solver;
 pub mod status;
+mod sums;
 pub mod table;
 pub mod unread;
 pub mod words;

@@ -19,7 +19,7 @@ use crate::matrices::Matrices;
 use crate::names::MatrixName;
 pub use crate::names::ReducedName;
 use crate::parity::{CLASSES, FoldedMatrix, Quads};
-use crate::products::{ByPq, RESULTANTS};
+use crate::sums::{ByPq, RESULTANTS};
 
 /// The four blocks of a matrix, sparse, row by row.
 ///

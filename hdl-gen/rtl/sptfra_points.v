@@ -171,8 +171,8 @@ module sptfra_points #(
         end
     endgenerate
 
-    // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed. A sum begins with
-    // its register's reset: another input of its adders would take as many LUTs again
+    // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed. A sum begins
+    // with its register's reset: another input of its adder would take as many LUTs again
     wire [SIDE*SIDE*(VALUE_BITS+1)-1:0] sums;
 
     generate

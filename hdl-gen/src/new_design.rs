@@ -2,11 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use golden::bodies::Quantiles;
 use golden::calibrate::{CalibrateError, Settings, calibrate};
 use golden::design::{
     DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Grid, Input, JointConstants, Samples, Tension,
 };
+use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
 use golden::solver::Solver;
 

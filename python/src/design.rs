@@ -90,6 +90,7 @@ impl Design {
             Pitch::Both(pitch) => pitch,
             Pitch::One(pitch) => [pitch; 2],
         };
+        let name = name.to_owned();
         let new = NewDesign { name, estimator, columns, rows, pitch_mm, depth_mm, tension, counts, full_scale_pa };
         let text = without_lock(py, || new.text(&mut |_| ()))?;
         Ok(Self::new(Checked::from_toml(&text, &new.name).map_err(raised)?))

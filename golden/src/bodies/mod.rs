@@ -10,11 +10,9 @@
 //! [`Finder`] says where the bodies are, from `|w| = max(-y, 0)`: blobs of taxels that touch ([`Labels`]), and the
 //! nearest blob of each taxel. Both take a fixed number of steps on whole numbers, so that hardware can do the same.
 
-mod errors;
 mod labels;
 mod regions;
 
-pub use errors::{BodyErrors, Quantiles};
 pub use labels::Labels;
 
 use crate::sensor::Sensor;

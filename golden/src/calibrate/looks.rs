@@ -11,12 +11,11 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use super::observer::Sample;
 use super::twins::{Diagonal, TRANSPOSED};
 use crate::design::Correction;
+use crate::estimators::joint::EXTRA_CLASSES;
 use crate::parity::{CLASSES, Quads, sign};
 
 /// Variance below which a direction is noise and not worth its full length.
 const LEAST_VARIANCE: f64 = 1e-3;
-/// Classes of the inputs behind the window: odd in x, odd in y, the same again, even.
-const EXTRA_CLASSES: [usize; 5] = [1, 2, 1, 2, 0];
 
 /// An orthonormal basis of the inputs by parity class, and its whitening.
 pub(super) struct Basis {

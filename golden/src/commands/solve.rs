@@ -3,10 +3,9 @@
 use std::error::Error;
 use std::path::Path;
 
-use golden::bodies::BodyErrors;
 use golden::check::check;
 use golden::design::Design;
-use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
+use golden::metrics::{BodyErrors, ERROR_NAMES, ErrorSummary, Outcome};
 use golden::progress::Progress;
 use golden::solver::{Solution, Solver, Status};
 use golden::table::Table;

@@ -98,17 +98,20 @@ fn resolved_name(origin: &str) -> PathBuf {
 
 /// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
 pub(super) fn refuse(check: &Check, given: [bool; 7]) -> Result<(), DesignError> {
-    match ["grid", "family", "doubt", "gain", "tangential", "correction", "fitted_to"]
-        .into_iter()
-        .zip(given)
-        .find(|(_, given)| *given)
-    {
-        Some((key, _)) => Err(check.value(
+    let keys = ["grid", "family", "doubt", "gain", "tangential", "correction", "fitted_to"];
+    let given: Vec<&str> = keys.into_iter().zip(given).filter_map(|(key, given)| given.then_some(key)).collect();
+    match given.as_slice() {
+        [] => Ok(()),
+        [key] => Err(check.value(
             &format!("algorithm.{key}"),
             "belongs to the joint estimator".to_owned(),
             "remove it or write estimator = \"joint\"".to_owned(),
         )),
-        None => Ok(()),
+        [key, others @ ..] => Err(check.value(
+            &format!("algorithm.{key}"),
+            format!("belongs to the joint estimator, and so do {}", others.join(", ")),
+            "remove all of them or write estimator = \"joint\"".to_owned(),
+        )),
     }
 }
 

@@ -4,6 +4,7 @@
 //! As text, one frame a line, with a header line or none, separated by commas, semicolons, tabs or spaces; recordings may
 //! have label columns before the values. Or `NumPy`'s `.npy`, of frames by taxels or frames by rows by columns.
 
+mod error;
 mod format;
 mod npy;
 mod stream;
@@ -13,169 +14,14 @@ pub(crate) use npy::Array;
 pub(crate) use text::Separator;
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+pub use error::FrameError;
 pub use stream::{FrameLines, FrameStream};
 
-use crate::design::{Design, Samples};
-use crate::geometry::GeometryError;
-use crate::output::{self, OutputError};
+use crate::design::Design;
+use crate::output;
 use crate::sensor::Sensor;
-
-/// What is wrong with a frame file.
-#[derive(Debug, thiserror::Error)]
-pub enum FrameError {
-    /// The file could not be read.
-    #[error("{}: cannot read the frames: {source}; {}", path.display(), crate::unread::remedy(path, source))]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// The file has no frame in it.
-    #[error(
-        "{}: no frame in the file; write one line of {expected} stresses, separated by commas, for each frame",
-        path.display()
-    )]
-    Empty {
-        /// The file.
-        path: PathBuf,
-        /// Values in a frame.
-        expected: usize,
-    },
-    /// A line with too few or too many values.
-    #[error(
-        "{}, line {line}: the line ends at column {found} where {expected} values are needed; \
-         give one stress for each taxel of the sensor{}", path.display(), surplus(*found, *expected)
-    )]
-    Length {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// Values on the line.
-        found: usize,
-        /// Values in a frame.
-        expected: usize,
-    },
-    /// A value that is no finite number.
-    #[error(
-        "{}, line {line}, column {column}: \"{text}\" is no finite float32 number; give the stress in pascals, \
-         such as -1250.5, separated by commas, semicolons, tabs or spaces; columns before the values need --labels, and a \
-         header has no number in it", path.display()
-    )]
-    Value {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// Position on the line, from 1.
-        column: usize,
-        /// What is there.
-        text: String,
-    },
-    /// A character between the values that separates none.
-    #[error(
-        "{}, line {line}: {separator} separates the values; separate them by commas, semicolons, tabs or spaces",
-        path.display()
-    )]
-    Separator {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// What does, in words.
-        separator: &'static str,
-    },
-    /// A value that the design's integer samples cannot be.
-    #[error(
-        "{}, {place}: {value} is no {samples}, as hardware.samples says that the sensor's counts are; {}",
-        path.display(), samples.remedy()
-    )]
-    Sample {
-        /// The file.
-        path: PathBuf,
-        /// Line and column.
-        place: String,
-        /// What is there.
-        value: f64,
-        /// What it should be.
-        samples: Samples,
-    },
-    /// A `.npy` file that holds something else than frames.
-    #[error(
-        "{}: {problem}; save frames by taxels, or frames by rows by columns, with numpy.save", path.display()
-    )]
-    Array {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-    },
-    /// A file of another format.
-    #[error("{}: the file is {what}; {remedy}", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// What it is, in words.
-        what: &'static str,
-        /// What to do.
-        remedy: &'static str,
-    },
-    /// A file of forces that holds something else.
-    #[error(
-        "{}, line {line}: {problem}, so these are no forces; true forces lie beside the frames of `golden scene`, in \
-         FRAMES.forces.csv, a line each that begins with status, F_x, F_y, F_z, mu and phi", path.display()
-    )]
-    NoForces {
-        /// The file.
-        path: PathBuf,
-        /// Which of the lines with numbers, from 1.
-        line: usize,
-        /// What is wrong.
-        problem: String,
-    },
-    /// A force file that does not belong to the frames.
-    #[error(
-        "{}: forces of {found} frames where there are {expected}; give the file that was made with these frames",
-        path.display()
-    )]
-    Count {
-        /// The file.
-        path: PathBuf,
-        /// Lines in the file.
-        found: usize,
-        /// Frames.
-        expected: usize,
-    },
-    /// The frames of another sensor.
-    #[error(transparent)]
-    Geometry(#[from] GeometryError),
-    /// The file could not be written.
-    #[error(transparent)]
-    Write(#[from] OutputError),
-}
-
-/// What to do with a line that has a few values too many: a time, a number of the frame.
-fn surplus(found: usize, expected: usize) -> String {
-    match found.saturating_sub(expected) {
-        0 => String::new(),
-        more @ 1..=8 => format!("; if the first {more} are a time or a name, say so with --labels {more}"),
-        _ => "; columns before the values need --labels".to_owned(),
-    }
-}
-
-impl FrameError {
-    /// Whether a line of text is one that was cut off at its beginning: too few values, or a first one that is none.
-    pub fn is_of_a_cut_line(&self) -> bool {
-        match self {
-            Self::Length { found, expected, .. } => found < expected,
-            Self::Value { column, .. } => *column == 1,
-            _ => false,
-        }
-    }
-}
 
 /// Reads all frames of a file; each has a finite value for each taxel of the sensor.
 ///

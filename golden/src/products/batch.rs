@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut};
 
-use super::interpreter::{Arithmetic, ByPq};
+use super::interpreter::Arithmetic;
 use super::list::{ProductList, Source};
 use super::scalar::put_moments;
 use super::step::Step;
@@ -15,6 +15,7 @@ use crate::filter::FilteredMatrices;
 use crate::matrices::Matrices;
 use crate::parity::{CLASSES, Quads, butterfly};
 use crate::reduced::{ReducedMatrices, SumRows};
+use crate::sums::ByPq;
 
 /// Frames in a batch: so many that fetching a coefficient costs less than using it.
 pub(crate) const FRAMES: usize = 128;

@@ -17,8 +17,9 @@ mod scalar;
 mod step;
 mod stored;
 
+pub use crate::sums::{ByPq, RESULTANTS};
 pub use float::Float;
-pub use interpreter::{Arithmetic, ByPq, Frame, RESULTANTS};
+pub use interpreter::{Arithmetic, Frame};
 pub use list::{Form, ProductList, Source};
 pub use real::{Engine, Real, RealFrame};
 pub use scalar::{Number, Scalar, mirror, put_moments, swapped};

@@ -2,9 +2,10 @@
 
 use std::ops::{Add, Neg, Sub};
 
-use super::interpreter::{Arithmetic, ByPq};
+use super::interpreter::Arithmetic;
 use super::step::Step;
 use crate::parity::butterfly;
+use crate::sums::ByPq;
 
 /// A kind of numbers, and the products in it. Vectors have `W` values an element: one for each taxel, or four for each
 /// quad, by class.

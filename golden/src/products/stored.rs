@@ -3,12 +3,12 @@
 use nalgebra_sparse::CsrMatrix;
 
 use super::float::Float;
-use super::interpreter::ByPq;
 use super::list::Source;
 use crate::filter::FilteredMatrices;
 use crate::matrices::Matrices;
 use crate::parity::{CLASSES, butterfly};
 use crate::reduced::{FoldedRows, ReducedMatrices, SumRows};
+use crate::sums::ByPq;
 
 /// The matrices that the products of a list are with, for vectors of `W` values an element.
 pub trait Stored<const W: usize> {

@@ -163,7 +163,7 @@ mod tests {
             ("sptfra_points_taxel", "FRACTION", joint::points::FRACTION.into()),
             ("sptfra_points_taxel", "U_BITS", joint::points::U_BITS.into()),
             ("sptfra_points", "VALUE_BITS", joint::points::VALUE_BITS.into()),
-            ("sptfra_points_level", "WEIGHT_DROP", joint::points::WEIGHT_DROP.into()),
+            ("sptfra_points_level", "WEIGHT_DROP", joint::WEIGHT_DROP.into()),
             ("sptfra_friction", "LINEAR_FRACTION", joint::LINEAR_FRACTION.into()),
             ("sptfra_friction", "CUBIC_FRACTION", joint::CUBIC_FRACTION.into()),
             ("sptfra_friction", "FACTOR_FRACTION", joint::FACTOR_FRACTION.into()),

@@ -5,8 +5,8 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use golden::bodies::Quantiles;
 use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension};
+use golden::metrics::Quantiles;
 use golden::words;
 use hdl_gen::new_design::{self, COUNT_BITS, NewDesign};
 

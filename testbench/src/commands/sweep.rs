@@ -1,11 +1,12 @@
 //! `testbench sweep`.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use golden::arguments::design_file;
 use golden::design::{Design, Estimator, PlanKind};
-use golden::output::write_whole;
+use golden::output::{write_together, write_whole};
 use golden::words::parser;
 
 use golden::progress::Progress;
@@ -14,7 +15,7 @@ use testbench::sweep::grid::{Axes, FilterAxis, jobs};
 use testbench::sweep::page;
 use testbench::sweep::point::Verified;
 use testbench::sweep::store::Store;
-use testbench::sweep::{Outcomes, Simulate, Sweep, SweepScene, csv_file};
+use testbench::sweep::{Outcomes, Simulate, Sweep, SweepError, SweepScene, csv_file};
 
 /// Where results go.
 const OUT: &str = "target/sweep";
@@ -59,7 +60,7 @@ pub struct Arguments {
     /// Add a table of contacts of other kinds to the page, on so many frames of each; 40 if nothing is said.
     #[arg(long, value_name = "FRAMES", num_args = 0..=1, default_missing_value = "40", default_value_t = 0, hide_default_value = true)]
     kinds: u64,
-    /// Folder for the points and for sweep.json, sweep.csv and report.html.
+    /// Folder for the points and for sweep.json, sweep.csv, report.html and the recommended designs.
     #[arg(long, value_name = "FOLDER", default_value = OUT)]
     out: PathBuf,
     /// Write OUT/jobs/KEY for each point that has hardware, with what `testbench run` needs: design.toml, frames.csv
@@ -112,6 +113,7 @@ pub fn run(arguments: &Arguments) -> super::Result {
     write_whole(&place("sweep.json"), json.as_bytes())?;
     write_whole(&place("sweep.csv"), csv_file::csv(&outcomes.points)?.as_bytes())?;
     let mut contents = page::Contents::new(&designs, &sweep, &outcomes.points)?;
+    write_recommended(&arguments.out, contents.recommended())?;
     let page = place("report.html");
     if arguments.hard {
         // Hard cases take minutes; what is there can be read meanwhile.
@@ -124,6 +126,23 @@ pub fn run(arguments: &Arguments) -> super::Result {
     write_whole(&page, page::render(&contents)?.as_bytes())?;
     drop(progress);
     Ok(if arguments.json { json } else { summary(&outcomes, &arguments.out) }.into())
+}
+
+/// Writes the recommended designs in place of those of the sweep before, which may have had other names.
+fn write_recommended<'a>(out: &Path, files: impl Iterator<Item = &'a (String, String)>) -> Result<(), SweepError> {
+    let folder = out.join(page::RECOMMENDED);
+    let failed = |action| {
+        let path = folder.clone();
+        move |source| SweepError::Io { action, path, source }
+    };
+    if folder.exists() {
+        fs::remove_dir_all(&folder).map_err(failed("remove the recommended designs in"))?;
+    }
+    let files: Vec<(PathBuf, String)> = files.map(|(name, text)| (out.join(name), text.clone())).collect();
+    if !files.is_empty() {
+        fs::create_dir(&folder).map_err(failed("make the folder"))?;
+    }
+    Ok(write_together(&files)?)
 }
 
 fn summary(outcomes: &Outcomes, out: &Path) -> String {
@@ -139,6 +158,9 @@ fn summary(outcomes: &Outcomes, out: &Path) -> String {
     lines.extend(refusals(outcomes).iter().map(|refusal| format!("         {refusal}")));
     let file = |name: &str| out.join(name).display().to_string();
     lines.push(format!("written: {}, {}, {}", file("report.html"), file("sweep.json"), file("sweep.csv")));
+    if out.join(page::RECOMMENDED).is_dir() {
+        lines.push(format!("the designs that the report recommends: {}", file(page::RECOMMENDED)));
+    }
     lines.join("\n") + "\n"
 }
 

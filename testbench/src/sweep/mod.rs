@@ -16,7 +16,7 @@ use std::sync::Mutex;
 use golden::design::DesignError;
 use golden::frames::FrameError;
 use golden::output::OutputError;
-use golden::scene::{Scene, SceneError};
+use golden::scene::{Contact, Scene, SceneError, Shear};
 use golden::solver::SolverError;
 use rayon::prelude::*;
 use thiserror::Error;
@@ -137,9 +137,14 @@ pub struct SweepScene {
 
 impl SweepScene {
     /// Whether the sum of forces tells how well each body was found: of bodies that are pushed against each other most of
-    /// it is gone, and an answer of zero is nearly right.
+    /// it is gone, and an answer of zero is nearly right. One body is no sum.
     pub fn tells(&self) -> bool {
-        let pushed: f64 = self.scene.contacts.iter().map(|body| body.friction * body.normal_force_n).sum();
+        let [_, _, ..] = self.scene.contacts.as_slice() else { return true };
+        let push = |body: &Contact| match body.traction.shear {
+            Shear::Held { share } => share * body.friction * body.normal_force_n,
+            _ => body.friction * body.normal_force_n,
+        };
+        let pushed: f64 = self.scene.contacts.iter().map(push).sum();
         let truth = self.frames.truth.as_deref().unwrap_or_default();
         truth.iter().all(|truth| truth.force[0].hypot(truth.force[1]) >= 0.5 * pushed)
     }
@@ -205,6 +210,11 @@ pub struct Outcomes {
 }
 
 impl Sweep {
+    /// What a point is the result of.
+    pub fn job(&self, key: &str) -> Option<&Job> {
+        self.jobs.iter().find(|job| job.key == key)
+    }
+
     /// How a point is to be verified at least.
     fn wanted(&self, job: &Job) -> Verified {
         match self.simulate {

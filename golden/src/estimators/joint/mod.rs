@@ -25,6 +25,7 @@ pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};
 pub(crate) use look::Look;
 pub use look::{STRESS_SCALE, TIE};
+pub(crate) use network::EXTRA_CLASSES;
 pub use network::LARGEST;
 pub(crate) use network::{Network, NetworkScratch};
 

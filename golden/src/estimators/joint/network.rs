@@ -14,7 +14,7 @@ pub const LARGEST: f64 = 1.0 / 4.0;
 /// Words that are added to the sums in one pass over these, one after the other.
 const TOGETHER: usize = 4;
 /// Classes of the inputs behind the window: odd in x, odd in y, the same again, even.
-const EXTRA_CLASSES: [usize; 5] = [1, 2, 1, 2, 0];
+pub(crate) const EXTRA_CLASSES: [usize; 5] = [1, 2, 1, 2, 0];
 
 /// The network: one layer of hinges, then two sums.
 ///

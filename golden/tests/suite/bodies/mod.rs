@@ -3,8 +3,9 @@
 mod command;
 mod kinds;
 
-use golden::bodies::{Body, BodyErrors, Quantiles};
+use golden::bodies::Body;
 use golden::design::{Design, PlanKind, Slip};
+use golden::metrics::{BodyErrors, Quantiles};
 use golden::scene::{self, SceneFrame};
 use golden::solver::{PIECE, Slips, Solution, Solver, Status};
 use kinds::{Kind, frame};

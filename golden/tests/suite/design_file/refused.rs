@@ -118,6 +118,7 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
     for (line, parts) in [
         ("kernel = \"line\"", ["algorithm.kernel", "line", "point, cell"]),
         ("fitted_to = \"x\"", ["algorithm.fitted_to", "joint estimator", "remove it"]),
+        ("grid = 15\ngain = 1.1", ["algorithm.grid", "and so do gain", "remove all of them"]),
         ("estimator = \"joint\"\nfitted_to = \"x\"", ["algorithm.fitted_to", "\"x\"", "golden calibrate"]),
         ("estimator = \"point\"", ["algorithm.estimator", "point", "line, joint"]),
         ("outputs = \"forces\"", ["algorithm.outputs", "forces", "field, resultants"]),

@@ -39,7 +39,7 @@ const SHARE_SHIFT: i32 = 8;
 pub const POINT_BITS: u32 = 32;
 /// Leading bits of the level that a weight is the square of.
 pub const DEPTH_BITS: u32 = 17;
-/// Bits dropped from the square.
+/// Bits dropped from the square, of a cell a point as of a walk over the grid.
 pub const WEIGHT_DROP: u32 = 8;
 /// Fraction bits of c3.
 pub const CUBIC_FRACTION: u32 = 15;

@@ -19,8 +19,6 @@ pub const FRACTION: u32 = 23;
 pub const U_BITS: u32 = 25;
 /// Width of a value, unsigned; a sum that leaves it is the largest number.
 pub const VALUE_BITS: u32 = 28;
-/// Bits dropped from the square of a depth.
-pub const WEIGHT_DROP: u32 = 8;
 /// Points weighed in a cycle, where they see one taxel in one; else all of a row.
 const FIVE: usize = 5;
 /// Multipliers of both moments.

@@ -1,7 +1,8 @@
 //! What is found of a scene's forces: the field of a frame beside the true one, and how well its bodies are told apart.
 
-use golden::bodies::{BodyErrors, MOST};
+use golden::bodies::MOST;
 use golden::design::{Design, Estimator, Input, Outputs};
+use golden::metrics::BodyErrors;
 use golden::solver::Solver;
 use hdl_gen::plan::Plan;
 

@@ -151,16 +151,19 @@ pub struct Series {
     pub values: Vec<(u32, f64)>,
 }
 
-/// Height of a series' name above its plot, and length of the piece of line in front of it.
+/// Height of a line of a series' name above its plot, the letters that it has room for, and the length of the piece of line
+/// in front of it.
 const NAME: f64 = 17.0;
+const LETTERS: usize = 50;
 const SAMPLE: f64 = 28.0;
 /// Dashes of the series of one colour, one after the other.
 pub const DASHES: [&str; 4] = ["", "7 3", "2 3", "9 3 2 3"];
 
 /// Error against the f64 solver over the width of coefficients or vectors; one line for each series.
 pub fn widths(series: &[Series], unit: &str) -> String {
-    // Names stand above the plot, each in its line.
-    let top = 20.0 + NAME * series.len() as f64;
+    // Names stand above the plot, each in a line of its own or, a long one, in two.
+    let names: Vec<Vec<&str>> = series.iter().map(|series| in_lines(&series.name)).collect();
+    let top = 20.0 + NAME * names.iter().map(Vec::len).sum::<usize>() as f64;
     let (width, height) = (480.0, 308.0 + top);
     let values = series.iter().flat_map(|series| &series.values);
     let (low, high) = values.clone().fold((u32::MAX, 0), |(low, high), &(bits, _)| (low.min(bits), high.max(bits)));
@@ -174,16 +177,19 @@ pub fn widths(series: &[Series], unit: &str) -> String {
         svg.grid((LEFT, line), (width - RIGHT, line));
         svg.text((LEFT - 8.0, line + 4.0), "end", INK, &power(decade));
     }
-    for (number, Series { name, colour, dashes, values }) in series.iter().enumerate() {
+    let mut line = 16.0;
+    for (Series { name, colour, dashes, values }, lines) in series.iter().zip(names) {
         let places: Vec<(f64, f64)> =
             values.iter().filter(|(_, e)| *e > 0.0).map(|&(bits, e)| (place(bits), y.place(e))).collect();
         svg.line(&places, colour, dashes);
         for (&at, (bits, error)) in places.iter().zip(values) {
             svg.named_dot(at, 4.0, colour, &format!("{name}, {bits} bits: {error:.1e}"));
         }
-        let line = 16.0 + NAME * number as f64;
         svg.line(&[(LEFT, line - 4.0), (LEFT + SAMPLE, line - 4.0)], colour, dashes);
-        svg.text((LEFT + SAMPLE + 8.0, line), "start", colour, name);
+        for part in lines {
+            svg.text((LEFT + SAMPLE + 8.0, line), "start", colour, part);
+            line += NAME;
+        }
     }
     let mut widths: Vec<u32> = series.iter().flat_map(|series| series.values.iter().map(|&(bits, _)| bits)).collect();
     widths.sort_unstable();
@@ -193,6 +199,15 @@ pub fn widths(series: &[Series], unit: &str) -> String {
     }
     svg.text((f64::midpoint(LEFT, width - RIGHT), height - 38.0), "middle", INK, unit);
     svg.finish()
+}
+
+/// A name in lines of [`LETTERS`] at most, broken behind a comma where there is one.
+fn in_lines(name: &str) -> Vec<&str> {
+    let end = name.char_indices().nth(LETTERS).map_or(name.len(), |(end, _)| end);
+    match name[..end].rfind(", ").filter(|_| end < name.len()) {
+        Some(comma) => [&name[..=comma]].into_iter().chain(in_lines(&name[comma + 2..])).collect(),
+        None => vec![name],
+    }
 }
 
 fn axes(svg: &mut Svg, x: Axis, y: Axis, names: [&str; 2]) {
@@ -219,7 +234,14 @@ fn axes(svg: &mut Svg, x: Axis, y: Axis, names: [&str; 2]) {
 #[cfg(test)]
 mod tests {
     use super::super::conclusion::tests::point;
-    use super::{DASHES, front, frontier};
+    use super::{DASHES, front, frontier, in_lines};
+
+    #[test]
+    fn long_names_are_broken_behind_a_comma() {
+        let long = "reduced, no filter, joint, 21 × 21 points, 160 units, wide family";
+        assert_eq!(in_lines(long), ["reduced, no filter, joint, 21 × 21 points,", "160 units, wide family"]);
+        assert_eq!(in_lines("paper, f3, line"), ["paper, f3, line"]);
+    }
 
     #[test]
     fn the_front_has_no_dominated_point() {

@@ -1,7 +1,7 @@
 //! What the hardware of each design makes of contacts of other kinds than those of the scenes.
 
-use golden::bodies::Quantiles;
 use golden::design::{Design, Filter};
+use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
 use golden::status::Status;
 use golden::table::{Cell, Table};

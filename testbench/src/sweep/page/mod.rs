@@ -12,7 +12,7 @@ pub mod paper;
 pub mod tables;
 
 use golden::choose::choose;
-use golden::design::{Design, Filter, MatrixFilter};
+use golden::design::{Design, FileNames, Filter, MatrixFilter};
 use golden::matrices::Matrices;
 use serde::Serialize;
 use tera::{Context, Tera};
@@ -28,6 +28,8 @@ use matrices::Figure;
 const TEMPLATE: &str = include_str!("../../../templates/report.html.tera");
 /// The name ends so that text is escaped.
 const NAME: &str = "report.html";
+/// Folder beside the page with the designs that it recommends.
+pub const RECOMMENDED: &str = "recommended";
 /// Larger sensors have too many entries for a picture of each.
 const MOST_TAXELS: usize = 256;
 
@@ -62,6 +64,8 @@ pub struct Contents {
 struct SensorSection {
     title: String,
     conclusion: Option<conclusion::Conclusion>,
+    /// The recommended design as files, the design's own the last.
+    recommended: Vec<(String, String)>,
     fronts: Vec<Figure>,
     table_1: Option<Table>,
     table_3: Option<Table>,
@@ -110,7 +114,26 @@ impl Contents {
     }
 }
 
+/// The design that is recommended for a sensor: the point's, under a name after the given design that is most like it.
+fn recommended_design(recommended: Option<&Point>, foremost: &[&Design], sweep: &Sweep) -> Option<Design> {
+    let job = sweep.job(&recommended?.key)?;
+    Some(Design { name: format!("{}_recommended", foremost.first()?.name), ..job.design.clone() })
+}
+
+/// A design as files beside the page: their places and contents. The files that it names come before it.
+fn files_of(design: &Design) -> Vec<(String, String)> {
+    let names = FileNames::of(&design.name);
+    let whole = (format!("{}.toml", design.name), design.to_toml_with(&names));
+    let beside = design.files().into_iter().map(|(name, text)| (names.of_file(name).to_owned(), text));
+    beside.chain([whole]).map(|(name, text)| (format!("{RECOMMENDED}/{name}"), text)).collect()
+}
+
 impl Contents {
+    /// The designs that the page recommends, as files: their places beside the page, and contents.
+    pub fn recommended(&self) -> impl Iterator<Item = &(String, String)> {
+        self.sensors.iter().flat_map(|sensor| &sensor.recommended)
+    }
+
     /// The same with the table of hard cases.
     #[must_use]
     pub fn with_hard_cases(mut self, rows: &[Row]) -> Self {
@@ -146,7 +169,8 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
     let main = scenes.iter().copied().find(|scene| scene.frames.stress.len() > 1).or(scenes.first().copied());
     let on = |scene: &SweepScene| own.iter().copied().filter(|point| point.scene == scene.name).collect::<Vec<_>>();
     let telling: Vec<&str> = scenes.iter().filter(|scene| scene.tells()).map(|scene| scene.name.as_str()).collect();
-    let foremost = forces::in_order(&designs, conclusion::recommended(&own, &telling));
+    let recommended = conclusion::recommended(&own, &telling);
+    let foremost = forces::in_order(&designs, recommended);
     let fronts = scenes
         .iter()
         .map(|scene| {
@@ -181,6 +205,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
     Ok(SensorSection {
         title: sensor_title(sensor),
         conclusion: conclusion::conclusion(&own, &telling),
+        recommended: recommended_design(recommended, &foremost, sweep).as_ref().map(files_of).unwrap_or_default(),
         fronts,
         table_1: tables::table_1(&on_main),
         table_3: tables::table_3(&on_main),

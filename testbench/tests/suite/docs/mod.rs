@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::browser;
 use crate::support::workspace;
 
 mod sessions;
@@ -195,5 +196,13 @@ fn the_site_has_every_page_and_finds_its_words() {
     let index = fs::read_to_string(site.join("search/search_index.json")).expect("readable");
     for word in ["taxel", "skid buffer", "sptfra_overrun", "device-tree"] {
         assert!(index.contains(word), "the search does not know {word}");
+    }
+    // Pages with wide tables and long commands fit a telephone too.
+    for (name, width) in [("index", 1280), ("index", 400), ("contacts", 400)] {
+        let page = fs::read_to_string(site.join(name).with_extension("html")).expect("readable");
+        let mut wrong = browser::wrong(&page, &site, width);
+        // A page that no server gave has no search.
+        wrong.retain(|line| !line.contains("Worker"));
+        assert!(wrong.is_empty(), "{name}, {width} wide:\n{}", wrong.join("\n"));
     }
 }

@@ -2,7 +2,8 @@
 
 use super::super::super::Seen;
 use super::super::PointsPlan;
-use super::super::points::{VALUE_BITS, Values, WEIGHT_DROP};
+use super::super::WEIGHT_DROP;
+use super::super::points::{VALUE_BITS, Values};
 use super::Centroid;
 use crate::cores::divider;
 use crate::plan::format::FRICTION_FRACTION;

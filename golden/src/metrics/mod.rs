@@ -1,5 +1,9 @@
 //! How far a result is from the truth.
 
+mod bodies;
+
+pub use bodies::{BodyErrors, Quantiles};
+
 use serde::{Deserialize, Serialize};
 
 use crate::scene::SceneFrame;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Body;
+use crate::bodies::Body;
 use crate::solver::Solution;
 
 /// Errors in percent of each body's own normal force.
