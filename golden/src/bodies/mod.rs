@@ -3,9 +3,9 @@
 //! With `y = C33inv b` a frame is the stress of normal forces alone, `b = C33 y`. What a tangential force does to `y` falls off
 //! around its body within the depth of the layer, so `y` can be parted by regions: `b_k = C33 y_k` is nearly the frame that a body
 //! would cause alone, and is solved as any frame of one body, with the same estimator, its correction and its standard
-//! error. With the friction found so, what each body does beyond its region is known, and only the rest needs to be parted:
-//! `b_k = (mu_x C31 + mu_y C32 - C33) |w|_k + C33 (C33inv rest)_k`. These are solved once more. They add up to the frame as
-//! it is; its forces are the sums.
+//! error. With the friction found so, what each body's friction does beyond its region is known,
+//! `v_k = (mu_x C31 + mu_y C32) |w|_k`, and only the rest needs to be parted: `b_k = v_k + C33 (y - C33inv sum v)_k`. These are
+//! solved once more. They add up to the frame as it is; its forces are the sums.
 //!
 //! [`Finder`] says where the bodies are, from `|w| = max(-y, 0)`: blobs of taxels that touch ([`Labels`]), and the
 //! nearest blob of each taxel. Both take a fixed number of steps on whole numbers, so that hardware can do the same.

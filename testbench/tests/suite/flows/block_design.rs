@@ -16,6 +16,7 @@ fn the_system_is_complete_and_uses_the_newest_parts() {
         ran.call(&format!("connect_bd_intf_net {connection}"));
     }
     ran.call("connect_bd_net -net interrupt_out dma/s2mm_introut ps/pl_ps_irq1");
+    assert!(ran.stdout.contains("core/aclk: 124.998749 MHz, in the design: 125.0 MHz\n"), "{}", ran.stdout);
     assert!(ran.stdout.contains("SEG_dma_S_AXI_LITE: offset 0xA0000000, range 64K"), "{}", ran.stdout);
     assert!(ran.stdout.contains("interrupt ps/pl_ps_irq0[0]: dma/mm2s_introut\n"), "{}", ran.stdout);
     assert!(ran.stdout.contains("interrupt ps/pl_ps_irq1[0]: dma/s2mm_introut\n"), "{}", ran.stdout);

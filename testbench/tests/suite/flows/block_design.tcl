@@ -301,6 +301,10 @@ standin::command validate_bd_design {} 0 0 {
             if {$side in {in master slave} && ![info exists ::standin::nets($cell/$name)]} {
                 error "$cell/$name is not connected"
             }
+            # Propagated from the processor, which divides 33.333 MHz times whole numbers.
+            if {$kind eq "clock"} {
+                set ::standin::properties($cell/$name,CONFIG.FREQ_HZ) 124998749
+            }
         }
     }
     standin::done validate_bd_design
@@ -310,6 +314,14 @@ standin::command save_bd_design {} 0 0 {
     standin::done save_bd_design
 }
 standin::command get_files {} 1 1 {
+    foreach path $::standin::constraints {
+        if {[file tail $path] eq [lindex $words 0]} {
+            return [list xdc:$path]
+        }
+    }
+    if {[file extension [lindex $words 0]] eq ".xdc"} {
+        error "the project has no file [lindex $words 0]"
+    }
     standin::need save_bd_design
     standin::choice "file" [lindex $words 0] $::standin::diagram.bd
     return [lindex $words 0]

@@ -10,7 +10,7 @@ const PACKAGE: &str = "vivado/package_ip.tcl";
 const SYSTEM: &str = "vivado/block_design.tcl";
 
 /// Script, text, what stands in its place, what the refusal says.
-const FAULTS: [(&str, &str, &str, &str); 29] = [
+const FAULTS: [(&str, &str, &str, &str); 33] = [
     (SYNTH, "read_mem $rom", "read_memory $rom", "invalid command name"),
     (SYNTH, "read_mem $rom", "", "Synth 8-4445"),
     (SYNTH, "-mode out_of_context", "-mode out-of-context", "mode is out-of-context"),
@@ -24,6 +24,9 @@ const FAULTS: [(&str, &str, &str, &str); 29] = [
     (CLOCK, "get_ports aclk", "get_ports clk", "no port clk"),
     (CLOCK, "-period 8.000", "-frequency 125", "unknown flag -frequency"),
     (PACKAGE, "add_files -norecurse $rom", "", "is missing from file group"),
+    (PACKAGE, "add_files -fileset constrs_1 -norecurse $constraints", "", "the project has no file small_4x3.xdc"),
+    (PACKAGE, "{synthesis implementation out_of_context}", "{synthesis}", "is not for synthesis out of context only"),
+    (PACKAGE, "implementation out_of_context}", "implementation ooc}", "use of xdc:"),
     (PACKAGE, "-clock aclk -reset aresetn", "-clock aclk -reset areset", "no interface areset"),
     (PACKAGE, "ipx::associate_bus_interfaces -busif $stream -clock aclk $core", "", "has no clock"),
     (PACKAGE, "ipx::create_xgui_files $core", "", "ipx::create_xgui_files is to come first"),
@@ -39,6 +42,7 @@ const FAULTS: [(&str, &str, &str, &str); 29] = [
     (SYSTEM, "reset/peripheral_aresetn dma", "ps/pl_clk0 dma", "connected already"),
     (SYSTEM, "place dma/S_AXI_LITE", "place dma/M_AXI_MM2S", "kind of slave is master aximm"),
     (SYSTEM, "assign_bd_address\n", "", "assign_bd_address is to come first"),
+    (SYSTEM, "[get_bd_pins core/aclk]", "[get_bd_pins core/clk]", "no pin core/clk"),
     (
         SYSTEM,
         "xilinx.com:bd_rule:zynq_ultra_ps_e",

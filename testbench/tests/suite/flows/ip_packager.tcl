@@ -57,7 +57,14 @@ standin::command ipx::package_project {
     array unset ::standin::registers
     set ::standin::page ROM_DIR
     file mkdir [file join $option(-root_dir) src]
-    foreach path [concat $::standin::sources $::standin::memories] {
+    # A constraint that goes into systems would define their clock anew.
+    foreach path $::standin::constraints {
+        if {![info exists ::standin::properties(xdc:$path,USED_IN)]
+            || "out_of_context" ni $::standin::properties(xdc:$path,USED_IN)} {
+            error "[file tail $path] is not for synthesis out of context only"
+        }
+    }
+    foreach path [concat $::standin::sources $::standin::memories $::standin::constraints] {
         file copy -force $path [file join $option(-root_dir) src]
     }
     if {![info exists ::env(STANDIN_BLIND)]} {

@@ -18,6 +18,7 @@ namespace eval standin {
             ALL_PROBE_SAME_MU_CNT
         }
         debug_port {port_width PROBE_TYPE}
+        xdc {USED_IN}
         address_block {range width}
         register {address_offset size}
         field {bit_offset bit_width access description}
@@ -48,6 +49,11 @@ namespace eval standin {
                 configure $object $name $value
             } elseif {![info exists legal_properties($kind)] || $name ni $legal_properties($kind)} {
                 error "set_property: no property $name of $object"
+            }
+            if {$name eq "USED_IN"} {
+                foreach use $value {
+                    choice "use of $object" $use {synthesis implementation simulation out_of_context}
+                }
             }
             set properties($object,$name) $value
         }
@@ -143,6 +149,9 @@ standin::command add_files {-norecurse -fileset=} 1 inf {
             .v { lappend ::standin::sources $path }
             .mem { lappend ::standin::memories $path }
             .xdc { lappend ::standin::constraints $path }
+        }
+        if {[file extension $path] eq ".xdc"} {
+            standin::choice "set of constraints" $option(-fileset) constrs_1
         }
     }
 }

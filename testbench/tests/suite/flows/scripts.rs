@@ -74,8 +74,13 @@ fn the_packaged_ip_holds_every_source() {
     let folder = Folder::small();
     let ran = folder.vivado("vivado/package_ip.tcl", &[], &[]).succeeded();
     let packaged = names(contents(&folder.work().join("small_4x3_ip/src")).into_iter().map(|(path, _)| path));
-    let sources = files(None).into_keys().filter(|path| path.starts_with("rtl/") || path.starts_with("rom/"));
+    let clock = format!("vivado/{NAME}.xdc");
+    let sources = files(None).into_keys();
+    let sources = sources.filter(|path| path.starts_with("rtl/") || path.starts_with("rom/") || *path == clock);
     assert_eq!(packaged, names(sources));
+    let used_in = ran.call("set_property USED_IN");
+    assert!(used_in.contains("out_of_context") && used_in.contains("small_4x3.xdc"), "{used_in}");
+    assert!(!ran.calls.iter().any(|call| call.contains("FREQ_HZ")), "the clock is the system's");
     for stream in ["s_axis", "m_axis"] {
         ran.call(&format!("ipx::associate_bus_interfaces -busif {stream} -clock aclk"));
     }

@@ -212,6 +212,9 @@ proc place {registers offset range} {
 place dma/S_AXI_LITE [dict get $boards $board dma] 64K
 assign_bd_address
 validate_bd_design
+# What the processor's dividers make of the design's clock: the system is timed for this one
+set hertz [get_property CONFIG.FREQ_HZ [get_bd_pins core/aclk]]
+puts [format "core/aclk: %.6f MHz, in the design: %s MHz" [expr {$hertz / 1e6}] $clock_mhz]
 save_bd_design
 
 # ---- The top level around it

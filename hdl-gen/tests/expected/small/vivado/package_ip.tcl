@@ -6,8 +6,9 @@
 #   vivado -mode batch -source FOLDER/vivado/package_ip.tcl
 #
 # The IP goes to small_4x3_ip in the working directory, with copies of all sources:
-# add that folder to a project's IP repositories. The clock constraint stays out, the system that the IP is used in has
-# its own.
+# add that folder to a project's IP repositories. The clock constraint is in it for synthesis out of context only: the
+# system that the IP is used in has its own clock. For the same reason aclk states no FREQ_HZ, which would have to be
+# that of the system to the hertz, and the processor's dividers meet 125.0 MHz only approximately (BD 41-237).
 
 source [file join [file dirname [file normalize [info script]]] files.tcl]
 
@@ -16,6 +17,8 @@ set ip [file join [pwd] ${design}_ip]
 create_project -force ${design}_package [file join [pwd] ${design}_package] -part $part
 add_files -norecurse $rtl
 add_files -norecurse $rom
+add_files -fileset constrs_1 -norecurse $constraints
+set_property USED_IN {synthesis implementation out_of_context} [get_files $design.xdc]
 set_property top $design [current_fileset]
 update_compile_order -fileset sources_1
 
@@ -43,13 +46,17 @@ if {[llength [ipx::get_bus_interfaces aresetn -of_objects $core]] == 0} {
 }
 ipx::associate_bus_interfaces -clock aclk -reset aresetn $core
 
-# An IP without its ROM files would synthesize, to almost nothing.
+# An IP without its ROM files would synthesize, to almost nothing; one without its clock, for no clock.
 foreach group {xilinx_anylanguagesynthesis xilinx_anylanguagebehavioralsimulation} {
     set packaged {}
     foreach file [ipx::get_files -of_objects [ipx::get_file_groups $group -of_objects $core]] {
         lappend packaged [file tail [get_property NAME $file]]
     }
-    foreach file [concat $rtl $rom] {
+    set needed [concat $rtl $rom]
+    if {$group eq "xilinx_anylanguagesynthesis"} {
+        lappend needed {*}$constraints
+    }
+    foreach file $needed {
         if {[lsearch -exact $packaged [file tail $file]] < 0} {
             error "[file tail $file] is missing from file group $group of the IP"
         }

@@ -3,6 +3,7 @@
 #
 # The clock of design small_4x3: 125.0 MHz.
 #
-# For the core by itself, out of context. In a larger design the clock comes from outside: leave this file out.
+# For the core by itself, out of context, where the packaged IP uses it, too. In a larger design the clock comes from
+# outside: leave this file out.
 # Ports have no delays: both streams are registered inside, so every path that belongs to the core is timed.
 create_clock -name aclk -period 8.000 [get_ports aclk]
