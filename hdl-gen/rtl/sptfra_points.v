@@ -172,7 +172,7 @@ module sptfra_points #(
     endgenerate
 
     // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed. A sum begins
-    // with its register's reset: another input of its adder would take as many LUTs again
+    // with its register's reset
     wire [SIDE*SIDE*(VALUE_BITS+1)-1:0] sums;
 
     generate
