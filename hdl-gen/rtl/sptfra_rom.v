@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Read-only memory with a registered output, filled from FILE by $readmemh; zeros without a FILE.
+// Read-only memory with a registered output, filled by $readmemh: up to 4,096 words from FILE, more in banks of as
+// many, each from a file of its own, bankNN_FILE.
 //
 // Latency: 1 cycle, held while enable is low. One read a cycle.
+//
+// A block memory holds 4,096 words of nine bits, its parity bits among them, and has no use for those where it holds
+// more words: banks take the fewest block memories, whatever a tool makes of deep ones. The banks' outputs are chosen
+// from by a register, in one LUT for three banks.
 
 `default_nettype none
 
@@ -22,33 +27,75 @@ module sptfra_rom #(
     input  wire                     clock,
     input  wire                     enable,
     input  wire [ADDRESS_WIDTH-1:0] address,
-    output reg  [WIDTH-1:0]         data
+    output wire [WIDTH-1:0]         data
 );
 
-    reg [WIDTH-1:0] memory [0:DEPTH-1];
+    localparam BANK_WIDTH = 12;
+    localparam BANK = 1 << BANK_WIDTH;
+    // More than 64 are more than a device has room for
+    localparam BANKS = (DEPTH > 64 * BANK) ? 1 : (DEPTH + BANK - 1) / BANK;
 
+    genvar bank;
     generate
-        if (FILE != "" && ROM_DIR != "") begin : gen_contents
-            initial $readmemh({ROM_DIR, FILE}, memory);
-        end else if (FILE != "") begin : gen_contents_here
-            // An empty prefix would put a null character before the name
-            initial $readmemh(FILE, memory);
-        end else begin : gen_zeros
-            integer word;
+        if (BANKS == 1) begin : gen_whole
+            sptfra_rom_bank #(
+                .WIDTH         (WIDTH),
+                .DEPTH         (DEPTH),
+                .ADDRESS_WIDTH (ADDRESS_WIDTH),
+                .ROM_DIR       (ROM_DIR),
+                .FILE          (FILE)
+            ) whole (
+                .clock   (clock),
+                .enable  (enable),
+                .address (address),
+                .data    (data)
+            );
+        end else begin : gen_banks
+            wire [WIDTH*BANKS-1:0] words;
+            reg  [BANKS-1:0] chosen;
+            reg  [WIDTH-1:0] either;
+            integer index;
 
-            initial begin
-                for (word = 0; word < DEPTH; word = word + 1) begin
-                    memory[word] = {WIDTH{1'b0}};
+            for (bank = 0; bank < BANKS; bank = bank + 1) begin : gen_bank
+                localparam WORDS = (bank == BANKS - 1) ? DEPTH - bank * BANK : BANK;
+                localparam WORDS_WIDTH = (WORDS > 2) ? $clog2(WORDS) : 1;
+                // The bank's number, in bits and as two characters
+                localparam [ADDRESS_WIDTH-BANK_WIDTH-1:0] NUMBER = bank;
+                localparam [7:0] TENS = 8'd48 + bank / 10;
+                localparam [7:0] ONES = 8'd48 + bank % 10;
+
+                sptfra_rom_bank #(
+                    .WIDTH         (WIDTH),
+                    .DEPTH         (WORDS),
+                    .ADDRESS_WIDTH (WORDS_WIDTH),
+                    .ROM_DIR       (ROM_DIR),
+                    .FILE          ((FILE == "") ? "" : {"bank", TENS, ONES, "_", FILE})
+                ) of_bank (
+                    .clock   (clock),
+                    .enable  (enable),
+                    .address (address[WORDS_WIDTH-1:0]),
+                    .data    (words[WIDTH*bank +: WIDTH])
+                );
+
+                always @(posedge clock) begin
+                    if (enable) begin
+                        chosen[bank] <= (address[ADDRESS_WIDTH-1:BANK_WIDTH] == NUMBER);
+                    end
                 end
             end
+
+            always @(*) begin
+                either = {WIDTH{1'b0}};
+                for (index = 0; index < BANKS; index = index + 1) begin
+                    if (chosen[index]) begin
+                        either = either | words[WIDTH*index +: WIDTH];
+                    end
+                end
+            end
+
+            assign data = either;
         end
     endgenerate
-
-    always @(posedge clock) begin
-        if (enable) begin
-            data <= memory[address];
-        end
-    end
 
 endmodule
 

@@ -17,7 +17,7 @@ module harness (
 `endif
 
     reg started = 1'b0;
-    wire reset = !started;
+    wire reset; // a cycle longer
     wire frame_ready;
     wire start;
     wire issued;
@@ -92,6 +92,7 @@ module harness (
         .s_axis_tlast  (1'b0),
         .m_axis_tready (1'b0),
         // Inside
+        .reset (reset),
         .frame_ready (frame_ready),
         .start (start),
         .issued (issued),

@@ -11,6 +11,8 @@ use crate::plan::gain::GAIN_BITS;
 use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
 use crate::plan::vector_formats::ARM_BITS;
 
+use crate::plan::memory::{BANK, banks};
+
 use super::{FileMap, lane_file};
 
 /// Adds every ROM file of the plan. All lanes' files have the same number of words; shorter ones end in zeros.
@@ -25,14 +27,14 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         let values = program.words.iter().map(|(_, ways)| word(ways)).chain(std::iter::repeat(0)).take(depth);
         let values = values.chain(program.rounds.iter().map(|ways| word(ways)));
         let bits = coefficient_bits * plan.ways() as u32;
-        files.insert(lane_file(name, "values", lane), hex(values, schedule.value_depth(), bits));
+        insert_rom(files, lane_file(name, "values", lane), hex(values, schedule.value_depth(), bits));
         let columns = program.words.iter().map(|&(column, _)| u128::from(column));
-        files.insert(lane_file(name, "columns", lane), hex(columns, depth, column_bits));
+        insert_rom(files, lane_file(name, "columns", lane), hex(columns, depth, column_bits));
         let segments = program.segments.iter().map(|segment| u128::from((segment.kind as u32) << 14 | segment.macs));
-        files.insert(lane_file(name, "macs", lane), hex(segments, schedule.segment_depth(), 16));
+        insert_rom(files, lane_file(name, "macs", lane), hex(segments, schedule.segment_depth(), 16));
     }
     let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
-    files.insert(format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
+    insert_rom(files, format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
     if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
         for (first, kind) in bz::taxel_files(plan.streams()).iter().enumerate() {
             let step = plan.streams().conversions();
@@ -83,7 +85,20 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         files.insert(format!("rom/{name}_dead.mem"), hex(taxels, plan.taxels(), 1));
     }
     for (contents, words) in plan.estimator.slot().roms() {
-        files.insert(format!("rom/{name}_{contents}.mem"), weights(&words));
+        insert_rom(files, format!("rom/{name}_{contents}.mem"), weights(&words));
+    }
+}
+
+/// Adds the file of a ROM, or of a deep one those of its banks, as `sptfra_rom` reads them.
+fn insert_rom(files: &mut FileMap, path: String, text: Vec<u8>) {
+    let line = text.iter().position(|&byte| byte == b'\n').map_or(1, |end| end + 1);
+    let bank_count = banks(text.len() / line);
+    if bank_count == 1 {
+        files.insert(path, text);
+        return;
+    }
+    for (bank, words) in text.chunks(BANK * line).enumerate() {
+        files.insert(path.replacen("rom/", &format!("rom/bank{bank:02}_"), 1), words.to_vec());
     }
 }
 
@@ -141,13 +156,25 @@ fn hex(words: impl Iterator<Item = u128>, depth: usize, bits: u32) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::{hex, joined, wide_hex};
+    use super::{FileMap, hex, insert_rom, joined, wide_hex};
 
     #[test]
     fn a_wide_word_has_its_first_value_lowest() {
         assert_eq!(wide_hex(&[1], 18), "00001");
         assert_eq!(wide_hex(&[-1, 5, 0], 18), "0000000017ffff");
         assert_eq!(wide_hex(&[3; 8], 18).len(), 36);
+    }
+
+    #[test]
+    fn a_deep_rom_has_a_file_for_each_bank() {
+        let mut files = FileMap::new();
+        for (name, words) in [("rom/shallow.mem", 4096), ("rom/deep.mem", 2 * 4096 + 5)] {
+            insert_rom(&mut files, name.to_owned(), hex((0..words).map(|word| word as u128), words, 16));
+        }
+        let names: Vec<&str> = files.keys().map(String::as_str).collect();
+        assert_eq!(names, ["rom/bank00_deep.mem", "rom/bank01_deep.mem", "rom/bank02_deep.mem", "rom/shallow.mem"]);
+        assert!(files["rom/bank01_deep.mem"].starts_with(b"1000\n1001\n"));
+        assert_eq!(files["rom/bank02_deep.mem"], b"2000\n2001\n2002\n2003\n2004\n");
     }
 
     #[test]

@@ -13,6 +13,10 @@ const RAM_BITS_PER_COST: usize = 28;
 const LUT_DEPTH: usize = 32;
 /// Shapes of half a RAMB36 as `(depth, width)`.
 const HALF_SHAPES: [(usize, usize); 6] = [(512, 36), (1024, 18), (2048, 9), (4096, 4), (8192, 2), (16384, 1)];
+/// Words of a bank of `sptfra_rom`: the deepest shape of a RAMB36 that has its parity bits for data.
+pub const BANK: usize = 4096;
+/// Banks of a ROM, at most; one that would have more is in one piece, and in no device.
+const MOST_BANKS: usize = 64;
 
 /// One kind of memory in the design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -45,9 +49,19 @@ pub fn memory(name: &'static str, count: usize, depth: usize, width: u32, read_o
     Memory { name, block: "", count, depth, width, bram36: ramb36(depth, width as usize, read_only), read_only }
 }
 
-/// RAMB36 that a memory takes, a RAMB18 counting one half: the cheapest of the shapes, tiled, or none if LUTs are
-/// cheaper.
+/// Banks that `sptfra_rom` makes of so many words.
+pub fn banks(depth: usize) -> usize {
+    if depth > MOST_BANKS * BANK { 1 } else { depth.div_ceil(BANK).max(1) }
+}
+
+/// RAMB36 that a memory takes, a RAMB18 counting one half, of a ROM bank by bank.
 fn ramb36(depth: usize, width: usize, read_only: bool) -> f64 {
+    let others = if read_only { banks(depth) - 1 } else { 0 };
+    others as f64 * ramb36_of_one(BANK, width, read_only) + ramb36_of_one(depth - others * BANK, width, read_only)
+}
+
+/// The same of one piece: the cheapest of the shapes, tiled, or none if LUTs are cheaper.
+fn ramb36_of_one(depth: usize, width: usize, read_only: bool) -> f64 {
     let tiles = |&(tile_depth, tile_width): &(usize, usize)| depth.div_ceil(tile_depth) * width.div_ceil(tile_width);
     let halves = HALF_SHAPES.iter().map(tiles).min().unwrap_or(0);
     let luts = if read_only {
@@ -74,6 +88,9 @@ mod tests {
             (64, 108, false, 0.0),
             (25, 56, false, 0.0),
             (7418, 18, true, 4.0),
+            (12015, 72, true, 24.0),
+            (12015, 11, true, 4.5),
+            (4935, 18, true, 2.5),
             (1614, 72, true, 4.0),
             (1614, 7, true, 0.5),
             (279, 12, true, 0.0),

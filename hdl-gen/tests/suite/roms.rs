@@ -33,7 +33,15 @@ fn words(files: &FileMap, name: &str, bits: u32) -> Vec<u128> {
         assert!(word < 1 << bits, "{name}: {line}");
         word
     };
-    text(files, name).lines().map(word).collect()
+    if files.contains_key(name) {
+        return text(files, name).lines().map(word).collect();
+    }
+    // A deep one, bank by bank.
+    let bank = |bank: usize| name.replacen("rom/", &format!("rom/bank{bank:02}_"), 1);
+    let banks = (0..).map(bank).take_while(|name| files.contains_key(name));
+    let words: Vec<u128> = banks.flat_map(|name| text(files, &name).lines().map(word).collect::<Vec<_>>()).collect();
+    assert!(words.len() > 4096, "no {name}");
+    words
 }
 
 /// The coefficients in a word, that of way 0 lowest.

@@ -42,7 +42,7 @@ pub enum Pacing {
 pub struct Reset {
     /// First cycle with `aresetn` low, counted from the end of the initial reset.
     pub cycle: u64,
-    /// Number of cycles it stays low: at least 2 for a core with a register in its reset.
+    /// Number of cycles it stays low.
     pub length: u64,
 }
 

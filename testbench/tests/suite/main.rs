@@ -15,6 +15,7 @@ mod contacts;
 mod cores;
 mod counts;
 mod dead_taxels;
+mod deep_rom;
 mod dist;
 mod docs;
 mod drivers;

@@ -42,7 +42,8 @@ module small_4x3 #(
     localparam VECTOR_BITS = 108; // of what 4 ways have in a cycle
     localparam OPERAND_WIDTH = 6; // of a place in the lanes' operand memories
 
-    wire reset = !aresetn;
+    wire reset; // of all but the streams, which stop with aresetn and go on a cycle after it
+    sptfra_reset reset_register (.clock(aclk), .now(!aresetn), .reset(reset));
 
     // ---- Streams
     wire [31:0] in_tdata;
@@ -56,7 +57,7 @@ module small_4x3 #(
 
     sptfra_axis_skid skid_in (
         .clock    (aclk),
-        .reset    (reset),
+        .reset    (!aresetn),
         .s_tdata  (s_axis_tdata),
         .s_tlast  (s_axis_tlast),
         .s_tvalid (s_axis_tvalid),
@@ -69,7 +70,7 @@ module small_4x3 #(
 
     sptfra_axis_skid skid_out (
         .clock    (aclk),
-        .reset    (reset),
+        .reset    (!aresetn),
         .s_tdata  (out_tdata),
         .s_tlast  (out_tlast),
         .s_tvalid (out_tvalid),
@@ -148,8 +149,7 @@ module small_4x3 #(
     // ---- CeAn: what of the frame needs no lanes
     wire direction_valid;
     wire direction_take;
-    wire signed [26:0] direction_x;
-    wire signed [26:0] direction_y;
+    wire signed [26:0] direction_x, direction_y;
     wire no_direction;
     wire [39:0] stress_sum;
     wire [26:0] largest;

@@ -2,7 +2,8 @@
 // Part of the SpTFRA hardware generator.
 //
 // Remembers of each frame inside the cycle in which its first beat was taken, counted from the reset, modulo 2^32: 0 is
-// the first cycle after it. Sixteen frames may be inside; they leave in their order.
+// the first cycle after that of the core, whose register resets this module a cycle later. Sixteen frames may be
+// inside; they leave in their order.
 
 `default_nettype none
 
@@ -39,7 +40,7 @@ module sptfra_timestamp (
             oldest <= oldest + 4'd1;
         end
         if (reset) begin
-            now <= 32'd0;
+            now <= 32'd1;
             in_frame <= 1'b0;
             newest <= 4'd0;
             oldest <= 4'd0;
