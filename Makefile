@@ -159,7 +159,7 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, and wri
 	@mkdir -p $(BENCH_FOLDER)
 	@echo 'bench: the f64 solver (a minute)'
 	@$(BENCH_BIN)/golden bench --json $(BENCH_SOLVER) > $(BENCH_FOLDER)/solver.json
-	@.venv/bin/python tools/bench_numpy.py $(BENCH_FOLDER)/solver.json
+	@.venv/bin/python tools/bench_numpy.py --add $(BENCH_FOLDER)/solver.json
 	@echo 'bench: generator, simulation, cycles (some minutes)'
 	@$(BENCH_BIN)/testbench bench $(BENCH_DESIGNS) --solver $(BENCH_FOLDER)/solver.json \
 	    $(foreach design,$(BENCH_CELLS),--cells $(TARGET)/synth/$(subst -,_,$(design)).cells.json) \

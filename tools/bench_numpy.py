@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Frames a second of the paper's plan in numpy, beside those of `golden bench`: bench_numpy.py [SOLVER.json]
+"""Frames a second of the paper's plan in numpy, beside those of `golden bench`: bench_numpy.py [--add] [SOLVER.json]
 
 The sixteen products of the paper's list and the search along the line, for a batch of frames at a time, on one BLAS
 thread, as somebody would write them down who has the matrices. These are random here: the time does not depend on what
 they hold. SOLVER.json is what `golden bench --json` prints; of its designs with the paper's plan the ratio is printed.
+With --add the frames a second are added to it, for the page of `testbench bench --solver`.
 """
 
+import argparse
 import json
 import os
-import sys
 import time
+from pathlib import Path
 
 for library in ("OPENBLAS", "OMP", "MKL", "BLIS", "VECLIB"):
     os.environ[f"{library}_NUM_THREADS"] = "1"
@@ -108,17 +110,26 @@ def frames_per_second(taxels: int) -> float:
 
 def main() -> None:
     """Prints a line for 100 taxels, or for each design of a file with the paper's plan."""
-    given = []
-    if len(sys.argv) > 1:
-        with open(sys.argv[1], encoding="utf-8") as file:
-            given = [design for design in json.load(file) if design["plan"] == "paper"]
-    for design in given:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--add", action="store_true", help="write the frames a second into SOLVER.json")
+    parser.add_argument("solver", metavar="SOLVER.json", nargs="?", type=Path)
+    arguments = parser.parse_args()
+    if arguments.solver is None:
+        if arguments.add:
+            parser.error("--add needs the SOLVER.json that it writes to")
+        print(f"numpy: {frames_per_second(100):,.0f} frames of 100 taxels a second in batches")
+        return
+    designs = json.loads(arguments.solver.read_text(encoding="utf-8"))
+    for design in designs:
+        if design["plan"] != "paper":
+            continue
         rate = frames_per_second(design["taxels"])
+        design["numpy_frames_per_second"] = rate
         golden = design["in_batches"]["frames_per_second"]
         print(f"{design['design']}: golden {golden:,.0f} frames a second in batches, numpy {rate:,.0f}: "
               f"{golden / rate:.1f} times as many")
-    if not given:
-        print(f"numpy: {frames_per_second(100):,.0f} frames of 100 taxels a second in batches")
+    if arguments.add:
+        arguments.solver.write_text(json.dumps(designs, indent=2) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

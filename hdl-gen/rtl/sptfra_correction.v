@@ -88,7 +88,7 @@ module sptfra_correction #(
 
     generate
         if (HANDED_ON != 0) begin : gen_handed_on
-            // A search that begins after a look is behind it all the way: four cycles a quad
+            // A search that begins after a look is behind it all the way: two cycles a quad at least
             for (index = 0; index < 3; index = index + 1) begin : gen_memories
                 sptfra_ram #(
                     .WIDTH         (4 * 27),

@@ -23,6 +23,8 @@ module sptfra_estimator_joint #(
     parameter integer POINTS = 0,
     // Left shift of u before the right shift by the bits of sum |b|, for the points
     parameter integer U_LEFT = 24,
+    // Taxels that the points see in a cycle: 1, or 2, with a row of points weighed in one
+    parameter integer TAXELS = 1,
     // Cells of the walk, as many for each way
     parameter integer CELLS = 28,
     // Taxels of a cell, a power of two, at least 4
@@ -131,8 +133,7 @@ module sptfra_estimator_joint #(
     // ---- Stages: which frame is where
     wire fill_bank, search_bank, look_bank;
     wire search_start, look_start, correction_start;
-    wire level_done, centre_done, window_done;
-    wire search_done; // the answer is there
+    wire level_done, centre_done, window_done, search_done; // the last of these: the answer is there
 
     assign sums_take = search_start;
     assign direction_take = search_start;
@@ -167,16 +168,14 @@ module sptfra_estimator_joint #(
     reg [18*40-1:0] search_sums;
     reg [5:0] search_flags;
     wire signed [17:0] found_x, found_y;
-    wire found_unknown, found_on_border, found_saturated;
+    wire found_unknown, found_on_border, found_saturated, look_saturated;
     localparam integer WITH_FRAME = 18 * 40 + 6 + 2 * 18 + 3;
     wire [WITH_FRAME-1:0] searched = {search_sums, search_flags, found_x, found_y, found_unknown, found_on_border,
         found_saturated};
     wire [WITH_FRAME-1:0] seen; // of the frame in the look, or that was searched
-    wire look_saturated;
     reg signed [17:0] centroid_x, centroid_y;
     reg on_border, before_saturated; // a value of search or look was clipped
-    wire signed [17:0] look_x = seen[21 +: 18];
-    wire signed [17:0] look_y = seen[3 +: 18];
+    wire signed [17:0] look_x = seen[21 +: 18], look_y = seen[3 +: 18];
 
     always @(posedge clock) begin
         if (search_start) begin
@@ -201,6 +200,7 @@ module sptfra_estimator_joint #(
         .DATA_BITS              (DATA_BITS),
         .POINTS                 (POINTS),
         .U_LEFT                 (U_LEFT),
+        .TAXELS                 (TAXELS),
         .CELLS                  (CELLS),
         .CELL_ELEMENTS          (CELL_ELEMENTS),
         .SHARE_SHIFT            (SHARE_SHIFT),

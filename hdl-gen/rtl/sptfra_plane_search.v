@@ -18,6 +18,8 @@ module sptfra_plane_search #(
     parameter integer POINTS = 1,
     // Left shift of u before the right shift by the bits of sum |b|, for the points
     parameter integer U_LEFT = 24,
+    // Taxels that the points see in a cycle: 1, or 2, with a row of points weighed in one
+    parameter integer TAXELS = 1,
     // Cells of the walk, as many for each member of a quad
     parameter integer CELLS = 28,
     // Taxels of a cell, a power of two, at least 4
@@ -76,6 +78,7 @@ module sptfra_plane_search #(
                 .DATA_BITS        (DATA_BITS),
                 .ROW_WIDTH        (ROW_WIDTH),
                 .SIDE             (SIDE),
+                .TAXELS           (TAXELS),
                 .U_LEFT           (U_LEFT),
                 .EXPECTED_LATENCY (EXPECTED_PLANE_LATENCY)
             ) points (
@@ -100,6 +103,7 @@ module sptfra_plane_search #(
 
             sptfra_points_level #(
                 .SIDE             (SIDE),
+                .AT_ONCE          ((TAXELS == 1) ? 5 : SIDE),
                 .EXPECTED_LATENCY (EXPECTED_LEVEL_LATENCY)
             ) level_set (
                 .clock      (clock),
@@ -170,7 +174,7 @@ module sptfra_plane_search #(
             assign read_quad = {ROW_WIDTH{1'b0}};
             assign read_values = {(3 * 4 * 27){1'b0}};
 
-            wire _unused = &{1'b0, U_LEFT != 0};
+            wire _unused = &{1'b0, U_LEFT != 0, TAXELS != 0};
         end
     endgenerate
 

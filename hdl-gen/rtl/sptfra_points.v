@@ -4,9 +4,9 @@
 // Condition 1 at every point of the (mu_x, mu_y) plane at once: B = sum max(0, u0 + mu_x u1 + mu_y u2), SIDE x SIDE
 // points 3/16 apart, a cell a point.
 //
-// A taxel a cycle: a cell adds X of its column and Y of its row, and accumulates what is above zero; a sum that leaves
-// its width is the largest number. From start to the first row of points: four cycles a quad, and 11; then a row a
-// cycle.
+// A taxel a cycle, or two: a cell adds X of its column and Y of its row, and accumulates what is above zero; a sum that
+// leaves its width is the largest number. From start to the first row of points: four cycles a quad, and 11, or two a
+// quad, and 12; then a row a cycle.
 
 `default_nettype none
 
@@ -21,6 +21,8 @@ module sptfra_points #(
     parameter integer ROW_WIDTH = 5,
     // Points along an axis, odd
     parameter integer SIDE = 15,
+    // Taxels a cycle: 1 or 2
+    parameter integer TAXELS = 1,
     // Left shift of u before the right shift by the bits of sum |b|
     parameter integer U_LEFT = 24,
     // From start to the first row, checked in simulation; 0: unchecked
@@ -54,21 +56,30 @@ module sptfra_points #(
     localparam integer LAST_QUAD = QUADS - 1;
     localparam integer VALUE_BITS = 28;
     localparam integer POINT_BITS = 27;
-    localparam integer STAGES = 9; // from a taxel's address to its tension being in the sums
+    localparam integer TENSION_BITS = POINT_BITS - 2 + TAXELS; // of the taxels of a cycle
+    localparam integer STAGES = 8 + TAXELS; // from a taxel's address to its tension being in the sums
+    localparam [1:0] STEP = TAXELS[1:0];
+    localparam [1:0] LAST_MEMBER = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
 
-    // ---- Taxels: the members of a quad one after the other. Index k: k cycles after the address
+    generate
+        if ((TAXELS != 1) && (TAXELS != 2)) begin : gen_check
+            sptfra_error_one_or_two_taxels_a_cycle invalid ();
+        end
+    endgenerate
+
+    // ---- Taxels: the members of a quad one after the other, or two. Index k: k cycles after the address
     reg reading;
+    reg clear; // all sums
     reg [ROW_WIDTH-1:0] quad;
     reg [1:0] member;
     reg [1:0] member_1;
-    wire last_taxel = (quad == LAST_QUAD[ROW_WIDTH-1:0]) && (member == 2'd3);
+    wire last_taxel = (quad == LAST_QUAD[ROW_WIDTH-1:0]) && (member == LAST_MEMBER);
     reg [STAGES:1] valids;
-    reg [STAGES:1] firsts;
     reg [STAGES:1] lasts;
     wire [3*4*27-1:0] quad_1;
-    wire [3*27-1:0] taxel_1;
-    reg [3*27-1:0] taxel_2;
+    wire [TAXELS*3*27-1:0] taxels_1;
+    reg [TAXELS*3*27-1:0] taxels_2;
 
     sptfra_taxel_memory #(
         .COLUMNS   (COLUMNS),
@@ -88,8 +99,8 @@ module sptfra_points #(
 
     always @(posedge clock) begin
         if (reading) begin
-            member <= member + 2'd1;
-            quad <= (member == 2'd3) ? quad + 1'b1 : quad;
+            member <= member + STEP;
+            quad <= (member == LAST_MEMBER) ? quad + 1'b1 : quad;
         end
         if (reading && last_taxel) begin
             reading <= 1'b0;
@@ -99,13 +110,13 @@ module sptfra_points #(
             quad <= {ROW_WIDTH{1'b0}};
             member <= 2'd0;
         end
+        clear <= start;
         member_1 <= member;
-        taxel_2 <= taxel_1;
+        taxels_2 <= taxels_1;
         read_valid <= valids[1] && (member_1 == 2'd0);
-        read_quad <= quad; // of the same: it is read for four cycles
+        read_quad <= quad; // of the same: it is read for two cycles at least
         read_values <= quad_1;
         valids <= {valids[STAGES-1:1], reading};
-        firsts <= {firsts[STAGES-1:1], (quad == {ROW_WIDTH{1'b0}}) && (member == 2'd0)};
         lasts <= {lasts[STAGES-1:1], reading && last_taxel};
         if (reset) begin
             reading <= 1'b0;
@@ -115,63 +126,101 @@ module sptfra_points #(
         end
     end
 
-    // ---- Its part in each column and in each row of points
-    wire [SIDE*27-1:0] along_x_8;
-    wire [SIDE*27-1:0] along_y_8;
+    // ---- Their parts in each column and in each row of points
+    wire [TAXELS*SIDE*27-1:0] along_x_8;
+    wire [TAXELS*SIDE*27-1:0] along_y_8;
+    wire [TAXELS*16-1:0] margins;
+    wire [TAXELS-1:0] clips;
+
+    assign margin = margins[15:0];
+    assign clipped = (clips != {TAXELS{1'b0}});
 
     genvar index;
     genvar column;
+    genvar taxel;
 
     generate
-        for (index = 0; index < 3; index = index + 1) begin : gen_select
-            wire [4*27-1:0] of_q = quad_1[4*27*index +: 4*27];
+        for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
+            localparam [1:0] MEMBER = taxel;
+            wire [1:0] of_quad_1 = member_1 | MEMBER;
 
-            assign taxel_1[27*index +: 27] = of_q[27*member_1 +: 27];
+            for (index = 0; index < 3; index = index + 1) begin : gen_select
+                wire [4*27-1:0] of_q = quad_1[4*27*index +: 4*27];
+
+                assign taxels_1[27*(3*taxel + index) +: 27] = of_q[27*of_quad_1 +: 27];
+            end
+
+            sptfra_points_taxel #(
+                .SIDE   (SIDE),
+                .U_LEFT (U_LEFT)
+            ) parts (
+                .clock      (clock),
+                .reset      (reset),
+                .start      (start),
+                .stress_sum (stress_sum),
+                .largest    (largest),
+                .margin     (margins[16*taxel +: 16]),
+                .valid      (valids[2]),
+                .u0         (taxels_2[27*(3*taxel + 0) +: 27]),
+                .u1         (taxels_2[27*(3*taxel + 1) +: 27]),
+                .u2         (taxels_2[27*(3*taxel + 2) +: 27]),
+                .along_x    (along_x_8[SIDE*27*taxel +: SIDE*27]),
+                .along_y    (along_y_8[SIDE*27*taxel +: SIDE*27]),
+                .clipped    (clips[taxel])
+            );
         end
     endgenerate
 
-    sptfra_points_taxel #(
-        .SIDE   (SIDE),
-        .U_LEFT (U_LEFT)
-    ) parts (
-        .clock      (clock),
-        .reset      (reset),
-        .start      (start),
-        .stress_sum (stress_sum),
-        .largest    (largest),
-        .margin     (margin),
-        .valid      (valids[2]),
-        .u0         (taxel_2[27*0 +: 27]),
-        .u1         (taxel_2[27*1 +: 27]),
-        .u2         (taxel_2[27*2 +: 27]),
-        .along_x    (along_x_8),
-        .along_y    (along_y_8),
-        .clipped    (clipped)
-    );
-
-    // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed
+    // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed. A sum begins
+    // with its register's reset
     wire [SIDE*SIDE*(VALUE_BITS+1)-1:0] sums;
 
     generate
         for (index = 0; index < SIDE; index = index + 1) begin : gen_rows
             for (column = 0; column < SIDE; column = column + 1) begin : gen_points
-                wire signed [POINT_BITS-1:0] x = along_x_8[27*column +: 27];
-                wire signed [POINT_BITS-1:0] y = along_y_8[27*index +: 27];
-                wire signed [POINT_BITS-1:0] stress = x + y;
-                reg [POINT_BITS-2:0] tension_9;
+                wire [TAXELS*(POINT_BITS-1)-1:0] tensions_9;
+                wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle, before they are in the sum
                 reg [VALUE_BITS-1:0] sum;
                 reg over;
-                wire [VALUE_BITS:0] next = {1'b0, firsts[9] ? {VALUE_BITS{1'b0}} : sum}
-                    + { {(VALUE_BITS - POINT_BITS + 2){1'b0}}, tension_9};
+                wire [VALUE_BITS:0] next = {1'b0, sum}
+                    + { {(VALUE_BITS + 1 - TENSION_BITS){1'b0}}, tension};
+
+                for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_tensions
+                    wire signed [POINT_BITS-1:0] x = along_x_8[27*(SIDE*taxel + column) +: 27];
+                    wire signed [POINT_BITS-1:0] y = along_y_8[27*(SIDE*taxel + index) +: 27];
+                    wire signed [POINT_BITS-1:0] stress = x + y;
+                    reg [POINT_BITS-2:0] tension_9;
+
+                    always @(posedge clock) begin
+                        tension_9 <= stress[POINT_BITS-2:0];
+                        if (stress[POINT_BITS-1] || !valids[8]) begin
+                            tension_9 <= {(POINT_BITS - 1){1'b0}};
+                        end
+                    end
+
+                    assign tensions_9[(POINT_BITS-1)*taxel +: POINT_BITS-1] = tension_9;
+                end
+
+                if (TAXELS == 1) begin : gen_one
+                    assign tension = tensions_9;
+                end else begin : gen_both
+                    reg [TENSION_BITS-1:0] both_10;
+
+                    always @(posedge clock) begin
+                        both_10 <= {1'b0, tensions_9[0 +: POINT_BITS-1]}
+                            + {1'b0, tensions_9[(TAXELS-1)*(POINT_BITS-1) +: POINT_BITS-1]};
+                    end
+
+                    assign tension = both_10;
+                end
 
                 always @(posedge clock) begin
-                    tension_9 <= stress[POINT_BITS-2:0];
-                    if (stress[POINT_BITS-1] || !valids[8]) begin
-                        tension_9 <= {(POINT_BITS - 1){1'b0}};
-                    end
-                    if (valids[9]) begin
+                    if (clear) begin
+                        sum <= {VALUE_BITS{1'b0}};
+                        over <= 1'b0;
+                    end else if (valids[STAGES]) begin
                         sum <= next[VALUE_BITS-1:0];
-                        over <= next[VALUE_BITS] || (over && !firsts[9]);
+                        over <= next[VALUE_BITS] || over;
                     end
                 end
 
@@ -195,7 +244,7 @@ module sptfra_points #(
         if (giving && (row == LAST_ROW)) begin
             giving <= 1'b0;
         end
-        if (lasts[9]) begin
+        if (lasts[STAGES]) begin
             giving <= 1'b1;
             row <= 4'd0;
         end
@@ -228,6 +277,8 @@ module sptfra_points #(
 `else
     wire _unused_check = (EXPECTED_LATENCY != 0);
 `endif
+
+    wire _unused = &{1'b0, margins};
 
 endmodule
 

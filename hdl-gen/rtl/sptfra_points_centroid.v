@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Centroid of the weighted points of a SIDE x SIDE grid of (mu_x, mu_y), 3/16 apart, of which five come in a cycle, row
-// by row. From the last ones to done: 27 cycles.
+// Centroid of the weighted points of a SIDE x SIDE grid of (mu_x, mu_y), 3/16 apart. Five come in a cycle, or a row of
+// 15, row by row. From the last ones to done: 27 cycles, or 28.
 
 `default_nettype none
 
 module sptfra_points_centroid #(
     // Points along an axis, an odd multiple of 5
     parameter integer SIDE = 15,
+    // Points that come in a cycle: 5 or 15
+    parameter integer AT_ONCE = 5,
     // Bits of a weight, up to 24
     parameter integer WEIGHT_BITS = 24
 ) (
@@ -17,7 +19,7 @@ module sptfra_points_centroid #(
     // Weights
     input  wire start, // before the first one
     input  wire valid,
-    input  wire [5*WEIGHT_BITS-1:0] weights, // of the least mu_x in the lowest bits
+    input  wire [AT_ONCE*WEIGHT_BITS-1:0] weights, // of the least mu_x in the lowest bits
     input  wire last, // with valid: these are the last ones
     // Result, held until the next start
     output reg  done, // one cycle
@@ -25,26 +27,30 @@ module sptfra_points_centroid #(
     output reg  signed [17:0] mu_y
 );
 
+    generate
+        if ((AT_ONCE != 5) && (AT_ONCE != 15)) begin : gen_check
+            sptfra_error_five_points_come_in_a_cycle_or_fifteen invalid ();
+        end
+    endgenerate
+
     localparam integer REACH = SIDE / 2;
-    localparam integer AT_ONCE = 5;
+    localparam integer FIVES = AT_ONCE / 5;
 
     genvar index;
 
-    // ---- The weights' sum and their moments: of the five about their first, by additions, and of that one about
-    // the middle of the grid times what they weigh together. Index k: k cycles after the weights
-    localparam integer FIVE_BITS = WEIGHT_BITS + 4; // of the sum of five times up to 4
-    wire [FIVE_BITS-1:0] w [0:AT_ONCE-1];
-    reg [FIVE_BITS-1:0] sum_012_1;
-    reg [FIVE_BITS-1:0] sum_34_1;
-    reg [FIVE_BITS-1:0] moment_12_1;
-    reg [FIVE_BITS-1:0] moment_34_1;
-    reg [FIVE_BITS-1:0] sum_2;
-    reg [FIVE_BITS-1:0] moment_2;
-    reg signed [17:0] column_2; // of the first of the five, from the middle
-    reg signed [17:0] row_2;
-    reg first_2;
-    reg valid_1;
-    reg valid_2;
+    // ---- The weights' sum and their moments: of those of a cycle about their first, by additions, and of that one
+    // about the middle of the grid times what they weigh together. Index k: k cycles after the weights
+    localparam integer GROUP_BITS = WEIGHT_BITS + ((FIVES == 1) ? 4 : 7); // of the sum of them, times up to 4, or 14
+    localparam integer STAGES = (FIVES == 1) ? 2 : 3; // to both sums of those of a cycle
+    wire [FIVES*GROUP_BITS-1:0] sums_2; // of each five
+    wire [FIVES*GROUP_BITS-1:0] moments_2; // ... about their own first
+    wire [GROUP_BITS-1:0] group_sum; // of all
+    wire [GROUP_BITS-1:0] group_moment;
+    reg signed [17:0] column; // of the first of these, from the middle
+    reg signed [17:0] row;
+    reg first;
+    reg [STAGES:1] valids;
+    wire group_valid = valids[STAGES];
     reg [47:0] weight_sum;
     reg [47:0] moment_within;
     wire signed [47:0] moment_of_first;
@@ -52,67 +58,102 @@ module sptfra_points_centroid #(
     localparam signed [17:0] LEAST = -REACH[17:0];
     localparam integer LAST_FIRST = REACH + 1 - AT_ONCE;
     localparam signed [17:0] GREATEST_FIRST = LAST_FIRST[17:0];
-    localparam signed [17:0] FIVE = AT_ONCE[17:0];
+    localparam signed [17:0] STEP = AT_ONCE[17:0];
 
     generate
-        for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_wide
-            assign w[index] = {4'd0, weights[WEIGHT_BITS*index +: WEIGHT_BITS]};
+        for (index = 0; index < FIVES; index = index + 1) begin : gen_fives
+            wire [5*WEIGHT_BITS-1:0] five = weights[5*WEIGHT_BITS*index +: 5*WEIGHT_BITS];
+            wire [GROUP_BITS-1:0] w0 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*0 +: WEIGHT_BITS]};
+            wire [GROUP_BITS-1:0] w1 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*1 +: WEIGHT_BITS]};
+            wire [GROUP_BITS-1:0] w2 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*2 +: WEIGHT_BITS]};
+            wire [GROUP_BITS-1:0] w3 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*3 +: WEIGHT_BITS]};
+            wire [GROUP_BITS-1:0] w4 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*4 +: WEIGHT_BITS]};
+            reg [GROUP_BITS-1:0] sum_012_1;
+            reg [GROUP_BITS-1:0] sum_34_1;
+            reg [GROUP_BITS-1:0] moment_12_1;
+            reg [GROUP_BITS-1:0] moment_34_1;
+            reg [GROUP_BITS-1:0] sum_2;
+            reg [GROUP_BITS-1:0] moment_2;
+
+            always @(posedge clock) begin
+                sum_012_1 <= w0 + w1 + w2;
+                sum_34_1 <= w3 + w4;
+                moment_12_1 <= w1 + (w2 << 1);
+                moment_34_1 <= w3 + (w3 << 1) + (w4 << 2);
+                sum_2 <= sum_012_1 + sum_34_1;
+                moment_2 <= moment_12_1 + moment_34_1;
+            end
+
+            assign sums_2[GROUP_BITS*index +: GROUP_BITS] = sum_2;
+            assign moments_2[GROUP_BITS*index +: GROUP_BITS] = moment_2;
+        end
+        if (FIVES == 1) begin : gen_five
+            assign group_sum = sums_2;
+            assign group_moment = moments_2;
+        end else begin : gen_row
+            // The second five begin 5 points after the first, the third 10
+            wire [GROUP_BITS-1:0] second = sums_2[GROUP_BITS*1 +: GROUP_BITS];
+            wire [GROUP_BITS-1:0] third = sums_2[GROUP_BITS*2 +: GROUP_BITS];
+            wire [GROUP_BITS-1:0] once = second + (third << 1);
+            reg [GROUP_BITS-1:0] sum_3;
+            reg [GROUP_BITS-1:0] moment_3;
+
+            always @(posedge clock) begin
+                sum_3 <= sums_2[0 +: GROUP_BITS] + second + third;
+                moment_3 <= moments_2[0 +: GROUP_BITS] + moments_2[GROUP_BITS*1 +: GROUP_BITS]
+                    + moments_2[GROUP_BITS*2 +: GROUP_BITS] + once + (once << 2);
+            end
+
+            assign group_sum = sum_3;
+            assign group_moment = moment_3;
         end
     endgenerate
 
     sptfra_mac of_first (
         .clock       (clock),
         .reset       (reset),
-        .valid       (valid_2),
-        .first       (first_2),
-        .coefficient (column_2),
-        .data        (sum_2[26:0]),
+        .valid       (group_valid),
+        .first       (first),
+        .coefficient (column),
+        .data        (group_sum[26:0]),
         .accumulator (moment_of_first)
     );
 
     sptfra_mac of_row (
         .clock       (clock),
         .reset       (reset),
-        .valid       (valid_2),
-        .first       (first_2),
-        .coefficient (row_2),
-        .data        (sum_2[26:0]),
+        .valid       (group_valid),
+        .first       (first),
+        .coefficient (row),
+        .data        (group_sum[26:0]),
         .accumulator (moment_y)
     );
 
     always @(posedge clock) begin
-        valid_1 <= valid;
-        valid_2 <= valid_1;
-        sum_012_1 <= w[0] + w[1] + w[2];
-        sum_34_1 <= w[3] + w[4];
-        moment_12_1 <= w[1] + (w[2] << 1);
-        moment_34_1 <= w[3] + (w[3] << 1) + (w[4] << 2);
-        sum_2 <= sum_012_1 + sum_34_1;
-        moment_2 <= moment_12_1 + moment_34_1;
-        if (valid_2) begin
-            first_2 <= 1'b0;
-            weight_sum <= weight_sum + { {(48 - FIVE_BITS){1'b0}}, sum_2};
-            moment_within <= moment_within + { {(48 - FIVE_BITS){1'b0}}, moment_2};
-            column_2 <= (column_2 == GREATEST_FIRST) ? LEAST : column_2 + FIVE;
-            row_2 <= (column_2 == GREATEST_FIRST) ? row_2 + 18'sd1 : row_2;
+        valids <= {valids[STAGES-1:1], valid};
+        if (group_valid) begin
+            first <= 1'b0;
+            weight_sum <= weight_sum + { {(48 - GROUP_BITS){1'b0}}, group_sum};
+            moment_within <= moment_within + { {(48 - GROUP_BITS){1'b0}}, group_moment};
+            column <= (column == GREATEST_FIRST) ? LEAST : column + STEP;
+            row <= (column == GREATEST_FIRST) ? row + 18'sd1 : row;
         end
         if (start) begin
-            first_2 <= 1'b1;
+            first <= 1'b1;
             weight_sum <= 48'd0;
             moment_within <= 48'd0;
-            column_2 <= LEAST;
-            row_2 <= LEAST;
+            column <= LEAST;
+            row <= LEAST;
         end
         if (reset) begin
-            valid_1 <= 1'b0;
-            valid_2 <= 1'b0;
+            valids <= {STAGES{1'b0}};
         end
     end
 
     // ---- Centroid: mu = 3 / 16 of the moments over the sum of the weights
     localparam integer WHOLE_BITS = 5; // of three times that quotient, up to 3 REACH
     localparam integer RATIO_BITS = WHOLE_BITS + 12;
-    localparam integer DIVIDE_STAGES = 8; // from the last weights to the division
+    localparam integer DIVIDE_STAGES = 6 + STAGES; // from the last weights to the division
     reg [DIVIDE_STAGES:1] drains;
     reg signed [47:0] moment_x_6;
     reg signed [47:0] moment_y_6;
@@ -159,7 +200,7 @@ module sptfra_points_centroid #(
         end
     end
 
-    wire _unused = &{1'b0, sum_2};
+    wire _unused = &{1'b0, group_sum};
 
 endmodule
 

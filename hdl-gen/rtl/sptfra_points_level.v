@@ -5,13 +5,15 @@
 //
 // A row of points a cycle comes in and is stored, and the least values are kept. The level set lies below B_min + 2^-8
 // sum |b|; a point weighs as the square of its depth, so that it weighs nothing at the edge. Five points a cycle are
-// weighed. From the first row to done: a cycle a row, then three, and 37.
+// weighed, or a row of 15. From the first row to done: a cycle a row, then three, and 37; or one, and 38.
 
 `default_nettype none
 
 module sptfra_points_level #(
     // Points along an axis, an odd multiple of 5
     parameter integer SIDE = 15,
+    // Points weighed in a cycle: 5, or all of a row of 15
+    parameter integer AT_ONCE = 5,
     // From the first row to done, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0
 ) (
@@ -32,7 +34,6 @@ module sptfra_points_level #(
 );
 
     localparam integer VALUE_BITS = 28;
-    localparam integer AT_ONCE = 5; // points weighed in a cycle
     localparam integer GROUPS = SIDE / AT_ONCE;
     localparam integer DEPTH_BITS = 16; // of what a weight is the square of: up to the margin
     localparam integer WEIGHT_DROP = 8; // bits dropped from the square
@@ -129,7 +130,7 @@ module sptfra_points_level #(
         end
     end
 
-    // ---- Sequence: the level, when the last row is in the least values; then a row in three cycles
+    // ---- Sequence: the level, when the last row is in the least values; then a row in a cycle, or in three
     localparam integer LEVEL_STAGES = 1; // the level is there two cycles later, when the first depth is
     reg [MIN_STAGES+LEVEL_STAGES:1] all_in; // index k: k cycles after the last row
     reg reading;
@@ -163,19 +164,24 @@ module sptfra_points_level #(
         end
     end
 
-    // ---- Five depths below the level, squared: index k: k cycles after the row's address
+    // ---- Depths below the level, squared: index k: k cycles after the row's address
     localparam integer STAGES = 5;
     reg [STAGES:1] reads;
     reg [STAGES:1] lasts;
     wire last_5 = lasts[STAGES];
     reg [1:0] group_1;
     reg [3:0] row_1;
-    reg [1:0] corners_2; // the first and the last of the five are corners of the grid
-    wire [AT_ONCE*VALUE_BITS-1:0] five_1 = stored_1[AT_ONCE*VALUE_BITS*group_1 +: AT_ONCE*VALUE_BITS];
+    reg [1:0] corners_2; // the first and the last of these points are corners of the grid
+    wire [AT_ONCE*VALUE_BITS-1:0] group_values_1;
     wire [AT_ONCE-1:0] below_2;
     wire [AT_ONCE*WEIGHT_BITS-1:0] weights_5;
 
     generate
+        if (GROUPS == 1) begin : gen_row
+            assign group_values_1 = stored_1;
+        end else begin : gen_group
+            assign group_values_1 = stored_1[AT_ONCE*VALUE_BITS*group_1 +: AT_ONCE*VALUE_BITS];
+        end
         for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_weights
             reg signed [VALUE_BITS+1:0] depth_2;
             reg [DEPTH_BITS-1:0] depth_3;
@@ -196,7 +202,7 @@ module sptfra_points_level #(
             );
 
             always @(posedge clock) begin
-                depth_2 <= {1'b0, level} - {2'b00, five_1[VALUE_BITS*index +: VALUE_BITS]};
+                depth_2 <= {1'b0, level} - {2'b00, group_values_1[VALUE_BITS*index +: VALUE_BITS]};
                 // Not more than the margin
                 depth_3 <= depth_2[VALUE_BITS+1] ? {DEPTH_BITS{1'b0}} : depth_2[DEPTH_BITS-1:0];
                 weight_5 <= square_4[WEIGHT_DROP +: WEIGHT_BITS];
@@ -231,6 +237,7 @@ module sptfra_points_level #(
     // ---- Their centroid
     sptfra_points_centroid #(
         .SIDE        (SIDE),
+        .AT_ONCE     (AT_ONCE),
         .WEIGHT_BITS (WEIGHT_BITS)
     ) centroid (
         .clock   (clock),

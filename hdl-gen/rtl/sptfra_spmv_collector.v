@@ -34,6 +34,9 @@ module sptfra_spmv_collector #(
     parameter DESTINATION_BITS = 4,
     // Bits dropped of a result by destination, 6 each, destination 0 lowest
     parameter [95:0] SHIFTS = {16{6'd16}},
+    // 1: while a program's last visit waits, the ROM's address is that of the next program's first one, if that has
+    // begun: two cycles from one visit to the other. 0: four
+    parameter AHEAD = 0,
     // Words of the ROM
     parameter VISIT_DEPTH = 200,
     // Prefix of the ROM file name, and the name
@@ -82,6 +85,10 @@ module sptfra_spmv_collector #(
     wire jump = stopped && jump_waits;
     wire fetch = taking || !visit_known;
     reg  filling; // the ROM's first word is on its way
+    reg  aimed; // the address is the next program's, and the visit is the last of this one
+    wire loads = fetch && !stopped && !ends && !filling; // a visit
+    wire at_last = loads ? visit[WORD_WIDTH-1] : visit_known && last && !taking;
+    wire aim = (AHEAD != 0) && at_last && !aimed && jump_waits;
 
     sptfra_rom #(
         .WIDTH         (WORD_WIDTH),
@@ -97,7 +104,7 @@ module sptfra_spmv_collector #(
     );
 
     always @(posedge clock) begin
-        if (jump) begin
+        if (jump || aim) begin
             visit_count <= jump_target;
         end else if (fetch) begin
             visit_count <= visit_count + 1;
@@ -110,11 +117,12 @@ module sptfra_spmv_collector #(
         if (restart) begin
             jump_target <= start_visit;
             jump_waits <= 1'b1;
-        end else if (jump) begin
+        end else if (jump || (ends && aimed)) begin
             jump_waits <= 1'b0;
         end
+        aimed <= (aimed || aim) && !ends;
         if (ends) begin
-            stopped <= 1'b1;
+            stopped <= !aimed;
         end else if (jump) begin
             stopped <= 1'b0;
         end
@@ -124,6 +132,7 @@ module sptfra_spmv_collector #(
             visit_known <= 1'b0;
             stopped <= 1'b1;
             jump_waits <= 1'b0;
+            aimed <= 1'b0;
             parted <= 1'b0;
         end
     end
@@ -142,7 +151,7 @@ module sptfra_spmv_collector #(
 `ifdef SIMULATION
     // By the schedule a program's first visit is reached before the next program begins
     always @(posedge clock) begin
-        if (!reset && restart && jump_waits && !jump) begin
+        if (!reset && restart && jump_waits && !jump && !(ends && aimed)) begin
             $fdisplay(32'h80000002, "%m: a program has begun while the one before waits for its first visit");
             $finish;
         end

@@ -35,6 +35,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("VISIT_DEPTH", schedule.visits.len())
         .count("MIRROR_SIDE", mirror_side(plan));
     let parameters = programs(plan, products(plan, parameters));
+    let parameters = if schedule.ahead { parameters.flag("AHEAD", true) } else { parameters };
     parameters
         .number("DESTINATION_BITS", destination_bits(plan.field_words() > 0).into())
         .table("SHIFTS", 6, &shifts(plan))

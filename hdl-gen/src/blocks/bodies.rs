@@ -26,7 +26,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
 /// through sums and comparisons.
 ///
 /// A search has a stage that is longer (the joint estimator's with 15 points a side takes `4 quads + 108`, the others far
-/// longer), and a frame is begun only when that stage of the one before the last is over. So a count is there before the
+/// longer; it takes `2 quads + 80` with many lanes, where that is longer than the count), and a frame is begun only when that stage of the one before the last is over. So a count is there before the
 /// search, and neither latency nor interval knows of it.
 pub fn latency(sensor: &Sensor) -> u64 {
     ((sensor.columns + 1) * sensor.rows) as u64 + 12

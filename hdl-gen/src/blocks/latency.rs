@@ -63,8 +63,11 @@ pub const TURN_GAP: u64 = 2;
 pub const ROUNDS_FETCH: u64 = 1;
 /// From the issue of a row's last MAC to its sum standing in the lane's result register.
 pub const ISSUE_TO_RESULT: u64 = 7;
-/// From taking a program's last result to taking the next program's first: the order is read from a ROM.
-pub const COLLECTOR_JUMP: u64 = 4;
+/// From taking a program's last result to taking the next program's first: the order is read from a ROM, whose address is
+/// there `ahead` or goes there then.
+pub fn collector_jump(ahead: bool) -> u64 {
+    if ahead { 2 } else { 4 }
+}
 /// From the collector taking a result to its standing on the result bus.
 pub const VISIT_TO_BUS: u64 = 3;
 /// From a write at the array's port to the first issue that may read the word: the write passes a register and enters the

@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 44] = [
+        let expected: [(&str, &str, i64); 43] = [
             // A cycle more counts the frame.
             ("sptfra_fold", "LAST_TO_WRITTEN", stress_to_ready(true) as i64 - 1),
             ("sptfra_fold_frame", "TURN_TO_WRITTEN", QUAD_TO_READY as i64 - 1),
@@ -164,7 +164,6 @@ mod tests {
             ("sptfra_points_taxel", "U_BITS", joint::points::U_BITS.into()),
             ("sptfra_points", "VALUE_BITS", joint::points::VALUE_BITS.into()),
             ("sptfra_points_level", "WEIGHT_DROP", joint::WEIGHT_DROP.into()),
-            ("sptfra_points_level", "AT_ONCE", joint::points::AT_ONCE as i64),
             ("sptfra_friction", "LINEAR_FRACTION", joint::LINEAR_FRACTION.into()),
             ("sptfra_friction", "CUBIC_FRACTION", joint::CUBIC_FRACTION.into()),
             ("sptfra_friction", "FACTOR_FRACTION", joint::FACTOR_FRACTION.into()),

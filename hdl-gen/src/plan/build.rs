@@ -10,7 +10,7 @@ use super::counts::CountsPlan;
 use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::filtered::Filtered;
-use super::format::{FRICTION_FRACTION, Format, pow2};
+use super::format::{FRICTION_FRACTION, Format, MANY_LANES, pow2};
 use super::layout::OperandLayout;
 use super::matrix::QuantisedMatrix;
 use super::passes;
@@ -149,7 +149,8 @@ impl Work {
     fn on_lanes(&self, design: &Design) -> Plan {
         let hardware = &design.hardware;
         let (elements, ways) = (elements(design), ways(design));
-        let schedule = Schedule::new(&self.products, &self.matrices, hardware.lanes / ways);
+        let schedule =
+            Schedule::new(&self.products, &self.matrices, hardware.lanes / ways, hardware.lanes > MANY_LANES);
         let Formats { stress, u, .. } = self.formats;
         let estimator = EstimatorPlan::new(&Given { design, elements, ways, stress, u });
         let mut plan = Plan {

@@ -16,6 +16,10 @@ pub const SUM_BITS: u32 = 40;
 /// Most cells of an estimator's search that are worth their adders.
 pub const MOST_CELLS: usize = 32;
 
+/// With more lanes than these a frame's way past the lanes, and from one of their programs to the next, is worth more
+/// cells and multipliers.
+pub const MANY_LANES: usize = 64;
+
 /// Most bits that a product drops between accumulator and result. A matrix whose results are so small beside the
 /// others' that it would drop more is stored with fewer bits instead: they would be lost in the rounding.
 pub const MOST_SHIFT: u32 = 40;

@@ -17,7 +17,7 @@ use super::dealing::{Dealer, Dealt, Stream, rounds_period};
 pub use super::lane::{LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
 use super::product::{Epilogue, Product, Vector, mirror, spacing, visit_to_operand};
-use crate::blocks::latency::{COLLECTOR_JUMP, ISSUE_TO_RESULT, ROUNDS_FETCH, TURN_GAP, WRITE_TO_LIST};
+use crate::blocks::latency::{ISSUE_TO_RESULT, ROUNDS_FETCH, TURN_GAP, WRITE_TO_LIST, collector_jump};
 
 /// When a product runs, in cycles from the first issue of its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -82,11 +82,14 @@ pub struct Schedule {
     pub windows: Vec<Window>,
     /// Every result in the order in which the collector takes them, program after program.
     pub visits: Vec<Visit>,
+    /// Whether the collector looks ahead to the next program while the last result of one waits.
+    pub ahead: bool,
 }
 
 impl Schedule {
-    /// Lays out `products` on `lanes` lanes; the products of a program stand next to each other.
-    pub fn new(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize) -> Self {
+    /// Lays out `products` on `lanes` lanes; the products of a program stand next to each other. The collector looks
+    /// `ahead` to the next program, or not.
+    pub fn new(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize, ahead: bool) -> Self {
         let mut dealer = Dealer::new(lanes);
         let mut stored = vec![false; matrices.len()];
         let mut programs = Vec::new();
@@ -132,9 +135,10 @@ impl Schedule {
         }
         let longest_drain = programs.iter().map(|program| program.last_visit - program.length).max().unwrap_or(0);
         for program in &mut programs {
-            program.gap = gap(program, &windows[program.first..program.end], longest_drain, lanes);
+            let left = longest_drain + collector_jump(ahead);
+            program.gap = gap(program, &windows[program.first..program.end], longest_drain, left, lanes);
         }
-        Self { lanes: dealer.programs, programs, windows, visits: dealer.visits }
+        Self { lanes: dealer.programs, programs, windows, visits: dealer.visits, ahead }
     }
 
     /// Words in the values ROMs: those with a column, then the dense rows.
@@ -249,16 +253,16 @@ fn addend(product: &Product, made: &[Made]) -> u64 {
 }
 
 /// The gap before a program: the results of the one before, `longest_drain` cycles after its last issue at most, must
-/// have left the lanes before the first of this one is ready, and the collector must have gone on to this one before the
-/// one after it is started: it remembers one.
-fn gap(program: &Program, windows: &[Window], longest_drain: u64, lanes: usize) -> u64 {
+/// have left the lanes, and the collector gone on, `left` cycles after that issue, before the first of this one is ready;
+/// and it must have done so before the one after it is started: it remembers one.
+fn gap(program: &Program, windows: &[Window], longest_drain: u64, left: u64, lanes: usize) -> u64 {
     let saved = |window: &Window| {
         // An operand of nothing but zeros.
         let shortest = |rounds: Rounds| rounds.lead + ROUNDS_FETCH + rounds.count as u64 * rounds_period(0, lanes);
         window.rounds.map_or(0, |rounds| window.length - shortest(rounds))
     };
     let shortest = program.length - windows.iter().map(saved).sum::<u64>();
-    let before_result = (longest_drain + COLLECTOR_JUMP).saturating_sub(program.first_visit);
+    let before_result = left.saturating_sub(program.first_visit);
     let before_start = (longest_drain + 1).saturating_sub(shortest);
     before_result.max(before_start).max(TURN_GAP)
 }

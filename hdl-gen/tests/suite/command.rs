@@ -244,6 +244,29 @@ fn inspect_tells_people_the_same_figures() {
     assert!(text.lines().all(|line| line.chars().count() <= 110 && line.trim_end() == line), "{text}");
 }
 
+/// Which search on the line a design has, and which of the two reasons decides.
+#[test]
+fn inspect_says_how_the_line_is_searched() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |lanes: usize, side: usize| {
+        let lanes = format!("[algorithm]\nplan = \"reduced\"\n[hardware]\nlanes = {lanes}\n");
+        let text = design_text("pad", [side, side], [4.0, 4.0], 3.0, &lanes);
+        fs::write(folder.path().join("pad.toml"), text).unwrap();
+        let text = good(folder.path(), &["inspect", "pad.toml"]);
+        let json: Value = serde_json::from_str(&good(folder.path(), &["inspect", "pad.toml", "--json"])).unwrap();
+        assert!(text.lines().all(|line| line.chars().count() <= 110), "{text}");
+        let rounds = text.lines().find_map(|line| line.strip_prefix("  rounds ")).expect("rounds").trim();
+        assert!(
+            text.contains(&format!("  search       {} cycles: minimum", json["predicted"]["search_cycles"])),
+            "{text}"
+        );
+        rounds.to_owned()
+    };
+    assert!(said(32, 10).starts_with("17 of two parts: up to 32 lanes do not wait"));
+    assert!(said(64, 10).starts_with("6 of eight parts: 64 lanes, more than 32, would wait for 17 of two; 4 taxels"));
+    assert!(said(64, 20).starts_with("17 of two parts: 16 taxels a cell, more than 8"));
+}
+
 /// The joint estimator's gain belongs to a kernel.
 #[test]
 fn inspect_compares_the_gain_with_what_the_kernel_lacks() {

@@ -11,7 +11,7 @@ use crate::reduced::{exactly, folded, product, stored, swapped, symmetric, unfol
 /// What the lanes make of a vector by the list of its quads that are not zero. Sixteen times the product.
 fn in_rounds(quads: &Quads, product: &Product, matrix: QuantisedMatrix, lanes: usize, x: &[i64]) -> Vec<i64> {
     let n = quads.count();
-    let schedule = Schedule::new(std::slice::from_ref(product), &[matrix], lanes);
+    let schedule = Schedule::new(std::slice::from_ref(product), &[matrix], lanes, false);
     let rounds = schedule.windows[0].rounds.expect("rounds");
     let zero = |&quad: &usize| quads.members(quad).into_iter().all(|taxel| x[taxel] == 0);
     let listed: Vec<usize> = (0..n).filter(|quad| !zero(quad)).collect();

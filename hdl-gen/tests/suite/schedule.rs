@@ -1,7 +1,7 @@
 //! The schedule: who computes what, and when.
 
 use golden::parity::CLASSES;
-use hdl_gen::blocks::latency::{COLLECTOR_JUMP, ISSUE_TO_RESULT};
+use hdl_gen::blocks::latency::{ISSUE_TO_RESULT, collector_jump};
 use hdl_gen::estimators::Cells;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
@@ -30,9 +30,15 @@ fn run(schedule: &Schedule, products: &[Product], size: usize) -> RowSums {
     execute(schedule, products, size, &|product, part, element| operand(product.operands[part], element))
 }
 
-/// Executes a schedule and compares with matrix times vector; then looks at what the execution cannot see.
+/// Checks the schedules of both kinds of collector; returns that of one which does not look ahead.
 fn check(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize) -> Schedule {
-    let schedule = Schedule::new(products, matrices, lanes);
+    check_one(products, matrices, lanes, true);
+    check_one(products, matrices, lanes, false)
+}
+
+/// Executes a schedule and compares with matrix times vector; then looks at what the execution cannot see.
+fn check_one(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize, ahead: bool) -> Schedule {
+    let schedule = Schedule::new(products, matrices, lanes, ahead);
     let size = matrices[products[0].matrix].rows.len();
     let sums = run(&schedule, products, size);
     let leads = products.iter().filter(|product| product.lead.is_some()).count();
@@ -154,7 +160,7 @@ fn check_programs(schedule: &Schedule, products: &[Product]) {
         assert!(visits.is_sorted_by_key(|visit| (visit.product, visit.cycle)));
         for next in &schedule.programs {
             let begins = program.length + next.gap;
-            assert!(program.last_visit + COLLECTOR_JUMP <= begins + next.first_visit, "{index}");
+            assert!(program.last_visit + collector_jump(schedule.ahead) <= begins + next.first_visit, "{index}");
             // The collector remembers one start: it has gone on to the next program before the one after that starts.
             assert!(program.last_visit < begins + next.length, "{index}");
         }

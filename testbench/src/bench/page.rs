@@ -70,6 +70,17 @@ fn solver(page: &mut Page, rows: &[SolverRate]) {
         ])
         .with(cells),
     );
+    for row in rows {
+        let Some(numpy) = row.numpy_frames_per_second else { continue };
+        let golden = row.in_batches.frames_per_second;
+        page.line(&format!(
+            "`{}` in numpy, on one BLAS thread, with the same products and the same search (`tools/bench_numpy.py`): {} \
+             frames a second in batches; {} times as many here.",
+            row.design,
+            grouped(numpy.round() as u64),
+            decimals(golden / numpy, 1)
+        ));
+    }
     let files: Vec<&str> = rows.iter().map(|row| row.file.as_str()).collect();
     page.command(&format!("golden bench {}", files.join(" ")));
 }

@@ -26,6 +26,9 @@ pub struct SolverRate {
     pub one_by_one: Speed,
     /// Many frames at a time.
     pub in_batches: Speed,
+    /// What numpy does with the same products and search on one BLAS thread, in batches: `tools/bench_numpy.py --add`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub numpy_frames_per_second: Option<f64>,
 }
 
 /// Frames a second, median, and the spread behind it.

@@ -64,12 +64,14 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         // Sixteen hidden units at a time.
         (with_lanes(shipped("sensor1-fast"), 64), "sensor1-reduced-64", 1_450),
         (shipped("sensor1-fast-64"), "sensor1-reduced-64", 1_150),
+        // Two taxels a cycle, a row of points weighed in one, and a collector that looks ahead.
+        (with_lanes(shipped("sensor1-fast-64"), 100), "sensor1-reduced-64", 900),
         (uncorrected(shipped("sensor1-fast")), "sensor1-reduced", 2_650),
         (uncorrected(shipped("sensor1-joint")), "sensor1-reduced", 3_950),
         (resultants, "sensor1-resultants", 1_900),
     ];
     let lines = in_parallel(&rows, |(design, line, most)| {
-        let (plan, line) = (planned(design), planned(&shipped(line)));
+        let (plan, line) = (planned(design), planned(&with_lanes(shipped(line), design.hardware.lanes)));
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut packets = crate::support::frames::extremes(&plan, &mut random);
         packets.extend((0..12).map(|_| crate::support::frames::contact(&plan, &mut random)));

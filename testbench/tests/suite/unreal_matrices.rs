@@ -21,7 +21,7 @@ fn changed(name: &str, change: impl Fn(&mut Plan)) -> Plan {
     name.clone_into(&mut design.name);
     let mut plan = planned(&design);
     change(&mut plan);
-    plan.schedule = Schedule::new(&plan.products, &plan.matrices, plan.design.hardware.lanes);
+    plan.schedule = Schedule::new(&plan.products, &plan.matrices, plan.design.hardware.lanes, false);
     plan
 }
 

@@ -5,6 +5,8 @@ use crate::status::Status;
 
 /// Sums side by side, so that a processor may form several at once.
 const LANES: usize = 8;
+/// Share of a value by which rounding may make it less than convexity has it, and much more.
+const ROUNDING: f64 = 1e-9;
 
 /// What the search over the grid finds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,30 +44,74 @@ fn hinges(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+/// Condition 1 at the points of the grid, row by row, as far as they may be in the level set; the others are left at
+/// infinity.
+///
+/// It is convex. Past a point of a row that is above the level, and not below the point before it, all are; the level is
+/// the least value plus the allowance, and so at most what it is of the values that are known. Rows are walked from the
+/// middle of the grid outwards, each from the place where the one before was least.
+fn evaluate(side: usize, value: impl Fn(usize, usize) -> f64, allowance: f64, values: &mut Vec<f64>) {
+    values.clear();
+    values.resize(side * side, f64::INFINITY);
+    let mut least = f64::INFINITY;
+    let mut walk = |row: usize, start: usize| {
+        let values = &mut values[row * side..][..side];
+        let mut best = start;
+        values[start] = value(row, start);
+        least = least.min(values[start]);
+        for step in [1, -1] {
+            let mut column = start;
+            while let Some(next) = column.checked_add_signed(step).filter(|&next| next < side) {
+                values[next] = value(row, next);
+                least = least.min(values[next]);
+                if values[next] < values[best] {
+                    best = next;
+                }
+                if values[next] >= values[column] && values[next] > (least + allowance) * (1.0 + ROUNDING) {
+                    break;
+                }
+                column = next;
+            }
+        }
+        best
+    };
+    let middle = side / 2;
+    let mut above = walk(middle, middle);
+    let mut below = above;
+    for row in middle + 1..side {
+        above = walk(row, above);
+    }
+    for row in (0..middle).rev() {
+        below = walk(row, below);
+    }
+}
+
 /// Searches the grid for `u_q` in pascals, the dead zone in pascals and the allowance above the least value.
 pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64, scratch: &mut GridScratch) -> Found {
     let GridScratch { columns, rows, values } = scratch;
     let (side, taxels, reach) = (grid.side(), u[0].len(), f64::from(grid.reach));
     columns.clear();
     rows.clear();
-    values.clear();
     for point in -grid.reach..=grid.reach {
         let mu = grid.step() * f64::from(point);
         columns.extend(u[0].iter().zip(u[1]).map(|(u0, u1)| u0 + u1 * mu - dead_zone));
         rows.extend(u[2].iter().map(|u2| u2 * mu));
     }
-    for row in rows.chunks_exact(taxels.max(1)) {
-        values.extend(columns.chunks_exact(taxels.max(1)).map(|column| hinges(column, row)));
-    }
+    let at = |point: usize| point * taxels..(point + 1) * taxels;
+    evaluate(side, |row, column| hinges(&columns[at(column)], &rows[at(row)]), allowance, values);
 
     // The least value inside the grid and on its border.
-    let mut least = [f64::INFINITY; 2];
-    for (index, value) in values.iter().enumerate() {
-        let on_border = [index % side, index / side].iter().any(|&at| at == 0 || at == side - 1);
-        let least = &mut least[usize::from(on_border)];
-        *least = least.min(*value);
+    let (mut inside, mut on_border) = (f64::INFINITY, f64::INFINITY);
+    let least = |least: f64, values: &[f64]| values.iter().copied().fold(least, f64::min);
+    for (row, values) in values.chunks_exact(side).enumerate() {
+        let ends = 1..side - 1;
+        if ends.contains(&row) {
+            inside = least(inside, &values[ends]);
+            on_border = on_border.min(values[0]).min(values[side - 1]);
+        } else {
+            on_border = least(on_border, values);
+        }
     }
-    let [inside, on_border] = least;
     let level = inside.min(on_border) + allowance;
     let mut status = Status::default();
     if [0, side - 1, side * (side - 1), side * side - 1].iter().all(|&corner| values[corner] < level) {
@@ -76,12 +122,14 @@ pub(super) fn search(grid: Grid, u: [&[f64]; 3], dead_zone: f64, allowance: f64,
         status.insert(Status::AT_BOUND);
     }
     let mut sums = [0.0; 3];
-    for (index, value) in values.iter().enumerate() {
-        // A point at the edge of the level set weighs nothing, so that the grid can be coarse.
-        let weight = (level - value).max(0.0).powi(2);
-        sums[0] += weight;
-        sums[1] += weight * ((index % side) as f64 - reach);
-        sums[2] += weight * ((index / side) as f64 - reach);
+    for (row, values) in values.chunks_exact(side).enumerate() {
+        for (column, value) in values.iter().enumerate().filter(|(_, value)| **value < level) {
+            // A point at the edge of the level set weighs nothing, so that the grid can be coarse.
+            let weight = (level - value).powi(2);
+            sums[0] += weight;
+            sums[1] += weight * (column as f64 - reach);
+            sums[2] += weight * (row as f64 - reach);
+        }
     }
     // With an allowance above 0 the best point has a weight.
     let mu = if sums[0] > 0.0 { [sums[1], sums[2]].map(|sum| grid.step() * sum / sums[0]) } else { [0.0; 2] };
@@ -176,6 +224,32 @@ mod tests {
         for (found, integer) in found.mu.iter().zip(integers) {
             assert!((found - integer).abs() < 1e-5, "{found} {integer}");
         }
+    }
+
+    /// What is left out of the grid is above the level set, and the rest is as it is.
+    #[test]
+    fn points_that_are_left_out_are_above_the_level() {
+        let mut left_out = 0;
+        for seed in 0..200_u32 {
+            let number =
+                |at: u32| f64::from((seed * 7919 + at * 104_729).wrapping_mul(2_654_435_761) >> 12) / 524_288.0 - 1.0;
+            let taxels = 1 + seed % 23;
+            let u = [0, 1, 2].map(|q| -> Vec<f64> { (0..taxels).map(|taxel| number(3 * taxel + q) - 0.3).collect() });
+            let (side, allowance) = (21, 0.02 * f64::from(1 + seed % 9));
+            let value = |row: usize, column: usize| {
+                let [x, y] = [column, row].map(|at| (at as f64 - 10.0) / 8.0);
+                (0..taxels as usize).map(|i| (u[0][i] + x * u[1][i] + y * u[2][i]).max(0.0)).sum::<f64>()
+            };
+            let mut values = Vec::new();
+            evaluate(side, value, allowance, &mut values);
+            let all = (0..side * side).map(|index| value(index / side, index % side));
+            let level = all.clone().fold(f64::INFINITY, f64::min) + allowance;
+            for (found, value) in values.iter().zip(all) {
+                assert!(found.to_bits() == value.to_bits() || (*found == f64::INFINITY && value > level), "{seed}");
+                left_out += usize::from(*found == f64::INFINITY);
+            }
+        }
+        assert!(left_out > 200 * 100, "{left_out}");
     }
 
     #[test]

@@ -11,6 +11,8 @@ use crate::parity::{CLASSES, Quads, butterfly};
 
 /// The correction of a component is at most this, so that an unforeseen contact is never made much worse.
 pub const LARGEST: f64 = 1.0 / 4.0;
+/// Words that are added to the sums in one pass over these, one after the other.
+const TOGETHER: usize = 4;
 /// Classes of the inputs behind the window: odd in x, odd in y, the same again, even.
 pub(crate) const EXTRA_CLASSES: [usize; 5] = [1, 2, 1, 2, 0];
 
@@ -34,6 +36,8 @@ pub(crate) struct Network {
 /// Memory of the network, to be used again for the next frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NetworkScratch {
+    /// Words of inputs, by class.
+    inputs: Vec<[f64; CLASSES]>,
     /// The hidden units' sums by class.
     sums: [Vec<f64>; CLASSES],
     /// The hidden units' mean over the mirror images.
@@ -96,23 +100,24 @@ impl Network {
             sums.clear();
             sums.resize(units, 0.0);
         }
-        let mut add = |word: usize, classes: [f64; CLASSES]| {
-            for ((sums, weights), input) in scratch.sums.iter_mut().zip(&self.hidden[word]).zip(classes) {
-                sums.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * input);
-            }
-        };
-        for (word, members) in self.window.iter().enumerate() {
+        scratch.inputs.clear();
+        scratch.inputs.extend(self.window.iter().map(|members| {
             let mut values = [0.0; CLASSES];
             for &(place, member) in members {
                 values[member] = look.values[place];
             }
-            add(word, butterfly(values));
-        }
+            butterfly(values)
+        }));
         let behind = look.values.len() - EXTRA_CLASSES.len();
-        for (offset, of) in EXTRA_CLASSES.into_iter().enumerate() {
+        scratch.inputs.extend(EXTRA_CLASSES.into_iter().enumerate().map(|(offset, of)| {
             let mut values = [0.0; CLASSES];
             values[of] = look.values[behind + offset];
-            add(self.window.len() + offset, values);
+            values
+        }));
+        for (weights, inputs) in self.hidden.chunks(TOGETHER).zip(scratch.inputs.chunks(TOGETHER)) {
+            for (class, sums) in scratch.sums.iter_mut().enumerate() {
+                add(sums, weights, inputs, class);
+            }
         }
         let [a, b, c, d] = &scratch.sums;
         let mut sums = [0.0; 2];
@@ -137,6 +142,21 @@ impl Network {
         let (base, weights) = self.doubt.as_ref()?;
         let sum: f64 = scratch.even.iter().zip(weights).map(|(unit, weight)| unit * weight).sum();
         Some(limited(base + sum))
+    }
+}
+
+/// Adds a class of a few words to the units' sums, word after word.
+fn add(sums: &mut [f64], weights: &[[Vec<f64>; CLASSES]], inputs: &[[f64; CLASSES]], class: usize) {
+    if let ([a, b, c, d], [of_a, of_b, of_c, of_d]) = (weights, inputs) {
+        let weights = a[class].iter().zip(&b[class]).zip(c[class].iter().zip(&d[class]));
+        let [of_a, of_b, of_c, of_d] = [of_a, of_b, of_c, of_d].map(|of| of[class]);
+        for (sum, ((a, b), (c, d))) in sums.iter_mut().zip(weights) {
+            *sum = *sum + a * of_a + b * of_b + c * of_c + d * of_d;
+        }
+    } else {
+        for (weights, input) in weights.iter().zip(inputs) {
+            sums.iter_mut().zip(&weights[class]).for_each(|(sum, weight)| *sum += weight * input[class]);
+        }
     }
 }
 

@@ -94,7 +94,7 @@ impl JointPlan {
         let [c1, c3] = constants.tangential;
         let finer = given.stress.lsb - given.u.lsb;
         let fixed = |value: f64, fraction: u32| (value * pow2(fraction as i32)).round() as i64;
-        let points = PointsPlan::new(constants.grid, finer);
+        let points = PointsPlan::new(constants.grid, finer, given.design);
         let cells = match &points {
             Some(of) => Cells { cells: of.side * of.side, elements: given.design.sensor.taxels() },
             None => Cells::new(given.elements, given.ways, per_cell),
@@ -158,9 +158,9 @@ impl Slot for JointPlan {
         let handed_on = || memory("u", 3, quads, classes * U_BITS, false);
         // The squares of five depths, or of one; and both moments.
         let plane = |dsp| BlockCost::new("plane", &["sptfra_plane_search"], dsp);
-        let mut blocks = vec![match self.points {
-            Some(PointsPlan { side, .. }) => {
-                plane(points::DSP).with([taxels(), memory("grid values", side, side, points::VALUE_BITS, false)])
+        let mut blocks = vec![match &self.points {
+            Some(of) => {
+                plane(of.dsp()).with([taxels(), memory("grid values", of.side, of.side, points::VALUE_BITS, false)])
             }
             None => plane(3).with([memory("grid values", 1, POINTS, self.value_bits, false)]),
         }];
@@ -207,7 +207,10 @@ impl Slot for JointPlan {
             .number("DATA_BITS", design.hardware.data_bits.into())
             .flag("POINTS", self.points.is_some());
         let parameters = match &self.points {
-            Some(points) => parameters.number("U_LEFT", points.u_left.into()),
+            Some(points) => {
+                let parameters = parameters.number("U_LEFT", points.u_left.into());
+                if points.taxels > 1 { parameters.count("TAXELS", points.taxels) } else { parameters }
+            }
             None => parameters
                 .count("CELLS", self.cells.cells)
                 .count("CELL_ELEMENTS", self.cells.elements)

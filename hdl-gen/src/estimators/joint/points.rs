@@ -1,11 +1,15 @@
 //! A cell for each point of the grid: formats of its values, by the frame's own scale.
 
+use golden::design::Design;
 use golden::estimators::joint::Grid;
+use golden::parity::{CLASSES, Quads};
+use golden::sensor::Sensor;
 use serde::Serialize;
 
 use super::SHARE_SHIFT;
+use crate::blocks::bodies;
 use crate::estimators::Contact;
-use crate::plan::format::{largest, round_shift};
+use crate::plan::format::{MANY_LANES, largest, round_shift};
 
 /// Most points that have a cell each: 15 x 15 take about as many LUTs as all else, 21 x 21 twice as many.
 pub const MOST_POINTS: usize = 256;
@@ -15,10 +19,10 @@ pub const FRACTION: u32 = 23;
 pub const U_BITS: u32 = 25;
 /// Width of a value, unsigned; a sum that leaves it is the largest number.
 pub const VALUE_BITS: u32 = 28;
-/// Points weighed in a cycle.
-pub const AT_ONCE: usize = 5;
-/// The squares, and both moments.
-pub const DSP: usize = AT_ONCE + 2;
+/// Points weighed in a cycle, where they see one taxel in one; else all of a row.
+const FIVE: usize = 5;
+/// Multipliers of both moments.
+const MOMENTS: usize = 2;
 
 /// The cells of the points of a design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,6 +32,8 @@ pub struct PointsPlan {
     /// The grid.
     #[serde(skip)]
     pub grid: Grid,
+    /// Taxels that they see in a cycle: two where lanes are many, and then a row of them is weighed in one, not five.
+    pub taxels: usize,
     /// Left shift of `u` before the right shift by the bits of `sum |b|`: to one bit finer than a value.
     pub u_left: u32,
 }
@@ -44,15 +50,48 @@ pub struct Values {
 
 impl PointsPlan {
     /// The cells of a grid, if they are few enough, for `u` with steps `2^-finer` times those of `b`.
-    pub(super) fn new(grid: Grid, finer: i32) -> Option<Self> {
+    pub(super) fn new(grid: Grid, finer: i32, design: &Design) -> Option<Self> {
         // `u` holds the stress and more: its steps are those of the stress but for a few bits.
         let u_left = (FRACTION as i32 + 1 - finer).max(1) as u32;
-        (grid.points() <= MOST_POINTS).then_some(Self { side: grid.side(), grid, u_left })
+        let one = Self { side: grid.side(), grid, taxels: 1, u_left };
+        let two = Self { taxels: 2, ..one.clone() };
+        // A count of bodies, a taxel a cycle, must be there before the search is.
+        let counted = || !design.algorithm.count_bodies || bodies::latency(&design.sensor) < two.search(&design.sensor);
+        let quick = design.hardware.lanes > MANY_LANES && counted();
+        (grid.points() <= MOST_POINTS).then_some(if quick { two } else { one })
+    }
+
+    /// Cycles from the start of the search to the first row of points: the tensions of several taxels are added up before
+    /// they are in the sums.
+    pub(super) fn first_row(&self, sensor: &Sensor) -> u64 {
+        let quads = Quads::new(sensor.columns, sensor.rows).count();
+        ((CLASSES * quads) / self.taxels + 10 + self.taxels) as u64
+    }
+
+    /// From there to the centroid: the weights of all of a row need one more stage to be added up.
+    pub(super) fn level(&self) -> u64 {
+        let weighing = self.side * self.side / self.weighed();
+        (self.side + weighing) as u64 + if self.weighed() == self.side { 38 } else { 37 }
+    }
+
+    /// Start to end of the search.
+    pub(super) fn search(&self, sensor: &Sensor) -> u64 {
+        self.first_row(sensor) + self.level()
+    }
+
+    /// Points weighed in a cycle.
+    pub fn weighed(&self) -> usize {
+        if self.taxels > 1 { self.side } else { FIVE }
+    }
+
+    /// The squares, and both moments.
+    pub fn dsp(&self) -> usize {
+        self.weighed() + MOMENTS
     }
 
     /// Condition 1 at every point.
     pub(super) fn values(&self, u: &[Vec<i64>; 3], contact: Contact) -> Values {
-        let Self { side, grid, u_left } = *self;
+        let Self { side, grid, u_left, .. } = *self;
         let sum_bits = 64 - contact.stress_sum.leading_zeros();
         let share = |value: i64| (value << (FRACTION - SHARE_SHIFT as u32)) >> sum_bits;
         let mut clipped = false;

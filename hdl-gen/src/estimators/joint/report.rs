@@ -6,7 +6,7 @@ use golden::parity::CLASSES;
 
 use super::points::MOST_POINTS;
 use super::{JointPlan, POINTS, timing};
-use crate::plan::format::short;
+use crate::plan::format::{MANY_LANES, short};
 
 /// Share by which the gain may differ from what the kernel lacks under a wide contact.
 const STALE_GAIN: f64 = 0.1;
@@ -30,16 +30,23 @@ pub fn report(plan: &JointPlan, design: &Design) -> String {
     format!(
         "\nFriction, joint estimator\n  grid         {}; gain {} (in the matrices)\n  \
          friction     c1 {c1:.4}, c3 {c3:.4}\n  network      {correction}\n{}",
-        grid(plan),
+        grid(plan, design.hardware.lanes),
         short(constants.gain),
         stages(plan, design)
     )
 }
 
 /// How Condition 1 is evaluated over the plane, and why so.
-fn grid(plan: &JointPlan) -> String {
+fn grid(plan: &JointPlan, lanes: usize) -> String {
     match &plan.points {
-        Some(points) => format!("{} x {0} points, a cell each, a taxel a cycle", points.side),
+        Some(points) => {
+            let taxels = match points.taxels {
+                1 if lanes > MANY_LANES => "a taxel a cycle: bodies are counted as slowly".to_owned(),
+                1 => "a taxel a cycle".to_owned(),
+                taxels => format!("{taxels} taxels a cycle with more than {MANY_LANES} lanes"),
+            };
+            format!("{} x {0} points, a cell each, {taxels}", points.side)
+        }
         None => format!(
             "{POINTS} points, more than the {MOST_POINTS} that could have a cell each: walked over, {} taxels a cell",
             plan.cells.elements

@@ -4,7 +4,7 @@ use golden::parity::Quads;
 use golden::sensor::Sensor;
 
 use super::super::Stage;
-use super::points::{self, PointsPlan};
+use super::points::PointsPlan;
 use super::{JointPlan, NetworkPlan, POINTS};
 
 /// From the last stress of a frame to its sum and maximum.
@@ -19,19 +19,14 @@ pub const FIRST_WORD: u64 = 11;
 /// From the first row of points, or from the last value of the walk, to the centroid: the level, the depths below it,
 /// the divisions.
 pub fn level(plan: &JointPlan) -> u64 {
-    match &plan.points {
-        Some(PointsPlan { side, .. }) => (side + side * side / points::AT_ONCE) as u64 + 37,
-        None => POINTS as u64 + 34,
-    }
+    plan.points.as_ref().map_or(POINTS as u64 + 34, PointsPlan::level)
 }
 
 /// From the start of the search to the first row of points, when all taxels are in; or to the first value of the walk:
 /// two starts and a point, then the sums.
 pub fn first_value(sensor: &Sensor, plan: &JointPlan) -> u64 {
-    match plan.points {
-        Some(_) => 4 * quads(sensor) + 11,
-        None => 3 * plan.cells.elements as u64 + 3 + u64::from(plan.cells.tree_levels()),
-    }
+    let walk = || 3 * plan.cells.elements as u64 + 3 + u64::from(plan.cells.tree_levels());
+    plan.points.as_ref().map_or_else(walk, |points| points.first_row(sensor))
 }
 
 /// Start to end of the search.

@@ -141,6 +141,10 @@ impl Slot for LinePlan {
         }
     }
 
+    fn report(&self, design: &Design) -> String {
+        report::report(self, design)
+    }
+
     fn kernel_advice(&self, design: &Design, indent: &str) -> String {
         report::kernel_advice(design, indent)
     }

@@ -11,6 +11,7 @@ use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
 use golden::design::{
     Calibration, CalibrationIn, Curve, Design, Estimator, Input, Outputs, Overrun, PlanKind, Samples, Slip, Tension,
 };
+use golden::estimators::joint::Grid;
 use hdl_gen::emit::emit;
 use tempfile::TempDir;
 use testbench::tools;
@@ -36,8 +37,10 @@ fn designs() -> Vec<Design> {
     let mut curved = by_plan(shipped("small"), reduced, Outputs::Field);
     "curved".clone_into(&mut curved.name);
     curved.input.curve = Some(Curve { points: vec![[0.0, 0.0], [50.0, -100.0], [4095.0, -1e5]], law: None });
-    let mut uncorrected = by_plan(with_lanes(shipped("odd"), 12), reduced, Outputs::Resultants);
+    // With more than 64 lanes: two taxels a cycle, a row of points weighed in one, a collector that looks ahead.
+    let mut uncorrected = by_plan(with_lanes(shipped("odd"), 68), reduced, Outputs::Resultants);
     uncorrected.algorithm.estimator = Estimator::Joint;
+    uncorrected.algorithm.joint.grid = Grid::COARSE;
     uncorrected.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
     // Wide streams: samples taken at once, of a beat that is not filled, and one by one.
     let mut wide = by_plan(broken.clone(), reduced, Outputs::Field);

@@ -50,6 +50,7 @@ module sptfra_spmv_array #(
     parameter [PRODUCTS-1:0] PULLS = {PRODUCTS{1'b0}},
     parameter [PRODUCTS*32-1:0] ROUND_WORDS = {(PRODUCTS*32){1'b0}},
     // Results: see sptfra_spmv_collector
+    parameter AHEAD = 0,
     parameter DESTINATION_BITS = 4,
     parameter [95:0] SHIFTS = {16{6'd16}},
     // Prefix of the ROM file names, for instance a directory with its slash, and what they begin with
@@ -134,9 +135,7 @@ module sptfra_spmv_array #(
     reg  skip;
     reg  [VALUE_WIDTH-1:0] skip_word;
     reg  [ROW_WIDTH-1:0] skip_quad;
-    reg  skip_first;
-    reg  skip_last;
-    reg  skip_partial;
+    reg  skip_first, skip_last, skip_partial;
 
     always @(posedge clock) begin
         restart <= next_restart;
@@ -311,6 +310,7 @@ module sptfra_spmv_array #(
         .DATA_BITS        (DATA_BITS),
         .ELEMENTS         (ELEMENTS),
         .MIRROR           (MIRROR_SIDE > 0),
+        .AHEAD            (AHEAD),
         .DESTINATION_BITS (DESTINATION_BITS),
         .SHIFTS           (SHIFTS),
         .VISIT_DEPTH      (VISIT_DEPTH),
