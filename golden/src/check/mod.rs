@@ -86,6 +86,7 @@ const FAINT: f64 = 2e-3;
 /// Looks for what is wrong with frames of a design, values as they are in the file, each of m finite numbers.
 ///
 /// `matrices` are those of the design; without them the order of the taxels is not looked at.
+#[allow(clippy::too_many_lines, reason = "one check after the other, and what each knows of those before")]
 pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
     let stress: Vec<Vec<f64>> = frames
         .iter()
