@@ -62,7 +62,7 @@ impl Graph {
         let mut graph = Self::default();
         let module = netlist.modules.get(top).ok_or_else(|| UnknownCell(top.to_owned()))?;
         let mut names = HashMap::new();
-        graph.add(netlist, top, module, String::new(), None, &mut names)?;
+        graph.add(netlist, top, module, "", None, &mut names)?;
         for index in 0..graph.joined.len() {
             graph.joined[index] = graph.root(index as Net);
         }
@@ -96,14 +96,14 @@ impl Graph {
         netlist: &'a Netlist,
         kind: &'a str,
         module: &'a Module,
-        path: String,
+        path: &str,
         parent: Option<usize>,
         names: &mut HashMap<&'a str, HashMap<Bit, String>>,
     ) -> Result<Net, UnknownCell> {
         let first = self.joined.len() as Net;
         self.joined.extend(first..first + module.size());
         let instance = self.instances.len();
-        self.instances.push(Instance { path: path.clone(), module: kind.to_owned(), parent });
+        self.instances.push(Instance { path: path.to_owned(), module: kind.to_owned(), parent });
         names.entry(kind).or_insert_with(|| module.names());
         for (name, cell) in &module.cells {
             if let Some(role) = role(&cell.kind) {
@@ -114,7 +114,7 @@ impl Graph {
             }
             let inner = netlist.modules.get(&cell.kind).ok_or_else(|| UnknownCell(cell.kind.clone()))?;
             let below = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-            let inner_first = self.add(netlist, &cell.kind, inner, below, Some(instance), names)?;
+            let inner_first = self.add(netlist, &cell.kind, inner, &below, Some(instance), names)?;
             for (port, nets) in &cell.connections {
                 let inside = inner.ports.get(port).map(|port| port.bits.as_slice()).unwrap_or_default();
                 for (&outer, &inner) in nets.0.iter().zip(inside) {
