@@ -67,6 +67,9 @@ pub fn figures(plan: &Plan) -> Value {
         "savings": savings(plan),
         "kernel_gain": kernel::gain(sensor, plan.design.algorithm.kernel),
     });
+    if plan.scales_frames() {
+        value["range"] = json!(plan.design.hardware.range);
+    }
     if plan.design.algorithm.contacts > 1 {
         value["contacts"] = plan.design.algorithm.contacts.into();
     }

@@ -97,6 +97,17 @@ pub enum CalibrationIn {
     Ram,
 }
 
+/// Against what the hardware's numbers are scaled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InputRange {
+    /// The full scale, every frame alike.
+    #[default]
+    FullScale,
+    /// The largest stress of each frame.
+    Frame,
+}
+
 /// What becomes of a frame for which the core has no room.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -119,6 +130,8 @@ pub struct Hardware {
     pub data_bits: u32,
     /// Largest stress magnitude in pascals; input of that and more is reported, and clamped.
     pub full_scale_pa: f64,
+    /// Whether numbers are scaled against the full scale or against each frame's own largest stress.
+    pub range: InputRange,
     /// `SpMV` lanes, 1 to [`MAX_LANES`]; with the reduced plan a multiple of 4. With a target time the generator
     /// chooses, and this is the default until then.
     pub lanes: usize,
@@ -158,4 +171,4 @@ impl Hardware {
     }
 }
 
-print_as_words!(Arithmetic, Optimise, Samples, Overrun, CalibrationIn);
+print_as_words!(Arithmetic, InputRange, Optimise, Samples, Overrun, CalibrationIn);

@@ -34,7 +34,8 @@ pub(crate) use files::Beside;
 pub use files::{CALIBRATION_FILE, CURVE_FILE, FileNames, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
 pub use hardware::{
-    Arithmetic, CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples,
+    Arithmetic, CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, InputRange, MAX_LANES, Optimise, Overrun, STREAM_BITS,
+    Samples,
 };
 pub use input::{Calibration, Input, Tension};
 pub use joint::conditions;

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use toml::Value;
 
 use super::{
-    Algorithm, CalibrationIn, Choices, Design, FileNames, Filter, FilterKind, Hardware, Overrun, Samples, Slip,
-    Tension, joint, regularisation,
+    Algorithm, CalibrationIn, Choices, Design, FileNames, Filter, FilterKind, Hardware, InputRange, Overrun, Samples,
+    Slip, Tension, joint, regularisation,
 };
 use crate::estimators::Constants;
 use crate::names::MatrixName;
@@ -86,6 +86,10 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
         Overrun::Stall => String::new(),
         overrun @ Overrun::Drop => format!("overrun = \"{overrun}\"\n"),
     };
+    let range = match hardware.range {
+        InputRange::FullScale => String::new(),
+        range @ InputRange::Frame => format!("range = \"{range}\"\n"),
+    };
     let debug = if hardware.debug { "debug = true\n" } else { "" };
     let mut text = String::new();
     // Writing to a String cannot fail.
@@ -96,7 +100,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}{contacts}{count_bodies}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\n{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{overrun}{control}{banks}{map}{debug}clock_mhz = {:?}\npart = \"{}\"\n",
+         full_scale_pa = {:?}\n{range}{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{overrun}{control}{banks}{map}{debug}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],

@@ -48,7 +48,8 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let parameters = if streams.intake == Intake::Whole {
         parameters.count("STREAM_BITS", streams.bits)
     } else {
-        parameters.count("WAYS", plan.ways())
+        // Where frames are scaled, that is done before they are folded.
+        parameters.count("WAYS", if plan.scales_frames() { 1 } else { plan.ways() })
     };
     let parameters = parameters.number("DATA_BITS", plan.design.hardware.data_bits.into());
     // As in sptfra_samples.
@@ -100,6 +101,8 @@ pub struct Arrival {
     pub last_stress: u64,
     /// Nothing of it is in Bz any more.
     pub done: u64,
+    /// What it does from here on waits while the lanes write results.
+    pub waits_from: u64,
 }
 
 /// Cycles of Bz.
@@ -109,8 +112,12 @@ pub fn arrival(plan: &Plan) -> Arrival {
     if streams.intake != Intake::Whole {
         let dead = if plan.dead.is_some() { latency::dead_taxels(plan.taxels()) } else { 0 };
         let last_stress = plan.taxels() as u64 - 1 + stages + dead;
+        if plan.scales_frames() {
+            let ready = last_stress + latency::range(plan.elements());
+            return Arrival { ready, last_stress, done: ready, waits_from: last_stress + latency::RANGE_TO_TURN + 1 };
+        }
         let ready = last_stress + latency::stress_to_ready(plan.ways() > 1);
-        return Arrival { ready, last_stress, done: last_stress + 1 };
+        return Arrival { ready, last_stress, done: last_stress + 1, waits_from: 0 };
     }
     let beat_there = |taxel: usize| (taxel / streams.samples()) as u64 + stages + 1;
     // A quad a cycle, from the middle rows on, each when its last taxel is there.
@@ -120,7 +127,8 @@ pub fn arrival(plan: &Plan) -> Arrival {
     // A taxel a cycle.
     let last_taxel = (0..plan.taxels()).fold(0, |before, taxel| beat_there(taxel).max(before + 1));
     let last_stress = last_taxel + latency::TAXEL_TO_CEAN;
-    Arrival { ready: last_quad + latency::QUAD_TO_READY, last_stress, done: last_stress.max(last_quad + 1) + 1 }
+    let done = last_stress.max(last_quad + 1) + 1;
+    Arrival { ready: last_quad + latency::QUAD_TO_READY, last_stress, done, waits_from: 0 }
 }
 
 /// A multiplier each for a count's slope, a stress's gain and each dead taxel.
@@ -152,7 +160,7 @@ pub fn cost(plan: &Plan) -> BlockCost {
         let samples = streams.samples();
         memories.push(memory("frame by quads", CLASSES * samples, streams.beats_in(), data, false));
         memories.push(memory("frame by taxels", samples, streams.beats_in(), LONG_BITS, false));
-    } else if plan.ways() > 1 {
+    } else if plan.ways() > 1 && !plan.scales_frames() {
         memories.push(memory("half-folded b", 1, plan.elements(), 2 * data + 2, false));
     }
     let dsp = conversions * (usize::from(plan.counts.is_some()) + usize::from(curve.is_some())) + dead;

@@ -43,6 +43,13 @@ pub fn stress_to_ready(folded: bool) -> u64 {
     if folded { 4 } else { 1 }
 }
 
+/// The same where each frame has a range of its own: the power of two is found, then an element a cycle is scaled.
+pub fn range(elements: usize) -> u64 {
+    elements as u64 + 10
+}
+
+/// Of these cycles, those behind which results that the lanes write hold the frame up.
+pub const RANGE_TO_TURN: u64 = 4;
 /// In `sptfra_bz_wide`, from a taxel's turn to its stress in `CeAn`.
 pub const TAXEL_TO_CEAN: u64 = 2;
 /// In `sptfra_bz_wide`, from the turn of a frame's last quad to the frame being ready for the lanes.

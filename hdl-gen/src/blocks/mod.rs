@@ -15,6 +15,7 @@ pub mod intake;
 pub mod latency;
 pub mod op;
 pub mod parameters;
+pub mod range;
 pub mod registers;
 pub mod turns;
 pub mod unfold;
@@ -32,14 +33,9 @@ pub use parameters::Parameters;
 pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     let slot = plan.estimator.slot();
     let mut costs: Vec<BlockCost> = intake::cost(plan).into_iter().chain(calibration::cost(plan)).collect();
-    costs.extend([
-        bz::cost(plan),
-        slot.contact_block(),
-        array::cost(plan),
-        we::cost(plan),
-        co::cost(plan),
-        field::cost(plan),
-    ]);
+    costs.extend([bz::cost(plan), slot.contact_block()]);
+    costs.extend(range::cost(plan));
+    costs.extend([array::cost(plan), we::cost(plan), co::cost(plan), field::cost(plan)]);
     costs.extend(bodies::cost(plan));
     costs.extend(slot.search_blocks(&plan.design.sensor));
     costs.push(op::cost());

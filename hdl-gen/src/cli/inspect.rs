@@ -222,6 +222,13 @@ fn numbers(out: &mut String, plan: &Plan) -> std::fmt::Result {
         let worst = short(format.bound as f64 * format.step());
         writeln!(out, "  {what:<12} steps of {step:<6} {unit:<2}   worst case {worst} {unit}")?;
     }
+    if plan.scales_frames() {
+        let octaves = 63 - plan.formats.stress.bound.leading_zeros();
+        writeln!(
+            out,
+            "  range        each frame's own: forces are up to 2^{octaves} times as fine where all of it is faint"
+        )?;
+    }
     if let Some(narrow) = narrow(plan) {
         writeln!(out, "  {narrow}")?;
     }

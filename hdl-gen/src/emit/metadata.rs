@@ -156,6 +156,9 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
     if plan.design.hardware.control {
         value["registers"] = json!(registers::map_path(plan));
     }
+    if plan.scales_frames() {
+        value["range"] = json!(plan.design.hardware.range);
+    }
     if plan.design.algorithm.count_bodies {
         value["bodies"] = json!({ "cycles": bodies::latency(&plan.design.sensor) });
     }

@@ -87,6 +87,8 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_points_taxel",
     "sptfra_quad_rows",
     "sptfra_ram",
+    "sptfra_range",
+    "sptfra_range_frames",
     "sptfra_ratio",
     "sptfra_registers",
     "sptfra_replace",

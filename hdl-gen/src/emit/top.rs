@@ -6,7 +6,7 @@ use tera::Context;
 use golden::design::{Filter, Samples};
 
 use crate::blocks::{
-    Parameters, array, bodies, bz, calibration, cean, co, field, intake, op, row_width, turns, unfold, we,
+    Parameters, array, bodies, bz, calibration, cean, co, field, intake, op, range, row_width, turns, unfold, we,
 };
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
@@ -23,6 +23,9 @@ const TEMPLATE: &str = concat!(
     include_str!("../../templates/rtl/top/lanes.v.tera"),
     include_str!("../../templates/rtl/top/output.v.tera"),
 );
+
+/// Elements for which the modules have room at least.
+const FEWEST_ELEMENTS: usize = 8;
 
 /// The data of the template. Widths end in `_width`.
 #[derive(Serialize)]
@@ -61,6 +64,11 @@ struct View {
     /// Whether samples go to Bz one by one, and what the stream is called that does.
     unpack: bool,
     samples_from: &'static str,
+    /// Of a range of its own for each frame, if it has one: what finds it, what follows it, and bits of a taxel's number
+    /// as Bz has it.
+    range: Option<Parameters>,
+    range_frames: Parameters,
+    range_row_width: u32,
     field: bool,
     at_most: &'static str,
     latency_cycles: u64,
@@ -141,6 +149,9 @@ impl View {
             last_keep: format!("{:x}", streams.last_keep()),
             unpack,
             samples_from: if unpack { "sample" } else { "in" },
+            range: plan.scales_frames().then(|| range::parameters(plan)),
+            range_frames: range::of_frames(plan),
+            range_row_width: address_bits(plan.taxels().max(FEWEST_ELEMENTS)),
             field: plan.field_words() > 0,
             at_most: if hardware.skip_zeros { "at most " } else { "" },
             latency_cycles: timeline.latency_cycles,

@@ -5,6 +5,7 @@
 
 pub mod bodies;
 mod integer;
+mod range;
 mod status;
 mod summary;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use crate::plan::vector_formats::field_shifts;
 use crate::plan::{Plan, words};
 
 use integer::Integer;
+use range::Scaled;
 pub use status::*;
 use summary::Summary;
 pub use summary::inverse_gain;
@@ -156,10 +158,12 @@ impl<'plan> Model<'plan> {
     }
 
     fn answer(&mut self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {
+        let scaled = Scaled::new(self.plan, stress);
         let (mut words, summary) = match self.plan.formats.folded {
-            None => self.execute(&integer::by_taxel(self.plan), counter, stress, saturated),
-            Some(_) => self.execute(&integer::by_quad(self.plan), counter, stress, saturated),
+            None => self.execute(&integer::by_taxel(self.plan), counter, &scaled, saturated),
+            Some(_) => self.execute(&integer::by_quad(self.plan), counter, &scaled, saturated),
         };
+        scaled.back(&mut words);
         let read = self.plan.design.input.tension == Tension::Read;
         let pushed = summary.friction.iter().map(|mu| mu.abs()).sum::<i64>() >= PULLING;
         if read
@@ -179,16 +183,16 @@ impl<'plan> Model<'plan> {
         &self,
         integers: &Scalar<Integer<'_>, W>,
         counter: u32,
-        stress: &[i64],
+        scaled: &Scaled,
         saturated: bool,
     ) -> (Vec<u32>, Summary) {
         let products = &self.plan.products;
         let needs_friction = |product: &Product| product.coefficients == Coefficients::Friction;
         let search = products.iter().position(needs_friction).unwrap_or(products.len());
-        let mut frame = frame(self.plan, integers, stress);
+        let mut frame = frame(self.plan, integers, &scaled.stress);
         run(self.plan, integers, 0..search, [0, 0], &mut frame);
         let bodies = self.count_bodies(&frame);
-        let (mut words, summary) = scalars(self.plan, counter, stress, saturated, &frame.sums, &frame.u);
+        let (mut words, summary) = scalars(self.plan, counter, scaled, saturated, &frame.sums, &frame.u);
         words[words::CENSUS] |= bodies;
         words[words::STATUS] |= if bodies > 1 { MORE_BODIES } else { 0 };
         run(self.plan, integers, search..products.len(), summary.friction, &mut frame);
@@ -272,12 +276,13 @@ fn run<'plan, const W: usize>(
 fn scalars(
     plan: &Plan,
     counter: u32,
-    stress: &[i64],
+    scaled: &Scaled,
     saturated: bool,
     sums: &ByPq<i64>,
     u: &[Vec<i64>; 3],
 ) -> (Vec<u32>, Summary) {
-    let (sensor, noise_floor) = (&plan.design.sensor, plan.thresholds.taxel);
+    let (sensor, stress) = (&plan.design.sensor, scaled.stress.as_slice());
+    let noise_floor = plan.thresholds.taxel << scaled.exponent;
     let found =
         plan.estimator.slot().find(&Seen { sensor, stress, contact: Contact::new(stress), noise_floor, sums, u });
     let summary = Summary::new(sums, found.friction);

@@ -31,7 +31,7 @@ pub mod timing;
 pub mod vector_formats;
 pub mod words;
 
-use golden::design::{Design, Outputs, PlanKind};
+use golden::design::{Design, InputRange, Outputs, PlanKind};
 #[cfg(doc)]
 use golden::estimators::joint::DOUBT_FRACTION;
 use golden::matrices::MatrixName;
@@ -136,6 +136,11 @@ impl Plan {
     /// Lanes that walk MCSR data of their own: the design's lanes over the ways.
     pub fn walkers(&self) -> usize {
         self.schedule.lanes.len()
+    }
+
+    /// Whether each frame is scaled by its own largest stress.
+    pub fn scales_frames(&self) -> bool {
+        self.design.hardware.range == InputRange::Frame
     }
 
     /// Elements of a vector as the lanes see it: taxels, or quads of the folded grid.

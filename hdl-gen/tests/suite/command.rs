@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use golden::design::{Estimator, Samples, Tension};
+use golden::design::{Estimator, InputRange, Samples, Tension};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -116,6 +116,8 @@ fn the_new_designs_values_are_the_defaults() {
     let mut defaults = golden::design::Design::from_toml(&text, "full.toml").unwrap();
     // But for the count of bodies, which designs without a word of it never had.
     defaults.algorithm.count_bodies = true;
+    // And for each frame's own range, likewise.
+    defaults.hardware.range = InputRange::Frame;
     assert_eq!(new_design(&["--estimator", "line"]), defaults);
     // And for the estimator, which is the better one.
     let mut joint = new_design(&[]);

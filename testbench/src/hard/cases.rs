@@ -49,6 +49,8 @@ pub const REGULARISED: &str = "depth, regularised";
 const DEEP: f64 = 3.0;
 /// That one.
 const MORE: f64 = 0.03;
+/// Key under `[hardware]` with which each frame is scaled by its own largest stress.
+const OWN_RANGE: &str = "range = \"frame\"";
 const DIRECTIONS: usize = 12;
 const SEED: u64 = 7;
 const FORCE_N: f64 = 6.0;
@@ -293,7 +295,11 @@ fn ends_of_range(cases: &mut Cases) -> Result<(), HardError> {
         ("peak at one step", step),
     ] {
         let contacts = vec![Contact { normal_force_n: FORCE_N * to / peak, ..contact(&sensor, 7.0) }];
-        cases.scene("range", name, "", &Scene { contacts, ..swept.clone() })?;
+        let swept = Scene { contacts, ..swept.clone() };
+        cases.scene("range", name, "", &swept)?;
+        if to <= full_scale && to > floor {
+            cases.scene("range", format!("{name}, {OWN_RANGE}"), &format!("[hardware]\n{OWN_RANGE}"), &swept)?;
+        }
     }
     let all = |value: f64| vec![value; sensor.taxels()];
     let checkered = |value: f64| {

@@ -172,6 +172,10 @@ pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
          without stress.",
     );
     page.line(
+        "Rows with `range = \"frame\"` have that key of the design file: each frame is scaled by its own largest stress, and \
+         a faint contact is solved as exactly as a strong one.",
+    );
+    page.line(
         "The joint estimator has the constants of the shipped designs where the sensor is theirs: sensor 1, and \
          h/s = 0.75, which is sensor 2. The others have those that `hdl-gen new` fits, the gain and two of friction: \
          `golden calibrate` would halve their errors. Backward errors and float32 are those of the matrices, which the \

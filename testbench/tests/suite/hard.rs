@@ -101,6 +101,23 @@ fn statuses_say_what_a_frame_is() {
     }
 }
 
+/// What a frame's own range is for, by both estimators: 100 noise floors are as good as the full scale.
+#[test]
+fn a_range_of_its_own_keeps_faint_frames_exact() {
+    let rows = rows();
+    let own = |case: &str| format!("{case}, range = \"frame\"");
+    let [faint, strong] = ["peak at 100 noise floors", "peak at the full scale"];
+    for estimator in [Estimator::Line, Estimator::Joint] {
+        let error = |case: &str| {
+            let row = rows.iter().find(|row| row.case == case && row.estimator == estimator);
+            row.and_then(|row| row.fixed.as_ref()?.against_f64).unwrap_or_else(|| panic!("{case}"))
+        };
+        assert!(error(faint) > 30.0 * error(strong), "{estimator:?}");
+        assert!(error(&own(faint)) < 2.0 * error(strong), "{estimator:?}: {}", error(&own(faint)));
+        assert_eq!(error(&own(strong)).to_bits(), error(strong).to_bits(), "{estimator:?}");
+    }
+}
+
 #[test]
 fn regularisation_keeps_deep_sensors_and_leaves_shallow_ones() {
     let rows = rows();
@@ -116,7 +133,7 @@ fn regularisation_keeps_deep_sensors_and_leaves_shallow_ones() {
     }
 }
 
-/// All cases go through the RTL in `make hard`; here three frames of those of three designs.
+/// All cases go through the RTL in `make hard`; here three frames of those of five designs.
 #[test]
 fn the_rtl_answers_hard_frames_as_the_model_does() {
     let line = cases::all(false).expect("cases");
@@ -124,7 +141,14 @@ fn the_rtl_answers_hard_frames_as_the_model_does() {
     let design = |cases: &[Case], name: &str| {
         cases.iter().find(|case| case.name == name).unwrap_or_else(|| panic!("{name}")).design.clone()
     };
-    let wanted = [design(&line, "no contact"), design(&joint, "no contact"), design(&line, "h/s = 4, regularised")];
+    let own_range = "peak at 100 noise floors, range = \"frame\"";
+    let wanted = [
+        design(&line, "no contact"),
+        design(&joint, "no contact"),
+        design(&line, "h/s = 4, regularised"),
+        design(&line, own_range),
+        design(&joint, own_range),
+    ];
     let mut cases: Vec<Case> = line.into_iter().chain(joint).filter(|case| wanted.contains(&case.design)).collect();
     for case in &mut cases {
         case.frames.truncate(3);

@@ -33,6 +33,7 @@ mod overrun;
 mod parameters;
 mod properties;
 mod python;
+mod range;
 mod registers;
 mod simulate;
 mod skip_zeros;

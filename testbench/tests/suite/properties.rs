@@ -2,7 +2,7 @@
 //!
 //! A failure names the seed of the random designs and shows the design file.
 
-use golden::design::{Grid, Optimise};
+use golden::design::{Grid, InputRange, Optimise};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -175,6 +175,44 @@ fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
         plans.push(plan);
     }
     judge(&plans);
+}
+
+/// The same where each frame has a range of its own: by every estimator and plan, the shortest frames, which pass while the
+/// one before is scaled, the most lanes, which wait for them, and narrow words.
+#[test]
+fn corner_designs_with_a_range_for_each_frame_agree_with_the_model() {
+    let base = |kind, columns, rows, lanes| Shape {
+        kind,
+        columns,
+        rows,
+        pitch_mm: [3.0, 4.0],
+        depth_mm: 2.5,
+        filter: "{ kind = \"none\" }".to_owned(),
+        lanes,
+        coefficient_bits: 18,
+        data_bits: 27,
+        full_scale_pa: 1e5,
+    };
+    let joint = |field, correction| Kind::Joint { field, correction };
+    let shapes = [
+        ("paper_of_four_scaled", base(Kind::Paper, 2, 2, 100)),
+        ("paper_narrow_scaled", Shape { coefficient_bits: 8, data_bits: 16, ..base(Kind::Paper, 6, 4, 3) }),
+        ("one_quad_scaled", base(Kind::Resultants, 2, 2, 64)),
+        ("odd_for_latency_scaled", base(Kind::Field { latency: true }, 3, 5, 4)),
+        ("most_lanes_scaled", base(Kind::Field { latency: false }, 10, 10, 100)),
+        ("zeros_scaled", base(Kind::Skips { field: true }, 6, 5, 8)),
+        ("one_quad_joint_scaled", base(joint(true, true), 2, 2, 4)),
+        ("joint_scaled", Shape { full_scale_pa: 1e-3, ..base(joint(true, true), 9, 4, 16) }),
+        ("narrow_joint_scaled", Shape { coefficient_bits: 8, data_bits: 16, ..base(joint(false, true), 6, 7, 8) }),
+    ];
+    let plan = |(name, shape): &(&str, Shape)| {
+        let mut design = shape.design(name);
+        design.hardware.range = InputRange::Frame;
+        // Beats of one, two and four words by turns.
+        design.hardware.stream_bits = [32, 64, 128][(shape.columns + shape.lanes) % 3];
+        planned(&design)
+    };
+    judge(&shapes.iter().map(plan).collect::<Vec<_>>());
 }
 
 /// The largest sensor on the most lanes, its matrices filtered to seven diagonals. Two frames are long enough to

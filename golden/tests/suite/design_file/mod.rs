@@ -102,6 +102,7 @@ fn keys_of_the_reduced_plan_read_back_the_same() {
         ),
         ("[hardware]\nstream_bits = 64", ["stream_bits = 64\n", "plan = \"reduced\""]),
         ("[hardware]\ndebug = true", ["debug = true\n", "plan = \"reduced\""]),
+        ("[hardware]\nrange = \"frame\"", ["range = \"frame\"\n", "plan = \"reduced\""]),
     ] {
         let design = Design::from_toml(&format!("{MINIMAL}{more}\n"), "pad.toml").unwrap();
         let resolved = design.to_toml();

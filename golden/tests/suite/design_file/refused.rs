@@ -159,6 +159,7 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
         ("target_us = 0.0", ["hardware.target_us", "is 0", "greater than 0"]),
         ("target_us = inf", ["hardware.target_us", "inf", "finite"]),
         ("optimise = \"speed\"", ["hardware.optimise", "speed", "interval, latency, area"]),
+        ("range = \"taxel\"", ["hardware.range", "taxel", "full_scale, frame"]),
         ("skip_zeros = 1", ["skip_zeros", "line 8", "boolean"]),
         ("full_scale_pa = -1.0", ["hardware.full_scale_pa", "-1", "0"]),
         ("full_scale_pa = 1e10", ["hardware.full_scale_pa", "10000000000", "1000000000"]),

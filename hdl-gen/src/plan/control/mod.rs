@@ -139,10 +139,8 @@ impl<'a> Control<'a> {
         while self.ends.len() < frames && self.now < FOREVER {
             self.show_changes();
             let stands_still = self.writes.remove(&self.now);
-            if !stands_still {
-                self.arrive();
-            }
-            if left > 0 && self.opens(stands_still) {
+            self.arrive(stands_still);
+            if left > 0 && self.opens(stands_still && self.of.arrival.waits_from == 0) {
                 left -= 1;
             }
             self.give_turn();
@@ -196,10 +194,15 @@ impl<'a> Control<'a> {
         true
     }
 
-    /// Frames move on in Bz.
-    fn arrive(&mut self) {
-        let Arrival { ready, last_stress, done } = self.of.arrival;
+    /// Frames move on in Bz, those that write to the lanes' memories not in this cycle if it `stands_still`.
+    fn arrive(&mut self, stands_still: bool) {
+        let Arrival { ready, last_stress, done, waits_from } = self.of.arrival;
         for moved in &mut self.arriving {
+            // With a range of its own a frame that is written waits for nothing more.
+            let waits = *moved + 1 >= waits_from && (waits_from == 0 || *moved + 1 < ready);
+            if stands_still && waits {
+                continue;
+            }
             *moved += 1;
             if *moved == ready {
                 self.frames_ready.push_back(self.now);

@@ -2,6 +2,7 @@
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
+mod range;
 mod statuses;
 
 use std::f64::consts::TAU;

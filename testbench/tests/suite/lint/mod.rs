@@ -9,7 +9,8 @@ use crate::calibration;
 use crate::support::random;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_lanes};
 use golden::design::{
-    Calibration, CalibrationIn, Curve, Design, Estimator, Input, Outputs, Overrun, PlanKind, Samples, Slip, Tension,
+    Calibration, CalibrationIn, Curve, Design, Estimator, Input, InputRange, Outputs, Overrun, PlanKind, Samples, Slip,
+    Tension,
 };
 use golden::estimators::joint::Grid;
 use hdl_gen::emit::emit;
@@ -75,6 +76,18 @@ fn designs() -> Vec<Design> {
     for design in [&mut dropping, &mut scanned] {
         design.hardware.overrun = Overrun::Drop;
     }
+    // Frames scaled by their own largest stress, folded and not, with and without a calibration and drops behind it.
+    let mut scaled = by_plan(shipped("odd"), paper, Outputs::Field);
+    "scaled".clone_into(&mut scaled.name);
+    scaled.hardware.stream_bits = 128;
+    let mut scaled_fold = with_lanes(shipped("sensor1-fast"), 20);
+    (scaled_fold.hardware.stream_bits, scaled_fold.hardware.data_bits) = (64, 25);
+    let mut scaled_banks = mapped.clone();
+    "scaled_banks".clone_into(&mut scaled_banks.name);
+    scaled_banks.hardware.overrun = Overrun::Drop;
+    for design in [&mut scaled, &mut scaled_fold, &mut scaled_banks] {
+        design.hardware.range = InputRange::Frame;
+    }
     // Nets marked for a logic analyser, in every kind of core.
     for design in [&mut curved, &mut uncorrected, &mut unpacked, &mut wide_control, &mut dropping] {
         design.hardware.debug = true;
@@ -86,6 +99,9 @@ fn designs() -> Vec<Design> {
         mapped_once,
         dropping,
         scanned,
+        scaled,
+        scaled_fold,
+        scaled_banks,
         wide,
         integers,
         unpacked,

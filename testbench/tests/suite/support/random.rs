@@ -2,7 +2,7 @@
 
 use std::env;
 
-use golden::design::{Correction, Design, Doubt, Grid, JointConstants, Sensor};
+use golden::design::{Correction, Design, Doubt, Grid, InputRange, JointConstants, Sensor};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -137,6 +137,7 @@ lanes = {lanes}
         );
         let mut design = Design::from_toml(&text, name).unwrap_or_else(|error| panic!("{error}\n{text}"));
         design.algorithm.count_bodies = (columns + lanes) % 2 == 0;
+        design.hardware.range = if (rows + lanes) % 3 == 0 { InputRange::Frame } else { InputRange::FullScale };
         if let Kind::Joint { correction, .. } = self.kind {
             *design.algorithm.joint = constants(&design.sensor, correction);
         }

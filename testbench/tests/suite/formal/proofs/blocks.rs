@@ -1,7 +1,7 @@
 //! Blocks on their own: the rules of the streams at their ports, and what they let in.
 
 use super::Proof;
-use super::designs::{calibrated, mapped, paper, reduced, scanned};
+use super::designs::{calibrated, mapped, paper, reduced, scaled, scanned};
 
 pub const PROOFS: &[Proof] = &[
     Proof {
@@ -90,6 +90,28 @@ pub const PROOFS: &[Proof] = &[
             ("bz", "bank <= !bank;", "bank <= frame_ready;"),
             ("bz", "assign stress_valid = taxel_valid && advance;", "assign stress_valid = taxel_valid;"),
             ("bz", "if (reset || frame_done)", "if (reset)"),
+        ],
+    },
+    Proof {
+        name: "a range for each frame",
+        harness: "range",
+        design: scaled,
+        defines: &[],
+        top: "sptfra_range",
+        parameters: "-set COLUMNS 2 -set ROWS 2 -set WAYS 1",
+        models: &[],
+        free: &["*sptfra_ram*", "*sptfra_leading_bit*"],
+        free_wires: &[],
+        induction: "3",
+        altered: &[],
+        broken: &[
+            ("range", "if (settles[4]) begin", "if (frame_done) begin"),
+            ("range", "wire frame_written = lasts[5] && write_ready;", "wire frame_written = lasts[5];"),
+            ("range", "lasts <= {lasts[4:1], turn_is_last};", "lasts <= {lasts[4:1], reads};"),
+            ("range", "element <= turn_is_last ? {ROW_WIDTH{1'b0}} : element + 1'b1;", "element <= element + 1'b1;"),
+            ("range", "row <= lasts[5] ? {ROW_WIDTH{1'b0}} : row + 1'b1;", "row <= row + 1'b1;"),
+            ("range", "            bank <= !bank;\n", ""),
+            ("range", "if (settles[6]) begin\n            // What", "begin\n            // What"),
         ],
     },
     Proof {

@@ -1,6 +1,6 @@
 //! The designs that are proved: the 4 × 3 one of `designs/small.toml`, changed.
 
-use golden::design::{CalibrationIn, Correction, Design, Estimator, Optimise, Outputs, Overrun, PlanKind};
+use golden::design::{CalibrationIn, Correction, Design, Estimator, InputRange, Optimise, Outputs, Overrun, PlanKind};
 use golden::estimators::joint::Grid;
 
 pub fn paper(design: &mut Design) {
@@ -37,6 +37,11 @@ pub fn mapped(design: &mut Design) {
 pub fn scanned(design: &mut Design) {
     reduced(design);
     design.hardware.overrun = Overrun::Drop;
+}
+
+pub fn scaled(design: &mut Design) {
+    paper(design);
+    design.hardware.range = InputRange::Frame;
 }
 
 pub fn joint(design: &mut Design) {
