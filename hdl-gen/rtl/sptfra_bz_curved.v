@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Bz with a calibration in RAM that has a curve: counts become the curve's pascals (sptfra_count_curve) by the bank that
-// acts at a frame's first beat, then stress by that bank's gains and offsets (sptfra_bz_calibrated).
+// Bz with a calibration in RAM that has a curve: counts become the curve's pascals (sptfra_count_curve) by the bank
+// that acts at a frame's first beat, then stress by that bank's gains and offsets (sptfra_bz_calibrated).
 //
 // What acted at a frame's first beat, threshold and generation with it, goes with the frame. A tare begins behind the
 // curve with the first frame that began after its command. The other bank is in use as long as a frame of it is here.

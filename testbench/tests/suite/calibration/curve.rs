@@ -123,7 +123,7 @@ fn ram_and_rom_say_the_same() {
 fn other_designs_from_end_to_end() {
     for (samples, bits, room) in [(Samples::Uint16, 64, 2), (Samples::Int16, 32, 0), (Samples::Float32, 128, 1)] {
         let mut design = design_with_curve();
-        design.name += &format!("_{samples}_{bits}");
+        design.name = format!("{}_{samples}_{bits}", design.name);
         design.algorithm.outputs = Outputs::Field;
         design.input.dead = vec![3];
         design.hardware.replaceable = room;
@@ -247,11 +247,9 @@ fn half_a_frame_by_another_curve_is_noticed() {
         let path = format!("rtl/{module}.v");
         let right = String::from_utf8(sources.files[&path].clone()).expect("text");
         assert_eq!(right.matches(text).count(), 1, "{text}");
-        // Nothing that is left over is a matter for a linter here.
-        let unused = right.replace(text, broken);
-        sources.files.insert(path, unused.into_bytes());
+        sources.files.insert(path, right.replace(text, broken).into_bytes());
         let built = Verilate::default().build(&sources).expect("builds");
-        let cycles = (0..interval).step_by(1);
+        let cycles = 0..interval;
         assert_ne!(commits_at_every_moment(subject, &built, bank, cycles), Vec::<String>::new(), "{broken}");
     }
 }
@@ -291,7 +289,7 @@ fn what_does_not_go_together_is_refused() {
         let before = generation(&mut core);
         perform(&mut core, &load(&bank, bank.crc()));
         if subject.calibration().takes(&bank) {
-            assert_eq!((errors(&mut core), generation(&mut core)), (0, before + 1 & 0xFF), "{bank:?}");
+            assert_eq!((errors(&mut core), generation(&mut core)), (0, (before + 1) & 0xFF), "{bank:?}");
             taken += 1;
         } else {
             assert_eq!((errors(&mut core), generation(&mut core)), (CONTRADICTION, before), "{bank:?}");
@@ -300,6 +298,11 @@ fn what_does_not_go_together_is_refused() {
     }
     assert!(taken > 40 && refused > 100, "{taken} taken, {refused} refused");
 }
+
+/// Largest magnitudes of a curve's words.
+const NUMBER: i64 = (1 << 25) - 1;
+const VALUE: i64 = (1 << 26) - 1 - (1 << 12);
+const SLOPE: i64 = (1 << 17) - 1;
 
 #[test]
 fn what_is_out_of_bounds_is_refused() {
@@ -318,9 +321,6 @@ fn what_is_out_of_bounds_is_refused() {
             core.write(address::CALIBRATION_DATA, power_up[index]).expect("a reply");
         }
     };
-    const NUMBER: i64 = (1 << 25) - 1;
-    const VALUE: i64 = (1 << 26) - 1 - (1 << 12);
-    const SLOPE: i64 = (1 << 17) - 1;
     let (first, count) = (26, 26 + 64);
     for segment in [0, 3, 15] {
         for (word, most) in [(0, NUMBER), (1, VALUE), (2, SLOPE)] {
