@@ -4,10 +4,10 @@
 // The two banks of a calibration: which one acts, writes to the other, its CRC and the change to it, and tare.
 //
 // A bank's words are the taxels' gains, their offsets, the contact threshold and the noise floor, then what
-// sptfra_dead_bank has of dead taxels and sptfra_curve_bank of the curve. A commit reads the bank that does not act, six cycles a word; if it has the CRC
-// that the commit states, and does not contradict itself, it acts from the next frame on. Tare writes the acting bank
-// into the other one, with the mean stress taken off the offsets. What acts outlives a reset: only the device's
-// configuration brings the design's content back.
+// sptfra_dead_bank has of dead taxels and sptfra_curve_bank of the curve. A commit reads the bank that does not act,
+// six cycles a word; if it has the CRC that the commit states, and does not contradict itself, it acts from the next
+// frame on. Tare writes the acting bank into the other one, with the mean stress taken off the offsets. What acts
+// outlives a reset: only the device's configuration brings the design's content back.
 
 `default_nettype none
 
