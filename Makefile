@@ -195,9 +195,13 @@ sweep-cluster: sweep-tools build ## The report by Snakemake, one `testbench run 
 	@SWEEP_DESIGNS='$(SWEEP_DESIGNS)' SWEEP_SCENES='$(SWEEP_SCENES)' SWEEP_OPTIONS='$(SWEEP_OPTIONS)' SWEEP_FOLDER='$(SWEEP_FOLDER)' \
 	    TESTBENCH='$(BIN)/testbench' .venv/bin/snakemake --snakefile tools/sweep.smk $(SNAKEMAKE_OPTIONS)
 
+# For parts that an open flow places and routes.
+DESIGNS ?= designs/timing.toml
+SEEDS   ?= 1
+
 .PHONY: timing
-timing: tools build ## Place and route for an ECP5-85, for a clock figure from an open flow (a quarter of an hour)
-	@tools/timing.sh designs/timing.toml
+timing: tools build ## Place and route for an ECP5, for a clock figure from an open flow (a quarter of an hour; DESIGNS=…, SEEDS=3)
+	@set -e; for design in $(DESIGNS); do tools/timing.sh --seeds $(SEEDS) $$design; done
 
 .PHONY: clean
 clean: ## Remove what was built; the tools in .venv stay

@@ -14,8 +14,9 @@ for design in "$@"; do
     name=$(sed -n 's/^name = "\(.*\)"/\1/p' "$work/design.toml")
     stamp=$target/synth/$name.stamp
     wish=$(cat "$work"/rtl/* "$work"/rom/* tools/synth.sh tools/requirements.txt | cksum)
-    if [ "$(cat "$stamp" 2> /dev/null)" = "$wish" ] && [ -s "$target/synth/$name.stat.json" ]; then
-        "$bin/testbench" cells "$design" "$work" "$target/synth/$name.stat.json" --json > "$target/synth/$name.cells.json"
+    if [ "$(cat "$stamp" 2> /dev/null)" = "$wish" ] && [ -s "$target/synth/$name.netlist.json" ]; then
+        "$bin/testbench" cells "$design" "$work" "$target/synth/$name.stat.json" \
+            --netlist "$target/synth/$name.netlist.json" --json > "$target/synth/$name.cells.json"
         echo "bench: $name is as Yosys saw it last"
     else
         rm -f "$stamp"

@@ -5,7 +5,8 @@
 //
 // B is Condition 1 (Eq. 20), convex in both components. The walk goes there and back in alternate rows and needs
 // additions only. CELLS cells with up to CELL_ELEMENTS taxels each work side by side; a value every CELL_ELEMENTS
-// cycles, the first one after three times as many, 3, and the levels of the adder tree.
+// cycles, the first one after three times as many, 3, or 4 where the cells have block memories, and the levels of the
+// adder tree.
 
 `default_nettype none
 
@@ -50,7 +51,10 @@ module sptfra_plane #(
     localparam integer LAST_COUNT = QUADS - (GROUPS - 1) * CELL_ELEMENTS;
     localparam integer ELEMENT_WIDTH = $clog2(CELL_ELEMENTS);
     localparam integer LAST_ELEMENT = CELL_ELEMENTS - 1;
-    localparam integer TOTAL_DEPTH = 3 + $clog2(CELLS);
+    // Cells of so many taxels keep them in block memories
+    localparam integer BLOCK_ELEMENTS = 32;
+    localparam integer BLOCK = (CELL_ELEMENTS >= BLOCK_ELEMENTS) ? 1 : 0;
+    localparam integer TOTAL_DEPTH = 3 + BLOCK + $clog2(CELLS);
     localparam [4:0] LAST = 5'd20; // point of a row, and row
 
     // What a taxel goes on by: to the start along x and y, to the next point
@@ -134,6 +138,7 @@ module sptfra_plane #(
                 .CELL_ELEMENTS (CELL_ELEMENTS),
                 .ELEMENT_WIDTH (ELEMENT_WIDTH),
                 .COUNT         ((index / 4 == GROUPS - 1) ? LAST_COUNT : CELL_ELEMENTS),
+                .BLOCK         (BLOCK),
                 .VALUE_BITS    (VALUE_BITS)
             ) hinges (
                 .clock        (clock),

@@ -34,6 +34,8 @@ pub enum Optimise {
     Interval,
     /// Time from the last value of a frame to its result; with the reduced plan.
     Latency,
+    /// Nothing: as for the interval, but the joint estimator walks its grid with the fewest cells; with the reduced plan.
+    Area,
 }
 
 /// What a sample on the stream is.

@@ -1,7 +1,10 @@
 //! The plan of a design, and the keys that only one of the plans has.
 
 use super::checks::Check;
-use super::{Algorithm, DesignError, Filter, Hardware, MAX_LANES, MAX_SIDE_PAPER, Optimise, Outputs, PlanKind, Sensor};
+use super::{
+    Algorithm, DesignError, Estimator, Filter, Hardware, MAX_LANES, MAX_SIDE_PAPER, Optimise, Outputs, PlanKind, Sensor,
+};
+use crate::estimators::joint::Grid;
 
 /// Lanes of the reduced plan come in fours, one for each class of parity.
 const LANES_MULTIPLE: usize = 4;
@@ -55,8 +58,8 @@ fn paper(check: &Check, sensor: &Sensor, algorithm: &Algorithm, hardware: &Hardw
     if algorithm.outputs == Outputs::Resultants {
         return needs("algorithm.outputs", "is \"resultants\" with the paper's plan".to_owned());
     }
-    if hardware.optimise == Optimise::Latency {
-        return needs("hardware.optimise", "is \"latency\" with the paper's plan".to_owned());
+    if hardware.optimise != Optimise::Interval {
+        return needs("hardware.optimise", format!("is \"{}\" with the paper's plan", hardware.optimise));
     }
     if let Some(target) = hardware.target_us {
         return needs("hardware.target_us", format!("is {target} with the paper's plan"));
@@ -90,6 +93,16 @@ fn reduced(check: &Check, algorithm: &Algorithm, hardware: &Hardware) -> Result<
             "hardware.lanes",
             format!("is {} with the reduced plan", hardware.lanes),
             format!("use a multiple of 4 from 4 to {MAX_LANES}, or write plan = \"paper\" under [algorithm]"),
+        ));
+    }
+    if hardware.optimise == Optimise::Area
+        && (algorithm.estimator != Estimator::Joint || algorithm.joint.grid != Grid::FINE)
+    {
+        return Err(check.value(
+            "hardware.optimise",
+            "is \"area\", which makes the walk over the joint estimator's grid smaller, and there is no walk"
+                .to_owned(),
+            "write estimator = \"joint\" and grid = 21, or remove the key".to_owned(),
         ));
     }
     if hardware.skip_zeros && algorithm.filter != Filter::None {

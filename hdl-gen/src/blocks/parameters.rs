@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 43] = [
+        let expected: [(&str, &str, i64); 44] = [
             // A cycle more counts the frame.
             ("sptfra_fold", "LAST_TO_WRITTEN", stress_to_ready(true) as i64 - 1),
             ("sptfra_fold_frame", "TURN_TO_WRITTEN", QUAD_TO_READY as i64 - 1),
@@ -155,6 +155,7 @@ mod tests {
             ("sptfra_output_word", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
             ("sptfra_output_word", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
             ("sptfra_plane", "LAST", joint::SIDE as i64 - 1),
+            ("sptfra_plane", "BLOCK_ELEMENTS", joint::BLOCK_ELEMENTS as i64),
             ("sptfra_plane_cell", "POINT_BITS", joint::POINT_BITS.into()),
             ("sptfra_level_set", "REACH", joint::SIDE as i64 / 2),
             ("sptfra_level_set", "DEPTH_BITS", joint::DEPTH_BITS.into()),

@@ -13,5 +13,5 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("PROGRAMS", plan.schedule.programs.len())
         .count("RESIDUALS", plan.operands.residuals())
         .count("PLACES", places(plan.field_words() > 0, plan.ways() > 1).unwrap_or(0))
-        .flag("INTERVAL", plan.design.hardware.optimise == Optimise::Interval)
+        .flag("INTERVAL", plan.design.hardware.optimise != Optimise::Latency)
 }

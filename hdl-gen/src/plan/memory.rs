@@ -49,6 +49,12 @@ pub fn memory(name: &'static str, count: usize, depth: usize, width: u32, read_o
     Memory { name, block: "", count, depth, width, bram36: ramb36(depth, width as usize, read_only), read_only }
 }
 
+/// One that the RTL demands in block memory (`ram_style`), whatever LUTs would cost.
+pub fn block_memory(name: &'static str, count: usize, depth: usize, width: u32) -> Memory {
+    let bram36 = halves(depth, width as usize) as f64 / 2.0;
+    Memory { name, block: "", count, depth, width, bram36, read_only: false }
+}
+
 /// Banks that `sptfra_rom` makes of so many words.
 pub fn banks(depth: usize) -> usize {
     if depth > MOST_BANKS * BANK { 1 } else { depth.div_ceil(BANK).max(1) }
@@ -62,8 +68,7 @@ fn ramb36(depth: usize, width: usize, read_only: bool) -> f64 {
 
 /// The same of one piece: the cheapest of the shapes, tiled, or none if LUTs are cheaper.
 fn ramb36_of_one(depth: usize, width: usize, read_only: bool) -> f64 {
-    let tiles = |&(tile_depth, tile_width): &(usize, usize)| depth.div_ceil(tile_depth) * width.div_ceil(tile_width);
-    let halves = HALF_SHAPES.iter().map(tiles).min().unwrap_or(0);
+    let halves = halves(depth, width);
     let luts = if read_only {
         depth * width / ROM_BITS_PER_COST
     } else {
@@ -72,9 +77,22 @@ fn ramb36_of_one(depth: usize, width: usize, read_only: bool) -> f64 {
     if luts < HALF_COST * halves { 0.0 } else { halves as f64 / 2.0 }
 }
 
+/// RAMB18 of a piece in the cheapest of the shapes, tiled.
+fn halves(depth: usize, width: usize) -> usize {
+    let tiles = |&(tile_depth, tile_width): &(usize, usize)| depth.div_ceil(tile_depth) * width.div_ceil(tile_width);
+    HALF_SHAPES.iter().map(tiles).min().unwrap_or(0)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::ramb36;
+    use super::{block_memory, ramb36};
+
+    #[test]
+    fn what_must_be_block_memory_is_counted() {
+        // In halves.
+        let [small, deep] = [64, 600].map(|depth| (2.0 * block_memory("u", 12, depth, 27).all_bram36()) as usize);
+        assert_eq!([small, deep], [12, 24]);
+    }
 
     /// As Yosys maps them; the cases are memories of the shipped designs.
     #[test]

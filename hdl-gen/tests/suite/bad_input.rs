@@ -104,7 +104,7 @@ fn keys_fit_the_plan() {
     let paper = "plan = \"paper\"";
     check_design(&with(&format!("{paper}\noutputs = \"resultants\""), ""), &["algorithm.outputs", "reduced"]);
     check_design(&with(paper, "optimise = \"latency\""), &["hardware.optimise", "reduced"]);
-    check_design(&with(reduced, "optimise = \"area\""), &["hardware.optimise", "area", "latency"]);
+    check_design(&with(reduced, "optimise = \"speed\""), &["hardware.optimise", "speed", "latency"]);
 }
 
 #[test]

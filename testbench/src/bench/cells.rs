@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::levels::{self, Longest, Record};
 use super::{BenchError, read_json};
 use crate::figures::{decimals, grouped};
 use golden::table::Table;
@@ -43,6 +44,9 @@ pub struct Block {
     pub yosys: Count,
     /// Predicted.
     pub predicted: Expected,
+    /// The longest way of logic that ends in it, if a netlist was read and there is one.
+    #[serde(default)]
+    pub longest: Option<Longest>,
 }
 
 /// One design.
@@ -98,11 +102,12 @@ struct Module {
 }
 
 /// Sums, for the design of `file`, Yosys' `stat -json` of a synthesis that was not flattened by the blocks of its
-/// `metadata.json`.
+/// `metadata.json`, and counts levels of logic in its netlist.
 ///
 /// # Errors
-/// [`BenchError::Read`] and [`BenchError::Json`]; [`BenchError::NoModule`] if the files are of different designs.
-pub fn count(file: &Path, metadata: &Path, statistics: &Path) -> Result<Cells, BenchError> {
+/// [`BenchError::Read`] and [`BenchError::Json`]; [`BenchError::NoModule`] if the files are of different designs; those of
+/// [`levels::longest`].
+pub fn count(file: &Path, metadata: &Path, statistics: &Path, netlist: Option<&Path>) -> Result<Cells, BenchError> {
     let Metadata { top, predicted } = read_json(metadata)?;
     let path = statistics;
     let statistics: Statistics = read_json(path)?;
@@ -113,9 +118,11 @@ pub fn count(file: &Path, metadata: &Path, statistics: &Path) -> Result<Cells, B
             name: block.name.clone(),
             yosys: Count::default(),
             predicted: Expected { dsp: block.dsp, bram36: block.bram36 },
+            longest: None,
         })
         .collect();
-    blocks.push(Block { name: REST.to_owned(), yosys: Count::default(), predicted: Expected::default() });
+    let (yosys, predicted_rest) = (Count::default(), Expected::default());
+    blocks.push(Block { name: REST.to_owned(), yosys, predicted: predicted_rest, longest: None });
     let rest = blocks.len() - 1;
     let place =
         |module: &str| predicted.blocks.iter().position(|block| block.modules.iter().any(|name| name == module));
@@ -134,6 +141,12 @@ pub fn count(file: &Path, metadata: &Path, statistics: &Path) -> Result<Cells, B
             }
         }
     }
+    if let Some(netlist) = netlist {
+        let ways = levels::longest(netlist, &top, rest, |module| place(base_name(module)))?;
+        for (block, way) in blocks.iter_mut().zip(ways) {
+            block.longest = way;
+        }
+    }
     let mut total = Count::default();
     for Block { yosys, .. } in &blocks {
         total.dsp += yosys.dsp;
@@ -143,7 +156,8 @@ pub fn count(file: &Path, metadata: &Path, statistics: &Path) -> Result<Cells, B
     }
     let predicted = Expected { dsp: predicted.dsp, bram36: predicted.bram36 };
     let file = file.display().to_string();
-    Ok(Cells { file, design: top, blocks, total: Block { name: "all".to_owned(), yosys: total, predicted } })
+    let longest = blocks.iter().filter_map(|block| block.longest.clone()).max_by_key(|way| way.levels);
+    Ok(Cells { file, design: top, blocks, total: Block { name: "all".to_owned(), yosys: total, predicted, longest } })
 }
 
 impl Statistics {
@@ -178,18 +192,52 @@ impl Count {
 impl Cells {
     /// Block by block, then all of it; `title` stands above the names.
     pub fn table(&self, title: &str) -> Table {
-        let header = [title, "DSP", "predicted", "RAMB36", "predicted", "LUT", "FF"];
-        Table::new(header).with(self.blocks.iter().chain([&self.total]).map(|Block { name, yosys, predicted }| {
-            [
-                name.clone(),
-                grouped(yosys.dsp),
-                grouped(predicted.dsp),
-                decimals(yosys.bram36, 1),
-                decimals(predicted.bram36, 1),
-                grouped(yosys.lut),
-                grouped(yosys.ff),
-            ]
-        }))
+        let header = [title, "DSP", "predicted", "RAMB36", "predicted", "LUT", "FF", "levels"];
+        Table::new(header).with(self.blocks.iter().chain([&self.total]).map(
+            |Block { name, yosys, predicted, longest }| {
+                [
+                    name.clone(),
+                    grouped(yosys.dsp),
+                    grouped(predicted.dsp),
+                    decimals(yosys.bram36, 1),
+                    decimals(predicted.bram36, 1),
+                    grouped(yosys.lut),
+                    grouped(yosys.ff),
+                    longest.as_ref().map_or_else(String::new, |way| way.levels.to_string()),
+                ]
+            },
+        ))
+    }
+
+    fn ways(&self) -> impl Iterator<Item = (&str, &Longest)> {
+        self.blocks.iter().filter_map(|block| Some((block.name.as_str(), block.longest.as_ref()?)))
+    }
+
+    /// Compares the levels of logic with those in the record, or writes them there.
+    ///
+    /// # Errors
+    /// [`BenchError::Longer`] names the blocks that have got longer; those of reading and writing the record.
+    pub fn hold_to(&self, path: &Path, write: bool) -> Result<(), BenchError> {
+        let mut record = Record::read(path)?;
+        if write {
+            record.set(&self.design, self.ways());
+            let failed = |source| BenchError::Write { path: path.to_owned(), source };
+            return std::fs::write(path, record.text()).map_err(failed);
+        }
+        let blocks = record.exceeded(&self.design, self.ways());
+        let longer =
+            || BenchError::Longer { design: self.design.clone(), path: path.to_owned(), blocks: blocks.clone() };
+        if blocks.is_empty() { Ok(()) } else { Err(longer()) }
+    }
+
+    /// Where the longest ways lead, block by block, the longest first.
+    pub fn longest_ways(&self) -> Table {
+        let mut ways: Vec<(&str, &Longest)> = self.ways().collect();
+        ways.sort_by_key(|(_, way)| std::cmp::Reverse(way.levels));
+        let row = |(block, way): (&str, &Longest)| {
+            [block.to_owned(), way.levels.to_string(), way.from.clone(), way.to.clone()]
+        };
+        Table::new(["longest way into", "levels", "from", "to"]).with(ways.into_iter().map(row))
     }
 
     /// The blocks whose multipliers or memories Yosys counts otherwise.
@@ -221,7 +269,7 @@ mod tests {
         let [metadata, statistics] = ["m.json", "s.json"].map(|name| folder.path().join(name));
         std::fs::write(&metadata, METADATA).expect("written");
         std::fs::write(&statistics, STATISTICS).expect("written");
-        let cells = count(Path::new("t.toml"), &metadata, &statistics).expect("counted");
+        let cells = count(Path::new("t.toml"), &metadata, &statistics, None).expect("counted");
         let lanes = Count { dsp: 2, bram36: 1.5, lut: 16, ff: 10 };
         let found: Vec<(&str, Count)> = cells.blocks.iter().map(|block| (block.name.as_str(), block.yosys)).collect();
         assert_eq!(found[0], ("lanes", lanes));
@@ -232,7 +280,10 @@ mod tests {
         assert!(table.contains("\n  lanes    2          2     1.5        1.0   16  10\n"), "{table}");
         std::fs::write(&statistics, STATISTICS.replace("\\\\t\"", "\\\\u\"")).expect("written");
         assert!(
-            count(Path::new("t.toml"), &metadata, &statistics).expect_err("another design").to_string().contains("`t`")
+            count(Path::new("t.toml"), &metadata, &statistics, None)
+                .expect_err("another design")
+                .to_string()
+                .contains("`t`")
         );
     }
 }

@@ -4,6 +4,7 @@ pub mod cells;
 pub mod cycles;
 pub mod filters;
 pub mod generation;
+pub mod levels;
 pub mod machine;
 pub mod page;
 pub mod plot;
@@ -77,6 +78,49 @@ pub enum BenchError {
         path: PathBuf,
         /// What is looked for.
         module: String,
+    },
+    /// A netlist has a cell that is none of `UltraScale+`.
+    #[error("{}: no cell of UltraScale+ and no module is called `{cell}`; was this netlist made by tools/synth.sh?", path.display())]
+    UnknownCell {
+        /// The netlist.
+        path: PathBuf,
+        /// What it is called.
+        cell: String,
+    },
+    /// Logic in a circle has no levels.
+    #[error("{}: a way of logic comes back to where it began, without a register; please report this design", path.display())]
+    Loop {
+        /// The netlist.
+        path: PathBuf,
+    },
+    /// The record of levels is no such file.
+    #[error("{}: {source}; blocks and levels stand there by design", path.display())]
+    Record {
+        /// The record.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: Box<toml::de::Error>,
+    },
+    /// Blocks have got longer.
+    #[error(
+        "{design}: more levels of logic than {} has:\n  {}\nshorten these ways, or record them: RECORD=1 tools/synth.sh",
+        path.display(), .blocks.join("\n  ")
+    )]
+    Longer {
+        /// The design.
+        design: String,
+        /// The record.
+        path: PathBuf,
+        /// What is longer.
+        blocks: Vec<String>,
+    },
+    /// The record cannot be written.
+    #[error("{}: cannot write the file: {source}", path.display())]
+    Write {
+        /// The record.
+        path: PathBuf,
+        /// Why not.
+        source: std::io::Error,
     },
 }
 

@@ -17,13 +17,30 @@ pub struct Arguments {
     folder: PathBuf,
     /// Yosys' statistics (JSON).
     statistics: PathBuf,
+    /// Yosys' netlist (`write_json`), not flattened, for the levels of logic of each block.
+    #[arg(long)]
+    netlist: Option<PathBuf>,
+    /// Record of levels (TOML): a block that has more is an error.
+    #[arg(long, requires = "netlist")]
+    levels: Option<PathBuf>,
+    /// Write the levels there instead.
+    #[arg(long, requires = "levels")]
+    record: bool,
     /// Report as JSON.
     #[arg(long)]
     json: bool,
 }
 
-/// Sums cells by block.
+/// Sums cells and counts levels by block.
 pub fn run(arguments: &Arguments) -> super::Result {
-    let cells = cells::count(&arguments.design, &arguments.folder.join("metadata.json"), &arguments.statistics)?;
-    Ok(shown(&cells, arguments.json, |cells| cells.table(&cells.design).text(0, 0))?.into())
+    let metadata = arguments.folder.join("metadata.json");
+    let cells = cells::count(&arguments.design, &metadata, &arguments.statistics, arguments.netlist.as_deref())?;
+    if let Some(record) = &arguments.levels {
+        cells.hold_to(record, arguments.record)?;
+    }
+    let text = |cells: &cells::Cells| match &arguments.netlist {
+        Some(_) => cells.table(&cells.design).text(0, 0) + "\n" + &cells.longest_ways().text(0, 0),
+        None => cells.table(&cells.design).text(0, 0),
+    };
+    Ok(shown(&cells, arguments.json, text)?.into())
 }

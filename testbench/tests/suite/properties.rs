@@ -2,6 +2,7 @@
 //!
 //! A failure names the seed of the random designs and shows the design file.
 
+use golden::design::{Grid, Optimise};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -159,7 +160,21 @@ fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
         ("narrow_joint", Shape { coefficient_bits: 8, data_bits: 16, ..base(joint(true, true), 6, 7, 8) }),
         ("band_reduced", Shape { filter: "{ kind = \"f1\", l = 22 }".to_owned(), ..base(field, 4, 6, 8) }),
     ];
-    judge(&shapes.map(|(name, shape)| planned(&shape.design(name))));
+    let mut plans: Vec<Plan> = shapes.iter().map(|(name, shape)| planned(&shape.design(name))).collect();
+    // Four cells for the walk over the grid, of 16 taxels in LUTs and of 32 in block memories, which answer later.
+    for (name, shape, elements) in [
+        ("few_cells", base(joint(true, true), 9, 5, 4), 16),
+        ("few_cells_with_block_memories", base(joint(true, true), 12, 6, 8), 32),
+    ] {
+        let mut design = shape.design(name);
+        design.hardware.optimise = Optimise::Area;
+        design.algorithm.joint.grid = Grid::FINE;
+        let plan = planned(&design);
+        let cells = plan.estimator.slot().cells();
+        assert_eq!((cells.cells, cells.elements), (4, elements), "{name}");
+        plans.push(plan);
+    }
+    judge(&plans);
 }
 
 /// The largest sensor on the most lanes, its matrices filtered to seven diagonals. Two frames are long enough to

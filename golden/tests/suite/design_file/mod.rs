@@ -96,6 +96,10 @@ fn keys_of_the_reduced_plan_read_back_the_same() {
         ("[hardware]\ntarget_us = 20", ["target_us = 20.0", "plan = \"reduced\""]),
         ("[hardware]\noptimise = \"latency\"\nskip_zeros = true", ["optimise = \"latency\"", "skip_zeros = true"]),
         ("[algorithm]\nplan = \"paper\"", ["plan = \"paper\"", "skip_zeros = false"]),
+        (
+            "[algorithm]\nestimator = \"joint\"\n[hardware]\noptimise = \"area\"",
+            ["optimise = \"area\"", "plan = \"reduced\""],
+        ),
         ("[hardware]\nstream_bits = 64", ["stream_bits = 64\n", "plan = \"reduced\""]),
         ("[hardware]\ndebug = true", ["debug = true\n", "plan = \"reduced\""]),
     ] {

@@ -15,6 +15,12 @@ fn keys_that_contradict_the_plan() {
     for (more, parts) in [
         (format!("{paper}outputs = \"resultants\""), ["algorithm.outputs", "resultants", "plan = \"reduced\""]),
         (format!("{paper}[hardware]\noptimise = \"latency\""), ["hardware.optimise", "latency", "plan = \"reduced\""]),
+        (format!("{paper}[hardware]\noptimise = \"area\""), ["hardware.optimise", "area", "plan = \"reduced\""]),
+        (
+            format!("{reduced}estimator = \"joint\"\ngrid = 15\n[hardware]\noptimise = \"area\""),
+            ["hardware.optimise", "no walk", "grid = 21"],
+        ),
+        (format!("{reduced}[hardware]\noptimise = \"area\""), ["hardware.optimise", "no walk", "\"joint\""]),
         (format!("{paper}[hardware]\ntarget_us = 5"), ["hardware.target_us", "is 5", "plan = \"reduced\""]),
         (format!("{paper}[hardware]\nskip_zeros = true"), ["hardware.skip_zeros", "paper", "plan = \"reduced\""]),
         (format!("{reduced}[hardware]\nlanes = 6"), ["hardware.lanes", "is 6", "multiple of 4"]),
@@ -152,7 +158,7 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
         ("lanes = 101", ["hardware.lanes", "101", "1 to 100"]),
         ("target_us = 0.0", ["hardware.target_us", "is 0", "greater than 0"]),
         ("target_us = inf", ["hardware.target_us", "inf", "finite"]),
-        ("optimise = \"area\"", ["hardware.optimise", "area", "interval, latency"]),
+        ("optimise = \"speed\"", ["hardware.optimise", "speed", "interval, latency, area"]),
         ("skip_zeros = 1", ["skip_zeros", "line 8", "boolean"]),
         ("full_scale_pa = -1.0", ["hardware.full_scale_pa", "-1", "0"]),
         ("full_scale_pa = 1e10", ["hardware.full_scale_pa", "10000000000", "1000000000"]),

@@ -9,7 +9,7 @@ pub mod points;
 mod report;
 pub mod timing;
 
-use golden::design::Design;
+use golden::design::{Design, Optimise};
 use golden::estimators::joint::{DEAD_ZONE, Grid, LARGEST, LEVEL, TIE};
 use golden::parity::{CLASSES, Quads};
 use golden::sensor::Sensor;
@@ -20,7 +20,7 @@ use super::{Cells, Found, Given, Metadata, Seen, Slot, Stage, WEIGHT_BITS};
 use crate::blocks::parameters::Parameters;
 use crate::cores::{LONG_BITS, SHORT_BITS};
 use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
-use crate::plan::memory::memory;
+use crate::plan::memory::{block_memory, memory};
 use crate::plan::resources::BlockCost;
 pub use network::{
     DoubtPlan, INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS,
@@ -57,6 +57,8 @@ const U_BITS: u32 = LONG_BITS;
 const ONE: f64 = (1_u32 << FRICTION_FRACTION) as f64;
 /// Taxels of a cell are visited anew after this many cycles at the earliest: the depth of its pipeline.
 const LEAST_ELEMENTS: usize = 4;
+/// A cell of so many taxels has its `u` in block memories, which answer a cycle later.
+pub const BLOCK_ELEMENTS: usize = 32;
 
 // The shifts above are those of the solver.
 const _: () = assert!(Grid::FINE.shift == STEP_SHIFT && Grid::FINE.numerator == 1);
@@ -87,9 +89,10 @@ pub struct JointPlan {
 }
 
 impl JointPlan {
-    /// As many cells as are worth their adders.
+    /// As many cells as are worth their adders, or one for each way.
     pub fn new(given: &Given) -> Self {
-        let per_cell = given.elements.div_ceil(MOST_CELLS / given.ways).next_power_of_two().max(LEAST_ELEMENTS);
+        let groups = if given.design.hardware.optimise == Optimise::Area { 1 } else { MOST_CELLS / given.ways };
+        let per_cell = given.elements.div_ceil(groups).next_power_of_two().max(LEAST_ELEMENTS);
         let constants = &given.design.algorithm.joint;
         let [c1, c3] = constants.tangential;
         let finer = given.stress.lsb - given.u.lsb;
@@ -112,6 +115,11 @@ impl JointPlan {
                 .as_ref()
                 .map(|correction| NetworkPlan::new(correction, -finer, given.design.hardware.lanes)),
         }
+    }
+
+    /// Whether the cells of the walk have block memories.
+    fn block_cells(&self) -> bool {
+        self.points.is_none() && self.cells.elements >= BLOCK_ELEMENTS
     }
 
     /// `value * 2^-share_shift`, rounded down.
@@ -156,13 +164,15 @@ impl Slot for JointPlan {
         // Of two frames, or one of them handed on.
         let taxels = || memory("u", 3, 2 * quads.max(4).next_power_of_two(), classes * U_BITS, false);
         let handed_on = || memory("u", 3, quads, classes * U_BITS, false);
+        let Cells { cells, elements } = self.cells;
+        let cells = self.block_cells().then(|| block_memory("u of cells", 3 * cells, 2 * elements, U_BITS));
         // The squares of five depths, or of one; and both moments.
         let plane = |dsp| BlockCost::new("plane", &["sptfra_plane_search"], dsp);
         let mut blocks = vec![match &self.points {
             Some(of) => {
                 plane(of.dsp()).with([taxels(), memory("grid values", of.side, of.side, points::VALUE_BITS, false)])
             }
-            None => plane(3).with([memory("grid values", 1, POINTS, self.value_bits, false)]),
+            None => plane(3).with([memory("grid values", 1, POINTS, self.value_bits, false)].into_iter().chain(cells)),
         }];
         if let Some(network) = &self.network {
             // The stresses of a quad, and two of their shares of all.

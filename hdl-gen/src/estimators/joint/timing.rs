@@ -25,7 +25,8 @@ pub fn level(plan: &JointPlan) -> u64 {
 /// From the start of the search to the first row of points, when all taxels are in; or to the first value of the walk:
 /// two starts and a point, then the sums.
 pub fn first_value(sensor: &Sensor, plan: &JointPlan) -> u64 {
-    let walk = || 3 * plan.cells.elements as u64 + 3 + u64::from(plan.cells.tree_levels());
+    let walk =
+        || 3 * plan.cells.elements as u64 + 3 + u64::from(plan.block_cells()) + u64::from(plan.cells.tree_levels());
     plan.points.as_ref().map_or_else(walk, |points| points.first_row(sensor))
 }
 

@@ -178,11 +178,12 @@ mod tests {
         assert_eq!(beyond(-3.0).to_bits(), 0);
     }
 
+    type Change = fn(&mut CurveMap);
+
     #[test]
     fn what_does_not_go_together_is_refused() {
         let (curve, format) = format();
         let right = format.map(&curve).unwrap();
-        type Change = fn(&mut CurveMap);
         let cases: [(&str, Change); 9] = [
             ("numbers that do not ascend", |map| map.curve.segments[9].first = map.curve.segments[8].first),
             ("a value of another way", |map| map.curve.segments[40].value /= 2),

@@ -71,7 +71,7 @@ impl Durations {
             field,
             composed: field && folded,
             places: places::places(field, folded).map(|places| places as u64),
-            interval: plan.design.hardware.optimise == Optimise::Interval,
+            interval: plan.design.hardware.optimise != Optimise::Latency,
             residuals: plan.operands.residuals(),
             line: estimator.line_latency(),
             direction: estimator.contact_latency(),
