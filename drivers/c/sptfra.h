@@ -237,6 +237,16 @@ typedef struct {
  * than a bank has room for. Without this, or with NULL, those are that were before. */
 int sptfra_load_bank(const sptfra *device, const double *gain, const double *offset, const sptfra_replaced *replaced,
     double noise_floor_pa, uint32_t polls);
+/* Points of a curve from counts to pascals: counts ascend, pascals only rise or only fall. */
+typedef struct {
+    uint32_t count;
+    const double *counts;
+    const double *pascals;
+} sptfra_curve;
+/* The same with another curve, of a core that has one in its banks ([sensor] curve): then offsets are in pascals.
+ * SPTFRA_OUT_OF_RANGE for one that no bank takes, and of cores without one. With NULL the curve is that which was. */
+int sptfra_load_bank_and_curve(const sptfra *device, const double *gain, const double *offset,
+    const sptfra_replaced *replaced, const sptfra_curve *curve, double noise_floor_pa, uint32_t polls);
 /* A word of the bank that acts, or of the other one. */
 int sptfra_read_calibration(const sptfra *device, uint16_t index, int acting, uint32_t *word);
 #define SPTFRA_MOST_TARE_LOG2 10u

@@ -18,6 +18,12 @@
 /* Of the weights of dead taxels. */
 #define MOST_WEIGHT_SHIFT 17u
 #define MOST_WEIGHTS 2097151.0
+/* Of a curve. */
+#define MOST_NUMBER 33554431.0
+#define MOST_VALUE 67104767.0
+#define MOST_CURVE_SHIFT 40
+#define SEGMENT_WORDS 4u
+#define END_WORDS 3u
 
 static int is_there(const sptfra *device)
 {
@@ -70,21 +76,35 @@ typedef struct {
     double offset_limit;
     uint32_t taxels;
     uint32_t room; /* dead taxels that a bank has room for */
+    uint32_t segments; /* of a curve for which a bank has room; 0: it has none */
+    int number_exponent, value_lsb;
 } numbers;
+
+static int signed_byte(uint32_t byte)
+{
+    return (int)byte - (byte > 127u ? 256 : 0);
+}
 
 static void numbers_of(const sptfra *device, numbers *of)
 {
     const uint32_t word = GET(device, CALIBRATION);
-    const uint32_t lsb = FIELD(word, CALIBRATION__LSB);
     const uint64_t bits
         = (uint64_t)GET(device, CALIBRATION_STEPS_HIGH) << 32 | GET(device, CALIBRATION_STEPS_LOW);
 
     memcpy(&of->count_steps, &bits, sizeof of->count_steps);
     of->shift = (int)FIELD(word, CALIBRATION__SHIFT);
-    of->lsb = (int)lsb - (lsb > 127u ? 256 : 0);
+    of->lsb = signed_byte(FIELD(word, CALIBRATION__LSB));
     of->offset_limit = (double)GET(device, CALIBRATION_OFFSET_LIMIT);
     of->room = FIELD(GET(device, FEATURES), FEATURES__REPLACEABLE);
     of->taxels = (uint32_t)device->shape.columns * device->shape.rows;
+    of->segments = 0;
+    if (FIELD(GET(device, FEATURES), FEATURES__CURVE_IN_RAM)) {
+        const uint32_t curve = GET(device, CALIBRATION_CURVE);
+
+        of->segments = FIELD(curve, CALIBRATION_CURVE__ROOM);
+        of->number_exponent = signed_byte(FIELD(curve, CALIBRATION_CURVE__EXPONENT));
+        of->value_lsb = signed_byte(FIELD(curve, CALIBRATION_CURVE__LSB));
+    }
 }
 
 /* The words of a taxel; 0 if one of the values is none that a bank takes. */
@@ -292,6 +312,92 @@ static int acting_map(const sptfra *device, const numbers *of, uint16_t dead[15]
     return found;
 }
 
+/* ---- Curves */
+
+/* Words of a segment: number and value, slope and its shift; 0 if it is none that a bank takes. */
+static int words_of_segment(const numbers *of, const sptfra_curve *curve, uint32_t place, uint32_t words[4])
+{
+    int64_t points[2][2], mantissa = 0;
+    double rise;
+    int which, dropped = MANTISSA_BITS - 2, less;
+
+    for (which = 0; which < 2; which++) {
+        const double number = curve->counts[place + (uint32_t)which] * power(of->number_exponent);
+        const double value = curve->pascals[place + (uint32_t)which] * power(-of->value_lsb);
+
+        if (!(magnitude(number) < MOST_NUMBER + 0.5 && magnitude(value) < MOST_VALUE + 0.5)) {
+            return 0;
+        }
+        points[which][0] = rounded(number);
+        points[which][1] = rounded(value);
+    }
+    if (points[1][0] <= points[0][0]) {
+        return 0;
+    }
+    rise = (double)(points[1][1] - points[0][1]) / (double)(points[1][0] - points[0][0]);
+    if (points[1][1] != points[0][1]) {
+        dropped = MANTISSA_BITS - 2 - exponent_of(rise);
+        while ((double)rounded(magnitude(rise) * power(dropped)) > MOST_MANTISSA) {
+            dropped--;
+        }
+        mantissa = rounded(rise * power(dropped));
+    }
+    if (dropped < 1) {
+        return 0;
+    }
+    /* A slope of next to nothing has fewer bits. */
+    less = dropped - MOST_CURVE_SHIFT;
+    if (less > 0) {
+        mantissa = (mantissa + ((int64_t)1 << (less - 1))) >> less;
+        dropped = MOST_CURVE_SHIFT;
+    }
+    words[0] = (uint32_t)points[0][0];
+    words[1] = (uint32_t)points[0][1];
+    words[2] = (uint32_t)mantissa;
+    words[3] = (uint32_t)dropped;
+    return 1;
+}
+
+/* Whether a bank takes it. */
+static int fits(const numbers *of, const sptfra_curve *curve)
+{
+    uint32_t place, words[4];
+    int falls;
+
+    if (curve->count < 2 || curve->count > of->segments + 1) {
+        return 0;
+    }
+    falls = curve->pascals[1] < curve->pascals[0];
+    for (place = 0; place + 1 < curve->count; place++) {
+        const double from = curve->pascals[place], to = curve->pascals[place + 1];
+
+        if (!(falls ? to < from : to > from) || !words_of_segment(of, curve, place, words)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static uint32_t word_of_curve(const numbers *of, const sptfra_curve *curve, uint32_t place)
+{
+    uint32_t words[4] = {0, 0, 0, 1};
+
+    if (place < SEGMENT_WORDS * of->segments) {
+        if (place / SEGMENT_WORDS + 1 < curve->count) {
+            words_of_segment(of, curve, place / SEGMENT_WORDS, words);
+        }
+        return words[place % SEGMENT_WORDS];
+    }
+    switch (place - SEGMENT_WORDS * of->segments) {
+    case 0:
+        return curve->count - 1;
+    case 1:
+        return (uint32_t)rounded(curve->counts[curve->count - 1] * power(of->number_exponent));
+    default:
+        return (uint32_t)rounded(curve->pascals[curve->count - 1] * power(-of->value_lsb));
+    }
+}
+
 /* ---- A whole bank */
 
 int sptfra_load_calibration(
@@ -303,9 +409,15 @@ int sptfra_load_calibration(
 int sptfra_load_bank(const sptfra *device, const double *gain, const double *offset, const sptfra_replaced *replaced,
     double noise_floor_pa, uint32_t polls)
 {
+    return sptfra_load_bank_and_curve(device, gain, offset, replaced, NULL, noise_floor_pa, polls);
+}
+
+int sptfra_load_bank_and_curve(const sptfra *device, const double *gain, const double *offset,
+    const sptfra_replaced *replaced, const sptfra_curve *curve, double noise_floor_pa, uint32_t polls)
+{
     const int there = is_there(device);
     numbers of;
-    uint32_t taxel, place, word, in_map, shift = 0, crc = UINT32_MAX, thresholds[2];
+    uint32_t taxel, place, word, in_map, in_curve, shift = 0, crc = UINT32_MAX, thresholds[2];
     uint32_t words[2];
     int kind, found;
 
@@ -338,6 +450,9 @@ int sptfra_load_bank(const sptfra *device, const double *gain, const double *off
         if (is_bare(&of, gain, dead, count)) {
             return SPTFRA_OUT_OF_RANGE;
         }
+    }
+    if (curve != NULL && !fits(&of, curve)) {
+        return SPTFRA_OUT_OF_RANGE;
     }
     if (noise_floor_pa > 0.0) {
         const double noise = noise_floor_pa * power(-of.lsb);
@@ -373,10 +488,13 @@ int sptfra_load_bank(const sptfra *device, const double *gain, const double *off
         crc = crc_of(crc, thresholds[kind]);
     }
     in_map = of.room > 0 ? 1u + of.room * (1u + of.taxels) : 0u;
-    for (place = 0; place < in_map; place++) {
+    in_curve = of.segments > 0 ? SEGMENT_WORDS * of.segments + END_WORDS : 0u;
+    for (place = 0; place < in_map + in_curve; place++) {
         const uint32_t index = 2u * of.taxels + 2u + place;
 
-        if (replaced != NULL) {
+        if (place >= in_map && curve != NULL) {
+            word = word_of_curve(&of, curve, place - in_map);
+        } else if (place < in_map && replaced != NULL) {
             word = word_of_map(&of, replaced, shift, place);
         } else {
             found = sptfra_read_calibration(device, (uint16_t)index, 1, &word);

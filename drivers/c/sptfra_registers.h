@@ -77,6 +77,9 @@ extern "C" {
 #define SPTFRA__FEATURES__DROPS_bm 0x20
 #define SPTFRA__FEATURES__DROPS_bp 5
 #define SPTFRA__FEATURES__DROPS_bw 1
+#define SPTFRA__FEATURES__CURVE_IN_RAM_bm 0x40
+#define SPTFRA__FEATURES__CURVE_IN_RAM_bp 6
+#define SPTFRA__FEATURES__CURVE_IN_RAM_bw 1
 #define SPTFRA__FEATURES__STREAM_BYTES_bm 0xff00
 #define SPTFRA__FEATURES__STREAM_BYTES_bp 8
 #define SPTFRA__FEATURES__STREAM_BYTES_bw 8
@@ -310,6 +313,17 @@ extern "C" {
 #define SPTFRA__CALIBRATION_CRC__CRC_bp 0
 #define SPTFRA__CALIBRATION_CRC__CRC_bw 32
 
+// reg - sptfra::CALIBRATION_CURVE
+#define SPTFRA__CALIBRATION_CURVE__ROOM_bm 0xff
+#define SPTFRA__CALIBRATION_CURVE__ROOM_bp 0
+#define SPTFRA__CALIBRATION_CURVE__ROOM_bw 8
+#define SPTFRA__CALIBRATION_CURVE__EXPONENT_bm 0xff00
+#define SPTFRA__CALIBRATION_CURVE__EXPONENT_bp 8
+#define SPTFRA__CALIBRATION_CURVE__EXPONENT_bw 8
+#define SPTFRA__CALIBRATION_CURVE__LSB_bm 0xff0000
+#define SPTFRA__CALIBRATION_CURVE__LSB_bp 16
+#define SPTFRA__CALIBRATION_CURVE__LSB_bw 8
+
 // addrmap - sptfra
 typedef struct __attribute__ ((__packed__)) {
     uint32_t IDENTITY;
@@ -347,10 +361,11 @@ typedef struct __attribute__ ((__packed__)) {
     uint32_t CALIBRATION_STATUS;
     uint32_t CALIBRATION_ERRORS;
     uint32_t CALIBRATION_CRC;
+    uint32_t CALIBRATION_CURVE;
 } sptfra_t;
 
 
-static_assert(sizeof(sptfra_t) == 0xac, "Packing error");
+static_assert(sizeof(sptfra_t) == 0xb0, "Packing error");
 
 #ifdef __cplusplus
 }

@@ -9,17 +9,31 @@ import numpy as np
 MANTISSA_BITS, EXPONENT_BITS = 18, 10
 #: What the weights of a dead taxel add up to at most, in their steps.
 MOST_WEIGHTS = (1 << 21) - 1
+#: Of a curve: numbers, values, slopes' shifts; words of a segment, and behind all of them.
+MOST_NUMBER, MOST_VALUE, MOST_CURVE_SHIFT = (1 << 25) - 1, (1 << 26) - 1 - (1 << 12), 40
+SEGMENT_WORDS, END_WORDS = 4, 3
 
 
 def read_calibration(path, taxels):
-    """Gains and offsets of a file with a line `gain,offset` for each taxel, and what it says of dead taxels.
+    """Gains and offsets of a file with a line `gain,offset` for each taxel, and what it says of dead taxels and a curve.
 
     A file of `golden bank` has a header, `gain,offset,taxel 37,...`, and in each line the taxel's weight in the stress of
-    each dead one: `{37: [weights], ...}`, of other files None. Raises ValueError, with the line.
+    each dead one: `{37: [weights], ...}`, of other files None. Behind a header `count,pascals` stand the points of a curve,
+    else it is None. Raises ValueError, with the line.
     """
-    gains, offsets, dead = [], [], None
+    gains, offsets, dead, points = [], [], None, None
     for number, line in enumerate(pathlib.Path(path).read_text(encoding="utf-8-sig").splitlines(), 1):
         if not line.strip():
+            continue
+        if points is None and line.strip() == "count,pascals":
+            points = []
+            continue
+        if points is not None:
+            try:
+                count, pascals = map(float, line.split(","))
+            except ValueError:
+                raise ValueError(f"{path}, line {number}: {line.strip()!r} is no count,pascals such as 120,-950.5") from None
+            points.append((count, pascals))
             continue
         if dead is None and not gains and line.startswith("gain,offset"):
             names = [name.split() for name in line.strip().split(",")[2:]]
@@ -44,7 +58,7 @@ def read_calibration(path, taxels):
         offsets.append(offset)
     if len(gains) != taxels:
         raise ValueError(f"{path}: {len(gains)} lines, and the core has {taxels} taxels")
-    return gains, offsets, dead
+    return gains, offsets, dead, points
 
 
 def bank_words(gains, offsets, count_steps, shift, offset_limit):
@@ -98,3 +112,49 @@ def map_words(dead, room, taxels):
     numbers[: len(dead)] = list(dead)
     head = np.array([len(dead) | shift << 8], dtype=np.uint32)
     return np.concatenate([head, numbers, steps.astype(np.int64).astype(np.uint32).ravel()])
+
+
+def _away(value):
+    """To the nearest; ties go away from zero."""
+    return int(np.copysign(np.floor(abs(value) + 0.5), value))
+
+
+def curve_length(room):
+    """Words of a curve in a bank with room for so many parts."""
+    return SEGMENT_WORDS * room + END_WORDS
+
+
+def curve_words(points, room, exponent, lsb):
+    """The words of a curve of (count, pascals), in a bank with room for so many parts, as uint32.
+
+    Raises ValueError where no bank takes it: counts ascend, pascals only rise or only fall.
+    """
+    if not 2 <= len(points) <= room + 1 or not np.all(np.isfinite(points)):
+        raise ValueError(f"a curve of {len(points)} points: use 2 to {room + 1}")
+    counts, pascals = np.array(points).T
+    numbers = [_away(count * 2.0**exponent) for count in counts]
+    values = [_away(pascal * 2.0**-lsb) for pascal in pascals]
+    if max(map(abs, numbers)) > MOST_NUMBER or max(map(abs, values)) > MOST_VALUE:
+        most = MOST_NUMBER * 2.0**-exponent, MOST_VALUE * 2.0**lsb
+        raise ValueError(f"a curve beyond {most[0]:.0f} counts or {most[1]:.0f} Pa, for which a bank has room")
+    ways = np.diff(pascals)
+    if np.any(np.diff(numbers) <= 0) or not (np.all(ways > 0) or np.all(ways < 0)):
+        raise ValueError("the points of a curve ascend by counts, and pascals only rise or only fall")
+    words = np.zeros(SEGMENT_WORDS * room + END_WORDS, dtype=np.int64)
+    words[SEGMENT_WORDS - 1 : SEGMENT_WORDS * room : SEGMENT_WORDS] = 1
+    for place, (number, value) in enumerate(zip(numbers[:-1], values[:-1])):
+        rise = (values[place + 1] - value) / (numbers[place + 1] - number)
+        mantissa, dropped = 0, MANTISSA_BITS - 2
+        if rise != 0:
+            dropped = MANTISSA_BITS - 1 - int(np.frexp(rise)[1])
+            while _away(abs(rise) * 2.0**dropped) >= 1 << (MANTISSA_BITS - 1):
+                dropped -= 1
+            mantissa = _away(rise * 2.0**dropped)
+        if dropped < 1:
+            raise ValueError(f"between the counts {counts[place]} and {counts[place + 1]} a curve rises too steeply")
+        # A slope of next to nothing has fewer bits.
+        less = min(max(dropped - MOST_CURVE_SHIFT, 0), 60)
+        mantissa = mantissa if less == 0 else (mantissa + (1 << (less - 1))) >> less
+        words[SEGMENT_WORDS * place :][:SEGMENT_WORDS] = number, value, mantissa, min(dropped, MOST_CURVE_SHIFT)
+    words[-END_WORDS:] = len(points) - 1, numbers[-1], values[-1]
+    return words.astype(np.uint32)

@@ -25,7 +25,7 @@ import time
 import zlib
 
 import numpy as np
-from sptfra_bank import bank_words, map_words, read_calibration
+from sptfra_bank import bank_words, curve_length, curve_words, map_words, read_calibration
 from sptfra_dma import Batches, OneByOne
 from sptfra_forces import LAYOUT, Forces, Layout, Status, decode
 from sptfra_identity import Counters, Identity
@@ -167,14 +167,15 @@ class Sptfra:
         """Lets the gains and offsets of a `calibration.csv` act from the next frame on; frames may run meanwhile.
 
         The file has a line `gain,offset` for each taxel, as the design's own, or is one of `golden bank`: then the dead
-        taxels of its header are replaced, and no others; else those that were. With `noise_floor_pa` the thresholds of
+        taxels of its header are replaced, and no others; else those that were. So with the points of a curve, whose
+        offsets are in pascals. With `noise_floor_pa` the thresholds of
         contact and of rest are set by it, else they stay. What is written is compared by its CRC. Raises ValueError on a
         file or values that no bank takes, RuntimeError if the core refuses, TimeoutError; then what acted still does.
         """
         self._needs_calibration()
         # What is kept of the bank that acts is read from it, and reads 0 while it changes.
         self._calibration_idle()
-        gains, offsets, dead = read_calibration(path, self.identity.rows * self.identity.columns)
+        gains, offsets, dead, points = read_calibration(path, self.identity.rows * self.identity.columns)
         room = self.identity.replaceable
         in_map = [] if dead is None else map_words(dead, room, len(gains))
         read, write = self._core.read, self._core.write
@@ -197,7 +198,8 @@ class Sptfra:
             bare = [taxel for taxel, gain in enumerate(gains) if gain == 0 and taxel not in replaced]
             if bare:
                 raise ValueError(f"{path}: nothing replaces the taxels {bare} of gain 0: write it with golden bank")
-        words = np.concatenate([words, np.array([*thresholds, *in_map], dtype=np.uint32)]).astype("<u4")
+        curve = self._curve_words(points, len(words) + 2 + len(in_map))
+        words = np.concatenate([words, np.array([*thresholds, *in_map, *curve], dtype=np.uint32)]).astype("<u4")
         crc = zlib.crc32(words.tobytes())
         write(Register.CALIBRATION_INDEX, 0)
         for word in words:
@@ -207,9 +209,21 @@ class Sptfra:
         if read(Register.CALIBRATION_CRC) != crc:
             raise RuntimeError("the bank that acts is not the one that was written")
 
+    def _curve_words(self, points, first):
+        """The words of a curve, which begin with this one: of its points, else of the curve that acts."""
+        if not self.identity.curve_in_ram:
+            if points is not None:
+                raise ValueError("the file has a curve, and the core none in its banks: [sensor] curve")
+            return []
+        word = self._core.read(Register.CALIBRATION_CURVE)
+        room, exponent, lsb = word & 0xFF, (word >> 8 & 0xFF ^ 0x80) - 0x80, (word >> 16 & 0xFF ^ 0x80) - 0x80
+        if points is None:
+            return [self.read_calibration(first + place) for place in range(curve_length(room))]
+        return curve_words(points, room, exponent, lsb)
+
     def read_calibration(self, index, acting=True):
         """A word of the bank that acts, or of the other one: gains, offsets, contact threshold, noise floor, then the map of
-        dead taxels. Raises RuntimeError while a commit or a tare is under way."""
+        dead taxels and the curve. Raises RuntimeError while a commit or a tare is under way."""
         self._needs_calibration()
         self._refuse_while_busy()
         self._core.write(Register.CALIBRATION_INDEX, index | (INDEX_ACTIVE if acting else 0))

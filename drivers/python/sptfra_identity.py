@@ -27,6 +27,8 @@ class Identity:
     stream_bits: int
     #: Whether gains and offsets are in RAM: see `Sptfra.load_calibration`.
     calibration_in_ram: bool
+    #: Whether a calibration has a curve from counts to pascals.
+    curve_in_ram: bool
     #: Dead taxels that a calibration can have replaced.
     replaceable: int
     #: Whether frames that find no room are dropped, and the source never held.
@@ -63,6 +65,7 @@ class Identity:
             has_counts=bool(features & 4),
             skips_zeros=bool(features & 8),
             calibration_in_ram=bool(features & 16),
+            curve_in_ram=bool(features & 64),
             replaceable=features >> 20 & 15,
             drops_frames=bool(features & 32),
             stream_bits=8 * (features >> 8 & 0xFF) or 32,
@@ -91,6 +94,7 @@ class Identity:
             has_counts=None,
             skips_zeros=predicted["worst_case"],
             calibration_in_ram=False,
+            curve_in_ram=False,
             replaceable=0,
             drops_frames=metadata["overrun"] == "drop",
             stream_bits=metadata["stream_bits"],

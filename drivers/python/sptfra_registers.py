@@ -49,6 +49,7 @@ class Register(enum.IntEnum):
     CALIBRATION_STATUS = 0x0A0
     CALIBRATION_ERRORS = 0x0A4
     CALIBRATION_CRC = 0x0A8
+    CALIBRATION_CURVE = 0x0AC
 
 
 class Event(enum.IntFlag):

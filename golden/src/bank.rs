@@ -17,7 +17,8 @@ pub struct NoBank {
 
 /// The file that the drivers load, for a design whose calibration is in RAM. A header line `gain,offset,taxel 37,…` names
 /// the dead taxels, ascending; then follows a line for each taxel: its gain, 0 of a dead one, its offset in counts, and its
-/// weight in the stress of each dead taxel. Where banks have no room for dead taxels, gain and offset alone.
+/// weight in the stress of each dead taxel. Where banks have no room for dead taxels, gain and offset alone. Of a design
+/// with a curve, whose offsets are in pascals, a header `count,pascals` follows, and a line for each of its points.
 ///
 /// # Errors
 /// [`NoBank`] for a calibration in ROM.
@@ -41,6 +42,12 @@ pub fn to_csv(design: &Design) -> Result<String, NoBank> {
         let _ = write!(text, "\n{gain:?},{:?}", of_taxel(|of| &of.offset, 0.0));
         for weights in dead.weights() {
             let _ = write!(text, ",{:?}", weights[taxel]);
+        }
+    }
+    if let Some(curve) = &input.curve {
+        text.push_str("\ncount,pascals");
+        for [count, pascals] in &curve.points {
+            let _ = write!(text, "\n{count:?},{pascals:?}");
         }
     }
     text.push('\n');

@@ -4,10 +4,10 @@
 // The two banks of a calibration: which one acts, writes to the other, its CRC and the change to it, and tare.
 //
 // A bank's words are the taxels' gains, their offsets, the contact threshold and the noise floor, then what
-// sptfra_dead_bank has of dead taxels. A commit reads the bank that does not act, six cycles a word; if it has the CRC
-// that the commit states, and does not contradict itself, it acts from the next frame on. Tare writes the acting bank
-// into the other one, with the mean stress taken off the offsets. What acts outlives a reset: only the device's
-// configuration brings the design's content back.
+// sptfra_dead_bank has of dead taxels and sptfra_curve_bank of the curve. A commit reads the bank that does not act,
+// six cycles a word; if it has the CRC that the commit states, and does not contradict itself, it acts from the next
+// frame on. Tare writes the acting bank into the other one, with the mean stress taken off the offsets. What acts
+// outlives a reset: only the device's configuration brings the design's content back.
 
 `default_nettype none
 
@@ -23,6 +23,8 @@ module sptfra_calibration #(
     parameter [31:0] CRC = 32'd0,
     // Places of the map of dead taxels
     parameter REPLACEABLE = 0,
+    // Words of a curve, see sptfra_curve_bank
+    parameter CURVE_WORDS = 0,
     // Derived
     parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1
 ) (
@@ -71,7 +73,7 @@ module sptfra_calibration #(
     input  wire tare_restless,
     input  wire tare_bad_frame,
     input  wire signed [26:0] tare_mean,
-    // To the core: what banks say of dead taxels, see sptfra_dead_bank
+    // To the core: what banks say of dead taxels and of the curve, see sptfra_dead_bank
     output wire [55:0] dead_command,
     input  wire [33:0] dead_result
 );
@@ -83,7 +85,8 @@ module sptfra_calibration #(
     localparam [15:0] CONTACT_WORD = CONTACT_WIDE[15:0];
     localparam [15:0] NOISE_WORD = CONTACT_WORD + 16'd1;
     localparam [31:0] DEAD_WORDS = (REPLACEABLE != 0) ? 1 + REPLACEABLE + REPLACEABLE * TAXELS : 0;
-    localparam [15:0] LAST_WORD = NOISE_WORD + DEAD_WORDS[15:0];
+    localparam [31:0] MORE_WORDS = DEAD_WORDS + CURVE_WORDS;
+    localparam [15:0] LAST_WORD = NOISE_WORD + MORE_WORDS[15:0];
     localparam [15:0] LAST_TAXEL = LAST_TAXEL_WIDE[15:0];
     localparam [2:0] IDLE = 3'd0, WALK = 3'd1, DECIDE = 3'd2, DRAIN = 3'd3, GATHER = 3'd4, COPY = 3'd5;
     localparam [2:0] LAST_BYTE = 3'd5; // of a word's cycles
@@ -299,7 +302,7 @@ module sptfra_calibration #(
     end
 
     wire _unused = &{1'b0, taxel, mantissa[15:0], OFFSETS_WIDE[31:16], CONTACT_WIDE[31:16], LAST_TAXEL_WIDE[31:16],
-        DEAD_WORDS[31:16]};
+        MORE_WORDS[31:16]};
 
 endmodule
 

@@ -2,7 +2,7 @@
 // Part of the SpTFRA hardware generator.
 //
 // The registers of a calibration in memory, beside those of sptfra_registers: 0x080 to 0x0A8 of the map in the design's
-// control/NAME.rdl, and bits 4 and 23:20 of FEATURES.
+// control/NAME.rdl, with a curve in the banks 0x0AC, and bits 4, 6 and 23:20 of FEATURES.
 //
 // Reads answer in the same cycle. Words are written whole: fewer strobes than four change nothing but CALIBRATION_INDEX
 // and CALIBRATION_ERRORS.
@@ -21,7 +21,9 @@ module sptfra_calibration_registers #(
     // Steps of the stress for a count at a gain of 1, a float64
     parameter [63:0] COUNT_STEPS = 64'd0,
     // Most dead taxels that a bank can have replaced
-    parameter [3:0] REPLACEABLE = 4'd0
+    parameter [3:0] REPLACEABLE = 4'd0,
+    // The register of the curve; 0: there is none
+    parameter [31:0] CURVE = 32'd0
 ) (
     input  wire clock,
     input  wire reset,
@@ -68,17 +70,19 @@ module sptfra_calibration_registers #(
     localparam [9:0] CALIBRATION_STATUS = 10'd40;
     localparam [9:0] CALIBRATION_ERRORS = 10'd41;
     localparam [9:0] CALIBRATION_CRC = 10'd42;
+    localparam [9:0] CALIBRATION_CURVE = 10'd43;
+    localparam [9:0] LAST = (CURVE != 32'd0) ? CALIBRATION_CURVE : CALIBRATION_CRC;
     localparam [31:0] MOST_LOG2 = 32'd10; // of tare's frames
 
     reg [5:0] errors; // contradiction, bad frame, not at rest, wrong CRC, busy, out of range
 
-    assign write_mapped = (write_word >= CALIBRATION) && (write_word <= CALIBRATION_CRC);
-    assign read_mapped = (read_word >= CALIBRATION) && (read_word <= CALIBRATION_CRC);
+    assign write_mapped = (write_word >= CALIBRATION) && (write_word <= LAST);
+    assign read_mapped = (read_word >= CALIBRATION) && (read_word <= LAST);
 
     // ---- Reads
     always @(*) begin
         case (read_word)
-            FEATURES: read_data = {8'd0, REPLACEABLE, 20'h00010};
+            FEATURES: read_data = {8'd0, REPLACEABLE, 13'd0, CURVE != 32'd0, 6'h10};
             CALIBRATION: read_data = {LSB, 2'd0, SHIFT, WORDS};
             CALIBRATION_OFFSET_LIMIT: read_data = OFFSET_LIMIT;
             CALIBRATION_STEPS_LOW: read_data = COUNT_STEPS[31:0];
@@ -88,6 +92,7 @@ module sptfra_calibration_registers #(
             CALIBRATION_STATUS: read_data = {21'd0, taring, !idle, active, generation};
             CALIBRATION_ERRORS: read_data = {26'd0, errors};
             CALIBRATION_CRC: read_data = crc;
+            CALIBRATION_CURVE: read_data = CURVE;
             default: read_data = 32'd0; // commands read as zero
         endcase
     end

@@ -42,16 +42,10 @@ pub(super) fn calibration_in_ram(check: &Check, hardware: &Hardware, input: &Inp
             "add control = true, or write calibration = \"rom\"",
         );
     }
-    if input.curve.is_some() {
-        return refuse(
-            "and a curve stands in ROM only",
-            "write sensor.pa_per_count in place of sensor.curve, or calibration = \"rom\"",
-        );
-    }
-    if input.pa_per_count.is_none() {
+    if !input.counts() {
         return refuse(
             "and frames are in pascals, which have no gains and offsets",
-            "add sensor.pa_per_count, or write calibration = \"rom\"",
+            "add sensor.pa_per_count or sensor.curve, or write calibration = \"rom\"",
         );
     }
     Ok(())

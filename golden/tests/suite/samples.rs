@@ -68,11 +68,12 @@ fn a_calibration_in_ram_needs_registers_and_counts() {
     let good = design(counts, "control = true").unwrap();
     assert_eq!(good.hardware.calibration, CalibrationIn::Ram);
     assert_eq!(Design::from_toml(&good.to_toml(), "again.toml").unwrap(), good);
+    assert!(design("curve = { power = 1.2, scale = -1.0 }", "control = true").is_ok());
     for (sensor, hardware, said) in [
         (counts, "", "no registers"),
         (counts, "control = false", "add control = true"),
         ("", "control = true", "add sensor.pa_per_count"),
-        ("curve = { power = 1.2, scale = -1.0 }", "control = true", "a curve stands in ROM only"),
+        ("curve = { power = 1.2, scale = -1.0 }", "", "no registers"),
     ] {
         let message = design(sensor, hardware).unwrap_err();
         assert!(message.contains("hardware.calibration") && message.contains(said), "{message}");

@@ -22,8 +22,11 @@ const KNOTS_PER_LINE: usize = 7;
 pub fn module(plan: &Plan) -> &'static str {
     match plan.streams().intake {
         Intake::Whole => "sptfra_bz_wide",
-        Intake::Single | Intake::Unpacked if plan.calibration.is_some() => "sptfra_bz_calibrated",
-        Intake::Single | Intake::Unpacked => "sptfra_bz",
+        Intake::Single | Intake::Unpacked => match &plan.calibration {
+            Some(of) if of.curve().is_some() => "sptfra_bz_curved",
+            Some(_) => "sptfra_bz_calibrated",
+            None => "sptfra_bz",
+        },
     }
 }
 
@@ -178,15 +181,19 @@ fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
         .wide("FULL_SCALE", ACCUMULATOR_BITS, counts.full_scale)
 }
 
+/// Numbers of [`LONG_BITS`] in two's complement, the first in the lowest bits, as many on a line as it holds.
+pub fn numbers(numbers: &[i64]) -> String {
+    let unsigned = |number: &i64| number & ((1 << LONG_BITS) - 1);
+    let numbers: Vec<String> =
+        numbers.iter().rev().map(|number| format!("{LONG_BITS}'d{}", unsigned(number))).collect();
+    let lines: Vec<String> = numbers.chunks(KNOTS_PER_LINE).map(|numbers| numbers.join(", ")).collect();
+    format!("{{\n            {}\n        }}", lines.join(",\n            "))
+}
+
 fn of_curve(parameters: Parameters, curve: &CurvePlan) -> Parameters {
-    // Two's complement, the first in the lowest bits, as many on a line as it holds.
-    let unsigned = |knot: &i64| knot & ((1 << LONG_BITS) - 1);
-    let knots: Vec<String> =
-        curve.knots().iter().rev().map(|knot| format!("{LONG_BITS}'d{}", unsigned(knot))).collect();
-    let lines: Vec<String> = knots.chunks(KNOTS_PER_LINE).map(|knots| knots.join(", ")).collect();
     parameters
         .number("CURVE_LEVELS", curve.levels().into())
-        .expression("CURVE_KNOTS", format!("{{\n            {}\n        }}", lines.join(",\n            ")))
+        .expression("CURVE_KNOTS", numbers(&curve.knots()))
         .wide("CURVE_FIRST", LONG_BITS, curve.segments[0].first)
         .wide("CURVE_LAST", LONG_BITS, curve.last)
 }

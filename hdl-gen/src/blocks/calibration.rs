@@ -2,7 +2,7 @@
 
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
-use crate::plan::calibration::CalibrationPlan;
+use crate::plan::calibration::{CalibrationPlan, CurveMap};
 use crate::plan::counts::EXPONENT_BITS;
 use crate::plan::dead::WEIGHT_BITS;
 use crate::plan::format::address_bits;
@@ -10,10 +10,17 @@ use crate::plan::gain::GAIN_BITS;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 
-use super::{Parameters, latency};
+use super::{Parameters, bz, latency};
 
-/// Modules of a calibration in the core; the last two only with a map of dead taxels.
-const MODULES: [&str; 4] = ["sptfra_calibrate", "sptfra_tare", "sptfra_dead_bank", "sptfra_replace"];
+/// Modules of a calibration in the core; the third and fourth only with a map of dead taxels, the last two with a curve.
+const MODULES: [&str; 6] = [
+    "sptfra_calibrate",
+    "sptfra_tare",
+    "sptfra_dead_bank",
+    "sptfra_replace",
+    "sptfra_count_curve",
+    "sptfra_curve_bank",
+];
 /// Bits of a taxel's sum and extremes while it is tared.
 const TARE_BITS: u32 = 37 + 2 * LONG_BITS;
 
@@ -25,6 +32,10 @@ pub fn of_frames(parameters: Parameters, of: &CalibrationPlan, words: usize) -> 
         .wide("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale)
         .cycles("EXPECTED_CALIBRATION", cycles(of))
         .count("WORDS", words);
+    let parameters = match &of.power_up.curve {
+        Some(curve) => of_curve(parameters, curve),
+        None => parameters,
+    };
     let map = &of.power_up.dead;
     if map.room == 0 {
         return parameters;
@@ -38,19 +49,40 @@ pub fn of_frames(parameters: Parameters, of: &CalibrationPlan, words: usize) -> 
         .expression("REPLACED_TAXELS", format!("{{{}}}", numbers.join(", ")))
 }
 
-/// Bits that go between the banks' control and what they say of dead taxels, there and back.
-pub fn dead_bits(of: &CalibrationPlan) -> [u32; 2] {
-    if of.power_up.dead.room == 0 { [0, 0] } else { [56, 34] }
+/// Parameters of `sptfra_bz_curved` that `sptfra_bz_calibrated` has not.
+fn of_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
+    let knots = (0..map.format.room).map(|place| i64::from(map.segment(place)[0].cast_signed()));
+    parameters
+        .number("CURVE_LEVELS", map.format.levels().into())
+        .number("CURVE_NUMBER_SHIFT", map.format.exponent.into())
+        .number("CURVE_VALUE_LSB", map.format.lsb.into())
+        .expression("CURVE_COUNT", format!("7'd{}", map.curve.segments.len()))
+        .expression("CURVE_KNOTS", bz::numbers(&knots.collect::<Vec<_>>()))
+        .wide("CURVE_LAST", LONG_BITS, map.curve.last)
+        .wide("CURVE_LAST_VALUE", LONG_BITS, map.end)
+        .cycles("EXPECTED_CURVE", latency::curve_in_ram(map.format.levels()))
 }
 
-/// Cycles from a frame's first beat to the first of its stress.
+/// Whether banks have words behind the thresholds.
+pub fn has_more(of: &CalibrationPlan) -> bool {
+    of.power_up.dead.room > 0 || of.power_up.curve.is_some()
+}
+
+/// Bits that go between the banks' control and what they say of dead taxels and of the curve, there and back.
+pub fn dead_bits(of: &CalibrationPlan) -> [u32; 2] {
+    if has_more(of) { [56, 34] } else { [0, 0] }
+}
+
+/// Cycles from a frame's first beat, behind the curve, to the first of its stress.
 fn cycles(of: &CalibrationPlan) -> u64 {
     latency::CALIBRATION + if of.power_up.dead.room > 0 { latency::replacing(of.taxels) } else { 0 }
 }
 
 /// What a calibration in RAM adds to a frame's way to Bz, in cycles; 0 without one.
 pub fn latency(plan: &Plan) -> u64 {
-    plan.calibration.as_ref().map_or(0, cycles)
+    plan.calibration
+        .as_ref()
+        .map_or(0, |of| cycles(of) + of.curve().map_or(0, |curve| latency::curve_in_ram(curve.levels())))
 }
 
 /// Cycles from a frame's first beat to the next one's, at least, as far as the calibration keeps it.
@@ -61,25 +93,41 @@ pub fn interval(plan: &Plan) -> u64 {
 
 /// Parameters of `sptfra_calibration`.
 pub fn control(of: &CalibrationPlan) -> Parameters {
-    Parameters::new()
+    let parameters = Parameters::new()
         .count("TAXELS", of.taxels)
         .number("OFFSET_BITS", of.offset_bits().into())
         .wide("OFFSET_LIMIT", 32, of.offset_limit)
         .expression("CONTACT", format!("32'd{}", of.power_up.contact))
         .expression("NOISE", format!("{LONG_BITS}'d{}", of.power_up.noise))
         .expression("CRC", format!("32'h{:08x}", of.power_up.crc()))
-        .count("REPLACEABLE", of.power_up.dead.room)
+        .count("REPLACEABLE", of.power_up.dead.room);
+    match of.curve() {
+        Some(curve) => parameters.count("CURVE_WORDS", curve.length()),
+        None => parameters,
+    }
+}
+
+/// What `CALIBRATION_CURVE` says: room for segments, the exponents of numbers and of a step of the values.
+pub fn curve_register(of: &CalibrationPlan) -> Option<[u8; 3]> {
+    let byte = |exponent: i32| (exponent as i8).cast_unsigned();
+    of.curve().map(|curve| [curve.room as u8, byte(curve.exponent), byte(curve.lsb)])
 }
 
 /// Parameters of `sptfra_calibration_registers`.
 pub fn registers(of: &CalibrationPlan) -> Parameters {
-    Parameters::new()
+    let parameters = Parameters::new()
         .expression("WORDS", format!("16'd{}", of.words()))
         .expression("SHIFT", format!("6'd{}", of.shift))
         .expression("LSB", format!("8'd{}", lsb(of)))
         .expression("OFFSET_LIMIT", format!("32'd{}", of.offset_limit))
         .expression("COUNT_STEPS", format!("64'h{:016x}", of.count_steps.to_bits()))
-        .expression("REPLACEABLE", format!("4'd{}", of.power_up.dead.room))
+        .expression("REPLACEABLE", format!("4'd{}", of.power_up.dead.room));
+    match curve_register(of) {
+        Some([room, exponent, lsb]) => {
+            parameters.expression("CURVE", format!("{{8'd0, 8'd{lsb}, 8'd{exponent}, 8'd{room}}}"))
+        }
+        None => parameters,
+    }
 }
 
 /// The exponent of the stress' step as eight bits of two's complement.
@@ -88,7 +136,8 @@ pub fn lsb(of: &CalibrationPlan) -> u8 {
 }
 
 /// A multiplier, both banks, a copy of them for each of two readers, and what a tare adds up; for dead taxels a frame, and
-/// for each place of the map a multiplier and weights; nothing without a calibration in RAM.
+/// for each place of the map a multiplier and weights; for a curve one, and its lines; nothing without a calibration in
+/// RAM.
 pub fn cost(plan: &Plan) -> Option<BlockCost> {
     let of = plan.calibration.as_ref()?;
     let words = 1 << address_bits(of.taxels);
@@ -103,5 +152,11 @@ pub fn cost(plan: &Plan) -> Option<BlockCost> {
         // With a stress, whether it was a number.
         memories.push(memory("whole frame", 1, of.taxels, LONG_BITS + 1, false));
     }
-    Some(BlockCost::new("Calibration", &MODULES, 1 + room).with(memories))
+    let curve = of.curve();
+    if let Some(curve) = curve {
+        for (name, bits) in [("curve", LONG_BITS), ("curve values", LONG_BITS), ("slopes", GAIN_BITS), ("shifts", 6)] {
+            memories.push(memory(name, 2, 2 * curve.room, bits, false));
+        }
+    }
+    Some(BlockCost::new("Calibration", &MODULES, 1 + room + usize::from(curve.is_some())).with(memories))
 }

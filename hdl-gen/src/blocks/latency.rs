@@ -15,6 +15,17 @@ pub const OVERRUN: u64 = 2 - axis_skid::LATENCY as u64;
 pub const CALIBRATION: u64 =
     2 + float_to_fixed::LATENCY as u64 + 3 + fixed_to_float::LATENCY as u64 + axis_skid::LATENCY as u64;
 
+/// What a curve in the banks adds to that, found by so many comparisons: a register, the conversion, the ends, the
+/// comparisons, its line, the conversion to float32, and a skid buffer.
+pub fn curve_in_ram(levels: u32) -> u64 {
+    1 + u64::from(float_to_fixed::LATENCY)
+        + 1
+        + u64::from(levels)
+        + 6
+        + u64::from(fixed_to_float::LATENCY)
+        + u64::from(axis_skid::LATENCY)
+}
+
 /// What replacing dead taxels of a bank's map adds to that: the frame is read once more.
 pub fn replacing(taxels: usize) -> u64 {
     taxels as u64 + 6

@@ -89,6 +89,10 @@ struct CalibrationView {
     crc: String,
     /// Dead taxels that a bank has room for.
     replaceable: usize,
+    /// Whether banks have words behind the thresholds.
+    more: bool,
+    /// What `CALIBRATION_CURVE` says, where banks hold a curve.
+    curve: Option<[u8; 3]>,
 }
 
 impl CalibrationView {
@@ -109,6 +113,8 @@ impl CalibrationView {
             first_word: format!("{first:08x}"),
             crc: format!("{:08x}", of.power_up.crc()),
             replaceable: of.power_up.dead.room,
+            more: calibration::has_more(of),
+            curve: calibration::curve_register(of),
         }
     }
 }

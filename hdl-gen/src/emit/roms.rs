@@ -2,10 +2,11 @@
 
 use crate::blocks::array::column_bits;
 use crate::blocks::{bz, row_width};
+use crate::cores::LONG_BITS;
 use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
 use crate::plan::counts::EXPONENT_BITS;
-use crate::plan::curve::SEGMENT_BITS;
+use crate::plan::curve::{SEGMENT_BITS, SHIFT_BITS};
 use crate::plan::format::address_bits;
 use crate::plan::gain::GAIN_BITS;
 use crate::plan::product::{SUMS_DESTINATION, destination, destination_bits};
@@ -69,6 +70,14 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
             let one = (0..depth).map(|taxel| if taxel < plan.taxels() { bank.dead.weight(place, taxel) } else { 0 });
             let both = one.clone().chain(one).map(|weight| u128::from(weight as u32));
             files.insert(format!("rom/{name}_bank_weights{place}.mem"), hex(both, 2 * depth, WEIGHT_BITS));
+        }
+    }
+    if let Some(curve) = plan.calibration.as_ref().and_then(|calibration| calibration.power_up.curve.as_ref()) {
+        let room = curve.format.room;
+        let kinds = [("firsts", LONG_BITS), ("values", LONG_BITS), ("slopes", GAIN_BITS), ("shifts", SHIFT_BITS)];
+        for (kind, (called, bits)) in kinds.into_iter().enumerate() {
+            let both = (0..2 * room).map(|place| u128::from(curve.segment(place % room)[kind] & ((1 << bits) - 1)));
+            files.insert(format!("rom/{name}_bank_curve_{called}.mem"), hex(both, 2 * room, bits));
         }
     }
     if !plan.arms.is_empty() {

@@ -1,9 +1,11 @@
 //! A calibration in RAM: the numbers of a taxel's gain and offset as a bank holds them, and the bounds of what it takes.
 
 mod bank;
+mod curve_map;
 mod dead_map;
 
 pub use bank::Bank;
+pub use curve_map::{CurveFormat, CurveMap};
 pub use dead_map::DeadMap;
 
 use golden::design::{Calibration, CalibrationIn, Design};
@@ -29,6 +31,8 @@ pub const MOST_TARE_LOG2: u32 = 10;
 ///
 /// Mantissas have all of their bits in use and offsets are at most `offset_limit`, so that a number at its bound is beyond
 /// the full scale by every content of a bank. Behind the clipping stand the formats that hold for every stress.
+///
+/// Along a curve the banks' own makes pascals of counts before, and these are the counts here.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CalibrationPlan {
     /// Taxels of a frame.
@@ -62,13 +66,16 @@ impl CalibrationPlan {
     /// The conversion, if the design's calibration is in RAM.
     ///
     /// # Errors
-    /// [`PlanError::BankOffset`] for an offset beyond what a bank takes; [`PlanError::Contact`] for a contact threshold.
+    /// [`PlanError::BankOffset`] for an offset beyond what a bank takes; [`PlanError::Contact`] for a contact threshold;
+    /// those of [`CurveFormat::map`].
     pub fn new(design: &Design, stress: Format, thresholds: &Thresholds) -> Result<Option<Self>, PlanError> {
-        let Some(pa_per_count) =
-            design.input.pa_per_count.filter(|_| design.hardware.calibration == CalibrationIn::Ram)
-        else {
+        // Behind a curve a count is a pascal.
+        let per_count = design.input.pa_per_count.or(design.input.curve.as_ref().map(|_| 1.0));
+        let Some(pa_per_count) = per_count.filter(|_| design.hardware.calibration == CalibrationIn::Ram) else {
             return Ok(None);
         };
+        let curve = design.input.curve.as_ref();
+        let curve = curve.map(|curve| CurveFormat::new(design, curve).map(curve)).transpose()?;
         let offset_limit = OFFSET_FULL_SCALES * stress.bound;
         // The least mantissa times the largest number is beyond full scale and offset.
         let reach = (offset_limit + stress.bound + 1) as f64;
@@ -77,6 +84,7 @@ impl CalibrationPlan {
         let shift = (0..=MOST_SHIFT).rev().find(fits).unwrap_or(0);
         // A gain's rounding, that of half a number's step, and those of product and offset.
         let rounding = (stress.bound >> (GAIN_BITS - 1)) + (1 << (GAIN_BITS - 2)) / (1 << shift.min(16)) + 3;
+        let rounding = rounding + curve.as_ref().map_or(0, |curve| Self::curve_rounding(curve, stress));
         let mut plan = Self {
             taxels: design.sensor.taxels(),
             count_steps: pa_per_count * pow2(-stress.lsb),
@@ -90,6 +98,7 @@ impl CalibrationPlan {
                 contact: 1,
                 noise: thresholds.taxel as u32,
                 dead: Self::dead_map(design),
+                curve,
             },
         };
         plan.power_up.contact = u32::try_from(thresholds.contact).map_err(|_| PlanError::Contact {
@@ -110,6 +119,14 @@ impl CalibrationPlan {
             most: offset_limit as f64 / plan.count_steps.abs(),
         })?;
         Ok(Some(plan))
+    }
+
+    /// Steps of the stress by which a curve's reading of the full scale may fall short of it: its slope's part, the value's
+    /// rounding at the largest gain, and that of float32.
+    fn curve_rounding(curve: &CurveMap, stress: Format) -> i64 {
+        /// Of a taxel.
+        const LARGEST_GAIN: f64 = 16.0;
+        (stress.bound >> (GAIN_BITS - 2)) + (LARGEST_GAIN * pow2(curve.format.lsb - stress.lsb)).ceil() as i64 + 4
     }
 
     /// The design's own dead taxels, where banks have room for them.
@@ -154,11 +171,14 @@ impl CalibrationPlan {
             && bank.contact > 0
             && (1..1 << 26).contains(&bank.noise)
             && bank.dead.fits(self.taxels)
+            && bank.curve.as_ref().is_none_or(CurveMap::fits)
+            && bank.curve.as_ref().map(|curve| curve.format) == self.curve()
     }
 
     /// The stress of a taxel's count, given as float32.
     pub fn stress_of(&self, bank: &Bank, taxel: usize, count: u32) -> Reading {
         let (mantissa, exponent) = bank.gains[taxel];
+        let count = bank.curve.as_ref().map_or(count, |curve| curve.float_of(count));
         let number = float_to_fixed::convert(count, exponent, LARGEST_NUMBER as u32);
         let product = i64::from(number.fixed) * i64::from(mantissa);
         let steps = round_shift(product, self.shift) + i64::from(bank.offsets[taxel]);
@@ -189,9 +209,15 @@ impl CalibrationPlan {
         u64::BITS - widest.leading_zeros() + 1
     }
 
+    /// The numbers of the curves, where the design has one.
+    pub fn curve(&self) -> Option<CurveFormat> {
+        self.power_up.curve.as_ref().map(|curve| curve.format)
+    }
+
     /// Words of a bank.
     pub fn words(&self) -> usize {
-        2 * self.taxels + 2 + DeadMap::length(self.power_up.dead.room, self.taxels)
+        let curve = self.curve().map_or(0, |curve| curve.length());
+        2 * self.taxels + 2 + DeadMap::length(self.power_up.dead.room, self.taxels) + curve
     }
 }
 

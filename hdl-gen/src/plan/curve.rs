@@ -9,16 +9,17 @@ use super::gain::{GAIN_BITS, Gain};
 use crate::cores::LONG_BITS;
 
 /// Width of a count on the curve: the difference of two is the longer operand of a multiplier.
-const COUNT_BITS: u32 = LONG_BITS - 1;
+pub const COUNT_BITS: u32 = LONG_BITS - 1;
 /// Width of the curve's value, the next multiplier's longer operand.
 const VALUE_BITS: u32 = LONG_BITS;
 /// Most bits dropped after the product.
-const MOST_SHIFT: i32 = 40;
+pub const MOST_SHIFT: i32 = 40;
 /// Beyond every count.
 const NEVER: i64 = largest(LONG_BITS);
 /// Bits of a segment in the ROM: first count, value there, slope, bits dropped.
 pub const SEGMENT_BITS: u32 = LONG_BITS + VALUE_BITS + GAIN_BITS + SHIFT_BITS;
-const SHIFT_BITS: u32 = 6;
+/// Of the bits dropped.
+pub const SHIFT_BITS: u32 = 6;
 
 /// One straight piece: `value + round(slope * (number - first) / 2^shift)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -57,10 +58,18 @@ impl CurvePlan {
         let count = Format::covering(curve.largest_count(), COUNT_BITS);
         let largest = curve.points.iter().fold(0.0_f64, |most, point| most.max(point[1].abs()));
         let value = Format::covering(largest, VALUE_BITS);
+        Self::in_steps(curve, count.lsb, value.lsb)
+    }
+
+    /// The curve in numbers whose steps are `2^count_lsb` counts and `2^value_lsb` Pa.
+    ///
+    /// # Errors
+    /// [`PlanError::Curve`] where it rises too steeply for that.
+    pub fn in_steps(curve: &Curve, count_lsb: i32, value_lsb: i32) -> Result<Self, PlanError> {
         let points: Vec<[i64; 2]> = curve
             .points
             .iter()
-            .map(|[at, pascals]| [at * pow2(-count.lsb), pascals * pow2(-value.lsb)].map(|x| x.round() as i64))
+            .map(|[at, pascals]| [at * pow2(-count_lsb), pascals * pow2(-value_lsb)].map(|x| x.round() as i64))
             .collect();
         let segment = |(pair, real): (&[[i64; 2]], &[[f64; 2]])| {
             let [[a, p], [b, q]] = [pair[0], pair[1]];
@@ -80,7 +89,7 @@ impl CurvePlan {
         let segments = points.windows(2).zip(curve.points.windows(2)).map(segment).collect::<Result<_, _>>()?;
         let last = points.last().map_or(0, |point| point[0]);
         let limit = points.iter().fold(0, |most, point| most.max(point[0].abs()));
-        Ok(Self { exponent: -count.lsb, limit, last, lsb: value.lsb, segments })
+        Ok(Self { exponent: -count_lsb, limit, last, lsb: value_lsb, segments })
     }
 
     /// The value of a number.

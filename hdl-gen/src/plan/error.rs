@@ -111,6 +111,20 @@ pub enum PlanError {
         /// Count at which it ends.
         to: f64,
     },
+    /// A curve that has no room in a bank of the calibration.
+    #[error(
+        "[sensor] curve: with [hardware] calibration = \"ram\" its values have room up to {pascals:.0} Pa, eight full scales, \
+         its counts up to {counts:.0}, and it may have {segments} parts; leave out the points beyond, state a full_scale_pa that \
+         fits the sensor, or write calibration = \"rom\""
+    )]
+    CurveReach {
+        /// Largest magnitude of its values.
+        pascals: f64,
+        /// Of its counts.
+        counts: f64,
+        /// Most segments.
+        segments: usize,
+    },
     /// With a curve, a gain that is small beside another.
     #[error(
         "[sensor] calibration: the gain of taxel {taxel} is {gain:e} where the largest is {largest}; with a curve gains \

@@ -47,6 +47,7 @@ pub mod address {
     pub const CALIBRATION_STATUS: u32 = 0x0A0;
     pub const CALIBRATION_ERRORS: u32 = 0x0A4;
     pub const CALIBRATION_CRC: u32 = 0x0A8;
+    pub const CALIBRATION_CURVE: u32 = 0x0AC;
 }
 
 /// Cycles after which an access that has no reply never gets one.

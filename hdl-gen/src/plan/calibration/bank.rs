@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{CalibrationPlan, DeadMap, Reading};
+use super::{CalibrationPlan, CurveMap, DeadMap, Reading};
 use crate::plan::format::round_shift;
 use crate::plan::gain::GAIN_BITS;
 
@@ -21,14 +21,18 @@ pub struct Bank {
     pub noise: u32,
     /// Taxels that are replaced.
     pub dead: DeadMap,
+    /// The curve of the counts, where the design has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curve: Option<CurveMap>,
 }
 
 impl Bank {
-    /// The words in their order: gains, offsets, contact threshold, noise floor, dead taxels.
+    /// The words in their order: gains, offsets, contact threshold, noise floor, dead taxels, curve.
     pub fn words(&self) -> Vec<u32> {
         let offsets = self.offsets.iter().map(|&offset| offset.cast_unsigned());
         let dead = self.dead.words(self.gains.len());
-        self.gain_words().chain(offsets).chain([self.contact, self.noise]).chain(dead).collect()
+        let curve = self.curve.iter().flat_map(CurveMap::words);
+        self.gain_words().chain(offsets).chain([self.contact, self.noise]).chain(dead).chain(curve).collect()
     }
 
     /// The words of the gains.
@@ -78,7 +82,7 @@ mod tests {
     #[test]
     fn a_crc_is_that_of_zlib() {
         let dead = DeadMap { room: 0, dead: DeadPlan { taxels: vec![], weights: vec![], shift: 0 } };
-        let bank = Bank { gains: vec![], offsets: vec![], contact: 0x3433_3231, noise: 0x3837_3635, dead };
+        let bank = Bank { gains: vec![], offsets: vec![], contact: 0x3433_3231, noise: 0x3837_3635, dead, curve: None };
         assert_eq!(bank.crc(), 0x9AE0_DAAF, "of 12345678");
     }
 }

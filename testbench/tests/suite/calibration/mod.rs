@@ -3,6 +3,7 @@
 
 mod banks;
 mod commits;
+pub mod curve;
 pub mod dead;
 mod tare;
 
@@ -107,6 +108,7 @@ fn random_bank(plan: &CalibrationPlan, random: &mut ChaCha8Rng) -> Bank {
         contact: random.random_range(1..=usual.contact * 50),
         noise: random.random_range(1..1 << 26),
         dead: usual.dead.clone(),
+        curve: usual.curve.clone(),
     };
     assert!(plan.takes(&bank));
     bank

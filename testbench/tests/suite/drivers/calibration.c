@@ -3,8 +3,9 @@
  *   calibration CORE.so BANKS COLUMNS ROWS
  *
  * BANKS is binary, little-endian: gains and offsets of each taxel (float64), a noise floor in Pa (float64, 0: none), the
- * count of dead taxels (-1: nothing is said of them), two numbers and two weights of each taxel (float64), and the words of
- * the bank (uint32); then the same for the next one. */
+ * count of dead taxels (-1: nothing is said of them), two numbers and two weights of each taxel (float64), the points of
+ * a curve (-1: nothing is said of it), 17 counts and 17 pascals (float64), and the words of the bank (uint32); then the same
+ * for the next one. */
 #include "check.h"
 #include "machine.h"
 #include "sptfra.h"
@@ -14,6 +15,7 @@
 #include <string.h>
 
 #define MOST_TAXELS 64
+#define MOST_POINTS 17
 #define POLLS 1000000u
 
 _Alignas(SPTFRA_LINE) static uint32_t stress_words[1024], force_words[1024];
@@ -35,9 +37,11 @@ int main(int count, char **arguments)
 {
     static double gain[MOST_TAXELS], offset[MOST_TAXELS];
     static double map[3 + 2 * MOST_TAXELS];
-    static uint32_t words[4 * MOST_TAXELS + 5];
+    static double points[1 + 2 * MOST_POINTS];
+    static uint32_t words[4 * MOST_TAXELS + 5 + 4 * (MOST_POINTS - 1) + 3];
     uint16_t dead[2];
     sptfra_replaced replaced = {0, dead, map + 3};
+    sptfra_curve curve = {0, points + 1, points + 1 + MOST_POINTS};
     sptfra_platform platform = {NULL, machine_read, machine_write, NULL, NULL, NULL};
     sptfra_result result;
     sptfra device;
@@ -55,18 +59,26 @@ int main(int count, char **arguments)
     CHECK(sptfra_open(&device, &platform, MACHINE_CORE, MACHINE_DMA) == SPTFRA_OK);
     send(&device, 5.0f, &result);
     CHECK(result.generation == 0 && result.replaced == 1);
-    length = 4u * taxels + 5u;
+    length = 4u * taxels + 5u + 4u * (MOST_POINTS - 1u) + 3u;
     file = fopen(arguments[2], "rb");
     CHECK(file != NULL);
     while (fread(gain, sizeof *gain, taxels, file) == taxels) {
         CHECK(fread(offset, sizeof *offset, taxels, file) == taxels && fread(&noise_floor, 8, 1, file) == 1);
         CHECK(fread(map, 8, 3u + 2u * taxels, file) == 3u + 2u * taxels);
+        CHECK(fread(points, 8, 1 + 2 * MOST_POINTS, file) == 1 + 2 * MOST_POINTS);
         CHECK(fread(words, 4, length, file) == length);
         replaced.count = map[0] < 0.0 ? 0u : (uint32_t)map[0];
         dead[0] = (uint16_t)map[1];
         dead[1] = (uint16_t)map[2];
-        CHECK(map[0] < 0.0 ? sptfra_load_calibration(&device, gain, offset, noise_floor, POLLS) == SPTFRA_OK
-                           : sptfra_load_bank(&device, gain, offset, &replaced, noise_floor, POLLS) == SPTFRA_OK);
+        curve.count = points[0] < 0.0 ? 0u : (uint32_t)points[0];
+        if (map[0] < 0.0 && points[0] < 0.0) {
+            CHECK(sptfra_load_calibration(&device, gain, offset, noise_floor, POLLS) == SPTFRA_OK);
+        } else if (points[0] < 0.0) {
+            CHECK(sptfra_load_bank(&device, gain, offset, &replaced, noise_floor, POLLS) == SPTFRA_OK);
+        } else {
+            CHECK(sptfra_load_bank_and_curve(&device, gain, offset, map[0] < 0.0 ? NULL : &replaced, &curve, noise_floor,
+                      POLLS) == SPTFRA_OK);
+        }
         for (index = 0; index < length; index++) {
             CHECK(sptfra_read_calibration(&device, (uint16_t)index, 1, &word) == SPTFRA_OK);
             CHECK(word == words[index]);
@@ -105,6 +117,25 @@ int main(int count, char **arguments)
         gain[index] = 1.0;
         offset[index] = 0.0;
     }
+    /* Curves that no bank takes, then one like the design's. */
+    for (word = 0; word < MOST_POINTS; word++) {
+        points[1 + word] = 1000.0 * word;
+        points[1 + MOST_POINTS + word] = -12500.0 * word;
+    }
+    for (word = 0; word < 6; word++) {
+        const double counts[] = {0.0, 0.0, 0.0, 0.0, 1e5, -100.0}, pascals[] = {0.0, 0.0, 0.0, -1e7, -1e5, -1e5};
+
+        curve.count = word == 0 ? 0u : word == 1 ? 1u : word == 2 ? 18u : 4u;
+        points[1 + 3] = word < 3 ? 3000.0 : word == 3 ? 3000.0 : counts[word];
+        points[1 + MOST_POINTS + 3] = word < 3 ? -37500.0 : pascals[word];
+        CHECK(sptfra_load_bank_and_curve(&device, gain, offset, &replaced, &curve, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
+    }
+    points[1 + 3] = 3000.0;
+    points[1 + MOST_POINTS + 3] = -20000.0;
+    CHECK(sptfra_load_bank_and_curve(&device, gain, offset, &replaced, &curve, 0.0, POLLS) == SPTFRA_OUT_OF_RANGE);
+    points[1 + MOST_POINTS + 3] = -37500.0;
+    CHECK(sptfra_load_bank_and_curve(&device, gain, offset, &replaced, &curve, 0.0, POLLS) == SPTFRA_OK);
+    banks++;
     /* Tare: four frames at rest, then nothing is read; then one that is not. */
     CHECK(sptfra_load_bank(&device, gain, offset, &replaced, 20.0, 0) == SPTFRA_TIMEOUT);
     CHECK(sptfra_tare(&device, 2) == SPTFRA_CALIBRATION_BUSY);

@@ -23,7 +23,7 @@ def main():
     overlay = Overlay(machine)
     sensor = Sptfra(overlay.core, overlay.dma, allocate)
     rows, columns = sensor.identity.rows, sensor.identity.columns
-    assert sensor.identity.calibration_in_ram and sensor.identity.replaceable == 2
+    assert sensor.identity.calibration_in_ram and sensor.identity.replaceable == 2 and sensor.identity.curve_in_ram
     files = sorted(pathlib.Path(folder).glob("*.csv"))
     assert len(files) > 3
     for generation, path in enumerate(files, 1):
@@ -54,7 +54,20 @@ def main():
     ]:
         wrong.write_text(text)
         assert message in refused(ValueError, lambda: sensor.load_calibration(wrong))
-    wrong.write_text("gain,offset\n" + "1,0\n" * rows * columns)
+    lines = "1,0\n" * 12 + "count,pascals\n"
+    for text, message in [
+        (lines + "0\n", "line 14: '0' is no count,pascals"),
+        (lines + "0,0\n", "a curve of 1 points: use 2 to 17"),
+        (lines + "".join(f"{place},{-place}\n" for place in range(18)), "a curve of 18 points"),
+        (lines + "0,0\n5,-10\n5,-20\n", "ascend by counts"),
+        (lines + "0,0\n5,-10\n6,-9\n", "only rise or only fall"),
+        (lines + "0,0\n5,-10\n60,-1e7\n", "for which a bank has room"),
+        (lines + "0,0\n1e7,-10\n", "for which a bank has room"),
+        (lines + "0,0\n1e-3,-9000\n9,-20000\n", "rises too steeply"),
+    ]:
+        wrong.write_text(text)
+        assert message in refused(ValueError, lambda: sensor.load_calibration(wrong)), message
+    wrong.write_text("gain,offset\n" + "1,0\n" * rows * columns + "count,pascals\n0,0\n9000,-112500\n")
     for noise in (-1.0, 0.0, 1e12):
         assert "noise floor" in refused(ValueError, lambda: sensor.load_calibration(wrong, noise))
     sensor.load_calibration(wrong, 20.0)

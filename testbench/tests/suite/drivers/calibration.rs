@@ -6,7 +6,7 @@ use std::process::Command;
 
 use golden::bank;
 use golden::dead_taxels::DeadTaxels;
-use golden::design::Calibration;
+use golden::design::{Calibration, Curve};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::calibration::{Bank, DeadMap};
 use hdl_gen::plan::dead::DeadPlan;
@@ -21,7 +21,12 @@ use crate::calibration;
 use crate::support::{built, planned, workspace};
 
 fn subject() -> (Plan, Built) {
-    let plan = planned(&calibration::dead::design_with_map());
+    let mut design = calibration::dead::design_with_map();
+    design.name += "_curve";
+    design.input.pa_per_count = None;
+    let points = vec![[0.0, 0.0], [1000.0, -12500.0], [5000.0, -90e3], [9000.0, -300e3]];
+    design.input.curve = Some(Curve { points, law: None });
+    let plan = planned(&design);
     let built = built(&plan);
     (plan, built)
 }
@@ -33,6 +38,8 @@ struct Given {
     noise: f64,
     /// Dead taxels; none: those that were before.
     dead: Option<Vec<usize>>,
+    /// None: the curve that was before.
+    curve: Option<Curve>,
     bank: Bank,
 }
 
@@ -59,6 +66,21 @@ fn banks(plan: &Plan) -> Vec<Given> {
             let gain: Vec<f64> = (0..of.taxels).map(gain).collect();
             let offset = (0..of.taxels).map(|_| random.random_range(-9000.0..9000.0)).collect();
             let calibration = Calibration { gain, offset };
+            let curve = (index % 2 == 1 || index == 4).then(|| {
+                let parts = [1, 16, 7, 4, 11, 2][index];
+                // From nearly flat to nearly too steep.
+                let mut at = [random.random_range(-3000.0..10.0), 0.0];
+                let sign = if index == 3 { 1.0 } else { -1.0 };
+                let mut points = vec![at];
+                for _ in 0..parts {
+                    at[0] += random.random_range(1.0..600.0);
+                    at[1] += sign * 10_f64.powf(random.random_range(-1.0..4.5));
+                    points.push(at);
+                }
+                let curve = Curve { points, law: None };
+                thresholds.curve = Some(of.curve().expect("in RAM").map(&curve).expect("within bounds"));
+                curve
+            });
             let noise = if index.is_multiple_of(2) { 0.0 } else { random.random_range(1e-3..900.0) };
             if noise > 0.0 {
                 let steps = |pascals: f64| ((pascals / of.stress.step()).round() as u32).max(1);
@@ -66,7 +88,7 @@ fn banks(plan: &Plan) -> Vec<Given> {
             }
             let bank = of.bank(&calibration, &thresholds).expect("within bounds");
             assert!(of.takes(&bank));
-            Given { calibration, noise, dead, bank }
+            Given { calibration, noise, dead, curve, bank }
         })
         .collect()
 }
@@ -76,7 +98,7 @@ fn the_c_driver_loads_calibrations_and_tares() {
     let (plan, built) = subject();
     let folder = tempfile::tempdir().expect("a folder");
     let mut bytes = Vec::new();
-    for Given { calibration, noise, dead, bank } in banks(&plan) {
+    for Given { calibration, noise, dead, curve, bank } in banks(&plan) {
         // Count, numbers and weights of dead taxels: room for two; a count of -1 says nothing of them.
         let count = dead.as_ref().map_or(-1.0, |dead| dead.len() as f64);
         let dead = dead.unwrap_or_default();
@@ -84,7 +106,13 @@ fn the_c_driver_loads_calibrations_and_tares() {
         let padded = |values: Vec<f64>, length: usize| values.into_iter().chain(std::iter::repeat(0.0)).take(length);
         let numbers = padded(dead.into_iter().map(|taxel| taxel as f64).collect(), 2);
         let map: Vec<f64> = [count].into_iter().chain(numbers).chain(padded(weights, 2 * plan.taxels())).collect();
-        let values = calibration.gain.iter().chain(&calibration.offset).chain([&noise]).chain(&map);
+        // So many points, -1 for a curve of which nothing is said, and room for 17.
+        let points = curve.map(|curve| curve.points);
+        let length = points.as_ref().map_or(-1.0, |points| points.len() as f64);
+        let points = points.unwrap_or_default();
+        let axis = |axis: usize| padded(points.iter().map(|point| point[axis]).collect(), 17).collect::<Vec<f64>>();
+        let curve: Vec<f64> = [vec![length], axis(0), axis(1)].concat();
+        let values = calibration.gain.iter().chain(&calibration.offset).chain([&noise]).chain(&map).chain(&curve);
         bytes.extend(values.flat_map(|value| value.to_le_bytes()));
         bytes.extend(bank.words().into_iter().flat_map(u32::to_le_bytes));
     }
@@ -97,22 +125,30 @@ fn the_c_driver_loads_calibrations_and_tares() {
     let mut command = Command::new(host);
     let sensor = &plan.design.sensor;
     command.arg(&built.library).arg(file).args([sensor.columns, sensor.rows].map(|n| n.to_string()));
-    assert!(run(command).contains("PASS: 6 banks"));
+    assert!(run(command).contains("PASS: 7 banks"));
 }
 
 #[test]
 fn the_python_driver_loads_calibrations_and_tares() {
     let (plan, built) = subject();
     let folder = tempfile::tempdir().expect("a folder");
-    for (index, Given { calibration, noise, dead, bank }) in banks(&plan).into_iter().enumerate() {
+    for (index, Given { calibration, noise, dead, curve, bank }) in banks(&plan).into_iter().enumerate() {
         let mut text = String::new();
         if let Some(dead) = dead {
             let mut design = plan.design.clone();
             (design.input.calibration, design.input.dead) = (Some(calibration), dead);
+            design.input.curve = curve.clone().or(design.input.curve);
             text = bank::to_csv(&design).expect("in RAM");
+            if curve.is_none() {
+                text.truncate(text.find("count,pascals").expect("a curve"));
+            }
         } else {
             for (gain, offset) in calibration.gain.iter().zip(&calibration.offset) {
                 writeln!(text, "{gain:?}, {offset:?}").expect("to a string");
+            }
+            for (line, [count, pascals]) in curve.iter().flat_map(|curve| &curve.points).enumerate() {
+                let header = if line == 0 { "count,pascals\n" } else { "" };
+                writeln!(text, "{header}{count:?}, {pascals:?}").expect("to a string");
             }
         }
         fs::write(folder.path().join(format!("{index}.csv")), text).expect("written");

@@ -68,6 +68,14 @@ fn designs() -> Vec<Design> {
     let mut mapped_once = calibration::design(Outputs::Resultants);
     "mapped_once".clone_into(&mut mapped_once.name);
     mapped_once.hardware.replaceable = 1;
+    // A curve in the banks, behind a map of dead taxels and not, of floats and of integers, with the widest room.
+    let mut curve_in_ram = mapped.clone();
+    "curve_in_ram".clone_into(&mut curve_in_ram.name);
+    curve_in_ram.input.pa_per_count = None;
+    curve_in_ram.input.curve = curved.input.curve.clone();
+    let mut curve_of_floats = calibration::curve::design_with_curve();
+    let points = (0..40).map(f64::from).map(|point| [100.0 * point, -20.0 * point * point]).collect();
+    curve_of_floats.input.curve = Some(Curve { points, law: None });
     // Frames dropped, with and without registers, samples one by one and at once.
     let mut dropping = in_ram.clone();
     "dropping".clone_into(&mut dropping.name);
@@ -97,6 +105,8 @@ fn designs() -> Vec<Design> {
         in_ram,
         mapped,
         mapped_once,
+        curve_in_ram,
+        curve_of_floats,
         dropping,
         scanned,
         scaled,

@@ -4,6 +4,7 @@ use std::fs;
 use std::process::Command;
 use std::sync::OnceLock;
 
+use golden::design::Curve;
 use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
 use serde::Deserialize;
@@ -76,7 +77,11 @@ fn map(plan: &Plan) -> Vec<Register> {
 fn widest() -> &'static Subject {
     static WIDEST: OnceLock<Subject> = OnceLock::new();
     WIDEST.get_or_init(|| {
-        let plan = planned(&shipped("small-scanner"));
+        let mut design = shipped("small-scanner");
+        design.input.pa_per_count = None;
+        let points = vec![[0.0, 0.0], [300.0, -7e3], [4095.0, -150e3]];
+        design.input.curve = Some(Curve { points, law: None });
+        let plan = planned(&design);
         Subject { built: built(&plan), plan }
     })
 }

@@ -1,7 +1,7 @@
 //! Blocks on their own: the rules of the streams at their ports, and what they let in.
 
 use super::Proof;
-use super::designs::{calibrated, mapped, paper, reduced, scaled, scanned};
+use super::designs::{calibrated, curved, mapped, paper, reduced, scaled, scanned};
 
 pub const PROOFS: &[Proof] = &[
     Proof {
@@ -135,6 +135,26 @@ pub const PROOFS: &[Proof] = &[
             ("calibrate", "(in_frame || hold) && (bank_held != active)", "1'b0"),
             ("calibrate", "!hold && ", ""),
             ("calibrate", "(ends_inside != 2'd3)", "1'b1"),
+        ],
+    },
+    Proof {
+        name: "a curve in the banks of a calibration",
+        harness: "count_curve",
+        design: curved,
+        defines: &[],
+        top: "sptfra_count_curve",
+        parameters: "-set LEVELS 4",
+        models: &[("sptfra_float_to_fixed", "float_model")],
+        free: &["*sptfra_multiply*", "*sptfra_fixed_to_float*", "*sptfra_axis_skid*"],
+        free_wires: &[],
+        induction: "3",
+        altered: &[],
+        broken: &[
+            ("count_curve", "in_frame ? bank_held : active", "active"),
+            ("count_curve", "in_frame <= !s_tlast;", "in_frame <= 1'b1;"),
+            ("count_curve", "assign line_bank = banks[FOUND];", "assign line_bank = banks[FOUND-1];"),
+            ("count_curve", "banks <= {banks[FOUND-1:1], bank};", "banks <= {banks[FOUND-1:1], active};"),
+            ("count_curve", "assign frame_begins = accept && !in_frame;", "assign frame_begins = accept;"),
         ],
     },
     Proof {

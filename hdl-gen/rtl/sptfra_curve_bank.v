@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// What the two banks of a calibration say of the curve from counts to pascals. Words of a bank from FIRST on:
+//
+//     4 of each segment  number with which it begins, value there, slope, bits dropped behind the slope
+//     1                  count of segments; what stands in those behind it means nothing
+//     2                  number with which the last one ends, value there
+//
+// Words that are out of bounds are not written. While a commit reads the bank, what no word tells alone is checked, a
+// segment in the cycles of four words: numbers ascend, values only rise or only fall, and each slope leads from its
+// value to the next one's, within 2^-16 of the way and a step. So no value leaves its format.
+
+`default_nettype none
+
+module sptfra_curve_bank #(
+    // Room for 2^LEVELS segments
+    parameter LEVELS = 4,
+    // Word of a bank with which this part of it begins
+    parameter [15:0] FIRST = 16'd26,
+    // At power-up; values, slopes and shifts stand in files
+    parameter [6:0] COUNT = 7'd1,
+    parameter [27*(1<<LEVELS)-1:0] KNOTS = {27*(1<<LEVELS){1'b0}},
+    parameter signed [26:0] LAST = 27'sd33554431,
+    parameter signed [26:0] LAST_VALUE = 27'sd0,
+    // Prefix of the ROM file names, and what they begin with
+    parameter ROM_DIR = "",
+    parameter ROM_NAME = "",
+    // Derived
+    parameter SEGMENTS = 1 << LEVELS
+) (
+    input  wire clock,
+    input  wire [55:0] command, // as of sptfra_dead_bank
+    output wire [33:0] result,
+    // While a tare listens, the acting bank's curve is copied into the other one
+    input  wire active,
+    input  wire tare_run,
+    output wire copying,
+    // Of both banks, that of bank 1 in the higher bits
+    output wire [2*27*SEGMENTS-1:0] knots,
+    output wire [13:0] counts,
+    output wire [53:0] lasts,
+    output wire [53:0] reaches, // magnitude from which on a number is at an end
+    // The line of a segment
+    input  wire read_enable,
+    input  wire read_bank,
+    input  wire [LEVELS-1:0] read_segment,
+    output wire signed [26:0] read_first,
+    output wire signed [26:0] read_value,
+    output wire signed [17:0] read_slope,
+    output wire [5:0] read_shift
+);
+
+    localparam [31:0] SEGMENT_WORDS_WIDE = 4 * SEGMENTS;
+    localparam [15:0] SEGMENT_WORDS = SEGMENT_WORDS_WIDE[15:0];
+    localparam [31:0] ROOM_WIDE = SEGMENTS;
+    localparam signed [31:0] MOST_NUMBER = 32'sd33554431;
+    localparam signed [31:0] MOST_VALUE = 32'sd67104767; // and what a slope may add at a segment's end
+    localparam signed [31:0] MOST_SLOPE = 32'sd131071;
+    localparam [31:0] MOST_SHIFT = 32'd40;
+    localparam HEAD_BITS = 7 + 2 * 27;
+    localparam [HEAD_BITS-1:0] HEAD = {LAST_VALUE, LAST, COUNT};
+
+    wire walk_begins = command[51];
+    wire walk_takes = command[50];
+    wire write = command[49];
+    wire bank = command[48];
+    wire [15:0] position = command[47:32];
+    wire [31:0] data = command[31:0];
+
+    // ---- The word: its place, then its content
+    wire [15:0] place = position - FIRST;
+    wire of_segment = (place < SEGMENT_WORDS);
+    wire of_count = (place == SEGMENT_WORDS);
+    wire of_last = (place == SEGMENT_WORDS + 16'd1);
+    wire of_end = (place == SEGMENT_WORDS + 16'd2);
+    wire [1:0] kind = place[1:0];
+    wire [LEVELS-1:0] segment = place[LEVELS+1:2];
+    reg [27*SEGMENTS-1:0] knots_0;
+    reg [27*SEGMENTS-1:0] knots_1;
+    reg [HEAD_BITS-1:0] head_0;
+    reg [HEAD_BITS-1:0] head_1;
+    wire [HEAD_BITS-1:0] head = bank ? head_1 : head_0;
+    wire signed [26:0] first;
+    wire signed [26:0] value;
+    wire signed [17:0] slope;
+    wire [5:0] shift;
+    reg of_segment_1;
+    reg [1:0] kind_1;
+    reg [31:0] head_word_1;
+    wire [31:0] segment_word = (kind_1 == 2'd0) ? {{5{first[26]}}, first} : (kind_1 == 2'd1) ? {{5{value[26]}}, value}
+        : (kind_1 == 2'd2) ? {{14{slope[17]}}, slope} : {26'd0, shift};
+
+    always @(posedge clock) begin
+        of_segment_1 <= of_segment;
+        kind_1 <= kind;
+        head_word_1 <= of_count ? {25'd0, head[6:0]} : of_last ? {{5{head[33]}}, head[33:7]}
+            : {{5{head[60]}}, head[60:34]};
+    end
+
+    // ---- Bounds
+    wire number_fits = ($signed(data) <= MOST_NUMBER) && ($signed(data) >= -MOST_NUMBER);
+    wire value_fits = ($signed(data) <= MOST_VALUE) && ($signed(data) >= -MOST_VALUE);
+    wire slope_fits = ($signed(data) <= MOST_SLOPE) && ($signed(data) >= -MOST_SLOPE);
+    wire shift_fits = (data != 32'd0) && (data <= MOST_SHIFT);
+    wire count_fits = (data != 32'd0) && (data <= ROOM_WIDE);
+    wire segment_fits = (kind == 2'd0) ? number_fits : (kind == 2'd1) ? value_fits
+        : (kind == 2'd2) ? slope_fits : shift_fits;
+    wire allowed = (of_segment && segment_fits) || (of_count && count_fits) || (of_last && number_fits)
+        || (of_end && value_fits);
+    wire writes = write && allowed;
+
+    // ---- A tare's copy: a segment in two cycles
+    reg copies;
+    reg copy_writes;
+    reg [LEVELS-1:0] copy_segment;
+    reg tare_ran;
+    wire copy_ends = copy_writes && (copy_segment == {LEVELS{1'b1}});
+    wire [LEVELS:0] address = copies ? {active ^ copy_writes, copy_segment} : {bank, segment};
+
+    assign copying = tare_run && (!tare_ran || copies);
+
+    always @(posedge clock) begin
+        tare_ran <= tare_run;
+        copy_writes <= copies && !copy_writes && tare_run;
+        if (copy_writes) begin
+            copy_segment <= copy_segment + 1'b1;
+        end
+        if (copy_ends || !tare_run) begin
+            copies <= 1'b0;
+        end else if (!tare_ran) begin
+            copies <= 1'b1;
+            copy_segment <= {LEVELS{1'b0}};
+        end
+    end
+
+    // ---- Banks; configuration, no reset, brings the design's content
+    initial begin
+        knots_0 = KNOTS;
+        knots_1 = KNOTS;
+        head_0 = HEAD;
+        head_1 = HEAD;
+        copies = 1'b0;
+        copy_writes = 1'b0;
+        tare_ran = 1'b0;
+    end
+
+    wire write_knot = copy_writes || (writes && of_segment && (kind == 2'd0));
+    wire [26:0] knot_in = copy_writes ? first : data[26:0];
+    wire [HEAD_BITS-1:0] head_in = copy_ends ? (active ? head_1 : head_0)
+        : of_count ? {head[HEAD_BITS-1:7], data[6:0]} : of_last ? {head[60:34], data[26:0], head[6:0]}
+        : {data[26:0], head[33:0]};
+    wire write_head = copy_ends || (writes && !of_segment);
+    wire to_bank = copies ? !active : bank;
+
+    always @(posedge clock) begin
+        if (write_knot && !to_bank) begin
+            knots_0[27*address[LEVELS-1:0] +: 27] <= knot_in;
+        end
+        if (write_knot && to_bank) begin
+            knots_1[27*address[LEVELS-1:0] +: 27] <= knot_in;
+        end
+        if (write_head && !to_bank) begin
+            head_0 <= head_in;
+        end
+        if (write_head && to_bank) begin
+            head_1 <= head_in;
+        end
+    end
+
+    sptfra_bank #(
+        .WIDTH         (27),
+        .ADDRESS_WIDTH (LEVELS + 1),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_firsts.mem"})
+    ) firsts (
+        .clock        (clock),
+        .write_enable (write_knot),
+        .address      (address),
+        .write_data   (knot_in),
+        .data         (first),
+        .read_enable  (read_enable),
+        .read_address ({read_bank, read_segment}),
+        .read_data    (read_first)
+    );
+
+    sptfra_bank #(
+        .WIDTH         (27),
+        .ADDRESS_WIDTH (LEVELS + 1),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_values.mem"})
+    ) values (
+        .clock        (clock),
+        .write_enable (copy_writes || (writes && of_segment && (kind == 2'd1))),
+        .address      (address),
+        .write_data   (copy_writes ? value : data[26:0]),
+        .data         (value),
+        .read_enable  (read_enable),
+        .read_address ({read_bank, read_segment}),
+        .read_data    (read_value)
+    );
+
+    sptfra_bank #(
+        .WIDTH         (18),
+        .ADDRESS_WIDTH (LEVELS + 1),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_slopes.mem"})
+    ) slopes (
+        .clock        (clock),
+        .write_enable (copy_writes || (writes && of_segment && (kind == 2'd2))),
+        .address      (address),
+        .write_data   (copy_writes ? slope : data[17:0]),
+        .data         (slope),
+        .read_enable  (read_enable),
+        .read_address ({read_bank, read_segment}),
+        .read_data    (read_slope)
+    );
+
+    sptfra_bank #(
+        .WIDTH         (6),
+        .ADDRESS_WIDTH (LEVELS + 1),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_curve_shifts.mem"})
+    ) shifts (
+        .clock        (clock),
+        .write_enable (copy_writes || (writes && of_segment && (kind == 2'd3))),
+        .address      (address),
+        .write_data   (copy_writes ? shift : data[5:0]),
+        .data         (shift),
+        .read_enable  (read_enable),
+        .read_address ({read_bank, read_segment}),
+        .read_data    (read_shift)
+    );
+
+    // ---- The walk of a commit: with a segment's last word its check begins
+    wire [27*SEGMENTS-1:0] knots_here = bank ? knots_1 : knots_0;
+    wire [LEVELS-1:0] segment_next = segment + 1'b1;
+    wire [6:0] number_next = {{(7-LEVELS){1'b0}}, segment} + 7'd1;
+    wire is_last = (number_next == head[6:0]);
+    wire signed [26:0] first_next = is_last ? $signed(head[33:7]) : $signed(knots_here[27*segment_next +: 27]);
+    wire signed [27:0] along = {first_next[26], first_next} - {first[26], first};
+    wire begins = walk_takes && of_segment && (kind == 2'd3) && (number_next <= head[6:0]);
+    wire contradicts;
+
+    sptfra_curve_check check (
+        .clock       (clock),
+        .forget      (walk_begins),
+        .begins      (begins),
+        .along       (along),
+        .value       (value),
+        .slope       (slope),
+        .shift       (shift),
+        .is_last     (is_last),
+        .last_value  (head[60:34]),
+        .value_taken (walk_takes && of_segment && (kind == 2'd1)),
+        .contradicts (contradicts)
+    );
+
+    // ---- Frames
+    function [26:0] reach_of(input signed [26:0] from, input signed [26:0] to);
+        reg [26:0] low;
+        reg [26:0] high;
+        begin
+            low = from[26] ? -from : from;
+            high = to[26] ? -to : to;
+            reach_of = (low > high) ? low : high;
+        end
+    endfunction
+
+    assign result = {contradicts, allowed, of_segment_1 ? segment_word : head_word_1};
+    assign knots = {knots_1, knots_0};
+    assign counts = {head_1[6:0], head_0[6:0]};
+    assign lasts = {head_1[33:7], head_0[33:7]};
+    assign reaches = {reach_of(knots_1[26:0], head_1[33:7]), reach_of(knots_0[26:0], head_0[33:7])};
+
+    wire _unused = &{1'b0, command[55:52]};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,204 @@
+//! What a bank says of the curve from counts to pascals: its segments, in as many places as there is room.
+
+use golden::design::{Curve, Design, Samples};
+use serde::Serialize;
+
+use crate::cores::{fixed_to_float, float_to_fixed};
+use crate::plan::PlanError;
+use crate::plan::curve::{COUNT_BITS, CurvePlan, MOST_SHIFT, Segment};
+use crate::plan::format::{Format, largest, round_shift};
+use crate::plan::gain::GAIN_BITS;
+
+/// Room for so many segments, at least.
+const LEAST_ROOM: usize = 16;
+/// A curve's values have room for so many full scales.
+const VALUE_SCALES: f64 = 8.0;
+/// Where the design's curve ends, and counts are floats, another one may end so much later.
+const COUNT_SCALES: f64 = 2.0;
+/// Largest magnitude of a number, and of a count's conversion.
+pub const MOST_NUMBER: i64 = largest(COUNT_BITS);
+/// Largest magnitude of a value: the end of a segment may be beyond the next one's by what [`SLOPE_SHARE`] leaves.
+pub const MOST_VALUE: i64 = largest(crate::cores::LONG_BITS) - (1 << 12);
+/// A slope leads to the next segment's value within the way's 2^-16 and a step.
+const SLOPE_SHARE: u32 = 16;
+/// Words of a segment, and behind all of them.
+const SEGMENT_WORDS: usize = 4;
+const END_WORDS: usize = 3;
+
+/// The numbers of a design's curves: what every curve in a bank has in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct CurveFormat {
+    /// Segments for which a bank has room, a power of two.
+    pub room: usize,
+    /// `number = round(count * 2^exponent)`.
+    pub exponent: i32,
+    /// A step of the values is `2^lsb` Pa.
+    pub lsb: i32,
+}
+
+/// A curve as a bank holds it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CurveMap {
+    /// See [`CurveFormat`].
+    pub format: CurveFormat,
+    /// The segments, no more than there is room for, and the number with which the last one ends.
+    pub curve: CurvePlan,
+    /// The value there.
+    pub end: i64,
+}
+
+impl CurveFormat {
+    /// That of a design with this curve.
+    pub fn new(design: &Design, curve: &Curve) -> Self {
+        let counts = match design.hardware.samples {
+            Samples::Float32 => COUNT_SCALES * curve.largest_count(),
+            Samples::Int16 => curve.largest_count().max(-f64::from(i16::MIN)),
+            Samples::Uint16 => curve.largest_count().max(f64::from(u16::MAX)),
+        };
+        let values = VALUE_SCALES * design.hardware.full_scale_pa * largest(crate::cores::LONG_BITS) as f64;
+        Self {
+            room: (curve.points.len() - 1).next_power_of_two().max(LEAST_ROOM),
+            exponent: -Format::covering(counts, COUNT_BITS).lsb,
+            lsb: Format::covering(values / MOST_VALUE as f64, crate::cores::LONG_BITS).lsb,
+        }
+    }
+
+    /// Comparisons that find a segment, one after the other.
+    pub fn levels(&self) -> u32 {
+        self.room.trailing_zeros()
+    }
+
+    /// Words of a bank that a curve takes.
+    pub fn length(&self) -> usize {
+        SEGMENT_WORDS * self.room + END_WORDS
+    }
+
+    /// A curve as a bank holds it.
+    ///
+    /// # Errors
+    /// [`PlanError::Curve`] where it rises too steeply, [`PlanError::CurveReach`] where its numbers have no room.
+    pub fn map(self, curve: &Curve) -> Result<CurveMap, PlanError> {
+        let plan = CurvePlan::in_steps(curve, -self.exponent, self.lsb)?;
+        let end = curve.points.last().map_or(0.0, |point| point[1]);
+        let end = (end * crate::plan::format::pow2(-self.lsb)).round() as i64;
+        let map = CurveMap { format: self, curve: plan, end };
+        if map.fits() {
+            return Ok(map);
+        }
+        Err(PlanError::CurveReach {
+            pascals: MOST_VALUE as f64 * crate::plan::format::pow2(self.lsb),
+            counts: MOST_NUMBER as f64 * crate::plan::format::pow2(-self.exponent),
+            segments: self.room,
+        })
+    }
+}
+
+impl CurveMap {
+    /// The words of a place: number, value, slope and shift; of one behind the last segment's what a bank takes.
+    pub fn segment(&self, place: usize) -> [u32; SEGMENT_WORDS] {
+        let Segment { first, value, slope, shift } =
+            self.curve.segments.get(place).copied().unwrap_or(Segment { first: 0, value: 0, slope: 0, shift: 1 });
+        [first as u32, value as u32, slope.cast_unsigned(), shift]
+    }
+
+    /// The words in their order: segments, their count, then where the last one ends.
+    pub fn words(&self) -> Vec<u32> {
+        let segments = (0..self.format.room).flat_map(|place| self.segment(place));
+        segments.chain([self.curve.segments.len() as u32, self.curve.last as u32, self.end as u32]).collect()
+    }
+
+    /// Whether a bank takes it: numbers that ascend, values that only rise or only fall, slopes that lead from one to
+    /// the next, all within their widths.
+    pub fn fits(&self) -> bool {
+        let Self { format, curve: CurvePlan { segments, last, .. }, end } = self;
+        let within = |number: i64, most: i64| number.abs() <= most;
+        let alone = |of: &Segment| {
+            within(of.first, MOST_NUMBER)
+                && within(of.value, MOST_VALUE)
+                && within(of.slope.into(), largest(GAIN_BITS))
+                && (1..=MOST_SHIFT as u32).contains(&of.shift)
+        };
+        let ends = segments.iter().skip(1).map(|next| (next.first, next.value)).chain([(*last, *end)]);
+        let ways: Vec<i64> = segments.iter().zip(ends.clone()).map(|(of, (_, value))| value - of.value).collect();
+        let leads = |(of, (last, value)): (&Segment, (i64, i64))| {
+            let rise = round_shift(i64::from(of.slope).abs() * (last - of.first).max(0), of.shift);
+            let way = value - of.value;
+            last > of.first && (rise * i64::from(of.slope.signum()) - way).abs() <= (way.abs() >> SLOPE_SHARE) + 1
+        };
+        (1..=format.room).contains(&segments.len())
+            && within(*last, MOST_NUMBER)
+            && within(*end, MOST_VALUE)
+            && segments.iter().all(alone)
+            && segments.iter().zip(ends).all(leads)
+            && (ways.iter().all(|&way| way >= 0) || ways.iter().all(|&way| way <= 0))
+    }
+
+    /// The pascals of a count, both float32: NaN for what is no number, the largest float with the value's sign at an
+    /// end of the curve.
+    pub fn float_of(&self, count: u32) -> u32 {
+        let number = float_to_fixed::convert(count, self.format.exponent, MOST_NUMBER as u32);
+        if number.not_finite {
+            return f32::NAN.to_bits();
+        }
+        let number = i64::from(number.fixed);
+        let float = fixed_to_float::convert(self.curve.value(number), self.format.lsb);
+        let reach = self.curve.segments[0].first.abs().max(self.curve.last.abs());
+        if number.abs() >= reach { float & 1 << 31 | f32::MAX.to_bits() } else { float }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CurveFormat, CurveMap};
+    use golden::design::{Curve, Design};
+
+    const DESIGN: &str = "name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+        curve = { power = 1.5, scale = -0.5 }\n[hardware]\ncontrol = true\ncalibration = \"ram\"\n";
+
+    fn format() -> (Curve, CurveFormat) {
+        let design = Design::from_toml(DESIGN, "tiny.toml").unwrap();
+        let curve = design.input.curve.clone().unwrap();
+        let format = CurveFormat::new(&design, &curve);
+        (curve, format)
+    }
+
+    #[test]
+    fn values_are_those_of_the_curve() {
+        let (curve, format) = format();
+        let map = format.map(&curve).unwrap();
+        assert_eq!((format.room, map.words().len()), (64, 259));
+        for step in 1..400 {
+            let count = f64::from(step) * curve.largest_count() / 400.5;
+            let value = f64::from(f32::from_bits(map.float_of((count as f32).to_bits())));
+            assert!((value / curve.at(count) - 1.0).abs() < 1e-4, "{count}: {value}");
+        }
+        let beyond = |count: f64| f32::from_bits(map.float_of((count as f32).to_bits()));
+        assert_eq!(beyond(curve.largest_count() * 1.01).to_bits(), f32::MIN.to_bits());
+        assert!(beyond(f64::NAN).is_nan());
+        assert_eq!(beyond(-3.0).to_bits(), 0);
+    }
+
+    type Change = fn(&mut CurveMap);
+
+    #[test]
+    fn what_does_not_go_together_is_refused() {
+        let (curve, format) = format();
+        let right = format.map(&curve).unwrap();
+        let cases: [(&str, Change); 9] = [
+            ("numbers that do not ascend", |map| map.curve.segments[9].first = map.curve.segments[8].first),
+            ("a value of another way", |map| map.curve.segments[40].value /= 2),
+            ("a slope that leads elsewhere", |map| map.curve.segments[50].slope += 9),
+            ("a shift too many", |map| map.curve.segments[50].shift += 1),
+            ("no shift", |map| map.curve.segments[50].shift = 0),
+            ("no segment", |map| map.curve.segments.clear()),
+            ("an end before the last segment", |map| map.curve.last = map.curve.segments[63].first),
+            ("another value at the end", |map| map.end += map.end / 100),
+            ("a segment too many", |map| map.format.room = 32),
+        ];
+        for (what, change) in cases {
+            let mut map = right.clone();
+            change(&mut map);
+            assert!(!map.fits(), "{what}");
+        }
+    }
+}

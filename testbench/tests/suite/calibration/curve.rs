@@ -1,0 +1,422 @@
+//! A curve in the banks: what acts at power-up, any other one that a bank takes, commits at every moment of a frame, what
+//! is refused, and tare.
+
+use std::sync::OnceLock;
+
+use golden::design::{Calibration, Curve, Design, Outputs, Samples};
+use hdl_gen::plan::calibration::{Bank, CurveMap};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use testbench::dut::{Core, Inputs};
+use testbench::registers::{Access, address};
+use testbench::stream::{Mode, Pattern, Traffic, exchange};
+use testbench::trial::{model_answers, rtl_sources, timeout};
+use testbench::verilate::Verilate;
+
+use super::commits::commits_at_every_moment;
+use super::{
+    CONTRADICTION, OUT_OF_RANGE, Subject, core, design, errors, generation, judge, judged, judged_in, load, perform,
+    random_bank, read_back, send, wait,
+};
+use crate::support::{built, frames, in_parallel, planned, simulate_exactly};
+
+/// The small design along a curve, with gains and offsets.
+pub fn design_with_curve() -> Design {
+    let mut design = design(Outputs::Resultants);
+    design.name += "_curve";
+    design.input.pa_per_count = None;
+    let points = vec![[0.0, 0.0], [200.0, -900.0], [1500.0, -20e3], [5000.0, -90e3], [9000.0, -300e3]];
+    design.input.curve = Some(Curve { points, law: None });
+    let gain = (0..12).map(|taxel| 0.7 + 0.05 * f64::from(taxel)).collect();
+    let offset = (0..12).map(|taxel| 30.25 * f64::from(taxel) - 200.0).collect();
+    design.input.calibration = Some(Calibration { gain, offset });
+    design
+}
+
+fn subject() -> &'static Subject {
+    static SUBJECT: OnceLock<Subject> = OnceLock::new();
+    SUBJECT.get_or_init(|| {
+        let plan = planned(&design_with_curve());
+        let built = built(&plan);
+        Subject { plan, built }
+    })
+}
+
+/// Frames of counts along the design's curve.
+fn counts(subject: &Subject, count: usize, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
+    let of_pascals = |packet: Vec<u32>| -> Vec<u32> {
+        let count = |(taxel, word): (usize, u32)| {
+            (subject.plan.design.input.from_pa(taxel, f64::from(f32::from_bits(word))).round() as f32).to_bits()
+        };
+        packet.into_iter().enumerate().map(count).collect()
+    };
+    (0..count)
+        .map(|index| match index % 5 {
+            4 => (0..12).map(|_| random.random_range(-12e3_f32..12e3).to_bits()).collect(),
+            3 => of_pascals(frames::noise(&subject.plan, 1.3, random)),
+            _ => of_pascals(frames::contact(&subject.plan, random)),
+        })
+        .collect()
+}
+
+/// Any curve that a bank takes, of up to as many parts as there is room for.
+fn random_curve(subject: &Subject, random: &mut ChaCha8Rng) -> CurveMap {
+    let usual = subject.calibration().power_up.curve.as_ref().expect("a curve");
+    loop {
+        let parts = if random.random_bool(0.3) { usual.format.room } else { random.random_range(1..=8) };
+        let far = random.random_bool(0.2);
+        let [reach, most] = if far { [17_000.0, 790e3] } else { [9000.0, 250e3] };
+        let mut numbers: Vec<f64> = (0..=parts).map(|_| random.random_range(-0.3 * reach..reach)).collect();
+        let mut values: Vec<f64> = (0..=parts).map(|_| random.random_range(-0.2 * most..most)).collect();
+        numbers.sort_by(f64::total_cmp);
+        values.sort_by(f64::total_cmp);
+        let sign = if random.random_bool(0.3) { 1.0 } else { -1.0 };
+        let points = numbers.into_iter().zip(values).map(|(count, value)| [count, sign * value]).collect();
+        if let Ok(map) = usual.format.map(&Curve { points, law: None }) {
+            return map;
+        }
+    }
+}
+
+fn random_bank_and_curve(subject: &Subject, random: &mut ChaCha8Rng) -> Bank {
+    let bank = Bank { curve: Some(random_curve(subject, random)), ..random_bank(subject.calibration(), random) };
+    assert!(subject.calibration().takes(&bank));
+    bank
+}
+
+#[test]
+fn at_power_up_the_designs_curve_acts() {
+    let subject = subject();
+    let packets = counts(subject, 14, &mut ChaCha8Rng::seed_from_u64(1));
+    simulate_exactly(&subject.plan, &subject.built, &packets, 3).unwrap_or_else(|error| panic!("{error}"));
+    let mut core = subject.core(1);
+    let words = subject.calibration().power_up.words();
+    assert_eq!(words.len(), 26 + 4 * 16 + 3);
+    assert_eq!(read_back(&mut core, true), words);
+    assert_eq!(read_back(&mut core, false), words);
+    let room = core.read(address::CALIBRATION_CURVE).expect("a reply") & 0xFF;
+    assert_eq!(room, 16);
+    assert_eq!(core.read(address::FEATURES).expect("a reply") >> 6 & 1, 1);
+}
+
+/// The same numbers as from ROM, but for the last bits.
+#[test]
+fn ram_and_rom_say_the_same() {
+    let subject = subject();
+    let mut rom = subject.plan.design.clone();
+    rom.hardware.calibration = golden::design::CalibrationIn::Rom;
+    let packets: Vec<Vec<u32>> =
+        (0..5).flat_map(|seed| counts(subject, 4, &mut ChaCha8Rng::seed_from_u64(seed))).collect();
+    let answers = model_answers(&planned(&rom), &packets).into_iter().zip(model_answers(&subject.plan, &packets));
+    for (rom, ram) in answers {
+        assert_eq!(rom[0], ram[0]);
+        let force = |words: &[u32]| [2, 3, 4].map(|word| f64::from(f32::from_bits(words[word])));
+        let size = force(&rom).iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+        for (a, b) in force(&rom).iter().zip(force(&ram)) {
+            assert!((a - b).abs() <= 1e-4 * size, "{rom:x?} {ram:x?}");
+        }
+    }
+}
+
+/// Integers of either kind, several in a beat, dead taxels in the banks and in ROM, a field, a scanner that is not held.
+#[test]
+fn other_designs_from_end_to_end() {
+    for (samples, bits, room) in [(Samples::Uint16, 64, 2), (Samples::Int16, 32, 0), (Samples::Float32, 128, 1)] {
+        let mut design = design_with_curve();
+        design.name = format!("{}_{samples}_{bits}", design.name);
+        design.algorithm.outputs = Outputs::Field;
+        design.input.dead = vec![3];
+        design.hardware.replaceable = room;
+        design.hardware.samples = samples;
+        design.hardware.stream_bits = bits;
+        let plan = planned(&design);
+        let mut random = ChaCha8Rng::seed_from_u64(4);
+        let packets: Vec<Vec<u32>> = (0..8)
+            .map(|index| {
+                let most = [9500.0, 700.0][index % 2];
+                let values: Vec<f64> = (0..12).map(|_| random.random_range(-100.0..most)).collect();
+                plan.streams().packet(&values)
+            })
+            .collect();
+        let subject = Subject { built: built(&plan), plan };
+        simulate_exactly(&subject.plan, &subject.built, &packets, 3).unwrap_or_else(|error| panic!("{error}"));
+        let mut core = subject.core(1);
+        let bank = random_bank_and_curve(&subject, &mut random);
+        perform(&mut core, &load(&bank, bank.crc()));
+        assert_eq!((errors(&mut core), read_back(&mut core, true)), (0, bank.words()));
+        let banks = [bank.clone(), bank];
+        judged(&subject.plan, &mut core, &packets, &banks).unwrap_or_else(|error| panic!("{samples}: {error}"));
+    }
+}
+
+#[test]
+fn any_curve_acts_once_it_is_committed() {
+    let subject = subject();
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let mut core = subject.core(2);
+    for expected in 1..40 {
+        let bank = random_bank_and_curve(subject, &mut random);
+        perform(&mut core, &load(&bank, bank.crc()));
+        assert_eq!((errors(&mut core), generation(&mut core)), (0, expected));
+        assert_eq!(read_back(&mut core, true), bank.words());
+        let packets = counts(subject, 5, &mut random);
+        let banks = vec![bank; expected as usize + 1];
+        judged(&subject.plan, &mut core, &packets, &banks).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
+/// A bank with another curve, and one with other gains and another threshold.
+fn others(subject: &Subject) -> [Bank; 2] {
+    let power_up = &subject.calibration().power_up;
+    let mut random = ChaCha8Rng::seed_from_u64(8);
+    let mut steep = power_up.curve.clone().expect("a curve");
+    for segment in &mut steep.curve.segments {
+        segment.value /= 2;
+        segment.shift += 1;
+    }
+    steep.end /= 2;
+    let other = Bank { curve: Some(steep), ..power_up.clone() };
+    assert!(subject.calibration().takes(&other));
+    [other, random_bank_and_curve(subject, &mut random)]
+}
+
+#[test]
+fn a_commit_at_every_moment_of_a_frame() {
+    let subject = subject();
+    let interval = subject.plan.timeline.interval_cycles;
+    for (bank, step) in others(subject).iter().zip([1, 3]) {
+        let cycles = (0..interval + 2).step_by(step);
+        assert_eq!(commits_at_every_moment(subject, &subject.built, bank, cycles), Vec::<String>::new());
+    }
+}
+
+/// Banks come one after the other among good and bad frames, with pauses on both sides.
+#[test]
+fn commits_on_each_others_heels_among_bad_frames() {
+    let subject = subject();
+    let told = in_parallel(&[1, 2, 3, 4], |&seed| {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut core = core(&subject.built, seed);
+        let mut banks = vec![subject.calibration().power_up.clone()];
+        let mut cycle = 10;
+        for _ in 0..12 {
+            let bank = random_bank_and_curve(subject, &mut random);
+            for access in load(&bank, bank.crc()) {
+                core.plan(cycle, access);
+            }
+            cycle += 2200 + 4 * subject.plan.timeline.interval_cycles + random.random_range(0..200);
+            banks.push(bank);
+        }
+        let mut packets = counts(subject, 200, &mut random);
+        for packet in &mut packets {
+            match random.random_range(0..8) {
+                0 => packet[random.random_range(0..12)] = f32::NAN.to_bits(),
+                1 => packet.truncate(random.random_range(1..12)),
+                2 => packet.extend([7; 9]),
+                3 => packet.truncate(1),
+                _ => {}
+            }
+        }
+        let modes = Mode::all(seed);
+        let traffic = Traffic::new(&packets, timeout(&subject.plan)).with_mode(&modes[seed as usize % 4]);
+        let generations = judged_in(&subject.plan, &mut core, &traffic, &banks);
+        assert_eq!((errors(&mut core), generations.as_ref().err()), (0, None), "seed {seed}");
+        generations.ok()?.last().copied()
+    });
+    assert!(told.iter().all(|&last| last > Some(4)), "{told:?}");
+}
+
+/// Copies in which a frame changes its curve within, takes another bank behind the curve than in front of it, or lets
+/// the bank be written that it still reads.
+#[test]
+fn half_a_frame_by_another_curve_is_noticed() {
+    let subject = subject();
+    let interval = subject.plan.timeline.interval_cycles;
+    let [other_curve, other_gains] = others(subject);
+    for (module, text, broken, bank) in [
+        ("sptfra_count_curve", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", &other_curve),
+        (
+            "sptfra_bz_curved",
+            "offered ? began_with : calibration_acting[67:27]",
+            "calibration_acting[67:27]",
+            &other_gains,
+        ),
+        ("sptfra_count_curve", "assign line_bank = banks[FOUND];", "assign line_bank = active;", &other_curve),
+    ] {
+        let mut sources = rtl_sources(&subject.plan).expect("emitted");
+        let path = format!("rtl/{module}.v");
+        let right = String::from_utf8(sources.files[&path].clone()).expect("text");
+        assert_eq!(right.matches(text).count(), 1, "{text}");
+        sources.files.insert(path, right.replace(text, broken).into_bytes());
+        let built = Verilate::default().build(&sources).expect("builds");
+        let cycles = 0..interval;
+        assert_ne!(commits_at_every_moment(subject, &built, bank, cycles), Vec::<String>::new(), "{broken}");
+    }
+}
+
+/// What no word tells alone the commit finds: the core takes a bank where the model does, and no other.
+#[test]
+fn what_does_not_go_together_is_refused() {
+    let subject = subject();
+    let mut random = ChaCha8Rng::seed_from_u64(6);
+    let mut core = subject.core(3);
+    let (mut taken, mut refused) = (0, 0);
+    for _ in 0..300 {
+        let mut bank = random_bank_and_curve(subject, &mut random);
+        let map = bank.curve.as_mut().expect("a curve");
+        let count = map.curve.segments.len();
+        let place = random.random_range(0..count);
+        let segment = &mut map.curve.segments[place];
+        let by = 10_f64.powf(random.random_range(-1.0..7.0)) * if random.random_bool(0.5) { 1.0 } else { -1.0 };
+        match random.random_range(0..7) {
+            0 => segment.first += by as i64,
+            1 => segment.value += by as i64,
+            2 => segment.slope += random.random_range(-2..=2),
+            3 => segment.slope = -segment.slope,
+            4 => segment.shift = (segment.shift + 1).min(40),
+            5 => map.end += by as i64,
+            _ => map.curve.last += by as i64,
+        }
+        let segment = &map.curve.segments[place];
+        let within = segment.first.abs() < 1 << 25
+            && segment.value.abs() < (1 << 26) - (1 << 12)
+            && segment.slope.abs() < 1 << 17
+            && map.curve.last.abs() < 1 << 25
+            && map.end.abs() < (1 << 26) - (1 << 12);
+        if !within {
+            continue;
+        }
+        let before = generation(&mut core);
+        perform(&mut core, &load(&bank, bank.crc()));
+        if subject.calibration().takes(&bank) {
+            assert_eq!((errors(&mut core), generation(&mut core)), (0, (before + 1) & 0xFF), "{bank:?}");
+            taken += 1;
+        } else {
+            assert_eq!((errors(&mut core), generation(&mut core)), (CONTRADICTION, before), "{bank:?}");
+            refused += 1;
+        }
+    }
+    assert!(taken > 40 && refused > 100, "{taken} taken, {refused} refused");
+}
+
+/// Largest magnitudes of a curve's words.
+const NUMBER: i64 = (1 << 25) - 1;
+const VALUE: i64 = (1 << 26) - 1 - (1 << 12);
+const SLOPE: i64 = (1 << 17) - 1;
+
+#[test]
+fn what_is_out_of_bounds_is_refused() {
+    let subject = subject();
+    let power_up = subject.calibration().power_up.words();
+    let mut core = subject.core(5);
+    let mut attempt = |index: usize, word: i64, fits: bool| {
+        let word = word as u32;
+        core.write(address::CALIBRATION_INDEX, index as u32).expect("a reply");
+        core.write(address::CALIBRATION_DATA, word).expect("a reply");
+        assert_eq!(errors(&mut core), if fits { 0 } else { OUT_OF_RANGE }, "word {index}: {word:#010x}");
+        core.write(address::CALIBRATION_INDEX, index as u32).expect("a reply");
+        let expected = if fits { word } else { power_up.get(index).copied().unwrap_or(0) };
+        assert_eq!(core.read(address::CALIBRATION_DATA).expect("a reply"), expected, "word {index}: {word:#010x}");
+        if fits {
+            core.write(address::CALIBRATION_DATA, power_up[index]).expect("a reply");
+        }
+    };
+    let (first, count) = (26, 26 + 64);
+    for segment in [0, 3, 15] {
+        for (word, most) in [(0, NUMBER), (1, VALUE), (2, SLOPE)] {
+            for (value, fits) in [(most, true), (-most, true), (most + 1, false), (-most - 1, false), (0, true)] {
+                attempt(first + 4 * segment + word, value, fits);
+            }
+            attempt(first + 4 * segment + word, i64::from(i32::MIN), false);
+        }
+        for (value, fits) in [(0, false), (1, true), (40, true), (41, false), (64, false), (-1, false)] {
+            attempt(first + 4 * segment + 3, value, fits);
+        }
+    }
+    for (value, fits) in [(0, false), (1, true), (16, true), (17, false), (128, false), (-1, false)] {
+        attempt(count, value, fits);
+    }
+    for (word, most) in [(1, NUMBER), (2, VALUE)] {
+        for (value, fits) in [(most, true), (-most, true), (most + 1, false), (-most - 1, false)] {
+            attempt(count + word, value, fits);
+        }
+    }
+    attempt(count + 3, 1, false);
+    assert_eq!((read_back(&mut core, true), read_back(&mut core, false)), (power_up.clone(), power_up));
+}
+
+/// The curve goes along; what the other bank held is gone.
+#[test]
+fn a_tare_takes_the_curve_along() {
+    let subject = subject();
+    let calibration = subject.calibration();
+    let mut random = ChaCha8Rng::seed_from_u64(9);
+    for log2 in [0, 2] {
+        let mut core = subject.core(u64::from(log2));
+        let [other, _] = others(subject);
+        let bank = Bank { noise: (300.0 / calibration.stress.step()) as u32, ..other };
+        perform(&mut core, &load(&bank, bank.crc()));
+        let left = random_bank_and_curve(subject, &mut random);
+        let accesses = load(&left, left.crc());
+        perform(&mut core, &accesses[..accesses.len() - 1]);
+        let level: Vec<f32> = (0..12).map(|_| random.random_range(0.0..400.0)).collect();
+        let mut rest = |frames: usize| -> Vec<Vec<u32>> {
+            (0..frames)
+                .map(|_| level.iter().map(|level| (level + random.random_range(-1.0..1.0_f32)).to_bits()).collect())
+                .collect()
+        };
+        let frames = rest(1 << log2);
+        let tared = bank.tared(calibration, &frames).expect("at rest");
+        core.write(address::TARE, log2).expect("a reply");
+        let packets = [frames, rest(3), counts(subject, 6, &mut ChaCha8Rng::seed_from_u64(3))].concat();
+        let answers = send(&mut core, &packets);
+        let banks = [calibration.power_up.clone(), bank, tared.clone()];
+        let generations = judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(generations.last(), Some(&2), "{generations:?}");
+        wait(&mut core);
+        assert_eq!((errors(&mut core), read_back(&mut core, true)), (0, tared.words()));
+        assert_eq!(core.read(address::CALIBRATION_CRC).expect("a reply"), tared.crc());
+    }
+}
+
+/// At every moment of a frame: a tare takes frames that begin after its command, though others are on the curve.
+#[test]
+fn a_tare_takes_no_frame_that_began_before() {
+    let subject = subject();
+    let calibration = subject.calibration();
+    let mut random = ChaCha8Rng::seed_from_u64(12);
+    let level: Vec<f32> = (0..12).map(|_| random.random_range(0.0..400.0)).collect();
+    let packets: Vec<Vec<u32>> = (0..30)
+        .map(|_| level.iter().map(|level| (level + random.random_range(-1.0..1.0_f32)).to_bits()).collect())
+        .collect();
+    let bank = Bank { noise: (300.0 / calibration.stress.step()) as u32, ..calibration.power_up.clone() };
+    let tared: Vec<Vec<u32>> = packets
+        .iter()
+        .filter_map(|frame| Some(bank.tared(calibration, std::slice::from_ref(frame))?.words()))
+        .collect();
+    assert_eq!(tared.len(), 30);
+    let cycles: Vec<u64> = (3000..3000 + subject.plan.timeline.interval_cycles + 40).step_by(3).collect();
+    let told = in_parallel(&cycles, |&cycle| {
+        let mut core = core(&subject.built, 12);
+        for access in load(&bank, bank.crc()) {
+            core.plan(10, access);
+        }
+        core.plan(cycle, Access::Write { address: address::TARE, data: 0, strobes: 0xF });
+        let slow = Mode { name: "slow source", source: Pattern::Random { seed: 3, willing: 0.1 }, sink: Pattern::Free };
+        let traffic = Traffic::new(&packets, timeout(&subject.plan)).with_mode(&slow);
+        let outcome = exchange(&mut core, &traffic, |_| ()).expect("answers");
+        for _ in 0..2000 {
+            core.step(Inputs { run: true, ..Inputs::default() }).expect("runs");
+        }
+        let words = read_back(&mut core, true);
+        let taken = tared.iter().position(|tared| *tared == words).ok_or("offsets of no frame")?;
+        let exchange = &outcome.exchanges[taken];
+        // The command's response comes some cycles after it is planned, and the frame is the next one to begin.
+        if exchange.first_in < cycle {
+            return Err(format!("cycle {cycle}: frame {taken}, which began in {}", exchange.first_in));
+        }
+        Ok(taken)
+    });
+    let wrong: Vec<&String> = told.iter().filter_map(|told: &Result<usize, String>| told.as_ref().err()).collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
