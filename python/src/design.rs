@@ -52,11 +52,28 @@ pub fn named_anew(mut design: Checked, name: Option<String>) -> PyResult<Design>
     Ok(Design::new(Checked::from_parts(&design.to_toml(), "calibrate", &files).map_err(raised)?))
 }
 
-/// What is given as a pitch: along x and along y, or the same along both.
-#[derive(FromPyObject)]
-enum Pitch {
-    Both([f64; 2]),
-    One(f64),
+/// What is given as a pitch: along x and along y, or one number for both.
+struct Pitch([f64; 2]);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Pitch {
+    type Error = PyErr;
+
+    fn extract(value: pyo3::Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(both) = value.extract::<f64>() {
+            return Ok(Self([both; 2]));
+        }
+        let lengths = value.extract::<Vec<f64>>().ok();
+        match lengths.as_deref() {
+            Some(&[x, y]) => Ok(Self([x, y])),
+            Some(more) => Err(Error::new_err(format!(
+                "pitch_mm: {} lengths; write two, for x and y, or one for both",
+                more.len()
+            ))),
+            None => Err(Error::new_err(
+                "pitch_mm is no length in mm; write two, for x and y, as (4, 2), or one for both, as 4",
+            )),
+        }
+    }
 }
 
 /// The word as the value that it means; `key` says in a message what it was given for.
@@ -68,7 +85,7 @@ pub fn word<T: serde::de::DeserializeOwned>(key: &str, word: &str) -> PyResult<T
 impl Design {
     #[new]
     #[pyo3(signature = (
-        name = "my_sensor", *, columns = 10, rows = 10, pitch_mm = Pitch::Both([4.0, 2.0]), depth_mm = 3.0, estimator = "joint",
+        name = "my_sensor", *, columns = 10, rows = 10, pitch_mm = Pitch([4.0, 2.0]), depth_mm = 3.0, estimator = "joint",
         tension = "read", counts = None, full_scale_pa = golden::design::DEFAULT_FULL_SCALE_PA
     ))]
     #[allow(clippy::too_many_arguments, reason = "keywords, most of them left out")]
@@ -86,10 +103,7 @@ impl Design {
     ) -> PyResult<Self> {
         let estimator: Estimator = word("estimator", estimator)?;
         let tension: Tension = word("tension", tension)?;
-        let pitch_mm = match pitch_mm {
-            Pitch::Both(pitch) => pitch,
-            Pitch::One(pitch) => [pitch; 2],
-        };
+        let Pitch(pitch_mm) = pitch_mm;
         let name = name.to_owned();
         let new = NewDesign { name, estimator, columns, rows, pitch_mm, depth_mm, tension, counts, full_scale_pa };
         let text = without_lock(py, || new.text(&mut |_| ()))?;

@@ -47,6 +47,15 @@ class Package(unittest.TestCase):
     def test_the_version_is_that_of_the_workspace(self):
         self.assertIn(f'\nversion = "{sptfra.__version__}"\n', (ROOT / "Cargo.toml").read_text())
 
+    def test_the_page_of_the_registry_runs(self):
+        page = (ROOT / "python" / "README.md").read_text()
+        blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+        self.assertEqual(len(blocks), 1)
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, "-c", blocks[0]], cwd=folder, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertGreater(len(done.stdout.splitlines()), 2)
+
     def test_the_stubs_say_what_there_is(self):
         package = Path(sptfra.__file__).parent
         self.assertTrue((package / "py.typed").is_file())

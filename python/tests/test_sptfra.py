@@ -298,6 +298,10 @@ class Recordings(unittest.TestCase):
         """Frames of a sensor that reads too little, touched five times, and the true normal forces."""
         made = sptfra.Design("pad", columns=6, rows=6, pitch_mm=4, depth_mm=3)
         self.assertEqual(made.pitch_mm, (4, 4))
+        for wrong, said in (([1, 2, 3], "pitch_mm: 3 lengths; write two, for x and y"), ("wide", "pitch_mm is no length")):
+            with self.assertRaises(sptfra.Error) as raised:
+                sptfra.Design("pad", pitch_mm=wrong)
+            self.assertIn(said, str(raised.exception))
         scene = sptfra.scene(made)
         touch, force = reads * scene.frames[0], scene.truth.resultant[0, 2]
         loads = np.repeat([0, 1, 0, 2, 0, 3, 0, 1.5, 0, 2.5, 0], 8)

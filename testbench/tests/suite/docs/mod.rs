@@ -33,6 +33,48 @@ fn lines() -> Vec<Line> {
     files.iter().flat_map(|file| lines_of(file)).collect()
 }
 
+/// How lines begin that are typed into a shell.
+const TYPED: [&str; 20] = [
+    "golden ",
+    "hdl-gen ",
+    "testbench ",
+    "make ",
+    "cargo ",
+    "python3 ",
+    "pip ",
+    "vivado ",
+    "dtc ",
+    "echo ",
+    "modprobe ",
+    "insmod ",
+    "git ",
+    "cd ",
+    "export ",
+    "tools/",
+    ".venv/",
+    "fusesoc ",
+    "verilator ",
+    "apt-get ",
+];
+
+/// A block of commands without its language is run by no test.
+#[test]
+fn every_block_of_commands_says_that_it_is_one() {
+    let root = workspace("");
+    let docs = fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
+    let pages = ["README.md", "data/README.md", "python/README.md"].map(|name| root.join(name));
+    for page in docs.filter(|path| path.extension().is_some_and(|ending| ending == "md")).chain(pages) {
+        let text = fs::read_to_string(&page).expect("readable");
+        let lines: Vec<&str> = text.lines().collect();
+        let fences = lines.iter().enumerate().filter(|(_, line)| line.starts_with("```")).map(|(index, _)| index);
+        for open in fences.step_by(2).filter(|&open| lines[open] == "```") {
+            let first = lines.get(open + 1).copied().unwrap_or_default();
+            let typed = TYPED.iter().any(|begin| first.starts_with(begin));
+            assert!(!typed, "{}, line {}: write ```sh above {first:?}", page.display(), open + 1);
+        }
+    }
+}
+
 pub fn lines_of(file: &Path) -> Vec<Line> {
     let text = fs::read_to_string(file).expect("readable");
     let (mut found, mut inside, mut open): (Vec<Line>, bool, bool) = (Vec::new(), false, false);
