@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::bodies::{Body, MOST};
 use crate::frames::{self, FrameError};
+use crate::geometry::{self, GeometryError, OtherSensor};
 use crate::metrics::Outcome;
 use crate::output;
 use crate::scene::SceneFrame;
@@ -191,13 +192,40 @@ fn no_forces(row: &[f64]) -> Option<String> {
     (phi.abs() > std::f64::consts::PI + 1e-6).then(|| format!("the direction, {phi}, is no angle in radians"))
 }
 
-/// The frame file whose reference forces these are, without its ending: its sensor lies beside it.
-pub fn frames_of(reference: &Path) -> PathBuf {
-    reference.with_extension("")
+/// Compares the sensor of the frames whose reference forces these are, if it is known, with a design's. The message names
+/// the forces, which is what was given.
+///
+/// # Errors
+///
+/// [`GeometryError`], as [`geometry::compare`].
+pub fn compare_sensor(reference: &Path, design_name: &str, design: &Sensor) -> Result<(), GeometryError> {
+    // `frames.forces.csv` has its sensor beside `frames.csv`.
+    geometry::compare(&reference.with_extension(""), design_name, design).map_err(|error| match error {
+        GeometryError::Other(other) => {
+            GeometryError::Other(Box::new(OtherSensor { path: reference.to_path_buf(), ..*other }))
+        }
+        other => other,
+    })
 }
 
 /// The place of the reference forces of a frame file: `frames.csv` has them in `frames.forces.csv`, `frames.npy` in
 /// `frames.forces.npy`.
 pub fn reference_path(frames: &Path) -> PathBuf {
     frames.with_extension(if frames::is_npy(frames) { "forces.npy" } else { "forces.csv" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forces_of_another_sensor_are_named_as_they_were_given() {
+        let sensor = Sensor { columns: 10, rows: 7, pitch_mm: [4.0, 2.0], depth_mm: 3.0 };
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("h.sensor.toml"), geometry::to_toml(&sensor)).expect("writable");
+        let forces = folder.path().join("h.forces.csv");
+        assert!(compare_sensor(&forces, "pad", &sensor).is_ok());
+        let other = compare_sensor(&forces, "pad", &Sensor { rows: 8, ..sensor }).expect_err("another sensor");
+        assert!(other.to_string().starts_with(&format!("{}: the frames belong to", forces.display())), "{other}");
+    }
 }

@@ -26,6 +26,8 @@ const ZERO: [u8; 3] = [236, 238, 241];
 /// Arrows on coloured cells, found and true.
 const FOUND: &str = "#1d2733";
 const TRUE: &str = "#e08a00";
+/// Found and true arrows of a taxel stand apart by so much of its cell, at either side of the middle.
+const APART: f64 = 0.1;
 /// Steps of the colour bar.
 const BAR_STEPS: usize = 24;
 
@@ -182,7 +184,8 @@ fn tangential([fx, fy, _]: &[Vec<f64>; 3]) -> impl Iterator<Item = (f64, f64)> {
     fx.iter().copied().zip(fy.iter().copied())
 }
 
-/// An arrow for each taxel of each field, the last one on top, all to one scale, and a sample of it.
+/// An arrow for each taxel of each field, all to one scale, and a sample of it; of two fields those of a taxel stand beside
+/// each other.
 fn arrows(svg: &mut Svg, grid: &Grid, fields: &[(&[Vec<f64>; 3], &str)]) {
     let lengths = fields.iter().flat_map(|(field, _)| tangential(field)).map(|(x, y)| x.hypot(y));
     let longest = lengths.fold(0.0, f64::max);
@@ -191,9 +194,12 @@ fn arrows(svg: &mut Svg, grid: &Grid, fields: &[(&[Vec<f64>; 3], &str)]) {
     }
     let (width, height) = grid.cell();
     let scale = ARROW * width.min(height).max(0.6 * width.max(height)) / longest;
-    for (field, colour) in fields {
+    for (number, (field, colour)) in fields.iter().enumerate() {
+        // Half of the distance to the left of where the arrow points, or to the right.
+        let aside = if fields.len() > 1 { APART * width.min(height) * (number as f64 - 0.5) } else { 0.0 };
         for (taxel, (x, y)) in tangential(field).enumerate() {
-            let from = grid.middle(taxel);
+            let (middle, length) = (grid.middle(taxel), x.hypot(y).max(f64::MIN_POSITIVE));
+            let from = (middle.0 + aside * y / length, middle.1 + aside * x / length);
             svg.arrow(from, (from.0 + scale * x, from.1 - scale * y), colour);
         }
     }

@@ -68,7 +68,7 @@ impl FrameSet {
         geometry::compare(frames, &design.name, &design.sensor)?;
         let stress = read_frames_of(frames, design, labels)?;
         if let Some(reference) = reference {
-            geometry::compare(&forces::frames_of(reference), &design.name, &design.sensor)?;
+            forces::compare_sensor(reference, &design.name, &design.sensor)?;
         }
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
         Ok(Self { origin: frames.display().to_string(), stress, truth, scene: None })

@@ -206,6 +206,17 @@ impl Svg {
         );
     }
 
+    /// A number above dots, on a rim of the ground's colour; the page knows that.
+    pub fn haloed_text(&mut self, (x, y): (f64, f64), colour: &str, text: &str) {
+        let _ = writeln!(
+            self.text,
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" fill=\"{colour}\" font-weight=\"600\" \
+             paint-order=\"stroke\" stroke-width=\"3\" stroke-linejoin=\"round\" \
+             style=\"stroke: var(--card, #ffffff)\">{}</text>",
+            escaped(text)
+        );
+    }
+
     /// The picture's text.
     pub fn finish(mut self) -> String {
         self.text.push_str("</svg>\n");

@@ -1,6 +1,6 @@
 //! Readings that pile up at one extreme value: the end of a converter.
 
-use super::{count, farthest, largest_of};
+use super::{PULL, count, largest_of};
 use crate::design::Design;
 
 /// Of smooth readings few share the largest value, and many are just below it.
@@ -13,22 +13,35 @@ const WITHIN: f64 = 8.0;
 /// A taxel that reads the same in frames whose loads differ by this share reads no more than that.
 const OTHER_LOAD: f64 = 0.1;
 
-/// Where readings of several taxels, or of one under several loads, share the value that is the largest by far.
-pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: usize, peak: f64) -> Option<String> {
+/// Where readings of several taxels, or of one under several loads, share the value that is the largest of their sign by
+/// far: a line for each sign. `peak` is the largest magnitude of all, in pascals.
+pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: usize, peak: f64) -> Vec<String> {
     let full_scale = design.hardware.full_scale_in_frames();
-    if peak >= full_scale || WITHIN * peak < full_scale {
-        return None;
-    }
-    // By the values of the file, which a gain of each taxel has not touched yet.
-    let sign = farthest(&frames.iter().map(|frame| farthest(frame)).collect::<Vec<_>>()).signum();
-    let magnitudes = || frames.iter().map(|frame| frame.iter().map(|&value| value * sign));
-    let (end, readings) = end_of_range(&magnitudes(), 0.0)?;
-    Some(format!(
-        "{readings} readings of {} are exactly {}, the largest: the end of the converter? Write the stress there, \
-         {peak:.0} Pa, as hardware.full_scale_pa, so that such frames get the status \"saturated\"",
-        count(loaded),
-        end * sign,
-    ))
+    let of_sign = |sign: f64| {
+        // By the values of the file, which a gain of each taxel has not touched yet.
+        let own = frames.iter().flat_map(|frame| frame.iter().enumerate()).filter(|(_, value)| *value * sign > 0.0);
+        let farthest = largest_of(own.map(|(taxel, &value)| design.input.to_pa(taxel, value)));
+        let is_larger = farthest >= peak;
+        let least = if is_larger { full_scale / WITHIN } else { PULL * peak };
+        if farthest >= full_scale || farthest < least {
+            return None;
+        }
+        let magnitudes = frames.iter().map(|frame| frame.iter().map(|&value| value * sign));
+        let (end, readings) = end_of_range(&magnitudes, 0.0)?;
+        let what = format!("{readings} readings of {} are exactly {}, the largest", count(loaded), end * sign);
+        Some(if is_larger {
+            format!(
+                "{what}: the end of the converter? Write the stress there, {farthest:.0} Pa, as hardware.full_scale_pa, so \
+                 that such frames get the status \"saturated\""
+            )
+        } else {
+            format!(
+                "{what} of their sign: the converter's end on that side? No status tells of what is beyond it: let its \
+                 range reach farther than {farthest:.0} Pa there"
+            )
+        })
+    };
+    [-1.0, 1.0].into_iter().filter_map(of_sign).collect()
 }
 
 /// The value at which readings of frames pile up above their rest, and how many do.

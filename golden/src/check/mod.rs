@@ -86,6 +86,7 @@ const FAINT: f64 = 2e-3;
 /// Looks for what is wrong with frames of a design, values as they are in the file, each of m finite numbers.
 ///
 /// `matrices` are those of the design; without them the order of the taxels is not looked at.
+#[allow(clippy::too_many_lines, reason = "one check after the other, and what each knows of those before")]
 pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
     let stress: Vec<Vec<f64>> = frames
         .iter()
@@ -106,7 +107,30 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     }
     let counts = design.input.counts();
     let whole = !counts && WHOLE * peak <= full_scale && frames.iter().flatten().all(|value| value.fract() == 0.0);
-    if let Some(message) = range(full_scale, peak, counts) {
+    // Where the largest reading presses, the sum pulls for an offset.
+    let pulls = |frame: &&Vec<f64>| frame.iter().sum::<f64>() > 0.0 && farthest(frame) > 0.0;
+    let with_load = |(stress, &loaded): (Vec<f64>, &bool)| loaded.then_some(stress);
+    let mut loaded: Vec<Vec<f64>> = stress.into_iter().zip(&is_loaded).filter_map(with_load).collect();
+    let pulling = loaded.iter().filter(pulls).count();
+    let is_pull = holds(pulling, loaded.len());
+    // Pascals press below 0: taken for counts of a scale that is negative, they pull.
+    let fractions = frames.iter().flatten().any(|value| value.fract() != 0.0);
+    let pascals = counts && is_pull && (fractions || peak >= TOO_LARGE * full_scale);
+    if pascals {
+        found(
+            Kind::Range,
+            format!(
+                "the stresses add up to a pull (F_z > 0) in {pulling} of {}, {}: are the frames in pascals already? Remove \
+                 sensor.pa_per_count; if they are counts that fall under load, change its sign",
+                count(loaded.len()),
+                if fractions {
+                    "and readings have fractions, which counts have not".to_owned()
+                } else {
+                    format!("the largest {:.0} times above hardware.full_scale_pa", peak / full_scale)
+                }
+            ),
+        );
+    } else if let Some(message) = range(full_scale, peak, counts) {
         found(Kind::Range, message);
     } else if whole {
         found(
@@ -118,12 +142,7 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
             ),
         );
     }
-    let with_load = |(stress, &loaded): (Vec<f64>, &bool)| loaded.then_some(stress);
-    let mut loaded: Vec<Vec<f64>> = stress.into_iter().zip(&is_loaded).filter_map(with_load).collect();
-    // Where the largest reading presses, the sum pulls for an offset.
-    let pulls = |frame: &&Vec<f64>| frame.iter().sum::<f64>() > 0.0 && farthest(frame) > 0.0;
-    let pulling = loaded.iter().filter(pulls).count();
-    if holds(pulling, loaded.len()) {
+    if is_pull && !pascals {
         let remedy = match (counts, whole) {
             (true, _) => "change the sign of sensor.pa_per_count",
             (false, true) => "write sensor.pa_per_count, what a count is worth, with a minus",
@@ -136,6 +155,8 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
                 count(loaded.len())
             ),
         );
+    }
+    if is_pull {
         // What else is wrong shows with the right sign.
         loaded.iter_mut().flatten().for_each(|stress| *stress = -*stress);
     }
@@ -171,11 +192,12 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     } else if let Some(message) = matrices.and_then(|matrices| order::check(design, matrices, &loaded)) {
         found(Kind::Order, message);
     }
-    if let Some(message) = ends::check(design, frames, loaded.len(), peak) {
+    for message in ends::check(design, frames, loaded.len(), peak) {
         found(Kind::Stuck, message);
     }
     // Frames that are wrong in these ways seem to have bodies that nobody pressed.
-    let misread = findings.iter().any(|finding| matches!(finding.kind, Kind::Sign | Kind::Tare | Kind::Order));
+    let misread =
+        pascals || findings.iter().any(|finding| matches!(finding.kind, Kind::Sign | Kind::Tare | Kind::Order));
     let frames: Vec<&Vec<f64>> =
         frames.iter().zip(&is_loaded).filter_map(|(frame, &loaded)| loaded.then_some(frame)).collect();
     if let Some(message) = matrices.filter(|_| !misread).and_then(|matrices| bodies::check(design, &frames, matrices)) {
@@ -205,21 +227,28 @@ fn at_rest(stress: &[Vec<f64>], is_loaded: &[bool]) -> Option<String> {
 
 /// Readings in another unit.
 fn range(full_scale: f64, peak: f64, counts: bool) -> Option<String> {
-    let key = if counts { "sensor.pa_per_count" } else { "the unit of the frames, or write sensor.pa_per_count," };
     let what = if counts { "stress" } else { "reading" };
     if peak * TOO_SMALL <= full_scale {
         let times = full_scale / peak;
-        let cause = if counts { "is a count worth more?" } else { "kilopascals, or counts?" };
+        let cause = if counts {
+            "is a count worth more? Change sensor.pa_per_count"
+        } else {
+            "kilopascals, or counts? Change the unit of the frames, or write sensor.pa_per_count,"
+        };
         return Some(format!(
-            "the largest {what} is {peak:.3} Pa, {times:.0} times below hardware.full_scale_pa: {cause} Change {key} or \
+            "the largest {what} is {peak:.3} Pa, {times:.0} times below hardware.full_scale_pa: {cause} or \
              hardware.full_scale_pa"
         ));
     }
     (peak >= TOO_LARGE * full_scale).then(|| {
         let times = peak / full_scale;
-        let cause = if counts { "are the frames in pascals already?" } else { "counts?" };
+        let cause = if counts {
+            "are the frames in pascals already? Remove sensor.pa_per_count; if not, change it"
+        } else {
+            "counts? Change the unit of the frames, or write sensor.pa_per_count,"
+        };
         format!(
-            "the largest {what} is {peak:.0} Pa, {times:.0} times above hardware.full_scale_pa: {cause} Change {key} or \
+            "the largest {what} is {peak:.0} Pa, {times:.0} times above hardware.full_scale_pa: {cause} or \
              hardware.full_scale_pa"
         )
     })

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use golden::check::check;
 use golden::design::Design;
+use golden::forces;
 use golden::metrics::{BodyErrors, ERROR_NAMES, ErrorSummary, Outcome};
 use golden::progress::Progress;
 use golden::solver::{Solution, Solver, Status};
 use golden::table::Table;
-use golden::{forces, geometry};
 use serde::Serialize;
 
 use super::{Recording, filter, keep_apart, warn};
@@ -59,7 +59,7 @@ pub fn run(
     let design = Design::load(design)?;
     let frames = frames.read(&design)?;
     if let Some(reference) = reference {
-        geometry::compare(&forces::frames_of(reference), &design.name, &design.sensor)?;
+        forces::compare_sensor(reference, &design.name, &design.sensor)?;
     }
     let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
     let bodies = reference

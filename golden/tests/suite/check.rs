@@ -110,7 +110,20 @@ fn other_units() {
     let pressing = changed(&counts, |count| -count);
     found(&design, &pressing, &[Kind::Range], &["whole numbers, the largest 2", "sensor.pa_per_count"]);
     found(&design, &changed(&pascals, f64::round), &[], &[]);
-    found(&counting, &pascals, &[Kind::Range, Kind::Sign], &["in pascals already", "change the sign"]);
+    // One line, whatever a count is said to be worth: with the sign changed the forces would be those of another scale.
+    for worth in [-24.4, -5.0, -1.5, -0.5] {
+        counting.input.pa_per_count = Some(worth);
+        found(&counting, &pascals, &[Kind::Range], &["in pascals already? Remove sensor.pa_per_count"]);
+    }
+    counting.input.pa_per_count = Some(-24.4);
+    let whole = changed(&pascals, f64::round);
+    found(
+        &counting,
+        &whole,
+        &[Kind::Range],
+        &["times above hardware.full_scale_pa: are the frames in pascals already?"],
+    );
+    found(&counting, &pressing, &[Kind::Sign], &["change the sign of sensor.pa_per_count"]);
     found(&design, &changed(&pascals, |_| 0.0), &[Kind::Empty], &["connected"]);
 }
 
@@ -204,7 +217,12 @@ fn the_end_of_a_converter_below_full_scale() {
     found(&design, &stress(&design, &scene), &[], &[]);
     // Coarse readings alone are not at an end.
     scene.contacts[0].normal_force_n /= 2.5;
-    found(&design, &stress(&design, &scene), &[], &[]);
+    let frames = stress(&design, &scene);
+    found(&design, &frames, &[], &[]);
+    // A converter that ends sooner where taxels pull.
+    let pulled = frames.iter().flatten().fold(0.0, |most: f64, &pa| most.max(pa));
+    let clipped = changed(&frames, |pa| pa.min((0.4 * pulled).round()));
+    found(&design, &clipped, &[Kind::Stuck], &["of their sign", "range reach farther"]);
 }
 
 /// A pad as `hdl-gen new` makes it: taxels of 4 mm, so deep.

@@ -44,9 +44,9 @@ pub struct New {
     /// integers
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(COUNT_BITS))]
     counts: Option<u32>,
-    /// Stress at the end of the sensor's range
-    #[arg(long, value_name = "PA", default_value_t = DEFAULT_FULL_SCALE_PA)]
-    full_scale_pa: f64,
+    /// Stress at the end of the sensor's range; 100000 if it is not said
+    #[arg(long, value_name = "PA")]
+    full_scale_pa: Option<f64>,
 }
 
 /// A length of the command line.
@@ -75,6 +75,11 @@ impl New {
             (self.rows.is_none(), format!("--rows {}", paper.rows)),
             (self.pitch_mm.is_none(), format!("--pitch-mm {x} {y}")),
             (self.depth_mm.is_none(), format!("--depth-mm {}", paper.depth_mm)),
+            // What a count is worth follows from it.
+            (
+                self.counts.is_some() && self.full_scale_pa.is_none(),
+                format!("--full-scale-pa {DEFAULT_FULL_SCALE_PA}, a guess at the largest count"),
+            ),
         ];
         let wanted = NewDesign {
             name: self.name.clone(),
@@ -85,7 +90,7 @@ impl New {
             depth_mm: self.depth_mm.unwrap_or(paper.depth_mm),
             tension: self.tension,
             counts: self.counts,
-            full_scale_pa: self.full_scale_pa,
+            full_scale_pa: self.full_scale_pa.unwrap_or(DEFAULT_FULL_SCALE_PA),
         };
         Ok((wanted, assumed.into_iter().filter(|(left_out, _)| *left_out).map(|(_, option)| option).collect()))
     }
@@ -154,6 +159,11 @@ fn lines(new: &New, design: &Design, path: &Path, assumed: &[String], progress: 
     }
     if !assumed.is_empty() {
         lines.push(format!("Not said, and taken from the paper's first sensor: {}", assumed.join(", ")));
+    }
+    if new.counts.is_some() {
+        lines.push(
+            "Larger counts are taken to press; if yours fall under load, change the sign of pa_per_count.".to_owned(),
+        );
     }
     if design.algorithm.regularisation.factor() > 0.0 {
         lines.push(

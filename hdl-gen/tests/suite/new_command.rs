@@ -38,6 +38,14 @@ fn what_was_not_said_is_told() {
     assert!(said.contains("10 x 8 taxels of 4 x 2 mm, 3 mm deep") && said.contains(assumed), "{said}");
     let all = ["--columns", "6", "--rows", "6", "--pitch-mm", "4", "--depth-mm", "3", "--estimator", "line"];
     assert!(!new(&all).0.contains("Not said"));
+    // What a count is worth, and which way it goes.
+    let (counts, _) = new(&[&all[..], &["--counts", "12"]].concat());
+    assert!(
+        counts.contains(": --full-scale-pa 100000, a guess") && counts.contains("Larger counts are taken to press"),
+        "{counts}"
+    );
+    let (counts, _) = new(&[&all[..], &["--counts", "12", "--full-scale-pa", "60000"]].concat());
+    assert!(!counts.contains("Not said") && counts.contains("Larger counts are taken to press"), "{counts}");
 }
 
 /// The errors that are told are those of the sensor at hand.

@@ -64,7 +64,7 @@ pub fn groups(rows: &[Row]) -> Vec<Group> {
             Table::new(JOINT_HEADER).with(own.iter().map(|row| joint_cells(row)))
         };
         (!own.is_empty()).then(|| Group {
-            title: if is_line { wanted.to_owned() } else { format!("{wanted}, {estimator} estimator") },
+            title: format!("{wanted}, {estimator} estimator"),
             table: table.ending_in_words(),
             // The joint estimator needs the same matrices: it is refused for the same reason.
             refusals: if is_line { refusals(&own) } else { Vec::new() },

@@ -4,7 +4,10 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use golden::design::Design;
+use golden::design::{Design, Estimator};
+use testbench::hard::judge::{Judged, Row};
+use testbench::sweep::page::{Contents, render};
+use testbench::sweep::{Simulate, Sweep};
 
 use crate::support::workspace;
 
@@ -26,6 +29,12 @@ addEventListener("load", () => {
   for (const element of document.querySelectorAll("p, h1, h2, h3, figure, figcaption, td, th"))
     if (element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).overflowX === "visible")
       wrong.push(`outside its box: ${element.textContent.slice(0, 60)}`);
+  // A desk has room for every table; on a telephone they move sideways, and the page says so.
+  const wide = [...document.querySelectorAll(".wide")].filter(element => element.scrollWidth > element.clientWidth + 1);
+  if (innerWidth >= 1280) for (const element of wide)
+    wrong.push(`${element.scrollWidth - element.clientWidth} px of a table are cut off: ${element.textContent.slice(0, 60)}`);
+  else if (wide.length && document.querySelector(".narrow") && getComputedStyle(document.querySelector(".narrow")).display === "none")
+    wrong.push("nothing says that tables move sideways");
   parent.postMessage({ width: innerWidth, texts: texts.length, wrong: wrong.join("\n") }, "*");
 });
 </script></body>"#;
@@ -74,7 +83,15 @@ pub fn wrong(page: &str, folder: &Path, width: u32) -> Vec<String> {
 fn report(folder: &Path) -> String {
     let out = folder.join("out");
     let mut testbench = Command::new(env!("CARGO_BIN_EXE_testbench"));
-    let designs = ["sensor1-fast", "sensor1-reduced", "sensor1-wide", "sensor2-reduced", "sensor2-wide", "sensor2-f3"];
+    let designs = [
+        "sensor1-fast",
+        "sensor1-reduced",
+        "sensor1-none",
+        "sensor1-wide",
+        "sensor2-reduced",
+        "sensor2-wide",
+        "sensor2-f3",
+    ];
     let scenes = ["sensor1-tilted", "two-contacts", "sensor2-held", "sensor2-punch"];
     testbench.arg("sweep").args(designs.map(|name| workspace(&format!("designs/{name}.toml"))));
     testbench.arg("--scene").args(scenes.map(|name| workspace(&format!("scenes/{name}.toml"))));
@@ -82,6 +99,55 @@ fn report(folder: &Path) -> String {
     let output = testbench.arg("--out").arg(&out).output().expect("starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     fs::read_to_string(out.join("report.html")).expect("written")
+}
+
+/// Rows of hard cases as wide as they come, by both estimators.
+fn hard_rows() -> Vec<Row> {
+    let judged = Judged {
+        tangential: Some(50.0),
+        normal: Some(94.5),
+        against_f64: Some(9e-5),
+        backward: Some(2e-16),
+        silent: 0,
+        status: vec![
+            ("good".to_owned(), 1),
+            ("direction unknown".to_owned(), 7),
+            ("optimum at the bound".to_owned(), 4),
+        ],
+    };
+    let row = |estimator, case: &str| Row {
+        group: "depth",
+        case: case.to_owned(),
+        estimator,
+        frames: 12,
+        condition_c33: Some(1.2e9),
+        condition_aat: Some(5.2e18),
+        f64: Some(judged.clone()),
+        f32: Some(judged.clone()),
+        fixed: Some(judged.clone()),
+        rtl_is_model: Some(true),
+        refusal: None,
+    };
+    let cases = ["h/s = 0.5, noise 0.2 %, regularised", "two contacts, opposed pushes"];
+    [Estimator::Line, Estimator::Joint].into_iter().flat_map(|one| cases.map(|case| row(one, case))).collect()
+}
+
+#[test]
+fn the_hard_cases_fit_a_desk_and_a_telephone() {
+    let sweep = Sweep { jobs: Vec::new(), scenes: Vec::new(), simulate: Simulate::None, runs: None, kinds: 0 };
+    let contents = Contents::new(&[], &sweep, &[]).expect("nothing to compute").with_hard_cases(&hard_rows());
+    let page = render(&contents).expect("a page");
+    assert_eq!(page.matches("<h3>Depth over pitch, line estimator</h3>").count(), 1);
+    let folder = tempfile::tempdir().expect("a folder");
+    for width in [1280, 400] {
+        let wrong = wrong(&page, folder.path(), width);
+        assert!(wrong.is_empty(), "{width} wide:\n{}", wrong.join("\n"));
+    }
+    // A table that is too wide is found on a desk, and on a telephone if nothing says that it moves.
+    let broken = page.replace("</style>", "td { min-width: 9rem; }</style>");
+    assert!(wrong(&broken, folder.path(), 1280).concat().contains("of a table are cut off"));
+    let silent = page.replace("</style>", ".narrow { display: none !important; }</style>");
+    assert!(wrong(&silent, folder.path(), 400).concat().contains("nothing says that tables move"));
 }
 
 #[test]
@@ -98,7 +164,7 @@ fn the_report_fits_a_desk_and_a_telephone() {
         ("Take no filter, reduced plan, joint, 21 × 21 points, 160 units, wide family", 2),
         ("On scenes sensor2-held and sensor2-punch", 1),
         // The field that is shown is that of the recommended design.
-        ("the hardware of sensor2_wide finds", 1),
+        ("the hardware of sensor2_wide, joint estimator, finds", 1),
         ("href=\"recommended/sensor2_wide_recommended.toml\"", 1),
     ] {
         assert_eq!(page.matches(part).count(), times, "{part}");

@@ -184,7 +184,7 @@ fn the_command_prints_a_table_and_writes_a_page() {
         assert!(row["rtl_is_model"].is_null(), "--quick simulates nothing");
         assert_eq!(row["f64"].as_object().map_or(0, |judged| judged["silent"].as_u64().expect("a count") as usize), 0);
     }
-    assert!(written.contains("## Depth over pitch\n") && written.contains("| h/s = 4 |"));
+    assert!(written.contains("## Depth over pitch, line estimator\n") && written.contains("| h/s = 4 |"));
     assert!(written.contains("## Contacts, joint estimator\n"));
     // The picture beside the page; it is that of the docs, whose rows were simulated, too.
     assert!(written.contains("](depth.svg)"));

@@ -8,8 +8,9 @@ use crate::sweep::point::{Hardware, Point, Verified};
 const RADIUS: f64 = 4.5;
 /// How much wider the dot below is.
 const WIDER: f64 = 2.5;
-/// Room that the number beside a dot takes.
+/// Room that the number beside a dot takes, and the height of its digits.
 const NUMBER: [f64; 2] = [18.0, 12.0];
+const DIGIT: f64 = 9.0;
 /// From the dot to the ring around what went through the RTL.
 const RING: f64 = 3.0;
 
@@ -43,7 +44,6 @@ pub fn draw(svg: &mut Svg, dots: Vec<Dot>) {
     let mut clusters = clusters(dots);
     // What is below comes first.
     clusters.sort_by(|a, b| b.radius.total_cmp(&a.radius));
-    let mut numbers: Vec<(f64, f64)> = Vec::new();
     for Cluster { dots, radius } in &clusters {
         let Dot { place, rim, kind: (_, colour), .. } = dots[0];
         let name = name(dots);
@@ -55,15 +55,32 @@ pub fn draw(svg: &mut Svg, dots: Vec<Dot>) {
         if dots.iter().any(|dot| dot.point.verified == Verified::Rtl) {
             svg.ring(place, radius + RING, colour);
         }
-        if dots.len() > 1 {
-            // Above the dot, or below it where that would hide another number.
-            let above = (place.0, place.1 - radius - 3.0);
-            let hides = |&(x, y): &(f64, f64)| (x - above.0).abs() < NUMBER[0] && (y - above.1).abs() < NUMBER[1];
-            let free = if numbers.iter().any(hides) { (place.0, place.1 + radius + NUMBER[1]) } else { above };
-            numbers.push(free);
-            svg.text(free, "middle", INK, &dots.len().to_string());
-        }
     }
+    // Above all dots, so that none covers a number.
+    let mut numbers: Vec<(f64, f64)> = Vec::new();
+    for cluster in clusters.iter().filter(|cluster| cluster.dots.len() > 1) {
+        let place = beside(cluster, &clusters, &numbers);
+        numbers.push(place);
+        svg.haloed_text(place, INK, &cluster.dots.len().to_string());
+    }
+}
+
+/// Where the number of a cluster hides least: above its dot, below, or at a side.
+fn beside(cluster: &Cluster, clusters: &[Cluster], numbers: &[(f64, f64)]) -> (f64, f64) {
+    let ((x, y), away) = (cluster.dots[0].place, cluster.radius + RING);
+    let side = away + NUMBER[0] / 2.0;
+    let middle = y + DIGIT / 2.0;
+    let places = [(x, y - away), (x, y + away + DIGIT), (x + side, middle), (x - side, middle)];
+    let hidden = |&(x, y): &(f64, f64)| {
+        let upon = |other: &&(f64, f64)| (other.0 - x).abs() < NUMBER[0] && (other.1 - y).abs() < NUMBER[1];
+        let covers = |other: &&Cluster| {
+            let (at, reach) = (other.dots[0].place, other.radius);
+            (at.0 - x).abs() < NUMBER[0] / 2.0 + reach && (at.1 - y + DIGIT / 2.0).abs() < DIGIT / 2.0 + reach
+        };
+        // A number upon another cannot be read; one upon a dot can.
+        (numbers.iter().filter(upon).count(), clusters.iter().filter(covers).count())
+    };
+    places.into_iter().min_by_key(hidden).unwrap_or((x, y))
 }
 
 /// A dot takes in those of its kind that would cover half of it; a cluster that another one lies on is drawn wider.
@@ -126,8 +143,11 @@ mod tests {
         let svg = front(&points.each_ref(), false, false);
         // Two in one, one of another kind upon it, one apart.
         assert_eq!(svg.matches("<g class=\"dot\"").count(), 3, "{svg}");
+        let number = svg.rfind(">2</text>").expect("a number");
+        assert!(svg.rfind("<g class=\"dot\"").is_some_and(|dot| dot < number), "above all dots: {svg}");
         assert!(
-            svg.contains(">2</text>") && svg.contains("2 variants of line, reduced plan, no filter, 16.0 to 16.0 µs")
+            svg.contains("paint-order=\"stroke\"")
+                && svg.contains("2 variants of line, reduced plan, no filter, 16.0 to 16.0 µs")
         );
         let radius: Vec<&str> = ["r=\"7\"", "r=\"4.5\""].into_iter().filter(|radius| svg.contains(radius)).collect();
         assert_eq!(radius.len(), 2, "{svg}");

@@ -54,13 +54,14 @@ pub fn field(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Fig
     };
     let force = truth.force;
     let caption = format!(
-        "Frame {frame} of scene {}: pushed with ({:.2}, {:.2}, {:.2}) N; the hardware of {} finds \
+        "Frame {frame} of scene {}: pushed with ({:.2}, {:.2}, {:.2}) N; the hardware of {}, {} estimator, finds \
          ({:.2}, {:.2}, {:.2}) N.",
         scene.name,
         force[0],
         force[1],
         force[2],
         design.name,
+        design.algorithm.estimator,
         answer.resultant[0],
         answer.resultant[1],
         answer.resultant[2]

@@ -26,7 +26,7 @@ pub fn section(rows: &[Row]) -> Section {
             svg: plot::of(rows, force),
             caption: format!(
                 "largest error of the {} in f64 over depth / pitch, with {} % of noise; a line ends where the design is \
-                 refused",
+                 refused, triangles are beyond the plot",
                 force.name,
                 100.0 * NOISE
             ),

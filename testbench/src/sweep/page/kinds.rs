@@ -1,6 +1,6 @@
 //! What the hardware of each design makes of contacts of other kinds than those of the scenes.
 
-use golden::design::{Design, Filter};
+use golden::design::{Design, Filter, PlanKind};
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
 use golden::status::Status;
@@ -12,20 +12,38 @@ use crate::frame_set::FrameSet;
 use crate::stream_words::Answer;
 use crate::sweep::SweepError;
 use crate::sweep::evaluate::answers;
+use crate::sweep::point::Calibration;
 
 /// Friction of the contacts of kinds that have none of their own.
 pub const FRICTION: f64 = 0.5;
 /// First seed: those of the calibrations' own contacts are others.
 const FIRST_SEED: u64 = 1000;
 
-/// The errors of the unfiltered designs of a sensor, kind by kind, on so many frames each; nothing for no frames or
-/// without such a design.
+/// Those of the unfiltered designs with hardware that answer differently: another plan or more lanes change a digit at most,
+/// and of such designs only the first by the reduced plan is shown.
+fn distinct<'a>(designs: &[&'a Design]) -> Vec<&'a Design> {
+    let shows = |design: &&Design| design.algorithm.filter == Filter::None && Plan::new(design).is_ok();
+    let shown: Vec<&Design> = designs.iter().copied().filter(shows).collect();
+    let same = |a: &Design, b: &Design| {
+        let of =
+            |design: &Design| (design.algorithm.estimator, design.algorithm.kernel, Calibration::of(&design.algorithm));
+        of(a) == of(b) && a.input == b.input
+    };
+    let is_paper = |design: &Design| design.algorithm.plan == PlanKind::Paper;
+    let is_first = |&(index, design): &(usize, &&Design)| {
+        let mut others = shown.iter().enumerate().filter(|(other, _)| *other != index);
+        !others.any(|(other, first)| same(first, design) && (is_paper(first), other) < (is_paper(design), index))
+    };
+    shown.iter().enumerate().filter(is_first).map(|(_, design)| *design).collect()
+}
+
+/// The errors of the unfiltered designs of a sensor, in the order of the page, kind by kind, on so many frames each; nothing
+/// for no frames or without such a design.
 ///
 /// # Errors
 /// [`PageError::Sweep`] if the frames cannot be made or a design has no answer.
 pub fn table(designs: &[&Design], frames: u64) -> Result<Option<Table>, PageError> {
-    let shows = |design: &&Design| design.algorithm.filter == Filter::None && Plan::new(design).is_ok();
-    let shown: Vec<&Design> = designs.iter().copied().filter(shows).collect();
+    let shown = distinct(designs);
     let Some(sensor) = shown.first().map(|design| &design.sensor).filter(|_| frames > 0) else { return Ok(None) };
     let made = Kind::ALL
         .map(|kind| kind.frames(sensor, FRICTION, FIRST_SEED..FIRST_SEED + frames).map(|frames| (kind, frames)))
@@ -37,7 +55,7 @@ pub fn table(designs: &[&Design], frames: u64) -> Result<Option<Table>, PageErro
     let mut header = vec![format!("contacts, {frames} frames of each kind")];
     let mut columns = Vec::new();
     for design in shown {
-        header.extend([design.name.clone(), "flagged, %".to_owned()]);
+        header.extend([format!("{}, {}", design.name, design.algorithm.estimator), "flagged, %".to_owned()]);
         columns.push(answers(design, &all)?);
     }
     let mut table = Table::new(header);
@@ -61,4 +79,21 @@ fn judged(frames: &[SceneFrame], found: &[Answer]) -> [Cell; 2] {
     let tells = |answer: &&Answer| answer.status & !Status::SLIP.0 != 0;
     let flagged = 100.0 * found.iter().filter(tells).count() as f64 / found.len() as f64;
     [Cell::from(format!("{median:.1} / {most:.1} / {worst:.1}")), Cell::from(format!("{flagged:.0}"))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn designs_that_answer_alike_are_one() {
+        let designs =
+            ["sensor1-joint", "sensor1-none", "sensor1-reduced", "sensor1-fast", "sensor1-fast-64", "sensor1-f2-p50"];
+        let designs = designs.map(|name| {
+            let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs");
+            Design::load(&folder.join(format!("{name}.toml"))).expect("a design")
+        });
+        let names: Vec<String> = distinct(&designs.each_ref()).iter().map(|design| design.name.clone()).collect();
+        assert_eq!(names, ["sensor1_joint", "sensor1_reduced", "sensor1_fast"]);
+    }
 }

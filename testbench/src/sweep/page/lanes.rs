@@ -12,7 +12,7 @@ const TOP: f64 = 26.0;
 const BOTTOM: f64 = 84.0;
 /// Height of a line's name, above the plot.
 const NAME: f64 = 15.0;
-/// Radius of the last line's dots; those below it are larger, so that they show where lines are the same.
+/// Radius of a dot; one that others lie on is larger by so much for each, so that it shows below them.
 const DOT: f64 = 4.0;
 const LARGER: f64 = 2.0;
 /// Dashes of the interval beside those of the latency.
@@ -48,19 +48,24 @@ pub fn plot(points: &[&Point]) -> Option<String> {
     }
     svg.text((6.0, 14.0), "start", INK, "µs a frame: latency, and dotted the interval");
     svg.text((f64::midpoint(x.from, x.to), height - 42.0), "middle", INK, "DSP (logarithmic)");
-    for (number, Series { name, colour, points }) in series.iter().enumerate() {
-        let places = |time: fn(&Hardware) -> f64| -> Vec<(f64, f64)> {
-            points.iter().map(|(_, hardware)| (x.place(hardware.dsp as f64), y.place(time(hardware)))).collect()
-        };
-        let latency = places(|hardware| hardware.latency_us);
-        svg.line(&latency, colour, "");
-        svg.line(&places(|hardware| hardware.interval_us), colour, INTERVAL);
+    let places = |series: &Series, time: fn(&Hardware) -> f64| -> Vec<(f64, f64)> {
+        series.points.iter().map(|(_, hardware)| (x.place(hardware.dsp as f64), y.place(time(hardware)))).collect()
+    };
+    let latencies: Vec<Vec<(f64, f64)>> =
+        series.iter().map(|series| places(series, |hardware| hardware.latency_us)).collect();
+    for (number, one) in series.iter().enumerate() {
+        let Series { name, colour, points } = one;
+        let latency = &latencies[number];
+        svg.line(latency, colour, "");
+        svg.line(&places(one, |hardware| hardware.interval_us), colour, INTERVAL);
         for (&place, (point, hardware)) in latency.iter().zip(points) {
             let name = format!(
                 "{name}, {} lanes: {:.1} µs, a frame every {:.1} µs, {} DSP, {:.1} RAMB36",
                 point.lanes, hardware.latency_us, hardware.interval_us, hardware.dsp, hardware.bram36
             );
-            svg.named_dot(place, DOT + LARGER * (series.len() - 1 - number) as f64, colour, &name);
+            let covers = |other: &&(f64, f64)| (other.0 - place.0).hypot(other.1 - place.1) < DOT;
+            let above = latencies[number + 1..].iter().filter(|later| later.iter().any(|other| covers(&other))).count();
+            svg.named_dot(place, DOT + LARGER * above as f64, colour, &name);
         }
         svg.sized_text((WIDTH - RIGHT, TOP + NAME * number as f64), "end", colour, 11, name);
     }
@@ -98,5 +103,17 @@ mod tests {
         assert_eq!(plot(&[&points[0]]), None);
         let both = plot(&[&points[1], &points[0]]).expect("a plot");
         assert_eq!((both.matches("<polyline").count(), both.matches("<circle").count()), (2, 2));
+    }
+
+    /// A dot below others shows as a rim, and one that nothing lies on is as small as all.
+    #[test]
+    fn only_a_dot_that_others_lie_on_is_larger() {
+        let mut points =
+            [point("a", 16, 2000, 2.0), point("a", 64, 1000, 2.0), point("a", 16, 2000, 2.0), point("a", 64, 500, 2.0)];
+        for filtered in &mut points[2..] {
+            "f2 p=50".clone_into(&mut filtered.filter);
+        }
+        let svg = plot(&points.each_ref()).expect("a plot");
+        assert_eq!((svg.matches("r=\"6\"").count(), svg.matches("r=\"4\"").count()), (1, 3), "{svg}");
     }
 }

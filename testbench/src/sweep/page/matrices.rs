@@ -14,10 +14,11 @@ const RAMP: [&str; 9] =
     ["#1b1036", "#3b1c63", "#5c2a7e", "#80378a", "#a5478a", "#c95c7d", "#e67a67", "#f6a35c", "#fcd97d"];
 /// Decades below the largest entry that the ramp covers.
 const DECADES: f64 = 4.5;
-const KEPT: &str = "#0b84d8";
+/// None of the colours here is that of a kind of points in the front.
+const KEPT: &str = RAMP[4];
 const DROPPED: &str = "#8884";
 /// Rows of `C33inv` drawn as lines: a corner, an edge, the middle.
-const LINE_COLOURS: [&str; 3] = ["#0b84d8", "#d9730d", "#2a9d5c"];
+const LINE_COLOURS: [&str; 3] = [RAMP[3], RAMP[7], INK];
 
 /// A picture with its words.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -126,7 +127,7 @@ fn pixels(side: usize, colours: &[&str], ground: usize, level: impl Fn(usize, us
 /// A filter that multiplies the error of friction by more is none to take, however few entries it keeps.
 const WORTH: f64 = 2.0;
 
-/// `e_mu * Nnz` in thousands for every filter of every matrix; the least of a matrix in orange, as in Figure 11, full
+/// `e_mu * Nnz` in thousands for every filter of every matrix; the least of a matrix in purple, full
 /// where its error is one to live with.
 pub fn costs(choice: &Choice) -> String {
     const CELL: (f64, f64) = (42.0, 24.0);
@@ -165,14 +166,14 @@ fn cost_row(
     (left, y): (f64, f64),
     (width, height): (f64, f64),
 ) {
-    const LEAST: &str = "#d9730d";
+    const LEAST: &str = RAMP[3];
     let costs = || candidates.iter().map(|candidate| candidate.cost);
     let (low, high) = (costs().fold(f64::INFINITY, f64::min), costs().fold(0.0, f64::max));
     for (column, candidate) in candidates.iter().enumerate() {
         let x = left + width * column as f64;
         let share = if high > low { (candidate.cost - low) / (high - low) } else { 0.0 };
         let taken = candidate.chosen && candidate.e_mu <= WORTH * unfiltered;
-        let (colour, opacity) = if taken { (LEAST, 1.0) } else { (KEPT, 0.06 + 0.5 * share) };
+        let (colour, opacity) = if taken { (LEAST, 1.0) } else { (INK, 0.06 + 0.5 * share) };
         let (place, sides) = ((x, y), (width - 1.5, height - 1.5));
         let Candidate { matrix, filter, nnz, e_mu, .. } = candidate;
         let name = format!("{} {filter}, e_µ {e_mu:.2} %, {nnz} entries kept", symbol(*matrix));
@@ -217,6 +218,7 @@ mod tests {
         let choice = Choice { candidates, frames: 1, e_mu_unfiltered: 1.0, e_mu_chosen: 3.0, nnz_chosen: 1170 };
         let svg = costs(&choice);
         let count = |part: &str| svg.matches(part).count();
-        assert_eq!((count("fill=\"#d9730d\""), count("stroke=\"#d9730d\"")), (5, 8));
+        let least = RAMP[3];
+        assert_eq!((count(&format!("fill=\"{least}\"")), count(&format!("stroke=\"{least}\""))), (5, 8));
     }
 }

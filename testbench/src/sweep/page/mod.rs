@@ -209,7 +209,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
         fronts,
         table_1: tables::table_1(&on_main),
         table_3: tables::table_3(&on_main),
-        kinds: kinds::table(&designs, sweep.kinds)?,
+        kinds: kinds::table(&foremost, sweep.kinds)?,
         lanes: tables::lanes(&on_main),
         lanes_plot: lanes::plot(&on_main),
         widths: widths(&on_main),
@@ -236,7 +236,7 @@ fn costs(designs: &[&Design], scene: Option<&SweepScene>, small: bool) -> Option
     let choice = choose(&design, &frames, &|| ()).ok()?;
     let caption = format!(
         "e_µ · Nnz in thousands, with only that matrix filtered, by the estimator {} of {}; \
-         mean over {} frames of scene {}. Orange: the least of the matrix, which is F3; only framed where its e_µ is more \
+         mean over {} frames of scene {}. Purple: the least of the matrix, which is F3; only framed where its e_µ is more \
          than twice that without a filter, {:.2} %, and the entries that it saves are dear. With all of these choices e_µ \
          is {:.2} %.",
         design.algorithm.estimator, design.name, choice.frames, scene?.name, choice.e_mu_unfiltered, choice.e_mu_chosen

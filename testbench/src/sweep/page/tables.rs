@@ -62,7 +62,7 @@ pub fn table_3(points: &[&Point]) -> Option<Table> {
     let mut header = vec!["hardware".to_owned(), "time".to_owned()];
     header.extend(names.map(|name| format!("max {name}")));
     header.extend(names.map(|name| format!("SE {}", name.trim_start_matches("e_"))));
-    header.push("verified by".to_owned());
+    header.push("verified".to_owned());
     let mut rows = Vec::new();
     for row in TABLE_3.iter().filter(|row| row.sensor == number) {
         let time = format!("{:.2} ms", row.milliseconds);
