@@ -72,7 +72,7 @@ fn designs() -> Vec<Design> {
     let mut curve_in_ram = mapped.clone();
     "curve_in_ram".clone_into(&mut curve_in_ram.name);
     curve_in_ram.input.pa_per_count = None;
-    curve_in_ram.input.curve = curved.input.curve.clone();
+    curve_in_ram.input.curve.clone_from(&curved.input.curve);
     let mut curve_of_floats = calibration::curve::design_with_curve();
     let points = (0..40).map(f64::from).map(|point| [100.0 * point, -20.0 * point * point]).collect();
     curve_of_floats.input.curve = Some(Curve { points, law: None });
