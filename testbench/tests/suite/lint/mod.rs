@@ -31,7 +31,7 @@ fn designs() -> Vec<Design> {
     let mut broken = by_plan(shipped("odd"), reduced, Outputs::Field);
     "broken".clone_into(&mut broken.name);
     let taxels = broken.sensor.taxels();
-    let gain = (0..taxels).map(|taxel| 1.0 + taxel as f64).map(|gain| gain / 4.0).collect();
+    let gain = (0..taxels).map(|taxel| (1.0 + taxel as f64) / 4.0).collect();
     let calibration = Some(Calibration { gain, offset: vec![-7.5; taxels] });
     broken.input =
         Input { pa_per_count: Some(-3.0), calibration, dead: vec![0, 1, 7], curve: None, tension: Tension::Clipped };
@@ -68,34 +68,15 @@ fn designs() -> Vec<Design> {
     let mut mapped_once = calibration::design(Outputs::Resultants);
     "mapped_once".clone_into(&mut mapped_once.name);
     mapped_once.hardware.replaceable = 1;
-    // A curve in the banks, behind a map of dead taxels and not, of floats and of integers, with the widest room.
-    let mut curve_in_ram = mapped.clone();
-    "curve_in_ram".clone_into(&mut curve_in_ram.name);
-    curve_in_ram.input.pa_per_count = None;
-    curve_in_ram.input.curve.clone_from(&curved.input.curve);
-    let mut curve_of_floats = calibration::curve::design_with_curve();
-    let points = (0..40).map(f64::from).map(|point| [100.0 * point, -20.0 * point * point]).collect();
-    curve_of_floats.input.curve = Some(Curve { points, law: None });
+    let [curve_in_ram, curve_of_floats] = with_curves_in_ram(&mapped, &curved);
     // Frames dropped, with and without registers, samples one by one and at once.
-    let mut dropping = in_ram.clone();
-    "dropping".clone_into(&mut dropping.name);
+    let mut dropping = Design { name: "dropping".to_owned(), ..in_ram.clone() };
     let mut scanned = by_plan(shipped("small"), paper, Outputs::Field);
     "scanned".clone_into(&mut scanned.name);
     for design in [&mut dropping, &mut scanned] {
         design.hardware.overrun = Overrun::Drop;
     }
-    // Frames scaled by their own largest stress, folded and not, with and without a calibration and drops behind it.
-    let mut scaled = by_plan(shipped("odd"), paper, Outputs::Field);
-    "scaled".clone_into(&mut scaled.name);
-    scaled.hardware.stream_bits = 128;
-    let mut scaled_fold = with_lanes(shipped("sensor1-fast"), 20);
-    (scaled_fold.hardware.stream_bits, scaled_fold.hardware.data_bits) = (64, 25);
-    let mut scaled_banks = mapped.clone();
-    "scaled_banks".clone_into(&mut scaled_banks.name);
-    scaled_banks.hardware.overrun = Overrun::Drop;
-    for design in [&mut scaled, &mut scaled_fold, &mut scaled_banks] {
-        design.hardware.range = InputRange::Frame;
-    }
+    let [scaled, scaled_fold, scaled_banks] = scaled(&curve_in_ram);
     // Nets marked for a logic analyser, in every kind of core.
     for design in [&mut curved, &mut uncorrected, &mut unpacked, &mut wide_control, &mut dropping] {
         design.hardware.debug = true;
@@ -137,6 +118,34 @@ fn designs() -> Vec<Design> {
         with_lanes(shipped("sensor1-f1-l40"), 64),
         narrow,
     ]
+}
+
+/// A curve in the banks, behind a map of dead taxels and not, of integers and of floats, with the widest room.
+fn with_curves_in_ram(mapped: &Design, curved: &Design) -> [Design; 2] {
+    let mut curve_in_ram = mapped.clone();
+    "curve_in_ram".clone_into(&mut curve_in_ram.name);
+    curve_in_ram.input.pa_per_count = None;
+    curve_in_ram.input.curve.clone_from(&curved.input.curve);
+    let mut curve_of_floats = calibration::curve::design_with_curve();
+    let points = (0..40).map(f64::from).map(|point| [100.0 * point, -20.0 * point * point]).collect();
+    curve_of_floats.input.curve = Some(Curve { points, law: None });
+    [curve_in_ram, curve_of_floats]
+}
+
+/// Frames scaled by their own largest stress, folded and not, with and without a calibration and drops in front of it.
+fn scaled(banks: &Design) -> [Design; 3] {
+    let mut scaled = by_plan(shipped("odd"), PlanKind::Paper, Outputs::Field);
+    "scaled".clone_into(&mut scaled.name);
+    scaled.hardware.stream_bits = 128;
+    let mut scaled_fold = with_lanes(shipped("sensor1-fast"), 20);
+    (scaled_fold.hardware.stream_bits, scaled_fold.hardware.data_bits) = (64, 25);
+    let mut scaled_banks = banks.clone();
+    "scaled_banks".clone_into(&mut scaled_banks.name);
+    scaled_banks.hardware.overrun = Overrun::Drop;
+    for design in [&mut scaled, &mut scaled_fold, &mut scaled_banks] {
+        design.hardware.range = InputRange::Frame;
+    }
+    [scaled, scaled_fold, scaled_banks]
 }
 
 /// A design's folder, as `hdl-gen generate` writes it.
