@@ -42,7 +42,7 @@ module sptfra_correction #(
     parameter integer EXPECTED_NETWORK_LATENCY = 0,
     // Derived: quads, and the bits of their number
     parameter integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter integer ROW_WIDTH = (QUADS > 4) ? $clog2(QUADS) : 2
+    parameter integer ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3
 ) (
     input  wire clock,
     input  wire reset,
