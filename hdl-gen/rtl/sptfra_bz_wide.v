@@ -18,7 +18,7 @@ module sptfra_bz_wide #(
     // Taxels in x and y
     parameter COLUMNS = 10,
     parameter ROWS = 10,
-    // Bits of a stress
+    // Bits of a stress, 27 at most, and of what the lanes read: as many, or 29 and more
     parameter DATA_BITS = 27,
     // What a sample is: 0 float32, 1 and 2 integers; and how it becomes a stress: see sptfra_samples
     parameter SAMPLE = 0,
@@ -87,6 +87,7 @@ module sptfra_bz_wide #(
     localparam [31:0] LAST_BEAT_WIDE = BEATS - 1;
     localparam [COUNT_WIDTH-1:0] END = END_WIDE[COUNT_WIDTH-1:0];
     localparam [COUNT_WIDTH-1:0] LAST_BEAT = LAST_BEAT_WIDE[COUNT_WIDTH-1:0];
+    localparam STRESS_BITS = (DATA_BITS < 27) ? DATA_BITS : 27;
     localparam NUMBER_STAGES = 5;
     localparam CURVE_STAGES = (CURVE_LEVELS != 0) ? NUMBER_STAGES + CURVE_LEVELS + 7 : NUMBER_STAGES;
     localparam STAGES = (COUNTS != 0) ? CURVE_STAGES + 4 : CURVE_STAGES;
@@ -95,8 +96,8 @@ module sptfra_bz_wide #(
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
             sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
         end
-        if ((DATA_BITS < 16) || (DATA_BITS > 27)) begin : gen_check_data
-            sptfra_error_data_bits_must_be_16_to_27 invalid ();
+        if ((DATA_BITS < 16) || (DATA_BITS > 35)) begin : gen_check_data
+            sptfra_error_data_bits_must_be_16_to_35 invalid ();
         end
         if ((SAMPLES != 2) && (SAMPLES != 4) && (SAMPLES != 8)) begin : gen_check_samples
             sptfra_error_samples_of_a_beat_must_be_2_4_or_8 invalid ();
@@ -144,7 +145,7 @@ module sptfra_bz_wide #(
 
     // ---- Samples to stress
     wire [27*SAMPLES-1:0] stresses;
-    wire [DATA_BITS*SAMPLES-1:0] narrow_stresses;
+    wire [STRESS_BITS*SAMPLES-1:0] narrow_stresses;
     wire [SAMPLES-1:0] saturated;
     wire [SAMPLES-1:0] not_finite;
     genvar sample;
@@ -189,7 +190,7 @@ module sptfra_bz_wide #(
             );
 
             assign stresses[27*sample +: 27] = fixed;
-            assign narrow_stresses[DATA_BITS*sample +: DATA_BITS] = fixed[DATA_BITS-1:0];
+            assign narrow_stresses[STRESS_BITS*sample +: STRESS_BITS] = fixed[STRESS_BITS-1:0];
         end
     endgenerate
 
@@ -228,10 +229,11 @@ module sptfra_bz_wide #(
     wire frame_written; // the frame is complete
 
     sptfra_fold_frame #(
-        .COLUMNS   (COLUMNS),
-        .ROWS      (ROWS),
-        .SAMPLES   (SAMPLES),
-        .DATA_BITS (DATA_BITS)
+        .COLUMNS     (COLUMNS),
+        .ROWS        (ROWS),
+        .SAMPLES     (SAMPLES),
+        .STRESS_BITS (STRESS_BITS),
+        .DATA_BITS   (DATA_BITS)
     ) fold (
         .clock         (clock),
         .reset         (reset),

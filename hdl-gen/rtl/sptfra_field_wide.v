@@ -15,7 +15,7 @@ module sptfra_field_wide #(
     parameter ROWS = 10,
     // Components a cycle: 2 or 4
     parameter WORDS = 4,
-    // Bits of A_p r and of |w|
+    // Bits of A_p r and of |w|: up to 27, or up to 35 by two multipliers a component
     parameter DATA_BITS = 27,
     // Left shifts of A_p r, and of |w| times a friction component, to the step of the force
     parameter FORCE_SHIFT = 0,
@@ -54,8 +54,13 @@ module sptfra_field_wide #(
         if ((WORDS != 2) && (WORDS != 4)) begin : gen_check_words
             sptfra_error_words_must_be_2_or_4 invalid ();
         end
+        if (DATA_BITS > 35) begin : gen_check_data
+            sptfra_error_data_bits_must_be_up_to_35 invalid ();
+        end
     endgenerate
 
+    localparam FACTOR_BITS = (DATA_BITS > 27) ? 35 : 27;
+    localparam PRODUCT_BITS = FACTOR_BITS + 18;
     localparam signed [17:0] ONE = 18'sd65536; // friction has 16 fraction bits
 
     // ---- Banks
@@ -170,28 +175,39 @@ module sptfra_field_wide #(
             reg signed [DATA_BITS-1:0] weight_5;
             reg signed [DATA_BITS-1:0] force_5;
             reg signed [DATA_BITS-1:0] force_6;
-            wire signed [26:0] weight_wide;
-            wire signed [44:0] product_low_6; // the product is their sum
-            wire signed [44:0] product_high_6;
+            wire signed [FACTOR_BITS-1:0] weight_wide;
+            wire signed [PRODUCT_BITS-1:0] product_low_6; // the product is their sum
+            wire signed [PRODUCT_BITS-1:0] product_high_6;
             wire signed [63:0] force_wide = {{(64-DATA_BITS){force_6[DATA_BITS-1]}}, force_6};
-            wire signed [63:0] product_low = {{19{product_low_6[44]}}, product_low_6};
-            wire signed [63:0] product_high = {{19{product_high_6[44]}}, product_high_6};
+            wire signed [63:0] product_low = {{(64-PRODUCT_BITS){product_low_6[PRODUCT_BITS-1]}}, product_low_6};
+            wire signed [63:0] product_high = {{(64-PRODUCT_BITS){product_high_6[PRODUCT_BITS-1]}}, product_high_6};
 
-            for (bit_index = 0; bit_index < 27; bit_index = bit_index + 1) begin : gen_weight
+            for (bit_index = 0; bit_index < FACTOR_BITS; bit_index = bit_index + 1) begin : gen_weight
                 assign weight_wide[bit_index] = weight_5[(bit_index < DATA_BITS) ? bit_index : DATA_BITS - 1];
             end
 
             assign force_value[64*index +: 64] = (force_wide <<< FORCE_SHIFT) + (product_low <<< SHARE_SHIFT)
                 + (product_high <<< SHARE_SHIFT);
 
-            sptfra_multiply multiplier (
-                .clock       (clock),
-                .enable      (enable),
-                .coefficient (share_5),
-                .data        (weight_wide),
-                .low         (product_low_6),
-                .high        (product_high_6)
-            );
+            if (DATA_BITS > 27) begin : gen_two_multipliers
+                sptfra_multiply_wide multiplier (
+                    .clock       (clock),
+                    .enable      (enable),
+                    .coefficient (share_5),
+                    .data        (weight_wide),
+                    .low         (product_low_6),
+                    .high        (product_high_6)
+                );
+            end else begin : gen_multiplier
+                sptfra_multiply multiplier (
+                    .clock       (clock),
+                    .enable      (enable),
+                    .coefficient (share_5),
+                    .data        (weight_wide),
+                    .low         (product_low_6),
+                    .high        (product_high_6)
+                );
+            end
 
             always @(posedge clock) begin
                 if (enable) begin

@@ -14,7 +14,8 @@ module sptfra_fold_frame #(
     parameter COLUMNS = 10,
     parameter ROWS = 10,
     parameter SAMPLES = 4,
-    // Bits of a stress
+    // Bits of a stress, and of a class: as many, or two more, or beyond
+    parameter STRESS_BITS = 27,
     parameter DATA_BITS = 27,
     // Derived
     parameter QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
@@ -29,7 +30,7 @@ module sptfra_fold_frame #(
     // The frame as it comes
     input  wire beat_valid,
     input  wire [BEAT_WIDTH-1:0] beat,
-    input  wire [SAMPLES*DATA_BITS-1:0] stresses,
+    input  wire [SAMPLES*STRESS_BITS-1:0] stresses,
     input  wire [COUNT_WIDTH-1:0] written, // beats of the frame that are there
     input  wire ended, // all that come
     output wire folded, // every quad had its turn, until restart
@@ -42,6 +43,8 @@ module sptfra_fold_frame #(
     output wire frame_written // the frame is complete
 );
 
+    localparam SUM_BITS = STRESS_BITS + 2;
+    localparam DROPPED = (DATA_BITS < SUM_BITS) ? 2 : 0; // bits of a sum
     localparam TURN_TO_WRITTEN = 4; // cycles, which simulations check of a frame that flows
     localparam SAMPLE_WIDTH = $clog2(SAMPLES);
     localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
@@ -111,7 +114,7 @@ module sptfra_fold_frame #(
 
     // ---- Stages 1 and 2: its stresses, from a copy of the frame for each of its members
     wire [4*INDEX_WIDTH-1:0] taxels = {lower_right, lower_left, upper_right, upper_left};
-    wire signed [DATA_BITS-1:0] stress_2 [0:3];
+    wire signed [STRESS_BITS-1:0] stress_2 [0:3];
     genvar member;
 
     generate
@@ -119,7 +122,7 @@ module sptfra_fold_frame #(
             sptfra_frame_memory #(
                 .TAXELS  (COLUMNS * ROWS),
                 .SAMPLES (SAMPLES),
-                .WIDTH   (DATA_BITS)
+                .WIDTH   (STRESS_BITS)
             ) frame (
                 .clock          (clock),
                 .write_enable   (beat_valid),
@@ -133,26 +136,26 @@ module sptfra_fold_frame #(
     endgenerate
 
     // ---- Stages 3 and 4: mirror in x, mirror in y. On a centre line both are the same taxel
-    localparam signed [DATA_BITS+1:0] HALF = 2; // half a step of the result, for the rounding
-    wire signed [DATA_BITS-1:0] a = stress_2[0];
-    wire signed [DATA_BITS-1:0] b = stress_2[1];
-    wire signed [DATA_BITS-1:0] c = stress_2[2];
-    wire signed [DATA_BITS-1:0] d = stress_2[3];
+    localparam signed [SUM_BITS-1:0] HALF = DROPPED; // half a step of the result, for the rounding
+    wire signed [STRESS_BITS-1:0] a = stress_2[0];
+    wire signed [STRESS_BITS-1:0] b = stress_2[1];
+    wire signed [STRESS_BITS-1:0] c = stress_2[2];
+    wire signed [STRESS_BITS-1:0] d = stress_2[3];
     reg [4:1] valid;
     reg [4:1] lasts;
     reg [4*ROW_WIDTH-1:0] quads;
-    reg signed [DATA_BITS:0] upper_even;
-    reg signed [DATA_BITS:0] upper_odd;
-    reg signed [DATA_BITS:0] lower_even;
-    reg signed [DATA_BITS:0] lower_odd;
-    wire signed [DATA_BITS+1:0] even_above = {upper_even[DATA_BITS], upper_even};
-    wire signed [DATA_BITS+1:0] odd_above = {upper_odd[DATA_BITS], upper_odd};
-    wire signed [DATA_BITS+1:0] even_below = {lower_even[DATA_BITS], lower_even};
-    wire signed [DATA_BITS+1:0] odd_below = {lower_odd[DATA_BITS], lower_odd};
-    reg signed [DATA_BITS+1:0] sum_0;
-    reg signed [DATA_BITS+1:0] sum_1;
-    reg signed [DATA_BITS+1:0] sum_2;
-    reg signed [DATA_BITS+1:0] sum_3;
+    reg signed [STRESS_BITS:0] upper_even;
+    reg signed [STRESS_BITS:0] upper_odd;
+    reg signed [STRESS_BITS:0] lower_even;
+    reg signed [STRESS_BITS:0] lower_odd;
+    wire signed [SUM_BITS-1:0] even_above = {upper_even[STRESS_BITS], upper_even};
+    wire signed [SUM_BITS-1:0] odd_above = {upper_odd[STRESS_BITS], upper_odd};
+    wire signed [SUM_BITS-1:0] even_below = {lower_even[STRESS_BITS], lower_even};
+    wire signed [SUM_BITS-1:0] odd_below = {lower_odd[STRESS_BITS], lower_odd};
+    reg signed [SUM_BITS-1:0] sum_0;
+    reg signed [SUM_BITS-1:0] sum_1;
+    reg signed [SUM_BITS-1:0] sum_2;
+    reg signed [SUM_BITS-1:0] sum_3;
     reg bank;
 
     always @(posedge clock) begin
@@ -160,10 +163,10 @@ module sptfra_fold_frame #(
             valid <= {valid[3:1], turn};
             lasts <= {lasts[3:1], turn && last_quad};
             quads <= {quads[3*ROW_WIDTH-1:0], quad};
-            upper_even <= {a[DATA_BITS-1], a} + {b[DATA_BITS-1], b};
-            upper_odd <= {a[DATA_BITS-1], a} - {b[DATA_BITS-1], b};
-            lower_even <= {c[DATA_BITS-1], c} + {d[DATA_BITS-1], d};
-            lower_odd <= {c[DATA_BITS-1], c} - {d[DATA_BITS-1], d};
+            upper_even <= {a[STRESS_BITS-1], a} + {b[STRESS_BITS-1], b};
+            upper_odd <= {a[STRESS_BITS-1], a} - {b[STRESS_BITS-1], b};
+            lower_even <= {c[STRESS_BITS-1], c} + {d[STRESS_BITS-1], d};
+            lower_odd <= {c[STRESS_BITS-1], c} - {d[STRESS_BITS-1], d};
             sum_0 <= even_above + even_below + HALF;
             sum_1 <= odd_above + odd_below + HALF;
             sum_2 <= even_above - even_below + HALF;
@@ -182,8 +185,20 @@ module sptfra_fold_frame #(
     assign write_valid = valid[4];
     assign write_bank = bank;
     assign write_quad = quads[3*ROW_WIDTH +: ROW_WIDTH];
-    assign write_data = {sum_3[DATA_BITS+1:2], sum_2[DATA_BITS+1:2], sum_1[DATA_BITS+1:2], sum_0[DATA_BITS+1:2]};
     assign frame_written = lasts[4] && advance;
+
+    wire [4*SUM_BITS-1:0] sums = {sum_3, sum_2, sum_1, sum_0};
+    genvar parity;
+    genvar place;
+    generate
+        for (parity = 0; parity < 4; parity = parity + 1) begin : gen_classes
+            for (place = 0; place < DATA_BITS; place = place + 1) begin : gen_bits
+                localparam OF_SUM = (place + DROPPED < SUM_BITS) ? place + DROPPED : SUM_BITS - 1;
+
+                assign write_data[DATA_BITS*parity+place] = sums[SUM_BITS*parity+OF_SUM];
+            end
+        end
+    endgenerate
 
     sptfra_check_latency #(
         .CYCLES (TURN_TO_WRITTEN)
@@ -194,7 +209,7 @@ module sptfra_fold_frame #(
         .done  (frame_written)
     );
 
-    wire _unused = &{1'b0, sum_0[1:0], sum_1[1:0], sum_2[1:0], sum_3[1:0]};
+    wire _unused = &{1'b0, sums};
 
 endmodule
 

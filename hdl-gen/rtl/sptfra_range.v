@@ -16,7 +16,7 @@ module sptfra_range #(
     parameter ROWS = 10,
     // 4: folded into parity classes; 1: as they are
     parameter WAYS = 4,
-    // Bits of a stress
+    // Bits of a stress, 27 at most, and of what the lanes read: as many, or 29 and more where taxels are folded
     parameter DATA_BITS = 27,
     // Full scale, in steps of the stress
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
@@ -49,10 +49,11 @@ module sptfra_range #(
 
     localparam [31:0] BOUND_WIDE = {5'd0, STRESS_BOUND};
     localparam [31:0] BOUND_BITS = $clog2(BOUND_WIDE + 1);
-    // Four stresses make a class, a quarter as fine
-    localparam FOLD_BITS = (WAYS == 4) ? 2 : 0;
-    localparam WIDTH = DATA_BITS + FOLD_BITS;
-    localparam signed [WIDTH-1:0] HALF = (WAYS == 4) ? 2 : 0; // half a step of the result, for the rounding
+    // Four stresses make a class, a quarter as fine if it has no room for their sum
+    localparam STRESS_BITS = (DATA_BITS < 27) ? DATA_BITS : 27;
+    localparam WIDTH = (WAYS == 4) ? STRESS_BITS + 2 : STRESS_BITS;
+    localparam DROPPED = (DATA_BITS < WIDTH) ? 2 : 0;
+    localparam signed [WIDTH-1:0] HALF = DROPPED; // half a step of the result, for the rounding
     localparam DEPTH = (ELEMENTS > 8) ? ELEMENTS : 8;
     localparam [31:0] LAST_WIDE = ELEMENTS - 1;
     localparam [ROW_WIDTH-1:0] LAST = LAST_WIDE[ROW_WIDTH-1:0];
@@ -120,11 +121,11 @@ module sptfra_range #(
             wire bank;
             wire written;
 
-            // Of four times the stress a class has the stress's step
             sptfra_fold #(
-                .COLUMNS   (COLUMNS),
-                .ROWS      (ROWS),
-                .DATA_BITS (WIDTH)
+                .COLUMNS     (COLUMNS),
+                .ROWS        (ROWS),
+                .STRESS_BITS (STRESS_BITS),
+                .DATA_BITS   (WIDTH)
             ) fold (
                 .clock         (clock),
                 .reset         (reset),
@@ -132,7 +133,7 @@ module sptfra_range #(
                 .in_valid      (stress_valid || frame_done),
                 .in_store      (stress_valid),
                 .in_last       (frame_done),
-                .in_stress     ({stress[DATA_BITS-1:0], 2'd0}),
+                .in_stress     (stress[STRESS_BITS-1:0]),
                 .write_valid   (keep_valid),
                 .write_bank    (bank),
                 .write_quad    (keep_row),
@@ -146,7 +147,7 @@ module sptfra_range #(
 
             assign keep_valid = stress_valid;
             assign keep_row = taxel;
-            assign keep_data = stress[DATA_BITS-1:0];
+            assign keep_data = stress[STRESS_BITS-1:0];
 
             always @(posedge clock) begin
                 if (stress_valid) begin
@@ -225,7 +226,7 @@ module sptfra_range #(
     end
 
     genvar way;
-
+    genvar place;
     generate
         for (way = 0; way < WAYS; way = way + 1) begin : gen_ways
             reg signed [WIDTH-1:0] kept_2;
@@ -242,7 +243,10 @@ module sptfra_range #(
                 end
             end
 
-            assign write_data[DATA_BITS*way +: DATA_BITS] = rounded_5[FOLD_BITS +: DATA_BITS];
+            for (place = 0; place < DATA_BITS; place = place + 1) begin : gen_bits
+                assign write_data[DATA_BITS*way+place]
+                    = rounded_5[(place + DROPPED < WIDTH) ? place + DROPPED : WIDTH - 1];
+            end
 
             wire _unused_way = &{1'b0, rounded_5};
         end

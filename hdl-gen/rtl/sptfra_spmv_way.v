@@ -3,12 +3,15 @@
 //
 // One way of a lane: multiply-accumulate, the carry of a row that is cut in two, and two places for finished sums.
 //
+// Coefficients of up to 18 and operands of up to 27 bits take one multiplier; wider ones take two, whose sums are of
+// products over 2^17, rounded. There coefficients and friction components stand in the upper bits of theirs, so that of
+// short ones little or nothing is dropped.
 // Operands to accumulator: 3 cycles; accumulator to result: 1. Initiation interval: 1.
 
 `default_nettype none
 
 module sptfra_spmv_way #(
-    // Bits of a coefficient, at most 18, and of an operand, at most 27
+    // Bits of a coefficient, at most 27, and of an operand, at most 35
     parameter COEFFICIENT_BITS = 18,
     parameter DATA_BITS = 27,
     // Whether friction components take the coefficients' place in some products
@@ -36,48 +39,79 @@ module sptfra_spmv_way #(
 );
 
     generate
-        if ((COEFFICIENT_BITS > 18) || (DATA_BITS > 27)) begin : gen_check_factors
-            sptfra_error_a_multiplier_has_18_by_27_bits invalid ();
+        if ((COEFFICIENT_BITS > 27) || (DATA_BITS > 35)) begin : gen_check_factors
+            sptfra_error_two_multipliers_have_27_by_35_bits invalid ();
         end
     endgenerate
 
+    localparam WIDE = (COEFFICIENT_BITS > 18) || (DATA_BITS > 27);
+    localparam LEFT_BITS = WIDE ? 27 : 18;
+    localparam RIGHT_BITS = WIDE ? 35 : 27;
+    // Where in the left operand the last bit of a coefficient stands, and of a friction component
+    localparam COEFFICIENT_PLACE = !WIDE ? 0 : (COEFFICIENT_BITS < 10) ? 17 : 27 - COEFFICIENT_BITS;
+    localparam FRICTION_PLACE = WIDE ? 9 : 0;
     localparam signed [17:0] ONE = 18'sd65536; // friction has 16 fraction bits
 
-    // ---- Sign extension to the multiplier's widths
-    wire signed [17:0] own;
-    wire signed [26:0] data;
-    reg  signed [17:0] multiplier;
+    // ---- To the multipliers' widths
+    wire signed [LEFT_BITS-1:0] own;
+    wire signed [LEFT_BITS-1:0] component;
+    wire signed [LEFT_BITS-1:0] left = ((FRICTION != 0) && friction) ? component : own;
+    wire signed [RIGHT_BITS-1:0] right;
+    reg  signed [17:0] chosen;
     wire [47:0] accumulator;
     genvar place;
     generate
-        for (place = 0; place < 18; place = place + 1) begin : gen_coefficient
-            assign own[place] = coefficient[(place < COEFFICIENT_BITS) ? place : COEFFICIENT_BITS - 1];
+        for (place = 0; place < LEFT_BITS; place = place + 1) begin : gen_left
+            localparam OF_COEFFICIENT = place - COEFFICIENT_PLACE;
+
+            if (OF_COEFFICIENT < 0) begin : gen_below
+                assign own[place] = 1'b0;
+            end else begin : gen_own
+                assign own[place] = coefficient[(OF_COEFFICIENT < COEFFICIENT_BITS) ? OF_COEFFICIENT
+                    : COEFFICIENT_BITS - 1];
+            end
+            if (place < FRICTION_PLACE) begin : gen_below_component
+                assign component[place] = 1'b0;
+            end else begin : gen_component
+                assign component[place] = chosen[place-FRICTION_PLACE];
+            end
         end
-        for (place = 0; place < 27; place = place + 1) begin : gen_operand
-            assign data[place] = operand[(place < DATA_BITS) ? place : DATA_BITS - 1];
+        for (place = 0; place < RIGHT_BITS; place = place + 1) begin : gen_right
+            assign right[place] = operand[(place < DATA_BITS) ? place : DATA_BITS - 1];
         end
     endgenerate
 
     always @(*) begin
-        multiplier = own;
-        if ((FRICTION != 0) && friction) begin
-            case (coefficient[1:0])
-                2'd0: multiplier = ONE;
-                2'd1: multiplier = mu_x;
-                default: multiplier = mu_y;
-            endcase
-        end
+        case (coefficient[1:0])
+            2'd0: chosen = ONE;
+            2'd1: chosen = mu_x;
+            default: chosen = mu_y;
+        endcase
     end
 
-    sptfra_mac mac (
-        .clock       (clock),
-        .reset       (reset),
-        .valid       (valid),
-        .first       (first),
-        .coefficient (multiplier),
-        .data        (data),
-        .accumulator (accumulator)
-    );
+    generate
+        if (WIDE) begin : gen_two_multipliers
+            sptfra_mac_wide mac (
+                .clock       (clock),
+                .reset       (reset),
+                .valid       (valid),
+                .first       (first),
+                .coefficient (left),
+                .data        (right),
+                .accumulator (accumulator)
+            );
+        end else begin : gen_multiplier
+            sptfra_mac mac (
+                .clock       (clock),
+                .reset       (reset),
+                .valid       (valid),
+                .first       (first),
+                .coefficient (left),
+                .data        (right),
+                .accumulator (accumulator)
+            );
+        end
+    endgenerate
 
     // ---- Sums
     wire [47:0] row_sum = accumulator + (next_carry & {48{is_head}});

@@ -124,9 +124,9 @@ pub enum Overrun {
 pub struct Hardware {
     /// Number system.
     pub arithmetic: Arithmetic,
-    /// Width of matrix entries, 8 to 18 bits.
+    /// Width of matrix entries, 8 to 27 bits; beyond 18 a lane has two multipliers.
     pub coefficient_bits: u32,
-    /// Width of vector entries, 16 to 27 bits.
+    /// Width of vector entries, 16 to 35 bits; beyond 27 a lane has two multipliers.
     pub data_bits: u32,
     /// Largest stress magnitude in pascals; input of that and more is reported, and clamped.
     pub full_scale_pa: f64,

@@ -295,8 +295,8 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
     checks::part(check, &part)?;
     Ok(Hardware {
         arithmetic,
-        coefficient_bits: integer("hardware.coefficient_bits", raw.coefficient_bits, 18, 8, 18)? as u32,
-        data_bits: integer("hardware.data_bits", raw.data_bits, 27, 16, 27)? as u32,
+        coefficient_bits: integer("hardware.coefficient_bits", raw.coefficient_bits, 18, 8, 27)? as u32,
+        data_bits: integer("hardware.data_bits", raw.data_bits, 27, 16, 35)? as u32,
         // Far above the smallest float32, so that a stress or a force of one step has no denormal.
         full_scale_pa: check.real(
             "hardware.full_scale_pa",

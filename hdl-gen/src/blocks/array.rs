@@ -43,13 +43,13 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
 }
 
-/// A multiplier a lane; the lanes' programs and operands.
+/// A multiplier a lane, or two; the lanes' programs and operands.
 pub fn cost(plan: &Plan) -> BlockCost {
     let (hardware, schedule, walkers) = (&plan.design.hardware, &plan.schedule, plan.walkers());
     let ways = plan.ways() as u32;
     // The lane, the destination, the row, and whether a program ends.
     let visit = 1 + address_bits(walkers) + destination_bits(plan.field_words() > 0) + row_width(plan);
-    BlockCost::new("lanes", &["sptfra_spmv_array"], hardware.lanes).with([
+    BlockCost::new("lanes", &["sptfra_spmv_array"], hardware.lanes * plan.factors().multipliers()).with([
         memory("values", walkers, schedule.value_depth(), ways * hardware.coefficient_bits, true),
         memory("columns", walkers, schedule.word_depth(), column_bits(plan), true),
         memory("MACs per row", walkers, schedule.segment_depth(), SEGMENT_BITS, true),

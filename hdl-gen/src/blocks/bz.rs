@@ -51,7 +51,8 @@ pub fn parameters(plan: &Plan) -> Parameters {
         // Where frames are scaled, that is done before they are folded.
         parameters.count("WAYS", if plan.scales_frames() { 1 } else { plan.ways() })
     };
-    let parameters = parameters.number("DATA_BITS", plan.design.hardware.data_bits.into());
+    let written = if plan.scales_frames() { plan.factors().outside_bits() } else { plan.design.hardware.data_bits };
+    let parameters = parameters.number("DATA_BITS", written.into());
     // As in sptfra_samples.
     let parameters = match streams.sample {
         Samples::Float32 => parameters,
@@ -133,7 +134,7 @@ pub fn arrival(plan: &Plan) -> Arrival {
 
 /// A multiplier each for a count's slope, a stress's gain and each dead taxel.
 pub fn cost(plan: &Plan) -> BlockCost {
-    let (streams, data) = (plan.streams(), plan.design.hardware.data_bits);
+    let (streams, data) = (plan.streams(), plan.factors().outside_bits());
     let (taxels, dead) = (plan.taxels(), plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()));
     let conversions = streams.conversions();
     let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());

@@ -57,15 +57,16 @@ pub fn cost(plan: &Plan) -> BlockCost {
     if plan.field_words() == 0 {
         return block(0);
     }
+    let multipliers = if plan.factors().has_wide_data() { 2 } else { 1 };
     let weights = WEIGHT_PLACES * elements.next_power_of_two();
     if words > 1 {
         // A copy for a taxel, and one for the next.
         let forces = 2 * elements.next_power_of_two();
-        return block(words).with([
+        return block(words * multipliers).with([
             memory("weights", 2 * CLASSES, weights, data, false),
             memory("field", 2 * 3 * CLASSES, forces, data, false),
         ]);
     }
-    block(1)
+    block(multipliers)
         .with([memory("weights", CLASSES, weights, data, false), memory("field", CLASSES, 6 * elements, data, false)])
 }

@@ -30,11 +30,11 @@ pub fn of_frames(plan: &Plan) -> Parameters {
 /// The frame, folded without a rounding; nothing where all frames have the full scale's range.
 pub fn cost(plan: &Plan) -> Option<BlockCost> {
     plan.scales_frames().then(|| {
-        let (ways, data, folded) = (plan.ways() as u32, plan.design.hardware.data_bits, plan.ways() > 1);
-        let exact = data + if folded { FOLD_BITS } else { 0 };
+        let (ways, stress, folded) = (plan.ways() as u32, plan.factors().outside_bits(), plan.ways() > 1);
+        let exact = stress + if folded { FOLD_BITS } else { 0 };
         let mut memories = vec![memory("frame to be scaled", 1, plan.elements(), ways * exact, false)];
         if folded {
-            memories.push(memory("half-folded b", 1, plan.elements(), 2 * exact + 2, false));
+            memories.push(memory("half-folded b", 1, plan.elements(), 2 * stress + 2, false));
         }
         BlockCost::new("range", &["sptfra_range", "sptfra_range_frames"], 0).with(memories)
     })

@@ -20,6 +20,13 @@ pub const LONG_BITS: u32 = 27;
 /// Width of the sum of products behind them.
 pub const ACCUMULATOR_BITS: u32 = 48;
 
+/// Bits of a product that two multipliers drop, together, before they add it: as many as the operand's lower part has.
+pub const DROPPED_BITS: u32 = 17;
+/// Widths of the operands of two multipliers together: a coefficient, and a value in two parts.
+pub const WIDE_COEFFICIENT_BITS: u32 = LONG_BITS;
+/// See [`WIDE_COEFFICIENT_BITS`].
+pub const WIDE_DATA_BITS: u32 = SHORT_BITS + DROPPED_BITS;
+
 /// How a fabric multiplies 18 by 27 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Multiplier {

@@ -153,6 +153,9 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         "top": plan.design.name,
         "files": files.keys().collect::<Vec<_>>(),
     });
+    if plan.factors().is_wide() {
+        value["formats"]["dropped_bits"] = json!(plan.factors().dropped());
+    }
     if plan.design.hardware.control {
         value["registers"] = json!(registers::map_path(plan));
     }

@@ -94,7 +94,9 @@ struct View {
     operand_width: u32,
     component_width: u32,
     data_bits: u32,
+    stress_bits: u32,
     vector_bits: usize,
+    u_values: String,
 
     bz_module: &'static str,
     bz: Parameters,
@@ -176,7 +178,9 @@ impl View {
             operand_width: address_bits(plan.operands.words()),
             component_width: address_bits(3 * plan.elements()),
             data_bits: hardware.data_bits,
+            stress_bits: plan.factors().outside_bits(),
             vector_bits: plan.ways() * hardware.data_bits as usize,
+            u_values: u_values(plan),
 
             bz_module: bz::module(plan),
             bz: bz::parameters(plan),
@@ -194,6 +198,19 @@ impl View {
             op: op::parameters(plan),
         }
     }
+}
+
+/// What the estimator has of the taxels: the upper bits of each, where there are more than it takes.
+fn u_values(plan: &Plan) -> String {
+    let factors = plan.factors();
+    if !factors.has_wide_data() {
+        return "taxels".to_owned();
+    }
+    let upper = |way: usize| {
+        let end = (way + 1) * factors.data_bits as usize;
+        format!("taxels[{}:{}]", end - 1, end - factors.outside_bits() as usize)
+    };
+    format!("{{{}}}", (0..plan.ways()).rev().map(upper).collect::<Vec<_>>().join(", "))
 }
 
 /// The module of the core and its text.
@@ -237,6 +254,12 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
         without.push("sptfra_coefficients");
     } else {
         without.extend(["sptfra_fold", "sptfra_butterfly", "sptfra_taxel_walk"]);
+    }
+    if !plan.factors().is_wide() {
+        without.push("sptfra_mac_wide");
+    }
+    if !plan.factors().has_wide_data() {
+        without.push("sptfra_multiply_wide");
     }
     if !plan.design.hardware.skip_zeros {
         without.push("sptfra_nonzeros");

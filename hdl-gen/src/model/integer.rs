@@ -5,8 +5,9 @@ use golden::products::{ByPq, Number, Scalar, Step, put_moments};
 
 use crate::plan::Plan;
 use crate::plan::format::{FRICTION_FRACTION, round_shift};
+use crate::plan::matrix::product;
 use crate::plan::product::{SHARE_ROW, sum_row, sum_way};
-use crate::plan::vector_formats::{ARM_FRACTION, FOLD_BITS};
+use crate::plan::vector_formats::ARM_FRACTION;
 
 /// The integers of a plan. Order of summation does not matter: every sum is exact in its width, by the bounds of the
 /// plan.
@@ -33,11 +34,12 @@ impl<const W: usize> Number<W> for Integer<'_> {
 
     fn multiply(&self, index: usize, step: &Step, operand: &[[i64; W]], result: &mut [[i64; W]], (): &mut ()) {
         let shift = self.plan.products[index].shift;
-        for (row, result) in self.plan.matrices[step.matrix].rows.iter().zip(result) {
+        let matrix = &self.plan.matrices[step.matrix];
+        for (row, result) in matrix.rows.iter().zip(result) {
             let mut sums = [0; W];
             for (column, ways) in row {
                 for ((sum, &way), value) in sums.iter_mut().zip(ways).zip(operand[*column as usize]) {
-                    *sum += i64::from(way) * value;
+                    *sum += product(way, value, matrix.dropped);
                 }
             }
             *result = std::array::from_fn(|class| round_shift(sums[class ^ step.parity], shift));
@@ -45,7 +47,11 @@ impl<const W: usize> Number<W> for Integer<'_> {
     }
 
     fn combine(&self, index: usize, [a, b, c]: [i64; 3], [mu_x, mu_y]: [i64; 2]) -> i64 {
-        round_shift((a << FRICTION_FRACTION) + mu_x * b + mu_y * c, self.plan.products[index].shift)
+        let (factors, shift) = (self.plan.factors(), self.plan.products[index].shift);
+        let part = |friction: i64, value| {
+            product((friction << factors.friction_shift()) as i32, value, factors.dropped_of_friction())
+        };
+        round_shift(part(1 << FRICTION_FRACTION, a) + part(mu_x, b) + part(mu_y, c), shift)
     }
 
     fn sums(&self, index: usize, pull: &[[i64; W]], weight: &[[i64; W]]) -> ByPq<i64> {
@@ -71,7 +77,8 @@ impl<const W: usize> Number<W> for Integer<'_> {
     }
 
     fn folded_stress(&self, sum: i64) -> i64 {
-        round_shift(sum, self.plan.formats.folded.map_or(0, |_| FOLD_BITS))
+        let formats = &self.plan.formats;
+        round_shift(sum, formats.folded.map_or(0, |folded| (folded.stress.lsb - formats.stress.lsb) as u32))
     }
 
     fn folded_weight(&self, sum: i64) -> i64 {

@@ -283,8 +283,11 @@ fn scalars(
 ) -> (Vec<u32>, Summary) {
     let (sensor, stress) = (&plan.design.sensor, scaled.stress.as_slice());
     let noise_floor = plan.thresholds.taxel << scaled.exponent;
-    let found =
-        plan.estimator.slot().find(&Seen { sensor, stress, contact: Contact::new(stress), noise_floor, sums, u });
+    // The estimator takes the upper bits.
+    let below = plan.formats.u.bits - plan.formats.u.narrowed().bits;
+    let upper = u.each_ref().map(|of_q| of_q.iter().map(|value| value >> below).collect());
+    let seen = Seen { sensor, stress, contact: Contact::new(stress), noise_floor, sums, u: &upper };
+    let found = plan.estimator.slot().find(&seen);
     let summary = Summary::new(sums, found.friction);
 
     let mut status = counter;

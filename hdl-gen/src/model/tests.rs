@@ -79,6 +79,8 @@ fn the_worst_frames_stay_within_the_bounds() {
     check_worst_frames(&plan(5, 3, "filter = { kind = \"f1\", l = 7 }", ""));
     check_worst_frames(&plan(4, 5, "filter = { kind = \"f2\", p = 20 }", "data_bits = 20"));
     check_worst_frames(&plan(2, 6, "", "coefficient_bits = 8\ndata_bits = 16"));
+    check_worst_frames(&plan(4, 4, "", "coefficient_bits = 27"));
+    check_worst_frames(&plan(5, 3, "filter = { kind = \"f1\", l = 7 }", "coefficient_bits = 27\ndata_bits = 20"));
 }
 
 #[test]

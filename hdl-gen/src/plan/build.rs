@@ -1,6 +1,6 @@
 //! From a checked design to its plan.
 
-use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, Slip};
+use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, PlanKind, Slip};
 use golden::estimators::joint::DOUBT_FRACTION;
 use golden::matrices::Matrices;
 use golden::parity::CLASSES;
@@ -10,7 +10,7 @@ use super::counts::CountsPlan;
 use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::filtered::Filtered;
-use super::format::{FRICTION_FRACTION, Format, MANY_LANES, pow2};
+use super::format::{FRICTION_FRACTION, Factors, Format, MANY_LANES, pow2};
 use super::layout::OperandLayout;
 use super::matrix::QuantisedMatrix;
 use super::passes;
@@ -22,6 +22,7 @@ use super::timing::Timeline;
 use super::vector_formats::{Formats, arms};
 use super::{Condition, Nnz, Plan, Thresholds, control, elements, ways};
 use crate::blocks;
+use crate::cores::{LONG_BITS, Multiplier};
 use crate::estimators::{self, EstimatorPlan, Given};
 
 impl Plan {
@@ -45,6 +46,7 @@ fn plan(design: &Design) -> Result<Plan, PlanError> {
     if !estimators::has_hardware(design) {
         return Err(PlanError::JointEstimator);
     }
+    check_widths(design)?;
     let Some(target_us) = design.hardware.target_us else { return Ok(Work::new(design)?.on_lanes(design)) };
     let fastest = match fewest_lanes(design, target_us)? {
         Lanes::Enough(plan) => return Ok(*plan),
@@ -59,6 +61,30 @@ fn plan(design: &Design) -> Result<Plan, PlanError> {
         needed_mhz: (cycles / target_us).ceil(),
         remedies: remedies(design, target_us),
     })
+}
+
+/// Words that do not fit one multiplier a lane have hardware where two make one product.
+fn check_widths(design: &Design) -> Result<(), PlanError> {
+    let factors = Factors::of(design);
+    let data = |why, cure| Err(PlanError::Wide { key: "data_bits", bits: factors.data_bits, why, cure });
+    if factors.is_wide() && Multiplier::of_part(&design.hardware.part) == Multiplier::Split {
+        let why = "the part multiplies 18 x 18 bits, and words beyond 18 x 27 take multipliers of 18 x 27";
+        let cure = "coefficient_bits = 18 and data_bits = 27, or another part";
+        if !factors.has_wide_data() {
+            return Err(PlanError::Wide { key: "coefficient_bits", bits: factors.coefficient_bits, why, cure });
+        }
+        return data(why, cure);
+    }
+    if factors.has_wide_data() && design.algorithm.plan == PlanKind::Paper {
+        return data(
+            "the paper's plan has vectors of at most 27 bits",
+            "data_bits = 27, or plan = \"reduced\" under [algorithm]",
+        );
+    }
+    if factors.data_bits == LONG_BITS + 1 {
+        return data("vectors wider than a multiplier hold the sum of four stresses of 27 bits", "29 to 35, or 27");
+    }
+    Ok(())
 }
 
 /// What the search for the number of lanes finds.
@@ -129,7 +155,7 @@ impl Work {
         let hardware = &design.hardware;
         let matrices = Matrices::of(design)?;
         // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
-        let stress = Format::covering(hardware.full_scale_in_frames(), hardware.data_bits);
+        let stress = Format::covering(hardware.full_scale_in_frames(), Factors::of(design).outside_bits());
         let thresholds = thresholds(design, stress)?;
         let calibration = CalibrationPlan::new(design, stress, &thresholds)?;
         let counts = if calibration.is_some() { None } else { CountsPlan::new(design, stress)? };
@@ -152,7 +178,7 @@ impl Work {
         let schedule =
             Schedule::new(&self.products, &self.matrices, hardware.lanes / ways, hardware.lanes > MANY_LANES);
         let Formats { stress, u, .. } = self.formats;
-        let estimator = EstimatorPlan::new(&Given { design, elements, ways, stress, u });
+        let estimator = EstimatorPlan::new(&Given { design, elements, ways, stress, u: u.narrowed() });
         let mut plan = Plan {
             design: design.clone(),
             condition: self.condition,

@@ -48,6 +48,18 @@ pub enum PlanError {
         /// Fewest useful bits.
         needed: u32,
     },
+    /// Words that take two multipliers a lane, where there are none of that kind.
+    #[error("[hardware] {key} = {bits}: {why}; write {cure}")]
+    Wide {
+        /// The key.
+        key: &'static str,
+        /// Its value.
+        bits: u32,
+        /// What does not have it.
+        why: &'static str,
+        /// What to write instead.
+        cure: &'static str,
+    },
     /// The stress step is so coarse that the noise floor disappears in it.
     #[error(
         "[hardware] data_bits = {bits}: one step of stress is {step_pa} Pa, more than 16 times the noise floor of \

@@ -1,8 +1,9 @@
 //! Fixed-point formats: how many bits a number has and what its last bit is worth.
 
+use golden::design::Design;
 use serde::Serialize;
 
-use crate::cores::ACCUMULATOR_BITS;
+use crate::cores::{ACCUMULATOR_BITS, DROPPED_BITS, LONG_BITS, SHORT_BITS, WIDE_COEFFICIENT_BITS};
 
 /// Fraction bits of the friction components; one integer bit and a sign go with them.
 pub const FRICTION_FRACTION: u32 = 16;
@@ -52,6 +53,17 @@ impl Format {
         Self { bits, lsb, bound: (limit * pow2(-lsb)).round() as i64 }
     }
 
+    /// The upper bits of its numbers, as many as one multiplier takes: what estimators see of `u_q`.
+    #[must_use]
+    pub fn narrowed(self) -> Self {
+        let below = self.bits.saturating_sub(LONG_BITS);
+        Self {
+            bits: self.bits - below,
+            lsb: self.lsb + below as i32,
+            bound: (self.bound >> below) + i64::from(below > 0),
+        }
+    }
+
     /// The worth of one step in the unit of the quantity.
     pub fn step(self) -> f64 {
         pow2(self.lsb)
@@ -61,6 +73,59 @@ impl Format {
 /// Largest positive integer of a two's complement word of `bits` bits.
 pub const fn largest(bits: u32) -> i64 {
     (1 << (bits - 1)) - 1
+}
+
+/// What a lane multiplies with, and what of a product it adds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Factors {
+    /// Bits of a coefficient.
+    pub coefficient_bits: u32,
+    /// Bits of an operand.
+    pub data_bits: u32,
+}
+
+impl Factors {
+    /// Of a design.
+    pub fn of(design: &Design) -> Self {
+        let hardware = &design.hardware;
+        Self { coefficient_bits: hardware.coefficient_bits, data_bits: hardware.data_bits }
+    }
+
+    /// Whether a lane has two multipliers, because its operands do not fit one.
+    pub fn is_wide(self) -> bool {
+        self.coefficient_bits > SHORT_BITS || self.data_bits > LONG_BITS
+    }
+
+    /// Whether what does not fit is the operand.
+    pub fn has_wide_data(self) -> bool {
+        self.data_bits > LONG_BITS
+    }
+
+    /// Multipliers of a product.
+    pub fn multipliers(self) -> usize {
+        if self.is_wide() { 2 } else { 1 }
+    }
+
+    /// Bits of each product that are dropped, with rounding, before it is added: fewer of a coefficient that does not fill
+    /// two multipliers, since it stands in their upper bits.
+    pub fn dropped(self) -> u32 {
+        if self.is_wide() { DROPPED_BITS.saturating_sub(WIDE_COEFFICIENT_BITS - self.coefficient_bits) } else { 0 }
+    }
+
+    /// The same where friction components take the coefficients' place.
+    pub fn dropped_of_friction(self) -> u32 {
+        if self.is_wide() { DROPPED_BITS } else { 0 }
+    }
+
+    /// Left shift of a friction component that takes a coefficient's place: so that nothing of it is dropped.
+    pub fn friction_shift(self) -> u32 {
+        if self.is_wide() { WIDE_COEFFICIENT_BITS - FRICTION_BITS } else { 0 }
+    }
+
+    /// Bits of a stress before the lanes, and of `u_q` behind them: the estimators multiply in one multiplier.
+    pub fn outside_bits(self) -> u32 {
+        self.data_bits.min(LONG_BITS)
+    }
 }
 
 /// `2^exponent` as f64, exact over the whole range of the formats.

@@ -5,7 +5,7 @@ use golden::products::{mirror, swapped};
 use nalgebra_sparse::CsrMatrix;
 
 use super::PlanError;
-use super::format::{ACCUMULATOR_LIMIT, largest, pow2};
+use super::format::{ACCUMULATOR_LIMIT, Factors, Format, largest, pow2};
 
 /// As [`QuantisedMatrix::new`] takes it where the matrix alone decides; its reciprocal is still a normal f64.
 pub const ANY_LSB: i32 = -900;
@@ -30,6 +30,17 @@ pub struct QuantisedMatrix {
     pub lsb: i32,
     /// Largest row sum of coefficient magnitudes, of any way.
     pub row_sum: i64,
+    /// Bits of each product that the lanes drop before they add it.
+    pub dropped: u32,
+}
+
+/// What the accumulator adds: a coefficient times a value, less its dropped bits, to the nearest integer and upwards from
+/// between two.
+pub const fn product(coefficient: i32, value: i64, dropped: u32) -> i64 {
+    if dropped == 0 {
+        return coefficient as i64 * value;
+    }
+    ((coefficient as i128 * value as i128 + (1 << (dropped - 1))) >> dropped) as i64
 }
 
 /// The one way of the paper's plan, times `factor`.
@@ -51,10 +62,11 @@ impl QuantisedMatrix {
     pub fn new(
         name: &str,
         matrix: &RealRows,
-        bits: u32,
+        factors: Factors,
         operand_bound: i64,
         least_lsb: i32,
     ) -> Result<Self, PlanError> {
+        let bits = factors.coefficient_bits;
         let values = || matrix.iter().flatten().flat_map(|(_, values)| values);
         let largest_entry = values().fold(0.0_f64, |top, value| top.max(value.abs()));
         let top = largest(bits);
@@ -65,8 +77,8 @@ impl QuantisedMatrix {
         }
         let finest = lsb;
         loop {
-            let quantised = Self::at(name, matrix, lsb);
-            if i128::from(quantised.row_sum) * i128::from(operand_bound) <= i128::from(ACCUMULATOR_LIMIT) {
+            let quantised = Self { dropped: factors.dropped(), ..Self::at(name, matrix, lsb) };
+            if quantised.largest_sum(operand_bound) <= i128::from(ACCUMULATOR_LIMIT) {
                 return Ok(quantised);
             }
             lsb += 1;
@@ -90,7 +102,7 @@ impl QuantisedMatrix {
         let sum =
             |row: &Vec<Entry>, way: usize| -> i64 { row.iter().map(|(_, ways)| i64::from(ways[way].abs())).sum() };
         let row_sum = rows.iter().flat_map(|row| (0..CLASSES).map(|way| sum(row, way))).max().unwrap_or(0);
-        Self { name: name.to_owned(), rows, lsb, row_sum }
+        Self { name: name.to_owned(), rows, lsb, row_sum, dropped: 0 }
     }
 
     /// Its image at the diagonal of a grid of `side` by `side` quads.
@@ -101,6 +113,23 @@ impl QuantisedMatrix {
         };
         let row = |row: usize| self.rows[mirror(row, side)].iter().map(entry).collect();
         Self { rows: (0..self.rows.len()).map(row).collect(), ..self.clone() }
+    }
+
+    /// Exponent of the accumulator's last bit, for operands of this format.
+    pub fn accumulator_lsb(&self, operand: Format) -> i32 {
+        self.lsb + operand.lsb + self.dropped as i32
+    }
+
+    /// Largest magnitude in the accumulator, for operands up to `operand_bound`.
+    pub fn largest_sum(&self, operand_bound: i64) -> i128 {
+        let exact = i128::from(self.row_sum) * i128::from(operand_bound);
+        (exact >> self.dropped) + i128::from(self.dropped_steps())
+    }
+
+    /// Most steps of the accumulator that a row's dropped bits can be worth.
+    pub fn dropped_steps(&self) -> i64 {
+        // Each product is rounded by half a step at most, and the bound itself down.
+        if self.dropped == 0 { 0 } else { 1 + self.rows.iter().map(Vec::len).max().unwrap_or(0) as i64 }
     }
 
     /// Number of stored entries: cycles of a lane per product.
@@ -122,7 +151,7 @@ impl QuantisedMatrix {
 
     /// Row `row` times one way's `operand` in the accumulator, exactly.
     pub fn row_product(&self, row: usize, way: usize, operand: &[i64]) -> i64 {
-        self.rows[row].iter().map(|&(column, ways)| i64::from(ways[way]) * operand[column as usize]).sum()
+        self.rows[row].iter().map(|&(column, ways)| product(ways[way], operand[column as usize], self.dropped)).sum()
     }
 
     /// Largest row sum of the magnitudes of the four-way matrix's unfolded coefficients, times four: with it, a bound
@@ -146,6 +175,8 @@ mod tests {
     use super::*;
     use nalgebra_sparse::CooMatrix;
 
+    const ONE: Factors = Factors { coefficient_bits: 18, data_bits: 27 };
+
     fn csr(entries: &[(usize, usize, f64)], size: usize) -> RealRows {
         let mut coo = CooMatrix::new(size, size);
         for &(row, column, value) in entries {
@@ -157,7 +188,7 @@ mod tests {
     #[test]
     fn uses_the_whole_coefficient_width() {
         let matrix = csr(&[(0, 0, 0.75), (0, 1, -0.1), (1, 1, 0.2)], 2);
-        let quantised = QuantisedMatrix::new("A1", &matrix, 18, 1 << 26, ANY_LSB).unwrap();
+        let quantised = QuantisedMatrix::new("A1", &matrix, ONE, 1 << 26, ANY_LSB).unwrap();
         assert_eq!(quantised.rows[0][0].1[0], 98304);
         assert_eq!(quantised.lsb, -17);
         assert_eq!(quantised.nnz(), 3);
@@ -168,7 +199,7 @@ mod tests {
         // 64 ones with 15 fraction bits times a full 27-bit operand fill the accumulator, but for the rounding.
         for (ones, lsb) in [(31, -16), (63, -15), (64, -14)] {
             let row: Vec<_> = (0..ones).map(|column| (0, column, 1.0)).collect();
-            let quantised = QuantisedMatrix::new("A1", &csr(&row, 64), 18, largest(27), ANY_LSB).unwrap();
+            let quantised = QuantisedMatrix::new("A1", &csr(&row, 64), ONE, largest(27), ANY_LSB).unwrap();
             assert!(quantised.row_sum * largest(27) <= ACCUMULATOR_LIMIT);
             assert_eq!(quantised.lsb, lsb, "{ones} ones");
         }
@@ -177,7 +208,7 @@ mod tests {
     #[test]
     fn is_no_finer_than_asked() {
         for (entry, expected) in [(1.0, 64), (0.001, 0), (0.0, 0)] {
-            let quantised = QuantisedMatrix::new("D12", &csr(&[(0, 0, entry)], 1), 18, 1 << 26, -6).unwrap();
+            let quantised = QuantisedMatrix::new("D12", &csr(&[(0, 0, entry)], 1), ONE, 1 << 26, -6).unwrap();
             assert_eq!((quantised.lsb, quantised.rows[0][0].1[0]), (-6, expected));
         }
     }
@@ -185,7 +216,14 @@ mod tests {
     #[test]
     fn says_when_nothing_useful_is_left() {
         let dense: Vec<_> = (0..64).flat_map(|row| (0..64).map(move |column| (row, column, 1.0))).collect();
-        let error = QuantisedMatrix::new("A1", &csr(&dense, 64), 8, largest(40), ANY_LSB).unwrap_err();
+        let error = QuantisedMatrix::new(
+            "A1",
+            &csr(&dense, 64),
+            Factors { coefficient_bits: 8, data_bits: 27 },
+            largest(40),
+            ANY_LSB,
+        )
+        .unwrap_err();
         assert!(error.to_string().contains("A1"), "{error}");
     }
 }

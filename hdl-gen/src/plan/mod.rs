@@ -43,6 +43,7 @@ use calibration::CalibrationPlan;
 use counts::CountsPlan;
 use dead::DeadPlan;
 pub use error::PlanError;
+use format::Factors;
 use layout::OperandLayout;
 use matrix::QuantisedMatrix;
 use product::{Block, Product};
@@ -126,6 +127,11 @@ impl Plan {
     /// Multiply-accumulates of a frame in the lanes, all ways counted.
     pub fn macs(&self) -> u64 {
         self.schedule.windows.iter().map(|window| window.macs * self.ways() as u64).sum()
+    }
+
+    /// What a lane multiplies with.
+    pub fn factors(&self) -> Factors {
+        Factors::of(&self.design)
     }
 
     /// Multiply-accumulates of a lane in a cycle: the parity classes of the reduced plan, else one.

@@ -59,7 +59,7 @@ pub fn bind(list: &ProductList, quantised: &Quantised, skip_zeros: bool) -> Vec<
             (Epilogue::Part, Some(folded)) => folded.y,
             _ => formats.of(step.result),
         };
-        let shift = |matrix: usize, lsb: i32| (lsb - quantised.matrices[matrix].lsb - operand.lsb) as u32;
+        let shift = |matrix: usize, lsb: i32| (lsb - quantised.matrices[matrix].accumulator_lsb(operand)) as u32;
         let lead = quantised.sums.filter(|_| step.sums);
         let (block, program) = turn(step.result, formats.folded.is_some());
         Product {

@@ -124,7 +124,7 @@ impl Product {
     /// Largest magnitude of a rounded result before the epilogue, for operands up to `operand_bound`.
     pub fn result_bound(matrix: &QuantisedMatrix, operand_bound: i64, shift: u32) -> i64 {
         // An accumulator has 48 bits: beyond that, and well within the 64 of this word, nothing is left.
-        round_shift(matrix.row_sum * operand_bound, shift.min(62))
+        round_shift(matrix.largest_sum(operand_bound) as i64, shift.min(62))
     }
 
     /// For each class of the result, the way of the lanes that computes it.

@@ -70,9 +70,9 @@ fn sizes_make_sense() {
         ("lanes", "0"),
         ("lanes", "101"),
         ("coefficient_bits", "7"),
-        ("coefficient_bits", "40"),
+        ("coefficient_bits", "28"),
         ("data_bits", "12"),
-        ("data_bits", "28"),
+        ("data_bits", "36"),
         ("clock_mhz", "0.0"),
         ("clock_mhz", "nan"),
         ("full_scale_pa", "0.0"),
@@ -143,6 +143,18 @@ fn the_papers_plan_has_no_joint_estimator() {
 fn widths_resolve_the_noise_floor() {
     let text = "depth_mm = 3.0\n[algorithm]\nnoise_floor_pa = 0.5\n[hardware]\ndata_bits = 16\nfull_scale_pa = 1e6";
     check_design(&changed("depth_mm = 3.0", text), &["data_bits = 16", "noise floor of 0.5 Pa", "full_scale_pa"]);
+}
+
+#[test]
+fn words_of_two_multipliers_have_their_plan_and_their_part() {
+    let with = |keys: &str| changed("depth_mm = 3.0", &format!("depth_mm = 3.0\n{keys}"));
+    let paper = with("[algorithm]\nplan = \"paper\"\n[hardware]\ndata_bits = 35");
+    check_design(&paper, &["[hardware] data_bits = 35", "paper's plan", "data_bits = 27", "plan = \"reduced\""]);
+    check_design(&with("[hardware]\ndata_bits = 28"), &["[hardware] data_bits = 28", "29 to 35, or 27"]);
+    for key in ["coefficient_bits = 27", "data_bits = 35"] {
+        let text = with(&format!("[hardware]\npart = \"LFE5U-85F-8BG756I\"\n{key}"));
+        check_design(&text, &[&format!("[hardware] {key}"), "18 x 18", "coefficient_bits = 18 and data_bits = 27"]);
+    }
 }
 
 #[test]

@@ -75,6 +75,9 @@ fn standing() -> Vec<Plan> {
     let more = "pa_per_count = -12.5\n[hardware]\noverrun = \"drop\"\ncontrol = true\ncalibration = \"ram\"";
     plans.push(plan(&design_text("scanned_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     plans.push(plan(&design_text("scanned_pad", [7, 5], [4.0, 4.0], 3.0, "[hardware]\noverrun = \"drop\"")));
+    let more = "[hardware]\ncoefficient_bits = 27\ndata_bits = 35";
+    plans.push(plan(&design_text("long_pad", [6, 4], [4.0, 4.0], 3.0, more)));
+    plans.push(plan(&design_text("long_pad", [6, 4], [4.0, 4.0], 3.0, &format!("{more}\nstream_bits = 128"))));
     let more = "curve = { power = 1.25, scale = -0.5 }\n";
     plans.push(plan(&design_text("curved_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     let more = "curve = { power = 1.25, scale = -0.5 }\n[hardware]\noverrun = \"drop\"\ncontrol = true\n\

@@ -8,10 +8,10 @@ use hdl_gen::cores::ACCUMULATOR_BITS;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::format::FRICTION_FRACTION;
 use hdl_gen::plan::format::{MOST_SHIFT, largest, pow2, round_shift};
-use hdl_gen::plan::matrix::QuantisedMatrix;
+use hdl_gen::plan::matrix::{QuantisedMatrix, product as product_of};
 use hdl_gen::plan::product::{Coefficients, Epilogue, Product, Vector};
 use hdl_gen::plan::product::{SHARE_ROW, SUM_ROWS, sum_row, sum_way};
-use hdl_gen::plan::vector_formats::{FOLD_BITS, FoldedFormats};
+use hdl_gen::plan::vector_formats::FoldedFormats;
 use proptest::prelude::*;
 
 use crate::formats::check_widths;
@@ -27,7 +27,7 @@ fn half(shift: u32) -> i64 {
 /// The largest sum of a row in one way, rounded, for operands up to `bound`; the accumulator fits 48 bits.
 fn largest_result(matrix: &QuantisedMatrix, row: usize, way: usize, bound: i64, shift: u32) -> i64 {
     let magnitudes = matrix.rows[row].iter().map(|(_, ways)| i64::from(ways[way]).abs());
-    let accumulator = magnitudes.map(|value| value * bound).sum::<i64>();
+    let accumulator = magnitudes.map(|value| product_of(value as i32, bound, matrix.dropped)).sum::<i64>();
     assert!(accumulator + half(shift) <= largest(ACCUMULATOR_BITS), "{} row {row}: {accumulator}", matrix.name);
     round_shift(accumulator, shift)
 }
@@ -38,6 +38,14 @@ fn result_lsb_and_bound(product: &Product, folded: &FoldedFormats) -> (i32, i64)
     (format.lsb, format.bound)
 }
 
+/// The largest of the q-th of the parts that friction combines.
+fn largest_part(plan: &Plan, folded: &FoldedFormats, q: u8) -> i64 {
+    let product = plan.products.iter().find(|product| product.result == Vector::Residual(q)).expect("a part");
+    let (matrix, bound) = (&plan.matrices[product.matrix], folded.of(product.operand()).bound);
+    let places = (0..matrix.rows.len()).flat_map(|row| (0..CLASSES).map(move |way| (row, way)));
+    places.map(|(row, way)| largest_result(matrix, row, way, bound, product.shift)).max().expect("rows")
+}
+
 /// For every row and way of every product the folded operand that makes its sum largest.
 fn check_folded(plan: &Plan, folded: &FoldedFormats) {
     for product in &plan.products {
@@ -46,7 +54,7 @@ fn check_folded(plan: &Plan, folded: &FoldedFormats) {
         assert!(product.operands.iter().all(|&vector| folded.of(vector) == operand), "read at one step");
         let (lsb, bound) = result_lsb_and_bound(product, folded);
         assert!(product.shift <= MOST_SHIFT + 3, "{}: {} bits dropped", matrix.name, product.shift);
-        assert_eq!(matrix.lsb + operand.lsb + product.shift as i32, lsb, "{}", matrix.name);
+        assert_eq!(matrix.accumulator_lsb(operand) + product.shift as i32, lsb, "{}", matrix.name);
         // With the stress added at the step of u, and its rounding.
         let more = match product.epilogue {
             Epilogue::AddStress => (folded.stress.bound as f64 * pow2(folded.stress.lsb - lsb)) as i64 + 1,
@@ -54,8 +62,13 @@ fn check_folded(plan: &Plan, folded: &FoldedFormats) {
         };
         for row in 0..matrix.rows.len() {
             if product.coefficients == Coefficients::Friction {
-                let accumulator = ((1 << FRICTION_FRACTION) + 2 * STEEPEST) * operand.bound;
+                let factor = |friction: i64| (friction << plan.factors().friction_shift()) as i32;
+                let steepest = factor((1 << FRICTION_FRACTION) + 2 * STEEPEST);
+                let accumulator = product_of(steepest, operand.bound, matrix.dropped) + 1;
                 assert!(accumulator + half(product.shift) <= largest(ACCUMULATOR_BITS));
+                let part =
+                    |friction: i64, q: u8| product_of(factor(friction), largest_part(plan, folded, q), matrix.dropped);
+                let accumulator = part(1 << FRICTION_FRACTION, 0) + part(STEEPEST, 1) + part(STEEPEST, 2);
                 assert!(round_shift(accumulator, product.shift) <= bound);
                 continue;
             }
@@ -75,7 +88,7 @@ fn check_sums(plan: &Plan, folded: &FoldedFormats) {
     let lead = product.lead.unwrap();
     let matrix = &plan.matrices[lead.matrix];
     assert_eq!((matrix.rows.len(), product.result), (SUM_ROWS, Vector::U(0)));
-    assert_eq!(matrix.lsb + folded.weight.lsb + lead.shift as i32, plan.formats.g.lsb);
+    assert_eq!(matrix.accumulator_lsb(folded.weight) + lead.shift as i32, plan.formats.g.lsb);
     let sum = |row: usize, way: usize| largest_result(matrix, row, way, folded.weight.bound, lead.shift);
     for (p, q) in (0..RESULTANTS).flat_map(|p| (0..3).map(move |q| (p, q))) {
         let less = if q == 0 && (2..5).contains(&p) { sum(SHARE_ROW, sum_way(p, 0)) } else { 0 };
@@ -105,7 +118,7 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
         let weight_shift = (folded.weight.lsb - plan.formats.weight.lsb) as u32;
         let stress = plan.formats.stress.bound;
         let (low, high, shift) = match product.operand() {
-            Vector::Stress => (-stress, stress, FOLD_BITS),
+            Vector::Stress => (-stress, stress, (folded.stress.lsb - plan.formats.stress.lsb) as u32),
             Vector::Weight | Vector::Pull => (0, plan.formats.weight.bound, weight_shift),
             _ => continue, // what r can be has no bound of its own for a taxel: the frames of the model's tests do that
         };
@@ -130,7 +143,10 @@ fn check_unfolded(plan: &Plan, folded: &FoldedFormats) {
                 let operand = fold(&quads, &values.iter().map(chosen).collect::<Vec<_>>(), shift);
                 let result = |way: usize| {
                     let entries = matrix.rows[row].iter();
-                    let sum = entries.map(|&(column, ways)| i64::from(ways[way]) * operand[column as usize][way]).sum();
+                    let of_entry = |&(column, ways): &(u32, [i32; CLASSES])| {
+                        product_of(ways[way], operand[column as usize][way], matrix.dropped)
+                    };
+                    let sum = entries.map(of_entry).sum();
                     let result = round_shift(sum, product.shift);
                     if sign(way ^ product.parity, member) < 0.0 { -result } else { result }
                 };

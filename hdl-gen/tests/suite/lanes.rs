@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use golden::parity::CLASSES;
 use hdl_gen::blocks::latency::ISSUE_TO_RESULT;
-use hdl_gen::plan::matrix::Entry;
+use hdl_gen::plan::matrix::{Entry, QuantisedMatrix, product as product_of};
 use hdl_gen::plan::product::{Epilogue, Product, Vector, mirror, visit_to_operand};
 use hdl_gen::plan::schedule::{LaneProgram, Program, RESULT_PLACES, Schedule, SegmentKind, Visit};
 
@@ -45,17 +45,24 @@ pub type RowSums = BTreeMap<(u32, u32), Sums>;
 /// What the lanes read of their operand memories: `element` of vector `part` of the product's, by way.
 pub type Operands<'a> = dyn Fn(&Product, usize, usize) -> Sums + 'a;
 
-/// Runs the lanes' programs and the collector on vectors of `elements`.
+/// Runs the lanes' programs and the collector on vectors of `elements`. Of the matrices, which stand in the programs, only
+/// what lanes drop of a product is looked at.
 ///
 /// Panics where the hardware would go wrong: an operand is read before it is written, a result register
 /// overflows, a result is taken before it is there, two results are taken in one cycle, a word is never read.
-pub fn execute(schedule: &Schedule, products: &[Product], elements: usize, operands: &Operands) -> RowSums {
+pub fn execute(
+    schedule: &Schedule,
+    products: &[Product],
+    matrices: &[QuantisedMatrix],
+    elements: usize,
+    operands: &Operands,
+) -> RowSums {
     let mut lanes: Vec<Lane> = schedule.lanes.iter().map(|_| Lane::default()).collect();
     let mut sums = RowSums::new();
     let ends = schedule.programs.iter().skip(1).map(|next| next.visit).chain([schedule.visits.len()]);
     for (program, end) in schedule.programs.iter().zip(ends) {
         let visits = &schedule.visits[program.visit..end];
-        let run = Run { schedule, products, program, elements, operands };
+        let run = Run { schedule, products, matrices, program, elements, operands };
         run.issue(&mut lanes, visits);
         complete_heads(&mut lanes);
         collect(products, visits, &mut lanes, &mut sums);
@@ -81,6 +88,7 @@ pub fn execute(schedule: &Schedule, products: &[Product], elements: usize, opera
 struct Run<'a> {
     schedule: &'a Schedule,
     products: &'a [Product],
+    matrices: &'a [QuantisedMatrix],
     program: &'a Program,
     elements: usize,
     operands: &'a Operands<'a>,
@@ -123,6 +131,7 @@ impl Run<'_> {
 
     fn product(&self, index: usize, lane: &mut Lane, data: &LaneProgram, written: &BTreeMap<(Vector, usize), u64>) {
         let (product, window) = (&self.products[index], self.schedule.windows[index]);
+        let dropped = self.matrices[product.matrix].dropped;
         let mut cycle = window.start;
         while cycle < window.start + window.length {
             let segment = data.segments[lane.segment];
@@ -141,7 +150,7 @@ impl Run<'_> {
                     }
                     let operand = (self.operands)(product, part, element);
                     for (sum, (way, value)) in sums.iter_mut().zip(ways.into_iter().zip(operand)) {
-                        *sum += i64::from(way) * value;
+                        *sum += product_of(way, value, dropped);
                     }
                 }
                 cycle += 1;

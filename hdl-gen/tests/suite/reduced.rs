@@ -72,8 +72,9 @@ pub fn folded(quads: &Quads, class: usize, quad: usize, x: &[i64]) -> i64 {
 fn through_the_lanes(quads: &Quads, product: &Product, matrix: QuantisedMatrix, lanes: usize, x: &[i64]) -> Vec<i64> {
     let n = quads.count();
     let folded = |class: usize, quad: usize| folded(quads, class, quad, x);
-    let schedule = Schedule::new(std::slice::from_ref(product), &[matrix], lanes, false);
-    let sums = execute(&schedule, std::slice::from_ref(product), n, &|product, _, quad| {
+    let (products, matrices) = (std::slice::from_ref(product), [matrix]);
+    let schedule = Schedule::new(products, &matrices, lanes, false);
+    let sums = execute(&schedule, products, &matrices, n, &|product, _, quad| {
         std::array::from_fn(|way| match product.mirrored {
             None => folded(way, quad),
             Some(side) => folded(swapped(way), mirror(quad, side)),

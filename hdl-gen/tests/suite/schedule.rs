@@ -26,8 +26,8 @@ fn operand(vector: Vector, element: usize) -> Sums {
     })
 }
 
-fn run(schedule: &Schedule, products: &[Product], size: usize) -> RowSums {
-    execute(schedule, products, size, &|product, part, element| operand(product.operands[part], element))
+fn run(schedule: &Schedule, products: &[Product], matrices: &[QuantisedMatrix], size: usize) -> RowSums {
+    execute(schedule, products, matrices, size, &|product, part, element| operand(product.operands[part], element))
 }
 
 /// Checks the schedules of both kinds of collector; returns that of one which does not look ahead.
@@ -40,7 +40,7 @@ fn check(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize) -> Sc
 fn check_one(products: &[Product], matrices: &[QuantisedMatrix], lanes: usize, ahead: bool) -> Schedule {
     let schedule = Schedule::new(products, matrices, lanes, ahead);
     let size = matrices[products[0].matrix].rows.len();
-    let sums = run(&schedule, products, size);
+    let sums = run(&schedule, products, matrices, size);
     let leads = products.iter().filter(|product| product.lead.is_some()).count();
     assert_eq!(sums.len(), products.len() * size + leads * SUM_ROWS);
     for (index, product) in products.iter().enumerate() {

@@ -63,14 +63,16 @@ pub fn any_paper_design() -> impl Strategy<Value = String> {
 /// square in sides and pitch, where one matrix serves both directions.
 pub fn any_reduced_design() -> impl Strategy<Value = String> {
     let geometry = (2_usize..=9, 2_usize..=9, 1.0..6.0_f64, 1.0..6.0_f64, 0.1..1.2_f64, 0..3);
-    let hardware = (1_usize..=16, 8_u32..=18, 20_u32..=27, 1.0e3..1.0e6_f64);
+    // Words of one multiplier a lane, and of two.
+    let widths = prop_oneof![3 => (8_u32..=18, 20_u32..=27), 1 => (8_u32..=27, 29_u32..=35)];
+    let hardware = (1_usize..=16, widths, 1.0e3..1.0e6_f64);
     let keys = (prop_oneof![Just("field"), Just("resultants")], prop_oneof![Just("interval"), Just("latency")]);
     (geometry, hardware, keys).prop_flat_map(move |(geometry, hardware, (outputs, optimise))| {
         let (columns, mut rows, x, mut y, ratio, square) = geometry;
         if square == 0 {
             (rows, y) = (columns, x);
         }
-        let (fours, coefficient_bits, data_bits, full_scale) = hardware;
+        let (fours, (coefficient_bits, data_bits), full_scale) = hardware;
         any_filter(columns * rows).prop_map(move |filter| {
             let more = format!(
                 "[algorithm]\nplan = \"reduced\"\nfilter = {filter}\noutputs = \"{outputs}\"\n[hardware]\n\

@@ -1,11 +1,15 @@
 //! One case in three arithmetics.
 
-use golden::design::Estimator;
+use golden::design::{Design, Estimator, InputRange};
 use golden::matrices::Matrices;
 use golden::metrics::field_error;
+use golden::parity::CLASSES;
+use golden::products::{Engine, ProductList};
+use golden::reduced::ReducedMatrices;
 use golden::solver::Solver;
-use hdl_gen::plan::Plan;
+use hdl_gen::cores::{WIDE_COEFFICIENT_BITS, WIDE_DATA_BITS};
 use hdl_gen::plan::streams::Streams;
+use hdl_gen::plan::{Plan, PlanError};
 use serde::Serialize;
 
 use super::cases::Case;
@@ -28,6 +32,8 @@ pub struct Judged {
     /// Largest difference of a taxel's force to that of f64, relative to the frame's largest `|f_z|`; frames that f64
     /// answers.
     pub against_f64: Option<f64>,
+    /// The same where f64 takes the friction that was found: what is left without the estimator's error.
+    pub at_its_friction: Option<f64>,
     /// Largest backward error `|A f - b| / (|A| |f| + |b|)` in the maximum norm, frames with an answer.
     pub backward: Option<f64>,
     /// Frames with a NaN or an infinity, or with a force beyond reason, whose status is good.
@@ -57,10 +63,20 @@ pub struct Row {
     pub f32: Option<Judged>,
     /// The integer model of the hardware.
     pub fixed: Option<Judged>,
+    /// The same of the design in its most exact form: see [`wide`].
+    pub wide: Option<Judged>,
     /// Whether the simulated RTL gave the integer model's words; nothing if it was not asked, or there is none.
     pub rtl_is_model: Option<bool>,
     /// Why there is no hardware, or no solver.
     pub refusal: Option<String>,
+}
+
+/// The design with words as wide as two multipliers a lane take, and frames scaled by their own largest stress.
+pub fn wide(design: &Design) -> Design {
+    let mut wide = design.clone();
+    (wide.hardware.coefficient_bits, wide.hardware.data_bits) = (WIDE_COEFFICIENT_BITS, WIDE_DATA_BITS);
+    wide.hardware.range = InputRange::Frame;
+    wide
 }
 
 /// Solves a case in f64, in float32 and in the hardware's integers.
@@ -75,6 +91,7 @@ pub fn judge(case: &Case) -> Row {
         f64: None,
         f32: None,
         fixed: None,
+        wide: None,
         rtl_is_model: None,
         refusal: None,
     };
@@ -96,22 +113,63 @@ pub fn judge(case: &Case) -> Row {
     let frames: Vec<Vec<f64>> = packets.iter().map(|packet| as_received(streams, packet)).collect();
     // Frames have the sensor's length, the only thing that the solver refuses.
     let reference: Vec<Answer> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).map(Answer::from).collect();
-    let judged = |answers: &[Answer]| judged(case, &solver, &frames, &reference, answers);
+    let fields = Fields::new(&case.design, &solver);
+    let judged = |answers: &[Answer]| judged(case, (&solver, fields.as_ref()), &frames, &reference, answers);
     row.f64 = Some(judged(&reference));
     if let Some(single) = Single::new(&case.design, &solver) {
         row.f32 = Some(judged(&frames.iter().map(|frame| single.solve(frame)).collect::<Vec<_>>()));
     }
-    match Plan::new(&case.design) {
-        Ok(plan) => {
-            let words = model_answers(&plan, &packets);
-            row.fixed = Some(judged(&words.iter().filter_map(|words| decode(words)).collect::<Vec<_>>()));
-        }
-        Err(refusal) => row.refusal = Some(refusal.to_string()),
+    let in_integers = |design: &Design| {
+        let words = model_answers(&Plan::new(design)?, &packets);
+        Ok(judged(&words.iter().filter_map(|words| decode(words)).collect::<Vec<_>>()))
+    };
+    match in_integers(&case.design) {
+        Ok(fixed) => row.fixed = Some(fixed),
+        Err(refusal) => row.refusal = Some(PlanError::to_string(&refusal)),
     }
+    row.wide = in_integers(&wide(&case.design)).ok();
     row
 }
 
-fn judged(case: &Case, solver: &Solver, frames: &[Vec<f64>], reference: &[Answer], answers: &[Answer]) -> Judged {
+/// The fields of the reduced plan in f64, with a friction that something else has found.
+struct Fields<'a> {
+    engine: Engine<f64, &'a ReducedMatrices, CLASSES>,
+    full_scale: f64,
+    gain: f64,
+}
+
+impl<'a> Fields<'a> {
+    /// From the matrices of a solver; `None` for another plan.
+    fn new(design: &Design, solver: &'a Solver) -> Option<Self> {
+        let quads = solver.matrices().quads();
+        let list = ProductList::paper().fewer_products(true).folded();
+        Some(Self {
+            engine: Engine::new(list, solver.reduced()?, quads.all(), quads.taxels()),
+            full_scale: design.hardware.full_scale_in_frames(),
+            gain: design.algorithm.constants().gain().unwrap_or(1.0),
+        })
+    }
+
+    /// The field of a frame.
+    fn at(&self, frame: &[f64], mu: [f64; 2]) -> [Vec<f64>; 3] {
+        let mut of_frame = self.engine.frame();
+        for (b, stress) in of_frame.stress.iter_mut().zip(frame) {
+            *b = stress.clamp(-self.full_scale, self.full_scale);
+        }
+        self.engine.until_friction(&mut of_frame);
+        let mut field = std::array::from_fn(|_| vec![0.0; frame.len()]);
+        self.engine.field(mu, &mut of_frame, |p, taxel, force| field[p][taxel] = self.gain * force);
+        field
+    }
+}
+
+fn judged(
+    case: &Case,
+    (solver, fields): (&Solver, Option<&Fields>),
+    frames: &[Vec<f64>],
+    reference: &[Answer],
+    answers: &[Answer],
+) -> Judged {
     let errors = case.truth.as_ref().map(|truth| against_truth(answers, truth));
     let answered = || answers.iter().zip(frames).filter(|(answer, _)| has_field(answer));
     let largest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
@@ -121,6 +179,11 @@ fn judged(case: &Case, solver: &Solver, frames: &[Vec<f64>], reference: &[Answer
         .zip(answers)
         .filter(|(one, _)| !same && has_field(one))
         .map(|(one, other)| field_error(&one.field, &other.field));
+    let mut at_its_friction = fields.into_iter().flat_map(|fields| {
+        let of_frame =
+            move |(answer, frame): (&Answer, &Vec<f64>)| field_error(&fields.at(frame, answer.mu_xy), &answer.field);
+        answered().filter(move |_| !same).map(of_frame)
+    });
     let full_scale = case.design.hardware.full_scale_pa;
     let mut backward = answered().map(|(answer, frame)| backward_error(solver.matrices(), answer, frame, full_scale));
     let silent = answers.iter().zip(frames).filter(|(answer, frame)| is_silent(case, answer, frame)).count();
@@ -129,6 +192,7 @@ fn judged(case: &Case, solver: &Solver, frames: &[Vec<f64>], reference: &[Answer
         tangential: errors.map(|errors| errors.e_fx.max.max(errors.e_fy.max)),
         normal: errors.map(|errors| errors.e_fz.max),
         against_f64: largest(&mut differences),
+        at_its_friction: largest(&mut at_its_friction),
         backward: largest(&mut backward),
         silent,
         status: status.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(),

@@ -67,6 +67,6 @@ pub fn table(scope: Scope, progress: &Progress) -> Result<Vec<Row>, HardError> {
 /// Whether no case had a result that nothing warned of, a NaN, or a force beyond reason without a status bit; and no
 /// RTL a word that is not the model's.
 pub fn is_sound(rows: &[Row]) -> bool {
-    let loud = |row: &Row| [&row.f64, &row.fixed].into_iter().flatten().all(|judged| judged.silent == 0);
+    let loud = |row: &Row| [&row.f64, &row.fixed, &row.wide].into_iter().flatten().all(|judged| judged.silent == 0);
     rows.iter().all(|row| loud(row) && row.rtl_is_model != Some(false))
 }

@@ -24,26 +24,44 @@ pub struct Group {
 }
 
 /// Names of the columns of the line estimator's tables.
-const LINE_HEADER: [&str; 15] = [
+const LINE_HEADER: [&str; 21] = [
     "case",
     "cond C33",
     "cond AAᵀ",
     "backward f64",
     "f32",
     "fixed",
+    "wide",
     "e_F∥ f64",
     "f32",
     "fixed",
     "e_Fz f64",
     "f32",
     "fixed",
-    "field",
+    "field f32",
+    "fixed",
+    "wide",
+    "at its µ f32",
+    "fixed",
+    "wide",
     "RTL",
     "status",
 ];
 /// Names of the columns of the joint estimator's: its matrices are those of the line estimator, and so are its backward
 /// errors, but for the gain.
-const JOINT_HEADER: [&str; 8] = ["case", "e_F∥ f64", "fixed", "e_Fz f64", "fixed", "field", "RTL", "status"];
+const JOINT_HEADER: [&str; 11] = [
+    "case",
+    "e_F∥ f64",
+    "fixed",
+    "e_Fz f64",
+    "fixed",
+    "field fixed",
+    "wide",
+    "at its µ fixed",
+    "wide",
+    "RTL",
+    "status",
+];
 
 /// The tables: by what the cases are about, and for each estimator one.
 pub fn groups(rows: &[Row]) -> Vec<Group> {
@@ -86,27 +104,32 @@ fn line_cells(row: &Row) -> Vec<Cell> {
     let figures = conditions
         .into_iter()
         .chain(each(|judged| judged.backward, scientific))
+        .chain([or_dash(row.wide.as_ref().and_then(|judged| judged.backward), scientific)])
         .chain(each(|judged| judged.tangential, percent))
         .chain(each(|judged| judged.normal, percent));
-    cells(row, figures)
+    cells(row, figures, &[&row.f32, &row.fixed, &row.wide])
 }
 
 fn joint_cells(row: &Row) -> Vec<Cell> {
     let each = |value: fn(&Judged) -> Option<f64>| {
         [&row.f64, &row.fixed].map(|judged| or_dash(judged.as_ref().and_then(value), percent))
     };
-    cells(row, each(|judged| judged.tangential).into_iter().chain(each(|judged| judged.normal)))
+    let figures = each(|judged| judged.tangential).into_iter().chain(each(|judged| judged.normal));
+    cells(row, figures, &[&row.fixed, &row.wide])
 }
 
-/// The case, its figures, error of the field, RTL, status.
-fn cells(row: &Row, figures: impl Iterator<Item = String>) -> Vec<Cell> {
-    let field = or_dash(row.fixed.as_ref().and_then(|judged| judged.against_f64), scientific);
+/// The case, its figures, errors of the field in these arithmetics, RTL, status.
+fn cells(row: &Row, figures: impl Iterator<Item = String>, arithmetics: &[&Option<Judged>]) -> Vec<Cell> {
+    let each = |value: fn(&Judged) -> Option<f64>| {
+        arithmetics.iter().map(move |judged| or_dash(judged.as_ref().and_then(value), scientific))
+    };
+    let field = each(|judged| judged.against_f64).chain(each(|judged| judged.at_its_friction));
     let rtl = match row.rtl_is_model {
         Some(true) => "= model".into(),
         Some(false) => Cell::new("DIFFERS", BAD),
         None => "–".into(),
     };
-    let mut cells: Vec<Cell> = [row.case.clone()].into_iter().chain(figures).chain([field]).map(Cell::from).collect();
+    let mut cells: Vec<Cell> = [row.case.clone()].into_iter().chain(figures).chain(field).map(Cell::from).collect();
     cells.extend([rtl, status(row)]);
     cells
 }
@@ -152,7 +175,10 @@ pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
          * **backward**: `|A f − b| / (|A| |f| + |b|)`, the largest.\n\
          * **e_F∥, e_Fz**: largest errors of the tangential and the normal resultant in % of the true normal force. \
          They are those of the estimator and the kernel where f64 has them too.\n\
-         * **field**: largest difference of a taxel's force, fixed point to f64, relative to the largest |f_z|.\n\
+         * **wide**: the hardware of 27 × 35 bits, two multipliers a lane, with `range = \"frame\"`; its RTL is simulated \
+         elsewhere. See [as exact as float32](choosing.md#as-exact-as-float32) for who wants it and where it ends.\n\
+         * **field**: largest difference of a taxel's force to that of f64, relative to the largest |f_z|. **At its µ**: the \
+         same where f64 takes the friction that was found, so that the estimator's own 16 fraction bits do not show.\n\
          * **RTL**: whether the RTL, all frames of the case simulated in all stream modes, gives the integer model's \
          words, from which the figures of the hardware are, in the cycles of the plan. The command would fail else.\n\
          * **status**: of the hardware's frames. No case has a NaN, an overflow, or a resultant beyond four times what \

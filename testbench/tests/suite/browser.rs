@@ -107,6 +107,7 @@ fn hard_rows() -> Vec<Row> {
         tangential: Some(50.0),
         normal: Some(94.5),
         against_f64: Some(9e-5),
+        at_its_friction: Some(3e-6),
         backward: Some(2e-16),
         silent: 0,
         status: vec![
@@ -125,6 +126,7 @@ fn hard_rows() -> Vec<Row> {
         f64: Some(judged.clone()),
         f32: Some(judged.clone()),
         fixed: Some(judged.clone()),
+        wide: Some(judged.clone()),
         rtl_is_model: Some(true),
         refusal: None,
     };

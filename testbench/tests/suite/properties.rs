@@ -114,6 +114,7 @@ fn corner_designs_agree_with_the_model() {
         ("wide", base(32, 2, 7)),
         ("narrow_words", narrow),
         ("three_diagonals", diagonal),
+        ("long_coefficients", Shape { coefficient_bits: 27, ..base(4, 3, 5) }),
     ];
     let plans: Vec<Plan> = shapes.iter().map(|(name, shape)| planned(&shape.design(name))).collect();
     judge(&plans);
@@ -158,6 +159,11 @@ fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
         ("resultants_joint", base(joint(false, true), 9, 4, 16)),
         ("wide_joint", base(joint(true, true), 40, 2, 8)),
         ("narrow_joint", Shape { coefficient_bits: 8, data_bits: 16, ..base(joint(true, true), 6, 7, 8) }),
+        ("wide_words", Shape { coefficient_bits: 27, data_bits: 35, ..base(latency, 6, 4, 8) }),
+        ("wide_words_square", square(Shape { coefficient_bits: 27, data_bits: 35, ..base(field, 5, 5, 12) })),
+        ("wide_words_joint", Shape { coefficient_bits: 27, data_bits: 35, ..base(joint(true, true), 6, 7, 8) }),
+        ("long_coefficients_reduced", Shape { coefficient_bits: 24, data_bits: 18, ..base(field, 3, 4, 4) }),
+        ("long_vectors", Shape { coefficient_bits: 9, data_bits: 29, ..base(Kind::Resultants, 7, 4, 12) }),
         ("band_reduced", Shape { filter: "{ kind = \"f1\", l = 22 }".to_owned(), ..base(field, 4, 6, 8) }),
     ];
     let mut plans: Vec<Plan> = shapes.iter().map(|(name, shape)| planned(&shape.design(name))).collect();
@@ -203,6 +209,7 @@ fn corner_designs_with_a_range_for_each_frame_agree_with_the_model() {
         ("zeros_scaled", base(Kind::Skips { field: true }, 6, 5, 8)),
         ("one_quad_joint_scaled", base(joint(true, true), 2, 2, 4)),
         ("joint_scaled", Shape { full_scale_pa: 1e-3, ..base(joint(true, true), 9, 4, 16) }),
+        ("wide_words_scaled", Shape { coefficient_bits: 27, data_bits: 35, ..base(joint(true, true), 6, 5, 8) }),
         ("narrow_joint_scaled", Shape { coefficient_bits: 8, data_bits: 16, ..base(joint(false, true), 6, 7, 8) }),
     ];
     let plan = |(name, shape): &(&str, Shape)| {

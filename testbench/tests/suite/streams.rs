@@ -38,6 +38,8 @@ fn subjects() -> &'static [Subject] {
         (narrow.hardware.data_bits, narrow.hardware.lanes) = (22, 8);
         let mut odd = with_joint(with_lanes(shipped("odd"), 12));
         odd.hardware.stream_bits = 128;
+        let mut long = small("long", 128, reduced, Outputs::Field);
+        (long.hardware.coefficient_bits, long.hardware.data_bits) = (27, 35);
         let mut tiny = small("tiny", 128, reduced, Outputs::Field);
         (tiny.sensor.columns, tiny.sensor.rows) = (2, 2);
         let mut counts = small("counts", 64, reduced, Outputs::Resultants);
@@ -65,6 +67,7 @@ fn subjects() -> &'static [Subject] {
             small("whole", 128, reduced, Outputs::Field),
             narrow,
             odd,
+            long,
             tiny,
             counts,
             curved,

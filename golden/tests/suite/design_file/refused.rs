@@ -151,8 +151,8 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
     }
     for (line, parts) in [
         ("arithmetic = \"float\"", ["hardware.arithmetic", "float", "fixed"]),
-        ("coefficient_bits = 19", ["hardware.coefficient_bits", "19", "8 to 18"]),
-        ("data_bits = 15", ["hardware.data_bits", "15", "16 to 27"]),
+        ("coefficient_bits = 28", ["hardware.coefficient_bits", "28", "8 to 27"]),
+        ("data_bits = 15", ["hardware.data_bits", "15", "16 to 35"]),
         ("lanes = 0", ["hardware.lanes", "is 0", "1 to 100"]),
         ("stream_bits = 48", ["hardware.stream_bits", "is 48", "32, 64 or 128"]),
         ("lanes = 101", ["hardware.lanes", "101", "1 to 100"]),

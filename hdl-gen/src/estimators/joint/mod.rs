@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 use super::{Cells, Found, Given, Metadata, Seen, Slot, Stage, WEIGHT_BITS};
 use crate::blocks::parameters::Parameters;
 use crate::cores::{LONG_BITS, SHORT_BITS};
-use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS, address_bits, pow2};
+use crate::plan::format::{FRICTION_FRACTION, Factors, MOST_CELLS, address_bits, pow2};
 use crate::plan::memory::{block_memory, memory};
 use crate::plan::resources::BlockCost;
 pub use network::{
@@ -214,7 +214,7 @@ impl Slot for JointPlan {
             .count("COLUMNS", design.sensor.columns)
             .count("ROWS", design.sensor.rows)
             .count("WAYS", ways)
-            .number("DATA_BITS", design.hardware.data_bits.into())
+            .number("DATA_BITS", Factors::of(design).outside_bits().into())
             .flag("POINTS", self.points.is_some());
         let parameters = match &self.points {
             Some(points) => {

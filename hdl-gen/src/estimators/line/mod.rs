@@ -12,7 +12,7 @@ use serde_json::json;
 
 use super::{Cells, Found, Given, Metadata, Seen, Slot, Stage};
 use crate::blocks::parameters::Parameters;
-use crate::plan::format::{FRICTION_FRACTION, MOST_CELLS};
+use crate::plan::format::{FRICTION_FRACTION, Factors, MOST_CELLS};
 use crate::plan::resources::BlockCost;
 
 /// Fraction bits of a centroid, in units of the taxel index.
@@ -107,7 +107,7 @@ impl Slot for LinePlan {
             .count("COLUMNS", design.sensor.columns)
             .count("ROWS", design.sensor.rows)
             .count("WAYS", ways)
-            .number("DATA_BITS", design.hardware.data_bits.into())
+            .number("DATA_BITS", Factors::of(design).outside_bits().into())
             .count("CELLS", self.cells.cells)
             .count("CELL_ELEMENTS", self.cells.elements)
             .number("LEVEL_SHIFT", self.level_shift.into());

@@ -118,6 +118,8 @@ fn check_worst_frames(plan: &Plan) {
 #[test]
 fn the_worst_frames_stay_within_the_bounds() {
     check_worst_frames(&plan([4, 4], [4.0, 2.5], "", ""));
+    check_worst_frames(&plan([4, 4], [4.0, 2.5], "", "coefficient_bits = 27\ndata_bits = 35"));
+    check_worst_frames(&plan([5, 5], [4.0, 4.0], "", "coefficient_bits = 11\ndata_bits = 29"));
     check_worst_frames(&plan([5, 5], [3.0, 3.0], "", ""));
     check_worst_frames(&plan([2, 2], [3.0, 3.0], "", "data_bits = 18"));
     check_worst_frames(&plan([5, 3], [4.0, 2.5], "filter = { kind = \"f1\", l = 7 }", ""));

@@ -19,7 +19,7 @@ pub(super) type Term<'a> = (&'a QuantisedMatrix, Operand);
 
 /// The finest format of `bits` bits for results of these terms, whose worst case at a step of `2^lsb` is `bound`.
 pub(super) fn finest<'a>(terms: impl IntoIterator<Item = Term<'a>>, bits: u32, bound: impl Fn(i32) -> i64) -> Format {
-    let accumulators = terms.into_iter().map(|(matrix, operand)| matrix.lsb + operand.folded.lsb);
+    let accumulators = terms.into_iter().map(|(matrix, operand)| matrix.accumulator_lsb(operand.folded));
     let mut lsb = accumulators.max().unwrap_or(0);
     while bound(lsb) > largest(bits) {
         lsb += 1;
@@ -34,18 +34,22 @@ fn scaled(value: i128, from: i32, to: i32) -> i128 {
 
 /// Largest result of the lanes at a step of `2^lsb`.
 pub(super) fn folded((matrix, operand): Term, lsb: i32) -> i64 {
-    let shift = (lsb - matrix.lsb - operand.folded.lsb) as u32;
+    let shift = (lsb - matrix.accumulator_lsb(operand.folded)) as u32;
     Product::result_bound(matrix, operand.folded.bound, shift)
 }
 
 /// Largest sum of four such results, as unfolding makes it: no larger than the taxels' operands allow, and what the
 /// rounding of operands and results adds.
 pub(super) fn unfolded((matrix, operand): Term, lsb: i32) -> i64 {
-    let accumulator_lsb = matrix.lsb + operand.folded.lsb;
+    let product_lsb = matrix.lsb + operand.folded.lsb;
     let exact = i128::from(matrix.unfolded_row_sum()) * i128::from(operand.taxel.bound);
     let of_operand = i128::from(matrix.row_sum) * CLASSES as i128 / 2;
-    let sum = scaled(exact, matrix.lsb + operand.taxel.lsb, lsb) + scaled(of_operand, accumulator_lsb, lsb);
-    narrowed(sum + CLASSES as i128)
+    let sum = scaled(exact, matrix.lsb + operand.taxel.lsb, lsb) + scaled(of_operand, product_lsb, lsb);
+    let dropped = match i128::from(matrix.dropped_steps()) * CLASSES as i128 {
+        0 => 0,
+        steps => scaled(steps, matrix.accumulator_lsb(operand.folded), lsb),
+    };
+    narrowed(sum + dropped + CLASSES as i128)
 }
 
 /// What a folded operand adds to results, folded and unfolded, at a step of `2^lsb`.

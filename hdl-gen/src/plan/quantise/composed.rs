@@ -8,7 +8,9 @@
 use golden::parity::CLASSES;
 use nalgebra::DMatrix;
 
-use super::super::format::{Format, largest};
+use crate::cores::LONG_BITS;
+
+use super::super::format::{Format, largest, pow2};
 use super::super::matrix::QuantisedMatrix;
 use super::super::vector_formats::FOLD_BITS;
 use super::LARGEST_FRICTION;
@@ -39,17 +41,21 @@ pub(super) struct Worst {
 /// The worst case of `A_p (C33 y+ + mu_x C31 |w| + mu_y C32 |w|)`, all p, for matrices as stored.
 pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], way: Way) -> Worst {
     let count = c.first().map_or(0, |matrix| matrix.rows.len());
-    let c: Vec<[DMatrix<f64>; CLASSES]> = c.iter().map(|matrix| blocks(matrix, count)).collect();
     let steep = LARGEST_FRICTION as f64;
-    // |w| and y+ are rounded as they are folded, the parts of r as they are stored, and r again.
     let friction = [1.0, steep, steep];
+    // What the lanes drop of the products: of the parts of r, and of r, of three of them.
+    let of_parts: f64 = c.iter().zip(friction).map(|(matrix, by)| by * dropped(matrix, way.weights.folded)).sum();
+    let in_parts = if of_parts > 0.0 { of_parts + way.residual.step() } else { 0.0 };
+    let c: Vec<[DMatrix<f64>; CLASSES]> = c.iter().map(|matrix| blocks(matrix, count)).collect();
+    // |w| and y+ are rounded as they are folded, the parts of r as they are stored, and r again.
     let folding: f64 = c.iter().zip(friction).map(|(blocks, by)| by * row_sum(blocks)).sum();
     let rounding = 0.5
         * (folding * way.weights.folded.step()
             + friction.iter().sum::<f64>() * way.residual.step()
-            + way.explained.step());
-    let of_component = |a: &QuantisedMatrix| {
-        let a = blocks(a, count);
+            + way.explained.step())
+        + in_parts;
+    let of_component = |stored: &QuantisedMatrix| {
+        let a = blocks(stored, count);
         let mut exact = [DMatrix::zeros(count, 1), DMatrix::zeros(count, 1)];
         for ((parity, c), by) in c.iter().enumerate().zip(friction) {
             let product: [DMatrix<f64>; CLASSES] = std::array::from_fn(|class| &a[class ^ parity] * &c[class]);
@@ -57,7 +63,7 @@ pub(super) fn worst(c: &[QuantisedMatrix], a: &[QuantisedMatrix], way: Way) -> W
             exact[0] += by * way.weights.folded.bound as f64 * way.weights.folded.step() * folded;
             exact[1] += by * way.weights.taxel.bound as f64 * way.weights.taxel.step() * unfolded;
         }
-        let rounded = row_sum(&a) * rounding;
+        let rounded = row_sum(&a) * rounding + dropped(stored, way.explained);
         Worst {
             folded: exact[0].max() + rounded,
             unfolded: exact[1].max() + CLASSES as f64 * rounded,
@@ -86,10 +92,11 @@ pub(super) fn format(worst: Worst, mut lsb: i32, bits: u32) -> Format {
     Format { bits, lsb, bound: bound(lsb) as i64 }
 }
 
-/// Whether a taxel's force at full scale, in newtons, has fewer steps in this folded format than a good sensor can use.
+/// Whether a taxel's force at full scale, in newtons, has fewer steps in this folded format than a good sensor can use; in
+/// words of two multipliers, fewer by their more bits than that.
 pub(super) fn is_coarse(folded: Format, taxel_n: f64) -> bool {
-    const ENOUGH: f64 = 65536.0;
-    Format { lsb: folded.lsb - FOLD_BITS as i32, ..folded }.step() * ENOUGH > taxel_n
+    let enough = pow2(16 + folded.bits.saturating_sub(LONG_BITS) as i32);
+    Format { lsb: folded.lsb - FOLD_BITS as i32, ..folded }.step() * enough > taxel_n
 }
 
 /// The blocks of a matrix by class of the operand, in its unit.
@@ -104,6 +111,11 @@ fn blocks(matrix: &QuantisedMatrix, count: usize) -> [DMatrix<f64>; CLASSES] {
         }
         block
     })
+}
+
+/// Most that the dropped bits of a row's products add up to.
+fn dropped(matrix: &QuantisedMatrix, operand: Format) -> f64 {
+    matrix.dropped_steps() as f64 * f64::from(matrix.accumulator_lsb(operand)).exp2()
 }
 
 /// Largest sum of magnitudes of a row of any block.

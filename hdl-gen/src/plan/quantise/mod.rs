@@ -16,7 +16,7 @@ use golden::products::{Epilogue, Form, ProductList, Source, Step, Vector};
 
 use super::PlanError;
 use super::filtered::Filtered;
-use super::format::{FRICTION_FRACTION, Format, MOST_SHIFT, largest, round_shift};
+use super::format::{FRICTION_FRACTION, Factors, Format, MOST_SHIFT, largest, round_shift};
 use super::matrix::{ANY_LSB, QuantisedMatrix};
 use super::product::{SELECT_MU_X, SELECT_MU_Y, SELECT_ONE};
 use super::vector_formats::{FOLD_BITS, FoldedFormats, Formats, arm_exponent};
@@ -66,7 +66,7 @@ pub fn quantise(
         return Ok(pass.finish(Formats { stress, weight: y, g, torque_lsb, u, folded: None }, 0.0));
     };
     let u = pass.group(|result| matches!(result, Vector::U(_)))?;
-    let (rows, g) = sums::quantise(ten, pass.coefficient_bits, pass.data_bits, weights, arm_exponent)?;
+    let (rows, g) = sums::quantise(ten, pass.factors, weights, arm_exponent)?;
     pass.sums = Some(pass.matrices.len());
     pass.matrices.push(rows);
     let field = if list.has_forces() { pass.field(weights, taxel_force_n(design))? } else { Field::none(u) };
@@ -111,8 +111,7 @@ impl Field {
 struct Pass<'a> {
     list: &'a ProductList,
     filtered: &'a Filtered<'a>,
-    coefficient_bits: u32,
-    data_bits: u32,
+    factors: Factors,
     /// Factor on all forces: the weights are taken times it, and what makes stress of them again divided by it.
     gain: f64,
     /// Formats of the vectors that are operands.
@@ -127,8 +126,7 @@ impl<'a> Pass<'a> {
         Self {
             list,
             filtered,
-            coefficient_bits: design.hardware.coefficient_bits,
-            data_bits: design.hardware.data_bits,
+            factors: Factors::of(design),
             gain: design.algorithm.constants().gain().unwrap_or(1.0),
             operands: BTreeMap::new(),
             matrices: Vec::new(),
@@ -141,8 +139,16 @@ impl<'a> Pass<'a> {
         self.filtered.ten().is_some()
     }
 
-    /// Taxels' values of this format as an operand; folding them loses their last bits.
+    /// Taxels' values of this format as an operand; folding them loses their last bits, unless the operands' words are
+    /// wider.
     fn unfolded(&self, taxel: Format) -> Operand {
+        if self.is_folded() && self.factors.has_wide_data() {
+            // There is room for the sum of four.
+            return Operand {
+                folded: Format { bits: self.factors.data_bits, bound: taxel.bound << FOLD_BITS, ..taxel },
+                taxel,
+            };
+        }
         let bits = if self.is_folded() { FOLD_BITS as i32 } else { 0 };
         Operand { folded: Format { lsb: taxel.lsb + bits, ..taxel }, taxel }
     }
@@ -152,7 +158,7 @@ impl<'a> Pass<'a> {
     fn group(&mut self, is_in: impl Fn(Vector) -> bool) -> Result<Format, PlanError> {
         let steps: Vec<&Step> = self.list.steps.iter().filter(|step| is_in(step.result)).collect();
         let alone = self.format(&steps, &self.terms(&steps, |_| ANY_LSB)?);
-        let least = |operand: Operand| alone.lsb - operand.folded.lsb - MOST_SHIFT as i32;
+        let least = |operand: Operand| alone.lsb - operand.folded.lsb - (MOST_SHIFT + self.factors.dropped()) as i32;
         // The last bits of the small ones have changed, and with them perhaps the bound.
         let terms = self.terms(&steps, least)?;
         let format = self.format(&steps, &terms);
@@ -172,7 +178,7 @@ impl<'a> Pass<'a> {
                 let form = &self.list.matrices[step.matrix];
                 let rows = self.filtered.rows(form, self.scale(form));
                 let bound = operand.folded.bound;
-                let matrix = QuantisedMatrix::new(&form.label(), &rows, self.coefficient_bits, bound, least(operand))?;
+                let matrix = QuantisedMatrix::new(&form.label(), &rows, self.factors, bound, least(operand))?;
                 terms.push((step.matrix, (matrix, operand)));
             }
         }
@@ -211,7 +217,7 @@ impl<'a> Pass<'a> {
         };
         let added = steps.iter().any(|step| step.epilogue == Epilogue::AddStress);
         let stress = self.operands.get(&Vector::Stress).filter(|_| added);
-        bounds::finest(terms.iter().map(|(_, (matrix, operand))| (matrix, *operand)), self.data_bits, |lsb| {
+        bounds::finest(terms.iter().map(|(_, (matrix, operand))| (matrix, *operand)), self.factors.data_bits, |lsb| {
             let worst = steps.iter().map(|step| worst(step, lsb)).max().unwrap_or(0);
             worst + stress.map_or(0, |stress| bounds::added(*stress, lsb))
         })
@@ -230,11 +236,18 @@ impl<'a> Pass<'a> {
     /// Residual and field. `taxel_n` is the force of a taxel at full scale.
     fn field(&mut self, weights: Operand, taxel_n: f64) -> Result<Field, PlanError> {
         let residual = self.group(|result| matches!(result, Vector::Residual(_)))?;
-        let (explained, shift) = narrowed(residual, LARGEST_COMBINATION * residual.bound);
         let parts = self.of_results(|result| matches!(result, Vector::Residual(_)));
+        let combination = |bound: fn(bounds::Term, i32) -> i64| -> i64 {
+            let bounds: Vec<i64> = parts.iter().map(|matrix| bound((matrix, weights), residual.lsb)).collect();
+            match bounds[..] {
+                // A step more for what is dropped of the three products.
+                [one, x, y] if self.factors.has_wide_data() => one + LARGEST_FRICTION * (x + y) + 1,
+                _ => LARGEST_COMBINATION * bounds.into_iter().max().unwrap_or(0),
+            }
+        };
+        let (explained, shift) = narrowed(residual, combination(bounds::folded));
         // As many quarters of a step as the sum of four folded parts can be.
-        let parts_bound = parts.iter().map(|matrix| bounds::unfolded((matrix, weights), residual.lsb)).max();
-        let taxel_bound = round_shift(LARGEST_COMBINATION * parts_bound.unwrap_or(0), shift) + CLASSES as i64;
+        let taxel_bound = round_shift(combination(bounds::unfolded), shift) + CLASSES as i64;
         let taxel = Format { lsb: explained.lsb - FOLD_BITS as i32, bound: taxel_bound, ..explained };
         self.operands.insert(Vector::Explained, Operand { folded: explained, taxel });
         self.friction();
@@ -243,9 +256,9 @@ impl<'a> Pass<'a> {
         let mut rounding_n = 0.0;
         if composed::is_coarse(force, taxel_n) {
             let inverse = self.of_results(|result| matches!(result, Vector::Force(_)));
-            let lsb = inverse.iter().map(|matrix| matrix.lsb + explained.lsb).max().unwrap_or(force.lsb);
+            let lsb = inverse.iter().map(|matrix| matrix.accumulator_lsb(explained)).max().unwrap_or(force.lsb);
             let worst = composed::worst(&parts, &inverse, composed::Way { weights, residual, explained });
-            (force, rounding_n) = (composed::format(worst, lsb, self.data_bits), worst.rounding);
+            (force, rounding_n) = (composed::format(worst, lsb, self.factors.data_bits), worst.rounding);
         }
         Ok(Field { residual, explained, force, rounding_n })
     }
@@ -258,9 +271,11 @@ impl<'a> Pass<'a> {
             let codes = [SELECT_ONE, SELECT_MU_X, SELECT_MU_Y].into_iter().enumerate();
             codes.map(|(part, code)| ((part * quads + quad) as u32, [code; CLASSES])).collect()
         };
-        let (rows, lsb) = ((0..quads).map(row).collect(), -(FRICTION_FRACTION as i32));
+        let fraction = FRICTION_FRACTION + self.factors.friction_shift();
+        let (rows, lsb) = ((0..quads).map(row).collect(), -(fraction as i32));
         let mut matrix = QuantisedMatrix::from_rows(&self.list.matrices[index].label(), rows, lsb);
-        matrix.row_sum = LARGEST_COMBINATION << FRICTION_FRACTION;
+        matrix.row_sum = LARGEST_COMBINATION << fraction;
+        matrix.dropped = self.factors.dropped_of_friction();
         self.place[index] = self.matrices.len();
         self.matrices.push(matrix);
     }

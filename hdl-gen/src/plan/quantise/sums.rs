@@ -5,7 +5,7 @@ use golden::products::RESULTANTS;
 use golden::reduced::ReducedMatrices;
 
 use super::super::PlanError;
-use super::super::format::{Format, largest, pow2};
+use super::super::format::{Factors, Format, largest, pow2};
 use super::super::matrix::{ANY_LSB, QuantisedMatrix, RealRows};
 use super::super::product::{SHARE_ROW, SUM_ROWS, sum_row, sum_way};
 use super::bounds::{self, Operand};
@@ -13,8 +13,7 @@ use super::bounds::{self, Operand};
 /// The rows of all sums of `y+` and the weights, and their format. Torques are in units of `2^arm_exponent` N m.
 pub(super) fn quantise(
     ten: &ReducedMatrices,
-    coefficient_bits: u32,
-    data_bits: u32,
+    factors: Factors,
     weights: Operand,
     arm_exponent: i32,
 ) -> Result<(QuantisedMatrix, Format), PlanError> {
@@ -39,9 +38,9 @@ pub(super) fn quantise(
     for (p, share) in (2..).zip(shares) {
         put(SHARE_ROW, sum_way(p, 0), &share.weights, unit(p));
     }
-    let matrix = QuantisedMatrix::new("sums", &rows, coefficient_bits, weights.folded.bound, ANY_LSB)?;
+    let matrix = QuantisedMatrix::new("sums", &rows, factors, weights.folded.bound, ANY_LSB)?;
     let term = [(&matrix, weights)];
-    let mut format = bounds::finest(term, data_bits, |lsb| bounds::folded(term[0], lsb));
+    let mut format = bounds::finest(term, factors.data_bits, |lsb| bounds::folded(term[0], lsb));
     // G30 is a row's result less the sum of the weights, and so are T_x's and T_y's.
     while 2 * format.bound > largest(format.bits) {
         format.lsb += 1;

@@ -134,6 +134,7 @@ pub fn cores() -> Vec<(String, String)> {
     let multipliers = ["sptfra_mac", "sptfra_multiply"];
     let mut all = of(Multiplier::Whole, &common, "");
     all.extend(of(Multiplier::Whole, &multipliers, ""));
+    all.extend(of(Multiplier::Whole, &["sptfra_mac_wide", "sptfra_multiply_wide"], ""));
     all.extend(of(Multiplier::Split, &multipliers, "_ecp5"));
     all
 }

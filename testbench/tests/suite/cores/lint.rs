@@ -81,6 +81,19 @@ fn a_product_becomes_one_dsp_block_without_being_narrowed() -> Result<(), Box<dy
             succeed(tools::yosys()?.args(["-q", "-p", &script]).current_dir(&folder))?;
         }
     }
+    for module in ["sptfra_mac_wide", "sptfra_multiply_wide"] {
+        let synth = format!("synth_xilinx -family xcup -noiopad -noclkbuf -flatten -top {module}");
+        for way in [
+            format!("{synth} -run :coarse"),
+            format!("{synth} -run :prepare; {WITHOUT_NARROWING}; {synth} -run map_dsp:coarse"),
+        ] {
+            let script = format!(
+                "read_verilog {module}.v; {way}; select -assert-count 2 t:DSP48E2; \
+                                  select -assert-none t:$mul t:$__soft_mul t:$macc_v2"
+            );
+            succeed(tools::yosys()?.args(["-q", "-p", &script]).current_dir(&folder))?;
+        }
+    }
     for module in ["sptfra_mac_ecp5", "sptfra_multiply_ecp5"] {
         let script = format!(
             "read_verilog {module}.v; synth_ecp5 -top {module} -run :map_ram; select -assert-count 2 t:MULT18X18D"

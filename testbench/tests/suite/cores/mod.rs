@@ -20,8 +20,10 @@ fn played(module: &str) -> &'static Played {
         let runs: Vec<Run> = vec![
             streaming::mac("sptfra_mac"),
             streaming::mac("sptfra_mac_ecp5"),
+            streaming::mac_wide("sptfra_mac_wide"),
             streaming::multiply("sptfra_multiply"),
             streaming::multiply("sptfra_multiply_ecp5"),
+            streaming::multiply_wide("sptfra_multiply_wide"),
             streaming::axis_skid(),
             streaming::row_sequencer(),
             iterative::divider(),
@@ -49,9 +51,15 @@ fn mac_accumulates_as_its_reference() {
 }
 
 #[test]
+fn a_wide_mac_rounds_each_product() {
+    played("sptfra_mac_wide").check(15_000);
+}
+
+#[test]
 fn multipliers_multiply_in_one_piece_and_in_two() {
     streaming::check_products(played("sptfra_multiply"));
     streaming::check_products(played("sptfra_multiply_ecp5"));
+    streaming::check_products(played("sptfra_multiply_wide"));
 }
 
 #[test]

@@ -2,14 +2,16 @@
 
 use std::collections::VecDeque;
 
+use hdl_gen::cores::DROPPED_BITS;
 use hdl_gen::cores::axis_skid::CAPACITY;
 use hdl_gen::cores::mac::{LATENCY, accumulate};
 use hdl_gen::cores::multiply::multiply as product;
 use hdl_gen::cores::row_sequencer::{Product, products, row_word};
+use hdl_gen::plan::matrix::product as rounded_product;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::bench::{Played, Run};
+use super::bench::{Played, Port, Run};
 
 fn bits(flag: bool) -> u64 {
     u64::from(flag)
@@ -17,14 +19,26 @@ fn bits(flag: bool) -> u64 {
 
 /// Both forms of the lane: they have the same reference and the same cycles.
 pub fn mac(module: &'static str) -> Run {
-    let mut run = Run::new(
-        module,
-        &[("reset", 1), ("valid", 1), ("first", 1), ("coefficient", 18), ("data", 27)],
-        &[("accumulator", 48)],
-    );
+    const INPUTS: &[Port] = &[("reset", 1), ("valid", 1), ("first", 1), ("coefficient", 18), ("data", 27)];
+    lane(module, INPUTS, |sum, first, [coefficient, data]| accumulate(sum, first, coefficient as i32, data as i32))
+}
+
+/// The lane of two multipliers.
+pub fn mac_wide(module: &'static str) -> Run {
+    const INPUTS: &[Port] = &[("reset", 1), ("valid", 1), ("first", 1), ("coefficient", 27), ("data", 35)];
+    lane(module, INPUTS, |sum, first, [coefficient, data]| {
+        let product = rounded_product(coefficient as i32, data, DROPPED_BITS);
+        ((if first { 0 } else { sum }) + product) << 16 >> 16
+    })
+}
+
+/// A lane, and what makes the next sum of the last one, whether it starts anew, and both operands.
+fn lane(module: &'static str, inputs: &'static [Port], next: impl Fn(i64, bool, [i64; 2]) -> i64) -> Run {
+    let mut run = Run::new(module, inputs, &[("accumulator", 48)]);
+    let widths = [inputs[3].1, inputs[4].1];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     // Products on their way; the accumulator shows one after LATENCY cycles.
-    let mut pipeline: VecDeque<Option<(bool, i32, i32)>> = vec![None; LATENCY as usize - 1].into();
+    let mut pipeline: VecDeque<Option<(bool, [i64; 2])>> = vec![None; LATENCY as usize - 1].into();
     let mut accumulator: Option<i64> = None;
     for cycle in 0..40_000 {
         let reset = cycle < 3 || rng.random_ratio(1, 2_000);
@@ -32,21 +46,24 @@ pub fn mac(module: &'static str) -> Run {
         let valid = rng.random_bool([1.0, 0.6, 0.1][phase % 3]);
         // In some phases no sum ever starts anew, so that the accumulator wraps.
         let first = phase % 4 != 3 && rng.random_bool([0.1, 0.5, 1.0, 0.0][phase % 4]);
-        let (coefficient, data) = match rng.random_range(0..4) {
-            0 => (-(1 << 17), -(1 << 26)),
-            1 => {
-                let corners = [0, 1, -1, i32::MAX, i32::MIN];
-                (corners[rng.random_range(0..5)] >> 14, corners[rng.random_range(0..5)] >> 5)
+        let kind = rng.random_range(0..4);
+        let operands = widths.map(|bits| {
+            let least = -1_i64 << (bits - 1);
+            // The ends, and those of what two multipliers halve.
+            let corners = [0, 1, -1, least, -least - 1, 1 << 16, (1 << 16) - 1, (1 << 17) - 1, -1 << 17];
+            match kind {
+                0 => least,
+                1 => corners[rng.random_range(0..corners.len())],
+                _ => rng.random::<i64>() >> (64 - bits),
             }
-            _ => (rng.random::<i32>() >> 14, rng.random::<i32>() >> 5),
-        };
-        let inputs = [bits(reset), bits(valid), bits(first), coefficient as u64, data as u64];
+        });
+        let inputs = [bits(reset), bits(valid), bits(first), operands[0] as u64, operands[1] as u64];
         run.push(&inputs, &[accumulator.map(|value| value as u64)]);
-        pipeline.push_back((valid && !reset).then_some((first, coefficient, data)));
-        if let Some((first, coefficient, data)) = pipeline.pop_front().flatten()
+        pipeline.push_back((valid && !reset).then_some((first, operands)));
+        if let Some((first, operands)) = pipeline.pop_front().flatten()
             && (first || accumulator.is_some())
         {
-            accumulator = Some(accumulate(accumulator.unwrap_or(0), first, coefficient, data));
+            accumulator = Some(next(accumulator.unwrap_or(0), first, operands));
             run.results += 1;
         }
         if reset {
@@ -59,15 +76,24 @@ pub fn mac(module: &'static str) -> Run {
 
 /// Both forms of the multiplier: the sum of its outputs is compared by [`check_products`].
 pub fn multiply(module: &'static str) -> Run {
-    let mut run = Run::new(module, &[("enable", 1), ("coefficient", 18), ("data", 27)], &[("low", 45), ("high", 45)]);
+    factors(Run::new(module, &[("enable", 1), ("coefficient", 18), ("data", 27)], &[("low", 45), ("high", 45)]))
+}
+
+/// Two multipliers.
+pub fn multiply_wide(module: &'static str) -> Run {
+    factors(Run::new(module, &[("enable", 1), ("coefficient", 18), ("data", 35)], &[("low", 53), ("high", 53)]))
+}
+
+fn factors(mut run: Run) -> Run {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
+    let widths = [run.inputs[1].1, run.inputs[2].1];
     for _ in 0..20_000 {
-        let mut operand = |bits: u32| {
-            let corners = [0, 1, -1, i32::MAX, i32::MIN, 1 << 31 >> 9, 0x1_ffff << 5];
-            let value = if rng.random_bool(0.3) { corners[rng.random_range(0..7)] } else { rng.random::<i32>() };
-            (value >> (32 - bits)) as u64
-        };
-        let (coefficient, data) = (operand(18), operand(27));
+        let [coefficient, data] = widths.map(|bits| {
+            let least = -1_i64 << (bits - 1);
+            let corners = [0, 1, -1, least, -least - 1, -1 << 17, (1 << 17) - 1];
+            let corner = rng.random_bool(0.3).then(|| corners[rng.random_range(0..corners.len())]);
+            corner.unwrap_or_else(|| rng.random::<i64>() >> (64 - bits)) as u64
+        });
         run.push(&[bits(rng.random_bool(0.8)), coefficient, data], &[None, None]);
     }
     run
@@ -78,15 +104,18 @@ pub fn check_products(played: &Played) {
     let [enable, coefficient, data] = ["enable", "coefficient", "data"].map(|name| played.input(name));
     let [low, high] = ["low", "high"].map(|name| played.output(name));
     let signed = |value: u64, bits: u32| (value << (64 - bits)).cast_signed() >> (64 - bits);
+    let (inputs, bits) = (played.run.inputs, played.run.outputs[0].1);
     let mut expected = None;
     let mut compared = 0;
     for i in 0..low.len() {
         if let Some(expected) = expected {
-            assert_eq!(signed(low[i].wrapping_add(high[i]), 45), expected, "cycle {i}");
+            assert_eq!(signed(low[i].wrapping_add(high[i]), bits), expected, "cycle {i}");
             compared += 1;
         }
         if enable[i] == 1 {
-            expected = Some(product(signed(coefficient[i], 18) as i32, signed(data[i], 27) as i32));
+            let [left, right] = [signed(coefficient[i], inputs[1].1), signed(data[i], inputs[2].1)];
+            let in_one = i32::try_from(right).map(|right| product(left as i32, right));
+            expected = Some(in_one.unwrap_or(left * right));
         }
     }
     assert!(compared > 15_000, "{compared}");

@@ -28,6 +28,7 @@ fn designs() -> Vec<Design> {
     "narrow".clone_into(&mut narrow.name);
     narrow.hardware.coefficient_bits = 8;
     narrow.hardware.data_bits = 16;
+    let [long, long_beats, long_vectors] = long();
     let mut broken = by_plan(shipped("odd"), reduced, Outputs::Field);
     "broken".clone_into(&mut broken.name);
     let taxels = broken.sensor.taxels();
@@ -113,11 +114,32 @@ fn designs() -> Vec<Design> {
         shipped("sensor1-fast"),
         shipped("sensor2-wide"),
         uncorrected,
+        long,
+        long_beats,
+        long_vectors,
         broken,
         curved,
         with_lanes(shipped("sensor1-f1-l40"), 64),
         narrow,
     ]
+}
+
+/// Words of two multipliers a lane: all their bits, scaled by each frame's largest stress; in beats of several samples,
+/// bodies counted; vectors that are long beside short coefficients.
+fn long() -> [Design; 3] {
+    let mut long = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
+    (long.hardware.coefficient_bits, long.hardware.data_bits) = (27, 35);
+    let [mut beats, mut vectors] = [long.clone(), long.clone()];
+    "long".clone_into(&mut long.name);
+    long.hardware.range = InputRange::Frame;
+    "long_beats".clone_into(&mut beats.name);
+    beats.hardware.stream_bits = 128;
+    beats.algorithm.count_bodies = true;
+    "long_vectors".clone_into(&mut vectors.name);
+    (vectors.hardware.coefficient_bits, vectors.hardware.data_bits) = (9, 30);
+    vectors.hardware.skip_zeros = true;
+    vectors.algorithm.estimator = Estimator::Joint;
+    [long, beats, vectors]
 }
 
 /// A curve in the banks, behind a map of dead taxels and not, of integers and of floats, with the widest room.

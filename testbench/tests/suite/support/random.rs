@@ -99,6 +99,11 @@ impl Shape {
         };
         // Compiling takes longer the more lanes there are.
         let lanes = if random.random_bool(0.7) { random.random_range(1..=16) } else { random.random_range(17..=64) };
+        let (mut coefficient_bits, mut data_bits) = (random.random_range(8..=18), random.random_range(16..=27));
+        // Sometimes words of two multipliers a lane.
+        if kind != Kind::Paper && random.random_bool(0.2) {
+            (coefficient_bits, data_bits) = (random.random_range(8..=27), random.random_range(29..=35));
+        }
         Self {
             kind,
             columns,
@@ -107,8 +112,8 @@ impl Shape {
             depth_mm: (spacing * random.random_range(0.3..1.5) * 1000.0).round() / 1000.0,
             filter,
             lanes: if kind == Kind::Paper { lanes } else { 4 * usize::div_ceil(lanes, 4) },
-            coefficient_bits: random.random_range(8..=18),
-            data_bits: random.random_range(16..=27),
+            coefficient_bits,
+            data_bits,
             full_scale_pa: 10_f64.powi(random.random_range(3..=6)) * random.random_range(1.0..9.0_f64).round(),
         }
     }

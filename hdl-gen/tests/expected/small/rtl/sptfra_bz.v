@@ -17,7 +17,7 @@ module sptfra_bz #(
     parameter ROWS = 10,
     // 4: folded into parity classes; 1: as they are
     parameter WAYS = 4,
-    // Bits of a stress
+    // Bits of a stress, 27 at most, and of what the lanes read: as many, or 29 and more where taxels are folded
     parameter DATA_BITS = 27,
     // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts; with PER_TAXEL
     // each taxel has an exponent of its own
@@ -84,6 +84,7 @@ module sptfra_bz #(
 
     localparam TAXELS = COLUMNS * ROWS;
     localparam INDEX_WIDTH = $clog2(TAXELS + 1);
+    localparam STRESS_BITS = (DATA_BITS < 27) ? DATA_BITS : 27;
     localparam NUMBER_STAGES = 5;
     localparam CURVE_STAGES = (CURVE_LEVELS != 0) ? NUMBER_STAGES + CURVE_LEVELS + 7 : NUMBER_STAGES;
     localparam STAGES = (COUNTS != 0) ? CURVE_STAGES + 4 : CURVE_STAGES;
@@ -95,8 +96,8 @@ module sptfra_bz #(
         if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
             sptfra_error_ways_must_be_1_or_4 invalid ();
         end
-        if ((DATA_BITS < 16) || (DATA_BITS > 27)) begin : gen_check_data
-            sptfra_error_data_bits_must_be_16_to_27 invalid ();
+        if ((DATA_BITS < 16) || (DATA_BITS > ((WAYS == 4) ? 35 : 27))) begin : gen_check_data
+            sptfra_error_data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded invalid ();
         end
         if ((EXPECTED_STAGES != 0) && (EXPECTED_STAGES != STAGES)) begin : gen_check_stages
             sptfra_error_the_plan_counts_on_other_stages invalid ();
@@ -135,7 +136,6 @@ module sptfra_bz #(
     reg [STAGES:1] stores;
     reg [STAGES:1] lasts;
     reg [STAGES:1] bad_lengths;
-
     wire dead_busy;
 
     assign pipe_busy = (valid != {STAGES{1'b0}}) || dead_busy;
@@ -246,13 +246,13 @@ module sptfra_bz #(
 
     // ---- Write
     wire taxel_valid = whole_valid && whole_store;
-
     generate
         if (WAYS == 4) begin : gen_fold
             sptfra_fold #(
-                .COLUMNS   (COLUMNS),
-                .ROWS      (ROWS),
-                .DATA_BITS (DATA_BITS)
+                .COLUMNS     (COLUMNS),
+                .ROWS        (ROWS),
+                .STRESS_BITS (STRESS_BITS),
+                .DATA_BITS   (DATA_BITS)
             ) fold (
                 .clock         (clock),
                 .reset         (reset),
@@ -260,7 +260,7 @@ module sptfra_bz #(
                 .in_valid      (whole_valid),
                 .in_store      (whole_store),
                 .in_last       (whole_last),
-                .in_stress     (fixed[DATA_BITS-1:0]),
+                .in_stress     (fixed[STRESS_BITS-1:0]),
                 .write_valid   (write_valid),
                 .write_bank    (write_bank),
                 .write_quad    (write_row),
@@ -274,7 +274,7 @@ module sptfra_bz #(
             assign write_valid = taxel_valid;
             assign write_bank = bank;
             assign write_row = taxel;
-            assign write_data = fixed[DATA_BITS-1:0];
+            assign write_data = fixed[STRESS_BITS-1:0];
             assign frame_written = frame_done;
 
             always @(posedge clock) begin

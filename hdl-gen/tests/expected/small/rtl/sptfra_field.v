@@ -13,7 +13,7 @@ module sptfra_field #(
     // Taxels in x and y
     parameter COLUMNS = 10,
     parameter ROWS = 10,
-    // Bits of A_p r and of |w|
+    // Bits of A_p r and of |w|: up to 27, or up to 35 by two multipliers
     parameter DATA_BITS = 27,
     // Left shifts of A_p r, and of |w| times a friction component, to the step of the force
     parameter FORCE_SHIFT = 0,
@@ -49,8 +49,13 @@ module sptfra_field #(
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
             sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
         end
+        if (DATA_BITS > 35) begin : gen_check_data
+            sptfra_error_data_bits_must_be_up_to_35 invalid ();
+        end
     endgenerate
 
+    localparam FACTOR_BITS = (DATA_BITS > 27) ? 35 : 27;
+    localparam PRODUCT_BITS = FACTOR_BITS + 18;
     localparam FORCE_DEPTH = 6 * QUADS;
     localparam FORCE_WIDTH = $clog2(FORCE_DEPTH);
     localparam QUAD_COLUMNS = (COLUMNS + 1) / 2;
@@ -219,29 +224,39 @@ module sptfra_field #(
     reg signed [DATA_BITS-1:0] weight_4;
     reg signed [DATA_BITS-1:0] force_4;
     reg signed [DATA_BITS-1:0] force_5;
-    wire signed [26:0] weight_wide;
-    wire signed [44:0] product_low_5; // the product is their sum
-    wire signed [44:0] product_high_5;
+    wire signed [FACTOR_BITS-1:0] weight_wide;
+    wire signed [PRODUCT_BITS-1:0] product_low_5; // the product is their sum
+    wire signed [PRODUCT_BITS-1:0] product_high_5;
     wire signed [63:0] force_wide = {{(64-DATA_BITS){force_5[DATA_BITS-1]}}, force_5};
-    wire signed [63:0] product_low = {{19{product_low_5[44]}}, product_low_5};
-    wire signed [63:0] product_high = {{19{product_high_5[44]}}, product_high_5};
+    wire signed [63:0] product_low = {{(64-PRODUCT_BITS){product_low_5[PRODUCT_BITS-1]}}, product_low_5};
+    wire signed [63:0] product_high = {{(64-PRODUCT_BITS){product_high_5[PRODUCT_BITS-1]}}, product_high_5};
     genvar place;
     generate
-        for (place = 0; place < 27; place = place + 1) begin : gen_weight
+        for (place = 0; place < FACTOR_BITS; place = place + 1) begin : gen_weight
             assign weight_wide[place] = weight_4[(place < DATA_BITS) ? place : DATA_BITS - 1];
+        end
+        if (DATA_BITS > 27) begin : gen_two_multipliers
+            sptfra_multiply_wide multiplier (
+                .clock       (clock),
+                .enable      (enable),
+                .coefficient (share_4),
+                .data        (weight_wide),
+                .low         (product_low_5),
+                .high        (product_high_5)
+            );
+        end else begin : gen_multiplier
+            sptfra_multiply multiplier (
+                .clock       (clock),
+                .enable      (enable),
+                .coefficient (share_4),
+                .data        (weight_wide),
+                .low         (product_low_5),
+                .high        (product_high_5)
+            );
         end
     endgenerate
 
     assign force_value = (force_wide <<< FORCE_SHIFT) + (product_low <<< SHARE_SHIFT) + (product_high <<< SHARE_SHIFT);
-
-    sptfra_multiply multiplier (
-        .clock       (clock),
-        .enable      (enable),
-        .coefficient (share_4),
-        .data        (weight_wide),
-        .low         (product_low_5),
-        .high        (product_high_5)
-    );
 
     always @(posedge clock) begin
         if (enable) begin

@@ -6,7 +6,7 @@
 // A quad is a taxel and its mirror images in x, in y and in both; class c of it is their sum with the signs of
 // parity: even and even, odd in x, odd in y, odd in both. First each row folds onto its left half, then the lower rows
 // onto the upper ones: a quad is complete with the last of its four taxels. Taxel to quad: 3 cycles.
-// A class has the bits of a stress, and four times its step.
+// A class has the bits of a stress and four times its step; or, where there is room for the sum of four, its step.
 
 `default_nettype none
 
@@ -14,7 +14,8 @@ module sptfra_fold #(
     // Taxels in x and y
     parameter COLUMNS = 10,
     parameter ROWS = 10,
-    // Bits of a stress
+    // Bits of a stress, and of a class: as many, or two more, or beyond
+    parameter STRESS_BITS = 27,
     parameter DATA_BITS = 27,
     // Derived
     parameter QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
@@ -27,7 +28,7 @@ module sptfra_fold #(
     input  wire in_valid,
     input  wire in_store, // a taxel of the frame, rather than what follows a frame that is too long
     input  wire in_last,
-    input  wire signed [DATA_BITS-1:0] in_stress,
+    input  wire signed [STRESS_BITS-1:0] in_stress,
     // Operand memories
     output wire write_valid,
     output wire write_bank,
@@ -36,6 +37,8 @@ module sptfra_fold #(
     output wire frame_written // the frame is complete
 );
 
+    localparam SUM_BITS = STRESS_BITS + 2;
+    localparam DROPPED = (DATA_BITS < SUM_BITS) ? 2 : 0; // bits of a sum
     localparam LAST_TO_WRITTEN = 3; // cycles, which simulations check of a frame that flows
     localparam QUAD_COLUMNS = (COLUMNS + 1) / 2;
     localparam QUAD_ROWS = (ROWS + 1) / 2;
@@ -90,14 +93,14 @@ module sptfra_fold #(
     end
 
     // ---- Stage 1: the row onto its left half
-    (* ram_style = "distributed" *) reg signed [DATA_BITS-1:0] left [0:QUAD_COLUMNS-1];
-    wire signed [DATA_BITS-1:0] partner = centre_column ? in_stress : left[opposite[QUAD_X_WIDTH-1:0]];
+    (* ram_style = "distributed" *) reg signed [STRESS_BITS-1:0] left [0:QUAD_COLUMNS-1];
+    wire signed [STRESS_BITS-1:0] partner = centre_column ? in_stress : left[opposite[QUAD_X_WIDTH-1:0]];
     reg [3:1] valid;
     reg [3:1] lasts;
     reg [2:1] lower;
     reg [2:1] centre;
-    reg signed [DATA_BITS:0] even_1;
-    reg signed [DATA_BITS:0] odd_1;
+    reg signed [STRESS_BITS:0] even_1;
+    reg signed [STRESS_BITS:0] odd_1;
     reg [ROW_WIDTH-1:0] quad_1;
 
     always @(posedge clock) begin
@@ -105,8 +108,8 @@ module sptfra_fold #(
             left[column[QUAD_X_WIDTH-1:0]] <= in_stress;
         end
         if (advance) begin
-            even_1 <= {partner[DATA_BITS-1], partner} + {in_stress[DATA_BITS-1], in_stress};
-            odd_1 <= {partner[DATA_BITS-1], partner} - {in_stress[DATA_BITS-1], in_stress};
+            even_1 <= {partner[STRESS_BITS-1], partner} + {in_stress[STRESS_BITS-1], in_stress};
+            odd_1 <= {partner[STRESS_BITS-1], partner} - {in_stress[STRESS_BITS-1], in_stress};
             quad_1 <= row_base + opposite_wide[ROW_WIDTH-1:0];
             lower[1] <= lower_half;
             centre[1] <= centre_row;
@@ -114,15 +117,15 @@ module sptfra_fold #(
     end
 
     // ---- Stages 2 and 3: the lower rows onto the upper ones
-    wire signed [DATA_BITS:0] upper_even;
-    wire signed [DATA_BITS:0] upper_odd;
-    reg signed [DATA_BITS:0] even_2;
-    reg signed [DATA_BITS:0] odd_2;
+    wire signed [STRESS_BITS:0] upper_even;
+    wire signed [STRESS_BITS:0] upper_odd;
+    reg signed [STRESS_BITS:0] even_2;
+    reg signed [STRESS_BITS:0] odd_2;
     reg [ROW_WIDTH-1:0] quad_2;
     reg [ROW_WIDTH-1:0] quad_3;
 
     sptfra_ram #(
-        .WIDTH         (2 * DATA_BITS + 2),
+        .WIDTH         (2 * STRESS_BITS + 2),
         .DEPTH         (UPPER_DEPTH),
         .ADDRESS_WIDTH (ROW_WIDTH)
     ) upper (
@@ -135,17 +138,17 @@ module sptfra_fold #(
         .read_data     ({upper_odd, upper_even})
     );
 
-    localparam signed [DATA_BITS+1:0] HALF = 2; // half a step of the result, for the rounding
-    wire signed [DATA_BITS+1:0] even_above = centre[2] ? {even_2[DATA_BITS], even_2}
-        : {upper_even[DATA_BITS], upper_even};
-    wire signed [DATA_BITS+1:0] odd_above = centre[2] ? {odd_2[DATA_BITS], odd_2}
-        : {upper_odd[DATA_BITS], upper_odd};
-    wire signed [DATA_BITS+1:0] even_below = {even_2[DATA_BITS], even_2};
-    wire signed [DATA_BITS+1:0] odd_below = {odd_2[DATA_BITS], odd_2};
-    reg signed [DATA_BITS+1:0] sum_0;
-    reg signed [DATA_BITS+1:0] sum_1;
-    reg signed [DATA_BITS+1:0] sum_2;
-    reg signed [DATA_BITS+1:0] sum_3;
+    localparam signed [SUM_BITS-1:0] HALF = DROPPED; // half a step of the result, for the rounding
+    wire signed [SUM_BITS-1:0] even_above = centre[2] ? {even_2[STRESS_BITS], even_2}
+        : {upper_even[STRESS_BITS], upper_even};
+    wire signed [SUM_BITS-1:0] odd_above = centre[2] ? {odd_2[STRESS_BITS], odd_2}
+        : {upper_odd[STRESS_BITS], upper_odd};
+    wire signed [SUM_BITS-1:0] even_below = {even_2[STRESS_BITS], even_2};
+    wire signed [SUM_BITS-1:0] odd_below = {odd_2[STRESS_BITS], odd_2};
+    reg signed [SUM_BITS-1:0] sum_0;
+    reg signed [SUM_BITS-1:0] sum_1;
+    reg signed [SUM_BITS-1:0] sum_2;
+    reg signed [SUM_BITS-1:0] sum_3;
     reg bank;
 
     always @(posedge clock) begin
@@ -176,8 +179,20 @@ module sptfra_fold #(
     assign write_valid = valid[3];
     assign write_bank = bank;
     assign write_quad = quad_3;
-    assign write_data = {sum_3[DATA_BITS+1:2], sum_2[DATA_BITS+1:2], sum_1[DATA_BITS+1:2], sum_0[DATA_BITS+1:2]};
     assign frame_written = lasts[3] && advance;
+
+    wire [4*SUM_BITS-1:0] sums = {sum_3, sum_2, sum_1, sum_0};
+    genvar parity;
+    genvar place;
+    generate
+        for (parity = 0; parity < 4; parity = parity + 1) begin : gen_classes
+            for (place = 0; place < DATA_BITS; place = place + 1) begin : gen_bits
+                localparam OF_SUM = (place + DROPPED < SUM_BITS) ? place + DROPPED : SUM_BITS - 1;
+
+                assign write_data[DATA_BITS*parity+place] = sums[SUM_BITS*parity+OF_SUM];
+            end
+        end
+    endgenerate
 
     sptfra_check_latency #(
         .CYCLES (LAST_TO_WRITTEN)
@@ -188,7 +203,7 @@ module sptfra_fold #(
         .done  (frame_written)
     );
 
-    wire _unused = &{1'b0, sum_0[1:0], sum_1[1:0], sum_2[1:0], sum_3[1:0], opposite_wide};
+    wire _unused = &{1'b0, sums, opposite_wide};
 
 endmodule
 

@@ -11,7 +11,7 @@ module sptfra_spmv_array #(
     // Lanes, and multiply-accumulates of each in a cycle: 1, or 4 parity classes
     parameter LANES = 4,
     parameter WAYS = 4,
-    // Bits of a coefficient, at most 18, and of an operand, at most 27
+    // Bits of a coefficient, at most 27, and of an operand, at most 35
     parameter COEFFICIENT_BITS = 18,
     parameter DATA_BITS = 27,
     // Elements of a vector: taxels, or quads of a folded grid

@@ -13,7 +13,7 @@
 module sptfra_spmv_lane #(
     // Multiply-accumulates a cycle: 1, or 4 parity classes
     parameter WAYS = 4,
-    // Bits of a coefficient, at most 18, and of an operand, at most 27; the accumulator has 48
+    // Bits of a coefficient, at most 27, and of an operand, at most 35; the accumulator has 48
     parameter COEFFICIENT_BITS = 18,
     parameter DATA_BITS = 27,
     // Elements of a vector: taxels, or quads of a folded grid
