@@ -3,6 +3,7 @@
 //! The frames go through in batches, each on a core of its own, with pauses and resets drawn from the seed and the
 //! batch's number: the same options give the same cycles on every machine, however many threads there are.
 
+pub mod banks;
 mod judge;
 mod packets;
 
