@@ -12,7 +12,7 @@ use crate::plan::gain::GAIN_BITS;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 
-use super::{Parameters, bz, latency};
+use super::{Parameters, latency};
 
 /// Modules of a calibration in the core; the third and fourth only with a map of dead taxels, the last two with a curve.
 const MODULES: [&str; 6] = [
@@ -60,7 +60,7 @@ fn of_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
         .number("CURVE_NUMBER_SHIFT", map.format.exponent.into())
         .number("CURVE_VALUE_LSB", map.format.lsb.into())
         .expression("CURVE_COUNT", format!("7'd{}", map.curve.segments.len()))
-        .expression("CURVE_KNOTS", bz::numbers(&knots.collect::<Vec<_>>()))
+        .numbers("CURVE_KNOTS", LONG_BITS, &knots.collect::<Vec<_>>())
         .wide("CURVE_LAST", LONG_BITS, map.curve.last)
         .wide("CURVE_LAST_VALUE", LONG_BITS, map.end)
         .cycles("EXPECTED_CURVE", latency::curve_in_ram(map.format.levels()))
