@@ -41,7 +41,6 @@ module sptfra_curve_check (
     reg falls;
     wire [46:0] rounded = {1'b0, product} + 47'd1;
     wire signed [46:0] half = {1'b0, rounded[46:1]};
-    wire _unused = &{1'b0, rounded[0]};
     wire [27:0] distance = way[27] ? -way : way;
     wire signed [47:0] allowed = {20'd0, tolerance};
 
@@ -92,6 +91,8 @@ module sptfra_curve_check (
             falls <= 1'b0;
         end
     end
+
+    wire _unused = &{1'b0, rounded[0]};
 
 endmodule
 
