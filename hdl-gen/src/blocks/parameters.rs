@@ -53,12 +53,18 @@ impl Parameters {
             let values: Vec<String> = entries.iter().rev().map(|(value, _)| format!("{bits}'d{value}")).collect();
             return self.expression(name, format!("{{{}}}", values.join(", ")));
         }
+        // Of entries without a comment those that are alike stand in one line.
         let mut text = "{".to_owned();
-        for (index, (value, comment)) in entries.iter().enumerate().rev() {
-            let comma = if index == 0 { "" } else { "," };
-            let comment = if comment.is_empty() { String::new() } else { format!(" // {index}: {comment}") };
+        let mut left = entries;
+        while let Some(((value, comment), before)) = left.split_last() {
+            let is_alike = |entry: &&(u64, String)| comment.is_empty() && entry.1.is_empty() && entry.0 == *value;
+            let alike = 1 + before.iter().rev().take_while(is_alike).count();
+            left = &left[..left.len() - alike];
+            let comma = if left.is_empty() { "" } else { "," };
+            let number = if alike > 1 { format!("{{{alike}{{{bits}'d{value}}}}}") } else { format!("{bits}'d{value}") };
+            let comment = if comment.is_empty() { String::new() } else { format!(" // {}: {comment}", left.len()) };
             // Writing to a string cannot fail.
-            let _ = write!(text, "\n            {bits}'d{value}{comma}{comment}");
+            let _ = write!(text, "\n            {number}{comma}{comment}");
         }
         self.expression(name, text + "\n        }")
     }

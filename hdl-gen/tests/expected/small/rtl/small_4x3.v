@@ -47,13 +47,9 @@ module small_4x3 #(
 
     // ---- Streams
     wire [31:0] in_tdata;
-    wire in_tlast;
-    wire in_tvalid;
-    wire in_tready;
+    wire in_tlast, in_tvalid, in_tready;
     wire [31:0] out_tdata;
-    wire out_tlast;
-    wire out_tvalid;
-    wire out_tready;
+    wire out_tlast, out_tvalid, out_tready;
 
     sptfra_axis_skid skid_in (
         .clock    (aclk),
@@ -94,18 +90,11 @@ module small_4x3 #(
     );
 
     // ---- Bz: stream to fixed point, taxels to parity classes
-    wire frame_ready;
-    wire cean_idle;
-    wire direction_room;
-    wire stress_valid;
+    wire frame_ready, cean_idle, direction_room, stress_valid;
     wire signed [26:0] stress;
-    wire frame_done;
-    wire frame_saturated;
-    wire frame_not_finite;
-    wire frame_bad_length;
+    wire frame_done, frame_saturated, frame_not_finite, frame_bad_length;
     wire [29:0] frame_replaced;
-    wire bz_write;
-    wire bz_write_bank;
+    wire bz_write, bz_write_bank;
     wire [ROW_WIDTH-1:0] bz_write_row;
     wire [VECTOR_BITS-1:0] bz_write_data;
     reg bz_write_ready;
@@ -147,10 +136,9 @@ module small_4x3 #(
     );
 
     // ---- CeAn: what of the frame needs no lanes
-    wire direction_valid;
+    wire direction_valid, no_direction;
     wire direction_take;
     wire signed [26:0] direction_x, direction_y;
-    wire no_direction;
     wire [39:0] stress_sum;
     wire [26:0] largest;
     wire [5:0] frame_flags; // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
@@ -188,22 +176,16 @@ module small_4x3 #(
     );
 
     // ---- Turns: We, Co and Op share one array of lanes
-    wire issued;
-    wire bank, residual_bank, field_bank, u_released, friction_known, field_release;
+    wire issued, bank, residual_bank, field_bank, u_released, friction_known, field_release;
     wire signed [17:0] mu_x, mu_y;
     wire [15:0] result_route;
     wire [ROW_WIDTH-1:0] result_row;
     wire [VECTOR_BITS-1:0] result_value;
-    wire result_last;
-    wire we_write_next, we_write;
-    wire [OPERAND_WIDTH-1:0] we_write_address;
-    wire [VECTOR_BITS-1:0] we_write_data;
-    wire co_write_next, co_write;
-    wire [OPERAND_WIDTH-1:0] co_write_address;
-    wire [VECTOR_BITS-1:0] co_write_data;
+    wire result_last, we_write_next, we_write, co_write_next, co_write;
+    wire [OPERAND_WIDTH-1:0] we_write_address, co_write_address;
+    wire [VECTOR_BITS-1:0] we_write_data, co_write_data;
     wire list_pull;
-    wire [ROW_WIDTH-1:0] list_address;
-    wire [ROW_WIDTH-1:0] list_quad;
+    wire [ROW_WIDTH-1:0] list_address, list_quad;
     wire [ROW_WIDTH+7:0] list_count;
     wire [31:0] bz_row_wide = { {(32-ROW_WIDTH){1'b0}}, bz_write_row};
     wire [OPERAND_WIDTH-1:0] bz_write_address = (bz_write_bank ? 6'd4 : 6'd0) + bz_row_wide[OPERAND_WIDTH-1:0];
@@ -280,10 +262,7 @@ module small_4x3 #(
         .START_VISITS     ({32'd35, 32'd23, 32'd0}),
         .DESTINATION_BITS (4),
         .SHIFTS           ({
-            6'd17,
-            6'd17,
-            6'd17,
-            6'd17,
+            {4{6'd17}},
             6'd17, // 11: A3 r
             6'd19, // 10: A2 r
             6'd20, // 9: A1 r
@@ -322,12 +301,10 @@ module small_4x3 #(
     );
 
     // ---- Unfold: parity classes to taxels
-    wire taxel_y;
-    wire [2:0] taxel_u;
-    wire [2:0] taxel_force;
+    wire taxel_y, taxel_last;
+    wire [2:0] taxel_u, taxel_force;
     wire [ROW_WIDTH-1:0] taxel_row;
     wire [VECTOR_BITS-1:0] taxels;
-    wire taxel_last;
 
     sptfra_unfold #(
         .WAYS      (4),
@@ -390,13 +367,11 @@ module small_4x3 #(
     );
 
     // ---- Co: sums, and what the lanes multiply again
-    wire sums_complete;
-    wire sums_take;
+    wire sums_complete, sums_take, g_last;
     wire [18*40-1:0] sums;
     wire [2:0] g_valid;
     wire [3:0] g_component;
     wire signed [26:0] g;
-    wire g_last;
 
     sptfra_co #(
         .WAYS          (4),
@@ -433,13 +408,8 @@ module small_4x3 #(
     );
 
     // ---- Estimator: friction from u and the sums
-    wire answer_valid;
-    wire answer_take;
-    wire x_is_free;
-    wire signed [17:0] free;
-    wire signed [17:0] other;
-    wire signed [17:0] slope, error_log;
-    wire unknown, at_bound, search_saturated;
+    wire answer_valid, answer_take, x_is_free, unknown, at_bound, search_saturated;
+    wire signed [17:0] free, other, slope, error_log;
     wire [18*40-1:0] answer_sums;
     wire [5:0] answer_flags;
 
@@ -487,8 +457,7 @@ module small_4x3 #(
     );
 
     // ---- Field memory
-    wire signed [17:0] field_mu_x;
-    wire signed [17:0] field_mu_y;
+    wire signed [17:0] field_mu_x, field_mu_y;
     wire field_complete, field_enable, field_rewind, field_step;
     wire signed [63:0] field_value;
 

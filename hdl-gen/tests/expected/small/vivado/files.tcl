@@ -74,14 +74,20 @@ foreach file {
     lappend rom [file join $root rom $file]
 }
 
-# What the generator has counted on: block, its modules, DSP48E2, RAMB36 (a RAMB18 is one half).
+# What the generator has counted on: block, DSP48E2, RAMB36 (a RAMB18 is one half), its modules.
 set predicted {
-    {CeAn {sptfra_cean} 1 0.0}
-    {lanes {sptfra_spmv_array} 4 0.0}
-    {field {sptfra_field sptfra_field_wide sptfra_coefficient_field} 1 0.0}
-    {line {sptfra_line} 1 0.0}
-    {cells {sptfra_search} 4 0.0}
-    {summary {sptfra_summary} 1 0.0}
+    {CeAn 1 0.0
+        {sptfra_cean}}
+    {lanes 4 0.0
+        {sptfra_spmv_array}}
+    {field 1 0.0
+        {sptfra_field sptfra_field_wide sptfra_coefficient_field}}
+    {line 1 0.0
+        {sptfra_line}}
+    {cells 4 0.0
+        {sptfra_search}}
+    {summary 1 0.0
+        {sptfra_summary}}
 }
 
 # The self-checking testbench and its frames.

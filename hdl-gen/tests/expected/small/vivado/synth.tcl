@@ -60,7 +60,7 @@ proc primitives {modules kind} {
 # A multiplier in logic, or a memory tiled otherwise, is seen here and not on the board.
 set differences {}
 foreach block $predicted {
-    lassign $block block_name modules dsp bram36
+    lassign $block block_name dsp bram36 modules
     set found_dsp [primitives $modules DSP48*]
     set found_bram36 [expr {[primitives $modules RAMB36*] + 0.5 * [primitives $modules RAMB18*]}]
     if {$found_dsp != $dsp || $found_bram36 != $bram36} {
