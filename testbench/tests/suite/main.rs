@@ -31,6 +31,7 @@ mod lint;
 mod looking;
 mod netlist;
 mod overrun;
+mod pack_registers;
 mod parameters;
 mod properties;
 mod python;
