@@ -61,9 +61,10 @@ $(TARGET)/trust/small-%.toml: designs/small.toml
 	@sed 's/^name = .*/name = "small_$*"/; s/^\[algorithm\]/&\nplan = "$*"/' $< > $@
 
 .PHONY: stress
-stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan (half an hour)
+stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan, and with banks written among them (an hour)
 	@$(CARGO) build --quiet --release -p testbench
-	@set -e; for design in $(SMALL_DESIGNS); do $(TARGET)/release/testbench stress $$design --frames $(FRAMES_COUNT); done
+	@set -e; for design in $(SMALL_DESIGNS) designs/small-scanner.toml; do \
+		$(TARGET)/release/testbench stress $$design --frames $(FRAMES_COUNT); done
 
 .PHONY: mutants
 mutants: tools $(SMALL_DESIGNS) ## 220 copies with a fault each: which does the comparison not notice? (a quarter of an hour)

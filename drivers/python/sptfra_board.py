@@ -168,8 +168,8 @@ class Sptfra:
 
         The file has a line `gain,offset` for each taxel, as the design's own, or is one of `golden bank`: then the dead
         taxels of its header are replaced, and no others; else those that were. So with the points of a curve, whose
-        offsets are in pascals. With `noise_floor_pa` the thresholds of
-        contact and of rest are set by it, else they stay. What is written is compared by its CRC. Raises ValueError on a
+        offsets are in pascals. `noise_floor_pa` is then that of the frames and of a tare, and the threshold of contact as
+        many times it as there are taxels, as of a design made with it; without it both stay. What is written is compared by its CRC. Raises ValueError on a
         file or values that no bank takes, RuntimeError if the core refuses, TimeoutError; then what acted still does.
         """
         self._needs_calibration()

@@ -3,7 +3,7 @@
 //
 // Bz with a calibration in RAM: counts become pascals by the bank that acts at a frame's first beat
 // (sptfra_calibrate), a tare listens, taxels that the bank says are dead are replaced (sptfra_replace), Bz takes
-// pascals, and threshold and generation of that bank follow the frame (sptfra_frame_calibration).
+// pascals, and thresholds and generation of that bank follow the frame (sptfra_frame_calibration).
 
 `default_nettype none
 
@@ -33,8 +33,9 @@ module sptfra_bz_calibrated #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    // 32-bit words of a beat out: 1, 2 or 4
+    // As of sptfra_frame_calibration
     parameter WORDS = 1,
+    parameter TENSION_READ = 1,
     // Derived
     parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16,
     parameter TAXELS = COLUMNS * ROWS,
@@ -84,29 +85,26 @@ module sptfra_bz_calibrated #(
     input  wire [39:0] stress_sum,
     input  wire [5:0] flags_in,
     output wire [5:0] flags,
+    output wire no_direction,
     input  wire word_taken,
     input  wire word_last,
     input  wire [32*WORDS-1:0] words_in,
     output wire [32*WORDS-1:0] words
 );
 
-    localparam integer STRESS_LSB = -NUMBER_SHIFT;
     // Word of a bank with which dead taxels begin, and the cycles that a frame takes for them
     localparam [31:0] FIRST_OF_DEAD = 2 * TAXELS + 2;
     localparam REPLACING = (REPLACEABLE != 0) ? TAXELS + 6 : 0;
 
-    wire active;
+    wire active, write_gain, write_offset, tare_run;
     wire [7:0] generation;
     wire [31:0] contact;
     wire [26:0] noise;
-    wire write_gain;
-    wire write_offset;
     wire [TAXEL_WIDTH:0] bank_address;
     wire [27:0] gain_in;
     wire [OFFSET_BITS-1:0] offset_in;
-    wire tare_run;
-    wire [3:0] tare_log2;
-    wire [TAXEL_WIDTH-1:0] tare_taxel;
+    wire [3:0] tare_log2, replaced_count;
+    wire [TAXEL_WIDTH-1:0] tare_taxel, reading_taxel_8, reading_taxel;
 
     assign {active, generation, contact, noise} = calibration_acting;
     assign {write_gain, write_offset, bank_address, gain_in, offset_in} = bank_command[TAXEL_WIDTH+OFFSET_BITS+30:0];
@@ -117,11 +115,8 @@ module sptfra_bz_calibrated #(
     wire pascals_tlast, pascals_tvalid, pascals_tready;
     wire frame_begins, bank_held, hold;
     wire reading_valid, reading_marked, reading_last, reading_bad, reading_not_finite, reading_advance;
-    wire [TAXEL_WIDTH-1:0] reading_taxel_8;
-    wire [TAXEL_WIDTH-1:0] reading_taxel;
-    wire signed [26:0] reading;
+    wire signed [26:0] reading, back_stress;
     wire back_valid, back_last, back_not_finite;
-    wire signed [26:0] back_stress;
 
     sptfra_calibrate #(
         .TAXELS          (TAXELS),
@@ -130,7 +125,7 @@ module sptfra_bz_calibrated #(
         .COUNT_SHIFT     (COUNT_SHIFT),
         .FULL_SCALE      (FULL_SCALE),
         .STRESS_BOUND    (STRESS_BOUND),
-        .STRESS_LSB      (STRESS_LSB),
+        .STRESS_LSB      (-NUMBER_SHIFT),
         .ROM_DIR         (ROM_DIR),
         .ROM_NAME        (ROM_NAME),
         .EXPECTED_STAGES ((EXPECTED_CALIBRATION != 0) ? EXPECTED_CALIBRATION - REPLACING : 0)
@@ -174,7 +169,6 @@ module sptfra_bz_calibrated #(
     );
 
     // ---- Dead taxels, of the bank's map
-    wire [3:0] replaced_count;
     wire [29:0] bz_replaced;
 
     generate
@@ -312,18 +306,24 @@ module sptfra_bz_calibrated #(
 
     // ---- What frames keep
     sptfra_frame_calibration #(
-        .WORDS (WORDS)
+        .WORDS        (WORDS),
+        .TENSION_READ (TENSION_READ)
     ) frame_calibration (
         .clock          (clock),
         .reset          (reset),
         .begins         (frame_begins),
         .contact        (contact),
+        .noise          (noise),
         .generation     (generation),
         .replaced       (replaced_count),
+        .stress_valid   (stress_valid),
+        .stress         (stress),
+        .frame_done     (frame_done),
         .direction_take (direction_take),
         .stress_sum     (stress_sum),
         .flags_in       (flags_in),
         .flags          (flags),
+        .no_direction   (no_direction),
         .word_taken     (word_taken),
         .word_last      (word_last),
         .words_in       (words_in),

@@ -4,7 +4,7 @@
 // Bz with a calibration in RAM that has a curve: counts become the curve's pascals (sptfra_count_curve) by the bank
 // that acts at a frame's first beat, then stress by that bank's gains and offsets (sptfra_bz_calibrated).
 //
-// What acted at a frame's first beat, threshold and generation with it, goes with the frame. A tare begins behind the
+// What acted at a frame's first beat, thresholds and generation with it, goes with the frame. A tare begins behind the
 // curve with the first frame that began after its command. The other bank is in use as long as a frame of it is here.
 
 `default_nettype none
@@ -34,6 +34,7 @@ module sptfra_bz_curved #(
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
     parameter WORDS = 1,
+    parameter TENSION_READ = 1,
     // As of sptfra_count_curve and sptfra_curve_bank
     parameter CURVE_LEVELS = 4,
     parameter integer CURVE_NUMBER_SHIFT = 0,
@@ -89,6 +90,7 @@ module sptfra_bz_curved #(
     input  wire [39:0] stress_sum,
     input  wire [5:0] flags_in,
     output wire [5:0] flags,
+    output wire no_direction,
     input  wire word_taken,
     input  wire word_last,
     input  wire [32*WORDS-1:0] words_in,
@@ -193,20 +195,20 @@ module sptfra_bz_curved #(
     );
 
     // ---- What a frame began with, until its last beat has left; four may be here
-    reg [40:0] began [0:3]; // bank, generation, contact
+    reg [67:0] began [0:3]; // bank, generation, contact, noise
     reg [3:0] marks; // a tare was under way
     reg [1:0] newest;
     reg [1:0] oldest;
     reg [2:0] of_bank_0; // frames of it that are here
     reg [2:0] of_bank_1;
     reg tares;
-    wire [40:0] began_with = began[oldest];
+    wire [67:0] began_with = began[oldest];
     wire offered = pascals_tvalid && pascals_begin;
     wire leaves = pascals_tvalid && pascals_tready && pascals_tlast;
-    wire leaves_bank = began_with[40];
+    wire leaves_bank = began_with[67];
     wire tare_here = tare_run && (tares || (offered && marks[oldest]));
     wire in_use;
-    wire [40:0] acting = offered ? began_with : calibration_acting[67:27];
+    wire [67:0] acting = offered ? began_with : calibration_acting;
     wire [29:0] inner_result;
 
     assign calibration_old_in_use = in_use || ((active ? of_bank_0 : of_bank_1) != 3'd0);
@@ -214,7 +216,7 @@ module sptfra_bz_curved #(
 
     always @(posedge clock) begin
         if (frame_begins) begin
-            began[newest] <= calibration_acting[67:27];
+            began[newest] <= calibration_acting;
             marks[newest] <= tare_run;
             newest <= newest + 2'd1;
         end
@@ -282,7 +284,8 @@ module sptfra_bz_curved #(
         .REPLACED_COUNT       (REPLACED_COUNT),
         .REPLACED_SHIFT       (REPLACED_SHIFT),
         .REPLACED_TAXELS      (REPLACED_TAXELS),
-        .WORDS                (WORDS)
+        .WORDS                (WORDS),
+        .TENSION_READ         (TENSION_READ)
     ) calibrated (
         .clock                  (clock),
         .reset                  (reset),
@@ -307,7 +310,7 @@ module sptfra_bz_curved #(
         .frame_ready            (frame_ready),
         .frame_start            (frame_start),
         .frame_release          (frame_release),
-        .calibration_acting     ({acting, calibration_acting[26:0]}),
+        .calibration_acting     (acting),
         .calibration_old_in_use (in_use),
         .bank_command           (inner_command),
         .bank_words             (inner_words),
@@ -317,6 +320,7 @@ module sptfra_bz_curved #(
         .stress_sum             (stress_sum),
         .flags_in               (flags_in),
         .flags                  (flags),
+        .no_direction           (no_direction),
         .word_taken             (word_taken),
         .word_last              (word_last),
         .words_in               (words_in),

@@ -92,6 +92,8 @@ module sptfra_curve_check (
         end
     end
 
+    wire _unused = &{1'b0, rounded[0]};
+
 endmodule
 
 `default_nettype wire

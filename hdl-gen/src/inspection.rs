@@ -4,7 +4,7 @@ use golden::design::Design;
 use golden::kernel;
 use serde_json::{Value, json};
 
-use crate::blocks::bodies;
+use crate::blocks::latency;
 use crate::emit::{nnz, predicted, products};
 use crate::plan::product::Coefficients;
 use crate::plan::savings::savings;
@@ -41,7 +41,7 @@ pub fn several_bodies(plan: &Plan) -> Option<String> {
 pub fn counted_bodies(plan: &Plan) -> Option<String> {
     let Plan { design, .. } = plan;
     (design.algorithm.contacts == 1 && design.algorithm.count_bodies).then(|| {
-        let cycles = bodies::latency(&design.sensor);
+        let cycles = latency::bodies(&design.sensor);
         format!("solved as one, counted in {cycles} cycles beside the search: status bit 7 tells of more than one")
     })
 }
@@ -69,6 +69,9 @@ pub fn figures(plan: &Plan) -> Value {
     });
     if plan.scales_frames() {
         value["range"] = json!(plan.design.hardware.range);
+    }
+    if plan.design.algorithm.count_bodies {
+        value["bodies"] = json!({ "cycles": latency::bodies(sensor) });
     }
     if plan.design.algorithm.contacts > 1 {
         value["contacts"] = plan.design.algorithm.contacts.into();

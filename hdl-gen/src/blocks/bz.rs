@@ -15,9 +15,6 @@ use crate::plan::streams::{Intake, Streams};
 
 use super::{Parameters, calibration, latency};
 
-/// Numbers of [`LONG_BITS`] on a line.
-const KNOTS_PER_LINE: usize = 7;
-
 /// The module.
 pub fn module(plan: &Plan) -> &'static str {
     match plan.streams().intake {
@@ -75,7 +72,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         None => parameters,
     };
     let parameters = match &plan.calibration {
-        Some(of) => calibration::of_frames(parameters, of, streams.words()),
+        Some(of) => calibration::of_frames(parameters, of, streams.words(), plan.design.input.tension),
         None => parameters,
     };
     let parameters = if plan.counts.is_none() && plan.dead.is_none() && plan.calibration.is_none() {
@@ -181,19 +178,10 @@ fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
         .wide("FULL_SCALE", ACCUMULATOR_BITS, counts.full_scale)
 }
 
-/// Numbers of [`LONG_BITS`] in two's complement, the first in the lowest bits, as many on a line as it holds.
-pub fn numbers(numbers: &[i64]) -> String {
-    let unsigned = |number: &i64| number & ((1 << LONG_BITS) - 1);
-    let numbers: Vec<String> =
-        numbers.iter().rev().map(|number| format!("{LONG_BITS}'d{}", unsigned(number))).collect();
-    let lines: Vec<String> = numbers.chunks(KNOTS_PER_LINE).map(|numbers| numbers.join(", ")).collect();
-    format!("{{\n            {}\n        }}", lines.join(",\n            "))
-}
-
 fn of_curve(parameters: Parameters, curve: &CurvePlan) -> Parameters {
     parameters
         .number("CURVE_LEVELS", curve.levels().into())
-        .expression("CURVE_KNOTS", numbers(&curve.knots()))
+        .numbers("CURVE_KNOTS", LONG_BITS, &curve.knots())
         .wide("CURVE_FIRST", LONG_BITS, curve.segments[0].first)
         .wide("CURVE_LAST", LONG_BITS, curve.last)
 }

@@ -1,5 +1,7 @@
 //! A calibration in RAM: `sptfra_calibrate` in the core, the banks' control and its registers beside the core's.
 
+use golden::design::Tension;
+
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
 use crate::plan::calibration::{CalibrationPlan, CurveMap};
@@ -10,7 +12,7 @@ use crate::plan::gain::GAIN_BITS;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 
-use super::{Parameters, bz, latency};
+use super::{Parameters, latency};
 
 /// Modules of a calibration in the core; the third and fourth only with a map of dead taxels, the last two with a curve.
 const MODULES: [&str; 6] = [
@@ -25,13 +27,14 @@ const MODULES: [&str; 6] = [
 const TARE_BITS: u32 = 37 + 2 * LONG_BITS;
 
 /// Parameters of `sptfra_bz_calibrated` that Bz alone has not.
-pub fn of_frames(parameters: Parameters, of: &CalibrationPlan, words: usize) -> Parameters {
+pub fn of_frames(parameters: Parameters, of: &CalibrationPlan, words: usize, tension: Tension) -> Parameters {
     let parameters = parameters
         .number("OFFSET_BITS", of.offset_bits().into())
         .number("COUNT_SHIFT", of.shift.into())
         .wide("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale)
         .cycles("EXPECTED_CALIBRATION", cycles(of))
-        .count("WORDS", words);
+        .count("WORDS", words)
+        .flag("TENSION_READ", tension == Tension::Read);
     let parameters = match &of.power_up.curve {
         Some(curve) => of_curve(parameters, curve),
         None => parameters,
@@ -57,7 +60,7 @@ fn of_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
         .number("CURVE_NUMBER_SHIFT", map.format.exponent.into())
         .number("CURVE_VALUE_LSB", map.format.lsb.into())
         .expression("CURVE_COUNT", format!("7'd{}", map.curve.segments.len()))
-        .expression("CURVE_KNOTS", bz::numbers(&knots.collect::<Vec<_>>()))
+        .numbers("CURVE_KNOTS", LONG_BITS, &knots.collect::<Vec<_>>())
         .wide("CURVE_LAST", LONG_BITS, map.curve.last)
         .wide("CURVE_LAST_VALUE", LONG_BITS, map.end)
         .cycles("EXPECTED_CURVE", latency::curve_in_ram(map.format.levels()))

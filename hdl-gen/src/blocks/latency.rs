@@ -3,6 +3,8 @@
 //! the blocks make of one. `folded` says whether vectors are folded by parity. Cycles of an estimator stand with it,
 //! those of a leaf core in [`crate::cores`].
 
+use golden::sensor::Sensor;
+
 use crate::cores::{axis_skid, cordic, fixed_to_float, float_to_fixed};
 
 // ---- Intake
@@ -118,6 +120,18 @@ pub fn bus_to_sums(folded: bool) -> u64 {
 
 /// From the last visit of the residual to the field's program being allowed.
 pub const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
+
+// ---- The count of bodies
+/// From the last weights of a frame to its count: a step for each taxel and for the end of each row, and the way through
+/// sums and comparisons.
+///
+/// A search has a stage that is longer (the joint estimator's with 15 points a side takes `4 quads + 108`, the others far
+/// longer; it takes `2 quads + 80` with many lanes, where that is longer than the count), and a frame is begun only when
+/// that stage of the one before the last is over. So a count is there before the search, and neither latency nor
+/// interval knows of it.
+pub fn bodies(sensor: &Sensor) -> u64 {
+    ((sensor.columns + 1) * sensor.rows) as u64 + 12
+}
 
 // ---- The estimator and Op
 /// From the last taxels having left the unfolding to their being in the search's cells.

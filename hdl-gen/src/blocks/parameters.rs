@@ -69,6 +69,16 @@ impl Parameters {
         self.expression(name, text + "\n        }")
     }
 
+    /// Numbers of `bits` bits in two's complement, the first in the lowest bits, some on each line.
+    #[must_use]
+    pub fn numbers(self, name: &'static str, bits: u32, numbers: &[i64]) -> Self {
+        const ON_A_LINE: usize = 7;
+        let unsigned = |number: &i64| number & ((1 << bits) - 1);
+        let numbers: Vec<String> = numbers.iter().rev().map(|number| format!("{bits}'d{}", unsigned(number))).collect();
+        let lines: Vec<String> = numbers.chunks(ON_A_LINE).map(|numbers| numbers.join(", ")).collect();
+        self.expression(name, format!("{{\n            {}\n        }}", lines.join(",\n            ")))
+    }
+
     /// One bit each, the first lowest.
     #[must_use]
     pub fn mask(self, name: &'static str, bits: &[bool]) -> Self {

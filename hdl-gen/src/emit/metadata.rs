@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::blocks::bodies;
+use crate::blocks::latency;
 use crate::plan::energy::Energy;
 use crate::plan::product::{Product, Vector};
 use crate::plan::schedule::Window;
@@ -160,7 +160,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         value["range"] = json!(plan.design.hardware.range);
     }
     if plan.design.algorithm.count_bodies {
-        value["bodies"] = json!({ "cycles": bodies::latency(&plan.design.sensor) });
+        value["bodies"] = json!({ "cycles": latency::bodies(&plan.design.sensor) });
     }
     if let Some(dead) = &plan.dead {
         value["dead_taxels"] = json!({ "taxels": dead.taxels, "weight_lsb": -i64::from(dead.shift) });

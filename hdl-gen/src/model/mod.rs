@@ -138,6 +138,11 @@ impl<'plan> Model<'plan> {
         self.plan.dead.as_ref().map_or(of_bank, |dead| dead.taxels.len())
     }
 
+    /// Stress of a taxel that is noise, in steps of what was read: of the bank that acts, where there is one.
+    fn noise_floor(&self) -> i64 {
+        self.bank.as_ref().map_or(self.plan.thresholds.taxel, |bank| i64::from(bank.noise))
+    }
+
     /// One input word as stress.
     fn convert(&self, taxel: usize, word: u32) -> Stress {
         let format = self.plan.formats.stress;
@@ -168,7 +173,7 @@ impl<'plan> Model<'plan> {
         let pushed = summary.friction.iter().map(|mu| mu.abs()).sum::<i64>() >= PULLING;
         if read
             && (pushed || words[words::STATUS] & DIRECTION_UNKNOWN != 0)
-            && stress.iter().all(|&stress| stress <= self.plan.thresholds.taxel)
+            && stress.iter().all(|&stress| stress <= self.noise_floor())
         {
             words[words::STATUS] |= NO_TENSION;
         }
@@ -192,7 +197,8 @@ impl<'plan> Model<'plan> {
         let mut frame = frame(self.plan, integers, &scaled.stress);
         run(self.plan, integers, 0..search, [0, 0], &mut frame);
         let bodies = self.count_bodies(&frame);
-        let (mut words, summary) = scalars(self.plan, counter, scaled, saturated, &frame.sums, &frame.u);
+        let floor = self.noise_floor() << scaled.exponent;
+        let (mut words, summary) = scalars(self.plan, counter, scaled, floor, saturated, &frame.sums, &frame.u);
         words[words::CENSUS] |= bodies;
         words[words::STATUS] |= if bodies > 1 { MORE_BODIES } else { 0 };
         run(self.plan, integers, search..products.len(), summary.friction, &mut frame);
@@ -272,17 +278,17 @@ fn run<'plan, const W: usize>(
 }
 
 /// The words before the field, from the sums `G_pq` and the vectors `u_q` of a frame; what Op found goes with
-/// them.
+/// them. The noise floor is scaled as the frame is.
 fn scalars(
     plan: &Plan,
     counter: u32,
     scaled: &Scaled,
+    noise_floor: i64,
     saturated: bool,
     sums: &ByPq<i64>,
     u: &[Vec<i64>; 3],
 ) -> (Vec<u32>, Summary) {
     let (sensor, stress) = (&plan.design.sensor, scaled.stress.as_slice());
-    let noise_floor = plan.thresholds.taxel << scaled.exponent;
     let found =
         plan.estimator.slot().find(&Seen { sensor, stress, contact: Contact::new(stress), noise_floor, sums, u });
     let summary = Summary::new(sums, found.friction);

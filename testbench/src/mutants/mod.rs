@@ -247,8 +247,8 @@ impl<'a> Ordeal<'a> {
     }
 
     fn stress(&self, built: &Built, batch: u64) -> Result<(), String> {
-        let mut core = built.load((self.options.seed ^ batch) as u32).map_err(|error| error.to_string())?;
-        run_batch(self.trial.plan, &mut core, batch, BATCH, self.options.seed, &|| ())
+        let core = built.load((self.options.seed ^ batch) as u32).map_err(|error| error.to_string())?;
+        run_batch(self.trial.plan, core, batch, BATCH, self.options.seed, &|| ())
             .map(drop)
             .map_err(|error| error.to_string())
     }

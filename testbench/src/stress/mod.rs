@@ -2,9 +2,16 @@
 //!
 //! The frames go through in batches, each on a core of its own, with pauses and resets drawn from the seed and the
 //! batch's number: the same options give the same cycles on every machine, however many threads there are.
+//!
+//! Beside a core with its calibration in RAM a processor writes banks, commits and tares meanwhile, right ones and wrong
+//! ones.
 
+pub mod banks;
+mod job;
 mod judge;
+mod log;
 mod packets;
+mod processor;
 
 use std::fmt;
 
@@ -16,10 +23,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;
 
+pub use log::Commits;
 use packets::Packets;
 pub use packets::{Counts, Kind};
+use processor::Processor;
 
-use crate::dut::Core;
+use crate::dut::Dut;
 use crate::stream::{Pacing, Pattern, Reset, StreamError, Traffic, exchange};
 use crate::trial::{self, TrialError, planned, timeout};
 use golden::progress::Progress;
@@ -60,6 +69,9 @@ pub struct Report {
     pub resets: u64,
     /// Cycles simulated.
     pub cycles: u64,
+    /// What was asked of a calibration in RAM meanwhile: every answer is that of the one bank whose generation it states.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Commits>,
 }
 
 impl Report {
@@ -70,6 +82,9 @@ impl Report {
         self.lost_to_resets = self.lost_to_resets.plus(other.lost_to_resets);
         self.resets += other.resets;
         self.cycles += other.cycles;
+        if let Some(commits) = other.calibration {
+            self.calibration = Some(self.calibration.unwrap_or_default().plus(commits));
+        }
     }
 }
 
@@ -96,7 +111,14 @@ impl fmt::Display for Report {
             let Counts { good, short, long, not_finite } = counts;
             writeln!(out, "{name:>16} {good:>10} {short:>10} {long:>10} {not_finite:>10}")?;
         }
-        Ok(())
+        let Some(Commits { banks, banks_refused, tares, tares_refused, lost_to_resets }) = self.calibration else {
+            return Ok(());
+        };
+        writeln!(
+            out,
+            "meanwhile {banks} banks acted, {banks_refused} wrong ones were refused, {tares} tares acted, {tares_refused} \
+             without rest\nwere refused, {lost_to_resets} were lost to resets; every answer is that of one whole bank"
+        )
     }
 }
 
@@ -117,12 +139,12 @@ pub enum StressError {
         /// How.
         source: StreamError,
     },
-    /// An answer is not what it should be.
+    /// An answer is not what it should be, or what became of a bank.
     #[error("batch {batch}: {what}")]
     Wrong {
         /// Which batch.
         batch: u64,
-        /// Which packet, and how it is wrong.
+        /// Which packet or bank, and how it is wrong.
         what: String,
     },
 }
@@ -143,8 +165,8 @@ pub fn stress(design: &Design, options: &Options, progress: &Progress) -> Result
     let batches = options.frames.div_ceil(BATCH);
     let one = |batch: u64| {
         let frames = BATCH.min(options.frames - batch * BATCH);
-        let mut core = built.load((options.seed ^ batch) as u32).map_err(|error| StressError::Trial(error.into()))?;
-        run_batch(&plan, &mut core, batch, frames, options.seed, &|| progress.step())
+        let core = built.load((options.seed ^ batch) as u32).map_err(|error| StressError::Trial(error.into()))?;
+        run_batch(&plan, core, batch, frames, options.seed, &|| progress.step())
     };
     let mut report = Report { design: plan.design.name.clone(), seed: options.seed, ..Report::default() };
     // Some at a time, so that a wrong one ends it soon.
@@ -162,7 +184,7 @@ pub fn stress(design: &Design, options: &Options, progress: &Progress) -> Result
 /// [`StressError::Stream`] or [`StressError::Wrong`].
 pub fn run_batch(
     plan: &Plan,
-    core: &mut impl Core,
+    core: Dut,
     batch: u64,
     frames: u64,
     seed: u64,
@@ -171,7 +193,11 @@ pub fn run_batch(
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     random.set_stream(batch);
     let mixed = Packets::new(plan, &mut random);
-    let (kinds, packets): (Vec<Kind>, Vec<Vec<u32>>) = (0..frames).map(|_| mixed.next(&mut random)).unzip();
+    let mut packets: Vec<(Kind, Vec<u32>)> = (0..frames).map(|_| mixed.next(&mut random)).collect();
+    if plan.calibration.is_some() {
+        packets::with_rests(plan, &mut packets, &mut random);
+    }
+    let (kinds, packets): (Vec<Kind>, Vec<Vec<u32>>) = packets.into_iter().unzip();
     let resets = resets(plan, frames, &mut random);
     let pacing = if plan.streams().drops { scanner(plan, &mut random) } else { Pacing::BackToBack };
     let traffic = Traffic {
@@ -181,9 +207,22 @@ pub fn run_batch(
         pacing,
         ..Traffic::new(&packets, 20 * timeout(plan))
     };
-    let outcome = exchange(core, &traffic.with_resets(&resets), |_| progress())
-        .map_err(|source| StressError::Stream { batch, source })?;
-    judge(plan, &kinds, &packets, &outcome).map_err(|what| StressError::Wrong { batch, what })
+    let traffic = traffic.with_resets(&resets);
+    let stream = |source| StressError::Stream { batch, source };
+    let wrong = |what| StressError::Wrong { batch, what };
+    let Some(of) = &plan.calibration else {
+        let outcome = exchange(&mut { core }, &traffic, |_| progress()).map_err(stream)?;
+        return judge(plan, &kinds, &packets, &outcome, None).map_err(wrong);
+    };
+    let mut processor = Processor::new(plan, of, core, random).map_err(|error| stream(error.into()))?;
+    let outcome = exchange(&mut processor, &traffic, |_| progress());
+    // What it saw first is nearer to the fault than what the streams or the answers make of it.
+    if let Some(what) = processor.wrong() {
+        return Err(wrong(what.to_owned()));
+    }
+    let outcome = outcome.map_err(stream)?;
+    let log = processor.finish().map_err(wrong)?;
+    judge(plan, &kinds, &packets, &outcome, Some(&log)).map_err(wrong)
 }
 
 /// Moments anywhere in the batch, some of them close to each other. Not in its last tenth: resets lose frames, and the

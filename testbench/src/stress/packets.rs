@@ -11,6 +11,9 @@ use serde::Serialize;
 /// Attempts at a balanced frame, one in four of which succeeds, and steps of each.
 const BALANCE_TRIALS: usize = 16;
 const BALANCE_STEPS: usize = 24;
+/// Frames of a rest at most, and from one's begin to the next one's on average.
+const REST_FRAMES: usize = 24;
+const REST_EVERY: usize = 60;
 
 /// What is wrong with a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,6 +103,23 @@ impl<'a> Packets<'a> {
             return (Kind::Good, self.balanced[random.random_range(0..self.balanced.len())].clone());
         }
         packet(self.plan, random)
+    }
+}
+
+/// Puts the sensor to rest here and there, under a load that does not move: what a tare wants. About a fifth of the
+/// packets become such frames; where frames are dropped those of a rest are the same, since which ones a tare had is not
+/// known of those that a reset took.
+pub fn with_rests(plan: &Plan, packets: &mut [(Kind, Vec<u32>)], random: &mut ChaCha8Rng) {
+    let most = plan.design.hardware.full_scale_pa / 50.0;
+    let noise = if plan.streams().drops { 0.0 } else { plan.design.algorithm.noise_floor_pa };
+    let mut first = random.random_range(0..2 * REST_EVERY);
+    while first < packets.len() {
+        let level: Vec<f64> = (0..plan.taxels()).map(|_| random.random_range(-most..most)).collect();
+        for packet in packets.iter_mut().skip(first).take(random.random_range(1..=REST_FRAMES)) {
+            let pascals: Vec<f64> = level.iter().map(|level| level + noise * random.random_range(-1.0..1.0)).collect();
+            *packet = (Kind::Good, in_words(plan, &pascals));
+        }
+        first += random.random_range(1..2 * REST_EVERY);
     }
 }
 

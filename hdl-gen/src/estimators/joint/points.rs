@@ -7,7 +7,7 @@ use golden::sensor::Sensor;
 use serde::Serialize;
 
 use super::SHARE_SHIFT;
-use crate::blocks::bodies;
+use crate::blocks::latency;
 use crate::estimators::Contact;
 use crate::plan::format::{MANY_LANES, largest, round_shift};
 
@@ -56,7 +56,7 @@ impl PointsPlan {
         let one = Self { side: grid.side(), grid, taxels: 1, u_left };
         let two = Self { taxels: 2, ..one.clone() };
         // A count of bodies, a taxel a cycle, must be there before the search is.
-        let counted = || !design.algorithm.count_bodies || bodies::latency(&design.sensor) < two.search(&design.sensor);
+        let counted = || !design.algorithm.count_bodies || latency::bodies(&design.sensor) < two.search(&design.sensor);
         let quick = design.hardware.lanes > MANY_LANES && counted();
         (grid.points() <= MOST_POINTS).then_some(if quick { two } else { one })
     }

@@ -17,7 +17,8 @@ pub struct Bank {
     pub offsets: Vec<i32>,
     /// A frame with a smaller `sum |b|` has no contact, in steps.
     pub contact: u32,
-    /// Most that a taxel's stress may spread in the frames of a tare, in steps.
+    /// Stress of a taxel that is noise, in steps: what presses or pulls is above it, and in the frames of a tare a taxel's
+    /// stress spreads by no more.
     pub noise: u32,
     /// Taxels that are replaced.
     pub dead: DeadMap,

@@ -2,6 +2,7 @@
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
+mod banks;
 mod range;
 mod statuses;
 

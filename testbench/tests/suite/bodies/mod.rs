@@ -135,7 +135,7 @@ fn counting_is_over_before_the_search() {
             sensors.extend(grids.map(|(columns, rows)| Sensor { columns, rows, ..own.clone() }));
         }
         for sensor in sensors {
-            let (count, search) = (blocks::bodies::latency(&sensor), slot.stages(&sensor)[0].cycles);
+            let (count, search) = (blocks::latency::bodies(&sensor), slot.stages(&sensor)[0].cycles);
             assert!(count < search, "{}, {sensor}: {count} cycles to count, {search} to search", design.name);
         }
     }

@@ -8,7 +8,7 @@ use std::process::Command;
 use golden::bodies::{Finder, Found};
 use golden::parity::Quads;
 use golden::sensor::Sensor;
-use hdl_gen::blocks::bodies::latency;
+use hdl_gen::blocks::latency;
 use hdl_gen::model::bodies::count;
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
@@ -185,7 +185,7 @@ fn play(
         longest = longest.max(cycles);
         fs::write(place(format!("{}.in", case.name)), lines.concat()).expect("writable");
         let (row, Sensor { columns, rows, .. }) = (case.row_width(), &case.sensor);
-        let (name, ways, expected) = (case.name, case.ways, latency(&case.sensor));
+        let (name, ways, expected) = (case.name, case.ways, latency::bodies(&case.sensor));
         let high = width + row + 2;
         let _ = write!(
             bench,
@@ -263,7 +263,7 @@ fn icarus(folder: &Path, cycles: usize) -> String {
 fn stimulus(case: &Case, random: &mut ChaCha8Rng) -> Vec<String> {
     let (elements, row) = (case.elements(), case.row_width());
     let width = case.ways as u32 * BITS;
-    let took = latency(&case.sensor) as usize;
+    let took = latency::bodies(&case.sensor) as usize;
     let mut lines: Vec<u128> = vec![1 << (width + row + 2); 3];
     let (mut done, mut taken) = (0, 0);
     let mut takes = Vec::new();

@@ -6,11 +6,12 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, address};
+use testbench::stress::banks::random_bank;
 use testbench::trial::model_answers;
 
 use super::{
-    ACTIVE, BUSY, OUT_OF_RANGE, WRONG_CRC, counts, design, errors, generation, judged, load, perform, random_bank,
-    read_back, subject, wait,
+    ACTIVE, BUSY, OUT_OF_RANGE, WRONG_CRC, counts, design, errors, generation, judged, load, perform, read_back,
+    subject, wait,
 };
 use crate::support::{built, planned, shipped, simulate_exactly};
 

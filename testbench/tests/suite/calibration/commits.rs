@@ -4,22 +4,28 @@ use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::stream::{Mode, Pattern, Traffic};
+use testbench::stress::banks::random_bank;
 use testbench::trial::{rtl_sources, timeout};
 use testbench::verilate::{Built, Verilate};
 
-use super::{BUSY, Subject, core, counts, errors, generation, judged, judged_in, load, random_bank, subject};
+use super::{BUSY, Subject, core, counts, errors, generation, judged, judged_in, load, subject};
 use crate::support::in_parallel;
+
+/// A direction whatever presses and pulls.
+const ALWAYS_KNOWN: &str = "assign no_direction = &{1'b0, of_frame};";
 
 /// Cycles in which a bank of so many words is written, before the first commit.
 fn loaded(words: usize) -> u64 {
     600 * words as u64 / 26
 }
 
-/// A bank of other gains and offsets, and one with another threshold: no frame of it has contact.
-fn others(subject: &Subject) -> [Bank; 2] {
+/// A bank of other gains and offsets, one with another threshold: no frame of it has contact, and one with another noise
+/// floor: nothing of it presses or pulls.
+fn others(subject: &Subject) -> [Bank; 3] {
     let calibration = subject.calibration();
     let random = random_bank(calibration, &mut ChaCha8Rng::seed_from_u64(1));
-    [random, Bank { contact: u32::MAX, ..calibration.power_up.clone() }]
+    let power_up = || calibration.power_up.clone();
+    [random, Bank { contact: u32::MAX, ..power_up() }, Bank { noise: (1 << 26) - 1, ..power_up() }]
 }
 
 /// Commits a bank, so that it acts in another cycle each time, over all cycles of a frame; what went wrong.
@@ -63,7 +69,7 @@ pub(super) fn commits_at_every_moment(
 fn a_commit_at_every_moment_of_a_frame() {
     let subject = subject();
     let interval = subject.plan.timeline.interval_cycles;
-    for (bank, step) in others(subject).iter().zip([1, 4]) {
+    for (bank, step) in others(subject).iter().zip([1, 4, 3]) {
         let cycles = (0..interval + 2).step_by(step);
         assert_eq!(commits_at_every_moment(subject, &subject.built, bank, cycles), Vec::<String>::new());
     }
@@ -123,14 +129,16 @@ fn packets_of_a_beat_do_not_pile_up() {
     judged(&subject.plan, &mut core, &packets, &banks).unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// A copy in which a frame changes its bank within is found, and one in which it does not keep its threshold.
+/// A copy in which a frame changes its bank within is found, and some in which it does not keep its thresholds.
 #[test]
 fn half_a_frame_by_another_bank_is_noticed() {
     let subject = subject();
-    let [other_gains, other_threshold] = others(subject);
+    let [other_gains, other_threshold, other_floor] = others(subject);
     for (module, text, broken, bank) in [
         ("sptfra_calibrate", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", other_gains),
         ("sptfra_frame_calibration", "contacts[next_contact]", "contact", other_threshold),
+        ("sptfra_frame_calibration", "noises[next_noise];", "noise;", other_floor.clone()),
+        ("sptfra_frame_calibration", "assign no_direction = (of_frame != 2'b11);", ALWAYS_KNOWN, other_floor),
     ] {
         let mut sources = rtl_sources(&subject.plan).expect("emitted");
         let path = format!("rtl/{module}.v");

@@ -4,19 +4,20 @@
 use std::sync::OnceLock;
 
 use golden::design::{Calibration, Curve, Design, Outputs, Samples};
-use hdl_gen::plan::calibration::{Bank, CurveMap};
+use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, address};
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
+use testbench::stress::banks::{random_bank, random_curve};
 use testbench::trial::{model_answers, rtl_sources, timeout};
 use testbench::verilate::Verilate;
 
 use super::commits::commits_at_every_moment;
 use super::{
     CONTRADICTION, OUT_OF_RANGE, Subject, core, design, errors, generation, judge, judged, judged_in, load, perform,
-    random_bank, read_back, send, wait,
+    read_back, send, wait,
 };
 use crate::support::{built, frames, in_parallel, planned, simulate_exactly};
 
@@ -59,27 +60,10 @@ fn counts(subject: &Subject, count: usize, random: &mut ChaCha8Rng) -> Vec<Vec<u
         .collect()
 }
 
-/// Any curve that a bank takes, of up to as many parts as there is room for.
-fn random_curve(subject: &Subject, random: &mut ChaCha8Rng) -> CurveMap {
-    let usual = subject.calibration().power_up.curve.as_ref().expect("a curve");
-    loop {
-        let parts = if random.random_bool(0.3) { usual.format.room } else { random.random_range(1..=8) };
-        let far = random.random_bool(0.2);
-        let [reach, most] = if far { [17_000.0, 790e3] } else { [9000.0, 250e3] };
-        let mut numbers: Vec<f64> = (0..=parts).map(|_| random.random_range(-0.3 * reach..reach)).collect();
-        let mut values: Vec<f64> = (0..=parts).map(|_| random.random_range(-0.2 * most..most)).collect();
-        numbers.sort_by(f64::total_cmp);
-        values.sort_by(f64::total_cmp);
-        let sign = if random.random_bool(0.3) { 1.0 } else { -1.0 };
-        let points = numbers.into_iter().zip(values).map(|(count, value)| [count, sign * value]).collect();
-        if let Ok(map) = usual.format.map(&Curve { points, law: None }) {
-            return map;
-        }
-    }
-}
-
 fn random_bank_and_curve(subject: &Subject, random: &mut ChaCha8Rng) -> Bank {
-    let bank = Bank { curve: Some(random_curve(subject, random)), ..random_bank(subject.calibration(), random) };
+    let usual = subject.calibration().power_up.curve.as_ref().expect("a curve");
+    let curve = random_curve(&subject.plan, usual, random);
+    let bank = Bank { curve: Some(curve), ..random_bank(subject.calibration(), random) };
     assert!(subject.calibration().takes(&bank));
     bank
 }
@@ -233,13 +217,15 @@ fn half_a_frame_by_another_curve_is_noticed() {
     let subject = subject();
     let interval = subject.plan.timeline.interval_cycles;
     let [other_curve, other_gains] = others(subject);
+    let other_floor = Bank { noise: (1 << 26) - 1, ..subject.calibration().power_up.clone() };
     for (module, text, broken, bank) in [
         ("sptfra_count_curve", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", &other_curve),
+        ("sptfra_bz_curved", "offered ? began_with : calibration_acting;", "calibration_acting;", &other_gains),
         (
             "sptfra_bz_curved",
-            "offered ? began_with : calibration_acting[67:27]",
-            "calibration_acting[67:27]",
-            &other_gains,
+            ".calibration_acting     (acting)",
+            ".calibration_acting     ({acting[67:27], calibration_acting[26:0]})",
+            &other_floor,
         ),
         ("sptfra_count_curve", "assign line_bank = banks[FOUND];", "assign line_bank = active;", &other_curve),
     ] {

@@ -5,19 +5,19 @@ use std::sync::OnceLock;
 use golden::design::{Calibration, Design, Outputs, Samples};
 use hdl_gen::model::{REPLACED, TOO_MANY_REPLACED};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::calibration::{Bank, CalibrationPlan, DeadMap};
+use hdl_gen::plan::calibration::{Bank, DeadMap};
 use hdl_gen::plan::dead::{DeadPlan, MOST_WEIGHT};
-use rand::seq::index::sample;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::registers::address;
+use testbench::stress::banks::{random_bank, random_map};
 use testbench::trial::{model_answers, rtl_sources};
 use testbench::verilate::Verilate;
 
 use super::commits::commits_at_every_moment;
 use super::{
     CENSUS, CONTRADICTION, OUT_OF_RANGE, Subject, WRONG_CRC, counts, design, errors, generation, judged, load, perform,
-    random_bank, read_back, wait,
+    read_back, wait,
 };
 use crate::support::{built, planned, shipped, simulate_exactly};
 
@@ -44,31 +44,6 @@ fn with_dead(plan: &Plan, bank: &Bank, dead: &[usize]) -> Bank {
     let map = DeadMap { room: bank.dead.room, dead: DeadPlan::of(&plan.design, dead) };
     assert!(map.fits(plan.taxels()), "{dead:?}");
     Bank { dead: map, ..bank.clone() }
-}
-
-/// A map with anything in it that a bank takes: any taxels, any weights up to the most together, any shift.
-fn random_map(of: &CalibrationPlan, random: &mut ChaCha8Rng) -> DeadMap {
-    let room = of.power_up.dead.room;
-    let count = random.random_range(0..=room);
-    let mut taxels = sample(random, of.taxels, count).into_vec();
-    taxels.sort_unstable();
-    let shift = random.random_range(0..18);
-    let weights = (0..count)
-        .map(|place| {
-            let sign = if place == 0 { 1 } else { -1 };
-            let mut weights: Vec<i32> = (0..of.taxels)
-                .map(|_| if random.random_bool(0.5) { 131_071 } else { random.random_range(-131_071..131_072) })
-                .map(|weight: i32| weight * sign)
-                .collect();
-            for &taxel in &taxels {
-                weights[taxel] = 0;
-            }
-            weights
-        })
-        .collect();
-    let map = DeadMap { room, dead: DeadPlan { taxels, weights, shift } };
-    assert!(map.fits(of.taxels));
-    map
 }
 
 /// Counts in frames of which some taxels are no numbers or at the end of the range.

@@ -14,7 +14,6 @@ use hdl_gen::model::Model;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::calibration::{Bank, CalibrationPlan};
 use hdl_gen::plan::words::{CENSUS, TIMESTAMP};
-use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use testbench::dut::{Beat, Core, Inputs};
 use testbench::registers::{Access, Controlled, address};
@@ -81,37 +80,6 @@ fn subject() -> &'static Subject {
 
 fn core(built: &Built, seed: u64) -> Controlled {
     Controlled::new(built.load(seed as u32).expect("loads"), seed).expect("has a port")
-}
-
-/// A bank with anything that one takes: gains of both signs within what keeps the frames readable, offsets to the
-/// bounds.
-fn random_bank(plan: &CalibrationPlan, random: &mut ChaCha8Rng) -> Bank {
-    let usual = &plan.power_up;
-    let far = random.random_bool(0.2);
-    let bank = Bank {
-        gains: usual
-            .gains
-            .iter()
-            .map(|&(_, exponent)| {
-                let mantissa = random.random_range(1 << 16..1 << 17);
-                let near = (exponent + random.random_range(-2..=1)).clamp(-512, 511);
-                let exponent = if far { random.random_range(-512..512) } else { near };
-                (if random.random_bool(0.2) { mantissa } else { -mantissa }, exponent)
-            })
-            .collect(),
-        offsets: (0..plan.taxels)
-            .map(|_| {
-                let limit = if far { plan.offset_limit } else { plan.offset_limit / 40 };
-                random.random_range(-limit..=limit) as i32
-            })
-            .collect(),
-        contact: random.random_range(1..=usual.contact * 50),
-        noise: random.random_range(1..1 << 26),
-        dead: usual.dead.clone(),
-        curve: usual.curve.clone(),
-    };
-    assert!(plan.takes(&bank));
-    bank
 }
 
 /// Frames of counts: contacts and the ends of the range.

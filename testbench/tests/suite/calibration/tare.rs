@@ -5,11 +5,12 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::registers::{Access, address};
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
+use testbench::stress::banks::random_bank;
 use testbench::trial::timeout;
 
 use super::{
     BAD_FRAME, BUSY, NOT_AT_REST, OUT_OF_RANGE, Subject, core, counts, errors, generation, judge, load, perform,
-    random_bank, read_back, send, subject,
+    read_back, send, subject,
 };
 use crate::support::in_parallel;
 

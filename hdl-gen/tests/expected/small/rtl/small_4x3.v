@@ -47,9 +47,13 @@ module small_4x3 #(
 
     // ---- Streams
     wire [31:0] in_tdata;
-    wire in_tlast, in_tvalid, in_tready;
+    wire in_tlast;
+    wire in_tvalid;
+    wire in_tready;
     wire [31:0] out_tdata;
-    wire out_tlast, out_tvalid, out_tready;
+    wire out_tlast;
+    wire out_tvalid;
+    wire out_tready;
 
     sptfra_axis_skid skid_in (
         .clock    (aclk),
@@ -90,9 +94,11 @@ module small_4x3 #(
     );
 
     // ---- Bz: stream to fixed point, taxels to parity classes
-    wire frame_ready, cean_idle, direction_room, stress_valid;
+    wire frame_ready;
+    wire cean_idle, direction_room, stress_valid;
     wire signed [26:0] stress;
-    wire frame_done, frame_saturated, frame_not_finite, frame_bad_length;
+    wire frame_done;
+    wire frame_saturated, frame_not_finite, frame_bad_length;
     wire [29:0] frame_replaced;
     wire bz_write, bz_write_bank;
     wire [ROW_WIDTH-1:0] bz_write_row;
@@ -176,12 +182,14 @@ module small_4x3 #(
     );
 
     // ---- Turns: We, Co and Op share one array of lanes
-    wire issued, bank, residual_bank, field_bank, u_released, friction_known, field_release;
+    wire issued;
+    wire bank, residual_bank, field_bank, u_released, friction_known, field_release;
     wire signed [17:0] mu_x, mu_y;
     wire [15:0] result_route;
     wire [ROW_WIDTH-1:0] result_row;
     wire [VECTOR_BITS-1:0] result_value;
-    wire result_last, we_write_next, we_write, co_write_next, co_write;
+    wire result_last;
+    wire we_write_next, we_write, co_write_next, co_write;
     wire [OPERAND_WIDTH-1:0] we_write_address, co_write_address;
     wire [VECTOR_BITS-1:0] we_write_data, co_write_data;
     wire list_pull;
@@ -408,7 +416,8 @@ module small_4x3 #(
     );
 
     // ---- Estimator: friction from u and the sums
-    wire answer_valid, answer_take, x_is_free, unknown, at_bound, search_saturated;
+    wire answer_valid;
+    wire answer_take, x_is_free, unknown, at_bound, search_saturated;
     wire signed [17:0] free, other, slope, error_log;
     wire [18*40-1:0] answer_sums;
     wire [5:0] answer_flags;
