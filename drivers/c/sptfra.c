@@ -100,6 +100,10 @@ int sptfra_identify(const sptfra *device, sptfra_identity *identity)
     identity->lanes = (uint8_t)FIELD(GET(device, GEOMETRY), GEOMETRY__LANES);
     identity->reduced = (uint8_t)FIELD(features, FEATURES__REDUCED);
     identity->skips_zeros = (uint8_t)FIELD(features, FEATURES__SKIPS_ZEROS);
+    identity->calibration_in_ram = (uint8_t)FIELD(features, FEATURES__CALIBRATION_RAM);
+    identity->curve_in_ram = (uint8_t)FIELD(features, FEATURES__CURVE_IN_RAM);
+    identity->replaceable = (uint8_t)FIELD(features, FEATURES__REPLACEABLE);
+    identity->drops_frames = (uint8_t)FIELD(features, FEATURES__DROPS);
     identity->clock_khz = GET(device, CLOCK);
     identity->latency_cycles = GET(device, PREDICTED_LATENCY);
     identity->interval_cycles = GET(device, PREDICTED_INTERVAL);

@@ -41,7 +41,7 @@ def plot(forces, path):
     for index, name in enumerate(("F_x", "F_y", "F_z")):
         axes.plot(forces.resultant[:, index], label=name)
     axes.set_xlabel("frame")
-    axes.set_ylabel("force (N)")
+    axes.set_ylabel(f"force ({forces.units['resultant']})")
     axes.legend()
     figure.savefig(path)
 

@@ -41,14 +41,14 @@ def read_metadata(path):
 class Layout:
     """Where the values stand in an answer's words, by name: (index of the word, its lowest bit, mask; None: float32)."""
 
-    def __init__(self, values, field):
-        """`field` is the first word of the taxels' forces."""
-        self.values, self.field = values, field
+    def __init__(self, values, field, units):
+        """`field` is the first word of the taxels' forces, `units` the unit of each value; "" for plain numbers."""
+        self.values, self.field, self.units = values, field, units
 
     @classmethod
     def load(cls, path):
         """That of a design, from its metadata.json. Raises ValueError for one of another edition."""
-        values, field = {}, None
+        values, field, units = {}, None, {}
         for value in read_metadata(path)["output"]:
             high, low = value.get("bits", (31, 0))
             mask = None if value["type"] == "float32" else (1 << (high - low + 1)) - 1
@@ -56,7 +56,8 @@ class Layout:
                 field = value["index"]
             else:
                 values[value["name"]] = (value["index"], low, mask)
-        return cls(values, field)
+            units[value["name"]] = value["unit"]
+        return cls(values, field, units)
 
     def get(self, words, name):
         """The value of each answer in (n, words_out) uint32."""
@@ -69,6 +70,16 @@ class Layout:
         return np.column_stack([self.get(words, name) for name in names])
 
 
+#: What stands in each array of `Forces`: a value of that unit.
+_OF = {
+    "status": "status", "number": "frame", "timestamp": "timestamp", "resultant": "F_x", "torque": "T_x",
+    "friction": "mu", "direction": "phi", "friction_xy": "mu_x", "standard_error": "standard_error",
+    "bodies": "bodies", "generation": "generation", "replaced": "replaced_taxels", "field": "field",
+}  # fmt: skip
+_UNITS = {
+    "N": "F_x F_y F_z standard_error field", "N m": "T_x T_y T_z", "rad": "phi", "cycles": "timestamp",
+    "taxels": "replaced_taxels", "": "status frame mu mu_x mu_y bodies generation",
+}  # fmt: skip
 _FLOATS = {"F_x": 2, "F_y": 3, "F_z": 4, "T_x": 5, "T_y": 6, "T_z": 7, "mu": 8, "phi": 9, "mu_x": 10, "mu_y": 11}
 #: The layout of every core with one body and no more.
 LAYOUT = Layout(
@@ -76,6 +87,7 @@ LAYOUT = Layout(
     | {"status": (0, 0, 0xFFFF), "frame": (0, 16, 0xFFFF), "timestamp": (1, 0, 0xFFFFFFFF)}
     | {"bodies": (13, 0, 0xFF), "generation": (13, 8, 0xFF), "replaced_taxels": (13, 16, 0xFF)},
     field=16,
+    units={name: unit for unit, names in _UNITS.items() for name in names.split()},
 )
 
 
@@ -109,6 +121,8 @@ class Forces:
     replaced: np.ndarray
     #: (n, rows, columns, 3) float32: f_x, f_y, f_z of each taxel in N; None if the design has resultants only.
     field: np.ndarray | None
+    #: Unit of each array, by its name: `units["torque"]` is "N m"; "" for plain numbers.
+    units: dict[str, str]
 
     def names(self, index):
         """Names of a frame's status bits."""
@@ -136,4 +150,5 @@ def decode(words, rows, columns, has_field, layout=LAYOUT):
         generation=layout.get(words, "generation").astype(np.uint8),
         replaced=layout.get(words, "replaced_taxels").astype(np.uint8),
         field=field,
+        units={array: layout.units[name] for array, name in _OF.items() if has_field or array != "field"},
     )

@@ -63,10 +63,10 @@ module sptfra_plane_cell #(
             (* ram_style = "block" *) reg signed [26:0] memory_0 [0:DEPTH-1];
             (* ram_style = "block" *) reg signed [26:0] memory_1 [0:DEPTH-1];
             (* ram_style = "block" *) reg signed [26:0] memory_2 [0:DEPTH-1];
-            reg valid;
-            reg first_late;
-            reg [2:0] step_late;
-            reg [ELEMENT_WIDTH-1:0] element_late;
+            (* keep = "true" *) reg valid;
+            (* keep = "true" *) reg first_late;
+            (* keep = "true" *) reg [2:0] step_late;
+            (* keep = "true" *) reg [ELEMENT_WIDTH-1:0] element_late;
             reg signed [26:0] u0;
             reg signed [26:0] u1;
             reg signed [26:0] u2;
@@ -114,13 +114,14 @@ module sptfra_plane_cell #(
         end
     endgenerate
 
-    // ---- Stage 1: where the taxel stands, and what it goes on by
-    reg [3:1] valid;
-    reg [2:1] firsts;
-    reg [2:0] step_1;
-    reg [ELEMENT_WIDTH-1:0] element_1;
-    reg [ELEMENT_WIDTH-1:0] element_2;
-    reg [ELEMENT_WIDTH-1:0] element_3;
+    // ---- Stage 1: where the taxel stands, and what it goes on by. What is equal in all cells is kept, for each to
+    // have its own at hand
+    (* keep = "true" *) reg [3:1] valid;
+    (* keep = "true" *) reg [2:1] firsts;
+    (* keep = "true" *) reg [2:0] step_1;
+    (* keep = "true" *) reg [ELEMENT_WIDTH-1:0] element_1;
+    (* keep = "true" *) reg [ELEMENT_WIDTH-1:0] element_2;
+    (* keep = "true" *) reg [ELEMENT_WIDTH-1:0] element_3;
     reg signed [POINT_BITS-1:0] stress_1;
     reg signed [26:0] u_1;
 

@@ -54,15 +54,16 @@ module sptfra_search_cell #(
     (* ram_style = "distributed" *) reg signed [26:0] alphas [0:CELL_ELEMENTS-1];
     (* ram_style = "distributed" *) reg signed [26:0] betas [0:CELL_ELEMENTS-1];
 
-    // ---- Stage 1: operands
-    reg [4:1] valid;
-    reg [5:1] firsts;
-    reg [4:1] slopes;
-    reg [3:1] alpha_passes;
-    reg [3:1] beta_passes;
-    reg [ELEMENT_WIDTH-1:0] element_1;
-    reg [ELEMENT_WIDTH-1:0] element_2;
-    reg [ELEMENT_WIDTH-1:0] element_3;
+    // ---- Stage 1: operands. What is equal in all cells is kept, for each to have its own at hand; but for the factor,
+    // which is the multiplier's own register
+    (* keep = "true" *) reg [4:1] valid;
+    (* keep = "true" *) reg [5:1] firsts;
+    (* keep = "true" *) reg [4:1] slopes;
+    (* keep = "true" *) reg [3:1] alpha_passes;
+    (* keep = "true" *) reg [3:1] beta_passes;
+    (* keep = "true" *) reg [ELEMENT_WIDTH-1:0] element_1;
+    (* keep = "true" *) reg [ELEMENT_WIDTH-1:0] element_2;
+    (* keep = "true" *) reg [ELEMENT_WIDTH-1:0] element_3;
     reg signed [26:0] addend_1;
     reg signed [26:0] multiplicand_1;
     reg signed [17:0] factor_1;
@@ -164,7 +165,7 @@ module sptfra_search_cell #(
 
             wire _unused = &{1'b0, valid[4], slopes[4], firsts[5], round};
         end else begin : gen_points
-            reg [2:0] round_1;
+            (* keep = "true" *) reg [2:0] round_1;
             reg signed [41:0] part_2; // beta times the points' distance, in steps of a hinge
             reg signed [41:0] part_3;
             reg signed [43:0] parts_3; // three of them

@@ -174,15 +174,19 @@ module sptfra_spmv_lane #(
         .data    (column)
     );
 
-    // ---- Operand: the column, its mirror image, or the quad that all lanes are at
+    // ---- Operand: the column, its mirror image, or the quad that all lanes are at. A register stands behind the ROM,
+    // and the adder in front of the operand memory: neither memory has more than its own register beside it. Registers
+    // that are equal in all lanes are kept, for each lane to have its own at hand
     wire [31:0] column_wide = {{(32-COLUMN_WIDTH){1'b0}}, column};
     wire [ROW_WIDTH-1:0] mirror_image;
     wire [31:0] element; // one cycle after its issue
-    reg  [OPERAND_WIDTH-1:0] operand_address;
+    reg  [OPERAND_WIDTH-1:0] element_2;
+    (* keep = "true" *) reg [OPERAND_WIDTH-1:0] base_2;
+    wire [OPERAND_WIDTH-1:0] operand_address = base_2 + element_2;
     wire [WAYS*DATA_BITS-1:0] operand;
     reg  [WAYS*COEFFICIENT_BITS-1:0] value_2;
     reg  [WAYS*COEFFICIENT_BITS-1:0] coefficient;
-    reg  [3:2] swaps; // the classes that are odd in x only and in y only
+    (* keep = "true" *) reg [3:2] swaps; // the classes that are odd in x only and in y only
 
     generate
         if (MIRROR_SIDE > 0) begin : gen_mirror
@@ -197,8 +201,8 @@ module sptfra_spmv_lane #(
             assign mirror_image = {ROW_WIDTH{1'b0}};
         end
         if (SKIPS != 0) begin : gen_skips
-            reg skip_1;
-            reg [ROW_WIDTH-1:0] skip_quad_1;
+            (* keep = "true" *) reg skip_1;
+            (* keep = "true" *) reg [ROW_WIDTH-1:0] skip_quad_1;
 
             always @(posedge clock) begin
                 skip_1 <= skip;
@@ -229,7 +233,8 @@ module sptfra_spmv_lane #(
 
     always @(posedge clock) begin
         swaps <= {swaps[2], mirrored};
-        operand_address <= base + element[OPERAND_WIDTH-1:0];
+        element_2 <= element[OPERAND_WIDTH-1:0];
+        base_2 <= base;
         value_2 <= value;
         coefficient <= value_2;
     end

@@ -80,8 +80,6 @@ struct View {
     stream_bits: usize,
     bytes_in: usize,
     bytes_out: usize,
-    /// Predicted cycles from frame to frame.
-    interval_cycles: u64,
     /// Width of the DMA's length register.
     length_bits: u32,
     /// Names of the files in `rtl/` and `rom/`.
@@ -126,7 +124,6 @@ impl View {
             stream_bits: streams.bits,
             bytes_in,
             bytes_out,
-            interval_cycles: plan.timeline.interval_cycles,
             length_bits: length_bits(bytes_in, bytes_out),
             rtl: names(files, "rtl/", ".v"),
             rom: names(files, "rom/", ".mem"),

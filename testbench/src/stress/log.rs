@@ -84,6 +84,7 @@ pub struct Banks<'a> {
     log: &'a Log,
     packets: &'a [Vec<u32>],
     dropped: BTreeSet<usize>,
+    answered: BTreeSet<usize>,
     acts: usize,
     bank: Option<Bank>,
 }
@@ -92,8 +93,9 @@ impl<'a> Banks<'a> {
     /// At power-up.
     pub fn new(plan: &'a Plan, log: &'a Log, packets: &'a [Vec<u32>], outcome: &Outcome) -> Self {
         let dropped = outcome.dropped.iter().map(|&(packet, _)| packet).collect();
+        let answered = outcome.exchanges.iter().map(|exchange| exchange.packet).collect();
         let bank = plan.calibration.as_ref().map(|of| of.power_up.clone());
-        Self { plan, log, packets, dropped, acts: 0, bank }
+        Self { plan, log, packets, dropped, answered, acts: 0, bank }
     }
 
     /// Goes on to the generation that an answer states.
@@ -134,21 +136,36 @@ impl<'a> Banks<'a> {
 
     /// What a tare of frames behind each other, before a packet, makes of the bank that acts: the one with this CRC.
     fn tared(&self, frames: usize, crc: u32, before: usize) -> Option<Bank> {
-        let (of, bank) = (self.plan.calibration.as_ref()?, self.bank.as_ref()?);
-        let streams = self.plan.streams();
-        let is_frame = |words: &[u32]| streams.is_frame(words.len());
-        let mut kept: Vec<usize> =
-            (0..before).rev().filter(|packet| !self.dropped.contains(packet)).take(TARE_REACH).collect();
-        kept.reverse();
-        kept.windows(frames)
-            .filter(|window| window.iter().all(|&packet| is_frame(&self.packets[packet])))
-            .filter_map(|window| {
-                let samples = |&packet: &usize| {
-                    streams.samples_of(self.packets[packet].iter().copied()).take(of.taxels).collect::<Vec<u32>>()
-                };
-                bank.tared(of, &window.iter().map(samples).collect::<Vec<_>>())
-            })
-            .find(|bank| bank.crc() == crc)
+        let first = before.saturating_sub(TARE_REACH);
+        (first..before).rev().find_map(|packet| self.tared_with(&mut vec![packet], frames, crc, before))
+    }
+
+    /// The same of frames of which the first ones are given. Behind each comes the next one that was taken; those of which
+    /// that is not known may have been, or not.
+    fn tared_with(&self, given: &mut Vec<usize>, frames: usize, crc: u32, before: usize) -> Option<Bank> {
+        let last = *given.last()?;
+        if self.dropped.contains(&last) || !self.plan.streams().is_frame(self.packets[last].len()) {
+            return None;
+        }
+        if given.len() == frames {
+            let (of, streams) = (self.plan.calibration.as_ref()?, self.plan.streams());
+            let samples = |&packet: &usize| {
+                streams.samples_of(self.packets[packet].iter().copied()).take(of.taxels).collect::<Vec<u32>>()
+            };
+            let bank = self.bank.as_ref()?.tared(of, &given.iter().map(samples).collect::<Vec<_>>())?;
+            return (bank.crc() == crc).then_some(bank);
+        }
+        let drops = self.plan.streams().drops;
+        for next in last + 1..before {
+            given.push(next);
+            let found = self.tared_with(given, frames, crc, before);
+            given.pop();
+            let surely_taken = self.answered.contains(&next) || !drops;
+            if found.is_some() || surely_taken {
+                return found;
+            }
+        }
+        None
     }
 }
 

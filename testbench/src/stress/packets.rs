@@ -107,11 +107,10 @@ impl<'a> Packets<'a> {
 }
 
 /// Puts the sensor to rest here and there, under a load that does not move: what a tare wants. About a fifth of the
-/// packets become such frames; where frames are dropped those of a rest are the same, since which ones a tare had is not
-/// known of those that a reset took.
+/// packets become such frames.
 pub fn with_rests(plan: &Plan, packets: &mut [(Kind, Vec<u32>)], random: &mut ChaCha8Rng) {
     let most = plan.design.hardware.full_scale_pa / 50.0;
-    let noise = if plan.streams().drops { 0.0 } else { plan.design.algorithm.noise_floor_pa };
+    let noise = plan.design.algorithm.noise_floor_pa;
     let mut first = random.random_range(0..2 * REST_EVERY);
     while first < packets.len() {
         let level: Vec<f64> = (0..plan.taxels()).map(|_| random.random_range(-most..most)).collect();

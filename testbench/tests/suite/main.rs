@@ -12,6 +12,7 @@ mod command;
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
 #[path = "../../../golden/tests/suite/contacts.rs"]
 mod contacts;
+mod copies;
 mod cores;
 mod counts;
 mod dead_taxels;
@@ -30,6 +31,7 @@ mod lint;
 mod looking;
 mod netlist;
 mod overrun;
+mod pack_registers;
 mod parameters;
 mod properties;
 mod python;

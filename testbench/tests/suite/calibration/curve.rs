@@ -4,11 +4,14 @@
 use std::sync::OnceLock;
 
 use golden::design::{Calibration, Curve, Design, Outputs, Samples};
+use golden::progress::Progress;
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::dut::{Core, Inputs};
+use testbench::frame_set::FrameSet;
 use testbench::registers::{Access, address};
+use testbench::run::{Options, run};
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
 use testbench::stress::banks::{random_bank, random_curve};
 use testbench::trial::{model_answers, rtl_sources, timeout};
@@ -81,6 +84,14 @@ fn at_power_up_the_designs_curve_acts() {
     let room = core.read(address::CALIBRATION_CURVE).expect("a reply") & 0xFF;
     assert_eq!(room, 16);
     assert_eq!(core.read(address::FEATURES).expect("a reply") >> 6 & 1, 1);
+}
+
+/// `testbench run`, which reads every register, knows what they say of a curve in the banks.
+#[test]
+fn a_run_finds_all_registers_right() {
+    let frames = FrameSet::standing(&subject().plan.design.sensor).expect("frames");
+    let report = run(&design_with_curve(), &frames, &Options::default(), &Progress::hidden()).expect("runs");
+    assert!(report.is_right(), "{report:#?}");
 }
 
 /// The same numbers as from ROM, but for the last bits.

@@ -44,6 +44,7 @@ int main(int count, char **arguments)
     sptfra_curve curve = {0, points + 1, points + 1 + MOST_POINTS};
     sptfra_platform platform = {NULL, machine_read, machine_write, NULL, NULL, NULL};
     sptfra_result result;
+    sptfra_identity identity;
     sptfra device;
     machine *system;
     FILE *file;
@@ -57,6 +58,8 @@ int main(int count, char **arguments)
     CHECK(system != NULL);
     platform.context = system;
     CHECK(sptfra_open(&device, &platform, MACHINE_CORE, MACHINE_DMA) == SPTFRA_OK);
+    CHECK(sptfra_identify(&device, &identity) == SPTFRA_OK && identity.calibration_in_ram && identity.curve_in_ram);
+    CHECK(identity.replaceable == 2 && !identity.drops_frames);
     send(&device, 5.0f, &result);
     CHECK(result.generation == 0 && result.replaced == 1);
     length = 4u * taxels + 5u + 4u * (MOST_POINTS - 1u) + 3u;

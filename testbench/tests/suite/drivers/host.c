@@ -9,19 +9,25 @@
 #include "sptfra.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #define MOST_WORDS 16384
 #define POLLS 1000000u
+#define MOST_TICKS 200
 #define RECOVERY 1000u /* more than a frame takes: three cycles each */
 
 /* The driver has cache functions here, so its buffers are whole lines. */
 _Alignas(SPTFRA_LINE) static uint32_t stress_words[MOST_WORDS], force_words[MOST_WORDS];
 static uint32_t expected[MOST_WORDS];
 static int flushed, invalidated, fenced;
+/* Since the last barrier a buffer was flushed, or a status of the DMA read. */
+static int buffers_open, status_open;
 
 static void flush(void *context, const void *start, size_t bytes)
 {
@@ -29,12 +35,15 @@ static void flush(void *context, const void *start, size_t bytes)
     (void)start;
     CHECK(bytes % SPTFRA_LINE == 0);
     flushed += bytes != 0;
+    buffers_open = 1;
 }
 
 static void fence(void *context)
 {
     (void)context;
     fenced++;
+    buffers_open = 0;
+    status_open = 0;
 }
 
 static void invalidate(void *context, void *start, size_t bytes)
@@ -42,7 +51,22 @@ static void invalidate(void *context, void *start, size_t bytes)
     (void)context;
     (void)start;
     CHECK(bytes % SPTFRA_LINE == 0);
+    /* An answer is read behind a barrier behind the status that says that it is there. */
+    CHECK(!status_open);
     invalidated += bytes != 0;
+}
+
+/* Registers as the driver reaches them: a length is written behind a barrier behind the buffers. */
+static uint32_t read_register(void *context, uintptr_t address)
+{
+    status_open |= address == MACHINE_DMA + 0x04u || address == MACHINE_DMA + 0x34u;
+    return machine_read(context, address);
+}
+
+static void write_register(void *context, uintptr_t address, uint32_t value)
+{
+    CHECK(!buffers_open || (address != MACHINE_DMA + 0x28u && address != MACHINE_DMA + 0x58u));
+    machine_write(context, address, value);
 }
 
 static int next_frame(FILE *file, uint32_t *words, size_t words_out)
@@ -104,13 +128,61 @@ static void check_uio(void)
     CHECK(sptfra_uio_open(&uio, path, sizeof words) == SPTFRA_SYSTEM);
 }
 
+/* Signals while the driver waits for an interrupt, which comes with the third if there is somebody to send it. */
+static volatile sig_atomic_t ticks;
+static int waker;
+
+static void tick(int number)
+{
+    const uint32_t word = 1;
+
+    (void)number;
+    ticks++;
+    if (waker >= 0 && ticks == 3 && write(waker, &word, sizeof word) != (ssize_t)sizeof word) {
+        ticks = MOST_TICKS;
+    }
+    if (ticks >= MOST_TICKS) {
+        const struct itimerval never = {{0, 0}, {0, 0}};
+
+        setitimer(ITIMER_REAL, &never, NULL);
+    }
+}
+
+static void check_uio_wait(void)
+{
+    const struct sigaction action = {.sa_handler = tick};
+    const struct itimerval often = {{0, 5000}, {0, 5000}}, never = {{0, 0}, {0, 0}};
+    const int patience[] = {60, 10000, -1};
+    uint32_t word;
+    int ends[2], turn;
+    sptfra_uio uio;
+
+    /* What is written unmasks the interrupt, which is a word to read. */
+    CHECK(socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0 && sigaction(SIGALRM, &action, NULL) == 0);
+    memset(&uio, 0, sizeof uio);
+    uio.file = ends[0];
+    for (turn = 0; turn < 3; turn++) {
+        ticks = 0;
+        waker = turn == 0 ? -1 : ends[1];
+        CHECK(setitimer(ITIMER_REAL, &often, NULL) == 0);
+        CHECK(sptfra_uio_wait(&uio, patience[turn]) == (turn == 0 ? SPTFRA_TIMEOUT : SPTFRA_OK));
+        CHECK(setitimer(ITIMER_REAL, &never, NULL) == 0);
+        CHECK(ticks >= 3 && ticks < MOST_TICKS);
+        CHECK(read(ends[1], &word, sizeof word) == (ssize_t)sizeof word && word == 1);
+    }
+    uio.file = -1;
+    CHECK(sptfra_uio_wait(&uio, 1) == SPTFRA_SYSTEM);
+    close(ends[0]);
+    close(ends[1]);
+}
+
 int main(int count, char **arguments)
 {
     const sptfra_buffer stress = {stress_words, (uintptr_t)stress_words + MACHINE_BUS_OFFSET, sizeof stress_words};
     const sptfra_buffer forces = {force_words, (uintptr_t)force_words + MACHINE_BUS_OFFSET, sizeof force_words};
     sptfra_buffer wrong = stress;
     sptfra_shape shape;
-    sptfra_platform platform = {NULL, machine_read, machine_write, flush, invalidate, fence};
+    sptfra_platform platform = {NULL, read_register, write_register, flush, invalidate, fence};
     sptfra_counters counters;
     sptfra_identity identity;
     machine *system;
@@ -139,9 +211,10 @@ int main(int count, char **arguments)
         CHECK(sptfra_open(&device, &platform, MACHINE_CORE, MACHINE_DMA) == SPTFRA_OK);
         CHECK(memcmp(&device.shape, &shape, sizeof shape) == 0);
         CHECK(sptfra_identify(&device, &identity) == SPTFRA_OK);
-        printf("hash %016llx lanes %u clock %u latency %u interval %u full scale %g\n",
+        printf("hash %016llx lanes %u clock %u latency %u interval %u full scale %g drops %u\n",
             (unsigned long long)identity.design_hash, identity.lanes, identity.clock_khz, identity.latency_cycles,
-            identity.interval_cycles, (double)identity.full_scale_pa);
+            identity.interval_cycles, (double)identity.full_scale_pa, identity.drops_frames);
+        CHECK(!identity.calibration_in_ram && !identity.curve_in_ram && identity.replaceable == 0);
         CHECK(sptfra_enable_interrupts(&device, SPTFRA_FRAME_ERROR) == SPTFRA_OK);
     } else {
         CHECK(sptfra_open_streams(&device, &platform, MACHINE_DMA, &shape) == SPTFRA_OK);
@@ -181,6 +254,7 @@ int main(int count, char **arguments)
     if (has_registers) {
         CHECK(sptfra_count(&device, &counters) == SPTFRA_OK);
         CHECK(counters.frames_in == frames && counters.frames_out == frames && counters.frames_bad == bad);
+        CHECK(counters.frames_dropped == 0);
         CHECK(counters.last_status == last && counters.last_latency >= identity.latency_cycles);
         CHECK(counters.last_interval > 0);
     }
@@ -248,6 +322,7 @@ int main(int count, char **arguments)
     fclose(file);
     machine_close(system);
     check_uio();
+    check_uio_wait();
     CHECK(strcmp(sptfra_error(SPTFRA_TIMEOUT), "no answer in the polls given") == 0);
     CHECK(strcmp(sptfra_error(-99), "unknown code") == 0);
     printf("PASS: %u frames, %u bad\n", frames, bad);

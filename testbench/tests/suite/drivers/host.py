@@ -45,6 +45,8 @@ def main():
     # The layout that the driver knows is the design's.
     design = Layout.load(metadata)
     assert design.values == LAYOUT.values and design.field in (LAYOUT.field, None)
+    assert design.units == {name: LAYOUT.units[name] for name in design.units}
+    assert LAYOUT.units.keys() - design.units.keys() == (set() if design.field else {"field"})
     sensor = Sptfra(overlay.core, overlay.dma, allocate, metadata)
     identity = sensor.identity
     print(identity)
@@ -79,6 +81,9 @@ def main():
     assert bool(bad) == (identity.samples == np.float32)  # no integer is NaN
     assert all("NOT_FINITE" in forces.names(index) for index in bad)
     assert "NOT_FINITE" not in forces.names(0)
+    assert forces.units["resultant"] == "N" and forces.units["torque"] == "N m" and forces.units["friction"] == ""
+    arrays = {name for name, value in vars(forces).items() if isinstance(value, np.ndarray)}
+    assert forces.units.keys() == arrays, forces.units
     counters = sensor.counters()
     assert (counters.frames_in, counters.frames_out, counters.frames_bad) == (count, count, len(bad))
     assert counters.last_status == Status(int(forces.status[-1]))

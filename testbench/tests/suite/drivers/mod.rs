@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::support::{built, by_plan, frames, planned, shipped, workspace};
-use golden::design::{Design, Outputs, PlanKind, Samples};
+use golden::design::{Design, InputRange, Outputs, Overrun, PlanKind, Samples};
 use hdl_gen::emit::{emit, resolved_hash};
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
@@ -41,10 +41,21 @@ impl Subject {
         })
     }
 
-    /// Counts of 16 bits, two in a word.
+    /// Wide, with a range for each frame, bodies counted and a bit for slip: whatever changes words and no register.
+    fn of_all_kinds() -> Self {
+        Self::changed(Outputs::Field, |design| {
+            design.hardware.control = true;
+            design.hardware.stream_bits = 64;
+            design.hardware.range = InputRange::Frame;
+            design.algorithm.count_bodies = true;
+        })
+    }
+
+    /// Counts of 16 bits, two in a word, to a core that is never held.
     fn of_integers() -> Self {
         Self::changed(Outputs::Field, |design| {
             design.hardware.control = true;
+            design.hardware.overrun = Overrun::Drop;
             design.hardware.samples = Samples::Int16;
             design.input.pa_per_count = Some(-12.5);
         })
@@ -96,9 +107,9 @@ fn packets(plan: &Plan) -> Vec<Vec<u32>> {
 
 /// With and without a field, wide, of integers; and how many frames hold what is no number, as no integer does.
 fn subjects() -> Vec<(Subject, usize)> {
-    let shapes = [(Outputs::Field, 32), (Outputs::Resultants, 32), (Outputs::Field, 64)];
+    let shapes = [(Outputs::Field, 32), (Outputs::Resultants, 32)];
     let floats = shapes.map(|(outputs, stream_bits)| (Subject::wide(true, outputs, stream_bits), 2));
-    floats.into_iter().chain([(Subject::of_integers(), 0)]).collect()
+    floats.into_iter().chain([(Subject::of_all_kinds(), 2), (Subject::of_integers(), 0)]).collect()
 }
 
 /// The driver's files but the calibration and the queue, and the machine that a test puts under it.
@@ -173,11 +184,12 @@ fn the_c_driver_gets_every_word_and_knows_the_core() {
         let said = run(run_c(&subject, &DRIVER.map(workspace)));
         let (plan, timeline) = (&subject.plan, &subject.plan.timeline);
         let identity = format!(
-            "hash {} lanes {} clock 125000 latency {} interval {} full scale 100000\n",
+            "hash {} lanes {} clock 125000 latency {} interval {} full scale 100000 drops {}\n",
             resolved_hash(&plan.design),
             plan.design.hardware.lanes,
             timeline.latency_cycles,
-            timeline.interval_cycles
+            timeline.interval_cycles,
+            u8::from(plan.streams().drops)
         );
         assert!(said.starts_with(&identity), "{said}");
         // Two are of another length.
@@ -226,6 +238,18 @@ fn a_wrong_c_driver_is_noticed() {
         ("buffer->bytes / 4u >= words", "buffer->bytes >= 4u * words"),
         ("&& number != device->next_number", "&& number > device->next_number + 9u"),
         ("    if (device->busy) {", "    if (0) {"),
+        // A barrier on the wrong side of what it orders.
+        (
+            "whole_lines(4u * (size_t)device->shape.words_out));\n    barrier(device);",
+            "(barrier(device), whole_lines(4u * (size_t)device->shape.words_out)));",
+        ),
+        (
+            "    barrier(device);\n    invalidate_lines(device, forces->data, whole_lines(answer));",
+            "    invalidate_lines(device, forces->data, whole_lines(answer));\n    barrier(device);",
+        ),
+        // A signal is no end of a wait, nor its beginning.
+        ("while (ready < 0 && errno == EINTR)", "while (0)"),
+        ("left < 0 ? 0 : (int)left", "left < 0 ? milliseconds : milliseconds"),
         ("    transfer(device, SEND, stress->address, 4u);\n", ""),
         ("    for (packets = 0; packets < MOST_PACKETS", "    for (packets = MOST_PACKETS; packets < MOST_PACKETS"),
     ] {

@@ -23,6 +23,7 @@ const ACTIVITY: &str = "(SAIFILE
   (INSTANCE small_4x3
    (NET
     (reset (T0 7992000) (T1 8000) (TZ 0) (TX 0) (TB 0) (TC 1))
+    (timestamp_take (T0 7984000) (T1 16000) (TZ 0) (TX 0) (TB 0) (TC 4))
    )
   )
  )
@@ -56,9 +57,20 @@ fn simulated_activity_becomes_watts_and_energy() {
     assert!(report.is_right() && report.traces == [file]);
     let ran = folder.vivado(POWER, &[], &[]).succeeded();
     let line = ran.last_line();
-    let joules = 0.084 * report.predicted.interval_cycles as f64 / 125.0;
-    let figures = format!("0.681 W, dynamic 0.084 W, static 0.597 W, {joules:.3} uJ a frame; nets matched 56%");
-    assert!(line.starts_with("small_4x3 at 125.0 MHz, frames back to back: ") && line.contains(&figures), "{line}");
+    let figures = "W, dynamic 0.084 W, static 0.597 W, ";
+    let stated = line.strip_prefix("small_4x3 at 125.0 MHz, 3 frames, one in ").expect("three frames");
+    assert!(
+        stated.contains(&format!(" us: 0.681 {figures}")) && stated.contains(" uJ a frame; nets matched 56%"),
+        "{line}"
+    );
+    // Three frames back to back take two intervals and a latency, and a little before and behind.
+    let number = |text: &str| text.rsplit(' ').next().and_then(|word| word.parse::<f64>().ok()).expect("a number");
+    let microseconds = number(stated.split(" us: ").next().expect("a time"));
+    let microjoules = number(stated.split(" uJ").next().expect("an energy"));
+    let cycles = (2 * report.interval_cycles + report.latency_cycles) as f64;
+    let simulated = 3.0 * 125.0 * microseconds;
+    assert!(simulated > cycles && simulated < cycles + 300.0, "{simulated} cycles, {cycles} of frames");
+    assert!((microjoules - 0.084 * microseconds).abs() < 1e-3, "{line}");
     assert!(ran.call("read_saif").contains("-strip_path top/small_4x3"));
     // Thousands of nets below the core, not only its ports.
     let nets: u32 = line.split(['(', '/']).nth(1).and_then(|count| count.parse().ok()).expect("a count");
@@ -72,8 +84,9 @@ fn activity_of_another_design_or_clock_is_refused() {
     estimated(&ACTIVITY.replace("1ps", "1 fs")).refused("has 125000.00 MHz, the design's has 125.0");
     estimated(&ACTIVITY.replace("2000))", "1900))")).refused("has 118.75 MHz");
     estimated(&ACTIVITY.replace("aclk", "clk")).refused("no changes of aclk");
-    let nowhere = ACTIVITY.replace("    (reset (T0 7992000) (T1 8000) (TZ 0) (TX 0) (TB 0) (TC 1))\n", "");
-    estimated(&nowhere).refused("the power would be a guess");
+    estimated(&ACTIVITY.replace("(TC 4)", "(TC 0)")).refused("no frame that was answered");
+    let outside = ACTIVITY.replace("  (INSTANCE small_4x3\n", "  (INSTANCE small_4x3\n  )\n  (INSTANCE other\n");
+    estimated(&outside).refused("the power would be a guess");
 }
 
 #[test]

@@ -57,10 +57,9 @@ module sptfra_summary #(
 
     // ---- Multiply-accumulate: dependent component (steps 0, 1), forces and torques (steps 6 to 41), gain (steps 0, 1
     // of GAIN)
-    reg [2:0] p; // component - 1, torques from 3 on
     reg low_half; // of the sums
     reg [1:0] q;
-    wire [4:0] sum_index = { {2'b00, p} + {2'b00, p} + {2'b00, p} } + {3'b000, q};
+    reg [4:0] sum_index; // 3 * (component - 1) + q, torques from component 4 on
     wire [39:0] sum_of [0:17];
     genvar pq;
     generate
@@ -242,9 +241,10 @@ module sptfra_summary #(
         dependent_rounded <= accumulator + LINE_HALF;
         if (forces) begin
             q <= (q == 2'd2) ? 2'd0 : q + 2'd1;
+            // The three of a component twice
+            sum_index <= ((q == 2'd2) && !low_half) ? sum_index - 5'd2 : sum_index + 5'd1;
             if (q == 2'd2) begin
                 low_half <= !low_half;
-                p <= low_half ? p + 3'd1 : p;
             end
         end
         if (resultants) begin
@@ -262,7 +262,7 @@ module sptfra_summary #(
         case (state)
             IDLE: begin
                 step <= 6'd0;
-                p <= 3'd0;
+                sum_index <= 5'd0;
                 low_half <= 1'b0;
                 q <= 2'd0;
                 if (start) begin

@@ -13,9 +13,6 @@
 
 source [file join [file dirname [file normalize [info script]]] files.tcl]
 
-# Cycles from frame to frame, as they were sent in simulation.
-set interval_cycles 444
-
 set reports [file join [pwd] ${design}_synth]
 set checkpoint [file join $reports ${design}.dcp]
 set activity [expr {$argc > 0 ? [lindex $argv 0] : [file join [pwd] ${design}.saif]}]
@@ -34,12 +31,19 @@ if {![regexp {\(INSTANCE\s+(\S+)} $text -> outer] || ![regexp "\\(INSTANCE\\s+$d
 }
 if {![regexp {\(TIMESCALE\s+([0-9]+)\s*([fpnu])s\s*\)} $text -> count unit]
     || ![regexp {\(DURATION\s+([0-9.]+)\s*\)} $text -> duration]
-    || ![regexp {\(aclk\s.*?\(TC\s+([0-9]+)\)} $text -> changes]} {
-    error "$activity states no time scale, no duration, or no changes of aclk"
+    || ![regexp {\(aclk\s.*?\(TC\s+([0-9]+)\)} $text -> changes]
+    || ![regexp {\(timestamp_take\s.*?\(TC\s+([0-9]+)\)} $text -> takes]} {
+    error "$activity states no time scale, no duration, or no changes of aclk or timestamp_take"
+}
+# A pulse for each answer.
+set frames [expr {$takes / 2}]
+if {$frames == 0} {
+    error "$activity has no frame that was answered"
 }
 # Two changes are a cycle. A frame's energy is right at any clock, power is not.
 array set per_second {f 1e15 p 1e12 n 1e9 u 1e6}
-set simulated_mhz [expr {$changes / 2.0 / ($duration * $count / $per_second($unit)) / 1e6}]
+set seconds [expr {$duration * $count / $per_second($unit)}]
+set simulated_mhz [expr {$changes / 2.0 / $seconds / 1e6}]
 if {abs($simulated_mhz / $clock_mhz - 1.0) > 0.01} {
     error "the clock in $activity has [format %.2f $simulated_mhz] MHz, the design's has $clock_mhz"
 }
@@ -65,9 +69,11 @@ set matched [stated $table "Design Nets Matched"]
 if {![regexp {^[0-9]+} $matched share] || $share == 0} {
     error "no net of the netlist is in $activity (nets matched: $matched): the power would be a guess"
 }
-# W times microseconds.
-set microjoules [format %.3f [expr {$dynamic * $interval_cycles / $clock_mhz}]]
-set line "$design at $clock_mhz MHz, frames back to back: [stated $table "Total On-Chip Power (W)"] W"
+# Power is the mean of the whole simulation, so this is a frame's share of it, however the frames came.
+set microseconds [expr {$seconds * 1e6 / $frames}]
+set microjoules [format %.3f [expr {$dynamic * $microseconds}]]
+set line "$design at $clock_mhz MHz, $frames frames, one in [format %.2f $microseconds] us"
+append line ": [stated $table "Total On-Chip Power (W)"] W"
 append line ", dynamic $dynamic W, static [stated $table "Device Static (W)"] W, $microjoules uJ a frame"
 append line "; nets matched $matched, confidence [stated $table "Confidence Level"]"
 puts $line
