@@ -58,8 +58,8 @@ impl DeadTaxels {
         self.taxels.contains(&taxel)
     }
 
-    /// Puts a stress in the place of each dead taxel's reading.
-    pub(crate) fn replace(&self, b: &mut [f64]) {
+    /// Puts a stress in the place of each dead taxel's reading, in a frame of one value for each taxel.
+    pub fn replace(&self, b: &mut [f64]) {
         for &taxel in &self.taxels {
             // Whatever it reads, even a NaN.
             b[taxel] = 0.0;

@@ -1,5 +1,6 @@
 //! One case in three arithmetics.
 
+use golden::dead_taxels::DeadTaxels;
 use golden::design::{Design, Estimator, InputRange};
 use golden::matrices::Matrices;
 use golden::metrics::field_error;
@@ -110,9 +111,12 @@ pub fn judge(case: &Case) -> Row {
     row.condition_aat = Some(solver.matrices().condition_aat());
     let streams = Streams::of(&case.design);
     let packets = packets(streams, &case.frames);
-    let frames: Vec<Vec<f64>> = packets.iter().map(|packet| as_received(streams, packet)).collect();
+    let mut frames: Vec<Vec<f64>> = packets.iter().map(|packet| as_received(streams, packet)).collect();
     // Frames have the sensor's length, the only thing that the solver refuses.
     let reference: Vec<Answer> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).map(Answer::from).collect();
+    // What float32 and the errors see in place of dead taxels' readings is what the solver and the hardware put there.
+    let dead = DeadTaxels::new(&case.design.sensor, case.design.algorithm.kernel, &case.design.input.dead);
+    frames.iter_mut().for_each(|frame| dead.replace(frame));
     let fields = Fields::new(&case.design, &solver);
     let judged = |answers: &[Answer]| judged(case, (&solver, fields.as_ref()), &frames, &reference, answers);
     row.f64 = Some(judged(&reference));

@@ -194,8 +194,8 @@ pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
     }
     page.line(
         "A reading of the full scale is \"saturated\": nobody can tell it from a clipped one. So a converter that \
-         clips is seen if `full_scale_pa` is its last value. What no status tells: dead taxels, which look like taxels \
-         without stress.",
+         clips is seen if `full_scale_pa` is its last value. What no status tells: dead taxels that the design does not \
+         name, which look like taxels without stress, and offsets that nobody has tared: `golden check` finds both.",
     );
     page.line(
         "Rows with `range = \"frame\"` have that key of the design file: each frame is scaled by its own largest stress, and \

@@ -5,6 +5,8 @@ use golden::design::{Design, DesignError, Estimator, JointConstants, Sensor};
 use golden::metrics::Outcome;
 use golden::scene::{Contact, Converter, Kind, Medium, Scene, SensorErrors, Shape, Traction};
 
+mod sensor;
+
 use super::HardError;
 use crate::frame_set::FrameSet;
 
@@ -26,14 +28,14 @@ pub struct Case {
 /// Designs with constants of the joint estimator for their sensors, and the names and contents of their weights.
 const CALIBRATED: [[&str; 3]; 2] = [
     [
-        include_str!("../../../designs/sensor1-joint.toml"),
+        include_str!("../../../../designs/sensor1-joint.toml"),
         "sensor1-joint.weights.csv",
-        include_str!("../../../designs/sensor1-joint.weights.csv"),
+        include_str!("../../../../designs/sensor1-joint.weights.csv"),
     ],
     [
-        include_str!("../../../designs/sensor2-joint.toml"),
+        include_str!("../../../../designs/sensor2-joint.toml"),
         "sensor2-joint.weights.csv",
-        include_str!("../../../designs/sensor2-joint.weights.csv"),
+        include_str!("../../../../designs/sensor2-joint.weights.csv"),
     ],
 ];
 
@@ -108,11 +110,12 @@ impl Cases {
         name: impl Into<String>,
         algorithm: &str,
         scene: &Scene,
-    ) -> Result<(), HardError> {
+    ) -> Result<&mut Case, HardError> {
         let FrameSet { stress: frames, truth, .. } = FrameSet::of_scene(scene, "")?;
         let design = design(&scene.sensor, algorithm)?;
+        let last = self.0.len();
         self.0.push(Case { group, name: name.into(), design, frames, truth });
-        Ok(())
+        Ok(&mut self.0[last])
     }
 
     fn frames(&mut self, group: &'static str, name: &str, frames: Vec<Vec<f64>>) -> Result<(), HardError> {
@@ -139,7 +142,7 @@ pub fn all(large: bool) -> Result<Vec<Case>, HardError> {
         kinds(&mut cases)?;
     }
     directions(&mut cases)?;
-    errors(&mut cases)?;
+    sensor::errors(&mut cases)?;
     ends_of_range(&mut cases)?;
     without_answer(&mut cases)?;
     Ok(cases.0)
@@ -258,23 +261,6 @@ fn directions(cases: &mut Cases) -> Result<(), HardError> {
         cases.scene("direction", format!("{by}° off the axes"), "", &swept(around(0.0, by)))?;
         cases.scene("direction", format!("{by}° off the diagonals"), "", &swept(around(45.0, by)))?;
     }
-    Ok(())
-}
-
-fn errors(cases: &mut Cases) -> Result<(), HardError> {
-    let sensor = sensor_1();
-    let swept = |errors| scene(&sensor, vec![contact(&sensor, 7.0)], all_directions(), errors);
-    for percent in [0.05, 0.1, 0.2, 0.5, 1.0, 2.0] {
-        cases.scene("sensor", format!("noise {percent} %"), "", &swept(noise(percent / 100.0)))?;
-    }
-    let with = |dead: Vec<usize>, stuck: Vec<(usize, f64)>| SensorErrors { dead, stuck, ..SensorErrors::default() };
-    cases.scene("sensor", "a dead taxel in the middle", "", &swept(with(vec![44], vec![])))?;
-    cases.scene("sensor", "five dead taxels", "", &swept(with(vec![0, 33, 44, 55, 67], vec![])))?;
-    cases.scene("sensor", "a saturated taxel in the contact", "", &swept(with(vec![], vec![(44, -1e5)])))?;
-    cases.scene("sensor", "a saturated taxel far away", "", &swept(with(vec![], vec![(9, -1e5)])))?;
-    cases.scene("sensor", "a taxel beyond the full scale", "", &swept(with(vec![], vec![(44, -3e5)])))?;
-    let coarse = SensorErrors { converter: Some(Converter { bits: 8, full_scale_pa: 1e5 }), ..SensorErrors::default() };
-    cases.scene("sensor", "converter of 8 bits", "", &swept(coarse))?;
     Ok(())
 }
 
