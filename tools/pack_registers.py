@@ -8,7 +8,9 @@ use them for the registers that a design has there anyway. Yosys leaves those ou
 The flat netlist is rewritten in place. Cycles stay as they are: a register moves, none is added.
 
 A register moves only if all bits of a port go through registers of one clock and one enable, without a reset, and nothing
-else reads what is in front of them (behind them, at the inputs of a multiplier).
+else reads what is in front of them (behind them, at the inputs of a multiplier). In front of a multiplier it stays where a
+block memory answers into it, straight or through a LUT: the way between the two columns is long, and a register that can
+stand anywhere parts it.
 """
 
 import collections
@@ -134,6 +136,15 @@ def pack_output(netlist, name):
     return len(found[0])
 
 
+def answers(netlist, bit, through=True):
+    """Whether a bit comes from a block memory, straight or through a LUT."""
+    cell = netlist.cells.get(netlist.drivers.get(bit, (None, None))[0])
+    if cell is None or cell["type"] == "DP16KD":
+        return cell is not None
+    reads = [bits[0] for port, bits in cell["connections"].items() if cell["port_directions"][port] == "input"]
+    return through and cell["type"] == "LUT4" and any(answers(netlist, bit, False) for bit in reads)
+
+
 def pack_inputs(netlist, name):
     """Registers in front of both inputs of a multiplier: so many."""
     wires = netlist.cells[name]["connections"]
@@ -146,7 +157,7 @@ def pack_inputs(netlist, name):
         register, output = netlist.drivers.get(bit, (None, None))
         sources[port] = register
         kinds.add(netlist.plain(register) if output == "Q" else None)
-    if len(kinds) != 1 or None in kinds:
+    if len(kinds) != 1 or None in kinds or any(answers(netlist, netlist.of(name, "DI")) for name in sources.values()):
         return 0
     for port, register in sources.items():
         netlist.change(name, port, netlist.of(register, "DI"))
