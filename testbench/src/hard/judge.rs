@@ -116,7 +116,9 @@ pub fn judge(case: &Case) -> Row {
     let reference: Vec<Answer> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).map(Answer::from).collect();
     // What float32 and the errors see in place of dead taxels' readings is what the solver and the hardware put there.
     let dead = DeadTaxels::new(&case.design.sensor, case.design.algorithm.kernel, &case.design.input.dead);
-    frames.iter_mut().for_each(|frame| dead.replace(frame));
+    for frame in &mut frames {
+        dead.replace(frame);
+    }
     let fields = Fields::new(&case.design, &solver);
     let judged = |answers: &[Answer]| judged(case, (&solver, fields.as_ref()), &frames, &reference, answers);
     row.f64 = Some(judged(&reference));

@@ -3,7 +3,7 @@
 use golden::calibrate::{Settings, calibrate};
 use golden::design::{Design, DesignError, Estimator, JointConstants, Sensor};
 use golden::metrics::Outcome;
-use golden::scene::{Contact, Converter, Kind, Medium, Scene, SensorErrors, Shape, Traction};
+use golden::scene::{Contact, Kind, Medium, Scene, SensorErrors, Shape, Traction};
 
 mod sensor;
 
