@@ -144,6 +144,13 @@ impl AtRest {
                 self.noise_pa
             ));
         }
+        if self.noise <= 0.0 {
+            said.push(
+                "the median taxel never changes: its noise is below the converter's steps, or clipped at its end, and which \
+                 taxels are dead is not told"
+                    .to_owned(),
+            );
+        }
         if self.noisy.len() > (self.taxels.len() / 20).max(2) {
             said.push(format!(
                 "{} taxels vary {NOISY} times as much as the median one: did something touch the sensor?",

@@ -138,6 +138,7 @@ fn what_is_no_rest_is_doubted() {
         assert!(rest.dead.is_empty() && rest.stuck.is_empty(), "{:?} {:?}", rest.dead, rest.stuck);
         assert!(rest.warnings.join("").contains("[7] never change"), "{:?}", rest.warnings);
     }
+    assert!(doubts(&frames(20, |_, _| 0.0)).contains("never changes"));
     assert_eq!(AtRest::of(&design, &untared()[..3]), Err(RestError::Few(3)));
 }
 
