@@ -5,8 +5,10 @@ use serde::Serialize;
 /// Frames back to back that show the interval: from before the middle on every buffer is full, and there is still a next
 /// frame.
 pub const INTERVAL_FRAMES: usize = 24;
-/// Distances before the middle one that count.
+/// Distances before the middle one that count, and those at the end that do not: behind their frames too few follow to hold
+/// them up.
 const BEFORE: usize = 2;
+const LAST: usize = 4;
 
 /// Mean distance between the ends of frames that follow each other without a pause, rounded up.
 ///
@@ -15,8 +17,7 @@ const BEFORE: usize = 2;
 pub fn mean_interval(ends: &[u64]) -> u64 {
     let distances: Vec<u64> = ends.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let from = (distances.len() / 2).saturating_sub(BEFORE);
-    // Behind the last frame there is none that could hold it up.
-    let to = distances.len().saturating_sub(1).max(from + 1).min(distances.len());
+    let to = distances.len().saturating_sub(LAST).max(from + 1).min(distances.len());
     let full = &distances[from.min(to)..to];
     let repeats = |turn: &usize| full.iter().zip(&full[*turn..]).all(|(distance, next)| distance == next);
     let turn = (1..=full.len() / 2).find(repeats).unwrap_or(full.len());
@@ -66,7 +67,7 @@ mod tests {
         assert_eq!(mean_interval(&ends(&[300, 300, 300, 300, 600])), 360);
         // What does not repeat: all that is known.
         let grows: Vec<u64> = (0..30).map(|index| 100 + index).collect();
-        assert_eq!(mean_interval(&ends(&grows)), 115);
+        assert_eq!(mean_interval(&ends(&grows)), 114);
     }
 
     #[test]
