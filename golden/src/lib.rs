@@ -46,6 +46,7 @@ pub mod products;
 pub mod progress;
 pub mod reduced;
 pub mod resolved;
+pub mod rest;
 pub mod scene;
 pub mod sensor;
 pub mod solver;

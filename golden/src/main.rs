@@ -99,7 +99,10 @@ enum Command {
     ///
     /// Says in a line each, with the likely cause and the key to change: values in another unit than the design says,
     /// stress with the wrong sign, no tension anywhere, a missing tare, taxels in another order, readings at the end
-    /// of the converter. The exit code is 0 only if nothing is found.
+    /// of the converter, broken taxels. Then, how much lies beyond what the design is calibrated for. The exit code is 0
+    /// only if nothing is found.
+    ///
+    /// With `--rest`, what a recording without load tells; what makes it doubtful is a warning.
     Check {
         /// Design file (TOML).
         #[arg(value_parser = design_file())]
@@ -110,6 +113,13 @@ enum Command {
         /// Columns of labels before the values of a frame; the file may then have a header.
         #[arg(long, value_name = "N", default_value_t = 0)]
         labels: usize,
+        /// Nothing presses in the frames: report each taxel's offset, noise and drift, which are dead, stuck and noisy, and
+        /// the keys that suit the noise.
+        #[arg(long)]
+        rest: bool,
+        /// Where to write the calibration that takes the offsets off (lines gain,offset), for `sensor.calibration`.
+        #[arg(long, value_name = "CALIBRATION.csv", requires = "rest")]
+        out: Option<PathBuf>,
         /// Report as JSON.
         #[arg(long)]
         json: bool,
@@ -315,8 +325,9 @@ fn main() -> ExitCode {
         Command::Solve { design, frames, labels, out, field, reference, json } => {
             commands::solve::run(&design, &Recording { file: &frames, labels }, &out, field, reference.as_deref(), json)
         }
-        Command::Check { design, frames, labels, json } => {
-            commands::check::run(&design, &Recording { file: &frames, labels }, json)
+        Command::Check { design, frames, labels, rest, out, json } => {
+            let asked = commands::check::Asked { rest, out: out.as_deref(), json };
+            commands::check::run(&design, &Recording { file: &frames, labels }, &asked)
         }
         Command::Calibrate { design, out, recordings, json, .. } if recordings.given() => {
             commands::calibrate_recorded::run(&design, &out, &recordings, json)

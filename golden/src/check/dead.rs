@@ -5,6 +5,9 @@ use crate::design::Design;
 
 /// A taxel lies within a contact where those on two opposite sides of it read this share of the frame's peak,
 const WITHIN: f64 = 0.2;
+/// or in several frames, a tenth of them, this share of it:
+const OFTEN_WITHIN: f64 = 0.05;
+const OFTEN: f64 = 0.1;
 /// and is dead if it reads less than this share of either: one in the middle of a contact that stays reads the most.
 const LESS: f64 = 0.5;
 /// Names of taxels in a message.
@@ -24,21 +27,23 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], c
     };
     let within = |taxel: usize| {
         let (x, y) = (taxel % columns, taxel / columns);
-        loaded.iter().any(|frame| {
-            let least = (WITHIN * largest(frame)).max(frame[taxel].abs() / LESS);
+        let beyond = |frame: &Vec<f64>, share: f64| {
+            let least = (share * largest(frame)).max(frame[taxel].abs() / LESS);
             let pressed = |x: usize, y: usize| frame[y * columns + x] < -least;
             let along = x > 0 && x + 1 < columns && pressed(x - 1, y) && pressed(x + 1, y);
             let across = y > 0 && y + 1 < design.sensor.rows && pressed(x, y - 1) && pressed(x, y + 1);
             // Between two bodies a taxel that cannot read a pull reads 0 for good.
             if clipped { along && across } else { along || across }
-        })
+        };
+        loaded.iter().any(|frame| beyond(frame, WITHIN))
+            || loaded.iter().filter(|frame| beyond(frame, OFTEN_WITHIN)).count() as f64
+                >= (OFTEN * loaded.len() as f64).max(3.0)
     };
     let known = |taxel: &usize| !design.input.dead.contains(taxel);
     let dead: Vec<usize> =
         (0..design.sensor.taxels()).filter(known).filter(|&taxel| constant(taxel) && within(taxel)).collect();
     (!dead.is_empty()).then(|| {
-        let name = |&taxel: &usize| format!("{taxel} ({}, {})", taxel % columns, taxel / columns);
-        let mut names: Vec<String> = dead.iter().take(NAMED).map(name).collect();
+        let mut names: Vec<String> = dead.iter().take(NAMED).map(|&taxel| name(design, taxel)).collect();
         if dead.len() > NAMED {
             names.push(format!("and {} more", dead.len() - NAMED));
         }
@@ -49,4 +54,9 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], c
             names.join(", ")
         )
     })
+}
+
+/// A taxel's number, and its place in the grid.
+pub(super) fn name(design: &Design, taxel: usize) -> String {
+    format!("{taxel} ({}, {})", taxel % design.sensor.columns, taxel / design.sensor.columns)
 }

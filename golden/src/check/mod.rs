@@ -3,15 +3,21 @@
 //! Each check knows one usual mistake of those who connect a sensor. A frame that passes may still be wrong: a square
 //! grid that is transposed looks like another contact.
 
+mod beyond;
 mod bodies;
+mod broken;
 mod dead;
 pub(crate) mod ends;
 mod order;
+mod quiet;
 mod rest;
 
 use std::fmt;
 
 use serde::Serialize;
+
+pub use beyond::{Beyond, beyond};
+pub(crate) use quiet::together;
 
 use crate::design::{Design, Tension};
 use crate::matrices::Matrices;
@@ -23,7 +29,7 @@ use crate::words::print_as_words;
 pub enum Kind {
     /// Every reading is zero.
     Empty,
-    /// Readings of both signs that add up to next to nothing, as noise does where nothing presses.
+    /// Readings that stay as they are but for noise, as where nothing presses.
     Rest,
     /// Readings far below or above the full scale.
     Range,
@@ -35,7 +41,7 @@ pub enum Kind {
     Tension,
     /// Every taxel is loaded, or pulls, those beside the contact too.
     Tare,
-    /// Taxels that read the same whatever presses around them.
+    /// Taxels that read the same whatever presses around them, or much where nothing does.
     Dead,
     /// The taxels stand in another order.
     Order,
@@ -86,12 +92,28 @@ const FAINT: f64 = 2e-3;
 /// Looks for what is wrong with frames of a design, values as they are in the file, each of m finite numbers.
 ///
 /// `matrices` are those of the design; without them the order of the taxels is not looked at.
-#[allow(clippy::too_many_lines, reason = "one check after the other, and what each knows of those before")]
 pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
-    let stress: Vec<Vec<f64>> = frames
+    // One taxel that is broken would pass for another order, unit or tare.
+    let stress = in_pascals(design, frames);
+    let Some(broken::Broken { message, mended }) = broken::check(design, frames, &stress) else {
+        return check_whole(design, frames, matrices);
+    };
+    let mut findings = check_whole(design, &mended, matrices);
+    findings.retain(|finding| finding.kind != Kind::Order);
+    findings.insert(0, Finding { kind: Kind::Dead, message });
+    findings
+}
+
+fn in_pascals(design: &Design, frames: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    frames
         .iter()
         .map(|frame| frame.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect())
-        .collect();
+        .collect()
+}
+
+#[allow(clippy::too_many_lines, reason = "one check after the other, and what each knows of those before")]
+fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
+    let stress = in_pascals(design, frames);
     let peak = stress.iter().map(|frame| largest(frame)).fold(0.0, f64::max);
     let mut findings = Vec::new();
     let mut found = |kind, message| findings.push(Finding { kind, message });
@@ -101,7 +123,7 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     }
     let is_loaded: Vec<bool> = stress.iter().map(|frame| largest(frame) >= LOADED * peak).collect();
     let full_scale = design.hardware.full_scale_pa;
-    if let Some(message) = at_rest(&stress, &is_loaded).filter(|_| peak < LOUD * full_scale) {
+    if let Some(message) = quiet::check(design, &stress, &is_loaded, peak) {
         found(Kind::Rest, message);
         return findings;
     }
@@ -204,25 +226,6 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
         findings.push(Finding { kind: Kind::Bodies, message });
     }
     findings
-}
-
-/// Frames of which the loaded ones are noise, in pascals.
-fn at_rest(stress: &[Vec<f64>], is_loaded: &[bool]) -> Option<String> {
-    let loaded: Vec<&Vec<f64>> =
-        stress.iter().zip(is_loaded).filter(|(_, loaded)| **loaded).map(|(frame, _)| frame).collect();
-    let all = |frame: &[f64]| frame.iter().map(|stress| stress.abs()).sum::<f64>();
-    let is_noise = |frame: &&&Vec<f64>| frame.iter().sum::<f64>().abs() < PRESSES * all(frame);
-    let noise = loaded.iter().filter(is_noise).count();
-    holds(noise, loaded.len()).then(|| {
-        let mean = loaded.iter().map(|frame| all(frame) / frame.len() as f64).fold(0.0, f64::max);
-        format!(
-            "nothing presses in {noise} of {}: readings of either sign, {mean:.3} Pa in the mean, add up to nothing. If that \
-             is the sensor at rest, write algorithm.noise_floor_pa = {:.1}, and such frames have the status \"no contact\"",
-            count(loaded.len()),
-            // Rounded up, and not to 0.
-            (10.0 * ABOVE_NOISE * mean).ceil() / 10.0
-        )
-    })
 }
 
 /// Readings in another unit.

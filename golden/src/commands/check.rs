@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use golden::check::check;
+use golden::check::{Beyond, beyond, check};
 use golden::design::Design;
 use golden::matrices::Matrices;
 use golden::progress::Progress;
@@ -17,6 +17,7 @@ struct Report<'a> {
     design: &'a str,
     frames: usize,
     findings: Vec<Line>,
+    beyond: Beyond,
 }
 
 #[derive(Serialize)]
@@ -25,13 +26,27 @@ struct Line {
     message: String,
 }
 
+/// What is asked besides.
+pub struct Asked<'a> {
+    /// Nothing presses in the frames.
+    pub rest: bool,
+    /// Where the calibration goes that frames at rest give.
+    pub out: Option<&'a Path>,
+    pub json: bool,
+}
+
 /// Checks the frames of a file; an error if anything is found.
-pub fn run(path: &Path, recording: &Recording, json: bool) -> Result<(), Box<dyn Error>> {
+pub fn run(path: &Path, recording: &Recording, asked: &Asked) -> Result<(), Box<dyn Error>> {
     if is_standard(recording.file) {
         return Err("--frames -: this looks at all frames of a recording; write them into a file first".into());
     }
     let design = Design::load(path)?;
     let frames = recording.read(&design)?;
+    let &Asked { rest, out, json } = asked;
+    if rest {
+        return super::rest::run(path, &design, recording, &frames, out, json);
+    }
+    let beyond = beyond(&design, &frames);
     let matrices = {
         let _progress = Progress::of("matrices");
         Matrices::of(&design).map_err(|error| format!("{}: {error}", design.name))?
@@ -41,7 +56,7 @@ pub fn run(path: &Path, recording: &Recording, json: bool) -> Result<(), Box<dyn
     if json {
         let line = |kind: String, message: String| Line { kind, message };
         let findings = findings.iter().map(|found| line(found.kind.to_string(), found.to_string())).collect();
-        let report = Report { design: &design.name, frames: frames.len(), findings };
+        let report = Report { design: &design.name, frames: frames.len(), findings, beyond };
         say!("{}", serde_json::to_string_pretty(&report)?);
     } else {
         for finding in &findings {
@@ -50,10 +65,23 @@ pub fn run(path: &Path, recording: &Recording, json: bool) -> Result<(), Box<dyn
         if findings.is_empty() {
             say!("{}: {} frames of {file}, nothing suspicious", design.name, frames.len());
         }
+        if findings.is_empty() || beyond.readings > 0 {
+            say!("{}", line_of(&beyond));
+        }
     }
     match findings.len() {
         0 => Ok(()),
         1 => Err(format!("{file}: one thing to look at before the forces are trusted").into()),
         count => Err(format!("{file}: {count} things to look at before the forces are trusted").into()),
     }
+}
+
+/// How much lies outside what the sensor was calibrated for.
+pub fn line_of(beyond: &Beyond) -> String {
+    let Beyond { readings, share, frames } = beyond;
+    let what = "lie beyond what the design is calibrated for, its curve's ends or full_scale_pa";
+    if *readings == 0 {
+        return format!("No readings {what}");
+    }
+    format!("{:.2} % of the readings, in {frames} frames, {what}", 100.0 * share)
 }

@@ -7,6 +7,7 @@ pub mod calibrate_recorded;
 pub mod check;
 pub mod choose;
 pub mod filter;
+pub mod rest;
 pub mod scene;
 pub mod solve;
 

@@ -238,7 +238,7 @@ impl Calibration {
     }
 
     /// The file that reads back as the same bits.
-    pub(super) fn to_csv(&self) -> String {
+    pub fn to_csv(&self) -> String {
         let mut text = String::new();
         for (gain, offset) in self.gain.iter().zip(&self.offset) {
             // Writing to a String cannot fail.

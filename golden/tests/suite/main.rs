@@ -23,6 +23,7 @@ mod recorded;
 mod recording;
 mod reduced;
 mod regularisation;
+mod rest;
 mod samples;
 mod scene_file;
 mod thin;

@@ -1,0 +1,281 @@
+//! A sensor on which nothing presses: what each taxel reads then, how it varies, and what that says of a design.
+
+use serde::Serialize;
+
+use crate::check::together;
+use crate::dead_taxels::MOST_DEAD;
+use crate::design::{Calibration, Design};
+
+/// So few frames tell no deviation.
+const FRAMES: usize = 10;
+/// A taxel that varies this many times as much as the median one is noisy.
+const NOISY: f64 = 4.0;
+/// What rounding to whole steps adds to a reading, as a deviation: the root of 1/12.
+const ROUNDING: f64 = 0.289;
+/// Where taxels vary by half a step, none reads the same in many frames by chance: by less than that in each frame.
+const SAME: f64 = 0.7;
+/// A chance that is none.
+const NO_CHANCE: f64 = 1e-3;
+/// A constant reading this many times as far from the median as half of the taxels are is that of no sensor at rest.
+const FAR: f64 = 10.0;
+/// This share of the readings at the least of all is a converter that clips there.
+const CLIPPED: f64 = 0.05;
+/// The noise floor in deviations, as `golden calibrate` has it.
+const QUIET: f64 = 3.0;
+/// A deviation, or a step, of this share of the full scale is no noise.
+const LOUD: f64 = 0.01;
+/// Neighbours at rest have less than this in common.
+const TOGETHER: f64 = 0.5;
+
+/// Why frames tell nothing of a sensor at rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RestError {
+    /// Too few frames.
+    #[error("{0} frames at rest tell no noise: record {FRAMES} at least, better 200")]
+    Few(usize),
+    /// Offsets of readings in pascals.
+    #[error(
+        "sensor.calibration is for counts, and this design's frames are in pascals: write sensor.pa_per_count, what a count \
+         is worth, or 1.0 to have offsets in pascals taken off"
+    )]
+    Pascals,
+    /// More dead taxels than can be replaced.
+    #[error(
+        "{0} taxels are dead or stuck, and {1} of this sensor's can be replaced: mend the sensor, or leave out the part of it"
+    )]
+    Dead(usize, usize),
+}
+
+/// What one taxel reads at rest, in the units of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TaxelAtRest {
+    /// Its number.
+    pub taxel: usize,
+    /// Mean of its readings.
+    pub offset: f64,
+    /// Standard deviation about a straight line through them.
+    pub noise: f64,
+    /// Mean of the last third of the frames less that of the first third.
+    pub drift: f64,
+}
+
+/// What frames tell of a sensor on which nothing presses.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AtRest {
+    /// A line for each taxel.
+    pub taxels: Vec<TaxelAtRest>,
+    /// Taxels that never change while the others do, and those that the design says are dead.
+    pub dead: Vec<usize>,
+    /// Taxels that never change and read what no taxel at rest does.
+    pub stuck: Vec<usize>,
+    /// Taxels that vary several times as much as the median one.
+    pub noisy: Vec<usize>,
+    /// Median deviation of the taxels that work, in the units of the file.
+    pub noise: f64,
+    /// The same in pascals, with what rounding adds at least.
+    pub noise_pa: f64,
+    /// For `algorithm.noise_floor_pa`: three deviations.
+    pub noise_floor_pa: f64,
+    /// For `algorithm.regularisation.noise`: the deviation over `hardware.full_scale_pa`.
+    pub noise_of_full_scale: f64,
+    /// Median of the taxels' drift, in the units of the file.
+    pub drift: f64,
+    /// What makes one doubt that nothing pressed, or that the recording is good for it.
+    pub warnings: Vec<String>,
+}
+
+impl AtRest {
+    /// What frames, values as they are in the file, tell of the design's sensor.
+    ///
+    /// # Errors
+    ///
+    /// [`RestError::Few`].
+    pub fn of(design: &Design, frames: &[Vec<f64>]) -> Result<Self, RestError> {
+        if frames.len() < FRAMES {
+            return Err(RestError::Few(frames.len()));
+        }
+        let all: Vec<TaxelAtRest> = (0..design.sensor.taxels()).map(|taxel| taxel_at_rest(frames, taxel)).collect();
+        let known = |taxel: usize| design.input.dead.contains(&taxel);
+        // Numbers with fractions have no steps that tell.
+        let step = if frames.iter().flatten().all(|value| value.fract() == 0.0) { 1.0 } else { 0.0 };
+        let middle = median(all.iter().filter(|each| !known(each.taxel)).map(|each| each.noise));
+        let (dead, stuck, silent) = constant(design, frames, &all, middle, step);
+        let works = |taxel: usize| !dead.contains(&taxel) && !stuck.contains(&taxel);
+        let live: Vec<TaxelAtRest> = all.iter().filter(|each| works(each.taxel)).copied().collect();
+        let noise = median(live.iter().map(|each| each.noise));
+        let usual = noise.max(ROUNDING * step);
+        let noisy: Vec<usize> =
+            live.iter().filter(|each| usual > 0.0 && each.noise > NOISY * usual).map(|each| each.taxel).collect();
+        let pascals = |each: &TaxelAtRest| {
+            let of = |sign: f64| design.input.to_pa(each.taxel, each.offset + sign * each.noise.max(ROUNDING * step));
+            0.5 * (of(1.0) - of(-1.0)).abs()
+        };
+        let noise_pa = median(live.iter().map(pascals));
+        let drift = median(live.iter().map(|each| each.drift));
+        let full_scale = design.hardware.full_scale_pa;
+        let mut rest = Self {
+            taxels: all,
+            dead,
+            stuck,
+            noisy,
+            noise,
+            noise_pa,
+            noise_floor_pa: QUIET * noise_pa,
+            noise_of_full_scale: noise_pa / full_scale,
+            drift,
+            warnings: Vec::new(),
+        };
+        rest.warnings = rest.doubts(design, frames, &silent, usual);
+        Ok(rest)
+    }
+
+    fn works(&self, taxel: usize) -> bool {
+        !self.dead.contains(&taxel) && !self.stuck.contains(&taxel)
+    }
+
+    /// What speaks against a sensor at rest.
+    fn doubts(&self, design: &Design, frames: &[Vec<f64>], silent: &[usize], usual: f64) -> Vec<String> {
+        let (mut said, full_scale) = (Vec::new(), design.hardware.full_scale_pa);
+        let live: Vec<&TaxelAtRest> = self.taxels.iter().filter(|each| self.works(each.taxel)).collect();
+        if self.noise_pa > LOUD * full_scale {
+            said.push(format!(
+                "the median taxel varies by {:.1} Pa, more than a hundredth of hardware.full_scale_pa: did something touch \
+                 the sensor, or is its unit another?",
+                self.noise_pa
+            ));
+        }
+        if self.noise <= 0.0 {
+            said.push(
+                "the median taxel never changes: its noise is below the converter's steps, or clipped at its end, and which \
+                 taxels are dead is not told"
+                    .to_owned(),
+            );
+        }
+        if self.noisy.len() > (self.taxels.len() / 20).max(2) {
+            said.push(format!(
+                "{} taxels vary {NOISY} times as much as the median one: did something touch the sensor?",
+                self.noisy.len()
+            ));
+        }
+        let middle = median(live.iter().map(|each| each.offset));
+        let offsets: Vec<f64> =
+            self.taxels.iter().map(|each| if self.works(each.taxel) { each.offset } else { middle }).collect();
+        let spread = live.iter().map(|each| (each.offset - middle).abs()).fold(0.0, f64::max);
+        if spread > 10.0 * usual && together(&design.sensor, &offsets) > TOGETHER {
+            said.push(format!(
+                "neighbours have like offsets, up to {spread:.1} from the median: does something lie on the sensor?"
+            ));
+        }
+        // A third of the frames each, with their noise.
+        let chance = usual * (6.0 / frames.len() as f64).sqrt();
+        if self.drift.abs() > usual && self.drift.abs() > 4.0 * chance {
+            said.push(format!(
+                "the median taxel drifts by {:.1}, more than its noise: let the sensor warm up, and wait after a load",
+                self.drift
+            ));
+        }
+        if !silent.is_empty() {
+            said.push(format!(
+                "taxels {silent:?} never change; the converter clips there, or its steps are larger than the noise: press on \
+                 them to see whether they are dead"
+            ));
+        }
+        said
+    }
+
+    /// Gains and offsets with which these readings are none: the design's gains, 0 for dead and stuck taxels.
+    ///
+    /// # Errors
+    ///
+    /// [`RestError::Pascals`] for a design without counts, [`RestError::Dead`] with more dead taxels than it may have.
+    pub fn calibration(&self, design: &Design, frames: &[Vec<f64>]) -> Result<Calibration, RestError> {
+        if !design.input.counts() {
+            return Err(RestError::Pascals);
+        }
+        let (dead, most) = (self.dead.len() + self.stuck.len(), MOST_DEAD.min(self.taxels.len() / 2));
+        if dead > most {
+            return Err(RestError::Dead(dead, most));
+        }
+        let (gain, offset) = self
+            .taxels
+            .iter()
+            .map(|each| {
+                if !self.works(each.taxel) {
+                    return (0.0, 0.0);
+                }
+                let gain = design.input.calibration.as_ref().map_or(1.0, |before| before.gain[each.taxel]);
+                let mean = match &design.input.curve {
+                    // In pascals; that of the mean count is another.
+                    Some(curve) => {
+                        frames.iter().map(|frame| curve.at(frame[each.taxel])).sum::<f64>() / frames.len() as f64
+                    }
+                    None => each.offset,
+                };
+                // No offset is -0.
+                (gain, 0.0 - gain * mean)
+            })
+            .unzip();
+        Ok(Calibration { gain, offset })
+    }
+}
+
+fn taxel_at_rest(frames: &[Vec<f64>], taxel: usize) -> TaxelAtRest {
+    let count = frames.len() as f64;
+    let mean = |frames: &[Vec<f64>]| frames.iter().map(|frame| frame[taxel]).sum::<f64>() / frames.len() as f64;
+    let offset = mean(frames);
+    let time = |index: usize| index as f64 - 0.5 * (count - 1.0);
+    let readings = || frames.iter().enumerate().map(|(index, frame)| (time(index), frame[taxel] - offset));
+    let slope = readings().map(|(time, value)| time * value).sum::<f64>()
+        / readings().map(|(time, _)| time * time).sum::<f64>();
+    let squares: f64 = readings().map(|(time, value)| (value - slope * time).powi(2)).sum();
+    let third = frames.len() / 3;
+    TaxelAtRest {
+        taxel,
+        offset,
+        noise: (squares / (count - 2.0)).sqrt(),
+        drift: mean(&frames[frames.len() - third..]) - mean(&frames[..third]),
+    }
+}
+
+/// Taxels that never change: the dead ones, the stuck ones, and those of which rest does not tell.
+fn constant(
+    design: &Design,
+    frames: &[Vec<f64>],
+    all: &[TaxelAtRest],
+    noise: f64,
+    step: f64,
+) -> (Vec<usize>, Vec<usize>, Vec<usize>) {
+    let never = |taxel: usize| frames.iter().all(|frame| frame[taxel].to_bits() == frames[0][taxel].to_bits());
+    let others: Vec<&TaxelAtRest> = all.iter().filter(|each| !never(each.taxel)).collect();
+    let middle = median(others.iter().map(|each| each.offset));
+    let near = median(others.iter().map(|each| (each.offset - middle).abs())).max(noise).max(step);
+    let least = frames.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    let at_least = others.iter().flat_map(|each| frames.iter().map(|frame| frame[each.taxel])).filter(|&v| v <= least);
+    let clips = at_least.count() as f64 > CLIPPED * (others.len() * frames.len()) as f64;
+    let tells =
+        noise >= 0.5 * step && noise > 0.0 && all.len() as f64 * SAME.powf(frames.len() as f64 - 1.0) < NO_CHANCE;
+    let (mut dead, mut stuck, mut silent) = (design.input.dead.clone(), Vec::new(), Vec::new());
+    for taxel in (0..all.len()).filter(|&taxel| never(taxel) && !design.input.dead.contains(&taxel)) {
+        let reads = frames[0][taxel];
+        let is_far = !others.is_empty() && (reads - middle).abs() > FAR * near && reads != 0.0;
+        let is_end = design.input.to_pa(taxel, reads).abs() >= design.hardware.full_scale_in_frames();
+        if is_end || tells && is_far {
+            stuck.push(taxel);
+        } else if tells && !(clips && reads <= least) {
+            dead.push(taxel);
+        } else if !others.is_empty() && 2 * others.len() > all.len() {
+            silent.push(taxel);
+        }
+    }
+    dead.sort_unstable();
+    (dead, stuck, silent)
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => 0.0,
+        count => f64::midpoint(values[(count - 1) / 2], values[count / 2]),
+    }
+}

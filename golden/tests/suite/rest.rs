@@ -1,0 +1,247 @@
+//! Recordings of a sensor on which nothing presses, and taxels that are broken.
+
+use std::fs;
+use std::process::{Command, Output};
+
+use golden::check::{Kind, beyond, check};
+use golden::design::Design;
+use golden::frames::write_frames;
+use golden::matrices::Matrices;
+use golden::rest::{AtRest, RestError};
+use golden::scene::{Scene, SensorErrors};
+
+const TAXELS: usize = 78;
+const PA_PER_COUNT: f64 = -24.4;
+
+fn text(more: &str) -> String {
+    format!(
+        "name = \"mat\"\n[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n\
+         pa_per_count = {PA_PER_COUNT}\n{more}"
+    )
+}
+
+fn mat(more: &str) -> Design {
+    Design::from_toml(&text(more), "mat.toml").unwrap()
+}
+
+/// A number from 0 to 1 of two numbers.
+fn uniform(a: usize, b: usize) -> f64 {
+    let mut bits = (a as u64) << 32 ^ b as u64 ^ 0x9e37_79b9_7f4a_7c15;
+    for _ in 0..2 {
+        bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        bits ^= bits >> 31;
+    }
+    (bits >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Nearly Gaussian, of deviation 1.
+fn noise(frame: usize, taxel: usize) -> f64 {
+    (0..12).map(|part| uniform(frame * TAXELS + taxel, part)).sum::<f64>() - 6.0
+}
+
+/// Offsets from 20 to 100 counts.
+fn offset(taxel: usize) -> f64 {
+    20.0 + 80.0 * uniform(taxel, 99)
+}
+
+fn frames(count: usize, reads: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    (0..count).map(|frame| (0..TAXELS).map(|taxel| reads(frame, taxel).round() + 0.0).collect()).collect()
+}
+
+fn untared() -> Vec<Vec<f64>> {
+    frames(200, |frame, taxel| offset(taxel) + 2.0 * noise(frame, taxel))
+}
+
+fn kinds(design: &Design, frames: &[Vec<f64>]) -> (Vec<Kind>, String) {
+    let findings = check(design, frames, Some(&Matrices::of(design).unwrap()));
+    (findings.iter().map(|found| found.kind).collect(), findings.iter().map(|found| format!("{found}\n")).collect())
+}
+
+#[test]
+fn rest_is_told_with_offsets_tared_and_clipped() {
+    let tared = frames(100, |frame, taxel| 2.0 * noise(frame, taxel));
+    let clipped: Vec<Vec<f64>> = tared.iter().map(|frame| frame.iter().map(|count| count.max(0.0)).collect()).collect();
+    for (what, recording) in [("untared", &untared()), ("tared", &tared), ("clipped", &clipped)] {
+        for more in ["", "tension = \"clipped\"\n"] {
+            let (kinds, said) = kinds(&mat(more), recording);
+            assert_eq!(kinds, [Kind::Rest], "{what}: {said}");
+            assert!(said.contains("--rest"), "{what}: {said}");
+        }
+    }
+}
+
+/// However faint, or held, a contact is none.
+#[test]
+fn a_faint_contact_is_not_at_rest() {
+    let design = mat("");
+    let pressed = |share: f64, held: bool| {
+        frames(100, |frame, taxel| {
+            let x = if held { 2.5 } else { 1.0 + 0.03 * frame as f64 };
+            let [x, y] = [(taxel % 6) as f64 - x, (taxel / 6) as f64 - 6.0];
+            share * 4095.0 * (-(x * x + y * y) / 4.0).exp() + 0.5 * noise(frame, taxel)
+        })
+    };
+    for (share, held) in [(0.004, false), (0.008, false), (0.008, true), (0.03, true), (0.03, false)] {
+        let (kinds, said) = kinds(&design, &pressed(share, held));
+        assert!(!kinds.contains(&Kind::Rest), "{share}, held {held}: {said}");
+    }
+}
+
+#[test]
+fn each_taxel_at_rest_is_measured() {
+    let design = mat("");
+    let recording = frames(300, |frame, taxel| match taxel {
+        5 => 0.0,
+        40 => 4095.0,
+        41 => 70.0,
+        62 => 4095.0 * uniform(frame, 7),
+        _ => offset(taxel) + 2.0 * noise(frame, taxel) + if taxel == 10 { frame as f64 / 10.0 } else { 0.0 },
+    });
+    let rest = AtRest::of(&design, &recording).unwrap();
+    assert_eq!((&rest.dead[..], &rest.stuck[..], &rest.noisy[..]), (&[5, 41][..], &[40][..], &[62][..]));
+    for taxel in [0, 33, 77] {
+        let found = rest.taxels[taxel];
+        assert!((found.offset - offset(taxel)).abs() < 0.5, "{found:?}");
+        assert!((found.noise - 2.0).abs() < 0.4 && found.drift.abs() < 0.8, "{found:?}");
+    }
+    // Drift is no noise: 30 counts in all, 20 from the first third to the last.
+    assert!((rest.taxels[10].drift - 20.0).abs() < 0.8 && rest.taxels[10].noise < 2.5, "{:?}", rest.taxels[10]);
+    assert!((rest.noise - 2.0).abs() < 0.1 && (rest.noise_pa - 48.8).abs() < 3.0, "{rest:?}");
+    assert!((rest.noise_floor_pa - 3.0 * rest.noise_pa).abs() < 1e-9);
+    assert!((rest.noise_of_full_scale - rest.noise_pa / 1e5).abs() < 1e-12);
+    assert_eq!(rest.warnings, [] as [String; 0]);
+}
+
+#[test]
+fn what_is_no_rest_is_doubted() {
+    let design = mat("");
+    let doubts = |recording: &[Vec<f64>]| AtRest::of(&design, recording).unwrap().warnings.join("\n");
+    let bump = |taxel: usize| {
+        let [x, y] = [(taxel % 6) as f64 - 2.5, (taxel / 6) as f64 - 6.0];
+        1000.0 * (-(x * x + y * y) / 4.0).exp()
+    };
+    assert_eq!(doubts(&untared()), "");
+    let touched = |from: usize| {
+        frames(100, |frame, taxel| 2.0 * noise(frame, taxel) + if frame >= from { bump(taxel) } else { 0.0 })
+    };
+    assert!(doubts(&touched(60)).contains("did something touch"), "{}", doubts(&touched(60)));
+    assert!(doubts(&touched(0)).contains("does something lie"), "{}", doubts(&touched(0)));
+    let warm = frames(100, |frame, taxel| offset(taxel) + 2.0 * noise(frame, taxel) + 0.2 * frame as f64);
+    assert!(doubts(&warm).contains("drifts by 13"), "{}", doubts(&warm));
+    // A converter that clips at 0, or with steps larger than the noise: constant taxels need not be dead.
+    let clipped = frames(100, |frame, taxel| if taxel == 7 { 0.0 } else { (2.0 * noise(frame, taxel)).max(0.0) });
+    let coarse =
+        frames(100, |frame, taxel| offset(taxel).round() + if taxel == 7 { 0.0 } else { 0.3 * noise(frame, taxel) });
+    for recording in [clipped, coarse] {
+        let rest = AtRest::of(&design, &recording).unwrap();
+        assert!(rest.dead.is_empty() && rest.stuck.is_empty(), "{:?} {:?}", rest.dead, rest.stuck);
+        assert!(rest.warnings.join("").contains("[7] never change"), "{:?}", rest.warnings);
+    }
+    assert!(doubts(&frames(20, |_, _| 0.0)).contains("never changes"));
+    assert_eq!(AtRest::of(&design, &untared()[..3]), Err(RestError::Few(3)));
+}
+
+#[test]
+fn one_broken_taxel_under_load_is_named() {
+    let plain = mat("");
+    let mut scene = Scene::standing(&plain.sensor);
+    scene.sensor_errors = SensorErrors { seed: 3, noise: 0.002, ..SensorErrors::default() };
+    let standing: Vec<Vec<f64>> = scene.frames().unwrap().into_iter().map(|frame| frame.stress).collect();
+    let counts = |frames: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        frames.iter().map(|frame| frame.iter().map(|pa| (pa / PA_PER_COUNT).round() + 0.0).collect()).collect()
+    };
+    let good = counts(&standing);
+    assert_eq!(kinds(&plain, &good).0, []);
+    let broken = |taxel: usize, reads: &dyn Fn(usize) -> f64| {
+        let mut frames = good.clone();
+        for (index, frame) in frames.iter_mut().enumerate() {
+            frame[taxel] = reads(index);
+        }
+        kinds(&plain, &frames)
+    };
+    for (taxel, reads, words) in [
+        (62, &(|frame| (4095.0 * uniform(frame, 7)).round()) as &dyn Fn(usize) -> f64, "62 (2, 10) jumps"),
+        (62, &|_| 4095.0, "62 (2, 10) is stuck at 4095"),
+        (8, &|_| 4095.0, "8 (2, 1) is stuck at 4095"),
+        (38, &|_| 0.0, "38 (2, 6) reads the same"),
+    ] {
+        let (kinds, said) = broken(taxel, reads);
+        assert_eq!(kinds, [Kind::Dead], "{taxel}: {said}");
+        assert!(said.contains(words) && said.contains("sensor.dead"), "{said}");
+    }
+    // With what is known of it nothing is found.
+    let mut known = good.clone();
+    for frame in &mut known {
+        frame[62] = 4095.0;
+    }
+    assert!(!kinds(&mat("dead = [62]\n"), &known).0.contains(&Kind::Dead));
+}
+
+#[test]
+fn readings_beyond_the_calibration_are_counted() {
+    let design = mat("dead = [3]\n");
+    let mut recording = frames(10, |_, _| 100.0);
+    assert_eq!(beyond(&design, &recording).readings, 0);
+    // A hundred thousand pascals are 4098.4 counts; a dead taxel's reading means nothing.
+    (recording[0][0], recording[4][1], recording[4][2], recording[5][3], recording[6][0]) =
+        (4099.0, 5000.0, -5000.0, 9000.0, 4098.0);
+    let found = beyond(&design, &recording);
+    assert_eq!((found.readings, found.frames), (3, 2));
+    assert!((found.share - 3.0 / 770.0).abs() < 1e-12, "{found:?}");
+}
+
+fn golden(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_golden")).args(arguments).output().unwrap()
+}
+
+#[test]
+fn the_calibration_takes_the_offsets_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [design, rest, out] = ["mat.toml", "rest.csv", "mat.calibration.csv"].map(path);
+    fs::write(&design, text("calibration = \"gains.csv\"\n")).unwrap();
+    let gains: String = (0..TAXELS).map(|taxel| format!("{},1.0\n", 1.0 + 0.001 * taxel as f64)).collect();
+    fs::write(path("gains.csv"), gains).unwrap();
+    let recording =
+        frames(100, |frame, taxel| if taxel == 9 { 0.0 } else { offset(taxel) + 2.0 * noise(frame, taxel) });
+    write_frames(rest.as_ref(), &recording).unwrap();
+    let asked = ["check", &design, "--frames", &rest, "--rest", "--out", &out];
+    let said = golden(&asked);
+    let lines = String::from_utf8(said.stdout).unwrap();
+    assert!(said.status.success() && said.stderr.is_empty(), "{:?}", String::from_utf8(said.stderr));
+    for part in
+        ["Dead: [9]", "noise_floor_pa = 1", "noise = 0.0", "calibration = \"mat.calibration.csv\"", "No readings"]
+    {
+        assert!(lines.contains(part), "no {part:?} in: {lines}");
+    }
+    let report: serde_json::Value =
+        serde_json::from_slice(&golden(&[&asked[..], &["--json"]].concat()).stdout).unwrap();
+    assert_eq!((&report["dead"][0], report["taxels"].as_array().unwrap().len()), (&serde_json::json!(9), TAXELS));
+    assert_eq!(report["beyond"]["readings"], 0);
+
+    // The design reads it, and is tared.
+    fs::write(&design, text("calibration = \"mat.calibration.csv\"\n")).unwrap();
+    let tared = Design::load(design.as_ref()).unwrap();
+    assert_eq!(tared.input.dead, [9]);
+    for taxel in (0..TAXELS).filter(|taxel| *taxel != 9) {
+        let mean = recording.iter().map(|frame| tared.input.to_pa(taxel, frame[taxel])).sum::<f64>() / 100.0;
+        assert!(mean.abs() < 1e-6, "{taxel}: {mean}");
+        let gain = tared.input.calibration.as_ref().unwrap().gain[taxel];
+        assert!((gain - 1.0 - 0.001 * taxel as f64).abs() < 1e-12, "{gain}");
+    }
+    // Not over a file that the design names, and not for pascals.
+    let said = golden(&asked);
+    assert!(!said.status.success(), "{said:?}");
+    fs::write(&design, text("").replace(&format!("pa_per_count = {PA_PER_COUNT}\n"), "")).unwrap();
+    let other = path("other.csv");
+    let said = golden(&["check", &design, "--frames", &rest, "--rest", "--out", &other]);
+    let wrong = String::from_utf8(said.stderr).unwrap();
+    assert!(!said.status.success() && wrong.contains("pa_per_count"), "{wrong}");
+    assert!(!std::path::Path::new(&other).exists());
+    // More dead ones than can be replaced.
+    let many = frames(100, |frame, taxel| if taxel < 9 { 0.0 } else { offset(taxel) + 2.0 * noise(frame, taxel) });
+    let design = mat("");
+    let found = AtRest::of(&design, &many).unwrap();
+    assert_eq!(found.calibration(&design, &many).unwrap_err(), RestError::Dead(9, 8));
+}
