@@ -96,7 +96,7 @@ pub(super) fn rest(
         } else {
             remarks.push("no frame has a force of 0: the offsets stay as the design has them".to_owned());
         }
-        return (of_all(rest, &alive), None);
+        return (of_all(&rest, &alive), None);
     }
     let column = |taxel: usize| {
         let mut counts: Vec<f64> = at_rest.iter().map(|&k| frames[k][taxel]).collect();
@@ -117,11 +117,11 @@ pub(super) fn rest(
         };
         1.25 * alive.iter().map(|&taxel| of(taxel)).sum::<f64>() / alive.len() as f64
     });
-    (of_all(middles, &alive), noise)
+    (of_all(&middles, &alive), noise)
 }
 
 /// The readings of those that are alive, and the middle one in the place of others.
-fn of_all(rest: Vec<f64>, alive: &[usize]) -> Vec<f64> {
+fn of_all(rest: &[f64], alive: &[usize]) -> Vec<f64> {
     let mut sorted: Vec<f64> = alive.iter().map(|&taxel| rest[taxel]).collect();
     sorted.sort_by(f64::total_cmp);
     let middle = sorted[sorted.len() / 2];
