@@ -77,7 +77,7 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         && let Some(first) = curve.exact_from()
     {
         // Three digits of a small one, whole counts of others.
-        let digits = if first < 100.0 { 1 } else { 0 };
+        let digits = usize::from(first < 100.0);
         let last = curve.largest_count();
         writeln!(out, "  curve        power law, exact from {first:.digits$} counts on, saturated from {last:.0} on")?;
     }
