@@ -1,5 +1,6 @@
 //! Files written whole or not at all.
 
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -40,11 +41,12 @@ pub fn print_text(text: &str) -> io::Result<()> {
 /// Writes `content` to `path`, in place of what was there.
 ///
 /// The content first goes to a temporary file in the same folder, so that a crash or a full disk leaves either the
-/// old file or the new one, never a part.
+/// old file or the new one, never a part. A pipe or a device, such as `/dev/stdout`, is written straight; a reader of it
+/// that has gone away is no error.
 ///
 /// # Errors
 ///
-/// When the folder does not exist or cannot be written, or `path` is something else than a file.
+/// When the folder does not exist or cannot be written, or `path` is a folder.
 pub fn write_whole(path: &Path, content: &[u8]) -> Result<(), OutputError> {
     replace(path, content).map_err(|source| OutputError { path: path.to_path_buf(), source })
 }
@@ -68,7 +70,14 @@ pub fn write_together(files: &[(PathBuf, String)]) -> Result<(), OutputError> {
         .map(|(path, content)| stage(path, content.as_bytes()).map_err(failed(path)))
         .collect::<Result<Vec<_>, _>>()?;
     let mut replaced: Vec<(PathBuf, Option<Vec<u8>>)> = Vec::new();
-    for ((path, _), (file, target)) in files.iter().zip(staged) {
+    for ((path, content), staged) in files.iter().zip(staged) {
+        let (file, target) = match staged {
+            Staged::File(file, target) => (file, target),
+            Staged::Stream(stream) => {
+                write_straight(stream, content.as_bytes()).map_err(failed(path))?;
+                continue;
+            }
+        };
         let before = if target.exists() { std::fs::read(&target).map(Some) } else { Ok(None) };
         let done = before.and_then(|before| {
             file.persist(&target)?;
@@ -90,22 +99,36 @@ pub fn write_together(files: &[(PathBuf, String)]) -> Result<(), OutputError> {
 }
 
 fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
-    let (file, target) = stage(path, content)?;
-    file.persist(target)?;
-    Ok(())
+    match stage(path, content)? {
+        Staged::File(file, target) => file.persist(target).map(|_| ()).map_err(io::Error::from),
+        Staged::Stream(stream) => write_straight(stream, content),
+    }
 }
 
-/// Writes a temporary file that is ready to take the place of the target.
-fn stage(path: &Path, content: &[u8]) -> io::Result<(NamedTempFile, PathBuf)> {
-    let target = if path.exists() {
-        // A link keeps pointing where it does, and a device is not replaced by a file.
-        let target = path.canonicalize()?;
-        if !target.metadata()?.is_file() {
-            return Err(io::Error::other("it exists and is no regular file"));
-        }
-        target
-    } else {
-        path.to_path_buf()
+fn write_straight(mut stream: File, content: &[u8]) -> io::Result<()> {
+    match stream.write_all(content) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}
+
+/// What is ready for the last step.
+enum Staged {
+    /// A temporary file that holds the content, and its target.
+    File(NamedTempFile, PathBuf),
+    /// A pipe or a device, which no file can replace: nothing is written yet.
+    Stream(File),
+}
+
+/// Writes a temporary file that is ready to take the place of the target, or opens what is no file.
+fn stage(path: &Path, content: &[u8]) -> io::Result<Staged> {
+    let target = match path.metadata() {
+        Ok(there) if there.is_dir() => return Err(io::Error::other("it is a folder")),
+        // A link keeps pointing where it does.
+        Ok(there) if there.is_file() => path.canonicalize()?,
+        // A pipe behind /dev/stdout has no path of its own.
+        Ok(_) => return File::options().write(true).open(path).map(Staged::Stream),
+        Err(_) => path.to_path_buf(),
     };
     let folder = match target.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -121,7 +144,7 @@ fn stage(path: &Path, content: &[u8]) -> io::Result<(NamedTempFile, PathBuf)> {
     }
     let mut file = builder.tempfile_in(folder)?;
     file.write_all(content)?;
-    Ok((file, target))
+    Ok(Staged::File(file, target))
 }
 
 #[cfg(test)]

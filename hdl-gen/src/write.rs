@@ -1,6 +1,6 @@
 //! Puts an emitted design on disk: the whole folder or nothing, and nothing of the user's is touched.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -15,6 +15,8 @@ mod swap;
 /// Lists what the generator wrote into a folder, so that it can tell its own files from the user's: a SHA-256 and a
 /// path a line, as `sha256sum --check` reads it.
 pub const MANIFEST: &str = ".hdl-gen-manifest";
+
+const HISTORY: &str = "hdl-gen did not write";
 
 /// Why a folder was not written. In each case it is as it was before.
 #[derive(Debug, Error)]
@@ -65,7 +67,8 @@ fn io_error(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Writ
 ///
 /// Everything goes into a new folder beside it first, which then takes its place: whoever looks sees the old
 /// design or the new one, never a mixture, and on Linux at no moment none. Of several that write at once, one comes
-/// last. An existing folder is replaced only if each of its files is as the generator wrote it.
+/// last. An existing folder is replaced only if each of its files is as the generator wrote it. What an earlier call for
+/// the same folder left beside it, as it was killed, is removed.
 ///
 /// # Errors
 /// [`WriteError`]; the folder then is unchanged.
@@ -78,10 +81,11 @@ pub fn write_folder(folder: &Path, files: &FileMap) -> Result<(), WriteError> {
     };
     let parent = parent_of(&target);
     fs::create_dir_all(parent).map_err(io_error(parent, "create the folder"))?;
-    let _lock = lock(parent, File::lock);
+    let lock = lock(parent, File::lock);
     check(folder)?;
+    let prefix = staging_prefix(&target);
     let staging = tempfile::Builder::new()
-        .prefix(".hdl-gen-")
+        .prefix(&prefix)
         .tempdir_in(parent)
         .map_err(io_error(parent, "create a folder in it"))?;
     let fresh = staging.path().join("new");
@@ -95,7 +99,36 @@ pub fn write_folder(folder: &Path, files: &FileMap) -> Result<(), WriteError> {
         manifest += &(digest(contents) + "  " + name + "\n");
     }
     fs::write(fresh.join(MANIFEST), manifest).map_err(io_error(&target.join(MANIFEST), "write the file"))?;
-    swap::into_place(&fresh, &target, staging)
+    swap::into_place(&fresh, &target, staging)?;
+    if lock.is_some() {
+        remove_left(parent, &prefix);
+    }
+    Ok(())
+}
+
+/// How the names of the folders begin in which a folder is built: no other's begin like that.
+fn staging_prefix(target: &Path) -> String {
+    let name = target.file_name().unwrap_or_default();
+    format!(".hdl-gen-{}-", &digest(name.as_encoded_bytes())[..12])
+}
+
+/// Removes the folders that generators left as they were killed. Whoever holds the lock knows that nobody builds there.
+fn remove_left(parent: &Path, prefix: &str) {
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let is_named = entry.file_name().to_str().is_some_and(|name| name.starts_with(prefix));
+        if !is_named || !entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            continue;
+        }
+        let built = path.join("new");
+        // Before the swap it has no manifest or its own files, after it those of the former design: all but what came in
+        // meanwhile. A former design that was moved there, and not back, stays.
+        let is_own = !built.join(MANIFEST).exists() || check(&built).is_ok();
+        if is_own && !path.join("old").exists() {
+            // The design is in place: that of an earlier one is left is no failure of this.
+            let _ = fs::remove_dir_all(&path);
+        }
+    }
 }
 
 /// Whether [`write_folder`] would replace `folder`: it is not there, or each file in it is as the generator wrote it.
@@ -129,37 +162,45 @@ fn check(folder: &Path) -> Result<(), WriteError> {
     let manifest = fs::read_to_string(folder.join(MANIFEST)).unwrap_or_default();
     let owned: BTreeMap<&str, &str> =
         manifest.lines().filter_map(|line| line.split_once("  ")).map(|(digest, name)| (name, digest)).collect();
-    match foreign_below(folder, folder, &owned)? {
+    let parents = owned.keys().copied().flat_map(|name| Path::new(name).ancestors().skip(1)).collect();
+    match foreign_below(folder, folder, &Owned { files: owned, parents })? {
         Some((file, history)) => Err(WriteError::Foreign { folder: folder.to_owned(), file, history }),
         None => Ok(()),
     }
 }
 
-/// The first file below `folder`, relative to `root` with forward slashes, that is not as the manifest says, and what
-/// is known about it. Nothing after it is looked at: the folder may be somebody's home.
-fn foreign_below(
-    root: &Path,
-    folder: &Path,
-    owned: &BTreeMap<&str, &str>,
-) -> Result<Option<(String, &'static str)>, WriteError> {
+/// What a manifest names.
+struct Owned<'a> {
+    /// Digests by the path.
+    files: BTreeMap<&'a str, &'a str>,
+    /// Folders with files in them.
+    parents: BTreeSet<&'a Path>,
+}
+
+/// The first file below `folder`, relative to `root` with forward slashes, that is not as the manifest says, or the first
+/// folder that holds nothing and is none of its, and what is known about it. Nothing after it is looked at: the folder may be somebody's home.
+fn foreign_below(root: &Path, folder: &Path, owned: &Owned<'_>) -> Result<Option<(String, &'static str)>, WriteError> {
     let mut entries: Vec<PathBuf> = Vec::new();
     for entry in fs::read_dir(folder).map_err(io_error(folder, "list the folder"))? {
         entries.push(entry.map_err(io_error(folder, "list the folder"))?.path());
     }
     entries.sort();
     for path in entries {
+        let relative = path.strip_prefix(root).unwrap_or(&path);
+        let file = relative.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
         if path.is_dir() && !path.is_symlink() {
             let found = foreign_below(root, &path, owned)?;
             if found.is_some() {
                 return Ok(found);
             }
+            if !owned.parents.contains(relative) {
+                return Ok(Some((file + "/", HISTORY)));
+            }
             continue;
         }
-        let relative = path.strip_prefix(root).unwrap_or(&path);
-        let file = relative.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
-        let history = match owned.get(file.as_str()) {
+        let history = match owned.files.get(file.as_str()) {
             _ if file == MANIFEST => continue,
-            None => "hdl-gen did not write",
+            None => HISTORY,
             Some(&expected) => {
                 let contents = fs::read(&path).map_err(io_error(&path, "read the file"))?;
                 if digest(&contents) == expected {
@@ -206,6 +247,44 @@ mod tests {
         assert!(error.contains("rtl/mine.v, which hdl-gen did not write"), "{error}");
         assert_eq!(fs::read_to_string(folder.join("rtl/mine.v")).unwrap(), "mine");
         assert!(folder.join("rtl/a.v").exists() && !folder.join("rtl/c.v").exists());
+    }
+
+    #[test]
+    fn leaves_the_users_empty_folders_alone() {
+        let place = tempfile::tempdir().unwrap();
+        for (mine, named) in [("mine", "mine/"), ("rtl/empty", "rtl/empty/"), ("a/b", "a/b/")] {
+            let folder = place.path().join(mine.replace('/', "-"));
+            write_folder(&folder, &files(&["rtl/a.v"])).unwrap();
+            fs::create_dir_all(folder.join(mine)).unwrap();
+            let error = write_folder(&folder, &files(&["rtl/c.v"])).unwrap_err().to_string();
+            assert!(error.contains(&format!("holds {named}, which hdl-gen did not write")), "{error}");
+            assert!(folder.join(mine).is_dir() && folder.join("rtl/a.v").exists());
+        }
+    }
+
+    #[test]
+    fn what_a_killed_one_left_is_removed() {
+        let place = tempfile::tempdir().unwrap();
+        let of = |name: &str, staged: &str| {
+            let prefix = staging_prefix(&place.path().join(name));
+            let left = place.path().join(prefix + "abcdef").join(staged);
+            fs::create_dir_all(&left).unwrap();
+            fs::write(left.join("a.v"), "half").unwrap();
+            left
+        };
+        let folder = place.path().join("out");
+        let [half, other] = [("out", "new"), ("out-two", "new")].map(|(name, staged)| of(name, staged));
+        write_folder(&folder, &files(&["rtl/a.v"])).unwrap();
+        assert!(!half.parent().unwrap().exists(), "half a design");
+        assert!(other.exists(), "another output's");
+        // The only copy of a former design, and one into which a file came meanwhile.
+        for staged in ["old", "new"] {
+            let kept = of("out", staged);
+            fs::write(kept.join(MANIFEST), "").unwrap();
+            write_folder(&folder, &files(&["rtl/a.v"])).unwrap();
+            assert!(kept.join("a.v").exists(), "{staged}");
+            fs::remove_dir_all(kept.parent().unwrap()).unwrap();
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use super::DesignError;
 use super::checks::Check;
 use super::files::Beside;
+use super::hardware::{Hardware, Samples};
 
 /// Most segments of a curve.
 pub const MOST_SEGMENTS: usize = 64;
@@ -19,7 +20,11 @@ const CLOSEST: f64 = 1e-6;
 
 /// Key `curve` as it stands in the file.
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "a curve is the name of a file, curve = \"curve.csv\", or a power law with two numbers and no other key, \
+                 curve = { power = 1.25, scale = -0.0066 }"
+)]
 pub(super) enum RawCurve {
     File(String),
     Law(RawLaw),
@@ -43,7 +48,12 @@ pub struct Curve {
 
 impl Curve {
     /// Checks the key; a file is one of those `beside` the design.
-    pub(super) fn new(check: &Check, raw: RawCurve, beside: Beside<'_>, full_scale: f64) -> Result<Self, DesignError> {
+    pub(super) fn new(
+        check: &Check,
+        raw: RawCurve,
+        beside: Beside<'_>,
+        hardware: &Hardware,
+    ) -> Result<Self, DesignError> {
         match raw {
             RawCurve::File(file) => Self::load(&file, beside),
             RawCurve::Law(RawLaw { power, scale }) => {
@@ -55,15 +65,20 @@ impl Curve {
                     1e12,
                     "or the negative of one, if larger counts press",
                 )?;
-                Ok(Self::power_law(power, scale, full_scale))
+                Ok(Self::power_law(power, scale, hardware))
             }
         }
     }
 
     /// A power law as straight pieces, each as wide for its counts as the others: none is off by more than
-    /// `power (power - 1) / 600` of what it should be.
-    pub(crate) fn power_law(power: f64, scale: f64, full_scale: f64) -> Self {
-        let largest = (REACH * full_scale / scale.abs()).powf(1.0 / power);
+    /// `power (power - 1) / 600` of what it should be, from [`Curve::exact_from`] on. They end where samples do.
+    pub(crate) fn power_law(power: f64, scale: f64, hardware: &Hardware) -> Self {
+        let most = match hardware.samples {
+            Samples::Float32 => f64::INFINITY,
+            Samples::Int16 => -f64::from(i16::MIN),
+            Samples::Uint16 => f64::from(u16::MAX) + 1.0,
+        };
+        let largest = (REACH * hardware.full_scale_pa / scale.abs()).powf(1.0 / power).min(most);
         let knot = |index: usize| match index {
             0 => 0.0,
             _ => largest * ((index as f64 - MOST_SEGMENTS as f64) / PER_OCTAVE).exp2(),
@@ -144,6 +159,12 @@ impl Curve {
         let segment = self.points.partition_point(before).clamp(1, self.points.len() - 1);
         let [[a, p], [b, q]] = [self.points[segment - 1], self.points[segment]];
         a + (b - a) * ((pascals - p) / (q - p)).clamp(0.0, 1.0)
+    }
+
+    /// From this count on a power law's pieces are as short as they should be: below is one straight piece. `None` of
+    /// points.
+    pub fn exact_from(&self) -> Option<f64> {
+        self.law.map(|_| self.points[1][0])
     }
 
     /// From this magnitude on a count is at the curve's end: what it means is not known.

@@ -8,6 +8,7 @@ use super::DesignError;
 use super::checks::Check;
 use super::curve::{Curve, RawCurve};
 use super::files::Beside;
+use super::hardware::Hardware;
 use crate::dead_taxels::MOST_DEAD;
 use crate::sensor::Sensor;
 use crate::words::print_as_words;
@@ -145,7 +146,7 @@ impl Input {
         raw: RawInput,
         beside: Beside<'_>,
         sensor: &Sensor,
-        full_scale: f64,
+        hardware: &Hardware,
     ) -> Result<Self, DesignError> {
         let RawInput { pa_per_count, curve, calibration, dead, tension } = raw;
         let taxels = sensor.taxels();
@@ -171,7 +172,7 @@ impl Input {
             let remedy = "a curve says what counts are worth: remove pa_per_count".to_owned();
             return Err(check.value("sensor.curve", "is given, and so is pa_per_count".to_owned(), remedy));
         }
-        let curve = curve.map(|curve| Curve::new(check, curve, beside, full_scale)).transpose()?;
+        let curve = curve.map(|curve| Curve::new(check, curve, beside, hardware)).transpose()?;
         let named = dead.iter().enumerate().map(|(index, &taxel)| {
             let key = format!("sensor.dead[{index}]");
             check.integer(&key, taxel, 0, taxels as i64 - 1).map(|taxel| taxel as usize)

@@ -154,13 +154,8 @@ fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, D
     let (mut algorithm, correction) = algorithm(&check, raw.algorithm, (&sensor, tension), &hardware)?;
     parse_plan::check(&check, &PlanKeys { sensor: &sensor, algorithm: &algorithm, hardware: &hardware, lanes_given })?;
     // Last, so that what is wrong with the design itself is said before its files are read.
-    let input = Input::new(
-        &check,
-        RawInput { pa_per_count, curve, calibration, dead, tension },
-        beside,
-        &sensor,
-        hardware.full_scale_pa,
-    )?;
+    let input =
+        Input::new(&check, RawInput { pa_per_count, curve, calibration, dead, tension }, beside, &sensor, &hardware)?;
     if hardware.samples != Samples::Float32 && !input.counts() {
         return Err(check.value(
             "hardware.samples",

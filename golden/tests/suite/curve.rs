@@ -52,6 +52,22 @@ fn a_power_law_is_followed_in_short_pieces() {
 }
 
 #[test]
+fn a_power_law_ends_where_samples_do() {
+    // Four times the full scale is far beyond them; a full scale within them stays.
+    let law = "curve = { power = 1.25, scale = -0.0066 }\n[hardware]\nstream_bits = 64\n";
+    for (samples, end) in [("int16", 32768.0), ("uint16", 65536.0), ("float32", 1_682_723.8)] {
+        let curve = pad(&format!("{law}samples = \"{samples}\""), "").unwrap().input.curve.unwrap();
+        assert!((curve.largest_count() / end - 1.0).abs() < 1e-6, "{samples}: {}", curve.largest_count());
+        let first = curve.exact_from().unwrap();
+        assert!((first * 10.5_f64.exp2() / end - 1.0).abs() < 1e-6, "{samples}: {first}");
+        let low = -0.0066 * (1.01 * first).powf(1.25);
+        assert!((curve.at(1.01 * first) / low - 1.0).abs() < 6e-4, "{samples}");
+    }
+    let curve = pad(&format!("{law}samples = \"int16\"\nfull_scale_pa = 50.0"), "").unwrap().input.curve.unwrap();
+    assert!((curve.at(curve.largest_count()) / -200.0 - 1.0).abs() < 1e-12);
+}
+
+#[test]
 fn the_solver_takes_counts_along_a_curve() {
     let design = pad("curve = \"points.csv\"", POINTS).unwrap();
     let counts = [800.0, 2000.0, 400.0, 0.0, 10.0, 3000.0];
@@ -78,6 +94,8 @@ fn what_is_no_curve_is_refused() {
         ("curve = \"points.csv\"", "0,0\n5,nan\n", ["line 2", "NaN", "beyond any sensor"]),
         ("curve = \"points.csv\"", "0,0\n1,1\n1.0000000001,2\n1e6,9\n", ["line 4", "all but equal", "leave one out"]),
         ("curve = { power = 9.0, scale = 1.0 }", "", ["sensor.curve.power", "is 9", "0.25 to 4"]),
+        ("curve = { power = 1.25 }", "", ["pad.toml", "name of a file", "power = 1.25, scale = -0.0066"]),
+        ("curve = 3", "", ["line 7", "name of a file", "power = 1.25, scale = -0.0066"]),
         ("curve = { power = 1.0, scale = 0.0 }", "", ["sensor.curve.scale", "is 0", "larger counts press"]),
     ] {
         let message = pad(keys, points).unwrap_err();

@@ -73,6 +73,14 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         "  streams      {} bits a beat, samples {}",
         plan.design.hardware.stream_bits, plan.design.hardware.samples
     )?;
+    if let Some(curve) = &plan.design.input.curve
+        && let Some(first) = curve.exact_from()
+    {
+        // Three digits of a small one, whole counts of others.
+        let digits = usize::from(first < 100.0);
+        let last = curve.largest_count();
+        writeln!(out, "  curve        power law, exact from {first:.digits$} counts on, saturated from {last:.0} on")?;
+    }
     let condition = &plan.condition;
     let verdict = if condition.aat > ILL_CONDITIONED {
         format!(

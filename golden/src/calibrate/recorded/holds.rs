@@ -8,6 +8,7 @@ use std::ops::Range;
 use super::loads::{REST, Wrong, frames_of, loads, rest};
 use super::table::Measured;
 use crate::check::ends::end_of_range;
+use crate::dead_taxels::MOST_DEAD;
 use crate::design::Design;
 
 /// A contact ends where the centre of pressure has moved by this many pitches.
@@ -18,6 +19,8 @@ const BESIDE: f64 = 0.1;
 const STEP: f64 = 0.05;
 /// Most holds.
 const MOST: usize = 400;
+/// A taxel at the converter's end in this share of all frames, with load and without, is stuck there.
+const STUCK: f64 = 0.95;
 /// From this many frames on a hold tells how its reading creeps.
 const CREEPS: usize = 10;
 
@@ -26,7 +29,7 @@ const CREEPS: usize = 10;
 pub(super) struct Hold {
     /// Its frames, from the first to the one after the last.
     pub(super) frames: Range<usize>,
-    /// Mean readings above rest, with the sign that makes pressing positive; one a taxel.
+    /// Mean readings above rest, with the sign that makes pressing positive; one a taxel, 0 of dead ones.
     pub(super) x: Vec<f64>,
     /// Mean of what is known of `[F_x, F_y, F_z]`, in newtons.
     pub(super) force: [Option<f64>; 3],
@@ -65,9 +68,12 @@ pub(super) fn part(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     let (rest, noise) = rest(design, frames, &at_rest, &mut remarks);
     let known = |k: &usize| loads[*k].is_some_and(|load| load >= REST * largest);
     let loaded: Vec<usize> = (0..frames.len()).filter(known).collect();
+    // What a dead taxel reads is nothing, if it is the converter's end.
+    let is_alive = |taxel: usize| !design.input.dead.contains(&taxel);
+    let alive: Vec<usize> = (0..rest.len()).filter(|&taxel| is_alive(taxel)).collect();
     let mut sum = 0.0;
     for &k in &loaded {
-        sum += frames[k].iter().zip(&rest).map(|(count, rest)| count - rest).sum::<f64>();
+        sum += alive.iter().map(|&taxel| frames[k][taxel] - rest[taxel]).sum::<f64>();
     }
     if sum == 0.0 {
         return Err((
@@ -76,12 +82,20 @@ pub(super) fn part(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
         ));
     }
     let sign = sum.signum();
-    let above =
-        |k: usize| -> Vec<f64> { frames[k].iter().zip(&rest).map(|(count, rest)| sign * (count - rest)).collect() };
-    let middle = rest.iter().sum::<f64>() / rest.len() as f64;
-    let under_load = loaded.iter().map(|&k| frames[k].iter().map(|count| sign * count));
+    let above = |k: usize| -> Vec<f64> {
+        let mut x = vec![0.0; rest.len()];
+        for &taxel in &alive {
+            x[taxel] = sign * (frames[k][taxel] - rest[taxel]);
+        }
+        x
+    };
+    let middle = alive.iter().map(|&taxel| rest[taxel]).sum::<f64>() / alive.len() as f64;
+    let under_load = loaded.iter().map(|&k| alive.iter().map(move |&taxel| sign * frames[k][taxel]));
     let end = end_of_range(&under_load, sign * middle).map(|(end, _)| end);
-    let is_clipped = |k: usize| end.is_some_and(|end| frames[k].iter().any(|count| sign * count >= end));
+    if let Some(end) = end {
+        refuse_stuck(design, frames, &alive, sign * end)?;
+    }
+    let is_clipped = |k: usize| end.is_some_and(|end| alive.iter().any(|&taxel| sign * frames[k][taxel] >= end));
     let clipped = loaded.iter().filter(|&&k| is_clipped(k)).count();
     if let Some(end) = end {
         remarks.push(format!(
@@ -131,6 +145,25 @@ pub(super) fn part(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
         step *= 2.0;
     };
     Ok(Holds { all: holds, contacts: stretches.len(), places, rest, noise, sign, remarks })
+}
+
+/// Taxels that read `end`, the end of the converter, in nearly all frames leave no frame to fit to.
+fn refuse_stuck(design: &Design, frames: &[Vec<f64>], alive: &[usize], end: f64) -> Result<(), Wrong> {
+    let reads = |taxel: usize| frames.iter().filter(|frame| frame[taxel].total_cmp(&end).is_eq()).count();
+    let is_stuck = |taxel: usize| reads(taxel) as f64 >= STUCK * frames.len() as f64;
+    let stuck: Vec<usize> = alive.iter().copied().filter(|&taxel| is_stuck(taxel)).collect();
+    let mut dead = [design.input.dead.clone(), stuck.clone()].concat();
+    dead.sort_unstable();
+    // With more of them it is the sensor that is wrong.
+    if stuck.is_empty() || dead.len() > MOST_DEAD.min(design.sensor.taxels() / 2) {
+        return Ok(());
+    }
+    let names = stuck.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+    let [taxels, they] = if stuck.len() == 1 { ["taxel", "reads"] } else { ["taxels", "read"] };
+    Err((
+        format!("{taxels} {names} {they} {end}, the end of the converter's range, in nearly every frame"),
+        format!("mend the sensor, or write dead = {dead:?} under [sensor]: the neighbours then take the place"),
+    ))
 }
 
 struct Stretch<'a> {

@@ -41,6 +41,12 @@ pub(super) fn pair<'a>(frames: &'a [Vec<f64>], measured: &Measured) -> Result<Pa
 pub(super) fn loads(measured: &Measured, remarks: &mut Vec<String>) -> Result<Vec<Option<f64>>, Wrong> {
     let known: Vec<f64> = measured.forces.iter().filter_map(|force| force[2]).collect();
     let largest = known.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    if known.is_empty() && measured.forces.iter().any(|force| force[0].is_some() || force[1].is_some()) {
+        return Err((
+            "F_x and F_y are known, and F_z of no frame".to_owned(),
+            "give F_z too: frames are told apart by it, and friction is a share of it".to_owned(),
+        ));
+    }
     if largest <= 0.0 {
         return Err((
             "no normal force other than 0 is known".to_owned(),
@@ -62,7 +68,7 @@ pub(super) fn loads(measured: &Measured, remarks: &mut Vec<String>) -> Result<Ve
         .collect())
 }
 
-/// The readings without load and their noise.
+/// The readings without load, of a dead taxel the middle one, and their noise.
 pub(super) fn rest(
     design: &Design,
     frames: &[Vec<f64>],
@@ -70,15 +76,18 @@ pub(super) fn rest(
     remarks: &mut Vec<String>,
 ) -> (Vec<f64>, Option<f64>) {
     let taxels = design.sensor.taxels();
+    let is_alive = |taxel: &usize| !design.input.dead.contains(taxel);
+    let alive: Vec<usize> = (0..taxels).filter(is_alive).collect();
     if at_rest.is_empty() {
         let rest: Vec<f64> = (0..taxels).map(|taxel| design.input.from_pa(taxel, 0.0)).collect();
         // What a taxel reads at its least loaded is its rest, if every taxel was unloaded once.
         let least =
             |taxel: usize| frames.iter().map(|frame| (frame[taxel] - rest[taxel]).abs()).fold(f64::INFINITY, f64::min);
-        let peak = frames.iter().flatten().fold(0.0_f64, |peak, count| peak.max(count.abs()));
-        let mut far: Vec<f64> = (0..taxels).map(least).collect();
+        let counts = frames.iter().flat_map(|frame| alive.iter().map(|&taxel| frame[taxel]));
+        let peak = counts.fold(0.0_f64, |peak, count| peak.max(count.abs()));
+        let mut far: Vec<f64> = alive.iter().map(|&taxel| least(taxel)).collect();
         far.sort_by(f64::total_cmp);
-        let middle = far[taxels / 2];
+        let middle = far[far.len() / 2];
         if middle > 0.02 * peak {
             remarks.push(format!(
                 "no frame has a force of 0, and half of the taxels never read less than {middle:.0} counts: is the tare \
@@ -87,7 +96,7 @@ pub(super) fn rest(
         } else {
             remarks.push("no frame has a force of 0: the offsets stay as the design has them".to_owned());
         }
-        return (rest, None);
+        return (of_all(&rest, &alive), None);
     }
     let column = |taxel: usize| {
         let mut counts: Vec<f64> = at_rest.iter().map(|&k| frames[k][taxel]).collect();
@@ -106,9 +115,21 @@ pub(super) fn rest(
         let of = |taxel: usize| {
             at_rest.iter().map(|&k| (frames[k][taxel] - middles[taxel]).abs()).sum::<f64>() / at_rest.len() as f64
         };
-        1.25 * (0..taxels).map(of).sum::<f64>() / taxels as f64
+        1.25 * alive.iter().map(|&taxel| of(taxel)).sum::<f64>() / alive.len() as f64
     });
-    (middles, noise)
+    (of_all(&middles, &alive), noise)
+}
+
+/// The readings of those that are alive, and the middle one in the place of others.
+fn of_all(rest: &[f64], alive: &[usize]) -> Vec<f64> {
+    let mut sorted: Vec<f64> = alive.iter().map(|&taxel| rest[taxel]).collect();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted[sorted.len() / 2];
+    let mut all = vec![middle; rest.len()];
+    for &taxel in alive {
+        all[taxel] = rest[taxel];
+    }
+    all
 }
 
 pub(super) fn frames_of(count: usize) -> String {

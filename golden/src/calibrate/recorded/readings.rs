@@ -2,7 +2,7 @@
 
 use super::holds::Holds;
 use super::shape::{self, Own, Shape};
-use crate::design::{Calibration, Curve, Design, Input, NOISE_FLOOR_DIVISOR};
+use crate::design::{Calibration, Curve, Design, Hardware, Input, NOISE_FLOOR_DIVISOR};
 
 /// The full scale is this many times the largest stress seen, and is kept up to so many times that.
 const HEADROOM: [f64; 2] = [1.25, 32.0];
@@ -64,13 +64,14 @@ impl Readings {
         let mut calibrated = design.clone();
         let Input { tension, dead, .. } = design.input.clone();
         let full_scale = full_scale(design, largest, remarks);
+        let hardware = Hardware { full_scale_pa: full_scale, ..design.hardware.clone() };
         let mut input = Input { dead, tension, ..Input::default() };
         match shape {
             // Pascals are negative where something presses.
             Shape::Line(slope) => input.pa_per_count = Some(-self.sign * slope),
             Shape::Own(factor) => match &design.input.curve {
                 Some(Curve { law: Some([power, scale]), .. }) => {
-                    input.curve = Some(Curve::power_law(*power, factor * scale, full_scale));
+                    input.curve = Some(Curve::power_law(*power, factor * scale, &hardware));
                 }
                 Some(Curve { points, .. }) => {
                     let points = points.iter().map(|&[count, pascals]| [count, factor * pascals]).collect();
@@ -82,7 +83,7 @@ impl Readings {
                 let tared = self.rest.iter().all(|rest| rest.abs() < TARED * self.range[1]);
                 // Below 1 a law is infinitely steep at rest.
                 input.curve = Some(if tared && self.sign > 0.0 && power >= 1.0 {
-                    Curve::power_law(power, -scale, full_scale)
+                    Curve::power_law(power, -scale, &hardware)
                 } else {
                     let ratio = self.range[1] / straight;
                     let knot = |index: i32| straight * ratio.powf(f64::from(index) / f64::from(LAW_PIECES));

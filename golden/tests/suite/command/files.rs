@@ -36,6 +36,24 @@ fn bad_frames_get_one_message_and_no_output() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn forces_go_to_a_pipe_or_a_device() {
+    let (folder, frames) = folder_with(&row("-1000.5"));
+    let design = repository("designs/small.toml");
+    let solve = |out: &str| golden(&["solve", text(&design), "--frames", text(&frames), "--out", out]);
+    let file = folder.path().join("forces.csv");
+    assert!(solve(text(&file)).status.success());
+    // Standard output is a pipe here.
+    let output = solve("/dev/stdout");
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && said.contains(&fs::read_to_string(&file).unwrap()), "{said}");
+    assert!(solve("/dev/null").status.success());
+    let output = solve(text(folder.path()));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && said.contains("folder"), "{said}");
+}
+
 #[test]
 fn frames_that_are_no_text() {
     let folder = TempDir::new().unwrap();
@@ -80,7 +98,7 @@ fn other_bad_input() {
         (vec!["solve", "absent.toml", "--frames", frames, "--out", out], "absent.toml"),
         (vec!["solve", design, "--frames", "absent.csv", "--out", out], "absent.csv"),
         (vec!["solve", design, "--frames", frames, "--out", nowhere], "out.csv"),
-        (vec!["solve", design, "--frames", frames, "--out", dir], "no regular file"),
+        (vec!["solve", design, "--frames", frames, "--out", dir], "it is a folder"),
         (vec!["solve", design, "--frames", frames, "--out", out, "--reference", reference], "2 frames"),
         (vec!["scene", design, "--out", out], "small.toml"),
     ] {

@@ -192,6 +192,28 @@ fn a_falling_sensor_and_the_end_of_the_converter() {
 }
 
 #[test]
+fn a_taxel_stuck_at_the_end_of_the_converter() {
+    let recipe = Recipe { scale: 40.0, noise: 1.0, places: 12, frames: 3, ..Recipe::new(79, Body::Disc) };
+    for end in [0.0, 4095.0] {
+        let mut recording = record(&recipe);
+        if end == 0.0 {
+            recording.frames.iter_mut().flatten().for_each(|count| *count = 4095.0 - *count);
+        }
+        recording.frames.iter_mut().for_each(|frame| frame[20] = end);
+        let fit =
+            |keys: &str| fit_forces(&design(&format!("{COUNTS}{keys}"), ""), &recording.frames, &recording.measured);
+        let said = fit("\ndead = [70]").map(|_| ()).unwrap_err().to_string();
+        for part in [&format!("taxel 20 reads {end}, the end of the converter"), "nearly every", "dead = [20, 70]"] {
+            assert!(said.contains(part), "no {part:?} in {said}");
+        }
+        let found = fit("\ndead = [20]").unwrap();
+        assert!(!says(&found.remarks, &["the end of the converter"]), "{:?}", found.remarks);
+        let median = found.errors.unwrap().median;
+        assert!(median < 5.0, "{median}");
+    }
+}
+
+#[test]
 fn what_a_recording_cannot_tell_is_not_fitted() {
     let fit = |recipe: &Recipe| {
         let mut recording = record(recipe);
@@ -246,6 +268,8 @@ fn forces_of_other_frames_are_refused() {
     };
     refused(&|measured| measured.forces.truncate(20), &["pad: 96 frames and 20 lines", "one line for each frame"]);
     refused(&|measured| measured.forces.fill([None; 3]), &["no normal force", "weights"]);
+    let without = |measured: &mut Measured| measured.forces.iter_mut().for_each(|force| force[2] = None);
+    refused(&without, &["F_x and F_y are known, and F_z of no frame", "give F_z too"]);
     refused(&|measured| measured.forces.reverse(), &["pad: ", "; "]);
     refused(
         &|measured| {
