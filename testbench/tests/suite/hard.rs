@@ -99,7 +99,9 @@ type Figure = fn(&Judged) -> Option<f64>;
 #[test]
 fn wide_words_err_no_more_than_float32() {
     let mut judged = 0;
-    for row in rows().iter().filter(|row| row.estimator == Estimator::Line) {
+    // What stands in for dead taxels is of 18-bit weights, whatever the words behind them.
+    let is_read = |row: &&Row| row.estimator == Estimator::Line && !row.case.ends_with(", named");
+    for row in rows().iter().filter(is_read) {
         let figures: [(&str, Figure); 2] =
             [("A f = b", |judged| judged.backward), ("at its friction", |judged| judged.at_its_friction)];
         for ((what, value), most) in figures.into_iter().zip(beyond_float32(&row.case)) {
