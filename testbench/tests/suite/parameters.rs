@@ -10,7 +10,7 @@ use crate::support::workspace;
 const SENSELESS: [(&str, &str, &str, &str); 23] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("bz", "WAYS", "2", "ways_must_be_1_or_4"),
-    ("bz", "DATA_BITS", "28", "data_bits_must_be_16_to_27"),
+    ("bz", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
     ("bz", "EXPECTED_STAGES", "6", "the_plan_counts_on_other_stages"),
     ("cean", "ROWS", "65", "columns_and_rows_must_be_2_to_64"),
     ("spmv_array", "WAYS", "3", "ways_must_be_1_or_4"),
@@ -18,7 +18,7 @@ const SENSELESS: [(&str, &str, &str, &str); 23] = [
     ("spmv_array", "DESTINATION_BITS", "5", "a_destination_has_3_or_4_bits"),
     ("spmv_lane", "OPERAND_DEPTH", "12", "the_operand_memory_does_not_hold_its_vectors"),
     ("spmv_lane", "MIRROR_SIDE", "4", "only_a_square_grid_is_mirrored"),
-    ("spmv_way", "COEFFICIENT_BITS", "19", "a_multiplier_has_18_by_27_bits"),
+    ("spmv_way", "COEFFICIENT_BITS", "28", "two_multipliers_have_27_by_35_bits"),
     ("unfold", "WAYS", "2", "ways_must_be_1_or_4"),
     ("we", "WAYS", "2", "ways_must_be_1_or_4"),
     ("bodies", "WAYS", "2", "ways_must_be_1_or_4"),
