@@ -2,26 +2,18 @@
 
 use serde::Serialize;
 
-/// Frames back to back that show the interval: from before the middle on every buffer is full, and there is still a next
+/// Frames back to back that show the interval, around the middle: every buffer is full by then, and there is still a next
 /// frame.
-pub const INTERVAL_FRAMES: usize = 24;
-/// Distances before the middle one that count, and those at the end that do not: behind their frames too few follow to hold
-/// them up.
-const BEFORE: usize = 2;
-const LAST: usize = 4;
+pub const INTERVAL_FRAMES: usize = 14;
+/// Frames before and behind the middle over which the interval is the mean: frames may take turns in how long they take,
+/// by twos or by fours.
+const AROUND: usize = 2;
 
-/// Mean distance between the ends of frames that follow each other without a pause, rounded up.
-///
-/// Frames may take turns in how long they take, by twos, by fours or by fives: the mean is over one turn, as short as the
-/// distances repeat, or over all of them where they do not.
-pub fn mean_interval(ends: &[u64]) -> u64 {
-    let distances: Vec<u64> = ends.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let from = (distances.len() / 2).saturating_sub(BEFORE);
-    let to = distances.len().saturating_sub(LAST).max(from + 1).min(distances.len());
-    let full = &distances[from.min(to)..to];
-    let repeats = |turn: &usize| full.iter().zip(&full[*turn..]).all(|(distance, next)| distance == next);
-    let turn = (1..=full.len() / 2).find(repeats).unwrap_or(full.len());
-    if turn == 0 { 0 } else { full[..turn].iter().sum::<u64>().div_ceil(turn as u64) }
+/// Mean distance between the ends of the frames around the middle, rounded up.
+pub fn middle_interval(ends: &[u64]) -> u64 {
+    let middle = ends.len() / 2;
+    let (first, last) = (middle.saturating_sub(AROUND), (middle + AROUND).min(ends.len().saturating_sub(1)));
+    if first < last { (ends[last] - ends[first]).div_ceil((last - first) as u64) } else { 0 }
 }
 
 /// Longest distance between the ends of frames from the middle on: what every frame keeps, where they take turns in how
@@ -42,36 +34,4 @@ pub struct Timeline {
     pub spmv_cycles: u64,
     /// Start to end of the optimum search.
     pub search_cycles: u64,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The ends of frames at these distances, again and again.
-    fn ends(distances: &[u64]) -> Vec<u64> {
-        let mut end = 1000;
-        let later = distances.iter().cycle().take(INTERVAL_FRAMES - 1).map(|distance| {
-            end += distance;
-            end
-        });
-        [1000].into_iter().chain(later).collect()
-    }
-
-    #[test]
-    fn the_mean_is_over_whole_turns() {
-        assert_eq!(mean_interval(&ends(&[470])), 470);
-        assert_eq!(mean_interval(&ends(&[400, 501])), 451);
-        assert_eq!(mean_interval(&ends(&[10, 20, 30, 40])), 25);
-        // Four of these five are 300 on average at most, all of them 360.
-        assert_eq!(mean_interval(&ends(&[300, 300, 300, 300, 600])), 360);
-        // What does not repeat: all that is known.
-        let grows: Vec<u64> = (0..30).map(|index| 100 + index).collect();
-        assert_eq!(mean_interval(&ends(&grows)), 114);
-    }
-
-    #[test]
-    fn few_frames_have_an_interval_too() {
-        assert_eq!([&[][..], &[5], &[5, 12], &[5, 12, 20]].map(mean_interval), [0, 0, 7, 7]);
-    }
 }

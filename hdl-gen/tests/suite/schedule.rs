@@ -1,8 +1,5 @@
 //! The schedule: who computes what, and when.
 
-use std::path::Path;
-
-use golden::design::Design;
 use golden::parity::CLASSES;
 use hdl_gen::blocks::latency::{ISSUE_TO_RESULT, collector_jump};
 use hdl_gen::estimators::Cells;
@@ -10,7 +7,6 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::matrix::{Entry, QuantisedMatrix};
 use hdl_gen::plan::product::{Block, Coefficients, Epilogue, Product, SUM_ROWS, Step, Vector, visit_to_operand};
 use hdl_gen::plan::schedule::{LaneProgram, Schedule, SegmentKind, Visit};
-use hdl_gen::plan::timing::Timeline;
 use proptest::prelude::*;
 
 use crate::lanes::{RowSums, Sums, execute};
@@ -391,25 +387,6 @@ fn more_lanes_are_never_slower_on_the_papers_sensor() {
             let Cells { cells, elements } = plan.estimator.slot().cells();
             let (groups, of_group) = (cells / plan.ways(), plan.elements());
             assert!(groups * elements >= of_group && (groups - 1) * elements < of_group);
-        }
-    }
-}
-
-/// Frames take turns in how long they take, by as many as five with some lanes: whatever the turn, a frame is not done
-/// sooner on average than the lanes have issued its products.
-#[test]
-fn no_interval_is_shorter_than_what_the_lanes_issue() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join("designs");
-    for design in ["sensor1-fast", "sensor1-clipped", "sensor1-clipped-wide"] {
-        let mut design = Design::load(&folder.join(design).with_extension("toml")).expect("right");
-        for lanes in (16..=100).step_by(4) {
-            design.hardware.lanes = lanes;
-            let Timeline { interval_cycles, spmv_cycles, .. } = Plan::new(&design).expect("a plan").timeline;
-            assert!(
-                interval_cycles >= spmv_cycles,
-                "{}, {lanes} lanes: {interval_cycles} < {spmv_cycles}",
-                design.name
-            );
         }
     }
 }
