@@ -140,7 +140,8 @@ class Package(unittest.TestCase):
             lines = "".join(",".join(map(repr, map(float, frames[0].ravel() / 1000))) + "\n" for _ in range(count))
             done = subprocess.run(command, input=lines.encode(), capture_output=True, check=True)
             said = done.stderr.decode()
-            self.assertEqual((said.count("warning: "), "kilopascals" in said), (1, True), said)
+            # The same frame again and again has a largest pull that looks like a converter's end, too.
+            self.assertTrue(said.startswith("warning: ") and said.count("kilopascals") == 1, said)
             self.assertEqual(len(done.stdout.splitlines()), count)
 
     def test_live_reads_from_a_socket(self):
