@@ -43,7 +43,8 @@ enum {
     SPTFRA_QUEUE_ONLY = -18,       /* the DMA goes by descriptors: sptfra_queue.h */
     SPTFRA_NO_QUEUE = -19,         /* the DMA has none */
     SPTFRA_DROPS = -20,            /* the core drops frames that come too fast: send it one at a time */
-    SPTFRA_CONTRADICTION = -21     /* the words of a bank do not go together: nothing has changed */
+    SPTFRA_CONTRADICTION = -21,    /* the words of a bank do not go together: nothing has changed */
+    SPTFRA_BAD_FILE = -22          /* a file that is no calibration: nothing has changed */
 };
 
 /* What went wrong, in words. */

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use golden::check::check as look_for_faults;
-use golden::frames::read_frames_of;
+use golden::frames::read_frames_and_remark;
 use golden::geometry;
 use golden::matrices::Matrices;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
@@ -24,12 +24,18 @@ use crate::errors::{raised, without_lock};
 #[pyo3(signature = (path, design, *, labels = 0))]
 pub fn load_frames<'py>(py: Python<'py>, path: PathBuf, design: &Design, labels: usize) -> PyResult<Bound<'py, PyAny>> {
     let design = &design.inner;
-    let frames = without_lock(py, || {
+    let (frames, remark) = without_lock(py, || {
         geometry::compare(&path, &design.name, &design.sensor)?;
-        read_frames_of(&path, design, labels)
+        read_frames_and_remark(&path, design, labels)
     })?;
+    warn(py, remark)?;
     let shape = [frames.len(), design.sensor.rows, design.sensor.columns];
     array(py, frames.concat(), &shape)
+}
+
+/// Says what is to be known of a header.
+fn warn(py: Python<'_>, remark: Option<String>) -> PyResult<()> {
+    remark.map_or(Ok(()), |remark| py.import("warnings")?.call_method1("warn", (remark,)).map(drop))
 }
 
 /// Frames from lines of text, as a sensor sends them.
@@ -50,7 +56,9 @@ impl FrameLines {
     }
 
     fn frame<'py>(&mut self, py: Python<'py>, line: &[u8]) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let known = self.inner.remark().is_some();
         let frame = self.inner.frame(line).map_err(raised)?;
+        warn(py, self.inner.remark().filter(|_| !known))?;
         frame.map(|values| array(py, values, &self.shape)).transpose()
     }
 }
