@@ -84,7 +84,11 @@ def main():
     wrong.write_text("gain,offset\n" + "1,0\n" * rows * columns + "count,pascals\n0,0\n9000,-112500\n")
     for noise in (-1.0, 0.0, 1e12):
         assert "noise floor" in refused(ValueError, lambda: sensor.load_calibration(wrong, noise))
-    sensor.load_calibration(wrong, 20.0)
+    # The noise floor is that of the frames: 12 taxels that read 62.5 Pa each are none of 20 Pa, and one of 100 Pa.
+    for noise, none in [(20.0, 0), (100.0, 1), (None, 1), (20.0, 0)]:
+        sensor.load_calibration(wrong, noise)
+        status = sensor.reconstruct(np.full((rows, columns), 5.0)).status[0]
+        assert bool(status & Status.NO_CONTACT) == bool(none), (noise, status)
     rest = np.full((8, rows, columns), 300.0)
     assert not np.any(sensor.tare(rest).status & Status.NO_CONTACT)
     assert np.all(sensor.reconstruct(rest).status & Status.NO_CONTACT)

@@ -126,7 +126,7 @@ fn the_c_driver_loads_calibrations_and_tares() {
     let mut command = Command::new(host);
     let sensor = &plan.design.sensor;
     command.arg(&built.library).arg(file).args([sensor.columns, sensor.rows].map(|n| n.to_string()));
-    assert!(run(command).contains("PASS: 7 banks"));
+    assert!(run(command).contains("PASS: 11 banks"));
 }
 
 /// The files of a bank, `K.csv` and, where the curve is apart, `K.curve.csv`; with any separator.
