@@ -286,7 +286,7 @@ class Judging(unittest.TestCase):
         found = sptfra.beyond(design(), frames)
         self.assertEqual(found, (3, 3 / 48, 2))
         self.assertEqual((found.readings, found.frames), (3, 2))
-        with self.assertRaisesRegex(ValueError, "frame 0, taxel 0: nan"):
+        with self.assertRaisesRegex(ValueError, "frame 0, taxel 0: NaN"):
             sptfra.beyond(design(), np.full(12, np.nan))
 
     def test_rest_tells_offsets_noise_and_dead_taxels(self):
