@@ -1,7 +1,7 @@
 //! Force files: CSV with a header line, one frame a line, or `NumPy`'s `.npy` where the name ends so.
 //!
 //! [`columns`] names the values of a line, [`row`] and [`reference_row`] have them: the status word, the resultants and
-//! what follows from them, the records of bodies where there may be several, and, where asked for, `f_x, f_y, f_z` in
+//! what follows from them, the records and torques of bodies where there may be several, and, where asked for, `f_x, f_y, f_z` in
 //! newtons for each taxel in turn. A file without a header, or with the first eight columns alone, is read too.
 
 use std::path::{Path, PathBuf};
@@ -24,18 +24,21 @@ const SUMMARY: [&str; 13] =
 
 /// The columns of each body: a word of bits as above, its centre in metres from the first taxel.
 pub const OF_BODY: [&str; 9] = ["taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"];
+/// Behind those of all bodies each one's torque, in N m as the frame's.
+pub const TORQUE_OF_BODY: [&str; 3] = ["T_x", "T_y", "T_z"];
 
 /// The names of the columns of a file with so many records of bodies and the forces of so many taxels.
 pub fn columns(records: usize, taxels: usize) -> Vec<String> {
     let summary = SUMMARY.into_iter().map(str::to_owned);
-    let of_body = |body| OF_BODY.map(|name| format!("body{body}_{name}"));
-    let summary = summary.chain((0..records).flat_map(of_body));
+    let of_body = |body, names: &[&str]| names.iter().map(|name| format!("body{body}_{name}")).collect::<Vec<_>>();
+    let summary = summary.chain((0..records).flat_map(|body| of_body(body, &OF_BODY)));
+    let summary = summary.chain((0..records).flat_map(|body| of_body(body, &TORQUE_OF_BODY)));
     summary.chain((0..taxels).flat_map(|taxel| ["x", "y", "z"].map(|axis| format!("taxel{taxel}_f_{axis}")))).collect()
 }
 
-/// A body as its columns.
+/// A body as its columns, but for the torque.
 pub fn record(body: &Body) -> [f64; 9] {
-    let Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error } = *body;
+    let Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error, .. } = *body;
     [taxels as f64, f64::from(status.0), x, y, fx, fy, fz, mu, standard_error]
 }
 
@@ -47,8 +50,13 @@ pub fn row(solution: &Solution, with_field: bool) -> Vec<f64> {
     let summary = [fx, fy, fz, *mu, *phi, *mu_x, *mu_y, tx, ty, tz, *standard_error, *bodies as f64];
     let taxels = if with_field { solution.field[0].len() } else { 0 };
     let field = (0..taxels).flat_map(|taxel| solution.field.each_ref().map(|component| component[taxel]));
-    let bodies = solution.records.iter().flat_map(record);
+    let bodies = of_bodies(&solution.records);
     std::iter::once(f64::from(status.0)).chain(summary).chain(bodies).chain(field).collect()
+}
+
+/// Bodies as their columns: all records, then all torques.
+fn of_bodies(bodies: &[Body]) -> impl Iterator<Item = f64> {
+    bodies.iter().flat_map(record).chain(bodies.iter().flat_map(|body| body.torque))
 }
 
 /// The truth of a scene's frame in the form of a solution with status 0, with a record of each body if there are several.
@@ -58,7 +66,7 @@ pub fn reference_row(frame: &SceneFrame) -> Vec<f64> {
     let bodies = frame.bodies.len() as f64;
     let mut row =
         vec![0.0, fx, fy, fz, frame.friction, frame.direction, fx / normal, fy / normal, tx, ty, tz, 0.0, bodies];
-    row.extend(frame.bodies.iter().take(records_of(frame)).flat_map(record));
+    row.extend(of_bodies(&frame.bodies[..records_of(frame)]));
     row
 }
 
@@ -127,44 +135,55 @@ pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameEr
 /// Reads the bodies of a force file of `frames` lines, of each line those that there are. Nothing if the file does not tell
 /// them apart: it has no records, and more bodies than one.
 ///
-/// In a file of text the names of the columns say how many records there are; a `.npy` file has no field then.
+/// In a file of text the names of the columns say how many records there are; a `.npy` file has no field then. A file without
+/// the torque of each body is read too.
 ///
 /// # Errors
 ///
 /// As [`read_outcomes`].
 pub fn read_bodies(path: &Path, frames: usize, sensor: &Sensor) -> Result<Option<Vec<Vec<Body>>>, FrameError> {
     let rows = read_rows(path, frames)?;
-    let records = if let Some(line) = frames::first_line(path)? {
-        line.split([',', ';', '\t', ' ']).filter(|name| is_body_force(name)).count()
+    let (records, torques) = if let Some(line) = frames::first_line(path)? {
+        let count = |of: &str| line.split([',', ';', '\t', ' ']).filter(|name| is_body_column(name, of)).count();
+        (count("_F_z"), count("_T_z"))
     } else {
         let more = rows.first().map_or(0, |row| row.len().saturating_sub(SUMMARY.len()));
-        let records = more / OF_BODY.len();
-        if more == records * OF_BODY.len() && records <= MOST { records } else { 0 }
+        let all = OF_BODY.len() + TORQUE_OF_BODY.len();
+        match [more / all, more / OF_BODY.len()] {
+            [records, _] if more == records * all && records <= MOST => (records, records),
+            [_, records] if more == records * OF_BODY.len() && records <= MOST => (records, 0),
+            _ => (0, 0),
+        }
     };
-    let bodies = |row: &Vec<f64>| match row.get(SUMMARY.len()..).map(|rest| rest.as_chunks::<9>().0) {
+    let bodies = |row: &Vec<f64>| match row.get(SUMMARY.len()..) {
         Some(rest) if records > 0 => {
-            let bodies = rest.iter().take(records).map(body);
-            Some(bodies.filter(|body| *body != Body::default()).collect())
+            let mut bodies: Vec<Body> = rest.as_chunks::<9>().0.iter().take(records).map(body).collect();
+            let behind = rest.get(records * OF_BODY.len()..).unwrap_or_default();
+            for (body, torque) in bodies.iter_mut().zip(behind.as_chunks::<3>().0.iter().take(torques)) {
+                body.torque = *torque;
+            }
+            bodies.retain(|body| *body != Body::default());
+            Some(bodies)
         }
         Some(_) if row[SUMMARY.len() - 1] <= 1.0 => {
             let (force, torque) = ([row[1], row[2], row[3]], [row[8], row[9], row[10]]);
             let centre_m = Body::centre_of(sensor, force, torque);
-            Some(vec![Body { centre_m, force, mu: row[4], ..Body::default() }])
+            Some(vec![Body { centre_m, force, torque, mu: row[4], ..Body::default() }])
         }
         _ => None,
     };
     Ok(rows.iter().map(bodies).collect())
 }
 
-/// Whether a column has the normal force of a body.
-fn is_body_force(name: &str) -> bool {
-    name.trim().strip_prefix("body").and_then(|rest| rest.strip_suffix("_F_z")).is_some()
+/// Whether a column has this of a body, such as `_F_z`.
+fn is_body_column(name: &str, of: &str) -> bool {
+    name.trim().strip_prefix("body").and_then(|rest| rest.strip_suffix(of)).is_some()
 }
 
 /// The body of a record's columns.
 fn body(&[taxels, status, x, y, fx, fy, fz, mu, standard_error]: &[f64; 9]) -> Body {
     let (taxels, status) = (taxels as usize, Status(status as u32));
-    Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error }
+    Body { taxels, status, centre_m: [x, y], force: [fx, fy, fz], mu, standard_error, ..Body::default() }
 }
 
 /// The lines of a force file, each long enough.

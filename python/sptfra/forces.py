@@ -32,7 +32,7 @@ class Status(enum.IntFlag):
 
 #: What is known of a body, by the names that force files have for it.
 BODY = {name: np.uint16 if name in ("taxels", "status") else np.float64 for name in
-        "taxels status x y F_x F_y F_z mu standard_error".split()}
+        "taxels status x y F_x F_y F_z mu standard_error T_x T_y T_z".split()}
 
 #: Names with a unit, by unit.
 _NAMES = {
@@ -69,7 +69,7 @@ class Forces:
     #: (n,) uint8: bodies in touch; at most 1 in a design that neither tells them apart nor counts them.
     bodies: np.ndarray
     #: (n, contacts) structured: `taxels`, `status`, `x`, `y` in m from the first taxel, `F_x`, `F_y`, `F_z` in N, `mu`,
-    #: `standard_error` of each body, the one that presses most first, then zeros; None where only one is known.
+    #: `standard_error`, `T_x`, `T_y`, `T_z` in N m of each body, the one that presses most first, then zeros; None where only one is known.
     records: np.ndarray | None
     #: (n, rows, columns, 3): f_x, f_y, f_z of each taxel in N; None where only resultants are known.
     field: np.ndarray | None
@@ -105,9 +105,12 @@ class Forces:
         columns = [self.status, *self.resultant.T, self.friction, self.direction, *self.friction_xy.T, *self.torque.T]
         columns += [self.standard_error, self.bodies]
         if self.records is not None:
-            for body in range(self.records.shape[1]):
-                names += [f"body{body}_{name}" for name in BODY]
-                columns += [self.records[name][:, body] for name in BODY]
+            # As in a force file, the torques behind the records of all bodies.
+            for behind in (False, True):
+                of_body = [name for name in BODY if name.startswith("T_") == behind]
+                for body in range(self.records.shape[1]):
+                    names += [f"body{body}_{name}" for name in of_body]
+                    columns += [self.records[name][:, body] for name in of_body]
         table = np.empty(len(self), dtype=[(name, column.dtype) for name, column in zip(names, columns)])
         for name, column in zip(names, columns):
             table[name] = column

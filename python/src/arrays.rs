@@ -218,8 +218,10 @@ impl Forces {
         put("standard_error", self.standard_error, &[frames])?;
         kwargs.set_item("bodies", self.bodies.into_pyarray(py))?;
         if self.of_frame > 0 {
-            let values: Vec<f64> = self.records.iter().flat_map(golden::forces::record).collect();
-            let values = array(py, values, &[frames, self.of_frame, golden::forces::OF_BODY.len()])?;
+            let of_body = |body| golden::forces::record(body).into_iter().chain(body.torque);
+            let values: Vec<f64> = self.records.iter().flat_map(of_body).collect();
+            let each = golden::forces::OF_BODY.len() + golden::forces::TORQUE_OF_BODY.len();
+            let values = array(py, values, &[frames, self.of_frame, each])?;
             kwargs.set_item("records", py.import("sptfra.forces")?.getattr("_records")?.call1((values,))?)?;
         } else {
             kwargs.set_item("records", py.None())?;

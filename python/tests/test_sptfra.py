@@ -187,11 +187,18 @@ class Solving(unittest.TestCase):
         np.testing.assert_array_equal(forces.bodies, 2)
         for name in ("F_x", "F_y", "F_z"):
             np.testing.assert_allclose(forces.records[name].sum(axis=1), forces.resultant[:, "xyz".index(name[-1])])
+        for name in "T_x", "T_y", "T_z":
+            np.testing.assert_allclose(
+                forces.records[name].sum(axis=1), forces.torque[:, "xyz".index(name[-1])], atol=1e-12)
+        # The truth's, of (0, 1.2, -3) N at (-8, -3) mm from the middle, and of (0, -1.2, -2) N at (9, 3) mm.
+        truth = [[scene.truth.records[name][0, body] for name in ("T_x", "T_y", "T_z")] for body in (0, 1)]
+        np.testing.assert_allclose(truth, [[0.009, -0.024, -0.0096], [-0.006, 0.018, -0.0108]], atol=1e-9)
         self.assertFalse(forces.records["taxels"][:, 2].any())
         self.assertTrue((forces.records["taxels"][:, :2] > 0).all())
         table = forces.table()
         self.assertEqual(table.dtype.names[13:15], ("body0_taxels", "body0_status"))
-        self.assertEqual(len(table.dtype), 13 + 3 * 9)
+        self.assertEqual(table.dtype.names[13 + 27:], tuple(f"body{k}_T_{axis}" for k in range(3) for axis in "xyz"))
+        self.assertEqual(len(table.dtype), 13 + 3 * 12)
         np.testing.assert_array_equal(table["body1_F_z"], forces.records["F_z"][:, 1])
         text = text.replace("[algorithm]\n", "[algorithm]\ncontacts = 3\nslip = { limit = 0.3, hysteresis = 0.25 }\n")
         solver = sptfra.Solver(sptfra.Design.from_toml(text))

@@ -36,6 +36,8 @@ pub struct Body {
     pub centre_m: [f64; 2],
     /// Its force `[F_x, F_y, F_z]` in newtons.
     pub force: [f64; 3],
+    /// Its torque `[T_x, T_y, T_z]` in N m about the middle of the grid at the surface, as a frame's.
+    pub torque: [f64; 3],
     /// `sqrt(F_x^2 + F_y^2) / |F_z|`, 0 where `F_z` is 0.
     pub mu: f64,
     /// Standard error of `(F_x, F_y)` in newtons; 0 where the estimator has none.

@@ -281,6 +281,7 @@ impl Scene {
         Body {
             centre_m: Body::centre_of(&self.sensor, force, torque),
             force,
+            torque,
             mu: x.hypot(y) / z.abs(),
             ..Body::default()
         }

@@ -168,6 +168,7 @@ impl Solver {
             status: Body::bits_of(*status),
             centre_m: Body::centre_of(self.matrices.sensor(), *resultant, *torque),
             force: *resultant,
+            torque: *torque,
             mu: *mu,
             standard_error: *standard_error,
         }

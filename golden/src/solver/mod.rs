@@ -130,8 +130,10 @@ impl Solution {
     /// Multiplies all forces by a gain.
     fn scale(&mut self, gain: f64) {
         let resultants = self.resultant.iter_mut().chain(&mut self.torque).chain([&mut self.standard_error]);
-        let of_bodies =
-            self.records.iter_mut().flat_map(|body| body.force.iter_mut().chain([&mut body.standard_error]));
+        let of_bodies = self.records.iter_mut().flat_map(|body| {
+            let Body { force, torque, standard_error, .. } = body;
+            force.iter_mut().chain(torque).chain([standard_error])
+        });
         self.field.iter_mut().flatten().chain(resultants).chain(of_bodies).for_each(|force| *force *= gain);
     }
 

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use golden::bodies::Body;
 use golden::design::Design;
 use golden::forces::{columns, read_bodies};
 
@@ -42,13 +43,25 @@ fn the_forces_of_each_body_are_told_and_judged() {
     golden(here, &["scene", "two.toml", "--out", "f.csv"]);
     let truth = fs::read_to_string(here.join("f.forces.csv")).unwrap();
     let header = columns(2, 0).join(",");
-    assert!(header.ends_with(",bodies,body0_taxels,body0_status,body0_x,body0_y,body0_F_x,body0_F_y,body0_F_z,body0_mu,body0_standard_error,body1_taxels,body1_status,body1_x,body1_y,body1_F_x,body1_F_y,body1_F_z,body1_mu,body1_standard_error"), "{header}");
+    assert!(header.ends_with(",bodies,body0_taxels,body0_status,body0_x,body0_y,body0_F_x,body0_F_y,body0_F_z,body0_mu,body0_standard_error,body1_taxels,body1_status,body1_x,body1_y,body1_F_x,body1_F_y,body1_F_z,body1_mu,body1_standard_error,body0_T_x,body0_T_y,body0_T_z,body1_T_x,body1_T_y,body1_T_z"), "{header}");
     assert_eq!(truth.lines().next(), Some(header.as_str()));
     let sensor = Design::load(&here.join("pad.toml")).unwrap().sensor;
     let bodies = read_bodies(&here.join("f.forces.csv"), 6, &sensor).unwrap().unwrap();
     let close = |found: &[f64], expected: &[f64]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12);
     assert!(close(&bodies[0][0].force, &[0.0, 1.2, -3.0]) && close(&bodies[0][1].force, &[0.0, -1.2, -2.0]));
     assert!(close(&bodies[0][0].centre_m, &[0.010, 0.006]) && close(&bodies[0][1].centre_m, &[0.027, 0.012]));
+
+    // About the middle, 18 and 9 mm from the first taxel: arms of (-8, -3) and (9, 3) mm.
+    assert!(close(&bodies[0][0].torque, &[0.009, -0.024, -0.0096]), "{:?}", bodies[0]);
+    assert!(close(&bodies[0][1].torque, &[-0.006, 0.018, -0.0108]), "{:?}", bodies[0]);
+    // A file of before, without them, is read as ever.
+    let (mut lines, older) = (truth.lines(), here.join("older.csv"));
+    let without = |line: &str| line.split(',').take(31).collect::<Vec<_>>().join(",") + "\n";
+    let header = without(lines.next().unwrap());
+    fs::write(&older, header + &lines.map(without).collect::<String>()).unwrap();
+    let read = read_bodies(&older, 6, &sensor).unwrap().unwrap();
+    let bare = |body: &Body| Body { torque: [0.0; 3], ..*body };
+    assert_eq!(read[0], bodies[0].iter().map(bare).collect::<Vec<_>>());
 
     let solve = ["solve", "pad.toml", "--frames", "f.csv", "--out", "out.csv"];
     let judged = [&solve[..], &["--reference", "f.forces.csv"]].concat();
