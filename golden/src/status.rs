@@ -24,7 +24,8 @@ impl Status {
     /// More than an eighth of the stress is in replaced taxels: see [`crate::dead_taxels::GUESSED`].
     pub const TOO_MANY_REPLACED: Self = Self(1 << 9);
 
-    /// The tangential force may be far off: its standard error is above the design's limit.
+    /// The tangential force may be far off: its standard error is above the design's limit, or the layer is too thin for the
+    /// taxels ([`crate::design::Design::thin_layer`]), which is so of every frame of a design.
     pub const DOUBTFUL: Self = Self(1 << 6);
     /// More bodies press than the design has records for.
     pub const MORE_BODIES: Self = Self(1 << 7);

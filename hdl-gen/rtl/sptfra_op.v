@@ -22,6 +22,8 @@ module sptfra_op #(
     // 1: the answer has an error, and above DOUBT_LIMIT, a logarithm of base 2 with 12 fraction bits, it is doubtful
     parameter integer DOUBT = 0,
     parameter signed [17:0] DOUBT_LIMIT = 18'sd0,
+    // 1: the layer is too thin for the taxels, and every answer doubtful
+    parameter integer THIN = 0,
     // A step of the frame sums G is 2^SUM_LSB N, of those of the torques 2^TORQUE_LSB N m, of a taxel's force
     // 2^FIELD_LSB N
     parameter integer SUM_LSB = -40,
@@ -204,7 +206,7 @@ module sptfra_op #(
         answered && summary_flags[4],
         answered && (REPLACED != 0),
         answered && (bodies > 8'd1),
-        answered && (DOUBT != 0) && (summary_error_log > DOUBT_LIMIT),
+        answered && ((THIN != 0) || ((DOUBT != 0) && (summary_error_log > DOUBT_LIMIT))),
         bad_length,
         not_finite,
         answered && (summary_flags[2] || summary_saturated),

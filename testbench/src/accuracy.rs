@@ -51,12 +51,24 @@ pub struct StatusCounts {
     pub not_finite: usize,
     /// Bit 5.
     pub frame_length: usize,
+    /// Bit 6.
+    #[serde(default)]
+    pub doubtful: usize,
+    /// Bit 7.
+    #[serde(default)]
+    pub more_bodies: usize,
     /// Bit 8.
     #[serde(default)]
     pub replaced: usize,
     /// Bit 9.
     #[serde(default)]
     pub too_many_replaced: usize,
+    /// Bit 10.
+    #[serde(default)]
+    pub slip: usize,
+    /// Bit 11.
+    #[serde(default)]
+    pub no_tension: usize,
 }
 
 impl StatusCounts {
@@ -76,8 +88,12 @@ impl StatusCounts {
             saturated: with(Status::SATURATED),
             not_finite: with(Status::NOT_FINITE),
             frame_length: with(Status::FRAME_LENGTH),
+            doubtful: with(Status::DOUBTFUL),
+            more_bodies: with(Status::MORE_BODIES),
             replaced: with(Status::REPLACED),
             too_many_replaced: with(Status::TOO_MANY_REPLACED),
+            slip: with(Status::SLIP),
+            no_tension: with(Status::NO_TENSION),
         }
     }
 
@@ -90,8 +106,12 @@ impl StatusCounts {
             (Status::SATURATED, self.saturated),
             (Status::NOT_FINITE, self.not_finite),
             (Status::FRAME_LENGTH, self.frame_length),
+            (Status::DOUBTFUL, self.doubtful),
+            (Status::MORE_BODIES, self.more_bodies),
             (Status::REPLACED, self.replaced),
             (Status::TOO_MANY_REPLACED, self.too_many_replaced),
+            (Status::SLIP, self.slip),
+            (Status::NO_TENSION, self.no_tension),
         ];
         let count = |bit: Status| bits.iter().find(|(of, _)| *of == bit).map_or(0, |&(_, count)| count);
         let named = Status::NAMED.into_iter().map(|(bit, name)| (name, count(bit)));
@@ -157,5 +177,15 @@ mod tests {
         let truth = Outcome { force: [3.6, 0.0, -6.0], friction: 0.6, direction: 0.0 };
         let summary = against_truth(&[answer(0)], &[truth]);
         assert!((summary.e_fx.max - 10.0).abs() < 1e-9 && (summary.e_mu.max - 10.0).abs() < 1e-9);
+    }
+
+    /// A count of each bit that a frame's own matter is; dropped frames are the stream's.
+    #[test]
+    fn every_status_is_counted() {
+        let bits: Vec<Status> =
+            Status::NAMED.into_iter().map(|(bit, _)| bit).filter(|bit| *bit != Status::DROPPED).collect();
+        let present = StatusCounts::of(&bits).present();
+        assert_eq!(present.len(), bits.len(), "{present:?}");
+        assert!(present.iter().all(|&(_, count)| count == 1), "{present:?}");
     }
 }

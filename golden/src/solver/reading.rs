@@ -16,6 +16,8 @@ pub(crate) struct Reader {
     noise_floor: f64,
     full_scale: f64,
     flagged: f64,
+    /// Whether contacts fall between the taxels, so that no answer is to be trusted.
+    thin: bool,
 }
 
 /// A frame as the solver takes it.
@@ -41,6 +43,7 @@ impl Reader {
             noise_floor: design.algorithm.noise_floor_pa,
             full_scale: design.hardware.full_scale_pa,
             flagged: design.hardware.full_scale_in_frames(),
+            thin: design.thin_layer().is_some(),
         }
     }
 
@@ -85,6 +88,9 @@ impl Reader {
         }
         if self.input.tension == Tension::Read && b.iter().all(|&stress| stress <= self.noise_floor) {
             status.insert(Status::NO_TENSION);
+        }
+        if self.thin {
+            status.insert(Status::DOUBTFUL);
         }
         if !self.dead.taxels().is_empty() {
             status.insert(Status::REPLACED);

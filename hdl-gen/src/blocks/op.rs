@@ -25,6 +25,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         Some(limit) => parameters.flag("DOUBT", true).wide("DOUBT_LIMIT", 18, limit),
         None => parameters,
     };
+    let parameters = if plan.thresholds.thin { parameters.flag("THIN", true) } else { parameters };
     let words = plan.streams().words();
     let parameters = if words > 1 {
         parameters.count("WORDS", words).cycles("FIELD_STAGES", field::stages(plan))

@@ -247,5 +247,5 @@ fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> 
         [limit, limit - hysteresis].map(|friction| ((friction * pow2(FRICTION_FRACTION as i32)).round() as i64).max(1))
     });
     let doubt = design.algorithm.constants().doubt_log().map(|log| (log * pow2(DOUBT_FRACTION as i32)).round() as i64);
-    Ok(Thresholds { taxel, contact, slip, doubt })
+    Ok(Thresholds { taxel, contact, slip, doubt, thin: design.thin_layer().is_some() })
 }

@@ -69,6 +69,9 @@ pub struct Thresholds {
     /// where the estimator tells its error.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doubt: Option<i64>,
+    /// Whether every answer is doubtful, as the layer is too thin for the taxels.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub thin: bool,
 }
 
 /// Number of entries per filtered matrix.

@@ -4,7 +4,9 @@
 
 use golden::design::{Design, PlanKind, Tension};
 use golden::solver::{Solution, Status};
-use hdl_gen::model::{BAD_LENGTH, DIRECTION_UNKNOWN, Model, NO_CONTACT, NO_TENSION, NOT_FINITE, SATURATED, SLIP};
+use hdl_gen::model::{
+    BAD_LENGTH, DIRECTION_UNKNOWN, DOUBTFUL, Model, NO_CONTACT, NO_TENSION, NOT_FINITE, SATURATED, SLIP,
+};
 use hdl_gen::plan::Plan;
 
 use super::{Contact, answer, frame, prepare_as, reference};
@@ -75,6 +77,34 @@ fn a_sensor_that_reads_no_tension_is_not_asked_for_it() {
     let clipped = answer(&Plan::new(&design).unwrap(), &frame);
     assert_eq!((read.status, clipped.status), (DIRECTION_UNKNOWN | NO_TENSION, DIRECTION_UNKNOWN));
     assert_eq!((read.summary, read.field), (clipped.summary, clipped.field));
+}
+
+/// A layer too thin for its taxels makes every answer doubtful, in the model and in the core, and no frame without one.
+#[test]
+fn answers_of_a_thin_layer_are_doubtful() {
+    for (depth, estimator, thin) in
+        [(2.9, "line", true), (3.1, "line", false), (1.9, "joint", true), (2.1, "joint", false)]
+    {
+        let more = format!("[algorithm]\nestimator = \"{estimator}\"");
+        // The paper's plan has the line estimator alone.
+        let kinds = if estimator == "line" { &[PlanKind::Paper, PlanKind::Reduced][..] } else { &[PlanKind::Reduced] };
+        for &kind in kinds {
+            let (design, solver, plan) = prepare_as(&design_text("pad", [8, 6], [4.0, 3.0], depth, &more), kind);
+            let contact = Contact { centre: [0.48, 0.5], radius: 0.3, friction: 0.5, direction: 0.4, strength: 0.3 };
+            let touched = frame(&contact, &design, &solver);
+            let (found, exact) = (answer(&plan, &touched), reference(&solver, &touched));
+            assert_eq!(
+                (found.status & DOUBTFUL != 0, exact.status.0 & DOUBTFUL != 0),
+                (thin, thin),
+                "{depth} {estimator}"
+            );
+            let empty = vec![0.0; plan.taxels()];
+            assert_eq!(answer(&plan, &empty).status, NO_CONTACT, "{depth} {estimator}");
+            assert_eq!(reference(&solver, &empty).status.0, NO_CONTACT, "{depth} {estimator}");
+            let written = hdl_gen::blocks::op::parameters(&plan);
+            assert_eq!(format!("{written:?}").contains("THIN"), thin, "{written:?}");
+        }
+    }
 }
 
 /// Friction that rises and falls: the bit comes at the limit and goes below the release, in the model as in the solver.
