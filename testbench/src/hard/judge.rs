@@ -3,11 +3,11 @@
 use golden::dead_taxels::DeadTaxels;
 use golden::design::{Design, Estimator, InputRange};
 use golden::matrices::Matrices;
-use golden::metrics::field_error;
+use golden::metrics::{BodyErrors, field_error};
 use golden::parity::CLASSES;
 use golden::products::{Engine, ProductList};
 use golden::reduced::ReducedMatrices;
-use golden::solver::Solver;
+use golden::solver::{Solution, Solver};
 use hdl_gen::cores::{WIDE_COEFFICIENT_BITS, WIDE_DATA_BITS};
 use hdl_gen::plan::streams::Streams;
 use hdl_gen::plan::{Plan, PlanError};
@@ -26,7 +26,7 @@ const REASON: f64 = 4.0;
 /// What an arithmetic makes of a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judged {
-    /// Largest error of `F_x` and `F_y` against the truth in percent of the normal force.
+    /// Largest error of `F_x` and `F_y` against the truth in percent of the normal force; of several bodies see [`of_bodies`].
     pub tangential: Option<f64>,
     /// The same of `F_z`.
     pub normal: Option<f64>,
@@ -122,6 +122,10 @@ pub fn judge(case: &Case) -> Row {
     let fields = Fields::new(&case.design, &solver);
     let judged = |answers: &[Answer]| judged(case, (&solver, fields.as_ref()), &frames, &reference, answers);
     row.f64 = Some(judged(&reference));
+    let of_bodies = of_bodies(case, &frames);
+    if let (Some(found), Some(errors)) = (&mut row.f64, of_bodies) {
+        (found.tangential, found.normal) = (Some(errors.tangential.worst), Some(errors.normal.worst));
+    }
     if let Some(single) = Single::new(&case.design, &solver) {
         row.f32 = Some(judged(&frames.iter().map(|frame| single.solve(frame)).collect::<Vec<_>>()));
     }
@@ -135,6 +139,18 @@ pub fn judge(case: &Case) -> Row {
     }
     row.wide = in_integers(&wide(&case.design)).ok();
     row
+}
+
+/// Errors of each body, over its own normal force, by the solver that tells bodies apart, where a case asks for them. Nothing
+/// if it finds another number of bodies in any frame.
+fn of_bodies(case: &Case, frames: &[Vec<f64>]) -> Option<BodyErrors> {
+    let truth = case.bodies.as_ref()?;
+    let mut design = case.design.clone();
+    design.algorithm.contacts = truth.iter().map(Vec::len).max()?;
+    let solver = Solver::new(&design).ok()?;
+    let solutions: Vec<Solution> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).collect();
+    let errors = BodyErrors::new(truth.iter().zip(&solutions));
+    (errors.right == frames.len()).then_some(errors)
 }
 
 /// The fields of the reduced plan in f64, with a friction that something else has found.
@@ -176,7 +192,9 @@ fn judged(
     reference: &[Answer],
     answers: &[Answer],
 ) -> Judged {
-    let errors = case.truth.as_ref().map(|truth| against_truth(answers, truth));
+    // Hardware and float32 know of one body: that is no answer to what each of several does.
+    let truth = case.truth.as_ref().filter(|_| case.bodies.is_none());
+    let errors = truth.map(|truth| against_truth(answers, truth));
     let answered = || answers.iter().zip(frames).filter(|(answer, _)| has_field(answer));
     let largest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
     let same = std::ptr::eq(answers, reference);
@@ -250,6 +268,18 @@ fn row_sum(matrix: &golden::parity::FoldedMatrix) -> f64 {
 mod tests {
     use super::*;
     use crate::hard::cases;
+
+    #[test]
+    fn of_opposed_bodies_each_is_judged() {
+        let cases = cases::all(false).expect("cases");
+        let case = cases.iter().find(|case| case.bodies.is_some()).expect("a case");
+        let row = judge(case);
+        let [f64, fixed] = [&row.f64, &row.fixed].map(|judged| judged.as_ref().expect("answers"));
+        // The sum of the two is next to nothing, their own forces are not.
+        assert!(f64.tangential.is_some_and(|error| (0.5..30.0).contains(&error)), "{f64:?}");
+        assert!(f64.normal.is_some() && fixed.tangential.is_none() && fixed.normal.is_none(), "{fixed:?}");
+        assert!(fixed.status.iter().any(|(name, count)| name.contains("bodies") && *count == case.frames.len()));
+    }
 
     #[test]
     fn wild_and_infinite_answers_are_seen() {

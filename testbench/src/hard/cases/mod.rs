@@ -1,5 +1,6 @@
 //! What makes an estimator fail: deep sensors, contacts that fit no taxel, frames that are no contact, broken taxels.
 
+use golden::bodies::Body;
 use golden::calibrate::{Settings, calibrate};
 use golden::design::{Design, DesignError, Estimator, JointConstants, Sensor};
 use golden::metrics::Outcome;
@@ -23,6 +24,8 @@ pub struct Case {
     pub frames: Vec<Vec<f64>>,
     /// True forces where there are any.
     pub truth: Option<Vec<Outcome>>,
+    /// Of each frame the true bodies, where errors are to be of each body: their sum may be next to nothing.
+    pub bodies: Option<Vec<Vec<Body>>>,
 }
 
 /// Designs with constants of the joint estimator for their sensors, and the names and contents of their weights.
@@ -114,13 +117,13 @@ impl Cases {
         let FrameSet { stress: frames, truth, .. } = FrameSet::of_scene(scene, "")?;
         let design = design(&scene.sensor, algorithm)?;
         let last = self.0.len();
-        self.0.push(Case { group, name: name.into(), design, frames, truth });
+        self.0.push(Case { group, name: name.into(), design, frames, truth, bodies: None });
         Ok(&mut self.0[last])
     }
 
     fn frames(&mut self, group: &'static str, name: &str, frames: Vec<Vec<f64>>) -> Result<(), HardError> {
         let design = design(&sensor_1(), "")?;
-        self.0.push(Case { group, name: name.to_owned(), design, frames, truth: None });
+        self.0.push(Case { group, name: name.to_owned(), design, frames, truth: None, bodies: None });
         Ok(())
     }
 }
@@ -228,7 +231,9 @@ fn contacts(cases: &mut Cases) -> Result<(), HardError> {
         direction_deg,
         ..contact(&sensor, 5.0)
     };
-    cases.scene("contact", "two contacts, opposed pushes", "", &swept(vec![apart(9.0, 0.0), apart(27.0, 180.0)]))?;
+    let opposed = swept(vec![apart(9.0, 0.0), apart(27.0, 180.0)]);
+    let case = cases.scene("contact", "two contacts, opposed pushes", "count_bodies = true", &opposed)?;
+    case.bodies = Some(opposed.frames()?.into_iter().map(|frame| frame.bodies).collect());
     cases.scene("contact", "µ = 0", "", &swept(vec![Contact { friction: 0.0, ..contact(&sensor, 7.0) }]))?;
     for friction in [0.2, 0.8, 1.5] {
         let name = format!("µ = {friction}");
@@ -245,7 +250,7 @@ fn kinds(cases: &mut Cases) -> Result<(), HardError> {
         let truth = Some(made.iter().map(Outcome::from).collect());
         let frames = made.into_iter().map(|frame| frame.stress).collect();
         let design = design(&sensor, "")?;
-        cases.0.push(Case { group: "kind", name: kind.title().to_owned(), design, frames, truth });
+        cases.0.push(Case { group: "kind", name: kind.title().to_owned(), design, frames, truth, bodies: None });
     }
     Ok(())
 }
