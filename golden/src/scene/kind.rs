@@ -132,7 +132,8 @@ impl Kind {
         Ok(self.scene(sensor, friction, seed).frames()?.remove(0))
     }
 
-    fn scene(self, sensor: &Sensor, friction: f64, seed: u64) -> Scene {
+    /// The scene of a seed: one contact, and what is wrong with the sensor.
+    pub fn scene(self, sensor: &Sensor, friction: f64, seed: u64) -> Scene {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
         let last = sensor.position_m(sensor.taxels() - 1);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::contacts::{Pressed, Truth, errors_of as judge, frames, inside};
+use crate::contacts::{Pressed, Truth, errors_of as judge, frames, inside, places_inside};
 use crate::families::{judge as judged, row, share};
 use golden::design::Design;
 use golden::scene::{Kind, Medium};
@@ -81,7 +81,7 @@ fn families() {
             (Solver::new(&design).unwrap(), design.sensor)
         });
         for kind in Kind::ALL {
-            let (label, count) = (kind.title(), if kind.has_own_friction() { 600 } else { 60 });
+            let (label, count) = (kind.title(), if kind.has_own_friction() { 2000 } else { 200 });
             let mut frames = kind.frames(&solvers[0].1, 0.5, 1000..1000 + count).unwrap();
             for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {
                 *stress = stress.min(0.0);
@@ -96,6 +96,39 @@ fn families() {
                 row(&wide),
                 wide.within
             );
+        }
+    }
+}
+
+/// Which contacts make a sensor's 95 %: errors of one contact, as [`table`], by shape and radius.
+#[test]
+#[ignore = "prints which contacts of clipped sensors err most, for docs/contacts.md; seconds"]
+fn by_size() {
+    for sensor in ["sensor1", "sensor2"] {
+        let design = design(&format!("{sensor}-clipped"));
+        let solver = Solver::new(&design).unwrap();
+        let set = inside(&design.sensor, LAYER, SEED, 800);
+        let places = places_inside(&design.sensor, SEED, 800);
+        for friction in FRICTIONS {
+            let frames = clipped(&set, friction, 0.0);
+            let errors: Vec<f64> =
+                frames.iter().map(|frame| judge(&solver, std::slice::from_ref(frame)).0[0][0]).collect();
+            let of = |label: &str, belongs: &dyn Fn(usize) -> bool| {
+                let mut own: Vec<f64> =
+                    errors.iter().enumerate().filter(|(index, _)| belongs(*index)).map(|(_, error)| *error).collect();
+                own.sort_by(f64::total_cmp);
+                if !own.is_empty() {
+                    let [median, most] = [0.5, 0.95].map(|part| share(&own, part));
+                    println!("| {sensor} | {friction} | {label} | {} | {median:.1} / {most:.1} |", own.len());
+                }
+            };
+            for (first, last) in [(5.0, 6.0), (6.0, 7.0), (7.0, 8.1), (8.1, 10.1)] {
+                let within = |index: usize| (first..last).contains(&(1e3 * places[index].0));
+                of(&format!("Hertz, {first} to {last} mm"), &|index| index % 2 == 0 && within(index));
+                of(&format!("even, {first} to {last} mm"), &|index| index % 2 == 1 && within(index));
+            }
+            of("all up to 8.1 mm", &|index| places[index].0 < 8.1e-3);
+            of("all", &|_| true);
         }
     }
 }

@@ -61,21 +61,28 @@ pub fn centred(sensor: &Sensor, medium: Medium, shape: Shape) -> Vec<Pressed> {
 /// Round contacts, Hertz and disc in turn, that lie within the grid by a third of the depth: radius 1.25 to 2.5 of the
 /// coarser pitch, but no more than 0.45 of the shorter side; anywhere, pushed anywhere.
 pub fn inside(sensor: &Sensor, medium: Medium, seed: u64, count: usize) -> Vec<Pressed> {
+    let pressed = |(index, (radius, centre, direction)): (usize, (f64, [f64; 2], f64))| {
+        let shape = match index % 2 {
+            0 => Shape::Hertz { semi_axes_m: [radius; 2] },
+            _ => Shape::Disc { radius_m: radius },
+        };
+        pressed(sensor, medium, shape, centre, vec![direction])
+    };
+    places_inside(sensor, seed, count).into_iter().enumerate().map(pressed).collect()
+}
+
+/// Radius and centre in metres and direction in radians of the contacts of [`inside`].
+pub fn places_inside(sensor: &Sensor, seed: u64, count: usize) -> Vec<(f64, [f64; 2], f64)> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     let last = sensor.position_m(sensor.taxels() - 1);
     let pitch = 1e-3 * sensor.pitch_mm[0].max(sensor.pitch_mm[1]);
     (0..count)
-        .map(|index| {
+        .map(|_| {
             let radius = between(1.25 * pitch, (2.5 * pitch).min(0.45 * last[0].min(last[1])));
             let margin = radius + sensor.depth_m() / 3.0;
             let centre = last.map(|far| between(margin.min(0.5 * far), (far - margin).max(0.5 * far)));
-            let shape = match index % 2 {
-                0 => Shape::Hertz { semi_axes_m: [radius; 2] },
-                _ => Shape::Disc { radius_m: radius },
-            };
-            let direction = between(-std::f64::consts::PI, std::f64::consts::PI);
-            pressed(sensor, medium, shape, centre, vec![direction])
+            (radius, centre, between(-std::f64::consts::PI, std::f64::consts::PI))
         })
         .collect()
 }

@@ -28,23 +28,36 @@ pub enum Kind {
     Heavier(u32),
     /// One alone.
     One,
+    /// One to three of any shape, edge, tilt, shear, friction and direction, on a layer and read by taxels that are not quite as
+    /// the design says.
+    Wide,
 }
 
 /// Least distance of two bodies, edge to edge, in metres.
 const GAP: f64 = 4e-3;
 
-/// One frame of a kind; nothing if the bodies found no room.
+/// Between the seeds of two attempts.
+const ATTEMPT: u64 = 1_000_000;
+
+/// One frame of a kind, of the first bodies that found room.
 pub fn frame(sensor: &Sensor, kind: Kind, seed: u64) -> SceneFrame {
-    (0..).find_map(|attempt| try_frame(sensor, kind, seed + 1_000_000 * attempt)).unwrap()
+    frame_and_scene(sensor, kind, seed).0
 }
 
-fn try_frame(sensor: &Sensor, kind: Kind, seed: u64) -> Option<SceneFrame> {
+/// The same, and the scene that it is of.
+pub fn frame_and_scene(sensor: &Sensor, kind: Kind, seed: u64) -> (SceneFrame, Scene) {
+    (0..).find_map(|attempt| try_frame(sensor, kind, seed + ATTEMPT * attempt)).unwrap()
+}
+
+fn try_frame(sensor: &Sensor, kind: Kind, seed: u64) -> Option<(SceneFrame, Scene)> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     let last = sensor.position_m(sensor.taxels() - 1);
     let pitch = 1e-3 * sensor.pitch_mm[0].max(sensor.pitch_mm[1]);
     let count = match kind {
         Kind::One => 1,
+        // Another attempt has as many.
+        Kind::Wide => 1 + (seed % ATTEMPT) as usize % 3,
         Kind::Three | Kind::Row => 3,
         _ => 2,
     };
@@ -62,6 +75,7 @@ fn try_frame(sensor: &Sensor, kind: Kind, seed: u64) -> Option<SceneFrame> {
         Kind::Small => (radii, normal) = (vec![1.8 * pitch, 0.9 * pitch], vec![4.0, 1.0]),
         Kind::Heavier(times) => normal = vec![f64::from(times), 1.0],
         Kind::Held => friction = vec![0.5; 2],
+        Kind::Wide => friction.iter_mut().for_each(|friction| *friction = between(0.1, 1.0)),
         _ => {}
     }
     let mut centres: Vec<[f64; 2]> = Vec::new();
@@ -95,6 +109,18 @@ fn try_frame(sensor: &Sensor, kind: Kind, seed: u64) -> Option<SceneFrame> {
     if !centres.iter().zip(&radii).all(inside) || (0..count).any(|a| (0..a).any(|b| !apart(a, b))) {
         return None;
     }
+    let mut sensor_errors = SensorErrors::default();
+    let mut poisson = 0.49;
+    let mut wide = Vec::new();
+    if kind == Kind::Wide {
+        poisson = [0.4655, 0.475, 0.485, 0.49, 0.495][seed as usize % 5];
+        let sides = between(0.0, 0.8);
+        let taxel_m = Some(sensor.pitch_mm.map(|pitch| sides * pitch * 1e-3));
+        let (depth, gain_spread, noise) = (between(-0.05, 0.05), between(0.0, 0.02), between(0.0, 0.003));
+        sensor_errors = SensorErrors { seed, taxel_m, depth, gain_spread, noise, ..sensor_errors };
+        // The radius is the longer half.
+        wide.extend(radii.iter().map(|&radius| any(radius, [(); 9].map(|()| between(0.0, 1.0)))));
+    }
     let contacts = (0..count).map(|body| {
         let round = Shape::Hertz { semi_axes_m: [radii[body]; 2] };
         let held = kind == Kind::Held && body == 1;
@@ -102,15 +128,42 @@ fn try_frame(sensor: &Sensor, kind: Kind, seed: u64) -> Option<SceneFrame> {
         let shape = if held || (seed + body as u64).is_multiple_of(2) { round } else { even };
         let shear = if held { Shear::Held { share: 0.5 } } else { Traction::default().shear };
         let traction = Traction { shear, ..Traction::default() };
+        let (shape, traction) = wide.get(body).copied().unwrap_or((shape, traction));
         let (normal_force_n, friction, direction_deg) = (normal[body], friction[body], directions[body]);
         Contact { shape, centre_m: centres[body], normal_force_n, friction, traction, direction_deg }
     });
     let scene = Scene {
         sensor: sensor.clone(),
-        medium: Medium::BondedLayer { poisson: 0.49 },
+        medium: Medium::BondedLayer { poisson },
         contacts: contacts.collect(),
         sweep_deg: Vec::new(),
-        sensor_errors: SensorErrors::default(),
+        sensor_errors,
     };
-    scene.frames().ok().map(|mut frames| frames.remove(0))
+    let frame = scene.frames().ok()?.remove(0);
+    Some((frame, scene))
+}
+
+/// A contact of any shape and traction, from numbers of 0 to 1: half as wide as long at least, as the calibration's wide family
+/// and `golden scene --kind mixed-inside` have them.
+fn any(radius: f64, [kind, push, ratio, turn, edge, along, across, share, spin]: [f64; 9]) -> (Shape, Traction) {
+    let half = [radius, radius / (1.0 + ratio)];
+    let mut shape = match kind {
+        ..0.5 => Shape::Hertz { semi_axes_m: half },
+        0.5..0.75 => Shape::Rectangle { sides_m: half.map(|half| 1.8 * half) },
+        _ => Shape::Disc { radius_m: radius },
+    };
+    let mut traction = Traction { turn_deg: 180.0 * turn, ..Traction::default() };
+    if push < 0.25 {
+        shape = Shape::Hertz { semi_axes_m: half };
+        traction.shear = Shear::Held { share: 0.2 + 0.75 * share };
+    } else {
+        traction.edge = Some(2.4 * edge - 0.4);
+        traction.tilt = [along, across].map(|tilt| tilt - 0.5);
+        traction.shear = match push {
+            ..0.5 => Shear::Even,
+            0.5..0.75 => Shear::Sliding { spin: 0.0 },
+            _ => Shear::Sliding { spin: 2.0 * spin - 1.0 },
+        };
+    }
+    (shape, traction)
 }

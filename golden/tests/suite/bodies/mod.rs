@@ -6,9 +6,9 @@ mod kinds;
 use golden::bodies::Body;
 use golden::design::{Design, PlanKind, Slip};
 use golden::metrics::{BodyErrors, Quantiles};
-use golden::scene::{self, SceneFrame};
+use golden::scene::{self, Scene, SceneFrame};
 use golden::solver::{PIECE, Slips, Solution, Solver, Status};
-use kinds::{Kind, frame};
+use kinds::{Kind, frame, frame_and_scene};
 
 /// What a solver makes of frames: errors in percent of the normal force.
 struct Judged {
@@ -175,6 +175,40 @@ fn bodies_add_up_to_the_frame() {
             let sensor = &design.sensor;
             let about_x: f64 = found.records.iter().map(|body| sensor.torque_of(body.centre_m, body.force)[0]).sum();
             assert!((about_x - found.torque[0]).abs() < 1e-9, "{name}: {about_x} {:?}", found.torque);
+            // Each body has its own, and they add up about all axes.
+            for (axis, whole) in found.torque.into_iter().enumerate() {
+                let sum: f64 = found.records.iter().map(|body| body.torque[axis]).sum();
+                assert!((sum - whole).abs() < 1e-12, "{name}: {sum} {:?}", found.torque);
+            }
+            for body in &found.records {
+                let [x, y, _] = sensor.torque_of(body.centre_m, body.force);
+                assert!((body.torque[0] - x).abs() < 1e-12 && (body.torque[1] - y).abs() < 1e-12, "{name}: {body:?}");
+            }
+        }
+    }
+}
+
+/// Torques of bodies against the true ones about all axes, in N m over the normal force: a millimetre of arm at most.
+#[test]
+fn each_body_has_its_own_torque() {
+    for name in ["sensor1-joint", "sensor2-wide"] {
+        let solver = Solver::new(&design(name, 2)).unwrap();
+        for seed in 0..12 {
+            let frame = frame(solver.matrices().sensor(), Kind::Opposed, 7000 + seed);
+            let found = solver.solve(&frame.stress).unwrap();
+            for body in &found.records {
+                let [x, y] = body.centre_m;
+                let distance = |truth: &&Body| (truth.centre_m[0] - x).hypot(truth.centre_m[1] - y);
+                let truth = frame.bodies.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap();
+                assert!(
+                    truth.torque.iter().any(|torque| torque.abs() > 2e-3),
+                    "{name}: a torque to be found {truth:?}"
+                );
+                for (found, truth_about) in body.torque.iter().zip(truth.torque) {
+                    let arm = (found - truth_about) / truth.force[2].abs();
+                    assert!(arm.abs() < 1.5e-3, "{name}, {seed}: {arm} m, {body:?} {truth:?}");
+                }
+            }
         }
     }
 }
@@ -252,7 +286,7 @@ fn of_slips(solutions: &mut [Solution]) -> impl Iterator<Item = (&mut Status, f6
 }
 
 /// Kinds of the table in `docs/contacts.md`.
-const KINDS: [(Kind, &str); 18] = [
+const KINDS: [(Kind, &str); 19] = [
     (Kind::Same, "two, pushed the same way"),
     (Kind::Opposed, "two, opposed"),
     (Kind::Anyhow, "two, anyhow"),
@@ -271,6 +305,7 @@ const KINDS: [(Kind, &str); 18] = [
     (Kind::Heavier(10), "one 10 times as heavy"),
     (Kind::Heavier(12), "one 12 times as heavy"),
     (Kind::One, "one alone"),
+    (Kind::Wide, "one to three of the wide family"),
 ];
 
 #[test]
@@ -295,6 +330,48 @@ fn table() {
             println!("| {} | {label} |{cells} {within} | {right} |", &sensor[6..]);
         }
     }
+}
+
+/// Where the errors of each body come from: in percent of its normal force, with the correction and without, of the frames as
+/// they are; and of those that each body would cause alone, as if they were parted without an error.
+#[test]
+#[ignore = "prints the table of what parting costs in docs/contacts.md; minutes"]
+fn table_of_parting() {
+    for sensor in ["sensor1", "sensor2"] {
+        let joint = design(&format!("{sensor}-joint"), 4);
+        let mut plain = joint.clone();
+        plain.algorithm.joint.correction = None;
+        let solvers = [joint, plain].map(|design| Solver::new(&design).unwrap());
+        let geometry = solvers[0].matrices().sensor();
+        for (kind, label) in
+            KINDS.iter().filter(|(kind, _)| !matches!(kind, Kind::Apart(_) | Kind::Heavier(_) | Kind::Wide))
+        {
+            let made: Vec<(SceneFrame, Scene)> =
+                (0..100).map(|seed| frame_and_scene(geometry, *kind, 3000 + seed)).collect();
+            let frames: Vec<SceneFrame> = made.iter().map(|(frame, _)| frame.clone()).collect();
+            let alone: Vec<SceneFrame> = made
+                .iter()
+                .flat_map(|(_, scene)| scene.contacts.iter().map(move |contact| (scene, contact.clone())))
+                .map(|(scene, contact)| Scene { contacts: vec![contact], ..scene.clone() }.frames().unwrap().remove(0))
+                .collect();
+            let far: Vec<SceneFrame> = frames.iter().filter(|frame| nearest(&frame.bodies) > 16e-3).cloned().collect();
+            let cells: String = solvers
+                .each_ref()
+                .map(|solver| {
+                    let each = [&frames, &far, &alone].map(|frames| row(judge(solver, frames).bodies.tangential));
+                    each.concat()
+                })
+                .concat();
+            println!("| {} | {label} |{cells} {} |", &sensor[6..], far.len());
+        }
+    }
+}
+
+/// Least distance of the centres of two bodies in metres; without two of them it is endless.
+fn nearest(bodies: &[Body]) -> f64 {
+    let pairs = bodies.iter().enumerate().flat_map(|(index, a)| bodies[..index].iter().map(move |b| (a, b)));
+    let distance = |(a, b): (&Body, &Body)| (a.centre_m[0] - b.centre_m[0]).hypot(a.centre_m[1] - b.centre_m[1]);
+    pairs.map(distance).fold(f64::INFINITY, f64::min)
 }
 
 #[test]

@@ -1,5 +1,8 @@
 //! Contacts of other kinds than those that the estimators were made for: what is left of their accuracy.
 
+mod doubt;
+mod why;
+
 use std::f64::consts::PI;
 
 use golden::design::Design;
