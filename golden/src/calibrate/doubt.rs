@@ -15,9 +15,8 @@ use super::samples::stream;
 use super::train::{Layer, quantised, scaled_alike};
 use super::wide::{self, Body};
 use super::{CalibrateError, Settings, Stage, twins};
-use crate::estimators::joint::{
-    self, Correction, DOUBT_FRACTION, Doubt, Joint, MAX_HIDDEN, NetworkScratch, WEIGHT_FRACTION, WEIGHT_LIMIT,
-};
+use crate::estimators::doubt::{DOUBT_FRACTION, limited, ratio};
+use crate::estimators::joint::{Correction, Doubt, Joint, MAX_HIDDEN, NetworkScratch, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use crate::parity::{CLASSES, butterfly};
 use crate::scene::normal;
 
@@ -170,7 +169,7 @@ impl Learner {
         let slopes = DVector::from_fn(BATCH, |sample, _| {
             let log = base + own.dot(&even.column(sample)) + others.dot(&known.column(sample));
             // Of 2 ln s + (e / s)^2 along ln s, by half.
-            let far = errors[sample] / joint::ratio(joint::limited(f64::from(log)));
+            let far = errors[sample] / ratio(limited(f64::from(log)));
             ((1.0 - (far * far).min(FARTHEST)) / BATCH as f64) as f32
         });
         let mut of_output = DMatrix::zeros(units + found + 1, 1);

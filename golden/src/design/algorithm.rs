@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Filter, Regularisation};
-use crate::estimators::joint::{JointConstants, log};
+use crate::estimators::joint::JointConstants;
 use crate::estimators::{Constants, Estimator};
 use crate::kernel::Kernel;
 use crate::words::print_as_words;
@@ -76,19 +76,9 @@ impl Slip {
 }
 
 impl Algorithm {
-    /// The logarithm of base 2 that stands for the error over `|F_z|` above which a frame is doubtful; nothing if the
-    /// estimator does not tell its error.
-    pub fn doubt_log(&self) -> Option<f64> {
-        let Constants::Joint(joint) = self.constants() else { return None };
-        joint.correction.as_ref()?.doubt.as_ref().map(|_| log(joint.doubt))
-    }
-
-    /// The estimator with its constants; those of another one are left aside.
+    /// The estimator with its constants.
     pub fn constants(&self) -> Constants<'_> {
-        match self.estimator {
-            Estimator::Line => Constants::Line,
-            Estimator::Joint => Constants::Joint(&self.joint),
-        }
+        Constants::of(self.estimator, &self.joint)
     }
 }
 

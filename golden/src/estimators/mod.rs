@@ -4,6 +4,7 @@
 //! its own; outside of it the registry here, the design file's parser and the calibration, which is the joint one's, know
 //! its name. `docs/estimators.md` compares them.
 
+pub(crate) mod doubt;
 pub mod joint;
 pub mod line;
 mod seen;
@@ -12,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sensor::Sensor;
 use crate::words::print_as_words;
+pub use doubt::{DOUBT_FRACTION, DOUBT_RANGE};
 use joint::{Joint, JointConstants, JointScratch};
 use line::LineScratch;
 pub(crate) use seen::{Answer, Seen};
@@ -40,7 +42,22 @@ pub enum Constants<'a> {
     Joint(&'a JointConstants),
 }
 
-impl Constants<'_> {
+impl<'a> Constants<'a> {
+    /// Those of an estimator; what a design has of another one is left aside.
+    pub(crate) fn of(estimator: Estimator, joint: &'a JointConstants) -> Self {
+        match estimator {
+            Estimator::Line => Self::Line,
+            Estimator::Joint => Self::Joint(joint),
+        }
+    }
+
+    /// The logarithm of base 2 that stands for the error over `|F_z|` above which a frame is doubtful; nothing if the
+    /// estimator does not tell its error.
+    pub fn doubt_log(self) -> Option<f64> {
+        let Self::Joint(joint) = self else { return None };
+        joint.correction.as_ref()?.doubt.as_ref().map(|_| doubt::log(joint.doubt))
+    }
+
     /// What all forces are multiplied by, if the estimator has a gain.
     pub fn gain(&self) -> Option<f64> {
         match self {

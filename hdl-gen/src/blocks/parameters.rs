@@ -119,7 +119,7 @@ mod tests {
         QUAD_TO_READY, TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, stress_to_ready,
         taxels_to_write,
     };
-    use golden::estimators::joint::{DOUBT_FRACTION, DOUBT_RANGE};
+    use golden::estimators::{DOUBT_FRACTION, DOUBT_RANGE};
 
     use crate::cores::cordic;
     use crate::estimators::{joint, line};

@@ -2,7 +2,7 @@
 
 use golden::design::Design;
 #[cfg(doc)]
-use golden::estimators::joint::DOUBT_FRACTION;
+use golden::estimators::DOUBT_FRACTION;
 use golden::products::ByPq;
 use golden::sensor::Sensor;
 use serde_json::Value;

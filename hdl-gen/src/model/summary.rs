@@ -2,7 +2,7 @@
 
 use crate::cores::{cordic, divider};
 use crate::plan::format::FRICTION_FRACTION;
-use golden::estimators::joint::DOUBT_FRACTION;
+use golden::estimators::DOUBT_FRACTION;
 use golden::products::ByPq;
 
 /// Fraction bits of the CORDIC's inverse gain.

@@ -19,6 +19,7 @@ pub mod lane;
 pub mod layout;
 pub mod matrix;
 pub mod memory;
+mod need;
 pub mod passes;
 pub mod places;
 pub mod product;
@@ -33,7 +34,7 @@ pub mod words;
 
 use golden::design::{Design, InputRange, Outputs, PlanKind};
 #[cfg(doc)]
-use golden::estimators::joint::DOUBT_FRACTION;
+use golden::estimators::DOUBT_FRACTION;
 use golden::matrices::MatrixName;
 use golden::parity::{CLASSES, Quads};
 use serde::Serialize;

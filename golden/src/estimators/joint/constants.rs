@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::doubt::Doubt;
 use super::grid::Grid;
 use crate::words::print_as_words;
 
@@ -88,4 +87,14 @@ impl Correction {
     pub fn inputs(half_window: [usize; 2]) -> usize {
         (2 * half_window[0] + 1) * (2 * half_window[1] + 1) + EXTRA_INPUTS
     }
+}
+
+/// What a correction knows of the error that it leaves, a third sum of its hidden units: the logarithm of the error of `(F_x, F_y)` over `|F_z|`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Doubt {
+    /// What is added to the sum, in steps of `2^-`[`DOUBT_FRACTION`](crate::estimators::DOUBT_FRACTION).
+    pub base: i32,
+    /// Weight of each hidden unit, as the mean over the mirror images, in steps of
+    /// [`WEIGHT_FRACTION`].
+    pub output: Vec<i32>,
 }

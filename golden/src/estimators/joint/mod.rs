@@ -5,21 +5,19 @@
 //! `docs/estimators.md` gives the steps as the hardware takes them.
 
 mod constants;
-mod doubt;
 mod grid;
 mod level_set;
 mod look;
 mod network;
 mod weights;
 
+use super::doubt::{log, ratio};
 use super::seen::{Answer, RANGE, Seen};
 use crate::status::Status;
 pub use constants::{
-    CUBIC_LIMIT, Correction, DEFAULT_DOUBT, EXTRA_INPUTS, Family, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION,
+    CUBIC_LIMIT, Correction, DEFAULT_DOUBT, Doubt, EXTRA_INPUTS, Family, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION,
     WEIGHT_LIMIT,
 };
-pub use doubt::{DOUBT_FRACTION, DOUBT_RANGE, Doubt};
-pub(crate) use doubt::{limited, log, ratio};
 pub use grid::Grid;
 pub(crate) use level_set::Found;
 use level_set::{GridScratch, search};

@@ -4,9 +4,9 @@
 //! percent, in a way that repeats with the pitch. The network sees the stress that the normal forces alone would
 //! cause, in a window that moves with the contact, and adds a bounded amount to the estimate.
 
-use super::constants::{Correction, WEIGHT_FRACTION};
-use super::doubt::{DOUBT_FRACTION, Doubt, limited};
+use super::constants::{Correction, Doubt, WEIGHT_FRACTION};
 use super::look::Look;
+use crate::estimators::doubt::{DOUBT_FRACTION, limited};
 use crate::parity::{CLASSES, Quads, butterfly};
 
 /// The correction of a component is at most this, so that an unforeseen contact is never made much worse.

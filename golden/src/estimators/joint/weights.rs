@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-use super::constants::{Correction, EXTRA_INPUTS, MAX_HIDDEN, WEIGHT_LIMIT};
-use super::doubt::Doubt;
+use super::constants::{Correction, Doubt, EXTRA_INPUTS, MAX_HIDDEN, WEIGHT_LIMIT};
 
 /// Names of the inputs behind the window, in order: friction of the level set's centre, the contact's centre within its
 /// taxel, and one.

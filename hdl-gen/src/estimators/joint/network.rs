@@ -3,9 +3,8 @@
 //! A mirrored look changes the signs of what is odd in x or y. So the window is folded into parity classes, the
 //! weights too, and one pass over the weights gives the four sums from which the hidden units of all four looks follow.
 
-use golden::estimators::joint::{
-    Correction, DOUBT_FRACTION, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION, WEIGHT_LIMIT,
-};
+use golden::estimators::DOUBT_FRACTION;
+use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use golden::parity::{CLASSES, sign};
 use serde::Serialize;
 

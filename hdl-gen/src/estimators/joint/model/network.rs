@@ -1,6 +1,6 @@
 //! The network of hinges in integers.
 
-use golden::estimators::joint::{DOUBT_FRACTION, DOUBT_RANGE};
+use golden::estimators::{DOUBT_FRACTION, DOUBT_RANGE};
 use golden::parity::CLASSES;
 
 use super::super::{CORRECTION_LIMIT, NetworkPlan};

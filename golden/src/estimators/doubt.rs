@@ -1,19 +1,9 @@
-//! What a correction knows of the error that it leaves: a third sum of its hidden units, as a logarithm.
+//! How an estimator tells the error that it leaves: as a logarithm of its share of the normal force.
 
 /// Fraction bits of the logarithm.
 pub const DOUBT_FRACTION: u32 = 12;
 /// Least and largest logarithm of base 2: a thousandth of the normal force, and four times as much.
 pub const DOUBT_RANGE: [i32; 2] = [-10, 2];
-
-/// Weights of the logarithm of the error of `(F_x, F_y)` over `|F_z|`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Doubt {
-    /// What is added to the sum, in steps of `2^-DOUBT_FRACTION`.
-    pub base: i32,
-    /// Weight of each hidden unit, as the mean over the mirror images, in steps of
-    /// [`super::WEIGHT_FRACTION`].
-    pub output: Vec<i32>,
-}
 
 /// A logarithm within its range, as far as it goes there.
 pub(crate) fn limited(log: f64) -> f64 {
