@@ -43,7 +43,8 @@ enum {
     SPTFRA_QUEUE_ONLY = -18,       /* the DMA goes by descriptors: sptfra_queue.h */
     SPTFRA_NO_QUEUE = -19,         /* the DMA has none */
     SPTFRA_DROPS = -20,            /* the core drops frames that come too fast: send it one at a time */
-    SPTFRA_CONTRADICTION = -21     /* the words of a bank do not go together: nothing has changed */
+    SPTFRA_CONTRADICTION = -21,    /* the words of a bank do not go together: nothing has changed */
+    SPTFRA_BAD_FILE = -22          /* a file that is no calibration: nothing has changed */
 };
 
 /* What went wrong, in words. */
@@ -222,7 +223,7 @@ typedef struct {
  * of four bytes. */
 int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result);
 
-/* ---- Calibration in RAM (calibration = "ram" in the design), in sptfra_calibration.c */
+/* ---- Calibration in RAM (calibration = "ram" in the design), in sptfra_calibration.c; from files by sptfra_file.h */
 
 /* Gain and offset (in counts) of each taxel, as in a design's calibration.csv: gains 1e-9 to 16, offsets to 1e6. A gain of
  * 0 reads 0: for taxels that the design or the map replaces, SPTFRA_OUT_OF_RANGE for others of a core with a map. With a

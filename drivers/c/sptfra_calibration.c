@@ -230,35 +230,41 @@ static uint32_t weight_shift(const numbers *of, const sptfra_replaced *replaced)
     return shift;
 }
 
+static int refuse(sptfra_refusal *why, int what, uint32_t place)
+{
+    *why = (sptfra_refusal){what, place};
+    return 0;
+}
+
 /* Whether a bank takes it; with a shift of 0 it may still be too much. */
-static int replaceable(const numbers *of, const sptfra_replaced *replaced)
+static int replaceable(const numbers *of, const sptfra_replaced *replaced, sptfra_refusal *why)
 {
     uint32_t dead, taxel, other;
 
     if (replaced->count > of->room) {
-        return 0;
+        return refuse(why, SPTFRA_TOO_MANY_DEAD, of->room);
     }
     for (dead = 0; dead < replaced->count; dead++) {
         double sum = 0.0;
 
         if (replaced->taxels[dead] >= of->taxels || (dead > 0 && replaced->taxels[dead] <= replaced->taxels[dead - 1])) {
-            return 0;
+            return refuse(why, SPTFRA_NO_SUCH_TAXEL, replaced->taxels[dead]);
         }
         for (taxel = 0; taxel < of->taxels; taxel++) {
             const double weight = replaced->weights[dead * of->taxels + taxel];
 
             if (!(magnitude(weight) < MOST_MANTISSA + 0.5)) {
-                return 0;
+                return refuse(why, SPTFRA_WRONG_WEIGHT, taxel);
             }
             sum += (double)rounded(magnitude(weight));
         }
         for (other = 0; other < replaced->count; other++) {
             if (replaced->weights[dead * of->taxels + replaced->taxels[other]] != 0.0) {
-                return 0;
+                return refuse(why, SPTFRA_WRONG_WEIGHT, replaced->taxels[other]);
             }
         }
         if (sum > MOST_WEIGHTS) {
-            return 0;
+            return refuse(why, SPTFRA_TOO_LARGE_WEIGHTS, replaced->taxels[dead]);
         }
     }
     return 1;
@@ -283,8 +289,9 @@ static uint32_t word_of_map(const numbers *of, const sptfra_replaced *replaced, 
     return (uint32_t)rounded(replaced->weights[dead * of->taxels + taxel] * power((int)shift));
 }
 
-/* Whether nothing would take the place of a taxel of gain 0: its contact would read nothing, and nobody would know. */
-static int is_bare(const numbers *of, const double *gain, const uint16_t *dead, uint32_t count)
+/* Whether something takes the place of each taxel of gain 0: else its contact would read nothing, and nobody would know. */
+static int all_stand(
+    const numbers *of, const double *gain, const uint16_t *dead, uint32_t count, sptfra_refusal *why)
 {
     uint32_t taxel, next = 0;
 
@@ -292,10 +299,10 @@ static int is_bare(const numbers *of, const double *gain, const uint16_t *dead, 
         if (next < count && dead[next] == taxel) {
             next++;
         } else if (gain[taxel] == 0.0) {
-            return 1;
+            return refuse(why, SPTFRA_NOT_REPLACED, taxel);
         }
     }
-    return 0;
+    return 1;
 }
 
 /* The dead taxels of the map that acts, at most as many as fit into the count's four bits. */
@@ -359,20 +366,20 @@ static int words_of_segment(const numbers *of, const sptfra_curve *curve, uint32
 }
 
 /* Whether a bank takes it. */
-static int fits(const numbers *of, const sptfra_curve *curve)
+static int fits(const numbers *of, const sptfra_curve *curve, sptfra_refusal *why)
 {
     uint32_t place, words[4];
     int falls;
 
     if (curve->count < 2 || curve->count > of->segments + 1) {
-        return 0;
+        return refuse(why, SPTFRA_WRONG_POINTS, of->segments);
     }
     falls = curve->pascals[1] < curve->pascals[0];
     for (place = 0; place + 1 < curve->count; place++) {
         const double from = curve->pascals[place], to = curve->pascals[place + 1];
 
         if (!(falls ? to < from : to > from) || !words_of_segment(of, curve, place, words)) {
-            return 0;
+            return refuse(why, SPTFRA_WRONG_POINT, place + 1);
         }
     }
     return 1;
@@ -412,57 +419,69 @@ int sptfra_load_bank(const sptfra *device, const double *gain, const double *off
     return sptfra_load_bank_and_curve(device, gain, offset, replaced, NULL, noise_floor_pa, polls);
 }
 
-int sptfra_load_bank_and_curve(const sptfra *device, const double *gain, const double *offset,
-    const sptfra_replaced *replaced, const sptfra_curve *curve, double noise_floor_pa, uint32_t polls)
+/* The words of the thresholds; 0 if they are none that a bank takes. */
+static int words_of_noise(const numbers *of, double noise_floor_pa, uint32_t words[2])
 {
-    const int there = is_there(device);
-    numbers of;
-    uint32_t taxel, place, word, in_map, in_curve, shift = 0, crc = UINT32_MAX, thresholds[2];
-    uint32_t words[2];
-    int kind, found;
+    const double noise = noise_floor_pa * power(-of->lsb);
+    const double contact = noise_floor_pa * (double)of->taxels * power(-of->lsb);
 
-    if (there != SPTFRA_OK) {
-        return there;
+    if (!(noise <= 67108863.0 && contact <= 4294967295.0)) {
+        return 0;
+    }
+    words[0] = contact < 1.0 ? 1u : (uint32_t)rounded(contact);
+    words[1] = noise < 1.0 ? 1u : (uint32_t)rounded(noise);
+    return 1;
+}
+
+int sptfra_check_bank(const sptfra *device, const double *gain, const double *offset, const sptfra_replaced *replaced,
+    const sptfra_curve *curve, double noise_floor_pa, sptfra_refusal *why)
+{
+    numbers of;
+    uint32_t taxel, count, words[2];
+    uint16_t dead[15];
+    int found, taken = 1;
+
+    found = is_there(device);
+    if (found != SPTFRA_OK) {
+        return found;
     }
     numbers_of(device, &of);
-    /* Before anything is written. */
-    for (taxel = 0; taxel < of.taxels; taxel++) {
-        if (!words_of(&of, gain[taxel], offset[taxel], words)) {
-            return SPTFRA_OUT_OF_RANGE;
-        }
+    for (taxel = 0; taxel < of.taxels && taken; taxel++) {
+        taken = words_of(&of, gain[taxel], offset[taxel], words) || refuse(why, SPTFRA_WRONG_TAXEL, taxel);
     }
-    if (replaced != NULL) {
-        if (!replaceable(&of, replaced)) {
-            return SPTFRA_OUT_OF_RANGE;
-        }
-        shift = weight_shift(&of, replaced);
-        if (is_bare(&of, gain, replaced->taxels, replaced->count)) {
-            return SPTFRA_OUT_OF_RANGE;
-        }
-    } else if (of.room > 0) {
-        uint16_t dead[15];
-        uint32_t count;
-
+    if (taken && replaced != NULL) {
+        taken = replaceable(&of, replaced, why) && all_stand(&of, gain, replaced->taxels, replaced->count, why);
+    } else if (taken && of.room > 0) {
         found = acting_map(device, &of, dead, &count);
         if (found != SPTFRA_OK) {
             return found;
         }
-        if (is_bare(&of, gain, dead, count)) {
-            return SPTFRA_OUT_OF_RANGE;
-        }
+        taken = all_stand(&of, gain, dead, count, why);
     }
-    if (curve != NULL && !fits(&of, curve)) {
-        return SPTFRA_OUT_OF_RANGE;
-    }
-    if (noise_floor_pa > 0.0) {
-        const double noise = noise_floor_pa * power(-of.lsb);
-        const double contact = noise_floor_pa * (double)of.taxels * power(-of.lsb);
+    taken = taken && (curve == NULL || fits(&of, curve, why));
+    taken = taken
+        && (!(noise_floor_pa > 0.0) || words_of_noise(&of, noise_floor_pa, words) || refuse(why, SPTFRA_WRONG_NOISE, 0));
+    return taken ? SPTFRA_OK : SPTFRA_OUT_OF_RANGE;
+}
 
-        if (noise > 67108863.0 || contact > 4294967295.0) {
-            return SPTFRA_OUT_OF_RANGE;
-        }
-        thresholds[0] = contact < 1.0 ? 1u : (uint32_t)rounded(contact);
-        thresholds[1] = noise < 1.0 ? 1u : (uint32_t)rounded(noise);
+int sptfra_load_bank_and_curve(const sptfra *device, const double *gain, const double *offset,
+    const sptfra_replaced *replaced, const sptfra_curve *curve, double noise_floor_pa, uint32_t polls)
+{
+    numbers of;
+    sptfra_refusal why;
+    uint32_t taxel, place, word, in_map, in_curve, shift, crc = UINT32_MAX, thresholds[2];
+    uint32_t words[2];
+    int kind, found;
+
+    /* Before anything is written. */
+    found = sptfra_check_bank(device, gain, offset, replaced, curve, noise_floor_pa, &why);
+    if (found != SPTFRA_OK) {
+        return found;
+    }
+    numbers_of(device, &of);
+    shift = replaced != NULL ? weight_shift(&of, replaced) : 0;
+    if (noise_floor_pa > 0.0) {
+        words_of_noise(&of, noise_floor_pa, thresholds);
     } else {
         for (kind = 0; kind < 2; kind++) {
             found = sptfra_read_calibration(device, (uint16_t)(2u * of.taxels + (uint32_t)kind), 1, &thresholds[kind]);

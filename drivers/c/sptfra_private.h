@@ -98,4 +98,26 @@ void sptfra_follow_number(sptfra *device);
 /* Whether the answer is that to the next frame; counts on. */
 int sptfra_in_step(sptfra *device, const void *answer);
 
+/* Why no bank takes what it is given, and where. */
+typedef struct {
+    int what;
+    uint32_t place;
+} sptfra_refusal;
+
+enum {
+    SPTFRA_WRONG_TAXEL,       /* gain or offset of this taxel */
+    SPTFRA_NOT_REPLACED,      /* this taxel of gain 0 */
+    SPTFRA_TOO_MANY_DEAD,     /* for a bank with room for so many */
+    SPTFRA_NO_SUCH_TAXEL,     /* this dead one, or it does not ascend */
+    SPTFRA_WRONG_WEIGHT,      /* of this taxel */
+    SPTFRA_TOO_LARGE_WEIGHTS, /* of all in this dead one */
+    SPTFRA_WRONG_POINTS,      /* too few or many for a curve of so many segments */
+    SPTFRA_WRONG_POINT,       /* this one, after the one before */
+    SPTFRA_WRONG_NOISE
+};
+
+/* Whether sptfra_load_bank_and_curve would take it; of SPTFRA_OUT_OF_RANGE `why` tells more. */
+int sptfra_check_bank(const sptfra *device, const double *gain, const double *offset, const sptfra_replaced *replaced,
+    const sptfra_curve *curve, double noise_floor_pa, sptfra_refusal *why);
+
 #endif

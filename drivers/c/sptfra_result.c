@@ -23,6 +23,7 @@ const char *sptfra_error(int code)
     case SPTFRA_CALIBRATION_BUSY: return "a commit or a tare is under way: wait for it";
     case SPTFRA_OUT_OF_RANGE: return "a value, or an offset that the tare found, is out of bounds; nothing has changed";
     case SPTFRA_CONTRADICTION: return "the words of a bank do not go together; nothing has changed";
+    case SPTFRA_BAD_FILE: return "the file is no calibration; nothing has changed";
     case SPTFRA_WRONG_CRC: return "the bank holds other words than were sent; nothing has changed";
     case SPTFRA_NOT_AT_REST: return "a taxel moved by more than the noise floor during the tare; nothing has changed";
     case SPTFRA_BAD_REST: return "a frame of the tare was clipped, no number, cut or lost; nothing has changed";

@@ -46,6 +46,15 @@ def plot(forces, path):
     figure.savefig(path)
 
 
+def read(path):
+    """The frames of a file; the numbers of its columns, as pandas writes them above, are none."""
+    frames = np.loadtxt(path, delimiter=",", ndmin=2)
+    if frames.shape[1] > 3 and any(np.array_equal(frames[0], first + np.arange(frames.shape[1])) for first in (0, 1)):
+        print("line 1: the columns' numbers: taken for a header", file=sys.stderr)
+        return frames[1:]
+    return frames
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("core")
@@ -55,8 +64,7 @@ def main():
     arguments.add_argument("--queue", metavar="FRAMES", type=int, default=0)
     wanted = arguments.parse_args()
     try:
-        frames = np.loadtxt(wanted.frames, delimiter=",", ndmin=2)
-        forces = opened(wanted.core, wanted.metadata, wanted.queue).reconstruct(frames)
+        forces = opened(wanted.core, wanted.metadata, wanted.queue).reconstruct(read(wanted.frames))
     except (OSError, RuntimeError, ValueError) as error:
         sys.exit(f"error: {error}")
     print("frame,F_x,F_y,F_z,mu,phi,status")

@@ -2,6 +2,7 @@
 """A calibration as the words of a bank in a core's RAM."""
 
 import pathlib
+import re
 
 import numpy as np
 
@@ -14,42 +15,92 @@ MOST_NUMBER, MOST_VALUE, MOST_CURVE_SHIFT = (1 << 25) - 1, (1 << 26) - 1 - (1 <<
 SEGMENT_WORDS, END_WORDS = 4, 3
 
 
+def _rows(path):
+    """The lines of a file that are neither blank nor a remark: number, text, fields, and their numbers or None."""
+    separator, rows = None, []
+    for number, line in enumerate(pathlib.Path(path).read_text(encoding="utf-8-sig").splitlines(), 1):
+        line = line.strip()
+        if not line or line.startswith("#"):
+            continue
+        if separator is None:
+            separator = next((each for each in ";\t," if each in line), " ")
+        fields = [field.strip() for field in (line.split() if separator == " " else line.split(separator))]
+        if len(fields) > 1 and not fields[-1]:
+            fields.pop()
+        fields = [field[1:-1] if len(field) > 1 and field[0] == field[-1] == '"' else field for field in fields]
+        # Where it separates nothing, a comma is a decimal point.
+        numbers = [_number(field.replace(",", ".") if separator in ";\t" else field) for field in fields]
+        rows.append((number, line, fields, numbers))
+    return rows
+
+
+def _number(field):
+    try:
+        value = float(field) if set(field) <= set("0123456789+-.eE") else None
+    except ValueError:
+        return None
+    return None if value is None or abs(value) > 3.4028234663852886e38 else value
+
+
+def _names(row):
+    """The names of a header, in small letters and without units; nothing of a line with a number."""
+    _, _, fields, numbers = row
+    return [re.split(r"[(\[]", field)[0].strip().lower() for field in fields] if set(numbers) == {None} else []
+
+
+def _points(path, rows):
+    points = []
+    for number, line, _, numbers in rows:
+        if len(numbers) != 2 or None in numbers:
+            raise ValueError(f"{path}, line {number}: {line!r} is no count,pascals such as 120,-950.5")
+        points.append(tuple(numbers))
+    return points
+
+
+def read_curve(path):
+    """The points (count, pascals) of a file with a line for each, or of those behind the taxels of one of `golden bank`.
+
+    Raises ValueError, with the line.
+    """
+    rows = _rows(path)
+    names = _names(rows[0]) if rows else []
+    if names[:1] == ["gain"]:
+        while rows and _names(rows[0]) != ["count", "pascals"]:
+            rows.pop(0)
+        if not rows:
+            raise ValueError(f"{path}: gains and offsets, and no curve")
+    if names == ["pascals", "count"]:
+        raise ValueError(f"{path}, line {rows[0][0]}: the pascals stand before the counts")
+    return _points(path, rows[1:] if names else rows)
+
+
 def read_calibration(path, taxels):
     """Gains and offsets of a file with a line `gain,offset` for each taxel, and what it says of dead taxels and a curve.
 
     A file of `golden bank` has a header, `gain,offset,taxel 37,...`, and in each line the taxel's weight in the stress of
-    each dead one: `{37: [weights], ...}`, of other files None. Behind a header `count,pascals` stand the points of a curve,
-    else it is None. Raises ValueError, with the line.
+    each dead one: `{37: [weights], ...}`, of files without a header None. Behind a header `count,pascals` stand the points
+    of a curve, else it is None. Values are separated as those of frames. Raises ValueError, with the line.
     """
-    gains, offsets, dead, points = [], [], None, None
-    for number, line in enumerate(pathlib.Path(path).read_text(encoding="utf-8-sig").splitlines(), 1):
-        if not line.strip():
-            continue
-        if points is None and line.strip() == "count,pascals":
-            points = []
-            continue
-        if points is not None:
-            try:
-                count, pascals = map(float, line.split(","))
-            except ValueError:
-                raise ValueError(f"{path}, line {number}: {line.strip()!r} is no count,pascals such as 120,-950.5") from None
-            points.append((count, pascals))
-            continue
-        if dead is None and not gains and line.startswith("gain,offset"):
-            names = [name.split() for name in line.strip().split(",")[2:]]
-            if any(len(name) != 2 or name[0] != "taxel" or not name[1].isdecimal() for name in names):
+    rows = _rows(path)
+    behind = next((place for place, row in enumerate(rows) if _names(row) == ["count", "pascals"]), len(rows))
+    points = _points(path, rows[behind + 1 :]) if behind < len(rows) else None
+    gains, offsets, dead = [], [], None
+    for place, (number, line, fields, numbers) in enumerate(rows[:behind]):
+        names = _names(rows[place]) if place == 0 else []
+        if names:
+            named = [name.split() for name in names[2:]]
+            if names[:2] != ["gain", "offset"] or any(
+                len(name) != 2 or name[0] != "taxel" or not name[1].isdecimal() for name in named
+            ):
                 raise ValueError(f"{path}, line {number}: a header is gain,offset,taxel 37,... as golden bank writes it")
-            dead = {int(name[1]): [] for name in names}
-            if list(dead) != sorted(dead) or len(dead) != len(names) or any(taxel >= taxels for taxel in dead):
+            dead = {int(name[1]): [] for name in named}
+            if list(dead) != sorted(dead) or len(dead) != len(named) or any(taxel >= taxels for taxel in dead):
                 raise ValueError(f"{path}, line {number}: dead taxels ascend, and the core has {taxels} taxels")
             continue
-        try:
-            gain, offset, *weights = map(float, line.split(","))
-            if len(weights) != len(dead or {}):
-                raise ValueError
-        except ValueError:
+        if len(numbers) != 2 + len(dead or {}) or None in numbers:
             like = "gain,offset such as 1.02,-0.5" + " and a weight for each dead taxel" * bool(dead)
-            raise ValueError(f"{path}, line {number}: {line.strip()!r} is no {like}") from None
+            raise ValueError(f"{path}, line {number}: {line!r} is no {like}")
+        gain, offset, *weights = numbers
         for of_taxel, weight in zip((dead or {}).values(), weights):
             of_taxel.append(weight)
         if not (gain == 0 or 1e-9 <= gain <= 16) or not abs(offset) <= 1e6:

@@ -25,7 +25,7 @@ import time
 import zlib
 
 import numpy as np
-from sptfra_bank import bank_words, curve_length, curve_words, map_words, read_calibration
+from sptfra_bank import bank_words, curve_length, curve_words, map_words, read_calibration, read_curve
 from sptfra_dma import Batches, OneByOne
 from sptfra_forces import LAYOUT, Forces, Layout, Status, decode
 from sptfra_identity import Counters, Identity
@@ -163,19 +163,25 @@ class Sptfra:
             raise RuntimeError(f"the answer is that to frame {numbers[wrong[0]]}, not {wanted}: recover()")
         self._next = (first + len(numbers)) & 0xFFFF
 
-    def load_calibration(self, path, noise_floor_pa=None, timeout=1.0):
+    def load_calibration(self, path, noise_floor_pa=None, timeout=1.0, *, curve=None):
         """Lets the gains and offsets of a `calibration.csv` act from the next frame on; frames may run meanwhile.
 
         The file has a line `gain,offset` for each taxel, as the design's own, or is one of `golden bank`: then the dead
         taxels of its header are replaced, and no others; else those that were. So with the points of a curve, whose
-        offsets are in pascals. `noise_floor_pa` is then that of the frames and of a tare, and the threshold of contact as
-        many times it as there are taxels, as of a design made with it; without it both stay. What is written is compared by its CRC. Raises ValueError on a
-        file or values that no bank takes, RuntimeError if the core refuses, TimeoutError; then what acted still does.
+        offsets are in pascals: they stand in the same file, or in that of the design's curve, `curve`. `noise_floor_pa` is
+        then that of the frames and of a tare, and the threshold of contact as many times it as there are taxels, as of a
+        design made with it; without it both stay. What is written is compared by its CRC. Raises ValueError on a file or
+        values that no bank takes, RuntimeError if the core refuses, TimeoutError; then what acted still does.
         """
         self._needs_calibration()
         # What is kept of the bank that acts is read from it, and reads 0 while it changes.
         self._calibration_idle()
         gains, offsets, dead, points = read_calibration(path, self.identity.rows * self.identity.columns)
+        if curve is not None:
+            own = read_curve(curve)
+            if points not in (None, own):
+                raise ValueError(f"{curve}: the curve is another than that of {path}, and offsets are made for it")
+            points = own
         room = self.identity.replaceable
         in_map = [] if dead is None else map_words(dead, room, len(gains))
         read, write = self._core.read, self._core.write
@@ -198,8 +204,8 @@ class Sptfra:
             bare = [taxel for taxel, gain in enumerate(gains) if gain == 0 and taxel not in replaced]
             if bare:
                 raise ValueError(f"{path}: nothing replaces the taxels {bare} of gain 0: write it with golden bank")
-        curve = self._curve_words(points, len(words) + 2 + len(in_map))
-        words = np.concatenate([words, np.array([*thresholds, *in_map, *curve], dtype=np.uint32)]).astype("<u4")
+        in_curve = self._curve_words(points, len(words) + 2 + len(in_map))
+        words = np.concatenate([words, np.array([*thresholds, *in_map, *in_curve], dtype=np.uint32)]).astype("<u4")
         crc = zlib.crc32(words.tobytes())
         write(Register.CALIBRATION_INDEX, 0)
         for word in words:

@@ -304,7 +304,9 @@ In RESOLVED.toml, besides:
   error_base = -17123               # with family "wide": what is added to the logarithm of the error that is left"#;
 
 const BANK_FILE: &str = r#"BANK.csv: a header line, gain,offset,taxel 37,taxel 38, that names the dead taxels; then a line for each taxel: its gain
-(0 of a dead one), its offset in counts, and its weight in the stress of each dead taxel.
+(0 of a dead one), its offset in counts, and its weight in the stress of each dead taxel. Of a design with a curve offsets
+are in pascals, and a header count,pascals and its points follow. A design can name the file, as sensor.calibration and as
+sensor.curve.
 
 In the design file:
   [sensor]

@@ -90,8 +90,8 @@ module sptfra_spmv_array #(
         if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
             sptfra_error_ways_must_be_1_or_4 invalid ();
         end
-        if ((LANES < 1) || (LANES > 100)) begin : gen_check_lanes
-            sptfra_error_lanes_must_be_1_to_100 invalid ();
+        if ((LANES < 1) || (LANES > 128)) begin : gen_check_lanes
+            sptfra_error_lanes_must_be_1_to_128 invalid ();
         end
         if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destinations
             sptfra_error_a_destination_has_3_or_4_bits invalid ();
@@ -100,6 +100,7 @@ module sptfra_spmv_array #(
     localparam WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1;
     localparam VALUE_WIDTH = (VALUE_DEPTH > 2) ? $clog2(VALUE_DEPTH) : 1;
     localparam VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1;
+    localparam NAME_BITS = (LANES > 100) ? 24 : 16; // of a lane's number in its files' names
     // What the last round brings: a row for so many lanes
     localparam LAST_ROWS = (ELEMENTS - 1) % LANES + 1;
 
@@ -248,9 +249,8 @@ module sptfra_spmv_array #(
     genvar index;
     generate
         for (index = 0; index < LANES; index = index + 1) begin : gen_lanes
-            // The lane's number as two characters
-            localparam [7:0] TENS = 8'd48 + index / 10;
-            localparam [7:0] ONES = 8'd48 + index % 10;
+            // The lane's number as three characters
+            localparam [23:0] DIGITS = 24'h303030 + 65536 * (index / 100) + 256 * ((index / 10) % 10) + index % 10;
             localparam [7:0] NEXT = (index + 1) % LANES;
 
             sptfra_spmv_lane #(
@@ -268,9 +268,9 @@ module sptfra_spmv_array #(
                 .SKIPS            (SKIPS),
                 .HAS_LAST_ROW     (index < LAST_ROWS),
                 .ROM_DIR          (ROM_DIR),
-                .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_lane", TENS, ONES, ".mem"}),
-                .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_lane", TENS, ONES, ".mem"}),
-                .MACS_FILE        ((ROM_NAME == "") ? "" : {ROM_NAME, "_macs_lane", TENS, ONES, ".mem"})
+                .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_lane", DIGITS[NAME_BITS-1:0], ".mem"}),
+                .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_lane", DIGITS[NAME_BITS-1:0], ".mem"}),
+                .MACS_FILE        ((ROM_NAME == "") ? "" : {ROM_NAME, "_macs_lane", DIGITS[NAME_BITS-1:0], ".mem"})
             ) lane (
                 .clock           (clock),
                 .reset           (reset),

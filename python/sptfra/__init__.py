@@ -15,17 +15,18 @@ newtons, `F_z < 0` presses. Whatever is wrong with a design, a file or frames ra
 
 from importlib.metadata import version as _version
 
-from ._native import Design, Error, FrameLines, Solver, calibrate, check, errors, load_frames, scene
+from ._native import Design, Error, FrameLines, Solver, beyond, calibrate, check, errors, load_frames, rest, scene
 from .forces import Forces, Status
 from .hardware import generate, plan, simulate
 from .plot import plot_bodies, plot_field
 from .recorded import calibrate_forces, calibrate_uniform
-from .results import Finding, Plan, Recorded, Scene, Simulation, Spread
+from .results import Beyond, Finding, Plan, Recorded, Rest, Scene, Simulation, Spread
 
 #: That of the package, which is that of the commands.
 __version__ = _version("sptfra")
 
 __all__ = [
+    "Beyond",
     "Design",
     "Error",
     "Finding",
@@ -33,12 +34,14 @@ __all__ = [
     "FrameLines",
     "Plan",
     "Recorded",
+    "Rest",
     "Scene",
     "Simulation",
     "Solver",
     "Spread",
     "Status",
     "__version__",
+    "beyond",
     "calibrate",
     "calibrate_forces",
     "calibrate_uniform",
@@ -49,6 +52,7 @@ __all__ = [
     "plan",
     "plot_bodies",
     "plot_field",
+    "rest",
     "scene",
     "simulate",
 ]

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .forces import Forces
-from .results import Finding, Scene, Spread
+from .results import Beyond, Finding, Rest, Scene, Spread
 
 class Error(ValueError):
     """What is wrong with a design, with frames, or with a file: what, where, and what to do."""
@@ -164,6 +164,12 @@ def scene(
 
 def check(design: Design, frames: npt.ArrayLike) -> list[Finding]:
     """What is wrong with frames, as far as they tell: unit, sign, tare, order of the taxels, end of the converter."""
+
+def beyond(design: Design, frames: npt.ArrayLike) -> Beyond:
+    """How much of frames lies beyond what the design is calibrated for: the full scale, or the ends of its curve."""
+
+def rest(design: Design, frames: npt.ArrayLike) -> Rest:
+    """What frames, ten or more, tell of a sensor on which nothing presses: each taxel's offset, noise and drift."""
 
 def errors(forces: Forces, truth: Forces) -> dict[str, Spread]:
     """Errors e_Fx, e_Fy, e_Fz in percent of the normal force, e_mu of 1, e_phi of a turn."""

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import os
+import pathlib
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ._native import Design
+from ._native import Design, Error
 from .forces import Forces
 
 
@@ -22,6 +24,56 @@ class Finding(NamedTuple):
 
     def __str__(self) -> str:
         return self.message
+
+
+class Beyond(NamedTuple):
+    """Readings at the full scale or beyond it, or beyond the ends of the design's curve."""
+
+    #: Of taxels that are not dead.
+    readings: int
+    #: Of all readings, from 0 to 1.
+    share: float
+    #: With any of them.
+    frames: int
+
+
+@dataclass(frozen=True)
+class Rest:
+    """What frames tell of a sensor on which nothing presses, in their units unless a name says pascals."""
+
+    #: (rows, columns): mean of each taxel.
+    offset: np.ndarray = field(repr=False)
+    #: (rows, columns): standard deviation about a straight line over time.
+    noise: np.ndarray = field(repr=False)
+    #: (rows, columns): mean of the last third of the frames less that of the first.
+    drift: np.ndarray = field(repr=False)
+    #: Taxels that never change while the others do, and those of the design.
+    dead: tuple[int, ...]
+    #: Taxels that never change and read what none at rest does.
+    stuck: tuple[int, ...]
+    #: Taxels that vary four times as much as the median one.
+    noisy: tuple[int, ...]
+    median_noise: float
+    median_drift: float
+    #: The median deviation in pascals.
+    noise_pa: float
+    #: For `algorithm.noise_floor_pa`: three deviations.
+    noise_floor_pa: float
+    #: For `algorithm.regularisation.noise`.
+    noise_of_full_scale: float
+    #: What makes one doubt that nothing pressed.
+    warnings: tuple[str, ...]
+    _calibration: str = field(repr=False)
+    _refused: str = field(repr=False)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the calibration that takes the offsets off, for `[sensor] calibration`: gain 0 for dead and stuck taxels.
+
+        Raises `Error` where the design's frames are in pascals, or more taxels are dead than can be replaced.
+        """
+        if self._refused:
+            raise Error(self._refused)
+        pathlib.Path(path).write_text(self._calibration, encoding="utf-8", newline="\n")
 
 
 class Scene(NamedTuple):

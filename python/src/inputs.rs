@@ -2,18 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use golden::check::check as look_for_faults;
-use golden::frames::read_frames_of;
+use golden::check::{Beyond, beyond as count_beyond, check as look_for_faults};
+use golden::frames::read_frames_and_remark;
 use golden::geometry;
 use golden::matrices::Matrices;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
+use golden::rest::{AtRest, RestError, TaxelAtRest};
 use golden::scene::{ChoiceError, Kind, Scene, SceneFrame};
 use golden::solver::{Solution, Status};
 use golden::words;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyDict, PyList, PyTuple};
 
 use crate::arrays::{Forces, Frames, array};
 use crate::design::Design;
@@ -24,12 +25,18 @@ use crate::errors::{raised, without_lock};
 #[pyo3(signature = (path, design, *, labels = 0))]
 pub fn load_frames<'py>(py: Python<'py>, path: PathBuf, design: &Design, labels: usize) -> PyResult<Bound<'py, PyAny>> {
     let design = &design.inner;
-    let frames = without_lock(py, || {
+    let (frames, remark) = without_lock(py, || {
         geometry::compare(&path, &design.name, &design.sensor)?;
-        read_frames_of(&path, design, labels)
+        read_frames_and_remark(&path, design, labels)
     })?;
+    warn(py, remark)?;
     let shape = [frames.len(), design.sensor.rows, design.sensor.columns];
     array(py, frames.concat(), &shape)
+}
+
+/// Says what is to be known of a header.
+fn warn(py: Python<'_>, remark: Option<String>) -> PyResult<()> {
+    remark.map_or(Ok(()), |remark| py.import("warnings")?.call_method1("warn", (remark,)).map(drop))
 }
 
 /// Frames from lines of text, as a sensor sends them.
@@ -50,7 +57,9 @@ impl FrameLines {
     }
 
     fn frame<'py>(&mut self, py: Python<'py>, line: &[u8]) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let known = self.inner.remark().is_some();
         let frame = self.inner.frame(line).map_err(raised)?;
+        warn(py, self.inner.remark().filter(|_| !known))?;
         frame.map(|values| array(py, values, &self.shape)).transpose()
     }
 }
@@ -71,6 +80,49 @@ pub fn check<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) 
         .map(|finding| class.call1((finding.kind.to_string(), finding.to_string())))
         .collect::<PyResult<_>>()?;
     PyList::new(py, found)
+}
+
+/// How many readings lie beyond what the design is calibrated for.
+#[pyfunction]
+pub fn beyond<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let design = &design.inner;
+    let frames = Frames::of(design, frames)?;
+    frames.finite()?;
+    let Beyond { readings, share, frames } = count_beyond(design, &frames.rows());
+    py.import("sptfra.results")?.getattr("Beyond")?.call1((readings, share, frames))
+}
+
+/// What frames tell of a sensor on which nothing presses.
+#[pyfunction]
+pub fn rest<'py>(py: Python<'py>, design: &Design, frames: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let design = &design.inner;
+    let frames = Frames::of(design, frames)?;
+    frames.finite()?;
+    let frames = frames.rows();
+    let named = |error: RestError| format!("{}: {error}", design.name);
+    let found = AtRest::of(design, &frames).map_err(|error| raised(named(error)))?;
+    let (calibration, refused) = match found.calibration(design, &frames) {
+        Ok(calibration) => (calibration.to_csv(), String::new()),
+        Err(error) => (String::new(), named(error)),
+    };
+    let shape = [design.sensor.rows, design.sensor.columns];
+    let of = |value: fn(&TaxelAtRest) -> f64| array(py, found.taxels.iter().map(value).collect(), &shape);
+    let fields = PyDict::new(py);
+    fields.set_item("offset", of(|each| each.offset)?)?;
+    fields.set_item("noise", of(|each| each.noise)?)?;
+    fields.set_item("drift", of(|each| each.drift)?)?;
+    for (name, taxels) in [("dead", &found.dead), ("stuck", &found.stuck), ("noisy", &found.noisy)] {
+        fields.set_item(name, PyTuple::new(py, taxels)?)?;
+    }
+    fields.set_item("median_noise", found.noise)?;
+    fields.set_item("median_drift", found.drift)?;
+    fields.set_item("noise_pa", found.noise_pa)?;
+    fields.set_item("noise_floor_pa", found.noise_floor_pa)?;
+    fields.set_item("noise_of_full_scale", found.noise_of_full_scale)?;
+    fields.set_item("warnings", PyTuple::new(py, &found.warnings)?)?;
+    fields.set_item("_calibration", calibration)?;
+    fields.set_item("_refused", refused)?;
+    py.import("sptfra.results")?.getattr("Rest")?.call((), Some(&fields))
 }
 
 /// Frames with their true forces.

@@ -27,7 +27,7 @@ mod native {
     #[pymodule_export]
     use super::hardware::{generate, inspect, simulate};
     #[pymodule_export]
-    use super::inputs::{FrameLines, check, errors, load_frames, scene};
+    use super::inputs::{FrameLines, beyond, check, errors, load_frames, rest, scene};
     #[pymodule_export]
     use super::recorded::{calibrate_forces, calibrate_uniform};
     #[pymodule_export]

@@ -279,6 +279,53 @@ class Judging(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "frame 1, taxel 11: inf"):
             sptfra.check(small, frames)
 
+    def test_readings_beyond_the_calibration_are_counted(self):
+        frames = np.zeros((4, 12))
+        self.assertEqual(sptfra.beyond(design(), frames), (0, 0.0, 0))
+        frames[1, 3] = frames[1, 4] = frames[3, 0] = -200_000.0
+        found = sptfra.beyond(design(), frames)
+        self.assertEqual(found, (3, 3 / 48, 2))
+        self.assertEqual((found.readings, found.frames), (3, 2))
+        with self.assertRaisesRegex(ValueError, "frame 0, taxel 0: NaN"):
+            sptfra.beyond(design(), np.full(12, np.nan))
+
+    def test_rest_tells_offsets_noise_and_dead_taxels(self):
+        counting = sptfra.Design("pad", columns=6, rows=5, counts=12, full_scale_pa=100_000.0)
+        random = np.random.default_rng(5)
+        offset = random.uniform(20, 90, 30)
+        frames = np.round(offset + random.normal(0, 2, (200, 30)))
+        frames[:, 17] = 0
+        found = sptfra.rest(counting, frames)
+        self.assertEqual((found.dead, found.stuck, found.noisy, found.warnings), ((17,), (), (), ()))
+        self.assertEqual([each.shape for each in (found.offset, found.noise, found.drift)], [(5, 6)] * 3)
+        alive = np.arange(30) != 17
+        self.assertLess(abs(found.offset.ravel() - offset)[alive].max(), 0.6)
+        self.assertLess(abs(found.noise.ravel()[alive] - 2).max(), 0.5)
+        self.assertAlmostEqual(found.noise_floor_pa, 3 * found.noise_pa)
+        self.assertAlmostEqual(found.noise_pa, found.median_noise * 100_000 / 4095, delta=3)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "pad.calibration.csv"
+            found.save(file)
+            gains = np.loadtxt(file, delimiter=",")
+            with self.assertRaisesRegex(sptfra.Error, "pa_per_count"):
+                sptfra.rest(design(), -frames[:, :12]).save(file)
+        self.assertEqual(gains[:, 0].tolist(), alive.astype(float).tolist())
+        self.assertLess(abs(gains[alive, 1] + found.offset.ravel()[alive]).max(), 1e-9)
+        with self.assertRaisesRegex(sptfra.Error, "3 frames at rest tell no noise"):
+            sptfra.rest(counting, frames[:3])
+
+    def test_numbers_of_columns_are_a_header(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "frames.csv"
+            numbers, line = ",".join(map(str, range(12))), ",".join(["-1000"] * 12)
+            file.write_text(f"{numbers}\n{line}\n", encoding="utf-8")
+            with self.assertWarnsRegex(UserWarning, "line 1: numbers in turn up to 11"):
+                self.assertEqual(sptfra.load_frames(file, design()).shape, (1, 3, 4))
+        lines = sptfra.FrameLines(design())
+        with self.assertWarns(UserWarning):
+            self.assertIsNone(lines.frame(numbers.encode()))
+        self.assertEqual(lines.frame(line.encode()).shape, (3, 4))
+
     def test_a_calibration_is_the_design_with_constants(self):
         made, calls = sptfra.Design("pad", columns=4, rows=4), []
         calibrated = sptfra.calibrate(made, hidden=0, quick=True, progress=lambda *parts: calls.append(parts))

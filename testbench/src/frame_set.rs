@@ -4,7 +4,7 @@ use std::path::Path;
 
 use golden::design::{Design, Sensor};
 use golden::forces::{self, read_outcomes};
-use golden::frames::{FrameError, read_frames_of};
+use golden::frames::{FrameError, read_frames_and_remark};
 use golden::geometry;
 use golden::metrics::Outcome;
 use golden::scene::{Scene, SceneError};
@@ -20,6 +20,8 @@ pub struct FrameSet {
     pub stress: Vec<Vec<f64>>,
     /// True forces, one for each frame.
     pub truth: Option<Vec<Outcome>>,
+    /// What is to be known of the file that they are from.
+    pub remark: Option<String>,
     /// The scene that the frames are of, where that is known: it knows each taxel's true force.
     pub scene: Option<Scene>,
 }
@@ -41,7 +43,7 @@ impl FrameSet {
         let frames = scene.frames()?;
         let truth = frames.iter().map(Outcome::from).collect();
         let stress = frames.into_iter().map(|frame| frame.stress).collect();
-        Ok(Self { origin: origin.into(), stress, truth: Some(truth), scene: Some(scene.clone()) })
+        Ok(Self { origin: origin.into(), stress, truth: Some(truth), remark: None, scene: Some(scene.clone()) })
     }
 
     /// What is known of the forces of a frame.
@@ -66,11 +68,11 @@ impl FrameSet {
     /// [`FrameError`], with file, line and column, or for frames that are known to be another sensor's.
     pub fn load(frames: &Path, labels: usize, reference: Option<&Path>, design: &Design) -> Result<Self, FrameError> {
         geometry::compare(frames, &design.name, &design.sensor)?;
-        let stress = read_frames_of(frames, design, labels)?;
+        let (stress, remark) = read_frames_and_remark(frames, design, labels)?;
         if let Some(reference) = reference {
             forces::compare_sensor(reference, &design.name, &design.sensor)?;
         }
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
-        Ok(Self { origin: frames.display().to_string(), stress, truth, scene: None })
+        Ok(Self { origin: frames.display().to_string(), stress, truth, remark, scene: None })
     }
 }

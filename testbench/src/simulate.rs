@@ -28,6 +28,8 @@ pub struct Job<'a> {
     pub columns: usize,
     /// When packets follow each other, where they are not sent one at a time.
     pub pacing: Pacing,
+    /// Whether frames take as long as what is in them.
+    pub unlike: bool,
     /// See [`Traffic::timeout`].
     pub timeout: u64,
     /// Decides the pauses and the registers' random start.
@@ -168,6 +170,7 @@ fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<Cycles, SimulationErro
     let interval = match job.pacing {
         // At a given distance each frame may be a cycle sooner or later.
         Pacing::Spaced { .. } => many.mean_interval(),
+        _ if job.unlike => many.interval_of_unlike(),
         Pacing::BackToBack | Pacing::OneAtATime => many.interval(),
     };
     let interval = interval.unwrap_or_default();

@@ -187,6 +187,7 @@ impl<'a> Trial<'a> {
             expected: &self.expected,
             columns: self.plan.design.sensor.columns,
             pacing: pacing(self.plan),
+            unlike: self.plan.design.hardware.skip_zeros,
             timeout: timeout(self.plan),
             seed: self.seed,
             trace,

@@ -52,6 +52,26 @@ static int parse(const sptfra_shape *shape, const char *line, unsigned long numb
     return 1;
 }
 
+/* Whether a line has the numbers of its columns alone, from 0 or 1 on, as pandas writes them above frames. */
+static int numbers_columns(const char *line, size_t taxels)
+{
+    const char *at = line;
+    double first = 0.0;
+    size_t index;
+    char *end;
+
+    for (index = 0; index < taxels; index++) {
+        const double value = strtod(at, &end);
+
+        first = index == 0 ? value : first;
+        if (end == at || (first != 0.0 && first != 1.0) || value != first + (double)index) {
+            return 0;
+        }
+        at = end + strspn(end, " \t,;\r\n");
+    }
+    return *at == '\0';
+}
+
 static int fail(const char *what, int code)
 {
     fprintf(stderr, "%s: %s%s%s\n", what, sptfra_error(code), code == SPTFRA_SYSTEM ? ": " : "",
@@ -92,10 +112,11 @@ static int process(sptfra *device, const sptfra_buffer *stress, const sptfra_buf
 /* Every line that holds a frame; 0 after a message. */
 static int run(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces, FILE *frames)
 {
+    const size_t taxels = (size_t)device->shape.columns * device->shape.rows;
     unsigned long number = 0;
     char *line = NULL;
     size_t room = 0;
-    int good = 1;
+    int good = 1, first = 1;
 
     printf("frame,F_x,F_y,F_z,mu,phi,status\n");
     while (good && getline(&line, &room, frames) > 0) {
@@ -106,6 +127,12 @@ static int run(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer 
         if (*start == '\0' || *start == '#' || (number == 1 && strpbrk(line, "0123456789") == NULL)) {
             continue;
         }
+        if (first && numbers_columns(start, taxels)) {
+            fprintf(stderr, "line %lu: the columns' numbers: taken for a header\n", number);
+            first = 0;
+            continue;
+        }
+        first = 0;
         good = parse(&device->shape, start, number, stress->data) && process(device, stress, forces);
     }
     free(line);

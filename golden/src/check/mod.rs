@@ -11,6 +11,7 @@ pub(crate) mod ends;
 mod order;
 mod quiet;
 mod rest;
+mod unit;
 
 use std::fmt;
 
@@ -67,10 +68,6 @@ impl fmt::Display for Finding {
     }
 }
 
-/// A peak this many times below the full scale is in another unit.
-const TOO_SMALL: f64 = 1000.0;
-/// So is one this many times above it: more than any converter is overdriven by.
-const TOO_LARGE: f64 = 10.0;
 /// Whole numbers with a peak this many times below it are counts of a converter of 12 bits or so, not pascals.
 const WHOLE: f64 = 16.0;
 /// A frame counts as loaded if its peak is this share of the largest.
@@ -118,7 +115,8 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     let mut findings = Vec::new();
     let mut found = |kind, message| findings.push(Finding { kind, message });
     if peak <= 0.0 {
-        found(Kind::Empty, format!("all readings of {} are 0: is the sensor connected?", count(frames.len())));
+        let (kind, message) = unit::nothing(design, frames);
+        found(kind, message);
         return findings;
     }
     let is_loaded: Vec<bool> = stress.iter().map(|frame| largest(frame) >= LOADED * peak).collect();
@@ -137,22 +135,25 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     let is_pull = holds(pulling, loaded.len());
     // Pascals press below 0: taken for counts of a scale that is negative, they pull.
     let fractions = frames.iter().flatten().any(|value| value.fract() != 0.0);
-    let pascals = counts && is_pull && (fractions || peak >= TOO_LARGE * full_scale);
+    let pascals = counts && is_pull && (fractions || peak >= unit::TOO_LARGE * full_scale);
+    let scale = unit::Scale::of(design);
     if pascals {
         found(
             Kind::Range,
             format!(
                 "the stresses add up to a pull (F_z > 0) in {pulling} of {}, {}: are the frames in pascals already? Remove \
-                 sensor.pa_per_count; if they are counts that fall under load, change its sign",
+                 {}; if they are counts that fall under load, change {}",
                 count(loaded.len()),
                 if fractions {
                     "and readings have fractions, which counts have not".to_owned()
                 } else {
                     format!("the largest {:.0} times above hardware.full_scale_pa", peak / full_scale)
-                }
+                },
+                scale.key,
+                scale.sign
             ),
         );
-    } else if let Some(message) = range(full_scale, peak, counts) {
+    } else if let Some(message) = unit::range(design, peak) {
         found(Kind::Range, message);
     } else if whole {
         found(
@@ -166,9 +167,9 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     }
     if is_pull && !pascals {
         let remedy = match (counts, whole) {
-            (true, _) => "change the sign of sensor.pa_per_count",
-            (false, true) => "write sensor.pa_per_count, what a count is worth, with a minus",
-            (false, false) => "write sensor.pa_per_count = -1.0",
+            (true, _) => format!("change {}", scale.sign),
+            (false, true) => "write sensor.pa_per_count, what a count is worth, with a minus".to_owned(),
+            (false, false) => "write sensor.pa_per_count = -1.0".to_owned(),
         };
         found(
             Kind::Sign,
@@ -184,7 +185,7 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     }
     let clipped = design.input.tension == Tension::Clipped
         || loaded.iter().all(|frame| frame.iter().all(|&stress| stress <= FAINT * largest(frame)));
-    if let Some(message) = rest::check(&design.sensor, &loaded, full_scale) {
+    if let Some(message) = rest::check(design, &loaded) {
         found(Kind::Tare, message);
     } else if design.input.tension == Tension::Read && clipped {
         found(
@@ -226,35 +227,6 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
         findings.push(Finding { kind: Kind::Bodies, message });
     }
     findings
-}
-
-/// Readings in another unit.
-fn range(full_scale: f64, peak: f64, counts: bool) -> Option<String> {
-    let what = if counts { "stress" } else { "reading" };
-    if peak * TOO_SMALL <= full_scale {
-        let times = full_scale / peak;
-        let cause = if counts {
-            "is a count worth more? Change sensor.pa_per_count"
-        } else {
-            "kilopascals, or counts? Change the unit of the frames, or write sensor.pa_per_count,"
-        };
-        return Some(format!(
-            "the largest {what} is {peak:.3} Pa, {times:.0} times below hardware.full_scale_pa: {cause} or \
-             hardware.full_scale_pa"
-        ));
-    }
-    (peak >= TOO_LARGE * full_scale).then(|| {
-        let times = peak / full_scale;
-        let cause = if counts {
-            "are the frames in pascals already? Remove sensor.pa_per_count; if not, change it"
-        } else {
-            "counts? Change the unit of the frames, or write sensor.pa_per_count,"
-        };
-        format!(
-            "the largest {what} is {peak:.0} Pa, {times:.0} times above hardware.full_scale_pa: {cause} or \
-             hardware.full_scale_pa"
-        )
-    })
 }
 
 fn largest(frame: &[f64]) -> f64 {

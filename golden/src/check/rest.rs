@@ -1,7 +1,8 @@
 //! What taxels read that nothing touches.
 
+use super::unit::Scale;
 use super::{FAINT, count, holds, largest};
-use crate::sensor::Sensor;
+use crate::design::Design;
 
 /// This part of the taxels touches nothing: the least loaded ones, or those farthest from where a frame has its peak.
 const PART: usize = 4;
@@ -11,8 +12,9 @@ const ONE_SIDE: f64 = 0.9;
 const LIFTED: f64 = 0.02;
 
 /// A load, or a pull, that even the taxels have that touch nothing.
-pub(super) fn check(sensor: &Sensor, loaded: &[Vec<f64>], full_scale: f64) -> Option<String> {
-    if let Some(message) = pressed(loaded, full_scale) {
+pub(super) fn check(design: &Design, loaded: &[Vec<f64>]) -> Option<String> {
+    let sensor = &design.sensor;
+    if let Some(message) = pressed(design, loaded) {
         return Some(message);
     }
     // The mean of the rest, where nearly all of it is on one side of 0.
@@ -42,7 +44,7 @@ pub(super) fn check(sensor: &Sensor, loaded: &[Vec<f64>], full_scale: f64) -> Op
 }
 
 /// The least loaded quarter of the taxels is pressed.
-fn pressed(loaded: &[Vec<f64>], full_scale: f64) -> Option<String> {
+fn pressed(design: &Design, loaded: &[Vec<f64>]) -> Option<String> {
     let rest = |frame: &Vec<f64>| {
         let mut sorted = frame.clone();
         sorted.sort_by(|a, b| b.total_cmp(a));
@@ -53,12 +55,16 @@ fn pressed(loaded: &[Vec<f64>], full_scale: f64) -> Option<String> {
     let pressed = rests.iter().zip(loaded).filter(|(rest, frame)| **rest < -FAINT * largest(frame)).count();
     let mean = rests.iter().sum::<f64>() / rests.len() as f64;
     holds(pressed, loaded.len()).then(|| {
-        let cause = if -2.0 * mean > full_scale {
-            "do the readings fall where something presses? Change the sign of sensor.pa_per_count, and give each taxel's \
-             reading at rest as its offset in the file of sensor.calibration"
+        let cause = if -2.0 * mean > design.hardware.full_scale_pa {
+            format!(
+                "do the readings fall where something presses? Change {}, and give each taxel's reading at rest as its offset \
+                 in the file of sensor.calibration",
+                Scale::of(design).sign
+            )
         } else {
             "is the tare missing? Subtract a frame without contact, or write its offsets into the file of \
              sensor.calibration"
+                .to_owned()
         };
         format!(
             "every taxel is loaded in {pressed} of {}, the least loaded quarter by {:.0} Pa: {cause}",

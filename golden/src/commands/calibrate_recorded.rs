@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use golden::calibrate::recorded::{Recorded, fit_forces, fit_uniform, page, read_forces, read_pressures};
+use golden::check::check;
 use golden::choose::rebase_scenes;
 use golden::design::{Design, Filter};
+use golden::matrices::Matrices;
 use golden::output::write_together;
 use golden::progress::Progress;
 use serde::Serialize;
 
 use super::calibrate::name_of;
-use super::{Recording, Resolved, folder, keep_apart};
+use super::{Recording, Resolved, folder, keep_apart, warn};
 
 /// What was recorded.
 #[derive(Args, Debug)]
@@ -81,6 +83,7 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> Resu
     }
     let progress = Progress::of("fitting");
     let mut results: [Option<Recorded>; 2] = [None, None];
+    let mut findings = Vec::new();
     for (place, (file, measured)) in [(uniform, pressures), (frames, forces)].into_iter().enumerate() {
         let (Some(file), Some(measured)) = (file, measured) else { continue };
         let frames = Recording { file, labels: *labels }.read(&design)?;
@@ -88,10 +91,15 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> Resu
             0 => fit_uniform(&design, &frames, &read_pressures(measured)?),
             _ => fit_forces(&design, &frames, &read_forces(measured)?),
         }?;
+        // As the design reads them now: sign, unit and tare are what was fitted. A bladder loads every taxel.
+        if place == 1 {
+            findings = check(&found.design, &frames, Matrices::of(&found.design).ok().as_ref());
+        }
         design = found.design.clone();
         results[place] = Some(found);
     }
     drop(progress);
+    warn(&findings);
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
         *scenes = rebase_scenes(scenes, folder(path), folder(out));
     }
@@ -132,7 +140,10 @@ fn print_report(report: &Report<'_>) -> std::io::Result<()> {
     say!("{}: calibrated design in {}", report.design, report.resolved.display());
     for (what, found) in [("uniform pressure", report.uniform), ("contacts", report.forces)] {
         let Some(found) = found else { continue };
-        say!("from {what}: {} holds, {} contacts", found.holds.len(), found.contacts);
+        match found.holds.len() {
+            0 => say!("from {what}: {} contacts", found.contacts),
+            holds => say!("from {what}: {holds} holds, {} contacts", found.contacts),
+        }
         for (title, lines) in [
             ("determined", &found.determined),
             ("not determined", &found.undetermined),

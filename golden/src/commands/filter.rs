@@ -30,8 +30,15 @@ pub fn run(design: &Path, frames: &Recording, with_field: bool) -> Result<(), Bo
     let solver = Solver::new(&design)?;
     let lines = FrameLines::new(Path::new("standard input"), &design, frames.labels);
     let mut stream = FrameStream::new(io::stdin().lock(), lines);
+    let mut said = false;
     let mut next: Box<dyn FnMut() -> Result<Option<Vec<f64>>, FrameError>> = if is_standard(frames.file) {
-        Box::new(|| stream.next_frame())
+        Box::new(move || {
+            let frame = stream.next_frame();
+            if let Some(remark) = stream.remark().filter(|_| !std::mem::replace(&mut said, true)) {
+                eprintln!("note: {remark}");
+            }
+            frame
+        })
     } else {
         let all = frames.read(&design)?;
         warn(&check(&design, &all, Some(solver.matrices())));

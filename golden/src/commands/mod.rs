@@ -27,10 +27,15 @@ pub struct Recording<'a> {
 }
 
 impl Recording<'_> {
-    /// The frames, which may not be known to be those of another sensor than the design's.
+    /// The frames, which may not be known to be those of another sensor than the design's. Says on standard error what is
+    /// to be known of their header.
     pub fn read(&self, design: &Design) -> Result<Vec<Vec<f64>>, FrameError> {
         geometry::compare(self.file, &design.name, &design.sensor)?;
-        frames::read_frames_of(self.file, design, self.labels)
+        let (frames, remark) = frames::read_frames_and_remark(self.file, design, self.labels)?;
+        if let Some(remark) = remark {
+            eprintln!("note: {remark}");
+        }
+        Ok(frames)
     }
 }
 

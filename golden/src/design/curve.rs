@@ -8,6 +8,7 @@ use super::DesignError;
 use super::checks::Check;
 use super::files::Beside;
 use super::hardware::{Hardware, Samples};
+use super::rows::{Row, Rows};
 
 /// Most segments of a curve.
 pub const MOST_SEGMENTS: usize = 64;
@@ -17,6 +18,8 @@ const PER_OCTAVE: f64 = 6.0;
 const REACH: f64 = 4.0;
 /// Points closer than this share of the largest count are one.
 const CLOSEST: f64 = 1e-6;
+/// What to write for a point.
+const REMEDY: &str = "write count,pascals, such as 120,-950.5";
 
 /// Key `curve` as it stands in the file.
 #[derive(Deserialize)]
@@ -35,6 +38,11 @@ pub(super) enum RawCurve {
 pub(super) struct RawLaw {
     power: f64,
     scale: f64,
+}
+
+/// Whether a row is the header of points that stand behind taxels.
+pub(super) fn is_header_of_points(row: &Row) -> bool {
+    row.header().is_some_and(|names| names == ["count", "pascals"])
 }
 
 /// From counts to pascals, monotone: straight between points, and as at its ends beyond them.
@@ -87,34 +95,35 @@ impl Curve {
         Self { points, law: Some([power, scale]) }
     }
 
-    /// Reads one line `count,pascals` for each point. Blank lines, a byte order mark and a header are skipped.
+    /// Reads one line `count,pascals` for each point, or those behind the taxels of a file of `golden bank`.
     fn load(file: &str, beside: Beside<'_>) -> Result<Self, DesignError> {
-        let path = beside.path(file);
-        let text = beside.read(file).map_err(|source| DesignError::Read { path: path.clone(), source })?;
-        let wrong = |line, problem, remedy: &str| {
-            Err(DesignError::Table { path: path.clone(), line, problem, remedy: remedy.to_owned() })
-        };
-        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        let table = Rows::read(file, beside)?;
+        let header = table.rows.first().and_then(Row::header).unwrap_or_default();
+        let name = |place: usize| header.get(place).map_or("", String::as_str);
+        let mut rows = table.rows.iter().skip(usize::from(!header.is_empty()));
+        if name(0) == "gain" {
+            rows.find(|row| is_header_of_points(row)).ok_or_else(|| {
+                let problem = "the file has gains and offsets, and no curve".to_owned();
+                table.wrong(table.end(), problem, format!("{REMEDY}, or name it as sensor.calibration"))
+            })?;
+        } else if name(0) == "pascals" && name(1) == "count" {
+            let line = table.rows[0].line;
+            return Err(table.wrong(line, "pascals stand before counts".to_owned(), REMEDY));
+        }
+        Self::of_rows(&table, rows)
+    }
+
+    /// The points of rows.
+    pub(super) fn of_rows<'a>(table: &Rows, rows: impl Iterator<Item = &'a Row>) -> Result<Self, DesignError> {
         let mut points: Vec<[f64; 2]> = Vec::new();
-        let (mut last, mut first) = (1, true);
-        for (line, content) in (1..).zip(text.lines()).filter(|(_, content)| !content.trim().is_empty()) {
-            last = line;
-            let values: Vec<Option<f64>> = content.split(',').map(|field| field.trim().parse().ok()).collect();
-            if std::mem::take(&mut first) && values.iter().all(Option::is_none) {
-                continue;
-            }
-            let [Some(count), Some(pascals)] = values[..] else {
-                let shown: String = content.trim().chars().take(40).collect();
-                return wrong(
-                    line,
-                    format!("{shown:?} is no pair of numbers"),
-                    "write count,pascals, such as 120,-950.5",
-                );
+        for row in rows {
+            let wrong = |problem: String, remedy: &str| Err(table.wrong(row.line, problem, remedy));
+            let Some(&[count, pascals]) = row.numbers(2).as_deref() else {
+                return wrong(format!("{:?} is no pair of numbers", row.shown()), REMEDY);
             };
             // A NaN is in no range.
             if !(-1e9..=1e9).contains(&count) || !(-1e12..=1e12).contains(&pascals) {
                 return wrong(
-                    line,
                     format!("{count},{pascals} is beyond any sensor"),
                     "use counts up to 1e9, pascals up to 1e12",
                 );
@@ -124,23 +133,24 @@ impl Curve {
             let falls = points[1][1] < points[0][1];
             if b <= a || p.total_cmp(&q).is_eq() || (q < p) != falls {
                 return wrong(
-                    line,
                     format!("{b},{q} after {a},{p}"),
                     "sort the points by counts; pascals only rise, or only fall",
                 );
             }
         }
+        let wrong = |problem: String, remedy: String| Err(table.wrong(table.end(), problem, remedy));
         let most = points.iter().fold(0.0_f64, |most, point| most.max(point[0].abs()));
         if let Some(pair) = points.windows(2).find(|pair| pair[1][0] - pair[0][0] < CLOSEST * most) {
             return wrong(
-                last,
                 format!("the counts {} and {} are all but equal", pair[0][0], pair[1][0]),
-                "leave one out",
+                "leave one out".to_owned(),
             );
         }
         if !(2..=MOST_SEGMENTS + 1).contains(&points.len()) {
-            let remedy = format!("give 2 to {} points", MOST_SEGMENTS + 1);
-            return wrong(last, format!("the curve has {} points", points.len()), &remedy);
+            return wrong(
+                format!("the curve has {} points", points.len()),
+                format!("give 2 to {} points", MOST_SEGMENTS + 1),
+            );
         }
         Ok(Self { points, law: None })
     }

@@ -4,9 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::words::print_as_words;
 
-/// Largest number of `SpMV` lanes: ROM files are named by two digits of the lane, and a product of 10 x 10 taxels has work
-/// for no more.
-pub const MAX_LANES: usize = 100;
+/// Largest number of `SpMV` lanes. A product of 10 x 10 taxels has work for 100 in the reduced plan, larger ones for more.
+pub const MAX_LANES: usize = 128;
 /// Key `hardware.full_scale_pa` when absent.
 pub const DEFAULT_FULL_SCALE_PA: f64 = 100_000.0;
 

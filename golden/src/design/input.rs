@@ -1,10 +1,9 @@
 //! What the values of a frame are: pascals, or the counts of a real sensor.
 
-use std::fmt::Write;
-
 use serde::{Deserialize, Serialize};
 
 use super::DesignError;
+use super::calibration::Calibration;
 use super::checks::Check;
 use super::curve::{Curve, RawCurve};
 use super::files::Beside;
@@ -13,10 +12,6 @@ use crate::dead_taxels::MOST_DEAD;
 use crate::sensor::Sensor;
 use crate::words::print_as_words;
 
-/// Range of a live taxel's gain.
-const GAIN: [f64; 2] = [1e-9, 16.0];
-/// Largest offset of a taxel, in counts.
-const MAX_OFFSET: f64 = 1e6;
 /// Range of the magnitude of pascals per count.
 const PA_PER_COUNT: [f64; 2] = [1e-9, 1e9];
 
@@ -66,15 +61,6 @@ pub(super) struct RawInput {
     pub(super) calibration: Option<String>,
     pub(super) dead: Vec<i64>,
     pub(super) tension: Tension,
-}
-
-/// Gain and offset of each taxel.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Calibration {
-    /// What each taxel's count is multiplied by, m values from 1e-9 to 16, or 0 for a dead taxel.
-    pub gain: Vec<f64>,
-    /// What is added to the product, in counts, with a curve in pascals, m values.
-    pub offset: Vec<f64>,
 }
 
 impl Input {
@@ -178,7 +164,8 @@ impl Input {
             check.integer(&key, taxel, 0, taxels as i64 - 1).map(|taxel| taxel as usize)
         });
         let mut dead = named.collect::<Result<Vec<_>, _>>()?;
-        let calibration = calibration.map(|file| Calibration::load(&file, beside, taxels)).transpose()?;
+        let calibration =
+            calibration.map(|file| Calibration::load(&file, beside, taxels, curve.as_ref())).transpose()?;
         let gains = calibration.iter().flat_map(|calibration| calibration.gain.iter().enumerate());
         dead.extend(gains.filter(|&(_, &gain)| gain == 0.0).map(|(taxel, _)| taxel));
         dead.sort_unstable();
@@ -194,56 +181,5 @@ impl Input {
             ));
         }
         Ok(Self { pa_per_count, curve, calibration, dead, tension })
-    }
-}
-
-impl Calibration {
-    /// Reads one line `gain,offset` for each of the taxels. Blank lines and a byte order mark are skipped.
-    fn load(file: &str, beside: Beside<'_>, taxels: usize) -> Result<Self, DesignError> {
-        let path = beside.path(file);
-        let text = beside.read(file).map_err(|source| DesignError::Read { path: path.clone(), source })?;
-        let wrong = |line, problem, remedy: String| DesignError::Table { path: path.clone(), line, problem, remedy };
-        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        let (mut gain, mut offset) = (Vec::with_capacity(taxels), Vec::with_capacity(taxels));
-        let mut last = 1;
-        for (line, content) in (1..).zip(text.lines()).filter(|(_, content)| !content.trim().is_empty()) {
-            last = line;
-            let values: Vec<Option<f64>> = content.split(',').map(|field| field.trim().parse().ok()).collect();
-            let [Some(g), Some(o)] = values[..] else {
-                let shown: String = content.trim().chars().take(40).collect();
-                let remedy = "write gain,offset, such as 1.02,-0.5, and no header line".to_owned();
-                return Err(wrong(line, format!("{shown:?} is no pair of numbers"), remedy));
-            };
-            // A NaN is in no range.
-            let [low, high] = GAIN;
-            if g != 0.0 && !(low..=high).contains(&g) {
-                let remedy = format!("use a gain from {low:e} to {high}, or 0 for a dead taxel");
-                return Err(wrong(line, format!("the gain is {g}"), remedy));
-            }
-            if !(-MAX_OFFSET..=MAX_OFFSET).contains(&o) {
-                let remedy = format!("use an offset from -{MAX_OFFSET} to {MAX_OFFSET} counts");
-                return Err(wrong(line, format!("the offset is {o}"), remedy));
-            }
-            gain.push(g);
-            offset.push(o);
-        }
-        if gain.len() != taxels {
-            return Err(wrong(
-                last,
-                format!("the file ends after {} taxels where the sensor has {taxels}", gain.len()),
-                "give one line for each taxel".to_owned(),
-            ));
-        }
-        Ok(Self { gain, offset })
-    }
-
-    /// The file that reads back as the same bits.
-    pub fn to_csv(&self) -> String {
-        let mut text = String::new();
-        for (gain, offset) in self.gain.iter().zip(&self.offset) {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "{gain:?},{offset:?}");
-        }
-        text
     }
 }

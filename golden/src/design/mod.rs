@@ -3,6 +3,7 @@
 //! A [`Design`] that exists has passed every check, so code that takes one need not check again.
 
 mod algorithm;
+mod calibration;
 mod calibration_in_ram;
 pub(crate) mod checks;
 mod curve;
@@ -18,6 +19,7 @@ mod parse_filter;
 mod parse_plan;
 mod print;
 mod regularisation;
+mod rows;
 mod thin;
 
 use std::path::{Path, PathBuf};
@@ -27,6 +29,7 @@ pub use crate::estimators::joint::{Correction, Doubt, Family, Grid, JointConstan
 pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
 pub use algorithm::{Algorithm, Outputs, PlanKind, Slip};
+pub use calibration::Calibration;
 pub use checks::is_name;
 pub use curve::{Curve, MOST_SEGMENTS};
 pub use error::DesignError;
@@ -37,7 +40,7 @@ pub use hardware::{
     Arithmetic, CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, InputRange, MAX_LANES, Optimise, Overrun, STREAM_BITS,
     Samples,
 };
-pub use input::{Calibration, Input, Tension};
+pub use input::{Input, Tension};
 pub use joint::conditions;
 pub(crate) use lengths::Lengths;
 pub(crate) use parse::{RawSensor, syntax_position};

@@ -28,6 +28,12 @@ pub enum FrameError {
         /// Values in a frame.
         expected: usize,
     },
+    /// The file has no more than a line that numbers the columns.
+    #[error("{remark}, and no frame follows it; if it is a frame, write a line of names above it")]
+    HeaderAlone {
+        /// What it is taken for, and where.
+        remark: String,
+    },
     /// A line with too few or too many values.
     #[error(
         "{}, line {line}: the line ends at column {found} where {expected} values are needed; \

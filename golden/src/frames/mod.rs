@@ -23,6 +23,9 @@ use crate::design::Design;
 use crate::output;
 use crate::sensor::Sensor;
 
+/// Frames, one value for each taxel, and a remark about the file they are from.
+pub type WithRemark = (Vec<Vec<f64>>, Option<String>);
+
 /// Reads all frames of a file; each has a finite value for each taxel of the sensor.
 ///
 /// # Errors
@@ -38,13 +41,19 @@ pub fn read_frames(path: &Path, sensor: &Sensor) -> Result<Vec<Vec<f64>>, FrameE
 ///
 /// As [`read_frames`].
 pub fn read_labelled_frames(path: &Path, sensor: &Sensor, labels: usize) -> Result<Vec<Vec<f64>>, FrameError> {
+    Ok(read_with_remark(path, sensor, labels)?.0)
+}
+
+/// The frames, and what is to be said of a header that numbers the columns.
+fn read_with_remark(path: &Path, sensor: &Sensor, labels: usize) -> Result<WithRemark, FrameError> {
     let taxels = sensor.taxels();
     let wrong_length = |found| (found != labels + taxels).then_some(labels + taxels);
-    let frames = read_table(path, labels, Some(sensor), wrong_length, |shape| of_grid(shape, sensor))?;
-    if frames.is_empty() {
-        return Err(FrameError::Empty { path: path.to_path_buf(), expected: taxels });
+    let (frames, remark) = read_table(path, labels, Some(sensor), wrong_length, |shape| of_grid(shape, sensor))?;
+    match (frames.is_empty(), remark) {
+        (true, None) => Err(FrameError::Empty { path: path.to_path_buf(), expected: taxels }),
+        (true, Some(remark)) => Err(FrameError::HeaderAlone { remark }),
+        (false, remark) => Ok((frames, remark)),
     }
-    Ok(frames)
 }
 
 /// Reads the frames of a design: as [`read_labelled_frames`], and each value is one that the design's samples can be.
@@ -53,11 +62,21 @@ pub fn read_labelled_frames(path: &Path, sensor: &Sensor, labels: usize) -> Resu
 ///
 /// As [`read_frames`].
 pub fn read_frames_of(path: &Path, design: &Design, labels: usize) -> Result<Vec<Vec<f64>>, FrameError> {
-    let frames = read_labelled_frames(path, &design.sensor, labels)?;
+    Ok(read_frames_and_remark(path, design, labels)?.0)
+}
+
+/// As [`read_frames_of`], and what is to be said of a first line that holds the numbers of the columns, from 0 or 1 on: it
+/// is taken for a header.
+///
+/// # Errors
+///
+/// As [`read_frames`].
+pub fn read_frames_and_remark(path: &Path, design: &Design, labels: usize) -> Result<WithRemark, FrameError> {
+    let (frames, remark) = read_with_remark(path, &design.sensor, labels)?;
     let samples = design.hardware.samples;
     let wrong = |values: &Vec<f64>| values.iter().position(|&value| !samples.takes(value));
     let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
-    let Some((frame, column)) = found else { return Ok(frames) };
+    let Some((frame, column)) = found else { return Ok((frames, remark)) };
     let at = text::line_of(path, labels, frame);
     let place = match at {
         Some(line) => format!("line {line}, column {}", labels + column + 1),
@@ -72,7 +91,7 @@ pub(crate) fn read_rows(
     path: &Path,
     wrong_length: impl Fn(usize) -> Option<usize>,
 ) -> Result<Vec<Vec<f64>>, FrameError> {
-    read_table(path, 0, None, wrong_length, |_| Ok(()))
+    Ok(read_table(path, 0, None, wrong_length, |_| Ok(()))?.0)
 }
 
 /// Reads the columns after the labels; `wrong_length` is given the number of all columns, `check` an array's shape, and a
@@ -83,7 +102,7 @@ fn read_table(
     sensor: Option<&Sensor>,
     wrong_length: impl Fn(usize) -> Option<usize>,
     check: impl Fn(&[usize]) -> Result<(), String>,
-) -> Result<Vec<Vec<f64>>, FrameError> {
+) -> Result<WithRemark, FrameError> {
     let bytes = bytes_of(path)?;
     if !bytes.starts_with(npy::MAGIC) {
         return text::read(path, &bytes, labels, sensor, wrong_length);
@@ -105,7 +124,7 @@ fn read_table(
             return Err(wrong(format!("[{row}, {}] is {}, no finite float32", labels + column, values[column])));
         }
     }
-    Ok(rows)
+    Ok((rows, None))
 }
 
 /// The content of a file that may be one of frames.

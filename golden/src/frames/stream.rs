@@ -23,6 +23,11 @@ impl FrameLines {
         Self { lines, taxels: design.sensor.taxels(), samples: design.hardware.samples }
     }
 
+    /// What is to be said of a first line that holds the numbers of the columns, once it was there.
+    pub fn remark(&self) -> Option<String> {
+        self.lines.remark()
+    }
+
     /// The frame of the next line; nothing for a header, a blank line and a remark.
     ///
     /// # Errors
@@ -50,6 +55,11 @@ impl<R: BufRead> FrameStream<R> {
     /// Frames of `input`.
     pub fn new(input: R, lines: FrameLines) -> Self {
         Self { input, lines, line: Vec::new() }
+    }
+
+    /// As [`FrameLines::remark`].
+    pub fn remark(&self) -> Option<String> {
+        self.lines.remark()
     }
 
     /// Waits for the next frame; `None` at the end.

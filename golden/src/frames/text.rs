@@ -8,6 +8,8 @@ use crate::sensor::Sensor;
 
 /// What some programs write before the first line.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+/// So few numbers in turn may be a frame: no sensor has fewer taxels.
+const FEWEST_NUMBERED: usize = 4;
 
 /// What stands between the values of a line.
 #[derive(Clone, Copy, Debug)]
@@ -32,15 +34,28 @@ impl Separator {
         }
     }
 
+    /// The fields of a line, of which the last one may end with the separator, too.
+    pub(crate) fn fields(self, line: &[u8]) -> Vec<&[u8]> {
+        let mut fields = self.split(line);
+        if fields.len() > 1 && fields.last().is_some_and(|field| field.is_empty()) {
+            fields.pop();
+        }
+        fields
+    }
+
+    /// The number of any kind that a field holds.
+    pub(crate) fn value(self, field: &[u8]) -> Option<f64> {
+        let text = std::str::from_utf8(field).ok()?;
+        match self {
+            // Where it separates nothing, a comma is a decimal point.
+            Self::Byte(b';' | b'\t') => text.replace(',', ".").parse().ok(),
+            _ => text.parse().ok(),
+        }
+    }
+
     /// The finite number, within the range of a float32, that a field holds.
     fn number(self, field: &[u8]) -> Option<f64> {
-        let text = std::str::from_utf8(field).ok()?;
-        let value: f64 = match self {
-            // Where it separates nothing, a comma is a decimal point.
-            Self::Byte(b';' | b'\t') => text.replace(',', ".").parse().ok()?,
-            _ => text.parse().ok()?,
-        };
-        is_number(value).then_some(value)
+        self.value(field).filter(|&value| is_number(value))
     }
 }
 
@@ -62,11 +77,13 @@ pub(super) struct Lines {
     separator: Option<Separator>,
     /// How many there were.
     number: usize,
+    /// The line whose numbers were taken for those of the columns, and the last one of them.
+    numbered: Option<[usize; 2]>,
 }
 
 impl Lines {
     pub(super) fn new(path: &Path, labels: usize, sensor: Option<&Sensor>) -> Self {
-        Self { path: path.to_path_buf(), labels, sensor: sensor.cloned(), separator: None, number: 0 }
+        Self { path: path.to_path_buf(), labels, sensor: sensor.cloned(), separator: None, number: 0, numbered: None }
     }
 
     /// Where the lines come from.
@@ -79,13 +96,22 @@ impl Lines {
         self.number
     }
 
+    /// What is to be said of a first line that numbers the columns.
+    pub(super) fn remark(&self) -> Option<String> {
+        let [line, last] = self.numbered?;
+        Some(format!(
+            "{}, line {line}: numbers in turn up to {last} are those of the columns, as pandas writes them; the line is taken for a header",
+            self.path.display()
+        ))
+    }
+
     /// Columns before the values.
     pub(super) fn labels(&self) -> usize {
         self.labels
     }
 
     /// The numbers of the next line. Nothing for a blank one, for one that begins with #, and for a first one without any
-    /// number after the labels; a byte order mark is skipped. `wrong_length` is given the number of all columns.
+    /// number after the labels, or with those of the taxels in turn; a byte order mark is skipped. `wrong_length` is given the number of all columns.
     pub(super) fn row(
         &mut self,
         line: &[u8],
@@ -104,11 +130,7 @@ impl Lines {
         }
         let is_first = self.separator.is_none();
         let separator = *self.separator.get_or_insert_with(|| Separator::of(content));
-        let mut fields = separator.split(content);
-        // Of those that end each value with the separator.
-        if fields.len() > 1 && fields.last().is_some_and(|field| field.is_empty()) {
-            fields.pop();
-        }
+        let fields = separator.fields(content);
         if let Some(separator) = foreign(content) {
             return Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator });
         }
@@ -125,6 +147,10 @@ impl Lines {
             })?);
         }
         match wrong_length(fields.len()) {
+            None if is_first && self.sensor.is_some() && numbers_columns(&row, self.labels) => {
+                self.numbered = Some([self.number, row[row.len() - 1] as usize]);
+                Ok(None)
+            }
             None => Ok(Some(row)),
             Some(expected) => {
                 Err(FrameError::Length { path: self.path.clone(), line: self.number, found: fields.len(), expected })
@@ -133,17 +159,19 @@ impl Lines {
     }
 }
 
-/// Reads all rows of a text, see [`Lines::row`].
+/// Reads all rows of a text, see [`Lines::row`], and what is to be said of its header.
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
     labels: usize,
     sensor: Option<&Sensor>,
     wrong_length: impl Fn(usize) -> Option<usize>,
-) -> Result<Vec<Vec<f64>>, FrameError> {
+) -> Result<(Vec<Vec<f64>>, Option<String>), FrameError> {
     // By hand, since a CSV reader skips blank lines without counting them and a message needs the right line.
     let mut lines = Lines::new(path, labels, sensor);
-    bytes.split(|&byte| byte == b'\n').filter_map(|line| lines.row(line, &wrong_length).transpose()).collect()
+    let rows = bytes.split(|&byte| byte == b'\n').filter_map(|line| lines.row(line, &wrong_length).transpose());
+    let rows = rows.collect::<Result<_, _>>()?;
+    Ok((rows, lines.remark()))
 }
 
 /// The line, from 1, on which a frame of a file that was read before stands; none in an array.
@@ -153,8 +181,11 @@ pub(super) fn line_of(path: &Path, labels: usize, frame: usize) -> Option<usize>
     let lines = text.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).enumerate();
     let mut rows = lines.filter(|(_, content)| !content.is_empty() && !content.starts_with(b"#"));
     let (first, content) = rows.next()?;
-    let fields = Separator::of(content).split(content);
-    let has_header = fields.iter().skip(labels).all(|field| no_number(field));
+    let separator = Separator::of(content);
+    let fields = separator.fields(content).split_off(labels);
+    let row: Option<Vec<f64>> = fields.iter().map(|field| separator.number(field)).collect();
+    let has_header =
+        fields.iter().all(|field| no_number(field)) || row.is_some_and(|row| numbers_columns(&row, labels));
     let (index, _) =
         if has_header { rows.nth(frame)? } else { std::iter::once((first, content)).chain(rows).nth(frame)? };
     Some(index + 1)
@@ -176,6 +207,13 @@ fn foreign(content: &[u8]) -> Option<&'static str> {
         fields.clone().nth(1).is_some() && fields.all(|field| field.trim().parse::<f64>().is_ok())
     };
     SEPARATORS.iter().find(|&separator| separates(separator)).map(|&(_, name)| name)
+}
+
+/// Whether a line's values, behind the labels, are the numbers of its columns: from 0 or 1 on, or as the labels have it.
+fn numbers_columns(row: &[f64], labels: usize) -> bool {
+    let from =
+        |first: usize| row.iter().zip(first..).all(|(&value, number)| value.to_bits() == (number as f64).to_bits());
+    row.len() >= FEWEST_NUMBERED && [0, 1, labels].into_iter().any(from)
 }
 
 /// Whether a field is that of a header: text and no number of any kind.

@@ -60,6 +60,54 @@ fn a_bank_has_the_weights_of_the_dead_taxels() {
     assert!(of_rom.starts_with("gain,offset\n1.0,0.0\n0.0,0.0\n"), "{of_rom}");
 }
 
+/// What `golden bank` writes is a calibration that a design can name, and a curve.
+#[test]
+fn a_design_can_name_a_bank() {
+    let load = |sensor: &str, files: &[(&str, String)]| {
+        let hardware = "[hardware]\ncontrol = true\ncalibration = \"ram\"\nreplaceable = 2\n";
+        let sensor = format!("{}{sensor}\n", PAD.replace("pa_per_count = -2.0\n", ""));
+        Design::from_parts(&format!("{sensor}{hardware}"), "pad.toml", files).map_err(|error| error.to_string())
+    };
+    let gains = ("gains.csv", "1.5,3\n0.5,-2.25\n1,0\n1,0\n0,0\n1,1e-7\n".to_owned());
+    let points = |least: f64| ("points.csv", format!("0,0\n100.5,-2000\n4000,{least}\n"));
+    let counts = load("pa_per_count = -2.0\ncalibration = \"gains.csv\"", std::slice::from_ref(&gains)).unwrap();
+    let bank = |design: &Design| ("bank.csv", bank::to_csv(design).unwrap());
+    let named = |sensor: &str, design: &Design| load(sensor, &[bank(design), points(-5e4)]);
+    let again = named("pa_per_count = -2.0\ncalibration = \"bank.csv\"", &counts).unwrap();
+    assert_eq!((&again, again.input.dead.as_slice()), (&counts, &[4][..]));
+    // With a curve, whose offsets are in pascals.
+    let files = [gains, points(-6e4)];
+    let curved = load("curve = \"points.csv\"\ncalibration = \"gains.csv\"", &files).unwrap();
+    let again = named("curve = \"bank.csv\"\ncalibration = \"bank.csv\"", &curved).unwrap();
+    assert_eq!(again, curved);
+    assert_eq!(named("curve = \"bank.csv\"", &curved).unwrap().input.curve, curved.input.curve);
+    for (sensor, of, parts) in [
+        (
+            "curve = \"points.csv\"\ncalibration = \"bank.csv\"",
+            &curved,
+            ["bank.csv, line 8", "another than the design's"],
+        ),
+        ("pa_per_count = -2.0\ncalibration = \"bank.csv\"", &curved, ["line 8", "in place of pa_per_count"]),
+        ("curve = \"bank.csv\"", &counts, ["bank.csv, line 7", "no curve; write count,pascals"]),
+    ] {
+        let message = named(sensor, of).unwrap_err();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+    // A taxel of the header that is alive, and a line without its weight.
+    let text = bank(&counts).1;
+    for (right, wrong, parts) in [
+        ("\n0.0,0.0,", "\n1.0,0.0,", ["bank.csv, line 6", "taxel 4 among the dead ones, and its gain is 1"]),
+        ("\n0.0,0.0,0.0", "\n0.0,0.0", ["bank.csv, line 6", "a weight for each taxel of the header"]),
+        ("taxel 4", "taxel 6", ["bank.csv, line 1", "dead taxels of this sensor"]),
+        ("taxel 4", "pascals", ["bank.csv, line 1", "no header of gains and offsets"]),
+    ] {
+        assert!(text.contains(right), "{text}");
+        let file = ("bank.csv", text.replace(right, wrong));
+        let message = load("pa_per_count = -2.0\ncalibration = \"bank.csv\"", &[file]).unwrap_err();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+}
+
 #[test]
 fn the_command_writes_it() {
     let folder = tempfile::tempdir().unwrap();

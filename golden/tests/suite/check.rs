@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use golden::check::{Finding, Kind, check};
-use golden::design::{Design, Tension};
+use golden::design::{Curve, Design, Tension};
 use golden::frames::read_labelled_frames;
 use golden::matrices::Matrices;
 use golden::scene::{Converter, Scene, SensorErrors};
@@ -125,6 +125,39 @@ fn other_units() {
     );
     found(&counting, &pressing, &[Kind::Sign], &["change the sign of sensor.pa_per_count"]);
     found(&design, &changed(&pascals, |_| 0.0), &[Kind::Empty], &["connected"]);
+}
+
+/// What is to be changed is the curve, where one says what a count is worth.
+#[test]
+fn a_curve_is_named_where_it_says_what_a_count_is_worth() {
+    let plain = design("sensor1-joint");
+    let counts = changed(&frames(&plain), |pa| (pa / -24.4).round());
+    let along = |points: &[[f64; 2]], law: Option<[f64; 2]>| {
+        let mut design = plain.clone();
+        design.input.curve = Some(Curve { points: points.to_vec(), law });
+        design
+    };
+    let points = along(&[[-9000.0, 219_600.0], [0.0, 0.0], [9000.0, -219_600.0]], None);
+    found(&points, &counts, &[], &[]);
+    let file = "the pascals in the file of sensor.curve";
+    let pressing = changed(&counts, |count| -count);
+    found(&points, &pressing, &[Kind::Sign], &[&format!("change the sign of {file}")]);
+    found(&points, &frames(&plain), &[Kind::Range], &["Remove sensor.curve; if they are counts that fall", file]);
+    let small = along(&[[-9000.0, 210.0], [0.0, 0.0], [9000.0, -210.0]], None);
+    found(&small, &counts, &[Kind::Range], &[&format!("is a count worth more? Change {file} or hardware")]);
+    let large = along(&[[-9000.0, 1e9], [0.0, 0.0], [9000.0, -1e9]], None);
+    found(&large, &counts, &[Kind::Range], &[&format!("Remove sensor.curve; if not, change {file} or hardware")]);
+    let offset = changed(&counts, |count| 4000.0 - count);
+    let told = look(&points, &changed(&offset, |count| 2.0 * count));
+    assert!(told.iter().any(|each| each.to_string().contains(&format!("Change the sign of {file}"))), "{told:?}");
+    // A power law is worth nothing below 0.
+    let law = along(&[[0.0, 0.0], [9000.0, 219_600.0]], Some([1.0, 24.4]));
+    let said = look(&law, &counts);
+    let sign = said.iter().find(|each| each.kind == Kind::Sign).expect("a pull");
+    assert!(sign.to_string().ends_with("change the sign of sensor.curve.scale"), "{sign}");
+    let below = changed(&counts, |count| -count.abs());
+    found(&law, &below, &[Kind::Range], &["are 0 Pa by sensor.curve, whose counts begin at 0", "remove sensor.curve"]);
+    found(&law, &changed(&counts, |_| 0.0), &[Kind::Empty], &["connected"]);
 }
 
 #[test]

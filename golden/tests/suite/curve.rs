@@ -81,6 +81,23 @@ fn the_solver_takes_counts_along_a_curve() {
     assert!(!status(3999.0).contains(Status::SATURATED) && status(4000.0).contains(Status::SATURATED));
 }
 
+/// Points are read as frames are.
+#[test]
+fn points_come_with_any_usual_separator() {
+    let plain = pad("curve = \"points.csv\"", POINTS).unwrap();
+    for points in [
+        POINTS.replace(',', ";"),
+        POINTS.replace("0\n", "0,0;\r\n").replace(',', ";").replace(";0;", ",0;"),
+        POINTS.replace(',', "\t"),
+        POINTS.replace(',', "   "),
+        format!("# measured\n{}", POINTS.replace("count,pascals", "\"raw\" , \"Pa\"")),
+        POINTS.replace("count,pascals\n", ""),
+    ] {
+        let design = pad("curve = \"points.csv\"", &points).unwrap_or_else(|error| panic!("{error}: {points:?}"));
+        assert_eq!(design.input, plain.input, "{points:?}");
+    }
+}
+
 #[test]
 fn what_is_no_curve_is_refused() {
     for (keys, points, parts) in [
@@ -93,6 +110,9 @@ fn what_is_no_curve_is_refused() {
         ("curve = \"points.csv\"", "0,0\n5,x\n", ["line 2", "5,x", "count,pascals"]),
         ("curve = \"points.csv\"", "0,0\n5,nan\n", ["line 2", "NaN", "beyond any sensor"]),
         ("curve = \"points.csv\"", "0,0\n1,1\n1.0000000001,2\n1e6,9\n", ["line 4", "all but equal", "leave one out"]),
+        ("curve = \"points.csv\"", "0;0\n5,3\n", ["line 2", "5,3", "count,pascals"]),
+        ("curve = \"points.csv\"", "pascals,count\n0,0\n-5,3\n", ["line 1", "before counts", "count,pascals"]),
+        ("curve = \"points.csv\"", "gain,offset\n1,0\n", ["line 2", "no curve", "sensor.calibration"]),
         ("curve = { power = 9.0, scale = 1.0 }", "", ["sensor.curve.power", "is 9", "0.25 to 4"]),
         ("curve = { power = 1.25 }", "", ["pad.toml", "name of a file", "power = 1.25, scale = -0.0066"]),
         ("curve = 3", "", ["line 7", "name of a file", "power = 1.25, scale = -0.0066"]),

@@ -12,6 +12,8 @@ use golden::solver::{Solution, Solver, Status};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+mod fast;
+
 const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 const SOFTER: Medium = Medium::BondedLayer { poisson: 0.45 };
 const HERTZ: Shape = Shape::Hertz { semi_axes_m: [7e-3; 2] };

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use golden::design::{CALIBRATION_FILE, Design, Filter, Kernel};
-use golden::frames::{read_frames, read_labelled_frames};
+use golden::frames::{FrameLines, read_frames, read_frames_and_remark, read_labelled_frames};
 use golden::metrics::field_error;
 use golden::sensor::Sensor;
 use golden::solver::{Solver, Status};
@@ -105,6 +105,10 @@ fn wrong_inputs_are_refused() {
         (LINES.replace("0.5,", "1e-10,"), ["gains.csv, line 2", "gain is 0.0000000001", "1e-9 to 16"]),
         (LINES.replace("0.5,", "-1,"), ["gains.csv, line 2", "gain is -1", "0 for a dead taxel"]),
         (LINES.replace("0.5,", "nan,"), ["gains.csv, line 2", "gain is NaN", "1e-9 to 16"]),
+        (format!("offset,gain\n{LINES}"), ["gains.csv, line 1", "\"offset,gain\" is no header", "write gain,offset"]),
+        (format!("gain,offset,taxel 6\n{LINES}"), ["gains.csv, line 1", "no header", "dead taxels of this sensor"]),
+        (format!("{LINES}gain,offset\n"), ["gains.csv, line 8", "\"gain,offset\" is no pair", "gain,offset"]),
+        (LINES.replace("1,1", "1,1\n0;5"), ["gains.csv, line 6", "0;5", "gain,offset"]),
         (LINES.replace("1e6", "1e7"), ["gains.csv, line 7", "offset is -10000000", "1000000"]),
         (LINES.replace("1,1", "1;1"), ["gains.csv, line 5", "1;1", "gain,offset"]),
         (LINES.replace("1,1", "1,1,1"), ["gains.csv, line 5", "1,1,1", "gain,offset"]),
@@ -114,6 +118,26 @@ fn wrong_inputs_are_refused() {
         let (_folder, path) = folder(COUNTS, &lines);
         let message = Design::load(&path).unwrap_err().to_string();
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+}
+
+/// Gains and offsets are read as frames are: any usual separator, a header or none, remarks, quotes.
+#[test]
+fn gains_and_offsets_come_with_any_usual_separator() {
+    let (_folder, path) = folder(COUNTS, LINES);
+    let plain = Design::load(&path).unwrap();
+    for lines in [
+        LINES.replace(',', ";"),
+        LINES.replace('.', "d").replace(',', ";").replace('d', ","),
+        LINES.replace(" 2 , 3", "2,3").replace(',', "\t"),
+        LINES.replace(" 2 , 3", "2,3").replace(',', "  "),
+        format!("\u{feff}gain,offset\n{LINES}"),
+        format!("# of June\r\n\"gain\";\"offset (counts)\";\r\n{}", LINES.replace(',', ";").replace('\n', ";\r\n"))
+            .replace("\n;", "\n"),
+    ] {
+        let (_folder, path) = folder(COUNTS, &lines);
+        let design = Design::load(&path).unwrap_or_else(|error| panic!("{error}: {lines:?}"));
+        assert_eq!(design.input, plain.input, "{lines:?}");
     }
 }
 
@@ -155,6 +179,58 @@ fn any_usual_separator_with_a_header_or_without() {
         let message = read(text).unwrap_err();
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
+}
+
+/// pandas writes the numbers of columns above them: that is no frame, and is said.
+#[test]
+fn numbers_of_columns_are_a_header() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frames.csv");
+    let design = Design::from_toml(PAD, "pad.toml").unwrap();
+    let read = |text: &str, labels| {
+        fs::write(&path, text).unwrap();
+        read_frames_and_remark(&path, &design, labels).map_err(|error| error.to_string())
+    };
+    let frame = vec![-7.0, -1.0, 0.0, 2.0, -3.0, 5.0];
+    let line = "-7,-1,0,2,-3,5\n";
+    for (text, labels, place, last) in [
+        (format!("0,1,2,3,4,5\n{line}"), 0, 1, 5),
+        (format!("# a remark\n\n1;2;3;4;5;6\n{}", line.replace(',', ";")), 0, 3, 6),
+        (format!("\u{feff}\"0\",\"1\",\"2\",\"3\",\"4\",\"5\"\r\n{line}"), 0, 1, 5),
+        // With the index, and with a time beside it.
+        (format!(",0,1,2,3,4,5\n0,{line}"), 1, 1, 5),
+        (format!("0,1,2,3,4,5,6,7\n0,0.5,{line}"), 2, 1, 7),
+    ] {
+        let (frames, remark) = read(&text, labels).unwrap_or_else(|error| panic!("{error}: {text:?}"));
+        assert_eq!(frames, std::slice::from_ref(&frame), "{text:?}");
+        let remark = remark.expect("a remark");
+        let said = format!("frames.csv, line {place}: numbers in turn up to {last} are those of the columns");
+        assert!(remark.contains(&said) && remark.contains("taken for a header"), "{remark}");
+    }
+    // Any other frame is one, and so is a later one.
+    for text in [
+        "0,1,2,3,4,6\n",
+        "2,3,4,5,6,7\n",
+        "0,-1,-2,-3,-4,-5\n",
+        "a,b,c,d,e,f\n0,1,2,3,4,5\n",
+        "1,0,2,3,4,5\n0,1,2,3,4,5\n",
+    ] {
+        let (frames, remark) = read(text, 0).unwrap();
+        assert_eq!(
+            (frames.len(), remark),
+            (text.lines().filter(|line| !line.starts_with('a')).count(), None),
+            "{text:?}"
+        );
+    }
+    let message = read("0,1,2,3,4,5\n", 0).unwrap_err();
+    assert!(
+        message.contains("line 1: numbers in turn") && message.contains("write a line of names above it"),
+        "{message}"
+    );
+    // As the lines come, too.
+    let mut lines = FrameLines::new(Path::new("port"), &design, 0);
+    assert_eq!((lines.frame(b"0,1,2,3,4,5\n").unwrap(), lines.frame(line.as_bytes()).unwrap()), (None, Some(frame)));
+    assert!(lines.remark().is_some_and(|remark| remark.starts_with("port, line 1: ")));
 }
 
 /// A `.npy` file of whole numbers, counted from 0.

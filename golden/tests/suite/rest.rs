@@ -4,7 +4,7 @@ use std::fs;
 use std::process::{Command, Output};
 
 use golden::check::{Kind, beyond, check};
-use golden::design::Design;
+use golden::design::{Curve, Design};
 use golden::frames::write_frames;
 use golden::matrices::Matrices;
 use golden::rest::{AtRest, RestError};
@@ -189,6 +189,15 @@ fn readings_beyond_the_calibration_are_counted() {
     let found = beyond(&design, &recording);
     assert_eq!((found.readings, found.frames), (3, 2));
     assert!((found.share - 3.0 / 770.0).abs() < 1e-12, "{found:?}");
+    // Along a curve: at its lower end it is still good, at the end of larger magnitude nobody knows what more would read.
+    let mut curved = design.clone();
+    curved.input.pa_per_count = None;
+    curved.input.curve = Some(Curve { points: vec![[10.0, 0.0], [4000.0, -9e4]], law: None });
+    let mut recording = frames(10, |_, _| 100.0);
+    (recording[0][0], recording[0][1], recording[1][0], recording[2][0]) = (10.0, 3999.0, 9.0, 4000.0);
+    (recording[2][1], recording[2][3], recording[7][2]) = (5000.0, 1.0, -20.0);
+    let found = beyond(&curved, &recording);
+    assert_eq!((found.readings, found.frames), (4, 3));
 }
 
 fn golden(arguments: &[&str]) -> Output {

@@ -36,11 +36,13 @@ fn frames_hold_what_samples_can_be() {
         let design = pad("pa_per_count = -10.0", samples).unwrap();
         read_frames_of(&file, &design, 0).map_err(|error| error.to_string())
     };
+    assert_eq!(read("0,1,2,3\n1,2,3,-4\n", "int16").unwrap(), [[1.0, 2.0, 3.0, -4.0]]);
     assert_eq!(read("1,2,3,-4\n", "int16").unwrap(), [[1.0, 2.0, 3.0, -4.0]]);
     for (text, samples, parts) in [
         ("1,2,3,4\n\n1,2.5,3,4\n", "int16", ["line 3, column 2", "2.5", "from -32768 to 32767; if these are pascals"]),
         ("a,b,c,d\n# none\n1,2,3,40000\n", "int16", ["line 3, column 4", "40000", "int16"]),
-        ("1,2,3,4\n-1,2,3,4\n", "uint16", ["line 2, column 1", "-1", "from 0 to 65535"]),
+        ("0,1,2,3\n1,2,3,40000\n", "int16", ["line 2, column 4", "40000", "int16"]),
+        ("9,2,3,4\n-1,2,3,4\n", "uint16", ["line 2, column 1", "-1", "from 0 to 65535"]),
     ] {
         let message = read(text, samples).unwrap_err();
         assert!(parts.iter().all(|part| message.contains(part)) && message.contains("frames.csv"), "{message}");

@@ -22,17 +22,18 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     let coefficient_bits = plan.design.hardware.coefficient_bits;
     let column_bits = column_bits(plan);
     let schedule = &plan.schedule;
+    let lanes = schedule.lanes.len();
     for (lane, program) in schedule.lanes.iter().enumerate() {
         let depth = schedule.word_depth();
         let word = |ways: &[i32]| joined(&ways[..plan.ways()], coefficient_bits);
         let values = program.words.iter().map(|(_, ways)| word(ways)).chain(std::iter::repeat(0)).take(depth);
         let values = values.chain(program.rounds.iter().map(|ways| word(ways)));
         let bits = coefficient_bits * plan.ways() as u32;
-        insert_rom(files, lane_file(name, "values", lane), hex(values, schedule.value_depth(), bits));
+        insert_rom(files, lane_file(name, "values", lane, lanes), hex(values, schedule.value_depth(), bits));
         let columns = program.words.iter().map(|&(column, _)| u128::from(column));
-        insert_rom(files, lane_file(name, "columns", lane), hex(columns, depth, column_bits));
+        insert_rom(files, lane_file(name, "columns", lane, lanes), hex(columns, depth, column_bits));
         let segments = program.segments.iter().map(|segment| u128::from((segment.kind as u32) << 14 | segment.macs));
-        insert_rom(files, lane_file(name, "macs", lane), hex(segments, schedule.segment_depth(), 16));
+        insert_rom(files, lane_file(name, "macs", lane, lanes), hex(segments, schedule.segment_depth(), 16));
     }
     let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
     insert_rom(files, format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));

@@ -1,9 +1,8 @@
 //! From a checked design to its plan.
 
-use golden::design::{Algorithm, Design, Estimator, MAX_LANES, Outputs, PlanKind, Slip};
+use golden::design::{Design, Outputs, PlanKind, Slip};
 use golden::estimators::DOUBT_FRACTION;
 use golden::matrices::Matrices;
-use golden::parity::CLASSES;
 
 use super::calibration::CalibrationPlan;
 use super::counts::CountsPlan;
@@ -20,7 +19,7 @@ use super::resources::Resources;
 use super::schedule::Schedule;
 use super::timing::Timeline;
 use super::vector_formats::{Formats, arms};
-use super::{Condition, Nnz, Plan, Thresholds, control, elements, ways};
+use super::{Condition, Nnz, Plan, Thresholds, control, elements, need, ways};
 use crate::blocks;
 use crate::cores::{LONG_BITS, Multiplier};
 use crate::estimators::{self, EstimatorPlan, Given};
@@ -31,8 +30,8 @@ impl Plan {
     /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
     ///
     /// # Errors
-    /// [`PlanError`] if the plan has no hardware for the estimator or for several bodies, the geometry is singular, the filter empties a
-    /// matrix, the widths are too small, or no number of lanes meets the target.
+    /// [`PlanError`] if the plan has no hardware for the estimator or for several bodies, the geometry is singular, the
+    /// filter empties a matrix, the widths are too small, or no number of lanes meets the target.
     pub fn new(design: &Design) -> Result<Self, PlanError> {
         plan(design)
     }
@@ -47,20 +46,10 @@ fn plan(design: &Design) -> Result<Plan, PlanError> {
         return Err(PlanError::JointEstimator);
     }
     check_widths(design)?;
-    let Some(target_us) = design.hardware.target_us else { return Ok(Work::new(design)?.on_lanes(design)) };
-    let fastest = match fewest_lanes(design, target_us)? {
-        Lanes::Enough(plan) => return Ok(*plan),
-        Lanes::TooSlow(fastest) => fastest,
-    };
-    let (clock_mhz, cycles) = (design.hardware.clock_mhz, fastest.timeline.latency_cycles as f64);
-    Err(PlanError::Target {
-        target_us,
-        lanes: fastest.design.hardware.lanes,
-        latency_us: cycles / clock_mhz,
-        clock_mhz,
-        needed_mhz: (cycles / target_us).ceil(),
-        remedies: remedies(design, target_us),
-    })
+    match design.hardware.target_us {
+        Some(target_us) => need::meet(design, target_us),
+        None => Ok(Work::new(design)?.on_lanes(design)),
+    }
 }
 
 /// Words that do not fit one multiplier a lane have hardware where two make one product.
@@ -87,58 +76,8 @@ fn check_widths(design: &Design) -> Result<(), PlanError> {
     Ok(())
 }
 
-/// What the search for the number of lanes finds.
-enum Lanes {
-    /// The plan with the fewest lanes that meets the target.
-    Enough(Box<Plan>),
-    /// The fastest plan; none meets the target.
-    TooSlow(Box<Plan>),
-}
-
-fn fewest_lanes(design: &Design, target_us: f64) -> Result<Lanes, PlanError> {
-    let work = Work::new(design)?;
-    let mut settled = design.clone();
-    settled.hardware.target_us = None;
-    let mut on_lanes = |lanes| {
-        settled.hardware.lanes = lanes;
-        work.on_lanes(&settled)
-    };
-    let mut fastest = on_lanes(CLASSES);
-    let mut lanes = CLASSES;
-    while fastest.timeline.latency_cycles as f64 > target_us * design.hardware.clock_mhz {
-        lanes += CLASSES;
-        if lanes > MAX_LANES {
-            return Ok(Lanes::TooSlow(Box::new(fastest)));
-        }
-        let plan = on_lanes(lanes);
-        if plan.timeline.latency_cycles < fastest.timeline.latency_cycles {
-            fastest = plan;
-        }
-    }
-    Ok(Lanes::Enough(Box::new(fastest)))
-}
-
-/// Keys of the design file that would meet the target, the smallest change first; each was planned.
-fn remedies(design: &Design, target_us: f64) -> String {
-    let Algorithm { estimator, outputs, .. } = design.algorithm;
-    let resultants = "outputs = \"resultants\"";
-    let fewer = (outputs == Outputs::Field).then_some(Outputs::Resultants);
-    let quicker = estimators::quicker(estimator);
-    let changes = [
-        quicker.map(|(quicker, key)| (key.to_owned(), quicker, outputs)),
-        fewer.map(|fewer| (resultants.to_owned(), estimator, fewer)),
-        quicker.zip(fewer).map(|((quicker, key), fewer)| (format!("{key} with {resultants}"), quicker, fewer)),
-    ];
-    let meets = |&(_, estimator, outputs): &(String, Estimator, Outputs)| {
-        let mut changed = design.clone();
-        (changed.algorithm.estimator, changed.algorithm.outputs) = (estimator, outputs);
-        matches!(fewest_lanes(&changed, target_us), Ok(Lanes::Enough(_)))
-    };
-    changes.into_iter().flatten().find(meets).map_or_else(String::new, |(key, ..)| format!("{key}, "))
-}
-
 /// What does not depend on the number of lanes.
-struct Work {
+pub(super) struct Work {
     condition: Condition,
     nnz: Nnz,
     matrices: Vec<QuantisedMatrix>,
@@ -151,7 +90,7 @@ struct Work {
 }
 
 impl Work {
-    fn new(design: &Design) -> Result<Self, PlanError> {
+    pub(super) fn new(design: &Design) -> Result<Self, PlanError> {
         let hardware = &design.hardware;
         let matrices = Matrices::of(design)?;
         // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
@@ -172,7 +111,7 @@ impl Work {
     }
 
     /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
-    fn on_lanes(&self, design: &Design) -> Plan {
+    pub(super) fn on_lanes(&self, design: &Design) -> Plan {
         let hardware = &design.hardware;
         let (elements, ways) = (elements(design), ways(design));
         let schedule =

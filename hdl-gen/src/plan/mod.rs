@@ -19,6 +19,7 @@ pub mod lane;
 pub mod layout;
 pub mod matrix;
 pub mod memory;
+mod need;
 pub mod passes;
 pub mod places;
 pub mod product;

@@ -68,7 +68,7 @@ fn sizes_make_sense() {
     }
     for (key, value) in [
         ("lanes", "0"),
-        ("lanes", "101"),
+        ("lanes", "129"),
         ("coefficient_bits", "7"),
         ("coefficient_bits", "28"),
         ("data_bits", "12"),
@@ -97,7 +97,7 @@ fn keys_fit_the_plan() {
     for lanes in ["1", "6", "63"] {
         check_design(
             &with(reduced, &format!("lanes = {lanes}")),
-            &["hardware.lanes", lanes, "multiple of 4 from 4 to 100"],
+            &["hardware.lanes", lanes, "multiple of 4 from 4 to 128"],
         );
     }
     check_design(&with("plan = \"quick\"", ""), &["algorithm.plan", "quick", "paper, reduced"]);

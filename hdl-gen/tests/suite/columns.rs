@@ -50,10 +50,10 @@ fn standing() -> Vec<Plan> {
         (8, 8, "plan = \"reduced\"\noutputs = \"resultants\"\n[hardware]\nskip_zeros = true"),
         (8, 8, "plan = \"reduced\"\nestimator = \"joint\""),
         (8, 8, "plan = \"reduced\"\nestimator = \"joint\"\noutputs = \"resultants\""),
-        (64, 27, "plan = \"reduced\"\n[hardware]\nlanes = 100"),
+        (64, 27, "plan = \"reduced\"\n[hardware]\nlanes = 128"),
         (7, 5, "plan = \"paper\"\n[hardware]\nstream_bits = 64"),
         (7, 5, "plan = \"reduced\"\n[hardware]\nstream_bits = 128\ncontrol = true"),
-        (5, 9, "plan = \"paper\"\n[hardware]\nlanes = 100\npart = \"LFE5U-85F-6BG381C\""),
+        (5, 9, "plan = \"paper\"\n[hardware]\nlanes = 128\npart = \"LFE5U-85F-6BG381C\""),
     ] {
         let more = format!("[algorithm]\n{keys}");
         plans.push(plan(&design_text("array", [columns, rows], [4.0, 4.0], 3.0, &more)));

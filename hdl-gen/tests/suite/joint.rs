@@ -214,3 +214,22 @@ fn the_roms_hold_the_weights() {
     let metadata: serde_json::Value = serde_json::from_slice(&files["metadata.json"]).unwrap();
     assert_eq!(metadata["joint"]["network"]["length"], network.length);
 }
+
+/// Whether points or taxels have the cells, and why: with both counts.
+#[test]
+fn inspect_says_why_points_or_taxels_have_the_cells() {
+    let said = |columns: usize, rows: usize, keys: &str| {
+        let more = format!("[algorithm]\nestimator = \"joint\"\n{keys}");
+        let plan = plan(&design_text("pad", [columns, rows], [4.0, 4.0], 3.0, &more));
+        let report = plan.estimator.slot().report(&plan.design);
+        assert!(report.lines().all(|line| line.chars().count() <= 110), "{report}");
+        report.lines().find_map(|line| line.strip_prefix("  grid ")).expect("a grid").trim().to_owned()
+    };
+    let [fine, coarse] =
+        ["21 x 21 points: 441, more than 256, so no cell each", "15 x 15 points: 225, at most 256, so a cell each"];
+    assert_eq!(said(10, 10, ""), format!("{fine}: walked over in 28 cells of 4 taxels"));
+    assert_eq!(said(64, 27, ""), format!("{fine}: walked over in 28 cells of 64 taxels"));
+    assert_eq!(said(64, 27, "grid = 15"), format!("{coarse}: a taxel a cycle"));
+    let many = said(10, 10, "grid = 15\n[hardware]\nlanes = 100");
+    assert_eq!(many, format!("{coarse}: 2 taxels a cycle with more than 64 lanes"));
+}

@@ -1,5 +1,7 @@
 //! `target_us`: the fewest lanes that meet the need, or what would.
 
+use std::path::Path;
+
 use golden::design::Design;
 use hdl_gen::plan::{Plan, PlanError};
 
@@ -35,16 +37,58 @@ fn the_fewest_lanes_that_meet_the_need() {
     }
 }
 
+/// What is offered: from the clock that it would take to what always helps.
+fn offered(refusal: &str) -> &str {
+    let (_, rest) = refusal.split_once(" MHz; it would take a clock of ").expect("a clock");
+    let (_, rest) = rest.split_once(" MHz, ").expect("a clock");
+    rest.split_once("fewer taxels, or a target of").expect("the rest").0
+}
+
 #[test]
 fn only_remedies_that_meet_the_need_are_offered() {
-    let resultants = refusal("", 8.0);
-    assert!(resultants.contains("outputs = \"resultants\", fewer taxels"), "{resultants}");
-    let none = refusal("", 5.0);
-    assert!(none.contains("MHz, fewer taxels") && !none.contains("resultants"), "{none}");
-    let line = refusal("estimator = \"joint\"", 20.0);
-    assert!(line.contains("MHz, estimator = \"line\", fewer taxels"), "{line}");
-    let both = refusal("estimator = \"joint\"", 8.0);
-    assert!(both.contains("estimator = \"line\" with outputs = \"resultants\", fewer taxels"), "{both}");
+    let line = |target_us| refusal("", target_us);
+    let joint = |target_us| refusal("estimator = \"joint\"", target_us);
+    for (refusal, expected) in [
+        // The smallest change, and if that is the streams' width one that leaves it.
+        (line(8.0), "stream_bits = 64, outputs = \"resultants\", "),
+        (line(7.0), "stream_bits = 128, outputs = \"resultants\", "),
+        (line(6.0), "outputs = \"resultants\", "),
+        (line(5.0), ""),
+        (joint(20.0), "grid = 15, "),
+        (joint(6.0), "grid = 15 with stream_bits = 64, grid = 15 with outputs = \"resultants\", "),
+        (joint(4.0), ""),
+        (refusal("estimator = \"joint\"\ngrid = 15", 6.0), "stream_bits = 64, outputs = \"resultants\", "),
+    ] {
+        assert_eq!(offered(&refusal), expected, "{refusal}");
+    }
+}
+
+/// What is offered is the smallest change: it meets the need, and what comes before it does not.
+#[test]
+fn remedies_do_what_is_said_of_them() {
+    let met = |algorithm: &str, hardware: &str, target_us: f64| {
+        Plan::new(&sensor(algorithm, &format!("target_us = {target_us:?}\n{hardware}"))).is_ok()
+    };
+    let [fine, coarse] = ["", "\ngrid = 15"].map(|grid| format!("estimator = \"joint\"{grid}"));
+    assert!(!met(&fine, "stream_bits = 128", 6.0) && !met(&coarse, "", 6.0) && met(&coarse, "stream_bits = 64", 6.0));
+    assert!(met(&format!("{coarse}\noutputs = \"resultants\""), "", 6.0));
+    assert!(!met("", "stream_bits = 64", 7.0) && met("", "stream_bits = 128", 7.0));
+    assert!(!met("", "stream_bits = 128", 6.0) && met("outputs = \"resultants\"", "", 6.0));
+}
+
+/// A coarser grid takes constants of its own, which `fitted_to` insists on; the walk made smaller is the fine grid's.
+#[test]
+fn a_grid_is_offered_with_what_it_takes() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join("designs");
+    for (design, units) in [("sensor1-joint", 128), ("sensor2-wide", 128)] {
+        let mut design = Design::load(&folder.join(design).with_extension("toml")).expect("right");
+        design.hardware.target_us = Some(15.0);
+        let refusal = Plan::new(&design).expect_err("too slow").to_string();
+        let grid = format!("grid = 15 (which `golden calibrate --hidden {units}` fits the constants to), ");
+        assert_eq!(offered(&refusal), grid, "{}", design.name);
+    }
+    let area = Plan::new(&sensor("estimator = \"joint\"", "optimise = \"area\"\ntarget_us = 40.0"));
+    assert_eq!(offered(&area.expect_err("too slow").to_string()), "");
 }
 
 /// What is offered does what is said of it.

@@ -32,6 +32,9 @@ impl FrameArguments {
     ) -> Result<FrameSet, Box<dyn Error>> {
         if let Some(path) = &self.frames {
             let frames = FrameSet::load(path, self.labels, reference, design)?;
+            if let Some(remark) = &frames.remark {
+                eprintln!("note: {remark}");
+            }
             // A design without matrices is refused later, with the reason.
             for finding in check(design, &frames.stress, Matrices::of(design).ok().as_ref()) {
                 eprintln!("warning: {finding}");

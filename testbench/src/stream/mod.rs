@@ -6,7 +6,7 @@ mod pattern;
 
 use std::ops::Range;
 
-use hdl_gen::plan::timing::middle_interval;
+use hdl_gen::plan::timing;
 use thiserror::Error;
 
 pub use check::{Checker, Violation};
@@ -157,11 +157,18 @@ impl Outcome {
         self.exchanges.iter().map(Exchange::latency).max()
     }
 
-    /// Mean distance between the ends of the packets around the middle, rounded up: the interval of the core, full before
-    /// and after them, if there were enough packets and they were sent back to back.
+    /// Mean distance between the ends of the packets while the core is full, rounded up: its interval, if there were enough
+    /// packets and they were sent back to back ([`timing::mean_interval`]).
     pub fn interval(&self) -> Option<u64> {
         let ends: Vec<u64> = self.exchanges.iter().map(|exchange| exchange.last_out).collect();
-        (ends.len() > 1).then(|| middle_interval(&ends))
+        (ends.len() > 1).then(|| timing::mean_interval(&ends))
+    }
+
+    /// As [`Outcome::interval`], of a core whose frames take as long as what is in them
+    /// ([`timing::mean_interval_of_unlike`]).
+    pub fn interval_of_unlike(&self) -> Option<u64> {
+        let ends: Vec<u64> = self.exchanges.iter().map(|exchange| exchange.last_out).collect();
+        (ends.len() > 1).then(|| timing::mean_interval_of_unlike(&ends))
     }
 
     /// Mean distance between the ends of the packets, to the nearest cycle.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use golden::design::Design;
+use golden::design::{Design, InputRange, Samples};
 use golden::frames::read_labelled_frames;
 use hdl_gen::model::SATURATED;
 use hdl_gen::plan::Plan;
@@ -134,6 +134,48 @@ fn counts_follow_a_curve_bit_for_bit() {
         packets.push(frame(0.0, 2500.0));
         let saturated = model_answers(&plan, &packets).iter().filter(|words| words[0] & SATURATED != 0).count();
         assert!(saturated > 0 && saturated < packets.len() - 2, "{}: {saturated} saturated", design.name);
+        simulate_exactly(&plan, &built(&plan), &packets, 4).err().map(|error| format!("{}: {error}", design.name))
+    })
+    .into_iter()
+    .flatten()
+    .collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Integers of 16 bits reach as far below 0 as a power law's end, which is capped there: -32768 reads nothing by it, as any
+/// count below 0, and is beyond what is known, as the end itself would be.
+#[test]
+fn the_most_negative_count_on_a_capped_power_law() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut designs = Vec::new();
+    for (name, range, bits) in [("capped_fixed", InputRange::FullScale, 32), ("capped_frame", InputRange::Frame, 64)] {
+        let mut design = curved(folder.path(), name, "reduced", "{ power = 1.25, scale = -0.0066 }", "");
+        design.input.calibration = None;
+        design.hardware.samples = Samples::Int16;
+        design.hardware.range = range;
+        design.hardware.stream_bits = bits;
+        // As a file with these keys has it.
+        let design = Design::from_toml(&design.to_toml(), "capped.toml").expect("a design");
+        let curve = design.input.curve.as_ref().expect("a curve");
+        assert_eq!(curve.largest_count().to_bits(), 32_768_f64.to_bits());
+        designs.push(design);
+    }
+    let failures: Vec<String> = in_parallel(&designs, |design| {
+        let plan = planned(design);
+        let frame = |other: f64, place: usize, count: f64| -> Vec<u32> {
+            let mut counts = vec![other; plan.taxels()];
+            counts[place] = count;
+            plan.streams().packet(&counts)
+        };
+        let ends = [-32_768.0, -32_767.0, 32_767.0, -1.0, 0.0];
+        let packets: Vec<Vec<u32>> = ends
+            .iter()
+            .flat_map(|&count| [frame(900.0, 6, count), frame(300.0, 19, count), frame(count, 3, 20e3)])
+            .collect();
+        let answers = model_answers(&plan, &packets);
+        for (place, answer) in answers.iter().enumerate() {
+            assert_eq!(answer[0] & SATURATED != 0, place < 3, "{}: frame {place}", design.name);
+        }
         simulate_exactly(&plan, &built(&plan), &packets, 4).err().map(|error| format!("{}: {error}", design.name))
     })
     .into_iter()

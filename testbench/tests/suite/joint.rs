@@ -66,6 +66,7 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         (shipped("sensor1-fast-64"), "sensor1-reduced-64", 1_150),
         // Two taxels a cycle, a row of points weighed in one, and a collector that looks ahead.
         (with_lanes(shipped("sensor1-fast-64"), 100), "sensor1-reduced-64", 900),
+        (with_lanes(shipped("sensor1-fast-64"), 128), "sensor1-reduced-64", 900),
         (uncorrected(shipped("sensor1-fast")), "sensor1-reduced", 2_650),
         (uncorrected(shipped("sensor1-joint")), "sensor1-reduced", 3_950),
         (resultants, "sensor1-resultants", 1_900),

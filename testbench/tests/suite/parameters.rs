@@ -14,7 +14,7 @@ const SENSELESS: [(&str, &str, &str, &str); 34] = [
     ("bz", "EXPECTED_STAGES", "6", "the_plan_counts_on_other_stages"),
     ("cean", "ROWS", "65", "columns_and_rows_must_be_2_to_64"),
     ("spmv_array", "WAYS", "3", "ways_must_be_1_or_4"),
-    ("spmv_array", "LANES", "101", "lanes_must_be_1_to_100"),
+    ("spmv_array", "LANES", "129", "lanes_must_be_1_to_128"),
     ("spmv_array", "DESTINATION_BITS", "5", "a_destination_has_3_or_4_bits"),
     ("spmv_lane", "OPERAND_DEPTH", "12", "the_operand_memory_does_not_hold_its_vectors"),
     ("spmv_lane", "MIRROR_SIDE", "4", "only_a_square_grid_is_mirrored"),

@@ -107,7 +107,7 @@ fn corner_designs_agree_with_the_model() {
     let narrow = Shape { coefficient_bits: 8, data_bits: 16, ..base(6, 4, 3) };
     let diagonal = Shape { filter: "{ kind = \"f1\", l = 22 }".to_owned(), ..base(4, 6, 2) };
     let shapes = [
-        ("more_lanes_than_taxels", base(2, 2, 100)),
+        ("more_lanes_than_taxels", base(2, 2, 128)),
         ("lanes_not_used_evenly", base(9, 2, 33)),
         ("one_lane", base(2, 5, 1)),
         ("tall", base(3, 32, 16)),
@@ -147,7 +147,7 @@ fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
         ("square_and_odd", square(base(field, 3, 3, 4))),
         ("even_and_odd", base(latency, 2, 7, 4)),
         ("odd_and_even", base(field, 7, 2, 12)),
-        ("most_lanes", square(base(field, 10, 10, 100))),
+        ("most_lanes", square(base(field, 12, 12, 128))),
         ("tall_resultants", base(Kind::Resultants, 3, 32, 16)),
         ("wide", base(field, 40, 2, 8)),
         ("narrow_words_reduced", Shape { coefficient_bits: 8, data_bits: 16, ..base(latency, 6, 4, 8) }),

@@ -17,7 +17,18 @@ fn expected(packets: &[Vec<u32>]) -> Vec<Vec<u32>> {
 
 fn job<'a>(built: &'a Built, packets: &'a [Vec<u32>], expected: &'a [Vec<u32>]) -> Job<'a> {
     let pacing = Pacing::BackToBack;
-    Job { built, packets, expected, columns: 4, pacing, timeout: 500, seed: 1, trace: None, half_period: 4000 }
+    Job {
+        built,
+        packets,
+        expected,
+        columns: 4,
+        pacing,
+        unlike: false,
+        timeout: 500,
+        seed: 1,
+        trace: None,
+        half_period: 4000,
+    }
 }
 
 #[test]

@@ -21,6 +21,8 @@ fn every_answer_is_right_and_none_is_lost() {
         by_plan(shipped("small"), PlanKind::Paper, Outputs::Field),
         by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field),
         by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants),
+        // Search, look and correction a frame each.
+        shipped("small-joint"),
     ];
     let options = stress::Options { frames: FRAMES, seed: 5 };
     in_parallel(&designs, |design| {

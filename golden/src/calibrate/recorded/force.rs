@@ -7,7 +7,7 @@ use super::report::{Errors, Hold, Recorded, TaxelGain};
 use super::rows::Rows;
 use super::shape::Kind;
 use super::table::Measured;
-use super::{RecordedError, friction, report};
+use super::{RecordedError, friction, report, sideways};
 use super::{holds, loads};
 use crate::design::Design;
 
@@ -17,7 +17,8 @@ const PLACES: usize = 6;
 const FOLLOWS: f64 = 0.5;
 
 /// Fits curve, common gain, gains of the taxels and constants of friction to frames (values as they are in the file, one
-/// a taxel) and the forces measured with them, and says what they could tell.
+/// a taxel) and the forces measured with them, and says what they could tell. Where `F_x` and `F_y` are known and no `F_z`,
+/// the constants of friction alone, with the `F_z` that the design finds.
 ///
 /// # Errors
 ///
@@ -27,6 +28,9 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     let wrong = |(problem, remedy): loads::Wrong| RecordedError::Recording { name: name(), problem, remedy };
     let (frames, measured, mut remarks) = loads::pair(frames, measured).map_err(wrong)?;
     remarks.splice(0..0, measured.remarks.iter().cloned());
+    if sideways::is_all(&measured) {
+        return sideways::fit(design, frames, measured, remarks);
+    }
     let mut holds = holds::part(design, frames, &measured).map_err(wrong)?;
     remarks.append(&mut holds.remarks);
     let mut solver = Rows::new(design)?;
@@ -59,6 +63,7 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     let largest = stresses.iter().map(|stress| peak(stress)).fold(0.0, f64::max);
     let gains: Vec<f64> = found.delta.iter().zip(&work.before).map(|(delta, before)| before * (1.0 + delta)).collect();
     let mut calibrated = work.readings.calibrated(design, &found.shape, &gains, largest, &mut remarks);
+    remarks.extend(work.readings.far_from(design, &calibrated));
     let halves = prior.zip(folds.as_ref()).map(|(prior, folds)| work.halves(&found, prior, folds));
     let friction = friction::fit(&mut calibrated, &work.holds.all, &stresses, folds.as_ref())?;
     let validated = left_out.as_ref().unwrap_or(&fitted);

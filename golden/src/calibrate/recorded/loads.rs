@@ -41,12 +41,6 @@ pub(super) fn pair<'a>(frames: &'a [Vec<f64>], measured: &Measured) -> Result<Pa
 pub(super) fn loads(measured: &Measured, remarks: &mut Vec<String>) -> Result<Vec<Option<f64>>, Wrong> {
     let known: Vec<f64> = measured.forces.iter().filter_map(|force| force[2]).collect();
     let largest = known.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
-    if known.is_empty() && measured.forces.iter().any(|force| force[0].is_some() || force[1].is_some()) {
-        return Err((
-            "F_x and F_y are known, and F_z of no frame".to_owned(),
-            "give F_z too: frames are told apart by it, and friction is a share of it".to_owned(),
-        ));
-    }
     if largest <= 0.0 {
         return Err((
             "no normal force other than 0 is known".to_owned(),

@@ -19,6 +19,7 @@ mod readings;
 mod report;
 mod rows;
 mod shape;
+mod sideways;
 mod table;
 mod uniform;
 

@@ -100,6 +100,10 @@ impl Plot {
 }
 
 fn loads(found: &Recorded, unit: &str) -> String {
+    // None was measured where friction alone was.
+    if found.holds.is_empty() {
+        return String::new();
+    }
     let largest = found.holds.iter().fold(0.0_f64, |most, hold| most.max(hold.measured_n).max(hold.found_n));
     let axes = [format!("measured ({unit})"), format!("found, left out ({unit})")];
     let title = if found.errors.is_some() {

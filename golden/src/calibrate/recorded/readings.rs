@@ -10,6 +10,8 @@ const HEADROOM: [f64; 2] = [1.25, 32.0];
 const QUIET: f64 = 3.0;
 /// Readings at rest below this share of the largest are 0.
 const TARED: f64 = 0.005;
+/// A count that is worth so many times what the design says is in another unit, or the force is.
+const FAR: f64 = 300.0;
 /// Pieces that a power law of another base becomes.
 const LAW_PIECES: i32 = 32;
 
@@ -50,6 +52,34 @@ impl Readings {
     pub(super) fn points(&self, input: &Input) -> Vec<[f64; 2]> {
         let at = |x: f64| plain(input, self.sign * self.base) - plain(input, self.sign * (self.base + x));
         (0..=60).map(|step| self.range[1] * f64::from(step) / 60.0).map(|x| [x, at(x)]).collect()
+    }
+
+    /// What is to be known where a design said something else of a count altogether: its sign, or a thousandth.
+    pub(super) fn far_from(&self, design: &Design, calibrated: &Design) -> Option<String> {
+        let largest = |input: &Input| self.points(input).last().map_or(0.0, |point| point[1]);
+        let [was, now] = [largest(&design.input), largest(&calibrated.input)];
+        let key = match (&design.input.curve, design.input.pa_per_count) {
+            (Some(_), _) => "sensor.curve",
+            (None, Some(_)) => "sensor.pa_per_count",
+            (None, None) => "frames in pascals, without sensor.pa_per_count",
+        };
+        let sign = was < 0.0;
+        let times = now / was.abs();
+        let unit = !(1.0 / FAR..=FAR).contains(&times) && times.is_finite();
+        let size =
+            if times < 1.0 { format!("{:.0} times less", 1.0 / times) } else { format!("{times:.0} times more") };
+        let turned = "pressing changes the readings the other way than the design had it";
+        match (sign, unit) {
+            (false, false) => None,
+            (true, false) => Some(format!("sign: {turned} ({key}); it is turned")),
+            (true, true) => Some(format!(
+                "sign: {turned} ({key}), and a count is worth {size}; both are changed. Are the forces in the unit of their header?"
+            )),
+            (false, true) => Some(format!(
+                "unit: a count is worth {size} than the design had it ({key}); that is changed. Are the forces in the unit of \
+                 their header, and the frames in counts?"
+            )),
+        }
     }
 
     /// The design with a curve and gains, for stress as large as was seen.

@@ -63,6 +63,24 @@ fn frames_that_look_wrong_are_told_of_on_the_way() {
     assert!(String::from_utf8(refused.stderr).unwrap().contains("write them into a file first"));
 }
 
+/// The numbers of columns above the frames are no frame; a note says so, once.
+#[test]
+fn numbers_of_columns_are_told_of() {
+    let design = repository("designs/small.toml");
+    let numbers: Vec<String> = (0..12).map(|number| number.to_string()).collect();
+    let (_folder, file) = folder_with(&format!("{}\n{1}\n{1}\n", numbers.join(","), row("-1000.5")));
+    for (from, piped) in [("-", Stdio::from(std::fs::File::open(&file).unwrap())), (text(&file), Stdio::null())] {
+        let output = Command::new(env!("CARGO_BIN_EXE_golden"))
+            .args(["solve", text(&design), "--frames", from, "--out", "-"])
+            .stdin(piped)
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.matches("line 1: numbers in turn up to 11").count() == 1 && said.contains("note: "), "{said}");
+        assert_eq!(String::from_utf8(output.stdout).unwrap().lines().count(), 3);
+    }
+}
+
 /// Who opens a port while a frame goes through it gets the end of one.
 #[test]
 fn a_first_line_that_is_cut_off_is_passed_over() {

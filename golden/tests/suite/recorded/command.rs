@@ -6,9 +6,10 @@ use std::process::{Command, Output};
 
 use golden::design::Design;
 use golden::frames::write_frames;
+use golden::scene::Kind;
 use tempfile::TempDir;
 
-use super::simulated::{Body, Recipe, record};
+use super::simulated::{Body, Recipe, record, sensor as sensor_of_tests};
 
 fn golden(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_golden")).args(arguments).output().unwrap()
@@ -118,4 +119,41 @@ fn from_recordings_to_a_design() {
     }
     let output = calibrate(&["--page", text(&frames)]);
     assert!(!output.status.success() && String::from_utf8(output.stderr).unwrap().contains("overwrite the input"));
+}
+
+/// What other commands warn of, of the frames as the calibrated design reads them: sign and unit are what was fitted.
+#[test]
+fn frames_of_another_order_are_told_of() {
+    let folder = TempDir::new().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let [pad, frames, forces, out] = ["pad.toml", "press.npy", "weights.csv", "out.toml"].map(file);
+    let sensor = "[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n";
+    fs::write(&pad, format!("name = \"pad\"\n{sensor}tension = \"clipped\"\npa_per_count = 1.0\n")).unwrap();
+    let pressed = Kind::MixedInside.frames(&sensor_of_tests(), 0.5, 0..60).unwrap();
+    let counts = |stress: &Vec<f64>| stress.iter().map(|pascals| (-pascals / 40.0).max(0.0).round()).collect();
+    let mut recording: Vec<Vec<f64>> = pressed.iter().map(|frame| counts(&frame.stress)).collect();
+    let mut lines: String = pressed.iter().map(|frame| format!("{}\n", frame.force[2])).collect();
+    for _ in 0..10 {
+        recording.push(vec![0.0; 78]);
+        lines += "0\n";
+    }
+    fs::write(&forces, format!("F_z (N)\n{lines}")).unwrap();
+    let calibrate = |of: &dyn Fn(&Vec<f64>) -> Vec<f64>| {
+        write_frames(&frames, &recording.iter().map(of).collect::<Vec<_>>()).unwrap();
+        let paths = ["--frames", text(&frames), "--forces", text(&forces), "--out", text(&out)];
+        let output = golden(&[&["calibrate", text(&pad)], &paths[..]].concat());
+        assert!(output.status.success(), "{output:?}");
+        let [said, warned] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        assert!(said.contains("sign: pressing changes the readings the other way"), "{said}");
+        warned
+    };
+    assert_eq!(calibrate(&Clone::clone), "");
+    let transposed = |frame: &Vec<f64>| (0..78).map(|at| frame[(at % 13) * 6 + at / 13]).collect();
+    let warned = calibrate(&transposed);
+    assert!(warned.starts_with("warning: ") && warned.contains("column after column"), "{warned}");
+    // One that is broken.
+    let dead =
+        |frame: &Vec<f64>| frame.iter().enumerate().map(|(taxel, &v)| if taxel == 38 { 0.0 } else { v }).collect();
+    let warned = calibrate(&dead);
+    assert!(warned.contains("38 (2, 6)"), "{warned}");
 }

@@ -268,8 +268,6 @@ fn forces_of_other_frames_are_refused() {
     };
     refused(&|measured| measured.forces.truncate(20), &["pad: 96 frames and 20 lines", "one line for each frame"]);
     refused(&|measured| measured.forces.fill([None; 3]), &["no normal force", "weights"]);
-    let without = |measured: &mut Measured| measured.forces.iter_mut().for_each(|force| force[2] = None);
-    refused(&without, &["F_x and F_y are known, and F_z of no frame", "give F_z too"]);
     refused(&|measured| measured.forces.reverse(), &["pad: ", "; "]);
     refused(
         &|measured| {
@@ -290,6 +288,41 @@ fn forces_of_other_frames_are_refused() {
     measured.forces.iter_mut().flatten().flatten().for_each(|force| *force = -*force);
     let turned = fit(&measured).unwrap();
     assert!(says(&turned.remarks, &["F_z is positive"]) && turned.design.input == found.design.input);
+}
+
+/// What the design said of a count is changed by far only with a remark: its sign, its unit, or that of the forces.
+#[test]
+fn another_sign_and_another_unit_are_told() {
+    let recording = record(&Recipe { places: 6, frames: 2, scale: 40.0, ..Recipe::new(76, Body::Ball) });
+    let remarks = |keys: &str| {
+        let design = design(&format!("{keys}\ntension = \"clipped\""), "");
+        let found = fit_forces(&design, &recording.frames, &recording.measured).unwrap();
+        found
+            .remarks
+            .into_iter()
+            .filter(|line| line.starts_with("sign") || line.starts_with("unit"))
+            .collect::<Vec<_>>()
+    };
+    for keys in ["pa_per_count = -40.0", "pa_per_count = -1.0", "pa_per_count = -4000.0"] {
+        assert_eq!(remarks(keys), [] as [String; 0], "{keys}");
+    }
+    for (keys, parts) in [
+        (
+            "pa_per_count = 40.0",
+            ["sign: pressing changes the readings the other way", "(sensor.pa_per_count); it is turned"],
+        ),
+        ("", ["sign: pressing changes", "(frames in pascals, without sensor.pa_per_count)"]),
+        (
+            "pa_per_count = -0.04",
+            ["unit: a count is worth 1", "times more than the design had it (sensor.pa_per_count)"],
+        ),
+        ("pa_per_count = -40000.0", ["unit: a count is worth ", "times less than the design had it"]),
+        ("curve = { power = 1.0, scale = -0.04 }", ["unit: a count", "(sensor.curve); that is changed"]),
+        ("pa_per_count = 0.04", ["sign: pressing", "times more; both are changed"]),
+    ] {
+        let said = remarks(keys);
+        assert!(said.len() == 1 && parts.iter().all(|part| said[0].contains(part)), "{keys}: {said:?}");
+    }
 }
 
 #[test]
@@ -381,6 +414,29 @@ fn tangential_forces_tell_the_constants_of_friction() {
         .collect();
     off.sort_by(f64::total_cmp);
     assert!(off[off.len() / 2] < 8.0, "{off:?}");
+    // Without F_z the design's own stands for it, and all but friction stays.
+    let mut sideways = recording.measured.clone();
+    sideways.forces.iter_mut().for_each(|force| force[2] = None);
+    let before = design("", &format!("{joint}tangential = [2.0, 0.0]"));
+    let alone = fit_forces(&before, &recording.frames, &sideways).unwrap();
+    assert!(says(&alone.determined, &["friction: tangential = ["]), "{:?} {:?}", alone.determined, alone.undetermined);
+    assert!(says(&alone.undetermined, &["F_z, curve and gains: no normal force is known"]), "{:?}", alone.undetermined);
+    assert!(says(&alone.remarks, &["friction is a share of F_z", "check it with a weight"]), "{:?}", alone.remarks);
+    let mut unchanged = alone.design.clone();
+    unchanged.algorithm.joint.tangential = [2.0, 0.0];
+    assert_eq!(unchanged, before);
+    assert!(alone.holds.is_empty() && alone.errors.is_none());
+    // As from all components, but for what F_z errs by without its own fit.
+    let ratio = alone.design.algorithm.joint.tangential[0] / c1;
+    let off_by = found.design.input.pa_per_count.unwrap();
+    assert!((ratio * off_by.recip() - 1.0).abs() < 0.15 || (ratio - 1.0).abs() < 0.15, "{ratio} {off_by}");
+    let pulled: Vec<Vec<f64>> = recording.frames.iter().map(|frame| frame.iter().map(|pa| -pa).collect()).collect();
+    let said = fit_forces(&before, &pulled, &sideways).map(drop).unwrap_err().to_string();
+    assert!(said.contains("no F_z is known, and by the design ") && said.contains("with F_z first"), "{said}");
+    let said = fit_forces(&before, &vec![vec![0.0; 78]; sideways.forces.len()], &sideways).map(drop).unwrap_err();
+    assert!(said.to_string().contains("by the design nothing presses"), "{said}");
+    let line = fit_forces(&design("", ""), &recording.frames, &sideways).unwrap();
+    assert!(says(&line.undetermined, &["friction: the line estimator has no constants"]), "{:?}", line.undetermined);
     // Forces the wrong way round are no friction.
     let mut turned = recording.measured.clone();
     turned.forces.iter_mut().for_each(|force| (force[0], force[1]) = (force[0].map(|x| -x), force[1].map(|y| -y)));

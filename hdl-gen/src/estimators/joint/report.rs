@@ -5,7 +5,7 @@ use golden::kernel::gain;
 use golden::parity::CLASSES;
 
 use super::points::MOST_POINTS;
-use super::{JointPlan, POINTS, timing};
+use super::{JointPlan, timing};
 use crate::plan::format::{MANY_LANES, short};
 
 /// Share by which the gain may differ from what the kernel lacks under a wide contact.
@@ -28,27 +28,30 @@ pub fn report(plan: &JointPlan, design: &Design) -> String {
         _ => "none: `golden calibrate` trains one".to_owned(),
     };
     format!(
-        "\nFriction, joint estimator\n  grid         {}; gain {} (in the matrices)\n  \
+        "\nFriction, joint estimator\n  grid         {}\n  gain         {}, in the matrices\n  \
          friction     c1 {c1:.4}, c3 {c3:.4}\n  network      {correction}\n{}",
-        grid(plan, design.hardware.lanes),
+        grid(plan, design),
         short(constants.gain),
         stages(plan, design)
     )
 }
 
-/// How Condition 1 is evaluated over the plane, and why so.
-fn grid(plan: &JointPlan, lanes: usize) -> String {
+/// How Condition 1 is evaluated over the plane, and why so: a cell a point, or one for several taxels.
+fn grid(plan: &JointPlan, design: &Design) -> String {
+    let side = design.algorithm.joint.grid.side();
+    let (points, cells) = (side * side, plan.cells.cells);
     match &plan.points {
-        Some(points) => {
-            let taxels = match points.taxels {
-                1 if lanes > MANY_LANES => "a taxel a cycle: bodies are counted as slowly".to_owned(),
+        Some(of) => {
+            let taxels = match of.taxels {
+                1 if design.hardware.lanes > MANY_LANES => "a taxel a cycle: bodies are counted as slowly".to_owned(),
                 1 => "a taxel a cycle".to_owned(),
                 taxels => format!("{taxels} taxels a cycle with more than {MANY_LANES} lanes"),
             };
-            format!("{} x {0} points, a cell each, {taxels}", points.side)
+            format!("{side} x {side} points: {points}, at most {MOST_POINTS}, so a cell each: {taxels}")
         }
         None => format!(
-            "{POINTS} points, more than the {MOST_POINTS} that could have a cell each: walked over, {} taxels a cell",
+            "{side} x {side} points: {points}, more than {MOST_POINTS}, so no cell each: walked over in {cells} cells \
+             of {} taxels",
             plan.cells.elements
         ),
     }

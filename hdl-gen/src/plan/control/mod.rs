@@ -10,7 +10,7 @@ use std::collections::{BTreeSet, VecDeque};
 use self::durations::Durations;
 use super::Plan;
 use super::places::FIELD_PLACES;
-use super::timing::{INTERVAL_FRAMES, Timeline, longest_interval, middle_interval};
+use super::timing::{INTERVAL_FRAMES, Timeline, longest_interval, mean_interval};
 use crate::blocks::bz::Arrival;
 use crate::blocks::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
@@ -26,7 +26,9 @@ const FOREVER: u64 = 100_000_000;
 pub(super) fn timeline(plan: &Plan) -> Timeline {
     let durations = Durations::new(plan);
     let ends = |frames| Control::new(&durations).play(frames);
-    let interval = if plan.streams().drops { longest_interval } else { middle_interval };
+    // Frames that take as long as what is in them keep to no turns.
+    let every_frame = plan.streams().drops || plan.design.hardware.skip_zeros;
+    let interval = if every_frame { longest_interval } else { mean_interval };
     Timeline {
         latency_cycles: ends(1)[0],
         interval_cycles: interval(&ends(INTERVAL_FRAMES)),

@@ -17,7 +17,7 @@ use testbench::stream_words::{Answer, decode, encode};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
 
-use crate::support::{built_to_last, frames, in_parallel, planned, shipped, with_joint};
+use crate::support::{built_to_last, frames, in_parallel, planned, shipped, with_joint, with_points};
 
 const LONG: usize = 1200;
 
@@ -33,7 +33,8 @@ struct Subject {
     built: Built,
 }
 
-/// The small design in every plan: the paper's, the reduced one for either aim, and without a field.
+/// The small design in every plan: the paper's, the reduced one for either aim, by either grid of the joint estimator, and
+/// without a field.
 fn subjects() -> &'static [Subject] {
     static SUBJECTS: OnceLock<Vec<Subject>> = OnceLock::new();
     SUBJECTS.get_or_init(|| {
@@ -52,6 +53,7 @@ fn subjects() -> &'static [Subject] {
                 (design.sensor.columns, design.sensor.rows) = (3, 3);
             }),
             small("small_joint", &|design| *design = with_joint(design.clone())),
+            small("small_points", &|design| *design = with_points(design.clone())),
             small("small_resultants", &|design| {
                 design.algorithm.plan = PlanKind::Reduced;
                 design.algorithm.outputs = Outputs::Resultants;

@@ -8,21 +8,20 @@ use golden::progress::Progress;
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use testbench::dut::{Core, Inputs};
 use testbench::frame_set::FrameSet;
-use testbench::registers::{Access, address};
+use testbench::registers::address;
 use testbench::run::{Options, run};
-use testbench::stream::{Mode, Pattern, Traffic, exchange};
+use testbench::stream::{Mode, Traffic};
 use testbench::stress::banks::{random_bank, random_curve};
 use testbench::trial::{model_answers, rtl_sources, timeout};
 use testbench::verilate::Verilate;
 
 use super::commits::commits_at_every_moment;
-use super::{
-    CONTRADICTION, OUT_OF_RANGE, Subject, core, design, errors, generation, judge, judged, judged_in, load, perform,
-    read_back, send, wait,
-};
+use super::{Subject, core, design, errors, generation, judged, judged_in, load, perform, read_back};
 use crate::support::{built, frames, in_parallel, planned, simulate_exactly};
+
+mod refused;
+mod tares;
 
 /// The small design along a curve, with gains and offsets.
 pub fn design_with_curve() -> Design {
@@ -249,171 +248,4 @@ fn half_a_frame_by_another_curve_is_noticed() {
         let cycles = 0..interval;
         assert_ne!(commits_at_every_moment(subject, &built, bank, cycles), Vec::<String>::new(), "{broken}");
     }
-}
-
-/// What no word tells alone the commit finds: the core takes a bank where the model does, and no other.
-#[test]
-fn what_does_not_go_together_is_refused() {
-    let subject = subject();
-    let mut random = ChaCha8Rng::seed_from_u64(6);
-    let mut core = subject.core(3);
-    let (mut taken, mut refused) = (0, 0);
-    for _ in 0..300 {
-        let mut bank = random_bank_and_curve(subject, &mut random);
-        let map = bank.curve.as_mut().expect("a curve");
-        let count = map.curve.segments.len();
-        let place = random.random_range(0..count);
-        let segment = &mut map.curve.segments[place];
-        let by = 10_f64.powf(random.random_range(-1.0..7.0)) * if random.random_bool(0.5) { 1.0 } else { -1.0 };
-        match random.random_range(0..7) {
-            0 => segment.first += by as i64,
-            1 => segment.value += by as i64,
-            2 => segment.slope += random.random_range(-2..=2),
-            3 => segment.slope = -segment.slope,
-            4 => segment.shift = (segment.shift + 1).min(40),
-            5 => map.end += by as i64,
-            _ => map.curve.last += by as i64,
-        }
-        let segment = &map.curve.segments[place];
-        let within = segment.first.abs() < 1 << 25
-            && segment.value.abs() < (1 << 26) - (1 << 12)
-            && segment.slope.abs() < 1 << 17
-            && map.curve.last.abs() < 1 << 25
-            && map.end.abs() < (1 << 26) - (1 << 12);
-        if !within {
-            continue;
-        }
-        let before = generation(&mut core);
-        perform(&mut core, &load(&bank, bank.crc()));
-        if subject.calibration().takes(&bank) {
-            assert_eq!((errors(&mut core), generation(&mut core)), (0, (before + 1) & 0xFF), "{bank:?}");
-            taken += 1;
-        } else {
-            assert_eq!((errors(&mut core), generation(&mut core)), (CONTRADICTION, before), "{bank:?}");
-            refused += 1;
-        }
-    }
-    assert!(taken > 40 && refused > 100, "{taken} taken, {refused} refused");
-}
-
-/// Largest magnitudes of a curve's words.
-const NUMBER: i64 = (1 << 25) - 1;
-const VALUE: i64 = (1 << 26) - 1 - (1 << 12);
-const SLOPE: i64 = (1 << 17) - 1;
-
-#[test]
-fn what_is_out_of_bounds_is_refused() {
-    let subject = subject();
-    let power_up = subject.calibration().power_up.words();
-    let mut core = subject.core(5);
-    let mut attempt = |index: usize, word: i64, fits: bool| {
-        let word = word as u32;
-        core.write(address::CALIBRATION_INDEX, index as u32).expect("a reply");
-        core.write(address::CALIBRATION_DATA, word).expect("a reply");
-        assert_eq!(errors(&mut core), if fits { 0 } else { OUT_OF_RANGE }, "word {index}: {word:#010x}");
-        core.write(address::CALIBRATION_INDEX, index as u32).expect("a reply");
-        let expected = if fits { word } else { power_up.get(index).copied().unwrap_or(0) };
-        assert_eq!(core.read(address::CALIBRATION_DATA).expect("a reply"), expected, "word {index}: {word:#010x}");
-        if fits {
-            core.write(address::CALIBRATION_DATA, power_up[index]).expect("a reply");
-        }
-    };
-    let (first, count) = (26, 26 + 64);
-    for segment in [0, 3, 15] {
-        for (word, most) in [(0, NUMBER), (1, VALUE), (2, SLOPE)] {
-            for (value, fits) in [(most, true), (-most, true), (most + 1, false), (-most - 1, false), (0, true)] {
-                attempt(first + 4 * segment + word, value, fits);
-            }
-            attempt(first + 4 * segment + word, i64::from(i32::MIN), false);
-        }
-        for (value, fits) in [(0, false), (1, true), (40, true), (41, false), (64, false), (-1, false)] {
-            attempt(first + 4 * segment + 3, value, fits);
-        }
-    }
-    for (value, fits) in [(0, false), (1, true), (16, true), (17, false), (128, false), (-1, false)] {
-        attempt(count, value, fits);
-    }
-    for (word, most) in [(1, NUMBER), (2, VALUE)] {
-        for (value, fits) in [(most, true), (-most, true), (most + 1, false), (-most - 1, false)] {
-            attempt(count + word, value, fits);
-        }
-    }
-    attempt(count + 3, 1, false);
-    assert_eq!((read_back(&mut core, true), read_back(&mut core, false)), (power_up.clone(), power_up));
-}
-
-/// The curve goes along; what the other bank held is gone.
-#[test]
-fn a_tare_takes_the_curve_along() {
-    let subject = subject();
-    let calibration = subject.calibration();
-    let mut random = ChaCha8Rng::seed_from_u64(9);
-    for log2 in [0, 2] {
-        let mut core = subject.core(u64::from(log2));
-        let [other, _] = others(subject);
-        let bank = Bank { noise: (300.0 / calibration.stress.step()) as u32, ..other };
-        perform(&mut core, &load(&bank, bank.crc()));
-        let left = random_bank_and_curve(subject, &mut random);
-        let accesses = load(&left, left.crc());
-        perform(&mut core, &accesses[..accesses.len() - 1]);
-        let level: Vec<f32> = (0..12).map(|_| random.random_range(0.0..400.0)).collect();
-        let mut rest = |frames: usize| -> Vec<Vec<u32>> {
-            (0..frames)
-                .map(|_| level.iter().map(|level| (level + random.random_range(-1.0..1.0_f32)).to_bits()).collect())
-                .collect()
-        };
-        let frames = rest(1 << log2);
-        let tared = bank.tared(calibration, &frames).expect("at rest");
-        core.write(address::TARE, log2).expect("a reply");
-        let packets = [frames, rest(3), counts(subject, 6, &mut ChaCha8Rng::seed_from_u64(3))].concat();
-        let answers = send(&mut core, &packets);
-        let banks = [calibration.power_up.clone(), bank, tared.clone()];
-        let generations = judge(&subject.plan, &packets, &answers, &banks).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(generations.last(), Some(&2), "{generations:?}");
-        wait(&mut core);
-        assert_eq!((errors(&mut core), read_back(&mut core, true)), (0, tared.words()));
-        assert_eq!(core.read(address::CALIBRATION_CRC).expect("a reply"), tared.crc());
-    }
-}
-
-/// At every moment of a frame: a tare takes frames that begin after its command, though others are on the curve.
-#[test]
-fn a_tare_takes_no_frame_that_began_before() {
-    let subject = subject();
-    let calibration = subject.calibration();
-    let mut random = ChaCha8Rng::seed_from_u64(12);
-    let level: Vec<f32> = (0..12).map(|_| random.random_range(0.0..400.0)).collect();
-    let packets: Vec<Vec<u32>> = (0..30)
-        .map(|_| level.iter().map(|level| (level + random.random_range(-1.0..1.0_f32)).to_bits()).collect())
-        .collect();
-    let bank = Bank { noise: (300.0 / calibration.stress.step()) as u32, ..calibration.power_up.clone() };
-    let tared: Vec<Vec<u32>> = packets
-        .iter()
-        .filter_map(|frame| Some(bank.tared(calibration, std::slice::from_ref(frame))?.words()))
-        .collect();
-    assert_eq!(tared.len(), 30);
-    let cycles: Vec<u64> = (3000..3000 + subject.plan.timeline.interval_cycles + 40).step_by(3).collect();
-    let told = in_parallel(&cycles, |&cycle| {
-        let mut core = core(&subject.built, 12);
-        for access in load(&bank, bank.crc()) {
-            core.plan(10, access);
-        }
-        core.plan(cycle, Access::Write { address: address::TARE, data: 0, strobes: 0xF });
-        let slow = Mode { name: "slow source", source: Pattern::Random { seed: 3, willing: 0.1 }, sink: Pattern::Free };
-        let traffic = Traffic::new(&packets, timeout(&subject.plan)).with_mode(&slow);
-        let outcome = exchange(&mut core, &traffic, |_| ()).expect("answers");
-        for _ in 0..2000 {
-            core.step(Inputs { run: true, ..Inputs::default() }).expect("runs");
-        }
-        let words = read_back(&mut core, true);
-        let taken = tared.iter().position(|tared| *tared == words).ok_or("offsets of no frame")?;
-        let exchange = &outcome.exchanges[taken];
-        // The command's response comes some cycles after it is planned, and the frame is the next one to begin.
-        if exchange.first_in < cycle {
-            return Err(format!("cycle {cycle}: frame {taken}, which began in {}", exchange.first_in));
-        }
-        Ok(taken)
-    });
-    let wrong: Vec<&String> = told.iter().filter_map(|told: &Result<usize, String>| told.as_ref().err()).collect();
-    assert!(wrong.is_empty(), "{wrong:?}");
 }

@@ -175,6 +175,11 @@ fn prepare(session: &Session) {
     fs::write(session.file("bladder.npy"), npy(&uniform)).expect("written");
     let column: String = pressures.iter().map(|pressure| format!("{pressure}\n")).collect();
     fs::write(session.file("p.csv"), format!("pressure (Pa)\n{column}")).expect("written");
+    // A scanner at rest: offsets, and noise of a count or two.
+    let reads =
+        |frame: usize, taxel: usize| (40 * ((5 * taxel) % 7) + (frame * 7919 + taxel * 104_729) % 101 % 5) as f64;
+    let rest: Vec<Vec<f64>> = (0..60).map(|frame| (0..12).map(|taxel| reads(frame, taxel)).collect()).collect();
+    golden::frames::write_frames(&session.file("rest.csv"), &rest).expect("written");
     let own = "[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n[medium]\nkind = \"half_space\"\n\
                [[contact]]\nshape = \"disc\"\nradius_mm = 5.0\nnormal_force_n = 2.0\nfriction = 0.4\ndirection_deg = 20.0\n";
     for (name, x) in [("a.toml", 9.0), ("b.toml", 11.0)] {
@@ -183,9 +188,10 @@ fn prepare(session: &Session) {
 }
 
 /// What the pages' commands make.
-const MADE: [&str; 7] = [
+const MADE: [&str; 8] = [
     "pad-june.toml",
     "june.html",
+    "scanner.calibration.csv",
     "pad-joint.toml",
     "forces.csv",
     "frame.svg",
@@ -221,7 +227,7 @@ fn the_commands_of_the_docs_run() {
     let found: Vec<(String, Vec<&str>)> = pages.collect();
     let expected = [
         ("README.md", vec!["forces.csv"]),
-        ("calibrating.md", vec!["pad-june.toml", "june.html"]),
+        ("calibrating.md", vec!["pad-june.toml", "june.html", "scanner.calibration.csv"]),
         ("contacts.md", vec!["forces.csv"]),
         ("estimators.md", vec!["pad-joint.toml", "forces.csv"]),
         ("looking.md", vec!["frame.svg"]),

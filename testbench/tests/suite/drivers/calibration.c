@@ -139,6 +139,16 @@ int main(int count, char **arguments)
     points[1 + MOST_POINTS + 3] = -37500.0;
     CHECK(sptfra_load_bank_and_curve(&device, gain, offset, &replaced, &curve, 0.0, POLLS) == SPTFRA_OK);
     banks++;
+    /* The noise floor is that of the frames: 12 taxels that read 62.5 Pa each are none of 20 Pa, and one of 100 Pa. */
+    for (word = 0; word < 4; word++) {
+        const double floors[] = {20.0, 100.0, 0.0, 20.0};
+        const uint16_t none[] = {0, SPTFRA_NO_CONTACT, SPTFRA_NO_CONTACT, 0};
+
+        CHECK(sptfra_load_bank(&device, gain, offset, &replaced, floors[word], POLLS) == SPTFRA_OK);
+        banks++;
+        send(&device, 5.0f, &result);
+        CHECK(result.generation == banks && (result.status & SPTFRA_NO_CONTACT) == none[word]);
+    }
     /* Tare: four frames at rest, then nothing is read; then one that is not. */
     CHECK(sptfra_load_bank(&device, gain, offset, &replaced, 20.0, 0) == SPTFRA_TIMEOUT);
     CHECK(sptfra_tare(&device, 2) == SPTFRA_CALIBRATION_BUSY);

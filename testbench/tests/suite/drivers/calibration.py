@@ -24,17 +24,20 @@ def main():
     sensor = Sptfra(overlay.core, overlay.dma, allocate)
     rows, columns = sensor.identity.rows, sensor.identity.columns
     assert sensor.identity.calibration_in_ram and sensor.identity.replaceable == 2 and sensor.identity.curve_in_ram
-    files = sorted(pathlib.Path(folder).glob("*.csv"))
+    files = sorted(path for path in pathlib.Path(folder).glob("*.csv") if not path.stem.endswith(".curve"))
     assert len(files) > 3
     for generation, path in enumerate(files, 1):
         data = path.with_suffix(".words").read_bytes()
         (noise,), words = np.frombuffer(data, "<f8", 1), np.frombuffer(data, "<u4", offset=8)
-        sensor.load_calibration(path, noise or None)
+        curve = path.with_suffix(".curve.csv")
+        sensor.load_calibration(path, noise or None, curve=curve if curve.exists() else None)
         assert [sensor.read_calibration(index) for index in range(len(words))] == words.tolist(), path
         assert sensor.reconstruct(np.full((rows, columns), 5.0)).generation.tolist() == [generation]
     wrong = pathlib.Path(folder, "wrong.txt")
     for text, message in [
         ("1.0,0.0\n1.0\n", "line 2: '1.0' is no gain"),
+        ("1.0;0.0\n1.0,0\n", "line 2: '1.0,0' is no gain"),
+        ("offset,gain\n" + "0,1\n" * 12, "line 1: a header is gain,offset"),
         ("17,0\n", "line 1: use a gain from"),
         ("1,0\n" * 3, "3 lines, and the core has 12 taxels"),
         ("1,0\n" * 11 + "1,1000000\n", "taxel 11: an offset of 1000000.0 counts is beyond"),
@@ -43,7 +46,8 @@ def main():
         assert message in refused(ValueError, lambda: sensor.load_calibration(wrong))
     header = "gain,offset,taxel 3,taxel 4\n"
     for text, message in [
-        ("gain,offset,3\n" + "1,0,0\n" * 12, "line 1: a header is gain,offset,taxel 37"),
+        ("gain,offset,3\n" + "1,0,0\n" * 12, "line 1: 'gain,offset,3' is no gain,offset"),
+        ("gain,offset,no 3\n" + "1,0,0\n" * 12, "line 1: a header is gain,offset,taxel 37"),
         ("gain,offset,taxel 4,taxel 3\n" + "1,0,0,0\n" * 12, "line 1: dead taxels ascend"),
         ("gain,offset,taxel 12\n" + "1,0,0\n" * 12, "line 1: dead taxels ascend"),
         (header + "1,0,0\n" * 12, "line 2: '1,0,0' is no gain,offset such as 1.02,-0.5 and a weight"),
@@ -67,10 +71,24 @@ def main():
     ]:
         wrong.write_text(text)
         assert message in refused(ValueError, lambda: sensor.load_calibration(wrong)), message
+    apart = pathlib.Path(folder, "apart.txt")
+    wrong.write_text(lines + "0,0\n9000,-112500\n")
+    for text, message in [
+        ("0,0\n8000,-112500\n", "the curve is another than that of"),
+        ("gain,offset\n1,0\n", "no curve"),
+        ("pascals,count\n0,0\n", "line 1: the pascals stand before the counts"),
+        ("0,0\n5,x\n", "line 2: '5,x' is no count,pascals"),
+    ]:
+        apart.write_text(text)
+        assert message in refused(ValueError, lambda: sensor.load_calibration(wrong, curve=apart)), message
     wrong.write_text("gain,offset\n" + "1,0\n" * rows * columns + "count,pascals\n0,0\n9000,-112500\n")
     for noise in (-1.0, 0.0, 1e12):
         assert "noise floor" in refused(ValueError, lambda: sensor.load_calibration(wrong, noise))
-    sensor.load_calibration(wrong, 20.0)
+    # The noise floor is that of the frames: 12 taxels that read 62.5 Pa each are none of 20 Pa, and one of 100 Pa.
+    for noise, none in [(20.0, 0), (100.0, 1), (None, 1), (20.0, 0)]:
+        sensor.load_calibration(wrong, noise)
+        status = sensor.reconstruct(np.full((rows, columns), 5.0)).status[0]
+        assert bool(status & Status.NO_CONTACT) == bool(none), (noise, status)
     rest = np.full((8, rows, columns), 300.0)
     assert not np.any(sensor.tare(rest).status & Status.NO_CONTACT)
     assert np.all(sensor.reconstruct(rest).status & Status.NO_CONTACT)

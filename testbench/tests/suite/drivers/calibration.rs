@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 use golden::bank;
@@ -20,7 +21,7 @@ use super::{DRIVER, MACHINE, SANITIZED, compile, run};
 use crate::calibration;
 use crate::support::{built, planned, workspace};
 
-fn subject() -> (Plan, Built) {
+pub(super) fn subject() -> (Plan, Built) {
     let mut design = calibration::dead::design_with_map();
     design.name += "_curve";
     design.input.pa_per_count = None;
@@ -32,19 +33,19 @@ fn subject() -> (Plan, Built) {
 }
 
 /// What a driver is given, and the bank that it makes.
-struct Given {
+pub(super) struct Given {
     calibration: Calibration,
     /// In Pa; 0: none is given.
-    noise: f64,
+    pub(super) noise: f64,
     /// Dead taxels; none: those that were before.
     dead: Option<Vec<usize>>,
     /// None: the curve that was before.
     curve: Option<Curve>,
-    bank: Bank,
+    pub(super) bank: Bank,
 }
 
 /// Calibrations one after the other.
-fn banks(plan: &Plan) -> Vec<Given> {
+pub(super) fn banks(plan: &Plan) -> Vec<Given> {
     let of = plan.calibration.as_ref().expect("in RAM");
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut thresholds = of.power_up.clone();
@@ -125,33 +126,59 @@ fn the_c_driver_loads_calibrations_and_tares() {
     let mut command = Command::new(host);
     let sensor = &plan.design.sensor;
     command.arg(&built.library).arg(file).args([sensor.columns, sensor.rows].map(|n| n.to_string()));
-    assert!(run(command).contains("PASS: 7 banks"));
+    assert!(run(command).contains("PASS: 11 banks"));
+}
+
+/// The files of a bank, `K.csv` and, where the curve is apart, `K.curve.csv`; with any separator.
+pub(super) fn write_files(plan: &Plan, given: &Given, index: usize, folder: &Path) {
+    let Given { calibration, dead, curve, .. } = given;
+    let points = |text: &mut String| {
+        for [count, pascals] in curve.iter().flat_map(|curve| &curve.points) {
+            writeln!(text, "{count:?}, {pascals:?}").expect("to a string");
+        }
+    };
+    let mut text = String::new();
+    if let Some(dead) = dead {
+        let mut design = plan.design.clone();
+        (design.input.calibration, design.input.dead) = (Some(calibration.clone()), dead.clone());
+        design.input.curve = curve.clone().or(design.input.curve);
+        text = bank::to_csv(&design).expect("in RAM");
+        if curve.is_none() || index == 1 {
+            text.truncate(text.find("count,pascals").expect("a curve"));
+        }
+    } else {
+        for (gain, offset) in calibration.gain.iter().zip(&calibration.offset) {
+            writeln!(text, "{gain:?}, {offset:?}").expect("to a string");
+        }
+        if curve.is_some() {
+            text += "count,pascals\n";
+            points(&mut text);
+        }
+    }
+    match index {
+        0 => text = format!("\u{feff}# of June\r\n\r\n{}", text.replace('\n', "\r\n").replace("gain,", "\"Gain\",")),
+        2 => text = text.replace(',', ";").replace('.', ","),
+        3 => text = text.replace(',', "\t"),
+        4 => text = text.replace('\n', ",\n"),
+        _ => {}
+    }
+    fs::write(folder.join(format!("{index}.csv")), text).expect("written");
+    // Apart, and once in both places.
+    if index == 1 || index == 4 {
+        let mut text = "raw counts  \"Pa\"\n".to_owned();
+        points(&mut text);
+        fs::write(folder.join(format!("{index}.curve.csv")), text.replace("raw counts", "raw").replace(", ", " "))
+            .expect("written");
+    }
 }
 
 #[test]
 fn the_python_driver_loads_calibrations_and_tares() {
     let (plan, built) = subject();
     let folder = tempfile::tempdir().expect("a folder");
-    for (index, Given { calibration, noise, dead, curve, bank }) in banks(&plan).into_iter().enumerate() {
-        let mut text = String::new();
-        if let Some(dead) = dead {
-            let mut design = plan.design.clone();
-            (design.input.calibration, design.input.dead) = (Some(calibration), dead);
-            design.input.curve = curve.clone().or(design.input.curve);
-            text = bank::to_csv(&design).expect("in RAM");
-            if curve.is_none() {
-                text.truncate(text.find("count,pascals").expect("a curve"));
-            }
-        } else {
-            for (gain, offset) in calibration.gain.iter().zip(&calibration.offset) {
-                writeln!(text, "{gain:?}, {offset:?}").expect("to a string");
-            }
-            for (line, [count, pascals]) in curve.iter().flat_map(|curve| &curve.points).enumerate() {
-                let header = if line == 0 { "count,pascals\n" } else { "" };
-                writeln!(text, "{header}{count:?}, {pascals:?}").expect("to a string");
-            }
-        }
-        fs::write(folder.path().join(format!("{index}.csv")), text).expect("written");
+    for (index, given) in banks(&plan).into_iter().enumerate() {
+        write_files(&plan, &given, index, folder.path());
+        let Given { noise, bank, .. } = given;
         let words = bank.words().into_iter().flat_map(u32::to_le_bytes);
         let bytes: Vec<u8> = noise.to_le_bytes().into_iter().chain(words).collect();
         fs::write(folder.path().join(format!("{index}.words")), bytes).expect("written");

@@ -112,12 +112,20 @@ fn the_examples_say_what_is_wrong() {
     refused(&format!("{simulated} none.so"), "none.so");
     refused(&simulated, "usage: ");
     let python = "python3 -B drivers/python/forces.py";
-    refused(&format!("seq -s, 13 > 13.csv; {python} CORE 13.csv"), "error: ");
+    refused(&format!("yes $(seq -s, 13) | head -2 > 13.csv; {python} CORE 13.csv"), "error: ");
     refused(&format!("seq -s, 12 > 12.csv; {python} none.so 12.csv"), "none.so: no simulated core");
     refused(&format!("{python} CORE none.csv"), "none.csv");
     // A header, a comment, a blank line, another separator: no trouble.
     let fine = format!("printf 'a;b\\n# c\\n\\n0;0;0;0;0;0;0;0;0;0;0;0\\n' | {simulated} {}", core.display());
     assert!(said(&bash(desk.path(), &fine)).ends_with("0,0,0,0,0,0,no contact\n"));
+
+    // Numbers of columns, as pandas writes them.
+    let numbers = format!(
+        "printf \"$(seq -s, 0 11)\\n0,0,0,0,0,0,0,0,0,0,0,0\\n\" > n.csv; {simulated} CORE n.csv; {python} CORE n.csv"
+    );
+    let numbers = said(&bash(desk.path(), &numbers.replace("CORE", &core.display().to_string())));
+    assert_eq!(numbers.matches("\n0,0,0,0,0,0,").count(), 2, "{numbers}");
+    assert_eq!(numbers.matches("taken for a header\n").count(), 2, "{numbers}");
 
     let bare = bash(desk.path(), &format!("{examples}/bare_metal_simulated {}", core.display()));
     let lines = said(&bare);

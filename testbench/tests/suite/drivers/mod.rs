@@ -3,6 +3,7 @@
 mod batches;
 mod calibration;
 mod examples;
+mod files;
 mod queue;
 
 #[allow(unused, reason = "another test file uses the rest")]
@@ -213,7 +214,10 @@ fn the_c_driver_compiles_anywhere() {
         compile(&[&driver], &strict, &folder.path().join("linux.o"));
         compile(&[&driver], &bare, &folder.path().join("bare.o"));
     }
-    let text = "#include \"sptfra_queue.h\"\nint main() { return sptfra_error(0) == nullptr; }\n";
+    // Files are for where there are some.
+    compile(&[&workspace("drivers/c/sptfra_file.c")], &strict, &folder.path().join("file.o"));
+    let text =
+        "#include \"sptfra_file.h\"\n#include \"sptfra_queue.h\"\nint main() { return sptfra_error(0) == nullptr; }\n";
     let user = folder.path().join("user.cpp");
     fs::write(&user, text).expect("written");
     let mut compiler = tools::cxx().expect("installed");

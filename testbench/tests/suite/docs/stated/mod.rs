@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use golden::design::{Design, InputRange, Kernel, Outputs};
+use golden::design::{Design, InputRange, Kernel, MAX_LANES, Outputs};
 use hdl_gen::inspection::figures;
 use hdl_gen::plan::Plan;
 
@@ -15,7 +15,7 @@ type Change = fn(&mut Design);
 
 /// Rows of tables whose design is none of the shipped ones, or is not named: page, how the row begins, the shipped design
 /// that it is made of, and how.
-const VARIED: [(&str, &str, &str, Change); 15] = [
+const VARIED: [(&str, &str, &str, Change); 20] = [
     ("accuracy.md", "sensor 1, point, no filter", "sensor1-reduced", as_it_is),
     ("accuracy.md", "sensor 1, cell, no filter", "sensor1-reduced", |design| design.algorithm.kernel = Kernel::Cell),
     ("accuracy.md", "sensor 1, point, F3", "sensor1-f3", as_it_is),
@@ -31,7 +31,24 @@ const VARIED: [(&str, &str, &str, Change); 15] = [
     ("estimators.md", "sensor 2, joint |", "sensor2-joint", as_it_is),
     ("estimators.md", "the same with 64 lanes, 64 multipliers", "sensor1-fast-64", narrow),
     ("estimators.md", "the same with 100 lanes", "sensor1-fast-64", hundred_lanes),
+    ("estimators.md", "the same with 128 lanes |", "sensor1-fast-64", most_lanes),
     ("estimators.md", "the same with 64 lanes, resultants only", "sensor1-fast-64", resultants),
+    ("estimators.md", "the same with 128 lanes, resultants only", "sensor1-fast-64", |design| {
+        resultants(design);
+        most_lanes(design);
+    }),
+    ("estimators.md", "sensor 1, line, 128 lanes", "sensor1-reduced-64", |design| {
+        most_lanes(design);
+        design.hardware.stream_bits = 128;
+    }),
+    ("estimators.md", "joint, 15 × 15 points, no correction, 16 × 16 taxels, 100", "sensor1-fast-64", |design| {
+        larger(design);
+        hundred_lanes(design);
+    }),
+    ("estimators.md", "the same 16 × 16 with 128 lanes", "sensor1-fast-64", |design| {
+        larger(design);
+        most_lanes(design);
+    }),
     ("estimators.md", "the same with 16 lanes, resultants only", "sensor1-fast", resultants),
 ];
 
@@ -43,6 +60,15 @@ fn hundred_lanes(design: &mut Design) {
     design.hardware.lanes = 100;
 }
 
+fn most_lanes(design: &mut Design) {
+    design.hardware.lanes = MAX_LANES;
+}
+
+fn larger(design: &mut Design) {
+    (design.sensor.columns, design.sensor.rows) = (16, 16);
+    design.algorithm.joint.correction = None;
+}
+
 fn own_range(design: &mut Design) {
     design.hardware.range = InputRange::Frame;
 }
@@ -52,7 +78,7 @@ fn resultants(design: &mut Design) {
 }
 
 /// Rows that state figures of others.
-const OF_OTHERS: [&str; 1] = ["published: "];
+const OF_OTHERS: [&str; 3] = ["published: ", "the line as it was", "the joint estimator as it was"];
 /// What tables of other things than designs have in their first column.
 const NO_DESIGNS: [&str; 4] = ["block", "core", "stage", "taxels"];
 

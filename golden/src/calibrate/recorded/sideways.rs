@@ -1,0 +1,100 @@
+//! The constants of friction from tangential forces alone, where the design tells the normal force.
+//!
+//! Friction is a share of the normal force, and the constants say what share the estimator's finding stands for. They take
+//! an `F_z`, and no more of it: where none was measured, the design's own stands for it, as its curve, gains and offsets
+//! have it. These cannot be told by tangential forces and stay. What that `F_z` errs by, the constants err by.
+
+use super::folds::{Folds, levels};
+use super::friction::{self, Verdict};
+use super::readings::Readings;
+use super::report::{Errors, Recorded, TaxelGain};
+use super::table::Measured;
+use super::{RecordedError, holds};
+use crate::design::Design;
+use crate::solver::{Solver, Status};
+
+/// Frames of less than this share of the largest load that the design finds are rest: noise, or a touch.
+const REST: f64 = 0.02;
+
+/// Whether tangential forces are known, and no normal one.
+pub(super) fn is_all(measured: &Measured) -> bool {
+    measured.forces.iter().all(|force| force[2].is_none())
+        && measured.forces.iter().any(|force| force[0].is_some() || force[1].is_some())
+}
+
+/// Fits the constants of friction; all else stays as the design has it.
+pub(super) fn fit(
+    design: &Design,
+    frames: &[Vec<f64>],
+    mut measured: Measured,
+    mut remarks: Vec<String>,
+) -> Result<Recorded, RecordedError> {
+    let wrong = |(problem, remedy)| RecordedError::Recording { name: design.name.clone(), problem, remedy };
+    let solver = Solver::new(design)?;
+    let mut found = Vec::with_capacity(frames.len());
+    for frame in frames {
+        let solution = solver.solve(frame)?;
+        found.push(if solution.status.contains(Status::NO_CONTACT) { 0.0 } else { solution.resultant[2] });
+    }
+    let known = |k: &usize| measured.forces[*k][0].is_some() || measured.forces[*k][1].is_some();
+    let known: Vec<usize> = (0..frames.len()).filter(known).collect();
+    let largest = known.iter().fold(0.0_f64, |most, &k| most.max(found[k].abs()));
+    let loaded = known.iter().filter(|&&k| found[k].abs() > REST * largest).count();
+    let pulls = known.iter().filter(|&&k| found[k] > REST * largest).count();
+    if 2 * pulls >= loaded {
+        let problem = if loaded == 0 {
+            "no F_z is known, and by the design nothing presses".to_owned()
+        } else {
+            format!("no F_z is known, and by the design {pulls} of {loaded} frames pull")
+        };
+        return Err(wrong((
+            problem,
+            "calibrate the design with F_z first, weights do; `golden check` says what is wrong with the frames"
+                .to_owned(),
+        )));
+    }
+    for &k in &known {
+        measured.forces[k][2] = Some(if found[k].abs() > REST * largest { found[k] } else { 0.0 });
+    }
+    let mut holds = holds::part(design, frames, &measured).map_err(wrong)?;
+    remarks.append(&mut holds.remarks);
+    remarks.push(
+        "friction is a share of F_z, and that is what the design finds: what its curve and gains err by, the constants err \
+         by. Measure F_z too, or check it with a weight"
+            .to_owned(),
+    );
+    let taxels = design.sensor.taxels();
+    let stress = |hold: &holds::Hold| -> Vec<f64> {
+        let of = |taxel: usize| hold.frames.clone().map(|k| design.input.to_pa(taxel, frames[k][taxel])).sum::<f64>();
+        (0..taxels).map(|taxel| -of(taxel) / hold.frames.len() as f64).collect()
+    };
+    let stresses: Vec<Vec<f64>> = holds.all.iter().map(stress).collect();
+    let folds = Folds::new(&holds.all);
+    let mut calibrated = design.clone();
+    let verdict = friction::fit(&mut calibrated, &holds.all, &stresses, folds.as_ref())?;
+    let mut undetermined =
+        vec!["F_z, curve and gains: no normal force is known; they stay as the design has them".to_owned()];
+    let mut determined = Vec::new();
+    match verdict {
+        Verdict::Fitted(words) => determined.push(words),
+        Verdict::Not(words) => undetermined.push(words),
+    }
+    let steps = levels(holds.all.iter().map(|hold| hold.load));
+    let gain = |taxel: usize| design.input.calibration.as_ref().map_or(1.0, |calibration| calibration.gain[taxel]);
+    Ok(Recorded {
+        contacts: holds.contacts,
+        places: holds.places,
+        loads: [steps.first().map_or(0.0, |first| first[0]), steps.last().map_or(0.0, |last| last[1])],
+        errors: None,
+        errors_as_designed: None,
+        errors_fitted: Errors::of(std::iter::empty()),
+        determined,
+        undetermined,
+        remarks,
+        // None was measured.
+        holds: Vec::new(),
+        gains: (0..taxels).map(|taxel| TaxelGain { gain: gain(taxel), touched: false, told: false }).collect(),
+        points: Readings::new(design, &holds).points(&design.input),
+        design: calibrated,
+    })
+}

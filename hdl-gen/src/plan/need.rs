@@ -1,0 +1,146 @@
+//! `target_us`: the fewest lanes that meet it, or what else would.
+
+use golden::design::{Design, Estimator, MAX_LANES, Optimise, Outputs, STREAM_BITS};
+use golden::estimators::joint::{Grid, JointConstants};
+use golden::parity::CLASSES;
+
+use super::build::Work;
+use super::{Plan, PlanError};
+use crate::estimators;
+
+/// The plan with the fewest lanes whose latency is `target_us` at most. Its design states them.
+pub(super) fn meet(design: &Design, target_us: f64) -> Result<Plan, PlanError> {
+    let work = Work::new(design)?;
+    let mut settled = design.clone();
+    settled.hardware.target_us = None;
+    let mut fastest: Option<Plan> = None;
+    for lanes in (CLASSES..=MAX_LANES).step_by(CLASSES) {
+        settled.hardware.lanes = lanes;
+        let plan = work.on_lanes(&settled);
+        if is_met(&plan, target_us) {
+            return Ok(plan);
+        }
+        if fastest.as_ref().is_none_or(|fastest| plan.timeline.latency_cycles < fastest.timeline.latency_cycles) {
+            fastest = Some(plan);
+        }
+    }
+    let (lanes, cycles) = fastest
+        .map_or((MAX_LANES, f64::INFINITY), |plan| (plan.design.hardware.lanes, plan.timeline.latency_cycles as f64));
+    let clock_mhz = design.hardware.clock_mhz;
+    Err(PlanError::Target {
+        target_us,
+        lanes,
+        latency_us: cycles / clock_mhz,
+        clock_mhz,
+        needed_mhz: (cycles / target_us).ceil(),
+        remedies: remedies(design, target_us, lanes),
+    })
+}
+
+fn is_met(plan: &Plan, target_us: f64) -> bool {
+    plan.timeline.latency_cycles as f64 <= target_us * plan.design.hardware.clock_mhz
+}
+
+/// What would meet the target, as keys of the design file, each behind a comma: the smallest change, and if that is one of
+/// the streams, the smallest that leaves them as they are. Each was planned, on the most lanes and on as many as are the
+/// fastest without it.
+fn remedies(design: &Design, target_us: f64, lanes: usize) -> String {
+    let meets = |change: &Change| {
+        let mut changed = change.apply(design);
+        let work = Work::new(&changed);
+        work.is_ok_and(|work| {
+            [MAX_LANES, lanes].into_iter().any(|lanes| {
+                changed.hardware.lanes = lanes;
+                is_met(&work.on_lanes(&changed), target_us)
+            })
+        })
+    };
+    let mut changes = changes(design).into_iter();
+    let first = changes.find(meets);
+    let same_streams = first
+        .filter(|first| first.stream_bits.is_some())
+        .and_then(|_| changes.find(|change| change.stream_bits.is_none() && meets(change)));
+    let named = |change: Change| change.keys(design) + ", ";
+    [first, same_streams].into_iter().flatten().map(named).collect()
+}
+
+/// Keys that a design would have otherwise.
+#[derive(Clone, Copy)]
+struct Change {
+    outputs: Option<Outputs>,
+    /// An estimator that needs fewer cycles, and the key that names it.
+    quicker: Option<(Estimator, &'static str)>,
+    grid: Option<Grid>,
+    stream_bits: Option<u32>,
+}
+
+/// What can be changed of a design, the smallest change first: wider streams cost pins, a coarser grid and the line
+/// exactness, resultants alone the forces of the taxels.
+fn changes(design: &Design) -> Vec<Change> {
+    let algorithm = &design.algorithm;
+    // The walk that is made smaller belongs to the fine grid.
+    let walks = design.hardware.optimise == Optimise::Area;
+    let is_fine = algorithm.estimator == Estimator::Joint && algorithm.joint.grid == Grid::FINE;
+    let grid = (is_fine && !walks).then_some(Grid::COARSE);
+    let quicker = estimators::quicker(algorithm.estimator).filter(|_| !walks);
+    let outputs = (algorithm.outputs == Outputs::Field).then_some(Outputs::Resultants);
+    let outputs = [Some(None), outputs.map(Some)].into_iter().flatten();
+    let ways = [Some((None, None)), grid.map(|grid| (Some(grid), None)), quicker.map(|quicker| (None, Some(quicker)))];
+    let wider = STREAM_BITS.into_iter().filter(|&bits| bits > design.hardware.stream_bits).map(Some);
+    let streams: Vec<Option<u32>> = [None].into_iter().chain(wider).collect();
+    let mut all = Vec::new();
+    for outputs in outputs {
+        for (grid, quicker) in ways.into_iter().flatten() {
+            all.extend(streams.iter().map(|&stream_bits| Change { outputs, quicker, grid, stream_bits }));
+        }
+    }
+    // The first is the design as it is.
+    all.split_off(1)
+}
+
+impl Change {
+    /// The design with it. A network for another grid stands for the one that would be trained.
+    fn apply(&self, design: &Design) -> Design {
+        let mut changed = design.clone();
+        changed.hardware.target_us = None;
+        if let Some(outputs) = self.outputs {
+            changed.algorithm.outputs = outputs;
+        }
+        if let Some((estimator, _)) = self.quicker {
+            changed.algorithm.estimator = estimator;
+        }
+        if let Some(grid) = self.grid {
+            changed.algorithm.joint.grid = grid;
+        }
+        if let Some(bits) = self.stream_bits {
+            changed.hardware.stream_bits = bits;
+        }
+        changed
+    }
+
+    /// As the design file states it: `key = value with key = value and key = value`.
+    fn keys(&self, design: &Design) -> String {
+        let grid = self.grid.map(|grid| format!("grid = {}{}", grid.side(), anew(&design.algorithm.joint)));
+        let quicker = self.quicker.map(|(_, key)| key.to_owned());
+        let outputs = self.outputs.map(|outputs| format!("outputs = \"{outputs}\""));
+        let streams = self.stream_bits.map(|bits| format!("stream_bits = {bits}"));
+        let keys: Vec<String> = [grid, quicker, outputs, streams].into_iter().flatten().collect();
+        match keys.as_slice() {
+            [first, others @ ..] if !others.is_empty() => format!("{first} with {}", others.join(" and ")),
+            _ => keys.concat(),
+        }
+    }
+}
+
+/// What has to be done besides where constants belong to the grid that they were fitted on: `fitted_to` refuses another.
+fn anew(constants: &JointConstants) -> String {
+    let units = constants.correction.as_ref().map_or(0, |correction| {
+        // A quarter more units tell the doubt.
+        let units = correction.hidden.len();
+        if correction.doubt.is_some() { units * 4 / 5 } else { units }
+    });
+    if units == 0 && constants.fitted_to.is_none() {
+        return String::new();
+    }
+    format!(" (which `golden calibrate --hidden {units}` fits the constants to)")
+}
