@@ -9,8 +9,8 @@ The flat netlist is rewritten in place. Cycles stay as they are: a register move
 
 A register moves only if all bits of a port go through registers of one clock and one enable, without a reset, and nothing
 else reads what is in front of them (behind them, at the inputs of a multiplier). In front of a multiplier it stays where a
-block memory answers into it, straight or through a LUT: the way between the two columns is long, and a register that can
-stand anywhere parts it.
+block memory answers into it, straight or through a LUT, and does not go into the memory either: the way between the two
+columns is long, and a register that can stand anywhere parts it.
 """
 
 import collections
@@ -116,6 +116,8 @@ def pack_memory(netlist, name):
         # The port's own enable may hold its register, too.
         if found is None or found[1][0] != clock or reading not in ("1", found[1][1]):
             continue
+        if any(multiplies(netlist, netlist.of(register, "Q")) for register in found[0]):
+            continue
         netlist.absorb_behind(name, ports, found[0])
         for side in sides:
             cell["parameters"][f"REGMODE_{side}"] = "OUTREG"
@@ -143,6 +145,11 @@ def answers(netlist, bit, through=True):
         return cell is not None
     reads = [bits[0] for port, bits in cell["connections"].items() if cell["port_directions"][port] == "input"]
     return through and cell["type"] == "LUT4" and any(answers(netlist, bit, False) for bit in reads)
+
+
+def multiplies(netlist, bit):
+    """Whether a bit goes into a multiplier."""
+    return any(name is not None and netlist.cells[name]["type"] == "MULT18X18D" for name, _ in netlist.readers[bit])
 
 
 def pack_inputs(netlist, name):

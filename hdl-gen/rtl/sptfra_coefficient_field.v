@@ -4,7 +4,7 @@
 // The field memory where taxels are not folded, and the forces as they leave it: f_p = g_p0 + mu_x g_p1 + mu_y g_p2.
 //
 // Two frames of the nine coefficient vectors, taxel by taxel, component after component, dealt to as many memories as
-// a beat has words. From step to forces: 5 cycles.
+// a beat has words. From step to forces: 6 cycles.
 
 `default_nettype none
 
@@ -117,16 +117,16 @@ module sptfra_coefficient_field #(
                 end
             end
 
-            // ---- Stage 5: products and sum, with 16 fraction bits more
+            // ---- Stage 5: products; stage 6: the sum, with 16 fraction bits more
             reg [26:0] g0_5;
             wire signed [44:0] x_low_5; // each product is their sum
             wire signed [44:0] x_high_5;
             wire signed [44:0] y_low_5;
             wire signed [44:0] y_high_5;
+            reg signed [63:0] force_6;
             wire signed [63:0] g0_wide = {{21{g0_5[26]}}, g0_5, 16'd0};
 
-            assign force_value[64*word +: 64] = g0_wide + {{19{x_low_5[44]}}, x_low_5} + {{19{x_high_5[44]}}, x_high_5}
-                + {{19{y_low_5[44]}}, y_low_5} + {{19{y_high_5[44]}}, y_high_5};
+            assign force_value[64*word +: 64] = force_6;
 
             sptfra_multiply multiplier_x (
                 .clock       (clock),
@@ -149,6 +149,8 @@ module sptfra_coefficient_field #(
             always @(posedge clock) begin
                 if (enable) begin
                     g0_5 <= wide_4[27*0 +: 27];
+                    force_6 <= g0_wide + {{19{x_low_5[44]}}, x_low_5} + {{19{x_high_5[44]}}, x_high_5}
+                        + {{19{y_low_5[44]}}, y_low_5} + {{19{y_high_5[44]}}, y_high_5};
                 end
             end
         end

@@ -42,6 +42,9 @@ module sptfra_direction #(
     localparam integer X_WIDTH = (COLUMNS <= 2) ? 1 : $clog2(COLUMNS);
     localparam integer Y_WIDTH = (ROWS <= 2) ? 1 : $clog2(ROWS);
     localparam integer LAST_COLUMN = COLUMNS - 1;
+    // An index is multiplied in two halves
+    localparam integer X_HALF = (X_WIDTH + 1) / 2;
+    localparam integer Y_HALF = (Y_WIDTH + 1) / 2;
 
     // ---- Where the stress belongs, and its moments
     reg [X_WIDTH-1:0] column;
@@ -50,25 +53,45 @@ module sptfra_direction #(
     reg tension_seen;
     wire last_column = (column == LAST_COLUMN[X_WIDTH-1:0]);
     wire above_floor = (magnitude > TAXEL_FLOOR);
-    wire [47:0] moment_x;
-    wire [47:0] moment_y;
+    wire [2*X_HALF-1:0] column_wide = {{(2*X_HALF-X_WIDTH){1'b0}}, column};
+    wire [2*Y_HALF-1:0] row_wide = {{(2*Y_HALF-Y_WIDTH){1'b0}}, row};
+    wire [47:0] lower_x;
+    wire [47:0] upper_x;
+    wire [47:0] lower_y;
+    wire [47:0] upper_y;
 
     assign no_push = !(compression_seen && tension_seen);
 
     sptfra_times_index #(
-        .INDEX_WIDTH (X_WIDTH)
-    ) times_x (
+        .INDEX_WIDTH (X_HALF)
+    ) times_lower_x (
         .number  (magnitude),
-        .index   (column),
-        .product (moment_x)
+        .index   (column_wide[X_HALF-1:0]),
+        .product (lower_x)
     );
 
     sptfra_times_index #(
-        .INDEX_WIDTH (Y_WIDTH)
-    ) times_y (
+        .INDEX_WIDTH (X_HALF)
+    ) times_upper_x (
         .number  (magnitude),
-        .index   (row),
-        .product (moment_y)
+        .index   (column_wide[2*X_HALF-1:X_HALF]),
+        .product (upper_x)
+    );
+
+    sptfra_times_index #(
+        .INDEX_WIDTH (Y_HALF)
+    ) times_lower_y (
+        .number  (magnitude),
+        .index   (row_wide[Y_HALF-1:0]),
+        .product (lower_y)
+    );
+
+    sptfra_times_index #(
+        .INDEX_WIDTH (Y_HALF)
+    ) times_upper_y (
+        .number  (magnitude),
+        .index   (row_wide[2*Y_HALF-1:Y_HALF]),
+        .product (upper_y)
     );
 
     always @(posedge clock) begin
@@ -90,8 +113,15 @@ module sptfra_direction #(
     reg valid_1;
     reg tensile_1;
     reg [47:0] magnitude_1;
-    reg [47:0] moment_x_1;
-    reg [47:0] moment_y_1;
+    reg [47:0] lower_x_1;
+    reg [47:0] upper_x_1;
+    reg [47:0] lower_y_1;
+    reg [47:0] upper_y_1;
+    reg valid_2;
+    reg tensile_2;
+    reg [47:0] magnitude_2;
+    reg [47:0] moment_x_2;
+    reg [47:0] moment_y_2;
     reg [47:0] compression;
     reg [47:0] compression_x;
     reg [47:0] compression_y;
@@ -103,17 +133,24 @@ module sptfra_direction #(
         valid_1 <= valid && !reset;
         tensile_1 <= tensile;
         magnitude_1 <= {21'd0, magnitude};
-        moment_x_1 <= moment_x;
-        moment_y_1 <= moment_y;
-        if (valid_1 && tensile_1) begin
-            tension <= tension + magnitude_1;
-            tension_x <= tension_x + moment_x_1;
-            tension_y <= tension_y + moment_y_1;
+        lower_x_1 <= lower_x;
+        upper_x_1 <= upper_x << X_HALF;
+        lower_y_1 <= lower_y;
+        upper_y_1 <= upper_y << Y_HALF;
+        valid_2 <= valid_1 && !reset;
+        tensile_2 <= tensile_1;
+        magnitude_2 <= magnitude_1;
+        moment_x_2 <= lower_x_1 + upper_x_1;
+        moment_y_2 <= lower_y_1 + upper_y_1;
+        if (valid_2 && tensile_2) begin
+            tension <= tension + magnitude_2;
+            tension_x <= tension_x + moment_x_2;
+            tension_y <= tension_y + moment_y_2;
         end
-        if (valid_1 && !tensile_1) begin
-            compression <= compression + magnitude_1;
-            compression_x <= compression_x + moment_x_1;
-            compression_y <= compression_y + moment_y_1;
+        if (valid_2 && !tensile_2) begin
+            compression <= compression + magnitude_2;
+            compression_x <= compression_x + moment_x_2;
+            compression_y <= compression_y + moment_y_2;
         end
         if (reset || clear) begin
             compression <= 48'd0;

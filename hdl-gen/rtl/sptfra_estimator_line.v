@@ -201,6 +201,7 @@ module sptfra_estimator_line #(
                 .search_bank (search_bank),
                 .start       (search_start),
                 .x_is_free   (x_is_free),
+                .next_c0     (line_c0),
                 .c0          (c0),
                 .c1          (c1),
                 .stress_sum  (search_stress_sum),

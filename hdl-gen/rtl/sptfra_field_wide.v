@@ -163,7 +163,7 @@ module sptfra_field_wide #(
         end
     endgenerate
 
-    // ---- Stage 5: each component's own; stage 6: the weight's share of it, and both
+    // ---- Stage 5: each component's own; stage 6: the weight's share of it, and both; stage 7: the force
     generate
         for (index = 0; index < WORDS; index = index + 1) begin : gen_words
             localparam [2:0] PLACE = index;
@@ -175,6 +175,7 @@ module sptfra_field_wide #(
             reg signed [DATA_BITS-1:0] weight_5;
             reg signed [DATA_BITS-1:0] force_5;
             reg signed [DATA_BITS-1:0] force_6;
+            reg signed [63:0] force_7;
             wire signed [FACTOR_BITS-1:0] weight_wide;
             wire signed [PRODUCT_BITS-1:0] product_low_6; // the product is their sum
             wire signed [PRODUCT_BITS-1:0] product_high_6;
@@ -186,8 +187,7 @@ module sptfra_field_wide #(
                 assign weight_wide[bit_index] = weight_5[(bit_index < DATA_BITS) ? bit_index : DATA_BITS - 1];
             end
 
-            assign force_value[64*index +: 64] = (force_wide <<< FORCE_SHIFT) + (product_low <<< SHARE_SHIFT)
-                + (product_high <<< SHARE_SHIFT);
+            assign force_value[64*index +: 64] = force_7;
 
             if (DATA_BITS > 27) begin : gen_two_multipliers
                 sptfra_multiply_wide multiplier (
@@ -223,6 +223,8 @@ module sptfra_field_wide #(
                         default: force_5 <= of_taxel_4[DATA_BITS*2 +: DATA_BITS];
                     endcase
                     force_6 <= force_5;
+                    force_7 <= (force_wide <<< FORCE_SHIFT) + (product_low <<< SHARE_SHIFT)
+                        + (product_high <<< SHARE_SHIFT);
                 end
             end
 

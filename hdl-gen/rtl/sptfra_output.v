@@ -35,13 +35,13 @@ module sptfra_output #(
     // 32-bit words of a beat: 1, 2 or 4
     parameter integer WORDS = 1,
     // Enabled cycles from a step of the field memory to the forces
-    parameter integer FIELD_STAGES = 5,
+    parameter integer FIELD_STAGES = 6,
     // From start to the first beat, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0
 ) (
     input  wire clock,
     input  wire reset,
-    // Start, with everything held by the output from then on but the field
+    // Start, with the timestamp and the census; all else but the field holds for a cycle more
     input  wire start,
     output wire idle,
     input  wire [15:0] status,
@@ -97,6 +97,7 @@ module sptfra_output #(
 
     // ---- The frame, held
     reg busy;
+    reg load; // a cycle after its start
     reg [15:0] frame_count;
     reg [15:0] held_status;
     reg [31:0] held_timestamp;
@@ -169,9 +170,13 @@ module sptfra_output #(
             busy <= 1'b1;
             beat <= {BEAT_WIDTH{1'b0}};
             reads <= 1'b0;
-            held_status <= status;
             held_timestamp <= timestamp;
             held_census <= census;
+        end
+        // The many bits follow the decision through a register; the first beat needs them a cycle later
+        load <= start;
+        if (load) begin
+            held_status <= status;
             held_blank <= blank;
             held_force_x <= force_x;
             held_force_y <= force_y;
@@ -189,6 +194,7 @@ module sptfra_output #(
         end
         if (reset) begin
             busy <= 1'b0;
+            load <= 1'b0;
             frame_count <= 16'd0;
             field_release <= 1'b0;
         end

@@ -3,8 +3,9 @@
 //
 // Memory with one write port and one read port, both synchronous.
 //
-// Latency: 1 cycle from read_address to read_data, held while read_enable is low. A word read in the cycle in
-// which it is written is the old one.
+// Latency: 1 cycle from read_address to read_data, held while read_enable is low. A word must not be used that is read
+// in the cycle in which it is written: what a block memory answers then differs from fabric to fabric, and a tool that
+// has to keep to one answer puts logic behind the memory. Simulations answer with the old word's complement.
 
 `default_nettype none
 
@@ -25,7 +26,7 @@ module sptfra_ram #(
     output reg  [WIDTH-1:0]         read_data
 );
 
-    reg [WIDTH-1:0] memory [0:DEPTH-1];
+    (* no_rw_check *) reg [WIDTH-1:0] memory [0:DEPTH-1];
 
     always @(posedge clock) begin
         if (write_enable) begin
@@ -33,6 +34,11 @@ module sptfra_ram #(
         end
         if (read_enable) begin
             read_data <= memory[read_address];
+`ifdef SIMULATION
+            if (write_enable && (write_address == read_address)) begin
+                read_data <= ~memory[read_address];
+            end
+`endif
         end
     end
 

@@ -40,6 +40,7 @@ module sptfra_search #(
     // Start, with the line held from the next cycle on
     input  wire start,
     input  wire x_is_free,
+    input  wire signed [17:0] next_c0, // c0 of the next cycle, with start
     input  wire signed [17:0] c0,
     input  wire signed [17:0] c1,
     input  wire [39:0] stress_sum,
@@ -80,21 +81,30 @@ module sptfra_search #(
     reg signed [18:0] left_in;
     reg signed [18:0] right_in;
     reg signed [18:0] right_out;
-    // Registers, so that a factor has a short way to all cells: what follows a decision is read a cycle later
+    // What follows a decision is read a cycle later
     reg signed [18:0] left_sum;
     reg signed [18:0] right_sum;
     reg signed [18:0] middle_sum;
     wire signed [18:0] result_sum = left_in + right_in;
 
+    // The factor is a register, which goes all the way to the cells' multipliers: it is chosen for the next cycle
+    wire signed [18:0] left = left_out + left_in;
+    wire signed [18:0] right = right_in + right_out;
+    wire signed [18:0] middle = low + high;
+    wire pair = (state == FLOOR) || (state == LEVEL);
+    reg raise; // floor_low is B_min: the level follows
+    wire last_element;
+    wire next_second = last_element ? pair && !second : second;
     reg signed [17:0] factor;
 
-    always @(*) begin
+    always @(posedge clock) begin
         case (state)
-            ALPHA: factor = c0;
-            BETA: factor = c1;
-            SLOPE: factor = middle_sum[18:1];
-            FLOOR: factor = second ? high[17:0] : low[17:0];
-            default: factor = second ? right_sum[18:1] : left_sum[18:1];
+            IDLE: factor <= next_c0;
+            ALPHA: factor <= last_element ? c1 : c0;
+            BETA: factor <= c1;
+            FLOOR: factor <= raise ? left[18:1] : next_second ? high[17:0] : low[17:0];
+            LEVEL: factor <= next_second ? right[18:1] : left[18:1];
+            default: factor <= middle[18:1];
         endcase
     end
 
@@ -136,8 +146,7 @@ module sptfra_search #(
     );
 
     // ---- Decisions
-    wire pair = (state == FLOOR) || (state == LEVEL);
-    wire last_element = reading && (element == LAST_ELEMENT[ELEMENT_WIDTH-1:0]);
+    assign last_element = reading && (element == LAST_ELEMENT[ELEMENT_WIDTH-1:0]);
     reg [DECISION_CYCLES-1:1] ends; // of an evaluation; index k: k cycles after its last taxel's address
     reg [DECISION_CYCLES-1:1] seconds;
     reg first_over; // the first evaluation of a pair
@@ -146,7 +155,6 @@ module sptfra_search #(
     reg signed [47:0] floor_high; // B at high
     reg compare; // both are there
     reg compared;
-    reg raise; // floor_low is B_min: the level follows
     reg high_is_lower;
     wire [47:0] margin = ({8'd0, stress_sum} << LEVEL_LEFT) >> LEVEL_RIGHT;
 
@@ -179,9 +187,9 @@ module sptfra_search #(
         if (resume) begin
             reading <= 1'b1;
         end
-        left_sum <= left_out + left_in;
-        right_sum <= right_in + right_out;
-        middle_sum <= low + high;
+        left_sum <= left;
+        right_sum <= right;
+        middle_sum <= middle;
         wait_count <= wait_count + 4'd1;
         if (cells_saturated) begin
             saturated <= 1'b1;

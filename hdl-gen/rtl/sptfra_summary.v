@@ -60,22 +60,17 @@ module sptfra_summary #(
     reg low_half; // of the sums
     reg [1:0] q;
     reg [4:0] sum_index; // 3 * (component - 1) + q, torques from component 4 on
-    wire [39:0] sum_of [0:17];
-    genvar pq;
-    generate
-        for (pq = 0; pq < 18; pq = pq + 1) begin : gen_sums
-            assign sum_of[pq] = sums[40*pq +: 40];
-        end
-    endgenerate
-    wire [39:0] selected = sum_of[sum_index];
+    integer four;
     wire resultants = (state == FORCES) || (state == ROTATE);
-    reg forces; // in steps 4 to 39: a sum is chosen
-    reg forces_1; // then its half
-    reg forces_2; // then it goes into the multiplier
-    reg [1:0] q_1, q_2;
-    reg low_half_1;
-    reg [39:0] sum_1;
-    reg signed [26:0] half_2;
+    // A sum in two cycles: one of each four, and one of these
+    reg forces; // in steps 3 to 38: a sum is chosen
+    reg forces_1, forces_2, forces_3; // the last: half of it goes into the multiplier
+    reg [1:0] q_1, q_2, q_3;
+    reg low_half_1, low_half_2;
+    reg [4:2] sum_index_1;
+    reg [40*5-1:0] candidates_1;
+    reg [39:0] sum_2;
+    reg signed [26:0] half_3;
 
     reg [31:0] unit_z; // |F_z|, with its leading bit at the top
     reg signed [17:0] coefficient;
@@ -85,7 +80,7 @@ module sptfra_summary #(
     reg signed [26:0] mac_data;
     wire dependent_steps = (DEPENDENT != 0) && (state == FORCES) && (step <= 6'd1);
     wire other_steps = ((state == GAIN) && (step <= 6'd1)) || ((state == DIVIDE) && (step == 6'd8));
-    wire issue = dependent_steps || forces_2 || other_steps;
+    wire issue = dependent_steps || forces_3 || other_steps;
     wire signed [47:0] accumulator;
     wire [33:0] magnitude;
 
@@ -98,10 +93,10 @@ module sptfra_summary #(
             coefficient = {2'b01, error_log[11:0], 4'd0};
             data = {1'b0, unit_z[31:6]};
             first = 1'b1;
-        end else if (forces_2) begin
-            coefficient = (q_2 == 2'd0) ? ONE : (q_2 == 2'd1) ? mu_x : mu_y;
-            data = half_2;
-            first = (q_2 == 2'd0);
+        end else if (forces_3) begin
+            coefficient = (q_3 == 2'd0) ? ONE : (q_3 == 2'd1) ? mu_x : mu_y;
+            data = half_3;
+            first = (q_3 == 2'd0);
         end else begin
             coefficient = (step == 6'd0) ? slope : other;
             data = (step == 6'd0) ? { {9{free[17]}}, free} : { {9{ONE[17]}}, ONE};
@@ -110,18 +105,23 @@ module sptfra_summary #(
     end
 
     always @(posedge clock) begin
-        forces <= resultants && (step >= 6'd3) && (step <= 6'd38);
-        {forces_2, forces_1} <= {forces_1, forces};
-        {q_2, q_1} <= {q_1, q};
-        low_half_1 <= low_half;
-        sum_1 <= selected;
-        half_2 <= low_half_1 ? {7'd0, sum_1[19:0]} : { {7{sum_1[39]}}, sum_1[39:20]};
+        forces <= resultants && (step >= 6'd2) && (step <= 6'd37);
+        {forces_3, forces_2, forces_1} <= {forces_2, forces_1, forces};
+        {q_3, q_2, q_1} <= {q_2, q_1, q};
+        {low_half_2, low_half_1} <= {low_half_1, low_half};
+        sum_index_1 <= sum_index[4:2];
+        for (four = 0; four < 4; four = four + 1) begin
+            candidates_1[40*four +: 40] <= sums[40*{four[2:0], sum_index[1:0]} +: 40];
+        end
+        candidates_1[160 +: 40] <= sum_index[0] ? sums[40*17 +: 40] : sums[40*16 +: 40];
+        sum_2 <= candidates_1[40*sum_index_1 +: 40];
+        half_3 <= low_half_2 ? {7'd0, sum_2[19:0]} : { {7{sum_2[39]}}, sum_2[39:20]};
         mac_valid <= issue;
         mac_first <= first;
         mac_coefficient <= coefficient;
         mac_data <= data;
         if (reset) begin
-            {forces, forces_1, forces_2} <= 3'd0;
+            {forces, forces_1, forces_2, forces_3} <= 4'd0;
             mac_valid <= 1'b0;
         end
     end

@@ -22,7 +22,7 @@ pub fn module(plan: &Plan) -> &'static str {
 
 /// Cycles from a step to the forces.
 pub fn stages(plan: &Plan) -> u64 {
-    if module(plan) == "sptfra_field_wide" { 6 } else { 5 }
+    if module(plan) == "sptfra_field_wide" { 7 } else { 6 }
 }
 
 /// The instance's parameters.

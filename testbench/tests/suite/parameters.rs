@@ -7,7 +7,7 @@ use testbench::tools;
 use crate::support::workspace;
 
 /// Module, parameter, value, what the tool must name.
-const SENSELESS: [(&str, &str, &str, &str); 23] = [
+const SENSELESS: [(&str, &str, &str, &str); 34] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("bz", "WAYS", "2", "ways_must_be_1_or_4"),
     ("bz", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
@@ -19,6 +19,12 @@ const SENSELESS: [(&str, &str, &str, &str); 23] = [
     ("spmv_lane", "OPERAND_DEPTH", "12", "the_operand_memory_does_not_hold_its_vectors"),
     ("spmv_lane", "MIRROR_SIDE", "4", "only_a_square_grid_is_mirrored"),
     ("spmv_way", "COEFFICIENT_BITS", "28", "two_multipliers_have_27_by_35_bits"),
+    ("spmv_sequencer", "PROGRAMS", "4", "programs_must_be_1_to_3"),
+    ("spmv_sequencer", "LASTS", "1", "the_last_product_must_end_its_program"),
+    ("spmv_sequencer", "IN_ROUNDS", "1", "products_in_rounds_pass_over_zeros"),
+    ("spmv_sequencer", "MIRROR_SIDE", "4", "only_a_square_grid_is_mirrored"),
+    ("spmv_collector", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("spmv_collector", "DESTINATION_BITS", "5", "a_destination_has_3_or_4_bits"),
     ("unfold", "WAYS", "2", "ways_must_be_1_or_4"),
     ("we", "WAYS", "2", "ways_must_be_1_or_4"),
     ("bodies", "WAYS", "2", "ways_must_be_1_or_4"),
@@ -29,6 +35,11 @@ const SENSELESS: [(&str, &str, &str, &str); 23] = [
     ("co", "WAYS", "2", "ways_must_be_1_or_4"),
     ("turns", "PROGRAMS", "4", "programs_must_be_1_to_3"),
     ("turns", "RESIDUALS", "3", "one_or_two_residuals_have_a_place"),
+    ("op", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
+    ("op", "SLIP_RELEASE", "1", "a_slip_ends_below_its_limit"),
+    ("registers", "COLUMNS", "65", "columns_and_rows_must_be_2_to_64"),
+    ("registers", "STREAM_BYTES", "12", "a_beat_has_4_8_or_16_bytes"),
+    ("registers", "SAMPLES", "3", "samples_are_float32_int16_or_uint16"),
     ("field", "COLUMNS", "65", "columns_and_rows_must_be_2_to_64"),
     ("estimator_joint", "WAYS", "1", "the_joint_estimator_needs_four_ways"),
 ];

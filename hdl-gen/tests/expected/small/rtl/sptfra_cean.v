@@ -181,13 +181,11 @@ module sptfra_cean #(
 
     always @(posedge clock) begin
         waiting <= waiting + {1'b0, push} - {1'b0, direction_take};
-        if (direction_take) begin
-            waiting_0 <= waiting_1;
+        // A place that has nothing follows what may come
+        if (direction_take || !direction_valid) begin
+            waiting_0 <= waiting[1] ? waiting_1 : pushed;
         end
-        if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin
-            waiting_0 <= pushed;
-        end
-        if (push && (waiting - {1'b0, direction_take} != 2'd0)) begin
+        if (direction_take || direction_room) begin
             waiting_1 <= pushed;
         end
         if (reset) begin

@@ -5,7 +5,7 @@
 // grid.
 //
 // Written a quad at a time; read taxel by taxel in the order of the output, component after component. Two frames of
-// A_p r, four of |w|, which is there long before it is needed. From step to force: 5 cycles.
+// A_p r, four of |w|, which is there long before it is needed. From step to force: 6 cycles.
 
 `default_nettype none
 
@@ -219,11 +219,12 @@ module sptfra_field #(
         end
     endgenerate
 
-    // ---- Stage 4: the weight's share of this component; stage 5: both
+    // ---- Stage 4: the weight's share of this component; stage 5: both; stage 6: the force
     reg signed [17:0] share_4;
     reg signed [DATA_BITS-1:0] weight_4;
     reg signed [DATA_BITS-1:0] force_4;
     reg signed [DATA_BITS-1:0] force_5;
+    reg signed [63:0] force_6;
     wire signed [FACTOR_BITS-1:0] weight_wide;
     wire signed [PRODUCT_BITS-1:0] product_low_5; // the product is their sum
     wire signed [PRODUCT_BITS-1:0] product_high_5;
@@ -256,7 +257,7 @@ module sptfra_field #(
         end
     endgenerate
 
-    assign force_value = (force_wide <<< FORCE_SHIFT) + (product_low <<< SHARE_SHIFT) + (product_high <<< SHARE_SHIFT);
+    assign force_value = force_6;
 
     always @(posedge clock) begin
         if (enable) begin
@@ -268,6 +269,7 @@ module sptfra_field #(
             weight_4 <= weight_of[member_3];
             force_4 <= force_of[member_3];
             force_5 <= force_4;
+            force_6 <= (force_wide <<< FORCE_SHIFT) + (product_low <<< SHARE_SHIFT) + (product_high <<< SHARE_SHIFT);
         end
     end
 

@@ -61,6 +61,7 @@ module sptfra_line #(
 
     reg [39:0] spread;
     wire [5:0] spread_bits; // two cycles later
+    reg [5:0] significant;
     reg [5:0] shift;
 
     sptfra_leading_bit #(
@@ -165,6 +166,10 @@ module sptfra_line #(
         divide_start <= 1'b0;
         step <= step + 4'd1;
         sums_take <= (state == SUMS) && sums_complete;
+        // The sums hold from DIRECTION on, that is, a cycle before EQUATION at least
+        spread <= (g10 ^ {40{g10[39]}}) | (g11 ^ {40{g11[39]}}) | (g12 ^ {40{g12[39]}})
+            | (g20 ^ {40{g20[39]}}) | (g21 ^ {40{g21[39]}}) | (g22 ^ {40{g22[39]}});
+        significant <= spread_bits;
         magnitude_x <= push_x[26] ? -push_x : push_x;
         magnitude_y <= push_y[26] ? -push_y : push_y;
         denominator <= x_is_free ? e : a;
@@ -190,9 +195,7 @@ module sptfra_line #(
             end
             EQUATION: begin
                 case (step)
-                    4'd0: spread <= (g10 ^ {40{g10[39]}}) | (g11 ^ {40{g11[39]}}) | (g12 ^ {40{g12[39]}})
-                        | (g20 ^ {40{g20[39]}}) | (g21 ^ {40{g21[39]}}) | (g22 ^ {40{g22[39]}});
-                    4'd3: shift <= (spread_bits > LINE_SUM_BITS) ? spread_bits - LINE_SUM_BITS : 6'd0;
+                    4'd3: shift <= (significant > LINE_SUM_BITS) ? significant - LINE_SUM_BITS : 6'd0;
                     4'd9: a <= accumulator;
                     4'd11: e <= accumulator;
                     4'd13: k <= accumulator;

@@ -32,7 +32,7 @@ module sptfra_op #(
     // 32-bit words of a beat out: 1, 2 or 4
     parameter integer WORDS = 1,
     // Enabled cycles from a step of the field memory to the forces
-    parameter integer FIELD_STAGES = 5,
+    parameter integer FIELD_STAGES = 6,
     // Friction at which a frame slips, and below which it no longer does if the frame before did, 16 fraction bits;
     // 0: none ever slips
     parameter [17:0] SLIP_LIMIT = 18'd0,
@@ -82,6 +82,15 @@ module sptfra_op #(
     output wire m_tvalid,
     input  wire m_tready
 );
+
+    generate
+        if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
+            sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
+        end
+        if (SLIP_RELEASE > SLIP_LIMIT) begin : gen_check_slip
+            sptfra_error_a_slip_ends_below_its_limit invalid ();
+        end
+    endgenerate
 
     localparam integer FRICTION_FRACTION = 16;
 
@@ -195,18 +204,32 @@ module sptfra_op #(
     wire answered = !bad && !no_contact;
     // Friction |mu_x| + |mu_y| from which on something pulls, 16 fraction bits
     localparam [17:0] PULLING = 18'd22937;
-    wire [17:0] size_x = mu_x[17] ? -mu_x : mu_x;
-    wire [17:0] size_y = mu_y[17] ? -mu_y : mu_y;
-    wire pushed = ({1'b0, size_x} + {1'b0, size_y} >= {1'b0, PULLING});
+    // Through registers: mu is there long before the output begins, and holds for a cycle after
+    reg [17:0] size_x;
+    reg [17:0] size_y;
+    reg [18:0] size;
+    reg pushed;
+    reg doubtful;
+    reg several; // of the frame whose output has just begun
     wire slips;
+
+    always @(posedge clock) begin
+        size_x <= mu_x[17] ? -mu_x : mu_x;
+        size_y <= mu_y[17] ? -mu_y : mu_y;
+        size <= {1'b0, size_x} + {1'b0, size_y};
+        pushed <= (size >= {1'b0, PULLING});
+        doubtful <= (THIN != 0) || ((DOUBT != 0) && (summary_error_log > DOUBT_LIMIT));
+        several <= (bodies > 8'd1);
+    end
+
     wire [15:0] status = {
         4'd0,
         answered && summary_flags[5] && (summary_unknown || pushed),
         answered && slips,
         answered && summary_flags[4],
         answered && (REPLACED != 0),
-        answered && (bodies > 8'd1),
-        answered && ((THIN != 0) || ((DOUBT != 0) && (summary_error_log > DOUBT_LIMIT))),
+        answered && several,
+        answered && doubtful,
         bad_length,
         not_finite,
         answered && (summary_flags[2] || summary_saturated),
@@ -223,13 +246,15 @@ module sptfra_op #(
             wire signed [9:0] down = -(friction_exponent + FRACTION);
             reg [34:0] friction;
             reg slipping; // the frame before slips
+            reg output_started; // with the status being loaded
 
             assign slips = (friction >= {17'd0, slipping ? SLIP_RELEASE : SLIP_LIMIT});
 
             always @(posedge clock) begin
                 // Not below 1: a quotient of 30 bits and more is far above any limit
                 friction <= (down < 10'sd1) ? {35{friction_quotient != 64'd0}} : friction_quotient[34:0] >> down;
-                if (output_start && !bad) begin
+                output_started <= output_start && !reset;
+                if (output_started && !bad) begin
                     slipping <= answered && slips;
                 end
                 if (reset) begin

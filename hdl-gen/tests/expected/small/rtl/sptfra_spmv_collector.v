@@ -61,6 +61,18 @@ module sptfra_spmv_collector #(
     output reg  result_last // of its program
 );
 
+    generate
+        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
+            sptfra_error_ways_must_be_1_or_4 invalid ();
+        end
+        if ((DESTINATION_BITS != 3) && (DESTINATION_BITS != 4)) begin : gen_check_destination
+            sptfra_error_a_destination_has_3_or_4_bits invalid ();
+        end
+        if ((MIRROR != 0) && (WAYS != 4)) begin : gen_check_mirror
+            sptfra_error_only_four_ways_are_mirrored invalid ();
+        end
+    endgenerate
+
     localparam TAKE_TO_BUS = 3; // cycles, which simulations check
     localparam LANE_WIDTH = (LANES > 2) ? $clog2(LANES) : 1;
     localparam WORD_WIDTH = 1 + LANE_WIDTH + DESTINATION_BITS + ROW_WIDTH;

@@ -132,10 +132,7 @@ module sptfra_spmv_lane #(
     wire own_issue = issue && !skip && (kind != IDLE);
     wire mac_issue = own_issue || (issue && skip);
     wire mac_is_first = skip ? skip_first : first;
-    wire row_ends = skip ? skip_last && ((HAS_LAST_ROW != 0) || !skip_partial)
-        : last && ((kind == ROW) || (kind == HEAD));
-    wire tail_ends_now = !skip && last && (kind == TAIL);
-    wire head_ends_now = !skip && (kind == HEAD);
+    wire segment_ends = skip ? skip_last && ((HAS_LAST_ROW != 0) || !skip_partial) : last;
     wire [VALUE_WIDTH-1:0] value_address = skip ? skip_word : word_wide[VALUE_WIDTH-1:0];
 
     always @(posedge clock) begin
@@ -242,20 +239,25 @@ module sptfra_spmv_lane #(
     // ---- Control beside the data: index k holds what belongs to the issue k cycles ago
     reg [3:1] mac_valid;
     reg [3:1] mac_first;
-    reg [6:1] result_ends;
-    reg [6:1] tail_ends;
-    reg [6:1] is_head;
+    reg segment_ends_1;
+    reg [1:0] kind_1;
+    reg [6:2] result_ends;
+    reg [6:2] tail_ends;
+    reg [6:2] is_head;
 
     always @(posedge clock) begin
         mac_valid <= {mac_valid[2:1], mac_issue};
         mac_first <= {mac_first[2:1], mac_is_first};
-        result_ends <= {result_ends[5:1], issue && row_ends};
-        tail_ends <= {tail_ends[5:1], issue && tail_ends_now};
-        is_head <= {is_head[5:1], head_ends_now};
+        segment_ends_1 <= issue && segment_ends;
+        kind_1 <= skip ? ROW : kind;
+        result_ends <= {result_ends[5:2], segment_ends_1 && ((kind_1 == ROW) || (kind_1 == HEAD))};
+        tail_ends <= {tail_ends[5:2], segment_ends_1 && (kind_1 == TAIL)};
+        is_head <= {is_head[5:2], kind_1 == HEAD};
         if (reset) begin
             mac_valid <= 3'd0;
-            result_ends <= 6'd0;
-            tail_ends <= 6'd0;
+            segment_ends_1 <= 1'b0;
+            result_ends <= 5'd0;
+            tail_ends <= 5'd0;
         end
     end
 

@@ -93,6 +93,21 @@ module sptfra_spmv_sequencer #(
     output wire skip_partial // the last round has no row for every lane
 );
 
+    generate
+        if ((PROGRAMS < 1) || (PROGRAMS > 3)) begin : gen_check_programs
+            sptfra_error_programs_must_be_1_to_3 invalid ();
+        end
+        if (!LASTS[PRODUCTS-1]) begin : gen_check_last
+            sptfra_error_the_last_product_must_end_its_program invalid ();
+        end
+        if ((SKIPS == 0) && (IN_ROUNDS != {PRODUCTS{1'b0}})) begin : gen_check_rounds
+            sptfra_error_products_in_rounds_pass_over_zeros invalid ();
+        end
+        if ((MIRROR_SIDE != 0) && (MIRROR_SIDE * MIRROR_SIDE != ELEMENTS)) begin : gen_check_mirror
+            sptfra_error_only_a_square_grid_is_mirrored invalid ();
+        end
+    endgenerate
+
     localparam PRODUCT_WIDTH = (PRODUCTS > 2) ? $clog2(PRODUCTS) : 1;
     localparam [2:0] IDLE = 3'd0, WAIT = 3'd1, RUN = 3'd2, FETCH = 3'd3, ROUNDS = 3'd4;
     localparam [COUNT_BITS-1:0] ONE = 1;
