@@ -27,13 +27,30 @@ pub const OF_BODY: [&str; 9] = ["taxels", "status", "x", "y", "F_x", "F_y", "F_z
 /// Behind those of all bodies each one's torque, in N m as the frame's.
 pub const TORQUE_OF_BODY: [&str; 3] = ["T_x", "T_y", "T_z"];
 
-/// The names of the columns of a file with so many records of bodies and the forces of so many taxels.
+/// A column with its unit, as a header has it: `F_x (N)`; the status, numbers of things and friction have none.
+fn with_unit(name: String) -> String {
+    let owned = name.split_once('_').filter(|(owner, _)| owner.starts_with("body") || owner.starts_with("taxel"));
+    let unit = match owned.map_or(&*name, |(_, quantity)| quantity) {
+        "phi" => "rad",
+        "x" | "y" => "m",
+        "standard_error" => "N",
+        quantity if quantity.starts_with("F_") || quantity.starts_with("f_") => "N",
+        quantity if quantity.starts_with("T_") => "N m",
+        _ => return name,
+    };
+    format!("{name} ({unit})")
+}
+
+/// The names of the columns, with units, of a file with so many records of bodies and the forces of so many taxels.
 pub fn columns(records: usize, taxels: usize) -> Vec<String> {
     let summary = SUMMARY.into_iter().map(str::to_owned);
     let of_body = |body, names: &[&str]| names.iter().map(|name| format!("body{body}_{name}")).collect::<Vec<_>>();
     let summary = summary.chain((0..records).flat_map(|body| of_body(body, &OF_BODY)));
     let summary = summary.chain((0..records).flat_map(|body| of_body(body, &TORQUE_OF_BODY)));
-    summary.chain((0..taxels).flat_map(|taxel| ["x", "y", "z"].map(|axis| format!("taxel{taxel}_f_{axis}")))).collect()
+    summary
+        .chain((0..taxels).flat_map(|taxel| ["x", "y", "z"].map(|axis| format!("taxel{taxel}_f_{axis}"))))
+        .map(with_unit)
+        .collect()
 }
 
 /// A body as its columns, but for the torque.

@@ -1,5 +1,7 @@
 //! How much of a recording lies outside what the sensor was calibrated for.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use crate::design::Design;
@@ -13,6 +15,17 @@ pub struct Beyond {
     pub share: f64,
     /// Frames with any of them.
     pub frames: usize,
+}
+
+impl fmt::Display for Beyond {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { readings, share, frames } = self;
+        let what = "lie beyond what the design is calibrated for, its curve's ends or full_scale_pa";
+        if *readings == 0 {
+            return write!(f, "No readings {what}");
+        }
+        write!(f, "{:.2} % of the readings, in {frames} frames, {what}", 100.0 * share)
+    }
 }
 
 /// Counts the readings of frames, values as they are in the file, that the design has no stress for.

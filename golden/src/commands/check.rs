@@ -66,7 +66,7 @@ pub fn run(path: &Path, recording: &Recording, asked: &Asked) -> Result<(), Box<
             say!("{}: {} frames of {file}, nothing suspicious", design.name, frames.len());
         }
         if findings.is_empty() || beyond.readings > 0 {
-            say!("{}", line_of(&beyond));
+            say!("{beyond}");
         }
     }
     match findings.len() {
@@ -74,14 +74,4 @@ pub fn run(path: &Path, recording: &Recording, asked: &Asked) -> Result<(), Box<
         1 => Err(format!("{file}: one thing to look at before the forces are trusted").into()),
         count => Err(format!("{file}: {count} things to look at before the forces are trusted").into()),
     }
-}
-
-/// How much lies outside what the sensor was calibrated for.
-pub fn line_of(beyond: &Beyond) -> String {
-    let Beyond { readings, share, frames } = beyond;
-    let what = "lie beyond what the design is calibrated for, its curve's ends or full_scale_pa";
-    if *readings == 0 {
-        return format!("No readings {what}");
-    }
-    format!("{:.2} % of the readings, in {frames} frames, {what}", 100.0 * share)
 }

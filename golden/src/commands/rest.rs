@@ -9,7 +9,6 @@ use golden::output::write_whole;
 use golden::rest::{AtRest, TaxelAtRest};
 use serde::Serialize;
 
-use super::check::line_of;
 use super::{Recording, folder, keep_apart};
 
 #[derive(Serialize)]
@@ -65,7 +64,7 @@ pub fn run(
             say!("{kind}: {taxels:?}");
         }
     }
-    say!("{}", line_of(&beyond));
+    say!("{beyond}");
     say!("[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
     if rest.noise_of_full_scale > 0.0 {
         say!(

@@ -73,8 +73,10 @@ pub(super) struct Lines {
     labels: usize,
     /// The sensor that they are read for, if it is to be that of a remark.
     sensor: Option<Sensor>,
-    /// That of the first line which has one.
+    /// That of the first line which has one; spaces between the words of a header are none.
     separator: Option<Separator>,
+    /// Whether a line was a header or a frame.
+    begun: bool,
     /// How many there were.
     number: usize,
     /// The line whose numbers were taken for those of the columns, and the last one of them.
@@ -83,7 +85,15 @@ pub(super) struct Lines {
 
 impl Lines {
     pub(super) fn new(path: &Path, labels: usize, sensor: Option<&Sensor>) -> Self {
-        Self { path: path.to_path_buf(), labels, sensor: sensor.cloned(), separator: None, number: 0, numbered: None }
+        Self {
+            path: path.to_path_buf(),
+            labels,
+            sensor: sensor.cloned(),
+            separator: None,
+            begun: false,
+            number: 0,
+            numbered: None,
+        }
     }
 
     /// Where the lines come from.
@@ -128,13 +138,15 @@ impl Lines {
         if content.is_empty() || content.starts_with(b"#") {
             return Ok(None);
         }
-        let is_first = self.separator.is_none();
-        let separator = *self.separator.get_or_insert_with(|| Separator::of(content));
+        let is_first = !std::mem::replace(&mut self.begun, true);
+        let separator = self.separator.unwrap_or_else(|| Separator::of(content));
         let fields = separator.fields(content);
         if let Some(separator) = foreign(content) {
             return Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator });
         }
-        if is_first && fields.iter().skip(self.labels).all(|field| no_number(field)) {
+        let is_header = is_first && fields.iter().skip(self.labels).all(|field| no_number(field));
+        self.separator = Some(separator).filter(|separator| !is_header || matches!(separator, Separator::Byte(_)));
+        if is_header {
             return Ok(None);
         }
         let mut row = Vec::with_capacity(fields.len());
@@ -182,7 +194,8 @@ pub(super) fn line_of(path: &Path, labels: usize, frame: usize) -> Option<usize>
     let mut rows = lines.filter(|(_, content)| !content.is_empty() && !content.starts_with(b"#"));
     let (first, content) = rows.next()?;
     let separator = Separator::of(content);
-    let fields = separator.fields(content).split_off(labels);
+    // A header may have fewer fields than there are labels.
+    let fields: Vec<_> = separator.fields(content).into_iter().skip(labels).collect();
     let row: Option<Vec<f64>> = fields.iter().map(|field| separator.number(field)).collect();
     let has_header =
         fields.iter().all(|field| no_number(field)) || row.is_some_and(|row| numbers_columns(&row, labels));

@@ -281,6 +281,8 @@ fn label_columns_are_skipped() {
     assert_eq!(read("a,0,1,2\nb,é 1,3,4\n", 2), two);
     assert_eq!(read("\nname,n,r0,r1\na,0,1,2\n\nb,1,3,4\n", 2), two);
     assert_eq!(read("1,2\n3,4\n", 0), two);
+    // A title separates nothing.
+    assert_eq!(read("Pressure map\n1,2\n3,4\n", 0), two);
     // A header is the first line only, and has no number in it; what looks like one later is a mistake.
     for (text, labels, part) in [
         ("n,r0,r1\nm,r0,r1\n", 1, "line 2, column 2"),
@@ -291,6 +293,8 @@ fn label_columns_are_skipped() {
         ("a,1\n", 1, "ends at column 2 where 3"),
         ("a,1,2,3\n", 1, "ends at column 4 where 3"),
         ("name,r0,r1\n", 1, "no frame"),
+        // A header of fewer fields than there are labels.
+        ("name\nm,r0,r1\n", 2, "line 2, column 3"),
     ] {
         let message = read(text, labels).unwrap_err();
         assert!(message.contains(part), "{message}");

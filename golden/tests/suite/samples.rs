@@ -48,6 +48,11 @@ fn frames_hold_what_samples_can_be() {
         assert!(parts.iter().all(|part| message.contains(part)) && message.contains("frames.csv"), "{message}");
     }
     assert!(read("1,2.5,3,4\n", "float32").is_ok());
+    // A header of fewer fields than there are labels.
+    let file = folder.path().join("frames.csv");
+    std::fs::write(&file, "recording\na,b,1,2.5,3,4\n").unwrap();
+    let error = read_frames_of(&file, &pad("pa_per_count = -10.0", "int16").unwrap(), 2).unwrap_err();
+    assert!(error.to_string().contains("line 2, column "), "{error}");
 }
 
 #[test]

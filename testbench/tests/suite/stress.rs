@@ -114,14 +114,14 @@ fn faults_at_rare_moments_are_noticed() {
         (
             &paper,
             "sptfra_cean",
-            "if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin",
-            "if (push && (waiting == 2'd0)) begin",
+            "if (direction_take || !direction_valid) begin",
+            "if ((direction_take && !push) || !direction_valid) begin",
         ),
         (
             &reduced,
             "sptfra_cean",
-            "if (push && (waiting - {1'b0, direction_take} == 2'd0)) begin",
-            "if (push && (waiting == 2'd0)) begin",
+            "if (direction_take || !direction_valid) begin",
+            "if ((direction_take && !push) || !direction_valid) begin",
         ),
         // No quotient although there is no force along z.
         (&reduced, "sptfra_summary", "(bits_z == 7'd0) || (bits_xy == 7'd0)", "(bits_z == 7'd0) && (bits_xy == 7'd0)"),

@@ -16,9 +16,9 @@ use crate::solver::{Solver, Status};
 /// Frames of less than this share of the largest load that the design finds are rest: noise, or a touch.
 const REST: f64 = 0.02;
 
-/// Whether tangential forces are known, and no normal one.
+/// Whether tangential forces are known, and no normal one but that of frames at rest.
 pub(super) fn is_all(measured: &Measured) -> bool {
-    measured.forces.iter().all(|force| force[2].is_none())
+    measured.forces.iter().all(|force| force[2].is_none_or(|normal| normal == 0.0))
         && measured.forces.iter().any(|force| force[0].is_some() || force[1].is_some())
 }
 

@@ -43,7 +43,12 @@ fn the_forces_of_each_body_are_told_and_judged() {
     golden(here, &["scene", "two.toml", "--out", "f.csv"]);
     let truth = fs::read_to_string(here.join("f.forces.csv")).unwrap();
     let header = columns(2, 0).join(",");
-    assert!(header.ends_with(",bodies,body0_taxels,body0_status,body0_x,body0_y,body0_F_x,body0_F_y,body0_F_z,body0_mu,body0_standard_error,body1_taxels,body1_status,body1_x,body1_y,body1_F_x,body1_F_y,body1_F_z,body1_mu,body1_standard_error,body0_T_x,body0_T_y,body0_T_z,body1_T_x,body1_T_y,body1_T_z"), "{header}");
+    let of = |body: usize| {
+        let names = ["taxels", "status", "x (m)", "y (m)", "F_x (N)", "F_y (N)", "F_z (N)", "mu", "standard_error (N)"];
+        names.map(|name| format!("body{body}_{name}")).join(",")
+    };
+    let torque = |body: usize| ["x", "y", "z"].map(|axis| format!("body{body}_T_{axis} (N m)")).join(",");
+    assert!(header.ends_with(&[of(0), of(1), torque(0), torque(1)].join(",")), "{header}");
     assert_eq!(truth.lines().next(), Some(header.as_str()));
     let sensor = Design::load(&here.join("pad.toml")).unwrap().sensor;
     let bodies = read_bodies(&here.join("f.forces.csv"), 6, &sensor).unwrap().unwrap();

@@ -38,7 +38,8 @@ fn line_of(columns: usize) -> Sensor {
 }
 
 /// The first line of every force file.
-const HEADER: &str = "status,F_x,F_y,F_z,mu,phi,mu_x,mu_y,T_x,T_y,T_z,standard_error,bodies";
+const HEADER: &str =
+    "status,F_x (N),F_y (N),F_z (N),mu,phi (rad),mu_x,mu_y,T_x (N m),T_y (N m),T_z (N m),standard_error (N),bodies";
 
 fn row(value: &str) -> String {
     [value; 12].join(",")
@@ -91,7 +92,7 @@ fn scene_then_solve() {
 
     let lines = fs::read_to_string(&forces).unwrap();
     assert_eq!(lines.lines().count(), 1 + 36);
-    assert!(lines.starts_with(&format!("{HEADER},taxel0_f_x,taxel0_f_y,taxel0_f_z,taxel1_f_x,")));
+    assert!(lines.starts_with(&format!("{HEADER},taxel0_f_x (N),taxel0_f_y (N),taxel0_f_z (N),taxel1_f_x (N),")));
     for line in lines.lines().skip(1) {
         let values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
         assert_eq!(values.len(), 13 + 300);
