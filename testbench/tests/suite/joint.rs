@@ -57,6 +57,11 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         design.algorithm.outputs = Outputs::Resultants;
         design
     };
+    let narrow = |mut design: Design| {
+        design.name += "_narrow";
+        design.hardware.stream_bits = 32;
+        design
+    };
     // Latency and interval, the longer answer included, DSP and RAMB36, at most.
     let rows = [
         (shipped("sensor1-joint"), "sensor1-reduced", [5_450, 2_256], [46, 41]),
@@ -64,15 +69,15 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         (shipped("sensor1-fast"), "sensor1-reduced", [2_650, 1_700], [52, 45]),
         (shipped("sensor2-wide"), "sensor2-reduced", [5_200, 2_256], [47, 35]),
         // Sixteen hidden units at a time.
-        (with_lanes(shipped("sensor1-fast"), 64), "sensor1-reduced-64", [1_450, 620], [150, 60]),
+        (narrow(shipped("sensor1-fast-64")), "sensor1-reduced-64", [1_450, 620], [150, 60]),
         (shipped("sensor1-fast-64"), "sensor1-reduced-64", [1_150, 480], [150, 60]),
         // Two taxels a cycle, a row of points weighed in one, and a collector that looks ahead.
-        (with_lanes(shipped("sensor1-fast-64"), 100), "sensor1-reduced-64", [900, 340], [220, 100]),
-        (with_lanes(shipped("sensor1-fast-64"), 128), "sensor1-reduced-64", [900, 352], [223, 100]),
+        (shipped("sensor1-fast-100"), "sensor1-reduced-64", [900, 340], [220, 100]),
+        (with_lanes(shipped("sensor1-fast-100"), 128), "sensor1-reduced-64", [900, 352], [223, 100]),
         (uncorrected(shipped("sensor1-fast")), "sensor1-reduced", [2_650, 1_700], [52, 45]),
         (uncorrected(shipped("sensor1-joint")), "sensor1-reduced", [3_950, 2_256], [46, 41]),
-        (resultants(shipped("sensor1-fast")), "sensor1-resultants", [1_900, 700], [52, 45]),
-        (resultants(shipped("sensor1-fast-64")), "sensor1-resultants", [900, 260], [150, 50]),
+        (resultants(shipped("sensor1-fast")), "sensor1-resultants", [1_960, 704], [52, 45]),
+        (resultants(with_lanes(shipped("sensor1-fast-100"), 64)), "sensor1-resultants", [900, 260], [150, 50]),
     ];
     let lines = in_parallel(&rows, |(design, line, most_cycles, most)| {
         let (plan, line) = (planned(design), planned(&with_lanes(shipped(line), design.hardware.lanes)));
