@@ -72,7 +72,8 @@ impl Proof {
         }
         // What harnesses include.
         for shared in SHARED {
-            fs::copy(workspace("testbench/formal").join(shared), folder.path().join(shared)).expect("a file of formal/");
+            fs::copy(workspace("testbench/formal").join(shared), folder.path().join(shared))
+                .expect("a file of formal/");
         }
         let harness = fs::read_to_string(folder.path().join(format!("{}.sv", self.harness))).expect("there");
         let mut script = vec![read.join(" ")];
