@@ -3,8 +3,8 @@
 use super::{CalibrateError, MOST_HIDDEN_WIDE, Settings};
 use crate::estimators::joint::{Family, Grid, MAX_HIDDEN};
 
-/// Hidden units for the narrow family on the coarse grid, which is for speed: twice as many take half as long again for a
-/// frame, on 16 lanes.
+/// Hidden units for the narrow family on the coarse grid, which is for speed: with twice as many a frame takes a quarter
+/// longer on 16 lanes.
 const HIDDEN_COARSE: usize = 64;
 
 /// What a user asks for.
