@@ -167,7 +167,8 @@ class Sptfra:
         """Lets the gains and offsets of a `calibration.csv` act from the next frame on; frames may run meanwhile.
 
         The file has a line `gain,offset` for each taxel, as the design's own, or is one of `golden bank`: then the dead
-        taxels of its header are replaced, and no others; else those that were. So with the points of a curve, whose
+        taxels of its header are replaced, and no others, by a header `gain,offset` alone none, even of those that the
+        design's `dead` names; without a header those that were. So with the points of a curve, whose
         offsets are in pascals: they stand in the same file, or in that of the design's curve, `curve`. `noise_floor_pa` is
         then that of the frames and of a tare, and the threshold of contact as many times it as there are taxels, as of a
         design made with it; without it both stay. What is written is compared by its CRC. Raises ValueError on a file or

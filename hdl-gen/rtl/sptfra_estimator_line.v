@@ -56,7 +56,7 @@ module sptfra_estimator_line #(
     input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // One cycle: the place of a frame's u_q is free
     output wire u_released,
-    // The answer, held until taken
+    // The answer, held until taken, the sums for a cycle more
     output wire answer_valid,
     input  wire answer_take, // only with answer_valid
     output reg  x_is_free, // the free component is mu_x

@@ -55,7 +55,7 @@ module sptfra_op #(
     input  wire unknown,
     input  wire at_bound,
     input  wire search_saturated,
-    input  wire [18*40-1:0] sums,
+    input  wire [18*40-1:0] sums, // these for a cycle after the taking, too
     input  wire [5:0] flags, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // To the lanes: the friction of the frame in the summary
     output reg  friction_known, // and held, until the field is started
@@ -101,7 +101,8 @@ module sptfra_op #(
     reg signed [17:0] summary_other;
     reg signed [17:0] summary_slope;
     reg signed [17:0] summary_error_log;
-    reg [18*40-1:0] summary_sums;
+    reg [18*40-1:0] summary_sums; // loaded a cycle after the rest: many bits, first read in the summary's third step
+    reg taken;
     reg [5:0] summary_flags;
     reg summary_at_bound;
     reg summary_saturated;
@@ -129,6 +130,10 @@ module sptfra_op #(
     assign timestamp_take = output_start;
 
     always @(posedge clock) begin
+        taken <= answer_take;
+        if (taken) begin
+            summary_sums <= sums;
+        end
         if (answer_take) begin
             summary_busy <= 1'b1;
             summary_unknown <= unknown;
@@ -137,7 +142,6 @@ module sptfra_op #(
             summary_other <= other;
             summary_slope <= slope;
             summary_error_log <= error_log;
-            summary_sums <= sums;
             summary_flags <= flags;
             summary_at_bound <= at_bound;
             summary_saturated <= search_saturated;

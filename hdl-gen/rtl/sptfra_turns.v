@@ -46,7 +46,10 @@ module sptfra_turns #(
     endgenerate
 
     reg busy;
-    reg [1:0] u_held; // frames started whose u_q has a place: two at most
+    // Frames started whose u_q has a place: two at most. A release comes from afar and is counted a cycle later
+    reg [1:0] u_counted;
+    reg released;
+    wire [1:0] u_held = u_counted - {1'b0, released};
     reg [2:0] frames_held; // started and not released
     wire may_field;
     wire may_residual;
@@ -63,13 +66,15 @@ module sptfra_turns #(
         if (free && may_frame && !may_field && !may_residual) begin
             bank <= !bank;
         end
-        u_held <= u_held + {1'b0, start[0]} - {1'b0, u_released};
+        released <= u_released;
+        u_counted <= u_held + {1'b0, start[0]};
         frames_held <= frames_held + {2'd0, start[0]} - {2'd0, frame_released};
         if (reset) begin
             start[0] <= 1'b0;
             busy <= 1'b0;
             bank <= 1'b1;
-            u_held <= 2'd0;
+            u_counted <= 2'd0;
+            released <= 1'b0;
             frames_held <= 3'd0;
         end
     end

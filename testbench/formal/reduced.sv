@@ -5,6 +5,8 @@
 // search is that of the joint estimator, which has no line before it, and stages of their own behind it: search, LOOK and
 // correction have a frame each. With HANDED_ON a frame's u are free for another when they were searched; else, with a
 // LOOK, when they were looked at. With LATENCY frames wait for fields; with ONE_RESIDUAL only one has a place.
+`include "progress.svh"
+
 module harness (
     input wire clock
 );
@@ -367,8 +369,7 @@ module harness (
     end
 `endif
 
-    // ---- Progress: what is left to do for the frames inside. It never grows but by a new frame, and shrinks within
-    // three cycles in which those do something who may: so with a sink that is not for ever stalled, every frame ends
+    // ---- Progress: what is left to do for the frames inside
     wire [9:0] left_of_turns = (residual_due ? 10'd30 : 10'd0)
         + 10'd20 * fields_due - 10'd5 * residuals_there
         + (start[2] ? 10'd14 : (start != 3'd0) ? 10'd4 : (issuing != 3'd0) ? 10'd2 : 10'd0)
@@ -385,32 +386,14 @@ module harness (
     wire answered = issued || sums_written || coefficients_complete || residual_written || field_complete
         || level_done || look_done || window_done || search_done || friction_done || summary_done;
     wire line_willing = (u_waiting == 2'd0) || searching || line_valid;
-    reg [3:1] watched = 3'd0;
-    reg [3:1] willing = 3'd0;
-    reg [3:1] new_frame = 3'd0;
-    reg [3:1] waits = 3'd0; // a frame has waited for so many cycles
-    reg [9:0] left_1;
-    reg [9:0] left_2;
-    reg [9:0] left_3;
 
-    always @(posedge clock) begin
-        watched <= {watched[2:1], !reset};
-        willing <= {willing[2:1], out_tready && line_willing && (answered || !asked)};
-        new_frame <= {new_frame[2:1], start[0]};
-        waits <= {waits[2:1], frame_ready && !reset};
-        left_1 <= left;
-        left_2 <= left_1;
-        left_3 <= left_2;
-`ifdef INVARIANTS
-        if (watched[1] && !start[0] && !new_frame[1]) begin
-            assert (left <= left_1);
-        end
-        if ((watched == 3'd7) && (willing == 3'd7) && !start[0] && (new_frame == 3'd0)) begin
-            assert ((left_3 == 10'd0) || (left < left_3));
-        end
-        // A frame that waits is begun when nothing is in its way
-        assert ((waits != 3'd7) || (left != 10'd0));
-`endif
-    end
+    progress progress (
+        .clock (clock),
+        .reset (reset),
+        .frame_ready (frame_ready),
+        .start (start[0]),
+        .willing (out_tready && line_willing && (answered || !asked)),
+        .left (left)
+    );
 
 endmodule

@@ -4,6 +4,8 @@
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
 // Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever.
+`include "progress.svh"
+
 module harness (
     input wire clock
 );
@@ -294,8 +296,7 @@ module harness (
     end
 `endif
 
-    // ---- Progress: what is left to do for the frames inside. It never grows but by a new frame, and shrinks within
-    // three cycles in which those do something who may: so with a sink that is not for ever stalled, every frame ends
+    // ---- Progress: what is left to do for the frames inside
     wire [9:0] left_in_lanes = (start ? 10'd136 : 10'd0) + (issuing ? 10'd133 : 10'd0) + (arriving ? 10'd128 : 10'd0)
         - {9'd0, summed};
     wire [9:0] left_of_search = 10'd116 * u_there + (searching ? (found_waits ? 10'd109 : 10'd112) : 10'd0)
@@ -310,32 +311,14 @@ module harness (
     wire answered = issued || sums_written || coefficients_complete || level_done || look_done || window_done
         || search_done || summary_done;
     wire line_willing = (u_waiting == 2'd0) || searching || line_valid;
-    reg [3:1] watched = 3'd0;
-    reg [3:1] willing = 3'd0;
-    reg [3:1] new_frame = 3'd0;
-    reg [3:1] waits = 3'd0; // a frame has waited for so many cycles
-    reg [9:0] left_1;
-    reg [9:0] left_2;
-    reg [9:0] left_3;
 
-    always @(posedge clock) begin
-        watched <= {watched[2:1], !reset};
-        willing <= {willing[2:1], out_tready && line_willing && (answered || !asked)};
-        new_frame <= {new_frame[2:1], start};
-        waits <= {waits[2:1], frame_ready && !reset};
-        left_1 <= left;
-        left_2 <= left_1;
-        left_3 <= left_2;
-`ifdef INVARIANTS
-        if (watched[1] && !start && !new_frame[1]) begin
-            assert (left <= left_1);
-        end
-        if ((watched == 3'd7) && (willing == 3'd7) && !start && (new_frame == 3'd0)) begin
-            assert ((left_3 == 10'd0) || (left < left_3));
-        end
-        // A frame that waits is begun when nothing is in its way
-        assert ((waits != 3'd7) || (left != 10'd0));
-`endif
-    end
+    progress progress (
+        .clock (clock),
+        .reset (reset),
+        .frame_ready (frame_ready),
+        .start (start),
+        .willing (out_tready && line_willing && (answered || !asked)),
+        .left (left)
+    );
 
 endmodule

@@ -88,17 +88,32 @@ impl Calibration {
     }
 }
 
-/// The dead taxels that a header of `golden bank` names; none of a plain one.
+/// The dead taxels that a header of `golden bank` names, ascending; none of a plain one.
 fn dead_taxels(table: &Rows, names: &[String], taxels: usize) -> Result<Vec<usize>, DesignError> {
-    let taxel = |name: &String| name.strip_prefix("taxel ")?.trim().parse().ok().filter(|&taxel| taxel < taxels);
-    let dead: Option<Vec<usize>> = names.iter().skip(2).map(taxel).collect();
+    let wrong = |problem: &str, remedy: &str| {
+        let shown = format!("{:?} {problem}", table.rows[0].shown());
+        Err(table.wrong(table.rows[0].line, shown, remedy.to_owned()))
+    };
+    let number = |name: &String| {
+        let digits = name.strip_prefix("taxel ")?.trim();
+        let taxel = digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())?;
+        taxel.filter(|&taxel| taxel < taxels)
+    };
+    let dead: Option<Vec<usize>> = names.iter().skip(2).map(number).collect();
     match (names, dead) {
-        ([gain, offset, ..], Some(dead)) if gain == "gain" && offset == "offset" => Ok(dead),
-        _ => Err(table.wrong(
-            table.rows[0].line,
-            format!("{:?} is no header of gains and offsets", table.rows[0].shown()),
+        ([gain, offset, ..], Some(dead)) if gain == "gain" && offset == "offset" => {
+            match dead.windows(2).find(|pair| pair[1] <= pair[0]) {
+                None => Ok(dead),
+                Some(pair) => wrong(
+                    &format!("has taxel {} behind taxel {}", pair[1], pair[0]),
+                    "write each dead taxel once, ascending, as golden bank does, and the weights in the same order",
+                ),
+            }
+        }
+        _ => wrong(
+            "is no header of gains and offsets",
             "write gain,offset, or none; golden bank writes behind it the numbers of dead taxels of this sensor, taxel 37",
-        )),
+        ),
     }
 }
 

@@ -100,6 +100,10 @@ fn a_design_can_name_a_bank() {
         ("\n0.0,0.0,0.0", "\n0.0,0.0", ["bank.csv, line 6", "a weight for each taxel of the header"]),
         ("taxel 4", "taxel 6", ["bank.csv, line 1", "dead taxels of this sensor"]),
         ("taxel 4", "pascals", ["bank.csv, line 1", "no header of gains and offsets"]),
+        ("taxel 4", "taxel +4", ["bank.csv, line 1", "no header of gains and offsets"]),
+        // As no board takes them.
+        ("taxel 4", "taxel 4,taxel 4", ["bank.csv, line 1", "has taxel 4 behind taxel 4; write each dead taxel once"]),
+        ("taxel 4", "taxel 4,Taxel 3", ["bank.csv, line 1", "has taxel 3 behind taxel 4"]),
     ] {
         assert!(text.contains(right), "{text}");
         let file = ("bank.csv", text.replace(right, wrong));

@@ -82,17 +82,20 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         writeln!(out, "  curve        power law, exact from {first:.digits$} counts on, saturated from {last:.0} on")?;
     }
     let condition = &plan.condition;
+    let thin = plan.design.thin_layer();
     let verdict = if condition.aat > ILL_CONDITIONED {
         format!(
             "ill-conditioned: the depth is {:.2} pitches; a smaller one forgives more noise",
             sensor.depth_mm / x.min(y)
         )
+    } else if thin.is_some() {
+        "no noise is amplified, but the layer is too thin, see below".to_owned()
     } else {
         "well conditioned".to_owned()
     };
     writeln!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat))?;
     writeln!(out, "  kernel       {}", plan.estimator.slot().kernel_advice(&plan.design, INDENT))?;
-    if let Some((layer, remedy)) = plan.design.thin_layer().as_deref().and_then(|thin| thin.split_once(": ")) {
+    if let Some((layer, remedy)) = thin.as_deref().and_then(|thin| thin.split_once(": ")) {
         writeln!(out, "  thin         {layer}:\n{INDENT}{remedy}")?;
     }
     Ok(())

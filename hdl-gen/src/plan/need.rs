@@ -14,7 +14,7 @@ pub(super) fn meet(design: &Design, target_us: f64) -> Result<Plan, PlanError> {
     let mut settled = design.clone();
     settled.hardware.target_us = None;
     let mut fastest: Option<Plan> = None;
-    for lanes in (CLASSES..=MAX_LANES).step_by(CLASSES) {
+    for lanes in lanes() {
         settled.hardware.lanes = lanes;
         let plan = work.on_lanes(&settled);
         if is_met(&plan, target_us) {
@@ -33,8 +33,13 @@ pub(super) fn meet(design: &Design, target_us: f64) -> Result<Plan, PlanError> {
         latency_us: cycles / clock_mhz,
         clock_mhz,
         needed_mhz: (cycles / target_us).ceil(),
-        remedies: remedies(design, target_us, lanes),
+        remedies: remedies(design, target_us),
     })
+}
+
+/// A multiplier for each class on every lane.
+fn lanes() -> impl DoubleEndedIterator<Item = usize> {
+    (1..=MAX_LANES / CLASSES).map(|each| CLASSES * each)
 }
 
 fn is_met(plan: &Plan, target_us: f64) -> bool {
@@ -42,14 +47,13 @@ fn is_met(plan: &Plan, target_us: f64) -> bool {
 }
 
 /// What would meet the target, as keys of the design file, each behind a comma: the smallest change, and if that is one of
-/// the streams, the smallest that leaves them as they are. Each was planned, on the most lanes and on as many as are the
-/// fastest without it.
-fn remedies(design: &Design, target_us: f64, lanes: usize) -> String {
+/// the streams, the smallest that leaves them as they are. Each was planned, on so many lanes, the most first.
+fn remedies(design: &Design, target_us: f64) -> String {
     let meets = |change: &Change| {
         let mut changed = change.apply(design);
         let work = Work::new(&changed);
         work.is_ok_and(|work| {
-            [MAX_LANES, lanes].into_iter().any(|lanes| {
+            lanes().rev().any(|lanes| {
                 changed.hardware.lanes = lanes;
                 is_met(&work.on_lanes(&changed), target_us)
             })

@@ -252,6 +252,19 @@ fn inspect_tells_people_the_same_figures() {
     assert!(text.lines().all(|line| line.chars().count() <= 110 && line.trim_end() == line), "{text}");
 }
 
+/// A matrix that inverts well is no praise of a layer whose forces fall between the taxels.
+#[test]
+fn inspect_praises_no_thin_layer() {
+    let folder = tempfile::tempdir().unwrap();
+    for (depth, thin) in [(3.0, false), (2.5, true)] {
+        fs::write(folder.path().join("pad.toml"), design_text("pad", [4, 3], [4.0, 3.0], depth, "")).unwrap();
+        let text = good(folder.path(), &["inspect", "pad.toml"]);
+        let said = ["well conditioned", "but the layer is too thin, see below", "\n  thin  "]
+            .map(|words| text.contains(words));
+        assert_eq!(said, [!thin, thin, thin], "{depth}:\n{text}");
+    }
+}
+
 /// Which search on the line a design has, and which of the two reasons decides.
 #[test]
 fn inspect_says_how_the_line_is_searched() {

@@ -81,6 +81,8 @@ fn beyond_float32(case: &str) -> [f64; 2] {
         _ if depth >= 1.5 => [3.0, 6.0],
         _ if case.starts_with("peak at 100 noise floors") => [40.0, 130.0],
         "needle between four taxels" | "µ = 0" => [1.0, 1.7],
+        // What stands in for dead taxels is of 18-bit weights, whatever the words behind them.
+        _ if case.ends_with(", named") => [110.0, 200.0],
         _ if case == "µ = 0.2" || push_is_regular(case) => [1.4, 1.3],
         _ => [1.0, 1.05],
     }
@@ -99,17 +101,20 @@ type Figure = fn(&Judged) -> Option<f64>;
 #[test]
 fn wide_words_err_no_more_than_float32() {
     let mut judged = 0;
-    // What stands in for dead taxels is of 18-bit weights, whatever the words behind them.
-    let is_read = |row: &&Row| row.estimator == Estimator::Line && !row.case.ends_with(", named");
-    for row in rows().iter().filter(is_read) {
+    for row in rows().iter().filter(|row| row.estimator == Estimator::Line) {
         let figures: [(&str, Figure); 2] =
             [("A f = b", |judged| judged.backward), ("at its friction", |judged| judged.at_its_friction)];
         for ((what, value), most) in figures.into_iter().zip(beyond_float32(&row.case)) {
             let of = |judged: &Option<Judged>| judged.as_ref().and_then(value);
             let Some((float32, wide)) = of(&row.f32).zip(of(&row.wide)) else { continue };
             assert!(wide <= most * float32, "{}, {what}: {wide:.2e}, float32 {float32:.2e}", row.case);
-            // Where 18 x 27 bits have hardware they err more; scaled frames, whose stress has no more bits, by less.
-            let gain = if row.case.contains("noise floors") { 2.0 } else { 10.0 };
+            // Where 18 x 27 bits have hardware they err more; scaled frames, whose stress has no more bits, by less, and
+            // so those that 18-bit weights made.
+            let gain = match () {
+                () if row.case.ends_with(", named") => 1.3,
+                () if row.case.contains("noise floors") => 2.0,
+                () => 10.0,
+            };
             assert!(of(&row.fixed).is_none_or(|fixed| wide < fixed / gain), "{}, {what}: {wide:.2e}", row.case);
             judged += usize::from(most <= 1.0);
         }

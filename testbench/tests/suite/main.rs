@@ -35,6 +35,7 @@ mod pack_registers;
 mod parameters;
 mod properties;
 mod python;
+mod ram;
 mod range;
 mod registers;
 mod simulate;

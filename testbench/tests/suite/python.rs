@@ -63,13 +63,14 @@ fn the_wheel_works_in_an_empty_environment() {
     let own = installed(&wheel(folder.path()), &environment);
     let elsewhere = folder.path().join("elsewhere");
     fs::create_dir(&elsewhere).expect("a folder");
-    let [test, package] = ["test_sptfra.py", "test_package.py"].map(|name| workspace("python/tests").join(name));
+    let tests = ["test_sptfra.py", "test_recordings.py", "test_package.py"];
+    let [test, recordings, package] = tests.map(|name| workspace("python/tests").join(name));
     let ready = |program: &Path| {
         let mut command = Command::new(program);
         command.current_dir(&elsewhere).env("SPTFRA_ROOT", workspace("")).env_remove("PYTHONPATH");
         command
     };
-    for test in [&test, &package] {
+    for test in [&test, &recordings, &package] {
         let said = run(ready(&own).arg(test));
         assert!(said.contains("\nOK"), "{said}");
     }

@@ -83,7 +83,7 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
         gains: gains.collect(),
         errors: left_out.as_ref().map(|left| Errors::of(left.errors.iter().copied())),
         errors_as_designed: plain.as_ref().map(|plain| Errors::of(plain.errors.iter().copied())),
-        errors_fitted: Errors::of(fitted.errors.iter().copied()),
+        errors_fitted: Some(Errors::of(fitted.errors.iter().copied())),
         points: work.readings.points(&calibrated.input),
         contacts: work.holds.contacts,
         places,

@@ -27,8 +27,8 @@ pub struct Recorded {
     pub errors: Option<Errors>,
     /// The same with the design's own curve, or a straight line, and one gain for all taxels.
     pub errors_as_designed: Option<Errors>,
-    /// Errors at what it was fitted to.
-    pub errors_fitted: Errors,
+    /// Errors of the loads at what it was fitted to; nothing if no load is known.
+    pub errors_fitted: Option<Errors>,
     /// What the recording could tell.
     pub determined: Vec<String>,
     /// What it could not, and what would.
@@ -296,7 +296,8 @@ fn spread(recorded: &mut Recorded, facts: &Facts<'_>) {
         .max_by(|a, b| (a.found_n / a.measured_n - 1.0).abs().total_cmp(&(b.found_n / b.measured_n - 1.0).abs()))
     {
         let error = worst.found_n / worst.measured_n - 1.0;
-        let typical = recorded.errors.as_ref().unwrap_or(&recorded.errors_fitted).median / 100.0;
+        let errors = recorded.errors.as_ref().or(recorded.errors_fitted.as_ref());
+        let typical = errors.map_or(0.0, |errors| errors.median / 100.0);
         if error.abs() > 0.15 && error.abs() > 5.0 * typical {
             recorded.remarks.push(format!(
                 "frames {} to {} look wrong: {:.3} N for {:.3}; a contact over the edge, or a slip of the pen?",

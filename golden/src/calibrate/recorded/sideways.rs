@@ -7,7 +7,7 @@
 use super::folds::{Folds, levels};
 use super::friction::{self, Verdict};
 use super::readings::Readings;
-use super::report::{Errors, Recorded, TaxelGain};
+use super::report::{Recorded, TaxelGain};
 use super::table::Measured;
 use super::{RecordedError, holds};
 use crate::design::Design;
@@ -87,7 +87,7 @@ pub(super) fn fit(
         loads: [steps.first().map_or(0.0, |first| first[0]), steps.last().map_or(0.0, |last| last[1])],
         errors: None,
         errors_as_designed: None,
-        errors_fitted: Errors::of(std::iter::empty()),
+        errors_fitted: None,
         determined,
         undetermined,
         remarks,

@@ -110,7 +110,7 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
             .collect(),
         errors: chosen.map(|(_, errors)| Errors::of(errors.iter().copied())),
         errors_as_designed: scores.first().map(|(_, errors)| Errors::of(errors.iter().copied())),
-        errors_fitted: Errors::of(fitted.into_iter()),
+        errors_fitted: Some(Errors::of(fitted.into_iter())),
         points: work.readings.points(&calibrated.input),
         contacts: parted.contacts,
         places: 0,

@@ -1,15 +1,15 @@
 //! Constants from recordings with measured forces.
 
+mod bladder;
 mod command;
+mod friction;
 mod simulated;
 mod table;
 
-use golden::calibrate::recorded::{Measured, Recorded, fit_forces, fit_uniform};
+use golden::calibrate::recorded::{Measured, Recorded, fit_forces};
 use golden::design::{Curve, Design};
 use golden::solver::{Solver, Status};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use simulated::{Body, Recipe, Recording, design, gains, normal, record, weights_only};
+use simulated::{Body, Recipe, Recording, design, record, weights_only};
 
 const COUNTS: &str = "pa_per_count = -10.0\ntension = \"clipped\"";
 
@@ -323,127 +323,4 @@ fn another_sign_and_another_unit_are_told() {
         let said = remarks(keys);
         assert!(said.len() == 1 && parts.iter().all(|part| said[0].contains(part)), "{keys}: {said:?}");
     }
-}
-
-#[test]
-fn a_bladder_tells_gains_curve_and_dead_taxels() {
-    let mut random = ChaCha8Rng::seed_from_u64(77);
-    let truth = gains(&mut random, 0.15);
-    let mut measured = Measured::default();
-    let mut frames = Vec::new();
-    for step in 0..=10 {
-        for _ in 0..8 {
-            let pressure = 8e3 * f64::from(step);
-            frames.push(
-                truth
-                    .iter()
-                    .enumerate()
-                    .map(|(taxel, gain)| {
-                        let count = (pressure / gain / 5.0).powf(0.8);
-                        let count = if taxel == 20 { 0.0 } else { count };
-                        (count + 50.0 + 2.0 * normal(&mut random)).round()
-                    })
-                    .collect(),
-            );
-            measured.pressures.push(Some(pressure));
-            measured.forces.push([None; 3]);
-        }
-    }
-    let found = fit_uniform(&design(COUNTS, ""), &frames, &measured).unwrap();
-    let ratios = found.gains.iter().zip(&truth).enumerate().filter(|(taxel, _)| *taxel != 20);
-    let off = deviation(ratios.map(|(_, (gain, truth))| gain.gain / truth));
-    let errors = found.errors.unwrap();
-    println!("bladder: gains within {off:.2} %, pressures {errors:?}");
-    assert!(off < 0.5 && errors.median < 1.5 && errors.most < 4.0, "{off} {errors:?}");
-    assert_eq!(found.design.input.dead, [20]);
-    assert!(
-        says(&found.remarks, &["dead: taxels 20"]) && says(&found.determined, &["curve: a power of 1.25"]),
-        "{:?}",
-        found.determined
-    );
-    // The pressure of every frame, from the design alone.
-    for (frame, pressure) in frames.iter().zip(&measured.pressures).skip(16).step_by(7) {
-        for taxel in [0, 33, 77] {
-            let pascals = -found.design.input.to_pa(taxel, frame[taxel]);
-            assert!((pascals / pressure.unwrap() - 1.0).abs() < 0.06, "{taxel}: {pascals} {pressure:?}");
-        }
-    }
-    // One pressure tells gains, and no curve.
-    let one: Vec<usize> = (0..16).collect();
-    let some = |of: &[Vec<f64>]| one.iter().map(|&k| of[k].clone()).collect::<Vec<_>>();
-    measured.pressures.truncate(16);
-    measured.forces.truncate(16);
-    let found = fit_uniform(&design(COUNTS, ""), &some(&frames), &measured).unwrap();
-    assert!(
-        found.errors.is_none() && says(&found.undetermined, &["curve: 1 pressure", "five or more"]),
-        "{:?}",
-        found.undetermined
-    );
-}
-
-#[test]
-fn tangential_forces_tell_the_constants_of_friction() {
-    let recipe = Recipe {
-        friction: 0.5,
-        places: 12,
-        frames: 1,
-        loads: vec![3.0, 6.0],
-        scale: 1.0,
-        ..Recipe::new(78, Body::Disc)
-    };
-    let recording = simulated::record_pascals(&recipe);
-    let joint = "estimator = \"joint\"\ngain = 1.1\n";
-    let fit = |keys: &str| {
-        fit_forces(&design("", &format!("{joint}{keys}")), &recording.frames, &recording.measured).unwrap()
-    };
-    let found = fit("tangential = [2.0, 0.0]");
-    assert!(says(&found.determined, &["friction: tangential = ["]), "{:?} {:?}", found.determined, found.undetermined);
-    let [c1, c3] = found.design.algorithm.joint.tangential;
-    let again = fit(&format!("tangential = [{c1:?}, {c3:?}]"));
-    assert!(says(&again.undetermined, &["friction: other constants do no better"]), "{:?}", again.undetermined);
-    let solver = Solver::new(&found.design).unwrap();
-    let mut off: Vec<f64> = recording
-        .frames
-        .iter()
-        .zip(&recording.measured.forces)
-        .filter(|(_, force)| force[2] != Some(0.0))
-        .map(|(frame, force)| {
-            let [x, y, z] = solver.solve(frame).unwrap().resultant;
-            100.0 * (x - force[0].unwrap()).hypot(y - force[1].unwrap()) / z.abs()
-        })
-        .collect();
-    off.sort_by(f64::total_cmp);
-    assert!(off[off.len() / 2] < 8.0, "{off:?}");
-    // Without F_z the design's own stands for it, and all but friction stays.
-    let mut sideways = recording.measured.clone();
-    sideways.forces.iter_mut().for_each(|force| force[2] = None);
-    let before = design("", &format!("{joint}tangential = [2.0, 0.0]"));
-    let alone = fit_forces(&before, &recording.frames, &sideways).unwrap();
-    assert!(says(&alone.determined, &["friction: tangential = ["]), "{:?} {:?}", alone.determined, alone.undetermined);
-    assert!(says(&alone.undetermined, &["F_z, curve and gains: no normal force is known"]), "{:?}", alone.undetermined);
-    assert!(says(&alone.remarks, &["friction is a share of F_z", "check it with a weight"]), "{:?}", alone.remarks);
-    let mut unchanged = alone.design.clone();
-    unchanged.algorithm.joint.tangential = [2.0, 0.0];
-    assert_eq!(unchanged, before);
-    assert!(alone.holds.is_empty() && alone.errors.is_none());
-    // Frames at rest may state that nothing presses.
-    let mut rested = recording.measured.clone();
-    rested.forces.iter_mut().for_each(|force| force[2] = force[2].filter(|&normal| normal == 0.0));
-    assert!(rested.forces.iter().any(|force| force[2].is_some()));
-    assert_eq!(fit_forces(&before, &recording.frames, &rested).unwrap().design, alone.design);
-    // As from all components: the design's F_z errs by little here.
-    let ratio = alone.design.algorithm.joint.tangential[0] / c1;
-    assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
-    let pulled: Vec<Vec<f64>> = recording.frames.iter().map(|frame| frame.iter().map(|pa| -pa).collect()).collect();
-    let said = fit_forces(&before, &pulled, &sideways).map(drop).unwrap_err().to_string();
-    assert!(said.contains("no F_z is known, and by the design ") && said.contains("with F_z first"), "{said}");
-    let said = fit_forces(&before, &vec![vec![0.0; 78]; sideways.forces.len()], &sideways).map(drop).unwrap_err();
-    assert!(said.to_string().contains("by the design nothing presses"), "{said}");
-    let line = fit_forces(&design("", ""), &recording.frames, &sideways).unwrap();
-    assert!(says(&line.undetermined, &["friction: the line estimator has no constants"]), "{:?}", line.undetermined);
-    // Forces the wrong way round are no friction.
-    let mut turned = recording.measured.clone();
-    turned.forces.iter_mut().for_each(|force| (force[0], force[1]) = (force[0].map(|x| -x), force[1].map(|y| -y)));
-    let found = fit_forces(&design("", joint), &recording.frames, &turned).unwrap();
-    assert!(says(&found.undetermined, &["friction: F_x and F_y point against"]), "{:?}", found.undetermined);
 }

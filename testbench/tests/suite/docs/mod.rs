@@ -7,6 +7,7 @@ use std::process::Command;
 use crate::browser;
 use crate::support::workspace;
 
+mod float32;
 mod sessions;
 mod stated;
 

@@ -17,7 +17,7 @@ use rand_chacha::ChaCha8Rng;
 use testbench::tools;
 use testbench::verilate::Built;
 
-use super::{DRIVER, MACHINE, SANITIZED, compile, run};
+use super::{CALIBRATION, DRIVER, MACHINE, SANITIZED, compile, run};
 use crate::calibration;
 use crate::support::{built, planned, workspace};
 
@@ -119,8 +119,8 @@ fn the_c_driver_loads_calibrations_and_tares() {
     }
     let file = folder.path().join("banks");
     fs::write(&file, bytes).expect("written");
-    let own = ["drivers/c/sptfra_calibration.c", "testbench/tests/suite/drivers/calibration.c"];
-    let sources: Vec<_> = DRIVER.into_iter().chain(MACHINE).chain(own).map(workspace).collect();
+    let own = ["testbench/tests/suite/drivers/calibration.c"];
+    let sources: Vec<_> = DRIVER.into_iter().chain(CALIBRATION).chain(MACHINE).chain(own).map(workspace).collect();
     let host = folder.path().join("host");
     compile(&sources.iter().map(std::path::PathBuf::as_path).collect::<Vec<_>>(), &SANITIZED, &host);
     let mut command = Command::new(host);
@@ -156,7 +156,10 @@ pub(super) fn write_files(plan: &Plan, given: &Given, index: usize, folder: &Pat
         }
     }
     match index {
-        0 => text = format!("\u{feff}# of June\r\n\r\n{}", text.replace('\n', "\r\n").replace("gain,", "\"Gain\",")),
+        0 => {
+            let text_of_others = text.replace('\n', "\r\n").replace("gain,", "\"Gain\",").replace("taxel", "Taxel");
+            text = format!("\u{feff}# of June\r\n\r\n{text_of_others}");
+        }
         2 => text = text.replace(',', ";").replace('.', ","),
         3 => text = text.replace(',', "\t"),
         4 => text = text.replace('\n', ",\n"),

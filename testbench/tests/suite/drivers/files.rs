@@ -2,14 +2,14 @@
 
 use std::fmt::Write;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::calibration::{banks, subject, write_files};
-use super::{DRIVER, MACHINE, SANITIZED, compile, run};
+use super::{CALIBRATION, DRIVER, FILES, MACHINE, SANITIZED, compile, run};
 use crate::support::workspace;
 
 /// Damaged files.
@@ -149,31 +149,37 @@ fn the_c_driver_loads_files() {
     writeln!(list, "bad . - 0.0 -8 cannot read the file: Is a directory").expect("to a string");
     damage(place, all.len(), &mut list);
     fs::write(place.join("list"), list).expect("written");
-    let run_with = |file: &Path| {
-        let own = ["drivers/c/sptfra_calibration.c", "testbench/tests/suite/drivers/file.c"];
-        let mut sources: Vec<_> = DRIVER.into_iter().chain(MACHINE).chain(own).map(workspace).collect();
-        sources.push(file.to_path_buf());
+    let run_with = |files: &[PathBuf]| {
+        let own = ["testbench/tests/suite/drivers/file.c"];
+        let others = DRIVER.into_iter().chain(CALIBRATION).chain(MACHINE).chain(own).map(workspace);
+        let sources: Vec<_> = others.chain(files.iter().cloned()).collect();
         let host = place.join("host");
-        compile(&sources.iter().map(std::path::PathBuf::as_path).collect::<Vec<_>>(), &SANITIZED, &host);
+        compile(&sources.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &SANITIZED, &host);
         let mut command = Command::new(host);
         command.arg(&built.library).arg("list").current_dir(place);
         command
     };
-    let driver = workspace("drivers/c/sptfra_file.c");
+    let driver = FILES.map(workspace);
     assert!(run(run_with(&driver)).contains(&format!("PASS: 6 good, {} bad, 200 any", bad.len() + 2)));
     // A driver that is wrong is noticed.
-    let text = fs::read_to_string(driver).expect("there");
     for (right, wrong) in [
         ("\";\\t,\"", "\",;\\t\""),
         ("of->weights[place * of->taxels + of->taken]", "of->weights[of->taken * of->dead_count + place]"),
-        ("from->count > MOST_FIELDS) {\n            return 0;", "0) {\n            return 0;"),
+        ("from->count > SPTFRA_MOST_FIELDS) {\n            return 0;", "0) {\n            return 0;"),
         ("of->point_lines[of->points++] = from->number;", "of->points++;"),
         ("of->points == MOST_POINTS", "0"),
+        ("sptfra_begins(name, \"taxel \")", "strncmp(name, \"taxel \", 6) == 0"),
     ] {
-        assert_eq!(text.matches(right).count(), 1, "{right}");
-        let copy = place.join("sptfra_file.c");
-        fs::write(&copy, text.replace(right, wrong)).expect("written");
-        let output = run_with(&copy).output().expect("starts");
+        let mut found = 0;
+        let copies = driver.each_ref().map(|file| {
+            let text = fs::read_to_string(file).expect("there");
+            found += text.matches(right).count();
+            let copy = place.join(file.file_name().expect("a file"));
+            fs::write(&copy, text.replace(right, wrong)).expect("written");
+            copy
+        });
+        assert_eq!(found, 1, "{right}");
+        let output = run_with(&copies).output().expect("starts");
         assert!(!output.status.success(), "{right}: {}", String::from_utf8_lossy(&output.stdout));
     }
 }

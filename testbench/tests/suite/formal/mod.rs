@@ -15,6 +15,9 @@ use hdl_gen::emit::{FileMap, emit};
 use tempfile::TempDir;
 use testbench::tools;
 
+/// What harnesses share, beside which it is included.
+const SHARED: [&str; 1] = ["progress.svh"];
+
 /// Cycles after reset that are checked: more than the longest induction assumes.
 const FIRST_CYCLES: &str = "6";
 
@@ -66,6 +69,11 @@ impl Proof {
             if file != self.harness {
                 read.push(name);
             }
+        }
+        // What harnesses include.
+        for shared in SHARED {
+            fs::copy(workspace("testbench/formal").join(shared), folder.path().join(shared))
+                .expect("a file of formal/");
         }
         let harness = fs::read_to_string(folder.path().join(format!("{}.sv", self.harness))).expect("there");
         let mut script = vec![read.join(" ")];

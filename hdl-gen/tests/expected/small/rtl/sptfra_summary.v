@@ -19,7 +19,7 @@ module sptfra_summary #(
 ) (
     input  wire clock,
     input  wire reset,
-    input  wire start, // with these held from the next cycle on
+    input  wire start, // with these held from the next cycle on, the sums from the one after
     input  wire [18*40-1:0] sums,
     input  wire x_is_free, // the free component is mu_x
     input  wire unknown, // both components are zero

@@ -1,0 +1,64 @@
+//! The same pressure on all taxels.
+
+use golden::calibrate::recorded::{Measured, fit_uniform};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::simulated::{design, gains, normal};
+use super::{COUNTS, deviation, says};
+
+#[test]
+fn a_bladder_tells_gains_curve_and_dead_taxels() {
+    let mut random = ChaCha8Rng::seed_from_u64(77);
+    let truth = gains(&mut random, 0.15);
+    let mut measured = Measured::default();
+    let mut frames = Vec::new();
+    for step in 0..=10 {
+        for _ in 0..8 {
+            let pressure = 8e3 * f64::from(step);
+            frames.push(
+                truth
+                    .iter()
+                    .enumerate()
+                    .map(|(taxel, gain)| {
+                        let count = (pressure / gain / 5.0).powf(0.8);
+                        let count = if taxel == 20 { 0.0 } else { count };
+                        (count + 50.0 + 2.0 * normal(&mut random)).round()
+                    })
+                    .collect(),
+            );
+            measured.pressures.push(Some(pressure));
+            measured.forces.push([None; 3]);
+        }
+    }
+    let found = fit_uniform(&design(COUNTS, ""), &frames, &measured).unwrap();
+    let ratios = found.gains.iter().zip(&truth).enumerate().filter(|(taxel, _)| *taxel != 20);
+    let off = deviation(ratios.map(|(_, (gain, truth))| gain.gain / truth));
+    let errors = found.errors.unwrap();
+    println!("bladder: gains within {off:.2} %, pressures {errors:?}");
+    assert!(off < 0.5 && errors.median < 1.5 && errors.most < 4.0, "{off} {errors:?}");
+    assert_eq!(found.design.input.dead, [20]);
+    assert!(
+        says(&found.remarks, &["dead: taxels 20"]) && says(&found.determined, &["curve: a power of 1.25"]),
+        "{:?}",
+        found.determined
+    );
+    // The pressure of every frame, from the design alone.
+    for (frame, pressure) in frames.iter().zip(&measured.pressures).skip(16).step_by(7) {
+        for taxel in [0, 33, 77] {
+            let pascals = -found.design.input.to_pa(taxel, frame[taxel]);
+            assert!((pascals / pressure.unwrap() - 1.0).abs() < 0.06, "{taxel}: {pascals} {pressure:?}");
+        }
+    }
+    // One pressure tells gains, and no curve.
+    let one: Vec<usize> = (0..16).collect();
+    let some = |of: &[Vec<f64>]| one.iter().map(|&k| of[k].clone()).collect::<Vec<_>>();
+    measured.pressures.truncate(16);
+    measured.forces.truncate(16);
+    let found = fit_uniform(&design(COUNTS, ""), &some(&frames), &measured).unwrap();
+    assert!(
+        found.errors.is_none() && says(&found.undetermined, &["curve: 1 pressure", "five or more"]),
+        "{:?}",
+        found.undetermined
+    );
+}
