@@ -183,12 +183,16 @@ enum Command {
         /// Unless given, what the design says under [algorithm] family.
         #[arg(long, value_parser = parser::<Family>(), conflicts_with = "recordings")]
         family: Option<Family>,
-        /// Hidden units of the correction, 0 to 256, with family "wide" 204; 128 unless given, 24 with --quick; 0 for none.
+        /// Hidden units of the correction, 0 to 256, with family "wide" 204; 0 for none. Unless given 128, on the narrow
+        /// family with grid = 15 64, with --quick 24.
         #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with = "recordings")]
         hidden: Option<u16>,
         /// Take a tenth of the time, for constants that are half as good.
         #[arg(long, conflicts_with = "recordings")]
         quick: bool,
+        /// Take about ten times the time, for a network that is as exact with half of the hidden units.
+        #[arg(long, conflicts_with_all = ["recordings", "quick"])]
+        thorough: bool,
         /// Report as JSON.
         #[arg(long)]
         json: bool,
@@ -334,8 +338,8 @@ fn main() -> ExitCode {
         Command::Calibrate { design, out, recordings, json, .. } if recordings.given() => {
             commands::calibrate_recorded::run(&design, &out, &recordings, json)
         }
-        Command::Calibrate { design, out, seed, family, hidden, quick, json, .. } => {
-            let work = Work { seed, hidden: hidden.map(usize::from), quick };
+        Command::Calibrate { design, out, seed, family, hidden, quick, thorough, json, .. } => {
+            let work = Work { seed, hidden: hidden.map(usize::from), quick, thorough };
             commands::calibrate::run(&design, &out, family, work, json)
         }
         Command::Bank { design, out, json } => commands::bank::run(&design, &out, json),

@@ -182,6 +182,7 @@ def calibrate(
     seed: int = 1,
     hidden: int | None = None,
     quick: bool = False,
+    thorough: bool = False,
     progress: Callable[[int, int], Any] | None = None,
 ) -> Design:
     """The design with constants and a network fitted to its sensor, in a minute or some; Ctrl-C ends it.

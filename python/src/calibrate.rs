@@ -17,7 +17,7 @@ const PAUSE: Duration = Duration::from_millis(100);
 
 /// A design with constants and network fitted to its sensor. Ctrl-C ends it.
 #[pyfunction]
-#[pyo3(signature = (design, *, name = None, family = None, seed = 1, hidden = None, quick = false, progress = None))]
+#[pyo3(signature = (design, *, name = None, family = None, seed = 1, hidden = None, quick = false, thorough = false, progress = None))]
 #[allow(clippy::too_many_arguments, reason = "keywords, most of them left out")]
 pub fn calibrate(
     py: Python<'_>,
@@ -27,6 +27,7 @@ pub fn calibrate(
     seed: u64,
     hidden: Option<usize>,
     quick: bool,
+    thorough: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Design> {
     let mut design = unfitted(design)?;
@@ -34,7 +35,8 @@ pub fn calibrate(
         design.algorithm.joint.family = word::<Family>("family", family)?;
     }
     let family = design.algorithm.joint.family;
-    let settings = Work { seed, hidden, quick }.settings(family).map_err(raised)?;
+    let grid = design.algorithm.joint.grid;
+    let settings = Work { seed, hidden, quick, thorough }.settings(family, grid).map_err(raised)?;
     let all = settings.work(family);
     let (mut done, mut told) = (0, Instant::now());
     let found = without_lock(py, || {

@@ -36,8 +36,12 @@ pub struct Settings {
     pub samples: usize,
     /// Hidden units of the correction; 0 for none.
     pub hidden: usize,
+    /// Hidden units that its training begins with beside those, and leaves out one by one, the least of them first.
+    pub spare: usize,
     /// Steps of its training.
     pub steps: usize,
+    /// Whether pressures of the narrow family go as far as one that is nothing in a contact's middle.
+    pub hollow: bool,
 }
 
 impl Settings {
@@ -49,6 +53,16 @@ impl Settings {
             // A body has one direction only, so there are more of them.
             Family::Wide => Self { contacts: 2 * work.contacts, samples: work.samples + work.samples / 5, ..work },
         }
+    }
+
+    /// The same with four times the contacts, frames and steps, as many spare units as there are to be, and pressures
+    /// that rise further towards the edge: for a network that must do with few units.
+    #[must_use]
+    pub fn thorough(self) -> Self {
+        let Self { contacts, samples, steps, hidden, .. } = self;
+        // An even number, so that an odd one without a twin stays.
+        let spare = hidden.next_multiple_of(2);
+        Self { contacts: 4 * contacts, samples: 4 * samples, steps: 4 * steps, spare, hollow: true, ..self }
     }
 
     /// Pieces of work with a family, each of which is reported.
@@ -82,7 +96,7 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { seed: 1, contacts: 20_000, samples: 100_000, hidden: 128, steps: 40_000 }
+        Self { seed: 1, contacts: 20_000, samples: 100_000, hidden: 128, spare: 0, steps: 40_000, hollow: false }
     }
 }
 

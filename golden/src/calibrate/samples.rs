@@ -29,6 +29,8 @@ const PAIRED: usize = 5;
 const RESHAPED: usize = 2;
 /// That pressure's share of the way from Hertz's to an even one; at 2 most of the force is at the edge.
 const PROFILES: [f64; 2] = [0.0, 2.0];
+/// The same where it may be nothing in the middle: three times the mean at the edge, where a punch's has no end.
+const HOLLOW: f64 = 3.0;
 
 /// A stream of random numbers of a seed.
 pub(super) fn stream(seed: u64, stream: u64) -> ChaCha8Rng {
@@ -70,7 +72,8 @@ fn narrow(
             && random.random_range(0..RESHAPED) == 0
         {
             let even = unit_responses(sensor, medium, &even)?;
-            let share = random.random_range(PROFILES[0]..PROFILES[1]);
+            let most = if settings.hollow { HOLLOW } else { PROFILES[1] };
+            let share = random.random_range(PROFILES[0]..most);
             for (stress, even) in response.iter_mut().flatten().zip(even.iter().flatten()) {
                 *stress += share * (even - *stress);
             }

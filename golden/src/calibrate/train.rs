@@ -29,6 +29,10 @@ const LARGEST_SUM: f64 = 64.0;
 /// Errors above this count by their size, those below by their square: among contacts of all kinds some cannot be told
 /// from others, and these must not decide the rest.
 const SOFT: f32 = 0.04;
+/// The shares of all steps between which spare units are left out, evenly.
+const LEFT_OUT: [f64; 2] = [0.1, 0.5];
+/// Share of a step in the mean of what a unit adds.
+const COUNTED: f64 = 0.005;
 /// Share of each mirror image in the mean.
 const QUARTER: f32 = 0.25;
 
@@ -62,7 +66,7 @@ pub(super) fn train(
     let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
     // Streams 0 and 1 of the seed made the samples.
     random.set_stream(2);
-    let mut learner = Learner::new(&basis, settings.hidden, &mut random);
+    let mut learner = Learner::new(&basis, settings.hidden + settings.spare, &mut random);
     let mut batch = [0, 1, 2, 3].map(|class| DMatrix::zeros(basis.size(class), BATCH));
     let mut wanted = DMatrix::zeros(BATCH, 2);
     for step in 1..=settings.steps {
@@ -76,9 +80,17 @@ pub(super) fn train(
         }
         let rate = 0.5 * RATE * (1.0 + (std::f32::consts::PI * step as f32 / settings.steps as f32).cos());
         learner.descend(&batch, &wanted, soft, (rate, step));
+        learner.leave_out(settings.hidden + spare_left(settings, step));
         tick(Stage::Step);
     }
     learner.correction(&basis, half_window)
+}
+
+/// Spare units that are still there after a step.
+fn spare_left(settings: &Settings, step: usize) -> usize {
+    let [from, to] = LEFT_OUT;
+    let share = (step as f64 / settings.steps as f64 - from) / (to - from);
+    settings.spare - (share.clamp(0.0, 1.0) * settings.spare as f64) as usize
 }
 
 /// The network while it learns.
@@ -93,6 +105,8 @@ struct Learner {
     odd: [DMatrix<f32>; 2],
     /// Where the sensor is square, units have twins.
     diagonal: Option<Diagonal>,
+    /// What each unit adds: a running mean of its square.
+    added: Vec<f64>,
 }
 
 impl Learner {
@@ -113,7 +127,14 @@ impl Learner {
         }
         let zeros = || DMatrix::zeros(units, BATCH);
         let images = [0, 1, 2, 3].map(|_| zeros());
-        Self { hidden: hidden.map(Layer::new), output: Layer::new(output), images, odd: [zeros(), zeros()], diagonal }
+        Self {
+            hidden: hidden.map(Layer::new),
+            output: Layer::new(output),
+            images,
+            odd: [zeros(), zeros()],
+            diagonal,
+            added: vec![0.0; units],
+        }
     }
 
     /// The correction of each sample (rows) in a batch of whitened looks by class.
@@ -181,6 +202,33 @@ impl Learner {
             layer.descend(slopes, rate, step);
         }
         self.output.descend(&slope, rate, step);
+    }
+
+    /// Leaves out those units that add least until so many are left; twins go together.
+    fn leave_out(&mut self, left: usize) {
+        let units = self.added.len();
+        if units <= left {
+            return;
+        }
+        for (unit, added) in self.added.iter_mut().enumerate() {
+            let square =
+                |axis: usize| self.odd[axis].row(unit).norm_squared() * self.output.weights[(unit, axis)].powi(2);
+            *added += COUNTED * (f64::from(square(0) + square(1)) - *added);
+        }
+        let together = if self.diagonal.is_some() { 2 } else { 1 };
+        while self.added.len() >= left + together {
+            let pairs = self.added.chunks_exact(together).map(|twins| twins.iter().sum::<f64>());
+            let Some((least, _)) = pairs.enumerate().min_by(|(_, one), (_, other)| one.total_cmp(other)) else {
+                return;
+            };
+            let first = together * least;
+            self.added.drain(first..first + together);
+            let layers = self.hidden.iter_mut().chain([&mut self.output]);
+            let of_layers = layers.flat_map(|layer| [&mut layer.weights, &mut layer.mean, &mut layer.square]);
+            for matrix in of_layers.chain(&mut self.images).chain(&mut self.odd) {
+                *matrix = std::mem::replace(matrix, DMatrix::zeros(0, 0)).remove_rows(first, together);
+            }
+        }
     }
 
     /// The weights of the inputs themselves, in whole steps.
@@ -287,6 +335,24 @@ mod tests {
             }
         }
         assert!(largest > 0.02, "{largest}");
+    }
+
+    /// A unit that adds nothing goes first, and what is left is the network without it.
+    #[test]
+    fn the_least_unit_is_left_out() {
+        let (samples, basis, mut learner) = beginner(7);
+        let batch = batch(&samples, &basis);
+        learner.output.weights.row_mut(4).fill(0.0);
+        let before = learner.correct(&batch);
+        learner.leave_out(6);
+        assert_eq!(learner.added.len(), 6);
+        let found = learner.correct(&batch) - before;
+        assert!(found.amax() < 1e-6, "{}", found.amax());
+        let correction = learner.correction(&basis, HALF_WINDOW);
+        assert_eq!([correction.hidden.len(), correction.output[0].len(), correction.output[1].len()], [6; 3]);
+        // Spare units are there at the beginning, and none from half of the steps on.
+        let settings = Settings { spare: 10, steps: 1000, ..Settings::default() };
+        assert_eq!([1, 100, 301, 501, 1000].map(|step| spare_left(&settings, step)), [10, 10, 5, 0, 0]);
     }
 
     /// The slopes are those of the squared error, by finite differences.

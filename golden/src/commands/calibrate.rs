@@ -35,7 +35,7 @@ pub fn run(path: &Path, out: &Path, family: Option<Family>, work: Work, json: bo
         design.algorithm.joint.family = family;
     }
     let family = design.algorithm.joint.family;
-    let settings = work.settings(family)?;
+    let settings = work.settings(family, design.algorithm.joint.grid)?;
     let resolved = Resolved::new(&design, path, out)?;
     let progress = Progress::new();
     progress.counted_in("steps", "calibrating", settings.work(family) as u64);

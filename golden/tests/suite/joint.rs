@@ -125,7 +125,7 @@ fn shapes_that_it_never_saw_are_solved_too() {
 
 #[test]
 fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
-    let settings = Settings { seed: 3, contacts: 60, samples: 300, hidden: 4, steps: 200 };
+    let settings = Settings { seed: 3, contacts: 60, samples: 300, hidden: 4, spare: 0, steps: 200, hollow: false };
     let mut design = small("estimator = \"joint\"\ngrid = 15");
     let mut ticks = 0_usize;
     let found = calibrate(&design, &settings, &mut |_| ticks += 1).unwrap();
@@ -250,7 +250,7 @@ fn frames_without_an_answer_have_a_status() {
 /// Calibrated so little that the correction is as good as random.
 static ROUGH: LazyLock<Solver> = LazyLock::new(|| {
     let mut design = small("estimator = \"joint\"");
-    let settings = Settings { seed: 3, contacts: 40, samples: 200, hidden: 4, steps: 100 };
+    let settings = Settings { seed: 3, contacts: 40, samples: 200, hidden: 4, spare: 0, steps: 100, hollow: false };
     *design.algorithm.joint = calibrate(&design, &settings, &mut |_| ()).unwrap();
     Solver::new(&design).unwrap()
 });
@@ -289,7 +289,7 @@ fn a_transposed_frame_has_transposed_forces_on_a_square() {
     for (family, hidden) in [(Family::Narrow, 5), (Family::Wide, 4)] {
         let mut design = Design::from_toml(square, "pad.toml").unwrap();
         design.algorithm.joint.family = family;
-        let settings = Settings { seed: 3, contacts: 40, samples: 200, hidden, steps: 100 };
+        let settings = Settings { seed: 3, contacts: 40, samples: 200, hidden, spare: 0, steps: 100, hollow: false };
         *design.algorithm.joint = calibrate(&design, &settings, &mut |_| ()).unwrap();
         let solver = Solver::new(&design).unwrap();
         let mut uncorrected = design.clone();
