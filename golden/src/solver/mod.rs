@@ -234,8 +234,7 @@ impl Solver {
         let (reader, slip) = (Reader::new(design), design.algorithm.slip);
         let doubt = design.algorithm.joint.doubt;
         // The paper's plan has nothing else.
-        let keeps_field =
-            design.algorithm.outputs == Outputs::Field || matches!(products, Products::Paper(_));
+        let keeps_field = design.algorithm.outputs == Outputs::Field || matches!(products, Products::Paper(_));
         Self { reader, matrices, products, friction, finder, keeps_field, doubt, slip }
     }
 
