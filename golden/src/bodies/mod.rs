@@ -1,14 +1,13 @@
 //! Several bodies on one sensor: told apart, so that each has a friction and forces of its own.
 //!
-//! With `y = C33inv b` a frame is the stress of normal forces alone, `b = C33 y`. What a tangential force does to `y` falls off
-//! around its body within the depth of the layer, so `y` can be parted by regions: `b_k = C33 y_k` is nearly the frame that a body
-//! would cause alone, and is solved as any frame of one body, with the same estimator, its correction and its standard
-//! error. With the friction found so, what each body's friction does beyond its region is known,
-//! `v_k = (mu_x C31 + mu_y C32) |w|_k`, and only the rest needs to be parted: `b_k = v_k + C33 (y - C33inv sum v)_k`. These are
-//! solved once more. They add up to the frame as it is; its forces are the sums.
+//! A frame is first solved as that of one body. The forces that are found then cause the frame, `b = sum over p of C3p f_p`, but
+//! belong to several bodies. What a body does is felt no farther from it than the layer is deep, so they can be parted by
+//! regions: `b_k = sum over p of C3p f_p,k` is nearly the frame that a body would cause alone, and is solved as any frame of one
+//! body, with the same estimator, its correction and its standard error. Now each body has a friction of its own, and the
+//! forces of all bodies are parted once more. Since the `b_k` add up to the frame, its forces are the sums.
 //!
-//! [`Finder`] says where the bodies are, from `|w| = max(-y, 0)`: blobs of taxels that touch ([`Labels`]), and the
-//! nearest blob of each taxel. Both take a fixed number of steps on whole numbers, so that hardware can do the same.
+//! [`Finder`] says where the bodies are, from what presses: blobs of taxels that touch ([`Labels`]), and the nearest blob of
+//! each taxel. Both take a fixed number of steps on whole numbers, so that hardware can do the same.
 
 mod labels;
 mod regions;

@@ -1,39 +1,15 @@
 //! Layers so thin that a contact's edge falls between the taxels.
 
-use super::{Design, Estimator};
-use crate::kernel;
-
-/// Depths over the coarser pitch below which the forces are wrong by more than a few percent: by the line estimator, by the
-/// joint one with its constants alone, and with a correction. Of 200 unseen round contacts at each depth
-/// (`docs/contacts.md`, "Thin layers").
-const LINE: f64 = 0.75;
-const CONSTANTS: f64 = 0.5;
-const CORRECTED: f64 = 0.4;
+use super::Design;
 
 impl Design {
-    /// What to tell whose layer is too thin for its taxels; `None` if it is not.
+    /// What to tell whose layer is too thin for its taxels; `None` if it is not. How thin is too thin, the estimator says.
     pub fn thin_layer(&self) -> Option<String> {
         let [x, y] = self.sensor.pitch_mm;
         let depth = self.sensor.depth_mm / x.max(y);
-        let corrected = self.algorithm.joint.correction.is_some();
-        let (limit, remedy) = match self.algorithm.estimator {
-            Estimator::Line => {
-                let short = 100.0 * (1.0 - 1.0 / kernel::gain(&self.sensor, self.algorithm.kernel));
-                let wrong = match short {
-                    1.0.. => format!("F_z comes out {short:.0} % too small"),
-                    // With the "cell" kernel.
-                    _ => "tangential forces are off by tenths of F_z".to_owned(),
-                };
-                (LINE, format!("by the line estimator {wrong}; write estimator = \"joint\""))
-            }
-            Estimator::Joint if corrected => {
-                (CORRECTED, "many frames have no direction, and tangential forces are off by half of F_z".to_owned())
-            }
-            Estimator::Joint => {
-                (CONSTANTS, "tangential forces are off by tenths of F_z; golden calibrate helps down to 0.4".to_owned())
-            }
-        };
-        (depth < limit).then(|| {
+        let thin = self.algorithm.constants().thin(&self.sensor, self.algorithm.kernel);
+        (depth < thin.limit).then(|| {
+            let remedy = thin.remedy;
             format!("the layer is {depth:.2} of a pitch thin, so that contacts fall between the taxels: {remedy}")
         })
     }

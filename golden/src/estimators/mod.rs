@@ -8,9 +8,11 @@ pub(crate) mod doubt;
 pub mod joint;
 pub mod line;
 mod seen;
+mod thin;
 
 use serde::{Deserialize, Serialize};
 
+use crate::kernel::Kernel;
 use crate::sensor::Sensor;
 use crate::words::print_as_words;
 pub use doubt::{DOUBT_FRACTION, DOUBT_RANGE};
@@ -18,6 +20,7 @@ use joint::{Joint, JointConstants, JointScratch};
 use line::LineScratch;
 pub(crate) use seen::{Answer, Seen};
 pub use seen::{Contact, RANGE};
+pub(crate) use thin::Thin;
 
 /// How the friction components are found once the optimisation problem is set up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,6 +35,13 @@ pub enum Estimator {
 }
 
 print_as_words!(Estimator);
+
+impl Estimator {
+    /// Whether it has constants that are found by calibration, without which it tells little.
+    pub fn is_calibrated(self) -> bool {
+        self == Self::Joint
+    }
+}
 
 /// An estimator as a design has it, with its constants.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +66,14 @@ impl<'a> Constants<'a> {
     pub fn doubt_log(self) -> Option<f64> {
         let Self::Joint(joint) = self else { return None };
         joint.correction.as_ref()?.doubt.as_ref().map(|_| doubt::log(joint.doubt))
+    }
+
+    /// How thin a layer may be for this estimator.
+    pub(crate) fn thin(self, sensor: &Sensor, kernel: Kernel) -> Thin {
+        match self {
+            Self::Line => line::thin(sensor, kernel),
+            Self::Joint(joint) => joint.thin(),
+        }
     }
 
     /// What all forces are multiplied by, if the estimator has a gain.

@@ -6,26 +6,24 @@ use super::{Solution, Solver, Status, Workspace, op};
 use crate::bodies::{Body, Found};
 use crate::matrices::{Matrices, MatrixName};
 
-/// Times that the bodies are solved: first as if none had friction when the frame is parted, then with what was found. That
-/// takes four tenths off the errors; more rounds change next to nothing.
+/// Times that the bodies are solved: first with the forces parted that are found as if there were one body, then with those
+/// that the bodies were found to have. More rounds change next to nothing.
 const ROUNDS: usize = 2;
 
 /// What is not known of the other bodies, in a body's standard error: so many times what the last round has changed of its
-/// force, and so many times the others' normal forces, each less by e for every [`REACH`] of the coarser pitch between the
-/// centres. Of 3,000 bodies in frames of six kinds, by likelihood (`docs/contacts.md`).
-const CHANGE: f64 = 1.5;
-const NEIGHBOUR: f64 = 1.5;
-const REACH: f64 = 1.25;
+/// force, and the others' normal forces, each over `1 + (d / REACH)^4` for a distance of so many of the coarser pitch between
+/// the centres. Of 5,256 bodies in frames of eighteen kinds, by likelihood (`docs/contacts.md`).
+const CHANGE: f64 = 1.25;
+const REACH: f64 = 2.0;
 
 /// The bodies of a frame, to be used again for the next one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Parted {
     found: Found,
-    /// `y = C33inv b` of each taxel in newtons, and its `|w|`.
-    normal: DVector<f64>,
+    /// What presses on each taxel, in newtons.
     weight: Vec<f64>,
-    /// Friction components of each body, as far as they are known.
-    friction: Vec<[f64; 2]>,
+    /// Forces `f_x, f_y, f_z` of each taxel that are parted, in newtons without the estimator's gain.
+    forces: [Vec<f64>; 3],
     /// `(F_x, F_y)` of each body in the round before, in newtons.
     before: Vec<[f64; 2]>,
     /// What the last round has changed of that.
@@ -53,43 +51,49 @@ impl Census {
 }
 
 impl Solver {
-    /// Finds the bodies of the stress `b`; none for a design that does not ask.
-    pub(super) fn part(&self, b: &DVector<f64>, parted: &mut Parted) -> Census {
+    /// Finds the bodies of the stress `b`, which is solved as that of one; none for a design that does not ask.
+    ///
+    /// They are told apart by the normal forces of that solution. Where they are only counted it is by `|w|`, as in hardware.
+    pub(super) fn part(&self, b: &DVector<f64>, solution: &Solution, parted: &mut Parted) -> Census {
         let Some(finder) = &self.finder else { return Census::default() };
-        let Parted { found, normal, weight, .. } = parted;
-        *normal = &*self.matrices.folded(MatrixName::C33inv) * b;
+        let Parted { found, weight, .. } = parted;
         weight.clear();
-        weight.extend(normal.iter().map(|force| (-force).max(0.0)));
         if finder.records() == 0 {
+            let normal = &*self.matrices.folded(MatrixName::C33inv) * b;
+            weight.extend(normal.iter().map(|force| (-force).max(0.0)));
             finder.count(weight, found);
             return Census { bodies: found.bodies, ..Census::default() };
         }
+        weight.extend(solution.field[2].iter().map(|force| (-force).max(0.0)));
         finder.find(weight, found);
         let taxels = found.taxels.first().copied().unwrap_or(0);
         Census { bodies: found.bodies, regions: found.taxels.len(), taxels }
     }
 
-    /// Finds the forces of each body, by the frame that it would cause alone, and their sums. For a solution that is reset.
-    pub(super) fn solve_bodies(&self, workspace: &mut Workspace, solution: &mut Solution) {
+    /// Finds the forces of each body, by the frame that it would cause alone, and their sums. The solution is that of the frame
+    /// as if there were one body; `status` is what was to be said before it was solved.
+    pub(super) fn solve_bodies(&self, workspace: &mut Workspace, status: Status, solution: &mut Solution) {
         let nothing = || Box::new(Solution::zeros(Status::default(), 0));
         let mut alone = workspace.parted.alone.take().unwrap_or_else(nothing);
         let whole = workspace.b.clone();
         let bodies = workspace.parted.found.taxels.len();
+        std::mem::swap(&mut workspace.parted.forces, &mut solution.field);
+        solution.reset(status, self.solved_length());
         // That nothing pulls is a matter of the frame and of the friction that is found.
-        let status = Body::bits_of(solution.status);
-        workspace.parted.friction.clear();
-        workspace.parted.friction.resize(bodies, [0.0; 2]);
+        let status = Body::bits_of(status);
         workspace.parted.before.clear();
         workspace.parted.before.resize(bodies, [0.0; 2]);
         workspace.parted.changed.clear();
         for round in 1..=ROUNDS {
             let parts = self.frames_alone(&workspace.parted);
+            workspace.parted.forces.iter_mut().for_each(|component| component.fill(0.0));
             for (body, part) in parts.into_iter().enumerate() {
                 workspace.b = part;
                 let contact = self.reader.analyse(&workspace.b);
-                alone.reset(status, self.field_length());
+                alone.reset(status, self.solved_length());
                 self.solve_alone(workspace, contact, &mut alone);
-                workspace.parted.friction[body] = [alone.mu_x, alone.mu_y];
+                let all = workspace.parted.forces.iter_mut().flatten();
+                all.zip(alone.field.iter().flatten()).for_each(|(all, force)| *all += force);
                 let [x, y, _] = alone.resultant;
                 let [before_x, before_y] = std::mem::replace(&mut workspace.parted.before[body], [x, y]);
                 if round == ROUNDS {
@@ -121,10 +125,11 @@ impl Solver {
             let felt: f64 = others
                 .map(|other| {
                     let [x, y] = [0, 1].map(|axis| other.centre_m[axis] - body.centre_m[axis]);
-                    other.force[2].abs() * (-x.hypot(y) / reach).exp()
+                    let near = (x * x + y * y) / (reach * reach);
+                    other.force[2].abs() / (1.0 + near * near)
                 })
                 .sum();
-            body.standard_error = body.standard_error.hypot(CHANGE * changed).hypot(NEIGHBOUR * felt);
+            body.standard_error = body.standard_error.hypot(CHANGE * changed).hypot(felt);
             if body.standard_error > self.doubt * body.force[2].abs() {
                 body.status.insert(Status::DOUBTFUL);
             }
@@ -133,31 +138,20 @@ impl Solver {
         solution.standard_error = solution.records.iter().fold(0.0, |all, body| body.standard_error.hypot(all));
     }
 
-    /// The frame that each body would cause alone, in pascals; they add up to the whole one.
-    ///
-    /// What the friction of `|w|` of its region does, `v = (mu_x C31 + mu_y C32) |w|_k`, is a body's own. What all of these leave
-    /// of the frame is made of normal forces, `y - C33inv (sum of v)`, and these are parted by regions.
+    /// The frame that each body would cause alone, in pascals: the stress of the forces in its region. They add up to the
+    /// whole one, since forces that are found for a frame cause it.
     fn frames_alone(&self, parted: &Parted) -> Vec<DVector<f64>> {
-        let Parted { found, normal, weight, friction, .. } = parted;
+        let Parted { found, forces, .. } = parted;
         let Matrices { c31, c32, c33, .. } = &self.matrices;
-        let of = |body: usize, values: &[f64]| {
-            let own = values.iter().zip(&found.regions);
-            DVector::from_iterator(values.len(), own.map(|(&value, &of)| if of == Some(body) { value } else { 0.0 }))
+        let frame = |body: usize| {
+            let [x, y, z] = forces.each_ref().map(|component| {
+                let own = component.iter().zip(&found.regions);
+                let own = own.map(|(&force, &of)| if of == Some(body) { force } else { 0.0 });
+                DVector::from_iterator(component.len(), own)
+            });
+            c31 * &x + c32 * &y + c33 * &z
         };
-        let mut left = normal.clone();
-        let mut parts = vec![DVector::zeros(normal.len()); friction.len()];
-        if friction.iter().flatten().any(|&mu| mu != 0.0) {
-            for ((body, part), &[mu_x, mu_y]) in parts.iter_mut().enumerate().zip(friction) {
-                let own = of(body, weight);
-                *part = c31 * &(&own * mu_x) + c32 * &(own * mu_y);
-            }
-            let caused: DVector<f64> = parts.iter().sum();
-            left -= &*self.matrices.folded(MatrixName::C33inv) * &caused;
-        }
-        for (body, part) in parts.iter_mut().enumerate() {
-            *part += c33 * &of(body, left.as_slice());
-        }
-        parts
+        (0..found.taxels.len()).map(frame).collect()
     }
 
     /// The record of the body that a solution is of.

@@ -163,6 +163,8 @@ pub struct Solver {
     friction: Friction,
     /// Where bodies are told apart, or counted.
     finder: Option<Finder>,
+    /// Whether solutions have the forces of all taxels.
+    keeps_field: bool,
     /// Share of the normal force above which a standard error is doubtful.
     doubt: f64,
     slip: Option<Slip>,
@@ -206,7 +208,7 @@ impl Solver {
                 FilteredMatrices::new(&matrices, filter).map(|filtered| Self::from_parts(design, matrices, filtered))
             }
             PlanKind::Reduced => ReducedMatrices::new(&matrices, matrices.quads(), filter).map(|reduced| {
-                let field = design.algorithm.outputs == Outputs::Field;
+                let field = design.algorithm.outputs == Outputs::Field || design.algorithm.contacts > 1;
                 let list = ProductList::paper().fewer_products(field).folded();
                 let quads = *matrices.quads();
                 let engine = Engine::new(list, reduced, quads.all(), quads.taxels());
@@ -231,7 +233,9 @@ impl Solver {
         let finder = (contacts > 1 || design.algorithm.count_bodies).then(|| Finder::new(&design.sensor, contacts));
         let (reader, slip) = (Reader::new(design), design.algorithm.slip);
         let doubt = design.algorithm.joint.doubt;
-        Self { reader, matrices, products, friction, finder, doubt, slip }
+        // The paper's plan has nothing else.
+        let keeps_field = design.algorithm.outputs == Outputs::Field || matches!(products, Products::Paper(_));
+        Self { reader, matrices, products, friction, finder, keeps_field, doubt, slip }
     }
 
     /// The unfiltered matrices.
@@ -278,6 +282,11 @@ impl Solver {
 
     /// Number of forces along each axis in a solution's field: m, or 0 where the design asks for resultants only.
     pub fn field_length(&self) -> usize {
+        if self.keeps_field { self.solved_length() } else { 0 }
+    }
+
+    /// The same while a frame is solved: several bodies are parted by their field, whatever the design asks for.
+    fn solved_length(&self) -> usize {
         match &self.products {
             Products::Reduced(reduced) if !reduced.engine.list.has_forces() => 0,
             _ => self.taxels(),

@@ -78,22 +78,30 @@ impl Solver {
         match self.reader.read(frame, &mut workspace.b)? {
             Reading::Nothing(status) => solution.reset(status, self.field_length()),
             Reading::Contact { contact, status } => {
-                solution.reset(status, self.field_length());
-                census = self.part(&workspace.b, &mut workspace.parted);
-                if census.has_several() {
-                    self.solve_bodies(workspace, solution);
-                } else {
-                    self.solve_alone(workspace, contact, solution);
-                }
+                solution.reset(status, self.solved_length());
+                self.solve_alone(workspace, contact, solution);
+                census = self.tell_apart(workspace, status, solution);
             }
         }
         self.finish(workspace, census, solution);
         Ok(())
     }
 
+    /// Finds the bodies of the workspace's stress, solved as that of one; where there are several, solves them.
+    fn tell_apart(&self, workspace: &mut Workspace, status: Status, solution: &mut Solution) -> Census {
+        let census = self.part(&workspace.b, solution, &mut workspace.parted);
+        if census.has_several() {
+            self.solve_bodies(workspace, status, solution);
+        }
+        census
+    }
+
     /// What follows from the forces of a frame.
     fn finish(&self, workspace: &mut Workspace, census: Census, solution: &mut Solution) {
         self.note_body(census, solution);
+        if self.field_length() == 0 {
+            solution.field.iter_mut().for_each(Vec::clear);
+        }
         if let Some(gain) = self.friction.gain() {
             solution.scale(gain);
         }
@@ -180,23 +188,23 @@ impl Solver {
     ) -> Result<(), SolverError> {
         for (frames, solutions) in frames.chunks(FRAMES).zip(solutions.chunks_mut(FRAMES)) {
             batch.clear();
-            let mut census = [Census::default(); FRAMES];
             for (index, (frame, solution)) in frames.iter().zip(&mut *solutions).enumerate() {
                 match self.reader.read(frame.as_ref(), &mut workspace.b)? {
                     Reading::Nothing(status) => solution.reset(status, self.field_length()),
                     Reading::Contact { contact, status } => {
-                        solution.reset(status, self.field_length());
-                        census[index] = self.part(&workspace.b, &mut workspace.parted);
-                        if census[index].has_several() {
-                            self.solve_bodies(workspace, solution);
-                        } else {
-                            batch.push(index, contact, workspace.b.as_slice());
-                        }
+                        solution.reset(status, self.solved_length());
+                        batch.push(index, contact, workspace.b.as_slice());
                     }
                 }
             }
             batch.solve(&self.friction, &mut workspace.friction, solutions);
-            for (solution, census) in solutions.iter_mut().zip(census) {
+            for (frame, solution) in frames.iter().zip(solutions) {
+                let mut census = Census::default();
+                if self.finder.is_some()
+                    && let Reading::Contact { status, .. } = self.reader.read(frame.as_ref(), &mut workspace.b)?
+                {
+                    census = self.tell_apart(workspace, status, solution);
+                }
                 self.finish(workspace, census, solution);
             }
         }

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::str::FromStr;
 
 use golden::design::{Design, Estimator, Filter, JointConstants, MatrixFilter, PlanKind};
+use hdl_gen::estimators::has_hardware;
 use hdl_gen::plan::Plan;
 use sha2::{Digest, Sha256};
 
@@ -180,13 +181,11 @@ fn variants(base: &Design, designs: &[Design], axes: &Axes) -> Vec<Design> {
     let mut variants = if asked { Vec::new() } else { vec![base.clone()] };
     let estimated = with_estimators(base, designs, axes);
     for filtered in estimated.iter().flat_map(|base| with_filters(base, &axes.filters)) {
-        // The paper's plan has no joint estimator in hardware.
-        let joint = filtered.algorithm.estimator == Estimator::Joint;
-        for &plan in plans.iter().filter(|&&plan| !joint || plan == PlanKind::Reduced) {
+        variants.extend(plans.iter().filter_map(|&plan| {
             let mut variant = filtered.clone();
             variant.algorithm.plan = plan;
-            variants.push(variant);
-        }
+            has_hardware(&variant).then_some(variant)
+        }));
     }
     let coefficient = |design: &mut Design, bits| design.hardware.coefficient_bits = bits;
     let data = |design: &mut Design, bits| design.hardware.data_bits = bits;
@@ -213,37 +212,36 @@ fn variants(base: &Design, designs: &[Design], axes: &Axes) -> Vec<Design> {
 }
 
 /// The design with each estimator of the axis: the paper's, for which the filters are, unless others are asked for.
-/// The joint one has the constants that it needs from a design of the same sensor, else it is left out.
+/// One that is calibrated has the constants that it needs from a design of the same sensor, else it is left out.
 fn with_estimators(base: &Design, designs: &[Design], axes: &Axes) -> Vec<Design> {
     let usual: &[Estimator] = if axes.full { &[Estimator::Line, Estimator::Joint] } else { &[Estimator::Line] };
     or(&axes.estimators, usual)
         .iter()
-        .filter_map(|estimator| match estimator {
-            Estimator::Line => Some(line(base)),
-            Estimator::Joint => joint(base, designs),
+        .filter_map(|&estimator| {
+            if estimator.is_calibrated() { calibrated(base, estimator, designs) } else { Some(plain(base, estimator)) }
         })
         .collect()
 }
 
-/// The design with the joint estimator.
-fn joint(base: &Design, designs: &[Design]) -> Option<Design> {
+/// The design with an estimator that is calibrated.
+fn calibrated(base: &Design, estimator: Estimator, designs: &[Design]) -> Option<Design> {
     // What the constants make good for: the sensor, the load kernel and what is added to it.
     let fits = |design: &&Design| {
         let (one, other) = (&design.algorithm, &base.algorithm);
-        one.estimator == Estimator::Joint
+        one.estimator == estimator
             && (&design.sensor, one.kernel, one.regularisation) == (&base.sensor, other.kernel, other.regularisation)
     };
     let calibrated = std::iter::once(base).chain(designs).find(fits)?;
     let mut design = base.clone();
-    design.algorithm.estimator = Estimator::Joint;
+    design.algorithm.estimator = estimator;
     design.algorithm.joint.clone_from(&calibrated.algorithm.joint);
     Some(design)
 }
 
-/// The design with the paper's estimator.
-fn line(base: &Design) -> Design {
+/// The design with an estimator that is not.
+fn plain(base: &Design, estimator: Estimator) -> Design {
     let mut design = base.clone();
-    design.algorithm.estimator = Estimator::Line;
+    design.algorithm.estimator = estimator;
     *design.algorithm.joint = JointConstants::default();
     design
 }

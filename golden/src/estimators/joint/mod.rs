@@ -9,6 +9,7 @@ mod grid;
 mod level_set;
 mod look;
 mod network;
+mod thin;
 mod weights;
 
 use super::doubt::{log, ratio};

@@ -65,7 +65,7 @@ fn one_body_is_solved_as_if_there_could_be_no_more() {
     }
 }
 
-/// Counted, a frame has the forces that it ever had, the number of bodies that telling them apart finds, and a bit.
+/// Counted, a frame has the forces that it ever had, the number of bodies that telling them apart mostly finds, and a bit.
 #[test]
 fn bodies_are_counted_where_they_are_solved_as_one() {
     for (name, plan) in [("sensor1-fast", PlanKind::Reduced), ("sensor2-none", PlanKind::Paper)] {
@@ -92,8 +92,10 @@ fn bodies_are_counted_where_they_are_solved_as_one() {
         });
         let marked = counted.iter().filter(|found| found.status.contains(Status::MORE_BODIES)).count();
         assert!((14..=24).contains(&marked), "{name}: {marked}");
+        // By |w| the one, by the normal forces the other: at a limit they may differ.
+        let differ = counted.iter().zip(&several).filter(|(counted, several)| counted.bodies != several.bodies);
+        assert!(differ.count() <= 2, "{name}: more than one frame of 16, solved alone and together");
         for ((mut plain, counted), several) in plain.into_iter().zip(counted).zip(several) {
-            assert_eq!(counted.bodies, several.bodies, "{name}");
             assert!(!several.status.contains(Status::MORE_BODIES), "{name}");
             if counted.bodies > 1 {
                 plain.status.insert(Status::MORE_BODIES);
@@ -131,11 +133,11 @@ fn bodies_are_counted_where_they_are_solved_as_one() {
 #[test]
 fn each_body_has_its_own_forces() {
     for (name, kind, most) in [
-        ("sensor1-joint", Kind::Same, [7.0, 25.0, 1.6]),
-        ("sensor1-joint", Kind::Opposed, [6.0, 19.0, 1.6]),
-        ("sensor2-joint", Kind::Anyhow, [6.0, 20.0, 1.6]),
-        ("sensor2-wide", Kind::Held, [6.5, 20.0, 1.6]),
-        ("sensor2-wide", Kind::Three, [9.0, 26.0, 1.9]),
+        ("sensor1-joint", Kind::Same, [6.0, 20.0, 1.4]),
+        ("sensor1-joint", Kind::Opposed, [5.5, 17.0, 1.4]),
+        ("sensor2-joint", Kind::Anyhow, [5.5, 18.0, 1.4]),
+        ("sensor2-wide", Kind::Held, [5.5, 17.0, 1.4]),
+        ("sensor2-wide", Kind::Three, [8.0, 22.0, 1.7]),
     ] {
         let [one, several] = [1, 4].map(|contacts| Solver::new(&design(name, contacts)).unwrap());
         let frames: Vec<SceneFrame> = (0..24).map(|seed| frame(one.matrices().sensor(), kind, 7000 + seed)).collect();
