@@ -25,7 +25,8 @@ const DECAY: f32 = 0.1;
 const LARGEST_WEIGHT: f64 = 7.9;
 /// The largest sum of a hidden unit's weights. The hardware rounds all units alike, as the largest sum demands, so all
 /// are brought to about the same one; a factor on a unit goes out of its weights in the output, which changes nothing.
-const LARGEST_SUM: f64 = 64.0;
+/// A little less than a power of two: with what rounding the weights adds a full one would cost all units a bit.
+const LARGEST_SUM: f64 = 63.75;
 /// Errors above this count by their size, those below by their square: among contacts of all kinds some cannot be told
 /// from others, and these must not decide the rest.
 const SOFT: f32 = 0.04;

@@ -117,7 +117,7 @@ fn seeded(design: &Design) -> Vec<Truth> {
 
 #[test]
 fn the_model_is_close_to_the_solver() {
-    let more = ["sensor1-fast", "sensor2-wide"].map(shipped);
+    let more = ["sensor1-fast", "sensor1-fast-64", "sensor2-fast", "sensor2-wide"].map(shipped);
     let all: Vec<Design> =
         designs().into_iter().chain(more).flat_map(|design| [uncorrected(design.clone()), design]).collect();
     let lines = in_parallel(&all, |design| {
