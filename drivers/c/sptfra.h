@@ -223,7 +223,8 @@ typedef struct {
  * of four bytes. */
 int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result);
 
-/* ---- Calibration in RAM (calibration = "ram" in the design), in sptfra_calibration.c and sptfra_bank.c; from files by sptfra_file.h */
+/* ---- Calibration in RAM (calibration = "ram" in the design), in sptfra_calibration.c and sptfra_bank.c; from files by
+ * sptfra_file.h */
 
 /* Gain and offset (in counts) of each taxel, as in a design's calibration.csv: gains 1e-9 to 16, offsets to 1e6. A gain of
  * 0 reads 0: for taxels that the design or the map replaces, SPTFRA_OUT_OF_RANGE for others of a core with a map. With a

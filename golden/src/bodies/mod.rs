@@ -1,10 +1,11 @@
 //! Several bodies on one sensor: told apart, so that each has a friction and forces of its own.
 //!
-//! A frame is first solved as that of one body. The forces that are found then cause the frame, `b = sum over p of C3p f_p`, but
-//! belong to several bodies. What a body does is felt no farther from it than the layer is deep, so they can be parted by
-//! regions: `b_k = sum over p of C3p f_p,k` is nearly the frame that a body would cause alone, and is solved as any frame of one
-//! body, with the same estimator, its correction and its standard error. Now each body has a friction of its own, and the
-//! forces of all bodies are parted once more. Since the `b_k` add up to the frame, its forces are the sums.
+//! A frame is first solved as that of one body. The forces that are found then cause the frame, `b = sum over p of C3p f_p`
+//! (with a filter nearly), but belong to several bodies. What a body does is felt no farther from it than the layer is deep, so
+//! they can be parted by regions: `b_k = sum over p of C3p f_p,k`, with what a filter leaves of the frame there, is nearly the
+//! frame that a body would cause alone, and is solved as any frame of one body, with the same estimator, its correction and
+//! its standard error. Now each body has a friction of its own, and the forces of all bodies are parted once more. Since the
+//! `b_k` add up to the frame, its forces are the sums.
 //!
 //! [`Finder`] says where the bodies are, from what presses: blobs of taxels that touch ([`Labels`]), and the nearest blob of
 //! each taxel. Both take a fixed number of steps on whole numbers, so that hardware can do the same.
@@ -20,8 +21,8 @@ use regions::{Distances, spread};
 
 /// Most records of bodies that a design can ask for.
 pub const MOST: usize = 8;
-/// A taxel touches if its `|w|` is above this share of the frame's largest, and a blob is a body if it has this share of
-/// all `|w|`: about 8 %, in two shifts and an addition.
+/// A taxel touches if what presses on it is above this share of the frame's largest, and a blob is a body if it has this
+/// share of all that presses: about 8 %, in two shifts and an addition.
 pub const SHARE: f64 = 5.0 / 64.0;
 
 /// What is known of one body.
@@ -83,7 +84,7 @@ pub struct Finder {
 /// The bodies of a frame, to be used again for the next one.
 #[derive(Clone, Debug, Default)]
 pub struct Found {
-    /// Body of each taxel, the nearest: 0 is the one with most `|w|`. Without any body `None`.
+    /// Body of each taxel, the nearest: 0 is the one that presses most. Without any body `None`.
     pub regions: Vec<Option<usize>>,
     /// Taxels that each body touches; as many as there are bodies with a region, at most those that were asked for.
     pub taxels: Vec<usize>,
@@ -91,7 +92,7 @@ pub struct Found {
     pub bodies: usize,
     touched: Vec<bool>,
     labels: Labels,
-    /// Of each blob the sum of `|w|`, its number and its taxels.
+    /// Of each blob the sum of what presses, its number and its taxels.
     blobs: Vec<(f64, usize, usize)>,
     /// Of each blob its body.
     numbers: Vec<Option<usize>>,
@@ -114,9 +115,9 @@ impl Finder {
         if self.contacts > 1 { self.contacts } else { 0 }
     }
 
-    /// Tells the bodies apart by `|w|`, one value for each taxel.
+    /// Tells the bodies apart by what presses, one value for each taxel.
     ///
-    /// Of more bodies than asked for those with the least `|w|` have no region: their taxels go to the nearest of the
+    /// Of more bodies than asked for those that press least have no region: their taxels go to the nearest of the
     /// others. If every blob has less than [`SHARE`] of all, the largest is the one body that there is.
     pub fn find(&self, weight: &[f64], found: &mut Found) {
         self.count(weight, found);
@@ -134,7 +135,7 @@ impl Finder {
         spread(regions, self.columns, self.distances, nearest);
     }
 
-    /// Counts the bodies by `|w|`, one value for each taxel, and no more: of what is found only the number is new.
+    /// Counts the bodies by what presses, one value for each taxel, and no more: of what is found only the number is new.
     pub fn count(&self, weight: &[f64], found: &mut Found) {
         let Found { bodies, touched, labels, blobs, .. } = found;
         let largest = weight.iter().copied().fold(0.0, f64::max);

@@ -85,7 +85,7 @@ impl Solver {
         workspace.parted.before.resize(bodies, [0.0; 2]);
         workspace.parted.changed.clear();
         for round in 1..=ROUNDS {
-            let parts = self.frames_alone(&workspace.parted);
+            let parts = self.frames_alone(&workspace.parted, &whole);
             workspace.parted.forces.iter_mut().for_each(|component| component.fill(0.0));
             for (body, part) in parts.into_iter().enumerate() {
                 workspace.b = part;
@@ -138,9 +138,9 @@ impl Solver {
         solution.standard_error = solution.records.iter().fold(0.0, |all, body| body.standard_error.hypot(all));
     }
 
-    /// The frame that each body would cause alone, in pascals: the stress of the forces in its region. They add up to the
-    /// whole one, since forces that are found for a frame cause it.
-    fn frames_alone(&self, parted: &Parted) -> Vec<DVector<f64>> {
+    /// The frame that each body would cause alone, in pascals: the stress of the forces in its region, and what a filter has
+    /// them leave of the frame there. They add up to the whole one.
+    fn frames_alone(&self, parted: &Parted, whole: &DVector<f64>) -> Vec<DVector<f64>> {
         let Parted { found, forces, .. } = parted;
         let Matrices { c31, c32, c33, .. } = &self.matrices;
         let frame = |body: usize| {
@@ -151,7 +151,15 @@ impl Solver {
             });
             c31 * &x + c32 * &y + c33 * &z
         };
-        (0..found.taxels.len()).map(frame).collect()
+        let mut parts: Vec<DVector<f64>> = (0..found.taxels.len()).map(frame).collect();
+        // Without a filter it is rounding.
+        let left = parts.iter().fold(whole.clone(), |left, part| left - part);
+        for (taxel, (&left, &body)) in left.iter().zip(&found.regions).enumerate() {
+            if let Some(body) = body {
+                parts[body][taxel] += left;
+            }
+        }
+        parts
     }
 
     /// The record of the body that a solution is of.

@@ -233,7 +233,7 @@ impl Solver {
         let finder = (contacts > 1 || design.algorithm.count_bodies).then(|| Finder::new(&design.sensor, contacts));
         let (reader, slip) = (Reader::new(design), design.algorithm.slip);
         let doubt = design.algorithm.joint.doubt;
-        // The paper's plan has nothing else.
+        // By the paper's plan every solution has them.
         let keeps_field = design.algorithm.outputs == Outputs::Field || matches!(products, Products::Paper(_));
         Self { reader, matrices, products, friction, finder, keeps_field, doubt, slip }
     }
@@ -280,7 +280,8 @@ impl Solver {
         self.finder.as_ref().map_or(0, Finder::records)
     }
 
-    /// Number of forces along each axis in a solution's field: m, or 0 where the design asks for resultants only.
+    /// Number of forces along each axis in a solution's field: m, or 0 where the design asks the reduced plan for resultants
+    /// only.
     pub fn field_length(&self) -> usize {
         if self.keeps_field { self.solved_length() } else { 0 }
     }

@@ -18,6 +18,8 @@ use crate::reduced::ReducedMatrices;
 #[derive(Clone, Debug)]
 pub struct Workspace {
     quads: Quads,
+    /// Forces along each axis that a frame is solved for.
+    forces: usize,
     pub(super) b: DVector<f64>,
     friction: FrictionScratch,
     products: Scratch,
@@ -47,6 +49,7 @@ impl Solver {
     pub fn workspace(&self) -> Workspace {
         Workspace {
             quads: *self.matrices.quads(),
+            forces: self.solved_length(),
             b: DVector::zeros(self.taxels()),
             friction: FrictionScratch::default(),
             products: match &self.products {
@@ -200,6 +203,7 @@ impl Solver {
             batch.solve(&self.friction, &mut workspace.friction, solutions);
             for (frame, solution) in frames.iter().zip(solutions) {
                 let mut census = Census::default();
+                // Its stress, and its status before it was solved, once more: they are kept of no frame.
                 if self.finder.is_some()
                     && let Reading::Contact { status, .. } = self.reader.read(frame.as_ref(), &mut workspace.b)?
                 {
@@ -218,7 +222,7 @@ impl Solver {
             (Products::Paper(_), Scratch::Paper(_)) | (Products::Reduced(_), Scratch::Reduced(_))
         );
         let quads = self.matrices.quads();
-        if !same_plan || workspace.quads != *quads {
+        if !same_plan || workspace.quads != *quads || workspace.forces != self.solved_length() {
             *workspace = self.workspace();
         }
     }

@@ -190,6 +190,34 @@ fn bodies_add_up_to_the_frame() {
     }
 }
 
+/// Forces found with a filter cause less than the frame; what they leave of it is a body's all the same.
+#[test]
+fn a_filter_takes_nothing_from_the_bodies() {
+    for name in ["sensor1-f1-l50", "sensor1-f2-p50", "sensor2-f2-p30"] {
+        let [one, several] = [1, 4].map(|contacts| Solver::new(&design(name, contacts)).unwrap());
+        let mut apart: f64 = 0.0;
+        for seed in 0..12 {
+            let frame = frame(one.matrices().sensor(), Kind::Anyhow, 7100 + seed);
+            let [whole, parted] = [&one, &several].map(|solver| solver.solve(&frame.stress).unwrap().resultant[2]);
+            apart = apart.max((parted / whole - 1.0).abs());
+        }
+        println!("{name}: {apart:.4}");
+        assert!(apart < 0.02, "{name}: {apart}");
+    }
+}
+
+/// A workspace of a solver that needs less is no workspace of one that parts its frames.
+#[test]
+fn a_workspace_of_another_solver_is_replaced() {
+    let [one, several] = [1, 4].map(|contacts| Solver::new(&design("sensor1-resultants", contacts)).unwrap());
+    let frame = frame(one.matrices().sensor(), Kind::Anyhow, 7200).stress;
+    let expected = several.solve(&frame).unwrap();
+    let (mut workspace, mut found) = (one.workspace(), one.solve(&frame).unwrap());
+    several.solve_into(&mut workspace, &frame, &mut found).unwrap();
+    assert_eq!((expected.bodies, &found), (2, &expected));
+    assert!(found.field.iter().all(Vec::is_empty) && found.records[1].force[2] < 0.0);
+}
+
 /// Torques of bodies against the true ones about all axes, in N m over the normal force: a millimetre of arm at most.
 #[test]
 fn each_body_has_its_own_torque() {
