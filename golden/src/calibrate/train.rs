@@ -356,6 +356,20 @@ mod tests {
         assert_eq!([1, 100, 301, 501, 1000].map(|step| spare_left(&settings, step)), [10, 10, 5, 0, 0]);
     }
 
+    /// Rounding must not take a unit's sum to a full power of two, where the hardware drops a bit more of all units.
+    #[test]
+    fn sums_of_weights_stay_below_a_power_of_two() {
+        // The second one, sixteen weights of all but four, rounds to a sum of 64.
+        let mut hidden = DMatrix::from_row_slice(2, 16, &[[1.0; 16], [3.9999; 16]].concat());
+        let mut output = DMatrix::from_element(2, 2, 1.0);
+        scaled_alike(&mut hidden, &mut output);
+        let sums: Vec<i32> = quantised(&hidden).iter().map(|unit| unit.iter().sum()).collect();
+        assert_eq!(sums, [32 << WEIGHT_FRACTION; 2]);
+        // What the unit gains its output loses.
+        let gains = [output[(0, 0)], output[(1, 0)]].map(|gain| format!("{gain}"));
+        assert_eq!(gains, ["0.5", "2"]);
+    }
+
     /// The slopes are those of the squared error, by finite differences.
     #[test]
     fn a_step_goes_downhill() {
