@@ -15,13 +15,14 @@ pub const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
 /// Rounding of the coefficients, as a share of their size, from which on it is told.
 const COARSE: f64 = 0.005;
 
-/// The plan of a design to be looked at: for several bodies, which have no hardware, that of one, with the design as it is.
+/// The plan of a design to be looked at: for several bodies with what no hardware for them has, that for one, with the
+/// design as it is.
 ///
 /// # Errors
 ///
 /// As [`Plan::new`].
 pub fn plan_to_inspect(design: &Design) -> Result<Plan, PlanError> {
-    let contacts = design.algorithm.contacts;
+    let Err(PlanError::Contacts { contacts, .. }) = Plan::new(design) else { return Plan::new(design) };
     let mut of_one = design.clone();
     of_one.algorithm.contacts = 1;
     let mut plan = Plan::new(&of_one)?;
@@ -32,9 +33,17 @@ pub fn plan_to_inspect(design: &Design) -> Result<Plan, PlanError> {
 /// What to tell of a design for several bodies.
 pub fn several_bodies(plan: &Plan) -> Option<String> {
     let contacts = plan.design.algorithm.contacts;
-    (contacts > 1).then(|| {
-        format!("contacts {contacts} in golden solve and in Python; hardware, and all figures here, with contacts = 1")
-    })
+    match (&plan.contacts, contacts) {
+        (None, 0 | 1) => None,
+        (None, _) => Some(format!(
+            "contacts {contacts} in golden solve and in Python; hardware, and all figures here, with contacts = 1"
+        )),
+        (Some(of), _) => Some(format!(
+            "up to {contacts} told apart, each solved as a frame of its own; all figures here of frames of one; places for \
+             {} frames",
+            of.banks
+        )),
+    }
 }
 
 /// What to tell of a design whose hardware counts bodies.

@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::compare::Comparison;
 use crate::dut::{Dut, DutError};
 use crate::stream::{Mode, Pacing, StreamError, Traffic, exchange};
+use crate::stream_words::Shape;
 use crate::verilate::Built;
 
 /// Frames sent one at a time for the latency.
@@ -22,10 +23,12 @@ pub struct Job<'a> {
     pub built: &'a Built,
     /// Input packets.
     pub packets: &'a [Vec<u32>],
+    /// Those whose cycles are predicted.
+    pub timed: &'a [Vec<u32>],
     /// The answers of the integer model, one for each packet, its frame counter starting at 0.
     pub expected: &'a [Vec<u32>],
-    /// Columns of the sensor, to name words.
-    pub columns: usize,
+    /// What words are of, to name them.
+    pub shape: Shape,
     /// When packets follow each other, where they are not sent one at a time.
     pub pacing: Pacing,
     /// Whether frames take as long as what is in them.
@@ -151,7 +154,7 @@ fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResu
     let outcome = exchange(&mut core, &traffic, |_| progress())
         .map_err(|source| SimulationError::Stream { mode: mode.name, source })?;
     let answers: Vec<Vec<u32>> = outcome.exchanges.into_iter().map(|exchange| exchange.words).collect();
-    let comparison = Comparison::new(job.expected, answers.iter().map(Vec::as_slice), job.columns);
+    let comparison = Comparison::new(job.expected, answers.iter().map(Vec::as_slice), job.shape);
     Ok((ModeResult { mode, cycles: outcome.cycles, comparison }, answers))
 }
 
@@ -160,7 +163,7 @@ fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<Cycles, SimulationErro
     let failed = |source| SimulationError::Stream { mode: "timing", source };
     let mut core: Dut = job.built.load(job.seed)?;
     let mut run = |count, pacing| {
-        let packets: Vec<Vec<u32>> = job.packets.iter().cycle().take(count).cloned().collect();
+        let packets: Vec<Vec<u32>> = job.timed.iter().cycle().take(count).cloned().collect();
         let traffic = Traffic::new(&packets, job.timeout).with_pacing(pacing);
         exchange(&mut core, &traffic, |_| progress()).map_err(failed)
     };

@@ -1,8 +1,11 @@
 //! Frames as the words of the two streams.
 
+use golden::bodies::Body;
 use golden::solver::Solution;
+use golden::status::Status;
+use hdl_gen::plan::Plan;
 use hdl_gen::plan::streams::Streams;
-use hdl_gen::plan::words;
+use hdl_gen::plan::words::{self, RECORD_WORDS, Word};
 
 /// Summary beats in front of the field.
 pub const SUMMARY_BEATS: usize = words::SUMMARY_WORDS;
@@ -27,14 +30,39 @@ pub fn as_received(streams: Streams, packet: &[u32]) -> Vec<f64> {
     streams.received(packet)
 }
 
-/// What a beat of an output frame is, such as `F_z`, or `f_x of taxel 12 (2, 1)` with column and row.
-pub fn beat_name(beat: usize, columns: usize) -> String {
-    if beat < SUMMARY_BEATS {
-        let values = words::SUMMARY.iter().filter(|word| word.index == beat).map(|word| word.name);
-        let names: Vec<&str> = values.collect();
-        return if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
+/// What the words of an output frame are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Columns of the sensor.
+    pub columns: usize,
+    /// Records of bodies.
+    pub records: usize,
+}
+
+impl From<usize> for Shape {
+    /// That of a design for one body.
+    fn from(columns: usize) -> Self {
+        Self { columns, records: 0 }
     }
-    let (taxel, axis) = ((beat - SUMMARY_BEATS) / 3, (beat - SUMMARY_BEATS) % 3);
+}
+
+impl From<&Plan> for Shape {
+    fn from(plan: &Plan) -> Self {
+        Self { columns: plan.design.sensor.columns, records: plan.streams().records }
+    }
+}
+
+/// What a beat of an output frame is, such as `F_z`, `mu of body 1`, or `f_x of taxel 12 (2, 1)` with column and row.
+pub fn beat_name(beat: usize, Shape { columns, records }: Shape) -> String {
+    let named = |words: &[Word], index: usize| {
+        let names: Vec<&str> = words.iter().filter(|word| word.index == index).map(|word| word.name).collect();
+        if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
+    };
+    let Some(behind) = beat.checked_sub(SUMMARY_BEATS) else { return named(&words::SUMMARY, beat) };
+    let Some(place) = behind.checked_sub(RECORD_WORDS * records) else {
+        return format!("{} of body {}", named(&words::RECORD, behind % RECORD_WORDS), 1 + behind / RECORD_WORDS);
+    };
+    let (taxel, axis) = (place / 3, place % 3);
     let columns = columns.max(1);
     format!("f_{} of taxel {taxel} ({}, {})", AXES[axis], taxel % columns, taxel / columns)
 }
@@ -60,6 +88,8 @@ pub struct Answer {
     pub standard_error: f64,
     /// Number of bodies.
     pub bodies: usize,
+    /// Records of bodies, those that are not there too; torques are in none.
+    pub records: Vec<Body>,
     /// `f_x`, `f_y`, `f_z` in N, each of m values; empty for a design that puts out resultants only.
     pub field: [Vec<f64>; 3],
 }
@@ -76,6 +106,7 @@ impl From<Solution> for Answer {
             mu_xy: [solution.mu_x, solution.mu_y],
             standard_error: solution.standard_error,
             bodies: solution.bodies,
+            records: solution.records,
             field: solution.field,
         }
     }
@@ -83,7 +114,13 @@ impl From<Solution> for Answer {
 
 /// Reads an output frame of 16 summary beats and three beats per taxel; `None` if its length is another.
 pub fn decode(words: &[u32]) -> Option<Answer> {
-    let (summary, field) = words.split_first_chunk::<SUMMARY_BEATS>()?;
+    decode_bodies(words, 0)
+}
+
+/// The same with so many records of bodies, of 8 beats, before the field.
+pub fn decode_bodies(words: &[u32], records: usize) -> Option<Answer> {
+    let (summary, behind) = words.split_first_chunk::<SUMMARY_BEATS>()?;
+    let (records, field) = behind.split_at_checked(RECORD_WORDS * records)?;
     let (triples, []) = field.as_chunks::<3>() else {
         return None;
     };
@@ -99,8 +136,24 @@ pub fn decode(words: &[u32]) -> Option<Answer> {
         mu_xy: [mu_x, mu_y].map(value),
         standard_error: value(standard_error),
         bodies: (census & 0xFF) as usize,
+        records: records.as_chunks().0.iter().map(body).collect(),
         field: [0, 1, 2].map(|axis| triples.iter().map(|triple| value(triple[axis])).collect()),
     })
+}
+
+/// Reads the record of a body.
+fn body(record: &[u32; RECORD_WORDS]) -> Body {
+    let value = |word: u32| f64::from(f32::from_bits(word));
+    let [head, x, y, fx, fy, fz, mu, standard_error] = *record;
+    Body {
+        taxels: (head & 0xFFFF) as usize,
+        status: Status(head >> 16),
+        centre_m: [x, y].map(value),
+        force: [fx, fy, fz].map(value),
+        mu: value(mu),
+        standard_error: value(standard_error),
+        ..Body::default()
+    }
 }
 
 #[cfg(test)]
@@ -110,7 +163,7 @@ mod tests {
     #[test]
     fn names_follow_the_stream_format() {
         let beats = [0, 1, 4, 11, 15, 16, 18, 16 + 3 * 12 + 1];
-        let names: Vec<String> = beats.iter().map(|&beat| beat_name(beat, 10)).collect();
+        let names: Vec<String> = beats.iter().map(|&beat| beat_name(beat, 10.into())).collect();
         let of_taxels = ["f_x of taxel 0 (0, 0)", "f_z of taxel 0 (0, 0)", "f_y of taxel 12 (2, 1)"];
         let expected = [&["status, frame", "timestamp", "F_z", "mu_y", "nothing"][..], &of_taxels].concat();
         assert_eq!(names, expected);
@@ -133,6 +186,7 @@ mod tests {
             mu_xy: [-0.5, 0.125],
             standard_error: 0.0625,
             bodies: 2,
+            records: Vec::new(),
             field: [vec![10.0, 11.0], vec![20.0, 21.0], vec![30.0, 31.0]],
         };
         assert_eq!(answer, expected);

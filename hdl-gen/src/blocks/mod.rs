@@ -10,12 +10,15 @@ pub mod bz;
 pub mod calibration;
 pub mod cean;
 pub mod co;
+pub mod contacts;
 pub mod field;
 pub mod intake;
 pub mod latency;
 pub mod op;
 pub mod parameters;
 pub mod range;
+pub mod records;
+pub mod regions;
 pub mod registers;
 pub mod turns;
 pub mod unfold;
@@ -39,6 +42,7 @@ pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     costs.extend(bodies::cost(plan));
     costs.extend(slot.search_blocks(&plan.design.sensor));
     costs.push(op::cost());
+    costs.extend(contacts::costs(plan));
     costs
 }
 

@@ -83,13 +83,22 @@ pub fn products(plan: &Plan) -> Vec<ProductEntry<'_>> {
 /// Edition of the file and of the streams that it describes.
 const FORMAT: u32 = 2;
 
-/// The words of an output frame: values by name, then the taxels' forces, `count` words from `index` on.
+/// The words of an output frame: values by name, then records of bodies, each of `words` words, and the taxels' forces, `count` words from `index` on.
 fn output(plan: &Plan) -> Value {
     let mut output: Vec<Value> = words::SUMMARY.iter().map(|word| json!(word)).collect();
+    if let Some(of) = &plan.contacts {
+        output.push(json!({
+            "name": "body",
+            "index": words::SUMMARY_WORDS,
+            "count": of.contacts,
+            "words": words::RECORD_WORDS,
+            "of_each_body": words::RECORD,
+        }));
+    }
     if plan.field_words() > 0 {
         output.push(json!({
             "name": "field",
-            "index": words::SUMMARY_WORDS,
+            "index": plan.words_out() - plan.field_words(),
             "count": plan.field_words(),
             "of_each_taxel": ["f_x", "f_y", "f_z"],
             "type": words::Kind::Float32,

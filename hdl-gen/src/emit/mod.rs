@@ -2,6 +2,7 @@
 
 mod boards;
 mod columns;
+mod contacts;
 mod debug;
 mod flows;
 mod linux;

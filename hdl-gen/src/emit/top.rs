@@ -15,7 +15,7 @@ use crate::plan::format::address_bits;
 use crate::plan::streams::Intake;
 
 use super::template::design_module;
-use super::{EmitError, debug, registers};
+use super::{EmitError, contacts, debug, registers};
 
 /// One module, cut along the data's way: ports, Bz and `CeAn`; what shares the lanes; estimator, field and Op.
 const TEMPLATE: &str = concat!(
@@ -31,7 +31,7 @@ const FEWEST_ELEMENTS: usize = 8;
 #[derive(Serialize)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a question that the template asks")]
 struct View {
-    /// Whether a register bank is around the core, and then the core's own module.
+    /// Whether a register bank or what parts bodies is around the core, and then the core's own module.
     control: bool,
     core_module: String,
     columns: usize,
@@ -120,13 +120,13 @@ impl View {
         let (design, hardware, timeline) = (&plan.design, &plan.design.hardware, &plan.timeline);
         let slot = plan.estimator.slot();
         let folded = plan.ways() > 1;
-        let streams = plan.streams();
+        let streams = plan.streams_of_one();
         let unpack = streams.intake == Intake::Unpacked;
         let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
-            control: hardware.control,
-            core_module: registers::core_module(plan),
+            control: hardware.control || plan.contacts.is_some(),
+            core_module: core_module(plan),
             columns: design.sensor.columns,
             rows: design.sensor.rows,
             taxels: plan.taxels(),
@@ -211,6 +211,11 @@ fn u_values(plan: &Plan) -> String {
         format!("taxels[{}:{}]", end - 1, end - factors.outside_bits() as usize)
     };
     format!("{{{}}}", (0..plan.ways()).rev().map(upper).collect::<Vec<_>>().join(", "))
+}
+
+/// Module of the core for one body: that of the design, unless there is something around it.
+fn core_module(plan: &Plan) -> String {
+    if plan.contacts.is_some() { contacts::one(plan) } else { registers::core_module(plan) }
 }
 
 /// The module of the core and its text.

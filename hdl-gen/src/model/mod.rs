@@ -4,6 +4,7 @@
 //! exact in its width, by the bounds of the plan.
 
 pub mod bodies;
+pub mod contacts;
 mod integer;
 mod range;
 mod status;
@@ -74,7 +75,7 @@ impl<'plan> Model<'plan> {
         (self.frames, self.slips) = (0, false);
     }
 
-    /// Words of every output frame: 16, and for the field 3 m more.
+    /// Words of every output frame: 16, for each record of a body 8, and for the field 3 m more.
     pub fn output_words(&self) -> usize {
         self.plan.words_out()
     }
@@ -82,7 +83,10 @@ impl<'plan> Model<'plan> {
     /// The output frame for one packet: its words in memory's order, float32 in Pa, up to the last of the beat with TLAST;
     /// words that are missing in that are 0. Its timestamp is 0: when a packet comes is not the model's to know.
     pub fn process(&mut self, packet: &[u32]) -> Vec<u32> {
-        let mut words = self.answer_to(packet);
+        let mut words = match &self.plan.contacts {
+            None => self.answer_to(packet),
+            Some(of) => self.answer_of_bodies(of, packet),
+        };
         words[words::CENSUS] |= u32::from(self.generation) << 8;
         words
     }
@@ -243,7 +247,7 @@ impl<'plan> Model<'plan> {
     }
 
     fn blank(&self, status: u32) -> Vec<u32> {
-        let mut words = vec![0; self.output_words()];
+        let mut words = vec![0; self.plan.streams_of_one().words_out];
         words[0] = status;
         words
     }

@@ -5,6 +5,7 @@ use golden::estimators::DOUBT_FRACTION;
 use golden::matrices::Matrices;
 
 use super::calibration::CalibrationPlan;
+use super::contacts::ContactsPlan;
 use super::counts::CountsPlan;
 use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
@@ -30,7 +31,7 @@ impl Plan {
     /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
     ///
     /// # Errors
-    /// [`PlanError`] if the plan has no hardware for the estimator or for several bodies, the geometry is singular, the
+    /// [`PlanError`] if the plan has no hardware for the estimator, or for several bodies with what else is asked for, the geometry is singular, the
     /// filter empties a matrix, the widths are too small, or no number of lanes meets the target.
     pub fn new(design: &Design) -> Result<Self, PlanError> {
         plan(design)
@@ -38,10 +39,6 @@ impl Plan {
 }
 
 fn plan(design: &Design) -> Result<Plan, PlanError> {
-    let contacts = design.algorithm.contacts;
-    if contacts > 1 {
-        return Err(PlanError::Contacts { contacts });
-    }
     if !estimators::has_hardware(design) {
         return Err(PlanError::JointEstimator);
     }
@@ -86,6 +83,7 @@ pub(super) struct Work {
     counts: Option<CountsPlan>,
     calibration: Option<CalibrationPlan>,
     dead: Option<DeadPlan>,
+    contacts: Option<ContactsPlan>,
     thresholds: Thresholds,
 }
 
@@ -93,6 +91,7 @@ impl Work {
     pub(super) fn new(design: &Design) -> Result<Self, PlanError> {
         let hardware = &design.hardware;
         let matrices = Matrices::of(design)?;
+        let contacts = ContactsPlan::new(design, &matrices)?;
         // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
         let stress = Format::covering(hardware.full_scale_in_frames(), Factors::of(design).outside_bits());
         let thresholds = thresholds(design, stress)?;
@@ -107,7 +106,18 @@ impl Work {
         let Quantised { matrices: stored, formats, rounding_n, .. } = quantised;
         let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
         check_force_resolution(design, &formats, condition, rounding_n)?;
-        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, calibration, dead, thresholds })
+        Ok(Self {
+            condition,
+            nnz,
+            matrices: stored,
+            products,
+            formats,
+            counts,
+            calibration,
+            dead,
+            contacts,
+            thresholds,
+        })
     }
 
     /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
@@ -129,6 +139,7 @@ impl Work {
             counts: self.counts.clone(),
             calibration: self.calibration.clone(),
             dead: self.dead.clone(),
+            contacts: self.contacts.clone(),
             thresholds: self.thresholds,
             estimator,
             operands: OperandLayout::new(&self.products, elements, ways as u32 * hardware.data_bits),
@@ -136,7 +147,16 @@ impl Work {
             timeline: Timeline::default(),
             resources: Resources::default(),
         };
+        if self.contacts.is_some() {
+            // Their number goes with their records.
+            plan.design.algorithm.count_bodies = false;
+        }
         plan.timeline = control::timeline(&plan);
+        if let Some(contacts) = plan.contacts.take() {
+            let core = std::mem::take(&mut plan.timeline);
+            plan.timeline = blocks::contacts::timeline(&plan.design, &core);
+            plan.contacts = Some(contacts.with_room(&core, &plan.timeline));
+        }
         plan.resources = Resources::of(blocks::costs(&plan));
         plan
     }

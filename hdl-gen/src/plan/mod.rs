@@ -5,6 +5,7 @@
 
 mod build;
 pub mod calibration;
+pub mod contacts;
 mod control;
 pub mod counts;
 pub mod curve;
@@ -41,6 +42,7 @@ use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
 use calibration::CalibrationPlan;
+use contacts::ContactsPlan;
 use counts::CountsPlan;
 use dead::DeadPlan;
 pub use error::PlanError;
@@ -113,6 +115,8 @@ pub struct Plan {
     pub calibration: Option<CalibrationPlan>,
     /// Weights that replace the readings of dead taxels, if there are any.
     pub dead: Option<DeadPlan>,
+    /// What parts the forces of several bodies, if there may be several.
+    pub contacts: Option<ContactsPlan>,
     /// Status thresholds.
     pub thresholds: Thresholds,
     /// The estimator of friction: `CeAn`, and the search in Op.
@@ -173,9 +177,16 @@ impl Plan {
         Streams::of(&self.design)
     }
 
-    /// Words of every output frame: 16, and for the field 3 m more.
+    /// Words of every output frame: 16, for each record of a body 8, and for the field 3 m more.
     pub fn words_out(&self) -> usize {
         self.streams().words_out
+    }
+
+    /// The same streams of the core for one body, without records.
+    pub fn streams_of_one(&self) -> Streams {
+        let mut streams = self.streams();
+        (streams.words_out, streams.records) = (SUMMARY_WORDS + self.field_words(), 0);
+        streams
     }
 
     /// Words of the field in an output frame: 3 m, or none.

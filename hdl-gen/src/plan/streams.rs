@@ -3,6 +3,7 @@
 use golden::design::{CalibrationIn, Design, InputRange, Outputs, Overrun, PlanKind, Samples};
 
 use super::SUMMARY_WORDS;
+use super::words::RECORD_WORDS;
 
 /// Bits of a word of the output, and of memory.
 pub const WORD_BITS: usize = 32;
@@ -27,8 +28,10 @@ pub struct Streams {
     pub sample: Samples,
     /// Its bits.
     pub sample_bits: usize,
-    /// Words of every output frame: 16, and for the field 3 m more.
+    /// Words of every output frame: 16, for each record of a body 8, and for the field 3 m more.
     pub words_out: usize,
+    /// Records of bodies among them.
+    pub records: usize,
     /// How samples get to the lanes.
     pub intake: Intake,
     /// Whether a frame that finds no room is dropped, and the source never held.
@@ -44,6 +47,11 @@ impl Streams {
             Outputs::Field => 3 * taxels,
             Outputs::Resultants => 0,
         };
+        let records = match design.algorithm.contacts {
+            0 | 1 => 0,
+            contacts => contacts,
+        };
+        let words_out = SUMMARY_WORDS + RECORD_WORDS * records + field;
         let sample = design.hardware.samples;
         let [bits, sample_bits] = [design.hardware.stream_bits, sample.bits()].map(|bits| bits as usize);
         let intake = if bits == sample_bits {
@@ -58,7 +66,7 @@ impl Streams {
             Intake::Whole
         };
         let drops = design.hardware.overrun == Overrun::Drop;
-        Self { bits, sample, sample_bits, words_out: SUMMARY_WORDS + field, intake, drops, taxels }
+        Self { bits, sample, sample_bits, words_out, records, intake, drops, taxels }
     }
 
     /// Words of a beat.

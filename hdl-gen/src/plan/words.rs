@@ -82,6 +82,22 @@ pub const SUMMARY: [Word; 17] = [
     Word::number("replaced_taxels", CENSUS, [23, 16], "taxels"),
 ];
 
+/// Words of the record of a body.
+pub const RECORD_WORDS: usize = 8;
+
+/// The values of a record, by their places in it; a body that is not there has zeros. The one that presses most comes first.
+pub const RECORD: [Word; 9] = [
+    Word::number("taxels", 0, [15, 0], "taxels"),
+    Word { name: "status", index: 0, bits: [31, 16], kind: Kind::Flags, unit: "" },
+    Word::float("x", 1, "m"),
+    Word::float("y", 2, "m"),
+    Word::float("F_x", 3, "N"),
+    Word::float("F_y", 4, "N"),
+    Word::float("F_z", 5, "N"),
+    Word::float("mu", 6, ""),
+    Word::float("standard_error", 7, "N"),
+];
+
 /// The status bits that there are, as `(bit, name)`.
 pub fn status_bits() -> impl Iterator<Item = (u32, &'static str)> {
     Status::NAMED.into_iter().map(|(bit, name)| (bit.0.trailing_zeros(), name))

@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::cases::Case;
 use super::float32::Single;
 use crate::accuracy::{StatusCounts, against_truth};
-use crate::stream_words::{Answer, as_received, decode, packets};
+use crate::stream_words::{Answer, as_received, decode_bodies, packets};
 use crate::trial::model_answers;
 
 /// A resultant beyond this times what the stress would mean as a pressure, `sum |b|` times a taxel's area, is beyond
@@ -130,8 +130,10 @@ pub fn judge(case: &Case) -> Row {
         row.f32 = Some(judged(&frames.iter().map(|frame| single.solve(frame)).collect::<Vec<_>>()));
     }
     let in_integers = |design: &Design| {
-        let words = model_answers(&Plan::new(design)?, &packets);
-        Ok(judged(&words.iter().filter_map(|words| decode(words)).collect::<Vec<_>>()))
+        let plan = Plan::new(design)?;
+        let words = model_answers(&plan, &packets);
+        let answers = words.iter().filter_map(|words| decode_bodies(words, plan.streams().records));
+        Ok(judged(&answers.collect::<Vec<_>>()))
     };
     match in_integers(&case.design) {
         Ok(fixed) => row.fixed = Some(fixed),

@@ -15,7 +15,7 @@ use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
 use crate::registers;
 use crate::simulate::frames_to_simulate;
-use crate::stream_words::{Answer, as_received, decode, packets};
+use crate::stream_words::{Answer, as_received, decode_bodies, packets};
 use crate::trial::{Trial, TrialError, planned, rtl_sources};
 use crate::verilate::{Effort, Trace, Verilate, verilator_version};
 use crate::waves;
@@ -100,7 +100,9 @@ pub fn run_plan(
     };
 
     // Answers of another length are mismatches already; here they count as missing.
-    let answers: Vec<Answer> = verdict.simulation.answers.iter().filter_map(|words| decode(words)).collect();
+    let records = plan.streams().records;
+    let answers = verdict.simulation.answers.iter().filter_map(|words| decode_bodies(words, records));
+    let answers: Vec<Answer> = answers.collect();
     let simulator = verilator_version().map_err(TrialError::from)?;
     let mut report = Report::new(plan, &verdict, registers, simulator);
     report.frames_from.clone_from(&frames.origin);

@@ -14,7 +14,7 @@ use thiserror::Error;
 
 use crate::field_plot::{self, Truth};
 use crate::frame_set::FrameSet;
-use crate::stream_words::{Answer, decode};
+use crate::stream_words::{Answer, decode_bodies};
 use golden::progress::Progress;
 use page::Look;
 pub use range::FrameRange;
@@ -176,7 +176,7 @@ pub fn frames(
             stress: stress.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect(),
             truth: frames.truth_of(frame),
             // The model's answers have the length that it was made for.
-            answer: decode(&words).unwrap_or_default(),
+            answer: decode_bodies(&words, plan.streams().records).unwrap_or_default(),
         }
     };
     Ok(range.map(view).collect())

@@ -47,4 +47,5 @@ mod streams;
 mod stress;
 mod support;
 mod sweep;
+mod told_apart;
 mod unreal_matrices;

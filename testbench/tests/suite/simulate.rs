@@ -20,8 +20,9 @@ fn job<'a>(built: &'a Built, packets: &'a [Vec<u32>], expected: &'a [Vec<u32>]) 
     Job {
         built,
         packets,
+        timed: packets,
         expected,
-        columns: 4,
+        shape: 4.into(),
         pacing,
         unlike: false,
         timeout: 500,
@@ -74,7 +75,7 @@ fn a_core_that_breaks_under_stalls_is_refused_by_mode() {
     let job = job(&built, &packets, &expected);
     let error = simulate(&job, &|| ()).expect_err("must fail");
     assert!(matches!(error, SimulationError::Stream { mode: "stalled sink", .. }), "{error}");
-    let nothing = Job { packets: &[], expected: &[], ..job };
+    let nothing = Job { packets: &[], timed: &[], expected: &[], ..job };
     assert!(matches!(simulate(&nothing, &|| ()), Err(SimulationError::NoFrames)));
 }
 

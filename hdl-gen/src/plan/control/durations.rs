@@ -60,7 +60,7 @@ impl Durations {
         };
         let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
         Self {
-            beats: plan.streams().beats_out() as u64,
+            beats: plan.streams_of_one().beats_out() as u64,
             unpacking: if plan.streams().drops { latency::OVERRUN } else { 0 }
                 + u64::from(plan.streams().intake == Intake::Unpacked)
                 + bank::latency(plan),

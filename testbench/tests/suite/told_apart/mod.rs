@@ -1,0 +1,174 @@
+//! Several bodies in hardware: whole designs against the model, the model against the solver, what one body costs.
+
+#[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
+#[path = "../../../../golden/tests/suite/bodies/kinds.rs"]
+mod kinds;
+
+use std::collections::BTreeMap;
+
+use golden::design::{Design, Filter, InputRange, Outputs, PlanKind};
+use golden::solver::{Solution, Solver};
+use hdl_gen::plan::{Plan, PlanError, words};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use testbench::stream_words::{Answer, decode_bodies};
+use testbench::stress::{self, stress};
+use testbench::trial::model_answers;
+
+use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
+use kinds::{Kind, frame};
+
+fn telling_apart(mut design: Design, contacts: usize) -> Design {
+    design.name += "_several";
+    design.algorithm.contacts = contacts;
+    design.hardware.stream_bits = 32;
+    design
+}
+
+fn filtered(mut design: Design) -> Design {
+    design.name += "_filtered";
+    design.algorithm.filter = Filter::F2 { p: 0.02 };
+    design
+}
+
+fn of_frames(mut design: Design) -> Design {
+    design.name += "_scaled";
+    design.hardware.range = InputRange::Frame;
+    design
+}
+
+/// Both plans, both estimators, odd sides, a filter, a range for each frame; few records and many, few lanes and many.
+fn designs() -> Vec<Design> {
+    vec![
+        telling_apart(shipped("odd"), 2),
+        telling_apart(of_frames(by_plan(shipped("odd"), PlanKind::Reduced, Outputs::Field)), 3),
+        telling_apart(filtered(shipped("odd")), 5),
+        telling_apart(with_joint(shipped("small")), 4),
+        telling_apart(shipped("sensor1-fast-64"), 8),
+    ]
+}
+
+/// Frames that press where a drawing has a mark, frames of bodies of every kind, and between them frames without an answer.
+fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
+    let sensor = &plan.design.sensor;
+    let full = plan.design.hardware.full_scale_pa;
+    let marks: [fn(usize, usize) -> bool; 7] = [
+        |x, y| x < 2 && y < 2,
+        |x, y| x % 5 < 2 && y < 2,
+        |x, y| x % 4 < 2 && y % 3 < 1,
+        |x, y| x == 0 || y == 2 || x == 3,
+        |x, y| (x + y) % 2 == 0,
+        |x, _| x % 3 == 0,
+        |_, _| true,
+    ];
+    let mut packets: Vec<Vec<u32>> = Vec::new();
+    for (index, mark) in marks.into_iter().enumerate() {
+        let stress = |taxel: usize| {
+            let (x, y) = (taxel % sensor.columns, taxel / sensor.columns);
+            if mark(x, y) { -0.3 * full * (1.0 + 0.4 * (taxel % 3) as f64) } else { 0.002 * full * (taxel % 7) as f64 }
+        };
+        let whole = plan.streams().packet(&(0..sensor.taxels()).map(stress).collect::<Vec<_>>());
+        packets.push(whole.clone());
+        match index % 4 {
+            0 => packets.push(vec![0; whole.len()]),
+            1 => packets.push(whole[..whole.len() / 2].to_vec()),
+            2 => packets.push([&[f32::NAN.to_bits()], &whole[1..]].concat()),
+            _ => packets.push([whole.clone(), whole].concat()),
+        }
+    }
+    // Three bodies have room on the larger ones.
+    if sensor.taxels() >= 100 {
+        let kinds = [Kind::One, Kind::Anyhow, Kind::One, Kind::One, Kind::Three, Kind::Opposed, Kind::Row];
+        packets.extend(
+            kinds.iter().zip(40..).map(|(&kind, seed)| plan.streams().packet(&frame(sensor, kind, seed).stress)),
+        );
+    }
+    packets.push(frames::contact(plan, random));
+    packets.push(frames::noise(plan, 0.5, random));
+    packets
+}
+
+#[test]
+fn the_hardware_tells_apart_as_the_model_does() {
+    let failures: Vec<String> = in_parallel(&designs(), |design| {
+        let plan = planned(design);
+        let packets = packets(&plan, &mut ChaCha8Rng::seed_from_u64(11));
+        let mut seen = BTreeMap::new();
+        for answer in model_answers(&plan, &packets) {
+            *seen.entry(answer[words::CENSUS] & 0xFF).or_insert(0) += 1;
+        }
+        let most = if plan.taxels() < 100 { 2 } else { 3 };
+        assert!((0..=most).all(|bodies| seen.contains_key(&bodies)), "{}: {seen:?}", design.name);
+        simulate_exactly(&plan, &built(&plan), &packets, 3).err().map(|error| format!("{}: {error}", design.name))
+    })
+    .into_iter()
+    .flatten()
+    .collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// A frame of one body is answered as by a design for one, word for word, and record 1 says the same.
+#[test]
+fn one_body_has_the_forces_of_a_design_for_one() {
+    let several = telling_apart(shipped("sensor1-fast"), 4);
+    let mut one = several.clone();
+    (one.algorithm.contacts, one.algorithm.count_bodies) = (1, true);
+    let [several, one] = [several, one].map(|design| planned(&design));
+    let packets: Vec<Vec<u32>> =
+        (0..20).map(|seed| one.streams().packet(&frame(&one.design.sensor, Kind::One, 70 + seed).stress)).collect();
+    let records = 8 * 4;
+    for (found, expected) in model_answers(&several, &packets).iter().zip(model_answers(&one, &packets)) {
+        assert_eq!(found[..16], expected[..16]);
+        assert_eq!(found[16 + records..], expected[16..]);
+        assert_eq!(found[19..24], [found[2], found[3], found[4], found[8], found[12]]);
+        assert!(found[24..16 + records].iter().all(|&word| word == 0));
+    }
+}
+
+/// The largest differences of two answers along the surface and along z, of all bodies and of each, over the normal force.
+fn difference(found: &Answer, expected: &Solution) -> [f64; 2] {
+    let of = |found: [f64; 3], expected: [f64; 3]| {
+        let apart: f64 =
+            found.iter().zip(expected).map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max);
+        apart / expected[2].abs()
+    };
+    let records = found.records.iter().zip(&expected.records).filter(|(_, expected)| expected.taxels > 0);
+    let of_bodies = records.map(|(found, expected)| of(found.force, expected.force)).fold(0.0, f64::max);
+    [of(found.resultant, expected.resultant), of_bodies]
+}
+
+#[test]
+fn the_solver_tells_apart_as_the_hardware_does() {
+    for name in ["sensor1-fast", "sensor2-none"] {
+        let design = telling_apart(shipped(name), 4);
+        let (plan, solver) = (planned(&design), Solver::new(&design).expect("matrices"));
+        for kind in [Kind::One, Kind::Same, Kind::Opposed, Kind::Anyhow, Kind::Three, Kind::Row] {
+            let scenes: Vec<Vec<f64>> = (0..6).map(|seed| frame(&design.sensor, kind, 900 + seed).stress).collect();
+            let packets: Vec<Vec<u32>> = scenes.iter().map(|stress| plan.streams().packet(stress)).collect();
+            for (words, stress) in model_answers(&plan, &packets).iter().zip(&scenes) {
+                let found = decode_bodies(words, 4).expect("a whole frame");
+                let expected = solver.solve(stress).expect("a whole frame");
+                assert_eq!(found.bodies, expected.bodies, "{name}, {kind:?}");
+                let [all, each] = difference(&found, &expected);
+                assert!(all < 2e-3 && each < 2e-3, "{name}, {kind:?}: {all:.1e}, {each:.1e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn streams_with_pauses_faults_and_resets_are_told_apart() {
+    let design = telling_apart(by_plan(shipped("odd"), PlanKind::Reduced, Outputs::Field), 3);
+    let report = stress(&design, &stress::Options { frames: 400, seed: 3 }, &golden::progress::Progress::hidden());
+    let report = report.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(report.sent, report.answered.plus(report.lost_to_resets));
+}
+
+#[test]
+fn what_does_not_go_with_several_bodies_is_refused() {
+    let mut design = telling_apart(shipped("sensor1-fast"), 4);
+    design.hardware.stream_bits = 128;
+    let error = Plan::new(&design).expect_err("no hardware");
+    assert!(matches!(error, PlanError::Contacts { contacts: 4, .. }), "{error}");
+    assert!(error.to_string().contains("stream_bits = 32"), "{error}");
+}
