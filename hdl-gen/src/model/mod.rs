@@ -4,6 +4,7 @@
 //! exact in its width, by the bounds of the plan.
 
 pub mod bodies;
+pub mod contacts;
 mod integer;
 mod range;
 mod status;

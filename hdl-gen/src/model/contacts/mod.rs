@@ -1,0 +1,4 @@
+//! Frames of several bodies in integers: the shell around the core.
+
+pub mod float;
+pub mod records;
