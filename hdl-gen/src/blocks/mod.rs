@@ -16,6 +16,7 @@ pub mod latency;
 pub mod op;
 pub mod parameters;
 pub mod range;
+pub mod records;
 pub mod regions;
 pub mod registers;
 pub mod turns;

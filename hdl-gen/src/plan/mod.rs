@@ -5,6 +5,7 @@
 
 mod build;
 pub mod calibration;
+pub mod contacts;
 mod control;
 pub mod counts;
 pub mod curve;

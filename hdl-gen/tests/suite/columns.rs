@@ -22,7 +22,7 @@ const MOST_LINES: usize = 335;
 const MOST_LINES_OF_TOP: usize = 680;
 
 /// Beginnings of the names of modules that no design has yet: parts of the hardware for several bodies.
-const WITHOUT_DESIGN: [&str; 1] = ["sptfra_regions"];
+const WITHOUT_DESIGN: [&str; 3] = ["sptfra_float_", "sptfra_records", "sptfra_regions"];
 
 /// Data, not text: words of memories, rows of matrices, and the joint estimator's weights.
 fn is_data(path: &str) -> bool {

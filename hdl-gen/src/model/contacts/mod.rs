@@ -1,3 +1,5 @@
-//! Several bodies, in integers and in what their hardware makes of float32: each module's results, bit for bit.
+//! Frames of several bodies in integers: the shell around the core.
 
+pub mod float;
+pub mod records;
 pub mod regions;

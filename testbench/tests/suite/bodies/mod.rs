@@ -3,8 +3,8 @@
 
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
 #[path = "../../../../golden/tests/suite/bodies/kinds.rs"]
-mod kinds;
-mod module;
+pub mod kinds;
+pub mod module;
 mod regions;
 
 use std::collections::BTreeMap;
