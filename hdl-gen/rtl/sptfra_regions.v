@@ -192,6 +192,7 @@ module sptfra_regions #(
         .WEIGHT_LATENCY (WEIGHT_LATENCY)
     ) blobs (
         .clock   (clock),
+        .reset   (reset),
         .clear   (start),
         .largest (largest),
         .step    (walks && in_blobs),

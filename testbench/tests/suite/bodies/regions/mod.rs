@@ -90,6 +90,8 @@ fn faults_are_noticed() {
         ("blobs", "6'd63", "6'd64"),
         ("blobs", "(begins_3 ? {SUM_BITS{1'b0}} : sum)", "(begins_3 ? {SUM_BITS{1'b0}} : sum | 1)"),
         ("blobs", "if (taxel_1) begin", "if (touches_1) begin"),
+        ("blobs", "taxel_3 <= 1'b0;", "taxel_3 <= taxel_2;"),
+        ("bodies", "            noted <= {NAMES{1'b0}};", ""),
         ("bodies", "touches_1 && !touches_2", "touches_1 && !touches_2 && !noted[0]"),
         ("bodies", "known ? numbers[label_1]", "known ? number_2"),
         ("bodies", "~(run ? (FIRST << label_1)", "~(1'b0 ? (FIRST << label_1)"),
@@ -106,6 +108,7 @@ fn faults_are_noticed() {
         ("spread", "distance_ahead + Y[", "distance_ahead + X["),
         ("spread", "|| borders[5];", "|| 1'b0;"),
         ("spread", "            diagonal <= diagonal_next;", "            diagonal <= straight;"),
+        ("spread", "slots <= 5'd0;", "slots <= {slots[4:1], 1'b0};"),
         ("list", "end_of_body + 1'b1;", "end_of_body;"),
         ("list", "passed + first_size", "passed"),
     ];
@@ -113,7 +116,7 @@ fn faults_are_noticed() {
     let found = in_parallel(&copies, |fault| {
         let mut random = ChaCha8Rng::seed_from_u64(9);
         let mut case = Case::new([9, 7], [2.0, 3.0], 4);
-        fill(&mut case, 8_000, &mut random);
+        fill(&mut case, 2_500, &mut random);
         let expected: Vec<Found> = case.frames.iter().map(|frame| case.expected(frame)).collect();
         let texts = play(std::slice::from_ref(&case), icarus, *fault);
         if fault.is_none() {

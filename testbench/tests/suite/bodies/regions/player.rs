@@ -89,7 +89,7 @@ pub fn play(
         fs::write(place(format!("{name}.weights")), words.concat()).expect("writable");
         fs::write(place(format!("{name}.largest")), largest.concat()).expect("writable");
         let frame = counted(&case.sensor, case.latency) + parted(&case.sensor, case.contacts);
-        longest = longest.max(case.frames.len() * (frame as usize + case.sensor.taxels() + 20));
+        longest = longest.max(case.frames.len() * (2 * frame as usize + case.sensor.taxels() + 20));
         bench += &player(case);
     }
     fs::write(place("bench.v".to_owned()), bench + "endmodule\n").expect("writable");
@@ -108,12 +108,14 @@ pub fn play(
 }
 
 /// A bench's part that plays a case: weights are there from start to count alone; then all regions and lists are read. Of
-/// some frames with one body the next one starts in the cycle of the count.
+/// some frames with one body the next one starts in the cycle of the count; some are begun, cut off by a reset of one cycle
+/// at any time, and begun again right behind it.
 fn player(case: &Case) -> String {
     let (name, contacts, latency) = (case.name(), case.contacts, case.latency);
     let (frames, taxels, width) = (case.frames.len(), case.sensor.taxels(), case.taxel_width());
     let parameters = parameters(&case.sensor, contacts, latency).verilog();
     let all = frames * taxels;
+    let longest = counted(&case.sensor, latency) + parted(&case.sensor, contacts);
     format!(
         "    generate if (1) begin : {name}
         reg [25:0] weights [0:{all}-1];
@@ -125,16 +127,18 @@ fn player(case: &Case) -> String {
         wire [3:0] kept;
         wire [16*{contacts}-1:0] taxels;
         wire [({width}+1)*{contacts}-1:0] sizes;
-        wire counted, parted;
-        reg go, there, reads, over;
+        integer frame, cycles, wait_cycles, reset, index, file, left;
+        wire counts, parts;
+        wire counted = counts && reset == 0;
+        wire parted = parts && reset == 0;
+        reg go, there, reads, over, tried, cut;
         reg [{width}:0] address;
-        integer frame, cycles, wait_cycles, reset, index, file;
-        wire ends = counted && (kept < 2) && frame % 3 == 0;
+        wire ends = counted && !cut && (kept < 2) && frame % 3 == 0;
         wire start = go || (ends && frame + 1 < {frames});
         wire [31:0] of = start && !go ? frame + 1 : frame;
         initial begin
-            {{go, there, reads, over}} = 4'd0;
-            {{frame, cycles}} = 64'd0;
+            {{go, there, reads, over, tried, cut}} = 6'd0;
+            {{frame, cycles, left}} = 96'd0;
             address = 0;
             reset = 3;
             wait_cycles = 5;
@@ -144,8 +148,8 @@ fn player(case: &Case) -> String {
         end
         sptfra_regions {parameters} subject (.clock(clock), .reset(reset != 0), .start(start),
             .largest(start || there ? largests[of] : 26'h2aaaaaa), .weight_address(weight_address),
-            .weight(late[{latency}-1]), .counted(counted), .bodies(bodies), .kept(kept), .taxels(taxels),
-            .parted(parted), .region_address(address[{width}-1:0]), .region(region),
+            .weight(late[{latency}-1]), .counted(counts), .bodies(bodies), .kept(kept), .taxels(taxels),
+            .parted(parts), .region_address(address[{width}-1:0]), .region(region),
             .list_address(address[{width}-1:0]), .list_taxel(list_taxel), .sizes(sizes));
         always @(posedge clock) if (!over) begin
             if (reset != 0) reset <= reset - 1;
@@ -156,25 +160,38 @@ fn player(case: &Case) -> String {
                 wait_cycles <= wait_cycles - 1;
                 go <= wait_cycles == 1;
             end
+            if (start && of % 5 == 3 && !tried) begin
+                cut <= 1;
+                left <= of * 37 % {longest};
+            end
             cycles <= start || counted ? 1 : cycles + 1;
             if (counted) begin
                 there <= 0;
-                $fwrite(file, \"%0d %0d %0d %b\\n\", cycles, bodies, kept, taxels);
+                if (!cut) $fwrite(file, \"%0d %0d %0d %b\\n\", cycles, bodies, kept, taxels);
             end
-            if (parted) $fwrite(file, \"%0d %b\\n\", cycles, sizes);
+            if (parted && !cut) $fwrite(file, \"%0d %b\\n\", cycles, sizes);
             if (start) there <= 1;
             if (parted) begin
                 reads <= 1;
                 address <= 1;
             end else if (reads) begin
-                $fwrite(file, \"%0d %0d\\n\", region, list_taxel);
+                if (!cut) $fwrite(file, \"%0d %0d\\n\", region, list_taxel);
                 address <= address + 1;
             end
-            if (ends || (counted && kept < 2) || (reads && address == {taxels})) begin
+            if (cut) begin
+                left <= left - 1;
+                if (left == 0) begin
+                    {{cut, there, reads, tried}} <= 4'd1;
+                    reset <= 1;
+                    wait_cycles <= 1;
+                    address <= 0;
+                end
+            end else if (ends || (counted && kept < 2) || (reads && address == {taxels})) begin
                 $fwrite(file, \"%0d %0d %b\\n\", bodies, kept, taxels);
                 reads <= 0;
                 address <= 0;
                 frame <= frame + 1;
+                tried <= 0;
                 if (frame + 1 == {frames}) begin
                     over <= 1;
                     $fclose(file);
