@@ -17,6 +17,7 @@ pub mod op;
 pub mod parameters;
 pub mod range;
 pub mod records;
+pub mod regions;
 pub mod registers;
 pub mod turns;
 pub mod unfold;

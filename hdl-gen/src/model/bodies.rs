@@ -4,8 +4,8 @@ use golden::bodies::Labels;
 
 /// [`golden::bodies::SHARE`], which is over 64: of the largest `|w|`, above which a taxel touches, and of all `|w|`, from
 /// which on a blob is a body.
-const SHARE: i64 = 5;
-const SHARE_OF: i64 = 64;
+pub(super) const SHARE: i64 = 5;
+pub(super) const SHARE_OF: i64 = 64;
 
 const _: () = assert!((golden::bodies::SHARE * SHARE_OF as f64) as i64 == SHARE);
 

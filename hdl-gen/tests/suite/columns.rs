@@ -21,6 +21,9 @@ const MOST_LINES: usize = 335;
 /// modules; the longest has a door that drops frames, a curve in banks, a map of dead taxels and a range.
 const MOST_LINES_OF_TOP: usize = 680;
 
+/// Beginnings of the names of modules that no design has yet: parts of the hardware for several bodies.
+const WITHOUT_DESIGN: [&str; 3] = ["sptfra_float_", "sptfra_records", "sptfra_regions"];
+
 /// Data, not text: words of memories, rows of matrices, and the joint estimator's weights.
 fn is_data(path: &str) -> bool {
     let memory = Path::new(path).extension().is_some_and(|ending| ending == "mem");
@@ -109,10 +112,19 @@ fn no_line_and_no_module_is_long() {
             }
         }
     }
+    // A module that no design takes would not have been looked at.
+    let mut waits = BTreeSet::new();
+    for (module, text) in library(Multiplier::Whole) {
+        if !kinds.contains(&format!("rtl/{module}.v")) {
+            let name = WITHOUT_DESIGN.iter().find(|name| module.starts_with(*name));
+            waits.insert(name.unwrap_or_else(|| panic!("no design has {module}")));
+            let (lines, columns) = (text.lines().count(), text.lines().map(|line| line.chars().count()).max());
+            if lines > MOST_LINES || columns > Some(MOST_COLUMNS) {
+                long.insert(module.to_owned(), format!("{lines} lines of {columns:?} columns"));
+            }
+        }
+    }
+    assert_eq!(waits.len(), WITHOUT_DESIGN.len(), "a design has some of {WITHOUT_DESIGN:?}");
     let long: Vec<String> = long.into_iter().map(|(place, line)| format!("{place}: {line}")).collect();
     assert!(long.is_empty(), "{}", long.join("\n"));
-    // A module that no design takes would not have been looked at.
-    for (module, _) in library(Multiplier::Whole) {
-        assert!(kinds.contains(&format!("rtl/{module}.v")), "no design has {module}");
-    }
 }

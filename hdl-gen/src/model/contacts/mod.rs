@@ -2,3 +2,4 @@
 
 pub mod float;
 pub mod records;
+pub mod regions;
