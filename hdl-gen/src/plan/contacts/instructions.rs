@@ -152,8 +152,8 @@ impl Instruction {
     fn cycles(self) -> u64 {
         match self {
             Self::Do { what, .. } => what.cycles(),
-            Self::End => 0,
-            _ => 2,
+            Self::End => 2,
+            _ => 3,
         }
     }
 
@@ -179,8 +179,8 @@ impl Instruction {
 /// Says how many cycles pass from start to done.
 pub fn run(program: &[Instruction], kept: u8, mut execute: impl FnMut(What, [Place; 3], bool, [u8; 2])) -> u64 {
     let (mut i, mut j, mut next) = (if kept == 1 { FRAME } else { 0 }, 0, 0);
-    // The start, and the end's one.
-    let mut cycles = 2;
+    // The one in which it starts.
+    let mut cycles = 1;
     loop {
         let instruction = program[next];
         next += 1;

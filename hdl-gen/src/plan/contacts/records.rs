@@ -282,6 +282,20 @@ mod tests {
         }
     }
 
+    /// What is moved is written while the next instruction reads its first source.
+    #[test]
+    fn what_is_moved_is_not_read_at_once() {
+        for kept in 0..=MOST as u8 {
+            let mut last = None;
+            run(&program(), kept, |what, [to, a, _], _, bodies| {
+                assert_ne!(last, Some((a, bodies)), "{kept}");
+                let moves =
+                    matches!(what, What::Move | What::OwnStatus | What::FrameStatus | What::Census | What::Choose);
+                last = moves.then_some((to, bodies));
+            });
+        }
+    }
+
     #[test]
     fn a_program_is_the_same_each_time_and_its_bits_tell_instructions_apart() {
         let (program, rom) = (program(), rom());
