@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// float32 to whole numbers of steps of 2^unit, rounded towards zero; what does not fit is clipped. Denormals are zero.
+// float32 to whole numbers of steps of 2^unit, rounded towards zero; what does not fit is clipped. Denormals are
+// zero.
 //
 // Latency 3 enabled cycles to the magnitude (distance, coarse shift, fine shift), 4 to the number; one value an
 // enabled cycle.

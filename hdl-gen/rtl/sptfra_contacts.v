@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Several bodies on one sensor, around the core for one: each frame is solved as that of one body; where several press, by
-// the normal forces that are found, the forces are parted by their regions, and what those of each region cause is
-// solved as a frame of its own, twice. A frame's forces are the sums of its bodies'.
+// Several bodies on one sensor, around the core for one: each frame is solved as that of one body; where several
+// press, by the normal forces that are found, the forces are parted by their regions, and what those of each region
+// cause is solved as a frame of its own, twice. A frame's forces are the sums of its bodies'.
 //
-// Frames go through the core one behind the other while those before them are looked at; none does while the bodies of one
-// are solved. What is at work on the oldest frame: sptfra_regions, sptfra_parting, sptfra_parted_frames, sptfra_records.
+// Frames go through the core one behind the other while those before them are looked at; none does while the bodies
+// of one are solved. What is at work on the oldest frame: sptfra_regions, sptfra_parting, sptfra_parted_frames,
+// sptfra_records.
 
 `default_nettype none
 
@@ -22,7 +23,8 @@ module sptfra_contacts #(
     parameter STEP_X = 2000,
     parameter STEP_Y = 2000,
     parameter STEP_DIAGONAL = 2828,
-    // Cycles until bodies are counted, and from there until the taxels are parted; checked in simulation, 0: unchecked
+    // Cycles until bodies are counted, and from there until the taxels are parted; checked in simulation, 0:
+    // unchecked
     parameter integer EXPECTED_COUNTED = 0,
     parameter integer EXPECTED_PARTED = 0,
     // Power of two of a step of the coefficients in Pa/N
@@ -76,40 +78,14 @@ module sptfra_contacts #(
     localparam TAXEL_WIDTH = (TAXELS > 8) ? $clog2(TAXELS) : 3;
     localparam FIELD_WIDTH = $clog2(3 * TAXELS);
     localparam BANK_WIDTH = $clog2(BANKS);
-
     // ---- What is done with the oldest frame
-    wire there;
-    wire next;
+    wire there, next, weighs_largest, header_there, count_start, counted, parted, several, load_start;
+    wire load_valid, loads, settled, hold, core_is_empty, with_bodies, is_second, part_start, part_done;
+    wire is_contact, send_start, sent, adds, record_start, record_done, output_idle;
     wire [7:0] exponent;
     wire signed [9:0] unit;
-    wire weighs_largest;
-    wire [3:0] header_address;
-    wire header_there;
-    wire [3:0] header_index;
-    wire count_start;
-    wire counted;
-    wire parted;
-    wire [3:0] kept;
-    wire several;
-    wire load_start;
+    wire [3:0] header_address, header_index, kept, body, answering;
     wire [FIELD_WIDTH-1:0] place;
-    wire load_valid;
-    wire loads;
-    wire settled;
-    wire hold;
-    wire core_is_empty;
-    wire with_bodies;
-    wire is_second;
-    wire part_start;
-    wire part_done;
-    wire send_start;
-    wire [3:0] body;
-    wire sent;
-    wire [3:0] answering;
-    wire adds;
-    wire record_start;
-    wire record_done;
-    wire output_idle;
 
     sptfra_contacts_turns #(
         .WORDS (3 * TAXELS)
@@ -124,6 +100,8 @@ module sptfra_contacts #(
         .header_address (header_address),
         .header_there   (header_there),
         .header_index   (header_index),
+        .header_bodies  (header_word[7:0]),
+        .is_contact     (is_contact),
         .count_start    (count_start),
         .counted        (counted),
         .parted         (parted),
@@ -152,14 +130,10 @@ module sptfra_contacts #(
     );
 
     // ---- Frames in and on
-    wire [31:0] intake_tdata;
-    wire intake_tvalid;
-    wire intake_tlast;
-    wire frame_done;
-    wire frames_advance;
+    wire [31:0] intake_tdata, stress;
+    wire intake_tvalid, intake_tlast, frame_done, frames_advance;
     wire [TAXEL_WIDTH-1:0] frames_taxel;
     wire [BANK_WIDTH-1:0] oldest;
-    wire [31:0] stress;
 
     sptfra_contacts_intake #(
         .TAXELS (TAXELS),
@@ -185,8 +159,7 @@ module sptfra_contacts #(
     );
 
     wire [31:0] parted_tdata;
-    wire parted_tvalid;
-    wire parted_tlast;
+    wire parted_tvalid, parted_tlast;
 
     assign sent = parted_tvalid && core_s_tready && parted_tlast;
     assign core_s_tdata = with_bodies ? parted_tdata : intake_tdata;
@@ -195,17 +168,12 @@ module sptfra_contacts #(
 
     // ---- Answers
     wire [3:0] word_index;
-    wire in_field;
-    wire [31:0] presses;
-    wire [31:0] header_word;
+    wire in_field, output_advance;
+    wire [31:0] presses, header_word, normal_word, field_word;
     wire [TAXEL_WIDTH-1:0] normal_address;
-    wire [31:0] normal_word;
-    wire output_advance;
     wire [BANK_WIDTH+FIELD_WIDTH-1:0] output_field_address;
-    wire [31:0] field_word;
 
     assign core_m_tready = 1'b1;
-
     sptfra_contacts_answers #(
         .TAXELS (TAXELS),
         .BANKS  (BANKS)
@@ -236,8 +204,7 @@ module sptfra_contacts #(
     wire [7:0] bodies;
     wire [16*CONTACTS-1:0] taxels;
     wire [2:0] region;
-    wire [TAXEL_WIDTH-1:0] list_address;
-    wire [TAXEL_WIDTH-1:0] list_taxel;
+    wire [TAXEL_WIDTH-1:0] list_address, list_taxel;
     wire [CONTACTS*(TAXEL_WIDTH+1)-1:0] sizes;
 
     sptfra_contacts_bodies #(
@@ -316,7 +283,8 @@ module sptfra_contacts #(
         .word_ready     (core_s_tready)
     );
 
-    // ---- The words before the field, and out
+    // ---- The words before the field, and out; a contact of which nothing presses is a body that touches no taxel
+    wire is_flat = is_contact && (kept == 4'd0);
     sptfra_contacts_output #(
         .TAXELS            (TAXELS),
         .CONTACTS          (CONTACTS),
@@ -340,8 +308,8 @@ module sptfra_contacts #(
         .header_index  (with_bodies ? word_index : header_index),
         .header_word   (with_bodies ? core_m_tdata : header_word),
         .record_start  (record_start),
-        .kept          (kept),
-        .bodies        (bodies),
+        .kept          (is_flat ? 4'd1 : kept),
+        .bodies        (is_flat ? 8'd1 : bodies),
         .taxels        (taxels),
         .record_done   (record_done),
         .start         (next),

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Keeps the core's answers to frames as those of one body: the words before the field, the field, and once more the normal
-// forces, which are looked at while a field goes out. Notes the largest exponent of a field's forces, and what presses most.
+// Keeps the core's answers to frames as those of one body: the words before the field, the field, and once more the
+// normal forces, which are looked at while a field goes out. Notes the largest exponent of a field's forces, and what
+// presses most.
 //
 // Takes a word a cycle. The words of an answer are there from the cycle after its last on.
 

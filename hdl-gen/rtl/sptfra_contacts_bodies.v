@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Normal forces of an answer as weights, whole numbers of a frame's step: what presses counts, what pulls is 0. By them
-// the bodies are counted, and the taxels go to the nearest.
+// Normal forces of an answer as weights, whole numbers of a frame's step: what presses counts, what pulls is 0. By
+// them the bodies are counted, and the taxels go to the nearest.
 
 `default_nettype none
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Keeps the frames that come until they are answered, and sends each on once it is there as a whole: one that is too short
-// or too long as it came, so that the core says so.
+// Keeps the frames that come until they are answered, and sends each on once it is there as a whole: one that is too
+// short or too long as it came, so that the core says so.
 //
 // From the last word in to the first one out: 3 cycles, where nothing is on its way.
 

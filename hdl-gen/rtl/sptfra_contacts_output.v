@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Sends the words of a frame: those before the field, as sptfra_records has them, and the field: of one body as the core
-// has answered it, of several the sums, in float32.
+// Sends the words of a frame: those before the field, as sptfra_records has them, and the field: of one body as the
+// core has answered it, of several the sums, in float32.
 //
 // From start to the first word: 10 cycles; then a word a cycle, where none waits.
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// From forces to the frames of the bodies that have them: the forces as whole numbers, what those of each region cause,
-// and that in float32. The bank of the forces that a field goes to is not read meanwhile.
+// From forces to the frames of the bodies that have them: the forces as whole numbers, what those of each region
+// cause, and that in float32. The bank of the forces that a field goes to is not read meanwhile.
 
 `default_nettype none
 

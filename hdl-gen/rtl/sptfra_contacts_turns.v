@@ -24,6 +24,8 @@ module sptfra_contacts_turns #(
     output reg  [3:0] header_address,
     output reg  header_there,
     output reg  [3:0] header_index,
+    input  wire [7:0] header_bodies, // of the word of that index
+    output reg  is_contact,
     // Its bodies
     output wire count_start,
     input  wire counted,
@@ -72,6 +74,8 @@ module sptfra_contacts_turns #(
     localparam [31:0] LAST_PLACE = WORDS - 1;
     // From an exponent to a step, of which the largest force has 2^22 at least
     localparam signed [9:0] TO_UNIT = 10'sd149;
+    // Word that has the number of bodies
+    localparam [3:0] CENSUS = 4'd13;
     // From a normal force to its weight
     localparam [1:0] TO_WEIGHT = 2'd3;
 
@@ -195,6 +199,9 @@ module sptfra_contacts_turns #(
     always @(posedge clock) begin
         header_there <= copies;
         header_index <= header_address;
+        if (header_there && (header_index == CENSUS)) begin
+            is_contact <= (header_bodies != 8'd0);
+        end
         if (copies) begin
             header_address <= header_address + 4'd1;
             copies <= (header_address != 4'd15);

@@ -31,9 +31,11 @@ module sptfra_float_unit (
     reg [2:0] operation_1; // held
     reg [31:0] a_1; // held, too
     reg [31:0] b_1;
+    reg a_zero;
+    reg b_zero;
     reg [4:1] stage; // cycles since the start
-    wire [23:0] significand_a = {a_1[30:23] != 8'd0, a_1[22:0]};
-    wire [23:0] significand_b = {b_1[30:23] != 8'd0, b_1[22:0]};
+    wire [23:0] significand_a = a_zero ? 24'd0 : {1'b1, a_1[22:0]};
+    wire [23:0] significand_b = b_zero ? 24'd0 : {1'b1, b_1[22:0]};
     wire compare = (operation_1 > ANGLE);
     wire by_digits = (operation_1 == DIVIDE) || (operation_1 == ROOT);
 
@@ -41,8 +43,10 @@ module sptfra_float_unit (
         stage <= {stage[3:1], start};
         if (start) begin
             operation_1 <= operation;
-            a_1 <= (a[30:23] == 8'd0) ? 32'd0 : a;
-            b_1 <= (b[30:23] == 8'd0) ? 32'd0 : {b[31] ^ (operation == SUBTRACT), b[30:0]};
+            a_1 <= a;
+            b_1 <= {b[31] ^ (operation == SUBTRACT), b[30:0]};
+            a_zero <= (a[30:23] == 8'd0);
+            b_zero <= (b[30:23] == 8'd0);
         end
         if (reset) begin
             stage <= 4'd0;
@@ -50,7 +54,7 @@ module sptfra_float_unit (
     end
 
     // ---- Which one is larger, and how far the other one goes right; the exponent of the result
-    wire a_below = (a_1[30:0] < b_1[30:0]);
+    wire a_below = (a_1[30:0] < b_1[30:0]) && !b_zero;
     wire [8:0] exponent_a = {1'b0, a_1[30:23]};
     wire [8:0] exponent_b = {1'b0, b_1[30:23]};
     wire [8:0] behind = exponent_b - exponent_a;
@@ -69,8 +73,7 @@ module sptfra_float_unit (
             large_2 <= a_below ? significand_b : significand_a;
             small_2 <= a_below ? significand_a : significand_b;
             distance_2 <= a_below ? behind[7:0] : ahead[7:0];
-            nothing <= ((operation_1 == DIVIDE) && (b_1[30:23] == 8'd0))
-                || ((operation_1 == ROOT) && (a_1[31] || (a_1[30:23] == 8'd0)));
+            nothing <= ((operation_1 == DIVIDE) && b_zero) || ((operation_1 == ROOT) && (a_1[31] || a_zero));
             case (operation_1)
                 MULTIPLY: exponent_2 <= {1'b0, exponent_a} + {1'b0, exponent_b};
                 DIVIDE: exponent_2 <= {1'b0, exponent_a} - {1'b0, exponent_b};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The forces of all taxels as whole numbers of a frame's step, in two banks: those that are parted, and the sums of those
-// that the bodies are found to have.
+// The forces of all taxels as whole numbers of a frame's step, in two banks: those that are parted, and the sums of
+// those that the bodies are found to have.
 //
-// Takes the float32 words of a field, f_x, f_y, f_z of one taxel after the other, one a cycle at most; each replaces what
-// stands in its bank or is added to it. Sums are clipped. From a word to its place: 7 cycles.
+// Takes the float32 words of a field, f_x, f_y, f_z of one taxel after the other, one a cycle at most; each replaces
+// what stands in its bank or is added to it. Sums are clipped. From a word to its place: 7 cycles.
 
 `default_nettype none
 

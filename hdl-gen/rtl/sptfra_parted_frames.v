@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The frame that a body would cause alone, in float32: what it causes where others are, and in its own region what is left
-// of the frame without them, so that the frames of all bodies add up to it.
+// The frame that a body would cause alone, in float32: what it causes where others are, and in its own region what is
+// left of the frame without them, so that the frames of all bodies add up to it.
 //
-// A word takes as many cycles as there are bodies, and the first one 14 more. All of it stands still while a word waits.
+// A word takes as many cycles as there are bodies, and the first one 14 more. All of it stands still while a word
+// waits.
 
 `default_nettype none
 

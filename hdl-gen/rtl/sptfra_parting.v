@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// What the forces of each body's region cause everywhere: for each row of the grid and each body the sums of all columns
-// at once, over the taxels of its region, one a cycle.
+// What the forces of each body's region cause everywhere: for each row of the grid and each body the sums of all
+// columns at once, over the taxels of its region, one a cycle.
 //
-// From start to done: ROWS times the sum over bodies of the larger of the region's taxels and COLUMNS, and COLUMNS + 13
-// cycles.
+// From start to done: ROWS times the sum over bodies of the larger of the region's taxels and COLUMNS, and COLUMNS +
+// 13 cycles.
 
 `default_nettype none
 
@@ -50,8 +50,8 @@ module sptfra_parting #(
     // From a place in the list to its force's sum
     localparam TO_SUM = 10;
 
-    // ---- A pass for each row and body: its taxels, after a pause where they are fewer than the columns, so that the sums
-    // before have left when they are there
+    // ---- A pass for each row and body: its taxels, after a pause where they are fewer than the columns, so that the
+    // sums before have left when they are there
     reg busy;
     reg [ROW_WIDTH-1:0] row;
     reg [3:0] body;

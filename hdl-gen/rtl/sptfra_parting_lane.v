@@ -3,8 +3,8 @@
 //
 // What forces cause in one column of the grid: the sum over taxels of C31 f_x + C32 f_y + C33 f_z.
 //
-// The matrices depend on the distance of two taxels alone, along each axis: C31 is odd along x, C32 along y. So the ROM
-// has a word for each distance, C33 in the highest bits, C31 in the lowest. From a force to its sum: 8 cycles.
+// The matrices depend on the distance of two taxels alone, along each axis: C31 is odd along x, C32 along y. So the
+// ROM has a word for each distance, C33 in the highest bits, C31 in the lowest. From a force to its sum: 8 cycles.
 
 `default_nettype none
 
@@ -46,7 +46,8 @@ module sptfra_parting_lane #(
         valids <= {valids[2:1], valid};
         firsts <= {firsts[2:1], first};
         address_1 <= {rows_away, from_right ? from_column - HERE : HERE - from_column};
-        {from_right_2, from_below_2, from_right_1, from_below_1} <= {from_right_1, from_below_1, from_right, from_below};
+        {from_right_2, from_right_1} <= {from_right_1, from_right};
+        {from_below_2, from_below_1} <= {from_below_1, from_below};
         {forces_3, forces_2, forces_1} <= {forces_2, forces_1, forces};
         if (reset) begin
             valids <= 3'd0;

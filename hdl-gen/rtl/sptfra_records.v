@@ -80,8 +80,6 @@ module sptfra_records #(
     // ---- The program
     wire [26:0] instruction;
     wire [4:0] what = instruction[26:22];
-    wire [2:0] to_place = instruction[21:19];
-    wire [3:0] to_word = instruction[18:15];
     wire idle, ending, first, third, finish;
     wire [3:0] i;
     wire [3:0] j;
@@ -190,22 +188,29 @@ module sptfra_records #(
         end
     end
 
-    // ---- Results
-    reg [31:0] result;
+    // ---- Results: the unit's in the cycle in which it is done, others a cycle later, in the next instruction's first
+    reg moving;
+    reg [31:0] moved;
+    reg [6:0] moved_to;
 
-    always @(*) begin
+    always @(posedge clock) begin
+        moving <= finish && !what[3] && !reset;
+        moved_to <= instruction[21:15];
         case (what)
-            OWN_STATUS: result = {own_bits, taxels_held[16*i[2:0] +: 16]};
-            FRAME_STATUS: result = {operand[31:16], (operand[15:0] & ~BODY_BITS) | any_bits | more_bits};
-            CENSUS: result = {operand[31:8], bodies_held};
+            OWN_STATUS: moved <= {own_bits, taxels_held[16*i[2:0] +: 16]};
+            FRAME_STATUS: moved <= {operand[31:16], (operand[15:0] & ~BODY_BITS) | any_bits | more_bits};
+            CENSUS: moved <= {operand[31:8], bodies_held};
             // The second one where the first is more than zero
-            CHOOSE: result = (!operand_a[31] && (operand_a[30:23] != 8'd0)) ? operand : 32'd0;
-            default: result = what[3] ? unit_result : operand;
+            CHOOSE: moved <= (!operand_a[31] && (operand_a[30:23] != 8'd0)) ? operand : 32'd0;
+            default: moved <= operand;
         endcase
     end
 
+    wire has_result = moving || (finish && what[3] && (what != DOUBT) && (what != RANK));
+    wire [31:0] result = moving ? moved : unit_result;
+    wire [2:0] to_place = moving ? moved_to[6:4] : instruction[21:19];
+    wire [3:0] to_word = moving ? moved_to[3:0] : instruction[18:15];
     wire out = (to_place == OUT_FRAME) || (to_place == OUT_RECORD);
-    wire has_result = finish && (what != DOUBT) && (what != RANK);
     // Of a body's words the last two are for the round before, of that only F_x and F_y are known
     wire in_kept = in_before ? (!in_body[3] && (in_word[3:1] == 3'd1)) : (in_body[3] || (in_word < 4'd14));
     wire [7:0] in_address = {in_body, in_before ? {3'b111, in_word[0]} : in_word};

@@ -10,8 +10,9 @@
 // and its number is the first source's word.
 //
 // Steps: first (the first source's address), second (the second one's; the first one's word is there), third (the
-// second one's word is there), then the unit's time, and in a cycle the result is written (finish). What moves a word
-// finishes with the second step, what chooses one with the third; jumps take two cycles, the end one.
+// second one's word is there), then the unit's time. What moves a word finishes with the second step, what chooses one
+// with the third; jumps take three cycles, the end two. The next instruction's word is out of the ROM by then, but for
+// the first one in the cycle after a reset: there is no start then.
 
 `default_nettype none
 
@@ -30,8 +31,8 @@ module sptfra_records_control #(
     input  wire unit_done,
     output wire idle,
     output reg  done,               // one cycle, behind the last instruction
-    output wire ending,             // the cycle before
-    output wire [26:0] instruction,
+    output wire ending,             // the cycle before, the last one
+    output reg  [26:0] instruction,
     output reg  [3:0] i,            // a body: 8 is the frame, as it is where one is kept
     output reg  [3:0] j,
     output wire first,              // the steps
@@ -65,14 +66,15 @@ module sptfra_records_control #(
     wire j_left = (j_then < kept_held);
     wire jump = (what == JUMP) ? (kept_held < number) : (what == NEXT_I) ? i_left : (what == NEXT_J) && j_left;
     // A word is taken from the ROM
-    wire fetch = idle || finish || ((state == SECOND) && of_control);
+    wire fetch = idle || finish || (third && of_control);
+    wire [26:0] word;
 
     assign idle = (state == IDLE);
     assign first = (state == FIRST);
     assign third = (state == THIRD);
-    assign finish = ((state == SECOND) && !of_control && !of_unit && (what != CHOOSE)) || (third && !of_unit)
-        || ((state == UNIT) && unit_done);
-    assign ending = first && of_control && (what == END);
+    assign finish = ((state == SECOND) && !of_control && !of_unit && (what != CHOOSE))
+        || (third && !of_control && !of_unit) || ((state == UNIT) && unit_done);
+    assign ending = (state == SECOND) && of_control && (what == END);
 
     sptfra_rom #(
         .WIDTH         (27),
@@ -82,9 +84,9 @@ module sptfra_records_control #(
         .FILE          (FILE)
     ) program_rom (
         .clock   (clock),
-        .enable  (fetch),
+        .enable  (1'b1),
         .address (next),
-        .data    (instruction)
+        .data    (word)
     );
 
     always @(posedge clock) begin
@@ -103,6 +105,9 @@ module sptfra_records_control #(
                     if (jump) begin
                         next <= target[ADDRESS_WIDTH-1:0];
                     end
+                    if (what == END) begin
+                        next <= {ADDRESS_WIDTH{1'b0}};
+                    end
                     if (what == NEXT_I) begin
                         i <= i_left ? i + 4'd1 : 4'd0;
                     end
@@ -114,7 +119,7 @@ module sptfra_records_control #(
                     end
                 end
             end
-            SECOND: state <= (of_control || finish) ? FIRST : THIRD;
+            SECOND: state <= finish ? FIRST : THIRD;
             THIRD: state <= of_unit ? UNIT : FIRST;
             default: begin
                 if (unit_done) begin
@@ -122,13 +127,20 @@ module sptfra_records_control #(
                 end
             end
         endcase
+        if (fetch) begin
+            instruction <= word;
+        end
         if (fetch && (!idle || start)) begin
             next <= next + 1'b1;
         end
-        if (reset || ending) begin
+        if (ending) begin
+            state <= IDLE;
+            done <= 1'b1;
+        end
+        if (reset) begin
             state <= IDLE;
             next <= {ADDRESS_WIDTH{1'b0}};
-            done <= ending && !reset;
+            done <= 1'b0;
         end
     end
 

@@ -3,8 +3,8 @@
 //
 // Tells the bodies of a frame apart by |w|: counts them, gives each taxel to the nearest one, and lists the taxels by
 // body. A taxel touches above 5/64 of the largest |w|; touching neighbours along x or y are one blob; blobs with 5/64
-// of all |w| are bodies, or the one with most, where none has so much. The one with most comes first, and of equal ones
-// that whose first taxel comes first. Only the first CONTACTS of them have a region; a frame of one ends with the count.
+// of all |w| are bodies, or the one with most, where none has so much. The one with most comes first, of equal ones
+// that whose first taxel comes first. Only the first CONTACTS of them have a region. A frame of one ends when counted.
 //
 // One memory has a word for each taxel: what sptfra_regions_blobs writes of it, then the number that
 // sptfra_regions_bodies gives it, then the region that sptfra_regions_spread finds. From start to counted it is
@@ -64,8 +64,9 @@ module sptfra_regions #(
     localparam [31:0] MOST = CONTACTS;
 
     generate
-        if (NEAREST_BITS >= RECORD_BITS) begin : gen_check_steps
-            sptfra_error_the_grid_is_too_large_for_its_steps invalid ();
+        // So that regions find room in the words
+        if ((STEP_X >= (1 << 21)) || (STEP_Y >= (1 << 21)) || (STEP_DIAGONAL >= (1 << 21))) begin : gen_check_steps
+            sptfra_error_steps_must_be_below_2_metres invalid ();
         end
     endgenerate
 
@@ -191,6 +192,7 @@ module sptfra_regions #(
         .WEIGHT_LATENCY (WEIGHT_LATENCY)
     ) blobs (
         .clock   (clock),
+        .reset   (reset),
         .clear   (start),
         .largest (largest),
         .step    (walks && in_blobs),

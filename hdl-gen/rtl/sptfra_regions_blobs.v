@@ -25,6 +25,7 @@ module sptfra_regions_blobs #(
     parameter RECORD_BITS = SUM_BITS + COUNT_BITS + 2 * LABEL_WIDTH + 2
 ) (
     input  wire clock,
+    input  wire reset,
     input  wire clear, // a frame begins, before its first step
     input  wire [DATA_BITS-1:0] largest, // held from clear on
     // Steps, and the weight of each one that is a taxel
@@ -58,7 +59,7 @@ module sptfra_regions_blobs #(
 
     always @(posedge clock) begin
         controls <= longer[CONTROL_BITS*WEIGHT_LATENCY-1:0];
-        if (clear) begin
+        if (reset) begin
             controls <= {(CONTROL_BITS*WEIGHT_LATENCY){1'b0}};
         end
     end
@@ -79,6 +80,10 @@ module sptfra_regions_blobs #(
         step_1 <= control[0];
         taxel_1 <= control[0] && !control[1];
         touches_1 <= !control[1] && (weight > limit);
+        if (reset) begin
+            step_1 <= 1'b0;
+            taxel_1 <= 1'b0;
+        end
     end
 
     // ---- Of all: the sum, and 5/64 of it, rounded up
@@ -145,6 +150,10 @@ module sptfra_regions_blobs #(
         counts_3 <= counts_2;
         begins_3 <= begins_2;
         joins_3 <= joins_2;
+        if (reset) begin
+            taxel_2 <= 1'b0;
+            taxel_3 <= 1'b0;
+        end
     end
 
     // ---- Stage 4: with what its run has
@@ -172,6 +181,9 @@ module sptfra_regions_blobs #(
         taxel <= taxel_3;
         touches <= counts_3;
         joins <= joins_3;
+        if (reset) begin
+            taxel <= 1'b0;
+        end
     end
 
     wire _unused = &{1'b0, largest_5[5:0], rounded[5:0], longer[CONTROL_BITS*WEIGHT_LATENCY +: CONTROL_BITS]};

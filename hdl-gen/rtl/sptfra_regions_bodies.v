@@ -59,6 +59,10 @@ module sptfra_regions_bodies #(
         touches_1 <= there && record[0];
         record_1 <= record;
         is_body_1 <= (record[2+2*LABEL_WIDTH+COUNT_BITS +: SUM_BITS] >= least);
+        if (reset) begin
+            there_1 <= 1'b0;
+            touches_1 <= 1'b0;
+        end
     end
 
     // ---- Stage 2: which it is
@@ -102,6 +106,8 @@ module sptfra_regions_bodies #(
         end
         if (reset) begin
             noted <= {NAMES{1'b0}};
+            numbered <= 1'b0;
+            begins <= 1'b0;
             touches_2 <= 1'b0;
             joins_2 <= 1'b0;
         end

@@ -151,6 +151,7 @@ module sptfra_regions_spread #(
         if (start) begin
             diagonal_next <= NONE;
             straight <= NONE;
+            diagonal <= NONE;
             nearest <= NONE;
         end
         if (reset) begin

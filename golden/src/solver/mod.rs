@@ -18,6 +18,7 @@ pub mod we;
 mod workspace;
 
 pub use crate::status::Status;
+pub use bodies::{CHANGE, REACH};
 pub use cores::PIECE;
 pub use slips::Slips;
 pub use workspace::Workspace;

@@ -74,28 +74,38 @@ fn from_a_new_design_to_a_folder() {
     assert_eq!(beside.len(), 1, "nothing is left beside the folder");
 }
 
-/// Several bodies have no hardware yet: who asks for it is told what works, and what to change.
+/// Hardware for several bodies does not go with everything: who asks for it is told what works, and what to change.
 #[test]
-fn several_bodies_are_inspected_and_not_generated() {
+fn several_bodies_are_inspected_and_generated_with_what_goes_with_them() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     let one = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "");
     let several = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "[algorithm]\ncontacts = 3\n");
+    let wide = format!("{several}[hardware]\nstream_bits = 64\n");
     fs::write(here.join("one.toml"), &one).unwrap();
     fs::write(here.join("several.toml"), &several).unwrap();
-    let refused = hdl_gen(here, &["generate", "several.toml"]);
+    fs::write(here.join("wide.toml"), &wide).unwrap();
+    fs::write(here.join("wide_one.toml"), wide.replace("contacts = 3", "contacts = 1")).unwrap();
+    let refused = hdl_gen(here, &["generate", "wide.toml"]);
     assert!(!refused.status.success());
     let said = String::from_utf8(refused.stderr).unwrap();
-    for part in ["several.toml", "contacts = 3", "golden solve", "Python", "write contacts = 1"] {
+    for part in ["wide.toml", "contacts = 3", "golden solve", "Python", "stream_bits = 32", "or contacts = 1"] {
         assert!(said.contains(part), "no {part:?} in: {said}");
     }
     assert!(said.lines().count() == 1 && !here.join("rtl-out").exists(), "{said}");
-    let [of_one, of_several] = ["one.toml", "several.toml"].map(|name| good(here, &["inspect", name]));
+    let [of_one, of_several] = ["wide_one.toml", "wide.toml"].map(|name| good(here, &["inspect", name]));
     let remark = of_several.lines().find(|line| line.contains("contacts 3")).expect("a remark");
     assert!(remark.contains("contacts = 1"), "{remark}");
     assert_eq!(of_several.replacen(&format!("{remark}\n"), "", 1), of_one, "all else is that of one body");
     let json: serde_json::Value = serde_json::from_str(&good(here, &["inspect", "several.toml", "--json"])).unwrap();
     assert_eq!(json["contacts"], 3);
+    let said = good(here, &["inspect", "several.toml"]);
+    assert!(said.contains("up to 3 told apart"), "{said}");
+    good(here, &["generate", "several.toml", "--out", "out"]);
+    let metadata = fs::read_to_string(here.join("out/metadata.json")).unwrap();
+    let metadata: serde_json::Value = serde_json::from_str(&metadata).unwrap();
+    let body = metadata["output"].as_array().unwrap().iter().find(|entry| entry["name"] == "body").expect("records");
+    assert_eq!([&body["index"], &body["count"], &body["words"], &metadata["beats_out"]], [16, 3, 8, 16 + 24 + 36]);
     assert!(!good(here, &["inspect", "one.toml", "--json"]).contains("contacts"));
 }
 

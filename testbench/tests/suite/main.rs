@@ -37,6 +37,7 @@ mod properties;
 mod python;
 mod ram;
 mod range;
+mod records;
 mod registers;
 mod simulate;
 mod skip_zeros;

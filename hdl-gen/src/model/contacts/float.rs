@@ -121,7 +121,8 @@ mod tests {
     fn is_float32() {
         let same = |found: u32, expected: f32| {
             let expected = if expected.is_infinite() { f32::MAX.copysign(expected) } else { expected };
-            expected.is_subnormal() || f32::from_bits(found) == expected
+            // A zero has no sign.
+            expected.is_subnormal() || found == (expected + 0.0).to_bits()
         };
         for a in numbers() {
             let x = f32::from_bits(a);
@@ -152,6 +153,6 @@ mod tests {
         );
         assert_eq!([subtract(large, large), root((-2.0_f32).to_bits()), angle(0, 0x8000_0000)], [0; 3]);
         // What would be infinite is 2^128 and more, half of it is a number.
-        assert_eq!(float(multiply(f32::INFINITY.to_bits(), 0.5_f32.to_bits())), 2.0_f32.powi(127));
+        assert_eq!(multiply(f32::INFINITY.to_bits(), 0.5_f32.to_bits()), 2.0_f32.powi(127).to_bits());
     }
 }

@@ -48,14 +48,18 @@ impl Model<'_> {
             }
         }
         self.frames = number.wrapping_add(1);
-        let taxels: Vec<u16> = found.taxels.iter().map(|&taxels| taxels as u16).collect();
-        let bodies = found.bodies.min(u8::MAX.into()) as u8;
-        let mut answer = records.finish(Counted { kept: found.kept(), bodies, taxels: &taxels });
+        let mut taxels: Vec<u16> = found.taxels.iter().map(|&taxels| taxels as u16).collect();
+        if header[words::CENSUS] & 0xFF != 0 && taxels.is_empty() {
+            // A contact of which nothing presses.
+            taxels.push(0);
+        }
+        let bodies = found.bodies.max(taxels.len() as u32).min(u8::MAX.into()) as u8;
+        let mut answer = records.finish(Counted { kept: taxels.len(), bodies, taxels: &taxels });
         answer[words::STATUS] = answer[words::STATUS] & 0xFFFF | u32::from(number) << 16;
         if several {
-            answer.extend(forces.field())
+            answer.extend(forces.field());
         } else {
-            answer.extend(field)
+            answer.extend(field);
         }
         answer
     }

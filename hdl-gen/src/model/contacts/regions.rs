@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(super::find(&weight, 10, [1, 1, 1], 2).taxels, [1, 1]);
         (weight[0], weight[2], weight[4]) = (54, 5, 5);
         assert_eq!(super::find(&weight, 10, [1, 1, 1], 4).bodies, 3);
-        (weight[0], weight[1]) = (30, 25);
+        (weight[0], weight[10]) = (30, 25);
         weight[4] = 4;
         assert_eq!(super::find(&weight, 10, [1, 1, 1], 4).bodies, 2);
     }

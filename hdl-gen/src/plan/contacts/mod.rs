@@ -1,5 +1,6 @@
 //! What hardware for several bodies has of its own: coefficients by distance, and frames that have a place.
 
+pub mod instructions;
 pub mod records;
 
 use golden::design::{CalibrationIn, Design, Outputs, Overrun, Samples};

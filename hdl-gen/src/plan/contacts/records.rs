@@ -3,14 +3,13 @@
 
 use golden::bodies::MOST;
 use golden::design::Design;
+use golden::solver::{CHANGE, REACH};
 
 use crate::plan::words;
 
+pub use super::instructions::{FRAME, INSTRUCTION_BITS, Instruction, Place, What, run};
+
 pub use crate::plan::words::RECORD_WORDS;
-/// The body whose words are the frame's, as solved in one piece.
-pub const FRAME: u8 = MOST as u8;
-/// Bits of an instruction.
-pub const INSTRUCTION_BITS: u32 = 27;
 /// Words 2 and 3 of the round before, in a body's page.
 pub const BEFORE: u8 = 14;
 /// What a body's page holds in words that its record has no use for: what is felt of the others,
@@ -23,45 +22,6 @@ const ERROR: u8 = 13;
 const ERRORS: u8 = 8;
 const FIRST: u8 = 9;
 const SECOND: u8 = 10;
-/// See `golden::solver`: so many times what the last round has changed is not known.
-const CHANGE: f64 = 1.25;
-/// And so many of the coarser pitch are what bodies feel each other within.
-const REACH: f64 = 2.0;
-
-/// Where a word stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// In the page of body i, or of body j.
-    I(u8),
-    /// See `I`.
-    J(u8),
-    /// In that of the frame as solved in one piece.
-    Frame(u8),
-    /// Between.
-    Scratch(u8),
-    /// One of [`Constants::words`].
-    Constant(u8),
-    /// Among the results: before the records,
-    OutFrame(u8),
-    /// and in the record of body i.
-    OutRecord(u8),
-}
-
-impl Place {
-    fn bits(self) -> u32 {
-        let (place, word) = match self {
-            Self::I(word) => (0, word),
-            Self::J(word) => (1, word),
-            Self::Frame(word) => (2, word),
-            Self::Scratch(word) => (3, word),
-            Self::Constant(word) => (4, word),
-            Self::OutFrame(word) => (5, word),
-            Self::OutRecord(word) => (6, word),
-        };
-        place << 4 | u32::from(word)
-    }
-}
-
 use Place::{Constant, Frame, I, J, OutFrame, OutRecord, Scratch};
 
 const ZERO: Place = Constant(0);
@@ -70,169 +30,6 @@ const CHANGE_SQUARED: Place = Constant(2);
 const MIDDLE: u8 = 3;
 const NEARNESS: Place = Constant(5);
 const LIMIT: Place = Constant(6);
-
-/// What is done with two sources, `a` and `b`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum What {
-    /// `a` as it is.
-    Move,
-    /// A record's first word, of the status in `a`.
-    OwnStatus,
-    /// The frame's first word, of that in `a`.
-    FrameStatus,
-    /// `a` with the number of bodies.
-    Census,
-    /// `b` where `a` is above 0, else 0.
-    Choose,
-    /// `a + b`,
-    Add,
-    /// `a - b`,
-    Subtract,
-    /// `a b`,
-    Multiply,
-    /// `a / b`, 0 where `b` is 0,
-    Divide,
-    /// the root of `a`,
-    Root,
-    /// and the angle of `(a, b)`.
-    Angle,
-    /// Body i is doubtful if `|a| < |b|`.
-    Doubt,
-    /// Body i comes behind body j if `|a| < |b|`, else j behind i.
-    Rank,
-}
-
-impl What {
-    fn bits(self) -> u32 {
-        match self {
-            Self::Move => 0,
-            Self::OwnStatus => 1,
-            Self::FrameStatus => 2,
-            Self::Census => 3,
-            Self::Choose => 4,
-            Self::Add => 8,
-            Self::Subtract => 9,
-            Self::Multiply => 10,
-            Self::Divide => 11,
-            Self::Root => 12,
-            Self::Angle => 13,
-            Self::Doubt => 14,
-            Self::Rank => 15,
-        }
-    }
-
-    /// Cycles of an instruction: to read the sources, of the unit (`sptfra_float_unit`), to write.
-    fn cycles(self) -> u64 {
-        const READ: u64 = 3;
-        match self {
-            Self::Move | Self::OwnStatus | Self::FrameStatus | Self::Census => 2,
-            Self::Choose => READ,
-            Self::Add | Self::Subtract | Self::Multiply => READ + 9,
-            Self::Divide => READ + 33,
-            Self::Root => READ + 32,
-            Self::Angle => READ + 73,
-            Self::Doubt | Self::Rank => READ + 2,
-        }
-    }
-}
-
-/// One step of the program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Instruction {
-    /// Puts what is done with two sources in its place.
-    Do {
-        /// What is done.
-        what: What,
-        /// Where it goes.
-        to: Place,
-        /// First source.
-        a: Place,
-        /// Second source,
-        b: Place,
-        /// without its sign.
-        magnitude: bool,
-    },
-    /// Goes on elsewhere if few bodies are kept,
-    Jump {
-        /// fewer than so many.
-        fewer: u8,
-        /// Where.
-        target: u8,
-    },
-    /// Goes on elsewhere with the next body i if there is body i + `ahead`; else i is 0.
-    NextI {
-        /// How far ahead.
-        ahead: u8,
-        /// Where.
-        target: u8,
-    },
-    /// Goes on elsewhere with the next body j, if there is one.
-    NextJ {
-        /// Where.
-        target: u8,
-    },
-    /// Body j is the one behind i.
-    Pair,
-    /// The words are there.
-    End,
-}
-
-impl Instruction {
-    /// Cycles that it takes.
-    fn cycles(self) -> u64 {
-        match self {
-            Self::Do { what, .. } => what.cycles(),
-            Self::End => 0,
-            _ => 2,
-        }
-    }
-
-    fn bits(self) -> u32 {
-        let control = |what: u32, target: u8, number: u8| {
-            (0b10_000 | what) << 22 | u32::from(target) << 15 | u32::from(number) << 8
-        };
-        match self {
-            Self::Do { what, to, a, b, magnitude } => {
-                what.bits() << 22 | to.bits() << 15 | a.bits() << 8 | b.bits() << 1 | u32::from(magnitude)
-            }
-            Self::Jump { fewer, target } => control(0, target, fewer),
-            Self::NextI { ahead, target } => control(1, target, ahead),
-            Self::NextJ { target } => control(2, target, 0),
-            Self::Pair => control(3, 0, 0),
-            Self::End => control(4, 0, 0),
-        }
-    }
-}
-
-/// Executes instructions for so many bodies kept: `execute` is called with each that does something and with bodies i and j.
-/// Says how many cycles pass from start to done.
-pub fn run(program: &[Instruction], kept: u8, mut execute: impl FnMut(What, [Place; 3], bool, [u8; 2])) -> u64 {
-    let (mut i, mut j, mut next) = (if kept == 1 { FRAME } else { 0 }, 0, 0);
-    // The start, and the end's one.
-    let mut cycles = 2;
-    loop {
-        let instruction = program[next];
-        next += 1;
-        cycles += instruction.cycles();
-        match instruction {
-            Instruction::Do { what, to, a, b, magnitude } => {
-                execute(what, [to, a, b], magnitude, [i, j]);
-            }
-            Instruction::Jump { fewer, target } if kept < fewer => next = target.into(),
-            Instruction::NextI { ahead, target } if i + ahead < kept => (i, next) = (i + 1, target.into()),
-            Instruction::NextI { .. } => i = 0,
-            Instruction::NextJ { target } => {
-                j += 1;
-                if j < kept {
-                    next = target.into();
-                }
-            }
-            Instruction::Pair => j = i + 1,
-            Instruction::Jump { .. } => {}
-            Instruction::End => return cycles,
-        }
-    }
-}
 
 /// Cycles from start to done with so many bodies kept.
 pub fn cycles(kept: usize) -> u64 {
@@ -440,4 +237,71 @@ pub fn program() -> Vec<Instruction> {
     writer.take(OutFrame(CENSUS), Frame(CENSUS));
     writer.0.push(Instruction::End);
     writer.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each word of a record once for each body kept, and no place outside a page.
+    #[test]
+    fn every_word_is_written() {
+        for kept in 0..=MOST as u8 {
+            let mut records = vec![[0; RECORD_WORDS]; kept.into()];
+            let mut frame = [0; words::SUMMARY_WORDS];
+            let mut pairs = 0;
+            run(&program(), kept, |what, [to, ..], _, [i, _]| match to {
+                OutRecord(word) => records[usize::from(i % FRAME)][usize::from(word)] += 1,
+                OutFrame(word) => frame[usize::from(word)] += 1,
+                _ => pairs += usize::from(what == What::Rank),
+            });
+            assert!(records.iter().flatten().all(|&times| times == 1), "{kept}: {records:?}");
+            assert!(frame.iter().all(|times| (1..=2).contains(times)), "{kept}: {frame:?}");
+            assert_eq!(pairs, usize::from(kept) * usize::from(kept.saturating_sub(1)) / 2, "{kept}");
+        }
+    }
+
+    #[test]
+    fn instructions_have_room() {
+        let program = program();
+        assert!(program.len() <= 128 && rom().iter().all(|&word| word < 1 << INSTRUCTION_BITS));
+        for instruction in &program {
+            match *instruction {
+                Instruction::Do { to, a, b, .. } => {
+                    assert!(!matches!(to, Constant(_) | Frame(_)), "{instruction:?}");
+                    assert!(![a, b].iter().any(|of| matches!(of, OutFrame(_) | OutRecord(_))), "{instruction:?}");
+                }
+                Instruction::Jump { target, .. }
+                | Instruction::NextI { target, .. }
+                | Instruction::NextJ { target } => {
+                    assert!(usize::from(target) < program.len(), "{instruction:?}");
+                }
+                Instruction::Pair | Instruction::End => {}
+            }
+        }
+    }
+
+    /// What is moved is written while the next instruction reads its first source.
+    #[test]
+    fn what_is_moved_is_not_read_at_once() {
+        for kept in 0..=MOST as u8 {
+            let mut last = None;
+            run(&program(), kept, |what, [to, a, _], _, bodies| {
+                assert_ne!(last, Some((a, bodies)), "{kept}");
+                let moves =
+                    matches!(what, What::Move | What::OwnStatus | What::FrameStatus | What::Census | What::Choose);
+                last = moves.then_some((to, bodies));
+            });
+        }
+    }
+
+    #[test]
+    fn a_program_is_the_same_each_time_and_its_bits_tell_instructions_apart() {
+        let (program, rom) = (program(), rom());
+        for (one, bits) in program.iter().zip(&rom) {
+            for (other, others) in program.iter().zip(&rom) {
+                assert_eq!(one == other, bits == others, "{one:?} {other:?}");
+            }
+        }
+    }
 }

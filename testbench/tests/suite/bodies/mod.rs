@@ -1,9 +1,11 @@
-//! Bodies counted in hardware: the module by itself, whole designs against the model, the model against the solver.
+//! Bodies counted in hardware: the module by itself, whole designs against the model, the model against the solver; and
+//! the module that tells where they are.
 
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
 #[path = "../../../../golden/tests/suite/bodies/kinds.rs"]
-mod kinds;
-mod module;
+pub mod kinds;
+pub mod module;
+mod regions;
 
 use std::collections::BTreeMap;
 

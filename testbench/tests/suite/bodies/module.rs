@@ -234,7 +234,7 @@ fn play(
 
 /// What is printed by `bench.v` and the modules of a folder, those of the project where it has none, in so many cycles.
 /// Verilator's program is quick, and Icarus' is quickly made.
-fn verilator(folder: &Path, cycles: usize) -> String {
+pub fn verilator(folder: &Path, cycles: usize) -> String {
     let main = format!(
         "#include \"Vbench.h\"\nint main() {{\n    Vbench bench;\n    for (long edge = 0; edge < 2L * {cycles}; ++edge) {{\n        \
          bench.clock = edge & 1;\n        bench.eval();\n    }}\n    bench.final();\n}}\n"
@@ -247,7 +247,7 @@ fn verilator(folder: &Path, cycles: usize) -> String {
     succeed(Command::new(folder.join("model/Vbench")).current_dir(folder))
 }
 
-fn icarus(folder: &Path, cycles: usize) -> String {
+pub fn icarus(folder: &Path, cycles: usize) -> String {
     let clock = format!(
         "module clock_of_bench;\n    reg clock = 0;\n    bench bench (.clock(clock));\n    \
          initial begin\n        repeat (2 * {cycles}) #1 clock = !clock;\n        $finish(0);\n    end\nendmodule\n"

@@ -1,22 +1,21 @@
 //! Several bodies in hardware: whole designs against the model, the model against the solver, what one body costs.
 
-#[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
-#[path = "../../../../golden/tests/suite/bodies/kinds.rs"]
-mod kinds;
-
 use std::collections::BTreeMap;
 
 use golden::design::{Design, Filter, InputRange, Outputs, PlanKind};
+use golden::matrices::{Matrices, MatrixName};
 use golden::solver::{Solution, Solver};
 use hdl_gen::plan::{Plan, PlanError, words};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use testbench::stream::{Exchange, Pacing, Traffic, exchange};
 use testbench::stream_words::{Answer, decode_bodies};
 use testbench::stress::{self, stress};
-use testbench::trial::model_answers;
+use testbench::trial::{model_answers, timeout};
+use testbench::verilate::Built;
 
+use crate::bodies::kinds::{Kind, frame};
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
-use kinds::{Kind, frame};
 
 fn telling_apart(mut design: Design, contacts: usize) -> Design {
     design.name += "_several";
@@ -83,6 +82,8 @@ fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
             kinds.iter().zip(40..).map(|(&kind, seed)| plan.streams().packet(&frame(sensor, kind, seed).stress)),
         );
     }
+    // What only pulls is a contact, too.
+    packets.push(plan.streams().packet(&vec![0.1 * full; sensor.taxels()]));
     packets.push(frames::contact(plan, random));
     packets.push(frames::noise(plan, 0.5, random));
     packets
@@ -171,4 +172,49 @@ fn what_does_not_go_with_several_bodies_is_refused() {
     let error = Plan::new(&design).expect_err("no hardware");
     assert!(matches!(error, PlanError::Contacts { contacts: 4, .. }), "{error}");
     assert!(error.to_string().contains("stream_bits = 32"), "{error}");
+}
+
+/// Frames of so many bodies: blocks of 2 x 2 taxels that press alike.
+fn blocks(plan: &Plan, bodies: usize, frames: usize) -> Vec<Vec<u32>> {
+    let sensor = &plan.design.sensor;
+    let corners = [[1, 1], [7, 7], [1, 7], [7, 1]];
+    let press = |taxel: usize| {
+        let [x, y] = [taxel % sensor.columns, taxel / sensor.columns];
+        let touches = |[left, top]: &[usize; 2]| (*left..left + 2).contains(&x) && (*top..top + 2).contains(&y);
+        if corners[..bodies].iter().any(touches) { -0.2 } else { 0.0 }
+    };
+    let c33inv = Matrices::of(&plan.design).expect("matrices").dense(MatrixName::C33inv);
+    let c33 = c33inv.try_inverse().expect("an inverse");
+    let row = |row: usize| (0..sensor.taxels()).map(|taxel| c33[(row, taxel)] * press(taxel)).sum();
+    let stress: Vec<f64> = (0..sensor.taxels()).map(row).collect();
+    vec![plan.streams().packet(&stress); frames]
+}
+
+/// Latency of a frame alone, and the distance of frames back to back.
+fn cycles_of(plan: &Plan, core: &Built, bodies: usize) -> [u64; 2] {
+    let packets = blocks(plan, bodies, 6);
+    assert!(model_answers(plan, &packets).iter().all(|answer| answer[words::CENSUS] & 0xFF == bodies as u32));
+    let run = |pacing| {
+        let traffic = Traffic::new(&packets, timeout(plan)).with_pacing(pacing);
+        exchange(&mut core.load(1).expect("loaded"), &traffic, |_| ()).expect("all frames come out").exchanges
+    };
+    let alone: Vec<u64> = run(Pacing::OneAtATime).iter().map(Exchange::latency).collect();
+    assert!(alone.iter().all(|cycles| *cycles == alone[0]), "{alone:?}");
+    let ends: Vec<u64> = run(Pacing::BackToBack).iter().map(|exchange| exchange.last_out).collect();
+    [alone[0], ends[5] - ends[4]]
+}
+
+/// What several bodies cost does not depend on what they do; docs/contacts.md has these figures.
+#[test]
+fn several_bodies_take_as_long_as_stated() {
+    let stated = [
+        ("sensor1-fast", [[15_368, 12_258], [19_609, 16_499], [24_038, 20_928]]),
+        ("sensor1-fast-64", [[10_111, 8_204], [12_014, 10_107], [14_523, 12_616]]),
+    ];
+    let found = stated.map(|(name, _)| {
+        let plan = planned(&telling_apart(shipped(name), 4));
+        let core = built(&plan);
+        (name, [2, 3, 4].map(|bodies| cycles_of(&plan, &core, bodies)))
+    });
+    assert_eq!(found, stated);
 }

@@ -15,7 +15,7 @@ type Change = fn(&mut Design);
 
 /// Rows of tables whose design is none of the shipped ones, or is not named: page, how the row begins, the shipped design
 /// that it is made of, and how.
-const VARIED: [(&str, &str, &str, Change); 19] = [
+const VARIED: [(&str, &str, &str, Change); 21] = [
     ("accuracy.md", "sensor 1, point, no filter", "sensor1-reduced", as_it_is),
     ("accuracy.md", "sensor 1, cell, no filter", "sensor1-reduced", |design| design.algorithm.kernel = Kernel::Cell),
     ("accuracy.md", "sensor 1, point, F3", "sensor1-f3", as_it_is),
@@ -23,6 +23,11 @@ const VARIED: [(&str, &str, &str, Change); 19] = [
     ("accuracy.md", "sensor 2, cell, no filter", "sensor2-reduced", |design| design.algorithm.kernel = Kernel::Cell),
     ("accuracy.md", "sensor 2, point, F3", "sensor2-f3", as_it_is),
     ("architecture.md", "joint, 15 × 15 points, 64 lanes", "sensor1-fast-64", as_it_is),
+    ("contacts.md", "`sensor1-fast-64` with streams of 32 bits", "sensor1-fast-64", narrow),
+    ("contacts.md", "the same for four", "sensor1-fast-64", |design| {
+        narrow(design);
+        design.algorithm.contacts = 4;
+    }),
     ("estimators.md", "sensor 1 or 2, line", "sensor1-reduced", as_it_is),
     ("estimators.md", "sensor 1, joint, no correction", "sensor1-joint", |design| {
         design.algorithm.joint.correction = None;
