@@ -79,6 +79,9 @@ int sptfra_open_streams(sptfra *device, const sptfra_platform *platform, uintptr
     device->platform = *platform;
     device->dma = dma;
     device->shape = *shape;
+    if (sptfra_records(shape) < 0) {
+        return SPTFRA_BAD_SHAPE;
+    }
     return sptfra_reset_dma(device, RESET_POLLS);
 }
 

@@ -8,6 +8,7 @@
     sensor = Sptfra(overlay.core, overlay.dma, allocate)
     forces = sensor.reconstruct(frames)          # frames: (n, rows, columns) or (rows, columns), pascals or counts
     forces.resultant, forces.field, forces.status
+    forces.bodies, forces.records["F_z"]         # of a core that tells bodies apart (contacts): (n, contacts)
 
 `core` is the IP with the register bank (`control = true` in the design): anything with `read(offset)` and
 `write(offset, value)`. A core without one is `None`, and the design's metadata.json says what it is:
@@ -64,7 +65,6 @@ class Sptfra:
         this driver knows, or no such DMA, ValueError if neither registers nor metadata say what the core is."""
         if core is None and metadata is None:
             raise ValueError("without registers the design's metadata.json says what the core is: give its path")
-        self._layout = LAYOUT if metadata is None else Layout.load(metadata)
         self._has_registers = core is not None
         self._core = NoRegisters() if core is None else core
         self.identity = Identity.load(metadata) if core is None else Identity.read(core)
@@ -72,6 +72,8 @@ class Sptfra:
             told = Identity.load(metadata).design_hash
             if told != self.identity.design_hash:
                 raise RuntimeError(f"{metadata} is of the design {told}, the core is {self.identity.design_hash}")
+        known = LAYOUT.with_records(self.identity.records)
+        self._layout = known if metadata is None else Layout.load(metadata)
         if queue:
             self._transfers = Batches(dma, allocate, self.identity, queue)
         else:

@@ -70,6 +70,7 @@ class Forces:
     bodies: np.ndarray
     #: (n, contacts) structured: `taxels`, `status`, `x`, `y` in m from the first taxel, `F_x`, `F_y`, `F_z` in N, `mu`,
     #: `standard_error`, `T_x`, `T_y`, `T_z` in N m of each body, the one that presses most first, then zeros; None where only one is known.
+    #: The torques are not a number where they are not known: the core's records have none.
     records: np.ndarray | None
     #: (n, rows, columns, 3): f_x, f_y, f_z of each taxel in N; None where only resultants are known.
     field: np.ndarray | None

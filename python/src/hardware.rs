@@ -10,7 +10,7 @@ use hdl_gen::plan::{Plan, PlanError};
 use hdl_gen::write::{check_folder, write_folder};
 use pyo3::prelude::*;
 use serde_json::json;
-use testbench::stream_words::{Answer, decode, packets};
+use testbench::stream_words::{Answer, decode_bodies, packets};
 use testbench::trial::{Trial, planned};
 
 use crate::arrays::{Forces, Frames};
@@ -70,11 +70,12 @@ pub fn simulate<'py>(
             "clock_mhz": design.hardware.clock_mhz,
             "faults": faults,
         });
-        let mut forces = Forces::zeros(&design.sensor, frames.count(), 0, plan.field_words() > 0);
+        let records = plan.streams().records;
+        let mut forces = Forces::zeros(&design.sensor, frames.count(), records, plan.field_words() > 0);
         let mut places = forces.pieces();
         for (index, words) in verdict.simulation.answers.iter().enumerate() {
             // An answer of another length is a fault already; its forces stay zeros.
-            if let Some(answer) = decode(words) {
+            if let Some(answer) = decode_bodies(words, records) {
                 let place = (index / golden::solver::PIECE, index % golden::solver::PIECE);
                 places[place.0].put(place.1, &solution(answer));
             }
@@ -89,8 +90,13 @@ fn named(design: &golden::design::Design, error: &PlanError) -> String {
     format!("{}: {error}", design.name)
 }
 
-fn solution(answer: Answer) -> Solution {
-    let Answer { status, resultant, torque, mu, phi, mu_xy: [mu_x, mu_y], standard_error, bodies, field, .. } = answer;
-    let status = golden::solver::Status(status);
-    Solution { status, resultant, torque, standard_error, bodies, records: Vec::new(), mu, phi, mu_x, mu_y, field }
+fn solution(mut answer: Answer) -> Solution {
+    // The records have no torques.
+    let there = answer.told_apart().len();
+    for body in &mut answer.records[..there] {
+        body.torque = [f64::NAN; 3];
+    }
+    let Answer { status, resultant, torque, mu, phi, mu_xy, standard_error, bodies, records, field, .. } = answer;
+    let (status, [mu_x, mu_y]) = (golden::solver::Status(status), mu_xy);
+    Solution { status, resultant, torque, standard_error, bodies, records, mu, phi, mu_x, mu_y, field }
 }

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use golden::bodies::Body;
 use golden::design::{Design, Sensor};
-use golden::forces::{self, read_outcomes};
+use golden::forces::{self, read_bodies, read_outcomes};
 use golden::frames::{FrameError, read_frames_and_remark};
 use golden::geometry;
 use golden::metrics::Outcome;
@@ -20,6 +21,8 @@ pub struct FrameSet {
     pub stress: Vec<Vec<f64>>,
     /// True forces, one for each frame.
     pub truth: Option<Vec<Outcome>>,
+    /// True forces of each body of a frame, where they are known.
+    pub bodies: Option<Vec<Vec<Body>>>,
     /// What is to be known of the file that they are from.
     pub remark: Option<String>,
     /// The scene that the frames are of, where that is known: it knows each taxel's true force.
@@ -42,8 +45,9 @@ impl FrameSet {
     pub fn of_scene(scene: &Scene, origin: impl Into<String>) -> Result<Self, SceneError> {
         let frames = scene.frames()?;
         let truth = frames.iter().map(Outcome::from).collect();
-        let stress = frames.into_iter().map(|frame| frame.stress).collect();
-        Ok(Self { origin: origin.into(), stress, truth: Some(truth), remark: None, scene: Some(scene.clone()) })
+        let (stress, bodies) = frames.into_iter().map(|frame| (frame.stress, frame.bodies)).unzip();
+        let (truth, bodies, scene) = (Some(truth), Some(bodies), Some(scene.clone()));
+        Ok(Self { origin: origin.into(), stress, truth, bodies, remark: None, scene })
     }
 
     /// What is known of the forces of a frame.
@@ -73,6 +77,11 @@ impl FrameSet {
             forces::compare_sensor(reference, &design.name, &design.sensor)?;
         }
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
-        Ok(Self { origin: frames.display().to_string(), stress, truth, remark, scene: None })
+        let bodies = reference
+            .filter(|_| design.algorithm.contacts > 1)
+            .map(|path| read_bodies(path, stress.len(), &design.sensor))
+            .transpose()?
+            .flatten();
+        Ok(Self { origin: frames.display().to_string(), stress, truth, bodies, remark, scene: None })
     }
 }

@@ -94,6 +94,13 @@ pub struct Answer {
     pub field: [Vec<f64>; 3],
 }
 
+impl Answer {
+    /// The records of bodies that are there, the one that presses most first.
+    pub fn told_apart(&self) -> &[Body] {
+        &self.records[..self.bodies.min(self.records.len())]
+    }
+}
+
 impl From<Solution> for Answer {
     fn from(solution: Solution) -> Self {
         Self {
@@ -190,6 +197,34 @@ mod tests {
             field: [vec![10.0, 11.0], vec![20.0, 21.0], vec![30.0, 31.0]],
         };
         assert_eq!(answer, expected);
+    }
+
+    #[test]
+    fn records_stand_between_summary_and_field() {
+        let mut words = vec![0x0001_0080; SUMMARY_BEATS];
+        words[words::CENSUS] = 3;
+        let record = |head: u32, values: [f32; 7]| [vec![head], values.map(f32::to_bits).to_vec()].concat();
+        words.extend(record(0x0040_0007, [0.01, 0.02, 1.0, 2.0, -3.0, 0.75, 0.125]));
+        words.extend(record(0x0000_0002, [0.03, 0.0, 0.5, 0.0, -1.0, 0.5, 0.0]));
+        words.extend(encode(&[10.0, 20.0, 30.0]));
+        let answer = decode_bodies(&words, 2).expect("a taxel");
+        let first = Body {
+            taxels: 7,
+            status: Status::DOUBTFUL,
+            centre_m: [0.01_f32, 0.02].map(f64::from),
+            force: [1.0, 2.0, -3.0],
+            mu: 0.75,
+            standard_error: 0.125,
+            ..Body::default()
+        };
+        assert_eq!((answer.records[0], answer.records[1].taxels, answer.field[2][0]), (first, 2, 30.0));
+        assert_eq!((answer.bodies, answer.told_apart().len()), (3, 2));
+        assert_eq!(decode_bodies(&words, 3), None, "with three there is no room for a field");
+        let named = |beat: usize| beat_name(beat, Shape { columns: 1, records: 2 });
+        assert_eq!(
+            [16, 22, 24, 32].map(named),
+            ["taxels, status of body 1", "mu of body 1", "taxels, status of body 2", "f_x of taxel 0 (0, 0)"]
+        );
     }
 
     #[test]

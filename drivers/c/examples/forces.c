@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* Frames in, forces out: a line of values (pascals, or counts) for each frame of FRAMES or of standard input becomes a
- * line of forces on standard output.
+ * line of forces on standard output; of a core that tells bodies apart (contacts) with a record of each behind the status.
  *
  *   forces_linux FRAMES                on the board, through /dev/uio* and u-dma-buf
  *   forces_simulated CORE.so FRAMES    on the desk, through the simulated core */
@@ -79,6 +79,41 @@ static int fail(const char *what, int code)
     return 0;
 }
 
+/* Each body's record, by the columns of print_header. */
+static void print_bodies(const sptfra_shape *shape, const sptfra_result *result)
+{
+    const int records = sptfra_records(shape);
+    int index;
+
+    if (records > 0) {
+        printf(",%u", (unsigned)result->bodies);
+    }
+    for (index = 0; index < records; index++) {
+        const sptfra_body *body = &result->body[index];
+
+        printf(",%u,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", (unsigned)body->taxels, (unsigned)body->status,
+            (double)body->centre[0], (double)body->centre[1], (double)body->force[0], (double)body->force[1],
+            (double)body->force[2], (double)body->friction, (double)body->standard_error);
+    }
+}
+
+/* Names of the columns; those of bodies as in the force files of `golden solve`. */
+static void print_header(const sptfra_shape *shape)
+{
+    static const char *const names[] = {"taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"};
+    const int records = sptfra_records(shape);
+    int index;
+    size_t name;
+
+    printf("frame,F_x,F_y,F_z,mu,phi,status%s", records > 0 ? ",bodies" : "");
+    for (index = 0; index < records; index++) {
+        for (name = 0; name < sizeof names / sizeof names[0]; name++) {
+            printf(",body%d_%s", index, names[name]);
+        }
+    }
+    printf("\n");
+}
+
 /* Sends the frame in `stress` and prints its answer; 0 after a message. */
 static int process(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces)
 {
@@ -104,6 +139,7 @@ static int process(sptfra *device, const sptfra_buffer *stress, const sptfra_buf
             printf("%s%s", result.status & ((1u << bit) - 1u) ? "; " : "", sptfra_status_name(bit));
         }
     }
+    print_bodies(&device->shape, &result);
     printf("\n");
     fflush(stdout);
     return 1;
@@ -118,7 +154,7 @@ static int run(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer 
     size_t room = 0;
     int good = 1, first = 1;
 
-    printf("frame,F_x,F_y,F_z,mu,phi,status\n");
+    print_header(&device->shape);
     while (good && getline(&line, &room, frames) > 0) {
         const char *start = line + strspn(line, " \t\r\n");
 

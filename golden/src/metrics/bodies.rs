@@ -69,7 +69,7 @@ impl BodyErrors {
 }
 
 /// Pairs of bodies that are the same one, as many of both: the two whose centres are nearest, then the next two.
-fn pairs<'a>(truth: &'a [Body], found: &'a [Body]) -> Vec<(&'a Body, &'a Body)> {
+pub fn pairs<'a>(truth: &'a [Body], found: &'a [Body]) -> Vec<(&'a Body, &'a Body)> {
     let distance = |(a, b): &(&Body, &Body)| (a.centre_m[0] - b.centre_m[0]).hypot(a.centre_m[1] - b.centre_m[1]);
     let mut all: Vec<(&Body, &Body)> = truth.iter().flat_map(|a| found.iter().map(move |b| (a, b))).collect();
     all.sort_by(|a, b| distance(a).total_cmp(&distance(b)));

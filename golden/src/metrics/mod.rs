@@ -2,7 +2,7 @@
 
 mod bodies;
 
-pub use bodies::{BodyErrors, Quantiles};
+pub use bodies::{BodyErrors, Quantiles, pairs};
 
 use serde::{Deserialize, Serialize};
 

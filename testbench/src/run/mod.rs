@@ -11,7 +11,7 @@ use golden::solver::{Solver, SolverError as SolveError};
 use hdl_gen::plan::Plan;
 use thiserror::Error;
 
-use crate::accuracy::{SolverError, StatusCounts, against_truth};
+use crate::accuracy::{SolverError, StatusCounts, against_true_bodies, against_truth, by_bodies};
 use crate::frame_set::FrameSet;
 use crate::registers;
 use crate::simulate::frames_to_simulate;
@@ -114,6 +114,10 @@ pub fn run_plan(
         }
     }
     report.status_counts = StatusCounts::new(&answers);
+    if records > 0 {
+        report.body_counts = Some(by_bodies(&answers));
+        report.true_body_errors = frames.bodies.as_ref().map(|truth| against_true_bodies(&answers, truth));
+    }
     report.true_force_errors = frames.truth.as_ref().map(|truth| against_truth(&answers, truth));
     Ok(report)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use golden::design::Filter;
-use golden::metrics::ErrorSummary;
+use golden::metrics::{BodyErrors, ErrorSummary};
 use hdl_gen::plan::Plan;
 use serde::Serialize;
 
@@ -133,6 +133,12 @@ pub struct Report {
     pub true_force_errors: Option<ErrorSummary>,
     /// Frames by status bit.
     pub status_counts: StatusCounts,
+    /// Frames by the number of bodies in them, of a design that tells bodies apart.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub body_counts: Option<BTreeMap<usize, usize>>,
+    /// Each body's forces against the true ones, in percent, of such a design; absent if they are not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub true_body_errors: Option<BodyErrors>,
     /// The cycles beside the predicted ones.
     pub timing: Timing,
     /// All that is wrong, in words; nothing if the hardware is right.
@@ -205,6 +211,8 @@ impl Report {
             error: SolverError::default(),
             true_force_errors: None,
             status_counts: StatusCounts::default(),
+            body_counts: None,
+            true_body_errors: None,
             modes: simulation.modes.iter().map(ModeReport::from).collect(),
             registers,
             traces: Vec::new(),

@@ -51,7 +51,7 @@ pub fn table(designs: &[&Design], frames: u64) -> Result<Option<Table>, PageErro
         .collect::<Result<Vec<_>, _>>()
         .map_err(SweepError::from)?;
     let stress = made.iter().flat_map(|(_, frames)| frames).map(|frame| frame.stress.clone()).collect();
-    let all = FrameSet { origin: String::new(), stress, truth: None, remark: None, scene: None };
+    let all = FrameSet { origin: String::new(), stress, truth: None, bodies: None, remark: None, scene: None };
     let mut header = vec![format!("contacts, {frames} frames of each kind")];
     let mut columns = Vec::new();
     for design in shown {

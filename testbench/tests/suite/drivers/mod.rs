@@ -1,6 +1,7 @@
 //! The C and Python drivers against the simulated RTL: registers and DMA as a processor sees them.
 
 mod batches;
+mod bodies;
 mod calibration;
 mod examples;
 mod files;
@@ -92,6 +93,9 @@ fn packets(plan: &Plan) -> Vec<Vec<u32>> {
     packets[2][3] = f32::NAN.to_bits();
     packets[5][0] = f32::INFINITY.to_bits();
     packets[7] = frames::empty(plan);
+    if plan.contacts.is_some() {
+        bodies::press(plan, &mut packets[12..18]);
+    }
     let width = plan.streams().words();
     packets[9].truncate(plan.taxels() - width);
     packets[11].extend(vec![0; width]);
@@ -106,11 +110,13 @@ fn packets(plan: &Plan) -> Vec<Vec<u32>> {
     packets
 }
 
-/// With and without a field, wide, of integers; and how many frames hold what is no number, as no integer does.
+/// With and without a field, wide, of integers, of several bodies; and how many frames hold what is no number, as no
+/// integer does.
 fn subjects() -> Vec<(Subject, usize)> {
     let shapes = [(Outputs::Field, 32), (Outputs::Resultants, 32)];
     let floats = shapes.map(|(outputs, stream_bits)| (Subject::wide(true, outputs, stream_bits), 2));
-    floats.into_iter().chain([(Subject::of_all_kinds(), 2), (Subject::of_integers(), 0)]).collect()
+    let others = [(Subject::of_all_kinds(), 2), (Subject::of_integers(), 0), (bodies::subject(true), 2)];
+    floats.into_iter().chain(others).collect()
 }
 
 /// The driver's files but the calibration and the queue, and the machine that a test puts under it.
@@ -203,7 +209,9 @@ fn the_c_driver_gets_every_word_and_knows_the_core() {
 
 #[test]
 fn the_c_driver_does_without_registers() {
-    run(run_c(&Subject::new(false, Outputs::Field), &DRIVER.map(workspace)));
+    for subject in [Subject::new(false, Outputs::Field), bodies::subject(false)] {
+        run(run_c(&subject, &DRIVER.map(workspace)));
+    }
 }
 
 /// Bare metal and C++: the driver alone, without an operating system's headers, with every warning.
@@ -261,17 +269,22 @@ fn a_wrong_c_driver_is_noticed() {
         ("    transfer(device, SEND, stress->address, 4u);\n", ""),
         ("    for (packets = 0; packets < MOST_PACKETS", "    for (packets = MOST_PACKETS; packets < MOST_PACKETS"),
     ] {
-        let driver = DRIVER.map(|name| {
-            let copy = subject.file(name.rsplit('/').next().expect("a name"));
-            let text = fs::read_to_string(workspace(name)).expect("is there");
-            fs::write(&copy, text.replace(right, wrong)).expect("written");
-            (copy, text.matches(right).count())
-        });
-        assert_eq!(driver.iter().map(|(_, count)| count).sum::<usize>(), 1, "{right}");
-        let driver = driver.map(|(copy, _)| copy);
-        let output = run_c(&subject, &driver).output().expect("starts");
-        assert!(!output.status.success(), "{right}: {}", String::from_utf8_lossy(&output.stdout));
+        noticed(&subject, right, wrong);
     }
+}
+
+/// The host program stops at a copy of the driver with this change.
+fn noticed(subject: &Subject, right: &str, wrong: &str) {
+    let driver = DRIVER.map(|name| {
+        let copy = subject.file(name.rsplit('/').next().expect("a name"));
+        let text = fs::read_to_string(workspace(name)).expect("is there");
+        fs::write(&copy, text.replace(right, wrong)).expect("written");
+        (copy, text.matches(right).count())
+    });
+    assert_eq!(driver.iter().map(|(_, count)| count).sum::<usize>(), 1, "{right}");
+    let driver = driver.map(|(copy, _)| copy);
+    let output = run_c(subject, &driver).output().expect("starts");
+    assert!(!output.status.success(), "{right}: {}", String::from_utf8_lossy(&output.stdout));
 }
 
 #[test]
