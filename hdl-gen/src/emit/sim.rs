@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use golden::scene::{Medium, Scene, SceneError};
+use golden::scene::{Contact, Medium, Scene, SceneError, Shape};
 use serde::Serialize;
 use tera::Context;
 
@@ -64,7 +64,9 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     let answers: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
     let words = plan.streams().words();
     let beats = |packets: &[Vec<u32>]| packets.iter().map(|packet| packet.len().div_ceil(words)).sum();
-    let timeout = SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64;
+    // Several bodies are solved one behind the other, twice.
+    let solved = plan.contacts.as_ref().map_or(1, |of| 1 + 2 * of.contacts as u64);
+    let timeout = SLACK_CYCLES + 4 * solved * plan.timeline.latency_cycles * packets.len() as u64;
     let view = View {
         name,
         frames: packets.len(),
@@ -96,17 +98,35 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     Ok(())
 }
 
-/// A contact pushed in several directions; between them the frames that have no answer.
+/// Two bodies in place of one, pushed apart, far enough from each other.
+fn two_bodies(mut scene: Scene) -> Scene {
+    let one = scene.contacts[0].clone();
+    let [half_x, half_y] = one.shape.half_extent_m().map(|extent| 0.5 * extent);
+    let body = |place: f64, share: f64, direction_deg: f64| Contact {
+        shape: Shape::Hertz { semi_axes_m: [half_x, half_y] },
+        centre_m: one.centre_m.map(|middle| place * middle),
+        normal_force_n: share * one.normal_force_n,
+        direction_deg,
+        ..one.clone()
+    };
+    scene.contacts = vec![body(0.4, 0.25, 180.0), body(1.6, 0.2, 30.0)];
+    scene.sweep_deg = Vec::new();
+    scene
+}
+
+/// A contact pushed in several directions; between them the frames that have no answer. Where bodies are told apart, two of
+/// them, and one again.
 fn packets(plan: &Plan) -> Result<Vec<Vec<u32>>, SceneError> {
-    let scene = Scene { sweep_deg: DIRECTIONS_DEG.to_vec(), ..Scene::standing(&plan.design.sensor) };
-    // On a half-space stress has a closed form, so no layer is too thin.
-    let frames = scene.frames().or_else(|_| Scene { medium: Medium::HalfSpace, ..scene }.frames())?;
-    let value = |(taxel, &pascal): (usize, &f64)| plan.design.input.from_pa(taxel, pascal);
     let streams = plan.streams();
-    let mut packets: Vec<Vec<u32>> = frames
-        .iter()
-        .map(|frame| streams.packet(&frame.stress.iter().enumerate().map(value).collect::<Vec<_>>()))
-        .collect();
+    let of_scene = |scene: Scene| {
+        // On a half-space stress has a closed form, so no layer is too thin.
+        let frames = scene.frames().or_else(|_| Scene { medium: Medium::HalfSpace, ..scene }.frames())?;
+        let value = |(taxel, &pascal): (usize, &f64)| plan.design.input.from_pa(taxel, pascal);
+        let packet = |stress: &[f64]| streams.packet(&stress.iter().enumerate().map(value).collect::<Vec<_>>());
+        Ok::<_, SceneError>(frames.iter().map(|frame| packet(&frame.stress)).collect::<Vec<_>>())
+    };
+    let scene = Scene { sweep_deg: DIRECTIONS_DEG.to_vec(), ..Scene::standing(&plan.design.sensor) };
+    let mut packets = of_scene(scene.clone())?;
     let length = streams.words_in();
     let mut not_a_number = packets[0].clone();
     not_a_number[length / 2] = f32::NAN.to_bits();
@@ -115,6 +135,10 @@ fn packets(plan: &Plan) -> Result<Vec<Vec<u32>>, SceneError> {
     packets.insert(3, not_a_number);
     // A beat less than a frame.
     packets.insert(5, vec![0; length - streams.words().min(length - 1)]);
+    if plan.contacts.is_some() {
+        packets.extend(of_scene(two_bodies(scene))?);
+        packets.push(packets[0].clone());
+    }
     Ok(packets)
 }
 
@@ -137,7 +161,27 @@ fn beat_file(packets: &[Vec<u32>], words: usize) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::beat_file;
+    use std::path::Path;
+
+    use golden::design::Design;
+
+    use super::{Model, Plan, beat_file, packets};
+    use crate::plan::words::CENSUS;
+
+    #[test]
+    fn where_bodies_are_told_apart_there_are_two() {
+        let designs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs");
+        for (name, contacts) in [("small", 2), ("odd", 3), ("sensor1-bodies", 4), ("small", 1)] {
+            let mut design = Design::load(&designs.join(format!("{name}.toml"))).expect("right");
+            design.algorithm.contacts = contacts;
+            let plan = Plan::new(&design).expect("a plan");
+            let mut model = Model::new(&plan);
+            let packets = packets(&plan).expect("frames");
+            let found: Vec<u32> = packets.iter().map(|packet| model.process(packet)[CENSUS] & 0xFF).collect();
+            let expected: &[u32] = if contacts > 1 { &[1, 0, 1, 0, 1, 0, 1, 2, 1] } else { &[1, 0, 1, 0, 1, 0, 1] };
+            assert_eq!(found, expected, "{name}");
+        }
+    }
 
     #[test]
     fn the_last_word_of_each_packet_is_marked() {
