@@ -65,8 +65,7 @@ module sptfra_records #(
     // What is done with sources as they are
     localparam [4:0] OWN_STATUS = 5'd1, FRAME_STATUS = 5'd2, CENSUS = 5'd3, CHOOSE = 5'd4, DOUBT = 5'd14, RANK = 5'd15;
     // Status bits that a body can have, and some of them
-    localparam [15:0] BODY_BITS = 16'h0c46;
-    localparam [15:0] NO_TENSION = 16'h0800; // of a frame in which nothing pulls, whatever its bodies would cause alone
+    localparam [15:0] BODY_BITS = 16'h0446;
     localparam integer SATURATED = 3;
     localparam integer DOUBTFUL = 6;
     localparam integer MORE_BODIES = 7;
@@ -199,7 +198,7 @@ module sptfra_records #(
         moved_to <= instruction[21:15];
         case (what)
             OWN_STATUS: moved <= {own_bits, taxels_held[16*i[2:0] +: 16]};
-            FRAME_STATUS: moved <= {operand[31:16], (operand[15:0] & (~BODY_BITS | NO_TENSION)) | any_bits | more_bits};
+            FRAME_STATUS: moved <= {operand[31:16], (operand[15:0] & ~BODY_BITS) | any_bits | more_bits};
             CENSUS: moved <= {operand[31:8], bodies_held};
             // The second one where the first is more than zero
             CHOOSE: moved <= (!operand_a[31] && (operand_a[30:23] != 8'd0)) ? operand : 32'd0;

@@ -46,8 +46,7 @@ pub struct Body {
 
 impl Body {
     /// Status bits that a body can have. A frame has those of its bodies, and others.
-    pub const BITS: [Status; 5] =
-        [Status::DIRECTION_UNKNOWN, Status::AT_BOUND, Status::DOUBTFUL, Status::SLIP, Status::NO_TENSION];
+    pub const BITS: [Status; 4] = [Status::DIRECTION_UNKNOWN, Status::AT_BOUND, Status::DOUBTFUL, Status::SLIP];
 
     /// The bits of a frame's status that can be a body's.
     pub fn bits_of(status: Status) -> Status {

@@ -73,14 +73,17 @@ impl Solver {
 
     /// Finds the forces of each body, by the frame that it would cause alone, and their sums. The solution is that of the frame
     /// as if there were one body; `status` is what was to be said before it was solved.
-    pub(super) fn solve_bodies(&self, workspace: &mut Workspace, status: Status, solution: &mut Solution) {
+    pub(super) fn solve_bodies(&self, workspace: &mut Workspace, mut status: Status, solution: &mut Solution) {
+        // That nothing pulls is a matter of the frame, and of the friction that it has as a whole.
+        if !solution.status.contains(Status::NO_TENSION) {
+            status.remove(Status::NO_TENSION);
+        }
         let nothing = || Box::new(Solution::zeros(Status::default(), 0));
         let mut alone = workspace.parted.alone.take().unwrap_or_else(nothing);
         let whole = workspace.b.clone();
         let bodies = workspace.parted.found.taxels.len();
         std::mem::swap(&mut workspace.parted.forces, &mut solution.field);
         solution.reset(status, self.solved_length());
-        // That nothing pulls is a matter of the frame and of the friction that is found.
         let status = Body::bits_of(status);
         workspace.parted.before.clear();
         workspace.parted.before.resize(bodies, [0.0; 2]);

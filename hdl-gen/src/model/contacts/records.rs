@@ -84,9 +84,7 @@ impl Records {
                 }
                 What::FrameStatus => {
                     let more = usize::from(counted.bodies) > self.contacts;
-                    // That nothing pulls is a matter of the frame.
-                    let of_bodies = Body::bits_of(Status(a & 0xFFFF)).0 & !Status::NO_TENSION.0;
-                    a & !of_bodies | notes.bits | if more { Status::MORE_BODIES.0 } else { 0 }
+                    a & !Body::bits_of(Status(a & 0xFFFF)).0 | notes.bits | if more { Status::MORE_BODIES.0 } else { 0 }
                 }
                 What::Census => a & !0xFF | u32::from(counted.bodies),
                 What::Move => a,

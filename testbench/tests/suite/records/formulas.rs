@@ -9,9 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use super::design;
 
 /// Bits of a status that a body can have, and three more bits: doubtful, saturated, more bodies than records.
-const BODY_BITS: u32 = 0x0C46;
-/// The one of them that is a matter of the frame.
-const NO_TENSION: u32 = 0x0800;
+const BODY_BITS: u32 = 0x0446;
 const DOUBTFUL: u32 = 1 << 6;
 const SATURATED: u32 = 1 << 3;
 const MORE_BODIES: u32 = 1 << 7;
@@ -169,10 +167,7 @@ pub fn exact(headers: &Headers, middle: [f64; 2], reach: f64, limit: f64, more: 
         normal(y, sums[1].size),
         Value::new(errors[0], errors[1]),
     ];
-    let status = headers
-        .last
-        .iter()
-        .fold(headers.frame[0] & (!BODY_BITS | NO_TENSION), |all, header| all | header[0] & SATURATED);
+    let status = headers.last.iter().fold(headers.frame[0] & !BODY_BITS, |all, header| all | header[0] & SATURATED);
     let status = records.iter().fold(status, |all, record| all | record.status) | if more { MORE_BODIES } else { 0 };
     records.sort_by(|a, b| b.values[4].exact.abs().total_cmp(&a.values[4].exact.abs()));
     let frame = std::array::from_fn(|word| if word < 6 { sums[word] } else { rest[word - 6] });

@@ -173,7 +173,7 @@ fn faults_are_noticed() {
         ("records", "in_before ? {3'b111, in_word[0]} : in_word", "in_word"),
         ("records", "(in_body[3] || (in_word < 4'd14))", "1'b1"),
         ("records", "!in_body[3] && (in_word[3:1] == 3'd1)", "(in_word[3:1] == 3'd1)"),
-        ("records", "16'h0c46", "16'h0c47"),
+        ("records", "16'h0446", "16'h0447"),
         ("records", "own_bits | ({15'd0, operand[SATURATED]} << SATURATED)", "own_bits"),
         ("records", "bodies_held > RECORDS", "bodies_held >= RECORDS"),
         ("records", "any_bits <= 16'd0;", ""),
