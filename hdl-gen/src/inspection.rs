@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::blocks::latency;
 use crate::emit::{nnz, predicted, products};
+use crate::plan::contacts;
 use crate::plan::product::Coefficients;
 use crate::plan::savings::savings;
 use crate::plan::{Plan, PlanError};
@@ -22,7 +23,10 @@ const COARSE: f64 = 0.005;
 ///
 /// As [`Plan::new`].
 pub fn plan_to_inspect(design: &Design) -> Result<Plan, PlanError> {
-    let Err(PlanError::Contacts { contacts, .. }) = Plan::new(design) else { return Plan::new(design) };
+    let contacts = match Plan::new(design) {
+        Err(PlanError::Contacts { contacts, .. }) => contacts,
+        planned => return planned,
+    };
     let mut of_one = design.clone();
     of_one.algorithm.contacts = 1;
     let mut plan = Plan::new(&of_one)?;
@@ -30,20 +34,22 @@ pub fn plan_to_inspect(design: &Design) -> Result<Plan, PlanError> {
     Ok(plan)
 }
 
+/// What keeps a design for several bodies from having hardware.
+fn without_hardware(plan: &Plan) -> Option<String> {
+    let contacts = plan.design.algorithm.contacts;
+    let needs = contacts::needs(&plan.design).filter(|_| contacts > 1)?;
+    Some(format!(
+        "contacts {contacts} in golden solve and in Python; hardware for them needs {needs}; all figures here with contacts = 1"
+    ))
+}
+
 /// What to tell of a design for several bodies.
 pub fn several_bodies(plan: &Plan) -> Option<String> {
-    let contacts = plan.design.algorithm.contacts;
-    match (&plan.contacts, contacts) {
-        (None, 0 | 1) => None,
-        (None, _) => Some(format!(
-            "contacts {contacts} in golden solve and in Python; hardware, and all figures here, with contacts = 1"
-        )),
-        (Some(of), _) => Some(format!(
-            "up to {contacts} told apart, each solved as a frame of its own; all figures here of frames of one; places for \
-             {} frames",
-            of.banks
-        )),
-    }
+    let Some(of) = &plan.contacts else { return without_hardware(plan) };
+    Some(format!(
+        "up to {} told apart, each solved as a frame of its own; all figures here of frames of one; places for {} frames",
+        of.contacts, of.banks
+    ))
 }
 
 /// What to tell of a design whose hardware counts bodies.
@@ -92,9 +98,9 @@ pub fn figures(plan: &Plan) -> Value {
 }
 
 /// What to tell of a plan: that its layer is too thin, that it does not fit its part, that its coefficients are coarse, that
-/// it knows of one body.
+/// it has no hardware for several bodies.
 pub fn warnings(plan: &Plan) -> Vec<String> {
-    [plan.design.thin_layer(), excess(plan), narrow(plan), several_bodies(plan)].into_iter().flatten().collect()
+    [plan.design.thin_layer(), excess(plan), narrow(plan), without_hardware(plan)].into_iter().flatten().collect()
 }
 
 /// What to tell whose design does not fit its part, if that is one whose size is known.

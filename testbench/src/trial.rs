@@ -14,8 +14,10 @@ use thiserror::Error;
 
 use crate::compare::Mismatch;
 use crate::dut::{Dut, DutError};
+use crate::frame_set::FrameSet;
 use crate::simulate::{Cycles, Job, Simulation, SimulationError, simulate};
 use crate::stream::{Mode, Outcome, Pacing, Traffic, exchange};
+use crate::stream_words::packets;
 use crate::verilate::{BuildError, Built, Effort, RtlSources, Verilate};
 
 /// Why there was no trial.
@@ -107,9 +109,13 @@ fn of_one_body(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>]) -> Vec<
     ones.map(|(packet, _)| packet.clone()).collect()
 }
 
-/// A frame without a contact, which takes no longer.
-fn of_nothing(plan: &Plan) -> Vec<Vec<u32>> {
-    vec![vec![0; plan.streams().words_in()]]
+/// Frames of one body for where there is none among those of a trial; without one on the sensor, which is hardly possible,
+/// one of nothing, which takes no longer.
+fn made_of_one_body(plan: &Plan) -> Vec<Vec<u32>> {
+    let frames = FrameSet::standing(&plan.design.sensor).map_or_else(|_| Vec::new(), |frames| frames.stress);
+    let packets = packets(plan.streams(), &frames);
+    let ones = of_one_body(plan, &packets, &model_answers(plan, &packets));
+    if ones.is_empty() { vec![vec![0; plan.streams().words_in()]] } else { ones }
 }
 
 /// Cycles of so many frames, streams free-running.
@@ -203,7 +209,7 @@ impl<'a> Trial<'a> {
         let mut timed = of_one_body(self.plan, &self.packets, &self.expected);
         let is_bound = self.plan.design.hardware.skip_zeros || timed.is_empty();
         if timed.is_empty() {
-            timed = of_nothing(self.plan);
+            timed = made_of_one_body(self.plan);
         }
         let job = Job {
             built,

@@ -27,7 +27,7 @@ pub(super) fn check(design: &Design, frames: &[&Vec<f64>], matrices: &Matrices) 
     (several > 0).then(|| {
         format!(
             "several bodies press in {several} of {}, which algorithm.contacts = 1 solves as one: their forces may be off by a \
-             tenth to a quarter; with contacts = 4 golden solve and the Python package tell them apart",
+             tenth to a quarter; with contacts = 4 they are told apart",
             count(frames.len())
         )
     })

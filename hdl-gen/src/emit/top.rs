@@ -117,7 +117,8 @@ struct View {
 
 impl View {
     fn new(plan: &Plan) -> Self {
-        let (design, hardware, timeline) = (&plan.design, &plan.design.hardware, &plan.timeline);
+        let (design, hardware) = (&plan.design, &plan.design.hardware);
+        let timeline = plan.contacts.as_ref().map_or(&plan.timeline, |of| &of.core);
         let slot = plan.estimator.slot();
         let folded = plan.ways() > 1;
         let streams = plan.streams_of_one();
@@ -214,7 +215,7 @@ fn u_values(plan: &Plan) -> String {
 }
 
 /// Module of the core for one body: that of the design, unless there is something around it.
-fn core_module(plan: &Plan) -> String {
+pub(super) fn core_module(plan: &Plan) -> String {
     if plan.contacts.is_some() { contacts::one(plan) } else { registers::core_module(plan) }
 }
 

@@ -155,7 +155,7 @@ impl Work {
         if let Some(contacts) = plan.contacts.take() {
             let core = std::mem::take(&mut plan.timeline);
             plan.timeline = blocks::contacts::timeline(&plan.design, &core);
-            plan.contacts = Some(contacts.with_room(&core, &plan.timeline));
+            plan.contacts = Some(contacts.with_room(core, &plan.timeline));
         }
         plan.resources = Resources::of(blocks::costs(&plan));
         plan

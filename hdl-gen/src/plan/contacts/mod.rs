@@ -19,7 +19,7 @@ pub const FORCE_BITS: u32 = LONG_BITS;
 /// Bits of what a body causes at a taxel.
 pub const PART_BITS: u32 = 48;
 /// Most frames that have a place.
-const MOST_BANKS: usize = 16;
+const MOST_BANKS: usize = 8;
 
 /// What parts the forces of several bodies.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,6 +33,8 @@ pub struct ContactsPlan {
     pub coefficients: Vec<[i32; 3]>,
     /// Frames that have a place, from their first word until they are answered.
     pub banks: usize,
+    /// Cycles of the core for one body by itself.
+    pub core: Timeline,
 }
 
 impl ContactsPlan {
@@ -45,7 +47,9 @@ impl ContactsPlan {
         if contacts < 2 {
             return Ok(None);
         }
-        check(design)?;
+        if let Some(needs) = needs(design) {
+            return Err(PlanError::Contacts { contacts, needs });
+        }
         // The core's forces have the estimator's gain.
         let gain = design.algorithm.constants().gain().unwrap_or(1.0);
         let mut first = DVector::zeros(design.sensor.taxels());
@@ -55,13 +59,14 @@ impl ContactsPlan {
         let coefficients: Vec<[f64; 3]> = (0..design.sensor.taxels()).map(at).collect();
         let unit = unit(&design.sensor, &coefficients);
         let coefficients = coefficients.iter().map(|of| of.map(|value| (value * pow2(-unit)).round() as i32)).collect();
-        Ok(Some(Self { contacts, unit, coefficients, banks: 2 }))
+        Ok(Some(Self { contacts, unit, coefficients, banks: 2, core: Timeline::default() }))
     }
 
     /// Gives as many frames a place as are under way at a time.
-    pub(super) fn with_room(mut self, core: &Timeline, whole: &Timeline) -> Self {
+    pub(super) fn with_room(mut self, core: Timeline, whole: &Timeline) -> Self {
         let inside = whole.latency_cycles.div_ceil(core.interval_cycles.max(1)) as usize + 1;
         self.banks = inside.next_power_of_two().clamp(2, MOST_BANKS);
+        self.core = core;
         self
     }
 
@@ -95,22 +100,18 @@ fn unit(sensor: &Sensor, coefficients: &[[f64; 3]]) -> i32 {
     (-100..100).find(fits).unwrap_or(100)
 }
 
-/// What the hardware for several bodies does not have yet.
-fn check(design: &Design) -> Result<(), PlanError> {
-    let contacts = design.algorithm.contacts;
+/// What hardware for several bodies needs that a design does not say, if there is something.
+pub fn needs(design: &Design) -> Option<&'static str> {
     let hardware = &design.hardware;
     let wrong = [
         (hardware.stream_bits as usize != WORD_BITS, "[hardware] stream_bits = 32"),
         (hardware.samples != Samples::Float32, "[hardware] samples = \"float32\""),
         (hardware.overrun != Overrun::Stall, "[hardware] overrun = \"stall\""),
         (hardware.calibration != CalibrationIn::Rom, "[hardware] calibration = \"rom\""),
-        (design.input.counts(), "frames in pascals, with no [input] gain, offset or curve"),
-        (!design.input.dead.is_empty(), "[input] dead = []"),
-        (design.algorithm.slip.is_some(), "no [algorithm.slip]"),
+        (design.input.counts(), "frames in pascals: no [sensor] pa_per_count, curve or calibration"),
+        (!design.input.dead.is_empty(), "no [sensor] dead"),
+        (design.algorithm.slip.is_some(), "no [algorithm] slip"),
         (design.algorithm.outputs != Outputs::Field, "[algorithm] outputs = \"field\""),
     ];
-    match wrong.into_iter().find(|&(is_wrong, _)| is_wrong) {
-        Some((_, needs)) => Err(PlanError::Contacts { contacts, needs }),
-        None => Ok(()),
-    }
+    wrong.into_iter().find(|&(is_wrong, _)| is_wrong).map(|(_, needs)| needs)
 }

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use golden::design::{Design, Filter, InputRange, Outputs, PlanKind};
+use golden::design::{Design, Filter, InputRange, Outputs, Overrun, PlanKind, Samples, Slip};
 use golden::matrices::{Matrices, MatrixName};
-use golden::solver::{Solution, Solver};
-use hdl_gen::plan::{Plan, PlanError, words};
+use golden::solver::{Solution, Solver, Status};
+use hdl_gen::plan::{Plan, PlanError, contacts, words};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::stream::{Exchange, Pacing, Traffic, exchange};
@@ -140,11 +140,13 @@ fn difference(found: &Answer, expected: &Solution) -> [f64; 2] {
 
 #[test]
 fn the_solver_tells_apart_as_the_hardware_does() {
-    for name in ["sensor1-fast", "sensor2-none"] {
+    for name in ["sensor1-fast", "sensor2-none", "sensor1-wide"] {
         let design = telling_apart(shipped(name), 4);
         let (plan, solver) = (planned(&design), Solver::new(&design).expect("matrices"));
         for kind in [Kind::One, Kind::Same, Kind::Opposed, Kind::Anyhow, Kind::Three, Kind::Row] {
-            let scenes: Vec<Vec<f64>> = (0..6).map(|seed| frame(&design.sensor, kind, 900 + seed).stress).collect();
+            let mut scenes: Vec<Vec<f64>> = (0..6).map(|seed| frame(&design.sensor, kind, 900 + seed).stress).collect();
+            // A frame in which nothing pulls says so, or what it is of.
+            scenes[5].iter_mut().for_each(|stress| *stress = stress.min(0.0));
             let packets: Vec<Vec<u32>> = scenes.iter().map(|stress| plan.streams().packet(stress)).collect();
             for (words, stress) in model_answers(&plan, &packets).iter().zip(&scenes) {
                 let found = decode_bodies(words, 4).expect("a whole frame");
@@ -152,6 +154,21 @@ fn the_solver_tells_apart_as_the_hardware_does() {
                 assert_eq!(found.bodies, expected.bodies, "{name}, {kind:?}");
                 let [all, each] = difference(&found, &expected);
                 assert!(all < 2e-3 && each < 2e-3, "{name}, {kind:?}: {all:.1e}, {each:.1e}");
+                // At the limit of doubt, or of the search, one of the two may say it.
+                let limits = Status::DOUBTFUL.0 | Status::AT_BOUND.0;
+                assert_eq!(found.status | limits, expected.status.0 | limits, "{name}, {kind:?}");
+                for (found, expected) in found.records.iter().zip(&expected.records) {
+                    assert_eq!(found.taxels, expected.taxels, "{name}, {kind:?}");
+                    assert_eq!(found.status.0 | limits, expected.status.0 | limits, "{name}, {kind:?}");
+                    let apart = |a: f64, b: f64| (a - b).abs();
+                    assert!(
+                        (0..2).all(|axis| apart(found.centre_m[axis], expected.centre_m[axis]) < 2e-5),
+                        "{found:?}"
+                    );
+                    assert!(apart(found.mu, expected.mu) < 4e-3, "{found:?}, {expected:?}");
+                    let errors = [found.standard_error, expected.standard_error];
+                    assert!(apart(errors[0], errors[1]) <= 0.02 * errors[1], "{found:?}, {expected:?}");
+                }
             }
         }
     }
@@ -167,11 +184,25 @@ fn streams_with_pauses_faults_and_resets_are_told_apart() {
 
 #[test]
 fn what_does_not_go_with_several_bodies_is_refused() {
-    let mut design = telling_apart(shipped("sensor1-fast"), 4);
-    design.hardware.stream_bits = 128;
-    let error = Plan::new(&design).expect_err("no hardware");
-    assert!(matches!(error, PlanError::Contacts { contacts: 4, .. }), "{error}");
-    assert!(error.to_string().contains("stream_bits = 32"), "{error}");
+    type Change = fn(&mut Design);
+    let changes: [(&str, Change); 6] = [
+        ("stream_bits = 32", |design| design.hardware.stream_bits = 128),
+        ("overrun = \"stall\"", |design| design.hardware.overrun = Overrun::Drop),
+        ("no [sensor] dead", |design| design.input.dead = vec![3]),
+        ("no [algorithm] slip", |design| design.algorithm.slip = Some(Slip { limit: 0.5, hysteresis: 0.1 })),
+        ("outputs = \"field\"", |design| design.algorithm.outputs = Outputs::Resultants),
+        ("samples = \"float32\"", |design| design.hardware.samples = Samples::Int16),
+    ];
+    for (needs, change) in changes {
+        let mut design = telling_apart(shipped("sensor1-fast"), 4);
+        change(&mut design);
+        let error = Plan::new(&design).expect_err("no hardware");
+        assert!(matches!(error, PlanError::Contacts { contacts: 4, .. }), "{error}");
+        assert!(error.to_string().contains(needs), "{error}");
+    }
+    for (name, lacks) in [("small-scanner", true), ("bed-mat", true), ("sensor1-bodies", false)] {
+        assert_eq!(contacts::needs(&shipped(name)).is_some(), lacks, "{name}");
+    }
 }
 
 /// Frames of so many bodies: blocks of 2 x 2 taxels that press alike.
