@@ -172,18 +172,23 @@ module sptfra_points #(
     endgenerate
 
     // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed. A sum begins
-    // with its register's reset
-    wire [SIDE*SIDE*(VALUE_BITS+1)-1:0] sums;
+    // with its register's reset. When all taxels are in, the rows move down one by one, through the cells' own adders,
+    // and leave from row 0: there is no choice among rows, which would take as many LUTs again as a fifth of the adders
+    reg giving;
+    wire [(SIDE+1)*SIDE*(VALUE_BITS+1)-1:0] sums; // with zeros above the last row
+
+    assign sums[SIDE*SIDE*(VALUE_BITS+1) +: SIDE*(VALUE_BITS+1)] = {(SIDE*(VALUE_BITS+1)){1'b0}};
 
     generate
         for (index = 0; index < SIDE; index = index + 1) begin : gen_rows
             for (column = 0; column < SIDE; column = column + 1) begin : gen_points
                 wire [TAXELS*(POINT_BITS-1)-1:0] tensions_9;
-                wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle, before they are in the sum
+                wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle; none while giving
+                wire [VALUE_BITS:0] above = sums[(VALUE_BITS+1)*(SIDE*(index + 1) + column) +: VALUE_BITS+1];
                 reg [VALUE_BITS-1:0] sum;
                 reg over;
-                wire [VALUE_BITS:0] next = {1'b0, sum}
-                    + { {(VALUE_BITS + 1 - TENSION_BITS){1'b0}}, tension};
+                wire [VALUE_BITS:0] next = { {(VALUE_BITS + 1 - TENSION_BITS){1'b0}}, tension}
+                    + {1'b0, giving ? above[VALUE_BITS-1:0] : sum};
 
                 for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_tensions
                     wire signed [POINT_BITS-1:0] x = along_x_8[27*(SIDE*taxel + column) +: 27];
@@ -218,9 +223,9 @@ module sptfra_points #(
                     if (clear) begin
                         sum <= {VALUE_BITS{1'b0}};
                         over <= 1'b0;
-                    end else if (valids[STAGES]) begin
+                    end else if (valids[STAGES] || giving) begin
                         sum <= next[VALUE_BITS-1:0];
-                        over <= next[VALUE_BITS] || over;
+                        over <= next[VALUE_BITS] || (giving ? above[VALUE_BITS] : over);
                     end
                 end
 
@@ -230,12 +235,12 @@ module sptfra_points #(
     endgenerate
 
     // ---- Rows, when all taxels are in
-    reg giving;
     reg [3:0] row;
     reg row_there;
-    reg [SIDE*(VALUE_BITS+1)-1:0] row_sums;
+    reg [SIDE*VALUE_BITS-1:0] row_0;
 
     assign row_valid = row_there;
+    assign row_values = row_0;
 
     always @(posedge clock) begin
         if (giving) begin
@@ -249,7 +254,6 @@ module sptfra_points #(
             row <= 4'd0;
         end
         row_there <= giving;
-        row_sums <= sums[SIDE*(VALUE_BITS+1)*row +: SIDE*(VALUE_BITS+1)];
         if (reset) begin
             giving <= 1'b0;
             row_there <= 1'b0;
@@ -258,10 +262,12 @@ module sptfra_points #(
 
     generate
         for (column = 0; column < SIDE; column = column + 1) begin : gen_values
-            wire [VALUE_BITS:0] of_column = row_sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
+            wire [VALUE_BITS:0] of_column = sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
 
-            assign row_values[VALUE_BITS*column +: VALUE_BITS] = of_column[VALUE_BITS-1:0]
-                | {VALUE_BITS{of_column[VALUE_BITS]}};
+            always @(posedge clock) begin
+                row_0[VALUE_BITS*column +: VALUE_BITS] <= of_column[VALUE_BITS-1:0]
+                    | {VALUE_BITS{of_column[VALUE_BITS]}};
+            end
         end
     endgenerate
 

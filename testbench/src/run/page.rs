@@ -176,11 +176,11 @@ fn verdict(page: &mut String, report: &Report) {
     if let [activity] = &report.traces[..] {
         line(page, &format!("Activity of the nets in {}, for vivado/power.tcl.", activity.display()));
     }
+    if report.body_counts.as_ref().is_some_and(|counts| !counts.contains_key(&1)) {
+        line(page, "No frame has one body, for which the cycles are predicted: they are of others that do.");
+    }
     match report.timing {
         Timing::AsPredicted => {}
-        Timing::WithinBound if report.body_counts.as_ref().is_some_and(|counts| !counts.contains_key(&1)) => {
-            line(page, "No frame of one body, whose cycles are predicted: those are of an empty frame.");
-        }
         Timing::WithinBound => {
             line(page, "Zeros were passed over: the predicted cycles are those of a frame without any.");
         }

@@ -199,7 +199,7 @@ fn each_body_is_shown_and_judged() {
     {
         assert!(judged.contains(part), "{part}: {judged}");
     }
-    assert!(judged.contains("Frames by bodies") && judged.contains("No frame of one body"), "{judged}");
+    assert!(judged.contains("Frames by bodies") && judged.contains("No frame has one body"), "{judged}");
     let json = run(&["run", "d.toml", "--reference", "f.forces.csv", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     let error = &json["error"]["bodies"];
