@@ -37,9 +37,9 @@ module sptfra_look_stress #(
     output wire [4*25-1:0] shares,
     // Moments of the compression, held until the next start
     output wire done, // all are in; one cycle
-    output reg  [47:0] weight_sum,
-    output reg  [47:0] moment_x,
-    output reg  [47:0] moment_y,
+    output wire [47:0] weight_sum,
+    output wire [47:0] moment_x,
+    output wire [47:0] moment_y,
     output reg  saturated // a share was clipped
 );
 
@@ -56,7 +56,9 @@ module sptfra_look_stress #(
     localparam integer SHARE_BITS = 45 + STRESS_LEFT; // before it is clipped
     localparam integer STAGES = 11; // from a quad's second cycle to its shares
     localparam integer SUMMED = 10; // ... to its moments being in
-    localparam integer INDEX_WIDTH = 6; // of a column and of a row
+    localparam integer INDEX_WIDTH = $clog2((COLUMNS > ROWS) ? COLUMNS : ROWS); // of a column and of a row
+    localparam integer WEIGHT_BITS = 28 + $clog2(QUADS); // of a sum of compressions
+    localparam integer MOMENT_BITS = WEIGHT_BITS + INDEX_WIDTH;
 
     // ---- Quads, two cycles each: u1, then u2. Index k: k cycles after the counters
     reg running;
@@ -153,9 +155,16 @@ module sptfra_look_stress #(
     wire [26:0] along_y = other_half ? at_bottom : at_top;
     wire [47:0] moment_x_8;
     wire [47:0] moment_y_8;
-    reg [47:0] weight_9;
-    reg [47:0] moment_x_9;
-    reg [47:0] moment_y_9;
+    reg [26:0] weight_9;
+    reg [26+INDEX_WIDTH:0] moment_x_9;
+    reg [26+INDEX_WIDTH:0] moment_y_9;
+    reg [WEIGHT_BITS-1:0] weights;
+    reg [MOMENT_BITS-1:0] moments_x;
+    reg [MOMENT_BITS-1:0] moments_y;
+
+    assign weight_sum = { {(48 - WEIGHT_BITS){1'b0}}, weights};
+    assign moment_x = { {(48 - MOMENT_BITS){1'b0}}, moments_x};
+    assign moment_y = { {(48 - MOMENT_BITS){1'b0}}, moments_y};
 
     sptfra_times_index #(
         .INDEX_WIDTH (INDEX_WIDTH)
@@ -173,29 +182,31 @@ module sptfra_look_stress #(
         .product (moment_y_8)
     );
 
+    wire _unused_moments = &{1'b0, moment_x_8, moment_y_8};
+
     always @(posedge clock) begin
         at_left <= compressions[27*0 +: 27] + compressions[27*2 +: 27];
         at_right <= compressions[27*1 +: 27] + compressions[27*3 +: 27];
         at_top <= compressions[27*0 +: 27] + compressions[27*1 +: 27];
         at_bottom <= compressions[27*2 +: 27] + compressions[27*3 +: 27];
-        weight_9 <= {21'd0, along_x};
-        moment_x_9 <= moment_x_8;
-        moment_y_9 <= moment_y_8;
+        weight_9 <= along_x;
+        moment_x_9 <= moment_x_8[26+INDEX_WIDTH:0];
+        moment_y_9 <= moment_y_8[26+INDEX_WIDTH:0];
         if (other_half) begin
             column <= last_column ? {INDEX_WIDTH{1'b0}} : column + 1'b1;
             row <= last_column ? row + 1'b1 : row;
         end
         if (seconds[8] || seconds[9]) begin
-            weight_sum <= weight_sum + weight_9;
-            moment_x <= moment_x + moment_x_9;
-            moment_y <= moment_y + moment_y_9;
+            weights <= weights + { {(WEIGHT_BITS - 27){1'b0}}, weight_9};
+            moments_x <= moments_x + { {(WEIGHT_BITS - 27){1'b0}}, moment_x_9};
+            moments_y <= moments_y + { {(WEIGHT_BITS - 27){1'b0}}, moment_y_9};
         end
         if (start) begin
             column <= {INDEX_WIDTH{1'b0}};
             row <= {INDEX_WIDTH{1'b0}};
-            weight_sum <= 48'd0;
-            moment_x <= 48'd0;
-            moment_y <= 48'd0;
+            weights <= {WEIGHT_BITS{1'b0}};
+            moments_x <= {MOMENT_BITS{1'b0}};
+            moments_y <= {MOMENT_BITS{1'b0}};
         end
     end
 
@@ -213,13 +224,14 @@ module sptfra_look_stress #(
             wire signed [SHARE_BITS-1:0] wide = { {(STRESS_LEFT + 1){product[44]}}, product[43:0]};
             reg signed [SHARE_BITS-1:0] scaled;
             reg signed [SHARE_BITS-1:0] octets;
-            reg signed [SHARE_BITS-1:0] exact;
+            wire signed [SHARE_BITS-1:0] bits = octets >>> sum_bits[2:0];
+            reg [STRESS_BITS-1:0] exact;
+            reg sign;
+            reg is_whole; // exact has all of it
             reg [STRESS_BITS-1:0] share;
-            wire sign = exact[SHARE_BITS-1];
 
             // Not the most negative number either: the sum of four would leave its width
-            assign fits[index] = (exact[SHARE_BITS-1:STRESS_BITS-1] == {(SHARE_BITS - STRESS_BITS + 1){sign}})
-                && (exact[STRESS_BITS-1:0] != {1'b1, {(STRESS_BITS - 1){1'b0}}});
+            assign fits[index] = is_whole && (exact != {1'b1, {(STRESS_BITS - 1){1'b0}}});
 
             sptfra_multiply multiplier (
                 .clock       (clock),
@@ -233,9 +245,15 @@ module sptfra_look_stress #(
             always @(posedge clock) begin
                 scaled <= wide <<< STRESS_LEFT;
                 octets <= scaled >>> {sum_bits[5:3], 3'd0};
-                exact <= octets >>> sum_bits[2:0];
-                share <= fits[index] ? exact[STRESS_BITS-1:0] : {sign, {(STRESS_BITS - 2){!sign}}, 1'b1};
+                exact <= bits[STRESS_BITS-1:0];
+                sign <= octets[SHARE_BITS-1];
+                // Of the bits above, those that a shift of up to 7 brings down, and the others
+                is_whole <= (bits[STRESS_BITS+6:STRESS_BITS-1] == {8{octets[SHARE_BITS-1]}})
+                    && (octets[SHARE_BITS-1:STRESS_BITS+7] == {(SHARE_BITS - STRESS_BITS - 7){octets[SHARE_BITS-1]}});
+                share <= fits[index] ? exact : {sign, {(STRESS_BITS - 2){!sign}}, 1'b1};
             end
+
+            wire _unused = &{1'b0, bits};
 
             assign pair[STRESS_BITS*index +: STRESS_BITS] = share;
         end

@@ -68,6 +68,7 @@ module sptfra_plane_search #(
             localparam integer SIDE = 15;
             wire [15:0] margin;
             wire row_valid;
+            wire again;
             wire [SIDE*28-1:0] row_values;
             wire clipped_u;
             wire clipped_least;
@@ -97,6 +98,7 @@ module sptfra_plane_search #(
                 .read_quad   (read_quad),
                 .read_values (read_values),
                 .row_valid   (row_valid),
+                .again       (again),
                 .row_values  (row_values),
                 .clipped     (clipped_u)
             );
@@ -112,6 +114,7 @@ module sptfra_plane_search #(
                 .margin     (margin),
                 .row_valid  (row_valid),
                 .row_values (row_values),
+                .again      (again),
                 .done       (done),
                 .mu_x       (mu_x),
                 .mu_y       (mu_y),

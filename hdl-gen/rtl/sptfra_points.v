@@ -6,7 +6,7 @@
 //
 // A taxel a cycle, or two: a cell adds X of its column and Y of its row, and accumulates what is above zero; a sum that
 // leaves its width is the largest number. From start to the first row of points: four cycles a quad, and 11, or two a
-// quad, and 12; then a row a cycle.
+// quad, and 12; then a row a cycle. The rows stay until the next start, and each can be asked for again.
 
 `default_nettype none
 
@@ -46,9 +46,10 @@ module sptfra_points #(
     output reg  read_valid,
     output reg  [ROW_WIDTH-1:0] read_quad,
     output reg  [3*4*27-1:0] read_values,
-    // B, a row of points at a time, mu_x from the least one on in the lowest bits
-    output wire row_valid,
-    output wire [SIDE*28-1:0] row_values,
+    // B, a row of points at a time, mu_x from the least one on in the lowest bits; held until the next one
+    output reg  row_valid,
+    input  wire again, // after the last row: the first one once more, two cycles later, and so on
+    output reg  [SIDE*28-1:0] row_values,
     output wire clipped // a u was, or the least B may be; held until the next start
 );
 
@@ -70,7 +71,6 @@ module sptfra_points #(
 
     // ---- Taxels: the members of a quad one after the other, or two. Index k: k cycles after the address
     reg reading;
-    reg clear; // all sums
     reg [ROW_WIDTH-1:0] quad;
     reg [1:0] member;
     reg [1:0] member_1;
@@ -110,7 +110,6 @@ module sptfra_points #(
             quad <= {ROW_WIDTH{1'b0}};
             member <= 2'd0;
         end
-        clear <= start;
         member_1 <= member;
         taxels_2 <= taxels_1;
         read_valid <= valids[1] && (member_1 == 2'd0);
@@ -172,23 +171,39 @@ module sptfra_points #(
     endgenerate
 
     // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed. A sum begins
-    // with its register's reset. When all taxels are in, the rows move down one by one, through the cells' own adders,
-    // and leave from row 0: there is no choice among rows, which would take as many LUTs again as a fifth of the adders
+    // with its register's reset. For a row to leave, all move down by one, through the cells' own adders, and what was
+    // in row 0 goes to the last one: there is no choice among rows, and no memory of them
     reg giving;
-    wire [(SIDE+1)*SIDE*(VALUE_BITS+1)-1:0] sums; // with zeros above the last row
+    reg [3:0] row;
+    reg turn; // this cycle
+    wire turn_next = lasts[STAGES] || (giving && (row != LAST_ROW)) || again;
+    wire [(SIDE+1)*SIDE*(VALUE_BITS+1)-1:0] sums; // row 0 above the last row once more
 
-    assign sums[SIDE*SIDE*(VALUE_BITS+1) +: SIDE*(VALUE_BITS+1)] = {(SIDE*(VALUE_BITS+1)){1'b0}};
+    assign sums[SIDE*SIDE*(VALUE_BITS+1) +: SIDE*(VALUE_BITS+1)] = sums[0 +: SIDE*(VALUE_BITS+1)];
 
     generate
         for (index = 0; index < SIDE; index = index + 1) begin : gen_rows
+            // For each row its own, so that none drives all cells
+            (* keep = "true" *) reg clears;
+            (* keep = "true" *) reg nothing; // no taxel is there
+            (* keep = "true" *) reg counts;
+            (* keep = "true" *) reg turns;
+
+            always @(posedge clock) begin
+                clears <= start;
+                nothing <= !valids[7];
+                counts <= valids[STAGES-1] || turn_next;
+                turns <= turn_next;
+            end
+
             for (column = 0; column < SIDE; column = column + 1) begin : gen_points
                 wire [TAXELS*(POINT_BITS-1)-1:0] tensions_9;
-                wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle; none while giving
+                wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle; none in a turn
                 wire [VALUE_BITS:0] above = sums[(VALUE_BITS+1)*(SIDE*(index + 1) + column) +: VALUE_BITS+1];
                 reg [VALUE_BITS-1:0] sum;
                 reg over;
                 wire [VALUE_BITS:0] next = { {(VALUE_BITS + 1 - TENSION_BITS){1'b0}}, tension}
-                    + {1'b0, giving ? above[VALUE_BITS-1:0] : sum};
+                    + {1'b0, turns ? above[VALUE_BITS-1:0] : sum};
 
                 for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_tensions
                     wire signed [POINT_BITS-1:0] x = along_x_8[27*(SIDE*taxel + column) +: 27];
@@ -198,7 +213,7 @@ module sptfra_points #(
 
                     always @(posedge clock) begin
                         tension_9 <= stress[POINT_BITS-2:0];
-                        if (stress[POINT_BITS-1] || !valids[8]) begin
+                        if (stress[POINT_BITS-1] || nothing) begin
                             tension_9 <= {(POINT_BITS - 1){1'b0}};
                         end
                     end
@@ -220,12 +235,12 @@ module sptfra_points #(
                 end
 
                 always @(posedge clock) begin
-                    if (clear) begin
+                    if (clears) begin
                         sum <= {VALUE_BITS{1'b0}};
                         over <= 1'b0;
-                    end else if (valids[STAGES] || giving) begin
+                    end else if (counts) begin
                         sum <= next[VALUE_BITS-1:0];
-                        over <= next[VALUE_BITS] || (giving ? above[VALUE_BITS] : over);
+                        over <= next[VALUE_BITS] || (turns ? above[VALUE_BITS] : over);
                     end
                 end
 
@@ -235,14 +250,8 @@ module sptfra_points #(
     endgenerate
 
     // ---- Rows, when all taxels are in
-    reg [3:0] row;
-    reg row_there;
-    reg [SIDE*VALUE_BITS-1:0] row_0;
-
-    assign row_valid = row_there;
-    assign row_values = row_0;
-
     always @(posedge clock) begin
+        turn <= turn_next;
         if (giving) begin
             row <= row + 4'd1;
         end
@@ -253,10 +262,10 @@ module sptfra_points #(
             giving <= 1'b1;
             row <= 4'd0;
         end
-        row_there <= giving;
+        row_valid <= giving;
         if (reset) begin
             giving <= 1'b0;
-            row_there <= 1'b0;
+            row_valid <= 1'b0;
         end
     end
 
@@ -265,8 +274,10 @@ module sptfra_points #(
             wire [VALUE_BITS:0] of_column = sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
 
             always @(posedge clock) begin
-                row_0[VALUE_BITS*column +: VALUE_BITS] <= of_column[VALUE_BITS-1:0]
-                    | {VALUE_BITS{of_column[VALUE_BITS]}};
+                if (turn) begin
+                    row_values[VALUE_BITS*column +: VALUE_BITS] <= of_column[VALUE_BITS-1:0]
+                        | {VALUE_BITS{of_column[VALUE_BITS]}};
+                end
             end
         end
     endgenerate

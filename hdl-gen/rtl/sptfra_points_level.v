@@ -3,9 +3,10 @@
 //
 // The level set of B over SIDE x SIDE points, and its centroid: where the friction lies in the (mu_x, mu_y) plane.
 //
-// A row of points a cycle comes in and is stored, and the least values are kept. The level set lies below B_min + 2^-8
-// sum |b|; a point weighs as the square of its depth, so that it weighs nothing at the edge. Five points a cycle are
-// weighed, or a row of 15. From the first row to done: a cycle a row, then three, and 37; or one, and 38.
+// A row of points a cycle comes in, and the least values are kept. The level set lies below B_min + 2^-8 sum |b|; a
+// point weighs as the square of its depth, so that it weighs nothing at the edge. For that the rows come again: five
+// points a cycle are weighed, or a row of 15. From the first row to done: a cycle a row, then three, and 37; or one,
+// and 38.
 
 `default_nettype none
 
@@ -21,9 +22,10 @@ module sptfra_points_level #(
     input  wire reset,
     input  wire start, // of a frame, before its rows
     input  wire [15:0] margin, // above the least value, held with the rows and after
-    // Rows of points
+    // Rows of points, each held until the next one
     input  wire row_valid,
     input  wire [SIDE*28-1:0] row_values,
+    output wire again, // the next row once more, to be there two cycles later
     // Result, held until the next start
     output wire done, // one cycle
     output wire signed [17:0] mu_x, // 16 fraction bits
@@ -50,11 +52,9 @@ module sptfra_points_level #(
         end
     endgenerate
 
-    // ---- Rows as they come: stored, and the least values inside and on the border kept
+    // ---- Rows as they come: the least values inside and on the border are kept
     reg [3:0] row_in;
     wire outer_row = (row_in == 4'd0) || (row_in == LAST_ROW);
-    wire [SIDE*VALUE_BITS-1:0] stored_1; // a cycle after its row is asked for
-    reg [3:0] row;
     // Node 1 is the root; the children of node n are 2 n and 2 n + 1; nodes from LEAVES on are the points. The ends of
     // a row, which are on the border, stay out of the tree
     wire [VALUE_BITS-1:0] nodes [1:2*LEAVES-1];
@@ -69,21 +69,6 @@ module sptfra_points_level #(
     genvar index;
 
     generate
-        for (index = 0; index < SIDE; index = index + 1) begin : gen_columns
-            sptfra_ram #(
-                .WIDTH         (VALUE_BITS),
-                .DEPTH         (SIDE),
-                .ADDRESS_WIDTH (4)
-            ) values (
-                .clock         (clock),
-                .write_enable  (row_valid),
-                .write_address (row_in),
-                .write_data    (row_values[VALUE_BITS*index +: VALUE_BITS]),
-                .read_enable   (1'b1),
-                .read_address  (row),
-                .read_data     (stored_1[VALUE_BITS*index +: VALUE_BITS])
-            );
-        end
         for (index = 0; index < LEAVES; index = index + 1) begin : gen_leaves
             if ((index > 0) && (index < SIDE - 1)) begin : gen_point
                 assign nodes[LEAVES + index] = row_values[VALUE_BITS*index +: VALUE_BITS];
@@ -94,8 +79,15 @@ module sptfra_points_level #(
         for (index = 1; index < LEAVES; index = index + 1) begin : gen_tree
             reg [VALUE_BITS-1:0] node;
 
-            always @(posedge clock) begin
-                node <= (nodes[2*index] < nodes[2*index + 1]) ? nodes[2*index] : nodes[2*index + 1];
+            // Two nodes have one point, one has none
+            if (index == LEAVES / 2) begin : gen_second
+                always @(posedge clock) begin
+                    node <= nodes[2*index + 1];
+                end
+            end else begin : gen_less
+                always @(posedge clock) begin
+                    node <= (nodes[2*index] < nodes[2*index + 1]) ? nodes[2*index] : nodes[2*index + 1];
+                end
             end
 
             assign nodes[index] = node;
@@ -134,11 +126,16 @@ module sptfra_points_level #(
     localparam integer LEVEL_STAGES = 1; // the level is there two cycles later, when the first depth is
     reg [MIN_STAGES+LEVEL_STAGES:1] all_in; // index k: k cycles after the last row
     reg reading;
+    reg [3:0] row;
     reg [1:0] group;
+
     wire last_group = (group == LAST_GROUP);
     wire last_read = reading && last_group && (row == LAST_ROW);
     reg [VALUE_BITS-1:0] least;
     reg [VALUE_BITS:0] level;
+
+    // A cycle before the row's first points are weighed
+    assign again = all_in[MIN_STAGES+LEVEL_STAGES] || (reading && last_group && !last_read);
 
     always @(posedge clock) begin
         all_in <= {all_in[MIN_STAGES+LEVEL_STAGES-1:1], row_valid && (row_in == LAST_ROW)};
@@ -164,7 +161,7 @@ module sptfra_points_level #(
         end
     end
 
-    // ---- Depths below the level, squared: index k: k cycles after the row's address
+    // ---- Depths below the level, squared: index k: k cycles after the row was asked for
     localparam integer STAGES = 5;
     reg [STAGES:1] reads;
     reg [STAGES:1] lasts;
@@ -178,9 +175,9 @@ module sptfra_points_level #(
 
     generate
         if (GROUPS == 1) begin : gen_row
-            assign group_values_1 = stored_1;
+            assign group_values_1 = row_values;
         end else begin : gen_group
-            assign group_values_1 = stored_1[AT_ONCE*VALUE_BITS*group_1 +: AT_ONCE*VALUE_BITS];
+            assign group_values_1 = row_values[AT_ONCE*VALUE_BITS*group_1 +: AT_ONCE*VALUE_BITS];
         end
         for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_weights
             reg signed [VALUE_BITS+1:0] depth_2;

@@ -37,7 +37,8 @@ module sptfra_points_taxel #(
     localparam integer FRACTION = 23;
     localparam integer SHARE_SHIFT = 8; // dead zone and margin are 2^-8 of the largest and of the sum
     localparam integer U_BITS = 25; // of u, normalised
-    localparam integer WIDE = 27 + U_LEFT;
+    localparam integer TWICE_BITS = U_BITS + 2; // of twice u, and what rounding adds
+    localparam integer WIDE = 27 + ((U_LEFT > TWICE_BITS) ? U_LEFT : TWICE_BITS); // before the scale is taken off
     localparam integer STEP_SHIFT = 4; // a step of mu is three times 2^-STEP_SHIFT
     localparam integer MULTIPLE_BITS = U_BITS + 5; // of up to 7 steps
     localparam integer PART_BITS = 27 + STEP_SHIFT; // before the fraction is dropped
@@ -84,19 +85,28 @@ module sptfra_points_taxel #(
 
     generate
         for (index = 0; index < 3; index = index + 1) begin : gen_u
-            wire signed [WIDE-1:0] wide = { {U_LEFT{given[27*index + 26]}}, given[27*index +: 27]} << U_LEFT;
+            wire signed [WIDE-1:0] wide = { {(WIDE - 27){given[27*index + 26]}}, given[27*index +: 27]} << U_LEFT;
             reg signed [WIDE-1:0] octets_1;
-            reg signed [WIDE-1:0] twice_2;
+            wire signed [WIDE-1:0] bits_1 = octets_1 >>> sum_bits[2:0];
+            reg signed [TWICE_BITS-1:0] twice_2;
+            reg sign_2;
+            reg is_whole_2; // twice_2 has all of it
             reg [U_BITS-1:0] normal_3;
-            wire signed [WIDE-1:0] rounded_2 = (twice_2 + 1) >>> 1;
-            wire sign_2 = rounded_2[WIDE-1];
-            wire fits_2 = (rounded_2[WIDE-1:U_BITS-1] == {(WIDE - U_BITS + 1){sign_2}});
+            wire signed [TWICE_BITS-1:0] rounded_2 = (twice_2 + 1) >>> 1;
+            wire fits_2 = is_whole_2
+                && (rounded_2[TWICE_BITS-1:U_BITS-1] == {(TWICE_BITS - U_BITS + 1){rounded_2[TWICE_BITS-1]}});
 
             always @(posedge clock) begin
                 octets_1 <= wide >>> {sum_bits[5:3], 3'd0};
-                twice_2 <= octets_1 >>> sum_bits[2:0];
+                twice_2 <= bits_1[TWICE_BITS-1:0];
+                sign_2 <= octets_1[WIDE-1];
+                // Of the bits above, those that a shift of up to 7 brings down, and the others
+                is_whole_2 <= (bits_1[TWICE_BITS+6:TWICE_BITS-1] == {8{octets_1[WIDE-1]}})
+                    && (octets_1[WIDE-1:TWICE_BITS+7] == {(WIDE - TWICE_BITS - 7){octets_1[WIDE-1]}});
                 normal_3 <= fits_2 ? rounded_2[U_BITS-1:0] : {sign_2, {(U_BITS - 1){!sign_2}}};
             end
+
+            wire _unused_bits = &{1'b0, bits_1};
 
             assign clips_2[index] = !fits_2;
             assign u_3[U_BITS*index +: U_BITS] = normal_3;
