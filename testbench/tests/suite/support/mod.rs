@@ -1,5 +1,6 @@
 //! Designs for tests of the emitted RTL: planned, built through the shared cache, simulated, judged.
 
+pub mod faults;
 pub mod frames;
 pub mod random;
 
