@@ -2,6 +2,7 @@
 
 pub mod faults;
 pub mod frames;
+pub mod player;
 pub mod random;
 
 use std::path::{Path, PathBuf};
