@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // The frame checker (Bz): every beat once and in order, every frame ended once and rightly judged, banks never overrun.
 //
 // A second pipeline beside it carries each beat with its place in its frame. With PAPER it is that of the paper's plan,

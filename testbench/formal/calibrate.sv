@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // Calibration in RAM: every beat of a frame reads the bank that acted at the frame's first one, nothing is written there
 // meanwhile, no frame begins while the one before is held, and no more ends of frames are on their way than are counted.
 //

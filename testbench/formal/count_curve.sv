@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // A curve in the banks of a calibration: every beat of a frame goes by the bank that acted at the frame's first one, up to
 // the line that it reads, beats leave as they came, and no more ends of frames are on their way than are counted.
 module harness (

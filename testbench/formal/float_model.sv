@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // The converter of Bz with its function left out: three bits of a word come out after as many cycles.
 module sptfra_float_to_fixed (
     input wire clock,

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // The door that drops frames: the source is never held; a frame that begins while fewer than two wait is handed on
 // whole, beat by beat and in order, however long it is; of any other not a beat is; each ends as one of them, and the
 // next answer says of those that were dropped.

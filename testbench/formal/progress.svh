@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // What is left to do for the frames inside never grows but by a new frame, and shrinks within three cycles in which those
 // do something who may: so with a sink that is not for ever stalled, every frame ends.
 module progress (

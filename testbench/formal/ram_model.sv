@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // A memory as a register: sptfra_ram with its words to be looked at.
 module sptfra_ram #(
     parameter WIDTH = 27,

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // A range of its own for each frame: every frame is written once, whole, element after element into the bank that is its
 // turn, with one power of two that is known before and held, while writes wait for others; and nothing comes in meanwhile.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // The frame handshake of the reduced plan: turns, Op and output, with up to four frames between them.
 //
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // The lanes as the turns of the reduced plan see them: one program at a time, each of any length.
 module sptfra_spmv_array #(
     // Those of the module that it stands for; it needs none of them

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // Replacing dead taxels of a bank's map: one frame at a time is kept back, each is read again whole and once, from its
 // first reading to its last, and nothing waits for ever.
 //

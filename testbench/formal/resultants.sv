@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // The frame handshake of a design with one program a frame: resultants only, with up to three frames between it and the
 // output, or, with FIELD, the paper's plan, whose two fields have a place until they have left. With JOINT the search is
 // that of the joint estimator, whose search, look and correction have a frame each: up to five.

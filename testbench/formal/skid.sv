@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // Rules of AXI4-Stream for the skid buffer: what comes in goes out, once, in order, with its TLAST.
 //
 // A queue of two words stands beside the buffer; every word that the buffer offers is the oldest of it.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//
 // The DSP48E2 as Yosys uses it on UltraScale+: a multiplier without registers. Yosys' own cells have no model of it.
 //
 // Whatever a netlist asks for that is not described here makes the result unknown, so that it cannot go unnoticed.

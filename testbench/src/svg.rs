@@ -45,6 +45,24 @@ impl Svg {
         );
     }
 
+    /// The powers of ten of an axis below the picture, each with its line of the grid between two heights.
+    pub fn decades_below(&mut self, axis: Axis, [bottom, top]: [f64; 2]) {
+        for decade in axis.decades() {
+            let place = axis.place(10_f64.powi(decade));
+            self.grid((place, bottom), (place, top));
+            self.text((place, bottom + 18.0), "middle", INK, &power(decade));
+        }
+    }
+
+    /// Those of an axis to the left of it.
+    pub fn decades_beside(&mut self, axis: Axis, [left, right]: [f64; 2]) {
+        for decade in axis.decades() {
+            let place = axis.place(10_f64.powi(decade));
+            self.grid((left, place), (right, place));
+            self.text((left - 8.0, place + 4.0), "end", INK, &power(decade));
+        }
+    }
+
     /// A line through places.
     pub fn line(&mut self, places: &[(f64, f64)], colour: &str, dashes: &str) {
         let points: Vec<String> = places.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
@@ -266,7 +284,7 @@ impl Axis {
 }
 
 /// `1`, `10`, `1,000`, `10 M`; `0.1`, and smaller ones as `1e-3`.
-pub fn power(decade: i32) -> String {
+fn power(decade: i32) -> String {
     match decade {
         ..-1 => format!("1e{decade}"),
         -1 => "0.1".to_owned(),

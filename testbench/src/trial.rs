@@ -16,9 +16,9 @@ use crate::compare::Mismatch;
 use crate::dut::{Dut, DutError};
 use crate::frame_set::FrameSet;
 use crate::simulate::{Cycles, Job, Simulation, SimulationError, simulate};
-use crate::stream::{Mode, Outcome, Pacing, Traffic, exchange};
+use crate::stream::{Outcome, Pacing, Traffic, exchange};
 use crate::stream_words::packets;
-use crate::verilate::{BuildError, Built, Effort, RtlSources, Verilate};
+use crate::verilate::{BuildError, Built, RtlSources, Verilate};
 
 /// Why there was no trial.
 #[derive(Debug, Error)]
@@ -59,12 +59,12 @@ pub fn rtl_sources(plan: &Plan) -> Result<RtlSources, TrialError> {
     Ok(RtlSources::new(&plan.design.name, &emit(plan)?))
 }
 
-/// The plan's RTL, compiled for a simulation of about so many cycles.
+/// The plan's RTL, compiled.
 ///
 /// # Errors
 /// [`TrialError::Emit`] and [`TrialError::Build`].
-pub fn build(plan: &Plan, cycles: u64) -> Result<Built, TrialError> {
-    Ok(Verilate::default().with_effort(Effort::for_cycles(cycles)).build(&rtl_sources(plan)?)?)
+pub fn build(plan: &Plan) -> Result<Built, TrialError> {
+    Ok(Verilate::default().build(&rtl_sources(plan)?)?)
 }
 
 /// When packets follow each other so that none is lost: back to back, and to a core that drops frames as it can take
@@ -116,11 +116,6 @@ fn made_of_one_body(plan: &Plan) -> Vec<Vec<u32>> {
     let packets = packets(plan.streams(), &frames);
     let ones = of_one_body(plan, &packets, &model_answers(plan, &packets));
     if ones.is_empty() { vec![vec![0; plan.streams().words_in()]] } else { ones }
-}
-
-/// Cycles of so many frames, streams free-running.
-pub fn cycles_of(plan: &Plan, frames: u64) -> u64 {
-    frames * plan.timeline.interval_cycles
 }
 
 impl Cycles {
@@ -181,17 +176,12 @@ impl<'a> Trial<'a> {
         Self { plan, expected: model_answers(plan, &packets), packets, seed }
     }
 
-    /// Cycles to simulate, about.
-    pub fn cycles(&self) -> u64 {
-        Mode::COUNT as u64 * cycles_of(self.plan, self.packets.len() as u64)
-    }
-
     /// Builds and simulates.
     ///
     /// # Errors
     /// [`TrialError`]; what is wrong with the answers is part of the verdict.
     pub fn run(&self) -> Result<Verdict, TrialError> {
-        let built = build(self.plan, self.cycles())?;
+        let built = build(self.plan)?;
         Ok(self.simulate(&built, None, &|| ())?)
     }
 

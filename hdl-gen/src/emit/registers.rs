@@ -58,6 +58,9 @@ struct View<'a> {
     name: &'a str,
     #[serde(flatten)]
     constants: Constants,
+    /// Digits of the hash, a register's each.
+    hash_high: &'a str,
+    hash_low: &'a str,
     axi_ports: Vec<AxiPort>,
     /// Bits and 32-bit words of a beat.
     stream_bits: usize,
@@ -120,7 +123,7 @@ impl CalibrationView {
 }
 
 impl<'a> View<'a> {
-    fn new(plan: &'a Plan, hash: &str) -> Self {
+    fn new(plan: &'a Plan, hash: &'a str) -> Self {
         let port = |&(signal, output, bits): &(&'static str, bool, u32)| AxiPort {
             signal,
             bus: signal.to_uppercase(),
@@ -129,8 +132,11 @@ impl<'a> View<'a> {
             used: !signal.ends_with("prot"),
         };
         let constants = Constants::new(plan, hash);
+        let (hash_high, hash_low) = hash.split_at(8);
         Self {
             name: &plan.design.name,
+            hash_high,
+            hash_low,
             axi_ports: AXI_SIGNALS.iter().map(port).collect(),
             stream_bits: plan.streams().bits,
             words: plan.streams().words(),

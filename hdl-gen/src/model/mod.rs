@@ -75,11 +75,6 @@ impl<'plan> Model<'plan> {
         (self.frames, self.slips) = (0, false);
     }
 
-    /// Words of every output frame: 16, for each record of a body 8, and for the field 3 m more.
-    pub fn output_words(&self) -> usize {
-        self.plan.words_out()
-    }
-
     /// The output frame for one packet: its words in memory's order, float32 in Pa, up to the last of the beat with TLAST;
     /// words that are missing in that are 0. Its timestamp is 0: when a packet comes is not the model's to know.
     pub fn process(&mut self, packet: &[u32]) -> Vec<u32> {

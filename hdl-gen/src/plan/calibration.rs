@@ -22,8 +22,6 @@ use crate::cores::{fixed_to_float, float_to_fixed};
 const OFFSET_FULL_SCALES: i64 = 2;
 /// Bits dropped after the product, at most.
 const MOST_SHIFT: u32 = 40;
-/// Frames of a tare: 2 to the power of this, at most.
-pub const MOST_TARE_LOG2: u32 = 10;
 
 /// How counts become stress where gains and offsets are written while frames run:
 /// `number = round(count * 2^exponent)`, then `stress = round(number * mantissa / 2^shift) + offset`, clipped to the full

@@ -2,7 +2,7 @@
 
 use super::cycles::{Kind, Point};
 use crate::run::report::PUBLISHED;
-use crate::svg::{Axis, INK, MARK, Svg, power};
+use crate::svg::{Axis, INK, MARK, Svg};
 
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 500.0;
@@ -71,16 +71,8 @@ pub fn render(points: &[Point]) -> String {
 }
 
 fn axes(svg: &mut Svg, x: Axis, y: Axis) {
-    for decade in x.decades() {
-        let place = x.place(10_f64.powi(decade));
-        svg.grid((place, y.from), (place, y.to));
-        svg.text((place, y.from + 18.0), "middle", INK, &power(decade));
-    }
-    for decade in y.decades() {
-        let place = y.place(10_f64.powi(decade));
-        svg.grid((x.from, place), (x.to, place));
-        svg.text((x.from - 8.0, place + 4.0), "end", INK, &power(decade));
-    }
+    svg.decades_below(x, [y.from, y.to]);
+    svg.decades_beside(y, [x.from, x.to]);
     svg.text((f64::midpoint(x.from, x.to), HEIGHT - 14.0), "middle", INK, "taxels m");
     svg.text(
         (12.0, 22.0),

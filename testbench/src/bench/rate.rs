@@ -45,7 +45,7 @@ pub(super) fn measure(scope: &Scope, progress: &Progress) -> Result<Vec<Rate>, B
         let plan = planned(design)?;
         let set = FrameSet::standing(&design.sensor)?.as_delivered(design);
         let packets = packets(plan.streams(), &set.stress);
-        let built = trial::build(&plan, trial::cycles_of(&plan, (REPETITIONS * MOST_FRAMES) as u64))?;
+        let built = trial::build(&plan)?;
         let mut core = built.load(SEED).map_err(TrialError::from)?;
         progress.stage(format!("simulating {path}"));
         let mut run = |count: usize| -> Result<(u64, f64), BenchError> {

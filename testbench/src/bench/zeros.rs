@@ -42,8 +42,7 @@ pub(super) fn measure(largest: usize, progress: &Progress) -> Result<Vec<Zeros>,
         progress.stage(format!("simulating {side} × {side} with zeros passed over"));
         let plain = planned(&square(side, false)?)?;
         let plan = planned(&square(side, true)?)?;
-        let frames = (2 * FRICTIONS.len() * SWEEP_DEG.len()) as u64;
-        let built = trial::build(&plan, trial::cycles_of(&plan, frames))?;
+        let built = trial::build(&plan)?;
         let mut core = built.load(SEED).map_err(TrialError::from)?;
         let mut contacts = Vec::new();
         for friction in FRICTIONS {

@@ -9,9 +9,6 @@ use hdl_gen::plan::Plan;
 
 use testbench::trial;
 
-/// The compiler's effort for so many cycles.
-const CYCLES: u64 = 0;
-
 #[derive(Args)]
 pub struct Arguments {
     /// Design file (TOML).
@@ -22,6 +19,6 @@ pub struct Arguments {
 /// Compiles a core and says where it is.
 pub fn run(arguments: &Arguments) -> super::Result {
     let plan = Plan::new(&Design::load(&arguments.design)?)?;
-    let built = trial::build(&plan, CYCLES)?;
+    let built = trial::build(&plan)?;
     Ok(format!("{}\n", built.library.display()).into())
 }

@@ -4,7 +4,7 @@ use golden::design::Estimator;
 
 use super::cases::{DEPTHS, NOISE, PLAIN, REGULARISED};
 use super::judge::{Judged, Row};
-use crate::svg::{Axis, INK, Svg, power};
+use crate::svg::{Axis, INK, Svg};
 
 const WIDTH: f64 = 480.0;
 const HEIGHT: f64 = 376.0;
@@ -80,11 +80,7 @@ fn draw(svg: &mut Svg, rows: &[Row], force: &Force, left: f64) {
         svg.grid((x.place(depth), y.from), (x.place(depth), y.to));
         svg.text((x.place(depth), y.from + 18.0), "middle", INK, &depth.to_string());
     }
-    for decade in y.decades() {
-        let place = y.place(10_f64.powi(decade));
-        svg.grid((x.from, place), (x.to, place));
-        svg.text((x.from - 8.0, place + 4.0), "end", INK, &power(decade));
-    }
+    svg.decades_beside(y, [x.from, x.to]);
     for (number, Line { name, estimator, group, colour, dashes }) in LINES.iter().enumerate() {
         let of_group =
             rows.iter().filter(|row| row.estimator == *estimator && row.group == *group && row.case.contains(&noisy));

@@ -11,7 +11,7 @@ pub use master::{Access, Master, PortViolation, Reply};
 
 use crate::dut::{Core, Dut, DutError, Inputs, Outputs};
 
-/// Byte addresses, as in `control/NAME.rdl`.
+/// Byte addresses, as in `control/NAME.rdl`, of what is used here.
 #[allow(missing_docs, reason = "the register map says what each is")]
 pub mod address {
     pub const IDENTITY: u32 = 0x000;
@@ -37,9 +37,6 @@ pub mod address {
     pub const LAST_INTERVAL: u32 = 0x064;
     pub const FRAMES_DROPPED: u32 = 0x068;
     pub const CALIBRATION: u32 = 0x080;
-    pub const CALIBRATION_OFFSET_LIMIT: u32 = 0x084;
-    pub const CALIBRATION_STEPS_LOW: u32 = 0x088;
-    pub const CALIBRATION_STEPS_HIGH: u32 = 0x08C;
     pub const CALIBRATION_INDEX: u32 = 0x090;
     pub const CALIBRATION_DATA: u32 = 0x094;
     pub const CALIBRATION_COMMIT: u32 = 0x098;

@@ -17,7 +17,7 @@ use crate::registers;
 use crate::simulate::frames_to_simulate;
 use crate::stream_words::{Answer, as_received, decode_bodies, packets};
 use crate::trial::{Trial, TrialError, planned, rtl_sources};
-use crate::verilate::{Effort, Trace, Verilate, verilator_version};
+use crate::verilate::{Trace, Verilate, verilator_version};
 use crate::waves;
 use golden::progress::Progress;
 use report::Report;
@@ -88,7 +88,7 @@ pub fn run_plan(
 
     progress.stage("building the simulation with Verilator");
     let verilate = Verilate::default().with_trace(trace_format(options.trace)?);
-    let built = verilate.with_effort(Effort::for_cycles(trial.cycles())).build(&sources).map_err(TrialError::from)?;
+    let built = verilate.build(&sources).map_err(TrialError::from)?;
     let frame_count = trial.packets.len();
     progress.counted("simulating", frames_to_simulate(frame_count));
     let verdict = trial.simulate(&built, options.trace, &|| progress.step()).map_err(TrialError::from)?;

@@ -160,7 +160,7 @@ pub fn stress(design: &Design, options: &Options, progress: &Progress) -> Result
     progress.stage("planning");
     let plan = planned(design)?;
     progress.stage("building the simulation with Verilator");
-    let built = trial::build(&plan, trial::cycles_of(&plan, options.frames))?;
+    let built = trial::build(&plan)?;
     progress.counted("simulating", options.frames);
     let batches = options.frames.div_ceil(BATCH);
     let one = |batch: u64| {

@@ -14,13 +14,6 @@ use crate::tools;
 
 use sha2::{Digest, Sha256};
 
-/// From so many cycles on a build is worth [`Effort::Long`]: for sensor 1 on 16 lanes `-O1` takes some 5 s of CPU more
-/// than `-Og` to compile and saves 0.33 s in a million cycles.
-const LONG_CYCLES: u64 = 20_000_000;
-
-/// Of the runtime: a design's code spends little time in it, and its header serves builds of either effort.
-const RUNTIME_EFFORT: Effort = Effort::Brief;
-
 /// The shared object's name in its entry.
 pub const LIBRARY: &str = "dut.so";
 const ARCHIVE: &str = "libverilated.a";
@@ -32,8 +25,10 @@ const WRAPPER: &str = include_str!("wrapper.cpp");
 const VERILATOR_FLAGS: [&str; 8] =
     ["--cc", "--x-assign", "unique", "--x-initial", "unique", "--no-decoration", "-Wno-fatal", "-DSIMULATION"];
 /// Symbols stay inside their shared object, so that several simulated designs live in one process. The wrapper turns
-/// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning.
-const CXX_FLAGS: [&str; 8] = [
+/// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning. `-O1` would save 12 % of a
+/// simulation and take 8 s more to compile, which only minutes of simulation pay back, and would need a precompiled header
+/// of its own: GCC takes the optimisation from the header, whatever the flags beside it say.
+const CXX_FLAGS: [&str; 9] = [
     "-std=c++17",
     "-fPIC",
     "-fvisibility=hidden",
@@ -42,31 +37,8 @@ const CXX_FLAGS: [&str; 8] = [
     "-DVL_USER_STOP",
     "-DVL_USER_FINISH",
     "-DVL_USER_WARN",
+    "-Og",
 ];
-
-/// How much the C++ compiler does for the speed of the simulation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Effort {
-    /// Little: for a build that simulates for seconds.
-    #[default]
-    Brief,
-    /// More: for one that simulates for minutes.
-    Long,
-}
-
-impl Effort {
-    /// For a simulation of so many cycles.
-    pub fn for_cycles(cycles: u64) -> Self {
-        if cycles < LONG_CYCLES { Self::Brief } else { Self::Long }
-    }
-
-    fn flag(self) -> &'static str {
-        match self {
-            Self::Brief => "-Og",
-            Self::Long => "-O1",
-        }
-    }
-}
 
 /// The tools and flags of a build.
 pub struct Toolchain {
@@ -84,16 +56,16 @@ impl Toolchain {
     }
 
     /// All that can change the result, the sources apart.
-    pub fn identity(&self, effort: Effort) -> String {
+    pub fn identity(&self) -> String {
         // A file of either kind stands for how they are put together.
         let unit = everything(&["fast.cpp", "slow__Slow.cpp"].map(PathBuf::from));
         let parts = [self.version.as_str(), self.compiler.as_str(), &unit, &VERILATOR_FLAGS.join(" ")];
-        format!("{}\n{}", parts.join("\n"), self.cxx_flags(effort).join(" "))
+        format!("{}\n{}", parts.join("\n"), self.cxx_flags().join(" "))
     }
 
-    fn cxx_flags(&self, effort: Effort) -> Vec<String> {
+    fn cxx_flags(&self) -> Vec<String> {
         let traced = |format| u8::from(self.trace == format);
-        let mut flags: Vec<String> = CXX_FLAGS.iter().chain([&effort.flag()]).map(ToString::to_string).collect();
+        let mut flags: Vec<String> = CXX_FLAGS.iter().map(ToString::to_string).collect();
         for off in ["COVERAGE", "SC", "TIMING"] {
             flags.push(format!("-DVM_{off}=0"));
         }
@@ -104,9 +76,9 @@ impl Toolchain {
         flags
     }
 
-    fn compile(&self, effort: Effort) -> Result<Command, BuildError> {
+    fn compile(&self) -> Result<Command, BuildError> {
         let mut command = tools::cxx()?;
-        command.args(self.cxx_flags(effort)).arg("-I").arg(&self.include).arg("-I").arg(self.include.join("vltstd"));
+        command.args(self.cxx_flags()).arg("-I").arg(&self.include).arg("-I").arg(self.include.join("vltstd"));
         Ok(command)
     }
 
@@ -127,7 +99,7 @@ impl Toolchain {
 
 /// Folder with the compiled runtime and its precompiled header; built on first use, which takes about 6 s.
 pub fn runtime(toolchain: &Toolchain, cache: &Cache) -> Result<PathBuf, BuildError> {
-    let key = format!("runtime-{}", &hex(&Sha256::digest(toolchain.identity(RUNTIME_EFFORT)))[..16]);
+    let key = format!("runtime-{}", &hex(&Sha256::digest(toolchain.identity()))[..16]);
     // Every test of a fresh checkout wants it at the same moment.
     cache.exclusive(&key, || match cache.get(&key) {
         Some(folder) => Ok(folder),
@@ -138,13 +110,13 @@ pub fn runtime(toolchain: &Toolchain, cache: &Cache) -> Result<PathBuf, BuildErr
 fn build_runtime(toolchain: &Toolchain, folder: &Path) -> Result<(), BuildError> {
     let header = folder.join(HEADER);
     fs::write(&header, "#include \"verilated.h\"\n").map_err(BuildError::io("write", &header))?;
-    let mut precompile = toolchain.compile(RUNTIME_EFFORT)?;
+    let mut precompile = toolchain.compile()?;
     precompile.args(["-x", "c++-header"]).arg(&header).arg("-o").arg(folder.join(format!("{HEADER}.gch")));
     let mut jobs = vec![precompile];
     let mut objects = Vec::new();
     for (index, source) in toolchain.runtime_sources().into_iter().enumerate() {
         let object = folder.join(format!("runtime{index}.o"));
-        let mut job = toolchain.compile(RUNTIME_EFFORT)?;
+        let mut job = toolchain.compile()?;
         job.arg("-c").arg(source).arg("-o").arg(&object);
         jobs.push(job);
         objects.push(object);
@@ -170,7 +142,7 @@ fn build_runtime(toolchain: &Toolchain, folder: &Path) -> Result<(), BuildError>
 
 /// Translates and compiles the sources in `folder`; the ROM files are looked for in `rom_folder` at run time.
 pub fn design(
-    (toolchain, effort): (&Toolchain, Effort),
+    toolchain: &Toolchain,
     runtime: &Path,
     sources: &RtlSources,
     folder: &Path,
@@ -181,7 +153,7 @@ pub fn design(
     let unit = generated.join("everything.cc");
     fs::write(&unit, everything(&sorted_cpp(&generated)?)).map_err(BuildError::io("write", &unit))?;
 
-    let mut compile = toolchain.compile(effort)?;
+    let mut compile = toolchain.compile()?;
     // The precompiled header works only as the first include; without one (another compiler) the plain one is read.
     compile.arg("-include").arg(runtime.join(HEADER)).arg("-I").arg(&generated);
     compile.args(["-shared", "-o"]).arg(folder.join(LIBRARY)).arg(&unit).arg(runtime.join(ARCHIVE));

@@ -16,7 +16,6 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 pub use cache::default_cache;
-pub use compile::Effort;
 pub use translation::translation;
 
 use crate::dut::{Dut, DutError};
@@ -167,7 +166,6 @@ impl Built {
 pub struct Verilate {
     cache: PathBuf,
     trace: Trace,
-    effort: Effort,
 }
 
 impl Default for Verilate {
@@ -179,19 +177,13 @@ impl Default for Verilate {
 impl Verilate {
     /// With its cache in the given folder, which is created when needed.
     pub fn new(cache: impl Into<PathBuf>) -> Self {
-        Self { cache: cache.into(), trace: Trace::Off, effort: Effort::default() }
+        Self { cache: cache.into(), trace: Trace::Off }
     }
 
     /// With signals traced.
     #[must_use]
     pub fn with_trace(self, trace: Trace) -> Self {
         Self { trace, ..self }
-    }
-
-    /// With the compiler's effort for the length of the simulation.
-    #[must_use]
-    pub fn with_effort(self, effort: Effort) -> Self {
-        Self { effort, ..self }
     }
 
     /// Builds the design, unless the cache has it.
@@ -202,7 +194,7 @@ impl Verilate {
         check(sources)?;
         let cache = cache::Cache::open(&self.cache)?;
         let toolchain = Toolchain::find(self.trace)?;
-        let key = key(sources, &toolchain.identity(self.effort), cache.folder());
+        let key = key(sources, &toolchain.identity(), cache.folder());
         let library = |entry: &Path| entry.join(compile::LIBRARY);
         if let Some(entry) = cache.get(&key) {
             return Ok(Built { library: library(&entry), compiled: false, trace: self.trace });
@@ -211,7 +203,7 @@ impl Verilate {
         let place = cache.place(&key);
         let entry = cache.publish(&key, |folder| {
             write_sources(sources, folder)?;
-            compile::design((&toolchain, self.effort), &runtime, sources, folder, &place.join(ROM_FOLDER))
+            compile::design(&toolchain, &runtime, sources, folder, &place.join(ROM_FOLDER))
         })?;
         Ok(Built { library: library(&entry), compiled: true, trace: self.trace })
     }

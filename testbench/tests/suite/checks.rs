@@ -1,24 +1,19 @@
 //! What the emitted Verilog checks of itself in simulation: the schedule's promises. A broken schedule is noticed where
 //! it breaks, not only by the words that come out.
 
+use crate::support::faults::broken;
 use crate::support::{by_plan, in_parallel, planned, shipped};
 use golden::design::{Design, Estimator, Outputs, PlanKind};
 use testbench::stream::{Traffic, exchange};
-use testbench::trial::{rtl_sources, timeout};
-use testbench::verilate::Verilate;
+use testbench::trial::timeout;
 
 /// Frames that are sent.
 const FRAMES: usize = 8;
 
-/// A design whose text `from` in one of its modules became `to`: what the simulation says.
-fn broken(design: &Design, module: &str, from: &str, to: &str) -> String {
+/// What the simulation says of a design with a fault.
+fn said_of(design: &Design, module: &str, from: &str, to: &str) -> String {
     let plan = planned(design);
-    let mut sources = rtl_sources(&plan).expect("emitted");
-    let file = format!("rtl/sptfra_{module}.v");
-    let text = String::from_utf8(sources.files[&file].clone()).expect("UTF-8");
-    assert_eq!(text.matches(from).count(), 1, "{file}: {from:?} stands there once");
-    sources.files.insert(file, text.replace(from, to).into());
-    let built = Verilate::default().build(&sources).expect("Verilator accepts it");
+    let built = broken(&plan, &format!("sptfra_{module}"), from, to);
     let taxels = plan.taxels();
     let packet =
         |frame: usize| (0..taxels).map(|taxel| (-1e4 - 50.0 * ((taxel * frame) % 7) as f32).to_bits()).collect();
@@ -72,7 +67,7 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         // More frames are begun than Op has places for.
         (resultants(), "turns", "(u_held != 2'd2) && ", "", "_co.v"),
     ];
-    let said = in_parallel(&cases, |(design, module, from, to, _)| broken(design, module, from, to));
+    let said = in_parallel(&cases, |(design, module, from, to, _)| said_of(design, module, from, to));
     for ((design, module, from, _, place), said) in cases.iter().zip(said) {
         let stopped = said.contains(place) && said.contains("$finish");
         assert!(stopped, "{}, {module} without {from:?}: {said:?}", design.name);

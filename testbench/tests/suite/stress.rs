@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::calibration;
+use crate::support::faults::broken;
 use crate::support::{by_plan, in_parallel, planned, shipped};
 use golden::design::{Design, Estimator, Outputs, Overrun, PlanKind};
 use golden::progress::Progress;
@@ -10,8 +11,7 @@ use testbench::frame_set::FrameSet;
 use testbench::mutants::{self, Kind, mutants};
 use testbench::run::{self, page, run};
 use testbench::stress::{self, Commits, StressError, stress};
-use testbench::trial::{Timing, rtl_sources};
-use testbench::verilate::Verilate;
+use testbench::trial::Timing;
 
 const FRAMES: u64 = 3000;
 
@@ -153,12 +153,7 @@ type Fault<'a> = (&'a Design, &'a str, &'a str, &'a str);
 fn missed(cases: &[Fault<'_>]) -> Vec<String> {
     let noticed = in_parallel(cases, |&(design, module, from, to)| {
         let plan = planned(design);
-        let mut sources = rtl_sources(&plan).expect("emitted");
-        let file = format!("rtl/{module}.v");
-        let text = String::from_utf8(sources.files[&file].clone()).expect("UTF-8");
-        assert_eq!(text.matches(from).count(), 1, "{file}: {from:?} stands there once");
-        sources.files.insert(file, text.replace(from, to).into());
-        let built = Verilate::default().build(&sources).expect("Verilator accepts it");
+        let built = broken(&plan, module, from, to);
         let wrong = |batch: u64| {
             let core = built.load(batch as u32).expect("loaded");
             stress::run_batch(&plan, core, batch, stress::BATCH, 1, &|| ()).is_err()

@@ -5,7 +5,7 @@ use hdl_gen::estimators::joint::points::MOST_POINTS;
 
 use super::dots::{self, Dot, Rim};
 use super::paper::TABLE_3;
-use crate::svg::{Axis, INK, MARK, Svg, power};
+use crate::svg::{Axis, INK, MARK, Svg};
 use crate::sweep::point::{Hardware, Point, paper_sensor};
 
 const WIDTH: f64 = 760.0;
@@ -172,11 +172,7 @@ pub fn widths(series: &[Series], unit: &str) -> String {
         |bits: u32| LEFT + 20.0 + f64::from(bits - low) / f64::from((high - low).max(1)) * (width - LEFT - 60.0);
     let label = format!("Error of the number format against {unit}");
     let mut svg = Svg::new(width, height, &label).with_names_at((LEFT, height - 20.0));
-    for decade in y.decades() {
-        let line = y.place(10_f64.powi(decade));
-        svg.grid((LEFT, line), (width - RIGHT, line));
-        svg.text((LEFT - 8.0, line + 4.0), "end", INK, &power(decade));
-    }
+    svg.decades_beside(y, [LEFT, width - RIGHT]);
     let mut line = 16.0;
     for (Series { name, colour, dashes, values }, lines) in series.iter().zip(names) {
         let places: Vec<(f64, f64)> =
@@ -211,11 +207,7 @@ fn in_lines(name: &str) -> Vec<&str> {
 }
 
 fn axes(svg: &mut Svg, x: Axis, y: Axis, names: [&str; 2]) {
-    for decade in x.decades() {
-        let place = x.place(10_f64.powi(decade));
-        svg.grid((place, y.from), (place, y.to));
-        svg.text((place, y.from + 18.0), "middle", INK, &power(decade));
-    }
+    svg.decades_below(x, [y.from, y.to]);
     for decade in y.decades() {
         for step in [1.0, 2.0, 5.0] {
             let value = step * 10_f64.powi(decade);

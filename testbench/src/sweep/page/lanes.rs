@@ -1,7 +1,7 @@
 //! What lanes buy: time over multipliers, a pair of lines for each plan, filter and estimator that was varied.
 
 use super::front::{DASHES, style};
-use crate::svg::{Axis, INK, Svg, power};
+use crate::svg::{Axis, INK, Svg};
 use crate::sweep::point::{Hardware, Point};
 
 const WIDTH: f64 = 760.0;
@@ -36,16 +36,8 @@ pub fn plot(points: &[&Point]) -> Option<String> {
     let height = HEIGHT + top - TOP;
     let y = Axis::covering(times, false, height - BOTTOM, top);
     let mut svg = Svg::new(WIDTH, height, "Latency and interval over multipliers").with_names_at((LEFT, height - 20.0));
-    for decade in x.decades() {
-        let place = x.place(10_f64.powi(decade));
-        svg.grid((place, y.from), (place, y.to));
-        svg.text((place, y.from + 18.0), "middle", INK, &power(decade));
-    }
-    for decade in y.decades() {
-        let place = y.place(10_f64.powi(decade));
-        svg.grid((x.from, place), (x.to, place));
-        svg.text((x.from - 8.0, place + 4.0), "end", INK, &power(decade));
-    }
+    svg.decades_below(x, [y.from, y.to]);
+    svg.decades_beside(y, [x.from, x.to]);
     svg.text((6.0, 14.0), "start", INK, "µs a frame: latency, and dotted the interval");
     svg.text((f64::midpoint(x.from, x.to), height - 42.0), "middle", INK, "DSP (logarithmic)");
     let places = |series: &Series, time: fn(&Hardware) -> f64| -> Vec<(f64, f64)> {

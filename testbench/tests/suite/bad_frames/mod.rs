@@ -17,7 +17,7 @@ use testbench::stream_words::{Answer, decode, encode};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
 
-use crate::support::{built_to_last, frames, in_parallel, planned, shipped, with_joint, with_points};
+use crate::support::{built, frames, in_parallel, planned, shipped, with_joint, with_points};
 
 const LONG: usize = 1200;
 
@@ -61,7 +61,7 @@ fn subjects() -> &'static [Subject] {
         ];
         in_parallel(&designs, |design| {
             let plan = planned(design);
-            let built = built_to_last(&plan);
+            let built = built(&plan);
             Subject { plan, built }
         })
     })

@@ -4,7 +4,7 @@
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
 #[path = "../../../../golden/tests/suite/bodies/kinds.rs"]
 pub mod kinds;
-pub mod module;
+mod module;
 mod regions;
 
 use std::collections::BTreeMap;

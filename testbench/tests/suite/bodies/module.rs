@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use golden::bodies::{Finder, Found};
 use golden::parity::Quads;
@@ -13,9 +12,9 @@ use hdl_gen::model::bodies::count;
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use testbench::tools;
 
-use crate::support::{in_parallel, workspace};
+use crate::support::in_parallel;
+use crate::support::player::{icarus, verilator, write_broken};
 
 /// Bits of `|w|`.
 const BITS: u32 = 12;
@@ -216,10 +215,7 @@ fn play(
     }
     fs::write(place("bench.v".to_owned()), bench + "endmodule\n").expect("writable");
     if let Some((module, from, to)) = fault {
-        let name = format!("sptfra_{module}.v");
-        let text = fs::read_to_string(workspace("hdl-gen/rtl").join(&name)).expect("is there");
-        assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
-        fs::write(place(name), text.replace(from, to)).expect("writable");
+        write_broken(folder.path(), &format!("sptfra_{module}"), from, to);
     }
     let said = simulator(folder.path(), longest + 1);
     if !said.is_empty() {
@@ -230,33 +226,6 @@ fn play(
         text.lines().map(|line| line.parse().map_err(|_| format!("{}: {line} bodies", case.name))).collect()
     };
     cases.iter().map(counts).collect()
-}
-
-/// What is printed by `bench.v` and the modules of a folder, those of the project where it has none, in so many cycles.
-/// Verilator's program is quick, and Icarus' is quickly made.
-pub fn verilator(folder: &Path, cycles: usize) -> String {
-    let main = format!(
-        "#include \"Vbench.h\"\nint main() {{\n    Vbench bench;\n    for (long edge = 0; edge < 2L * {cycles}; ++edge) {{\n        \
-         bench.clock = edge & 1;\n        bench.eval();\n    }}\n    bench.final();\n}}\n"
-    );
-    fs::write(folder.join("main.cpp"), main).expect("writable");
-    let mut build = tools::verilator().expect("installed");
-    build.args(["--cc", "--exe", "--build", "-Wno-fatal", "-DSIMULATION", "-CFLAGS", "-O1", "--top-module", "bench"]);
-    build.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).args(["bench.v", "main.cpp"]);
-    succeed(build.current_dir(folder));
-    succeed(Command::new(folder.join("model/Vbench")).current_dir(folder))
-}
-
-pub fn icarus(folder: &Path, cycles: usize) -> String {
-    let clock = format!(
-        "module clock_of_bench;\n    reg clock = 0;\n    bench bench (.clock(clock));\n    \
-         initial begin\n        repeat (2 * {cycles}) #1 clock = !clock;\n        $finish(0);\n    end\nendmodule\n"
-    );
-    fs::write(folder.join("clock.v"), clock).expect("writable");
-    let mut build = tools::icarus().expect("installed");
-    build.args(["-g2005", "-DSIMULATION", "-s", "clock_of_bench", "-o", "bench", "-y", ".", "-y"]);
-    succeed(build.arg(workspace("hdl-gen/rtl")).args(["bench.v", "clock.v"]).current_dir(folder));
-    succeed(tools::icarus_runtime().expect("installed").args(["-n", "bench"]).current_dir(folder))
 }
 
 /// A line for each cycle: reset, take, valid, row, weights.
@@ -294,11 +263,4 @@ fn stimulus(case: &Case, random: &mut ChaCha8Rng) -> Vec<String> {
         lines[take] |= 1 << (width + row + 1);
     }
     lines.into_iter().map(|line| format!("{line:x}\n")).collect()
-}
-
-fn succeed(command: &mut Command) -> String {
-    let output = command.output().expect("starts");
-    let printed = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success(), "{command:?}: {printed}");
-    printed
 }

@@ -5,10 +5,11 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::stream::{Mode, Pattern, Traffic};
 use testbench::stress::banks::random_bank;
-use testbench::trial::{rtl_sources, timeout};
-use testbench::verilate::{Built, Verilate};
+use testbench::trial::timeout;
+use testbench::verilate::Built;
 
 use super::{BUSY, Subject, core, counts, errors, generation, judged, judged_in, load, subject};
+use crate::support::faults::broken;
 use crate::support::in_parallel;
 
 /// A direction whatever presses and pulls.
@@ -134,20 +135,15 @@ fn packets_of_a_beat_do_not_pile_up() {
 fn half_a_frame_by_another_bank_is_noticed() {
     let subject = subject();
     let [other_gains, other_threshold, other_floor] = others(subject);
-    for (module, text, broken, bank) in [
+    for (module, from, to, bank) in [
         ("sptfra_calibrate", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", other_gains),
         ("sptfra_frame_calibration", "contacts[next_contact]", "contact", other_threshold),
         ("sptfra_frame_calibration", "noises[next_noise];", "noise;", other_floor.clone()),
         ("sptfra_frame_calibration", "assign no_direction = (of_frame != 2'b11);", ALWAYS_KNOWN, other_floor),
     ] {
-        let mut sources = rtl_sources(&subject.plan).expect("emitted");
-        let path = format!("rtl/{module}.v");
-        let right = String::from_utf8(sources.files[&path].clone()).expect("text");
-        assert_eq!(right.matches(text).count(), 1, "{text}");
-        sources.files.insert(path, right.replace(text, broken).into_bytes());
-        let built = Verilate::default().build(&sources).expect("builds");
+        let built = broken(&subject.plan, module, from, to);
         let cycles = (0..subject.plan.timeline.interval_cycles).step_by(3);
-        assert_ne!(commits_at_every_moment(subject, &built, &bank, cycles), Vec::<String>::new(), "{broken}");
+        assert_ne!(commits_at_every_moment(subject, &built, &bank, cycles), Vec::<String>::new(), "{to}");
     }
 }
 

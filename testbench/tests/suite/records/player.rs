@@ -8,7 +8,7 @@ use golden::design::Design;
 use hdl_gen::blocks::records::{parameters, words};
 use hdl_gen::plan::contacts::records::{INSTRUCTION_BITS, cycles, rom};
 
-use crate::support::workspace;
+use crate::support::player::write_broken;
 
 /// What is done to the module, in a cycle or until it is done.
 #[derive(Clone, Debug)]
@@ -74,10 +74,7 @@ pub fn play(
     let program: String = rom().iter().map(|word| format!("{word:0digits$x}\n")).collect();
     fs::write(place("records.mem".to_owned()), program).expect("writable");
     if let Some((module, from, to)) = fault {
-        let name = format!("sptfra_{module}.v");
-        let text = fs::read_to_string(workspace("hdl-gen/rtl").join(&name)).expect("is there");
-        assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
-        fs::write(place(name), text.replace(from, to)).expect("writable");
+        write_broken(folder.path(), &format!("sptfra_{module}"), from, to);
     }
     let mut bench = "module bench(input clock);\n".to_owned();
     let mut longest = 0;

@@ -10,7 +10,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::records_of_faults;
-use crate::bodies::module::{icarus, verilator};
+use crate::support::player::{icarus, verilator, write_broken};
 use crate::support::workspace;
 
 /// Add, subtract, multiply, divide, root, angle, and what compares.
@@ -143,10 +143,7 @@ fn play(
     fs::write(place("unit.in"), lines).expect("writable");
     fs::write(place("bench.v"), BENCH.replace("COUNT", &operations.len().to_string())).expect("writable");
     if let Some((module, from, to)) = fault {
-        let name = format!("sptfra_{module}.v");
-        let text = fs::read_to_string(workspace("hdl-gen/rtl").join(&name)).expect("is there");
-        assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
-        fs::write(place(&name), text.replace(from, to)).expect("writable");
+        write_broken(folder.path(), &format!("sptfra_{module}"), from, to);
     }
     if multiplier == Multiplier::Split {
         let split = "sptfra_multiply.v";

@@ -6,10 +6,10 @@ use rand_chacha::ChaCha8Rng;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, Controlled, address, check};
 use testbench::stream::{Pacing, Traffic, exchange};
-use testbench::trial::{Trial, rtl_sources, timeout};
-use testbench::verilate::Verilate;
+use testbench::trial::{Trial, timeout};
 
 use super::{mixed, subjects};
+use crate::support::faults::broken;
 use crate::support::{frames, in_parallel, simulate_exactly};
 
 #[test]
@@ -97,19 +97,15 @@ fn a_wrong_count_is_noticed() {
     let plan = &subject.plan;
     let packets = mixed(plan, 40, &mut ChaCha8Rng::seed_from_u64(8));
     let trial = Trial::new(plan, packets, 1);
-    for (text, broken) in [
+    for (from, to) in [
         ("(status[5:4] != 2'd0)", "(status[4] != 1'd0)"),
         ("now - beginnings[oldest] + 32'd1", "now - beginnings[oldest]"),
         ("seen_end ? now - last_end : 32'd0", "now - last_end + 32'd1"),
         ("frames_in <= frames_in + 32'd1", "frames_in <= frames_in + 32'd2"),
         ("frame_done <= frame_ends;", "frame_done <= 1'b0;"),
     ] {
-        let mut sources = rtl_sources(plan).expect("emitted");
-        let right = String::from_utf8(sources.files["rtl/sptfra_frame_meter.v"].clone()).expect("text");
-        assert_eq!(right.matches(text).count(), 1, "{text}");
-        sources.files.insert("rtl/sptfra_frame_meter.v".to_owned(), right.replace(text, broken).into_bytes());
-        let built = Verilate::default().build(&sources).expect("builds");
+        let built = broken(plan, "sptfra_frame_meter", from, to);
         let report = check(&trial, &built, || ()).expect("no rule broken");
-        assert_ne!(report.wrong, Vec::<String>::new(), "{broken}");
+        assert_ne!(report.wrong, Vec::<String>::new(), "{to}");
     }
 }

@@ -12,10 +12,10 @@ use testbench::dut::{Core, Inputs};
 use testbench::registers::address::{self, INTERRUPT_STATUS};
 use testbench::registers::{Access, Controlled};
 use testbench::tools;
-use testbench::trial::rtl_sources;
-use testbench::verilate::{Built, Verilate};
+use testbench::verilate::Built;
 
 use super::{Subject, subjects};
+use crate::support::faults::broken;
 use crate::support::{built, planned, shipped, workspace};
 
 /// Words in the port's 4 KiB.
@@ -279,13 +279,8 @@ fn a_wrong_bank_is_noticed() {
         ("if (write_enable && (write_word == INTERRUPT_ENABLE))", "if (write_enable)", "writes that go elsewhere"),
         ("write_word <= LAST_INTERVAL", "write_word <= 10'd31", "addresses that nothing has"),
     ];
-    for (text, broken, what) in faults {
-        let mut sources = rtl_sources(&subject.plan).expect("emitted");
-        let path = "rtl/sptfra_registers.v";
-        let right = String::from_utf8(sources.files[path].clone()).expect("text");
-        assert_eq!(right.matches(text).count(), 1, "{text}");
-        sources.files.insert(path.to_owned(), right.replace(text, broken).into_bytes());
-        let built = Verilate::default().build(&sources).expect("builds");
+    for (from, to, what) in faults {
+        let built = broken(&subject.plan, "sptfra_registers", from, to);
         assert_ne!(differences(&map, &built), Vec::<String>::new(), "{what}");
     }
 }

@@ -9,10 +9,11 @@ use rand_chacha::ChaCha8Rng;
 use testbench::dut::{Beat, Core, Inputs};
 use testbench::registers::{Access, Controlled, address};
 use testbench::stream::{Checker, Mode};
-use testbench::trial::{rtl_sources, timeout};
-use testbench::verilate::{Built, Verilate};
+use testbench::trial::timeout;
+use testbench::verilate::Built;
 
 use super::{Subject, mixed, subjects};
+use crate::support::faults::broken;
 use crate::support::{frames, in_parallel};
 
 /// Frames that may be lost: those inside the core, see the test of resets, and the one that is being sent.
@@ -172,17 +173,13 @@ fn soft_resets_on_each_others_heels_cut_no_packet() {
 #[test]
 fn a_gate_that_cuts_packets_is_noticed() {
     let subject = &subjects()[0];
-    for (text, broken) in [
+    for (from, to) in [
         ("wire out_open = !waiting || out_packet;", "wire out_open = !waiting;"),
         ("waiting && !out_packet && !resets", "waiting && !resets"),
         ("discards <= in_packet_next;", "discards <= 1'b0;"),
         ("core_s_tvalid = s_tvalid && in_open", "core_s_tvalid = s_tvalid"),
     ] {
-        let mut sources = rtl_sources(&subject.plan).expect("emitted");
-        let right = String::from_utf8(sources.files["rtl/sptfra_stream_gate.v"].clone()).expect("text");
-        assert_eq!(right.matches(text).count(), 1, "{text}");
-        sources.files.insert("rtl/sptfra_stream_gate.v".to_owned(), right.replace(text, broken).into_bytes());
-        let built = Verilate::default().build(&sources).expect("builds");
+        let built = broken(&subject.plan, "sptfra_stream_gate", from, to);
         let packets = packets(subject, 16);
         let noticed = (0..1500).step_by(37).any(|cycle| {
             let mode = Mode::all(cycle)[3];
@@ -190,6 +187,6 @@ fn a_gate_that_cuts_packets_is_noticed() {
                 .and_then(|story| judge(subject, &packets, 1, &story))
                 .is_err()
         });
-        assert!(noticed, "{broken}");
+        assert!(noticed, "{to}");
     }
 }

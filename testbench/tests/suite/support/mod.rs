@@ -1,6 +1,8 @@
 //! Designs for tests of the emitted RTL: planned, built through the shared cache, simulated, judged.
 
+pub mod faults;
 pub mod frames;
+pub mod player;
 pub mod random;
 
 use std::path::{Path, PathBuf};
@@ -12,7 +14,7 @@ use golden::estimators::joint::Grid;
 use hdl_gen::plan::Plan;
 use testbench::simulate::Simulation;
 use testbench::trial::{Trial, rtl_sources};
-use testbench::verilate::{Built, Effort, Verilate};
+use testbench::verilate::{Built, Verilate};
 
 /// A file of the workspace.
 pub fn workspace(path: &str) -> PathBuf {
@@ -70,12 +72,6 @@ pub fn planned(design: &Design) -> Plan {
 /// The plan's RTL, compiled.
 pub fn built(plan: &Plan) -> Built {
     Verilate::default().build(&rtl_sources(plan).expect("emitted")).expect("Verilator accepts it")
-}
-
-/// The same for a simulation of many millions of cycles.
-pub fn built_to_last(plan: &Plan) -> Built {
-    let verilate = Verilate::default().with_effort(Effort::Long);
-    verilate.build(&rtl_sources(plan).expect("emitted")).expect("Verilator accepts it")
 }
 
 /// Plans nothing and compiles nothing twice: sends `packets` through the RTL in all four stream modes, and judges

@@ -11,7 +11,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::tools;
 
-use super::module::{icarus, verilator};
+use crate::support::player::{icarus, verilator};
 use crate::support::{in_parallel, workspace};
 use cases::{Case, fill};
 use player::{assert_same, instance, lines, play};

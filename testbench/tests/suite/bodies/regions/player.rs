@@ -8,7 +8,7 @@ use hdl_gen::blocks::regions::{counted, parameters, parted};
 use hdl_gen::model::contacts::regions::Found;
 
 use super::cases::Case;
-use crate::support::workspace;
+use crate::support::player::write_broken;
 
 /// The module with inputs that are registers of whatever, and outputs that are all looked at.
 pub fn instance(case: &Case) -> String {
@@ -94,10 +94,7 @@ pub fn play(
     }
     fs::write(place("bench.v".to_owned()), bench + "endmodule\n").expect("writable");
     if let Some((module, from, to)) = fault {
-        let name = format!("sptfra_regions_{module}.v");
-        let text = fs::read_to_string(workspace("hdl-gen/rtl").join(&name)).expect("is there");
-        assert_eq!(text.matches(from).count(), 1, "{module}: {from:?} stands there once");
-        fs::write(place(name), text.replace(from, to)).expect("writable");
+        write_broken(folder.path(), &format!("sptfra_regions_{module}"), from, to);
     }
     let said = simulator(folder.path(), longest + 10);
     if !said.is_empty() {

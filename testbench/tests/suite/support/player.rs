@@ -1,0 +1,57 @@
+//! Plays stimulus into modules on a bench of their own, `bench.v` with a port `clock`.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use testbench::tools;
+
+use super::faults::replaced;
+use super::workspace;
+
+/// Verilator's runtime, which a bench seldom calls: compiled as it comes it takes longer than a small module.
+const RUNTIME: &str = "OPT_GLOBAL=-O0";
+
+/// A copy of one of the project's modules with a fault, in a bench's folder, where it goes ahead of the right one.
+pub fn write_broken(folder: &Path, module: &str, from: &str, to: &str) {
+    let name = format!("{module}.v");
+    let text = fs::read_to_string(workspace("hdl-gen/rtl").join(&name)).expect("is there");
+    fs::write(folder.join(name), replaced(module, &text, from, to)).expect("writable");
+}
+
+/// What is printed by `bench.v` and the modules of a folder, those of the project where it has none, in so many cycles.
+/// Verilator's program is quick, and Icarus' is quickly made.
+pub fn verilator(folder: &Path, cycles: usize) -> String {
+    let main = format!(
+        "#include \"Vbench.h\"\nint main() {{\n    Vbench bench;\n    for (long edge = 0; edge < 2L * {cycles}; ++edge) {{\n        \
+         bench.clock = edge & 1;\n        bench.eval();\n    }}\n    bench.final();\n}}\n"
+    );
+    // A main of its own turns the clock: the wheel's makefile has no flag for the coroutines that delays need.
+    fs::write(folder.join("main.cpp"), main).expect("writable");
+    let mut build = tools::verilator().expect("installed");
+    build.args(["--cc", "--exe", "--build", "-Wno-fatal", "-DSIMULATION", "--top-module", "bench"]);
+    build.args(["-MAKEFLAGS", "OPT_FAST=-O1", "-MAKEFLAGS", RUNTIME]);
+    build.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).args(["bench.v", "main.cpp"]);
+    succeed(build.current_dir(folder));
+    succeed(Command::new(folder.join("model/Vbench")).current_dir(folder))
+}
+
+/// As [`verilator`], by Icarus Verilog.
+pub fn icarus(folder: &Path, cycles: usize) -> String {
+    let clock = format!(
+        "module clock_of_bench;\n    reg clock = 0;\n    bench bench (.clock(clock));\n    \
+         initial begin\n        repeat (2 * {cycles}) #1 clock = !clock;\n        $finish(0);\n    end\nendmodule\n"
+    );
+    fs::write(folder.join("clock.v"), clock).expect("writable");
+    let mut build = tools::icarus().expect("installed");
+    build.args(["-g2005", "-DSIMULATION", "-s", "clock_of_bench", "-o", "bench", "-y", ".", "-y"]);
+    succeed(build.arg(workspace("hdl-gen/rtl")).args(["bench.v", "clock.v"]).current_dir(folder));
+    succeed(tools::icarus_runtime().expect("installed").args(["-n", "bench"]).current_dir(folder))
+}
+
+fn succeed(command: &mut Command) -> String {
+    let output = command.output().expect("starts");
+    let printed = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{command:?}: {printed}");
+    printed
+}
