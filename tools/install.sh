@@ -21,6 +21,9 @@ have ar || needed="$needed binutils"
 have iverilog || wanted="$wanted iverilog"
 have tclsh || wanted="$wanted tcl"
 have dtc && have fdtoverlay || wanted="$wanted device-tree-compiler"
+# What the boards' processors run, libraries for the linker included: 81 MB to fetch.
+have aarch64-linux-gnu-gcc || wanted="$wanted gcc-aarch64-linux-gnu libc6-dev-arm64-cross"
+have arm-linux-gnueabihf-gcc || wanted="$wanted gcc-arm-linux-gnueabihf libc6-dev-armhf-cross"
 if [ "${1:-}" = browser ]; then
     have chromium || have chromium-browser || have google-chrome || wanted="$wanted chromium"
 fi
@@ -52,7 +55,7 @@ if [ -n "$needed$wanted" ]; then
     else
         [ -z "$needed" ] || fail "missing:$needed. Not root, so nothing was installed: please install them (Debian names)"
         say "missing, and not root:$wanted (Debian names). 'make run' works without;"
-        say "'make test' needs iverilog, tcl, dtc and chromium; zlib and lz4 headers make traces FST in place of VCD"
+        say "'make test' needs iverilog, tcl, dtc and chromium, and looks at less without the compilers for Arm; zlib and lz4 headers make traces FST in place of VCD"
     fi
 fi
 

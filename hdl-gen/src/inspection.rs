@@ -5,14 +5,14 @@ use golden::kernel;
 use serde_json::{Value, json};
 
 use crate::blocks::latency;
+use crate::cores::{DspBlock, OLDER_LONG_BITS};
+use crate::emit::boards::Board;
 use crate::emit::{nnz, predicted, products};
 use crate::plan::contacts;
 use crate::plan::product::Coefficients;
 use crate::plan::savings::savings;
 use crate::plan::{Plan, PlanError};
 
-/// `(beginning of the part's name, DSP48E2, RAMB36)` of the default part.
-pub const KNOWN_PART: (&str, usize, f64) = ("xczu9eg", 2520, 912.0);
 /// Rounding of the coefficients, as a share of their size, from which on it is told.
 const COARSE: f64 = 0.005;
 
@@ -97,19 +97,45 @@ pub fn figures(plan: &Plan) -> Value {
     value
 }
 
-/// What to tell of a plan: that its layer is too thin, that it does not fit its part, that its coefficients are coarse, that
-/// it has no hardware for several bodies.
+/// What to tell of a plan: that its layer is too thin, that it does not fit its part or takes two multipliers there in
+/// place of one, that its coefficients are coarse, that it has no hardware for several bodies.
 pub fn warnings(plan: &Plan) -> Vec<String> {
-    [plan.design.thin_layer(), excess(plan), narrow(plan), without_hardware(plan)].into_iter().flatten().collect()
+    [plan.design.thin_layer(), excess(plan), doubled(plan), narrow(plan), without_hardware(plan)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// Shares of its part's DSP blocks and RAMB36 that a design takes, in percent, if the size of that part is known.
+pub fn shares(plan: &Plan) -> Option<[f64; 2]> {
+    let Board { dsp, bram36, .. } = Board::of_device(&plan.design.hardware.part)?;
+    let share = |used: f64, of: usize| 100.0 * used / of as f64;
+    Some([share(plan.resources.dsp as f64, dsp), share(plan.resources.bram36, bram36)])
 }
 
 /// What to tell whose design does not fit its part, if that is one whose size is known.
 pub fn excess(plan: &Plan) -> Option<String> {
     let (resources, part) = (&plan.resources, &plan.design.hardware.part);
-    let (known, dsp, bram36) = KNOWN_PART;
-    let fits = resources.dsp <= dsp && resources.bram36 <= bram36;
-    (part.starts_with(known) && !fits)
-        .then(|| format!("too much for {part}, which has {dsp} DSP48E2 and {bram36} RAMB36; filter more entries"))
+    let Board { dsp, bram36, .. } = Board::of_device(part)?;
+    let remedy = match (resources.dsp > dsp, resources.bram36 > bram36 as f64) {
+        (false, false) => return None,
+        (true, false) => "take fewer lanes",
+        (false, true) => "filter more entries",
+        (true, true) => "take fewer lanes and filter more entries",
+    };
+    Some(format!("too much for {part}, which has {dsp} {} and {bram36} RAMB36; {remedy}", resources.dsp_block.name()))
+}
+
+/// What to tell whose vectors are longer than the multipliers of a 7-series part.
+pub fn doubled(plan: &Plan) -> Option<String> {
+    let (resources, hardware) = (&plan.resources, &plan.design.hardware);
+    (resources.dsp_block == DspBlock::Dsp48E1 && hardware.data_bits > OLDER_LONG_BITS).then(|| {
+        format!(
+            "{} multiplies 25 x 18 bits in a DSP48E1: {} multipliers take {} of them; with data_bits = {OLDER_LONG_BITS} \
+             those of the lanes and of the field take one each, all others two as before",
+            hardware.part, resources.multipliers, resources.dsp
+        )
+    })
 }
 
 /// What to tell whose coefficients are so narrow that the forces show it.

@@ -3,12 +3,17 @@
  * line of forces on standard output; of a core that tells bodies apart (contacts) with a record of each behind the status.
  *
  *   forces_linux FRAMES                on the board, through /dev/uio* and u-dma-buf
- *   forces_simulated CORE.so FRAMES    on the desk, through the simulated core */
+ *   forces_simulated CORE.so FRAMES    on the desk, through the simulated core
+ *   ... --queue N                      N frames on their way at a time, by a DMA with descriptors. Lines come when so many
+ *                                      frames were read, or all of them
+ *   ... --metadata metadata.json       of a core without registers (control = false): what the design is */
 #define _POSIX_C_SOURCE 200809L
+#include "metadata.h"
+#include "sptfra_queue.h"
 #include "system.h"
+#include "text.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,60 +23,6 @@
 
 static size_t whole_lines(size_t bytes) { return (bytes + SPTFRA_LINE - 1u) / SPTFRA_LINE * SPTFRA_LINE; }
 
-/* The values of a line as the core takes them; 0 after a message. */
-static int parse(const sptfra_shape *shape, const char *line, unsigned long number, void *words)
-{
-    const size_t taxels = (size_t)shape->columns * shape->rows;
-    const double least = shape->samples == SPTFRA_INT16 ? -32768.0 : 0.0;
-    const double most = shape->samples == SPTFRA_INT16 ? 32767.0 : 65535.0;
-    const char *at = line;
-    size_t index;
-    char *end;
-
-    for (index = 0; index < taxels; index++) {
-        const double value = strtod(at, &end);
-
-        if (end == at) {
-            fprintf(stderr, "line %lu: %zu values, and the core has %zu taxels\n", number, index, taxels);
-            return 0;
-        }
-        if (shape->samples == SPTFRA_FLOAT32) {
-            ((float *)words)[index] = (float)value;
-        } else if (value >= least && value <= most && value == floor(value)) {
-            ((uint16_t *)words)[index] = (uint16_t)(int32_t)value;
-        } else {
-            fprintf(stderr, "line %lu, value %zu: %g is no count from %g to %g\n", number, index + 1, value, least, most);
-            return 0;
-        }
-        at = end + strspn(end, " \t,;\r\n");
-    }
-    if (*at != '\0') {
-        fprintf(stderr, "line %lu: more than %zu values\n", number, taxels);
-        return 0;
-    }
-    return 1;
-}
-
-/* Whether a line has the numbers of its columns alone, from 0 or 1 on, as pandas writes them above frames. */
-static int numbers_columns(const char *line, size_t taxels)
-{
-    const char *at = line;
-    double first = 0.0;
-    size_t index;
-    char *end;
-
-    for (index = 0; index < taxels; index++) {
-        const double value = strtod(at, &end);
-
-        first = index == 0 ? value : first;
-        if (end == at || (first != 0.0 && first != 1.0) || value != first + (double)index) {
-            return 0;
-        }
-        at = end + strspn(end, " \t,;\r\n");
-    }
-    return *at == '\0';
-}
-
 static int fail(const char *what, int code)
 {
     fprintf(stderr, "%s: %s%s%s\n", what, sptfra_error(code), code == SPTFRA_SYSTEM ? ": " : "",
@@ -79,137 +30,227 @@ static int fail(const char *what, int code)
     return 0;
 }
 
-/* Each body's record, by the columns of print_header. */
-static void print_bodies(const sptfra_shape *shape, const sptfra_result *result)
+/* ---- Frames in */
+
+typedef struct {
+    FILE *file;
+    char *line;
+    size_t room;
+    unsigned long number; /* of the line */
+    int seen;             /* a line that was a frame or might have been one */
+    int good;             /* no line so far that is no frame */
+} source;
+
+/* The next line that holds a frame, as words; 0 at the end, or after a message. */
+static int next_frame(source *frames, const sptfra_shape *shape, void *words)
 {
-    const int records = sptfra_records(shape);
-    int index;
+    const size_t taxels = (size_t)shape->columns * shape->rows;
 
-    if (records > 0) {
-        printf(",%u", (unsigned)result->bodies);
-    }
-    for (index = 0; index < records; index++) {
-        const sptfra_body *body = &result->body[index];
+    while (frames->good && getline(&frames->line, &frames->room, frames->file) > 0) {
+        const char *start = frames->line + strspn(frames->line, " \t\r\n");
+        const int first = !frames->seen;
 
-        printf(",%u,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", (unsigned)body->taxels, (unsigned)body->status,
-            (double)body->centre[0], (double)body->centre[1], (double)body->force[0], (double)body->force[1],
-            (double)body->force[2], (double)body->friction, (double)body->standard_error);
+        frames->number++;
+        /* A header has no number in it. */
+        if (*start == '\0' || *start == '#'
+            || (frames->number == 1 && strpbrk(frames->line, "0123456789") == NULL)) {
+            continue;
+        }
+        frames->seen = 1;
+        if (first && text_numbers_columns(start, taxels)) {
+            fprintf(stderr, "line %lu: the columns' numbers: taken for a header\n", frames->number);
+            continue;
+        }
+        frames->good = text_parse(shape, start, frames->number, words);
+        return frames->good;
     }
+    return 0;
 }
 
-/* Names of the columns; those of bodies as in the force files of `golden solve`. */
-static void print_header(const sptfra_shape *shape)
-{
-    static const char *const names[] = {"taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"};
-    const int records = sptfra_records(shape);
-    int index;
-    size_t name;
+/* ---- One at a time */
 
-    printf("frame,F_x,F_y,F_z,mu,phi,status%s", records > 0 ? ",bodies" : "");
-    for (index = 0; index < records; index++) {
-        for (name = 0; name < sizeof names / sizeof names[0]; name++) {
-            printf(",body%d_%s", index, names[name]);
-        }
+/* Prints an answer. */
+static int answered(const sptfra_shape *shape, const void *words)
+{
+    sptfra_result result;
+    const int code = sptfra_decode(shape, words, &result);
+
+    if (code == SPTFRA_OK) {
+        text_answer(shape, &result);
     }
-    printf("\n");
+    return code;
 }
 
 /* Sends the frame in `stress` and prints its answer; 0 after a message. */
 static int process(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces)
 {
-    sptfra_result result;
-    unsigned bit;
     int code = sptfra_start(device, stress, forces);
 
     code = code == SPTFRA_OK ? system_wait() : code;
     /* No interrupt comes of a transfer that failed: the DMA says why. */
     code = code == SPTFRA_OK ? sptfra_wait(device, forces, POLLS)
         : code == SPTFRA_TIMEOUT ? sptfra_wait(device, forces, 0) : code;
-    code = code == SPTFRA_OK ? sptfra_decode(&device->shape, forces->data, &result) : code;
+    code = code == SPTFRA_OK ? answered(&device->shape, forces->data) : code;
     if (code != SPTFRA_OK) {
         const int recovered = sptfra_recover(device, stress, forces, POLLS);
 
         fail("frame", code);
         return recovered == SPTFRA_OK ? 0 : fail("recovery", recovered);
     }
-    printf("%u,%.9g,%.9g,%.9g,%.9g,%.9g,", (unsigned)result.number, (double)result.force[0], (double)result.force[1],
-        (double)result.force[2], (double)result.friction, (double)result.direction);
-    for (bit = 0; sptfra_status_name(bit) != NULL; bit++) {
-        if (result.status >> bit & 1u) {
-            printf("%s%s", result.status & ((1u << bit) - 1u) ? "; " : "", sptfra_status_name(bit));
-        }
-    }
-    print_bodies(&device->shape, &result);
-    printf("\n");
-    fflush(stdout);
     return 1;
 }
 
-/* Every line that holds a frame; 0 after a message. */
-static int run(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces, FILE *frames)
+static int run_one_by_one(sptfra *device, const sptfra_buffer *memory, source *frames)
 {
-    const size_t taxels = (size_t)device->shape.columns * device->shape.rows;
-    unsigned long number = 0;
-    char *line = NULL;
-    size_t room = 0;
-    int good = 1, first = 1;
+    const size_t in = whole_lines(4u * (size_t)device->shape.words_in);
+    const sptfra_buffer stress = {memory->data, memory->address, in};
+    const sptfra_buffer forces = {(char *)memory->data + in, memory->address + in, memory->bytes - in};
+    int good = 1;
 
-    print_header(&device->shape);
-    while (good && getline(&line, &room, frames) > 0) {
-        const char *start = line + strspn(line, " \t\r\n");
-
-        number++;
-        /* A header has no number in it. */
-        if (*start == '\0' || *start == '#' || (number == 1 && strpbrk(line, "0123456789") == NULL)) {
-            continue;
-        }
-        if (first && numbers_columns(start, taxels)) {
-            fprintf(stderr, "line %lu: the columns' numbers: taken for a header\n", number);
-            first = 0;
-            continue;
-        }
-        first = 0;
-        good = parse(&device->shape, start, number, stress->data) && process(device, stress, forces);
+    if (memory->bytes < in + whole_lines(4u * (size_t)device->shape.words_out)) {
+        fprintf(stderr, "the buffer has %zu bytes, too few for a frame\n", memory->bytes);
+        return 0;
     }
-    free(line);
-    return good;
+    /* What follows a frame's last value in its last beat should be zero. */
+    memset(memory->data, 0, in);
+    while (good && next_frame(frames, &device->shape, stress.data)) {
+        good = process(device, &stress, &forces);
+    }
+    return good && frames->good;
+}
+
+/* ---- Many at a time */
+
+/* The oldest frame's answer, which an interrupt tells of. */
+static int take(sptfra_queue *queue, const void **answer)
+{
+    int code;
+
+    sptfra_queue_acknowledge(queue);
+    code = sptfra_queue_take(queue, answer, 0);
+    if (code != SPTFRA_TIMEOUT) {
+        return code;
+    }
+    code = system_wait();
+    return code == SPTFRA_OK ? sptfra_queue_take(queue, answer, POLLS)
+        : code == SPTFRA_TIMEOUT ? sptfra_queue_take(queue, answer, 0) : code;
+}
+
+static int run_queued(sptfra *device, const sptfra_buffer *memory, uint32_t depth, source *frames)
+{
+    const size_t wanted = sptfra_queue_bytes(&device->shape, depth);
+    sptfra_queue queue;
+    uint32_t lost;
+    int code, recovered, more = 1;
+
+    if (memory->bytes < wanted) {
+        fprintf(stderr, "the buffer has %zu bytes, and %u frames take %zu\n", memory->bytes, (unsigned)depth, wanted);
+        return 0;
+    }
+    code = sptfra_queue_open(&queue, device, memory, depth);
+    if (code != SPTFRA_OK) {
+        return fail("queue", code);
+    }
+    while (code == SPTFRA_OK && (more || sptfra_queue_length(&queue) > 0)) {
+        const void *answer;
+        void *room;
+
+        while (more && code == SPTFRA_OK && (room = sptfra_queue_room(&queue)) != NULL) {
+            more = next_frame(frames, &device->shape, room);
+            code = more ? sptfra_queue_send(&queue) : code;
+        }
+        if (code == SPTFRA_OK && sptfra_queue_length(&queue) > 0) {
+            code = take(&queue, &answer);
+            code = code == SPTFRA_OK ? answered(&device->shape, answer) : code;
+        }
+    }
+    if (code == SPTFRA_OK) {
+        return frames->good;
+    }
+    fail("frame", code);
+    recovered = sptfra_queue_recover(&queue, POLLS, &lost);
+    if (recovered != SPTFRA_OK) {
+        return fail("recovery", recovered);
+    }
+    fprintf(stderr, "frames that were sent and have no answer: %u\n", (unsigned)lost);
+    return 0;
+}
+
+/* ---- The command line */
+
+/* Takes the options off the arguments; how many are left, or 0 after a message. */
+static int options(int count, char **arguments, system_options *wanted, sptfra_shape *shape)
+{
+    int index, left = 1;
+
+    for (index = 1; index < count; index++) {
+        const int queue = strcmp(arguments[index], "--queue") == 0;
+
+        if (!queue && strcmp(arguments[index], "--metadata") != 0) {
+            arguments[left++] = arguments[index];
+            continue;
+        }
+        if (++index == count) {
+            fprintf(stderr, "%s: no value\n", arguments[index - 1]);
+            return 0;
+        }
+        if (queue) {
+            char *end;
+            const unsigned long depth = strtoul(arguments[index], &end, 10);
+
+            if (*end != '\0' || depth < SPTFRA_LEAST_QUEUED || depth > SPTFRA_MOST_QUEUED) {
+                fprintf(stderr, "--queue %s: %u to %u frames\n", arguments[index], SPTFRA_LEAST_QUEUED,
+                    SPTFRA_MOST_QUEUED);
+                return 0;
+            }
+            wanted->queue = (uint32_t)depth;
+        } else if (!metadata_read(arguments[index], shape)) {
+            return 0;
+        } else {
+            wanted->shape = shape;
+        }
+    }
+    return left;
 }
 
 int main(int count, char **arguments)
 {
+    system_options wanted = {NULL, 0};
+    source frames = {.file = stdin, .good = 1};
+    sptfra_shape shape;
     sptfra device;
-    sptfra_buffer memory, stress, forces;
-    FILE *frames = stdin;
-    size_t in;
-    int good;
+    sptfra_buffer memory;
+    int good = 0;
 
+    count = options(count, arguments, &wanted, &shape);
+    if (count == 0) {
+        return 2;
+    }
     if (count < system_arguments + 1 || count > system_arguments + 2) {
-        fprintf(stderr, "usage: %s %s[FRAMES]\n", arguments[0], system_usage);
+        fprintf(stderr, "usage: %s %s[--queue N] [--metadata FILE] [FRAMES]\n", arguments[0], system_usage);
         return 2;
     }
     if (count == system_arguments + 2) {
-        frames = fopen(arguments[count - 1], "r");
-        if (frames == NULL) {
+        frames.file = fopen(arguments[count - 1], "r");
+        if (frames.file == NULL) {
             perror(arguments[count - 1]);
             return 1;
         }
     }
-    if (!system_open(&device, &memory, arguments + 1)) {
+    if (!system_open(&device, &memory, &wanted, arguments + 1)) {
         return 1;
     }
-    in = whole_lines(4u * (size_t)device.shape.words_in);
-    if (memory.bytes < in + whole_lines(4u * (size_t)device.shape.words_out)) {
-        fprintf(stderr, "the buffer has %zu bytes, too few for a frame\n", memory.bytes);
-        return 1;
+    if (wanted.queue == 0 && device.scatter_gather) {
+        fprintf(stderr, "the DMA has descriptors, and takes frames through a queue alone: --queue 8\n");
+    } else {
+        text_header(&device.shape);
+        good = wanted.queue > 0 ? run_queued(&device, &memory, wanted.queue, &frames)
+                                : run_one_by_one(&device, &memory, &frames);
     }
-    /* What follows a frame's last value in its last beat should be zero. */
-    memset(memory.data, 0, in);
-    stress = (sptfra_buffer){memory.data, memory.address, in};
-    forces = (sptfra_buffer){(char *)memory.data + in, memory.address + in, memory.bytes - in};
-    good = run(&device, &stress, &forces, frames);
+    free(frames.line);
     system_close();
-    if (frames != stdin) {
-        fclose(frames);
+    if (frames.file != stdin) {
+        fclose(frames.file);
     }
     return !good;
 }

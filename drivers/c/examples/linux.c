@@ -22,6 +22,7 @@ const char system_usage[] = "";
 const int system_arguments = 0;
 
 static sptfra_uio core, dma;
+static int has_core;
 static void *mapped;
 static size_t mapped_bytes;
 
@@ -116,16 +117,18 @@ static int open_buffer(sptfra_buffer *memory)
     return 1;
 }
 
-int system_open(sptfra *device, sptfra_buffer *memory, char **arguments)
+int system_open(sptfra *device, sptfra_buffer *memory, const system_options *options, char **arguments)
 {
     int code;
 
     (void)arguments;
-    if (!open_uio(&core, "sptfra-core", CORE_BYTES) || !open_uio(&dma, "sptfra-dma", DMA_BYTES)
+    has_core = options->shape == NULL;
+    if ((has_core && !open_uio(&core, "sptfra-core", CORE_BYTES)) || !open_uio(&dma, "sptfra-dma", DMA_BYTES)
         || !open_buffer(memory)) {
         return 0;
     }
-    code = sptfra_open(device, &sptfra_memory_mapped, core.base, dma.base);
+    code = has_core ? sptfra_open(device, &sptfra_memory_mapped, core.base, dma.base)
+                    : sptfra_open_streams(device, &sptfra_memory_mapped, dma.base, options->shape);
     if (code != SPTFRA_OK) {
         fprintf(stderr, "core: %s\n", sptfra_error(code));
     }
@@ -138,5 +141,7 @@ void system_close(void)
 {
     munmap(mapped, mapped_bytes);
     sptfra_uio_close(&dma);
-    sptfra_uio_close(&core);
+    if (has_core) {
+        sptfra_uio_close(&core);
+    }
 }

@@ -14,19 +14,23 @@ const int system_arguments = 1;
 _Alignas(SPTFRA_LINE) static unsigned char bytes[1u << 20];
 static machine *system_machine;
 
-int system_open(sptfra *device, sptfra_buffer *memory, char **arguments)
+int system_open(sptfra *device, sptfra_buffer *memory, const system_options *options, char **arguments)
 {
     sptfra_platform platform = {NULL, machine_read, machine_write, NULL, NULL, NULL};
     int code;
 
-    system_machine = machine_open(arguments[0], SEED, 1);
+    system_machine = machine_open(arguments[0], SEED, options->shape == NULL);
     if (system_machine == NULL) {
         return 0;
     }
     platform.context = system_machine;
-    code = sptfra_open(device, &platform, MACHINE_CORE, MACHINE_DMA);
+    if (options->queue > 0) {
+        machine_scatter_gather(system_machine);
+    }
+    code = options->shape == NULL ? sptfra_open(device, &platform, MACHINE_CORE, MACHINE_DMA)
+                                  : sptfra_open_streams(device, &platform, MACHINE_DMA, options->shape);
     if (code != SPTFRA_OK) {
-        fprintf(stderr, "core: %s (the design needs control = true)\n", sptfra_error(code));
+        fprintf(stderr, "core: %s (a design without control = true needs --metadata)\n", sptfra_error(code));
     }
     *memory = (sptfra_buffer){bytes, (uintptr_t)bytes + MACHINE_BUS_OFFSET, sizeof bytes};
     return code == SPTFRA_OK;

@@ -49,7 +49,9 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let ways = plan.ways() as u32;
     // The lane, the destination, the row, and whether a program ends.
     let visit = 1 + address_bits(walkers) + destination_bits(plan.field_words() > 0) + row_width(plan);
-    BlockCost::new("lanes", &["sptfra_spmv_array"], hardware.lanes * plan.factors().multipliers()).with([
+    let multipliers = hardware.lanes * plan.factors().multipliers();
+    let narrow = if plan.factors().lane_is_narrow() { multipliers } else { 0 };
+    BlockCost::new("lanes", &["sptfra_spmv_array"], multipliers).narrow(narrow).with([
         memory("values", walkers, schedule.value_depth(), ways * hardware.coefficient_bits, true),
         memory("columns", walkers, schedule.word_depth(), column_bits(plan), true),
         memory("MACs per row", walkers, schedule.segment_depth(), SEGMENT_BITS, true),

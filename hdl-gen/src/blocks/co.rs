@@ -37,7 +37,10 @@ pub fn parameters(plan: &Plan) -> Parameters {
 /// Where sums of torques are made of taxels' forces, a multiplier for each of a taxel's arms.
 pub fn cost(plan: &Plan) -> BlockCost {
     let (data, taxels) = (plan.design.hardware.data_bits, plan.taxels());
-    let block = |dsp| BlockCost::new("Co", &["sptfra_co", "sptfra_unfold"], dsp);
+    let narrow = plan.factors().element_is_narrow();
+    let block = |multipliers| {
+        BlockCost::new("Co", &["sptfra_co", "sptfra_unfold"], multipliers).narrow(if narrow { multipliers } else { 0 })
+    };
     if plan.ways() > 1 {
         let folded = 2 * plan.elements().next_power_of_two();
         return block(0).with([memory("folded b", 1, folded, CLASSES as u32 * data, false)]);

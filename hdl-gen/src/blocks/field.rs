@@ -47,12 +47,14 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let (data, elements) = (plan.design.hardware.data_bits, plan.elements());
     let words = plan.streams().words();
     let modules = &["sptfra_field", "sptfra_field_wide", "sptfra_coefficient_field"];
-    let block = |dsp| BlockCost::new("field", modules, dsp);
+    let narrow = plan.factors().element_is_narrow();
+    let block =
+        |multipliers| BlockCost::new("field", modules, multipliers).narrow(if narrow { multipliers } else { 0 });
     if plan.ways() == 1 {
         // The memory is there without a field, too: the sums over the frame pass it.
-        let dsp = if plan.field_words() > 0 { 2 * words } else { 0 };
+        let multipliers = if plan.field_words() > 0 { 2 * words } else { 0 };
         let depth = 2 * (3 * plan.taxels()).div_ceil(words);
-        return block(dsp).with([memory("field", 3 * words, depth, data, false)]);
+        return block(multipliers).with([memory("field", 3 * words, depth, data, false)]);
     }
     if plan.field_words() == 0 {
         return block(0);

@@ -37,7 +37,8 @@ pub fn parameters(design: &Design) -> Parameters {
 /// One multiplier, of significands; headers, the program, two banks of results.
 pub fn cost(contacts: usize) -> BlockCost {
     let results = memory("results", 1, 2 << address_bits(words(contacts)), 32, false);
-    BlockCost::new("records", &["sptfra_records"], 1).with([
+    // Halves of a float's 24 bits.
+    BlockCost::new("records", &["sptfra_records"], 1).narrow(1).with([
         memory("headers", 1, WORDS, 32, false),
         memory("records_program", 1, rom().len(), INSTRUCTION_BITS, true),
         results,

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use golden::design::{Overrun, PlanKind};
 use golden::table::Table;
 use hdl_gen::emit::products;
-use hdl_gen::inspection::{KNOWN_PART, counted_bodies, excess, figures, narrow, several_bodies};
+use hdl_gen::inspection::{counted_bodies, doubled, excess, figures, narrow, several_bodies, shares};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::energy::Energy;
 use hdl_gen::plan::format::short;
@@ -175,21 +175,15 @@ fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
 fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
     let resources = &plan.resources;
     let part = &plan.design.hardware.part;
-    let (known, dsp, bram36) = KNOWN_PART;
     writeln!(out, "\nResources, predicted")?;
-    write!(out, "  {} DSP48E2, {} RAMB36, {} bits of ROM", resources.dsp, resources.bram36, resources.rom_bits)?;
-    if let Some(excess) = excess(plan) {
-        writeln!(out, "\n  {excess}")?;
-    } else if !part.starts_with(known) {
-        writeln!(out)?;
-    } else {
-        let used = |of: f64, all: f64| 100.0 * of / all;
-        writeln!(
-            out,
-            ": {:.1} and {:.1} % of {part}",
-            used(resources.dsp as f64, dsp as f64),
-            used(resources.bram36, bram36)
-        )?;
+    let (dsp, block) = (resources.dsp, resources.dsp_block.name());
+    write!(out, "  {dsp} {block}, {} RAMB36, {} bits of ROM", resources.bram36, resources.rom_bits)?;
+    match shares(plan) {
+        Some([dsp, bram36]) => writeln!(out, ": {dsp:.1} and {bram36:.1} % of {part}")?,
+        None => writeln!(out)?,
+    }
+    for told in [excess(plan), doubled(plan)].into_iter().flatten() {
+        writeln!(out, "  {told}")?;
     }
     let mut table = Table::new(["Memories", "block", "how many", "words", "bits", "RAMB36"]);
     for memory in &resources.memories {

@@ -17,6 +17,8 @@ pub mod row_sequencer;
 pub const SHORT_BITS: u32 = 18;
 /// Width of the longer one.
 pub const LONG_BITS: u32 = 27;
+/// Width of the longer one in the DSP48E1 of 7-series parts (UG479); a longer operand takes two of them.
+pub const OLDER_LONG_BITS: u32 = 25;
 /// Width of the sum of products behind them.
 pub const ACCUMULATOR_BITS: u32 = 48;
 
@@ -40,5 +42,38 @@ impl Multiplier {
     /// The form that suits `part`: whole, unless its name is that of a Lattice ECP5. Both take the same cycles.
     pub fn of_part(part: &str) -> Self {
         if part.starts_with("LFE5") { Self::Split } else { Self::Whole }
+    }
+}
+
+/// The multipliers that a part has, as Vivado's reports call them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum DspBlock {
+    /// 27 by 18 bits, of UltraScale and later; other fabrics are counted in these, too.
+    #[default]
+    Dsp48E2,
+    /// 25 by 18 bits, of the 7-series.
+    Dsp48E1,
+}
+
+impl DspBlock {
+    /// Those of `part`, by the beginning of its name.
+    pub fn of_part(part: &str) -> Self {
+        if part.starts_with("xc7") { Self::Dsp48E1 } else { Self::Dsp48E2 }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dsp48E2 => "DSP48E2",
+            Self::Dsp48E1 => "DSP48E1",
+        }
+    }
+
+    /// How many of them so many multipliers take, of which `narrow` have no operand beyond [`OLDER_LONG_BITS`].
+    pub fn count(self, multipliers: usize, narrow: usize) -> usize {
+        match self {
+            Self::Dsp48E2 => multipliers,
+            Self::Dsp48E1 => 2 * multipliers - narrow,
+        }
     }
 }

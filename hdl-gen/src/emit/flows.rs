@@ -88,6 +88,8 @@ struct View {
     /// Path of the self-checking testbench and names of its data files in `sim/`.
     testbench: Option<String>,
     sim_data: Vec<String>,
+    /// What the part's multipliers are called.
+    dsp_block: &'static str,
     /// Predicted multipliers and block memories.
     blocks: Vec<BlockResources>,
     /// Whether there is a register bank.
@@ -129,6 +131,7 @@ impl View {
             rom: names(files, "rom/", ".mem"),
             sim_data: names(files, "sim/", ".mem"),
             testbench: files.contains_key(&testbench).then_some(testbench),
+            dsp_block: plan.resources.dsp_block.name(),
             blocks: plan.resources.blocks.clone(),
             control: design.hardware.control,
             debug: design.hardware.debug.then(|| debug::nets(&core)),

@@ -1,6 +1,6 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
-mod boards;
+pub(crate) mod boards;
 mod columns;
 mod contacts;
 mod debug;

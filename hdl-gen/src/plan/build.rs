@@ -22,7 +22,7 @@ use super::timing::Timeline;
 use super::vector_formats::{Formats, arms};
 use super::{Condition, Nnz, Plan, Thresholds, control, elements, need, ways};
 use crate::blocks;
-use crate::cores::{LONG_BITS, Multiplier};
+use crate::cores::{DspBlock, LONG_BITS, Multiplier};
 use crate::estimators::{self, EstimatorPlan, Given};
 
 impl Plan {
@@ -157,7 +157,7 @@ impl Work {
             plan.timeline = blocks::contacts::timeline(&plan.design, &core);
             plan.contacts = Some(contacts.with_room(core, &plan.timeline));
         }
-        plan.resources = Resources::of(blocks::costs(&plan));
+        plan.resources = Resources::of(blocks::costs(&plan), DspBlock::of_part(&plan.design.hardware.part));
         plan
     }
 }

@@ -44,11 +44,12 @@ impl Energy {
     /// Of a design's frames at its full rate.
     pub fn of(plan: &Plan) -> Self {
         let (resources, cycles) = (&plan.resources, plan.timeline.interval_cycles);
-        let lanes = resources.blocks.iter().find(|block| block.modules.contains(&LANES)).map_or(0, |block| block.dsp);
+        let lanes =
+            resources.blocks.iter().find(|block| block.modules.contains(&LANES)).map_or(0, |block| block.multipliers);
         let macs: u64 = plan.schedule.windows.iter().map(|window| window.macs).sum();
         let width: u64 = resources.memories.iter().map(|memory| memory.count as u64 * u64::from(memory.width)).sum();
         let lane_products = macs * plan.ways() as u64;
-        let other_products = (resources.dsp - lanes) as u64 * cycles;
+        let other_products = (resources.multipliers - lanes) as u64 * cycles;
         let memory_bits = width * cycles;
         let hardware = &plan.design.hardware;
         let area = f64::from(hardware.coefficient_bits) * f64::from(hardware.data_bits) / OPERATION_BITS.powi(2);

@@ -3,7 +3,7 @@
 use golden::design::Design;
 use serde::Serialize;
 
-use crate::cores::{ACCUMULATOR_BITS, DROPPED_BITS, LONG_BITS, SHORT_BITS, WIDE_COEFFICIENT_BITS};
+use crate::cores::{ACCUMULATOR_BITS, DROPPED_BITS, LONG_BITS, OLDER_LONG_BITS, SHORT_BITS, WIDE_COEFFICIENT_BITS};
 
 /// Fraction bits of the friction components; one integer bit and a sign go with them.
 pub const FRICTION_FRACTION: u32 = 16;
@@ -99,6 +99,17 @@ impl Factors {
     /// Whether what does not fit is the operand.
     pub fn has_wide_data(self) -> bool {
         self.data_bits > LONG_BITS
+    }
+
+    /// Whether a multiplier of 25 by 18 bits takes a lane's operands: of two multipliers together each takes a coefficient
+    /// of 27.
+    pub fn lane_is_narrow(self) -> bool {
+        !self.is_wide() && self.data_bits <= OLDER_LONG_BITS
+    }
+
+    /// Whether it takes a vector's element, or each of the parts of one that is multiplied in two.
+    pub fn element_is_narrow(self) -> bool {
+        self.has_wide_data() || self.data_bits <= OLDER_LONG_BITS
     }
 
     /// Multipliers of a product.

@@ -1,8 +1,9 @@
-//! Predicted resources: multipliers and block memories of an UltraScale+ device, as the blocks state them.
+//! Predicted resources: multipliers and block memories of a device of AMD's, as the blocks state them.
 
 use serde::Serialize;
 
 use super::memory::Memory;
+use crate::cores::DspBlock;
 
 /// What a block of the hardware takes.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,16 +12,24 @@ pub struct BlockCost {
     pub name: &'static str,
     /// Its modules in `rtl/`; all that they instantiate counts too.
     pub modules: &'static [&'static str],
-    /// DSP48E2: one for each product that it forms in a cycle.
-    pub dsp: usize,
+    /// Multipliers of 27 by 18 bits: one for each product that it forms in a cycle.
+    pub multipliers: usize,
+    /// Of these, the ones whose operands never have more than 25 bits: [`crate::cores::OLDER_LONG_BITS`].
+    pub narrow: usize,
     /// Its memories.
     pub memories: Vec<Memory>,
 }
 
 impl BlockCost {
     /// A block with multipliers only.
-    pub fn new(name: &'static str, modules: &'static [&'static str], dsp: usize) -> Self {
-        Self { name, modules, dsp, memories: Vec::new() }
+    pub fn new(name: &'static str, modules: &'static [&'static str], multipliers: usize) -> Self {
+        Self { name, modules, multipliers, narrow: 0, memories: Vec::new() }
+    }
+
+    /// The same where so many of its multipliers have short operands.
+    #[must_use]
+    pub fn narrow(self, narrow: usize) -> Self {
+        Self { narrow, ..self }
     }
 
     /// The same with memories.
@@ -38,17 +47,26 @@ pub struct BlockResources {
     pub name: &'static str,
     /// Its modules in `rtl/`; all that they instantiate counts too.
     pub modules: &'static [&'static str],
-    /// DSP48E2.
+    /// DSP blocks of the part: one a multiplier, or two where its operands are too long for one.
     pub dsp: usize,
     /// RAMB36; a RAMB18 counts one half.
     pub bram36: f64,
+    /// Its multipliers, whatever the part makes of them.
+    #[serde(skip)]
+    pub multipliers: usize,
 }
 
 /// Predicted resources of a design.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Resources {
-    /// DSP48E2.
+    /// DSP blocks of the part.
     pub dsp: usize,
+    /// Which those are.
+    #[serde(skip)]
+    pub dsp_block: DspBlock,
+    /// Multipliers, whatever the part makes of them.
+    #[serde(skip)]
+    pub multipliers: usize,
     /// RAMB36; a RAMB18 counts one half.
     pub bram36: f64,
     /// Bits in ROM files.
@@ -60,19 +78,21 @@ pub struct Resources {
 }
 
 impl Resources {
-    /// The sum over the blocks.
-    pub fn of(costs: Vec<BlockCost>) -> Self {
-        let mut resources = Self::default();
-        for BlockCost { name, modules, dsp, memories } in costs {
+    /// The sum over the blocks, on a part with such multipliers.
+    pub fn of(costs: Vec<BlockCost>, dsp_block: DspBlock) -> Self {
+        let mut resources = Self { dsp_block, ..Self::default() };
+        for BlockCost { name, modules, multipliers, narrow, memories } in costs {
             // From a positive zero, which the sum of nothing is not.
             let bram36 = memories.iter().fold(0.0, |sum, memory| sum + memory.all_bram36());
             let rom_bits = |memory: &Memory| (memory.count * memory.depth) as u64 * u64::from(memory.width);
+            let dsp = dsp_block.count(multipliers, narrow);
             resources.dsp += dsp;
+            resources.multipliers += multipliers;
             resources.bram36 += bram36;
             resources.rom_bits += memories.iter().filter(|memory| memory.read_only).map(rom_bits).sum::<u64>();
             resources.memories.extend(memories);
             if dsp > 0 || bram36 > 0.0 {
-                resources.blocks.push(BlockResources { name, modules, dsp, bram36 });
+                resources.blocks.push(BlockResources { name, modules, dsp, bram36, multipliers });
             }
         }
         resources

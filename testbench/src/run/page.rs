@@ -60,7 +60,7 @@ fn speed(page: &mut String, report: &Report) {
         row("interval, µs", interval(&clock)),
         row("frames per second", interval(&rate)),
         row("lanes busy in SpMV", only(format!("{} %", decimals(100.0 * report.lanes_busy, 1)))),
-        row("DSP48E2", with(only(grouped(predicted.dsp as u64)), other(&|them| count(them.dsp)))),
+        row(report.dsp_block, with(only(grouped(predicted.dsp as u64)), other(&|them| count(them.dsp)))),
         row("BRAM36", with(only(decimals(predicted.bram36, 1)), other(&|them| count(them.bram36)))),
         row("ROM, bits", only(grouped(report.rom_bits))),
         row("MACs a frame", only(grouped(report.macs))),

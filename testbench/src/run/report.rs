@@ -54,7 +54,7 @@ pub struct Predicted {
     pub latency_cycles: u64,
     /// Between the last beats of consecutive frames.
     pub interval_cycles: u64,
-    /// DSP48E2.
+    /// DSP blocks of the part.
     pub dsp: usize,
     /// RAMB36; a RAMB18 counts one half.
     pub bram36: f64,
@@ -151,8 +151,11 @@ pub struct Report {
     /// The trace and its views, where one was asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub traces: Vec<PathBuf>,
-    /// DSP48E2, as the plan counts them.
+    /// DSP blocks of the part, as the plan counts them.
     pub dsp: usize,
+    /// What those are called.
+    #[serde(skip)]
+    pub dsp_block: &'static str,
     /// RAMB36, as the plan counts them.
     pub bram36: f64,
     /// Bits in ROM files.
@@ -217,6 +220,7 @@ impl Report {
             registers,
             traces: Vec::new(),
             dsp: plan.resources.dsp,
+            dsp_block: plan.resources.dsp_block.name(),
             bram36: plan.resources.bram36,
             rom_bits: plan.resources.rom_bits,
             macs: plan.macs(),

@@ -30,6 +30,7 @@ mod layered;
 mod lint;
 mod looking;
 mod netlist;
+mod older_parts;
 mod overrun;
 mod pack_registers;
 mod parameters;

@@ -166,13 +166,15 @@ impl Slot for JointPlan {
         let handed_on = || memory("u", 3, quads, classes * U_BITS, false);
         let Cells { cells, elements } = self.cells;
         let cells = self.block_cells().then(|| block_memory("u of cells", 3 * cells, 2 * elements, U_BITS));
-        // The squares of five depths, or of one; and both moments.
-        let plane = |dsp| BlockCost::new("plane", &["sptfra_plane_search"], dsp);
+        // The squares of five depths, or of one, which are of 17 bits; and both moments.
+        let plane =
+            |squares, multipliers| BlockCost::new("plane", &["sptfra_plane_search"], multipliers).narrow(squares);
         let mut blocks = vec![match &self.points {
-            Some(of) => {
-                plane(of.dsp()).with([taxels(), memory("grid values", of.side, of.side, points::VALUE_BITS, false)])
+            Some(of) => plane(of.weighed(), of.multipliers())
+                .with([taxels(), memory("grid values", of.side, of.side, points::VALUE_BITS, false)]),
+            None => {
+                plane(1, 3).with([memory("grid values", 1, POINTS, self.value_bits, false)].into_iter().chain(cells))
             }
-            None => plane(3).with([memory("grid values", 1, POINTS, self.value_bits, false)].into_iter().chain(cells)),
         }];
         if let Some(network) = &self.network {
             // The stresses of a quad, and two of their shares of all.

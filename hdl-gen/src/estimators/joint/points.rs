@@ -85,7 +85,7 @@ impl PointsPlan {
     }
 
     /// The squares, and both moments.
-    pub fn dsp(&self) -> usize {
+    pub fn multipliers(&self) -> usize {
         self.weighed() + MOMENTS
     }
 

@@ -4,12 +4,13 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use golden::design::Design;
+use golden::design::{Design, Outputs};
+use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
 use testbench::tools;
 use testbench::trial::model_answers;
 
-use super::{DRIVER, MACHINE, SANITIZED, compile};
+use super::{DRIVER, FORCES, MACHINE, SANITIZED, compile};
 use crate::docs::{commands, lines_of};
 use crate::support::{built, workspace};
 
@@ -74,9 +75,9 @@ fn the_recipe_comes_to_forces_on_the_terminal() {
         assert!(output.status.success(), "{}: {}", line.place(), said(&output));
         printed.push(String::from_utf8_lossy(&output.stdout).into_owned());
     }
-    // In C and in Python.
+    // In C and in Python, one at a time and many.
     printed.retain(|text| text.starts_with("frame,"));
-    assert_eq!(printed.len(), 2, "{printed:?}");
+    assert_eq!(printed.len(), 4, "{printed:?}");
     // What stands there as printed, and every force, as the model has them.
     let stated = page.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("stated forces");
     let answers = model(desk.path());
@@ -134,13 +135,77 @@ fn the_examples_say_what_is_wrong() {
     refused(&format!("{examples}/bare_metal_simulated"), "IDENTITY is not TFRA");
 }
 
+/// Many frames on their way, and cores without registers, with and without a field, of one body and of several: what is
+/// printed is what is printed of one frame at a time with registers.
+#[test]
+fn the_program_takes_queues_and_cores_without_registers() {
+    let desk = desk();
+    let made = bash(desk.path(), &format!("{MAKE} simulated"));
+    assert!(made.status.success(), "{}", said(&made));
+    let program = "drivers/c/examples/build/forces_simulated";
+    let frames: String = (0..40)
+        .map(|frame| {
+            let value = |taxel: i32| if (frame + taxel) % 3 == 0 { -200 * (frame + 1) } else { 10 * taxel };
+            let values: Vec<String> = (0..12).map(|taxel| value(taxel).to_string()).collect();
+            values.join(",") + "\n"
+        })
+        .collect();
+    fs::write(desk.path().join("frames.csv"), frames).expect("written");
+    for (name, change) in CORES {
+        let printed = |control: bool, options: &str| {
+            let mut design = Design::load(&workspace(DESIGN)).expect("right");
+            design.hardware.control = control;
+            change(&mut design);
+            let plan = Plan::new(&design).expect("a plan");
+            let metadata = emit(&plan).expect("files")["metadata.json"].clone();
+            fs::write(desk.path().join("metadata.json"), metadata).expect("written");
+            let library = built(&plan).library;
+            let output = bash(desk.path(), &format!("{program} {} {options} frames.csv", library.display()));
+            (output.status.success(), said(&output))
+        };
+        let (good, alone) = printed(true, "");
+        assert!(good && alone.lines().count() == 41, "{name}: {alone}");
+        for (control, options) in [
+            (true, "--queue 2"),
+            (true, "--queue 8"),
+            (true, "--queue 64"),
+            (false, "--metadata metadata.json"),
+            (false, "--metadata metadata.json --queue 8"),
+        ] {
+            assert_eq!(printed(control, options), (true, alone.clone()), "{name}: {options}");
+        }
+        let refused = |control: bool, options: &str, message: &str| {
+            let (good, text) = printed(control, options);
+            assert!(!good && text.contains(message), "{name}, {options}: {text}");
+        };
+        refused(true, "--queue 1", "--queue 1: 2 to 256 frames");
+        refused(true, "--queue", "--queue frames.csv: 2 to 256 frames");
+        refused(true, "--queue 8 frames.csv --metadata", "frames.csv: no metadata.json of format 2");
+        refused(true, "--metadata none.json", "none.json: No such file");
+    }
+    // A bad line: the frames before it have their answers.
+    let core = built(&Plan::new(&Design::load(&workspace(DESIGN)).expect("right")).expect("a plan")).library;
+    let bad = format!("(seq -s, 3 14; seq -s, 2 13; echo 1,2) | {program} {} --queue 8", core.display());
+    let bad = bash(desk.path(), &bad);
+    assert!(!bad.status.success() && said(&bad).contains("line 3: 2 values"), "{}", said(&bad));
+    assert_eq!(String::from_utf8_lossy(&bad.stdout).lines().count(), 3, "{}", said(&bad));
+}
+
+/// Cores whose answers have other lengths.
+const CORES: [(&str, fn(&mut Design)); 3] = [
+    ("a field", |_| ()),
+    ("resultants alone", |design| design.algorithm.outputs = Outputs::Resultants),
+    ("bodies told apart", |design| design.algorithm.contacts = 2),
+];
+
 /// A DMA that stops in the middle of a frame: the program says so and ends, and leaves a core that answers.
 #[test]
 fn a_fault_of_the_dma_is_said_and_cleared_away() {
     let folder = tempfile::tempdir().expect("a folder");
     let program = folder.path().join("faulty");
-    let own = ["drivers/c/examples/forces.c", "testbench/tests/suite/drivers/faulty.c"];
-    let sources: Vec<_> = DRIVER.iter().chain(&MACHINE).chain(&own).map(|path| workspace(path)).collect();
+    let own = ["testbench/tests/suite/drivers/faulty.c"];
+    let sources: Vec<_> =
+        DRIVER.iter().chain(&FORCES).chain(&MACHINE).chain(&own).map(|path| workspace(path)).collect();
     let examples = workspace("drivers/c/examples");
     let include = ["-I", examples.to_str().expect("UTF-8"), "-lm"];
     let sources: Vec<&Path> = sources.iter().map(std::path::PathBuf::as_path).collect();
@@ -166,6 +231,19 @@ fn a_fault_of_the_dma_is_said_and_cleared_away() {
         assert_eq!(lines.iter().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())).count(), 1);
     }
     let (good, text) = said([9, 0, 16, 0, 0]);
+    assert!(good && text.lines().count() == 6 && text.ends_with("afterwards: no contact\n"), "{text}");
+    // With four on their way, those that have no answer are counted.
+    let queued = |fault: [u32; 5]| {
+        let mut command = Command::new(&program);
+        command.arg(&core).args(fault.map(|number| number.to_string())).args(["--queue", "4"]).arg(&frames);
+        let output = command.output().expect("starts");
+        (output.status.success(), self::said(&output))
+    };
+    let (good, text) = queued([2, 1, 1 << 6, 7, 0]);
+    assert!(!good && text.contains("frame: the DMA stopped with an error"), "{text}");
+    assert!(text.contains("frames that were sent and have no answer: 3\n"), "{text}");
+    assert!(text.contains("afterwards: no contact"), "{text}");
+    let (good, text) = queued([9, 0, 16, 0, 0]);
     assert!(good && text.lines().count() == 6 && text.ends_with("afterwards: no contact\n"), "{text}");
 }
 

@@ -18,13 +18,15 @@
 #undef system_close
 
 #include "check.h"
+#include "sptfra_queue.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 const char system_usage[] = "CORE.so AT RECEIVING ERROR CYCLES WAKES ";
 const int system_arguments = 6;
-int system_open(sptfra *device, sptfra_buffer *memory, char **arguments);
+
+int system_open(sptfra *device, sptfra_buffer *memory, const system_options *options, char **arguments);
 int system_wait(void);
 void system_close(void);
 
@@ -32,7 +34,7 @@ static sptfra *opened;
 static sptfra_buffer *room;
 static int at, receiving, error, cycles, wakes, frame;
 
-int system_open(sptfra *device, sptfra_buffer *memory, char **arguments)
+int system_open(sptfra *device, sptfra_buffer *memory, const system_options *options, char **arguments)
 {
     int *const numbers[] = {&at, &receiving, &error, &cycles, &wakes};
     int index;
@@ -42,7 +44,7 @@ int system_open(sptfra *device, sptfra_buffer *memory, char **arguments)
     }
     opened = device;
     room = memory;
-    return desk_open(device, memory, arguments);
+    return desk_open(device, memory, options, arguments);
 }
 
 int system_wait(void)
@@ -61,11 +63,20 @@ void system_close(void)
     const size_t in = (4u * (size_t)opened->shape.words_in + SPTFRA_LINE - 1u) / SPTFRA_LINE * SPTFRA_LINE;
     const sptfra_buffer stress = {room->data, room->address, in};
     const sptfra_buffer forces = {(char *)room->data + in, room->address + in, room->bytes - in};
+    const void *answer = forces.data;
+    sptfra_queue queue;
     sptfra_result result;
 
-    memset(room->data, 0, in);
-    CHECK(sptfra_process(opened, &stress, &forces, 100000u) == SPTFRA_OK);
-    CHECK(sptfra_decode(&opened->shape, forces.data, &result) == SPTFRA_OK);
+    if (opened->scatter_gather) {
+        CHECK(sptfra_queue_open(&queue, opened, room, SPTFRA_LEAST_QUEUED) == SPTFRA_OK);
+        memset(sptfra_queue_room(&queue), 0, in);
+        CHECK(sptfra_queue_send(&queue) == SPTFRA_OK);
+        CHECK(sptfra_queue_take(&queue, &answer, 100000u) == SPTFRA_OK);
+    } else {
+        memset(room->data, 0, in);
+        CHECK(sptfra_process(opened, &stress, &forces, 100000u) == SPTFRA_OK);
+    }
+    CHECK(sptfra_decode(&opened->shape, answer, &result) == SPTFRA_OK);
     CHECK(result.status == 1u);
     CHECK(machine_faults(system_machine) == 0);
     printf("afterwards: no contact\n");

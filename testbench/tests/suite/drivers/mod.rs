@@ -3,6 +3,7 @@
 mod batches;
 mod bodies;
 mod calibration;
+mod cross;
 mod examples;
 mod files;
 mod queue;
@@ -124,6 +125,13 @@ const DRIVER: [&str; 3] = ["drivers/c/sptfra.c", "drivers/c/sptfra_result.c", "d
 /// What `calibration = "ram"` adds, and what reads files for it.
 const CALIBRATION: [&str; 2] = ["drivers/c/sptfra_calibration.c", "drivers/c/sptfra_bank.c"];
 const FILES: [&str; 2] = ["drivers/c/sptfra_file.c", "drivers/c/sptfra_lines.c"];
+/// The example program, but for what opens the core.
+const FORCES: [&str; 4] = [
+    "drivers/c/examples/forces.c",
+    "drivers/c/examples/text.c",
+    "drivers/c/examples/metadata.c",
+    "drivers/c/sptfra_queue.c",
+];
 const MACHINE: [&str; 2] = ["drivers/simulated/machine.c", "drivers/simulated/dma.c"];
 
 /// Flags for a program that stops at the first wrong access.
