@@ -33,6 +33,7 @@ CASES = {
     "sphere-30": ("sensor1", sphere(100.0, 7.0), (18.7, 10.4), 1.2, 0.49, 0.12, 0.15, 30.0),
     "cylinder-turned": ("sensor1", cylinder(60.0, 6.5, 4.0, 30.0), (18.7, 10.4), 1.2, 0.49, 0.10, 0.15, 120.0),
     "block-tilted": ("sensor1", block((5.0, 4.0), (0.01, 0.0), 1.0), (20.6, 9.7), 1.2, 0.49, 0.08, 0.15, 0.0),
+    "block-flat": ("sensor1", block((5.0, 4.0), (0.0, 0.0), 1.0), (19.3, 10.4), 1.2, 0.49, 0.08, 0.15, 30.0),
     "sphere-2": ("sensor2", sphere(100.0, 7.0), (20.0, 20.0), 1.2, 0.49, 0.12, 0.15, 45.0),
     "sphere-2-045": ("sensor2", sphere(150.0, 8.5), (18.4, 21.5), 1.2, 0.45, 0.12, 0.15, 250.0),
     "cylinder-2": ("sensor2", cylinder(60.0, 8.0, 5.0, 70.0), (21.3, 18.9), 1.2, 0.49, 0.10, 0.15, 200.0),
@@ -40,9 +41,15 @@ CASES = {
 }
 
 # Size of elements near the contact and elsewhere in mm, and the planes between the layers of elements.
-MESH = (2.0, 4.0, (0.0, 1.2, 3.0))
-# The first case once more on another mesh.
-MESHES = {"mesh-fine": (4.0 / 3.0, 4.0, (0.0, 0.8, 1.8, 3.0))}
+MESH = (4.0 / 3.0, 4.0, (0.0, 0.8, 1.8, 3.0))
+COARSE = (2.0, 4.0, (0.0, 1.2, 3.0))
+# Cases once more on other meshes: a body pressed hard, one on the other sensor, and one with an edge, on a finer one, too.
+MESHES = {
+    "sphere-soft-coarse": ("sphere-soft", COARSE),
+    "sphere-2-coarse": ("sphere-2", COARSE),
+    "block-flat-coarse": ("block-flat", COARSE),
+    "block-flat-finer": ("block-flat", (1.0, 4.0, MESH[2])),
+}
 NEAR = 9.0
 
 
@@ -59,8 +66,8 @@ def moves(depth, drag, angle):
 
 
 def done(status):
-    """Whether CalculiX came to the end of both steps."""
-    last = status.read_text().split("\n")[-2].split()
+    """Whether CalculiX came to the end of both steps; one that was stopped early has said nothing yet."""
+    last = (status.read_text().splitlines() or [""])[-1].split()
     return last[:1] == ["2"] and float(last[5]) == 1.0
 
 
@@ -119,11 +126,11 @@ def write(out):
             f"[sensor]\ncolumns = {nx}\nrows = {ny}\npitch_mm = [{sx}, {sy}]\ndepth_mm = {prism.size[2]}\n"
         )
     (folder / "cases.csv").write_text("\n".join(rows) + "\n")
-    for name in MESHES:
-        coarse, fine = kept(out, name), kept(out, "sphere-soft")
-        if coarse and fine:
-            at = {time: rest for time, *rest in fine["increments"]}
-            for time, force, stress in coarse["increments"]:
+    for name, (case, _) in MESHES.items():
+        again, first = kept(out, name), kept(out, case)
+        if again and first:
+            at = {time: rest for time, *rest in first["increments"]}
+            for time, force, stress in again["increments"]:
                 if time not in at:
                     continue
                 other, reference = at[time]
@@ -139,8 +146,8 @@ def main():
         return
     os.makedirs(out, exist_ok=True)
     for name in sys.argv[2:] or [*CASES, *MESHES]:
-        case, mesh = (CASES[name], MESH) if name in CASES else (CASES["sphere-soft"], MESHES[name])
-        for time, force, stress in run(out, name, case, mesh)["increments"]:
+        case, mesh = MESHES.get(name, (name, MESH))
+        for time, force, stress in run(out, name, CASES[case], mesh)["increments"]:
             print(f"{name} {time:.3f}", np.round(force, 4), round(min(stress)), round(max(stress)), flush=True)
 
 
