@@ -1,6 +1,7 @@
 //! Contacts of other kinds than those that the estimators were made for: what is left of their accuracy.
 
 mod doubt;
+mod layers;
 mod why;
 
 use std::f64::consts::PI;

@@ -8,7 +8,7 @@ use super::{design, share};
 
 /// Error of a frame's tangential force in percent of the normal force: along its push, more than 0 for too much, and
 /// across.
-fn error_of(solver: &Solver, frame: &SceneFrame) -> [f64; 2] {
+pub fn error_of(solver: &Solver, frame: &SceneFrame) -> [f64; 2] {
     let found = solver.solve(&frame.stress).unwrap();
     let [x, y] = [0, 1].map(|axis| 100.0 * (found.resultant[axis] - frame.force[axis]) / frame.force[2].abs());
     let (sin, cos) = frame.direction.sin_cos();
@@ -160,20 +160,17 @@ fn known_kinds(rows: &[Row]) -> Vec<Row> {
 #[test]
 #[ignore = "prints which way kinds of contacts err, and which of them, for docs/contacts.md; minutes"]
 fn table() {
-    let kinds = [
-        (Kind::Sliding, 200),
-        (Kind::Turned, 200),
-        (Kind::EvenShear, 200),
-        (Kind::Spinning, 200),
-        (Kind::SoftEdge, 200),
-        (Kind::HardEdge, 200),
-        (Kind::Shallower, 200),
-        (Kind::MixedInside, 2000),
-    ];
     for sensor in ["sensor1", "sensor2"] {
-        let design = design(&format!("{sensor}-wide"));
-        for (kind, count) in kinds {
-            let rows = rows(&design, kind, count);
+        let [design, narrow] = ["wide", "joint"].map(|kind| design(&format!("{sensor}-{kind}")));
+        for kind in Kind::ALL.into_iter().filter(|&kind| kind != Kind::Mixed) {
+            let rows = rows(&design, kind, if kind.has_own_friction() { 2000 } else { 200 });
+            let beside = self::rows(&narrow, kind, 200);
+            println!(
+                "| {} | {} | all, narrow | {}",
+                &sensor[6..],
+                kind.title(),
+                line(&beside.iter().collect::<Vec<_>>())
+            );
             for (label, belongs) in PARTS {
                 let part: Vec<&Row> = rows.iter().filter(|row| belongs(&design.sensor, row)).collect();
                 if !part.is_empty() && (label == "all" || part.len() < rows.len()) {
