@@ -134,6 +134,7 @@ fn each_body_has_its_own_forces() {
         ("sensor2-joint", Kind::Anyhow, [5.5, 18.0, 1.4]),
         ("sensor2-wide", Kind::Held, [5.5, 17.0, 1.4]),
         ("sensor2-wide", Kind::Three, [8.0, 22.0, 1.7]),
+        ("sensor1-bodies", Kind::Anyhow, [5.5, 18.0, 1.4]),
     ] {
         let [one, several] = [1, 4].map(|contacts| Solver::new(&design(name, contacts)).unwrap());
         let frames: Vec<SceneFrame> = (0..24).map(|seed| frame(one.matrices().sensor(), kind, 7000 + seed)).collect();
@@ -143,8 +144,8 @@ fn each_body_has_its_own_forces() {
         let found = [tangential.median, tangential.most, normal.median];
         assert!(right >= 20 && found.iter().zip(most).all(|(found, most)| *found <= most), "{said}");
         assert!(kind == Kind::Same || several.total.median < 0.5 * one.total.median, "{said}");
-        // Without what is not known of the others it is 78 and 62.
-        assert!(!name.ends_with("wide") || within > 90.0, "{said}");
+        // Without what is not known of the others it is 78 and 62 of the first two that tell it.
+        assert!(name.ends_with("joint") == within.is_nan() && (within.is_nan() || within > 90.0), "{said}");
     }
 }
 

@@ -83,8 +83,8 @@ fn frames_of_every_family_have_an_answer_not_far_from_the_truth() {
 /// narrow ones' errors are larger.
 #[test]
 fn the_wide_family_keeps_to_its_figures_within_the_grid() {
-    for sensor in ["sensor1", "sensor2"] {
-        let [joint, wide] = ["joint", "wide"].map(|kind| design(&format!("{sensor}-{kind}")));
+    for (sensor, wide) in [("sensor1", "wide"), ("sensor2", "wide"), ("sensor1", "fast-wide")] {
+        let [joint, wide] = ["joint", wide].map(|kind| design(&format!("{sensor}-{kind}")));
         let frames = Kind::MixedInside.frames(&joint.sensor, 0.5, 5000..5060).unwrap();
         let [joint, wide] = [joint, wide].map(|design| judge(&Solver::new(&design).unwrap(), &frames));
         let [median, most] = [0.5, 0.95].map(|part| share(&wide.errors, part));
@@ -132,6 +132,20 @@ fn table() {
                 found.within
             );
         }
+    }
+}
+
+#[test]
+#[ignore = "prints the table of sensor1-fast-wide in docs/estimators.md; minutes"]
+fn fast() {
+    let designs = ["sensor1-wide", "sensor1-fast-wide"].map(design);
+    let solvers = designs.each_ref().map(|design| Solver::new(design).unwrap());
+    for kind in Kind::ALL {
+        let count = if kind.has_own_friction() { 2000 } else { 200 };
+        let frames = kind.frames(&designs[0].sensor, 0.5, 1000..1000 + count).unwrap();
+        let [wide, fast] = solvers.each_ref().map(|solver| judge(solver, &frames));
+        let [bad, good] = fast.doubtful.map(|share| if share.is_nan() { String::new() } else { format!("{share:.0}") });
+        println!("| {} |{}{} {bad} | {good} | {:.0} |", kind.title(), row(&wide), row(&fast), fast.within);
     }
 }
 

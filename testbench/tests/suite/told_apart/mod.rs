@@ -239,7 +239,7 @@ fn cycles_of(plan: &Plan, core: &Built, bodies: usize) -> [u64; 2] {
 #[test]
 fn several_bodies_take_as_long_as_stated() {
     let stated = [
-        ("sensor1-fast", [[15_368, 12_258], [19_609, 16_499], [24_038, 20_928]]),
+        ("sensor1-bodies", [[15_872, 12_594], [20_113, 16_835], [24_542, 21_264]]),
         ("sensor1-fast-64", [[10_111, 8_204], [12_014, 10_107], [14_523, 12_616]]),
     ];
     let found = stated.map(|(name, _)| {
