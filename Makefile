@@ -40,11 +40,11 @@ run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a l
 
 # What fails soonest comes first: formatting and lints, then the crates in the order in which they use each other.
 .PHONY: test
-test: lint browser-tools sweep-tools wheel-tools book-tools ## Everything: formatting, lints, all tests of all crates
+test: lint browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## Everything: formatting, lints, all tests of all crates
 	$(CARGO) test --workspace
 
 .PHONY: test-times
-test-times: browser-tools sweep-tools wheel-tools book-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
+test-times: browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
 	@tools/test_times.py
 
 .PHONY: formal
@@ -105,6 +105,10 @@ book: book-tools ## README and docs as a site with a search, in target/book
 .PHONY: book-tools
 book-tools: tools ## Install MkDocs into .venv, for the site and its test
 	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-book.txt
+
+.PHONY: cocotb-tools
+cocotb-tools: tools ## Install cocotb into .venv, for the test of the generated example
+	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-cocotb.txt
 
 # golden and hdl-gen need nothing of the system they run on; testbench loads the cores that it compiles, so it cannot be static.
 HOST = $(shell rustc -vV | sed -n 's/^host: //p')

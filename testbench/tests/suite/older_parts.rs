@@ -15,7 +15,7 @@ const PART: &str = "xc7z020clg400-1";
 /// The joint estimator with its correction on 4 x 3 taxels: lanes, field, look, network, points, friction and summary.
 fn plan(data_bits: u32) -> Plan {
     let mut design: Design = shipped("small-joint");
-    design.hardware.part = PART.to_owned();
+    PART.clone_into(&mut design.hardware.part);
     design.hardware.data_bits = data_bits;
     Plan::new(&design).expect("a plan")
 }

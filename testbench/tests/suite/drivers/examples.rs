@@ -191,8 +191,11 @@ fn the_program_takes_queues_and_cores_without_registers() {
     assert_eq!(String::from_utf8_lossy(&bad.stdout).lines().count(), 3, "{}", said(&bad));
 }
 
+/// What is changed in a design.
+type Change = fn(&mut Design);
+
 /// Cores whose answers have other lengths.
-const CORES: [(&str, fn(&mut Design)); 3] = [
+const CORES: [(&str, Change); 3] = [
     ("a field", |_| ()),
     ("resultants alone", |design| design.algorithm.outputs = Outputs::Resultants),
     ("bodies told apart", |design| design.algorithm.contacts = 2),

@@ -1,12 +1,13 @@
-//! The example for cocotb, which is no tool of this project: it is Python, and drives the ports that the top has.
+//! The example for cocotb: it is Python, drives the ports that the top has, and runs in Icarus Verilog.
 
+use std::fs;
 use std::process::Command;
 
 use golden::design::Design;
 use hdl_gen::emit::emit;
 use hdl_gen::plan::Plan;
 
-use super::folder::{environment, run, workspace};
+use super::folder::{Folder, environment, run, workspace};
 
 /// Prints the attributes of `dut`: what the example takes for ports.
 const PORTS: &str = "import ast, sys
@@ -42,5 +43,30 @@ fn it_is_python_and_drives_every_input() {
         let digits = 1 + design.hardware.stream_bits as usize / 4;
         assert!(frames.lines().all(|line| line.len() == digits), "{digits}");
         assert!(script.contains(&format!("\nBITS = {}  #", design.hardware.stream_bits)));
+    }
+}
+
+/// With registers and without; and it sees a word of the model that differs.
+#[test]
+fn it_runs_and_sees_a_wrong_word() {
+    let python = environment().join("bin/python");
+    let there = Command::new(&python).args(["-c", "import cocotb_tools.runner"]).output().expect("Python starts");
+    assert!(there.status.success(), "cocotb is missing: run `make cocotb-tools`");
+    for (design, wrong) in [("small-control.toml", false), ("small.toml", false), ("small.toml", true)] {
+        let design = Design::load(&workspace().join("designs").join(design)).expect("a design");
+        let folder = Folder::new(&emit(&Plan::new(&design).expect("can be planned")).expect("is printed"));
+        let script = folder.design().join(format!("sim/{}_cocotb.py", design.name));
+        if wrong {
+            // The status of the first answer.
+            let place = folder.design().join(format!("sim/{}_expected.mem", design.name));
+            let text = fs::read_to_string(&place).expect("expected words");
+            let last = text.find('\n').expect("lines") - 1;
+            let digit = if text.as_bytes()[last] == b'0' { "1" } else { "0" };
+            fs::write(&place, format!("{}{digit}{}", &text[..last], &text[last + 1..])).expect("written");
+        }
+        let ran = run(Command::new(&python).arg(&script).current_dir(folder.work()));
+        assert_eq!(ran.ok, !wrong, "{}\n{}", ran.stdout, ran.stderr);
+        let said = ran.stdout + &ran.stderr;
+        assert!(said.contains(if wrong { "FAIL=1" } else { "TESTS=1 PASS=1 FAIL=0" }), "{said}");
     }
 }
