@@ -17,6 +17,8 @@ module sptfra_contacts #(
     parameter ROWS = 10,
     // Bodies that have a record, 2 to 8
     parameter CONTACTS = 4,
+    // 1: the forces of all taxels go out, too; 0: the words before them alone
+    parameter FIELD = 1,
     // Frames that have a place: 2, 4, 8 or 16
     parameter BANKS = 4,
     // Distances of neighbours in micrometres
@@ -288,6 +290,7 @@ module sptfra_contacts #(
     sptfra_contacts_output #(
         .TAXELS            (TAXELS),
         .CONTACTS          (CONTACTS),
+        .FIELD             (FIELD),
         .BANKS             (BANKS),
         .ROM_DIR           (ROM_DIR),
         .MIDDLE_X          (MIDDLE_X),
@@ -296,7 +299,7 @@ module sptfra_contacts #(
         .LIMIT             (LIMIT),
         .PROGRAM_LENGTH    (PROGRAM_LENGTH),
         .RECORDS_FILE      (RECORDS_FILE),
-        .LATENCIES (LATENCIES)
+        .LATENCIES         (LATENCIES)
     ) words (
         .clock         (clock),
         .reset         (reset),

@@ -11,7 +11,7 @@ use crate::plan::contacts::{ContactsPlan, FORCE_BITS, PART_BITS};
 use crate::plan::format::address_bits;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
-use crate::plan::streams::WORD_BITS;
+use crate::plan::streams::{Streams, WORD_BITS};
 use crate::plan::timing::Timeline;
 
 /// Multipliers of a column of the grid: one for each component of a force.
@@ -24,6 +24,7 @@ pub fn parameters(plan: &Plan, of: &ContactsPlan) -> Parameters {
     records::parameters(&plan.design)
         .count("COLUMNS", sensor.columns)
         .count("ROWS", sensor.rows)
+        .flag("FIELD", plan.field_words() > 0)
         .count("BANKS", of.banks)
         .number("STEP_X", x.into())
         .number("STEP_Y", y.into())
@@ -67,7 +68,7 @@ pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     let Some(of) = &plan.contacts else { return Vec::new() };
     let columns = plan.design.sensor.columns;
     let taxels = 1 << address_bits(plan.taxels());
-    let field = 1 << address_bits(plan.field_words());
+    let field = 1 << address_bits(3 * plan.taxels());
     let bodies = of.contacts.next_power_of_two();
     let word = WORD_BITS as u32;
     vec![
@@ -95,7 +96,7 @@ const AROUND: u64 = 22;
 pub fn timeline(design: &Design, core: &Timeline) -> Timeline {
     let sensor = &design.sensor;
     let taxels = sensor.taxels() as u64;
-    let words = records::words(design.algorithm.contacts) as u64 + 3 * taxels;
+    let words = Streams::of(design).words_out as u64;
     let looked_at = regions::counted(sensor, regions::WEIGHT_LATENCY) + cycles(1);
     Timeline {
         latency_cycles: core.latency_cycles + taxels + looked_at + words + AROUND,

@@ -206,7 +206,7 @@ impl<'plan> Model<'plan> {
         words[words::CENSUS] |= bodies;
         words[words::STATUS] |= if bodies > 1 { MORE_BODIES } else { 0 };
         run(self.plan, integers, search..products.len(), summary.friction, &mut frame);
-        if self.plan.field_words() > 0 {
+        if self.plan.has_field() {
             words.extend(self.field(&frame, summary.friction));
         }
         (words, summary)

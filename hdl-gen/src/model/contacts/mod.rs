@@ -56,10 +56,10 @@ impl Model<'_> {
         let bodies = found.bodies.max(taxels.len() as u32).min(u8::MAX.into()) as u8;
         let mut answer = records.finish(Counted { kept: taxels.len(), bodies, taxels: &taxels });
         answer[words::STATUS] = answer[words::STATUS] & 0xFFFF | u32::from(number) << 16;
-        if several {
-            answer.extend(forces.field());
-        } else {
-            answer.extend(field);
+        match (self.plan.field_words() > 0, several) {
+            (false, _) => {}
+            (true, false) => answer.extend(field),
+            (true, true) => answer.extend(forces.field()),
         }
         answer
     }

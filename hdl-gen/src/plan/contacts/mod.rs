@@ -3,6 +3,8 @@
 pub mod instructions;
 pub mod records;
 
+use std::borrow::Cow;
+
 use golden::design::{CalibrationIn, Design, Outputs, Overrun, Samples};
 use golden::matrices::Matrices;
 use golden::sensor::Sensor;
@@ -100,6 +102,17 @@ fn unit(sensor: &Sensor, coefficients: &[[f64; 3]]) -> i32 {
     (-100..100).find(fits).unwrap_or(100)
 }
 
+/// The design of the core for one body, which several share: it answers with the whole field, by which bodies are parted, and
+/// what the answer to the user has of that is not its matter.
+pub fn core(design: &Design) -> Cow<'_, Design> {
+    if design.algorithm.contacts < 2 {
+        return Cow::Borrowed(design);
+    }
+    let mut core = design.clone();
+    (core.algorithm.contacts, core.algorithm.outputs) = (1, Outputs::Field);
+    Cow::Owned(core)
+}
+
 /// What hardware for several bodies needs that a design does not say, if there is something.
 pub fn needs(design: &Design) -> Option<&'static str> {
     let hardware = &design.hardware;
@@ -111,7 +124,6 @@ pub fn needs(design: &Design) -> Option<&'static str> {
         (design.input.counts(), "frames in pascals: no [sensor] pa_per_count, curve or calibration"),
         (!design.input.dead.is_empty(), "no [sensor] dead"),
         (design.algorithm.slip.is_some(), "no [algorithm] slip"),
-        (design.algorithm.outputs != Outputs::Field, "[algorithm] outputs = \"field\""),
     ];
     wrong.into_iter().find(|&(is_wrong, _)| is_wrong).map(|(_, needs)| needs)
 }

@@ -36,7 +36,14 @@ fn of_frames(mut design: Design) -> Design {
     design
 }
 
-/// Both plans, both estimators, odd sides, a filter, a range for each frame; few records and many, few lanes and many.
+fn without_field(mut design: Design) -> Design {
+    design.name += "_sums";
+    design.algorithm.outputs = Outputs::Resultants;
+    design
+}
+
+/// Both plans, both estimators, odd sides, a filter, a range for each frame, resultants alone; few records and many, few lanes
+/// and many.
 fn designs() -> Vec<Design> {
     vec![
         telling_apart(shipped("odd"), 2),
@@ -44,6 +51,8 @@ fn designs() -> Vec<Design> {
         telling_apart(filtered(shipped("odd")), 5),
         telling_apart(with_joint(shipped("small")), 4),
         telling_apart(shipped("sensor1-fast-64"), 8),
+        telling_apart(without_field(shipped("odd")), 2),
+        telling_apart(without_field(of_frames(with_joint(shipped("small")))), 3),
     ]
 }
 
@@ -126,6 +135,22 @@ fn one_body_has_the_forces_of_a_design_for_one() {
     }
 }
 
+/// Resultants alone are the words before the field, whatever the frames.
+#[test]
+fn resultants_are_the_words_before_the_field() {
+    let field = telling_apart(with_joint(shipped("small")), 3);
+    let [alone, field] = [without_field(field.clone()), field].map(|design| planned(&design));
+    let packets = packets(&field, &mut ChaCha8Rng::seed_from_u64(5));
+    let before = 16 + 8 * 3;
+    assert_eq!([alone.words_out(), field.words_out()], [before, before + 3 * field.taxels()]);
+    assert_eq!(alone.timeline.latency_cycles, field.timeline.latency_cycles - 3 * field.taxels() as u64);
+    let whole = model_answers(&field, &packets);
+    assert!(whole.iter().any(|answer| answer[words::CENSUS] & 0xFF > 1));
+    for (found, whole) in model_answers(&alone, &packets).iter().zip(whole) {
+        assert_eq!(found[..], whole[..before]);
+    }
+}
+
 /// The largest differences of two answers along the surface and along z, of all bodies and of each, over the normal force.
 fn difference(found: &Answer, expected: &Solution) -> [f64; 2] {
     let of = |found: [f64; 3], expected: [f64; 3]| {
@@ -185,12 +210,11 @@ fn streams_with_pauses_faults_and_resets_are_told_apart() {
 #[test]
 fn what_does_not_go_with_several_bodies_is_refused() {
     type Change = fn(&mut Design);
-    let changes: [(&str, Change); 6] = [
+    let changes: [(&str, Change); 5] = [
         ("stream_bits = 32", |design| design.hardware.stream_bits = 128),
         ("overrun = \"stall\"", |design| design.hardware.overrun = Overrun::Drop),
         ("no [sensor] dead", |design| design.input.dead = vec![3]),
         ("no [algorithm] slip", |design| design.algorithm.slip = Some(Slip { limit: 0.5, hysteresis: 0.1 })),
-        ("outputs = \"field\"", |design| design.algorithm.outputs = Outputs::Resultants),
         ("samples = \"float32\"", |design| design.hardware.samples = Samples::Int16),
     ];
     for (needs, change) in changes {
