@@ -40,6 +40,8 @@ module sptfra_contacts #(
     parameter [31:0] MIDDLE_Y = 32'h3c1374bc,
     parameter [31:0] NEARNESS = 32'h47742400,
     parameter [31:0] LIMIT = 32'h3d75c28f,
+    parameter [31:0] SLIPS_FROM = 32'd0,
+    parameter [31:0] SLIPS_STILL = 32'd0,
     parameter integer PROGRAM_LENGTH = 128,
     parameter RECORDS_FILE = "",
     parameter [16*(CONTACTS+1)-1:0] LATENCIES = {(16 * (CONTACTS + 1)){1'b0}}
@@ -297,6 +299,8 @@ module sptfra_contacts #(
         .MIDDLE_Y          (MIDDLE_Y),
         .NEARNESS          (NEARNESS),
         .LIMIT             (LIMIT),
+        .SLIPS_FROM        (SLIPS_FROM),
+        .SLIPS_STILL       (SLIPS_STILL),
         .PROGRAM_LENGTH    (PROGRAM_LENGTH),
         .RECORDS_FILE      (RECORDS_FILE),
         .LATENCIES         (LATENCIES)

@@ -105,7 +105,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         let words = (0..1 << rows).flat_map(|row| (0..1 << columns).map(move |column| word(row, column)));
         let text = hex(words, contacts::rom_depth(plan), contacts::rom_bits());
         insert_rom(files, format!("rom/{}", contacts::rom_file(plan)), text);
-        let program = records::rom();
+        let program = records::Program::of(&plan.design).rom();
         let text = hex(program.iter().map(|&word| u128::from(word)), program.len(), records::INSTRUCTION_BITS);
         insert_rom(files, format!("rom/{}", contacts::program_file(plan)), text);
     }

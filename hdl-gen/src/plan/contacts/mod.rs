@@ -2,6 +2,7 @@
 
 pub mod instructions;
 pub mod records;
+mod writer;
 
 use std::borrow::Cow;
 
@@ -103,13 +104,14 @@ fn unit(sensor: &Sensor, coefficients: &[[f64; 3]]) -> i32 {
 }
 
 /// The design of the core for one body, which several share: it answers with the whole field, by which bodies are parted, and
-/// what the answer to the user has of that is not its matter.
+/// what the answer to the user has of that is not its matter. Its streams are of a word, and held.
 pub fn core(design: &Design) -> Cow<'_, Design> {
     if design.algorithm.contacts < 2 {
         return Cow::Borrowed(design);
     }
     let mut core = design.clone();
-    (core.algorithm.contacts, core.algorithm.outputs) = (1, Outputs::Field);
+    (core.algorithm.contacts, core.algorithm.outputs, core.algorithm.slip) = (1, Outputs::Field, None);
+    (core.hardware.stream_bits, core.hardware.overrun) = (WORD_BITS as u32, Overrun::Stall);
     Cow::Owned(core)
 }
 
@@ -117,13 +119,10 @@ pub fn core(design: &Design) -> Cow<'_, Design> {
 pub fn needs(design: &Design) -> Option<&'static str> {
     let hardware = &design.hardware;
     let wrong = [
-        (hardware.stream_bits as usize != WORD_BITS, "[hardware] stream_bits = 32"),
         (hardware.samples != Samples::Float32, "[hardware] samples = \"float32\""),
-        (hardware.overrun != Overrun::Stall, "[hardware] overrun = \"stall\""),
         (hardware.calibration != CalibrationIn::Rom, "[hardware] calibration = \"rom\""),
         (design.input.counts(), "frames in pascals: no [sensor] pa_per_count, curve or calibration"),
         (!design.input.dead.is_empty(), "no [sensor] dead"),
-        (design.algorithm.slip.is_some(), "no [algorithm] slip"),
     ];
     wrong.into_iter().find(|&(is_wrong, _)| is_wrong).map(|(_, needs)| needs)
 }

@@ -27,7 +27,7 @@ pub(super) fn timeline(plan: &Plan) -> Timeline {
     let durations = Durations::new(plan);
     let ends = |frames| Control::new(&durations).play(frames);
     // Frames that take as long as what is in them keep to no turns.
-    let every_frame = plan.streams_of_one().drops || plan.design.hardware.skip_zeros;
+    let every_frame = plan.streams().drops || plan.design.hardware.skip_zeros;
     let interval = if every_frame { longest_interval } else { mean_interval };
     Timeline {
         latency_cycles: ends(1)[0],
