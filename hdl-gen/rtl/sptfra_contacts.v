@@ -17,6 +17,8 @@ module sptfra_contacts #(
     parameter ROWS = 10,
     // Bodies that have a record, 2 to 8
     parameter CONTACTS = 4,
+    // 1: the forces of all taxels go out, too; 0: the words before them alone
+    parameter FIELD = 1,
     // Frames that have a place: 2, 4, 8 or 16
     parameter BANKS = 4,
     // Distances of neighbours in micrometres
@@ -38,6 +40,8 @@ module sptfra_contacts #(
     parameter [31:0] MIDDLE_Y = 32'h3c1374bc,
     parameter [31:0] NEARNESS = 32'h47742400,
     parameter [31:0] LIMIT = 32'h3d75c28f,
+    parameter [31:0] SLIPS_FROM = 32'd0,
+    parameter [31:0] SLIPS_STILL = 32'd0,
     parameter integer PROGRAM_LENGTH = 128,
     parameter RECORDS_FILE = "",
     parameter [16*(CONTACTS+1)-1:0] LATENCIES = {(16 * (CONTACTS + 1)){1'b0}}
@@ -288,15 +292,18 @@ module sptfra_contacts #(
     sptfra_contacts_output #(
         .TAXELS            (TAXELS),
         .CONTACTS          (CONTACTS),
+        .FIELD             (FIELD),
         .BANKS             (BANKS),
         .ROM_DIR           (ROM_DIR),
         .MIDDLE_X          (MIDDLE_X),
         .MIDDLE_Y          (MIDDLE_Y),
         .NEARNESS          (NEARNESS),
         .LIMIT             (LIMIT),
+        .SLIPS_FROM        (SLIPS_FROM),
+        .SLIPS_STILL       (SLIPS_STILL),
         .PROGRAM_LENGTH    (PROGRAM_LENGTH),
         .RECORDS_FILE      (RECORDS_FILE),
-        .LATENCIES (LATENCIES)
+        .LATENCIES         (LATENCIES)
     ) words (
         .clock         (clock),
         .reset         (reset),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Sends the words of a frame: those before the field, as sptfra_records has them, and the field: of one body as the
-// core has answered it, of several the sums, in float32.
+// Sends the words of a frame: those before the field, as sptfra_records has them, and with FIELD the field: of one
+// body as the core has answered it, of several the sums, in float32.
 //
 // From start to the first word: 10 cycles; then a word a cycle, where none waits.
 
@@ -13,6 +13,8 @@ module sptfra_contacts_output #(
     parameter TAXELS = 100,
     // Records of bodies
     parameter CONTACTS = 4,
+    // 1: the forces of all taxels go out, too; 0: the words before them alone
+    parameter FIELD = 1,
     // Answers that have a place
     parameter BANKS = 4,
     // Prefix of the ROM file names, for instance a directory with its slash
@@ -22,6 +24,8 @@ module sptfra_contacts_output #(
     parameter [31:0] MIDDLE_Y = 32'h3c1374bc,
     parameter [31:0] NEARNESS = 32'h47742400,
     parameter [31:0] LIMIT = 32'h3d75c28f,
+    parameter [31:0] SLIPS_FROM = 32'd0,
+    parameter [31:0] SLIPS_STILL = 32'd0,
     parameter integer PROGRAM_LENGTH = 128,
     parameter RECORDS_FILE = "",
     parameter [16*(CONTACTS+1)-1:0] LATENCIES = {(16 * (CONTACTS + 1)){1'b0}},
@@ -84,6 +88,8 @@ module sptfra_contacts_output #(
         .MIDDLE_Y       (MIDDLE_Y),
         .NEARNESS       (NEARNESS),
         .LIMIT          (LIMIT),
+        .SLIPS_FROM     (SLIPS_FROM),
+        .SLIPS_STILL    (SLIPS_STILL),
         .PROGRAM_LENGTH (PROGRAM_LENGTH),
         .ROM_DIR        (ROM_DIR),
         .FILE           (RECORDS_FILE),
@@ -124,7 +130,7 @@ module sptfra_contacts_output #(
 
     assign idle = !busy;
     assign advance = m_tready || !m_tvalid;
-    assign reads_forces = busy && is_several;
+    assign reads_forces = (FIELD != 0) && busy && is_several;
 
     // ---- Stage 0: which word
     reg asks;
@@ -143,7 +149,8 @@ module sptfra_contacts_output #(
         if (asks && advance) begin
             word <= word + ONE[WORD_WIDTH-1:0];
             if (last_word) begin
-                is_field <= 1'b1;
+                is_field <= (FIELD != 0);
+                asks <= (FIELD != 0);
             end
             if (is_field) begin
                 place <= place + ONE[FIELD_WIDTH-1:0];
@@ -188,7 +195,7 @@ module sptfra_contacts_output #(
     always @(posedge clock) begin
         if (advance) begin
             valid_1 <= asks;
-            last_1 <= is_field && last_place;
+            last_1 <= (FIELD != 0) ? is_field && last_place : last_word;
             is_field_1 <= is_field;
             component_1 <= component;
             word_1 <= word;

@@ -10,9 +10,12 @@
 // are written before start, none from then until done. What is done with them is a program (sptfra_records_control):
 // with no body kept the frame's words stay as they are, with one that is the frame, with more the frame is their sum.
 //
-// Memory: sixteen words for each body, the frame, and what is between. In a body's page words 14 and 15 are F_x and
-// F_y of the round before, and words that records have no use for are written over. Two banks of results: a frame's
-// words stay until the next start but one.
+// With a limit of friction the program also finds which bodies slip: each by the limit of the one that was nearest in
+// the last frame, a lower one if that slipped. A frame without contact ends that, one that tells nothing does not.
+//
+// Memory: sixteen words for each body, the frame, and what is between; four of each body for the next frame. In a
+// body's page words 14 and 15 are F_x and F_y of the round before, and words that records have no use for are written
+// over. Two banks of results: a frame's words stay until the next start but one.
 //
 // From start to done a fixed number of cycles for each number of bodies kept, LATENCIES. Read: 1 cycle.
 
@@ -28,6 +31,9 @@ module sptfra_records #(
     parameter [31:0] NEARNESS = 32'h47742400,
     // A standard error above so many |F_z| is doubtful
     parameter [31:0] LIMIT = 32'h3d75c28f,
+    // Friction from which on a body slips, and at which it still does if it did before, for programs that ask
+    parameter [31:0] SLIPS_FROM = 32'd0,
+    parameter [31:0] SLIPS_STILL = 32'd0,
     // Instructions of the program
     parameter integer PROGRAM_LENGTH = 128,
     // Prefix of the program's file name, for instance a directory with its slash
@@ -61,14 +67,21 @@ module sptfra_records #(
 
     // Places of sources and destinations
     localparam [2:0] OF_I = 3'd0, OF_J = 3'd1, OF_FRAME = 3'd2, CONSTANT = 3'd4, OUT_FRAME = 3'd5, OUT_RECORD = 3'd6;
+    localparam [2:0] LAST = 3'd7; // as a source of j, as a destination of i
     localparam [3:0] FRAME_PAGE = 4'd8, SCRATCH_PAGE = 4'd9;
+    localparam [2:0] LAST_PAGES = 3'd5; // the tenth and the one behind it
     // What is done with sources as they are
-    localparam [4:0] OWN_STATUS = 5'd1, FRAME_STATUS = 5'd2, CENSUS = 5'd3, CHOOSE = 5'd4, DOUBT = 5'd14, RANK = 5'd15;
+    localparam [4:0] OWN_STATUS = 5'd1, FRAME_STATUS = 5'd2, CENSUS = 5'd3, CHOOSE = 5'd4;
+    localparam [4:0] NEARER = 5'd5, SLIP = 5'd6, REMEMBER = 5'd7;
+    // What compares
+    localparam [4:0] LESS = 5'd14, RANK = 5'd15;
     // Status bits that a body can have, and some of them
     localparam [15:0] BODY_BITS = 16'h0446;
+    localparam integer NO_CONTACT = 0;
     localparam integer SATURATED = 3;
     localparam integer DOUBTFUL = 6;
     localparam integer MORE_BODIES = 7;
+    localparam integer SLIPS = 10;
     localparam [7:0] RECORDS = CONTACTS[7:0];
 
     generate
@@ -86,6 +99,7 @@ module sptfra_records #(
     wire unit_done;
 
     sptfra_records_control #(
+        .CONTACTS       (CONTACTS),
         .PROGRAM_LENGTH (PROGRAM_LENGTH),
         .ROM_DIR        (ROM_DIR),
         .FILE           (FILE)
@@ -106,12 +120,15 @@ module sptfra_records #(
         .finish      (finish)
     );
 
-    function [3:0] page(input [2:0] place, input [3:0] body_i, input [3:0] body_j);
+    function [7:0] address(
+        input [2:0] place, input [3:0] word, input [3:0] body_i, input [3:0] body_j, input [2:0] last
+    );
         case (place)
-            OF_I: page = body_i;
-            OF_J: page = body_j;
-            OF_FRAME: page = FRAME_PAGE;
-            default: page = SCRATCH_PAGE;
+            OF_I: address = {body_i, word};
+            OF_J: address = {body_j, word};
+            OF_FRAME: address = {FRAME_PAGE, word};
+            LAST: address = {LAST_PAGES, last, word[1:0]};
+            default: address = {SCRATCH_PAGE, word};
         endcase
     endfunction
 
@@ -125,13 +142,16 @@ module sptfra_records #(
 
     always @(posedge clock) begin
         is_constant <= (source[6:4] == CONSTANT);
-        case (source[2:0])
-            3'd1: constant <= 32'h3f800000; // 1
-            3'd2: constant <= 32'h3fc80000; // 1.25^2, the share of what the last round has changed
-            3'd3: constant <= MIDDLE_X;
-            3'd4: constant <= MIDDLE_Y;
-            3'd5: constant <= NEARNESS;
-            3'd6: constant <= LIMIT;
+        case (source[3:0])
+            4'd1: constant <= 32'h3f800000; // 1
+            4'd2: constant <= 32'h3fc80000; // 1.25^2, the share of what the last round has changed
+            4'd3: constant <= MIDDLE_X;
+            4'd4: constant <= MIDDLE_Y;
+            4'd5: constant <= NEARNESS;
+            4'd6: constant <= LIMIT;
+            4'd7: constant <= 32'h7f7fffff; // farther than anything
+            4'd8: constant <= SLIPS_FROM;
+            4'd9: constant <= SLIPS_STILL;
             default: constant <= 32'd0;
         endcase
         if (!third) begin
@@ -159,9 +179,10 @@ module sptfra_records #(
     reg [7:0] bodies_held;
     reg [16*CONTACTS-1:0] taxels_held;
     reg [3*CONTACTS-1:0] ranks;
-    reg doubtful; // the body
+    reg less; // the last comparison's first source
+    reg slips; // the body
     reg [15:0] any_bits; // of its bodies
-    wire [15:0] own_bits = (operand[15:0] & BODY_BITS) | ({15'd0, doubtful} << DOUBTFUL);
+    wire [15:0] own_bits = (operand[15:0] & BODY_BITS) | ({15'd0, less} << DOUBTFUL) | ({15'd0, slips} << SLIPS);
     wire [15:0] more_bits = {15'd0, bodies_held > RECORDS} << MORE_BODIES;
     wire [2:0] rank = ranks[3*i[2:0] +: 3];
 
@@ -170,11 +191,16 @@ module sptfra_records #(
             bodies_held <= bodies;
             taxels_held <= taxels;
             ranks <= {(3 * CONTACTS){1'b0}};
-            doubtful <= 1'b0;
+            less <= 1'b0;
+            slips <= 1'b0;
             any_bits <= 16'd0;
         end
-        if (finish && (what == DOUBT)) begin
-            doubtful <= below;
+        if (finish && (what == LESS)) begin
+            less <= below;
+        end
+        if (finish && (what == SLIP)) begin
+            slips <= !less;
+            less <= 1'b0;
         end
         if (finish && (what == RANK)) begin
             if (below) begin
@@ -188,13 +214,30 @@ module sptfra_records #(
         end
     end
 
+    // ---- Bodies of the last frame, which one that tells nothing is not
+    reg [3:0] last_bodies;
+    reg [3:0] kept_held;
+
+    always @(posedge clock) begin
+        if (idle && start) begin
+            kept_held <= kept;
+        end
+        if (finish && (what == REMEMBER) && ((kept_held != 4'd0) || operand[NO_CONTACT])) begin
+            last_bodies <= kept_held;
+        end
+        if (reset) begin
+            last_bodies <= 4'd0;
+        end
+    end
+
     // ---- Results: the unit's in the cycle in which it is done, others a cycle later, in the next instruction's first
     reg moving;
+    wire written = (what == NEARER) ? less && (j < last_bodies) : (what == SLIP) ? less : (what != REMEMBER);
     reg [31:0] moved;
     reg [6:0] moved_to;
 
     always @(posedge clock) begin
-        moving <= finish && !what[3] && !reset;
+        moving <= finish && !what[3] && written && !reset;
         moved_to <= instruction[21:15];
         case (what)
             OWN_STATUS: moved <= {own_bits, taxels_held[16*i[2:0] +: 16]};
@@ -206,7 +249,7 @@ module sptfra_records #(
         endcase
     end
 
-    wire has_result = moving || (finish && what[3] && (what != DOUBT) && (what != RANK));
+    wire has_result = moving || (finish && what[3] && (what != LESS) && (what != RANK));
     wire [31:0] result = moving ? moved : unit_result;
     wire [2:0] to_place = moving ? moved_to[6:4] : instruction[21:19];
     wire [3:0] to_word = moving ? moved_to[3:0] : instruction[18:15];
@@ -222,10 +265,10 @@ module sptfra_records #(
     ) words (
         .clock         (clock),
         .write_enable  (idle ? (in_write && in_kept) : (has_result && !out)),
-        .write_address (idle ? in_address : {page(to_place, i, j), to_word}),
+        .write_address (idle ? in_address : address(to_place, to_word, i, j, i[2:0])),
         .write_data    (idle ? in_data : result),
         .read_enable   (1'b1),
-        .read_address  ({page(source[6:4], i, j), source[3:0]}),
+        .read_address  (address(source[6:4], source[3:0], i, j, j[2:0])),
         .read_data     (memory_word)
     );
 

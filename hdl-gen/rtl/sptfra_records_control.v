@@ -6,7 +6,8 @@
 // An instruction has 27 bits: what to do (5), destination (7), first source (7), second source (7), whether that
 // one's sign is left out (1). A place is of 3 bits and a word of 4. What to do with 00 on top takes the sources as
 // they are, with 01 on top the float unit (its operation below), with 10 on top this module: 0: jump if fewer than so
-// many bodies are kept, 1: next i, 2: next j, 3: begin with j behind i, 4: the end; a jump goes to the destination,
+// many bodies are kept, 1: next i, 2: next j, 3: begin with j behind i, 4: the end, 5: begin with j = 0, 6: next j, of
+// all that have a record. A jump goes to the destination, whose highest bit is that of the first source's,
 // and its number is the first source's word.
 //
 // Steps: first (the first source's address), second (the second one's; the first one's word is there), third (the
@@ -17,6 +18,8 @@
 `default_nettype none
 
 module sptfra_records_control #(
+    // Bodies that have a record
+    parameter integer CONTACTS = 4,
     // Instructions
     parameter integer PROGRAM_LENGTH = 128,
     // Prefix of the file name, for instance a directory with its slash
@@ -44,10 +47,11 @@ module sptfra_records_control #(
     localparam [2:0] IDLE = 3'd0, FIRST = 3'd1, SECOND = 3'd2, THIRD = 3'd3, UNIT = 3'd4;
     localparam [2:0] CHOOSE = 3'd4; // of what takes the sources as they are
     localparam [2:0] JUMP = 3'd0, NEXT_I = 3'd1, NEXT_J = 3'd2, PAIR = 3'd3, END = 3'd4; // of what is done here
+    localparam [2:0] FIRST_LAST = 3'd5, NEXT_LAST = 3'd6;
 
     generate
-        if ((PROGRAM_LENGTH < 2) || (PROGRAM_LENGTH > 128)) begin : gen_check
-            sptfra_error_a_program_has_2_to_128_instructions invalid ();
+        if ((PROGRAM_LENGTH < 2) || (PROGRAM_LENGTH > 256)) begin : gen_check
+            sptfra_error_a_program_has_2_to_256_instructions invalid ();
         end
     endgenerate
 
@@ -56,7 +60,7 @@ module sptfra_records_control #(
     reg [ADDRESS_WIDTH-1:0] next; // instruction
     wire [1:0] kind = instruction[26:25];
     wire [2:0] what = instruction[24:22];
-    wire [6:0] target = instruction[21:15];
+    wire [7:0] target = {instruction[14], instruction[21:15]};
     wire [3:0] number = instruction[11:8];
     wire of_control = kind[1];
     wire of_unit = kind[0];
@@ -64,7 +68,9 @@ module sptfra_records_control #(
     wire [3:0] j_then = j + 4'd1;
     wire i_left = (i_then < {1'b0, kept_held});
     wire j_left = (j_then < kept_held);
-    wire jump = (what == JUMP) ? (kept_held < number) : (what == NEXT_I) ? i_left : (what == NEXT_J) && j_left;
+    wire last_left = (j_then < CONTACTS[3:0]);
+    wire jump = (what == JUMP) ? (kept_held < number) : (what == NEXT_I) ? i_left
+        : ((what == NEXT_J) && j_left) || ((what == NEXT_LAST) && last_left);
     // A word is taken from the ROM
     wire fetch = idle || finish || (third && of_control);
     wire [26:0] word;
@@ -111,11 +117,14 @@ module sptfra_records_control #(
                     if (what == NEXT_I) begin
                         i <= i_left ? i + 4'd1 : 4'd0;
                     end
-                    if (what == NEXT_J) begin
+                    if ((what == NEXT_J) || (what == NEXT_LAST)) begin
                         j <= j_then;
                     end
                     if (what == PAIR) begin
                         j <= i + 4'd1;
+                    end
+                    if (what == FIRST_LAST) begin
+                        j <= 4'd0;
                     end
                 end
             end
@@ -144,7 +153,7 @@ module sptfra_records_control #(
         end
     end
 
-    wire _unused = &{1'b0, target, instruction[14:12], instruction[7:0]};
+    wire _unused = &{1'b0, target, instruction[13:12], instruction[7:0]};
 
 endmodule
 

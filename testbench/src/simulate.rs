@@ -16,6 +16,9 @@ use crate::verilate::Built;
 /// Frames sent one at a time for the latency.
 const LATENCY_FRAMES: usize = 3;
 
+/// Frames of several bodies sent for their cycles.
+const SEVERAL_FRAMES: usize = 5;
+
 /// What to send and what must come back.
 #[derive(Clone, Copy, Debug)]
 pub struct Job<'a> {
@@ -25,6 +28,8 @@ pub struct Job<'a> {
     pub packets: &'a [Vec<u32>],
     /// Those whose cycles are predicted.
     pub timed: &'a [Vec<u32>],
+    /// A frame of each number of bodies above one that there is, with that number.
+    pub several: &'a [(usize, Vec<u32>)],
     /// The answers of the integer model, one for each packet, its frame counter starting at 0.
     pub expected: &'a [Vec<u32>],
     /// What words are of, to name them.
@@ -69,6 +74,17 @@ impl fmt::Display for Cycles {
     }
 }
 
+/// What frames of several bodies take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct BodyCycles {
+    /// Bodies of each frame, those that have a record.
+    pub bodies: usize,
+    /// As [`Cycles::latency`].
+    pub latency_cycles: u64,
+    /// As [`Cycles::interval`], the mean where frames take turns in how long they take.
+    pub interval_cycles: u64,
+}
+
 /// What the simulation showed.
 #[derive(Clone, Debug)]
 pub struct Simulation {
@@ -78,6 +94,8 @@ pub struct Simulation {
     pub answers: Vec<Vec<u32>>,
     /// Of a frame.
     pub cycles: Cycles,
+    /// Of frames of several bodies, where there are some.
+    pub several: Vec<BodyCycles>,
 }
 
 impl Simulation {
@@ -132,11 +150,12 @@ pub fn simulate(job: &Job<'_>, progress: &(impl Fn() + Sync)) -> Result<Simulati
             }
             modes.push(result);
         }
-        Ok(Simulation { modes, answers, cycles: join(timing)? })
+        let (cycles, several) = join(timing)?;
+        Ok(Simulation { modes, answers, cycles, several })
     })
 }
 
-/// How many frames [`simulate`] sends for a set of `frames`.
+/// How many frames [`simulate`] sends for a set of `frames`, but for those of several bodies that it measures.
 pub fn frames_to_simulate(frames: usize) -> u64 {
     (Mode::COUNT * frames + LATENCY_FRAMES + INTERVAL_FRAMES) as u64
 }
@@ -158,8 +177,8 @@ fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResu
     Ok((ModeResult { mode, cycles: outcome.cycles, comparison }, answers))
 }
 
-/// Latency and interval, on frames repeated as often as needed.
-fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<Cycles, SimulationError> {
+/// Latency and interval, on frames repeated as often as needed; those of several bodies by their number.
+fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<(Cycles, Vec<BodyCycles>), SimulationError> {
     let failed = |source| SimulationError::Stream { mode: "timing", source };
     let mut core: Dut = job.built.load(job.seed)?;
     let mut run = |count, pacing| {
@@ -177,5 +196,17 @@ fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<Cycles, SimulationErro
         Pacing::BackToBack | Pacing::OneAtATime => many.interval(),
     };
     let interval = interval.unwrap_or_default();
-    Ok(Cycles { latency, interval })
+    let of_bodies = |(bodies, packet): &(usize, Vec<u32>)| {
+        let packets = vec![packet.clone(); SEVERAL_FRAMES];
+        let mut run = |pacing| {
+            let traffic = Traffic::new(&packets, job.timeout).with_pacing(pacing);
+            exchange(&mut core, &traffic, |_| ()).map_err(failed)
+        };
+        let latency = run(Pacing::OneAtATime)?.latency().unwrap_or_default();
+        let interval = run(job.pacing)?.mean_interval().unwrap_or_default();
+        let cycles = BodyCycles { bodies: *bodies, latency_cycles: latency, interval_cycles: interval };
+        Ok::<_, SimulationError>(cycles)
+    };
+    let several = job.several.iter().map(of_bodies).collect::<Result<_, _>>()?;
+    Ok((Cycles { latency, interval }, several))
 }

@@ -109,6 +109,17 @@ fn of_one_body(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>]) -> Vec<
     ones.map(|(packet, _)| packet.clone()).collect()
 }
 
+/// Of each number of bodies above one, as many as have a record, the first frame.
+fn of_several_bodies(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>]) -> Vec<(usize, Vec<u32>)> {
+    let Some(of) = &plan.contacts else { return Vec::new() };
+    let bodies = |answer: &[u32]| of.contacts.min((answer[words::CENSUS] & 0xFF) as usize);
+    let first = |bodies_of: usize| {
+        let found = expected.iter().position(|answer| bodies(answer) == bodies_of)?;
+        Some((bodies_of, packets[found].clone()))
+    };
+    (2..=of.contacts).filter_map(first).collect()
+}
+
 /// Frames of one body for where there is none among those of a trial; without one on the sensor, which is hardly possible,
 /// one of nothing, which takes no longer.
 fn made_of_one_body(plan: &Plan) -> Vec<Vec<u32>> {
@@ -205,6 +216,7 @@ impl<'a> Trial<'a> {
             built,
             packets: &self.packets,
             timed: &timed,
+            several: &of_several_bodies(self.plan, &self.packets, &self.expected),
             expected: &self.expected,
             shape: self.plan.into(),
             pacing: pacing(self.plan),

@@ -37,7 +37,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let parameters = programs(plan, products(plan, parameters));
     let parameters = if schedule.ahead { parameters.flag("AHEAD", true) } else { parameters };
     parameters
-        .number("DESTINATION_BITS", destination_bits(plan.field_words() > 0).into())
+        .number("DESTINATION_BITS", destination_bits(plan.has_field()).into())
         .table("SHIFTS", 6, &shifts(plan))
         .expression("ROM_DIR", "ROM_DIR")
         .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
@@ -48,7 +48,7 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let (hardware, schedule, walkers) = (&plan.design.hardware, &plan.schedule, plan.walkers());
     let ways = plan.ways() as u32;
     // The lane, the destination, the row, and whether a program ends.
-    let visit = 1 + address_bits(walkers) + destination_bits(plan.field_words() > 0) + row_width(plan);
+    let visit = 1 + address_bits(walkers) + destination_bits(plan.has_field()) + row_width(plan);
     let multipliers = hardware.lanes * plan.factors().multipliers();
     let narrow = if plan.factors().lane_is_narrow() { multipliers } else { 0 };
     BlockCost::new("lanes", &["sptfra_spmv_array"], multipliers).narrow(narrow).with([

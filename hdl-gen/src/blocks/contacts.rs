@@ -2,16 +2,16 @@
 
 use golden::design::Design;
 
-use super::{Parameters, records, regions};
+use super::{Parameters, latency, records, regions};
 use crate::cores::SHORT_BITS;
 use crate::plan::Plan;
 use crate::plan::SUMMARY_WORDS;
-use crate::plan::contacts::records::cycles;
+use crate::plan::contacts::records::Program;
 use crate::plan::contacts::{ContactsPlan, FORCE_BITS, PART_BITS};
 use crate::plan::format::address_bits;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
-use crate::plan::streams::WORD_BITS;
+use crate::plan::streams::{Streams, WORD_BITS};
 use crate::plan::timing::Timeline;
 
 /// Multipliers of a column of the grid: one for each component of a force.
@@ -24,6 +24,7 @@ pub fn parameters(plan: &Plan, of: &ContactsPlan) -> Parameters {
     records::parameters(&plan.design)
         .count("COLUMNS", sensor.columns)
         .count("ROWS", sensor.rows)
+        .flag("FIELD", plan.field_words() > 0)
         .count("BANKS", of.banks)
         .number("STEP_X", x.into())
         .number("STEP_Y", y.into())
@@ -67,7 +68,7 @@ pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     let Some(of) = &plan.contacts else { return Vec::new() };
     let columns = plan.design.sensor.columns;
     let taxels = 1 << address_bits(plan.taxels());
-    let field = 1 << address_bits(plan.field_words());
+    let field = 1 << address_bits(3 * plan.taxels());
     let bodies = of.contacts.next_power_of_two();
     let word = WORD_BITS as u32;
     vec![
@@ -83,7 +84,7 @@ pub fn costs(plan: &Plan) -> Vec<BlockCost> {
             memory("parts", 1, bodies * taxels, PART_BITS, false),
         ]),
         regions::cost(&plan.design.sensor),
-        records::cost(of.contacts),
+        records::cost(Program::of(&plan.design)),
     ]
 }
 
@@ -95,17 +96,28 @@ const AROUND: u64 = 22;
 pub fn timeline(design: &Design, core: &Timeline) -> Timeline {
     let sensor = &design.sensor;
     let taxels = sensor.taxels() as u64;
-    let words = records::words(design.algorithm.contacts) as u64 + 3 * taxels;
-    let looked_at = regions::counted(sensor, regions::WEIGHT_LATENCY) + cycles(1);
+    let streams = Streams::of(design);
+    let words = streams.words_out as u64;
+    let looked_at = regions::counted(sensor, regions::WEIGHT_LATENCY) + Program::of(design).cycles(1);
     Timeline {
-        latency_cycles: core.latency_cycles + taxels + looked_at + words + AROUND,
+        latency_cycles: core.latency_cycles + taxels + looked_at + words + AROUND + at_the_doors(streams),
         interval_cycles: core.interval_cycles.max(words + BETWEEN_OUTPUTS).max(looked_at + BETWEEN_LOOKS),
         ..core.clone()
     }
 }
 
+/// What streams wider than a word, and a door that drops frames, add to the way through a skid buffer.
+fn at_the_doors(streams: Streams) -> u64 {
+    let packed = if streams.words() > 1 { UNPACKED + PACKED } else { 0 };
+    packed + if streams.drops { latency::OVERRUN } else { 0 }
+}
+
+/// From a beat to its first sample (`sptfra_unpack`), and from the last word of a beat to that (`sptfra_pack`).
+const UNPACKED: u64 = 1;
+const PACKED: u64 = 1;
+
 /// From a frame's last word out to the next one's first.
 const BETWEEN_OUTPUTS: u64 = 10;
 
 /// Steps between what is done with a frame and the next one.
-const BETWEEN_LOOKS: u64 = 10;
+const BETWEEN_LOOKS: u64 = 9;

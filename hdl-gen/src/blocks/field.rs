@@ -13,7 +13,7 @@ use super::Parameters;
 
 /// The module.
 pub fn module(plan: &Plan) -> &'static str {
-    match (plan.ways() > 1, plan.streams().words() > 1) {
+    match (plan.ways() > 1, plan.streams_of_one().words() > 1) {
         (true, false) => "sptfra_field",
         (true, true) => "sptfra_field_wide",
         (false, _) => "sptfra_coefficient_field",
@@ -27,7 +27,7 @@ pub fn stages(plan: &Plan) -> u64 {
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let (data, words) = (plan.design.hardware.data_bits.into(), plan.streams().words());
+    let (data, words) = (plan.design.hardware.data_bits.into(), plan.streams_of_one().words());
     let Some(folded) = plan.formats.folded else {
         let parameters = Parameters::new().count("TAXELS", plan.taxels()).number("DATA_BITS", data);
         return if words > 1 { parameters.count("WORDS", words) } else { parameters };
@@ -45,18 +45,18 @@ pub fn parameters(plan: &Plan) -> Parameters {
 /// What a frame's taxels leave until they go out, and the multipliers that put a force together.
 pub fn cost(plan: &Plan) -> BlockCost {
     let (data, elements) = (plan.design.hardware.data_bits, plan.elements());
-    let words = plan.streams().words();
+    let words = plan.streams_of_one().words();
     let modules = &["sptfra_field", "sptfra_field_wide", "sptfra_coefficient_field"];
     let narrow = plan.factors().element_is_narrow();
     let block =
         |multipliers| BlockCost::new("field", modules, multipliers).narrow(if narrow { multipliers } else { 0 });
     if plan.ways() == 1 {
         // The memory is there without a field, too: the sums over the frame pass it.
-        let multipliers = if plan.field_words() > 0 { 2 * words } else { 0 };
+        let multipliers = if plan.has_field() { 2 * words } else { 0 };
         let depth = 2 * (3 * plan.taxels()).div_ceil(words);
         return block(multipliers).with([memory("field", 3 * words, depth, data, false)]);
     }
-    if plan.field_words() == 0 {
+    if !plan.has_field() {
         return block(0);
     }
     let multipliers = if plan.factors().has_wide_data() { 2 } else { 1 };

@@ -1,7 +1,5 @@
 //! Op behind the estimator: summary, status and output of a frame.
 
-use golden::design::Outputs;
-
 use crate::plan::Plan;
 use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION};
 use crate::plan::resources::BlockCost;
@@ -15,7 +13,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let parameters = Parameters::new()
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
-        .flag("FIELD", plan.design.algorithm.outputs == Outputs::Field)
+        .flag("FIELD", plan.has_field())
         .flag("DEPENDENT", plan.estimator.slot().answers_with_a_line())
         .count("REPLACED", plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()))
         .number("SUM_LSB", plan.formats.g.lsb.into())
@@ -26,7 +24,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         None => parameters,
     };
     let parameters = if plan.thresholds.thin { parameters.flag("THIN", true) } else { parameters };
-    let words = plan.streams().words();
+    let words = plan.streams_of_one().words();
     let parameters = if words > 1 {
         parameters.count("WORDS", words).cycles("FIELD_STAGES", field::stages(plan))
     } else {

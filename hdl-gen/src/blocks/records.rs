@@ -3,14 +3,14 @@
 use golden::design::Design;
 
 use crate::plan::SUMMARY_WORDS;
-use crate::plan::contacts::records::{Constants, INSTRUCTION_BITS, RECORD_WORDS, cycles, rom};
+use crate::plan::contacts::records::{Constants, INSTRUCTION_BITS, Program, RECORD_WORDS};
 use crate::plan::format::address_bits;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 
 use super::Parameters;
 
-/// Pages of sixteen words: of eight bodies, the frame and what is between, and room.
+/// Pages of sixteen words: of eight bodies, the frame, what is between, and two for the next frame, and room.
 const WORDS: usize = 256;
 
 /// Words before the field.
@@ -21,26 +21,32 @@ pub fn words(contacts: usize) -> usize {
 /// The instance's parameters but for the program's folder and file.
 pub fn parameters(design: &Design) -> Parameters {
     let contacts = design.algorithm.contacts;
-    let [_, _, _, middle_x, middle_y, nearness, limit] = Constants::of(design).words();
+    let program = Program::of(design);
+    let [_, _, _, middle_x, middle_y, nearness, limit, _, slips_from, slips_still] = Constants::of(design).words();
     let float = |bits: u32| format!("32'h{bits:08x}");
-    let latencies: Vec<(u64, String)> = (0..=contacts).map(|kept| (cycles(kept), String::new())).collect();
-    Parameters::new()
+    let latencies: Vec<(u64, String)> = (0..=contacts).map(|kept| (program.cycles(kept), String::new())).collect();
+    let parameters = Parameters::new()
         .count("CONTACTS", contacts)
         .expression("MIDDLE_X", float(middle_x))
         .expression("MIDDLE_Y", float(middle_y))
         .expression("NEARNESS", float(nearness))
         .expression("LIMIT", float(limit))
-        .count("PROGRAM_LENGTH", rom().len())
-        .table("LATENCIES", 16, &latencies)
+        .count("PROGRAM_LENGTH", program.rom().len())
+        .table("LATENCIES", 16, &latencies);
+    if program.slips {
+        parameters.expression("SLIPS_FROM", float(slips_from)).expression("SLIPS_STILL", float(slips_still))
+    } else {
+        parameters
+    }
 }
 
 /// One multiplier, of significands; headers, the program, two banks of results.
-pub fn cost(contacts: usize) -> BlockCost {
-    let results = memory("results", 1, 2 << address_bits(words(contacts)), 32, false);
+pub fn cost(program: Program) -> BlockCost {
+    let results = memory("results", 1, 2 << address_bits(words(program.contacts)), 32, false);
     // Halves of a float's 24 bits.
     BlockCost::new("records", &["sptfra_records"], 1).narrow(1).with([
         memory("headers", 1, WORDS, 32, false),
-        memory("records_program", 1, rom().len(), INSTRUCTION_BITS, true),
+        memory("records_program", 1, program.rom().len(), INSTRUCTION_BITS, true),
         results,
     ])
 }

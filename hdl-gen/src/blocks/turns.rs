@@ -12,6 +12,6 @@ pub fn parameters(plan: &Plan) -> Parameters {
     Parameters::new()
         .count("PROGRAMS", plan.schedule.programs.len())
         .count("RESIDUALS", plan.operands.residuals())
-        .count("PLACES", places(plan.field_words() > 0, plan.ways() > 1).unwrap_or(0))
+        .count("PLACES", places(plan.has_field(), plan.ways() > 1).unwrap_or(0))
         .flag("INTERVAL", plan.design.hardware.optimise != Optimise::Latency)
 }

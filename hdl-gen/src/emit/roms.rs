@@ -39,8 +39,8 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
     insert_rom(files, format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
     if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
-        for (first, kind) in bz::taxel_files(plan.streams()).iter().enumerate() {
-            let step = plan.streams().conversions();
+        for (first, kind) in bz::taxel_files(plan.streams_of_one()).iter().enumerate() {
+            let step = plan.streams_of_one().conversions();
             let depth = plan.taxels().div_ceil(step);
             if counts.curve.is_none() {
                 let exponents = counts.exponents.iter().skip(first).step_by(step);
@@ -105,7 +105,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         let words = (0..1 << rows).flat_map(|row| (0..1 << columns).map(move |column| word(row, column)));
         let text = hex(words, contacts::rom_depth(plan), contacts::rom_bits());
         insert_rom(files, format!("rom/{}", contacts::rom_file(plan)), text);
-        let program = records::rom();
+        let program = records::Program::of(&plan.design).rom();
         let text = hex(program.iter().map(|&word| u128::from(word)), program.len(), records::INSTRUCTION_BITS);
         insert_rom(files, format!("rom/{}", contacts::program_file(plan)), text);
     }
@@ -129,7 +129,7 @@ fn insert_rom(files: &mut FileMap, path: String, text: Vec<u8>) {
 
 /// Bits of a visit: last of its program, lane, destination, row.
 fn visit_bits(plan: &Plan) -> u32 {
-    1 + address_bits(plan.walkers()) + destination_bits(plan.field_words() > 0) + row_width(plan)
+    1 + address_bits(plan.walkers()) + destination_bits(plan.has_field()) + row_width(plan)
 }
 
 fn visit(plan: &Plan, index: usize) -> u128 {
@@ -143,7 +143,7 @@ fn visit(plan: &Plan, index: usize) -> u128 {
         None => (destination(plan.products[visit.product as usize].result), visit.row),
     };
     let lane = u128::from(last) << address_bits(plan.walkers()) | u128::from(visit.lane);
-    (lane << destination_bits(plan.field_words() > 0) | destination as u128) << row_width(plan) | u128::from(row)
+    (lane << destination_bits(plan.has_field()) | destination as u128) << row_width(plan) | u128::from(row)
 }
 
 /// The coefficients of all ways in one word, that of way 0 lowest.

@@ -97,6 +97,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_output_word",
     "sptfra_overrun",
     "sptfra_overrun_registers",
+    "sptfra_pack",
     "sptfra_parted_frames",
     "sptfra_parting",
     "sptfra_parting_lane",

@@ -155,7 +155,7 @@ impl View {
             range: plan.scales_frames().then(|| range::parameters(plan)),
             range_frames: range::of_frames(plan),
             range_row_width: address_bits(plan.taxels().max(FEWEST_ELEMENTS)),
-            field: plan.field_words() > 0,
+            field: plan.has_field(),
             at_most: if hardware.skip_zeros { "at most " } else { "" },
             latency_cycles: timeline.latency_cycles,
             latency_us: microseconds(timeline.latency_cycles),
@@ -245,7 +245,7 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if curve || !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
         without.push("sptfra_exponents");
     }
-    if plan.streams().sample == Samples::Float32 {
+    if plan.streams_of_one().sample == Samples::Float32 {
         without.push("sptfra_int_to_fixed");
     } else if plan.calibration.is_none() {
         without.push("sptfra_float_to_fixed");

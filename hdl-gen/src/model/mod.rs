@@ -20,12 +20,14 @@ use golden::products::{ByPq, Frame, Scalar};
 use crate::cores::{fixed_to_float, float_to_fixed};
 use crate::estimators::{Contact, Seen};
 use crate::plan::calibration::Bank;
+use crate::plan::contacts::records::Constants;
 use crate::plan::dead::GUESSED_SHARE;
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::product::{Coefficients, Product, Vector};
 use crate::plan::vector_formats::field_shifts;
 use crate::plan::{Plan, words};
 
+use contacts::records::Records;
 use integer::Integer;
 use range::Scaled;
 pub use status::*;
@@ -51,6 +53,8 @@ pub struct Model<'plan> {
     frames: u16,
     /// Whether the last frame slipped.
     slips: bool,
+    /// What makes the records of several bodies, if there may be several.
+    records: Option<Records>,
     /// Of a calibration in RAM, what acts, and how many have before it.
     bank: Option<Bank>,
     generation: u8,
@@ -60,7 +64,8 @@ impl<'plan> Model<'plan> {
     /// A model just out of reset.
     pub fn new(plan: &'plan Plan) -> Self {
         let bank = plan.calibration.as_ref().map(|calibration| calibration.power_up.clone());
-        Self { plan, frames: 0, slips: false, bank, generation: 0 }
+        let records = plan.contacts.as_ref().map(|of| Records::new(of.contacts, &Constants::of(&plan.design)));
+        Self { plan, frames: 0, slips: false, records, bank, generation: 0 }
     }
 
     /// The bank that acts on the frames from now on, where the design's calibration is in RAM.
@@ -73,14 +78,19 @@ impl<'plan> Model<'plan> {
     /// As after the hardware's reset: the frame counter starts again; the calibration stays.
     pub fn reset(&mut self) {
         (self.frames, self.slips) = (0, false);
+        self.records.iter_mut().for_each(Records::reset);
     }
 
     /// The output frame for one packet: its words in memory's order, float32 in Pa, up to the last of the beat with TLAST;
     /// words that are missing in that are 0. Its timestamp is 0: when a packet comes is not the model's to know.
     pub fn process(&mut self, packet: &[u32]) -> Vec<u32> {
-        let mut words = match &self.plan.contacts {
-            None => self.answer_to(packet),
-            Some(of) => self.answer_of_bodies(of, packet),
+        let mut words = match (&self.plan.contacts, self.records.take()) {
+            (Some(of), Some(mut records)) => {
+                let words = self.answer_of_bodies(of, &mut records, packet);
+                self.records = Some(records);
+                words
+            }
+            _ => self.answer_to(packet),
         };
         words[words::CENSUS] |= u32::from(self.generation) << 8;
         words
@@ -89,7 +99,7 @@ impl<'plan> Model<'plan> {
     fn answer_to(&mut self, packet: &[u32]) -> Vec<u32> {
         let counter = u32::from(self.frames) << 16;
         self.frames = self.frames.wrapping_add(1);
-        let (taxels, streams) = (self.plan.taxels(), self.plan.streams());
+        let (taxels, streams) = (self.plan.taxels(), self.plan.streams_of_one());
         let words = packet.iter().copied().chain(std::iter::repeat(0)).take(streams.whole_beats(packet.len()));
         let samples = streams.samples_of(words).take(taxels);
         // With a calibration in RAM these are pascals from here on.
@@ -201,7 +211,7 @@ impl<'plan> Model<'plan> {
         words[words::CENSUS] |= bodies;
         words[words::STATUS] |= if bodies > 1 { MORE_BODIES } else { 0 };
         run(self.plan, integers, search..products.len(), summary.friction, &mut frame);
-        if self.plan.field_words() > 0 {
+        if self.plan.has_field() {
             words.extend(self.field(&frame, summary.friction));
         }
         (words, summary)

@@ -5,7 +5,7 @@ use golden::estimators::DOUBT_FRACTION;
 use golden::matrices::Matrices;
 
 use super::calibration::CalibrationPlan;
-use super::contacts::ContactsPlan;
+use super::contacts::{self, ContactsPlan};
 use super::counts::CountsPlan;
 use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
@@ -92,6 +92,8 @@ impl Work {
         let hardware = &design.hardware;
         let matrices = Matrices::of(design)?;
         let contacts = ContactsPlan::new(design, &matrices)?;
+        let core = contacts::core(design);
+        let design = &*core;
         // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
         let stress = Format::covering(hardware.full_scale_in_frames(), Factors::of(design).outside_bits());
         let thresholds = thresholds(design, stress)?;

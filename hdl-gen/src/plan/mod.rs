@@ -182,11 +182,9 @@ impl Plan {
         self.streams().words_out
     }
 
-    /// The same streams of the core for one body, without records.
+    /// Those of the core for one body.
     pub fn streams_of_one(&self) -> Streams {
-        let mut streams = self.streams();
-        (streams.words_out, streams.records) = (SUMMARY_WORDS + self.field_words(), 0);
-        streams
+        if self.contacts.is_some() { Streams::of(&contacts::core(&self.design)) } else { self.streams() }
     }
 
     /// Words of the field in an output frame: 3 m, or none.
@@ -195,6 +193,11 @@ impl Plan {
             Outputs::Field => 3 * self.taxels(),
             Outputs::Resultants => 0,
         }
+    }
+
+    /// Whether the core computes the field: with several bodies always, as it parts them.
+    pub fn has_field(&self) -> bool {
+        self.design.algorithm.outputs == Outputs::Field || self.contacts.is_some()
     }
 
     /// Index of the first product of `block`, and of the first after it.

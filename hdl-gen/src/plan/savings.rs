@@ -1,6 +1,5 @@
 //! What each reduction of the reduced plan saves: multiply-accumulates a frame and coefficients in ROM.
 
-use golden::design::Outputs;
 use golden::products::{ProductList, Step};
 use serde::Serialize;
 
@@ -33,7 +32,7 @@ pub fn savings(plan: &Plan) -> Vec<Saving> {
     };
     let paper = ProductList::paper();
     let mut steps = vec![whole("the paper's plan", &paper), whole("fewer products", &paper.fewer_products(true))];
-    if plan.design.algorithm.outputs == Outputs::Resultants {
+    if !plan.has_field() {
         steps.push(whole("resultants only", &paper.fewer_products(false)));
     }
     let of_products = || plan.products.iter().filter(|product| product.coefficients == Coefficients::Rom);

@@ -131,6 +131,14 @@ impl Streams {
         words.next_multiple_of(self.words())
     }
 
+    /// The words of a packet one by one, as `sptfra_unpack` hands samples of a word on: of a frame without what fills its last
+    /// beat, of one with too many beats a word for each of them.
+    pub fn unpacked(self, packet: &[u32]) -> Vec<u32> {
+        let (beats, all) = (packet.len().div_ceil(self.words()), self.beats_in());
+        let count = if beats < all { beats * self.words() } else { self.taxels + beats - all };
+        packet.iter().copied().chain(std::iter::repeat(0)).take(count).collect()
+    }
+
     /// Whether a packet of so many words has the beats of a frame.
     pub fn is_frame(self, words: usize) -> bool {
         words.div_ceil(self.words()) == self.beats_in()

@@ -70,6 +70,13 @@ fn speed(page: &mut String, report: &Report) {
     if let Some(them) = published {
         line(page, &format!("  published: {}", them.what));
     }
+    if !report.body_cycles.is_empty() {
+        let rows = report.body_cycles.iter().map(|of| {
+            let cycles = [of.latency_cycles, of.interval_cycles];
+            row(&of.bodies.to_string(), [grouped(cycles[0]), grouped(cycles[1]), rate(cycles[1])])
+        });
+        section(page, "Cycles by bodies, simulated", &["latency", "interval", "frames per second"], rows);
+    }
 }
 
 fn streams(page: &mut String, report: &Report) {
@@ -151,9 +158,16 @@ fn bodies(page: &mut String, errors: &BodyErrors) {
     line(page, &format!("  {right} of {frames} frames have the right number of bodies{within}"));
 }
 
+/// Whether no frame of a design that tells bodies apart has one body.
+fn without_one(report: &Report) -> bool {
+    report.body_counts.as_ref().is_some_and(|counts| !counts.contains_key(&1))
+}
+
 fn verdict(page: &mut String, report: &Report) {
     *page += &rule(NAMES + COLUMNS * VALUES);
-    let times = report.published.map_or_else(String::new, |them| {
+    // Of frames of one body; of others it would not be true.
+    let published = report.published.filter(|_| !without_one(report));
+    let times = published.map_or_else(String::new, |them| {
         let factor = 1000.0 * them.milliseconds / report.microseconds.latency;
         format!(", {} times as fast as {}", grouped(factor.round() as u64), them.what)
     });
@@ -176,7 +190,7 @@ fn verdict(page: &mut String, report: &Report) {
     if let [activity] = &report.traces[..] {
         line(page, &format!("Activity of the nets in {}, for vivado/power.tcl.", activity.display()));
     }
-    if report.body_counts.as_ref().is_some_and(|counts| !counts.contains_key(&1)) {
+    if without_one(report) {
         line(page, "No frame has one body, for which the cycles are predicted: they are of others that do.");
     }
     match report.timing {

@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::accuracy::{SolverError, StatusCounts};
 use crate::compare::Mismatch;
 use crate::registers::RegisterReport;
-use crate::simulate::ModeResult;
+use crate::simulate::{BodyCycles, ModeResult};
 use crate::trial::{Timing, Verdict};
 
 /// The published hardware of the method with a filter, for one frame of a 10 × 10 sensor (Pinto-Salamanca et al., Sensors
@@ -122,6 +122,9 @@ pub struct Report {
     pub latency_cycles: u64,
     /// Measured: between the last beats of consecutive frames, sent back to back.
     pub interval_cycles: u64,
+    /// The same of frames of several bodies, by their number.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub body_cycles: Vec<BodyCycles>,
     /// Predicted by the plan.
     pub predicted: Predicted,
     /// The measured cycles at the design's clock.
@@ -198,6 +201,7 @@ impl Report {
             mismatches: simulation.mismatches(),
             latency_cycles: simulation.cycles.latency,
             interval_cycles: simulation.cycles.interval,
+            body_cycles: simulation.several.clone(),
             predicted: Predicted {
                 latency_cycles: predicted.latency,
                 interval_cycles: predicted.interval,

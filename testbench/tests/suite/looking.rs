@@ -200,10 +200,15 @@ fn each_body_is_shown_and_judged() {
         assert!(judged.contains(part), "{part}: {judged}");
     }
     assert!(judged.contains("Frames by bodies") && judged.contains("No frame has one body"), "{judged}");
+    // What frames of two take is said, and nothing is compared with what frames of one take.
+    assert!(judged.contains("Cycles by bodies") && !judged.contains("times as fast"), "{judged}");
     let json = run(&["run", "d.toml", "--reference", "f.forces.csv", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     let error = &json["error"]["bodies"];
     assert!(error["alike"] == 1 && error["force_max"].as_f64().is_some_and(|error| error < 2e-3), "{error}");
+    let [one, two] =
+        [&json["latency_cycles"], &json["body_cycles"][0]["latency_cycles"]].map(|of| of.as_u64().unwrap_or(0));
+    assert!(json["body_cycles"][0]["bodies"] == 2 && two > 2 * one && one > 0, "{json}");
     assert!(json["body_counts"]["2"] == 1 && json["true_body_errors"]["right"] == 1, "{json}");
     // Of one body nothing of this is said.
     let one = workspace("designs/odd.toml").display().to_string();

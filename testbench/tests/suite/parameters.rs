@@ -38,7 +38,7 @@ const SENSELESS: [(&str, &str, &str, &str); 41] = [
     ("op", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
     ("op", "SLIP_RELEASE", "1", "a_slip_ends_below_its_limit"),
     ("records", "CONTACTS", "9", "contacts_must_be_2_to_8"),
-    ("records_control", "PROGRAM_LENGTH", "129", "a_program_has_2_to_128_instructions"),
+    ("records_control", "PROGRAM_LENGTH", "257", "a_program_has_2_to_256_instructions"),
     ("regions", "STEP_DIAGONAL", "2097152", "steps_must_be_below_2_metres"),
     ("regions_walk", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
     ("regions_passes", "CONTACTS", "9", "contacts_must_be_2_to_8"),

@@ -21,6 +21,7 @@ fn job<'a>(built: &'a Built, packets: &'a [Vec<u32>], expected: &'a [Vec<u32>]) 
         built,
         packets,
         timed: packets,
+        several: &[],
         expected,
         shape: 4.into(),
         pacing,

@@ -8,7 +8,7 @@ pub mod regions;
 
 use super::Model;
 use crate::blocks;
-use crate::plan::contacts::records::{Constants, FRAME};
+use crate::plan::contacts::records::FRAME;
 use crate::plan::contacts::{ContactsPlan, FORCE_BITS};
 use crate::plan::{Plan, SUMMARY_WORDS, words};
 use align::align;
@@ -23,7 +23,8 @@ const ROUNDS: usize = 2;
 
 impl Model<'_> {
     /// The answer to a packet where there may be several bodies.
-    pub(super) fn answer_of_bodies(&mut self, of: &ContactsPlan, packet: &[u32]) -> Vec<u32> {
+    pub(super) fn answer_of_bodies(&mut self, of: &ContactsPlan, records: &mut Records, packet: &[u32]) -> Vec<u32> {
+        let packet = &self.plan.streams().unpacked(packet)[..];
         let number = self.frames;
         let whole = self.answer_to(packet);
         let (header, field) = whole.split_at(SUMMARY_WORDS);
@@ -33,7 +34,6 @@ impl Model<'_> {
         let weights: Vec<i64> = field.as_chunks().0.iter().map(weight).collect();
         let Plan { design, .. } = self.plan;
         let found = regions::find(&weights, design.sensor.columns, blocks::regions::steps(&design.sensor), of.contacts);
-        let mut records = Records::new(of.contacts, &Constants::of(design));
         records.take(FRAME, false, header);
         let mut forces = Forces::of_field(unit, field);
         let several = found.kept() > 1;
@@ -56,10 +56,10 @@ impl Model<'_> {
         let bodies = found.bodies.max(taxels.len() as u32).min(u8::MAX.into()) as u8;
         let mut answer = records.finish(Counted { kept: taxels.len(), bodies, taxels: &taxels });
         answer[words::STATUS] = answer[words::STATUS] & 0xFFFF | u32::from(number) << 16;
-        if several {
-            answer.extend(forces.field());
-        } else {
-            answer.extend(field);
+        match (self.plan.field_words() > 0, several) {
+            (false, _) => {}
+            (true, false) => answer.extend(field),
+            (true, true) => answer.extend(forces.field()),
         }
         answer
     }

@@ -24,6 +24,9 @@ pub enum Place {
     OutFrame(u8),
     /// and in the record of body i.
     OutRecord(u8),
+    /// What is kept for the next frame: a source of what body j left, a destination for body i. The numbers of bodies are
+    /// those of their frame.
+    Last(u8),
 }
 
 impl Place {
@@ -36,6 +39,7 @@ impl Place {
             Self::Constant(word) => (4, word),
             Self::OutFrame(word) => (5, word),
             Self::OutRecord(word) => (6, word),
+            Self::Last(word) => (7, word),
         };
         place << 4 | u32::from(word)
     }
@@ -54,6 +58,12 @@ pub enum What {
     Census,
     /// `b` where `a` is above 0, else 0.
     Choose,
+    /// `a` where the last comparison found less, of a body j that was in the last frame; else nothing is written.
+    Nearer,
+    /// Body i slips unless the last comparison found less: then it does not, and `a` is written. That comparison is forgotten.
+    Slip,
+    /// The bodies of this frame are the last ones, unless the status in `a` is that of one which tells nothing.
+    Remember,
     /// `a + b`,
     Add,
     /// `a - b`,
@@ -66,27 +76,30 @@ pub enum What {
     Root,
     /// and the angle of `(a, b)`.
     Angle,
-    /// Body i is doubtful if `|a| < |b|`.
-    Doubt,
+    /// Compares: `|a| < |b|`. If so where its record's status is made, body i is doubtful.
+    Less,
     /// Body i comes behind body j if `|a| < |b|`, else j behind i.
     Rank,
 }
 
 impl What {
-    fn bits(self) -> u32 {
+    pub(super) fn bits(self) -> u32 {
         match self {
             Self::Move => 0,
             Self::OwnStatus => 1,
             Self::FrameStatus => 2,
             Self::Census => 3,
             Self::Choose => 4,
+            Self::Nearer => 5,
+            Self::Slip => 6,
+            Self::Remember => 7,
             Self::Add => 8,
             Self::Subtract => 9,
             Self::Multiply => 10,
             Self::Divide => 11,
             Self::Root => 12,
             Self::Angle => 13,
-            Self::Doubt => 14,
+            Self::Less => 14,
             Self::Rank => 15,
         }
     }
@@ -96,12 +109,13 @@ impl What {
         const READ: u64 = 3;
         match self {
             Self::Move | Self::OwnStatus | Self::FrameStatus | Self::Census => 2,
+            Self::Nearer | Self::Slip | Self::Remember => 2,
             Self::Choose => READ,
             Self::Add | Self::Subtract | Self::Multiply => READ + 9,
             Self::Divide => READ + 33,
             Self::Root => READ + 32,
             Self::Angle => READ + 73,
-            Self::Doubt | Self::Rank => READ + 2,
+            Self::Less | Self::Rank => READ + 2,
         }
     }
 }
@@ -143,6 +157,13 @@ pub enum Instruction {
     },
     /// Body j is the one behind i.
     Pair,
+    /// Body j is the first of the last frame.
+    FirstLast,
+    /// Goes on elsewhere with the next body j, up to as many as have a record.
+    NextLast {
+        /// Where.
+        target: u8,
+    },
     /// The words are there.
     End,
 }
@@ -159,8 +180,10 @@ impl Instruction {
 
     /// The word of the ROM.
     pub fn bits(self) -> u32 {
+        // The highest bit of the target is above the number.
         let control = |what: u32, target: u8, number: u8| {
-            (0b10_000 | what) << 22 | u32::from(target) << 15 | u32::from(number) << 8
+            let target = u32::from(target & 0x7F) << 15 | u32::from(target >> 7) << 14;
+            (0b10_000 | what) << 22 | target | u32::from(number) << 8
         };
         match self {
             Self::Do { what, to, a, b, magnitude } => {
@@ -171,13 +194,19 @@ impl Instruction {
             Self::NextJ { target } => control(2, target, 0),
             Self::Pair => control(3, 0, 0),
             Self::End => control(4, 0, 0),
+            Self::FirstLast => control(5, 0, 0),
+            Self::NextLast { target } => control(6, target, 0),
         }
     }
 }
 
-/// Executes instructions for so many bodies kept: `execute` is called with each that does something and with bodies i and j.
-/// Says how many cycles pass from start to done.
-pub fn run(program: &[Instruction], kept: u8, mut execute: impl FnMut(What, [Place; 3], bool, [u8; 2])) -> u64 {
+/// Executes instructions for so many bodies kept of those that have a record: `execute` is called with each that does something
+/// and with bodies i and j. Says how many cycles pass from start to done.
+pub fn run(
+    program: &[Instruction],
+    [kept, contacts]: [u8; 2],
+    mut execute: impl FnMut(What, [Place; 3], bool, [u8; 2]),
+) -> u64 {
     let (mut i, mut j, mut next) = (if kept == 1 { FRAME } else { 0 }, 0, 0);
     // The one in which it starts.
     let mut cycles = 1;
@@ -199,6 +228,13 @@ pub fn run(program: &[Instruction], kept: u8, mut execute: impl FnMut(What, [Pla
                 }
             }
             Instruction::Pair => j = i + 1,
+            Instruction::FirstLast => j = 0,
+            Instruction::NextLast { target } => {
+                j += 1;
+                if j < contacts {
+                    next = target.into();
+                }
+            }
             Instruction::Jump { .. } => {}
             Instruction::End => return cycles,
         }

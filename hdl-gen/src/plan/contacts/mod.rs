@@ -2,6 +2,9 @@
 
 pub mod instructions;
 pub mod records;
+mod writer;
+
+use std::borrow::Cow;
 
 use golden::design::{CalibrationIn, Design, Outputs, Overrun, Samples};
 use golden::matrices::Matrices;
@@ -100,18 +103,26 @@ fn unit(sensor: &Sensor, coefficients: &[[f64; 3]]) -> i32 {
     (-100..100).find(fits).unwrap_or(100)
 }
 
+/// The design of the core for one body, which several share: it answers with the whole field, by which bodies are parted, and
+/// what the answer to the user has of that is not its matter. Its streams are of a word, and held.
+pub fn core(design: &Design) -> Cow<'_, Design> {
+    if design.algorithm.contacts < 2 {
+        return Cow::Borrowed(design);
+    }
+    let mut core = design.clone();
+    (core.algorithm.contacts, core.algorithm.outputs, core.algorithm.slip) = (1, Outputs::Field, None);
+    (core.hardware.stream_bits, core.hardware.overrun) = (WORD_BITS as u32, Overrun::Stall);
+    Cow::Owned(core)
+}
+
 /// What hardware for several bodies needs that a design does not say, if there is something.
 pub fn needs(design: &Design) -> Option<&'static str> {
     let hardware = &design.hardware;
     let wrong = [
-        (hardware.stream_bits as usize != WORD_BITS, "[hardware] stream_bits = 32"),
         (hardware.samples != Samples::Float32, "[hardware] samples = \"float32\""),
-        (hardware.overrun != Overrun::Stall, "[hardware] overrun = \"stall\""),
         (hardware.calibration != CalibrationIn::Rom, "[hardware] calibration = \"rom\""),
         (design.input.counts(), "frames in pascals: no [sensor] pa_per_count, curve or calibration"),
         (!design.input.dead.is_empty(), "no [sensor] dead"),
-        (design.algorithm.slip.is_some(), "no [algorithm] slip"),
-        (design.algorithm.outputs != Outputs::Field, "[algorithm] outputs = \"field\""),
     ];
     wrong.into_iter().find(|&(is_wrong, _)| is_wrong).map(|(_, needs)| needs)
 }

@@ -52,7 +52,7 @@ pub(super) struct Durations {
 impl Durations {
     pub(super) fn new(plan: &Plan) -> Self {
         let (schedule, estimator) = (&plan.schedule, plan.estimator.slot());
-        let (field, folded) = (plan.field_words() > 0, plan.ways() > 1);
+        let (field, folded) = (plan.has_field(), plan.ways() > 1);
         let is_sum = |visit: &&Visit| {
             let product = &plan.products[visit.product as usize];
             let leads = product.lead.is_some() && visit.row as usize >= plan.elements();
@@ -61,8 +61,8 @@ impl Durations {
         let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
         Self {
             beats: plan.streams_of_one().beats_out() as u64,
-            unpacking: if plan.streams().drops { latency::OVERRUN } else { 0 }
-                + u64::from(plan.streams().intake == Intake::Unpacked)
+            unpacking: if plan.streams_of_one().drops { latency::OVERRUN } else { 0 }
+                + u64::from(plan.streams_of_one().intake == Intake::Unpacked)
                 + bank::latency(plan),
             interval_of_beats: bank::interval(plan),
             arrival: bz::arrival(plan),
@@ -89,7 +89,7 @@ impl Durations {
 fn writes(plan: &Plan) -> Vec<Vec<u64>> {
     let folded = plan.ways() > 1;
     let mut writes = vec![Vec::new(); plan.schedule.programs.len()];
-    if plan.streams().intake == Intake::Whole {
+    if plan.streams_of_one().intake == Intake::Whole {
         return writes;
     }
     for visit in plan.schedule.visits.iter().filter(|visit| (visit.row as usize) < plan.elements()) {

@@ -78,6 +78,16 @@ fn designs() -> Vec<Design> {
         design.hardware.overrun = Overrun::Drop;
     }
     let [scaled, scaled_fold, scaled_banks] = scaled(&curve_in_ram);
+    // Several bodies: slip, resultants, a wide stream with registers; frames dropped.
+    let mut several = shipped("small-bodies");
+    "several".clone_into(&mut several.name);
+    several.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
+    let mut several_dropped = several.clone();
+    "several_dropped".clone_into(&mut several_dropped.name);
+    several.algorithm.outputs = Outputs::Resultants;
+    several.algorithm.contacts = 8;
+    (several.hardware.stream_bits, several.hardware.control) = (128, true);
+    several_dropped.hardware.overrun = Overrun::Drop;
     // Nets marked for a logic analyser, in every kind of core.
     for design in [&mut curved, &mut uncorrected, &mut unpacked, &mut wide_control, &mut dropping] {
         design.hardware.debug = true;
@@ -98,6 +108,8 @@ fn designs() -> Vec<Design> {
         integers,
         unpacked,
         wide_control,
+        several,
+        several_dropped,
         by_plan(shipped("small"), paper, Outputs::Field),
         by_plan(shipped("odd"), paper, Outputs::Field),
         shipped("sensor1-f1-l40"),

@@ -4,6 +4,7 @@
 mod calibrated;
 mod others;
 mod resets;
+mod several;
 
 use std::sync::OnceLock;
 

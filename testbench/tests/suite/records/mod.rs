@@ -6,10 +6,10 @@ mod player;
 mod solver;
 mod unit;
 
-use golden::design::Design;
+use golden::design::{Design, Slip};
 use hdl_gen::blocks;
 use hdl_gen::model::contacts::records::{Counted, Records};
-use hdl_gen::plan::contacts::records::{Constants, FRAME, cycles, rom};
+use hdl_gen::plan::contacts::records::{Constants, FRAME, Program};
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -96,24 +96,40 @@ fn writes(headers: &Headers, random: &mut ChaCha8Rng) -> Vec<Command> {
 
 /// What the model answers to a case's commands.
 fn expected(case: &Case) -> Vec<Played> {
+    let program = Program::of(&case.design);
     let mut model = Records::new(case.design.algorithm.contacts, &Constants::of(&case.design));
     let mut all = Vec::new();
     for command in &case.commands {
         match command {
             Command::Write { body, before, word, data } => model.write(*body, *before, *word, *data),
             Command::Start { kept, bodies, taxels, twice } => {
-                let words = model.finish(Counted { kept: *kept, bodies: *bodies, taxels });
-                all.push(Played { cycles: cycles(*kept) * (1 + u64::from(*twice)), words });
+                let mut finish = || model.finish(Counted { kept: *kept, bodies: *bodies, taxels });
+                if *twice {
+                    finish();
+                }
+                let words = finish();
+                all.push(Played { cycles: program.cycles(*kept) * (1 + u64::from(*twice)), words });
             }
-            Command::GiveUp { .. } => {}
+            Command::GiveUp { .. } => model.reset(),
         }
     }
     all
 }
 
+/// Of the same design, with a limit of friction that half of the bodies reach.
+fn slipping_case(case: &str, contacts: usize, frames: usize, random: &mut ChaCha8Rng) -> Case {
+    let mut design = design(case, contacts);
+    design.algorithm.slip = Some(Slip { limit: 0.5, hysteresis: 0.3 });
+    of(design, format!("{}_{contacts}_slipping", case.replace('-', "_")), frames, random)
+}
+
 /// Frames of any number of bodies, likely and hostile ones in turn.
 fn case(name: &str, contacts: usize, frames: usize, random: &mut ChaCha8Rng) -> Case {
-    let design = design(name, contacts);
+    of(design(name, contacts), format!("{}_{contacts}", name.replace('-', "_")), frames, random)
+}
+
+fn of(design: Design, name: String, frames: usize, random: &mut ChaCha8Rng) -> Case {
+    let (contacts, program) = (design.algorithm.contacts, Program::of(&design));
     let mut commands = Vec::new();
     for frame in 0..frames {
         let kept = if frame <= contacts { frame } else { random.random_range(0..=contacts) };
@@ -121,23 +137,27 @@ fn case(name: &str, contacts: usize, frames: usize, random: &mut ChaCha8Rng) -> 
             if frame % 2 == 0 { Headers::likely(kept, [0.018, 0.018], random) } else { hostile(kept, random) };
         commands.extend(writes(&headers, random));
         if random.random_bool(0.05) {
-            commands.push(Command::GiveUp { kept, after: random.random_range(1..cycles(kept) as u32) });
+            commands.push(Command::GiveUp { kept, after: random.random_range(1..program.cycles(kept) as u32) });
+            // The program writes over words of the headers.
+            commands.extend(writes(&headers, random));
         }
         let taxels = (0..contacts).map(|_| random.random()).collect();
         let bodies = [kept as u8, contacts as u8, random.random()][random.random_range(0..3)];
         commands.push(Command::Start { kept, bodies, taxels, twice: random.random_bool(0.2) });
     }
-    Case { name: format!("{}_{contacts}", name.replace('-', "_")), design, commands }
+    Case { name, design, commands }
 }
 
 #[test]
 fn the_module_is_the_model() {
     let mut random = ChaCha8Rng::seed_from_u64(21);
-    let cases: Vec<Case> =
+    let mut cases: Vec<Case> =
         [("sensor1-wide", 2), ("sensor2-joint", 3), ("sensor1-joint", 4), ("sensor2-wide", 5), ("odd", 8)]
             .into_iter()
             .map(|(name, contacts)| case(name, contacts, 240, &mut random))
             .collect();
+    let slipping = [("sensor1-wide", 2), ("sensor1-joint", 4), ("odd", 8)];
+    cases.extend(slipping.map(|(name, contacts)| slipping_case(name, contacts, 240, &mut random)));
     let played = play(&cases, verilator, None).expect("no check of the module fails");
     for (case, played) in cases.iter().zip(played) {
         let expected = expected(case);
@@ -151,14 +171,17 @@ fn the_module_is_the_model() {
 /// As they are stated; a single body is quick.
 #[test]
 fn a_frame_takes_as_long_as_stated() {
-    let all: Vec<u64> = (0..=8).map(cycles).collect();
+    let [plain, slips] = [false, true].map(|slips| Program { contacts: 8, slips });
+    let all: Vec<u64> = (0..=8).map(|kept| plain.cycles(kept)).collect();
     assert!(all.is_sorted() && all[1] < 150, "{all:?}");
     let [first @ .., last] = &all[..] else { return };
     let first: Vec<String> = first.iter().map(u64::to_string).collect();
     let text = std::fs::read_to_string(workspace("docs/architecture.md")).expect("is there");
     let stated = [
         format!("a frame takes {} and {last} cycles", first.join(", ")),
-        format!("A program of {} instructions", rom().len()),
+        format!("A program of {} instructions", plain.rom().len()),
+        format!("{} instructions", slips.rom().len()),
+        format!("{} cycles for a body", Program { contacts: 4, slips: true }.cycles(1) - all[1]),
     ];
     assert!(stated.iter().all(|stated| text.contains(stated)), "{stated:?}");
     let parameters = blocks::records::parameters(&design("sensor1-wide", 2)).verilog();
@@ -182,14 +205,26 @@ fn faults_are_noticed() {
         ("records", "operand_a[30:23] != 8'd0", "1'b1"),
         ("records", "taxels_held <= taxels;", ""),
         ("records", "operand[31] && !instruction[0]", "operand[31]"),
+        ("records", "less && (j < last_bodies)", "less"),
+        ("records", "(what == SLIP) ? less : ", "(what == SLIP) ? 1'b1 : "),
+        ("records", "((kept_held != 4'd0) || operand[NO_CONTACT])", "1'b1"),
+        ("records", "last_bodies <= 4'd0;", ""),
+        ("records", "slips <= !less;\n            less <= 1'b0;", "slips <= !less;"),
+        (
+            "records",
+            "address(source[6:4], source[3:0], i, j, j[2:0])",
+            "address(source[6:4], source[3:0], i, j, i[2:0])",
+        ),
+        ("records_control", "(j_then < CONTACTS[3:0])", "j_left"),
+        ("records_control", "{instruction[14], instruction[21:15]}", "{1'b0, instruction[21:15]}"),
         ("records_control", "? 4'd8 : 4'd0", "? 4'd0 : 4'd0"),
         ("records_control", "(i_then < {1'b0, kept_held})", "(i_then <= {1'b0, kept_held})"),
         ("records_control", "i_left ? i + 4'd1 : 4'd0", "i + 4'd1"),
     ];
-    let case = case("sensor1-wide", 3, 32, &mut ChaCha8Rng::seed_from_u64(22));
-    let expected = expected(&case);
-    let cases = [case];
-    records_of_faults(&faults, |fault| play(&cases, icarus, fault).is_ok_and(|played| played[0] == expected));
+    let mut random = ChaCha8Rng::seed_from_u64(22);
+    let cases = [case("sensor1-wide", 3, 32, &mut random), slipping_case("sensor1-wide", 3, 48, &mut random)];
+    let expected: Vec<Vec<Played>> = cases.iter().map(expected).collect();
+    records_of_faults(&faults, |fault| play(&cases, icarus, fault).is_ok_and(|played| played == expected));
 }
 
 /// No design has them yet.

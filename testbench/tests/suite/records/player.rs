@@ -6,7 +6,7 @@ use std::path::Path;
 
 use golden::design::Design;
 use hdl_gen::blocks::records::{parameters, words};
-use hdl_gen::plan::contacts::records::{INSTRUCTION_BITS, cycles, rom};
+use hdl_gen::plan::contacts::records::{INSTRUCTION_BITS, Program};
 
 use crate::support::player::write_broken;
 
@@ -36,10 +36,12 @@ impl Command {
         }
     }
 
-    fn cycles(&self, words: usize) -> usize {
+    fn cycles(&self, program: Program, words: usize) -> usize {
         match self {
             Self::Write { .. } => 1,
-            Self::Start { kept, twice, .. } => (1 + usize::from(*twice)) * cycles(*kept) as usize + 3 * words + 10,
+            Self::Start { kept, twice, .. } => {
+                (1 + usize::from(*twice)) * program.cycles(*kept) as usize + 3 * words + 10
+            }
             Self::GiveUp { after, .. } => *after as usize + 5,
         }
     }
@@ -71,20 +73,20 @@ pub fn play(
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: String| folder.path().join(name);
     let digits = INSTRUCTION_BITS.div_ceil(4) as usize;
-    let program: String = rom().iter().map(|word| format!("{word:0digits$x}\n")).collect();
-    fs::write(place("records.mem".to_owned()), program).expect("writable");
     if let Some((module, from, to)) = fault {
         write_broken(folder.path(), &format!("sptfra_{module}"), from, to);
     }
     let mut bench = "module bench(input clock);\n".to_owned();
     let mut longest = 0;
     for Case { name, design, commands } in cases {
-        let contacts = design.algorithm.contacts;
+        let (contacts, program) = (design.algorithm.contacts, Program::of(design));
         let words = words(contacts);
-        longest = longest.max(commands.iter().map(|command| command.cycles(words)).sum());
+        longest = longest.max(commands.iter().map(|command| command.cycles(program, words)).sum());
         let lines: String = commands.iter().map(Command::line).collect();
         fs::write(place(format!("{name}.in")), lines).expect("writable");
-        let parameters = parameters(design).expression("FILE", "\"records.mem\"");
+        let rom: String = program.rom().iter().map(|word| format!("{word:0digits$x}\n")).collect();
+        fs::write(place(format!("{name}.mem")), rom).expect("writable");
+        let parameters = parameters(design).expression("FILE", format!("\"{name}.mem\""));
         let _ = write!(
             bench,
             "    generate if (1) begin : {name}\n{}    end endgenerate\n",
