@@ -28,7 +28,7 @@ module sptfra_contacts #(
     parameter integer EXPECTED_COUNTED = 0,
     parameter integer EXPECTED_PARTED = 0,
     // Power of two of a step of the coefficients in Pa/N
-    parameter signed [9:0] COEFFICIENT_UNIT = 0,
+    parameter signed [9:0] COEFFICIENT_UNIT = 10'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Coefficients by distance
@@ -85,6 +85,7 @@ module sptfra_contacts #(
     wire [7:0] exponent;
     wire signed [9:0] unit;
     wire [3:0] header_address, header_index, kept, body, answering;
+    wire [31:0] header_word;
     wire [FIELD_WIDTH-1:0] place;
 
     sptfra_contacts_turns #(
@@ -169,7 +170,7 @@ module sptfra_contacts #(
     // ---- Answers
     wire [3:0] word_index;
     wire in_field, output_advance;
-    wire [31:0] presses, header_word, normal_word, field_word;
+    wire [31:0] presses, normal_word, field_word;
     wire [TAXEL_WIDTH-1:0] normal_address;
     wire [BANK_WIDTH+FIELD_WIDTH-1:0] output_field_address;
 
@@ -296,7 +297,7 @@ module sptfra_contacts #(
         .LIMIT             (LIMIT),
         .PROGRAM_LENGTH    (PROGRAM_LENGTH),
         .RECORDS_FILE      (RECORDS_FILE),
-        .LATENCIES (LATENCIES)
+        .LATENCIES         (LATENCIES)
     ) words (
         .clock         (clock),
         .reset         (reset),

@@ -13,7 +13,7 @@ module sptfra_contacts_parts #(
     // Bodies that have a region
     parameter CONTACTS = 4,
     // Power of two of a step of the coefficients in Pa/N
-    parameter signed [9:0] COEFFICIENT_UNIT = 0,
+    parameter signed [9:0] COEFFICIENT_UNIT = 10'sd0,
     // Coefficients by distance
     parameter ROM_DIR = "",
     parameter FILE = "",

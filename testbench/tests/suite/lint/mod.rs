@@ -78,6 +78,7 @@ fn designs() -> Vec<Design> {
         design.hardware.overrun = Overrun::Drop;
     }
     let [scaled, scaled_fold, scaled_banks] = scaled(&curve_in_ram);
+    let [few_bodies, most_bodies, tiny_bodies] = bodies();
     // Nets marked for a logic analyser, in every kind of core.
     for design in [&mut curved, &mut uncorrected, &mut unpacked, &mut wide_control, &mut dropping] {
         design.hardware.debug = true;
@@ -94,6 +95,10 @@ fn designs() -> Vec<Design> {
         scaled,
         scaled_fold,
         scaled_banks,
+        shipped("small-bodies"),
+        few_bodies,
+        most_bodies,
+        tiny_bodies,
         wide,
         integers,
         unpacked,
@@ -122,6 +127,21 @@ fn designs() -> Vec<Design> {
         with_lanes(shipped("sensor1-f1-l40"), 64),
         narrow,
     ]
+}
+
+/// Several bodies, of either plan, with registers and marked nets, with fewest and most records, on the smallest sensor.
+fn bodies() -> [Design; 3] {
+    let mut few = by_plan(shipped("odd"), PlanKind::Paper, Outputs::Field);
+    "few_bodies".clone_into(&mut few.name);
+    few.algorithm.contacts = 2;
+    let mut most = by_plan(shipped("small-control"), PlanKind::Reduced, Outputs::Field);
+    "most_bodies".clone_into(&mut most.name);
+    most.algorithm.contacts = 8;
+    most.hardware.debug = true;
+    let mut tiny = by_plan(shipped("small-bodies"), PlanKind::Reduced, Outputs::Field);
+    "tiny_bodies".clone_into(&mut tiny.name);
+    (tiny.sensor.columns, tiny.sensor.rows) = (2, 2);
+    [few, most, tiny]
 }
 
 /// Words of two multipliers a lane: all their bits, scaled by each frame's largest stress; in beats of several samples,
