@@ -36,6 +36,7 @@ module sptfra_contacts #(
     // See sptfra_records
     parameter [31:0] MIDDLE_X = 32'h3c1374bc,
     parameter [31:0] MIDDLE_Y = 32'h3c1374bc,
+    parameter [31:0] CHANGE_SQUARED = 32'h3fc80000,
     parameter [31:0] NEARNESS = 32'h47742400,
     parameter [31:0] LIMIT = 32'h3d75c28f,
     parameter integer PROGRAM_LENGTH = 128,
@@ -239,7 +240,7 @@ module sptfra_contacts #(
     );
 
     // ---- Forces: those of one body, or of several, added up; what they cause, and the frames of the bodies
-    wire output_reads;
+    wire output_reads, saturated;
     wire [TAXEL_WIDTH-1:0] output_taxel;
     wire [80:0] forces;
     wire of_body = core_m_tvalid && with_bodies;
@@ -255,6 +256,8 @@ module sptfra_contacts #(
         .clock          (clock),
         .reset          (reset),
         .unit           (unit),
+        .begins         (load_start),
+        .saturated      (saturated),
         .field_begins   (loads ? load_start : of_body && !in_field),
         .field_valid    (load_valid || (of_body && in_field)),
         .field_word     (with_bodies ? core_m_tdata : field_word),
@@ -293,6 +296,7 @@ module sptfra_contacts #(
         .ROM_DIR           (ROM_DIR),
         .MIDDLE_X          (MIDDLE_X),
         .MIDDLE_Y          (MIDDLE_Y),
+        .CHANGE_SQUARED    (CHANGE_SQUARED),
         .NEARNESS          (NEARNESS),
         .LIMIT             (LIMIT),
         .PROGRAM_LENGTH    (PROGRAM_LENGTH),
@@ -312,6 +316,7 @@ module sptfra_contacts #(
         .kept          (is_flat ? 4'd1 : kept),
         .bodies        (is_flat ? 8'd1 : bodies),
         .taxels        (taxels),
+        .saturated     (several && saturated),
         .record_done   (record_done),
         .start         (next),
         .idle          (output_idle),

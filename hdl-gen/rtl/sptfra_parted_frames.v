@@ -32,6 +32,7 @@ module sptfra_parted_frames #(
     input  wire [2:0] region,
     input  wire [31:0] stress,
     input  wire signed [47:0] part,
+    output wire clips, // the stress of a taxel
     // The frame
     output wire [31:0] word,
     output wire word_last,
@@ -83,6 +84,7 @@ module sptfra_parted_frames #(
     reg signed [47:0] part_2, part_3, part_4, part_5;
     wire [46:0] magnitude;
     wire negative;
+    wire clipped_4;
     wire signed [47:0] stress_5;
 
     sptfra_align #(
@@ -94,8 +96,11 @@ module sptfra_parted_frames #(
         .unit       (unit + UNIT),
         .magnitude  (magnitude),
         .negative   (negative),
+        .clipped    (clipped_4),
         .fixed      (stress_5)
     );
+
+    assign clips = valids[ALIGN] && clipped_4;
 
     always @(posedge clock) begin
         if (advance) begin

@@ -21,6 +21,8 @@ pub struct Counted<'a> {
     pub bodies: u8,
     /// Taxels that each of the first touches.
     pub taxels: &'a [u16],
+    /// Whether a number did not fit on the way to them.
+    pub saturated: bool,
 }
 
 /// The hardware's state.
@@ -37,7 +39,7 @@ struct Notes {
     /// Bodies in front of each.
     ranks: Vec<usize>,
     doubtful: bool,
-    /// Bits of all bodies.
+    /// Bits of all bodies, and of what is between them.
     bits: u32,
 }
 
@@ -65,7 +67,8 @@ impl Records {
     /// The words before the field.
     pub fn finish(&mut self, counted: Counted) -> Vec<u32> {
         let mut words = vec![0; SUMMARY_WORDS + RECORD_WORDS * self.contacts];
-        let mut notes = Notes { ranks: vec![0; self.contacts], doubtful: false, bits: 0 };
+        let bits = if counted.saturated { Status::SATURATED.0 } else { 0 };
+        let mut notes = Notes { ranks: vec![0; self.contacts], doubtful: false, bits };
         let program = std::mem::take(&mut self.program);
         run(&program, counted.kept as u8, |what, [to, a, b], magnitude, [i, j]| {
             let bodies = [usize::from(i), usize::from(j)];

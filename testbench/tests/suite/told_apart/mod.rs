@@ -1,12 +1,14 @@
 //! Several bodies in hardware: whole designs against the model, the model against the solver, what one body costs.
 
+mod faults;
+
 use std::collections::BTreeMap;
 
 use golden::design::{Design, Filter, InputRange, Outputs, Overrun, PlanKind, Samples, Slip};
 use golden::matrices::{Matrices, MatrixName};
 use golden::solver::{Solution, Solver, Status};
 use hdl_gen::plan::{Plan, PlanError, contacts, words};
-use rand::SeedableRng;
+use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use testbench::stream::{Exchange, Pacing, Traffic, exchange};
 use testbench::stream_words::{Answer, decode_bodies};
@@ -15,7 +17,7 @@ use testbench::trial::{model_answers, timeout};
 use testbench::verilate::Built;
 
 use crate::bodies::kinds::{Kind, frame};
-use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint};
+use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint, with_lanes};
 
 fn telling_apart(mut design: Design, contacts: usize) -> Design {
     design.name += "_several";
@@ -106,6 +108,34 @@ fn the_hardware_tells_apart_as_the_model_does() {
     .flatten()
     .collect();
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// A layer so deep that what is found of the bodies is many times what is found of all as one, and frames of nothing that
+/// such a sensor could feel.
+fn saturating() -> (Design, Vec<Vec<u32>>) {
+    let mut design = with_lanes(of_frames(shipped("small-bodies")), 4);
+    (design.sensor.columns, design.sensor.rows, design.sensor.depth_mm) = (5, 5, 5.5);
+    let mut random = ChaCha8Rng::seed_from_u64(12);
+    let mut frame = |presses: bool| {
+        let mut stress =
+            || if presses { -3e4 * f32::from(random.random_bool(0.4)) } else { random.random_range(-9e4..9e4_f32) };
+        (0..25).map(|_| stress().to_bits()).collect()
+    };
+    let packets = (0..16).map(|index| frame(index % 4 == 0)).collect();
+    (design, packets)
+}
+
+/// Forces of bodies that have no room in the steps of those of the whole frame are clipped, and the frame says so, though
+/// nothing in the core was.
+#[test]
+fn forces_that_do_not_fit_are_said_to_be_saturated() {
+    let (several, packets) = saturating();
+    let several = planned(&several);
+    let answers = model_answers(&several, &packets);
+    let saturated = |answer: &&Vec<u32>| answer[words::STATUS] & Status::SATURATED.0 != 0;
+    let count = answers.iter().filter(saturated).count();
+    assert!((1..packets.len()).contains(&count), "{count} of {}", packets.len());
+    simulate_exactly(&several, &built(&several), &packets, 7).expect("bit for bit");
 }
 
 /// A frame of one body is answered as by a design for one, word for word, and record 1 says the same.
