@@ -1,7 +1,5 @@
 //! Several bodies in hardware: whole designs against the model, the model against the solver, what one body costs.
 
-mod faults;
-
 use std::collections::BTreeMap;
 
 use golden::design::{Design, Filter, InputRange, Outputs, Overrun, PlanKind, Samples, Slip};
