@@ -19,6 +19,7 @@ module sptfra_align #(
     input  wire signed [9:0] unit, // sampled with float_bits
     output reg  [WIDTH-2:0] magnitude,
     output reg  negative, // with magnitude
+    output reg  clipped, // the same
     output reg  signed [WIDTH-1:0] fixed
 );
 
@@ -73,6 +74,7 @@ module sptfra_align #(
         if (enable) begin
             magnitude <= (coarse_2 >> fine_2) | {BITS{clipped_2}};
             negative <= negative_2;
+            clipped <= clipped_2;
             fixed <= negative ? -$signed({1'b0, magnitude}) : $signed({1'b0, magnitude});
         end
     end

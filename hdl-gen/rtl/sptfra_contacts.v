@@ -30,7 +30,7 @@ module sptfra_contacts #(
     parameter integer EXPECTED_COUNTED = 0,
     parameter integer EXPECTED_PARTED = 0,
     // Power of two of a step of the coefficients in Pa/N
-    parameter signed [9:0] COEFFICIENT_UNIT = 0,
+    parameter signed [9:0] COEFFICIENT_UNIT = 10'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Coefficients by distance
@@ -38,6 +38,7 @@ module sptfra_contacts #(
     // See sptfra_records
     parameter [31:0] MIDDLE_X = 32'h3c1374bc,
     parameter [31:0] MIDDLE_Y = 32'h3c1374bc,
+    parameter [31:0] CHANGE_SQUARED = 32'h3fc80000,
     parameter [31:0] NEARNESS = 32'h47742400,
     parameter [31:0] LIMIT = 32'h3d75c28f,
     parameter [31:0] SLIPS_FROM = 32'd0,
@@ -89,6 +90,7 @@ module sptfra_contacts #(
     wire [7:0] exponent;
     wire signed [9:0] unit;
     wire [3:0] header_address, header_index, kept, body, answering;
+    wire [31:0] header_word;
     wire [FIELD_WIDTH-1:0] place;
 
     sptfra_contacts_turns #(
@@ -173,7 +175,7 @@ module sptfra_contacts #(
     // ---- Answers
     wire [3:0] word_index;
     wire in_field, output_advance;
-    wire [31:0] presses, header_word, normal_word, field_word;
+    wire [31:0] presses, normal_word, field_word;
     wire [TAXEL_WIDTH-1:0] normal_address;
     wire [BANK_WIDTH+FIELD_WIDTH-1:0] output_field_address;
 
@@ -242,7 +244,7 @@ module sptfra_contacts #(
     );
 
     // ---- Forces: those of one body, or of several, added up; what they cause, and the frames of the bodies
-    wire output_reads;
+    wire output_reads, saturated;
     wire [TAXEL_WIDTH-1:0] output_taxel;
     wire [80:0] forces;
     wire of_body = core_m_tvalid && with_bodies;
@@ -258,6 +260,8 @@ module sptfra_contacts #(
         .clock          (clock),
         .reset          (reset),
         .unit           (unit),
+        .begins         (load_start),
+        .saturated      (saturated),
         .field_begins   (loads ? load_start : of_body && !in_field),
         .field_valid    (load_valid || (of_body && in_field)),
         .field_word     (with_bodies ? core_m_tdata : field_word),
@@ -297,6 +301,7 @@ module sptfra_contacts #(
         .ROM_DIR           (ROM_DIR),
         .MIDDLE_X          (MIDDLE_X),
         .MIDDLE_Y          (MIDDLE_Y),
+        .CHANGE_SQUARED    (CHANGE_SQUARED),
         .NEARNESS          (NEARNESS),
         .LIMIT             (LIMIT),
         .SLIPS_FROM        (SLIPS_FROM),
@@ -318,6 +323,7 @@ module sptfra_contacts #(
         .kept          (is_flat ? 4'd1 : kept),
         .bodies        (is_flat ? 8'd1 : bodies),
         .taxels        (taxels),
+        .saturated     (several && saturated),
         .record_done   (record_done),
         .start         (next),
         .idle          (output_idle),

@@ -47,6 +47,7 @@ module sptfra_contacts_bodies #(
 
     wire [25:0] magnitude;
     wire negative;
+    wire clipped;
     wire signed [26:0] fixed;
     wire [25:0] weight = negative ? magnitude : 26'd0;
     reg  [25:0] largest;
@@ -60,6 +61,7 @@ module sptfra_contacts_bodies #(
         .unit       (unit),
         .magnitude  (magnitude),
         .negative   (negative),
+        .clipped    (clipped),
         .fixed      (fixed)
     );
 
@@ -98,7 +100,8 @@ module sptfra_contacts_bodies #(
         .sizes          (sizes)
     );
 
-    wire _unused = &{1'b0, fixed};
+    // Of the largest of the frame's forces a step has 22 bits: none is clipped
+    wire _unused = &{1'b0, fixed, clipped};
 
 endmodule
 

@@ -22,6 +22,7 @@ module sptfra_contacts_output #(
     // See sptfra_records
     parameter [31:0] MIDDLE_X = 32'h3c1374bc,
     parameter [31:0] MIDDLE_Y = 32'h3c1374bc,
+    parameter [31:0] CHANGE_SQUARED = 32'h3fc80000,
     parameter [31:0] NEARNESS = 32'h47742400,
     parameter [31:0] LIMIT = 32'h3d75c28f,
     parameter [31:0] SLIPS_FROM = 32'd0,
@@ -49,6 +50,7 @@ module sptfra_contacts_output #(
     input  wire [3:0] kept,
     input  wire [7:0] bodies,
     input  wire [16*CONTACTS-1:0] taxels,
+    input  wire saturated,
     output wire record_done,
     // A frame whose words are made, while idle: what follows is taken with start
     input  wire start,
@@ -86,6 +88,7 @@ module sptfra_contacts_output #(
         .CONTACTS       (CONTACTS),
         .MIDDLE_X       (MIDDLE_X),
         .MIDDLE_Y       (MIDDLE_Y),
+        .CHANGE_SQUARED (CHANGE_SQUARED),
         .NEARNESS       (NEARNESS),
         .LIMIT          (LIMIT),
         .SLIPS_FROM     (SLIPS_FROM),
@@ -106,6 +109,7 @@ module sptfra_contacts_output #(
         .kept        (kept),
         .bodies      (bodies),
         .taxels      (taxels),
+        .saturated   (saturated),
         .done        (record_done),
         .out_bank    (words_bank),
         .out_address (words_address),

@@ -13,7 +13,7 @@ module sptfra_contacts_parts #(
     // Bodies that have a region
     parameter CONTACTS = 4,
     // Power of two of a step of the coefficients in Pa/N
-    parameter signed [9:0] COEFFICIENT_UNIT = 0,
+    parameter signed [9:0] COEFFICIENT_UNIT = 10'sd0,
     // Coefficients by distance
     parameter ROM_DIR = "",
     parameter FILE = "",
@@ -23,6 +23,8 @@ module sptfra_contacts_parts #(
     input  wire clock,
     input  wire reset,
     input  wire signed [9:0] unit, // power of two of a step of the forces; held
+    input  wire begins, // a frame of several bodies
+    output reg  saturated, // a number of that frame did not fit
     // A field: see sptfra_forces
     input  wire field_begins,
     input  wire field_valid,
@@ -62,6 +64,14 @@ module sptfra_contacts_parts #(
     wire [TAXEL_WIDTH-1:0] force_taxel;
     wire [BODY_WIDTH+TAXEL_WIDTH-1:0] part_address;
     wire signed [47:0] part;
+    wire force_clips, stress_clips;
+
+    always @(posedge clock) begin
+        saturated <= !begins && (saturated || force_clips || stress_clips);
+        if (reset) begin
+            saturated <= 1'b0;
+        end
+    end
 
     sptfra_forces #(
         .TAXELS (TAXELS)
@@ -75,6 +85,7 @@ module sptfra_contacts_parts #(
         .adds         (adds),
         .bank         (bank),
         .settled      (settled),
+        .clips        (force_clips),
         .read_enable  (output_reads ? output_advance : 1'b1),
         .read_address (output_reads ? {1'b0, output_taxel} : {part_bank, force_taxel}),
         .forces       (forces)
@@ -120,6 +131,7 @@ module sptfra_contacts_parts #(
         .region       (region),
         .stress       (stress),
         .part         (part),
+        .clips        (stress_clips),
         .word         (word),
         .word_last    (word_last),
         .word_valid   (word_valid),

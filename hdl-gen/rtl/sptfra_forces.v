@@ -5,7 +5,7 @@
 // those that the bodies are found to have.
 //
 // Takes the float32 words of a field, f_x, f_y, f_z of one taxel after the other, one a cycle at most; each replaces
-// what stands in its bank or is added to it. Sums are clipped. From a word to its place: 7 cycles.
+// what stands in its bank or is added to it. Forces and sums are clipped. From a word to its place: 7 cycles.
 
 `default_nettype none
 
@@ -25,6 +25,7 @@ module sptfra_forces #(
     input  wire adds, // held, with bank, until settled
     input  wire bank,
     output wire settled, // one cycle, with the last word in its place
+    output reg  clips, // a word or a sum; at the latest with settled
     // A taxel, while no field comes: 1 cycle
     input  wire read_enable,
     input  wire [TAXEL_WIDTH:0] read_address, // bank in the highest bit
@@ -55,6 +56,8 @@ module sptfra_forces #(
     // ---- Beside the conversion, 4 cycles; what is there already is read in its last one
     wire [25:0] magnitude;
     wire negative;
+    wire clipped_3;
+    reg clipped_4, clipped_5;
     wire signed [26:0] found_4;
     reg [6:1] valid;
     reg [6:1] is_last;
@@ -70,6 +73,7 @@ module sptfra_forces #(
         .unit       (unit),
         .magnitude  (magnitude),
         .negative   (negative),
+        .clipped    (clipped_3),
         .fixed      (found_4)
     );
 
@@ -89,14 +93,22 @@ module sptfra_forces #(
     wire [26:0] there_4 = (component_4 == 2'd0) ? forces[26:0] : (component_4 == 2'd1) ? forces[53:27] : forces[80:54];
     reg signed [27:0] sum_5;
     reg signed [26:0] sum_6;
+    wire above_5 = (sum_5 > LARGEST);
+    wire below_5 = (sum_5 < -LARGEST);
 
     always @(posedge clock) begin
         sum_5 <= $signed({found_4[26], found_4}) + (adds ? $signed({there_4[26], there_4}) : 28'sd0);
         sum_6 <= sum_5[26:0];
-        if (sum_5 > LARGEST) begin
+        if (above_5) begin
             sum_6 <= LARGEST[26:0];
-        end else if (sum_5 < -LARGEST) begin
+        end else if (below_5) begin
             sum_6 <= -LARGEST[26:0];
+        end
+        clipped_4 <= clipped_3;
+        clipped_5 <= clipped_4;
+        clips <= valid[5] && (clipped_5 || above_5 || below_5);
+        if (reset) begin
+            clips <= 1'b0;
         end
     end
 

@@ -15,7 +15,7 @@ module sptfra_parted_frames #(
     // Bits of the number of a body
     parameter BODY_WIDTH = 2,
     // Power of two of a step of the parts, over that of the forces
-    parameter signed [9:0] UNIT = 0,
+    parameter signed [9:0] UNIT = 10'sd0,
     // Derived
     parameter TAXEL_WIDTH = (TAXELS > 8) ? $clog2(TAXELS) : 3
 ) (
@@ -32,6 +32,7 @@ module sptfra_parted_frames #(
     input  wire [2:0] region,
     input  wire [31:0] stress,
     input  wire signed [47:0] part,
+    output wire clips, // the stress of a taxel
     // The frame
     output wire [31:0] word,
     output wire word_last,
@@ -48,6 +49,7 @@ module sptfra_parted_frames #(
     // ---- Stage 0: each taxel, and for each the bodies
     reg busy;
     reg [TAXEL_WIDTH-1:0] place;
+    reg [TAXEL_WIDTH-1:0] place_1; // a cycle later
     reg [3:0] of;
     wire last_of = (of + 4'd1 == kept);
     wire last_place = (place == LAST_TAXEL[TAXEL_WIDTH-1:0]);
@@ -77,12 +79,12 @@ module sptfra_parted_frames #(
     // ---- Stage 1: what was asked for; stage 5: the stress in steps of the parts
     reg valid_1, first_1, last_of_1, last_1;
     reg is_body_1;
-    reg [TAXEL_WIDTH-1:0] place_1;
     wire is_own_1 = ({1'b0, region} == body);
     reg [ALIGN+1:2] valids, firsts, lasts_of, lasts, are_own, are_body;
     reg signed [47:0] part_2, part_3, part_4, part_5;
     wire [46:0] magnitude;
     wire negative;
+    wire clipped_4;
     wire signed [47:0] stress_5;
 
     sptfra_align #(
@@ -94,8 +96,11 @@ module sptfra_parted_frames #(
         .unit       (unit + UNIT),
         .magnitude  (magnitude),
         .negative   (negative),
+        .clipped    (clipped_4),
         .fixed      (stress_5)
     );
+
+    assign clips = valids[ALIGN] && clipped_4;
 
     always @(posedge clock) begin
         if (advance) begin

@@ -145,6 +145,7 @@ module sptfra_parting #(
     reg [TO_SUM:1] all_there; // of all sums
     reg [ROW_WIDTH-1:0] target_1, target_2;
     wire from_below_2 = (row_2 > target_2);
+    reg [80:0] forces_3, forces_4, forces_5; // for all columns, while each looks up its coefficients
 
     always @(posedge clock) begin
         valid <= {valid[1], has_source};
@@ -152,6 +153,7 @@ module sptfra_parting #(
         sums_there <= {sums_there[TO_SUM-1:1], ends_pass};
         all_there <= {all_there[TO_SUM-1:1], ends_all};
         {target_2, target_1} <= {target_1, row};
+        {forces_5, forces_4, forces_3} <= {forces_4, forces_3, forces};
         if (reset) begin
             valid <= 2'd0;
             sums_there <= {TO_SUM{1'b0}};
@@ -178,7 +180,7 @@ module sptfra_parting #(
                 .from_column (column_2),
                 .rows_away   (from_below_2 ? row_2 - target_2 : target_2 - row_2),
                 .from_below  (from_below_2),
-                .forces      (forces),
+                .forces_3    (forces_5),
                 .sum         (sums[48*index +: 48])
             );
         end

@@ -26,7 +26,7 @@ module sptfra_parting_lane #(
     input  wire [COLUMN_WIDTH-1:0] from_column,
     input  wire [ROW_WIDTH-1:0] rows_away,
     input  wire from_below, // of a row with a higher number
-    input  wire [80:0] forces, // f_z, f_y, f_x
+    input  wire [80:0] forces_3, // f_z, f_y, f_x, 3 cycles later
     output reg  signed [47:0] sum
 );
 
@@ -38,17 +38,16 @@ module sptfra_parting_lane #(
     reg [3:1] firsts;
     reg [ROW_WIDTH+COLUMN_WIDTH-1:0] address_1;
     reg from_right_1, from_below_1, from_right_2, from_below_2;
-    reg [80:0] forces_1, forces_2, forces_3;
-    wire from_right = (from_column > HERE);
+    wire [COLUMN_WIDTH:0] apart = {1'b0, from_column} - {1'b0, HERE};
+    wire from_right = !apart[COLUMN_WIDTH]; // or from here, where C31 is 0
     wire [53:0] coefficients_2;
 
     always @(posedge clock) begin
         valids <= {valids[2:1], valid};
         firsts <= {firsts[2:1], first};
-        address_1 <= {rows_away, from_right ? from_column - HERE : HERE - from_column};
+        address_1 <= {rows_away, from_right ? apart[COLUMN_WIDTH-1:0] : HERE - from_column};
         {from_right_2, from_right_1} <= {from_right_1, from_right};
         {from_below_2, from_below_1} <= {from_below_1, from_below};
-        {forces_3, forces_2, forces_1} <= {forces_2, forces_1, forces};
         if (reset) begin
             valids <= 3'd0;
         end

@@ -27,6 +27,8 @@ module sptfra_records #(
     // Middle of the grid from the first taxel in metres, float32 as all below
     parameter [31:0] MIDDLE_X = 32'h3c1374bc,
     parameter [31:0] MIDDLE_Y = 32'h3c1374bc,
+    // The square of the share of what the last round has changed that counts as error
+    parameter [31:0] CHANGE_SQUARED = 32'h3fc80000,
     // 1 over the square of the length within which bodies feel each other
     parameter [31:0] NEARNESS = 32'h47742400,
     // A standard error above so many |F_z| is doubtful
@@ -58,6 +60,7 @@ module sptfra_records #(
     input  wire [3:0] kept, // bodies with a record, at most CONTACTS
     input  wire [7:0] bodies, // all that there are
     input  wire [16*CONTACTS-1:0] taxels, // that each of the first touches
+    input  wire saturated, // a number did not fit on the way
     output wire done, // one cycle
     // Its words
     output reg  out_bank, // of the last frame that is done, from done on
@@ -144,7 +147,7 @@ module sptfra_records #(
         is_constant <= (source[6:4] == CONSTANT);
         case (source[3:0])
             4'd1: constant <= 32'h3f800000; // 1
-            4'd2: constant <= 32'h3fc80000; // 1.25^2, the share of what the last round has changed
+            4'd2: constant <= CHANGE_SQUARED;
             4'd3: constant <= MIDDLE_X;
             4'd4: constant <= MIDDLE_Y;
             4'd5: constant <= NEARNESS;
@@ -181,7 +184,7 @@ module sptfra_records #(
     reg [3*CONTACTS-1:0] ranks;
     reg less; // the last comparison's first source
     reg slips; // the body
-    reg [15:0] any_bits; // of its bodies
+    reg [15:0] any_bits; // of its bodies, and of what is between them
     wire [15:0] own_bits = (operand[15:0] & BODY_BITS) | ({15'd0, less} << DOUBTFUL) | ({15'd0, slips} << SLIPS);
     wire [15:0] more_bits = {15'd0, bodies_held > RECORDS} << MORE_BODIES;
     wire [2:0] rank = ranks[3*i[2:0] +: 3];
@@ -193,7 +196,7 @@ module sptfra_records #(
             ranks <= {(3 * CONTACTS){1'b0}};
             less <= 1'b0;
             slips <= 1'b0;
-            any_bits <= 16'd0;
+            any_bits <= {15'd0, saturated} << SATURATED;
         end
         if (finish && (what == LESS)) begin
             less <= below;

@@ -14,6 +14,9 @@ use crate::plan::resources::BlockCost;
 use crate::plan::streams::{Streams, WORD_BITS};
 use crate::plan::timing::Timeline;
 
+/// Bits of a power of two, of a step for instance.
+const EXPONENT_BITS: u32 = 10;
+
 /// Multipliers of a column of the grid: one for each component of a force.
 const LANE_MULTIPLIERS: usize = 3;
 
@@ -31,7 +34,7 @@ pub fn parameters(plan: &Plan, of: &ContactsPlan) -> Parameters {
         .number("STEP_DIAGONAL", diagonal.into())
         .cycles("EXPECTED_COUNTED", regions::counted(sensor, regions::WEIGHT_LATENCY))
         .cycles("EXPECTED_PARTED", regions::parted(sensor, of.contacts))
-        .number("COEFFICIENT_UNIT", of.unit.into())
+        .wide("COEFFICIENT_UNIT", EXPONENT_BITS, of.unit.into())
         .expression("ROM_DIR", "ROM_DIR")
         .expression("PARTING_FILE", format!("\"{}\"", rom_file(plan)))
         .expression("RECORDS_FILE", format!("\"{}\"", program_file(plan)))

@@ -22,13 +22,15 @@ pub fn words(contacts: usize) -> usize {
 pub fn parameters(design: &Design) -> Parameters {
     let contacts = design.algorithm.contacts;
     let program = Program::of(design);
-    let [_, _, _, middle_x, middle_y, nearness, limit, _, slips_from, slips_still] = Constants::of(design).words();
+    let [_, _, change_squared, middle_x, middle_y, nearness, limit, _, slips_from, slips_still] =
+        Constants::of(design).words();
     let float = |bits: u32| format!("32'h{bits:08x}");
     let latencies: Vec<(u64, String)> = (0..=contacts).map(|kept| (program.cycles(kept), String::new())).collect();
     let parameters = Parameters::new()
         .count("CONTACTS", contacts)
         .expression("MIDDLE_X", float(middle_x))
         .expression("MIDDLE_Y", float(middle_y))
+        .expression("CHANGE_SQUARED", float(change_squared))
         .expression("NEARNESS", float(nearness))
         .expression("LIMIT", float(limit))
         .count("PROGRAM_LENGTH", program.rom().len())

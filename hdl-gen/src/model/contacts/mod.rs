@@ -30,7 +30,7 @@ impl Model<'_> {
         let (header, field) = whole.split_at(SUMMARY_WORDS);
         let largest = field.iter().map(|word| word >> 23 & 0xff).max().unwrap_or(0);
         let unit = largest as i32 - TO_UNIT;
-        let weight = |taxel: &[u32; 3]| (-align(taxel[2], unit, FORCE_BITS)).max(0);
+        let weight = |taxel: &[u32; 3]| (-align(taxel[2], unit, FORCE_BITS).steps).max(0);
         let weights: Vec<i64> = field.as_chunks().0.iter().map(weight).collect();
         let Plan { design, .. } = self.plan;
         let found = regions::find(&weights, design.sensor.columns, blocks::regions::steps(&design.sensor), of.contacts);
@@ -54,7 +54,8 @@ impl Model<'_> {
             taxels.push(0);
         }
         let bodies = found.bodies.max(taxels.len() as u32).min(u8::MAX.into()) as u8;
-        let mut answer = records.finish(Counted { kept: taxels.len(), bodies, taxels: &taxels });
+        let mut answer =
+            records.finish(Counted { kept: taxels.len(), bodies, taxels: &taxels, saturated: forces.clipped });
         answer[words::STATUS] = answer[words::STATUS] & 0xFFFF | u32::from(number) << 16;
         match (self.plan.field_words() > 0, several) {
             (false, _) => {}

@@ -13,20 +13,31 @@ const LARGEST: i64 = (1 << (FORCE_BITS - 1)) - 1;
 pub(super) struct Forces {
     pub(super) unit: i32,
     pub(super) of: Vec<[i64; 3]>,
+    /// Whether one of them, or a stress of the frame, did not fit.
+    pub(super) clipped: bool,
 }
 
 impl Forces {
     /// Those of a field.
     pub(super) fn of_field(unit: i32, field: &[u32]) -> Self {
-        let of = field.as_chunks::<3>().0.iter().map(|words| words.map(|word| align(word, unit, FORCE_BITS))).collect();
-        Self { unit, of }
+        let mut clipped = false;
+        let mut steps = |word| {
+            let force = align(word, unit, FORCE_BITS);
+            clipped |= force.clipped;
+            force.steps
+        };
+        let of = field.as_chunks::<3>().0.iter().map(|words| words.map(&mut steps)).collect();
+        Self { unit, of, clipped }
     }
 
     /// Adds those of a field.
     pub(super) fn add(&mut self, field: &[u32]) {
         for (sum, words) in self.of.iter_mut().zip(field.as_chunks::<3>().0) {
             for (sum, &word) in sum.iter_mut().zip(words) {
-                *sum = (*sum + align(word, self.unit, FORCE_BITS)).clamp(-LARGEST, LARGEST);
+                let force = align(word, self.unit, FORCE_BITS);
+                *sum += force.steps;
+                self.clipped |= force.clipped || sum.abs() > LARGEST;
+                *sum = (*sum).clamp(-LARGEST, LARGEST);
             }
         }
     }
@@ -38,7 +49,7 @@ impl Forces {
 
     /// The frames, in float32, that so many bodies would cause alone; `regions` has the body of each taxel, `frame` the
     /// words of the whole one.
-    pub(super) fn frames(&self, plan: &Plan, of: &ContactsPlan, frame: &[u32], regions: &[u8]) -> Vec<Vec<u32>> {
+    pub(super) fn frames(&mut self, plan: &Plan, of: &ContactsPlan, frame: &[u32], regions: &[u8]) -> Vec<Vec<u32>> {
         let columns = plan.design.sensor.columns;
         let bodies = regions.iter().max().map_or(0, |&last| usize::from(last) + 1);
         let place = |taxel: usize| [taxel % columns, taxel / columns];
@@ -50,10 +61,12 @@ impl Forces {
             }
         }
         let unit = self.unit + of.unit;
+        let stress: Vec<_> = frame.iter().map(|&word| align(word, unit, PART_BITS)).collect();
+        self.clipped |= stress.iter().any(|stress| stress.clipped);
         let word = |body: usize, taxel: usize| {
             let steps = if usize::from(regions[taxel]) == body {
                 let others = (0..bodies).filter(|&other| other != body).map(|other| parts[other][taxel]);
-                align(frame[taxel], unit, PART_BITS) - others.sum::<i64>()
+                stress[taxel].steps - others.sum::<i64>()
             } else {
                 parts[body][taxel]
             };

@@ -24,6 +24,8 @@ pub struct Counted<'a> {
     pub bodies: u8,
     /// Taxels that each of the first touches.
     pub taxels: &'a [u16],
+    /// Whether a number did not fit on the way to them.
+    pub saturated: bool,
 }
 
 /// The hardware's state.
@@ -45,7 +47,7 @@ struct Notes {
     less: bool,
     /// Whether the body slips.
     slips: bool,
-    /// Bits of all bodies.
+    /// Bits of all bodies, and of what is between them.
     bits: u32,
 }
 
@@ -79,7 +81,8 @@ impl Records {
     /// The words before the field.
     pub fn finish(&mut self, counted: Counted) -> Vec<u32> {
         let mut words = vec![0; SUMMARY_WORDS + RECORD_WORDS * self.contacts];
-        let mut notes = Notes { ranks: vec![0; self.contacts], less: false, slips: false, bits: 0 };
+        let bits = if counted.saturated { Status::SATURATED.0 } else { 0 };
+        let mut notes = Notes { ranks: vec![0; self.contacts], less: false, slips: false, bits };
         let program = std::mem::take(&mut self.program);
         run(
             &program,

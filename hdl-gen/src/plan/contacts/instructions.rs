@@ -108,8 +108,13 @@ impl What {
     fn cycles(self) -> u64 {
         const READ: u64 = 3;
         match self {
-            Self::Move | Self::OwnStatus | Self::FrameStatus | Self::Census => 2,
-            Self::Nearer | Self::Slip | Self::Remember => 2,
+            Self::Move
+            | Self::OwnStatus
+            | Self::FrameStatus
+            | Self::Census
+            | Self::Nearer
+            | Self::Slip
+            | Self::Remember => 2,
             Self::Choose => READ,
             Self::Add | Self::Subtract | Self::Multiply => READ + 9,
             Self::Divide => READ + 33,

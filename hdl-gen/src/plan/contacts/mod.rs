@@ -60,7 +60,8 @@ impl ContactsPlan {
         let columns = [&matrices.c31, &matrices.c32, &matrices.c33].map(|matrix| matrix * &first);
         let at = |taxel: usize| columns.each_ref().map(|column| column[taxel]);
         let coefficients: Vec<[f64; 3]> = (0..design.sensor.taxels()).map(at).collect();
-        let unit = unit(&design.sensor, &coefficients);
+        let needs = "a [sensor] pitch_mm and depth_mm by which a newton causes less than 1e30 Pa";
+        let unit = unit(&design.sensor, &coefficients).ok_or(PlanError::Contacts { contacts, needs })?;
         let coefficients = coefficients.iter().map(|of| of.map(|value| (value * pow2(-unit)).round() as i32)).collect();
         Ok(Some(Self { contacts, unit, coefficients, banks: 2, core: Timeline::default() }))
     }
@@ -80,8 +81,9 @@ impl ContactsPlan {
     }
 }
 
-/// The smallest step with which coefficients fit a multiplier, and sums over all taxels their accumulators, even together.
-fn unit(sensor: &Sensor, coefficients: &[[f64; 3]]) -> i32 {
+/// The smallest step with which coefficients fit a multiplier, and sums over all taxels their accumulators, even together; none
+/// if they are no numbers, or too large for any.
+fn unit(sensor: &Sensor, coefficients: &[[f64; 3]]) -> Option<i32> {
     let most = coefficients.as_flattened().iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     // Each distance comes twice along each axis, but that of 0.
     let often = |taxel: usize| {
@@ -100,7 +102,7 @@ fn unit(sensor: &Sensor, coefficients: &[[f64; 3]]) -> i32 {
         let rounded = all / step + 1.5 * (4 * coefficients.len()) as f64;
         (most / step).round() < pow2(SHORT_BITS as i32 - 1) && rounded < pow2((PART_BITS - FORCE_BITS) as i32)
     };
-    (-100..100).find(fits).unwrap_or(100)
+    (-100..100).find(fits)
 }
 
 /// The design of the core for one body, which several share: it answers with the whole field, by which bodies are parted, and

@@ -78,21 +78,11 @@ fn designs() -> Vec<Design> {
         design.hardware.overrun = Overrun::Drop;
     }
     let [scaled, scaled_fold, scaled_banks] = scaled(&curve_in_ram);
-    // Several bodies: slip, resultants, a wide stream with registers; frames dropped.
-    let mut several = shipped("small-bodies");
-    "several".clone_into(&mut several.name);
-    several.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
-    let mut several_dropped = several.clone();
-    "several_dropped".clone_into(&mut several_dropped.name);
-    several.algorithm.outputs = Outputs::Resultants;
-    several.algorithm.contacts = 8;
-    (several.hardware.stream_bits, several.hardware.control) = (128, true);
-    several_dropped.hardware.overrun = Overrun::Drop;
     // Nets marked for a logic analyser, in every kind of core.
     for design in [&mut curved, &mut uncorrected, &mut unpacked, &mut wide_control, &mut dropping] {
         design.hardware.debug = true;
     }
-    vec![
+    let others = vec![
         calibration::design(Outputs::Field),
         in_ram,
         mapped,
@@ -108,8 +98,6 @@ fn designs() -> Vec<Design> {
         integers,
         unpacked,
         wide_control,
-        several,
-        several_dropped,
         by_plan(shipped("small"), paper, Outputs::Field),
         by_plan(shipped("odd"), paper, Outputs::Field),
         shipped("sensor1-f1-l40"),
@@ -133,7 +121,31 @@ fn designs() -> Vec<Design> {
         curved,
         with_lanes(shipped("sensor1-f1-l40"), 64),
         narrow,
-    ]
+    ];
+    others.into_iter().chain(bodies()).collect()
+}
+
+/// Several bodies, of either plan, with registers and marked nets, with fewest and most records, on the smallest sensor; with
+/// slip, resultants alone and wide streams; frames dropped.
+fn bodies() -> [Design; 5] {
+    let mut few = by_plan(shipped("odd"), PlanKind::Paper, Outputs::Field);
+    "few_bodies".clone_into(&mut few.name);
+    few.algorithm.contacts = 2;
+    let mut most = by_plan(shipped("small-control"), PlanKind::Reduced, Outputs::Field);
+    "most_bodies".clone_into(&mut most.name);
+    most.algorithm.contacts = 8;
+    most.hardware.debug = true;
+    let mut tiny = by_plan(shipped("small-bodies"), PlanKind::Reduced, Outputs::Field);
+    "tiny_bodies".clone_into(&mut tiny.name);
+    (tiny.sensor.columns, tiny.sensor.rows) = (2, 2);
+    let mut dropped = shipped("small-bodies");
+    "several_dropped".clone_into(&mut dropped.name);
+    dropped.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
+    let mut wide = Design { name: "several".to_owned(), ..dropped.clone() };
+    dropped.hardware.overrun = Overrun::Drop;
+    (wide.algorithm.outputs, wide.algorithm.contacts) = (Outputs::Resultants, 8);
+    (wide.hardware.stream_bits, wide.hardware.control) = (128, true);
+    [few, most, tiny, dropped, wide]
 }
 
 /// Words of two multipliers a lane: all their bits, scaled by each frame's largest stress; in beats of several samples,

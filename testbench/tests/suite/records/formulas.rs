@@ -218,7 +218,7 @@ fn the_model_is_as_near_as_float32_is() {
             let headers = Headers::likely(kept, last, &mut random);
             let taxels: Vec<u16> = (0..contacts).map(|_| random.random()).collect();
             let bodies = random.random();
-            let found = headers.answer(&mut model, Counted { kept, bodies, taxels: &taxels });
+            let found = headers.answer(&mut model, Counted { kept, bodies, taxels: &taxels, saturated: false });
             assert_eq!([found[1], found[13]], [headers.frame[1], headers.frame[13] & !0xFF | u32::from(bodies)]);
             let more = usize::from(bodies) > contacts;
             let exact = exact(&headers, last.map(|last| 0.5 * last), reach, design.algorithm.joint.doubt, more);

@@ -102,8 +102,9 @@ fn expected(case: &Case) -> Vec<Played> {
     for command in &case.commands {
         match command {
             Command::Write { body, before, word, data } => model.write(*body, *before, *word, *data),
-            Command::Start { kept, bodies, taxels, twice } => {
-                let mut finish = || model.finish(Counted { kept: *kept, bodies: *bodies, taxels });
+            Command::Start { kept, bodies, taxels, saturated, twice } => {
+                let counted = || Counted { kept: *kept, bodies: *bodies, taxels, saturated: *saturated };
+                let mut finish = || model.finish(counted());
                 if *twice {
                     finish();
                 }
@@ -143,7 +144,8 @@ fn of(design: Design, name: String, frames: usize, random: &mut ChaCha8Rng) -> C
         }
         let taxels = (0..contacts).map(|_| random.random()).collect();
         let bodies = [kept as u8, contacts as u8, random.random()][random.random_range(0..3)];
-        commands.push(Command::Start { kept, bodies, taxels, twice: random.random_bool(0.2) });
+        let [saturated, twice] = [random.random_bool(0.3), random.random_bool(0.2)];
+        commands.push(Command::Start { kept, bodies, taxels, saturated, twice });
     }
     Case { name, design, commands }
 }
@@ -199,7 +201,8 @@ fn faults_are_noticed() {
         ("records", "16'h0446", "16'h0447"),
         ("records", "own_bits | ({15'd0, operand[SATURATED]} << SATURATED)", "own_bits"),
         ("records", "bodies_held > RECORDS", "bodies_held >= RECORDS"),
-        ("records", "any_bits <= 16'd0;", ""),
+        ("records", "any_bits <= {15'd0, saturated} << SATURATED;", ""),
+        ("records", "any_bits <= {15'd0, saturated} << SATURATED;", "any_bits <= 16'd0;"),
         ("records", "kept_1 : kept_0) + 4'd2", "kept_1 : kept_0) + 4'd3"),
         ("records", "{!out_bank, write_row", "{1'b0, write_row"),
         ("records", "operand_a[30:23] != 8'd0", "1'b1"),
@@ -227,7 +230,7 @@ fn faults_are_noticed() {
     records_of_faults(&faults, |fault| play(&cases, icarus, fault).is_ok_and(|played| played == expected));
 }
 
-/// No design has them yet.
+/// With every number of records.
 #[test]
 fn the_modules_are_clean() {
     let library = workspace("hdl-gen/rtl");

@@ -16,21 +16,23 @@ pub enum Command {
     /// A word of a header.
     Write { body: u8, before: bool, word: usize, data: u32 },
     /// A frame; with `twice` it starts again in the cycle in which it is done.
-    Start { kept: usize, bodies: u8, taxels: Vec<u16>, twice: bool },
+    Start { kept: usize, bodies: u8, taxels: Vec<u16>, saturated: bool, twice: bool },
     /// A frame that is given up by a reset after so many cycles.
     GiveUp { kept: usize, after: u32 },
 }
 
 impl Command {
-    /// Kind, kept, bodies, body, before, word, data, taxels: 4, 4, 8, 4, 4, 4, 32 and 128 bits.
+    /// Kind, kept, bodies, body, before, word, data (of a start in its lowest bit whether it is saturated), taxels: 4, 4, 8,
+    /// 4, 4, 4, 32 and 128 bits.
     fn line(&self) -> String {
         let taxels = |taxels: &[u16]| taxels.iter().rev().fold(0, |all, &of| all << 16 | u128::from(of));
         match self {
             Self::Write { body, before, word, data } => {
                 format!("0000{body:x}{}{word:x}{data:08x}{:032x}\n", u8::from(*before), 0)
             }
-            Self::Start { kept, bodies, taxels: of, twice } => {
-                format!("{}{kept:x}{bodies:02x}00000000000{:032x}\n", 1 + u8::from(*twice), taxels(of))
+            Self::Start { kept, bodies, taxels: of, saturated, twice } => {
+                let [kind, saturated] = [1 + u8::from(*twice), u8::from(*saturated)];
+                format!("{kind}{kept:x}{bodies:02x}0000000000{saturated}{:032x}\n", taxels(of))
             }
             Self::GiveUp { kept, after } => format!("3{kept:x}00000{after:08x}{:032x}\n", 0),
         }
@@ -128,7 +130,7 @@ fn played(text: &str) -> Result<Vec<Played>, String> {
 const BENCH: &str = "
         reg [187:0] commands [0:COUNT-1];
         reg [187:0] now;
-        reg reset, in_write, in_before, start_now, again, resets;
+        reg reset, in_write, in_before, start_now, again, resets, saturated;
         reg [3:0] in_body, in_word, kept;
         reg [7:0] bodies;
         reg [31:0] in_data;
@@ -148,6 +150,7 @@ const BENCH: &str = "
         sptfra_records PARAMETERSsubject (
             .clock(clock), .reset(reset), .in_write(in_write), .in_body(in_body), .in_before(in_before), .in_word(in_word),
             .in_data(in_data), .start(start), .kept(kept), .bodies(bodies), .taxels(start ? taxels[TAXELS-1:0] : {TAXELS{1'b1}}),
+            .saturated(start ? saturated : !saturated),
             .done(done), .out_bank(out_bank), .out_address(out_address), .out_word(out_word));
         always @(posedge clock) begin
             in_write <= 0;
@@ -170,6 +173,7 @@ const BENCH: &str = "
                         kept <= now[183:180];
                         bodies <= now[179:172];
                         taxels <= now[127:0];
+                        saturated <= now[128];
                         again <= (now[187:184] == 2);
                         resets <= (now[187:184] == 3);
                         last = now[159:128];

@@ -120,7 +120,8 @@ fn formulas_and_model_are_the_solver_s() {
                 let kept = taxels.len();
                 seen[kept] += 1;
                 taxels.resize(contacts, 0);
-                let found = headers.answer(&mut model, Counted { kept, bodies: bodies as u8, taxels: &taxels });
+                let found = headers
+                    .answer(&mut model, Counted { kept, bodies: bodies as u8, taxels: &taxels, saturated: false });
                 assert_eq!((found[13] & 0xFF) as usize, solution.bodies, "{label}");
                 if kept > 1 {
                     let exact = exact(&headers, middle, reach, design.algorithm.joint.doubt, bodies > contacts);
@@ -160,7 +161,7 @@ fn no_body_leaves_the_frame_as_it_is() {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for headers in [Headers { frame: words(&solution), last: Vec::new(), before: Vec::new() }, hostile(0, &mut random)]
     {
-        let found = headers.answer(&mut model, Counted { kept: 0, bodies: 200, taxels: &[7; 4] });
+        let found = headers.answer(&mut model, Counted { kept: 0, bodies: 200, taxels: &[7; 4], saturated: false });
         assert_eq!((&found[..16], &found[16..]), (&headers.frame[..], &[0; 32][..]));
     }
 }
