@@ -81,19 +81,19 @@ fn several_bodies_are_inspected_and_generated_with_what_goes_with_them() {
     let here = folder.path();
     let one = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "");
     let several = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "[algorithm]\ncontacts = 3\n");
-    let wide = format!("{several}[hardware]\nstream_bits = 64\n");
+    let dead = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "dead = [3]\n[algorithm]\ncontacts = 3\n");
     fs::write(here.join("one.toml"), &one).unwrap();
     fs::write(here.join("several.toml"), &several).unwrap();
-    fs::write(here.join("wide.toml"), &wide).unwrap();
-    fs::write(here.join("wide_one.toml"), wide.replace("contacts = 3", "contacts = 1")).unwrap();
-    let refused = hdl_gen(here, &["generate", "wide.toml"]);
+    fs::write(here.join("dead.toml"), &dead).unwrap();
+    fs::write(here.join("dead_one.toml"), dead.replace("contacts = 3", "contacts = 1")).unwrap();
+    let refused = hdl_gen(here, &["generate", "dead.toml"]);
     assert!(!refused.status.success());
     let said = String::from_utf8(refused.stderr).unwrap();
-    for part in ["wide.toml", "contacts = 3", "golden solve", "Python", "stream_bits = 32", "or contacts = 1"] {
+    for part in ["dead.toml", "contacts = 3", "golden solve", "Python", "no [sensor] dead", "or contacts = 1"] {
         assert!(said.contains(part), "no {part:?} in: {said}");
     }
     assert!(said.lines().count() == 1 && !here.join("rtl-out").exists(), "{said}");
-    let [of_one, of_several] = ["wide_one.toml", "wide.toml"].map(|name| good(here, &["inspect", name]));
+    let [of_one, of_several] = ["dead_one.toml", "dead.toml"].map(|name| good(here, &["inspect", name]));
     let remark = of_several.lines().find(|line| line.contains("contacts 3")).expect("a remark");
     assert!(remark.contains("contacts = 1"), "{remark}");
     assert_eq!(of_several.replacen(&format!("{remark}\n"), "", 1), of_one, "all else is that of one body");

@@ -73,9 +73,26 @@ module sptfra_spmv_collector #(
         end
     endgenerate
 
+    // The least or the largest of SHIFTS
+    function integer extreme(input integer largest);
+        integer place;
+        begin
+            extreme = {26'd0, SHIFTS[5:0]};
+            for (place = 1; place < 16; place = place + 1) begin
+                if ((largest != 0) == ({26'd0, SHIFTS[6*place +: 6]} > extreme)) begin
+                    extreme = {26'd0, SHIFTS[6*place +: 6]};
+                end
+            end
+        end
+    endfunction
+
     localparam TAKE_TO_BUS = 3; // cycles, which simulations check
     localparam LANE_WIDTH = (LANES > 2) ? $clog2(LANES) : 1;
     localparam WORD_WIDTH = 1 + LANE_WIDTH + DESTINATION_BITS + ROW_WIDTH;
+    // Of all shifts the least, and as many more as any of them has
+    localparam integer LEAST_SHIFT = extreme(0);
+    localparam integer MORE_BITS = (extreme(1) > LEAST_SHIFT) ? $clog2(extreme(1) - LEAST_SHIFT + 1) : 1;
+    localparam integer SPREAD_BITS = DATA_BITS + (1 << MORE_BITS) - 1; // of a result before the rest of its shift
     localparam [3:0] Y = 4'd0, U1 = 4'd2, U2 = 4'd3, R1 = 4'd6, R2 = 4'd7, FORCE_X = 4'd9, FORCE_Y = 4'd10;
 
     // ---- The next visit, one word ahead of the ROM; after a program's last one, on to the program that has begun
@@ -197,34 +214,30 @@ module sptfra_spmv_collector #(
         end
     end
 
-    // ---- Round: half a step of the result, then the shift, both by destination. The format of each result was chosen
-    // so that its worst case fits: the bits above are copies of the sign
-    wire [47:0] half = (48'd1 << visited_shift) >> 1;
+    // ---- Round: half a step of the result, then the shift, both by destination. What all shifts have in common is
+    // wires, and the bits below are left out on the way here. The format of each result was chosen so that its worst
+    // case fits: the bits above are copies of the sign
+    wire [5:0] visited_more = visited_shift - LEAST_SHIFT[5:0];
+    wire [47:0] half = ((48'd1 << visited_more[MORE_BITS-1:0]) << LEAST_SHIFT) >> 1;
+    reg [MORE_BITS-1:0] sum_more;
     reg sum_valid;
     reg [DESTINATION_BITS-1:0] sum_destination;
     reg [ROW_WIDTH-1:0] sum_row;
     wire [WAYS*DATA_BITS-1:0] rounded;
-    localparam DROP_WIDTH = $clog2(48 + DATA_BITS);
-    genvar choice;
+    wire _unused_more = &{1'b0, visited_more};
+
     generate
         for (index = 0; index < WAYS; index = index + 1) begin : gen_ways
             reg [47:0] sum;
-            wire [47+DATA_BITS:0] wide = {{DATA_BITS{sum[47]}}, sum};
-            wire [(DATA_BITS << DESTINATION_BITS)-1:0] choices;
+            wire [111+DATA_BITS:0] wide = { {(64 + DATA_BITS){sum[47]}}, sum};
+            wire [SPREAD_BITS-1:0] spread = wide[LEAST_SHIFT +: SPREAD_BITS] >> sum_more;
 
             always @(posedge clock) begin
                 sum <= visited[48*index +: 48] + half;
             end
 
-            for (choice = 0; choice < (1 << DESTINATION_BITS); choice = choice + 1) begin : gen_choices
-                localparam [31:0] DROP_WIDE = {26'd0, SHIFTS[6*choice +: 6]};
-                localparam [DROP_WIDTH-1:0] DROP = DROP_WIDE[DROP_WIDTH-1:0];
-
-                assign choices[DATA_BITS*choice +: DATA_BITS] = wide[DROP +: DATA_BITS];
-            end
-
-            assign rounded[DATA_BITS*index +: DATA_BITS] = choices[DATA_BITS*sum_destination +: DATA_BITS];
-            wire _unused = &{1'b0, wide};
+            assign rounded[DATA_BITS*index +: DATA_BITS] = spread[DATA_BITS-1:0];
+            wire _unused = &{1'b0, wide, spread};
         end
     endgenerate
 
@@ -239,6 +252,7 @@ module sptfra_spmv_collector #(
     always @(posedge clock) begin
         sum_valid <= visited_valid;
         sum_destination <= visited_destination;
+        sum_more <= visited_more[MORE_BITS-1:0];
         sum_row <= visited_row;
         result_route <= route & {16{sum_valid}};
         result_row <= sum_row;
