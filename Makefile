@@ -61,7 +61,7 @@ $(TARGET)/trust/small-%.toml: designs/small.toml
 	@sed 's/^name = .*/name = "small_$*"/; s/^\[algorithm\]/&\nplan = "$*"/' $< > $@
 
 .PHONY: stress
-stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan, the joint estimator's stages, and with banks written among them (an hour)
+stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan, the joint estimator's stages, with banks written among them, and of several bodies (an hour)
 	@$(CARGO) build --quiet --release -p testbench
 	@set -e; for design in $(SMALL_DESIGNS) designs/small-joint.toml designs/small-scanner.toml designs/small-bodies.toml; do \
 		$(TARGET)/release/testbench stress $$design --frames $(FRAMES_COUNT); done

@@ -79,7 +79,7 @@ module sptfra_points_level #(
         for (index = 1; index < LEAVES; index = index + 1) begin : gen_tree
             reg [VALUE_BITS-1:0] node;
 
-            // Two nodes have one point, one has none
+            // The first of the lowest nodes has one point, the second of its two
             if (index == LEAVES / 2) begin : gen_second
                 always @(posedge clock) begin
                     node <= nodes[2*index + 1];

@@ -72,7 +72,7 @@ module sptfra_records #(
     localparam [2:0] OF_I = 3'd0, OF_J = 3'd1, OF_FRAME = 3'd2, CONSTANT = 3'd4, OUT_FRAME = 3'd5, OUT_RECORD = 3'd6;
     localparam [2:0] LAST = 3'd7; // as a source of j, as a destination of i
     localparam [3:0] FRAME_PAGE = 4'd8, SCRATCH_PAGE = 4'd9;
-    localparam [2:0] LAST_PAGES = 3'd5; // the tenth and the one behind it
+    localparam [2:0] LAST_PAGES = 3'd5; // 10 and 11
     // What is done with sources as they are
     localparam [4:0] OWN_STATUS = 5'd1, FRAME_STATUS = 5'd2, CENSUS = 5'd3, CHOOSE = 5'd4;
     localparam [4:0] NEARER = 5'd5, SLIP = 5'd6, REMEMBER = 5'd7;

@@ -59,7 +59,7 @@ int text_numbers_columns(const char *line, size_t taxels)
     return *at == '\0';
 }
 
-/* Each body's record, by the columns of print_header. */
+/* Each body's record, by the columns of text_header. */
 static void print_bodies(const sptfra_shape *shape, const sptfra_result *result)
 {
     const int records = sptfra_records(shape);

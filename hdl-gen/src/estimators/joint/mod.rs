@@ -170,8 +170,7 @@ impl Slot for JointPlan {
         let plane =
             |squares, multipliers| BlockCost::new("plane", &["sptfra_plane_search"], multipliers).narrow(squares);
         let mut blocks = vec![match &self.points {
-            Some(of) => plane(of.weighed(), of.multipliers())
-                .with([taxels(), memory("grid values", of.side, of.side, points::VALUE_BITS, false)]),
+            Some(of) => plane(of.weighed(), of.multipliers()).with([taxels()]),
             None => {
                 plane(1, 3).with([memory("grid values", 1, POINTS, self.value_bits, false)].into_iter().chain(cells))
             }
