@@ -198,8 +198,9 @@ class Solving(unittest.TestCase):
         self.assertTrue(after[0][0, :2].all())
         np.testing.assert_array_equal(after[1], first.records["status"] & sptfra.Status.SLIP)
         self.assertEqual(sptfra.plan(several).details["contacts"], 3)
-        with self.assertRaisesRegex(sptfra.Error, "contacts = 3: hardware for several bodies needs no .algorithm. slip"):
-            sptfra.generate(solver.design, "nowhere")
+        dead = sptfra.Design.from_toml(text.replace("depth_mm", "dead = [3]\ndepth_mm"))
+        with self.assertRaisesRegex(sptfra.Error, "contacts = 3: hardware for several bodies needs no .sensor. dead"):
+            sptfra.generate(dead, "nowhere")
 
     def test_slip_follows_the_frames_across_the_cores(self):
         held = design("[algorithm]\nslip = { limit = 0.4, hysteresis = 0.2 }\n")
