@@ -61,6 +61,16 @@ impl Headers {
         Self { frame: answer(random), last, before }
     }
 
+    /// The same friction at other places: each body presses where the one of these headers does, and as much.
+    pub fn move_to(&mut self, places: &[[u32; 16]]) {
+        self.last.iter_mut().zip(places).for_each(|(header, place)| header[4..=6].copy_from_slice(&place[4..=6]));
+    }
+
+    /// The same bodies with this friction.
+    pub fn rub(&mut self, mu: f32) {
+        self.last.iter_mut().for_each(|header| header[words::MU] = mu.to_bits());
+    }
+
     /// What the hardware makes of them.
     pub fn answer(&self, model: &mut Records, counted: Counted) -> Vec<u32> {
         model.take(FRAME, false, &self.frame);
