@@ -115,8 +115,13 @@ pub fn shares(plan: &Plan) -> Option<[f64; 2]> {
 
 /// What to tell whose design does not fit its part, if that is one whose size is known.
 pub fn excess(plan: &Plan) -> Option<String> {
-    let (resources, part) = (&plan.resources, &plan.design.hardware.part);
-    let Board { dsp, bram36, .. } = Board::of_device(part)?;
+    excess_on(plan, &Board::of_device(&plan.design.hardware.part)?)
+}
+
+/// The same for a board's part.
+pub fn excess_on(plan: &Plan, board: &Board) -> Option<String> {
+    let (resources, part) = (&plan.resources, &board.part);
+    let &Board { dsp, bram36, .. } = board;
     let remedy = match (resources.dsp > dsp, resources.bram36 > bram36 as f64) {
         (false, false) => return None,
         (true, false) => "take fewer lanes",

@@ -43,7 +43,8 @@ pub use hardware::{
 pub use input::{Input, Tension};
 pub use joint::conditions;
 pub(crate) use lengths::Lengths;
-pub(crate) use parse::{RawSensor, syntax_position};
+pub(crate) use parse::RawSensor;
+pub use parse::syntax_position;
 pub use regularisation::Regularisation;
 
 /// Largest number of columns or rows with the paper's plan, whose matrices are four times as large.

@@ -168,8 +168,8 @@ fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, D
     Ok(Design { name: raw.name, sensor, input, algorithm, hardware })
 }
 
-/// Turns an error of the TOML reader into one with line and column.
-pub(crate) fn syntax_position(error: &toml::de::Error, text: &str, origin: &str) -> DesignError {
+/// Turns an error of the TOML reader about a `text` that is from `origin` into one with line and column.
+pub fn syntax_position(error: &toml::de::Error, text: &str, origin: &str) -> DesignError {
     let offset = error.span().map_or(0, |span| span.start.min(text.len()));
     let before = text.get(..offset).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |position| position + 1);

@@ -4,26 +4,48 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use golden::design::Design;
-use hdl_gen::emit::emit;
-use hdl_gen::inspection::warnings;
+use hdl_gen::emit::boards::Board;
+use hdl_gen::emit::emit_for;
+use hdl_gen::inspection::{excess_on, warnings};
 use hdl_gen::write::{check_folder, write_folder};
 
 use golden::progress::Progress;
 
-/// Writes the folder of the design in file `path`; returns what to tell the user.
-pub fn generate(path: &Path, out: Option<PathBuf>, progress: &Progress) -> Result<String, Box<dyn Error>> {
+/// Writes the folder of the design in file `path`, for the user's own `boards` too; returns what to tell the user.
+pub fn generate(
+    path: &Path,
+    out: Option<PathBuf>,
+    boards: &[PathBuf],
+    progress: &Progress,
+) -> Result<String, Box<dyn Error>> {
     let design = Design::load(path)?;
+    let own = boards.iter().map(|board| Board::load(board)).collect::<Result<Vec<_>, _>>()?;
+    for (at, Board { name, .. }) in own.iter().enumerate() {
+        if own[..at].iter().any(|before| before.name == *name) {
+            return Err(format!("--board: two files are named {name}, which is the board's name; rename one").into());
+        }
+    }
     let folder = out.unwrap_or_else(|| Path::new("rtl-out").join(&design.name));
     // Before the work rather than after it.
     check_folder(&folder)?;
     let plan = super::plan(&design, path, progress)?;
     progress.stage("Verilog and ROM files".to_owned());
-    let files = emit(&plan)?;
+    let files = emit_for(&plan, &own)?;
     let kibibytes = files.values().map(Vec::len).sum::<usize>() / 1024;
     progress.stage(format!("writing {kibibytes} KiB"));
     write_folder(&folder, &files)?;
     let timeline = &plan.timeline;
-    let warnings: String = warnings(&plan).iter().map(|warning| format!("warning: {warning}\n")).collect();
+    let part = &plan.design.hardware.part;
+    let mut warned = warnings(&plan);
+    for board in &own {
+        if !board.has(part) {
+            let Board { title, part: of, .. } = board;
+            warned.push(format!("the {title} has a {of}, the design is for {part}: set hardware.part to the board's"));
+        } else if Board::of_device(part).is_none() {
+            warned.extend(excess_on(&plan, board));
+        }
+    }
+    let warnings: String = warned.iter().map(|warning| format!("warning: {warning}\n")).collect();
     Ok(format!(
         "{}: {} files, {kibibytes} KiB\n\
          {} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{warnings}",

@@ -46,6 +46,9 @@ enum Command {
         /// Folder to write; default: rtl-out/NAME
         #[arg(long)]
         out: Option<PathBuf>,
+        /// A file of your own board, for block design and device tree; its keys are those of hdl-gen/boards/zcu102.toml
+        #[arg(long = "board", value_name = "FILE")]
+        boards: Vec<PathBuf>,
     },
     #[command(flatten)]
     Manual(Manual),
@@ -72,7 +75,7 @@ fn run(command: Command) -> Result<String, Box<dyn Error>> {
             inspect::report(&plan, json)
         }
         Command::Manual(manual) => manual.run(Arguments::command()),
-        Command::Generate { design, out } => generate::generate(&design, out, &progress),
+        Command::Generate { design, out, boards } => generate::generate(&design, out, &boards, &progress),
     }
 }
 

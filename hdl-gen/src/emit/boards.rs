@@ -1,6 +1,12 @@
 //! Boards with a Zynq, as data: what the block design and the device tree say of each.
 
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use golden::design::{DesignError, syntax_position};
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 use super::EmitError;
 
@@ -12,11 +18,17 @@ const BOARDS: [(&str, &str); 4] = [
     ("pynq-z2", include_str!("../../boards/pynq-z2.toml")),
 ];
 
+/// Other words on that command line.
+const WORDS: [&str; 2] = ["bitstream", "queue"];
+
+/// What Tcl or a device tree would take for something else than a letter.
+const SPECIAL: [char; 10] = ['{', '}', '[', ']', '(', ')', '"', '\\', '$', ';'];
+
 /// From the DMA's registers to the core's, in bytes.
 const CORE_OFFSET: u32 = 0x1_0000;
 
 /// The IP of a board's processor.
-#[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Processor {
     /// Zynq UltraScale+.
@@ -26,20 +38,47 @@ pub enum Processor {
     ProcessingSystem7,
 }
 
-/// A file of `boards/`.
-#[derive(Serialize, Deserialize)]
+/// Why a file is no board's.
+#[derive(Debug, Error)]
+pub enum BoardError {
+    /// It cannot be read.
+    #[error("{0}: {1}; give the path of a board's file, such as hdl-gen/boards/zcu102.toml")]
+    Unreadable(PathBuf, io::Error),
+    /// Its text is not that of a board.
+    #[error("{0}; the keys are those of hdl-gen/boards/zcu102.toml")]
+    Text(DesignError),
+    /// A key has a value that no board can have.
+    #[error("{file}: {key}: {what}; {remedy}")]
+    Value {
+        /// The file.
+        file: PathBuf,
+        /// The key, or the file's name.
+        key: &'static str,
+        /// What is wrong.
+        what: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+}
+
+/// A file of `boards/`, or of a user's own.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Board {
     /// Its word on the command line, from the file's name.
-    #[serde(default)]
+    #[serde(skip_deserializing)]
     pub name: String,
+    /// What people call it.
     pub title: String,
+    /// Its name among the board parts of Vivado, with `*` for what differs between versions.
     pub pattern: String,
+    /// Its part, as in `hardware.part`.
     pub part: String,
     /// DSP blocks of the part's device.
     pub dsp: usize,
     /// Its RAMB36.
     pub bram36: usize,
+    /// IP of its processor.
     pub processor: Processor,
     /// Where the processor sees the DMA's registers.
     pub registers: u32,
@@ -57,6 +96,52 @@ impl Board {
         BOARDS.iter().map(read).collect()
     }
 
+    /// A user's own board, from its file: its name is the file's.
+    ///
+    /// # Errors
+    /// [`BoardError`] if the file cannot be read, or a key is missing, unknown or has a value that no board can have.
+    pub fn load(path: &Path) -> Result<Self, BoardError> {
+        let file = || path.to_owned();
+        let text = fs::read_to_string(path).map_err(|error| BoardError::Unreadable(file(), error))?;
+        let origin = path.display().to_string();
+        let board: Self =
+            toml::from_str(&text).map_err(|error| BoardError::Text(syntax_position(&error, &text, &origin)))?;
+        let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default().to_owned();
+        let board = Self { name, ..board };
+        board.check().map_err(|(key, what, remedy)| BoardError::Value { file: file(), key, what, remedy })?;
+        Ok(board)
+    }
+
+    /// Key, what is wrong with its value, and what to do about it.
+    fn check(&self) -> Result<(), (&'static str, String, &'static str)> {
+        let legal = |character: char| character.is_ascii_lowercase() || character.is_ascii_digit() || character == '-';
+        if self.name.is_empty() || !self.name.chars().all(legal) {
+            let remedy = "name the file in small letters, digits and hyphens: it is the board's word on command lines";
+            return Err(("file name", format!("is {:?}", self.name), remedy));
+        }
+        if WORDS.contains(&&*self.name) || BOARDS.iter().any(|&(name, _)| name == self.name) {
+            return Err(("file name", format!("{:?} has a meaning already", self.name), "give the file another name"));
+        }
+        for (key, value) in [("title", &self.title), ("pattern", &self.pattern), ("part", &self.part)] {
+            let special = |character: char| character.is_control() || SPECIAL.contains(&character);
+            let spaced = key != "title" && value.contains(' ');
+            if value.trim().is_empty() || spaced || value.contains(special) {
+                let remedy = "write plain letters, in a pattern also `*`, as in hdl-gen/boards/zcu102.toml";
+                return Err((key, format!("is {value:?}"), remedy));
+            }
+        }
+        for (key, count) in [("dsp", self.dsp), ("bram36", self.bram36)] {
+            if count == 0 {
+                return Err((key, "is 0".to_owned(), "give the number that the part's data sheet has"));
+            }
+        }
+        if self.registers == 0 || self.registers % CORE_OFFSET != 0 || self.registers > u32::MAX - 2 * CORE_OFFSET + 1 {
+            let remedy = "give an address that the processor's port to registers has, in whole steps of 0x10000";
+            return Err(("registers", format!("is {:#X}", self.registers), remedy));
+        }
+        Ok(())
+    }
+
     /// The first board with the device of `part`, if one here has it: what that device holds.
     pub fn of_device(part: &str) -> Option<Self> {
         Self::all().ok()?.into_iter().find(|board| device(&board.part) == device(part))
@@ -69,7 +154,6 @@ impl Board {
 
     /// Whether a design for `part` runs on it: speed grade and package are the board's own.
     pub fn has(&self, part: &str) -> bool {
-        let device = |part: &str| part.split('-').next().map(str::to_owned);
         device(&self.part) == device(part)
     }
 }

@@ -50,9 +50,9 @@ struct Placed {
 }
 
 impl Placed {
-    fn new(board: Board) -> Self {
+    fn new(board: &Board) -> Self {
         let [dma_address, core_address] = [board.registers, board.core_registers()].map(|at| format!("{at:#010X}"));
-        Self { board, dma_address, core_address }
+        Self { board: board.clone(), dma_address, core_address }
     }
 }
 
@@ -102,7 +102,7 @@ struct View {
 }
 
 impl View {
-    fn new(plan: &Plan, hash: &str, files: &FileMap) -> Result<Self, EmitError> {
+    fn new(plan: &Plan, hash: &str, boards: &[Board], files: &FileMap) -> Self {
         let design = &plan.design;
         let testbench = format!("sim/{}_tb.v", design.name);
         let core = files.get(&format!("rtl/{}.v", core_module(plan)));
@@ -110,7 +110,7 @@ impl View {
         let streams = plan.streams();
         let bytes_in = streams.words_in() * WORD_BYTES;
         let bytes_out = streams.words_out * WORD_BYTES;
-        Ok(Self {
+        Self {
             version: VERSION,
             hash: hash.to_owned(),
             columns: design.sensor.columns,
@@ -136,18 +136,18 @@ impl View {
             control: design.hardware.control,
             debug: design.hardware.debug.then(|| debug::nets(&core)),
             samples: debug::samples(plan.timeline.latency_cycles),
-            boards: Board::all()?.into_iter().map(Placed::new).collect(),
+            boards: boards.iter().map(Placed::new).collect(),
             name: design.name.clone(),
-        })
+        }
     }
 }
 
 /// Adds the scripts and lists; `files` holds what they name.
 ///
 /// # Errors
-/// [`EmitError::Template`] if a template does not fit the view, [`EmitError::Board`] if a board's file is wrong.
-pub fn insert(plan: &Plan, hash: &str, files: &mut FileMap) -> Result<(), EmitError> {
-    let view = View::new(plan, hash, files)?;
+/// [`EmitError::Template`] if a template does not fit the view.
+pub fn insert(plan: &Plan, hash: &str, boards: &[Board], files: &mut FileMap) -> Result<(), EmitError> {
+    let view = View::new(plan, hash, boards, files);
     let failed = |path: &str| {
         let template = path.to_owned();
         move |source| EmitError::Template { template, source }

@@ -54,10 +54,10 @@ fn buffer_bytes(plan: &Plan) -> usize {
 /// Adds an overlay for each board with the design's device.
 ///
 /// # Errors
-/// [`EmitError::Template`] if the template does not fit the view, [`EmitError::Board`] if a board's file is wrong.
-pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
+/// [`EmitError::Template`] if the template does not fit the view.
+pub fn insert(plan: &Plan, boards: &[Board], files: &mut FileMap) -> Result<(), EmitError> {
     let (design, hardware) = (&plan.design, &plan.design.hardware);
-    for board in Board::all()?.iter().filter(|board| board.has(&hardware.part)) {
+    for board in boards.iter().filter(|board| board.has(&hardware.part)) {
         let (dma_interrupt, core_interrupt) = interrupts(board.processor, hardware.control);
         let view = View {
             name: &design.name,

@@ -1,6 +1,6 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
-pub(crate) mod boards;
+pub mod boards;
 mod columns;
 mod contacts;
 mod debug;
@@ -25,6 +25,8 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 use crate::plan::Plan;
+
+use boards::Board;
 
 pub use metadata::{ProductEntry, nnz, predicted, products};
 
@@ -62,6 +64,15 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// # Errors
 /// [`EmitError`] if a template and its data do not fit each other.
 pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
+    emit_for(plan, &[])
+}
+
+/// As [`emit`], with scripts that know a user's own boards too.
+///
+/// # Errors
+/// As [`emit`].
+pub fn emit_for(plan: &Plan, own: &[Board]) -> Result<FileMap, EmitError> {
+    let boards: Vec<Board> = Board::all()?.into_iter().chain(own.iter().cloned()).collect();
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
     let hash = resolved_hash(&plan.design);
@@ -77,8 +88,8 @@ pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
         files.insert(name.to_owned(), content.into_bytes());
     }
     // After every file that a list or script names.
-    flows::insert(plan, &hash, &mut files)?;
-    linux::insert(plan, &mut files)?;
+    flows::insert(plan, &hash, &boards, &mut files)?;
+    linux::insert(plan, &boards, &mut files)?;
     origin::insert(&plan.design.name, &hash, &mut files);
     let metadata = metadata::metadata(plan, &hash, &files)?;
     files.insert("metadata.json".to_owned(), metadata);

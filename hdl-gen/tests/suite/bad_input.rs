@@ -254,3 +254,36 @@ fn a_generation_that_fails_or_is_killed_midway_leaves_the_old_folder() {
     assert!(done.status.success());
     assert_ne!(contents(&here.join("out")), before);
 }
+
+#[test]
+fn a_board_is_one() {
+    let folder = folder_with_design("");
+    let text = include_str!("../../boards/zcu102.toml");
+    let check = |name: &str, from: &str, to: &str, parts: &[&str]| {
+        assert!(text.contains(from), "{from}");
+        fs::write(folder.path().join(name), text.replacen(from, to, 1)).unwrap();
+        let message = refused(folder.path(), &["generate", "pad.toml", "--board", name]);
+        for part in parts.iter().chain(&[name]) {
+            assert!(message.contains(part), "no {part:?} in: {message}");
+        }
+    };
+    check("Mine.toml", "dsp", "dsp", &["file name", "small letters"]);
+    check("zcu104.toml", "dsp", "dsp", &["file name", "already", "another name"]);
+    check("queue.toml", "dsp", "dsp", &["file name", "already"]);
+    check("mine.toml", "dsp = ", "colour = 3\ndsp = ", &["line", "colour", "dsp"]);
+    check("mine.toml", "dsp = 2520", "", &["missing field `dsp`", "zcu102.toml"]);
+    check("mine.toml", "dsp = 2520", "dsp = 0", &["dsp", "data sheet"]);
+    check("mine.toml", "dsp = 2520", "dsp = ", &["line"]);
+    check("mine.toml", "title = \"", "title = \"$[exit]", &["title", "plain letters"]);
+    check("mine.toml", "part = \"", "part = \"x y", &["part", "plain letters"]);
+    check("mine.toml", "zynq_ultra_ps_e", "zynq", &["zynq_ultra_ps_e", "processing_system7"]);
+    check("mine.toml", "0xA0000000", "0xA0000100", &["registers", "0x10000"]);
+    check("mine.toml", "0xA0000000", "0xFFFF0000", &["registers", "0x10000"]);
+    let missing = refused(folder.path(), &["generate", "pad.toml", "--board", "none.toml"]);
+    assert!(missing.contains("none.toml: ") && missing.contains("give the path"), "{missing}");
+    fs::write(folder.path().join("mine.toml"), text).unwrap();
+    fs::create_dir(folder.path().join("there")).unwrap();
+    fs::write(folder.path().join("there/mine.toml"), text).unwrap();
+    let twice = ["generate", "pad.toml", "--board", "mine.toml", "--board", "there/mine.toml"];
+    assert!(refused(folder.path(), &twice).contains("two files are named mine"));
+}

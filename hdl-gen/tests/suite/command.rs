@@ -368,3 +368,27 @@ fn every_command_has_help() {
     }
     assert!(good(folder.path(), &["--version"]).starts_with("hdl-gen "));
 }
+
+/// A board that its user describes is in the scripts and among the device trees as those that are here, for its device.
+#[test]
+fn a_board_of_ones_own_is_one_more() {
+    let folder = folder_with_design("part = \"xczu3eg-sbva484-1-e\"");
+    let here = folder.path();
+    let text = include_str!("../../boards/zcu104.toml");
+    let own = text.replace("xczu7ev-ffvc1156-2-e", "xczu3eg-sbva484-1-i").replace("\"ZCU104\"", "\"My carrier\"");
+    fs::write(here.join("my-carrier.toml"), own.replace("1728", "10").replace("0xA0000000", "0xB0000000")).unwrap();
+    let said = good(here, &["generate", "pad.toml", "--board", "my-carrier.toml"]);
+    assert!(said.contains("warning: too much for xczu3eg-sbva484-1-i, which has 10 DSP48E2"), "{said}");
+    let files = contents(&here.join("rtl-out/pad"));
+    let script = String::from_utf8(files["vivado/block_design.tcl"].clone()).unwrap();
+    assert!(script.contains("my-carrier {title {My carrier} pattern") && script.contains("dma 0xB0000000"), "{script}");
+    let overlays: Vec<_> = files.keys().filter(|path| path.starts_with("linux/")).collect();
+    assert_eq!(overlays, ["linux/pad_my-carrier.dtso"]);
+    // Without it the folder is that of any design for this part; with it for another part it says what to change.
+    good(here, &["generate", "pad.toml", "--out", "without"]);
+    assert!(!contents(&here.join("without")).keys().any(|path| path.starts_with("linux/")));
+    let other = folder_with_design("");
+    fs::copy(here.join("my-carrier.toml"), other.path().join("my-carrier.toml")).unwrap();
+    let said = good(other.path(), &["generate", "pad.toml", "--board", "my-carrier.toml"]);
+    assert!(said.contains("warning: the My carrier has a xczu3eg-sbva484-1-i, the design is for xczu9eg"), "{said}");
+}

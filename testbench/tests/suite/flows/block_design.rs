@@ -2,7 +2,12 @@
 
 use std::fs;
 
-use super::folder::{Folder, files};
+use hdl_gen::emit::boards::Board;
+use hdl_gen::emit::emit_for;
+use hdl_gen::plan::Plan;
+
+use super::folder::{Folder, files, workspace};
+use crate::support::shipped;
 
 const SCRIPT: &str = "vivado/block_design.tcl";
 
@@ -113,4 +118,23 @@ fn every_board_has_a_system() {
         );
         assert!(folder.work().join(format!("small_4x3_{board}.hwh")).exists());
     }
+}
+
+/// A user's own board is that of the design's device, before one that is here.
+#[test]
+fn a_board_of_ones_own_has_a_system() {
+    let place = tempfile::tempdir().expect("a folder");
+    let path = place.path().join("my-carrier.toml");
+    let text = fs::read_to_string(workspace().join("hdl-gen/boards/zcu102.toml")).expect("is there");
+    let own = text.replace("0xA0000000", "0xA0040000").replace("*:zcu102:*", "acme.org:carrier:*");
+    fs::write(&path, own).expect("written");
+    let board = Board::load(&path).expect("is one");
+    let plan = Plan::new(&shipped("small")).expect("can be planned");
+    let folder = Folder::new(&emit_for(&plan, &[board]).expect("is printed"));
+    let ran = folder.vivado(SCRIPT, &["bitstream"], &[]).succeeded();
+    assert!(ran.call("set_property board_part").contains("acme.org:carrier:part0:1.0"));
+    assert!(ran.stdout.contains("SEG_dma_S_AXI_LITE: offset 0xA0040000, range 64K"), "{}", ran.stdout);
+    assert!(folder.work().join("small_4x3_my-carrier.hwh").exists());
+    let ran = folder.vivado(SCRIPT, &["zcu102"], &[]).succeeded();
+    assert!(ran.call("set_property board_part").contains("zcu102:part0:3.10"));
 }

@@ -5,7 +5,7 @@ namespace eval standin {
     variable boards {
         xilinx.com:zcu102:part0:3.10 xczu9eg-ffvb1156-2-e xilinx.com:zcu102:part0:3.4 xczu9eg-ffvb1156-2-e
         xilinx.com:zcu104:part0:1.1 xczu7ev-ffvc1156-2-e xilinx.com:kv260_som:part0:1.4 xck26-sfvc784-2LV-c
-        tul.com.tw:pynq-z2:part0:1.0 xc7z020clg400-1
+        tul.com.tw:pynq-z2:part0:1.0 xc7z020clg400-1 acme.org:carrier:part0:1.0 xczu9eg-ffvb1156-2-e
     }
     variable catalogue {
         xilinx.com:ip:zynq_ultra_ps_e:3.3 xilinx.com:ip:zynq_ultra_ps_e:3.5 xilinx.com:ip:axi_dma:7.1

@@ -43,13 +43,13 @@ proc connect_interface {from to} {
 # ---- Project and board
 
 set boards [dict create \
-    zcu102 {title ZCU102 pattern *:zcu102:* part xczu9eg-ffvb1156-2-e processor zynq_ultra_ps_e
+    zcu102 {title {ZCU102} pattern *:zcu102:* part xczu9eg-ffvb1156-2-e processor zynq_ultra_ps_e
         dma 0xA0000000 core 0xA0010000} \
-    zcu104 {title ZCU104 pattern *:zcu104:* part xczu7ev-ffvc1156-2-e processor zynq_ultra_ps_e
+    zcu104 {title {ZCU104} pattern *:zcu104:* part xczu7ev-ffvc1156-2-e processor zynq_ultra_ps_e
         dma 0xA0000000 core 0xA0010000} \
-    kv260 {title KV260 pattern *:kv260_som:* part xck26-sfvc784-2LV-c processor zynq_ultra_ps_e
+    kv260 {title {KV260} pattern *:kv260_som:* part xck26-sfvc784-2LV-c processor zynq_ultra_ps_e
         dma 0xA0000000 core 0xA0010000} \
-    pynq-z2 {title PYNQ-Z2 pattern *:pynq-z2:* part xc7z020clg400-1 processor processing_system7
+    pynq-z2 {title {PYNQ-Z2} pattern *:pynq-z2:* part xc7z020clg400-1 processor processing_system7
         dma 0x40000000 core 0x40010000} \
 ]
 
