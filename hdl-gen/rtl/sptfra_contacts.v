@@ -31,6 +31,8 @@ module sptfra_contacts #(
     parameter integer EXPECTED_PARTED = 0,
     // Power of two of a step of the coefficients in Pa/N
     parameter signed [9:0] COEFFICIENT_UNIT = 10'sd0,
+    // 1: the sensor reads no tension
+    parameter CLIPPED = 0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Coefficients by distance
@@ -254,6 +256,7 @@ module sptfra_contacts #(
         .ROWS             (ROWS),
         .CONTACTS         (CONTACTS),
         .COEFFICIENT_UNIT (COEFFICIENT_UNIT),
+        .CLIPPED          (CLIPPED),
         .ROM_DIR          (ROM_DIR),
         .FILE             (PARTING_FILE)
     ) parts (

@@ -14,6 +14,8 @@ module sptfra_contacts_parts #(
     parameter CONTACTS = 4,
     // Power of two of a step of the coefficients in Pa/N
     parameter signed [9:0] COEFFICIENT_UNIT = 10'sd0,
+    // 1: the sensor reads no tension
+    parameter CLIPPED = 0,
     // Coefficients by distance
     parameter ROM_DIR = "",
     parameter FILE = "",
@@ -117,7 +119,8 @@ module sptfra_contacts_parts #(
     sptfra_parted_frames #(
         .TAXELS     (TAXELS),
         .BODY_WIDTH (BODY_WIDTH),
-        .UNIT       (COEFFICIENT_UNIT)
+        .UNIT       (COEFFICIENT_UNIT),
+        .CLIPPED    (CLIPPED)
     ) frames (
         .clock        (clock),
         .reset        (reset),

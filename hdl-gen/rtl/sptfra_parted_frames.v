@@ -2,7 +2,8 @@
 // Part of the SpTFRA hardware generator.
 //
 // The frame that a body would cause alone, in float32: what it causes where others are, and in its own region what is
-// left of the frame without them, so that the frames of all bodies add up to it.
+// left of the frame without them, so that the frames of all bodies add up to it. Where the sensor reads no tension,
+// what pulls is nothing in these frames either.
 //
 // A word takes as many cycles as there are bodies, and the first one 14 more. All of it stands still while a word
 // waits.
@@ -16,6 +17,8 @@ module sptfra_parted_frames #(
     parameter BODY_WIDTH = 2,
     // Power of two of a step of the parts, over that of the forces
     parameter signed [9:0] UNIT = 10'sd0,
+    // 1: the sensor reads no tension
+    parameter CLIPPED = 0,
     // Derived
     parameter TAXEL_WIDTH = (TAXELS > 8) ? $clog2(TAXELS) : 3
 ) (
@@ -150,11 +153,12 @@ module sptfra_parted_frames #(
     // ---- Stage 13: the word
     reg [TO_FLOAT:1] complete_later;
     reg [TO_FLOAT:1] last_later;
+    wire signed [51:0] kept_6 = ((CLIPPED != 0) && !sum_6[51]) ? 52'sd0 : sum_6;
 
     sptfra_fixed_to_float to_float (
         .clock      (clock),
         .enable     (advance),
-        .fixed      ({{12{sum_6[51]}}, sum_6}),
+        .fixed      ({{12{kept_6[51]}}, kept_6}),
         .exponent   (unit + UNIT),
         .float_bits (word)
     );

@@ -143,7 +143,8 @@ impl Solver {
     }
 
     /// The frame that each body would cause alone, in pascals: the stress of the forces in its region, and what a filter has
-    /// them leave of the frame there. They add up to the whole one.
+    /// them leave of the frame there. They add up to the whole one, but where the sensor reads no tension: there what pulls
+    /// is nothing in these frames either.
     fn frames_alone(&self, parted: &Parted, whole: &DVector<f64>) -> Vec<DVector<f64>> {
         let Parted { found, forces, .. } = parted;
         let Matrices { c31, c32, c33, .. } = &self.matrices;
@@ -162,6 +163,9 @@ impl Solver {
             if let Some(body) = body {
                 parts[body][taxel] += left;
             }
+        }
+        if !self.reader.reads_tension() {
+            parts.iter_mut().for_each(|part| part.apply(|stress| *stress = stress.min(0.0)));
         }
         parts
     }

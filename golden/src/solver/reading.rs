@@ -52,6 +52,11 @@ impl Reader {
         self.positions.len()
     }
 
+    /// Whether the sensor reads what pulls.
+    pub(crate) fn reads_tension(&self) -> bool {
+        self.input.tension == Tension::Read
+    }
+
     /// What the contact analysis finds of the stress `b` in pascals.
     pub(crate) fn analyse(&self, b: &DVector<f64>) -> Contact {
         cean::cean(b, &self.positions, self.noise_floor)
@@ -86,7 +91,7 @@ impl Reader {
         if !contact.touched {
             return Ok(Reading::Nothing(Status::NO_CONTACT));
         }
-        if self.input.tension == Tension::Read && b.iter().all(|&stress| stress <= self.noise_floor) {
+        if self.reads_tension() && b.iter().all(|&stress| stress <= self.noise_floor) {
             status.insert(Status::NO_TENSION);
         }
         if self.thin {

@@ -1,6 +1,6 @@
 //! What is around the core for several bodies: `sptfra_contacts`, where the design asks for them.
 
-use golden::design::Design;
+use golden::design::{Design, Tension};
 
 use super::{Parameters, latency, records, regions};
 use crate::cores::SHORT_BITS;
@@ -35,6 +35,7 @@ pub fn parameters(plan: &Plan, of: &ContactsPlan) -> Parameters {
         .cycles("EXPECTED_COUNTED", regions::counted(sensor, regions::WEIGHT_LATENCY))
         .cycles("EXPECTED_PARTED", regions::parted(sensor, of.contacts))
         .wide("COEFFICIENT_UNIT", EXPONENT_BITS, of.unit.into())
+        .flag("CLIPPED", plan.design.input.tension == Tension::Clipped)
         .expression("ROM_DIR", "ROM_DIR")
         .expression("PARTING_FILE", format!("\"{}\"", rom_file(plan)))
         .expression("RECORDS_FILE", format!("\"{}\"", program_file(plan)))

@@ -20,8 +20,8 @@ fn frames(sensor: &Sensor, kind: Kind, seeds: Range<u64>) -> Vec<SceneFrame> {
     frames
 }
 
-/// Bodies are told apart as well as where tension is read, and their own forces are worth the name in the median; in one
-/// frame of twenty they are not, which docs/contacts.md says. Half of the frames' sums are better than as one body's.
+/// Bodies are told apart as well as where tension is read, and their own forces are half as exact, as docs/contacts.md says.
+/// With the tension that each would cause alone left in its frame they would err by 6 to 8 and 28 to 33 %.
 #[test]
 fn half_of_the_bodies_are_known() {
     for (name, kind) in [("sensor1-clipped-wide", Kind::Opposed), ("sensor2-clipped-wide", Kind::Anyhow)] {
@@ -30,8 +30,11 @@ fn half_of_the_bodies_are_known() {
         let [one, several] = [one, several].map(|solver| judge(&solver, &frames));
         let BodyErrors { tangential, normal, right, within, .. } = several.bodies;
         let said = format!("{name}, {kind:?}: {right} of 24, {tangential:.1?}, {normal:.1?}, {within:.0}");
-        assert!(right >= 20 && tangential.median < 10.0 && normal.median < 1.8 && within > 80.0, "{said}");
-        assert!(several.total.median < 0.7 * one.total.median, "{said}: {:.1?} {:.1?}", several.total, one.total);
+        assert!(
+            right >= 20 && tangential.median < 7.0 && tangential.most < 22.0 && normal.median < 1.8 && within > 90.0,
+            "{said}"
+        );
+        assert!(several.total.median < 0.5 * one.total.median, "{said}: {:.1?} {:.1?}", several.total, one.total);
     }
 }
 

@@ -1,5 +1,7 @@
 //! The forces of several bodies parted: as whole numbers, by what they cause, and that as frames.
 
+use golden::design::Tension;
+
 use super::align::align;
 use crate::cores::fixed_to_float;
 use crate::plan::Plan;
@@ -47,8 +49,8 @@ impl Forces {
         self.of.as_flattened().iter().map(|&force| fixed_to_float::convert(force, self.unit))
     }
 
-    /// The frames, in float32, that so many bodies would cause alone; `regions` has the body of each taxel, `frame` the
-    /// words of the whole one.
+    /// The frames, in float32, that so many bodies would cause alone, without what pulls where the sensor does not read
+    /// it; `regions` has the body of each taxel, `frame` the words of the whole one.
     pub(super) fn frames(&mut self, plan: &Plan, of: &ContactsPlan, frame: &[u32], regions: &[u8]) -> Vec<Vec<u32>> {
         let columns = plan.design.sensor.columns;
         let bodies = regions.iter().max().map_or(0, |&last| usize::from(last) + 1);
@@ -63,6 +65,7 @@ impl Forces {
         let unit = self.unit + of.unit;
         let stress: Vec<_> = frame.iter().map(|&word| align(word, unit, PART_BITS)).collect();
         self.clipped |= stress.iter().any(|stress| stress.clipped);
+        let most = if plan.design.input.tension == Tension::Clipped { 0 } else { i64::MAX };
         let word = |body: usize, taxel: usize| {
             let steps = if usize::from(regions[taxel]) == body {
                 let others = (0..bodies).filter(|&other| other != body).map(|other| parts[other][taxel]);
@@ -70,7 +73,7 @@ impl Forces {
             } else {
                 parts[body][taxel]
             };
-            fixed_to_float::convert(steps, unit)
+            fixed_to_float::convert(steps.min(most), unit)
         };
         (0..bodies).map(|body| (0..self.of.len()).map(|taxel| word(body, taxel)).collect()).collect()
     }

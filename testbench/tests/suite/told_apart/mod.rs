@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use golden::design::{CalibrationIn, Design, Filter, InputRange, Outputs, Overrun, PlanKind, Samples, Slip};
+use golden::design::{CalibrationIn, Design, Filter, InputRange, Outputs, Overrun, PlanKind, Samples, Slip, Tension};
 use golden::matrices::{Matrices, MatrixName};
 use golden::solver::{Solution, Solver, Status};
 use hdl_gen::plan::timing::Timeline;
@@ -56,20 +56,26 @@ fn slipping(mut design: Design) -> Design {
     design
 }
 
+fn clipped(mut design: Design) -> Design {
+    design.name += "_clipped";
+    design.input.tension = Tension::Clipped;
+    design
+}
+
 fn without_field(mut design: Design) -> Design {
     design.name += "_sums";
     design.algorithm.outputs = Outputs::Resultants;
     design
 }
 
-/// Both plans, both estimators, odd sides, a filter, a range for each frame, resultants alone, slip, wide streams, a
-/// source that is never held; few records and many, few lanes and many.
+/// Both plans, both estimators, odd sides, a filter, a range for each frame, a sensor that reads no tension, resultants
+/// alone, slip, wide streams, a source that is never held; few records and many, few lanes and many.
 fn designs() -> Vec<Design> {
     vec![
         telling_apart(shipped("odd"), 2),
         telling_apart(of_frames(by_plan(shipped("odd"), PlanKind::Reduced, Outputs::Field)), 3),
         telling_apart(dropping(filtered(shipped("odd"))), 5),
-        telling_apart(with_joint(shipped("small")), 4),
+        telling_apart(clipped(with_joint(shipped("small"))), 4),
         telling_apart(slipping(shipped("sensor1-fast-64")), 8),
         telling_apart(streaming(without_field(shipped("odd")), 64), 2),
         telling_apart(without_field(of_frames(slipping(with_joint(shipped("small"))))), 3),
@@ -246,13 +252,14 @@ fn difference(found: &Answer, expected: &Solution) -> [f64; 2] {
 
 #[test]
 fn the_solver_tells_apart_as_the_hardware_does() {
-    for name in ["sensor1-fast", "sensor2-none", "sensor1-wide"] {
+    for name in ["sensor1-fast", "sensor2-none", "sensor1-wide", "sensor1-clipped-wide"] {
         let design = telling_apart(shipped(name), 4);
         let (plan, solver) = (planned(&design), Solver::new(&design).expect("matrices"));
         for kind in [Kind::One, Kind::Same, Kind::Opposed, Kind::Anyhow, Kind::Three, Kind::Row] {
             let mut scenes: Vec<Vec<f64>> = (0..6).map(|seed| frame(&design.sensor, kind, 900 + seed).stress).collect();
             // A frame in which nothing pulls says so, or what it is of.
-            scenes[5].iter_mut().for_each(|stress| *stress = stress.min(0.0));
+            let pulled_by = if design.input.tension == Tension::Clipped { 0 } else { 5 };
+            scenes[pulled_by..].iter_mut().flatten().for_each(|stress| *stress = stress.min(0.0));
             let packets: Vec<Vec<u32>> = scenes.iter().map(|stress| plan.streams().packet(stress)).collect();
             for (words, stress) in model_answers(&plan, &packets).iter().zip(&scenes) {
                 let found = decode_bodies(words, 4).expect("a whole frame");
