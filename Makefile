@@ -173,7 +173,8 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, and wri
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep
 SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1-l40 f2-p50 f3 joint,designs/$(sensor)-$(kind).toml)) \
-	designs/sensor1-fast.toml designs/sensor1-wide.toml designs/sensor2-wide.toml
+	designs/sensor1-fast.toml designs/sensor1-wide.toml designs/sensor2-wide.toml designs/sensor1-fast-wide.toml \
+	designs/sensor1-bodies.toml
 SWEEP_SCENES  ?= $(addprefix scenes/,sensor1-hertz.toml sensor1-tilted.toml two-contacts.toml sensor2-disc.toml \
 	sensor2-punch.toml sensor2-held.toml)
 SWEEP_OPTIONS ?= --simulate base --hard --kinds

@@ -8,7 +8,7 @@ use golden::forces::{self, read_bodies, read_outcomes};
 use golden::frames::{FrameError, read_frames_and_remark};
 use golden::geometry;
 use golden::metrics::Outcome;
-use golden::scene::{Scene, SceneError};
+use golden::scene::{Scene, SceneError, SceneFrame};
 
 use crate::field_plot::Truth;
 
@@ -43,11 +43,15 @@ impl FrameSet {
     /// # Errors
     /// [`SceneError`] if it cannot be computed.
     pub fn of_scene(scene: &Scene, origin: impl Into<String>) -> Result<Self, SceneError> {
-        let frames = scene.frames()?;
-        let truth = frames.iter().map(Outcome::from).collect();
-        let (stress, bodies) = frames.into_iter().map(|frame| (frame.stress, frame.bodies)).unzip();
-        let (truth, bodies, scene) = (Some(truth), Some(bodies), Some(scene.clone()));
-        Ok(Self { origin: origin.into(), stress, truth, bodies, remark: None, scene })
+        Ok(Self { scene: Some(scene.clone()), ..Self::of_frames(&scene.frames()?, origin) })
+    }
+
+    /// Frames whose forces are known.
+    pub fn of_frames(frames: &[SceneFrame], origin: impl Into<String>) -> Self {
+        let truth = Some(frames.iter().map(Outcome::from).collect());
+        let stress = frames.iter().map(|frame| frame.stress.clone()).collect();
+        let bodies = Some(frames.iter().map(|frame| frame.bodies.clone()).collect());
+        Self { origin: origin.into(), stress, truth, bodies, remark: None, scene: None }
     }
 
     /// What is known of the forces of a frame.

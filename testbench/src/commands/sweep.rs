@@ -20,6 +20,9 @@ use testbench::sweep::{Outcomes, Simulate, Sweep, SweepError, SweepScene, csv_fi
 /// Where results go.
 const OUT: &str = "target/sweep";
 
+/// Most frames of each kind of contact on which every point is judged: the table of kinds has more of them.
+const FRAMES_OF_KIND: u64 = 6;
+
 #[derive(Args)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Arguments {
@@ -57,7 +60,8 @@ pub struct Arguments {
     /// Add the table of hard cases to the page, as `testbench hard` makes it; through the RTL too with --simulate.
     #[arg(long)]
     hard: bool,
-    /// Add a table of contacts of other kinds to the page, on so many frames of each; 40 if nothing is said.
+    /// Judge the points on contacts of all kinds, too (six frames of each at most), and add a table of kinds to the page, on so
+    /// many frames of each; 40 if nothing is said.
     #[arg(long, value_name = "FRAMES", num_args = 0..=1, default_missing_value = "40", default_value_t = 0, hide_default_value = true)]
     kinds: u64,
     /// Folder for the points and for sweep.json, sweep.csv, report.html and the recommended designs.
@@ -92,7 +96,7 @@ pub fn run(arguments: &Arguments) -> super::Result {
         estimators: arguments.estimators.clone(),
         full: arguments.full,
     };
-    let jobs = jobs(&designs, &axes, &mut scenes)?;
+    let jobs = jobs(&designs, &axes, &mut scenes, arguments.kinds.min(FRAMES_OF_KIND))?;
     let sweep =
         Sweep { jobs, scenes, simulate: arguments.simulate, runs: arguments.runs.clone(), kinds: arguments.kinds };
     if arguments.prepare {

@@ -7,7 +7,6 @@ use golden::forces::{reference_path, write_reference};
 use golden::frames::write_frames;
 use golden::metrics::ErrorSummary;
 use golden::output::write_whole;
-use golden::scene::SceneFrame;
 use hdl_gen::plan::Plan;
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -77,14 +76,13 @@ impl Sweep {
     /// takes. Returns how many there are.
     ///
     /// # Errors
-    /// [`SweepError`] if a scene cannot be computed or a file not be written.
+    /// [`SweepError`] if a file cannot be written.
     pub fn prepare(&self, out: &Path) -> Result<usize, SweepError> {
-        let made = self.scenes.iter().map(|scene| scene.scene.frames()).collect::<Result<Vec<_>, _>>()?;
         let prepared = self.jobs.par_iter().map(|job| {
             if Plan::new(&job.design).is_err() {
                 return Ok(0);
             }
-            write_job(job, &self.scenes[job.scene], &made[job.scene], &out.join(JOBS).join(&job.key)).map(|()| 1)
+            write_job(job, &self.scenes[job.scene], &out.join(JOBS).join(&job.key)).map(|()| 1)
         });
         prepared.collect::<Result<Vec<usize>, SweepError>>().map(|counts| counts.into_iter().sum())
     }
@@ -96,14 +94,14 @@ impl Sweep {
     }
 }
 
-fn write_job(job: &Job, scene: &SweepScene, made: &[SceneFrame], folder: &Path) -> Result<(), SweepError> {
+fn write_job(job: &Job, scene: &SweepScene, folder: &Path) -> Result<(), SweepError> {
     fs::create_dir_all(folder).map_err(|source| SweepError::Io {
         action: "make the folder",
         path: folder.to_owned(),
         source,
     })?;
     let frames = folder.join("frames.csv");
-    write_reference(&reference_path(&frames), made)?;
+    write_reference(&reference_path(&frames), &scene.made)?;
     write_frames(&frames, &scene.frames.clone().as_delivered(&job.design).stress)?;
     for (name, content) in job.design.files() {
         write_whole(&folder.join(name), content.as_bytes())?;

@@ -113,24 +113,26 @@ pub fn filter_text(filter: &Filter) -> String {
 }
 
 /// All points: the variants of each design, each on every scene of its sensor. A sensor without a scene gets its
-/// standing one, which is added to `scenes`. Variants that more than one design has are there once.
+/// standing one, and with `kinds` each gets so many frames of each kind of contact as a scene: these are added to `scenes`. Variants that more than one design has are there once.
 ///
 /// # Errors
 /// [`SweepError::OtherSensor`] for a scene of none of the designs, [`SweepError::NoPoints`] if no variant exists.
-pub fn jobs(designs: &[Design], axes: &Axes, scenes: &mut Vec<SweepScene>) -> Result<Vec<Job>, SweepError> {
-    if let Some(foreign) = scenes.iter().find(|scene| designs.iter().all(|design| design.sensor != scene.scene.sensor))
-    {
+pub fn jobs(designs: &[Design], axes: &Axes, scenes: &mut Vec<SweepScene>, kinds: u64) -> Result<Vec<Job>, SweepError> {
+    if let Some(foreign) = scenes.iter().find(|scene| designs.iter().all(|design| design.sensor != scene.sensor)) {
         return Err(SweepError::OtherSensor(foreign.frames.origin.clone().into()));
     }
     let mut seen = BTreeSet::new();
     let mut jobs = Vec::new();
     for design in designs {
-        if scenes.iter().all(|scene| scene.scene.sensor != design.sensor) {
+        if scenes.iter().all(|scene| scene.sensor != design.sensor) {
             scenes.push(SweepScene::standing(&design.sensor)?);
+        }
+        if kinds > 0 && !scenes.iter().any(|scene| scene.sensor == design.sensor && scene.contacts.is_empty()) {
+            scenes.push(SweepScene::kinds(&design.sensor, kinds)?);
         }
         let base = normal(design);
         for variant in variants(&base, designs, axes) {
-            let own = scenes.iter().enumerate().filter(|(_, scene)| scene.scene.sensor == design.sensor);
+            let own = scenes.iter().enumerate().filter(|(_, scene)| scene.sensor == design.sensor);
             for (number, scene) in own {
                 let key = key(&variant, scene);
                 if seen.insert(key.clone()) {
@@ -147,9 +149,12 @@ pub fn jobs(designs: &[Design], axes: &Axes, scenes: &mut Vec<SweepScene>) -> Re
     if jobs.is_empty() { Err(SweepError::NoPoints) } else { Ok(jobs) }
 }
 
-/// The design under the name of all points.
+/// The design under the name of all points, and for one body: what more of them cost depends on the frame, and how well
+/// they are told apart is said beside the points.
 fn normal(design: &Design) -> Design {
-    Design { name: NAME.to_owned(), ..design.clone() }
+    let mut normal = Design { name: NAME.to_owned(), ..design.clone() };
+    normal.algorithm.contacts = 1;
+    normal
 }
 
 /// The digest that a point is filed under.

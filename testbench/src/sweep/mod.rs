@@ -13,10 +13,10 @@ pub mod store;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use golden::design::DesignError;
+use golden::design::{DesignError, Sensor};
 use golden::frames::FrameError;
 use golden::output::OutputError;
-use golden::scene::{Contact, Scene, SceneError, Shear};
+use golden::scene::{Contact, Kind, Scene, SceneError, SceneFrame, Shear};
 use golden::solver::SolverError;
 use rayon::prelude::*;
 use thiserror::Error;
@@ -27,6 +27,7 @@ use golden::progress::Progress;
 
 use evaluate::Proof;
 use grid::Job;
+use page::kinds;
 use point::{Point, Verified};
 use store::Store;
 
@@ -125,13 +126,17 @@ pub enum SweepError {
 /// Frames with known forces.
 #[derive(Clone, Debug)]
 pub struct SweepScene {
-    /// The file's name without its ending; `standing` for a sensor's own.
+    /// The file's name without its ending; `standing` for a sensor's own, `kinds` for contacts of all kinds.
     pub name: String,
-    /// The file's text, which is part of the points' keys.
+    /// The file's text, or what stands for it, which is part of the points' keys.
     pub text: String,
-    /// Contacts and sensor.
-    pub scene: Scene,
-    /// Stresses in Pa, and the true forces.
+    /// The sensor.
+    pub sensor: Sensor,
+    /// The bodies that each frame has; none where each has a single one of its own.
+    pub contacts: Vec<Contact>,
+    /// The frames with their true forces.
+    pub made: Vec<SceneFrame>,
+    /// The same: stresses in Pa, and the true forces.
     pub frames: FrameSet,
 }
 
@@ -139,12 +144,12 @@ impl SweepScene {
     /// Whether the sum of forces tells how well each body was found: of bodies that are pushed against each other most of
     /// it is gone, and an answer of zero is nearly right. One body is no sum.
     pub fn tells(&self) -> bool {
-        let [_, _, ..] = self.scene.contacts.as_slice() else { return true };
+        let [_, _, ..] = self.contacts.as_slice() else { return true };
         let push = |body: &Contact| match body.traction.shear {
             Shear::Held { share } => share * body.friction * body.normal_force_n,
             _ => body.friction * body.normal_force_n,
         };
-        let pushed: f64 = self.scene.contacts.iter().map(push).sum();
+        let pushed: f64 = self.contacts.iter().map(push).sum();
         let truth = self.frames.truth.as_deref().unwrap_or_default();
         truth.iter().all(|truth| truth.force[0].hypot(truth.force[1]) >= 0.5 * pushed)
     }
@@ -157,19 +162,41 @@ impl SweepScene {
         let failed = |source| SweepError::Scene { path: path.to_owned(), source };
         let text =
             std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_owned(), source })?;
-        let scene = Scene::from_toml(&text, &path.display().to_string())?;
-        let frames = FrameSet::of_scene(&scene, path.display().to_string()).map_err(failed)?;
+        let origin = path.display().to_string();
+        let scene = Scene::from_toml(&text, &origin)?;
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Ok(Self { name, text, scene, frames })
+        Self::of(name, text, scene, origin).map_err(failed)
     }
 
     /// The standing scene of a sensor.
     ///
     /// # Errors
     /// [`SceneError`] if it cannot be computed for this geometry.
-    pub fn standing(sensor: &golden::design::Sensor) -> Result<Self, SceneError> {
+    pub fn standing(sensor: &Sensor) -> Result<Self, SceneError> {
         let name = "standing".to_owned();
-        Ok(Self { text: name.clone(), scene: Scene::standing(sensor), frames: FrameSet::standing(sensor)?, name })
+        Self::of(name.clone(), name, Scene::standing(sensor), "the sensor's standing scene".to_owned())
+    }
+
+    fn of(name: String, text: String, scene: Scene, origin: String) -> Result<Self, SceneError> {
+        let made = scene.frames()?;
+        let Scene { sensor, contacts, .. } = scene.clone();
+        let frames = FrameSet { scene: Some(scene), ..FrameSet::of_frames(&made, origin) };
+        Ok(Self { name, text, sensor, contacts, made, frames })
+    }
+
+    /// So many frames of each kind of contact, with one body each: the seeds are none of the calibrations' own.
+    ///
+    /// # Errors
+    /// [`SceneError`] if they cannot be computed for this geometry.
+    pub fn kinds(sensor: &Sensor, frames: u64) -> Result<Self, SceneError> {
+        let made: Vec<SceneFrame> = Kind::ALL
+            .map(|kind| kind.frames(sensor, kinds::FRICTION, kinds::FIRST_SEED..kinds::FIRST_SEED + frames))
+            .into_iter()
+            .collect::<Result<Vec<_>, _>>()?
+            .concat();
+        let all = FrameSet::of_frames(&made, "contacts of all kinds");
+        let text = format!("kinds, {frames} frames of each");
+        Ok(Self { name: "kinds".to_owned(), text, sensor: sensor.clone(), contacts: Vec::new(), made, frames: all })
     }
 }
 

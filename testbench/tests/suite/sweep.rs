@@ -63,8 +63,8 @@ fn points_in(out: &Path) -> Vec<PathBuf> {
 fn points_are_the_combinations_that_exist_each_once() {
     let base = Design::load(Path::new(&small())).expect("a design");
     let named = Design { name: "other_name".to_owned(), ..base.clone() };
-    let both = jobs(&[base.clone(), named], &Axes::default(), &mut Vec::new()).expect("points");
-    let one = jobs(std::slice::from_ref(&base), &Axes::default(), &mut Vec::new()).expect("points");
+    let both = jobs(&[base.clone(), named], &Axes::default(), &mut Vec::new(), 0).expect("points");
+    let one = jobs(std::slice::from_ref(&base), &Axes::default(), &mut Vec::new(), 0).expect("points");
     assert_eq!(both.len(), one.len(), "a name makes no other point");
     let keys: BTreeSet<&String> = one.iter().map(|job| &job.key).collect();
     assert_eq!(keys.len(), one.len());
@@ -84,13 +84,13 @@ fn points_are_the_combinations_that_exist_each_once() {
         coefficient_bits: vec![12, 18],
         ..Axes::default()
     };
-    let named = jobs(std::slice::from_ref(&base), &axes, &mut Vec::new()).expect("points");
+    let named = jobs(std::slice::from_ref(&base), &axes, &mut Vec::new(), 0).expect("points");
     // The reduced plan has no two lanes.
     assert_eq!(named.len(), 2 * 2 * (2 + 1));
-    let full = jobs(std::slice::from_ref(&base), &Axes { full: true, ..Axes::default() }, &mut Vec::new());
+    let full = jobs(std::slice::from_ref(&base), &Axes { full: true, ..Axes::default() }, &mut Vec::new(), 0);
     assert_eq!(full.expect("points").len(), filters * 2 * 5 * 6 * 6);
     let none = Axes { plans: vec![PlanKind::Reduced], lanes: vec![3], ..Axes::default() };
-    assert!(matches!(jobs(&[base], &none, &mut Vec::new()), Err(SweepError::NoPoints)));
+    assert!(matches!(jobs(&[base], &none, &mut Vec::new(), 0), Err(SweepError::NoPoints)));
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn the_joint_estimator_is_an_axis_with_the_constants_of_a_design_that_has_it() {
         ..Axes::default()
     };
     let points = |designs: &[Design], estimators: &[Estimator]| {
-        jobs(designs, &axes(estimators), &mut Vec::new()).expect("points")
+        jobs(designs, &axes(estimators), &mut Vec::new(), 0).expect("points")
     };
     let by = |jobs: &[testbench::sweep::grid::Job], estimator| {
         jobs.iter().filter(|job| job.design.algorithm.estimator == estimator).count()
@@ -119,7 +119,7 @@ fn the_joint_estimator_is_an_axis_with_the_constants_of_a_design_that_has_it() {
         assert_eq!(algorithm.joint.gain.to_bits(), if is_joint { 1.125_f64 } else { 1.0 }.to_bits());
     }
     assert_eq!(by(&points(&both, &[]), Estimator::Joint), 0, "filters are judged with the line estimator");
-    let alone = jobs(std::slice::from_ref(&line), &axes(&[Estimator::Joint]), &mut Vec::new());
+    let alone = jobs(std::slice::from_ref(&line), &axes(&[Estimator::Joint]), &mut Vec::new(), 0);
     assert!(matches!(alone, Err(SweepError::NoPoints)), "no constants");
     // Constants are a part of the key.
     let mut other = joint.clone();
@@ -137,7 +137,7 @@ fn the_key_follows_design_and_scene() {
     let base = Design::load(Path::new(&small())).expect("a design");
     let key = |design: &Design| {
         let mut scenes = vec![SweepScene::load(Path::new(&path)).expect("a scene")];
-        jobs(std::slice::from_ref(design), &Axes::default(), &mut scenes).expect("points")[0].key.clone()
+        jobs(std::slice::from_ref(design), &Axes::default(), &mut scenes, 0).expect("points")[0].key.clone()
     };
     let first = key(&base);
     assert_eq!(key(&base), first);

@@ -1,13 +1,15 @@
 //! What is found of a scene's forces: the field of a frame beside the true one, and how well its bodies are told apart.
 
-use golden::bodies::MOST;
+use golden::bodies::{Body, MOST};
 use golden::design::{Design, Estimator, Input, Outputs};
 use golden::metrics::BodyErrors;
+use golden::scene::SceneFrame;
 use golden::solver::Solver;
 use hdl_gen::plan::Plan;
 
 use super::PageError;
 use super::matrices::Figure;
+use crate::accuracy::against_true_bodies;
 use crate::field_plot;
 use crate::sweep::SweepScene;
 use crate::sweep::evaluate::answers;
@@ -81,17 +83,33 @@ pub fn field(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Fig
     Ok((figures, caption))
 }
 
-/// How well the bodies of a scene are told apart, by the first design with the joint estimator.
+/// How well the bodies of a scene are told apart: by the hardware of the first design that tells so many apart, or in f64 by
+/// the first one with the joint estimator.
 pub fn bodies(designs: &[&Design], scene: &SweepScene) -> Option<String> {
-    let contacts = scene.scene.contacts.len();
+    let contacts = scene.contacts.len();
+    if !(2..=MOST).contains(&contacts) {
+        return None;
+    }
+    let tells = |design: &&&Design| design.algorithm.contacts >= contacts && Plan::new(design).is_ok();
+    if let Some(design) = designs.iter().find(tells) {
+        let truth: Vec<Vec<Body>> = scene.made.iter().map(|frame| frame.bodies.clone()).collect();
+        let errors = against_true_bodies(&answers(design, &scene.frames).ok()?, &truth);
+        return Some(format!(". Told apart in hardware, by {}: {}", design.name, told(&errors)));
+    }
     let of_joint = |design: &&&Design| design.algorithm.estimator == Estimator::Joint;
-    let mut design = (*designs.iter().find(of_joint).filter(|_| (2..=MOST).contains(&contacts))?).clone();
+    let mut design = (*designs.iter().find(of_joint)?).clone();
     // Scenes are in pascals, whatever the sensor counts.
     design.input = Input::default();
     design.algorithm.contacts = contacts;
-    let (solver, frames) = (Solver::new(&design).ok()?, scene.scene.frames().ok()?);
-    let solutions: Vec<_> = frames.iter().map(|frame| solver.solve(&frame.stress)).collect::<Result<_, _>>().ok()?;
-    let errors = BodyErrors::new(frames.iter().map(|frame| &frame.bodies).zip(&solutions));
+    let solver = Solver::new(&design).ok()?;
+    let solve = |frame: &SceneFrame| solver.solve(&frame.stress);
+    let solutions: Vec<_> = scene.made.iter().map(solve).collect::<Result<_, _>>().ok()?;
+    let errors = BodyErrors::new(scene.made.iter().map(|frame| &frame.bodies).zip(&solutions));
+    Some(format!(". Told apart in f64, by {} with contacts = {contacts}: {}", design.name, told(&errors)))
+}
+
+/// How many frames have the right number, and what is found of their bodies.
+fn told(errors: &BodyErrors) -> String {
     let number = format!("number right in {} of {} frames", errors.right, errors.frames);
     let own = match errors.right {
         0 => String::new(),
@@ -100,7 +118,7 @@ pub fn bodies(designs: &[&Design], scene: &SweepScene) -> Option<String> {
             errors.tangential.median, errors.tangential.worst
         ),
     };
-    Some(format!(". Told apart in f64, by {} with contacts = {contacts}: {number}{own}", design.name))
+    number + &own
 }
 
 #[cfg(test)]

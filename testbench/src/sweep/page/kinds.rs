@@ -17,7 +17,7 @@ use crate::sweep::point::Calibration;
 /// Friction of the contacts of kinds that have none of their own.
 pub const FRICTION: f64 = 0.5;
 /// First seed: those of the calibrations' own contacts are others.
-const FIRST_SEED: u64 = 1000;
+pub const FIRST_SEED: u64 = 1000;
 
 /// Those of the unfiltered designs with hardware that answer differently: another plan or more lanes change a digit at most,
 /// and of such designs only the first by the reduced plan is shown.
@@ -50,8 +50,8 @@ pub fn table(designs: &[&Design], frames: u64) -> Result<Option<Table>, PageErro
         .into_iter()
         .collect::<Result<Vec<_>, _>>()
         .map_err(SweepError::from)?;
-    let stress = made.iter().flat_map(|(_, frames)| frames).map(|frame| frame.stress.clone()).collect();
-    let all = FrameSet { origin: String::new(), stress, truth: None, bodies: None, remark: None, scene: None };
+    let all: Vec<SceneFrame> = made.iter().flat_map(|(_, frames)| frames).cloned().collect();
+    let all = FrameSet::of_frames(&all, "contacts of all kinds");
     let mut header = vec![format!("contacts, {frames} frames of each kind")];
     let mut columns = Vec::new();
     for design in shown {

@@ -5,7 +5,7 @@ mod dots;
 pub mod forces;
 pub mod front;
 pub mod hard;
-mod kinds;
+pub mod kinds;
 pub mod lanes;
 pub mod matrices;
 pub mod paper;
@@ -69,6 +69,8 @@ struct SensorSection {
     fronts: Vec<Figure>,
     table_1: Option<Table>,
     table_3: Option<Table>,
+    /// The same on contacts of all kinds, without the paper's.
+    table_3_kinds: Option<Table>,
     kinds: Option<Table>,
     lanes: Table,
     lanes_plot: Option<String>,
@@ -164,7 +166,7 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
     let own: Vec<&Point> = points.iter().filter(|point| point.sensor == *sensor).collect();
     let designs: Vec<&Design> = designs.iter().filter(|design| is_of(design, sensor)).collect();
     let scenes: Vec<&SweepScene> =
-        sweep.scenes.iter().filter(|scene| designs.iter().any(|design| design.sensor == scene.scene.sensor)).collect();
+        sweep.scenes.iter().filter(|scene| designs.iter().any(|design| design.sensor == scene.sensor)).collect();
     // The paper's contacts are swept over all directions: its tables stand beside the first such scene.
     let main = scenes.iter().copied().find(|scene| scene.frames.stress.len() > 1).or(scenes.first().copied());
     let on = |scene: &SweepScene| own.iter().copied().filter(|point| point.scene == scene.name).collect::<Vec<_>>();
@@ -177,6 +179,9 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
             let paper = main.is_some_and(|main| main.name == scene.name);
             let frames = scene.frames.stress.len();
             let mut caption = format!("scene {}, {frames} frame{}", scene.name, if frames == 1 { "" } else { "s" });
+            if scene.contacts.is_empty() {
+                caption += ": contacts of all kinds, as many of each (what they are is in the table of kinds)";
+            }
             if !scene.tells() {
                 caption += "; the bodies are pushed against each other, so that this error is that of a sum near zero, which \
                             tells nothing of either: no front, no conclusion";
@@ -209,6 +214,10 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
         fronts,
         table_1: tables::table_1(&on_main),
         table_3: tables::table_3(&on_main),
+        table_3_kinds: scenes
+            .iter()
+            .find(|scene| scene.contacts.is_empty())
+            .and_then(|scene| tables::on_kinds(&on(scene))),
         kinds: kinds::table(&foremost, sweep.kinds)?,
         lanes: tables::lanes(&on_main),
         lanes_plot: lanes::plot(&on_main),
@@ -229,11 +238,10 @@ fn is_of(design: &Design, sensor: &Geometry) -> bool {
 
 /// What each filter of each matrix costs, on the scene of the sensor's tables.
 fn costs(designs: &[&Design], scene: Option<&SweepScene>, small: bool) -> Option<Figure> {
-    let frames = scene?.scene.frames().ok()?;
     // The search needs no filter of its own.
     let mut design = designs.first().filter(|_| small).map(|&design| design.clone())?;
     design.algorithm.filter = Filter::None;
-    let choice = choose(&design, &frames, &|| ()).ok()?;
+    let choice = choose(&design, &scene?.made, &|| ()).ok()?;
     let caption = format!(
         "e_µ · Nnz in thousands, with only that matrix filtered, by the estimator {} of {}; \
          mean over {} frames of scene {}. Purple: the least of the matrix, which is F3; only framed where its e_µ is more \

@@ -55,14 +55,33 @@ pub fn table_1(points: &[&Point]) -> Option<Table> {
     Some(Table::new(header).with(rows))
 }
 
-/// Table 3: errors and times, the paper's and ours; `None` for a sensor that is not the paper's.
-pub fn table_3(points: &[&Point]) -> Option<Table> {
-    let number = paper_sensor(&points.first()?.sensor)?;
+/// The header of tables of errors and times.
+fn header_3() -> Vec<String> {
     let names = ["e_Fx", "e_Fy", "e_Fz", "e_µ", "e_φ"];
     let mut header = vec!["hardware".to_owned(), "time".to_owned()];
     header.extend(names.map(|name| format!("max {name}")));
     header.extend(names.map(|name| format!("SE {}", name.trim_start_matches("e_"))));
     header.push("verified".to_owned());
+    header
+}
+
+/// The rows of designs without a filter, in the usual widths and lanes.
+fn unfiltered(points: &[&Point]) -> Vec<Vec<Cell>> {
+    let line = find(points, "none", PlanKind::Reduced).map(|point| ("reduced plan, line, no filter".to_owned(), point));
+    let joint = all_by(points, "none", PlanKind::Reduced, Estimator::Joint)
+        .map(|point| (format!("reduced plan, {}", point.estimator_title()), point));
+    line.into_iter().chain(joint).map(|(name, point)| of_point(&name, point, "ours")).collect()
+}
+
+/// Errors and times of our designs without a filter; `None` without such points.
+pub fn on_kinds(points: &[&Point]) -> Option<Table> {
+    let rows = unfiltered(points);
+    (!rows.is_empty()).then(|| Table::new(header_3()).with(rows))
+}
+
+/// Table 3: errors and times, the paper's and ours; `None` for a sensor that is not the paper's.
+pub fn table_3(points: &[&Point]) -> Option<Table> {
+    let number = paper_sensor(&points.first()?.sensor)?;
     let mut rows = Vec::new();
     for row in TABLE_3.iter().filter(|row| row.sensor == number) {
         let time = format!("{:.2} ms", row.milliseconds);
@@ -78,13 +97,8 @@ pub fn table_3(points: &[&Point]) -> Option<Table> {
             }
         }
     }
-    if let Some(point) = find(points, "none", PlanKind::Reduced) {
-        rows.push(of_point("reduced plan, line, no filter", point, "ours"));
-    }
-    for point in all_by(points, "none", PlanKind::Reduced, Estimator::Joint) {
-        rows.push(of_point(&format!("reduced plan, {}", point.estimator_title()), point, "ours"));
-    }
-    Some(Table::new(header).with(rows))
+    rows.extend(unfiltered(points));
+    Some(Table::new(header_3()).with(rows))
 }
 
 fn of_point(name: &str, point: &Point, class: &'static str) -> Vec<Cell> {
