@@ -56,9 +56,10 @@ module sptfra_points_level #(
     reg [3:0] row_in;
     wire outer_row = (row_in == 4'd0) || (row_in == LAST_ROW);
     // Node 1 is the root; the children of node n are 2 n and 2 n + 1; nodes from LEAVES on are the points. The ends of
-    // a row, which are on the border, stay out of the tree
+    // a row, which are on the border, stay out of the tree and are known long before
     wire [VALUE_BITS-1:0] nodes [1:2*LEAVES-1];
-    reg [LEVELS*VALUE_BITS-1:0] ends; // the smaller end of a row, on its way beside the tree
+    reg [VALUE_BITS-1:0] least_end; // of a row
+    reg [VALUE_BITS-1:0] least_of_ends; // of all rows so far
     reg [LEVELS:1] outers;
     reg [LEVELS:1] valids;
     wire [VALUE_BITS-1:0] first_end = row_values[0 +: VALUE_BITS];
@@ -94,20 +95,23 @@ module sptfra_points_level #(
         end
     endgenerate
 
-    wire [VALUE_BITS-1:0] least_end = ends[(LEVELS-1)*VALUE_BITS +: VALUE_BITS];
+    // The border's are those of an outer row as it leaves the tree, and of the ends in every other cycle: there is one
+    // before the last row leaves, when all ends are in
     wire [VALUE_BITS-1:0] least_between = nodes[1];
-    wire [VALUE_BITS-1:0] least_of_row = (least_end < least_between) ? least_end : least_between;
-    wire [VALUE_BITS-1:0] border_of_row = outers[LEVELS] ? least_of_row : least_end;
+    wire [VALUE_BITS-1:0] of_border = (valids[LEVELS] && outers[LEVELS]) ? least_between : least_of_ends;
 
     always @(posedge clock) begin
-        ends <= {ends[(LEVELS-1)*VALUE_BITS-1:0], (first_end < last_end) ? first_end : last_end};
+        least_end <= (first_end < last_end) ? first_end : last_end;
+        if (valids[1] && (least_end < least_of_ends)) begin
+            least_of_ends <= least_end;
+        end
         valids <= {valids[LEVELS-1:1], row_valid};
         outers <= {outers[LEVELS-1:1], outer_row};
         if (row_valid) begin
             row_in <= row_in + 4'd1;
         end
-        if (valids[LEVELS] && (border_of_row < least_on_border)) begin
-            least_on_border <= border_of_row;
+        if (of_border < least_on_border) begin
+            least_on_border <= of_border;
         end
         if (valids[LEVELS] && !outers[LEVELS] && (least_between < least_inside)) begin
             least_inside <= least_between;
@@ -115,6 +119,7 @@ module sptfra_points_level #(
         if (start) begin
             row_in <= 4'd0;
             least_inside <= {VALUE_BITS{1'b1}};
+            least_of_ends <= {VALUE_BITS{1'b1}};
             least_on_border <= {VALUE_BITS{1'b1}};
         end
         if (reset) begin

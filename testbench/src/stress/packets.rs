@@ -186,13 +186,14 @@ pub fn balanced(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     found
 }
 
-/// A frame without a fault: a contact, noise, silence, single taxels, the ends of the range, any finite float at all.
+/// A frame without a fault: a contact, noise, silence, single taxels, the ends of the range, any finite float at all, and what
+/// pulls everywhere, so that nothing limits the friction.
 fn good(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {
     let sensor = &plan.design.sensor;
     let full_scale = plan.design.hardware.full_scale_pa;
     let taxels = sensor.taxels();
     let peak = full_scale * 10_f64.powf(random.random_range(-4.0..0.1));
-    let pascals: Vec<f64> = match random.random_range(0..10) {
+    let pascals: Vec<f64> = match random.random_range(0..11) {
         0 => vec![0.0; taxels],
         1 => (0..taxels).map(|_| random.random_range(-peak..=peak)).collect(),
         2 => (0..taxels).map(|_| if random.random_bool(0.5) { full_scale } else { -full_scale }).collect(),
@@ -206,6 +207,7 @@ fn good(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {
             // Integers are what they are.
             return (0..plan.streams().words_in()).map(|_| finite(random.random())).collect();
         }
+        5 => (0..taxels).map(|_| peak * random.random_range(0.95..1.0)).collect(),
         _ => {
             let centre = [sensor.columns, sensor.rows].map(|side| random.random_range(0.0..side as f64));
             let push = [0, 1].map(|_| random.random_range(-1.0..1.0));

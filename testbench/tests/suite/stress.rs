@@ -109,7 +109,21 @@ fn the_seed_decides_everything() {
 fn faults_at_rare_moments_are_noticed() {
     let [paper, reduced] =
         [PlanKind::Paper, PlanKind::Reduced].map(|kind| by_plan(shipped("small"), kind, Outputs::Field));
+    let joint = shipped("small-joint");
     let cases = [
+        // The least value on the border is that of the rows' ends, or of the outer rows, alone.
+        (
+            &joint,
+            "sptfra_points_level",
+            "outers[LEVELS]) ? least_between : least_of_ends",
+            "outers[LEVELS]) ? least_of_ends : least_of_ends",
+        ),
+        (
+            &joint,
+            "sptfra_points_level",
+            "outers[LEVELS]) ? least_between : least_of_ends",
+            "outers[LEVELS]) ? least_between : {VALUE_BITS{1'b1}}",
+        ),
         // A direction that comes in the cycle in which the one before is taken is lost.
         (
             &paper,
