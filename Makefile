@@ -67,10 +67,12 @@ stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses an
 		$(TARGET)/release/testbench stress $$design --frames $(FRAMES_COUNT); done
 
 .PHONY: mutants
-mutants: tools $(SMALL_DESIGNS) ## 220 copies with a fault each: which does the comparison not notice? (a quarter of an hour)
+mutants: tools $(SMALL_DESIGNS) ## 330 copies with a fault each: which does the comparison not notice? (half an hour)
 	@$(CARGO) build --quiet -p testbench
 	@set -e; for design in $(SMALL_DESIGNS); do $(BIN)/testbench mutants $$design --count $(MUTANTS_COUNT) \
 		--explained testbench/survivors.toml; done
+	@set -e; for design in small-joint small-bodies; do $(BIN)/testbench mutants designs/$$design.toml \
+		--count $$(($(MUTANTS_COUNT) / 2)) --explained testbench/survivors.toml; done
 
 .PHONY: lint
 lint: ## Formatting and clippy, warnings are errors

@@ -247,7 +247,11 @@ fn faults_are_noticed() {
     let mut random = ChaCha8Rng::seed_from_u64(22);
     let cases = [case("sensor1-wide", 3, 32, &mut random), slipping_case("sensor1-wide", 3, 96, &mut random)];
     let expected: Vec<Vec<Played>> = cases.iter().map(expected).collect();
-    records_of_faults(&faults, |fault| play(&cases, icarus, fault).is_ok_and(|played| played == expected));
+    // One after the other: most faults are noticed in the short one.
+    records_of_faults(&faults, |fault| {
+        let played = |case: &Case| play(std::slice::from_ref(case), icarus, fault).ok().and_then(|mut of| of.pop());
+        cases.iter().zip(&expected).all(|(case, expected)| played(case).as_ref() == Some(expected))
+    });
 }
 
 /// With every number of records.
