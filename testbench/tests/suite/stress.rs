@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::calibration;
 use crate::support::faults::broken;
-use crate::support::{by_plan, in_parallel, planned, shipped};
+use crate::support::{by_plan, in_parallel, planned, shipped, with_points};
 use golden::design::{Design, Estimator, Outputs, Overrun, PlanKind};
 use golden::progress::Progress;
 use testbench::frame_set::FrameSet;
@@ -17,12 +17,17 @@ const FRAMES: u64 = 3000;
 
 #[test]
 fn every_answer_is_right_and_none_is_lost() {
+    // With a standard error, and several words a beat.
+    let mut points = with_points(shipped("small"));
+    points.name += "_points";
+    points.hardware.stream_bits = 128;
     let designs = [
         by_plan(shipped("small"), PlanKind::Paper, Outputs::Field),
         by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field),
         by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants),
         // Search, look and correction a frame each.
         shipped("small-joint"),
+        points,
     ];
     let options = stress::Options { frames: FRAMES, seed: 5 };
     in_parallel(&designs, |design| {

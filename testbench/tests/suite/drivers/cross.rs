@@ -1,6 +1,7 @@
-//! The C driver and the program for Linux, compiled for the processors of the boards.
+//! The C driver, the program for Linux and the example without a system, compiled for the processors of the boards.
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::{CALIBRATION, DRIVER, FILES, FORCES};
@@ -33,5 +34,20 @@ fn the_c_driver_compiles_for_the_boards_and_has_their_barriers() {
         for name in ["<hand_over", "<sptfra_wait>:", "<sptfra_queue_take>:", "<send>:"] {
             assert!(functions.iter().any(|function| function.contains(name)), "{target}: no dsb in {name}");
         }
+        bare_metal(target, folder.path());
     }
+}
+
+/// The example without a system with the board's side of it, above headers that declare what it takes of AMD's platform.
+fn bare_metal(target: &str, folder: &Path) {
+    let cache = "#include <stdint.h>\ntypedef intptr_t INTPTR;\nvoid Xil_DCacheFlushRange(INTPTR start, INTPTR bytes);\n\
+                 void Xil_DCacheInvalidateRange(INTPTR start, INTPTR bytes);\n";
+    fs::write(folder.join("xil_cache.h"), cache).expect("written");
+    fs::write(folder.join("xil_printf.h"), "void xil_printf(const char *format, ...);\n").expect("written");
+    let mut compiler = Command::new(format!("{target}-gcc"));
+    compiler.args(["-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-c"]);
+    compiler.args(["-DSPTFRA_NO_UIO", "-DBOARD_H=\"zynq.h\"", "-I"]).arg(workspace("drivers/c")).arg("-I").arg(folder);
+    compiler.arg(workspace("drivers/c/examples/bare_metal.c")).args(DRIVER.map(workspace)).current_dir(folder);
+    let made = compiler.output().expect("starts");
+    assert!(made.status.success() && made.stderr.is_empty(), "{}", String::from_utf8_lossy(&made.stderr));
 }

@@ -117,6 +117,9 @@ fn every_board_has_a_system() {
             "{board}"
         );
         assert!(folder.work().join(format!("small_4x3_{board}.hwh")).exists());
+        // A module is on a carrier.
+        let carried = ran.calls.iter().any(|call| call.starts_with("set_property board_connections"));
+        assert_eq!(carried, board == "kv260");
     }
 }
 

@@ -11,7 +11,7 @@ namespace eval standin {
     variable legal_properties
     array set legal_properties {
         fileset {top include_dirs}
-        project {part board_part ip_repo_paths source_mgmt_mode}
+        project {part board_part board_connections ip_repo_paths source_mgmt_mode}
         run {{STEPS.SYNTH_DESIGN.ARGS.MORE OPTIONS} STEPS.OPT_DESIGN.TCL.PRE}
         debug_core {
             C_DATA_DEPTH C_INPUT_PIPE_STAGES C_TRIGIN_EN C_TRIGOUT_EN C_ADV_TRIGGER C_EN_STRG_QUAL ALL_PROBE_SAME_MU
@@ -224,14 +224,14 @@ standin::command get_cells {-quiet -hierarchical -filter=} 0 0 {
     if {[regexp {^ORIG_REF_NAME == (\w+) \|\| REF_NAME == (\w+)$} $option(-filter) -> module again]} {
         foreach path $::standin::sources {
             if {[file rootname [file tail $path]] eq $module && $again eq $module} {
-                lappend found core/$module
+                lappend found "core/gen_lanes\[0\].$module"
             }
         }
-    } elseif {[regexp {^REF_NAME =~ (\S+) && NAME =~ core/(\w+)/\*$} $option(-filter) -> kind within]} {
+    } elseif {[regexp {^REF_NAME =~ (\S+)$} $option(-filter) -> kind]} {
         foreach cell [standin::netlist] {
             lassign $cell module primitive count
-            for {set index 0} {$index < $count && $module eq $within && [string match $kind $primitive]} {incr index} {
-                lappend found core/$module/$primitive$index
+            for {set index 0} {$index < $count && [string match $kind $primitive]} {incr index} {
+                lappend found "core/gen_lanes\[0\].$module/$primitive$index"
             }
         }
     } else {

@@ -18,7 +18,8 @@ use testbench::verilate::Built;
 
 use crate::bodies::kinds::{Kind, frame};
 use crate::support::{
-    built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint, with_lanes, workspace,
+    built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint, with_lanes, with_points,
+    workspace,
 };
 
 fn telling_apart(mut design: Design, contacts: usize) -> Design {
@@ -291,7 +292,9 @@ fn the_solver_tells_apart_as_the_hardware_does() {
 fn streams_with_pauses_faults_and_resets_are_told_apart() {
     let odd = by_plan(shipped("odd"), PlanKind::Reduced, Outputs::Field);
     let wide = streaming(without_field(slipping(odd.clone())), 128);
-    for design in [odd, wide] {
+    // A standard error for each body.
+    let points = with_points(shipped("small"));
+    for design in [odd, wide, points] {
         let design = telling_apart(design, 3);
         let report = stress(&design, &stress::Options { frames: 400, seed: 3 }, &golden::progress::Progress::hidden());
         let report = report.unwrap_or_else(|error| panic!("{error}"));

@@ -44,13 +44,13 @@ proc connect_interface {from to} {
 
 set boards [dict create \
     zcu102 {title {ZCU102} pattern *:zcu102:* part xczu9eg-ffvb1156-2-e processor zynq_ultra_ps_e
-        dma 0xA0000000 core 0xA0010000} \
+        connection {} dma 0xA0000000 core 0xA0010000} \
     zcu104 {title {ZCU104} pattern *:zcu104:* part xczu7ev-ffvc1156-2-e processor zynq_ultra_ps_e
-        dma 0xA0000000 core 0xA0010000} \
+        connection {} dma 0xA0000000 core 0xA0010000} \
     kv260 {title {KV260} pattern *:kv260_som:* part xck26-sfvc784-2LV-c processor zynq_ultra_ps_e
-        dma 0xA0000000 core 0xA0010000} \
+        connection {som240_1_connector xilinx.com:kv260_carrier:som240_1_connector:1.3} dma 0xA0000000 core 0xA0010000} \
     pynq-z2 {title {PYNQ-Z2} pattern *:pynq-z2:* part xc7z020clg400-1 processor processing_system7
-        dma 0x40000000 core 0x40010000} \
+        connection {} dma 0x40000000 core 0x40010000} \
 ]
 
 proc device {part} {
@@ -92,6 +92,10 @@ if {[device $board_device] ne [device $part]} {
 }
 create_project -force $project [file join [pwd] $project] -part $board_device
 set_property board_part $board_part [current_project]
+# A module's board file knows nothing of its carrier
+if {[dict get $boards $board connection] ne ""} {
+    set_property board_connections [dict get $boards $board connection] [current_project]
+}
 set_property ip_repo_paths [list $ip] [current_project]
 update_ip_catalog -rebuild
 

@@ -46,12 +46,18 @@ proc used {table names} {
     error "the utilization report has no row named [join $names { or }]"
 }
 
-# The primitives of a kind in the instances of these modules, each counted once.
+# The primitives of a kind in the instances of these modules, each counted once. Instances have brackets in their names,
+# which a pattern could take for a choice of letters.
 proc primitives {modules kind} {
+    set all [get_cells -quiet -hierarchical -filter "REF_NAME =~ $kind"]
     set found {}
     foreach module $modules {
         foreach cell [get_cells -quiet -hierarchical -filter "ORIG_REF_NAME == $module || REF_NAME == $module"] {
-            lappend found {*}[get_cells -quiet -hierarchical -filter "REF_NAME =~ $kind && NAME =~ $cell/*"]
+            foreach primitive $all {
+                if {[string first $cell/ $primitive] == 0} {
+                    lappend found $primitive
+                }
+            }
         }
     }
     return [llength [lsort -unique $found]]
