@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use golden::design::{Design, PlanKind};
 use golden::progress::Progress;
-use golden::solver::{Solution, Solver, SolverError, Status};
+use golden::solver::{PIECE, Solution, Solver, SolverError, Status};
 use golden::table::Table;
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
@@ -15,6 +15,8 @@ use serde::Serialize;
 
 /// Different frames, solved in turn.
 const FRAMES: usize = 128;
+/// Frames for each core, where all are at work.
+const FRAMES_OF_CORE: usize = 8 * FRAMES;
 /// Repetitions, of which the median is reported.
 const REPETITIONS: usize = 7;
 /// A repetition takes at least this time, so that the clock's own steps do not matter.
@@ -32,6 +34,8 @@ struct Report {
     repetitions: usize,
     one_by_one: Speed,
     in_batches: Speed,
+    cores: usize,
+    on_all_cores: Speed,
 }
 
 #[derive(Serialize)]
@@ -54,16 +58,21 @@ pub fn run(designs: &[PathBuf], json: bool) -> Result<(), Box<dyn Error>> {
         say!("{}", serde_json::to_string_pretty(&reports)?);
         return Ok(());
     }
-    let mut table = Table::new(["design", "plan", "taxels", "setup s", "one by one", "us", "in batches", "us"]);
+    let mut table =
+        Table::new(["design", "plan", "taxels", "setup s", "one by one", "us", "in batches", "us", "all cores", "us"]);
     for report in &reports {
-        let Report { design, plan, taxels, setup_s, one_by_one, in_batches, .. } = report;
+        let Report { design, plan, taxels, setup_s, one_by_one, in_batches, on_all_cores, .. } = report;
         let mut row = vec![design.clone(), plan.to_string(), taxels.to_string(), format!("{setup_s:.2}")];
-        for speed in [one_by_one, in_batches] {
+        for speed in [one_by_one, in_batches, on_all_cores] {
             row.extend([format!("{:.0}", speed.frames_per_second), format!("{:.1}", speed.us_per_frame)]);
         }
         table.row(row);
     }
-    say!("frames a second on one core, median of {REPETITIONS} repetitions\n{}", table.text(0, 0));
+    let cores = rayon::current_num_threads();
+    say!(
+        "frames a second on one core, and on all {cores} in batches, median of {REPETITIONS} repetitions\n{}",
+        table.text(0, 0)
+    );
     Ok(())
 }
 
@@ -76,17 +85,26 @@ fn measure(path: &Path) -> Result<Report, Box<dyn Error>> {
     let mut workspace = solver.workspace();
     let mut solution = Solution::zeros(Status::default(), 0);
     let one_by_one =
-        speed(|| frames.iter().try_for_each(|frame| solver.solve_into(&mut workspace, frame, &mut solution)))?;
+        speed(FRAMES, || frames.iter().try_for_each(|frame| solver.solve_into(&mut workspace, frame, &mut solution)))?;
     let mut solutions = Vec::new();
-    let in_batches = speed(|| solver.solve_batch(&mut workspace, &frames, &mut solutions))?;
+    let in_batches = speed(FRAMES, || solver.solve_batch(&mut workspace, &frames, &mut solutions))?;
+    let cores = rayon::current_num_threads();
+    let many = cores * FRAMES_OF_CORE;
+    let values: Vec<f64> = frames.iter().cycle().take(many).flatten().copied().collect();
+    let mut found = vec![0.0; many];
+    let on_all_cores = speed(many, || {
+        let places = found.chunks_mut(PIECE);
+        solver.solve_on_all_cores(&values, places, |place, index, solution| place[index] = solution.resultant[2])
+    })?;
     let plan = design.algorithm.plan;
     let taxels = solver.taxels();
     let file = path.display().to_string();
-    Ok(Report { file, design: design.name, plan, taxels, setup_s, repetitions: REPETITIONS, one_by_one, in_batches })
+    let (design, repetitions) = (design.name, REPETITIONS);
+    Ok(Report { file, design, plan, taxels, setup_s, repetitions, one_by_one, in_batches, cores, on_all_cores })
 }
 
-/// Times a function that solves all frames.
-fn speed(mut solve: impl FnMut() -> Result<(), SolverError>) -> Result<Speed, SolverError> {
+/// Times a function that solves so many frames.
+fn speed(frames: usize, mut solve: impl FnMut() -> Result<(), SolverError>) -> Result<Speed, SolverError> {
     // Once to ask for memory and fill the caches, then as often as it takes.
     solve()?;
     let mut times = Vec::with_capacity(REPETITIONS);
@@ -96,7 +114,7 @@ fn speed(mut solve: impl FnMut() -> Result<(), SolverError>) -> Result<Speed, So
             solve()?;
             rounds += 1;
         }
-        times.push(start.elapsed().as_secs_f64() * 1e6 / (rounds * FRAMES) as f64);
+        times.push(start.elapsed().as_secs_f64() * 1e6 / (rounds * frames) as f64);
     }
     times.sort_by(f64::total_cmp);
     let median = times[REPETITIONS / 2];

@@ -38,10 +38,10 @@ fn solver(page: &mut Page, rows: &[SolverRate]) {
     let Some(first) = rows.first() else { return };
     page.heading("Frames a second of the f64 solver");
     page.line(&format!(
-        "On one core, for a user's PC: frame after frame, as a sensor delivers them, and in batches, as from a file. \
-         Median of {} repetitions; setting up (matrices, filter) happens once. The ratio is to the first line, frame \
-         after frame.",
-        first.repetitions
+        "On one core, for a user's PC: frame after frame, as a sensor delivers them, and in batches, as from a file; \
+         and in batches on all {} cores. Median of {} repetitions; setting up (matrices, filter) happens once. The ratio \
+         is to the first line, frame after frame, and on all cores to one core in batches.",
+        first.cores, first.repetitions
     ));
     let cells = rows.iter().map(|row| {
         let ratio = |rate: f64| decimals(rate / first.one_by_one.frames_per_second, 2);
@@ -55,6 +55,8 @@ fn solver(page: &mut Page, rows: &[SolverRate]) {
             ratio(one),
             grouped(many.round() as u64),
             ratio(many),
+            grouped(row.on_all_cores.frames_per_second.round() as u64),
+            decimals(row.on_all_cores.frames_per_second / many, 2),
         ]
     });
     page.table(
@@ -66,6 +68,8 @@ fn solver(page: &mut Page, rows: &[SolverRate]) {
             "frame by frame, 1/s",
             "ratio",
             "in batches, 1/s",
+            "ratio",
+            "on all cores, 1/s",
             "ratio",
         ])
         .with(cells),

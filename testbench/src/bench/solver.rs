@@ -26,6 +26,10 @@ pub struct SolverRate {
     pub one_by_one: Speed,
     /// Many frames at a time.
     pub in_batches: Speed,
+    /// Cores of the machine,
+    pub cores: usize,
+    /// and many frames at a time on all of them.
+    pub on_all_cores: Speed,
     /// What numpy does with the same products and search on one BLAS thread, in batches: `tools/bench_numpy.py --add`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub numpy_frames_per_second: Option<f64>,

@@ -9,6 +9,7 @@ use serde_json::Value;
 const SOLVER: &str = r#"[{ "file": "slow.toml", "design": "slow", "plan": "paper", "taxels": 12, "setup_s": 0.1, "repetitions": 7,
     "one_by_one": { "frames_per_second": 1000.0, "us_per_frame": 1000.0, "us_per_frame_range": [900.0, 1100.0] },
     "in_batches": { "frames_per_second": 2000.0, "us_per_frame": 500.0, "us_per_frame_range": [400.0, 600.0] },
+    "cores": 2, "on_all_cores": { "frames_per_second": 3800.0, "us_per_frame": 263.0, "us_per_frame_range": [250.0, 300.0] },
     "numpy_frames_per_second": 800.0 }]"#;
 const CELLS: &str = r#"{ "file": "counted.toml", "design": "counted",
     "blocks": [{ "name": "lanes", "yosys": { "dsp": 4, "bram36": 2.5, "lut": 7, "ff": 8 },
@@ -60,7 +61,7 @@ fn a_tiny_bench_has_a_page_a_plot_and_exact_cycles() {
     let page = fs::read_to_string(page).expect("written");
     for part in [
         "## Frames a second of the f64 solver",
-        "| `slow` | paper | 12 | 0.10 | 1,000 | 1.00 | 2,000 | 2.00 |",
+        "| `slow` | paper | 12 | 0.10 | 1,000 | 1.00 | 2,000 | 2.00 | 3,800 | 1.90 |",
         "(`tools/bench_numpy.py`): 800 frames a",
         "2.5 times as many here.",
         "1 of 1 gave exactly",

@@ -176,7 +176,7 @@ fn bench_measures_each_design() {
             (&report["design"], &report["plan"], &report["taxels"]),
             (&name.into(), &plan.into(), &taxels.into())
         );
-        for way in ["one_by_one", "in_batches"] {
+        for way in ["one_by_one", "in_batches", "on_all_cores"] {
             let figure = |key: &str| report[way][key].as_f64().unwrap();
             let [rate, time] = ["frames_per_second", "us_per_frame"].map(figure);
             assert!((rate * time / 1e6 - 1.0).abs() < 1e-9 && time > 0.1 && time < 1e5, "{report}");
