@@ -165,7 +165,9 @@ impl Solver {
             }
         }
         if !self.reader.reads_tension() {
-            parts.iter_mut().for_each(|part| part.apply(|stress| *stress = stress.min(0.0)));
+            for part in &mut parts {
+                part.apply(|stress| *stress = stress.min(0.0));
+            }
         }
         parts
     }

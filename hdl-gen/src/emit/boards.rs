@@ -145,7 +145,8 @@ impl Board {
                 return Err((key, "is 0".to_owned(), "give the number that the part's data sheet has"));
             }
         }
-        if self.registers == 0 || self.registers % CORE_OFFSET != 0 || self.registers > u32::MAX - 2 * CORE_OFFSET + 1 {
+        let has_room = (1..=u32::MAX - 2 * CORE_OFFSET + 1).contains(&self.registers);
+        if !has_room || !self.registers.is_multiple_of(CORE_OFFSET) {
             let remedy = "give an address that the processor's port to registers has, in whole steps of 0x10000";
             return Err(("registers", format!("is {:#X}", self.registers), remedy));
         }

@@ -217,14 +217,14 @@ mod tests {
         );
         let plan = Plan::new(&text.unwrap()).unwrap();
         let mut files = FileMap::from([("rtl/d.v".to_owned(), Vec::new())]);
-        insert(&plan, "0123456789abcdef", &mut files).unwrap();
+        insert(&plan, "0123456789abcdef", &Board::all().unwrap(), &mut files).unwrap();
         let text = |files: &FileMap, path: &str| String::from_utf8(files[path].clone()).unwrap();
         assert!(!text(&files, "d.core").contains("d_tb"));
         assert_eq!(text(&files, "d.f"), "rtl/d.v\n");
         assert!(!files.contains_key(SIMULATION) && !text(&files, "vivado/files.tcl").contains("testbench"));
         files.insert("sim/d_tb.v".to_owned(), Vec::new());
         files.insert("sim/d_stimulus.mem".to_owned(), Vec::new());
-        insert(&plan, "0123456789abcdef", &mut files).unwrap();
+        insert(&plan, "0123456789abcdef", &Board::all().unwrap(), &mut files).unwrap();
         assert!(text(&files, "d.core").contains("sim/d_stimulus.mem: {copyto: d_stimulus.mem}"));
         assert!(text(&files, "d.core").contains("toplevel: d_tb"));
         assert!(text(&files, "Bender.yml").contains("sim/d_tb.v"));
