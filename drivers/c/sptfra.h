@@ -159,7 +159,8 @@ typedef struct {
  * the lower half: in memory the values stand one behind the other. Returns at once; both buffers belong to the DMA until
  * sptfra_wait says otherwise. One frame is on its way at a time. */
 int sptfra_start(sptfra *device, const sptfra_buffer *stress, const sptfra_buffer *forces);
-/* The same for a packet of any length, of which the core makes an answer with the status BAD_LENGTH. */
+/* The same for a packet of another length, of which the core makes an answer with the status BAD_LENGTH: at most as many
+ * bytes as the DMA's length register counts, 16,383 unless a frame, in or out, has more. */
 int sptfra_start_words(sptfra *device, const sptfra_buffer *stress, size_t words, const sptfra_buffer *forces);
 /* Waits for the answer to sptfra_start, asking at most so many times, and checks that it is the answer to that frame.
  * After SPTFRA_TIMEOUT it can be called again; after any other error nothing starts before sptfra_recover. */
