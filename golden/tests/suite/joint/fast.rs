@@ -6,14 +6,14 @@ use std::thread;
 
 use super::{DISC, FRICTIONS, HERTZ, LAYER, OTHER_SEED, SEED, SOFTER, design, within};
 use crate::contacts::{Worst, anywhere, centred, inside, pairs, worst};
-use golden::design::Design;
+use golden::design::{Design, Sensor};
 use golden::scene::Shape;
 use golden::solver::Solver;
 
 /// Half of the last digit.
 const ROUNDED: f64 = 0.0501;
-/// Rows of errors in each table: of four designs for sensor 1, of two for sensor 2.
-const ROWS: [usize; 2] = [40, 20];
+/// Rows of errors in each table: of four designs for sensor 1, of two for sensor 2, of three of the wide family.
+const ROWS: [usize; 3] = [40, 20, 42];
 
 /// A contact's name in a table, the noise in percent, and three cells for each design.
 type Row = (String, f64, Vec<[f64; 2]>);
@@ -48,11 +48,11 @@ fn tables() -> Vec<(Vec<String>, Vec<Row>)> {
 
 /// The cells of a row that are not what the designs err by.
 fn wrong(designs: &[Design], (contacts, noise, cells): &Row) -> Vec<String> {
-    let taxels = &designs[0].sensor;
-    let set = match contacts.as_str() {
+    let set = |taxels: &Sensor| match contacts.as_str() {
         "Hertz 7 mm" => centred(taxels, LAYER, HERTZ),
         "Hertz 7 mm, ν 0.45" => centred(taxels, SOFTER, HERTZ),
         "disc 10 mm" => centred(taxels, LAYER, DISC),
+        "disc 10 mm, ν 0.45" => centred(taxels, SOFTER, DISC),
         "punch 6 mm" => centred(taxels, LAYER, Shape::Punch { radius_m: 6e-3 }),
         "200 inside" => inside(taxels, LAYER, SEED, 200),
         "1000 more inside" => inside(taxels, LAYER, OTHER_SEED, 1000),
@@ -62,7 +62,7 @@ fn wrong(designs: &[Design], (contacts, noise, cells): &Row) -> Vec<String> {
     };
     let mut wrong = Vec::new();
     for (design, cells) in designs.iter().zip(cells.chunks_exact(FRICTIONS.len())) {
-        let solver = Solver::new(design).unwrap();
+        let (solver, set) = (Solver::new(design).unwrap(), set(&design.sensor));
         for (friction, stated) in FRICTIONS.into_iter().zip(cells) {
             let Worst { error: [x, y, _], median, .. } = worst(&solver, &set, friction, noise / 100.0);
             let found = [x.max(y), median];
