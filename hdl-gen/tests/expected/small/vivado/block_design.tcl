@@ -44,13 +44,17 @@ proc connect_interface {from to} {
 
 set boards [dict create \
     zcu102 {title {ZCU102} pattern *:zcu102:* part xczu9eg-ffvb1156-2-e processor zynq_ultra_ps_e
-        connection {} dma 0xA0000000 core 0xA0010000} \
+        connection {}
+        dma 0xA0000000 core 0xA0010000} \
     zcu104 {title {ZCU104} pattern *:zcu104:* part xczu7ev-ffvc1156-2-e processor zynq_ultra_ps_e
-        connection {} dma 0xA0000000 core 0xA0010000} \
+        connection {}
+        dma 0xA0000000 core 0xA0010000} \
     kv260 {title {KV260} pattern *:kv260_som:* part xck26-sfvc784-2LV-c processor zynq_ultra_ps_e
-        connection {som240_1_connector xilinx.com:kv260_carrier:som240_1_connector:1.3} dma 0xA0000000 core 0xA0010000} \
+        connection {som240_1_connector xilinx.com:kv260_carrier:som240_1_connector:1.3}
+        dma 0xA0000000 core 0xA0010000} \
     pynq-z2 {title {PYNQ-Z2} pattern *:pynq-z2:* part xc7z020clg400-1 processor processing_system7
-        connection {} dma 0x40000000 core 0x40010000} \
+        connection {}
+        dma 0x40000000 core 0x40010000} \
 ]
 
 proc device {part} {
