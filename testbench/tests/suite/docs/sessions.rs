@@ -13,7 +13,7 @@ use super::{Line, commands, lines, lines_of};
 use crate::support::workspace;
 
 /// What is not run here, by how the line begins, and why.
-const ELSEWHERE: [(&str, &str); 28] = [
+const ELSEWHERE: [(&str, &str); 29] = [
     ("make ", "installs tools, builds all, or takes minutes; the targets are looked up"),
     ("cargo ", "builds all, or runs tests of minutes; topics are looked up"),
     ("export ", "of the shell that the next lines are typed into"),
@@ -27,6 +27,7 @@ const ELSEWHERE: [(&str, &str); 28] = [
     (".venv/bin/python tools/fe", "hours of CalculiX"),
     ("modprobe", "on a board, as root"),
     ("insmod", "likewise"),
+    ("xmutil", "likewise"),
     ("./forces_linux", "likewise"),
     ("gtkwave", "a window"),
     ("surfer", "a window"),
@@ -185,6 +186,8 @@ fn prepare(session: &Session) {
     for (name, x) in [("a.toml", 9.0), ("b.toml", 11.0)] {
         fs::write(session.file(name), format!("{own}centre_mm = [{x:?}, 10.0]\n")).expect("written");
     }
+    // A board of one's own.
+    fs::copy(workspace("hdl-gen/boards/zcu102.toml"), session.file("my-carrier.toml")).expect("copied");
 }
 
 /// What the pages' commands make.
@@ -234,6 +237,7 @@ fn the_commands_of_the_docs_run() {
         ("python.md", vec![]),
         ("sensor.md", vec!["scanner.bank.csv"]),
         ("sweep.md", vec!["target/sweep/report.html"]),
+        ("vivado.md", vec![]),
     ];
     assert_eq!(found, expected.map(|(page, made)| (page.to_owned(), made)));
 }
