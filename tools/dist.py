@@ -3,7 +3,7 @@
 """A release of the version in Cargo.toml: dist.py COMMANDS OUT
 
 COMMANDS is the folder with the three built commands; the archive goes to OUT. It holds
-them with their manual pages, completions, licences, designs and scenes, docs, drivers, and this version's part of
+them with their manual pages, completions, licences, designs, scenes and boards, docs, drivers, and this version's part of
 CHANGELOG.md. The same files give the same bytes.
 
     dist.py --notes             prints that part alone, as a release's description
@@ -33,7 +33,7 @@ SHELLS = {
     "fish": "share/fish/vendor_completions.d/{}.fish",
 }
 FILES = ["README.md", "CHANGELOG.md", "CITATION.cff", "LICENSE-MIT", "LICENSE-APACHE"]
-FOLDERS = ["designs", "scenes", "docs", "drivers", "data"]
+FOLDERS = ["designs", "scenes", "docs", "drivers", "data", "hdl-gen/boards"]
 
 
 def version() -> str:

@@ -1,6 +1,7 @@
 //! `hdl-gen generate`: the output folder.
 
 use std::error::Error;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use golden::design::Design;
@@ -11,6 +12,14 @@ use hdl_gen::write::{check_folder, write_folder};
 
 use golden::progress::Progress;
 
+/// A user's own board, from its file.
+fn own_board(path: &Path) -> Result<Board, Box<dyn Error>> {
+    let text = fs::read_to_string(path).map_err(|error| {
+        format!("{}: {error}; give the path of a board's file, such as hdl-gen/boards/zcu102.toml", path.display())
+    })?;
+    Ok(Board::from_toml(&text, path)?)
+}
+
 /// Writes the folder of the design in file `path`, for the user's own `boards` too; returns what to tell the user.
 pub fn generate(
     path: &Path,
@@ -19,7 +28,7 @@ pub fn generate(
     progress: &Progress,
 ) -> Result<String, Box<dyn Error>> {
     let design = Design::load(path)?;
-    let own = boards.iter().map(|board| Board::load(board)).collect::<Result<Vec<_>, _>>()?;
+    let own = boards.iter().map(|board| own_board(board)).collect::<Result<Vec<_>, _>>()?;
     for (at, Board { name, .. }) in own.iter().enumerate() {
         if own[..at].iter().any(|before| before.name == *name) {
             return Err(format!("--board: two files are named {name}, which is the board's name; rename one").into());

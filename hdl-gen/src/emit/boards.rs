@@ -1,8 +1,6 @@
 //! Boards with a Zynq, as data: what the block design and the device tree say of each.
 
-use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use golden::design::{DesignError, syntax_position};
 use serde::{Deserialize, Serialize};
@@ -41,9 +39,6 @@ pub enum Processor {
 /// Why a file is no board's.
 #[derive(Debug, Error)]
 pub enum BoardError {
-    /// It cannot be read.
-    #[error("{0}: {1}; give the path of a board's file, such as hdl-gen/boards/zcu102.toml")]
-    Unreadable(PathBuf, io::Error),
     /// Its text is not that of a board.
     #[error("{0}; the keys are those of hdl-gen/boards/zcu102.toml")]
     Text(DesignError),
@@ -51,7 +46,7 @@ pub enum BoardError {
     #[error("{file}: {key}: {what}; {remedy}")]
     Value {
         /// The file.
-        file: PathBuf,
+        file: String,
         /// The key, or the file's name.
         key: &'static str,
         /// What is wrong.
@@ -99,19 +94,17 @@ impl Board {
         BOARDS.iter().map(read).collect()
     }
 
-    /// A user's own board, from its file: its name is the file's.
+    /// A user's own board, from the text of the file at `path`, whose name is the board's.
     ///
     /// # Errors
-    /// [`BoardError`] if the file cannot be read, or a key is missing, unknown or has a value that no board can have.
-    pub fn load(path: &Path) -> Result<Self, BoardError> {
-        let file = || path.to_owned();
-        let text = fs::read_to_string(path).map_err(|error| BoardError::Unreadable(file(), error))?;
-        let origin = path.display().to_string();
+    /// [`BoardError`] if a key is missing, unknown or has a value that no board can have.
+    pub fn from_toml(text: &str, path: &Path) -> Result<Self, BoardError> {
+        let file = path.display().to_string();
         let board: Self =
-            toml::from_str(&text).map_err(|error| BoardError::Text(syntax_position(&error, &text, &origin)))?;
+            toml::from_str(text).map_err(|error| BoardError::Text(syntax_position(&error, text, &file)))?;
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default().to_owned();
         let board = Self { name, ..board };
-        board.check().map_err(|(key, what, remedy)| BoardError::Value { file: file(), key, what, remedy })?;
+        board.check().map_err(|(key, what, remedy)| BoardError::Value { file, key, what, remedy })?;
         Ok(board)
     }
 
@@ -134,8 +127,10 @@ impl Board {
         for (key, value) in texts {
             let special = |character: char| character.is_control() || SPECIAL.contains(&character);
             let spaced = ["pattern", "part"].contains(&key) && value.contains(' ');
+            // It stands in a comment of the device tree.
+            let starred = key == "title" && value.contains('*');
             let missing = value.trim().is_empty() && key != "connection";
-            if missing || spaced || value.contains(special) {
+            if missing || spaced || starred || value.contains(special) {
                 let remedy = "write plain letters, in a pattern also `*`, as in hdl-gen/boards/zcu102.toml";
                 return Err((key, format!("is {value:?}"), remedy));
             }

@@ -1,5 +1,6 @@
 //! One case in three arithmetics.
 
+use golden::bodies::Body;
 use golden::dead_taxels::DeadTaxels;
 use golden::design::{Design, Estimator, InputRange};
 use golden::matrices::Matrices;
@@ -148,12 +149,18 @@ pub fn judge(case: &Case) -> Row {
     row
 }
 
-/// Errors of each body, over its own normal force, by the solver that tells bodies apart, where a case asks for them. Nothing
-/// if it finds another number of bodies in any frame.
-fn of_bodies(case: &Case, frames: &[Vec<f64>]) -> Option<BodyErrors> {
+/// The design that tells as many bodies apart as a case has, and the true ones, where a case asks for them.
+fn telling_apart(case: &Case) -> Option<(Design, &[Vec<Body>])> {
     let truth = case.bodies.as_ref()?;
     let mut design = case.design.clone();
     design.algorithm.contacts = truth.iter().map(Vec::len).max()?;
+    Some((design, truth))
+}
+
+/// Errors of each body, over its own normal force, by the solver that tells bodies apart, where a case asks for them. Nothing
+/// if it finds another number of bodies in any frame.
+fn of_bodies(case: &Case, frames: &[Vec<f64>]) -> Option<BodyErrors> {
+    let (design, truth) = telling_apart(case)?;
     let solver = Solver::new(&design).ok()?;
     let solutions: Vec<Solution> = frames.iter().filter_map(|frame| solver.solve(frame).ok()).collect();
     let errors = BodyErrors::new(truth.iter().zip(&solutions));
@@ -162,9 +169,7 @@ fn of_bodies(case: &Case, frames: &[Vec<f64>]) -> Option<BodyErrors> {
 
 /// The same by the integers of the hardware that tells bodies apart.
 fn bodies_in_integers(case: &Case, packets: &[Vec<u32>]) -> Option<BodyErrors> {
-    let truth = case.bodies.as_ref()?;
-    let mut design = case.design.clone();
-    design.algorithm.contacts = truth.iter().map(Vec::len).max()?;
+    let (design, truth) = telling_apart(case)?;
     let plan = Plan::new(&design).ok()?;
     let answers = model_answers(&plan, packets);
     let answers: Vec<Answer> =

@@ -27,7 +27,6 @@ use golden::progress::Progress;
 
 use evaluate::Proof;
 use grid::Job;
-use page::kinds;
 use point::{Point, Verified};
 use store::Store;
 
@@ -123,6 +122,20 @@ pub enum SweepError {
     },
 }
 
+/// Friction of the contacts of kinds that have none of their own.
+const FRICTION: f64 = 0.5;
+/// First seed of a kind's contacts: those of the calibrations' own are others.
+const FIRST_SEED: u64 = 1000;
+
+/// So many frames of each kind of contact, kind by kind.
+///
+/// # Errors
+/// [`SceneError`] if they cannot be computed for this geometry.
+pub fn frames_of_kinds(sensor: &Sensor, frames: u64) -> Result<Vec<(Kind, Vec<SceneFrame>)>, SceneError> {
+    let of = |kind: Kind| kind.frames(sensor, FRICTION, FIRST_SEED..FIRST_SEED + frames).map(|frames| (kind, frames));
+    Kind::ALL.into_iter().map(of).collect()
+}
+
 /// Frames with known forces.
 #[derive(Clone, Debug)]
 pub struct SweepScene {
@@ -184,16 +197,13 @@ impl SweepScene {
         Ok(Self { name, text, sensor, contacts, made, frames })
     }
 
-    /// So many frames of each kind of contact, with one body each: the seeds are none of the calibrations' own.
+    /// So many frames of each kind of contact, with one body each.
     ///
     /// # Errors
     /// [`SceneError`] if they cannot be computed for this geometry.
     pub fn kinds(sensor: &Sensor, frames: u64) -> Result<Self, SceneError> {
-        let made: Vec<SceneFrame> = Kind::ALL
-            .map(|kind| kind.frames(sensor, kinds::FRICTION, kinds::FIRST_SEED..kinds::FIRST_SEED + frames))
-            .into_iter()
-            .collect::<Result<Vec<_>, _>>()?
-            .concat();
+        let made: Vec<SceneFrame> =
+            frames_of_kinds(sensor, frames)?.into_iter().flat_map(|(_, frames)| frames).collect();
         let all = FrameSet::of_frames(&made, "contacts of all kinds");
         let text = format!("kinds, {frames} frames of each");
         Ok(Self { name: "kinds".to_owned(), text, sensor: sensor.clone(), contacts: Vec::new(), made, frames: all })

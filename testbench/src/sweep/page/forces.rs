@@ -126,6 +126,21 @@ mod tests {
     use super::super::conclusion::tests::point;
     use super::*;
 
+    /// Hardware that tells so many bodies apart is asked first; a scene of one body tells nothing of that.
+    #[test]
+    fn bodies_are_told_apart_by_hardware_where_a_design_has_it() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let [one, several] = ["sensor1-fast", "sensor1-bodies"]
+            .map(|name| Design::load(&root.join(format!("designs/{name}.toml"))).expect("a design"));
+        let scene = |name: &str| SweepScene::load(&root.join(format!("scenes/{name}.toml"))).expect("a scene");
+        let two = scene("two-contacts");
+        let said = bodies(&[&one, &several], &two).expect("two bodies");
+        assert!(said.contains("in hardware, by sensor1_bodies: number right in 1 of 1 frames; "), "{said}");
+        let said = bodies(&[&one], &two).expect("two bodies");
+        assert!(said.contains("in f64, by sensor1_fast with contacts = 2: number right in 1 of 1 "), "{said}");
+        assert_eq!(bodies(&[&one, &several], &scene("sensor1-tilted")), None);
+    }
+
     #[test]
     fn the_recommended_design_comes_first() {
         let designs = ["sensor1-reduced", "sensor1-fast", "sensor1-joint"].map(|name| {

@@ -2,7 +2,7 @@
 
 use golden::design::{Design, Filter, PlanKind};
 use golden::metrics::Quantiles;
-use golden::scene::{Kind, SceneFrame};
+use golden::scene::SceneFrame;
 use golden::status::Status;
 use golden::table::{Cell, Table};
 use hdl_gen::plan::Plan;
@@ -10,14 +10,9 @@ use hdl_gen::plan::Plan;
 use super::PageError;
 use crate::frame_set::FrameSet;
 use crate::stream_words::Answer;
-use crate::sweep::SweepError;
 use crate::sweep::evaluate::answers;
 use crate::sweep::point::Calibration;
-
-/// Friction of the contacts of kinds that have none of their own.
-pub const FRICTION: f64 = 0.5;
-/// First seed: those of the calibrations' own contacts are others.
-pub const FIRST_SEED: u64 = 1000;
+use crate::sweep::{SweepError, frames_of_kinds};
 
 /// Those of the unfiltered designs with hardware that answer differently: another plan or more lanes change a digit at most,
 /// and of such designs only the first by the reduced plan is shown.
@@ -45,11 +40,7 @@ fn distinct<'a>(designs: &[&'a Design]) -> Vec<&'a Design> {
 pub fn table(designs: &[&Design], frames: u64) -> Result<Option<Table>, PageError> {
     let shown = distinct(designs);
     let Some(sensor) = shown.first().map(|design| &design.sensor).filter(|_| frames > 0) else { return Ok(None) };
-    let made = Kind::ALL
-        .map(|kind| kind.frames(sensor, FRICTION, FIRST_SEED..FIRST_SEED + frames).map(|frames| (kind, frames)))
-        .into_iter()
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(SweepError::from)?;
+    let made = frames_of_kinds(sensor, frames).map_err(SweepError::from)?;
     let all: Vec<SceneFrame> = made.iter().flat_map(|(_, frames)| frames).cloned().collect();
     let all = FrameSet::of_frames(&all, "contacts of all kinds");
     let mut header = vec![format!("contacts, {frames} frames of each kind")];

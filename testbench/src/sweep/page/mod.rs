@@ -5,7 +5,7 @@ mod dots;
 pub mod forces;
 pub mod front;
 pub mod hard;
-pub mod kinds;
+mod kinds;
 pub mod lanes;
 pub mod matrices;
 pub mod paper;
