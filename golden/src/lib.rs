@@ -49,6 +49,7 @@ pub mod resolved;
 pub mod rest;
 pub mod scene;
 pub mod sensor;
+mod separator;
 pub mod solver;
 pub mod status;
 mod sums;

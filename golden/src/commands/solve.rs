@@ -6,7 +6,7 @@ use std::path::Path;
 use golden::check::check;
 use golden::design::Design;
 use golden::forces;
-use golden::metrics::{BodyErrors, ERROR_NAMES, ErrorSummary, Outcome};
+use golden::metrics::{BodyErrors, ERROR_NAMES, ErrorSummary, Outcome, Quantiles};
 use golden::progress::Progress;
 use golden::solver::{Solution, Solver, Status};
 use golden::table::Table;
@@ -129,14 +129,16 @@ fn print_report(report: &SolveReport) -> std::io::Result<()> {
             say!("there is no body to compare with a true one");
             return Ok(());
         }
-        let mut table = Table::new(["errors of each body in %", "median", "95 %", "worst"]);
-        for (name, of) in [("along the surface", bodies.tangential), ("normal", bodies.normal)] {
-            table.row([
-                name.to_owned(),
-                format!("{:.2}", of.median),
-                format!("{:.2}", of.most),
-                format!("{:.2}", of.worst),
-            ]);
+        let mut table = Table::new(["errors of each body", "median", "95 %", "worst"]);
+        let rows = [
+            ("along the surface, %", bodies.tangential),
+            ("normal, %", bodies.normal),
+            ("centre, mm", bodies.centre_mm),
+            ("T_z over F_z, mm", bodies.turn_mm),
+        ];
+        // A file of true forces may have no torques.
+        for (name, Quantiles { median, most, worst }) in rows.into_iter().filter(|(_, of)| of.worst.is_finite()) {
+            table.row([name.to_owned(), format!("{median:.2}"), format!("{most:.2}"), format!("{worst:.2}")]);
         }
         say!("{}", table.text(0, 0));
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::DesignError;
 use super::files::Beside;
-use crate::frames::Separator;
+use crate::separator::Separator;
 
 /// A line that is neither blank nor a remark.
 pub(super) struct Row {

@@ -11,7 +11,6 @@ mod stream;
 mod text;
 
 pub(crate) use npy::Array;
-pub(crate) use text::Separator;
 
 use std::fmt::Write;
 use std::path::Path;

@@ -5,64 +5,16 @@ use std::path::{Path, PathBuf};
 use super::{FrameError, is_number, npy};
 use crate::geometry;
 use crate::sensor::Sensor;
+use crate::separator::Separator;
 
 /// What some programs write before the first line.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// So few numbers in turn may be a frame: no sensor has fewer taxels.
 const FEWEST_NUMBERED: usize = 4;
 
-/// What stands between the values of a line.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Separator {
-    /// This character.
-    Byte(u8),
-    /// Spaces, as many as there are.
-    Spaces,
-}
-
-impl Separator {
-    /// The separator of a line: the first of those that it has, a space being one only where there is no other.
-    pub(crate) fn of(line: &[u8]) -> Self {
-        let byte = b";\t,".iter().copied().find(|byte| line.contains(byte));
-        byte.map_or(Self::Spaces, Self::Byte)
-    }
-
-    pub(crate) fn split(self, line: &[u8]) -> Vec<&[u8]> {
-        match self {
-            Self::Byte(separator) => line.split(|&byte| byte == separator).map(bare).collect(),
-            Self::Spaces => line.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty()).map(bare).collect(),
-        }
-    }
-
-    /// The fields of a line, of which the last one may end with the separator, too.
-    pub(crate) fn fields(self, line: &[u8]) -> Vec<&[u8]> {
-        let mut fields = self.split(line);
-        if fields.len() > 1 && fields.last().is_some_and(|field| field.is_empty()) {
-            fields.pop();
-        }
-        fields
-    }
-
-    /// The number of any kind that a field holds.
-    pub(crate) fn value(self, field: &[u8]) -> Option<f64> {
-        let text = std::str::from_utf8(field).ok()?;
-        match self {
-            // Where it separates nothing, a comma is a decimal point.
-            Self::Byte(b';' | b'\t') => text.replace(',', ".").parse().ok(),
-            _ => text.parse().ok(),
-        }
-    }
-
-    /// The finite number, within the range of a float32, that a field holds.
-    fn number(self, field: &[u8]) -> Option<f64> {
-        self.value(field).filter(|&value| is_number(value))
-    }
-}
-
-/// A field without the quotes that some programs put around each.
-fn bare(field: &[u8]) -> &[u8] {
-    let field = field.trim_ascii();
-    field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field)
+/// The finite number, within the range of a float32, that a field holds.
+fn number(separator: Separator, field: &[u8]) -> Option<f64> {
+    separator.value(field).filter(|&value| is_number(value))
 }
 
 /// Reads lines one after the other; of each the columns after the labels.
@@ -151,7 +103,7 @@ impl Lines {
         }
         let mut row = Vec::with_capacity(fields.len());
         for (index, field) in fields.iter().enumerate().skip(self.labels) {
-            row.push(separator.number(field).ok_or_else(|| FrameError::Value {
+            row.push(number(separator, field).ok_or_else(|| FrameError::Value {
                 path: self.path.clone(),
                 line: self.number,
                 column: index + 1,
@@ -196,7 +148,7 @@ pub(super) fn line_of(path: &Path, labels: usize, frame: usize) -> Option<usize>
     let separator = Separator::of(content);
     // A header may have fewer fields than there are labels.
     let fields: Vec<_> = separator.fields(content).into_iter().skip(labels).collect();
-    let row: Option<Vec<f64>> = fields.iter().map(|field| separator.number(field)).collect();
+    let row: Option<Vec<f64>> = fields.iter().map(|field| number(separator, field)).collect();
     let has_header =
         fields.iter().all(|field| no_number(field)) || row.is_some_and(|row| numbers_columns(&row, labels));
     let (index, _) =

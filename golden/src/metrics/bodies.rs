@@ -1,11 +1,11 @@
-//! How far each body's forces are from the true ones.
+//! How far each body's forces, its place and its torque are from the true ones.
 
 use serde::Serialize;
 
 use crate::bodies::Body;
 use crate::solver::Solution;
 
-/// Errors in percent of each body's own normal force.
+/// How large errors are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Quantiles {
     /// Half of the errors are at most this,
@@ -28,7 +28,7 @@ impl Quantiles {
     }
 }
 
-/// Errors of bodies over many frames.
+/// Errors of bodies over many frames, those of forces in percent of each body's own normal force.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BodyErrors {
     /// Frames,
@@ -39,6 +39,11 @@ pub struct BodyErrors {
     pub tangential: Quantiles,
     /// Of `F_z`.
     pub normal: Quantiles,
+    /// Distance of the centres, where the normal forces act, in mm.
+    pub centre_mm: Quantiles,
+    /// Of `T_z` over `|F_z|`, in mm: the arm at which as large a force would turn as much. NaN, in JSON null, where no torques
+    /// of bodies are known, as of hardware.
+    pub turn_mm: Quantiles,
     /// Share of the errors of `(F_x, F_y)` that are within two standard errors, in percent; NaN where none is told.
     pub within: f64,
 }
@@ -47,7 +52,7 @@ impl BodyErrors {
     /// Compares the true bodies of frames with those that were found.
     pub fn new<'a>(frames: impl IntoIterator<Item = (&'a Vec<Body>, &'a Solution)>) -> Self {
         let [mut count, mut right, mut within, mut told] = [0; 4];
-        let [mut tangential, mut normal] = [Vec::new(), Vec::new()];
+        let [mut tangential, mut normal, mut centre, mut turn] = [const { Vec::new() }; 4];
         for (truth, solution) in frames {
             count += 1;
             if truth.len() != solution.bodies || truth.len() > solution.records.len() {
@@ -61,10 +66,16 @@ impl BodyErrors {
                 told += usize::from(found.standard_error > 0.0);
                 tangential.push(percent * x.hypot(y));
                 normal.push(percent * z.abs());
+                let [x, y] = [0, 1].map(|axis| found.centre_m[axis] - truth.centre_m[axis]);
+                centre.push(1e3 * x.hypot(y));
+                if [truth, found].iter().all(|body| body.torque.iter().any(|&torque| torque != 0.0)) {
+                    turn.push(1e3 * (found.torque[2] - truth.torque[2]).abs() / truth.force[2].abs());
+                }
             }
         }
         let within = if told > 0 { 100.0 * within as f64 / tangential.len() as f64 } else { f64::NAN };
-        Self { frames: count, right, tangential: Quantiles::of(tangential), normal: Quantiles::of(normal), within }
+        let [tangential, normal, centre_mm, turn_mm] = [tangential, normal, centre, turn].map(Quantiles::of);
+        Self { frames: count, right, tangential, normal, centre_mm, turn_mm, within }
     }
 }
 
@@ -105,7 +116,21 @@ mod tests {
         close(found.tangential.worst, 25.0);
         close(found.normal.median, 0.0);
         close(found.normal.most, 25.0);
+        close(found.centre_mm.worst, 1.0);
+        assert!(found.turn_mm.worst.is_nan());
         close(found.within, 50.0);
+    }
+
+    /// In mm: 4 N mm over 2 N.
+    #[test]
+    fn torques_are_compared_where_both_are_known() {
+        let of = |torque| Body { torque, ..body(0.01, [0.0, 0.0, -2.0]) };
+        let solution = |body| Solution { bodies: 1, records: vec![body], ..Solution::zeros(Status::default(), 0) };
+        let truth = vec![of([0.02, 0.0, 0.01])];
+        let [known, unknown] = [of([0.02, 0.0, 0.006]), of([0.0; 3])].map(solution);
+        let found = BodyErrors::new([(&truth, &known), (&truth, &unknown)]);
+        assert_eq!(found.right, 2);
+        assert!((found.turn_mm.median - 2.0).abs() < 1e-9 && (found.turn_mm.worst - 2.0).abs() < 1e-9, "{found:?}");
     }
 
     #[test]

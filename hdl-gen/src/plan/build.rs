@@ -1,4 +1,4 @@
-//! From a checked design to its plan.
+//! From a checked design to its plan on so many lanes.
 
 use golden::design::{Design, Outputs, PlanKind, Slip};
 use golden::estimators::DOUBT_FRACTION;
@@ -20,37 +20,13 @@ use super::resources::Resources;
 use super::schedule::Schedule;
 use super::timing::Timeline;
 use super::vector_formats::{Formats, arms};
-use super::{Condition, Nnz, Plan, Thresholds, control, elements, need, ways};
+use super::{Condition, Nnz, Plan, Thresholds, control, elements, ways};
 use crate::blocks;
 use crate::cores::{DspBlock, LONG_BITS, Multiplier};
-use crate::estimators::{self, EstimatorPlan, Given};
-
-impl Plan {
-    /// Plans the hardware of `design`.
-    ///
-    /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
-    ///
-    /// # Errors
-    /// [`PlanError`] if the plan has no hardware for the estimator, or for several bodies with what else is asked for, the geometry is singular, the
-    /// filter empties a matrix, the widths are too small, or no number of lanes meets the target.
-    pub fn new(design: &Design) -> Result<Self, PlanError> {
-        plan(design)
-    }
-}
-
-fn plan(design: &Design) -> Result<Plan, PlanError> {
-    if !estimators::has_hardware(design) {
-        return Err(PlanError::JointEstimator);
-    }
-    check_widths(design)?;
-    match design.hardware.target_us {
-        Some(target_us) => need::meet(design, target_us),
-        None => Ok(Work::new(design)?.on_lanes(design)),
-    }
-}
+use crate::estimators::{EstimatorPlan, Given};
 
 /// Words that do not fit one multiplier a lane have hardware where two make one product.
-fn check_widths(design: &Design) -> Result<(), PlanError> {
+pub(super) fn check_widths(design: &Design) -> Result<(), PlanError> {
     let factors = Factors::of(design);
     let data = |why, cure| Err(PlanError::Wide { key: "data_bits", bits: factors.data_bits, why, cure });
     if factors.is_wide() && Multiplier::of_part(&design.hardware.part) == Multiplier::Split {

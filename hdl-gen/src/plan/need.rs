@@ -1,15 +1,35 @@
-//! `target_us`: the fewest lanes that meet it, or what else would.
+//! From a design to what it needs: its lanes, or with `target_us` the fewest that meet it, or what else would.
 
 use golden::design::{Design, Estimator, MAX_LANES, Optimise, Outputs, STREAM_BITS};
 use golden::estimators::joint::{Grid, JointConstants};
 use golden::parity::CLASSES;
 
-use super::build::Work;
+use super::build::{Work, check_widths};
 use super::{Plan, PlanError};
 use crate::estimators;
 
+impl Plan {
+    /// Plans the hardware of `design`.
+    ///
+    /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
+    ///
+    /// # Errors
+    /// [`PlanError`] if the plan has no hardware for the estimator, or for several bodies with what else is asked for, the
+    /// geometry is singular, the filter empties a matrix, the widths are too small, or no number of lanes meets the target.
+    pub fn new(design: &Design) -> Result<Self, PlanError> {
+        if !estimators::has_hardware(design) {
+            return Err(PlanError::JointEstimator);
+        }
+        check_widths(design)?;
+        match design.hardware.target_us {
+            Some(target_us) => meet(design, target_us),
+            None => Ok(Work::new(design)?.on_lanes(design)),
+        }
+    }
+}
+
 /// The plan with the fewest lanes whose latency is `target_us` at most. Its design states them.
-pub(super) fn meet(design: &Design, target_us: f64) -> Result<Plan, PlanError> {
+fn meet(design: &Design, target_us: f64) -> Result<Plan, PlanError> {
     let work = Work::new(design)?;
     let mut settled = design.clone();
     settled.hardware.target_us = None;

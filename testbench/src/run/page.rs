@@ -139,12 +139,16 @@ fn accuracy(page: &mut String, report: &Report) {
     section(page, "Frames by status", &["frames"], rows);
 }
 
-/// Errors of each body's forces over its own normal force.
+/// Errors of each body's forces over its own normal force, and of where that acts.
 fn bodies(page: &mut String, errors: &BodyErrors) {
     let of = |name: &str, Quantiles { median, most, worst }| row(name, [median, most, worst].map(|of| decimals(of, 2)));
     if errors.right > 0 {
-        let rows = [of("along the surface", errors.tangential), of("normal", errors.normal)];
-        section(page, "Error of each body", &["median, %", "95 %, %", "worst, %"], rows);
+        let rows = [
+            of("along the surface, %", errors.tangential),
+            of("normal, %", errors.normal),
+            of("centre, mm", errors.centre_mm),
+        ];
+        section(page, "Error of each body", &["median", "95 %", "worst"], rows);
     } else {
         line(page, "");
     }

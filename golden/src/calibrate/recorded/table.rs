@@ -7,7 +7,8 @@ use std::path::Path;
 
 use super::RecordedError;
 use super::columns::{Meaning, meanings};
-use crate::frames::{Array, Separator, read_array};
+use crate::frames::{Array, read_array};
+use crate::separator::Separator;
 
 /// What stands for an unknown value.
 const UNKNOWN: [&str; 6] = ["", "-", "nan", "na", "n/a", "none"];

@@ -2,6 +2,7 @@
 
 mod doubt;
 mod layers;
+mod torque;
 mod why;
 
 use std::f64::consts::PI;

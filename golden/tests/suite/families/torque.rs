@@ -1,0 +1,89 @@
+//! Torques of single bodies: where a body presses, and how it turns.
+
+use golden::bodies::Body;
+use golden::metrics::Quantiles;
+use golden::scene::{Kind, SceneFrame};
+use golden::sensor::Sensor;
+use golden::solver::Solver;
+
+use super::design;
+
+/// Errors over the normal force in mm.
+struct Torques {
+    /// Distance from where the normal force acts to where it is found: the error of `T_x` and `T_y`,
+    place: Quantiles,
+    /// and the mean of it along the push.
+    along: f64,
+    /// Of `T_z` about the middle of the grid,
+    about_middle: Quantiles,
+    /// of that about the place where the normal force acts, as found and as it is,
+    own: Quantiles,
+    /// and how large this is.
+    is: Quantiles,
+}
+
+/// Torque about the axis along z through where the normal force acts.
+fn own(sensor: &Sensor, force: [f64; 3], torque: [f64; 3]) -> ([f64; 2], f64) {
+    let centre = Body::centre_of(sensor, force, torque);
+    (centre, torque[2] - sensor.torque_of(centre, force)[2])
+}
+
+fn judge(solver: &Solver, frames: &[SceneFrame]) -> Torques {
+    let sensor = solver.matrices().sensor();
+    let mut errors = [const { Vec::new() }; 4];
+    let mut along = 0.0;
+    for frame in frames {
+        let found = solver.solve(&frame.stress).unwrap();
+        let (truth, true_own) = own(sensor, frame.force, frame.torque);
+        let (centre, found_own) = own(sensor, found.resultant, found.torque);
+        let normal = frame.force[2].abs();
+        let (sin, cos) = frame.direction.sin_cos();
+        let [x, y] = [0, 1].map(|axis| centre[axis] - truth[axis]);
+        along += 1e3 * (x * cos + y * sin) / frames.len() as f64;
+        let of_frame = [
+            x.hypot(y),
+            (found.torque[2] - frame.torque[2]).abs() / normal,
+            (found_own - true_own).abs() / normal,
+            true_own.abs() / normal,
+        ];
+        errors.iter_mut().zip(of_frame).for_each(|(all, error)| all.push(1e3 * error));
+    }
+    let [place, about_middle, own, is] = errors.map(Quantiles::of);
+    Torques { place, along, about_middle, own, is }
+}
+
+/// Within the grid a body's place is known to a fraction of the pitch, and `T_z` to what the tangential force errs by times
+/// its arm.
+#[test]
+fn torques_are_near_the_true_ones_on_every_kind() {
+    let solver = Solver::new(&design("sensor2-wide")).unwrap();
+    for kind in Kind::ALL {
+        let frames = kind.frames(solver.matrices().sensor(), 0.5, 0..8).unwrap();
+        let Torques { place, about_middle, own, is, .. } = judge(&solver, &frames);
+        let said = format!("{}: {place:?} {about_middle:?} {own:?} {is:?}", kind.title());
+        match kind {
+            Kind::Border | Kind::Mixed => {}
+            // What turns about its own axis presses and pulls as what does not.
+            Kind::Spinning => assert!(place.median < 0.8 && own.median > 0.9 * is.median && is.median > 0.5, "{said}"),
+            _ => assert!(place.median < 0.8 && about_middle.median < 0.6 && own.median < 0.3, "{said}"),
+        }
+    }
+}
+
+#[test]
+#[ignore = "prints the table of torques in docs/contacts.md; minutes"]
+fn table() {
+    let row = |Quantiles { median, most, worst }: Quantiles| format!(" {median:.2} / {most:.2} / {worst:.2} |");
+    let solvers = ["sensor1", "sensor2"]
+        .map(|sensor| ["none", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap()));
+    for kind in Kind::ALL {
+        let count = if kind.has_own_friction() { 2000 } else { 200 };
+        let cells = solvers.each_ref().map(|[line, wide]| {
+            let frames = kind.frames(wide.matrices().sensor(), 0.5, 1000..1000 + count).unwrap();
+            let [line, wide] = [line, wide].map(|solver| judge(solver, &frames));
+            let cells = [line.about_middle, wide.about_middle, wide.own, wide.place].map(row).concat();
+            format!("{cells} {:+.2} |", wide.along)
+        });
+        println!("| {} |{}", kind.title(), cells.concat());
+    }
+}
