@@ -4,6 +4,8 @@ use std::fmt;
 
 /// Largest number of columns or rows of a sensor.
 pub const MAX_SIDE: usize = 64;
+/// Layers of so many pitches and less are better served by the kernel "cell" (`docs/contacts.md`, "Thin layers").
+const CELL_UP_TO: f64 = 0.5;
 
 /// Geometry of a rectangular grid of taxels under an elastic layer.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +61,17 @@ impl Sensor {
         let [corner_x, corner_y] = self.arm_m(0);
         let (x, y) = (x + corner_x, y + corner_y);
         [y * fz, -x * fz, x * fy - y * fx]
+    }
+
+    /// Thickness of the layer over the coarser pitch.
+    pub fn depth_by_pitch(&self) -> f64 {
+        let [x, y] = self.pitch_mm;
+        self.depth_mm / x.max(y)
+    }
+
+    /// Whether the kernel "cell" finds friction better than "point": where a point force beside a taxel hardly reaches it.
+    pub fn wants_cells(&self) -> bool {
+        self.depth_by_pitch() <= CELL_UP_TO
     }
 
     /// Depth of the taxels below the surface in metres.

@@ -8,6 +8,7 @@ use golden::design::{
 };
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
+use golden::sensor::Sensor;
 use golden::solver::Solver;
 
 const TEMPLATE: &str = include_str!("../templates/design.toml");
@@ -157,6 +158,10 @@ fn text(new: &NewDesign, stage: &mut dyn FnMut(&'static str)) -> Result<String, 
     let [x, y] = [new.pitch_mm[0], new.pitch_mm[1]];
     if new.depth_mm > DEEP * x.min(y) {
         text = text.replace("# regularisation = ", "regularisation = ");
+    }
+    let NewDesign { columns, rows, pitch_mm, depth_mm, .. } = *new;
+    if (Sensor { columns, rows, pitch_mm, depth_mm }).wants_cells() {
+        text = with(&text, "kernel", "\"cell\"");
     }
     let bare = text.replace(CONSTANTS, "");
     if new.estimator == Estimator::Line {

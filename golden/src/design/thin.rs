@@ -5,8 +5,7 @@ use super::Design;
 impl Design {
     /// What to tell whose layer is too thin for its taxels; `None` if it is not. How thin is too thin, the estimator says.
     pub fn thin_layer(&self) -> Option<String> {
-        let [x, y] = self.sensor.pitch_mm;
-        let depth = self.sensor.depth_mm / x.max(y);
+        let depth = self.sensor.depth_by_pitch();
         let thin = self.algorithm.constants().thin(&self.sensor, self.algorithm.kernel);
         (depth < thin.limit).then(|| {
             let remedy = thin.remedy;
@@ -39,6 +38,9 @@ mod tests {
         assert!(line.contains("F_z comes out"), "{line}");
         let line = by_kernel(2.8, "line", "cell").expect("thin");
         assert!(line.contains("line estimator tangential forces are off"), "{line}");
+        assert_eq!(by_kernel(1.9, "joint", "cell"), None);
+        let cells = by_kernel(1.5, "joint", "cell").expect("thin");
+        assert!(cells.contains("0.38 of a pitch") && cells.contains("down to 0.3"), "{cells}");
         let joint = said(1.9, "joint").expect("thin");
         assert!(joint.contains("0.47 of a pitch") && joint.contains("golden calibrate"), "{joint}");
     }
@@ -50,6 +52,11 @@ mod tests {
         for (depth_mm, thin) in [(1.7, false), (1.5, true)] {
             design.sensor.depth_mm = depth_mm;
             assert_eq!(design.thin_layer().is_some_and(|said| said.contains("no direction")), thin, "{depth_mm} mm");
+        }
+        design.algorithm.kernel = crate::kernel::Kernel::Cell;
+        for (depth_mm, thin) in [(1.3, false), (1.1, true)] {
+            design.sensor.depth_mm = depth_mm;
+            assert_eq!(design.thin_layer().is_some_and(|said| said.contains("a tenth")), thin, "{depth_mm} mm");
         }
     }
 }

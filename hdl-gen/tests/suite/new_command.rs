@@ -61,8 +61,13 @@ fn a_new_design_tells_how_far_to_trust_it() {
     };
     let (said, usual) = of_depth("3");
     assert!((1.0..6.0).contains(&usual) && !said.contains("warning"), "{said}");
+    // By the kernel "point" it would be over 20.
     let (said, thin) = of_depth("1");
-    assert!(thin > 20.0 && said.contains("\nwarning: the layer is 0.25 of a pitch thin"), "{said}");
+    assert!(thin > usual && thin < 20.0 && said.contains("\nwarning: the layer is 0.25 of a pitch thin"), "{said}");
+    for (depth, kernel) in [("2.1", "point"), ("2", "cell")] {
+        let design = new(&["--pitch-mm", "4", "--depth-mm", depth]).1;
+        assert_eq!(design.algorithm.kernel.to_string(), kernel, "{depth}");
+    }
     let (said, deep) = of_depth("12");
     assert!(deep > usual && said.contains("`regularisation`"), "{said}");
 }

@@ -2,18 +2,26 @@
 
 use super::JointConstants;
 use crate::estimators::Thin;
-
-/// Depths over the coarser pitch: with the constants alone, and with a correction.
-const CONSTANTS: f64 = 0.5;
-const CORRECTED: f64 = 0.4;
+use crate::kernel::Kernel;
 
 impl JointConstants {
-    /// Its gain makes up for the normal force, its correction for part of the rest.
-    pub(crate) fn thin(&self) -> Thin {
-        let (limit, remedy) = if self.correction.is_some() {
-            (CORRECTED, "many frames have no direction, and tangential forces are off by half of F_z")
-        } else {
-            (CONSTANTS, "tangential forces are off by tenths of F_z; golden calibrate helps down to 0.4")
+    /// Its gain makes up for the normal force, its correction for part of the rest: for more where forces are spread over
+    /// their cells, since a point force beside a taxel hardly reaches it through a thin layer.
+    pub(crate) fn thin(&self, kernel: Kernel) -> Thin {
+        let (limit, remedy) = match (self.correction.is_some(), kernel) {
+            (false, Kernel::Point) => (
+                0.5,
+                "tangential forces are off by tenths of F_z; kernel = \"cell\" and golden calibrate carry down to 0.3",
+            ),
+            (false, Kernel::Cell) => {
+                (0.4, "tangential forces are off by tenths of F_z; golden calibrate carries down to 0.3")
+            }
+            (true, Kernel::Point) => (
+                0.4,
+                "many frames have no direction, and tangential forces are off by half of F_z; kernel = \"cell\", \
+                 calibrated anew, carries down to 0.3",
+            ),
+            (true, Kernel::Cell) => (0.3, "both tangential and normal forces are off by a tenth of F_z and more"),
         };
         Thin { limit, remedy: remedy.to_owned() }
     }

@@ -79,10 +79,16 @@ fn stages(plan: &JointPlan, design: &Design) -> String {
 pub fn kernel_advice(design: &Design, indent: &str) -> String {
     let algorithm = &design.algorithm;
     let (wants, has) = (gain(&design.sensor, algorithm.kernel), algorithm.joint.gain);
-    let verdict = match (algorithm.kernel, (has / wants - 1.0).abs() > STALE_GAIN) {
-        (_, true) => "run golden calibrate, or F_z is off by as much as they differ",
-        (Kernel::Point, false) => "so F_z is right, and mu comes out better than with \"cell\"",
-        (Kernel::Cell, false) => "so F_z is right; mu comes out better with \"point\", calibrated anew",
+    // On layers of half a pitch and less the kernels change places.
+    let is_better = (algorithm.kernel == Kernel::Cell) == design.sensor.wants_cells();
+    let [own, other] = match algorithm.kernel {
+        Kernel::Point => ["\"point\"", "\"cell\""],
+        Kernel::Cell => ["\"cell\"", "\"point\""],
+    };
+    let verdict = match (is_better, (has / wants - 1.0).abs() > STALE_GAIN) {
+        (_, true) => "run golden calibrate, or F_z is off by as much as they differ".to_owned(),
+        (true, false) => format!("so F_z is right, and mu comes out better than with {other}"),
+        (false, false) => format!("so F_z is right; mu comes out better with {other} than with {own}, calibrated anew"),
     };
     format!("{}: wants a gain of {wants:.3}, the joint estimator has {has:.3}:\n{indent}{verdict}", algorithm.kernel)
 }
