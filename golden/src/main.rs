@@ -267,8 +267,8 @@ const ALGORITHM: &str = r#"In the design file, what changes the result:
   [algorithm]
   plan = "reduced"                  # the paper's result from ten folded matrices, the default without a filter; or
                                     # "paper": thirteen matrices
-  kernel = "point"                  # point forces, as in the paper; friction is the better one. Or "cell": forces
-                                    # spread over a cell of the grid; the normal force is right without a gain
+  kernel = "point"                  # point forces, as in the paper, for layers of half a pitch and more. Or "cell":
+                                    # forces spread over a cell of the grid, for thinner ones; F_z is right without a gain
   filter = { kind = "none" }        # or { kind = "f1", l = 40 }: l diagonals removed on either side;
                                     # { kind = "f2", p = 30 }: kept is |B_ij| >= row maximum / (1000 p);
                                     # { kind = "f3", ... }: a filter for each matrix, see `golden choose --help`

@@ -4,8 +4,10 @@ use std::fmt;
 
 /// Largest number of columns or rows of a sensor.
 pub const MAX_SIDE: usize = 64;
-/// Layers of so many pitches and less are better served by the kernel "cell" (`docs/contacts.md`, "Thin layers").
-const CELL_UP_TO: f64 = 0.5;
+/// Layers of fewer pitches are better served by the kernel "cell" (`docs/contacts.md`, "Thin layers").
+const CELL_BELOW: f64 = 0.5;
+/// What a quotient of two lengths in millimetres may be off by.
+const ROUNDING: f64 = 1e-9;
 
 /// Geometry of a rectangular grid of taxels under an elastic layer.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,9 +71,14 @@ impl Sensor {
         self.depth_mm / x.max(y)
     }
 
+    /// Whether the layer has less than so many pitches; a depth that was meant to be so many has not.
+    pub fn is_thinner_than(&self, pitches: f64) -> bool {
+        self.depth_by_pitch() < pitches - ROUNDING
+    }
+
     /// Whether the kernel "cell" finds friction better than "point": where a point force beside a taxel hardly reaches it.
     pub fn wants_cells(&self) -> bool {
-        self.depth_by_pitch() <= CELL_UP_TO
+        self.is_thinner_than(CELL_BELOW)
     }
 
     /// Depth of the taxels below the surface in metres.

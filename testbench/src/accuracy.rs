@@ -74,7 +74,7 @@ impl RecordErrors {
     }
 }
 
-/// Errors of each body's forces against the true ones, in percent.
+/// Errors of each body's forces and centre against the true ones.
 pub fn against_true_bodies(answers: &[Answer], truth: &[Vec<Body>]) -> BodyErrors {
     let found = |answer: &Answer| Solution {
         bodies: answer.bodies,

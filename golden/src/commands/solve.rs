@@ -137,7 +137,7 @@ fn print_report(report: &SolveReport) -> std::io::Result<()> {
             ("T_z over F_z, mm", bodies.turn_mm),
         ];
         // A file of true forces may have no torques.
-        for (name, Quantiles { median, most, worst }) in rows.into_iter().filter(|(_, of)| of.worst.is_finite()) {
+        for (name, Quantiles { median, most, worst }) in rows.into_iter().filter(|(_, of)| !of.worst.is_nan()) {
             table.row([name.to_owned(), format!("{median:.2}"), format!("{most:.2}"), format!("{worst:.2}")]);
         }
         say!("{}", table.text(0, 0));

@@ -7,7 +7,7 @@ impl Design {
     pub fn thin_layer(&self) -> Option<String> {
         let depth = self.sensor.depth_by_pitch();
         let thin = self.algorithm.constants().thin(&self.sensor, self.algorithm.kernel);
-        (depth < thin.limit).then(|| {
+        self.sensor.is_thinner_than(thin.limit).then(|| {
             let remedy = thin.remedy;
             format!("the layer is {depth:.2} of a pitch thin, so that contacts fall between the taxels: {remedy}")
         })
@@ -40,7 +40,9 @@ mod tests {
         assert!(line.contains("line estimator tangential forces are off"), "{line}");
         assert_eq!(by_kernel(1.9, "joint", "cell"), None);
         let cells = by_kernel(1.5, "joint", "cell").expect("thin");
-        assert!(cells.contains("0.38 of a pitch") && cells.contains("down to 0.3"), "{cells}");
+        assert!(cells.contains("0.38 of a pitch") && cells.contains("golden calibrate serves"), "{cells}");
+        let thinnest = by_kernel(1.0, "joint", "cell").expect("thin");
+        assert!(thinnest.contains("thicker layer") && !thinnest.contains("calibrate"), "{thinnest}");
         let joint = said(1.9, "joint").expect("thin");
         assert!(joint.contains("0.47 of a pitch") && joint.contains("golden calibrate"), "{joint}");
     }
@@ -54,9 +56,13 @@ mod tests {
             assert_eq!(design.thin_layer().is_some_and(|said| said.contains("no direction")), thin, "{depth_mm} mm");
         }
         design.algorithm.kernel = crate::kernel::Kernel::Cell;
-        for (depth_mm, thin) in [(1.3, false), (1.1, true)] {
+        for (depth_mm, thin) in [(1.2, false), (1.1, true)] {
             design.sensor.depth_mm = depth_mm;
-            assert_eq!(design.thin_layer().is_some_and(|said| said.contains("a tenth")), thin, "{depth_mm} mm");
+            assert_eq!(design.thin_layer().is_some_and(|said| said.contains("thicker layer")), thin, "{depth_mm} mm");
         }
+        // 0.39999... of a pitch was meant to be 0.4.
+        (design.sensor.pitch_mm, design.sensor.depth_mm) = ([1.5, 1.5], 0.6);
+        (design.algorithm.joint.correction, design.algorithm.kernel) = (None, crate::kernel::Kernel::Cell);
+        assert_eq!(design.thin_layer(), None);
     }
 }

@@ -72,7 +72,7 @@ impl<'a> Constants<'a> {
     pub(crate) fn thin(self, sensor: &Sensor, kernel: Kernel) -> Thin {
         match self {
             Self::Line => line::thin(sensor, kernel),
-            Self::Joint(joint) => joint.thin(kernel),
+            Self::Joint(joint) => joint.thin(sensor, kernel),
         }
     }
 

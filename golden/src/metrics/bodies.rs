@@ -42,7 +42,7 @@ pub struct BodyErrors {
     /// Distance of the centres, where the normal forces act, in mm.
     pub centre_mm: Quantiles,
     /// Of `T_z` over `|F_z|`, in mm: the arm at which as large a force would turn as much. NaN, in JSON null, where no torques
-    /// of bodies are known, as of hardware.
+    /// of bodies are known, as of hardware; one of exact zeros counts as unknown.
     pub turn_mm: Quantiles,
     /// Share of the errors of `(F_x, F_y)` that are within two standard errors, in percent; NaN where none is told.
     pub within: f64,

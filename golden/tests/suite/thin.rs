@@ -18,13 +18,18 @@ const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 const SEED: u64 = 0x7417;
 const PITCH_MM: f64 = 4.0;
 
-/// 10 × 10 taxels, with the constants of `hdl-gen new` or another calibration where the estimator has any.
+/// 10 × 10 taxels, calibrated where the estimator is the joint one, then on 21 × 21 points.
 fn design(depth_by_pitch: f64, kernel: Kernel, settings: Option<&Settings>) -> Design {
     let estimator = settings.map_or("line", |_| "joint");
-    let depth = PITCH_MM * depth_by_pitch;
+    calibrated([PITCH_MM; 2], depth_by_pitch, &format!("\"{estimator}\"\nkernel = \"{kernel}\""), settings)
+}
+
+/// The same on any pitch, with more to say of the estimator.
+fn calibrated(pitch_mm: [f64; 2], depth_by_pitch: f64, estimator: &str, settings: Option<&Settings>) -> Design {
+    let depth = pitch_mm[0].max(pitch_mm[1]) * depth_by_pitch;
     let text = format!(
-        "name = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [{PITCH_MM:?}, {PITCH_MM:?}]\ndepth_mm = {depth:?}\n\
-         [algorithm]\nestimator = \"{estimator}\"\nkernel = \"{kernel}\"\n"
+        "name = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth:?}\n\
+         [algorithm]\nestimator = {estimator}\n"
     );
     let mut design = Design::from_toml(&text, "thin").unwrap();
     if let Some(settings) = settings {
@@ -62,6 +67,26 @@ fn table() {
                 }
                 println!("{row} {other} |");
             }
+        }
+    }
+}
+
+/// What `hdl-gen new` and `golden calibrate` make of thin layers, 15 × 15 points and 64 hidden units, by either kernel.
+#[test]
+#[ignore = "prints the table of new designs on thin layers in docs/contacts.md; a quarter of an hour"]
+fn table_of_new_designs() {
+    let settings = Settings { hidden: 64, ..Settings::default() };
+    for pitch_mm in [[4.0, 4.0], [4.0, 2.0]] {
+        for ratio in [0.3, 0.4, 0.5, 0.6] {
+            let cells = [Kernel::Point, Kernel::Cell].map(|kernel| {
+                let estimator = format!("\"joint\"\ngrid = 15\nkernel = \"{kernel}\"");
+                let design = calibrated(pitch_mm, ratio, &estimator, Some(&settings));
+                let ([tangential, normal], other, _) = judge(&design, 200);
+                let row =
+                    |errors: &[f64]| [0.5, 0.95, 1.0].map(|part| format!("{:.1}", share(errors, part))).join(" / ");
+                format!(" {} | {} | {other} |", row(&tangential), row(&normal))
+            });
+            println!("| {} x {} | {ratio} |{}", pitch_mm[0], pitch_mm[1], cells.concat());
         }
     }
 }

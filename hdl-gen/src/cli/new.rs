@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension};
+use golden::kernel::Kernel;
 use golden::metrics::Quantiles;
 use golden::words;
 use hdl_gen::new_design::{self, COUNT_BITS, NewDesign};
@@ -168,6 +169,12 @@ fn lines(new: &New, design: &Design, path: &Path, assumed: &[String], progress: 
     if design.algorithm.regularisation.factor() > 0.0 {
         lines.push(
             "Deeper than 1.5 pitches: `regularisation` keeps noise down; its `noise` is to be your sensor's."
+                .to_owned(),
+        );
+    }
+    if design.algorithm.kernel == Kernel::Cell {
+        lines.push(
+            "Less than half a pitch thin: kernel = \"cell\" finds direction and friction where points do not."
                 .to_owned(),
         );
     }

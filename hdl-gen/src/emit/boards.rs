@@ -127,10 +127,8 @@ impl Board {
         for (key, value) in texts {
             let special = |character: char| character.is_control() || SPECIAL.contains(&character);
             let spaced = ["pattern", "part"].contains(&key) && value.contains(' ');
-            // It stands in a comment of the device tree.
-            let starred = key == "title" && value.contains('*');
             let missing = value.trim().is_empty() && key != "connection";
-            if missing || spaced || starred || value.contains(special) {
+            if missing || spaced || value.contains(special) {
                 let remedy = "write plain letters, in a pattern also `*`, as in hdl-gen/boards/zcu102.toml";
                 return Err((key, format!("is {value:?}"), remedy));
             }

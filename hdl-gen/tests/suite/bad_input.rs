@@ -276,7 +276,6 @@ fn a_board_is_one() {
     check("mine.toml", "dsp = 2520", "dsp = ", &["line"]);
     check("mine.toml", "title = \"", "title = \"$[exit]", &["title", "plain letters"]);
     check("mine.toml", "dsp = ", "connection = \"[x]\"\ndsp = ", &["connection", "plain letters"]);
-    check("mine.toml", "title = \"", "title = \"*/", &["title", "plain letters"]);
     check("mine.toml", "part = \"", "part = \"x y", &["part", "plain letters"]);
     check("mine.toml", "zynq_ultra_ps_e", "zynq", &["zynq_ultra_ps_e", "processing_system7"]);
     check("mine.toml", "0xA0000000", "0xA0000100", &["registers", "0x10000"]);

@@ -311,6 +311,18 @@ fn inspect_compares_the_gain_with_what_the_kernel_lacks() {
     fs::write(here.join("cell.toml"), kept.replace("kernel = \"point\"", "kernel = \"cell\"")).unwrap();
     let said = good(here, &["inspect", "cell.toml"]);
     assert!(said.contains("wants a gain of 1.000") && said.contains("run golden calibrate"), "{said}");
+    // On thin layers the kernels change places, and all is said in lines that fit.
+    for (depth, kernel, advice) in [
+        ("1.7", "joint", "mu comes out better than with \"point\""),
+        ("1.4", "joint", "golden calibrate serves down to 0.3"),
+        ("1", "joint", "take a thicker layer or a finer pitch"),
+        ("1.7", "line", "take \"cell\", and for mu estimator = \"joint\""),
+    ] {
+        let name = format!("pad_{kernel}_{}", depth.replace('.', "_"));
+        good(here, &["new", &name, "--pitch-mm", "4", "--depth-mm", depth, "--estimator", kernel]);
+        let said = good(here, &["inspect", &format!("{name}.toml")]);
+        assert!(said.contains(advice) && said.lines().all(|line| line.chars().count() <= 110), "{said}");
+    }
 }
 
 #[test]

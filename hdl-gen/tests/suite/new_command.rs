@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use golden::design::Design;
+use golden::design::{Design, InputRange};
+use hdl_gen::plan::Plan;
 
 use crate::command::{good, hdl_gen};
 
@@ -48,6 +49,17 @@ fn what_was_not_said_is_told() {
     assert!(!counts.contains("Not said") && counts.contains("Larger counts are taken to press"), "{counts}");
 }
 
+/// What docs/estimators.md says of a new design beside `sensor1-fast`, which has neither.
+#[test]
+fn a_range_for_each_frame_and_counted_bodies_cost_some_latency() {
+    let (_, design) = new(&[]);
+    let mut plain = design.clone();
+    plain.hardware.range = InputRange::FullScale;
+    plain.algorithm.count_bodies = false;
+    let [new, plain] = [design, plain].map(|design| Plan::new(&design).unwrap().timeline);
+    assert_eq!([new.latency_cycles - plain.latency_cycles, new.interval_cycles], [31, plain.interval_cycles]);
+}
+
 /// The errors that are told are those of the sensor at hand.
 #[test]
 fn a_new_design_tells_how_far_to_trust_it() {
@@ -64,9 +76,10 @@ fn a_new_design_tells_how_far_to_trust_it() {
     // By the kernel "point" it would be over 20.
     let (said, thin) = of_depth("1");
     assert!(thin > usual && thin < 20.0 && said.contains("\nwarning: the layer is 0.25 of a pitch thin"), "{said}");
-    for (depth, kernel) in [("2.1", "point"), ("2", "cell")] {
-        let design = new(&["--pitch-mm", "4", "--depth-mm", depth]).1;
+    for (depth, kernel) in [("2", "point"), ("1.9", "cell")] {
+        let (said, design) = new(&["--pitch-mm", "4", "--depth-mm", depth]);
         assert_eq!(design.algorithm.kernel.to_string(), kernel, "{depth}");
+        assert_eq!(said.contains("kernel = \"cell\""), kernel == "cell", "{said}");
     }
     let (said, deep) = of_depth("12");
     assert!(deep > usual && said.contains("`regularisation`"), "{said}");

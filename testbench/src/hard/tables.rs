@@ -206,8 +206,9 @@ pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
     );
     page.line(
         "The joint estimator has the constants of the shipped designs where the sensor is theirs: sensor 1, and \
-         h/s = 0.75, which is sensor 2. The others have those that `hdl-gen new` fits, the gain and two of friction: \
-         `golden calibrate` would halve their errors. Backward errors and float32 are those of the matrices, which the \
+         h/s = 0.75, which is sensor 2. The others have those that `hdl-gen new` fits, the gain and two of friction, \
+         also on layers of less than half a pitch by points, where it takes the kernel \"cell\": `golden calibrate` would \
+         halve their errors. Backward errors and float32 are those of the matrices, which the \
          estimators share: see the line's tables.",
     );
     for group in groups(rows) {

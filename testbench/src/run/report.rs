@@ -139,7 +139,7 @@ pub struct Report {
     /// Frames by the number of bodies in them, of a design that tells bodies apart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub body_counts: Option<BTreeMap<usize, usize>>,
-    /// Each body's forces against the true ones, in percent, of such a design; absent if they are not known.
+    /// Each body's forces and centre against the true ones, of such a design; absent if they are not known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub true_body_errors: Option<BodyErrors>,
     /// The cycles beside the predicted ones.

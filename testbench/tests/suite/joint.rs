@@ -6,10 +6,12 @@ use std::io::Write as _;
 use crate::contacts::{Pressed, Truth, Worst, centred, frames, inside, judged};
 use crate::support::{built, in_parallel, planned, shipped, simulate_exactly, with_lanes};
 use golden::design::{Design, Outputs};
+use golden::kernel::Kernel;
 use golden::metrics::Outcome;
 use golden::scene::{Medium, Shape};
 use golden::solver::Solver;
 use hdl_gen::model::{AT_BOUND, DIRECTION_UNKNOWN, DOUBTFUL, NO_CONTACT, SATURATED};
+use hdl_gen::new_design::NewDesign;
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -38,6 +40,14 @@ fn designs() -> Vec<Design> {
 fn uncorrected(mut design: Design) -> Design {
     design.name += "_uncorrected";
     design.algorithm.joint.correction = None;
+    design
+}
+
+/// What `hdl-gen new` makes of a layer of 0.4 pitches: the kernel "cell", no correction.
+fn thin() -> Design {
+    let new = NewDesign { name: "thin".to_owned(), pitch_mm: [4.0; 2], depth_mm: 1.6, ..NewDesign::default() };
+    let design = Design::from_toml(&new.text(&mut |_| ()).expect("can be fitted"), "thin").expect("a design");
+    assert_eq!(design.algorithm.kernel, Kernel::Cell);
     design
 }
 
@@ -75,6 +85,7 @@ fn cycles_and_multipliers_keep_to_their_limits() {
         (shipped("sensor1-fast-100"), "sensor1-reduced-64", [900, 340], [220, 100]),
         (with_lanes(shipped("sensor1-fast-100"), 128), "sensor1-reduced-64", [900, 352], [223, 100]),
         (uncorrected(shipped("sensor1-fast")), "sensor1-reduced", [2_650, 1_700], [52, 45]),
+        (thin(), "sensor2-reduced", [2_200, 1_700], [52, 45]),
         (uncorrected(shipped("sensor1-joint")), "sensor1-reduced", [3_950, 2_256], [46, 41]),
         (resultants(shipped("sensor1-fast")), "sensor1-resultants", [1_960, 704], [52, 45]),
         (resultants(with_lanes(shipped("sensor1-fast-100"), 64)), "sensor1-resultants", [900, 260], [150, 50]),
@@ -117,9 +128,9 @@ fn seeded(design: &Design) -> Vec<Truth> {
 
 #[test]
 fn the_model_is_close_to_the_solver() {
-    let more = ["sensor1-fast", "sensor1-fast-64", "sensor2-fast", "sensor2-wide"].map(shipped);
-    let all: Vec<Design> =
-        designs().into_iter().chain(more).flat_map(|design| [uncorrected(design.clone()), design]).collect();
+    let more = ["sensor1-fast", "sensor1-fast-64", "sensor1-fast-wide", "sensor2-fast", "sensor2-wide"].map(shipped);
+    let all = designs().into_iter().chain(more).flat_map(|design| [uncorrected(design.clone()), design]);
+    let all: Vec<Design> = all.chain([thin()]).collect();
     let lines = in_parallel(&all, |design| {
         let (plan, solver) = (planned(design), Solver::new(design).expect("a solver"));
         let packets: Vec<Vec<u32>> = seeded(design).iter().map(|truth| encode(&truth.frame)).collect();

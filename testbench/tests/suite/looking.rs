@@ -194,9 +194,13 @@ fn each_body_is_shown_and_judged() {
     assert!((force(0) + force(1) - json["F_z"].as_f64().expect("a force")).abs() < 1e-5, "{json}");
 
     let judged = run(&["run", "d.toml", "--reference", "f.forces.csv"]);
-    for part in
-        ["  forces of bodies", "  centres of bodies", "Error of each body", "1 of 1 frames have the right number"]
-    {
+    for part in [
+        "  forces of bodies",
+        "  centres of bodies",
+        "Error of each body",
+        "  centre, mm",
+        "1 of 1 frames have the right number",
+    ] {
         assert!(judged.contains(part), "{part}: {judged}");
     }
     assert!(judged.contains("Frames by bodies") && judged.contains("No frame has one body"), "{judged}");

@@ -79,6 +79,12 @@ fn the_forces_of_each_body_are_told_and_judged() {
     let error = |of: &str, at: &str| report["bodies"][of][at].as_f64().unwrap();
     assert!(error("tangential", "worst") < 20.0 && error("normal", "worst") < 8.0, "{report}");
     assert!(error("tangential", "worst") > 0.1, "{report}");
+    assert!((0.1..2.0).contains(&error("centre_mm", "worst")), "{report}");
+    assert!((0.01..3.0).contains(&error("turn_mm", "worst")), "{report}");
+    // Of true forces without torques nothing is said of them.
+    let older = [&solve[..], &["--reference", "older.csv"]].concat();
+    let said = String::from_utf8(golden(here, &older).stdout).unwrap();
+    assert!(said.contains("centre, mm") && !said.contains("T_z"), "{said}");
 
     // The same lines from a filter, with a field and as an array.
     let lines = fs::read_to_string(here.join("out.csv")).unwrap();

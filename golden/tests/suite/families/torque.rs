@@ -12,8 +12,10 @@ use super::design;
 struct Torques {
     /// Distance from where the normal force acts to where it is found: the error of `T_x` and `T_y`,
     place: Quantiles,
-    /// and the mean of it along the push.
+    /// the mean of it along the push,
     along: f64,
+    /// and what is left where that is taken off.
+    beside: Quantiles,
     /// Of `T_z` about the middle of the grid,
     about_middle: Quantiles,
     /// of that about the place where the normal force acts, as found and as it is,
@@ -31,7 +33,7 @@ fn own(sensor: &Sensor, force: [f64; 3], torque: [f64; 3]) -> ([f64; 2], f64) {
 fn judge(solver: &Solver, frames: &[SceneFrame]) -> Torques {
     let sensor = solver.matrices().sensor();
     let mut errors = [const { Vec::new() }; 4];
-    let mut along = 0.0;
+    let mut shifts = Vec::new();
     for frame in frames {
         let found = solver.solve(&frame.stress).unwrap();
         let (truth, true_own) = own(sensor, frame.force, frame.torque);
@@ -39,7 +41,7 @@ fn judge(solver: &Solver, frames: &[SceneFrame]) -> Torques {
         let normal = frame.force[2].abs();
         let (sin, cos) = frame.direction.sin_cos();
         let [x, y] = [0, 1].map(|axis| centre[axis] - truth[axis]);
-        along += 1e3 * (x * cos + y * sin) / frames.len() as f64;
+        shifts.push([x * cos + y * sin, y * cos - x * sin].map(|part| 1e3 * part));
         let of_frame = [
             x.hypot(y),
             (found.torque[2] - frame.torque[2]).abs() / normal,
@@ -49,7 +51,9 @@ fn judge(solver: &Solver, frames: &[SceneFrame]) -> Torques {
         errors.iter_mut().zip(of_frame).for_each(|(all, error)| all.push(1e3 * error));
     }
     let [place, about_middle, own, is] = errors.map(Quantiles::of);
-    Torques { place, along, about_middle, own, is }
+    let along = shifts.iter().map(|[along, _]| along).sum::<f64>() / shifts.len() as f64;
+    let beside = Quantiles::of(shifts.iter().map(|[shift, across]| (shift - along).hypot(*across)).collect());
+    Torques { place, along, beside, about_middle, own, is }
 }
 
 /// Within the grid a body's place is known to a fraction of the pitch, and `T_z` to what the tangential force errs by times
@@ -59,8 +63,12 @@ fn torques_are_near_the_true_ones_on_every_kind() {
     let solver = Solver::new(&design("sensor2-wide")).unwrap();
     for kind in Kind::ALL {
         let frames = kind.frames(solver.matrices().sensor(), 0.5, 0..8).unwrap();
-        let Torques { place, about_middle, own, is, .. } = judge(&solver, &frames);
-        let said = format!("{}: {place:?} {about_middle:?} {own:?} {is:?}", kind.title());
+        let Torques { place, along, beside, about_middle, own, is } = judge(&solver, &frames);
+        let said = format!("{}: {place:?} {along} {beside:?} {about_middle:?} {own:?} {is:?}", kind.title());
+        // Too far along the push, and hardly anything else.
+        if kind == Kind::Sliding {
+            assert!((0.4..0.7).contains(&along) && beside.median < 0.25, "{said}");
+        }
         match kind {
             Kind::Border | Kind::Mixed => {}
             // What turns about its own axis presses and pulls as what does not.
@@ -81,8 +89,9 @@ fn table() {
         let cells = solvers.each_ref().map(|[line, wide]| {
             let frames = kind.frames(wide.matrices().sensor(), 0.5, 1000..1000 + count).unwrap();
             let [line, wide] = [line, wide].map(|solver| judge(solver, &frames));
-            let cells = [line.about_middle, wide.about_middle, wide.own, wide.place].map(row).concat();
-            format!("{cells} {:+.2} |", wide.along)
+            let cells = [line.about_middle, wide.about_middle].map(row).concat();
+            let Torques { place, along, beside, own, is, .. } = wide;
+            format!("{cells}{} {:.2} |{} {along:+.2} | {:.2} |", row(own), is.median, row(place), beside.median)
         });
         println!("| {} |{}", kind.title(), cells.concat());
     }

@@ -79,7 +79,7 @@ fn stages(plan: &JointPlan, design: &Design) -> String {
 pub fn kernel_advice(design: &Design, indent: &str) -> String {
     let algorithm = &design.algorithm;
     let (wants, has) = (gain(&design.sensor, algorithm.kernel), algorithm.joint.gain);
-    // On layers of half a pitch and less the kernels change places.
+    // On layers of less than half a pitch the kernels change places.
     let is_better = (algorithm.kernel == Kernel::Cell) == design.sensor.wants_cells();
     let [own, other] = match algorithm.kernel {
         Kernel::Point => ["\"point\"", "\"cell\""],

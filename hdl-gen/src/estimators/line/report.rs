@@ -34,6 +34,15 @@ pub fn kernel_advice(design: &Design, indent: &str) -> String {
     let gain = |of| gain(&design.sensor, of);
     let off = |of| 100.0 * (1.0 / gain(of) - 1.0);
     let lost = 100.0 * (1.0 - gain(Kernel::Cell) / gain(Kernel::Point));
+    // On layers of less than half a pitch mu is far off by either, and by cells at least F_z is right.
+    if design.sensor.wants_cells() {
+        let of = design.algorithm.kernel;
+        return format!(
+            "{of}: F_z of a wide contact is off by {:+.1} %;\n{indent}on so thin a layer take \"cell\", and for mu \
+             estimator = \"joint\"",
+            off(of)
+        );
+    }
     match design.algorithm.kernel {
         Kernel::Point => format!(
             "point: F_z of a wide contact is off by {:+.1} %;\n{indent}\"cell\" makes it right, with mu {lost:.0} % \
