@@ -10,6 +10,7 @@ mod expected;
 mod folded_formats;
 mod formats;
 mod hostile;
+mod inspect_command;
 mod joint;
 mod lanes;
 mod model;

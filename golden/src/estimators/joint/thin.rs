@@ -7,6 +7,7 @@ use crate::sensor::Sensor;
 
 /// Depth over the coarser pitch below which no kernel and no correction serve.
 const LEAST: f64 = 0.3;
+const BELOW: &str = "take a thicker layer or a finer pitch";
 
 impl JointConstants {
     /// Its gain makes up for the normal force, its correction for part of the rest: for more where forces are spread over
@@ -24,9 +25,9 @@ impl JointConstants {
             (true, Kernel::Point) => {
                 (0.4, "many frames have no direction", "kernel = \"cell\", calibrated anew, serves down to 0.3")
             }
-            (true, Kernel::Cell) => (LEAST, "one contact in twenty is off by a tenth of F_z", ""),
+            (true, Kernel::Cell) => (LEAST, "one contact in twenty is off by a tenth of F_z", BELOW),
         };
-        let remedy = if sensor.is_thinner_than(LEAST) { "take a thicker layer or a finer pitch" } else { remedy };
+        let remedy = if sensor.is_thinner_than(LEAST) { BELOW } else { remedy };
         Thin { limit, remedy: format!("{wrong}; {remedy}") }
     }
 }
