@@ -117,21 +117,22 @@ module sptfra_estimator_joint #(
     reg [2:0] fill_valid;
     reg [ROW_WIDTH-1:0] fill_row;
     reg [WAYS*DATA_BITS-1:0] fill_values;
-    reg fill_complete;
+    reg fill_bank;
+    wire next_fill_bank;
 
     always @(posedge clock) begin
         fill_valid <= u_valid;
         fill_row <= u_row;
         fill_values <= u_values;
-        fill_complete <= u_complete;
+        fill_bank <= next_fill_bank;
         if (reset) begin
             fill_valid <= 3'd0;
-            fill_complete <= 1'b0;
+            fill_bank <= 1'b0;
         end
     end
 
     // ---- Stages: which frame is where
-    wire fill_bank, search_bank, look_bank;
+    wire search_bank, look_bank;
     wire search_start, look_start, correction_start;
     wire level_done, centre_done, window_done, search_done; // the last of these: the answer is there
 
@@ -144,7 +145,7 @@ module sptfra_estimator_joint #(
     ) stages (
         .clock            (clock),
         .reset            (reset),
-        .u_complete       (fill_complete),
+        .u_complete       (u_complete),
         .sums_complete    (sums_complete),
         .contact_valid    (direction_valid),
         .search_done      (level_done),
@@ -157,7 +158,7 @@ module sptfra_estimator_joint #(
         .correction_start (correction_start),
         .answer_valid     (answer_valid),
         .u_released       (u_released),
-        .fill_bank        (fill_bank),
+        .fill_bank        (next_fill_bank),
         .search_bank      (search_bank),
         .look_bank        (look_bank)
     );

@@ -18,7 +18,7 @@ module sptfra_joint_stages #(
 ) (
     input  wire clock,
     input  wire reset,
-    // What a frame needs: its u_q, one cycle; sums and contact, held until the search starts
+    // What a frame needs: its u_q, one cycle, before the search may start; sums and contact, held until it does
     input  wire u_complete,
     input  wire sums_complete,
     input  wire contact_valid,
@@ -29,7 +29,7 @@ module sptfra_joint_stages #(
     input  wire correction_done,
     input  wire answer_take, // only with answer_valid
     // Starts, one cycle each
-    output wire search_start,
+    output reg  search_start, // a register: it lets all of the frame's 800 bits in, and others out
     output wire look_start,
     output wire correction_start,
     output wire answer_valid,
@@ -51,13 +51,16 @@ module sptfra_joint_stages #(
     reg answer_waits; // to be taken
     wire centroid_there = search_done || centroid_waits;
 
-    assign search_start = sums_complete && contact_valid && (u_waiting != 2'd0) && !searching;
+    wire search_free = searching ? look_start : !search_start; // in the next cycle
+    wire u_there = u_complete || (u_waiting != 2'd0);
+
     assign look_start = centroid_there && ((LOOK != 0) ? !looking && !showing : !correcting);
     assign correction_start = (LOOK != 0) ? (look_done || centre_waits) && !correcting : look_start;
     assign answer_valid = correction_done || answer_waits;
     assign u_released = ((LOOK == 0) || (HANDED_ON != 0)) ? look_start : correction_start;
 
     always @(posedge clock) begin
+        search_start <= sums_complete && contact_valid && u_there && search_free;
         u_waiting <= u_waiting + {1'b0, u_complete} - {1'b0, search_start};
         if (u_complete) begin
             fill_bank <= !fill_bank;
@@ -95,6 +98,7 @@ module sptfra_joint_stages #(
             answer_waits <= 1'b0;
         end
         if (reset) begin
+            search_start <= 1'b0;
             u_waiting <= 2'd0;
             fill_bank <= 1'b0;
             search_bank <= 1'b0;

@@ -5,8 +5,8 @@
 // points 3/16 apart, a cell a point.
 //
 // A taxel a cycle, or two: a cell adds X of its column and Y of its row, and accumulates what is above zero; a sum that
-// leaves its width is the largest number. From start to the first row of points: four cycles a quad, and 11, or two a
-// quad, and 12; then a row a cycle. The rows stay until the next start, and each can be asked for again.
+// leaves its width is the largest number. From start to the first row of points: four cycles a quad, and 12, or two a
+// quad, and 13; then a row a cycle. The rows stay until the next start, and each can be asked for again.
 
 `default_nettype none
 
@@ -58,7 +58,7 @@ module sptfra_points #(
     localparam integer VALUE_BITS = 28;
     localparam integer POINT_BITS = 27;
     localparam integer TENSION_BITS = POINT_BITS - 2 + TAXELS; // of the taxels of a cycle
-    localparam integer STAGES = 8 + TAXELS; // from a taxel's address to its tension being in the sums
+    localparam integer STAGES = 9 + TAXELS; // from a taxel's address to its tension being in the sums
     localparam [1:0] STEP = TAXELS[1:0];
     localparam [1:0] LAST_MEMBER = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
@@ -197,7 +197,7 @@ module sptfra_points #(
             end
 
             for (column = 0; column < SIDE; column = column + 1) begin : gen_points
-                wire [TAXELS*(POINT_BITS-1)-1:0] tensions_9;
+                wire [TAXELS*(POINT_BITS-1)-1:0] tensions_10;
                 wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle; none in a turn
                 wire [VALUE_BITS:0] above = sums[(VALUE_BITS+1)*(SIDE*(index + 1) + column) +: VALUE_BITS+1];
                 reg [VALUE_BITS-1:0] sum;
@@ -209,29 +209,37 @@ module sptfra_points #(
                     wire signed [POINT_BITS-1:0] x = along_x_8[27*(SIDE*taxel + column) +: 27];
                     wire signed [POINT_BITS-1:0] y = along_y_8[27*(SIDE*taxel + index) +: 27];
                     wire signed [POINT_BITS-1:0] stress = x + y;
-                    reg [POINT_BITS-2:0] tension_9;
+                    reg presses_9;
+                    reg [POINT_BITS-2:0] stress_9;
+                    reg [POINT_BITS-2:0] tension_10;
 
+                    // The sign waits in a register of its own: it resets 26
                     always @(posedge clock) begin
-                        tension_9 <= stress[POINT_BITS-2:0];
-                        if (stress[POINT_BITS-1] || nothing) begin
-                            tension_9 <= {(POINT_BITS - 1){1'b0}};
+                        presses_9 <= stress[POINT_BITS-1];
+                        if (nothing) begin
+                            presses_9 <= 1'b1;
+                        end
+                        stress_9 <= stress[POINT_BITS-2:0];
+                        tension_10 <= stress_9;
+                        if (presses_9) begin
+                            tension_10 <= {(POINT_BITS - 1){1'b0}};
                         end
                     end
 
-                    assign tensions_9[(POINT_BITS-1)*taxel +: POINT_BITS-1] = tension_9;
+                    assign tensions_10[(POINT_BITS-1)*taxel +: POINT_BITS-1] = tension_10;
                 end
 
                 if (TAXELS == 1) begin : gen_one
-                    assign tension = tensions_9;
+                    assign tension = tensions_10;
                 end else begin : gen_both
-                    reg [TENSION_BITS-1:0] both_10;
+                    reg [TENSION_BITS-1:0] both_11;
 
                     always @(posedge clock) begin
-                        both_10 <= {1'b0, tensions_9[0 +: POINT_BITS-1]}
-                            + {1'b0, tensions_9[(TAXELS-1)*(POINT_BITS-1) +: POINT_BITS-1]};
+                        both_11 <= {1'b0, tensions_10[0 +: POINT_BITS-1]}
+                            + {1'b0, tensions_10[(TAXELS-1)*(POINT_BITS-1) +: POINT_BITS-1]};
                     end
 
-                    assign tension = both_10;
+                    assign tension = both_11;
                 end
 
                 always @(posedge clock) begin

@@ -45,7 +45,6 @@ module harness (
     wire u_released;
     wire [2:0] frames_held;
     wire [1:0] fields_held;
-    wire u_complete;
     wire [1:0] u_waiting;
     wire searching;
     wire answer_waits;
@@ -59,6 +58,7 @@ module harness (
     wire summary_done;
     wire output_start;
 `ifdef JOINT
+    wire u_complete = 1'b0; // known at once
     wire line_valid = 1'b1;
     wire [2:0] line_state = 3'd0;
     wire direction_valid;
@@ -83,6 +83,7 @@ module harness (
     wire found_waits = centroid_waits; // of what is searched
     wire answering = correcting; // what an answer is of
 `else
+    wire u_complete;
     wire line_valid;
     wire [2:0] line_state;
     wire level_done = 1'b0;
@@ -135,7 +136,6 @@ module harness (
         .\turns.u_held (u_held),
         .\turns.frames_held (frames_held),
         .\turns.gen_field.fields_held (fields_held),
-        .\estimator.fill_complete (u_complete),
         .\estimator.search_start (search_start),
         .\estimator.search_done (search_done),
         .\op.summary_busy (summary_busy),
@@ -159,10 +159,11 @@ module harness (
         .\estimator.stages.answer_waits (answer_waits),
         .\estimator.look_start (look_start),
         .\estimator.correction_start (correction_start),
-        .\estimator.fill_bank (fill_bank),
+        .\estimator.next_fill_bank (fill_bank),
         .\estimator.search_bank (search_bank),
         .\estimator.look_bank (look_bank),
 `else
+        .\estimator.fill_complete (u_complete),
         .\estimator.u_waiting (u_waiting),
         .\estimator.searching (searching),
         .\estimator.answer_waits (answer_waits),
@@ -177,7 +178,7 @@ module harness (
         .\op.frame_output.lasts (lasts)
     );
 
-    // Frames whose u is there, the register on its way counted; and sums whose taking has not been said yet
+    // Frames whose u is there, a register on its way counted; and sums whose taking has not been said yet
     wire [2:0] u_there = {1'b0, u_waiting} + {2'd0, u_complete};
     wire sums_stand = sums_wait && !sums_take;
 

@@ -34,7 +34,6 @@ module harness (
     wire turns_busy;
     wire [1:0] u_held;
     wire u_released;
-    wire u_complete;
     wire [1:0] u_waiting;
     wire searching;
     wire answer_waits;
@@ -44,6 +43,7 @@ module harness (
     wire summary_done;
     wire output_start;
 `ifdef JOINT
+    wire u_complete = 1'b0; // known at once
     wire line_valid = 1'b1;
     wire [2:0] line_state = 3'd0;
     wire direction_valid;
@@ -63,6 +63,7 @@ module harness (
     wire found_waits = centroid_waits; // of what is searched
     wire answering = correcting; // what an answer is of
 `else
+    wire u_complete;
     wire line_valid;
     wire [2:0] line_state;
     wire level_done = 1'b0;
@@ -109,7 +110,6 @@ module harness (
         .\spmv_array.issuing_now (issuing),
         .\turns.busy (turns_busy),
         .\turns.u_held (u_held),
-        .\estimator.fill_complete (u_complete),
         .\estimator.search_done (search_done),
         .\op.summary_busy (summary_busy),
         .\op.summary_there (summary_there),
@@ -131,9 +131,10 @@ module harness (
         .\estimator.search_start (search_start),
         .\estimator.look_start (look_start),
         .\estimator.correction_start (correction_start),
-        .\estimator.fill_bank (fill_bank),
+        .\estimator.next_fill_bank (fill_bank),
         .\estimator.search_bank (search_bank),
 `else
+        .\estimator.fill_complete (u_complete),
         .\estimator.u_waiting (u_waiting),
         .\estimator.searching (searching),
         .\estimator.answer_waits (answer_waits),
@@ -154,7 +155,7 @@ module harness (
         .\op.frame_output.lasts (lasts)
     );
 
-    // Frames whose u is there, the register on its way counted; and sums whose taking has not been said yet
+    // Frames whose u is there, a register on its way counted; and sums whose taking has not been said yet
     wire [2:0] u_there = {1'b0, u_waiting} + {2'd0, u_complete};
     wire sums_stand = sums_wait && !sums_take;
 

@@ -125,8 +125,8 @@ pub const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
 /// From the last weights of a frame to its count: a step for each taxel and for the end of each row, and the way through
 /// sums and comparisons.
 ///
-/// A search has a stage that is longer (the joint estimator's with 15 points a side takes `4 quads + 108`, the others far
-/// longer; it takes `2 quads + 80` with many lanes, where that is longer than the count), and a frame is begun only when
+/// A search has a stage that is longer (the joint estimator's with 15 points a side takes `4 quads + 109`, the others far
+/// longer; it takes `2 quads + 81` with many lanes, where that is longer than the count), and a frame is begun only when
 /// that stage of the one before the last is over. So a count is there before the search, and neither latency nor
 /// interval knows of it.
 pub fn bodies(sensor: &Sensor) -> u64 {
@@ -134,7 +134,8 @@ pub fn bodies(sensor: &Sensor) -> u64 {
 }
 
 // ---- The estimator and Op
-/// From the last taxels having left the unfolding to their being in the search's cells.
+/// From the last taxels having left the unfolding to the line's search knowing that they are in its cells. The joint
+/// estimator's begins a cycle sooner: it reads none of them before the last is there.
 pub const TAXELS_TO_CELLS: u64 = 2;
 /// From the last taxels of the field having left the unfolding to the field being there for the output.
 pub const TAXELS_TO_FIELD: u64 = 2;

@@ -258,7 +258,7 @@ impl<'a> Control<'a> {
                 self.field_there.push_back(sums_there);
             }
             let complete = last_visit + self.of.visit_to_taxels;
-            self.u_there.push_back(complete + TAXELS_TO_CELLS);
+            self.u_there.push_back(complete + if self.of.line.is_some() { TAXELS_TO_CELLS } else { 0 });
             self.pending.push((complete + 1, Change::StressReleased));
         }
     }
@@ -309,10 +309,12 @@ impl<'a> Control<'a> {
                 self.stages[stage + 1].ends = Some(now + self.of.stages[stage + 1].cycles);
             }
         }
-        let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= self.now);
+        // Without a line a register starts the search, a cycle after all is there.
+        let seen = if self.of.line.is_some() { now } else { now.saturating_sub(1) };
+        let there = |times: &VecDeque<u64>| times.front().is_some_and(|&cycle| cycle <= seen);
         let line = match self.line {
             _ if self.of.line.is_none() => there(&self.sums_there) && there(&self.directions),
-            Line::There { from } => from <= self.now,
+            Line::There { from } => from <= now,
             _ => false,
         };
         if line && there(&self.u_there) && may_begin(&self.stages[0]) {
