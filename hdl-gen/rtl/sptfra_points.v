@@ -48,7 +48,7 @@ module sptfra_points #(
     output reg  [3*4*27-1:0] read_values,
     // B, a row of points at a time, mu_x from the least one on in the lowest bits; held until the next one
     output reg  row_valid,
-    input  wire again, // after the last row: the first one once more, two cycles later, and so on
+    input  wire again, // after the last row: the first one once more, three cycles later, and so on
     output reg  [SIDE*28-1:0] row_values,
     output wire clipped // a u was, or the least B may be; held until the next start
 );
@@ -176,7 +176,9 @@ module sptfra_points #(
     reg giving;
     reg [3:0] row;
     reg turn; // this cycle
-    wire turn_next = lasts[STAGES] || (giving && (row != LAST_ROW)) || again;
+    reg turn_next;
+    reg count_next;
+    wire turn_after_next = lasts[STAGES-1] || lasts[STAGES] || (giving && (row < LAST_ROW - 4'd1)) || again;
     wire [(SIDE+1)*SIDE*(VALUE_BITS+1)-1:0] sums; // row 0 above the last row once more
 
     assign sums[SIDE*SIDE*(VALUE_BITS+1) +: SIDE*(VALUE_BITS+1)] = sums[0 +: SIDE*(VALUE_BITS+1)];
@@ -192,7 +194,7 @@ module sptfra_points #(
             always @(posedge clock) begin
                 clears <= start;
                 nothing <= !valids[7];
-                counts <= valids[STAGES-1] || turn_next;
+                counts <= count_next;
                 turns <= turn_next;
             end
 
@@ -259,6 +261,8 @@ module sptfra_points #(
 
     // ---- Rows, when all taxels are in
     always @(posedge clock) begin
+        turn_next <= turn_after_next;
+        count_next <= valids[STAGES-2] || turn_after_next;
         turn <= turn_next;
         if (giving) begin
             row <= row + 4'd1;
@@ -272,6 +276,7 @@ module sptfra_points #(
         end
         row_valid <= giving;
         if (reset) begin
+            turn_next <= 1'b0;
             giving <= 1'b0;
             row_valid <= 1'b0;
         end

@@ -25,7 +25,7 @@ module sptfra_points_level #(
     // Rows of points, each held until the next one
     input  wire row_valid,
     input  wire [SIDE*28-1:0] row_values,
-    output wire again, // the next row once more, to be there two cycles later
+    output wire again, // the next row once more, to be there three cycles later
     // Result, held until the next start
     output wire done, // one cycle
     output wire signed [17:0] mu_x, // 16 fraction bits
@@ -139,8 +139,16 @@ module sptfra_points_level #(
     reg [VALUE_BITS-1:0] least;
     reg [VALUE_BITS:0] level;
 
-    // A cycle before the row's first points are weighed
-    assign again = all_in[MIN_STAGES+LEVEL_STAGES] || (reading && last_group && !last_read);
+    // Two cycles before the row's first points are weighed
+    generate
+        if (GROUPS == 1) begin : gen_every_cycle
+            assign again = all_in[MIN_STAGES+LEVEL_STAGES-1] || all_in[MIN_STAGES+LEVEL_STAGES]
+                || (reading && (row < LAST_ROW - 4'd1));
+        end else begin : gen_every_row
+            assign again = all_in[MIN_STAGES+LEVEL_STAGES-1]
+                || (reading && (group == LAST_GROUP - 2'd1) && (row != LAST_ROW));
+        end
+    endgenerate
 
     always @(posedge clock) begin
         all_in <= {all_in[MIN_STAGES+LEVEL_STAGES-1:1], row_valid && (row_in == LAST_ROW)};
