@@ -223,9 +223,12 @@ impl Written {
         self.modules.iter().map(|module| format!("../rtl/{module}.v"))
     }
 
-    /// For a tool that looks for relative paths in its library too.
-    fn whole_paths(&self) -> impl Iterator<Item = PathBuf> {
-        self.modules.iter().map(|module| self.folder.path().join(format!("rtl/{module}.v")))
+    /// A module, and where a tool finds those that it instantiates: in the design, and where this does without a part, in
+    /// the library. Nothing else is read.
+    fn top(&self, module: &str) -> Vec<PathBuf> {
+        let rtl = self.folder.path().join("rtl");
+        let library = crate::support::workspace("hdl-gen/rtl");
+        vec![rtl.join(format!("{module}.v")), "-y".into(), rtl, "-y".into(), library]
     }
 
     /// Runs a tool beside the ROM files, where the parameter `ROM_DIR` looks for them unless it is set; what the tool
@@ -275,18 +278,12 @@ fn tops(all: &[Written]) -> Vec<(&Written, &str)> {
     tops
 }
 
-/// Where a tool finds what a module instantiates with its default parameters and the design does without.
-fn library() -> [PathBuf; 2] {
-    ["-y".into(), crate::support::workspace("hdl-gen/rtl")]
-}
-
 #[test]
 fn verilator_accepts_every_module_as_a_top() {
     let all = in_parallel(&designs(), Written::new);
     assert_silent(in_parallel(&tops(&all), |&(written, module)| {
         let mut verilator = tools::verilator().expect("installed");
-        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(library());
-        verilator.args(written.whole_paths());
+        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(written.top(module));
         vec![written.run(verilator)]
     }));
 }
@@ -296,7 +293,7 @@ fn icarus_accepts_every_module_as_a_top() {
     let all = in_parallel(&designs(), Written::new);
     assert_silent(in_parallel(&tops(&all), |&(written, module)| {
         let mut icarus = tools::icarus().expect("installed");
-        icarus.args(["-Wall", "-g2005", "-t", "null", "-s", module]).args(library()).args(written.sources());
+        icarus.args(["-Wall", "-g2005", "-t", "null", "-s", module]).args(written.top(module));
         vec![written.run(icarus)]
     }));
 }
