@@ -113,7 +113,7 @@ module sptfra_estimator_joint #(
         end
     endgenerate
 
-    // ---- u_q: a register on the way to all cells
+    // ---- u_q: a register on the way to all cells, and their bank with them
     reg [2:0] fill_valid;
     reg [ROW_WIDTH-1:0] fill_row;
     reg [WAYS*DATA_BITS-1:0] fill_values;

@@ -3,10 +3,10 @@
 //
 // Which frame is where in the joint estimator: three stages, each with a frame of its own.
 //
-// The search takes a frame when its u_q, its sums and what CeAn knows are there; the look what the search has found,
-// the correction what the look has. A stage holds what it found until the next one takes it, and may begin anew in the
-// cycle after; but the look shows the correction its window first. Without a look the correction comes after the
-// search.
+// The search takes a frame a cycle after its u_q, its sums and what CeAn knows are there; the look what the search has
+// found, the correction what the look has. A stage holds what it found until the next one takes it, and may begin anew
+// in the cycle after; but the look shows the correction its window first. Without a look the correction comes after
+// the search.
 
 `default_nettype none
 
@@ -18,7 +18,8 @@ module sptfra_joint_stages #(
 ) (
     input  wire clock,
     input  wire reset,
-    // What a frame needs: its u_q, one cycle, before the search may start; sums and contact, held until it does
+    // What a frame needs: the last of its u_q, one cycle, to be in the memories in the next; sums and contact, held
+    // until the search starts
     input  wire u_complete,
     input  wire sums_complete,
     input  wire contact_valid,
@@ -35,7 +36,7 @@ module sptfra_joint_stages #(
     output wire answer_valid,
     // One cycle: no stage needs the u_q of its frame any more
     output wire u_released,
-    // Of u_q: that which is filled, searched, looked at
+    // Of u_q: that which is to come into the memories, that which is searched, looked at
     output reg  fill_bank,
     output reg  search_bank,
     output reg  look_bank

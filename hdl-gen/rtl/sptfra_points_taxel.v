@@ -51,7 +51,7 @@ module sptfra_points_taxel #(
 
     // ---- Scale of the frame: the bits of sum |b|, there three cycles after start
     wire [5:0] sum_bits;
-    reg [2:0] fine; // its low bits, from the fourth cycle on, when they are needed
+    reg [5:0] scale; // the same, from the fourth cycle on: only a u's first shift needs them sooner
     reg [39+FRACTION-SHARE_SHIFT:0] sum_octets;
     reg [39+FRACTION-SHARE_SHIFT:0] sum_shifted;
     reg [26+FRACTION-SHARE_SHIFT:0] largest_octets;
@@ -67,11 +67,11 @@ module sptfra_points_taxel #(
     );
 
     always @(posedge clock) begin
-        fine <= sum_bits[2:0];
-        sum_octets <= {stress_sum, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {sum_bits[5:3], 3'd0};
-        sum_shifted <= sum_octets >> fine;
-        largest_octets <= {largest, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {sum_bits[5:3], 3'd0};
-        largest_shifted <= largest_octets >> fine;
+        scale <= sum_bits;
+        sum_octets <= {stress_sum, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:3], 3'd0};
+        sum_shifted <= sum_octets >> scale[2:0];
+        largest_octets <= {largest, {(FRACTION - SHARE_SHIFT){1'b0}}} >> {scale[5:3], 3'd0};
+        largest_shifted <= largest_octets >> scale[2:0];
     end
 
     // One more, so that the least value is below the level in any case
@@ -89,7 +89,7 @@ module sptfra_points_taxel #(
         for (index = 0; index < 3; index = index + 1) begin : gen_u
             wire signed [WIDE-1:0] wide = { {(WIDE - 27){given[27*index + 26]}}, given[27*index +: 27]} << U_LEFT;
             reg signed [WIDE-1:0] octets_1;
-            wire signed [WIDE-1:0] bits_1 = octets_1 >>> fine;
+            wire signed [WIDE-1:0] bits_1 = octets_1 >>> scale[2:0];
             reg signed [TWICE_BITS-1:0] twice_2;
             reg sign_2;
             reg is_whole_2; // twice_2 has all of it

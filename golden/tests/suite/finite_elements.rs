@@ -93,7 +93,7 @@ fn the_estimators_err_as_the_docs_say() {
     // Of all frames with a press that linear theory is about, of both sensors or of the first.
     let docs = fs::read_to_string(repository("docs/contacts.md")).unwrap();
     let both = ["none", "joint", "wide", "fast"].map(|kind| vec![format!("sensor1-{kind}"), format!("sensor2-{kind}")]);
-    let first = ["wide", "fast-wide"].map(|kind| vec![format!("sensor1-{kind}")]);
+    let first = ["joint", "fast", "wide", "fast-wide"].map(|kind| vec![format!("sensor1-{kind}")]);
     for designs in both.into_iter().chain(first) {
         let errors_of = |name: &String| -> Vec<f64> {
             let solver = Solver::new(&design(name)).unwrap();

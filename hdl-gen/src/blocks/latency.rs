@@ -135,7 +135,7 @@ pub fn bodies(sensor: &Sensor) -> u64 {
 
 // ---- The estimator and Op
 /// From the last taxels having left the unfolding to the line's search knowing that they are in its cells. The joint
-/// estimator's begins a cycle sooner: it reads none of them before the last is there.
+/// estimator's knows with them, and a register starts it: it reads none before the last is there.
 pub const TAXELS_TO_CELLS: u64 = 2;
 /// From the last taxels of the field having left the unfolding to the field being there for the output.
 pub const TAXELS_TO_FIELD: u64 = 2;

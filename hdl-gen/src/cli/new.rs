@@ -156,11 +156,16 @@ fn lines(new: &New, design: &Design, path: &Path, assumed: &[String], progress: 
             )
         });
         lines.push(format!("Gain and friction are fitted to this sensor.{}", errors.unwrap_or_default()));
-        lines.push(
-            "golden calibrate trains a network against what is left; with --family wide --hidden 64, in some\n\
-             minutes, on bodies of other shapes too, held or tilted, and the network tells its standard error."
-                .to_owned(),
-        );
+        let trains = "golden calibrate trains a network against what is left";
+        // The wide family was judged on points only.
+        lines.push(if design.algorithm.kernel == Kernel::Point {
+            format!(
+                "{trains}; with --family wide --hidden 64, in some\n\
+                 minutes, on bodies of other shapes too, held or tilted, and the network tells its standard error."
+            )
+        } else {
+            format!("{trains}.")
+        });
     }
     if !assumed.is_empty() {
         lines.push(format!("Not said, and taken from the paper's first sensor: {}", assumed.join(", ")));
