@@ -92,7 +92,7 @@ module sptfra_correction #(
             for (index = 0; index < 3; index = index + 1) begin : gen_memories
                 sptfra_ram #(
                     .WIDTH         (4 * 27),
-                    .DEPTH         (QUADS),
+                    .DEPTH         ((QUADS > 8) ? QUADS : 8),
                     .ADDRESS_WIDTH (ROW_WIDTH)
                 ) of_q (
                     .clock         (clock),

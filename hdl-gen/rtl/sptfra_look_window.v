@@ -57,6 +57,7 @@ module sptfra_look_window #(
     localparam integer LAST_BUT_ONE = LENGTH - 2;
     localparam integer QUAD_COLUMNS = (COLUMNS + 1) / 2;
     localparam integer QUAD_ROWS = (ROWS + 1) / 2;
+    localparam integer SEEN_DEPTH = (QUAD_COLUMNS * QUAD_ROWS > 8) ? QUAD_COLUMNS * QUAD_ROWS : 8;
     localparam integer LAST_COLUMN = COLUMNS - 1;
     localparam integer LAST_ROW = ROWS - 1;
     localparam [8:0] GRID_COLUMNS = COLUMNS[8:0];
@@ -191,7 +192,7 @@ module sptfra_look_window #(
             for (quarter = 0; quarter < 4; quarter = quarter + 1) begin : gen_quarters
                 sptfra_ram #(
                     .WIDTH         (STRESS_BITS),
-                    .DEPTH         (QUAD_COLUMNS * QUAD_ROWS),
+                    .DEPTH         (SEEN_DEPTH),
                     .ADDRESS_WIDTH (ROW_WIDTH)
                 ) seen (
                     .clock         (clock),

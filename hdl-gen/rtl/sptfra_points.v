@@ -5,8 +5,8 @@
 // points 3/16 apart, a cell a point.
 //
 // A taxel a cycle, or two: a cell adds X of its column and Y of its row, and accumulates what is above zero; a sum that
-// leaves its width is the largest number. From start to the first row of points: four cycles a quad, and 12, or two a
-// quad, and 13; then a row a cycle. The rows stay until the next start, and each can be asked for again.
+// leaves its width is the largest number. From start to the first row of points: four cycles a quad, and 13, or two a
+// quad, and 14; then a row a cycle. The rows stay until the next start, and each can be asked for again.
 
 `default_nettype none
 
@@ -58,7 +58,7 @@ module sptfra_points #(
     localparam integer VALUE_BITS = 28;
     localparam integer POINT_BITS = 27;
     localparam integer TENSION_BITS = POINT_BITS - 2 + TAXELS; // of the taxels of a cycle
-    localparam integer STAGES = 9 + TAXELS; // from a taxel's address to its tension being in the sums
+    localparam integer STAGES = 10 + TAXELS; // from a taxel's address to its tension being in the sums
     localparam [1:0] STEP = TAXELS[1:0];
     localparam [1:0] LAST_MEMBER = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
@@ -74,12 +74,14 @@ module sptfra_points #(
     reg [ROW_WIDTH-1:0] quad;
     reg [1:0] member;
     reg [1:0] member_1;
+    reg [1:0] member_2;
     wire last_taxel = (quad == LAST_QUAD[ROW_WIDTH-1:0]) && (member == LAST_MEMBER);
     reg [STAGES:1] valids;
     reg [STAGES:1] lasts;
     wire [3*4*27-1:0] quad_1;
-    wire [TAXELS*3*27-1:0] taxels_1;
-    reg [TAXELS*3*27-1:0] taxels_2;
+    wire [3*4*27-1:0] quad_2 = read_values; // a register behind the memory, then the choice
+    wire [TAXELS*3*27-1:0] taxels_2;
+    reg [TAXELS*3*27-1:0] taxels_3;
 
     sptfra_taxel_memory #(
         .COLUMNS   (COLUMNS),
@@ -111,7 +113,8 @@ module sptfra_points #(
             member <= 2'd0;
         end
         member_1 <= member;
-        taxels_2 <= taxels_1;
+        member_2 <= member_1;
+        taxels_3 <= taxels_2;
         read_valid <= valids[1] && (member_1 == 2'd0);
         read_quad <= quad; // of the same: it is read for two cycles at least
         read_values <= quad_1;
@@ -126,8 +129,8 @@ module sptfra_points #(
     end
 
     // ---- Their parts in each column and in each row of points
-    wire [TAXELS*SIDE*27-1:0] along_x_8;
-    wire [TAXELS*SIDE*27-1:0] along_y_8;
+    wire [TAXELS*SIDE*27-1:0] along_x_9;
+    wire [TAXELS*SIDE*27-1:0] along_y_9;
     wire [TAXELS*16-1:0] margins;
     wire [TAXELS-1:0] clips;
 
@@ -141,12 +144,12 @@ module sptfra_points #(
     generate
         for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
             localparam [1:0] MEMBER = taxel;
-            wire [1:0] of_quad_1 = member_1 | MEMBER;
+            wire [1:0] of_quad_2 = member_2 | MEMBER;
 
             for (index = 0; index < 3; index = index + 1) begin : gen_select
-                wire [4*27-1:0] of_q = quad_1[4*27*index +: 4*27];
+                wire [4*27-1:0] of_q = quad_2[4*27*index +: 4*27];
 
-                assign taxels_1[27*(3*taxel + index) +: 27] = of_q[27*of_quad_1 +: 27];
+                assign taxels_2[27*(3*taxel + index) +: 27] = of_q[27*of_quad_2 +: 27];
             end
 
             sptfra_points_taxel #(
@@ -159,12 +162,12 @@ module sptfra_points #(
                 .stress_sum (stress_sum),
                 .largest    (largest),
                 .margin     (margins[16*taxel +: 16]),
-                .valid      (valids[2]),
-                .u0         (taxels_2[27*(3*taxel + 0) +: 27]),
-                .u1         (taxels_2[27*(3*taxel + 1) +: 27]),
-                .u2         (taxels_2[27*(3*taxel + 2) +: 27]),
-                .along_x    (along_x_8[SIDE*27*taxel +: SIDE*27]),
-                .along_y    (along_y_8[SIDE*27*taxel +: SIDE*27]),
+                .valid      (valids[3]),
+                .u0         (taxels_3[27*(3*taxel + 0) +: 27]),
+                .u1         (taxels_3[27*(3*taxel + 1) +: 27]),
+                .u2         (taxels_3[27*(3*taxel + 2) +: 27]),
+                .along_x    (along_x_9[SIDE*27*taxel +: SIDE*27]),
+                .along_y    (along_y_9[SIDE*27*taxel +: SIDE*27]),
                 .clipped    (clips[taxel])
             );
         end
@@ -193,13 +196,13 @@ module sptfra_points #(
 
             always @(posedge clock) begin
                 clears <= start;
-                nothing <= !valids[7];
+                nothing <= !valids[8];
                 counts <= count_next;
                 turns <= turn_next;
             end
 
             for (column = 0; column < SIDE; column = column + 1) begin : gen_points
-                wire [TAXELS*(POINT_BITS-1)-1:0] tensions_10;
+                wire [TAXELS*(POINT_BITS-1)-1:0] tensions_11;
                 wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle; none in a turn
                 wire [VALUE_BITS:0] above = sums[(VALUE_BITS+1)*(SIDE*(index + 1) + column) +: VALUE_BITS+1];
                 reg [VALUE_BITS-1:0] sum;
@@ -208,40 +211,40 @@ module sptfra_points #(
                     + {1'b0, turns ? above[VALUE_BITS-1:0] : sum};
 
                 for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_tensions
-                    wire signed [POINT_BITS-1:0] x = along_x_8[27*(SIDE*taxel + column) +: 27];
-                    wire signed [POINT_BITS-1:0] y = along_y_8[27*(SIDE*taxel + index) +: 27];
+                    wire signed [POINT_BITS-1:0] x = along_x_9[27*(SIDE*taxel + column) +: 27];
+                    wire signed [POINT_BITS-1:0] y = along_y_9[27*(SIDE*taxel + index) +: 27];
                     wire signed [POINT_BITS-1:0] stress = x + y;
-                    reg presses_9;
-                    reg [POINT_BITS-2:0] stress_9;
-                    reg [POINT_BITS-2:0] tension_10;
+                    reg presses_10;
+                    reg [POINT_BITS-2:0] stress_10;
+                    reg [POINT_BITS-2:0] tension_11;
 
                     // The sign waits in a register of its own: it resets 26
                     always @(posedge clock) begin
-                        presses_9 <= stress[POINT_BITS-1];
+                        presses_10 <= stress[POINT_BITS-1];
                         if (nothing) begin
-                            presses_9 <= 1'b1;
+                            presses_10 <= 1'b1;
                         end
-                        stress_9 <= stress[POINT_BITS-2:0];
-                        tension_10 <= stress_9;
-                        if (presses_9) begin
-                            tension_10 <= {(POINT_BITS - 1){1'b0}};
+                        stress_10 <= stress[POINT_BITS-2:0];
+                        tension_11 <= stress_10;
+                        if (presses_10) begin
+                            tension_11 <= {(POINT_BITS - 1){1'b0}};
                         end
                     end
 
-                    assign tensions_10[(POINT_BITS-1)*taxel +: POINT_BITS-1] = tension_10;
+                    assign tensions_11[(POINT_BITS-1)*taxel +: POINT_BITS-1] = tension_11;
                 end
 
                 if (TAXELS == 1) begin : gen_one
-                    assign tension = tensions_10;
+                    assign tension = tensions_11;
                 end else begin : gen_both
-                    reg [TENSION_BITS-1:0] both_11;
+                    reg [TENSION_BITS-1:0] both_12;
 
                     always @(posedge clock) begin
-                        both_11 <= {1'b0, tensions_10[0 +: POINT_BITS-1]}
-                            + {1'b0, tensions_10[(TAXELS-1)*(POINT_BITS-1) +: POINT_BITS-1]};
+                        both_12 <= {1'b0, tensions_11[0 +: POINT_BITS-1]}
+                            + {1'b0, tensions_11[(TAXELS-1)*(POINT_BITS-1) +: POINT_BITS-1]};
                     end
 
-                    assign tension = both_11;
+                    assign tension = both_12;
                 end
 
                 always @(posedge clock) begin

@@ -22,7 +22,7 @@ module sptfra_points_taxel #(
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
     output wire [15:0] margin, // 2^-8 sum |b|, and 1; there 7 cycles after start
-    // A taxel, from the third cycle after start on
+    // A taxel, from the fourth cycle after start on
     input  wire valid,
     input  wire signed [26:0] u0,
     input  wire signed [26:0] u1,
@@ -51,7 +51,7 @@ module sptfra_points_taxel #(
 
     // ---- Scale of the frame: the bits of sum |b|, there three cycles after start
     wire [5:0] sum_bits;
-    reg [5:0] scale; // the same, from the fourth cycle on: only a u's first shift needs them sooner
+    reg [5:0] scale; // the same, from the fourth cycle on
     reg [39+FRACTION-SHARE_SHIFT:0] sum_octets;
     reg [39+FRACTION-SHARE_SHIFT:0] sum_shifted;
     reg [26+FRACTION-SHARE_SHIFT:0] largest_octets;
@@ -99,7 +99,7 @@ module sptfra_points_taxel #(
                 && (rounded_2[TWICE_BITS-1:U_BITS-1] == {(TWICE_BITS - U_BITS + 1){rounded_2[TWICE_BITS-1]}});
 
             always @(posedge clock) begin
-                octets_1 <= wide >>> {sum_bits[5:3], 3'd0};
+                octets_1 <= wide >>> {scale[5:3], 3'd0};
                 twice_2 <= bits_1[TWICE_BITS-1:0];
                 sign_2 <= octets_1[WIDE-1];
                 // Of the bits above, those that a shift of up to 7 brings down, and the others

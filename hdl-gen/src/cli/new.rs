@@ -159,8 +159,10 @@ fn lines(new: &New, design: &Design, path: &Path, assumed: &[String], progress: 
         let trains = "golden calibrate trains a network against what is left";
         // The wide family was judged on points only.
         lines.push(if design.algorithm.kernel == Kernel::Point {
+            // Sensors that read no tension were judged with all units.
+            let units = if design.input.tension == Tension::Read { " --hidden 64" } else { "" };
             format!(
-                "{trains}; with --family wide --hidden 64, in some\n\
+                "{trains}; with --family wide{units}, in some\n\
                  minutes, on bodies of other shapes too, held or tilted, and the network tells its standard error."
             )
         } else {

@@ -65,7 +65,7 @@ impl PointsPlan {
     /// they are in the sums.
     pub(super) fn first_row(&self, sensor: &Sensor) -> u64 {
         let quads = Quads::new(sensor.columns, sensor.rows).count();
-        ((CLASSES * quads) / self.taxels + 11 + self.taxels) as u64
+        ((CLASSES * quads) / self.taxels + 12 + self.taxels) as u64
     }
 
     /// From there to the centroid: the weights of all of a row need one more stage to be added up.

@@ -112,6 +112,7 @@ fn designs() -> Vec<Design> {
         tiny,
         shipped("sensor1-joint"),
         shipped("sensor1-fast"),
+        shipped("small-joint"),
         shipped("sensor2-wide"),
         uncorrected,
         long,

@@ -137,7 +137,7 @@ const NOT_OURS: [&str; 5] = [
     "takes 297 cycles",
     "7,335,000 cycles",
     "At 1,000 frames a second",
-    "two bodies takes 15,872 cycles",
+    "two bodies takes 15,875 cycles",
     "5,878 frames a second",
 ];
 /// What makes a number a figure of a design.
