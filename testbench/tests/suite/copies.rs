@@ -1,4 +1,4 @@
-//! Registers that are equal in all lanes, cells, or rows of points, and are there so that each has its own at hand: a tool that joins equal
+//! Registers that are equal in all lanes, cells, or points, and are there so that each has its own at hand: a tool that joins equal
 //! registers, and leaves alone those that are marked, leaves one in each.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -50,8 +50,8 @@ fn shared(design: &Design, marked: bool) -> BTreeSet<String> {
     // Yosys' own names say nothing of who looks at them.
     let wires = module["netnames"].as_object().expect("wires").iter();
     for (name, wire) in wires.filter(|(name, _)| !name.starts_with('$')) {
-        let copy = ["gen_lanes[", "gen_cells[", "gen_rows["].iter().find_map(|array| name.split_once(array));
-        let Some((number, register)) = copy.and_then(|(_, rest)| rest.split_once("].")) else {
+        let copy = ["gen_lanes[", "gen_cells[", "gen_points["].iter().find_map(|array| name.find(array));
+        let Some((number, register)) = copy.and_then(|at| Some(name.split_at(at + name[at..].find("].")? + 2))) else {
             outside.extend(bits(&wire["bits"]));
             continue;
         };
@@ -68,7 +68,7 @@ fn shared(design: &Design, marked: bool) -> BTreeSet<String> {
 }
 
 #[test]
-fn each_row_of_points_has_its_own() {
+fn each_point_has_its_own() {
     let design = shipped("small-joint");
     let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<BTreeSet<_>>();
     let [marked, free] = [true, false].map(|marked| shared(&design, marked));
