@@ -58,7 +58,7 @@ module sptfra_points #(
     localparam integer VALUE_BITS = 28;
     localparam integer POINT_BITS = 27;
     localparam integer TENSION_BITS = POINT_BITS - 2 + TAXELS; // of the taxels of a cycle
-    localparam integer STAGES = 10 + TAXELS; // from a taxel's address to its tension being in the sums
+    localparam integer STAGES = 10 + TAXELS; // from a taxel's address to its tension being added to the sums
     localparam [1:0] STEP = TAXELS[1:0];
     localparam [1:0] LAST_MEMBER = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;

@@ -39,7 +39,8 @@ module sptfra_points_centroid #(
     genvar index;
 
     // ---- The weights' sum and their moments: of those of a cycle about their first, by additions, and of that one
-    // about the middle of the grid times what they weigh together. Index k: k cycles after the weights
+    // about the middle of the grid times what they weigh together. Index k: k cycles after the weights, five at a time;
+    // of a row at once a cycle more from 3 on
     localparam integer GROUP_BITS = WEIGHT_BITS + ((FIVES == 1) ? 4 : 7); // of the sum of them, times up to 4, or 14
     localparam integer STAGES = (FIVES == 1) ? 2 : 3; // to both sums of those of a cycle
     wire [FIVES*GROUP_BITS-1:0] sums_2; // of each five

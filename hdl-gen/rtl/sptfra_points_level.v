@@ -174,7 +174,8 @@ module sptfra_points_level #(
         end
     end
 
-    // ---- Depths below the level, squared: index k: k cycles after the row was asked for
+    // ---- Depths below the level, squared: index k: k cycles after reading, a row being asked for two
+    // cycles before that
     localparam integer STAGES = 5;
     reg [STAGES:1] reads;
     reg [STAGES:1] lasts;

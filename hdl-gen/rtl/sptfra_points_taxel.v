@@ -21,7 +21,7 @@ module sptfra_points_taxel #(
     input  wire start,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
-    output wire [15:0] margin, // 2^-8 sum |b|, and 1; there 7 cycles after start
+    output wire [15:0] margin, // 2^-8 sum |b|, and 1; there 6 cycles after start
     // A taxel, from the fourth cycle after start on
     input  wire valid,
     input  wire signed [26:0] u0,

@@ -64,7 +64,7 @@ module sptfra_cean #(
     reg [39:0] sum;
     reg [26:0] most;
     reg pulled; // a stress was above the noise floor
-    reg clear;
+    reg clear; // for a new frame; after a reset too, and nothing is valid in that cycle
 
     always @(posedge clock) begin
         valid_1 <= stress_valid;
@@ -78,7 +78,7 @@ module sptfra_cean #(
         if (reset) begin
             valid_1 <= 1'b0;
         end
-        if (reset || clear) begin
+        if (clear) begin
             sum <= 40'd0;
             most <= 27'd0;
             pulled <= 1'b0;
@@ -103,7 +103,7 @@ module sptfra_cean #(
     assign idle = (state == COLLECT);
 
     always @(posedge clock) begin
-        clear <= 1'b0;
+        clear <= reset;
         below_floor <= (sum < CONTACT_FLOOR);
         guessed <= ({7'd0, replaced, 3'd0} > sum);
         case (state)

@@ -23,7 +23,7 @@ module sptfra_direction #(
     input  wire clock,
     input  wire reset,
     // Stress, taxel by taxel in rows
-    input  wire clear, // for a new frame
+    input  wire clear, // for a new frame, and after a reset
     input  wire valid,
     input  wire tensile,
     input  wire [26:0] magnitude,
@@ -101,7 +101,7 @@ module sptfra_direction #(
             column <= last_column ? {X_WIDTH{1'b0}} : column + 1'b1;
             row <= last_column ? row + 1'b1 : row;
         end
-        if (reset || clear) begin
+        if (clear) begin
             column <= {X_WIDTH{1'b0}};
             row <= {Y_WIDTH{1'b0}};
             compression_seen <= 1'b0;
@@ -152,7 +152,7 @@ module sptfra_direction #(
             compression_x <= compression_x + moment_x_2;
             compression_y <= compression_y + moment_y_2;
         end
-        if (reset || clear) begin
+        if (clear) begin
             compression <= 48'd0;
             compression_x <= 48'd0;
             compression_y <= 48'd0;

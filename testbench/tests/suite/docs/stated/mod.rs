@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use golden::design::{Design, InputRange, Kernel, MAX_LANES, Outputs};
+use golden::design::{CalibrationIn, Design, InputRange, Kernel, MAX_LANES, Outputs, Samples};
 use hdl_gen::inspection::figures;
 use hdl_gen::plan::Plan;
 
@@ -82,6 +82,23 @@ fn own_range(design: &mut Design) {
     design.hardware.range = InputRange::Frame;
 }
 
+fn integers(design: &mut Design) {
+    design.hardware.samples = Samples::Int16;
+    design.input.pa_per_count = Some(1.0);
+}
+
+fn integers_in_ram(design: &mut Design) {
+    integers(design);
+    design.hardware.control = true;
+    design.hardware.calibration = CalibrationIn::Ram;
+}
+
+/// What `hdl-gen new` writes beside the estimator.
+fn as_new(design: &mut Design) {
+    own_range(design);
+    design.algorithm.count_bodies = true;
+}
+
 fn resultants(design: &mut Design) {
     design.algorithm.outputs = Outputs::Resultants;
 }
@@ -92,7 +109,7 @@ const OF_OTHERS: [&str; 3] = ["published: ", "the line as it was", "the joint es
 const NO_DESIGNS: [&str; 4] = ["block", "core", "stage", "taxels"];
 
 /// Sentences, with a figure's name in braces where it is stated: page, shipped design, what is changed in it, the words.
-const SENTENCES: [(&str, &str, Change, &str); 25] = [
+const SENTENCES: [(&str, &str, Change, &str); 28] = [
     ("README.md", "sensor1-fast-100", as_it_is, "taxels takes {us} to"),
     ("README.md", "sensor1-joint", as_it_is, "to {us} µs, on"),
     ("README.md", "sensor1-resultants", as_it_is, "µs, on {dsp} to"),
@@ -123,6 +140,9 @@ const SENTENCES: [(&str, &str, Change, &str); 25] = [
         "`sensor1-clipped` takes {latency} cycles at an interval of {interval}, {dsp} DSP and {bram} RAMB36",
     ),
     ("estimators.md", "sensor2-clipped", as_it_is, "`sensor2-clipped` {latency} and {interval}."),
+    ("streams.md", "sensor1-fast-64", integers_in_ram, "latency: {latency} cycles in place"),
+    ("streams.md", "sensor1-fast-64", integers, "cycles in place of {latency}."),
+    ("estimators.md", "sensor1-fast", as_new, "units {latency} cycles, at the same interval"),
 ];
 
 fn as_it_is(_: &mut Design) {}
