@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Snakemake workflow of `testbench sweep`: `testbench run --json` for each point, one a job, then the report. Started by
 # `make sweep-cluster`; the machines of a cluster need the same folder and the same program. Runs that are there are not
 # made again.

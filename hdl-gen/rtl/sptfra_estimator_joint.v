@@ -5,7 +5,7 @@
 //
 // Three stages, each with a frame of its own (sptfra_joint_stages). The search: Condition 1 over the plane, and the
 // level set's centroid. With NETWORK the look: the contact's stress, and where its centre is. The correction: what the
-// network makes of a window around it, and the friction. u_q of the next frame may arrive meanwhile. The answer are
+// network makes of a window around it, and the friction. u_q of the next frame may arrive meanwhile. The answer is
 // both components as they are.
 
 `default_nettype none
@@ -170,14 +170,15 @@ module sptfra_estimator_joint #(
     reg [5:0] search_flags;
     wire signed [17:0] found_x, found_y;
     wire found_unknown, found_on_border, found_saturated, look_saturated;
-    localparam integer WITH_FRAME = 18 * 40 + 6 + 2 * 18 + 3;
+    localparam integer WITH_FOUND = 2 * 18 + 3; // what the search found
+    localparam integer WITH_FRAME = 18 * 40 + 6 + WITH_FOUND;
     wire [WITH_FRAME-1:0] searched = {search_sums, search_flags, found_x, found_y, found_unknown, found_on_border,
         found_saturated};
     wire [WITH_FRAME-1:0] seen; // of the frame in the look, or that was searched
     reg signed [17:0] centroid_x, centroid_y;
     reg on_border, before_saturated; // a value of search or look was clipped
     reg correction_started;
-    wire signed [17:0] look_x = seen[21 +: 18], look_y = seen[3 +: 18];
+    wire signed [17:0] look_x = seen[WITH_FOUND-18 +: 18], look_y = seen[WITH_FOUND-36 +: 18];
 
     always @(posedge clock) begin
         if (search_start) begin
@@ -187,13 +188,13 @@ module sptfra_estimator_joint #(
             search_flags <= flags_in;
         end
         if (correction_start) begin
-            {centroid_x, centroid_y, unknown, on_border, before_saturated} <= seen[2*18+2:0]
-                | {38'd0, look_saturated};
+            {centroid_x, centroid_y, unknown, on_border, before_saturated} <= seen[WITH_FOUND-1:0]
+                | { {(WITH_FOUND - 1){1'b0}}, look_saturated};
         end
-        // The next frame is a cycle behind at least, and the answer many
+        // What was seen stays for a cycle more, and the answer comes twenty later or more
         correction_started <= correction_start;
         if (correction_started) begin
-            {sums, flags} <= seen[WITH_FRAME-1:2*18+3];
+            {sums, flags} <= seen[WITH_FRAME-1:WITH_FOUND];
         end
     end
 

@@ -42,6 +42,12 @@ module sptfra_joint_stages #(
     output reg  look_bank
 );
 
+    generate
+        if ((LOOK != 0) && (LOOK != 1)) begin : gen_check
+            sptfra_error_there_is_a_look_or_none invalid ();
+        end
+    endgenerate
+
     reg [1:0] u_waiting; // frames whose u_q wait to be searched
     reg searching;
     reg centroid_waits; // for the look

@@ -68,7 +68,10 @@ module sptfra_network #(
     localparam signed [63:0] WIDE_LIMIT = 64'sd16384;
 
     generate
-        if (LENGTH < AT_ONCE + 4) begin : gen_check
+        if ((AT_ONCE != 4) && (AT_ONCE != 8) && (AT_ONCE != 16)) begin : gen_check_units
+            sptfra_error_4_8_or_16_hidden_units_are_worked_on_at_once invalid ();
+        end
+        if (LENGTH < AT_ONCE + 4) begin : gen_check_length
             sptfra_error_a_pass_is_too_short_to_read_out_the_one_before invalid ();
         end
     endgenerate

@@ -50,7 +50,7 @@ module sptfra_points #(
     output reg  row_valid,
     input  wire again, // after the last row: the first one once more, three cycles later, and so on
     output reg  [SIDE*28-1:0] row_values,
-    output wire clipped // a u was, or the least B may be; held until the next start
+    output wire clipped // a u was; held until the next start
 );
 
     localparam integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
@@ -191,10 +191,10 @@ module sptfra_points #(
         for (index = 0; index < SIDE; index = index + 1) begin : gen_rows
             for (column = 0; column < SIDE; column = column + 1) begin : gen_points
                 // For each point its own: a tool puts a row's points where there is room, all over a device
-                (* keep = "true" *) reg clears;
+                (* keep = "true" *) reg clears; // a frame begins
                 (* keep = "true" *) reg nothing; // no taxel is there
-                (* keep = "true" *) reg counts;
-                (* keep = "true" *) reg turns;
+                (* keep = "true" *) reg counts; // a tension, or the row above, is taken
+                (* keep = "true" *) reg turns; // the row above
                 wire [TAXELS*(POINT_BITS-1)-1:0] tensions_11;
                 wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle; none in a turn
                 wire [VALUE_BITS:0] above = sums[(VALUE_BITS+1)*(SIDE*(index + 1) + column) +: VALUE_BITS+1];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Several bodies around the core for one: no place is taken twice; frames go to the core, are looked at and leave in
 // the order in which they came, each once; no frame is in the core while those of bodies are, and each answer is taken
 // for what it is of; and what is done with a frame comes to an end.

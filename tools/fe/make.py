@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Contacts on the paper's prisms by finite elements: the frames in data/fe.
 
     apt-get install calculix-ccx

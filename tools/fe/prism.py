@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """A soft prism, bonded to a rigid ground, under a rigid indenter: input for CalculiX, and what it answers.
 
 Millimetres, newtons, megapascals; z points out of the sensor. Nothing here knows of the project's own elasticity.

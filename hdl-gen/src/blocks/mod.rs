@@ -32,6 +32,10 @@ use crate::plan::product::Vector;
 use crate::plan::resources::BlockCost;
 pub use parameters::Parameters;
 
+/// Elements of a vector, and rows of sums, for which the modules have room at least.
+pub const FEWEST_ELEMENTS: usize = 8;
+const _: () = assert!(SUM_ROWS <= FEWEST_ELEMENTS);
+
 /// What each block of the design takes, in the data's order.
 pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     let slot = plan.estimator.slot();
@@ -58,5 +62,5 @@ fn place(plan: &Plan, vector: Vector) -> (usize, bool) {
 
 /// Bits of the number of an element, or of a row of sums.
 pub fn row_width(plan: &Plan) -> u32 {
-    address_bits(plan.elements().max(SUM_ROWS))
+    address_bits(plan.elements().max(FEWEST_ELEMENTS))
 }

@@ -8,6 +8,9 @@ use crate::plan::resources::BlockCost;
 
 use super::Parameters;
 
+/// Bits of `|w|`.
+pub const WEIGHT_BITS: u32 = 26;
+
 /// From the address of a weight to the weight, unless the instance says otherwise.
 pub const WEIGHT_LATENCY: u64 = 4;
 
@@ -63,6 +66,6 @@ pub fn cost(sensor: &Sensor) -> BlockCost {
 fn record_bits(sensor: &Sensor) -> u32 {
     let bits = |numbers: usize| numbers.next_power_of_two().ilog2();
     let name = if sensor.columns > 4 { bits(sensor.columns.div_ceil(2)) + 1 } else { 2 };
-    let sum = crate::model::contacts::regions::WEIGHT_BITS + bits(sensor.taxels());
+    let sum = WEIGHT_BITS + bits(sensor.taxels());
     sum + bits(sensor.taxels() + 1) + 2 * name + 2
 }

@@ -6,7 +6,8 @@ use tera::Context;
 use golden::design::{Filter, Samples};
 
 use crate::blocks::{
-    Parameters, array, bodies, bz, calibration, cean, co, field, intake, op, range, row_width, turns, unfold, we,
+    FEWEST_ELEMENTS, Parameters, array, bodies, bz, calibration, cean, co, field, intake, op, range, row_width, turns,
+    unfold, we,
 };
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
@@ -23,9 +24,6 @@ const TEMPLATE: &str = concat!(
     include_str!("../../templates/rtl/top/lanes.v.tera"),
     include_str!("../../templates/rtl/top/output.v.tera"),
 );
-
-/// Elements for which the modules have room at least.
-const FEWEST_ELEMENTS: usize = 8;
 
 /// The data of the template. Widths end in `_width`.
 #[derive(Serialize)]

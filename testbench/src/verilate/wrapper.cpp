@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The C interface between the stream driver and the simulated core: one call a clock cycle, everything in registers.
 //
 // Input word of dut_step: bits 32 s_axis_tvalid, 33 s_axis_tlast, 34 m_axis_tready, 35 aresetn. Output word: bits 15:0

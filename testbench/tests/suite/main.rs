@@ -27,6 +27,7 @@ mod hard;
 mod icarus;
 mod joint;
 mod layered;
+mod licence;
 mod lint;
 mod looking;
 mod netlist;

@@ -7,7 +7,7 @@ use testbench::tools;
 use crate::support::workspace;
 
 /// Module, parameter, value, what the tool must name.
-const SENSELESS: [(&str, &str, &str, &str); 41] = [
+const SENSELESS: [(&str, &str, &str, &str); 44] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("bz", "WAYS", "2", "ways_must_be_1_or_4"),
     ("bz", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
@@ -48,6 +48,9 @@ const SENSELESS: [(&str, &str, &str, &str); 41] = [
     ("registers", "STREAM_BYTES", "12", "a_beat_has_4_8_or_16_bytes"),
     ("registers", "SAMPLES", "3", "samples_are_float32_int16_or_uint16"),
     ("field", "COLUMNS", "65", "columns_and_rows_must_be_2_to_64"),
+    ("estimator_line", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("joint_stages", "LOOK", "2", "there_is_a_look_or_none"),
+    ("network", "AT_ONCE", "5", "4_8_or_16_hidden_units_are_worked_on_at_once"),
     ("estimator_joint", "WAYS", "1", "the_joint_estimator_needs_four_ways"),
 ];
 

@@ -17,6 +17,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Cells, Found, Given, Metadata, Seen, Slot, Stage, WEIGHT_BITS};
+use crate::blocks::FEWEST_ELEMENTS;
 use crate::blocks::parameters::Parameters;
 use crate::cores::{LONG_BITS, SHORT_BITS};
 use crate::plan::format::{FRICTION_FRACTION, Factors, MOST_CELLS, address_bits, pow2};
@@ -161,9 +162,10 @@ impl Slot for JointPlan {
     fn search_blocks(&self, sensor: &Sensor) -> Vec<BlockCost> {
         let quads = Quads::new(sensor.columns, sensor.rows).count();
         let classes = CLASSES as u32;
+        let rows = quads.max(FEWEST_ELEMENTS);
         // Of two frames, or one of them handed on.
-        let taxels = || memory("u", 3, 2 * quads.max(4).next_power_of_two(), classes * U_BITS, false);
-        let handed_on = || memory("u", 3, quads, classes * U_BITS, false);
+        let taxels = || memory("u", 3, 2 * rows.next_power_of_two(), classes * U_BITS, false);
+        let handed_on = || memory("u", 3, rows, classes * U_BITS, false);
         let Cells { cells, elements } = self.cells;
         let cells = self.block_cells().then(|| block_memory("u of cells", 3 * cells, 2 * elements, U_BITS));
         // The squares of five depths, or of one, which are of 17 bits; and both moments.
@@ -180,7 +182,7 @@ impl Slot for JointPlan {
             let look = BlockCost::new("look", &["sptfra_look"], CLASSES + 2);
             // Each member of a place in the window may be in any quarter of the grid.
             let seen = if self.points.is_some() { handed_on() } else { taxels() };
-            blocks.push(look.with([seen, memory("look", CLASSES * CLASSES, quads, STRESS_BITS, false)]));
+            blocks.push(look.with([seen, memory("look", CLASSES * CLASSES, rows, STRESS_BITS, false)]));
             // The hidden units' four classes, both components, and the error that is left.
             let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + readouts(network));
             let width = WEIGHT_BITS * classes * network.at_once as u32;

@@ -7,9 +7,6 @@ use golden::bodies::Labels;
 
 use super::super::bodies::{SHARE, SHARE_OF};
 
-/// Bits of `|w|`.
-pub const WEIGHT_BITS: u32 = 26;
-
 /// What there is of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Found {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The Python driver in batches and without registers, against the simulated core.
 
     batches.py DRIVER MACHINE.so CORE.so REGISTERS FRAMES METADATA

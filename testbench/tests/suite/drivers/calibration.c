@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* The C driver's calibration on the host, against the simulated core.
  *
  *   calibration CORE.so BANKS COLUMNS ROWS

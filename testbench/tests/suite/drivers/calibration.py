@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The Python driver's calibration against the simulated core.
 
     calibration.py MACHINE.so CORE.so FOLDER

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* What the driver's tests say when something is not so. */
 #ifndef CHECK_H
 #define CHECK_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* The desk of the examples, with a DMA that stops in the middle of a frame. When the program has done with it, one more
  * frame goes through: what the fault left behind must be gone.
  *

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* Calibrations from files by the C driver, against the simulated core.
  *
  *   file CORE.so LIST

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* The C driver on the host, against the simulated core: frames, names, counters, interrupts, soft reset, refusals.
  *
  *   host CORE.so REGISTERS FRAMES COLUMNS ROWS WORDS_OUT HAS_FIELD STREAM_BYTES

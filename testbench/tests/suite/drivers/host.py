@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The Python driver against the simulated core: an overlay, a DMA and memory as PYNQ presents them, all made up.
 
     host.py MACHINE.so CORE.so FRAMES METADATA

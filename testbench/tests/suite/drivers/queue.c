@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* The queue of the C driver against the simulated core and a DMA with descriptors: frames at random moments, errors and
  * resets of the DMA, and the account of every frame.
  *

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Board parts, IP catalogue and block designs.
 
 namespace eval standin {

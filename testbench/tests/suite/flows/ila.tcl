@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Logic analysers in a linked design (UG835, UG908).
 
 namespace eval standin {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Checks an IP-XACT file against the schema of IEEE 1685-2014; prints its registers as JSON.
 
     ipxact.py FILE.xml

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Estimates of power from a routed checkpoint (UG835, UG907).
 
 namespace eval standin {

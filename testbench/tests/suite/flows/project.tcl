@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Projects, synthesis, implementation, reports.
 
 namespace eval standin {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Stands in for one of the programs of Vivado's simulator: knows the flags that the generated script uses, and does with
 # Icarus Verilog what it was asked to do.
 #

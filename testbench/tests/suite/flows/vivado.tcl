@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # Stands in for Vivado: knows the commands that the generated scripts use, their flags and what they act on.
 #
 #   tclsh vivado.tcl RECORD SCRIPT [ARGUMENT ...]

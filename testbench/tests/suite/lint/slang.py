@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Lets slang read a design as Verilog-2005 with its extra warnings: slang.py TOP FILE... Prints what it has to say."""
 
 import sys

@@ -4,7 +4,7 @@
 // CeAn: what a frame's stress b says at first sight, for Op: how much there is, and where the push goes (Eq. 24).
 //
 // Stresses come in one a cycle, taxel by taxel in rows; the result follows 4 cycles after the last one, or, with
-// DIRECTION, after the 12 + 2 divisions of sptfra_direction. The results of up to two frames wait for Op.
+// DIRECTION, after 12 and the two divisions of sptfra_direction. The results of up to two frames wait for Op.
 
 `default_nettype none
 

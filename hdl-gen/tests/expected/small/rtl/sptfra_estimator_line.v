@@ -71,6 +71,12 @@ module sptfra_estimator_line #(
     output reg  [5:0] flags
 );
 
+    generate
+        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check
+            sptfra_error_ways_must_be_1_or_4 invalid ();
+        end
+    endgenerate
+
     // ---- u_q: a register on the way to all cells
     reg [2:0] fill_valid;
     reg [ROW_WIDTH-1:0] fill_row;

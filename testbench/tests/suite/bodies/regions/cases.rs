@@ -1,8 +1,9 @@
 //! Grids and frames: drawn, at random, and such as are hard to tell apart.
 
 use golden::sensor::Sensor;
+use hdl_gen::blocks::regions::WEIGHT_BITS;
 use hdl_gen::blocks::regions::{WEIGHT_LATENCY, steps};
-use hdl_gen::model::contacts::regions::{Found, WEIGHT_BITS, find};
+use hdl_gen::model::contacts::regions::{Found, find};
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
