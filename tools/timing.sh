@@ -3,7 +3,8 @@
 # Places and routes a design for the Lattice ECP5 that its `part` names, such as LFE5U-85F-8BG381C, the largest fabric with
 # an open flow, and says whether it reaches the design's clock (exit code 0) or not (1). Another fabric than the target's,
 # and a slower one, but a real place and route.
-# Usage: tools/timing.sh [--seeds N] DESIGN.toml    (make tools and make build first; takes about a quarter of an hour)
+# Usage: tools/timing.sh [--seeds N] DESIGN.toml    (make tools and make build first; timing.toml takes a quarter of an hour,
+# timing-points.toml half an hour a seed)
 # With --seeds the placer begins N times from another place; all have to reach the clock.
 set -eu
 cd "$(dirname "$0")/.."
