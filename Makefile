@@ -209,7 +209,7 @@ DESIGNS ?= designs/timing.toml
 SEEDS   ?= 1
 
 .PHONY: timing
-timing: tools build ## Place and route for an ECP5, for a clock figure from an open flow (a quarter of an hour; DESIGNS=designs/timing-points.toml: half an hour a seed; SEEDS=3)
+timing: tools build ## Place and route for an ECP5, for a clock figure from an open flow (a quarter of an hour and more; DESIGNS=…, SEEDS=3)
 	@set -e; for design in $(DESIGNS); do tools/timing.sh --seeds $(SEEDS) $$design; done
 
 .PHONY: clean

@@ -142,7 +142,7 @@ const SENTENCES: [(&str, &str, Change, &str); 28] = [
     ("estimators.md", "sensor2-clipped", as_it_is, "`sensor2-clipped` {latency} and {interval}."),
     ("streams.md", "sensor1-fast-64", integers_in_ram, "latency: {latency} cycles in place"),
     ("streams.md", "sensor1-fast-64", integers, "cycles in place of {latency}."),
-    ("estimators.md", "sensor1-fast", as_new, "units {latency} cycles, at the same interval"),
+    ("estimators.md", "sensor1-fast", as_new, "units {latency} cycles, at the same"),
 ];
 
 fn as_it_is(_: &mut Design) {}
