@@ -41,8 +41,13 @@ run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a l
 
 # What fails soonest comes first: formatting and lints, then the crates in the order in which they use each other.
 .PHONY: test
-test: lint browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## Everything: formatting, lints, all tests of all crates
+test: lint browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## Formatting, lints, all tests of all crates
 	$(CARGO) test --workspace
+
+.PHONY: test-long
+test-long: lint browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## As test, with all broken copies and random designs, of which that tries a fourth (half an hour)
+	SPTFRA_TEST_ALL=1 $(CARGO) test --workspace
+	$(CARGO) test -p hdl-gen -p testbench --test suite -- --ignored
 
 .PHONY: test-times
 test-times: browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
@@ -50,7 +55,7 @@ test-times: browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## All
 
 .PHONY: formal
 formal: tools ## Prove the stream rules and the frame handshake with Yosys and z3 (part of `make test`)
-	$(CARGO) test -p testbench --test suite formal:: -- --nocapture
+	SPTFRA_TEST_ALL=1 $(CARGO) test -p testbench --test suite formal:: -- --nocapture
 
 # The 4 x 3 design by either plan.
 SMALL_DESIGNS := $(addprefix $(TARGET)/trust/small-,paper.toml reduced.toml)

@@ -10,6 +10,8 @@ mod contacts;
 mod curve;
 mod dead_taxels;
 mod design_file;
+#[allow(dead_code, reason = "shared with the tests of the RTL, which use all of it")]
+mod effort;
 mod estimator;
 mod families;
 mod finite_elements;

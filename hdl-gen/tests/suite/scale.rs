@@ -59,6 +59,7 @@ fn the_largest_sensor_has_hardware_with_one_lane_and_with_sixteen() {
 /// A mat beyond the size at which a dense matrix could be held thirteen times over: its files are written, and each
 /// lane has its share of the entries.
 #[test]
+#[ignore = "twenty seconds: part of `make test-long`"]
 fn a_mat_of_4096_taxels_has_hardware() {
     // With the estimator of new designs: its points see a taxel a cycle, while the lanes take eight.
     let more = "[algorithm]\nplan = \"reduced\"\nkernel = \"cell\"\nfilter = { kind = \"f2\", p = 1.0 }\n\

@@ -1,6 +1,7 @@
 //! What the emitted Verilog checks of itself in simulation: the schedule's promises. A broken schedule is noticed where
 //! it breaks, not only by the words that come out.
 
+use crate::support::effort::some_of;
 use crate::support::faults::broken;
 use crate::support::{by_plan, in_parallel, planned, shipped};
 use golden::design::{Design, Estimator, Outputs, PlanKind};
@@ -38,7 +39,8 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         design.algorithm.estimator = Estimator::Joint;
         design
     };
-    let cases = [
+    let late_settled = late("settled", "(state == MEASURE)");
+    let cases = some_of([
         // The collector does not keep up with the lanes.
         (paper(), "spmv_collector", "visit_known && !parted", "visit_known && parted", "spmv_lane.v"),
         (reduced(), "spmv_collector", "visit_known && !parted", "visit_known && parted", "spmv_lane.v"),
@@ -59,14 +61,14 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (paper(), "coefficients", "is_g_3 <= is_g_2;", "is_g_3 <= is_g_1;", "check_delay.v"),
         (reduced(), "spmv_collector", "sum_valid <= visited_valid;", "sum_valid <= taking;", "check_delay.v"),
         (reduced(), "line", "(step == 4'd14)", "(step == 4'd15)", "check_latency.v"),
-        (joint(), "cean", "settled <= (state == MEASURE);", &late("settled", "(state == MEASURE)"), "check_latency.v"),
+        (joint(), "cean", "settled <= (state == MEASURE);", &late_settled, "check_latency.v"),
         (joint(), "plane", "value_valid = ends[TOTAL_DEPTH];", "value_valid = ends[TOTAL_DEPTH-1];", "check_latency.v"),
         (joint(), "friction", "running && (step == 5'd17);", "running && (step == 5'd16);", "check_latency.v"),
         (shipped("sensor1-fast"), "network", "== SUMMING[4:0])", "== SUMMING[4:0] + 5'd1)", "check_latency.v"),
         (reduced(), "fold", "lasts[3] && advance", "lasts[2] && advance", "check_latency.v"),
         // More frames are begun than Op has places for.
         (resultants(), "turns", "(u_held != 2'd2) && ", "", "_co.v"),
-    ];
+    ]);
     let said = in_parallel(&cases, |(design, module, from, to, _)| said_of(design, module, from, to));
     for ((design, module, from, _, place), said) in cases.iter().zip(said) {
         let stopped = said.contains(place) && said.contains("$finish");

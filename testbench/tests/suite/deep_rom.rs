@@ -36,6 +36,7 @@ fn address_width(depth: usize) -> u32 {
 }
 
 #[test]
+#[ignore = "half a minute of Yosys: part of `make test-long`"]
 fn yosys_finds_the_predicted_block_memories() {
     for (depth, width) in SHAPES {
         let (folder, _) = folder(depth, width);

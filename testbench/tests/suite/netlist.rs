@@ -24,6 +24,7 @@ fn models() -> PathBuf {
 }
 
 #[test]
+#[ignore = "four minutes: part of `make test-long`"]
 fn the_netlist_gives_the_words_of_the_model() {
     let mut design = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants);
     (design.sensor.columns, design.sensor.rows) = (2, 2);

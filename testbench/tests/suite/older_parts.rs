@@ -22,6 +22,7 @@ fn plan(data_bits: u32) -> Plan {
 
 /// Vectors of 25 bits: the whole design flattened, since only then does a tool see how long an operand really is.
 #[test]
+#[ignore = "twenty seconds of Yosys: part of `make test-long`"]
 fn multipliers_of_a_7_series_part_are_those_that_yosys_makes() {
     let plan = plan(25);
     let folder = tempfile::tempdir().expect("a folder");

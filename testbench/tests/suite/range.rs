@@ -7,6 +7,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::calibration;
+use crate::support::effort::some_of;
 use crate::support::faults::broken;
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint, with_lanes};
 
@@ -90,14 +91,14 @@ fn frames_of_all_strengths_in_one_row_are_right() {
 /// The frames above find what could be wrong of a range: which one, whose, and where it is taken back.
 #[test]
 fn a_wrong_range_is_noticed() {
-    let faults = [
+    let faults = some_of([
         ("sptfra_range", "(guessed > STRESS_BOUND)", "(guessed > STRESS_BOUND + 5000000)"),
         ("sptfra_range", "exact_4 <= octets_3 <<< exponent[2:0]", "exact_4 <= octets_3 <<< exponent[1:0]"),
         ("sptfra_range", "rounded_5 <= exact_4 + HALF", "rounded_5 <= exact_4"),
         ("sptfra_range_frames", "stress_sum_in << of_direction", "stress_sum_in << of_words"),
         ("sptfra_range_frames", "of_words = exponents[oldest]", "of_words = exponents[next_direction]"),
         ("sptfra_range_frames", "16'b0001_0000_1111_1100", "16'b0000_0000_1111_1100"),
-    ];
+    ]);
     let plan = planned(&designs().swap_remove(3));
     let packets = packets(&plan);
     let noticed = in_parallel(&faults, |&(module, from, to)| {

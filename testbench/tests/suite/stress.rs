@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::calibration;
+use crate::support::effort::{share_of, some_of};
 use crate::support::faults::broken;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_points};
 use golden::design::{Design, Estimator, Outputs, Overrun, PlanKind};
@@ -29,15 +30,16 @@ fn every_answer_is_right_and_none_is_lost() {
         shipped("small-joint"),
         points,
     ];
-    let options = stress::Options { frames: FRAMES, seed: 5 };
+    let frames = share_of(FRAMES as usize) as u64;
+    let options = stress::Options { frames, seed: 5 };
     in_parallel(&designs, |design| {
         let report = stress(design, &options, &Progress::hidden()).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(report.sent.total(), FRAMES);
+        assert_eq!(report.sent.total(), frames);
         assert_eq!(report.sent, report.answered.plus(report.lost_to_resets));
-        assert_eq!(report.resets, FRAMES / 100);
+        assert_eq!(report.resets, frames / 100);
         let counts = report.answered;
         for count in [counts.good, counts.short, counts.long, counts.not_finite] {
-            assert!(count > FRAMES / 20, "{report}");
+            assert!(count > frames / 20, "{report}");
         }
         // A reset costs the frames inside, eight at most.
         assert!(report.lost_to_resets.total() <= 8 * report.resets, "{report}");
@@ -170,7 +172,8 @@ type Fault<'a> = (&'a Design, &'a str, &'a str, &'a str);
 
 /// Copies with a fault each that no batch notices.
 fn missed(cases: &[Fault<'_>]) -> Vec<String> {
-    let noticed = in_parallel(cases, |&(design, module, from, to)| {
+    let cases = some_of(cases);
+    let noticed = in_parallel(&cases, |&&(design, module, from, to)| {
         let plan = planned(design);
         let built = broken(&plan, module, from, to);
         let wrong = |batch: u64| {
@@ -190,9 +193,10 @@ fn missed(cases: &[Fault<'_>]) -> Vec<String> {
 fn faults_in_the_rtl_are_noticed() {
     let design = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
     let explained = mutants::Explained::load(Path::new("survivors.toml")).expect("a list of survivors");
-    let options = mutants::Options { count: Kind::ALL.len(), seed: 1, explained };
+    let kinds = share_of(Kind::ALL.len());
+    let options = mutants::Options { count: kinds, seed: 1, explained };
     let report = mutants(&design, &options, &Progress::hidden()).expect("runs");
-    assert_eq!(report.mutants.iter().filter(|mutant| mutant.fate.counts()).count(), Kind::ALL.len());
+    assert_eq!(report.mutants.iter().filter(|mutant| mutant.fate.counts()).count(), kinds);
 
     assert!(report.survivors().count() <= 2, "{report}");
 }

@@ -17,12 +17,18 @@ use testbench::stream_words::{Answer, decode, encode};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
 
+use crate::support::effort::share_of;
 use crate::support::{built, frames, in_parallel, planned, shipped, with_joint, with_points};
 
-const LONG: usize = 1200;
+/// Frames of a long row.
+fn long() -> usize {
+    share_of(1200)
+}
 
 /// Frames among as many that must have each status, so that a mode shows it more than once.
-const FEWEST_OF_A_STATUS: usize = 5;
+fn fewest_of_a_status() -> usize {
+    share_of(5)
+}
 
 /// Cycles of a frame from which not every one is tried: the search of the joint estimator is one long walk.
 const LONG_FRAME: u64 = 2000;
@@ -247,11 +253,11 @@ fn the_full_scale_and_beyond_are_the_full_scale_and_are_said() {
 fn mixed(plan: &Plan, count: usize, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     let extremes = frames::extremes(plan, random);
     (0..count)
-        .map(|_| match random.random_range(0..8) {
+        .map(|_| match random.random_range(0..9) {
             0..3 => frames::contact(plan, random),
             3 => frames::noise(plan, 1.1, random),
-            4 => extremes[random.random_range(0..extremes.len())].clone(),
-            5 => {
+            4..6 => extremes[random.random_range(0..extremes.len())].clone(),
+            6 => {
                 let length = random.random_range(1..3 * plan.taxels());
                 frames::contact(plan, random).into_iter().cycle().take(length).collect()
             }
@@ -270,17 +276,17 @@ fn thousands_of_mixed_frames_in_every_mode() {
 
 fn mixed_in_every_mode(subject: &Subject) {
     let plan = &subject.plan;
-    let packets = mixed(plan, LONG, &mut ChaCha8Rng::seed_from_u64(2));
+    let packets = mixed(plan, long(), &mut ChaCha8Rng::seed_from_u64(2));
     let mut model = Model::new(plan);
     let expected: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
     for status in [0, NO_CONTACT, DIRECTION_UNKNOWN, AT_BOUND, SATURATED, NOT_FINITE, BAD_LENGTH] {
         // A frame in which nothing pulls says that beside what else it says.
         let seen = expected.iter().filter(|words| words[0] & 0xFFFF & !(NO_TENSION | DOUBTFUL) == status).count();
-        assert!(seen >= FEWEST_OF_A_STATUS, "only {seen} frames with the status {status:#x} alone");
+        assert!(seen >= fewest_of_a_status(), "only {seen} frames with the status {status:#x} alone");
     }
     let seen = expected.iter().filter(|words| words[0] & NO_TENSION != 0).count();
     // The joint estimator asks for tension only where it finds that something is pushed.
-    let least = if plan.estimator.joint().is_some() { 0 } else { FEWEST_OF_A_STATUS };
+    let least = if plan.estimator.joint().is_some() { 0 } else { fewest_of_a_status() };
     assert!(seen >= least, "only {seen} frames without tension");
     let [free, _, _, both] = Mode::all(11);
     // The sink takes a beat now and then: frames pile up inside.

@@ -13,6 +13,7 @@ use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use crate::support::effort::some_of;
 use crate::support::in_parallel;
 use crate::support::player::{icarus, verilator, write_broken};
 
@@ -142,7 +143,7 @@ fn blobs_are_counted_as_the_model_counts_them() {
 /// Copies of the module that are wrong somewhere count wrong.
 #[test]
 fn faults_are_noticed() {
-    let faults = [
+    let faults = some_of([
         // One taxel of a blob that is joined gets its new name.
         ("blob_labels", "meets && (old == above)", "meets && (old == above) && (index == COLUMNS)"),
         ("blob_labels", "(above != own)", "1'b1"),
@@ -152,7 +153,7 @@ fn faults_are_noticed() {
         ("weight_raster", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
         ("weight_totals", "counts_1[index] ?", "1'b1 ?"),
         ("bodies", "left + {3'd0, done}", "left"),
-    ];
+    ]);
     let copies: Vec<_> = std::iter::once(None).chain(faults.iter().map(Some)).collect();
     let found = in_parallel(&copies, |fault| {
         let mut random = ChaCha8Rng::seed_from_u64(9);

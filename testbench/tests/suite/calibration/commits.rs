@@ -9,6 +9,7 @@ use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 use super::{BUSY, Subject, core, counts, errors, generation, judged, judged_in, load, subject};
+use crate::support::effort::some_of;
 use crate::support::faults::broken;
 use crate::support::in_parallel;
 
@@ -45,7 +46,7 @@ pub(super) fn commits_at_every_moment(
     let packets = counts(&subject.plan, before as usize + 12, &mut random);
     let accesses = load(bank, bank.crc());
     let banks = [calibration.power_up.clone(), bank.clone()];
-    let cycles: Vec<u64> = cycles.collect();
+    let cycles = some_of(cycles);
     let told = in_parallel(&cycles, |&cycle| {
         let mut core = core(built, 1);
         let (commit, writes) = accesses.split_last().expect("a commit");
@@ -135,12 +136,12 @@ fn packets_of_a_beat_do_not_pile_up() {
 fn half_a_frame_by_another_bank_is_noticed() {
     let subject = subject();
     let [other_gains, other_threshold, other_floor] = others(subject);
-    for (module, from, to, bank) in [
+    for (module, from, to, bank) in some_of([
         ("sptfra_calibrate", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", other_gains),
         ("sptfra_frame_calibration", "contacts[next_contact]", "contact", other_threshold),
         ("sptfra_frame_calibration", "noises[next_noise];", "noise;", other_floor.clone()),
         ("sptfra_frame_calibration", "assign no_direction = (of_frame != 2'b11);", ALWAYS_KNOWN, other_floor),
-    ] {
+    ]) {
         let built = broken(&subject.plan, module, from, to);
         let cycles = (0..subject.plan.timeline.interval_cycles).step_by(3);
         assert_ne!(commits_at_every_moment(subject, &built, &bank, cycles), Vec::<String>::new(), "{to}");

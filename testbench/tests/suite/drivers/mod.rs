@@ -14,6 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::support::effort::some_of;
 use crate::support::{built, by_plan, frames, planned, shipped, workspace};
 use golden::design::{Design, InputRange, Outputs, Overrun, PlanKind, Samples};
 use hdl_gen::emit::{emit, resolved_hash};
@@ -117,7 +118,7 @@ fn subjects() -> Vec<(Subject, usize)> {
     let shapes = [(Outputs::Field, 32), (Outputs::Resultants, 32)];
     let floats = shapes.map(|(outputs, stream_bits)| (Subject::wide(true, outputs, stream_bits), 2));
     let others = [(Subject::of_all_kinds(), 2), (Subject::of_integers(), 0), (bodies::subject(true), 2)];
-    floats.into_iter().chain(others).collect()
+    some_of(floats.into_iter().chain(others))
 }
 
 /// The driver's files but the calibration and the queue, and the machine that a test puts under it.
@@ -250,7 +251,7 @@ fn the_c_driver_compiles_anywhere() {
 #[test]
 fn a_wrong_c_driver_is_noticed() {
     let subject = Subject::new(true, Outputs::Field);
-    for (right, wrong) in [
+    for (right, wrong) in some_of([
         ("#define DMA_ADDRESS_HIGH 0x1Cu", "#define DMA_ADDRESS_HIGH 0x20u"),
         ("values + SPTFRA_WORD_FRICTION_XY, sizeof", "values + SPTFRA_WORD_FRICTION, sizeof"),
         ("SET(device, INTERRUPT_STATUS, *events);", ""),
@@ -276,7 +277,7 @@ fn a_wrong_c_driver_is_noticed() {
         ("left < 0 ? 0 : (int)left", "left < 0 ? milliseconds : milliseconds"),
         ("    transfer(device, SEND, stress->address, 4u);\n", ""),
         ("    for (packets = 0; packets < MOST_PACKETS", "    for (packets = MOST_PACKETS; packets < MOST_PACKETS"),
-    ] {
+    ]) {
         noticed(&subject, right, wrong);
     }
 }

@@ -7,6 +7,7 @@ use std::process::Command;
 use golden::design::Outputs;
 
 use super::{DRIVER, MACHINE, SANITIZED, Subject, arguments, compile, run};
+use crate::support::effort::some_of;
 use crate::support::workspace;
 
 /// The program of `queue.c` with another text of a driver's file, where one is given.
@@ -37,7 +38,7 @@ fn every_frame_of_the_queue_is_answered_or_reported() {
 #[test]
 fn a_wrong_queue_is_noticed() {
     let subject = Subject::new(true, Outputs::Field);
-    for (right, wrong) in [
+    for (right, wrong) in some_of([
         // A descriptor that is used again as it came back.
         ("    words[STATUS] = 0;\n", ""),
         // An answer before it was there, and one whose frame's descriptor is not yet free.
@@ -55,7 +56,7 @@ fn a_wrong_queue_is_noticed() {
         ("        return SPTFRA_DROPS;\n", ""),
         ("    queue->failed = 1;\n    if (depth", "    if (depth"),
         ("queue->forces + slot * queue->stride_out)\n", "queue->forces)\n"),
-    ] {
+    ]) {
         let text = fs::read_to_string(workspace("drivers/c/sptfra_queue.c")).expect("is there");
         assert_eq!(text.matches(right).count(), 1, "{right}");
         let copy = subject.file("sptfra_queue.c");

@@ -59,6 +59,7 @@ fn a_file_that_is_missing_fails() {
 }
 
 #[test]
+#[ignore = "twenty seconds: part of `make test-long`"]
 fn the_testbench_runs_in_icarus_and_verilator() {
     let folder = Folder::small();
     let shown = fusesoc(&folder, &["core", "show", CORE]).succeeded();

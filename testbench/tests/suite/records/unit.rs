@@ -10,6 +10,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::records_of_faults;
+use crate::support::effort::some_of;
 use crate::support::player::{icarus, verilator, write_broken};
 use crate::support::workspace;
 
@@ -213,7 +214,7 @@ fn the_model_is_as_near_as_it_says() {
 
 #[test]
 fn faults_of_the_unit_are_noticed() {
-    let faults = [
+    let faults = some_of([
         ("float_round", "value_2[3] && (value_2[4]", "value_2[3] && (1'b1"),
         ("float_round", "value[0] || (rest != 10'd0)", "value[0]"),
         ("float_round", "exponent_3 > 10'sd254", "exponent_3 > 10'sd255"),
@@ -226,7 +227,7 @@ fn faults_of_the_unit_are_noticed() {
         ("float_unit", "a_1[31] ? -x_wide : x_wide", "x_wide"),
         ("float_unit", "a_zero <= (a[30:23] == 8'd0)", "a_zero <= 1'b0"),
         ("float_unit", "b_1[30:0]) && !b_zero", "b_1[30:0])"),
-    ];
+    ]);
     let operations = operations(&mut ChaCha8Rng::seed_from_u64(7), 2_500);
     let expected = expected(&operations);
     records_of_faults(&faults, |fault| {

@@ -1,5 +1,7 @@
 //! Designs for tests of the emitted RTL: planned, built through the shared cache, simulated, judged.
 
+#[path = "../../../../golden/tests/suite/effort.rs"]
+pub mod effort;
 pub mod faults;
 pub mod frames;
 pub mod player;

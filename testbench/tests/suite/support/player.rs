@@ -1,16 +1,36 @@
 //! Plays stimulus into modules on a bench of their own, `bench.v` with a port `clock`.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::LazyLock;
 
 use testbench::tools;
+use testbench::verilate::verilator_version;
 
 use super::faults::replaced;
 use super::workspace;
 
-/// Verilator's runtime, which a bench seldom calls: compiled as it comes it takes longer than a small module.
-const RUNTIME: &str = "OPT_GLOBAL=-O0";
+/// Verilator's runtime, which a bench seldom calls, for all benches at once: not optimised it takes as long as a module.
+static RUNTIME: LazyLock<PathBuf> = LazyLock::new(|| {
+    let kept = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let version = verilator_version().expect("installed").replace(' ', "-");
+    let runtime = kept.join(format!("{version}.a"));
+    if !runtime.is_file() {
+        let folder = tempfile::tempdir_in(kept).expect("writable");
+        let include = tools::verilator_root().expect("installed").join("include");
+        let objects = ["verilated", "verilated_threads"].map(|name| {
+            let mut compiler = tools::cxx().expect("installed");
+            compiler.args(["-std=c++17", "-O0", "-w", "-c", "-I"]).arg(&include).arg("-I").arg(include.join("vltstd"));
+            succeed(compiler.arg(include.join(format!("{name}.cpp"))).current_dir(&folder));
+            format!("{name}.o")
+        });
+        succeed(Command::new("ar").args(["rcs", "runtime.a"]).args(objects).current_dir(&folder));
+        // Whole or not at all: another process may look for it.
+        fs::rename(folder.path().join("runtime.a"), &runtime).expect("writable");
+    }
+    runtime
+});
 
 /// A copy of one of the project's modules with a fault, in a bench's folder, where it goes ahead of the right one.
 pub fn write_broken(folder: &Path, module: &str, from: &str, to: &str) {
@@ -30,7 +50,9 @@ pub fn verilator(folder: &Path, cycles: usize) -> String {
     fs::write(folder.join("main.cpp"), main).expect("writable");
     let mut build = tools::verilator().expect("installed");
     build.args(["--cc", "--exe", "--build", "-Wno-fatal", "-DSIMULATION", "--top-module", "bench"]);
-    build.args(["-MAKEFLAGS", "OPT_FAST=-O1", "-MAKEFLAGS", RUNTIME]);
+    build.args(["-MAKEFLAGS", "OPT_FAST=-Og"]);
+    // In place of a runtime of its own.
+    build.args(["-MAKEFLAGS", "VK_GLOBAL_OBJS="]).arg(&*RUNTIME);
     build.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).args(["bench.v", "main.cpp"]);
     succeed(build.current_dir(folder));
     succeed(Command::new(folder.join("model/Vbench")).current_dir(folder))

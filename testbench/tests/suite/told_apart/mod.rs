@@ -17,6 +17,7 @@ use testbench::trial::{model_answers, timeout};
 use testbench::verilate::Built;
 
 use crate::bodies::kinds::{Kind, frame};
+use crate::support::effort::{share_of, some_of};
 use crate::support::{
     built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint, with_lanes, with_points,
     workspace,
@@ -127,7 +128,7 @@ pub fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
 
 #[test]
 fn the_hardware_tells_apart_as_the_model_does() {
-    let failures: Vec<String> = in_parallel(&designs(), |design| {
+    let failures: Vec<String> = in_parallel(&some_of(designs()), |design| {
         let plan = planned(design);
         let packets = packets(&plan, &mut ChaCha8Rng::seed_from_u64(11));
         let mut seen = BTreeMap::new();
@@ -296,7 +297,11 @@ fn streams_with_pauses_faults_and_resets_are_told_apart() {
     let points = with_points(shipped("small"));
     for design in [odd, wide, points] {
         let design = telling_apart(design, 3);
-        let report = stress(&design, &stress::Options { frames: 400, seed: 3 }, &golden::progress::Progress::hidden());
+        let report = stress(
+            &design,
+            &stress::Options { frames: share_of(900) as u64, seed: 3 },
+            &golden::progress::Progress::hidden(),
+        );
         let report = report.unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(report.sent, report.answered.plus(report.lost_to_resets));
     }
@@ -356,6 +361,7 @@ fn cycles_of(plan: &Plan, core: &Built, bodies: usize) -> [u64; 2] {
 
 /// What several bodies cost does not depend on what they do; docs/contacts.md has these figures, and README some of them.
 #[test]
+#[ignore = "half a minute: part of `make test-long`"]
 fn several_bodies_take_as_long_as_stated() {
     let read = |page: &str| std::fs::read_to_string(workspace(page)).expect("is there");
     let (contacts, readme) = (read("docs/contacts.md"), read("README.md"));

@@ -2,7 +2,7 @@
 
 use golden::sensor::Sensor;
 use hdl_gen::blocks::regions::WEIGHT_BITS;
-use hdl_gen::blocks::regions::{WEIGHT_LATENCY, steps};
+use hdl_gen::blocks::regions::{WEIGHT_LATENCY, counted, parted, steps};
 use hdl_gen::model::contacts::regions::{Found, find};
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
@@ -32,6 +32,12 @@ impl Case {
 
     pub fn taxel_width(&self) -> u32 {
         self.sensor.taxels().next_power_of_two().ilog2().max(3)
+    }
+
+    /// More than all its frames take.
+    pub fn cycles(&self) -> usize {
+        let frame = counted(&self.sensor, self.latency) + parted(&self.sensor, self.contacts);
+        self.frames.len() * (2 * frame as usize + self.sensor.taxels() + 20)
     }
 
     pub fn expected(&self, frame: &[i64]) -> Found {

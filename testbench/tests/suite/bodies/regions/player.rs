@@ -88,8 +88,7 @@ pub fn play(
         let name = case.name();
         fs::write(place(format!("{name}.weights")), words.concat()).expect("writable");
         fs::write(place(format!("{name}.largest")), largest.concat()).expect("writable");
-        let frame = counted(&case.sensor, case.latency) + parted(&case.sensor, case.contacts);
-        longest = longest.max(case.frames.len() * (2 * frame as usize + case.sensor.taxels() + 20));
+        longest = longest.max(case.cycles());
         bench += &player(case);
     }
     fs::write(place("bench.v".to_owned()), bench + "endmodule\n").expect("writable");

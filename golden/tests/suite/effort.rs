@@ -1,0 +1,27 @@
+//! How much is tried. `make test` is for every change, and of many things of one kind that each take seconds, such as broken
+//! copies and designs at random, it tries some; `make test-long` tries all of them.
+
+use std::env;
+use std::sync::LazyLock;
+
+/// The variable by which `make test-long` asks for all.
+const ALL: &str = "SPTFRA_TEST_ALL";
+/// Otherwise one of so many.
+const SHARE: usize = 4;
+
+static IS_ALL: LazyLock<bool> = LazyLock::new(|| env::var_os(ALL).is_some_and(|value| value != "0"));
+
+/// Whether this is `make test-long`.
+pub fn all() -> bool {
+    *IS_ALL
+}
+
+/// All of them, or every fourth from the first on.
+pub fn some_of<T>(things: impl IntoIterator<Item = T>) -> Vec<T> {
+    things.into_iter().step_by(if all() { 1 } else { SHARE }).collect()
+}
+
+/// So many, or a fourth of that.
+pub fn share_of(count: usize) -> usize {
+    if all() { count } else { count.div_ceil(SHARE) }
+}
