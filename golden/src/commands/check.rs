@@ -10,7 +10,7 @@ use golden::progress::Progress;
 use serde::Serialize;
 
 use super::Recording;
-use super::filter::is_standard;
+use super::solve_lines::is_standard;
 
 #[derive(Serialize)]
 struct Report<'a> {

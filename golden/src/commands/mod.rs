@@ -6,10 +6,10 @@ pub mod calibrate;
 pub mod calibrate_recorded;
 pub mod check;
 pub mod choose;
-pub mod filter;
 pub mod rest;
 pub mod scene;
 pub mod solve;
+pub mod solve_lines;
 
 use std::path::Path;
 

@@ -10,8 +10,8 @@ use golden::scene::{Kind, Scene};
 use golden::{forces, frames, geometry};
 use serde::Serialize;
 
-use super::filter::is_standard;
 use super::keep_apart;
+use super::solve_lines::is_standard;
 
 #[derive(Serialize)]
 struct SceneReport<'a> {

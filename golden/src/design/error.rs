@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum DesignError {
     /// The file could not be read.
-    #[error("{}: cannot read the file: {source}; {}", path.display(), crate::unread::remedy(path, source, crate::unread::DESIGNS))]
+    #[error("{}: cannot read the file: {source}; {}", path.display(), crate::missing_file::remedy(path, source, crate::missing_file::DESIGNS))]
     Read {
         /// The file.
         path: PathBuf,

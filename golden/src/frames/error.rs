@@ -10,7 +10,7 @@ use crate::output::OutputError;
 #[derive(Debug, thiserror::Error)]
 pub enum FrameError {
     /// The file could not be read.
-    #[error("{}: cannot read the frames: {source}; {}", path.display(), crate::unread::remedy(path, source, crate::unread::FRAMES))]
+    #[error("{}: cannot read the frames: {source}; {}", path.display(), crate::missing_file::remedy(path, source, crate::missing_file::FRAMES))]
     Read {
         /// The file.
         path: PathBuf,

@@ -5,7 +5,7 @@ use tera::Context;
 
 use super::template::design_module;
 use super::{EmitError, registers};
-use crate::blocks::{Parameters, contacts, intake};
+use crate::blocks::{Parameters, contacts, overrun};
 use crate::plan::Plan;
 
 const TEMPLATE: &str = include_str!("../../templates/rtl/contacts.v.tera");
@@ -70,7 +70,7 @@ pub(super) fn render(plan: &Plan) -> Result<Option<(String, String)>, EmitError>
         last_keep: format!("{:x}", streams.last_keep()),
         samples_from,
         words_to,
-        overrun: streams.drops.then(|| intake::parameters(plan)),
+        overrun: streams.drops.then(|| overrun::parameters(plan)),
         slips: plan.design.algorithm.slip.is_some(),
         field: plan.field_words() > 0,
         first_record: crate::plan::SUMMARY_WORDS,

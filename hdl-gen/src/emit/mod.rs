@@ -1,10 +1,10 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
 pub mod boards;
-mod columns;
 mod contacts;
 mod debug;
 mod flows;
+mod line_length;
 mod linux;
 mod mcsr;
 mod metadata;

@@ -3,7 +3,7 @@
 use tera::{Context, Tera};
 
 use super::EmitError;
-use super::columns::wrap;
+use super::line_length::wrap;
 
 /// The text of one module of the design.
 ///

@@ -6,7 +6,7 @@ use tera::Context;
 use golden::design::{Filter, Samples};
 
 use crate::blocks::{
-    FEWEST_ELEMENTS, Parameters, array, bodies, bz, calibration, cean, co, field, intake, op, range, row_width, turns,
+    FEWEST_ELEMENTS, Parameters, array, bodies, bz, calibration, cean, co, field, op, overrun, range, row_width, turns,
     unfold, we,
 };
 use crate::plan::Plan;
@@ -138,7 +138,7 @@ impl View {
             offset_bits: plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
             dead_command_bits,
             dead_result_bits,
-            overrun: streams.drops.then(|| intake::parameters(plan)),
+            overrun: streams.drops.then(|| overrun::parameters(plan)),
             stream_bits: streams.bits,
             stream_bytes: streams.bits / 8,
             words: streams.words(),

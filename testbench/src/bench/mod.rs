@@ -8,7 +8,7 @@ pub mod levels;
 pub mod machine;
 pub mod page;
 pub mod plot;
-pub mod rate;
+pub mod simulation_rate;
 pub mod solver;
 pub mod zeros;
 
@@ -28,7 +28,7 @@ use cycles::Point;
 use filters::Filtered;
 use generation::Generation;
 use machine::Machine;
-use rate::Rate;
+use simulation_rate::Rate;
 use solver::SolverRate;
 use zeros::Zeros;
 
@@ -169,7 +169,7 @@ pub fn measure(scope: &Scope, progress: &Progress) -> Result<Figures, BenchError
         machine: Machine::this(),
         solver,
         generation: generation::measure(scope, progress)?,
-        simulation: rate::measure(scope, progress)?,
+        simulation: simulation_rate::measure(scope, progress)?,
         cycles: cycles::measure(scope.largest, progress)?,
         filters: filters::measure(scope, progress)?,
         zeros: zeros::measure(scope.largest, progress)?,

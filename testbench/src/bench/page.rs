@@ -4,10 +4,10 @@ use super::cells::Cells;
 use super::cycles::{Kind, LANES, Point};
 use super::filters::Filtered;
 use super::generation::Generation;
-use super::rate::Rate;
+use super::simulation_rate::Rate;
 use super::solver::SolverRate;
 use super::zeros::Zeros;
-use super::{Figures, generation, rate};
+use super::{Figures, generation, simulation_rate};
 use crate::figures::{decimals, grouped, or_dash};
 use crate::markdown::Page;
 use crate::simulate::Cycles;
@@ -119,7 +119,7 @@ fn simulated(page: &mut Page, rows: &[Rate], command: &str) {
     page.line(&format!(
         "Verilator's code with the streams' driver, free-running, on one core. Median of {} repetitions, slowest and \
          fastest beside it. `testbench run` simulates its four stream modes on cores of their own.",
-        rate::REPETITIONS
+        simulation_rate::REPETITIONS
     ));
     let cells = rows.iter().map(|row| {
         vec![

@@ -45,11 +45,12 @@ fn subjects() -> &'static [Subject] {
         let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
         let mut controlled = small("controlled", 64, Samples::Float32, reduced, Outputs::Field);
         controlled.hardware.control = true;
+        // With a calibration in RAM and with registers first and last, for tests of their own.
         let designs = [
+            shipped("small-scanner"),
             small("single", 32, Samples::Float32, reduced, Outputs::Field),
             small("paper", 64, Samples::Uint16, paper, Outputs::Field),
             small("whole", 128, Samples::Int16, reduced, Outputs::Resultants),
-            shipped("small-scanner"),
             controlled,
         ];
         in_parallel(&some_of(designs), |design: &Design| {
