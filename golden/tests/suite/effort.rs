@@ -5,7 +5,7 @@ use std::env;
 use std::sync::LazyLock;
 
 /// The variable by which `make test-long` asks for all.
-const ALL: &str = "SPTFRA_TEST_ALL";
+pub const ALL: &str = "SPTFRA_TEST_ALL";
 /// Otherwise one of so many.
 const SHARE: usize = 4;
 

@@ -37,9 +37,9 @@ const VERILATOR_FLAGS: [&str; 10] = [
     "-DSIMULATION",
 ];
 /// Symbols stay inside their shared object, so that several simulated designs live in one process. The wrapper turns
-/// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning. `-O1` would save 12 % of a
-/// simulation and take 8 s more to compile, which only minutes of simulation pay back, and would need a precompiled header
-/// of its own: GCC takes the optimisation from the header, whatever the flags beside it say.
+/// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning. `-O1` would save at
+/// most 6 % of a simulation and take some 1 s more to compile, and would need a precompiled header of its own: GCC takes the
+/// optimisation from the header, whatever the flags beside it say.
 const CXX_FLAGS: [&str; 9] = [
     "-std=c++17",
     "-fPIC",

@@ -44,7 +44,7 @@ struct Limits {
     bram36: f64,
 }
 
-/// Sensor 1 by the reduced plan, with simulated cycles; and a mat of 18 by 27, whose cycles nobody has stated.
+/// Sensor 1 by the reduced plan, and a mat of 18 by 27, whose cycles nobody has stated: as predicted, and some simulated.
 #[test]
 fn the_reduced_plan_keeps_to_its_limits() {
     let mut mat = shipped("sensor1-reduced");

@@ -2,10 +2,12 @@
 
 use std::fs;
 use std::os::unix::fs::symlink;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
+
+use crate::support::effort::ALL;
 
 use super::folder::{environment, run, workspace, yaml};
 
@@ -67,6 +69,38 @@ fn the_projects_own_workflow_runs_all_tests() {
     assert_eq!(commands.last(), Some(&"make test"));
     let menu = fs::read_to_string(workspace().join("Makefile")).expect("there");
     assert!(menu.contains("\n.PHONY: test\n"), "{menu}");
+}
+
+/// The nightly tests try all: their workflow calls the target, which sets the variable that tests read, and runs each crate in
+/// which a test is left to it.
+#[test]
+fn the_long_tests_are_called_and_try_all() {
+    let workflow = yaml(&workspace().join(".github/workflows/test-long.yml"));
+    let steps = workflow["jobs"]["test"]["steps"].as_array().expect("steps");
+    assert_eq!(steps.iter().filter_map(|step| text(step, "run")).next_back(), Some("make test-long"));
+    let menu = fs::read_to_string(workspace().join("Makefile")).expect("there");
+    let recipe = menu.split("\ntest-long:").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("a target");
+    assert!(recipe.contains(&format!("\t{ALL}=1 $(CARGO) test --workspace\n")), "{recipe}");
+    for crate_name in ["golden", "hdl-gen", "testbench"] {
+        let left = left_to_it(&workspace().join(crate_name).join("tests"));
+        let run = recipe.contains(&format!(" -p {crate_name} ")) && recipe.ends_with("-- --ignored");
+        assert_eq!(left > 0, run, "{crate_name}: {left} tests are left to it");
+    }
+}
+
+/// Tests below a folder that only `make test-long` runs.
+fn left_to_it(folder: &Path) -> usize {
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let in_entry = |path: PathBuf| match path.extension() {
+        _ if path.is_dir() => left_to_it(&path),
+        Some(ending) if ending == "rs" => {
+            let text = fs::read_to_string(&path).expect("readable");
+            let left = |line: &&str| line.starts_with("#[ignore = ") && line.ends_with(": part of `make test-long`\"]");
+            text.lines().filter(left).count()
+        }
+        _ => 0,
+    };
+    entries.map(in_entry).sum()
 }
 
 /// That a release is made of what `make dist` and `tools/dist.py` make; both have tests of their own.
