@@ -4,7 +4,6 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use crate::support::effort::some_of;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_joint, with_lanes};
 use golden::design::{Design, Outputs, PlanKind};
 use hdl_gen::emit::emit;
@@ -68,7 +67,7 @@ fn icarus_gives_every_word_of_the_model() {
     (square.sensor.columns, square.sensor.rows) = (5, 5);
     let mut telling_apart = shipped("odd");
     (telling_apart.name, telling_apart.algorithm.contacts) = ("telling_apart".to_owned(), 3);
-    let designs = some_of([
+    let designs = [
         by_plan(shipped("small"), paper, Outputs::Field),
         by_plan(narrow, paper, Outputs::Field),
         by_plan(tiny.clone(), paper, Outputs::Field),
@@ -78,7 +77,7 @@ fn icarus_gives_every_word_of_the_model() {
         by_plan(square, reduced, Outputs::Field),
         by_plan(tiny, reduced, Outputs::Field),
         telling_apart,
-    ]);
+    ];
     in_parallel(&designs, |design| {
         let files = emitted(design);
         let said = simulate(&design.name, &files);

@@ -3,7 +3,6 @@
 
 use std::sync::OnceLock;
 
-use crate::support::effort::some_of;
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint, with_lanes};
 use golden::design::{Calibration, Curve, Design, Outputs, PlanKind, Samples};
 use hdl_gen::model::{BAD_LENGTH, NOT_FINITE};
@@ -77,7 +76,7 @@ fn subjects() -> &'static [Subject] {
             unsigned,
             narrow_counts,
         ];
-        in_parallel(&some_of(designs), |design| {
+        in_parallel(&designs, |design| {
             let plan = planned(design);
             let built = built(&plan);
             Subject { plan, built }

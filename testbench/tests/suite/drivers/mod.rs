@@ -118,7 +118,7 @@ fn subjects() -> Vec<(Subject, usize)> {
     let shapes = [(Outputs::Field, 32), (Outputs::Resultants, 32)];
     let floats = shapes.map(|(outputs, stream_bits)| (Subject::wide(true, outputs, stream_bits), 2));
     let others = [(Subject::of_all_kinds(), 2), (Subject::of_integers(), 0), (bodies::subject(true), 2)];
-    some_of(floats.into_iter().chain(others))
+    floats.into_iter().chain(others).collect()
 }
 
 /// The driver's files but the calibration and the queue, and the machine that a test puts under it.

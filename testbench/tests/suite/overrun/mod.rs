@@ -18,7 +18,6 @@ use testbench::stream::{Exchange, Mode, Outcome, Pacing, Traffic, exchange};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
 
-use crate::support::effort::some_of;
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly};
 
 /// A design, planned and compiled.
@@ -45,7 +44,6 @@ fn subjects() -> &'static [Subject] {
         let [paper, reduced] = [PlanKind::Paper, PlanKind::Reduced];
         let mut controlled = small("controlled", 64, Samples::Float32, reduced, Outputs::Field);
         controlled.hardware.control = true;
-        // With a calibration in RAM and with registers first and last, for tests of their own.
         let designs = [
             shipped("small-scanner"),
             small("single", 32, Samples::Float32, reduced, Outputs::Field),
@@ -53,7 +51,7 @@ fn subjects() -> &'static [Subject] {
             small("whole", 128, Samples::Int16, reduced, Outputs::Resultants),
             controlled,
         ];
-        in_parallel(&some_of(designs), |design: &Design| {
+        in_parallel(&designs, |design: &Design| {
             let plan = planned(design);
             let built = built(&plan);
             Subject { plan, built }
