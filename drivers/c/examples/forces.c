@@ -19,7 +19,9 @@
 #include <string.h>
 
 /* A simulated frame is soon there; on the board the interrupt has come before anybody asks. */
+#ifndef POLLS
 #define POLLS 1000000u
+#endif
 
 static size_t whole_lines(size_t bytes) { return (bytes + SPTFRA_LINE - 1u) / SPTFRA_LINE * SPTFRA_LINE; }
 

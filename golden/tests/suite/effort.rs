@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 /// The variable by which `make test-long` asks for all.
 pub const ALL: &str = "SPTFRA_TEST_ALL";
 /// Otherwise one of so many.
-const SHARE: usize = 4;
+const SHARE: usize = 8;
 
 static IS_ALL: LazyLock<bool> = LazyLock::new(|| env::var_os(ALL).is_some_and(|value| value != "0"));
 

@@ -134,7 +134,7 @@ fn seeded(design: &Design) -> Vec<Truth> {
 fn the_model_is_close_to_the_solver() {
     let more = ["sensor1-fast", "sensor1-fast-64", "sensor1-fast-wide", "sensor2-fast", "sensor2-wide"].map(shipped);
     let all = designs().into_iter().chain(more).flat_map(|design| [uncorrected(design.clone()), design]);
-    let all: Vec<Design> = all.chain([thin()]).collect();
+    let all = some_of(all.chain([thin()]));
     let lines = in_parallel(&all, |design| {
         let (plan, solver) = (planned(design), Solver::new(design).expect("a solver"));
         let packets: Vec<Vec<u32>> = seeded(design).iter().map(|truth| encode(&truth.frame)).collect();
@@ -194,7 +194,7 @@ fn the_rtl_reaches_what_the_solver_reaches() {
             .map(|(name, set, clean, noisy, normal)| (design.clone(), name, set, clean, noisy, normal))
         })
         .collect();
-    let lines = in_parallel(&cases, |(design, name, set, clean, noisy, normal)| {
+    let lines = in_parallel(&some_of(&cases), |(design, name, set, clean, noisy, normal)| {
         let plan = planned(design);
         let runs: Vec<(f64, f64, f64)> = [(0.0, *clean), (0.002, [*noisy; 3])]
             .into_iter()

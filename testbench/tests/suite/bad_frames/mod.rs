@@ -18,7 +18,7 @@ use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 use crate::support::effort::share_of;
-use crate::support::{built, frames, in_parallel, planned, shipped, with_joint, with_points};
+use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, with_joint, with_points};
 
 /// Frames of a long row.
 fn long() -> usize {
@@ -51,8 +51,8 @@ fn subjects() -> &'static [Subject] {
             design
         };
         let designs = [
-            small("small_paper", &|design| design.algorithm.plan = PlanKind::Paper),
-            small("small_reduced", &|design| design.algorithm.plan = PlanKind::Reduced),
+            by_plan(shipped("small"), PlanKind::Paper, Outputs::Field),
+            by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field),
             small("small_latency", &|design| {
                 design.algorithm.plan = PlanKind::Reduced;
                 design.hardware.optimise = Optimise::Latency;
@@ -60,10 +60,7 @@ fn subjects() -> &'static [Subject] {
             }),
             small("small_joint", &|design| *design = with_joint(design.clone())),
             small("small_points", &|design| *design = with_points(design.clone())),
-            small("small_resultants", &|design| {
-                design.algorithm.plan = PlanKind::Reduced;
-                design.algorithm.outputs = Outputs::Resultants;
-            }),
+            by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants),
         ];
         in_parallel(&designs, |design| {
             let plan = planned(design);

@@ -21,6 +21,9 @@
 #define MOST_WORDS 16384
 #define POLLS 1000000u
 #define MOST_TICKS 200
+#ifndef MOMENTS
+#define MOMENTS 7 /* cycles from one moment of a recovery to the next */
+#endif
 /* More than a frame takes: three cycles each. Frames of several bodies are solved one behind the other, twice. */
 #define RECOVERY(shape) (sptfra_records(shape) > 0 ? 10000u : 1000u)
 
@@ -347,7 +350,7 @@ int main(int count, char **arguments)
     CHECK(sptfra_start(&device, &stress, &forces) == SPTFRA_BUSY);
 
     /* A recovery at any moment of a frame, and the next one is right. */
-    for (words = 0; words < 1500; words += 7) {
+    for (words = 0; words < 1500; words += MOMENTS) {
         CHECK(sptfra_recover(&device, &stress, &forces, RECOVERY(&shape)) == SPTFRA_OK);
         rewind(file);
         CHECK(next_frame(file, &events, shape.words_out) && events == shape.words_in);

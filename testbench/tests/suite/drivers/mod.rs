@@ -14,8 +14,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::support::effort::some_of;
-use crate::support::{built, by_plan, frames, planned, shipped, workspace};
+use crate::support::effort::{self, some_of};
+use crate::support::{built, frames, planned, shipped, workspace};
 use golden::design::{Design, InputRange, Outputs, Overrun, PlanKind, Samples};
 use hdl_gen::emit::{emit, resolved_hash};
 use hdl_gen::plan::Plan;
@@ -66,7 +66,8 @@ impl Subject {
     }
 
     fn changed(outputs: Outputs, change: impl Fn(&mut Design)) -> Self {
-        let mut design = by_plan(shipped("small-control"), PlanKind::Reduced, outputs);
+        let mut design = shipped("small-control");
+        (design.algorithm.plan, design.algorithm.outputs) = (PlanKind::Reduced, outputs);
         change(&mut design);
         let plan = planned(&design);
         let built = built(&plan);
@@ -172,7 +173,12 @@ fn run_c(subject: &Subject, driver: &[PathBuf]) -> Command {
     let mut sources: Vec<PathBuf> = MACHINE.map(workspace).into();
     sources.push(workspace("testbench/tests/suite/drivers/host.c"));
     sources.extend_from_slice(driver);
-    compile(&sources.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &SANITIZED, &host);
+    let mut flags = SANITIZED.to_vec();
+    if !effort::all() {
+        // Cycles from one moment of a recovery to the next.
+        flags.push("-DMOMENTS=31");
+    }
+    compile(&sources.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &flags, &host);
     let mut command = Command::new(host);
     command.args(arguments(subject));
     command

@@ -82,6 +82,8 @@ fn the_testbench_runs_as_a_binary_of_verilator() {
     for (parameter, file) in [("STIMULUS", "stimulus"), ("EXPECTED", "expected")] {
         command.arg(format!("-G{parameter}=\"sim/{NAME}_{file}.mem\""));
     }
+    // For a few frames the compiler need not make haste.
+    command.env("MAKEFLAGS", "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0");
     run(command.env("PATH", path()).current_dir(folder.design())).succeeded();
     let program = binary.path().join(format!("V{NAME}_tb"));
     let ran = run(Command::new(program).current_dir(folder.design())).succeeded();

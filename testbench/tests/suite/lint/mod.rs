@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
+use std::sync::LazyLock;
 
 use crate::calibration;
 use crate::support::effort::{self, some_of};
@@ -14,7 +15,7 @@ use golden::design::{
     Tension,
 };
 use golden::estimators::joint::Grid;
-use hdl_gen::emit::emit;
+use hdl_gen::emit::{FileMap, emit};
 use tempfile::TempDir;
 use testbench::tools;
 
@@ -206,15 +207,18 @@ struct Written {
 
 impl Written {
     fn new(design: &Design) -> Self {
+        Self::of(&design.name, &emit(&planned(design)).expect("emitted"))
+    }
+
+    fn of(name: &str, files: &FileMap) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
-        let files = emit(&planned(design)).expect("emitted");
-        for (path, contents) in &files {
+        for (path, contents) in files {
             let file = folder.path().join(path);
             fs::create_dir_all(file.parent().expect("a file has a folder")).expect("writable");
             fs::write(file, contents).expect("writable");
         }
         let module = |path: &String| Some(path.strip_prefix("rtl/")?.strip_suffix(".v")?.to_owned());
-        Self { name: design.name.clone(), folder, modules: files.keys().filter_map(module).collect() }
+        Self { name: name.to_owned(), folder, modules: files.keys().filter_map(module).collect() }
     }
 
     fn read(&self, module: &str) -> String {
@@ -225,12 +229,10 @@ impl Written {
         self.modules.iter().map(|module| format!("../rtl/{module}.v"))
     }
 
-    /// A module, and where a tool finds those that it instantiates: in the design, and where this does without a part, in
-    /// the library. Nothing else is read.
-    fn top(&self, module: &str) -> Vec<PathBuf> {
-        let rtl = self.folder.path().join("rtl");
-        let library = crate::support::workspace("hdl-gen/rtl");
-        vec![rtl.join(format!("{module}.v")), "-y".into(), rtl, "-y".into(), library]
+    /// Where a tool finds what a module instantiates: in the design, and where this does without a part, in the library.
+    /// Nothing else is read.
+    fn libraries(&self) -> [PathBuf; 4] {
+        ["-y".into(), self.folder.path().join("rtl"), "-y".into(), crate::support::workspace("hdl-gen/rtl")]
     }
 
     /// Runs a tool beside the ROM files, where the parameter `ROM_DIR` looks for them unless it is set; what the tool
@@ -242,18 +244,27 @@ impl Written {
     }
 }
 
+/// All of [`designs`], planned once for all their readers.
+fn all() -> Vec<Written> {
+    static ALL: LazyLock<Vec<(String, FileMap)>> = LazyLock::new(|| {
+        in_parallel(&designs(), |design| (design.name.clone(), emit(&planned(design)).expect("emitted")))
+    });
+    ALL.iter().map(|(name, files)| Written::of(name, files)).collect()
+}
+
 /// Asserts that the complaints of all designs are none.
 fn assert_silent(complaints: Vec<Vec<String>>) {
     let all: Vec<String> = complaints.into_iter().flatten().filter(|text| !text.trim().is_empty()).collect();
     assert!(all.is_empty(), "{}", all.join("\n"));
 }
 
-/// Every module that any of the designs has, as a top, and a design that has it: in the long tests once for each way in
-/// which it stands above other texts.
-fn tops(all: &[Written]) -> Vec<(&Written, &str)> {
+/// Every module that any of the designs has, by a design that has it: in the long tests once for each way in which it
+/// stands above other texts, otherwise once, and those of a design alone by its top.
+fn tops(all: &[Written]) -> Vec<(&Written, Vec<&str>)> {
     let (mut seen, mut names) = (BTreeSet::new(), BTreeSet::new());
     let mut tops = Vec::new();
     for written in all {
+        let mut own = Vec::new();
         let texts: BTreeMap<&str, String> =
             written.modules.iter().map(|module| (module.as_str(), written.read(module))).collect();
         assert!(texts.len() >= 20 && texts.contains_key(written.name.as_str()), "{:?}", written.modules);
@@ -271,40 +282,49 @@ fn tops(all: &[Written]) -> Vec<(&Written, &str)> {
                 inside.into_iter().map(|(name, text)| (name.to_owned(), text)).collect();
             let is_new = seen.insert((top.to_owned(), inside));
             // A module comes in several forms, above modules that designs leave out.
-            if is_new && (names.insert(top.to_owned()) || effort::all()) {
-                tops.push((written, top));
+            let is_first = names.insert(top);
+            let is_below = !top.starts_with("sptfra_") && top != written.name;
+            if is_new && (is_first && !is_below || effort::all()) {
+                own.push(top);
             }
         }
+        if !own.is_empty() {
+            tops.push((written, own));
+        }
     }
-    let all_names: BTreeSet<String> = all.iter().flat_map(|written| &written.modules).cloned().collect();
-    assert_eq!(names, all_names, "every module is there");
+    let modules: BTreeSet<&str> = all.iter().flat_map(|written| &written.modules).map(String::as_str).collect();
+    assert_eq!(names, modules, "every module is there");
     tops
 }
 
 #[test]
 fn verilator_accepts_every_module_as_a_top() {
-    let all = in_parallel(&designs(), Written::new);
-    assert_silent(in_parallel(&tops(&all), |&(written, module)| {
+    let all = all();
+    let tops: Vec<(&Written, &str)> = tops(&all)
+        .into_iter()
+        .flat_map(|(written, modules)| modules.into_iter().map(move |module| (written, module)))
+        .collect();
+    assert_silent(in_parallel(&tops, |(written, module)| {
         let mut verilator = tools::verilator().expect("installed");
-        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]).args(written.top(module));
+        verilator.args(["--quiet-stats", "--lint-only", "-Wall", "--top-module", module]);
+        verilator.arg(format!("../rtl/{module}.v")).args(written.libraries());
         vec![written.run(verilator)]
     }));
 }
 
 #[test]
 fn icarus_accepts_every_module_as_a_top() {
-    let all = in_parallel(&designs(), Written::new);
-    assert_silent(in_parallel(&tops(&all), |&(written, module)| {
+    assert_silent(in_parallel(&tops(&all()), |(written, modules)| {
         let mut icarus = tools::icarus().expect("installed");
-        icarus.args(["-Wall", "-g2005", "-t", "null", "-s", module]).args(written.top(module));
+        icarus.args(["-Wall", "-g2005", "-t", "null"]).args(modules.iter().flat_map(|module| ["-s", module]));
+        icarus.args(modules.iter().map(|module| format!("../rtl/{module}.v"))).args(written.libraries());
         vec![written.run(icarus)]
     }));
 }
 
 #[test]
 fn yosys_elaborates_the_top_without_latches_and_loose_wires() {
-    assert_silent(in_parallel(&some_of(designs()), |design| {
-        let written = Written::new(design);
+    assert_silent(in_parallel(&some_of(all()), |written| {
         let script = format!(
             "read_verilog -sv -defer {}; hierarchy -check -top {}; proc; check -assert; \
              select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr; select -assert-min 1000 t:*",
@@ -332,8 +352,7 @@ const WAIVED: [(&str, &str); 8] = [
 #[test]
 fn verible_has_nothing_to_say() {
     let rules: Vec<String> = WAIVED.iter().map(|(rule, _)| format!("-{rule}")).collect();
-    assert_silent(in_parallel(&designs(), |design| {
-        let written = Written::new(design);
+    assert_silent(in_parallel(&all(), |written| {
         let mut verible = tools::verible_lint().expect("installed");
         verible.arg(format!("--rules={}", rules.join(","))).args(written.sources());
         vec![written.run(verible)]
@@ -352,7 +371,7 @@ fn slang(written: &Written) -> String {
 
 #[test]
 fn slang_has_nothing_to_say() {
-    assert_silent(in_parallel(&designs(), |design| vec![slang(&Written::new(design))]));
+    assert_silent(in_parallel(&all(), |written| vec![slang(written)]));
 }
 
 /// Widths that no design above has: the whole hierarchy below the top, as it is instantiated, with the checks that only

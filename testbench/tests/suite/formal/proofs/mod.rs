@@ -25,7 +25,7 @@ pub struct Proof {
     /// Whose outputs may be anything in any cycle: instances by the pattern of their module, then wires by name.
     pub free: &'static [&'static str],
     pub free_wires: &'static [&'static str],
-    /// Cycles that an induction step assumes to be right, at most.
+    /// Cycles that an induction step assumes to be right.
     pub induction: &'static str,
     /// Texts that are others here than in the generated design.
     pub altered: &'static [Broken],
