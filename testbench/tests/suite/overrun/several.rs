@@ -7,7 +7,6 @@ use rand_chacha::ChaCha8Rng;
 use testbench::stream::Mode;
 
 use super::{Subject, judge, scan, scan_in};
-use crate::support::effort::share_of;
 use crate::support::{built, in_parallel, planned, shipped};
 use crate::told_apart;
 
@@ -37,7 +36,7 @@ fn frames_of_several_bodies_find_room_or_are_dropped_whole() {
     in_parallel(&cases, |&(subject, seed)| {
         let plan = &subject.plan;
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let packets: Vec<Vec<u32>> = (0..share_of(24)).flat_map(|_| told_apart::packets(plan, &mut random)).collect();
+        let packets: Vec<Vec<u32>> = (0..12).flat_map(|_| told_apart::packets(plan, &mut random)).collect();
         let interval = plan.timeline.interval_cycles;
         let mode = Mode::all(seed)[seed as usize % Mode::COUNT];
         let mut answered = [0, 0];
