@@ -9,8 +9,7 @@ use golden::matrices::Matrices;
 use golden::progress::Progress;
 use serde::Serialize;
 
-use super::Recording;
-use super::solve_lines::is_standard;
+use super::{Recording, is_standard};
 
 #[derive(Serialize)]
 struct Report<'a> {

@@ -19,6 +19,14 @@ use golden::frames::{self, FrameError};
 use golden::geometry;
 pub use golden::resolved::{Resolved, folder, keep_apart};
 
+/// The name of standard input and output.
+const STANDARD: &str = "-";
+
+/// Whether a file's name means standard input or output.
+pub fn is_standard(path: &Path) -> bool {
+    path == STANDARD
+}
+
 /// A file of frames.
 pub struct Recording<'a> {
     pub file: &'a Path,

@@ -10,8 +10,7 @@ use golden::scene::{Kind, Scene};
 use golden::{forces, frames, geometry};
 use serde::Serialize;
 
-use super::keep_apart;
-use super::solve_lines::is_standard;
+use super::{is_standard, keep_apart};
 
 #[derive(Serialize)]
 struct SceneReport<'a> {

@@ -12,7 +12,7 @@ use golden::solver::{Solution, Solver, Status};
 use golden::table::Table;
 use serde::Serialize;
 
-use super::{Recording, keep_apart, solve_lines, warn};
+use super::{Recording, is_standard, keep_apart, solve_lines, warn};
 
 #[derive(Serialize)]
 struct StatusCount {
@@ -44,13 +44,13 @@ pub fn run(
     reference: Option<&Path>,
     json: bool,
 ) -> Result<(), Box<dyn Error>> {
-    if solve_lines::is_standard(out) {
+    if is_standard(out) {
         if reference.is_some() || json {
             return Err("--out -: standard output has the forces alone; name a file with --reference and --json".into());
         }
         return solve_lines::run(design, frames, with_field);
     }
-    if solve_lines::is_standard(frames.file) {
+    if is_standard(frames.file) {
         return Err("--frames -: forces of standard input go to standard output; write --out - too".into());
     }
     let named = Design::files_named_in(design)?;

@@ -10,15 +10,7 @@ use golden::forces;
 use golden::frames::{FrameError, FrameLines, FrameStream};
 use golden::solver::{Solution, Solver, Status};
 
-use super::{Recording, warn};
-
-/// The name of standard input and output.
-pub const STANDARD: &str = "-";
-
-/// Whether a file's name means standard input or output.
-pub fn is_standard(path: &Path) -> bool {
-    path == STANDARD
-}
+use super::{Recording, is_standard, warn};
 
 /// Of a stream so many frames are looked at, whether they are wrong.
 const LOOKED_AT: usize = 32;
