@@ -145,7 +145,8 @@ mod tests {
                 let axis =
                     |count: usize, pitch: f64, centre: f64| (0..count).map(|i| i as f64 * pitch - centre).collect();
                 let offsets = [axis(10, 4e-3, 17e-3), axis(10, 2e-3, 8.3e-3)];
-                let [p, x, y] = spectral::responses(medium, shape, 3e-3, &offsets, spectral::FINE).expect("waves");
+                let fine = spectral::Resolution::fine(medium);
+                let [p, x, y] = spectral::responses(medium, shape, 3e-3, &offsets, fine).expect("waves");
                 let (fx, fy) = (0.5 * 1.0_f64.cos(), 0.5 * 1.0_f64.sin());
                 let waves: Vec<f64> = (0..100).map(|i| p[i] + fx * x[i] + fy * y[i]).collect();
                 let error = difference(&waves, &stress(&field, &contact, 1.0_f64.to_degrees()));

@@ -30,7 +30,7 @@ pub use transfer::Medium;
 use crate::bodies::Body;
 use crate::design::{DesignError, Sensor};
 pub(crate) use field::Field;
-use spectral::UnitResponses;
+use spectral::{Resolution, UnitResponses};
 pub(crate) use traction::COARSE;
 
 /// What is wrong with a scene.
@@ -223,7 +223,7 @@ impl Scene {
             (0..sensor.columns).map(|ix| offset(ix)[0]).collect(),
             (0..sensor.rows).map(|iy| offset(iy * sensor.columns)[1]).collect(),
         ];
-        spectral::responses(self.medium, contact.shape, depth, &offsets, spectral::FINE)
+        spectral::responses(self.medium, contact.shape, depth, &offsets, Resolution::fine(self.medium))
             .map_err(|waves| SceneError::TooFine { contact: index + 1, depth_mm: sensor.depth_mm, waves })
     }
 
@@ -307,7 +307,7 @@ pub(crate) fn unit_responses(sensor: &Sensor, medium: Medium, contact: &Contact)
         (0..sensor.columns).map(|ix| sensor.position_m(ix)[0] - contact.centre_m[0]).collect(),
         (0..sensor.rows).map(|iy| sensor.position_m(iy * sensor.columns)[1] - contact.centre_m[1]).collect(),
     ];
-    spectral::responses(medium, contact.shape, sensor.depth_m(), &offsets, spectral::COARSE)
+    spectral::responses(medium, contact.shape, sensor.depth_m(), &offsets, Resolution::COARSE)
         .map_err(|waves| SceneError::TooFine { contact: 1, depth_mm: sensor.depth_mm, waves })
 }
 

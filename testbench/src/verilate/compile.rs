@@ -39,8 +39,10 @@ const VERILATOR_FLAGS: [&str; 10] = [
 /// Symbols stay inside their shared object, so that several simulated designs live in one process. The wrapper turns
 /// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning. `-O1` would save at
 /// most 6 % of a simulation and take some 1 s more to compile, and would need a precompiled header of its own: GCC takes the
-/// optimisation from the header, whatever the flags beside it say.
-const CXX_FLAGS: [&str; 9] = [
+/// optimisation from the header, whatever the flags beside it say. The redundancies that GCC's FRE looks for Verilator has
+/// removed; to look through functions of thousands of stores takes up to two fifths of the compiler's time, and the
+/// simulation is as quick without.
+const CXX_FLAGS: [&str; 10] = [
     "-std=c++17",
     "-fPIC",
     "-fvisibility=hidden",
@@ -50,6 +52,7 @@ const CXX_FLAGS: [&str; 9] = [
     "-DVL_USER_FINISH",
     "-DVL_USER_WARN",
     "-Og",
+    "-fno-tree-fre",
 ];
 
 /// The tools and flags of a build.
@@ -109,7 +112,8 @@ impl Toolchain {
     }
 }
 
-/// Folder with the compiled runtime and its precompiled header; built on first use, which takes about 6 s.
+/// Folder with the compiled runtime and, of builds without a trace, its precompiled header; built on first use, which takes
+/// about 6 s.
 pub fn runtime(toolchain: &Toolchain, cache: &Cache) -> Result<PathBuf, BuildError> {
     let key = format!("runtime-{}", &hex(&Sha256::digest(toolchain.identity()))[..16]);
     // Every test of a fresh checkout wants it at the same moment.
@@ -122,9 +126,13 @@ pub fn runtime(toolchain: &Toolchain, cache: &Cache) -> Result<PathBuf, BuildErr
 fn build_runtime(toolchain: &Toolchain, folder: &Path) -> Result<(), BuildError> {
     let header = folder.join(HEADER);
     fs::write(&header, "#include \"verilated.h\"\n").map_err(BuildError::io("write", &header))?;
-    let mut precompile = toolchain.compile()?;
-    precompile.args(["-x", "c++-header"]).arg(&header).arg("-o").arg(folder.join(format!("{HEADER}.gch")));
-    let mut jobs = vec![precompile];
+    let mut jobs = Vec::new();
+    // Few designs are traced: what their compilers win by it would not pay for the precompiled header.
+    if toolchain.trace == Trace::Off {
+        let mut precompile = toolchain.compile()?;
+        precompile.args(["-x", "c++-header"]).arg(&header).arg("-o").arg(folder.join(format!("{HEADER}.gch")));
+        jobs.push(precompile);
+    }
     let mut objects = Vec::new();
     for (index, source) in toolchain.runtime_sources().into_iter().enumerate() {
         let object = folder.join(format!("runtime{index}.o"));
@@ -166,7 +174,7 @@ pub fn design(
     fs::write(&unit, everything(&sorted_cpp(&generated)?)).map_err(BuildError::io("write", &unit))?;
 
     let mut compile = toolchain.compile()?;
-    // The precompiled header works only as the first include; without one (another compiler) the plain one is read.
+    // The precompiled header works only as the first include; without one (a trace, another compiler) the plain one is read.
     compile.arg("-include").arg(runtime.join(HEADER)).arg("-I").arg(&generated);
     compile.args(["-shared", "-o"]).arg(folder.join(LIBRARY)).arg(&unit).arg(runtime.join(ARCHIVE));
     compile.args(["-Wl,-Bsymbolic", "-Wl,--no-undefined"]).args(toolchain.libraries());

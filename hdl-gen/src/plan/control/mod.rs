@@ -159,9 +159,7 @@ impl<'a> Control<'a> {
 
     fn show_changes(&mut self) {
         let now = self.now;
-        let (due, later): (Vec<_>, Vec<_>) = self.pending.drain(..).partition(|&(cycle, _)| cycle <= now);
-        self.pending = later;
-        for (_, change) in due {
+        for (_, change) in self.pending.extract_if(.., |&mut (cycle, _)| cycle <= now) {
             match change {
                 Change::StressReleased => self.stress_places -= 1,
                 Change::Released => self.u_held -= 1,

@@ -35,7 +35,7 @@ static RUNTIME: LazyLock<PathBuf> = LazyLock::new(|| {
 });
 
 /// A header is precompiled for the flags of whoever includes it.
-const FLAGS: [&str; 3] = ["-std=c++17", "-Og", "-w"];
+const FLAGS: [&str; 4] = ["-std=c++17", "-Og", "-fno-tree-fre", "-w"];
 
 fn compiler() -> Command {
     let include = tools::verilator_root().expect("installed").join("include");
