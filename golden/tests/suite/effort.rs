@@ -16,12 +16,17 @@ pub fn all() -> bool {
     *IS_ALL
 }
 
-/// All of them, or every fourth from the first on.
+/// All of them, or every eighth from the first on.
 pub fn some_of<T>(things: impl IntoIterator<Item = T>) -> Vec<T> {
     things.into_iter().step_by(if all() { 1 } else { SHARE }).collect()
 }
 
-/// So many, or a fourth of that.
+/// All of them, or every second from the first on: of designs of which each has what others have, in another company.
+pub fn half_of<T>(things: impl IntoIterator<Item = T>) -> Vec<T> {
+    things.into_iter().step_by(if all() { 1 } else { 2 }).collect()
+}
+
+/// So many, or an eighth of that.
 pub fn share_of(count: usize) -> usize {
     if all() { count } else { count.div_ceil(SHARE) }
 }

