@@ -238,7 +238,7 @@ class Solving(unittest.TestCase):
             lines.frame(b"now;0;1;-2;3;4;5;6;7;8;9;10;11\r\n")
 
     def test_other_threads_run_meanwhile(self):
-        frames, ticks, done = np.tile(self.frames, (3000, 1, 1)), [], threading.Event()
+        frames, ticks, done = np.tile(self.frames, (600, 1, 1)), [], threading.Event()
         solving = threading.Thread(target=lambda: (self.solver.solve(frames), done.set()))
         solving.start()
         while not done.wait(0.001):
@@ -248,12 +248,12 @@ class Solving(unittest.TestCase):
 
 
     def test_an_interrupt_ends_it(self):
-        frames, heard = np.tile(self.frames, (6000, 1, 1)), []
+        frames, heard = np.tile(self.frames, (3600, 1, 1)), []
 
         def hear(*_):
             heard.append(True)
             # Once a signal is heard without a look at it: when the call is over.
-            if len(heard) == 5:
+            if len(heard) == 3:
                 raise KeyboardInterrupt
 
         before = signal.signal(signal.SIGALRM, hear)

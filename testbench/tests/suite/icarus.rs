@@ -72,12 +72,12 @@ fn icarus_gives_every_word_of_the_model() {
         by_plan(shipped("small"), paper, Outputs::Field),
         by_plan(narrow, paper, Outputs::Field),
         by_plan(tiny.clone(), paper, Outputs::Field),
-        by_plan(shipped("small"), reduced, Outputs::Field),
+        telling_apart,
         by_plan(odd, reduced, Outputs::Resultants),
         with_joint(Design { name: "joint".to_owned(), ..square.clone() }),
         by_plan(square, reduced, Outputs::Field),
         by_plan(tiny, reduced, Outputs::Field),
-        telling_apart,
+        by_plan(shipped("small"), reduced, Outputs::Field),
     ];
     in_parallel(&some_of(&designs), |design| {
         let files = emitted(design);

@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
 
 use golden::bodies::{Finder, Found};
 use golden::parity::Quads;
@@ -15,7 +14,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::support::effort::some_of;
 use crate::support::in_parallel;
-use crate::support::player::{icarus, verilator, write_broken};
+use crate::support::player::{verilator, write_broken};
 
 /// Bits of `|w|`.
 const BITS: u32 = 12;
@@ -122,7 +121,7 @@ fn blobs_are_counted_as_the_model_counts_them() {
         }
         fill(case, 12_000, &mut random);
     }
-    let found = play(&cases, verilator, None, &mut random).expect("no check of the module fails");
+    let found = play(&cases, None, &mut random).expect("no check of the module fails");
     for (case, found) in cases.iter().zip(found) {
         let Sensor { columns, .. } = case.sensor;
         let finder = Finder::new(&case.sensor, 1);
@@ -160,21 +159,16 @@ fn faults_are_noticed() {
         let mut case = Case::new("folded_9x7", 4, [9, 7]);
         fill(&mut case, 8_000, &mut random);
         let expected: Vec<u32> = case.frames.iter().map(|frame| count(frame, 9)).collect();
-        let found = play(&[case], icarus, *fault, &mut random);
+        let found = play(&[case], *fault, &mut random);
         found.is_ok_and(|found| found[0] == expected)
     });
     let wrong: Vec<_> = copies.iter().zip(found).filter(|(fault, right)| fault.is_none() != *right).collect();
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// Plays all cases at once in a simulator; the counts of each, or what a check of the module says. A fault is a module, a
+/// Plays all cases at once; the counts of each, or what a check of the module says. A fault is a module, a
 /// text in it and what takes its place.
-fn play(
-    cases: &[Case],
-    simulator: fn(&Path, usize) -> String,
-    fault: Option<&(&str, &str, &str)>,
-    random: &mut ChaCha8Rng,
-) -> Result<Vec<Vec<u32>>, String> {
+fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8Rng) -> Result<Vec<Vec<u32>>, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: String| folder.path().join(name);
     let mut bench = "module bench(input clock);\n".to_owned();
@@ -197,6 +191,7 @@ fn play(
         initial begin
             cycle = 0;
             in = 0;
+            in[{high}] = 1;
             $readmemh(\"{name}.in\", stimulus, 0, {cycles} - 1);
             file = $fopen(\"{name}.out\", \"w\");
         end
@@ -206,7 +201,7 @@ fn play(
         always @(posedge clock) if (cycle <= {cycles}) begin
             if (in[{take}]) $fwrite(file, \"%0d\\n\", bodies);
             if (cycle == {cycles}) $fclose(file);
-            in <= stimulus[cycle];
+            in <= (cycle < {cycles}) ? stimulus[cycle] : 0;
             cycle <= cycle + 1;
         end
     end endgenerate\n",
@@ -218,7 +213,7 @@ fn play(
     if let Some((module, from, to)) = fault {
         write_broken(folder.path(), &format!("sptfra_{module}"), from, to);
     }
-    let said = simulator(folder.path(), longest + 1);
+    let said = verilator(folder.path(), longest + 1);
     if !said.is_empty() {
         return Err(said);
     }

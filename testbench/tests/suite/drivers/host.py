@@ -150,7 +150,7 @@ def main():
     sensor._transfers.reset(1.0)
     sensor._failed, sensor._next = False, sensor._next + 1
     assert "to frame 3, not 4" in refused(RuntimeError, lambda: sensor.reconstruct(stress[0]))
-    for cycles in range(0, 1200, 60):
+    for cycles in range(0, 1200, 170):
         sensor.recover()
         assert np.array_equal(sensor.reconstruct(stress[0]).resultant.view(np.uint32), expected[:1, 2:5])
         refused(TimeoutError, lambda: sensor.reconstruct(stress[0], timeout=0))

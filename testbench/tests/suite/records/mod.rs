@@ -16,7 +16,6 @@ use rand_chacha::ChaCha8Rng;
 use testbench::tools;
 
 use crate::support::effort::some_of;
-use crate::support::player::{icarus, verilator};
 use crate::support::{in_parallel, shipped, workspace};
 use formulas::Headers;
 use player::{Case, Command, Played, play};
@@ -181,7 +180,7 @@ fn the_module_is_the_model() {
             .collect();
     let slipping = [("sensor1-wide", 2), ("sensor1-joint", 4), ("odd", 8)];
     cases.extend(slipping.map(|(name, contacts)| slipping_case(name, contacts, 240, &mut random)));
-    let played = play(&cases, verilator, None).expect("no check of the module fails");
+    let played = play(&cases, None).expect("no check of the module fails");
     for (case, played) in cases.iter().zip(played) {
         let expected = expected(case);
         assert_eq!(played.len(), expected.len(), "{}", case.name);
@@ -250,7 +249,7 @@ fn faults_are_noticed() {
     let expected: Vec<Vec<Played>> = cases.iter().map(expected).collect();
     // One after the other: most faults are noticed in the short one.
     records_of_faults(&faults, |fault| {
-        let played = |case: &Case| play(std::slice::from_ref(case), icarus, fault).ok().and_then(|mut of| of.pop());
+        let played = |case: &Case| play(std::slice::from_ref(case), fault).ok().and_then(|mut of| of.pop());
         cases.iter().zip(&expected).all(|(case, expected)| played(case).as_ref() == Some(expected))
     });
 }

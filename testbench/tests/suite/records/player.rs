@@ -2,13 +2,12 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
 
 use golden::design::Design;
 use hdl_gen::blocks::records::{parameters, words};
 use hdl_gen::plan::contacts::records::{INSTRUCTION_BITS, Program};
 
-use crate::support::player::write_broken;
+use crate::support::player::{verilator, write_broken};
 
 /// What is done to the module, in a cycle or until it is done.
 #[derive(Clone, Debug)]
@@ -67,11 +66,7 @@ pub struct Played {
 ///
 /// # Errors
 /// What a check in the modules or the bench says.
-pub fn play(
-    cases: &[Case],
-    simulator: fn(&Path, usize) -> String,
-    fault: Option<&(&str, &str, &str)>,
-) -> Result<Vec<Vec<Played>>, String> {
+pub fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>) -> Result<Vec<Vec<Played>>, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: String| folder.path().join(name);
     let digits = INSTRUCTION_BITS.div_ceil(4) as usize;
@@ -102,7 +97,7 @@ pub fn play(
         );
     }
     fs::write(place("bench.v".to_owned()), bench + "endmodule\n").expect("writable");
-    let said = simulator(folder.path(), longest + 20);
+    let said = verilator(folder.path(), longest + 20);
     if !said.is_empty() {
         return Err(said);
     }

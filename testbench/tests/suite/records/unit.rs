@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
 
 use hdl_gen::cores::Multiplier;
 use hdl_gen::model::contacts::float;
@@ -11,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::records_of_faults;
 use crate::support::effort::some_of;
-use crate::support::player::{icarus, verilator, write_broken};
+use crate::support::player::{verilator, write_broken};
 use crate::support::workspace;
 
 /// Add, subtract, multiply, divide, root, angle, and what compares.
@@ -131,7 +130,6 @@ endmodule
 /// Cycles and result of each.
 fn play(
     operations: &[Operation],
-    simulator: fn(&Path, usize) -> String,
     fault: Option<&(&str, &str, &str)>,
     multiplier: Multiplier,
 ) -> Result<Vec<(u64, u32)>, String> {
@@ -151,7 +149,7 @@ fn play(
         fs::copy(workspace("hdl-gen/rtl/ecp5").join(split), place(split)).expect("is there");
     }
     let cycles: u64 = operations.iter().map(|operation| CYCLES[operation.what] + 2).sum();
-    let said = simulator(folder.path(), cycles as usize + 20);
+    let said = verilator(folder.path(), cycles as usize + 20);
     if !said.is_empty() {
         return Err(said);
     }
@@ -172,7 +170,7 @@ fn the_unit_is_the_model() {
     let operations = operations(&mut ChaCha8Rng::seed_from_u64(5), 200_000);
     for (multiplier, count) in [(Multiplier::Whole, 200_000), (Multiplier::Split, 20_000)] {
         let operations = &operations[..count];
-        let found = play(operations, verilator, None, multiplier).expect("no check fails");
+        let found = play(operations, None, multiplier).expect("no check fails");
         assert_eq!(found.len(), operations.len());
         for ((operation, found), expected) in operations.iter().zip(found).zip(expected(operations)) {
             assert_eq!(found, expected, "{operation:x?}");
@@ -231,6 +229,6 @@ fn faults_of_the_unit_are_noticed() {
     let operations = operations(&mut ChaCha8Rng::seed_from_u64(7), 2_500);
     let expected = expected(&operations);
     records_of_faults(&faults, |fault| {
-        play(&operations, icarus, fault, Multiplier::Whole).is_ok_and(|found| found == expected)
+        play(&operations, fault, Multiplier::Whole).is_ok_and(|found| found == expected)
     });
 }

@@ -13,7 +13,7 @@ use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 use super::{Subject, mixed, subjects};
-use crate::support::effort::some_of;
+use crate::support::effort::{share_of, some_of};
 use crate::support::faults::broken;
 use crate::support::{frames, in_parallel};
 
@@ -134,7 +134,8 @@ fn a_soft_reset_in_any_cycle_cuts_no_packet() {
 /// last ones.
 #[test]
 fn a_soft_reset_among_bad_frames_costs_the_frames_inside() {
-    let cases: Vec<_> = subjects().iter().flat_map(|subject| (0..40).map(move |case| (subject, case))).collect();
+    let cases: Vec<_> =
+        subjects().iter().flat_map(|subject| (0..share_of(40) as u64).map(move |case| (subject, case))).collect();
     in_parallel(&cases, |&(subject, case)| {
         let packets = mixed(&subject.plan, 30, &mut ChaCha8Rng::seed_from_u64(case));
         let cycle = 9 + case * subject.plan.timeline.interval_cycles / 4;

@@ -52,15 +52,16 @@ pub fn write_broken(folder: &Path, module: &str, from: &str, to: &str) {
 }
 
 /// What is printed by `bench.v` and the modules of a folder, those of the project where it has none, in so many cycles.
-/// Verilator's program is quick, and Icarus' is quickly made.
+/// Registers begin with random bits: what is read before it is written shows.
 pub fn verilator(folder: &Path, cycles: usize) -> String {
     let main = format!(
-        "#include \"Vbench.h\"\nint main() {{\n    Vbench bench;\n    for (long edge = 0; edge < 2L * {cycles}; ++edge) {{\n        \
+        "#include \"Vbench.h\"\nint main() {{\n    Verilated::randReset(2);\n    Vbench bench;\n    for (long edge = 0; edge < 2L * {cycles}; ++edge) {{\n        \
          bench.clock = edge & 1;\n        bench.eval();\n    }}\n    bench.final();\n}}\n"
     );
     // A main of its own turns the clock: no coroutines, which delays would need.
     let mut translate = tools::verilator().expect("installed");
-    translate.args(["--cc", "-Wno-fatal", "-DSIMULATION", "--top-module", "bench"]);
+    translate.args(["--cc", "--x-assign", "unique", "--x-initial", "unique", "-Wno-fatal", "-DSIMULATION"]);
+    translate.args(["--top-module", "bench"]);
     translate.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).arg("bench.v");
     succeed(translate.current_dir(folder));
     let parts = sorted_cpp(&folder.join("model")).into_iter().map(|part| format!("#include \"{}\"\n", part.display()));
@@ -81,19 +82,6 @@ fn sorted_cpp(folder: &Path) -> Vec<PathBuf> {
     let mut parts: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|end| end == "cpp")).collect();
     parts.sort();
     parts
-}
-
-/// As [`verilator`], by Icarus Verilog.
-pub fn icarus(folder: &Path, cycles: usize) -> String {
-    let clock = format!(
-        "module clock_of_bench;\n    reg clock = 0;\n    bench bench (.clock(clock));\n    \
-         initial begin\n        repeat (2 * {cycles}) #1 clock = !clock;\n        $finish(0);\n    end\nendmodule\n"
-    );
-    fs::write(folder.join("clock.v"), clock).expect("writable");
-    let mut build = tools::icarus().expect("installed");
-    build.args(["-g2005", "-DSIMULATION", "-s", "clock_of_bench", "-o", "bench", "-y", ".", "-y"]);
-    succeed(build.arg(workspace("hdl-gen/rtl")).args(["bench.v", "clock.v"]).current_dir(folder));
-    succeed(tools::icarus_runtime().expect("installed").args(["-n", "bench"]).current_dir(folder))
 }
 
 fn succeed(command: &mut Command) -> String {

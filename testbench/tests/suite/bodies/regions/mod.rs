@@ -12,7 +12,6 @@ use rand_chacha::ChaCha8Rng;
 use testbench::tools;
 
 use crate::support::effort::some_of;
-use crate::support::player::{icarus, verilator};
 use crate::support::{in_parallel, workspace};
 use cases::{Case, fill};
 use player::{assert_same, instance, lines, play};
@@ -58,7 +57,7 @@ fn bodies_are_told_apart_as_the_model_does() {
     // What is played at once goes on until the longest is over: like lengths together.
     cases.sort_by_key(Case::cycles);
     let (short, long) = cases.split_at(cases.len() - LONGEST);
-    let play = |cases: &&[Case]| play(cases, verilator, None).expect("no check of the module fails");
+    let play = |cases: &&[Case]| play(cases, None).expect("no check of the module fails");
     let texts = in_parallel(&[long, short], play);
     let texts = texts.iter().rev().flatten();
     let mut solved = Solved::default();
@@ -127,7 +126,7 @@ fn faults_are_noticed() {
         let mut case = Case::new([9, 7], [2.0, 3.0], 4);
         fill(&mut case, 2_500, &mut random);
         let expected: Vec<Found> = case.frames.iter().map(|frame| case.expected(frame)).collect();
-        let texts = play(std::slice::from_ref(&case), icarus, *fault);
+        let texts = play(std::slice::from_ref(&case), *fault);
         if fault.is_none() {
             assert_same(&case, &texts.as_ref().unwrap()[0], &expected);
         }

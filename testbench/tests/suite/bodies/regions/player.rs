@@ -2,13 +2,12 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
 
 use hdl_gen::blocks::regions::{counted, parameters, parted};
 use hdl_gen::model::contacts::regions::Found;
 
 use super::cases::Case;
-use crate::support::player::write_broken;
+use crate::support::player::{verilator, write_broken};
 
 /// The module with inputs that are registers of whatever, and outputs that are all looked at.
 pub fn instance(case: &Case) -> String {
@@ -70,13 +69,9 @@ pub fn assert_same(case: &Case, text: &str, expected: &[Found]) {
     }
 }
 
-/// Plays all cases at once in a simulator: what the bench writes of each, or what a check of the module says. A fault is a
+/// Plays all cases at once: what the bench writes of each, or what a check of the module says. A fault is a
 /// module, a text in it and what takes its place.
-pub fn play(
-    cases: &[Case],
-    simulator: fn(&Path, usize) -> String,
-    fault: Option<&(&str, &str, &str)>,
-) -> Result<Vec<String>, String> {
+pub fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>) -> Result<Vec<String>, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: String| folder.path().join(name);
     let mut bench = "module bench(input clock);\n".to_owned();
@@ -95,7 +90,7 @@ pub fn play(
     if let Some((module, from, to)) = fault {
         write_broken(folder.path(), &format!("sptfra_regions_{module}"), from, to);
     }
-    let said = simulator(folder.path(), longest + 10);
+    let said = verilator(folder.path(), longest + 10);
     if !said.is_empty() {
         return Err(said);
     }
