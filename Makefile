@@ -45,7 +45,7 @@ test: lint browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## Form
 	$(CARGO) test --workspace
 
 .PHONY: test-long
-test-long: lint browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## As test, with every broken copy and random design (three quarters of an hour)
+test-long: lint browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## As test, with every design and broken copy (three quarters of an hour)
 	SPTFRA_TEST_ALL=1 $(CARGO) test --workspace
 	$(CARGO) test -p hdl-gen -p testbench --test suite -- --ignored
 

@@ -21,7 +21,9 @@ pub fn some_of<T>(things: impl IntoIterator<Item = T>) -> Vec<T> {
     things.into_iter().step_by(if all() { 1 } else { SHARE }).collect()
 }
 
-/// All of them, or every second from the first on: of designs of which each has what others have, in another company.
+/// All of them, or every second from the first on: of designs that have their parts from one another, in another company. What
+/// stands at an odd place is met elsewhere or at night, so put at an even one what is nowhere else; seeds that choose a mode
+/// by their remainder go in such an order that each half has several.
 pub fn half_of<T>(things: impl IntoIterator<Item = T>) -> Vec<T> {
     things.into_iter().step_by(if all() { 1 } else { 2 }).collect()
 }

@@ -1,7 +1,8 @@
 //! The compiler runs: Verilator, its runtime library (once), the design's C++ (one translation unit).
 //!
 //! Measured with a 16-lane multiply-accumulate engine on two cores: parsing Verilator's headers takes 0.4 s of a
-//! small design's 0.7 s, so they are precompiled together with the runtime.
+//! small design's 0.7 s, so they are precompiled together with the runtime, but for
+//! builds with a trace.
 
 use std::fs;
 use std::io::Write;
@@ -39,10 +40,8 @@ const VERILATOR_FLAGS: [&str; 10] = [
 /// Symbols stay inside their shared object, so that several simulated designs live in one process. The wrapper turns
 /// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning. `-O1` would save at
 /// most 6 % of a simulation and take some 1 s more to compile, and would need a precompiled header of its own: GCC takes the
-/// optimisation from the header, whatever the flags beside it say. The redundancies that GCC's FRE looks for Verilator has
-/// removed; to look through functions of thousands of stores takes up to two fifths of the compiler's time, and the
-/// simulation is as quick without.
-const CXX_FLAGS: [&str; 10] = [
+/// optimisation from the header, whatever the flags beside it say.
+const CXX_FLAGS: [&str; 9] = [
     "-std=c++17",
     "-fPIC",
     "-fvisibility=hidden",
@@ -52,8 +51,10 @@ const CXX_FLAGS: [&str; 10] = [
     "-DVL_USER_FINISH",
     "-DVL_USER_WARN",
     "-Og",
-    "-fno-tree-fre",
 ];
+/// The redundancies that GCC's FRE looks for Verilator has removed: to look through functions of thousands of stores takes up
+/// to two fifths of the compiler's time, and the simulation is as quick without. Clang does not know the flag.
+const OF_GCC: &str = "-fno-tree-fre";
 
 /// The tools and flags of a build.
 pub struct Toolchain {
@@ -81,6 +82,9 @@ impl Toolchain {
     fn cxx_flags(&self) -> Vec<String> {
         let traced = |format| u8::from(self.trace == format);
         let mut flags: Vec<String> = CXX_FLAGS.iter().map(ToString::to_string).collect();
+        if !self.compiler.contains("clang") {
+            flags.push(OF_GCC.to_owned());
+        }
         for off in ["COVERAGE", "SC", "TIMING"] {
             flags.push(format!("-DVM_{off}=0"));
         }

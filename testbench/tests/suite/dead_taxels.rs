@@ -18,7 +18,7 @@ fn with_dead(mut design: Design, name: &str, dead: &[usize]) -> Design {
     design
 }
 
-/// Each kind of design that takes stresses on in another way.
+/// Each kind of design that takes stresses on in another way; `make test` plays every second.
 fn designs() -> Vec<Design> {
     let odd = |plan, outputs| by_plan(shipped("odd"), plan, outputs);
     let small = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);

@@ -14,7 +14,8 @@ use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simu
 /// Strengths of the frames in a row: full scale down to steps, 2^-k each.
 const FAINTEST: i32 = 22;
 
-/// Both plans and estimators, every width of the stream, pascals and integers, dead taxels, a calibration in RAM.
+/// Both plans and estimators, every width of the stream, pascals and integers, dead taxels, a calibration in RAM; `make test`
+/// plays every second.
 fn designs() -> Vec<Design> {
     let small = |name: &str, bits: u32, kind: PlanKind, outputs: Outputs| {
         let mut design = by_plan(shipped("small"), kind, outputs);

@@ -17,8 +17,8 @@ type Shape = (&'static str, usize, usize, f64, usize, &'static str, &'static str
 /// A rectangle, a square whose matrices are mirrored, odd sides, few quads for many lanes, a single one.
 const SHAPES: [Shape; 5] = [
     ("skip_rectangle", 10, 10, 2.0, 16, "field", "interval"),
-    ("skip_square", 8, 8, 4.0, 12, "field", "latency"),
     ("skip_odd", 7, 5, 3.0, 8, "resultants", "interval"),
+    ("skip_square", 8, 8, 4.0, 12, "field", "latency"),
     ("skip_few_quads", 3, 4, 3.0, 64, "field", "latency"),
     ("skip_one_quad", 2, 2, 4.0, 4, "field", "interval"),
 ];

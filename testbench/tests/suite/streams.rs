@@ -1,4 +1,4 @@
-//! Streams of several samples and words a beat: every width with every kind of design, in all stream modes, and frames
+//! Streams of several samples and words a beat: every width, every sample format, in all stream modes, and frames
 //! that a source should not send.
 
 use std::sync::OnceLock;
@@ -23,7 +23,7 @@ struct Subject {
 }
 
 /// Both widths, field and resultants, frames that fill their last beat and frames that do not, samples taken at once and
-/// one by one, in pascals and in counts.
+/// one by one, in pascals and in counts; `make test` plays every second.
 fn subjects() -> &'static [Subject] {
     static SUBJECTS: OnceLock<Vec<Subject>> = OnceLock::new();
     SUBJECTS.get_or_init(|| {

@@ -38,7 +38,8 @@ fn wide(mut design: Design, bits: usize) -> Design {
     design
 }
 
-/// Both plans, both estimators, narrow and wide streams, odd sides; and what has the shortest search of all.
+/// Both plans, both estimators, narrow and wide streams, odd sides; and what has the shortest search of all. `make test` plays
+/// every second.
 fn designs() -> Vec<Design> {
     vec![
         shipped("odd"),

@@ -184,7 +184,7 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
         let _ = write!(
             bench,
             "    generate if (1) begin : {name}
-        reg [{high}:0] stimulus [0:{cycles}];
+        reg [{high}:0] stimulus [0:{cycles}-1];
         reg [{high}:0] in;
         wire [7:0] bodies;
         integer cycle, file;

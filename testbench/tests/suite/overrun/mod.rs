@@ -186,8 +186,10 @@ fn explained(plan: &Plan, cycles: u64, outcome: &Outcome) {
 /// Good and bad frames, of a scanner that pauses anywhere, to a sink that does.
 #[test]
 fn pauses_and_bad_frames_change_nothing() {
+    // Either half has a source that pauses and a sink that does.
+    let seeds = half_of([1, 0, 3, 2, 5, 4]);
     let cases: Vec<(&Subject, u64)> =
-        subjects().iter().flat_map(|subject| half_of(0..6).into_iter().map(move |seed| (subject, seed))).collect();
+        subjects().iter().flat_map(|subject| seeds.iter().map(move |&seed| (subject, seed))).collect();
     in_parallel(&cases, |&(subject, seed)| {
         let interval = subject.plan.timeline.interval_cycles;
         let packets = packets(&subject.plan, 150);

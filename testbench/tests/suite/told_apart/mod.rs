@@ -71,7 +71,8 @@ fn without_field(mut design: Design) -> Design {
 }
 
 /// Both plans, both estimators, odd sides, a filter, a range for each frame, a sensor that reads no tension, resultants
-/// alone, slip, wide streams, a source that is never held; few records and many, few lanes and many.
+/// alone, slip, wide streams, a source that is never held; few records and many, few lanes and many. `make test` plays every
+/// second.
 fn designs() -> Vec<Design> {
     vec![
         telling_apart(shipped("odd"), 2),
