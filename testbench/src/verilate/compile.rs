@@ -1,8 +1,7 @@
 //! The compiler runs: Verilator, its runtime library (once), the design's C++ (one translation unit).
 //!
 //! Measured with a 16-lane multiply-accumulate engine on two cores: parsing Verilator's headers takes 0.4 s of a
-//! small design's 0.7 s, so they are precompiled together with the runtime, but for
-//! builds with a trace.
+//! small design's 0.7 s, so they are precompiled together with the runtime, but for builds with a trace.
 
 use std::fs;
 use std::io::Write;
