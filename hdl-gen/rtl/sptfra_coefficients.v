@@ -29,7 +29,8 @@ module sptfra_coefficients #(
     input  wire clock,
     input  wire reset,
     // Result bus
-    input  wire [15:0] result_route,
+    input  wire [2:0] result_partial, // A_p b, at p - 1
+    input  wire [8:0] result_g, // g_pq at 3 (p - 1) + q
     input  wire [ROW_WIDTH-1:0] result_row,
     input  wire signed [DATA_BITS-1:0] result_value,
     // Operand memories
@@ -47,10 +48,8 @@ module sptfra_coefficients #(
     output wire [18*40-1:0] sums
 );
 
-    // ---- What a result is: A_p b, or g_pq
-    wire [6:4] is_partial = result_route[6:4];
-    wire [15:7] is_g = result_route[15:7]; // at 7 + 3 (p - 1) + q
-    wire [1:0] p = {is_partial[6] || (is_g[15:13] != 3'd0), is_partial[5] || (is_g[12:10] != 3'd0)};
+    // ---- Whose a result is: component 3 i + p - 1, and p here is one less
+    wire [1:0] p = {result_partial[2] || (result_g[8:6] != 3'd0), result_partial[1] || (result_g[5:3] != 3'd0)};
     wire [31:0] row_wide = {{(32-ROW_WIDTH){1'b0}}, result_row};
     wire [COMPONENT_WIDTH-1:0] row_short = row_wide[COMPONENT_WIDTH-1:0];
     wire [COMPONENT_WIDTH-1:0] component = row_short + row_short + row_short + {{(COMPONENT_WIDTH-2){1'b0}}, p};
@@ -90,8 +89,8 @@ module sptfra_coefficients #(
     assign g_valid = is_g_3[2:0] | is_g_3[5:3] | is_g_3[8:6];
 
     always @(posedge clock) begin
-        partial_write <= (is_partial != 3'd0);
-        is_g_1 <= is_g;
+        partial_write <= (result_partial != 3'd0);
+        is_g_1 <= result_g;
         is_g_2 <= is_g_1;
         is_g_3 <= is_g_2;
         row_1 <= result_row;
@@ -251,7 +250,7 @@ module sptfra_coefficients #(
         end
     endgenerate
 
-    wire _unused = &{1'b0, result_route, row_wide, stored_row, base};
+    wire _unused = &{1'b0, row_wide, stored_row, base};
 
 endmodule
 

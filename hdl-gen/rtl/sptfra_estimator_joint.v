@@ -19,8 +19,8 @@ module sptfra_estimator_joint #(
     parameter integer WAYS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // 1: a cell a point of the plane, 15 x 15 of them; 0: a walk over 21 x 21 points, in cells of a few taxels
-    parameter integer POINTS = 0,
+    // Points of the plane along an axis, each with a cell; 0: a walk over 21 x 21 points, in cells of a few taxels
+    parameter integer POINTS_SIDE = 0,
     // Left shift of u before the right shift by the bits of sum |b|, for the points
     parameter integer U_LEFT = 24,
     // Taxels that the points see in a cycle: 1, or 2, with a row of points weighed in one
@@ -141,7 +141,7 @@ module sptfra_estimator_joint #(
 
     sptfra_joint_stages #(
         .LOOK      (NETWORK),
-        .HANDED_ON (POINTS)
+        .HANDED_ON ((POINTS_SIDE != 0) ? 1 : 0)
     ) stages (
         .clock            (clock),
         .reset            (reset),
@@ -206,7 +206,7 @@ module sptfra_estimator_joint #(
         .COLUMNS                (COLUMNS),
         .ROWS                   (ROWS),
         .DATA_BITS              (DATA_BITS),
-        .POINTS                 (POINTS),
+        .POINTS_SIDE            (POINTS_SIDE),
         .U_LEFT                 (U_LEFT),
         .TAXELS                 (TAXELS),
         .CELLS                  (CELLS),
@@ -252,7 +252,7 @@ module sptfra_estimator_joint #(
             end
 
             sptfra_correction #(
-                .HANDED_ON                (POINTS),
+                .HANDED_ON                ((POINTS_SIDE != 0) ? 1 : 0),
                 .COLUMNS                  (COLUMNS),
                 .ROWS                     (ROWS),
                 .DATA_BITS                (DATA_BITS),

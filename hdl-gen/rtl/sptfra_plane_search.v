@@ -14,8 +14,8 @@ module sptfra_plane_search #(
     parameter integer ROWS = 10,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // 1: a cell a point, 15 x 15 of them; 0: a walk over 21 x 21 points
-    parameter integer POINTS = 1,
+    // Points along an axis, 5 or 15, each with a cell; 0: a walk over 21 x 21 points
+    parameter integer POINTS_SIDE = 15,
     // Left shift of u before the right shift by the bits of sum |b|, for the points
     parameter integer U_LEFT = 24,
     // Taxels that the points see in a cycle: 1, or 2, with a row of points weighed in one
@@ -64,12 +64,11 @@ module sptfra_plane_search #(
     localparam integer VALUE_BITS = 31 + $clog2(COLUMNS * ROWS);
 
     generate
-        if (POINTS != 0) begin : gen_points
-            localparam integer SIDE = 15;
+        if (POINTS_SIDE != 0) begin : gen_points
             wire [15:0] margin;
             wire row_valid;
             wire again;
-            wire [SIDE*28-1:0] row_values;
+            wire [POINTS_SIDE*28-1:0] row_values;
             wire clipped_u;
             wire clipped_least;
 
@@ -78,7 +77,7 @@ module sptfra_plane_search #(
                 .ROWS             (ROWS),
                 .DATA_BITS        (DATA_BITS),
                 .ROW_WIDTH        (ROW_WIDTH),
-                .SIDE             (SIDE),
+                .SIDE             (POINTS_SIDE),
                 .TAXELS           (TAXELS),
                 .U_LEFT           (U_LEFT),
                 .EXPECTED_LATENCY (EXPECTED_PLANE_LATENCY)
@@ -104,8 +103,8 @@ module sptfra_plane_search #(
             );
 
             sptfra_points_level #(
-                .SIDE             (SIDE),
-                .AT_ONCE          ((TAXELS == 1) ? 5 : SIDE),
+                .SIDE             (POINTS_SIDE),
+                .AT_ONCE          ((TAXELS == 1) ? 5 : POINTS_SIDE),
                 .EXPECTED_LATENCY (EXPECTED_LEVEL_LATENCY)
             ) level_set (
                 .clock      (clock),

@@ -16,7 +16,7 @@
 // | 8           | r, stored                    |                                      |
 // | 9 10 11     | A_p r, p = 1 2 3, the field  |                                      |
 //
-// The route is the destination as one bit of sixteen.
+// Nobody else knows these numbers: on the bus each destination has a bit of its own, named by what the result is.
 
 `default_nettype none
 
@@ -55,7 +55,11 @@ module sptfra_spmv_collector #(
     input  wire [LANES-1:0] pending,
     output wire [LANES-1:0] take,
     // Result bus
-    output reg  [15:0] result_route, // nothing without a result
+    output wire result_y, // of these one bit with each result, none without
+    output wire [2:0] result_u,
+    output wire [8:0] result_g, // of taxels g_pq at 3 (p - 1) + q, of classes their sums at 0
+    output wire [3:0] result_kept, // of taxels A_p b at p - 1, of classes r, r2, r1, r0
+    output wire [2:0] result_force, // A_p r
     output reg  [ROW_WIDTH-1:0] result_row,
     output reg  [WAYS*DATA_BITS-1:0] result_value, // class 0 in the lowest bits
     output reg  result_last // of its program
@@ -246,7 +250,7 @@ module sptfra_spmv_collector #(
         && ((sum_destination == R1[DESTINATION_BITS-1:0]) || (sum_destination == FORCE_X[DESTINATION_BITS-1:0])));
     wire odd_y = (sum_destination == U2[DESTINATION_BITS-1:0]) || ((DESTINATION_BITS == 4)
         && ((sum_destination == R2[DESTINATION_BITS-1:0]) || (sum_destination == FORCE_Y[DESTINATION_BITS-1:0])));
-    wire [15:0] route = 16'd1 << sum_destination;
+    reg [15:0] route; // bit k: of destination k
     reg [2:1] lasts;
 
     always @(posedge clock) begin
@@ -254,12 +258,12 @@ module sptfra_spmv_collector #(
         sum_destination <= visited_destination;
         sum_more <= visited_more[MORE_BITS-1:0];
         sum_row <= visited_row;
-        result_route <= route & {16{sum_valid}};
+        route <= (16'd1 << sum_destination) & {16{sum_valid}};
         result_row <= sum_row;
         {result_last, lasts} <= {lasts, ends};
         if (reset) begin
             sum_valid <= 1'b0;
-            result_route <= 16'd0;
+            route <= 16'd0;
             {result_last, lasts} <= 3'd0;
         end
     end
@@ -270,11 +274,17 @@ module sptfra_spmv_collector #(
         .clock (clock),
         .reset (reset),
         .start (taking),
-        .done  (result_route != 16'd0)
+        .done  (route != 16'd0)
     );
+
+    assign {result_u, result_y} = route[3:0];
 
     generate
         if (WAYS == 4) begin : gen_classes
+            assign {result_force, result_kept} = route[11:5];
+            assign result_g = {8'd0, route[4]};
+            wire _unused = &{1'b0, route[15:12]};
+
             wire [DATA_BITS-1:0] way_0 = rounded[DATA_BITS*0 +: DATA_BITS];
             wire [DATA_BITS-1:0] way_1 = rounded[DATA_BITS*1 +: DATA_BITS];
             wire [DATA_BITS-1:0] way_2 = rounded[DATA_BITS*2 +: DATA_BITS];
@@ -292,6 +302,10 @@ module sptfra_spmv_collector #(
                 end
             end
         end else begin : gen_taxels
+            assign result_g = route[15:7];
+            assign result_kept = {1'b0, route[6:4]};
+            assign result_force = 3'd0;
+
             always @(posedge clock) begin
                 result_value <= rounded;
             end

@@ -74,7 +74,11 @@ const OF_CORE: [(&str, &[&str]); 3] = [
         "results",
         &[
             "stress_valid",
-            "result_route",
+            "result_y",
+            "result_u",
+            "result_g",
+            "result_kept",
+            "result_force",
             "result_row",
             "result_last",
             "taxel_y",

@@ -218,7 +218,7 @@ impl Slot for JointPlan {
             .count("ROWS", design.sensor.rows)
             .count("WAYS", ways)
             .number("DATA_BITS", Factors::of(design).outside_bits().into())
-            .flag("POINTS", self.points.is_some());
+            .count("POINTS_SIDE", self.points.as_ref().map_or(0, |points| points.side));
         let parameters = match &self.points {
             Some(points) => {
                 let parameters = parameters.number("U_LEFT", points.u_left.into());

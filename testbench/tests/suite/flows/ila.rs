@@ -21,10 +21,12 @@ fn marked(design: &str) -> FileMap {
 
 #[test]
 fn every_kind_of_core_has_the_nets() {
-    for design in ["small.toml", "small-scanner.toml", "odd.toml", "sensor1-fast.toml", "sensor1-f1-l40.toml"] {
+    // Of taxels by themselves there is one kind of result less.
+    let designs = ["small.toml", "small-scanner.toml", "odd.toml", "sensor1-fast.toml", "sensor1-f1-l40.toml"];
+    for (design, nets) in designs.into_iter().zip([20, 20, 19, 20, 19]) {
         let files = marked(design);
         let marks = files.values().map(|text| String::from_utf8_lossy(text).matches(MARK).count()).sum::<usize>();
-        assert_eq!(marks, 16, "{design}");
+        assert_eq!(marks, nets, "{design}");
         let script = String::from_utf8_lossy(&files[ANALYSER]).into_owned();
         assert_eq!(
             script
@@ -32,7 +34,7 @@ fn every_kind_of_core_has_the_nets() {
                 .nth(1)
                 .and_then(|list| list.split('}').next())
                 .map(|list| { list.split_whitespace().count() }),
-            Some(16),
+            Some(nets),
             "{design}"
         );
     }
@@ -55,7 +57,7 @@ fn every_marked_net_has_a_probe_in_the_clock_of_the_core() {
             .skip(1)
             .filter_map(|after| after.lines().next()?.split(';').next()?.split_whitespace().last())
             .collect();
-        assert_eq!(nets.len(), 16, "{nets:?}");
+        assert_eq!(nets.len(), 20, "{nets:?}");
         let folder = Folder::new(&files);
         let ran = implemented(&folder, &[]).succeeded();
         let of_probes: Vec<&String> =

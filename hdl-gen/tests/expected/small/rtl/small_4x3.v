@@ -185,16 +185,17 @@ module small_4x3 #(
     wire issued;
     wire bank, residual_bank, field_bank, u_released, friction_known, field_release;
     wire signed [17:0] mu_x, mu_y;
-    wire [15:0] result_route;
-    wire [ROW_WIDTH-1:0] result_row;
-    wire [VECTOR_BITS-1:0] result_value;
+    wire result_y;
+    wire [2:0] result_u;
+    wire [8:0] result_g;
+    wire [3:0] result_kept;
+    wire [2:0] result_force;
     wire result_last;
-    wire we_write_next, we_write, co_write_next, co_write;
-    wire [OPERAND_WIDTH-1:0] we_write_address, co_write_address;
-    wire [VECTOR_BITS-1:0] we_write_data, co_write_data;
-    wire list_pull;
-    wire [ROW_WIDTH-1:0] list_address, list_quad;
+    wire we_write_next, we_write, co_write_next, co_write, list_pull;
+    wire [ROW_WIDTH-1:0] result_row, list_address, list_quad;
     wire [ROW_WIDTH+7:0] list_count;
+    wire [OPERAND_WIDTH-1:0] we_write_address, co_write_address;
+    wire [VECTOR_BITS-1:0] result_value, we_write_data, co_write_data;
     wire [31:0] bz_row_wide = { {(32-ROW_WIDTH){1'b0}}, bz_write_row};
     wire [OPERAND_WIDTH-1:0] bz_write_address = (bz_write_bank ? 6'd4 : 6'd0) + bz_row_wide[OPERAND_WIDTH-1:0];
 
@@ -208,7 +209,7 @@ module small_4x3 #(
         .reset            (reset),
         .frame_ready      (frame_ready),
         .u_released       (u_released),
-        .residual_written (result_last && (result_route[7:5] != 3'd0)),
+        .residual_written (result_last && (result_kept[2:0] != 3'd0)),
         .friction_known   (friction_known),
         .frame_released   (field_release),
         .issued           (issued),
@@ -302,17 +303,21 @@ module small_4x3 #(
         .write_enable  (we_write || co_write || bz_write),
         .write_address (we_write ? we_write_address : co_write ? co_write_address : bz_write_address),
         .write_data    (we_write ? we_write_data : co_write ? co_write_data : bz_write_data),
-        .result_route  (result_route),
+        .result_y      (result_y),
+        .result_u      (result_u),
+        .result_g      (result_g),
+        .result_kept   (result_kept),
+        .result_force  (result_force),
         .result_row    (result_row),
         .result_value  (result_value),
         .result_last   (result_last)
     );
 
     // ---- Unfold: parity classes to taxels
-    wire taxel_y, taxel_last;
+    wire taxel_y, taxel_last, weights_valid;
     wire [2:0] taxel_u, taxel_force;
-    wire [ROW_WIDTH-1:0] taxel_row;
-    wire [VECTOR_BITS-1:0] taxels;
+    wire [ROW_WIDTH-1:0] taxel_row, weights_row;
+    wire [VECTOR_BITS-1:0] taxels, weights;
 
     sptfra_unfold #(
         .WAYS      (4),
@@ -326,9 +331,9 @@ module small_4x3 #(
         .stress_write_bank     (bz_write_bank),
         .stress_write_row      (bz_write_row),
         .stress_write_data     (bz_write_data),
-        .result_y              (result_route[0]),
-        .result_u              (result_route[3:1]),
-        .result_force          (result_route[11:9]),
+        .result_y              (result_y),
+        .result_u              (result_u),
+        .result_force          (result_force),
         .result_row            (result_row),
         .result_value          (result_value),
         .result_last           (result_last),
@@ -342,10 +347,6 @@ module small_4x3 #(
     );
 
     // ---- We: weights
-    wire weights_valid;
-    wire [ROW_WIDTH-1:0] weights_row;
-    wire [VECTOR_BITS-1:0] weights;
-
     sptfra_we #(
         .WAYS          (4),
         .ELEMENTS      (4),
@@ -397,7 +398,8 @@ module small_4x3 #(
     ) co (
         .clock         (aclk),
         .reset         (reset),
-        .result_route  (result_route),
+        .result_g      (result_g),
+        .result_kept   (result_kept),
         .result_row    (result_row),
         .result_value  (result_value),
         .bank          (bank),
@@ -546,8 +548,7 @@ module small_4x3 #(
     );
 
     // What this design has no use for
-    wire _unused = &{1'b0, bz_row_wide, result_route, taxel_last, taxel_force, weights_valid, weights_row, weights,
-        g_valid,
+    wire _unused = &{1'b0, bz_row_wide, taxel_last, taxel_force, weights_valid, weights_row, weights, g_valid,
         g_component, g, g_last, friction_known, field_mu_x, field_mu_y, field_enable, field_rewind, field_step};
 
 endmodule

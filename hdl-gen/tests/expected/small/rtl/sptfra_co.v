@@ -35,7 +35,8 @@ module sptfra_co #(
     input  wire clock,
     input  wire reset,
     // Result bus
-    input  wire [15:0] result_route,
+    input  wire [8:0] result_g, // of taxels g_pq at 3 (p - 1) + q, of classes their sums at 0
+    input  wire [3:0] result_kept, // of taxels A_p b at p - 1, of classes r, r2, r1, r0
     input  wire [ROW_WIDTH-1:0] result_row,
     input  wire [WAYS*DATA_BITS-1:0] result_value,
     // Operand memories
@@ -83,7 +84,7 @@ module sptfra_co #(
     ) check_write (
         .clock (clock),
         .reset (reset),
-        .start ((WAYS == 4) ? (result_route[8:5] != 4'd0) : (result_route[15:13] != 3'd0)),
+        .start ((WAYS == 4) ? (result_kept != 4'd0) : (result_g[8:6] != 3'd0)),
         .done  (write_valid)
     );
 
@@ -92,7 +93,7 @@ module sptfra_co #(
     // The last of a frame's results that add up to sums
     localparam integer SUMMANDS = (WAYS == 4) ? 7 : 9 * ELEMENTS;
     integer summands;
-    wire summand = (WAYS == 4) ? result_route[4] : (result_route[15:7] != 9'd0);
+    wire summand = (result_g != 9'd0);
     wire last_summand = summand && (summands == SUMMANDS - 1);
     reg sums_were_there;
 
@@ -121,7 +122,6 @@ module sptfra_co #(
         if (WAYS == 4) begin : gen_folded
             // ---- Sums: row q has G_pq, and T_z's, in the class on which it depends, row 4 + q those of T_x and T_y;
             // row 3 what the weights take from F_z, T_x and T_y
-            wire [8:5] stored = result_route[8:5];
             reg [2:0] sums_count;
             // A register on the way from the result bus
             reg sum_valid;
@@ -166,7 +166,7 @@ module sptfra_co #(
             };
 
             always @(posedge clock) begin
-                sum_valid <= result_route[4];
+                sum_valid <= result_g[0];
                 sum_row <= result_row[2:0];
                 sum_value <= result_value;
                 if (sum_valid) begin
@@ -238,18 +238,18 @@ module sptfra_co #(
 
             always @(*) begin
                 base = STORE_BASES[63:48];
-                if (stored[5]) begin
+                if (result_kept[0]) begin
                     base = bases[15:0];
                 end
-                if (stored[6]) begin
+                if (result_kept[1]) begin
                     base = bases[31:16];
                 end
-                if (stored[7]) begin
+                if (result_kept[2]) begin
                     base = bases[47:32];
                 end
             end
 
-            assign write_next = (stored != 4'd0);
+            assign write_next = (result_kept != 4'd0);
             assign write_valid = stored_valid;
             assign write_address = stored_address;
             assign write_data = stored_data;
@@ -267,7 +267,7 @@ module sptfra_co #(
                 end
             end
 
-            wire _unused = &{1'b0, result_route, row_wide, base, bank, LENGTH, STORE_IN_BANK, ROM_DIR == "",
+            wire _unused = &{1'b0, result_g, row_wide, base, bank, LENGTH, STORE_IN_BANK, ROM_DIR == "",
                 ROM_NAME == ""};
         end else begin : gen_taxels
             sptfra_coefficients #(
@@ -279,25 +279,27 @@ module sptfra_co #(
                 .ROM_DIR       (ROM_DIR),
                 .ROM_NAME      (ROM_NAME)
             ) coefficients (
-                .clock         (clock),
-                .reset         (reset),
-                .result_route  (result_route),
-                .result_row    (result_row),
-                .result_value  (result_value),
-                .bank          (bank),
-                .write_next    (write_next),
-                .write_valid   (write_valid),
-                .write_address (write_address),
-                .write_data    (write_data),
-                .g_valid       (g_valid),
-                .g_component   (g_component),
-                .g             (g),
-                .sums_there    (sums_there),
-                .sums          (sums)
+                .clock          (clock),
+                .reset          (reset),
+                .result_partial (result_kept[2:0]),
+                .result_g       (result_g),
+                .result_row     (result_row),
+                .result_value   (result_value),
+                .bank           (bank),
+                .write_next     (write_next),
+                .write_valid    (write_valid),
+                .write_address  (write_address),
+                .write_data     (write_data),
+                .g_valid        (g_valid),
+                .g_component    (g_component),
+                .g              (g),
+                .sums_there     (sums_there),
+                .sums           (sums)
             );
 
             assign g_last = sums_there;
-            wire _unused = &{1'b0, residual_bank, RESIDUAL_BANK}; // here nothing is left of the stress
+            // Here nothing is left of the stress
+            wire _unused = &{1'b0, result_kept[3], residual_bank, RESIDUAL_BANK};
 
 `ifdef SIMULATION
             // By the schedule a frame's sums are taken before the next ones grow

@@ -79,8 +79,12 @@ module sptfra_spmv_array #(
     input  wire write_enable,
     input  wire [OPERAND_WIDTH-1:0] write_address,
     input  wire [WAYS*DATA_BITS-1:0] write_data,
-    // Result bus
-    output wire [15:0] result_route,
+    // Result bus: of these one bit with each result, none without
+    output wire result_y,
+    output wire [2:0] result_u, // of classes without the stress, which is added to u0
+    output wire [8:0] result_g, // of taxels g_pq at 3 (p - 1) + q, of classes their sums over the frame at 0
+    output wire [3:0] result_kept, // of taxels A_p b at p - 1, of classes what is left of the stress: r, r2, r1, r0
+    output wire [2:0] result_force, // of classes A_p r, the field
     output wire [ROW_WIDTH-1:0] result_row,
     output wire [WAYS*DATA_BITS-1:0] result_value, // class 0 in the lowest bits
     output wire result_last // of its program
@@ -324,7 +328,11 @@ module sptfra_spmv_array #(
         .results      (results),
         .pending      (pending),
         .take         (take),
-        .result_route (result_route),
+        .result_y     (result_y),
+        .result_u     (result_u),
+        .result_g     (result_g),
+        .result_kept  (result_kept),
+        .result_force (result_force),
         .result_row   (result_row),
         .result_value (result_value),
         .result_last  (result_last)
