@@ -12,6 +12,8 @@ BIN    := $(TARGET)/debug
 # All but the leaf cores: their Verilog lies in git, and only a test prints it anew.
 PACKAGES := -p golden -p hdl-gen -p testbench
 
+PIP_INSTALL := .venv/bin/pip install --quiet --disable-pip-version-check --no-compile
+
 DESIGN ?= designs/sensor1-reduced.toml
 SCENE  ?= scenes/sensor1-hertz.toml
 FRAMES := $(TARGET)/run/$(basename $(notdir $(SCENE))).csv
@@ -41,16 +43,16 @@ run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a l
 
 # What fails soonest comes first: formatting and lints, then the crates in the order in which they use each other.
 .PHONY: test
-test: lint browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## Formatting, lints, all tests of all crates
+test: lint-and-tools ## Formatting, lints, all tests of all crates
 	$(CARGO) test --workspace
 
 .PHONY: test-long
-test-long: lint browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## As test, with every design and broken copy (three quarters of an hour)
+test-long: lint-and-tools ## As test, with every design and broken copy (three quarters of an hour)
 	SPTFRA_TEST_ALL=1 $(CARGO) test --workspace
 	$(CARGO) test -p hdl-gen -p testbench --test suite -- --ignored
 
 .PHONY: test-times
-test-times: browser-tools sweep-tools wheel-tools book-tools cocotb-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
+test-times: test-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
 	@tools/test_times.py
 
 .PHONY: formal
@@ -85,6 +87,11 @@ lint: ## Formatting and clippy, warnings are errors
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets -- -D warnings
 
+# Installing is work for one core, and lints need nothing of it. Both end before this does.
+.PHONY: lint-and-tools
+lint-and-tools:
+	@$(MAKE) --no-print-directory test-tools & $(MAKE) --no-print-directory lint; linted=$$?; wait $$! && exit $$linted
+
 .PHONY: format
 format: ## Format the Rust sources
 	$(CARGO) fmt --all
@@ -104,7 +111,7 @@ wheel: wheel-tools ## The Python package as a wheel, in target/wheels (docs/pyth
 
 .PHONY: wheel-tools
 wheel-tools: tools ## Install maturin and matplotlib into .venv, for the Python package and its test
-	@.venv/bin/pip install --quiet --disable-pip-version-check --no-compile -r tools/requirements-python.txt
+	@$(PIP_INSTALL) -r tools/requirements-python.txt
 
 .PHONY: book
 book: book-tools ## README and docs as a site with a search, in target/book
@@ -112,11 +119,11 @@ book: book-tools ## README and docs as a site with a search, in target/book
 
 .PHONY: book-tools
 book-tools: tools ## Install MkDocs into .venv, for the site and its test
-	@.venv/bin/pip install --quiet --disable-pip-version-check --no-compile -r tools/requirements-book.txt
+	@$(PIP_INSTALL) -r tools/requirements-book.txt
 
 .PHONY: cocotb-tools
 cocotb-tools: tools ## Install cocotb into .venv, for the test of the generated example
-	@.venv/bin/pip install --quiet --disable-pip-version-check --no-compile -r tools/requirements-cocotb.txt
+	@$(PIP_INSTALL) -r tools/requirements-cocotb.txt
 
 # golden and hdl-gen need nothing of the system they run on; testbench loads the cores that it compiles, so it cannot be static.
 HOST = $(shell rustc -vV | sed -n 's/^host: //p')
@@ -146,9 +153,10 @@ registers: tools build ## C header, page and IP-XACT file of a register bank, by
 tools: ## Install Verilator, Yosys and Icarus Verilog where they are missing
 	@tools/install.sh
 
-.PHONY: browser-tools
-browser-tools: ## What `tools` installs, and a browser where there is none, for the test of the pages
+.PHONY: test-tools
+test-tools: ## What `tools` installs, and what only tests need: a browser where there is none, Python packages
 	@tools/install.sh browser
+	@$(PIP_INSTALL) $(patsubst %,-r tools/requirements-%.txt,python book cocotb sweep)
 
 .PHONY: synth
 synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside the predicted ones (minutes)
@@ -202,7 +210,7 @@ hard: tools build ## Sensors, contacts and frames at the limits, all through the
 
 .PHONY: sweep-tools
 sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one machine
-	@.venv/bin/pip install --quiet --disable-pip-version-check --no-compile -r tools/requirements-sweep.txt
+	@$(PIP_INSTALL) -r tools/requirements-sweep.txt
 
 .PHONY: sweep-cluster
 sweep-cluster: sweep-tools build ## The report by Snakemake, one `testbench run --json` a job

@@ -1,7 +1,7 @@
 //! The compiler runs: Verilator, its runtime library (once), the design's C++ (one translation unit).
 //!
 //! Measured with a 16-lane multiply-accumulate engine on two cores: parsing Verilator's headers takes 0.4 s of a
-//! small design's 0.7 s, so they are precompiled together with the runtime, but for builds with a trace.
+//! small design's 0.7 s, so they are precompiled together with the runtime, for builds without a trace.
 
 use std::fs;
 use std::io::Write;
@@ -17,6 +17,7 @@ use sha2::{Digest, Sha256};
 /// The shared object's name in its entry.
 pub const LIBRARY: &str = "dut.so";
 const ARCHIVE: &str = "libverilated.a";
+const TRACER: &str = "libtracer.a";
 const HEADER: &str = "runtime.h";
 const WRAPPER: &str = include_str!("wrapper.cpp");
 
@@ -56,6 +57,7 @@ const CXX_FLAGS: [&str; 9] = [
 const OF_GCC: &str = "-fno-tree-fre";
 
 /// The tools and flags of a build.
+#[derive(Clone)]
 pub struct Toolchain {
     trace: Trace,
     include: PathBuf,
@@ -100,14 +102,14 @@ impl Toolchain {
         Ok(command)
     }
 
-    fn runtime_sources(&self) -> Vec<PathBuf> {
-        let tracer: &[&str] = match self.trace {
+    /// What writes the trace, of Verilator's sources.
+    fn tracer_sources(&self) -> &'static [&'static str] {
+        match self.trace {
             Trace::Off => &[],
             Trace::Vcd => &["verilated_vcd_c.cpp"],
             Trace::Saif => &["verilated_saif_c.cpp"],
             Trace::Fst => &["verilated_fst_c.cpp", "fstcpp/fstcpp_writer.cpp", "fstcpp/fstcpp_variable_info.cpp"],
-        };
-        ["verilated.cpp", "verilated_threads.cpp"].iter().chain(tracer).map(|name| self.include.join(name)).collect()
+        }
     }
 
     fn libraries(&self) -> &'static [&'static str] {
@@ -115,32 +117,69 @@ impl Toolchain {
     }
 }
 
-/// Folder with the compiled runtime and, of builds without a trace, its precompiled header; built on first use, which takes
-/// about 6 s.
-pub fn runtime(toolchain: &Toolchain, cache: &Cache) -> Result<PathBuf, BuildError> {
-    let key = format!("runtime-{}", &hex(&Sha256::digest(toolchain.identity()))[..16]);
-    // Every test of a fresh checkout wants it at the same moment.
+/// Folders with what all designs are linked with.
+pub struct Runtime {
+    /// The runtime and its precompiled header: one for all builds, as its code is the same whatever is traced.
+    common: PathBuf,
+    /// What writes the trace, of builds with one.
+    tracer: Option<PathBuf>,
+}
+
+impl Runtime {
+    /// Compiled on first use, which takes about 6 s, and 2 s with a format of traces.
+    pub fn new(toolchain: &Toolchain, cache: &Cache) -> Result<Self, BuildError> {
+        let plain = Toolchain { trace: Trace::Off, ..toolchain.clone() };
+        let common = once("runtime", &plain, cache, |folder| build_common(&plain, folder))?;
+        let tracer = match toolchain.tracer_sources() {
+            [] => None,
+            sources => Some(once("tracer", toolchain, cache, |folder| {
+                compile_all(toolchain, sources, Vec::new(), &folder.join(TRACER))
+            })?),
+        };
+        Ok(Self { common, tracer })
+    }
+
+    /// In the order in which they are linked.
+    fn archives(&self) -> impl Iterator<Item = PathBuf> {
+        let tracer = self.tracer.iter().map(|folder| folder.join(TRACER));
+        tracer.chain([self.common.join(ARCHIVE)])
+    }
+}
+
+/// The cache's entry of a kind, by the tools and flags; every test of a fresh checkout wants it at the same moment.
+fn once(
+    kind: &str,
+    toolchain: &Toolchain,
+    cache: &Cache,
+    build: impl FnOnce(&Path) -> Result<(), BuildError>,
+) -> Result<PathBuf, BuildError> {
+    let key = format!("{kind}-{}", &hex(&Sha256::digest(toolchain.identity()))[..16]);
     cache.exclusive(&key, || match cache.get(&key) {
         Some(folder) => Ok(folder),
-        None => cache.publish(&key, |folder| build_runtime(toolchain, folder)),
+        None => cache.publish(&key, build),
     })
 }
 
-fn build_runtime(toolchain: &Toolchain, folder: &Path) -> Result<(), BuildError> {
+fn build_common(toolchain: &Toolchain, folder: &Path) -> Result<(), BuildError> {
     let header = folder.join(HEADER);
     fs::write(&header, "#include \"verilated.h\"\n").map_err(BuildError::io("write", &header))?;
-    let mut jobs = Vec::new();
-    // Few designs are traced: what their compilers win by it would not pay for the precompiled header.
-    if toolchain.trace == Trace::Off {
-        let mut precompile = toolchain.compile()?;
-        precompile.args(["-x", "c++-header"]).arg(&header).arg("-o").arg(folder.join(format!("{HEADER}.gch")));
-        jobs.push(precompile);
-    }
+    let mut precompile = toolchain.compile()?;
+    precompile.args(["-x", "c++-header"]).arg(&header).arg("-o").arg(folder.join(format!("{HEADER}.gch")));
+    compile_all(toolchain, &["verilated.cpp", "verilated_threads.cpp"], vec![precompile], &folder.join(ARCHIVE))
+}
+
+/// Compiles sources of Verilator's to an archive, beside other jobs of the compiler.
+fn compile_all(
+    toolchain: &Toolchain,
+    sources: &[&str],
+    mut jobs: Vec<Command>,
+    archive: &Path,
+) -> Result<(), BuildError> {
     let mut objects = Vec::new();
-    for (index, source) in toolchain.runtime_sources().into_iter().enumerate() {
-        let object = folder.join(format!("runtime{index}.o"));
+    for (index, source) in sources.iter().enumerate() {
+        let object = archive.with_file_name(format!("runtime{index}.o"));
         let mut job = toolchain.compile()?;
-        job.arg("-c").arg(source).arg("-o").arg(&object);
+        job.arg("-c").arg(toolchain.include.join(source)).arg("-o").arg(&object);
         jobs.push(job);
         objects.push(object);
     }
@@ -154,9 +193,9 @@ fn build_runtime(toolchain: &Toolchain, folder: &Path) -> Result<(), BuildError>
             Err(panic) => std::panic::resume_unwind(panic),
         })
     })?;
-    let mut archive = Command::new("ar");
-    archive.arg("rcs").arg(folder.join(ARCHIVE)).args(&objects);
-    output(archive, "ar", "Verilator's runtime")?;
+    let mut together = Command::new("ar");
+    together.arg("rcs").arg(archive).args(&objects);
+    output(together, "ar", "Verilator's runtime")?;
     for object in objects {
         fs::remove_file(&object).map_err(BuildError::io("remove", &object))?;
     }
@@ -166,7 +205,7 @@ fn build_runtime(toolchain: &Toolchain, folder: &Path) -> Result<(), BuildError>
 /// Translates and compiles the sources in `folder`; the ROM files are looked for in `rom_folder` at run time.
 pub fn design(
     toolchain: &Toolchain,
-    runtime: &Path,
+    runtime: &Runtime,
     sources: &RtlSources,
     folder: &Path,
     rom_folder: &Path,
@@ -178,8 +217,8 @@ pub fn design(
 
     let mut compile = toolchain.compile()?;
     // The precompiled header works only as the first include; without one (a trace, another compiler) the plain one is read.
-    compile.arg("-include").arg(runtime.join(HEADER)).arg("-I").arg(&generated);
-    compile.args(["-shared", "-o"]).arg(folder.join(LIBRARY)).arg(&unit).arg(runtime.join(ARCHIVE));
+    compile.arg("-include").arg(runtime.common.join(HEADER)).arg("-I").arg(&generated);
+    compile.args(["-shared", "-o"]).arg(folder.join(LIBRARY)).arg(&unit).args(runtime.archives());
     compile.args(["-Wl,-Bsymbolic", "-Wl,--no-undefined"]).args(toolchain.libraries());
     output(compile, "the C++ compiler", &sources.top)?;
     fs::remove_dir_all(&generated).map_err(BuildError::io("remove", &generated))

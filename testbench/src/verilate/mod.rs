@@ -199,7 +199,7 @@ impl Verilate {
         if let Some(entry) = cache.get(&key) {
             return Ok(Built { library: library(&entry), compiled: false, trace: self.trace });
         }
-        let runtime = compile::runtime(&toolchain, &cache)?;
+        let runtime = compile::Runtime::new(&toolchain, &cache)?;
         let place = cache.place(&key);
         let entry = cache.publish(&key, |folder| {
             write_sources(sources, folder)?;

@@ -47,10 +47,7 @@ addEventListener("message", ({ data }) => Object.assign(document.body.dataset, d
 /// The browser's program, by any of its names.
 fn browser() -> &'static str {
     let there = |name: &&str| Command::new(name).arg("--version").output().is_ok();
-    ["chromium", "chromium-browser", "google-chrome"]
-        .into_iter()
-        .find(there)
-        .expect("a browser: run `make browser-tools`")
+    ["chromium", "chromium-browser", "google-chrome"].into_iter().find(there).expect("a browser: run `make test-tools`")
 }
 
 /// Opens a page in a frame of a width, from the folder in which it has its files; what is wrong with it, and what the console
