@@ -62,34 +62,44 @@ fn folded(block: &DMatrix<f64>, result: &Basis, operand: &Basis, n: usize) -> DM
     whole
 }
 
+/// Eigenvalues of C33, which is symmetric: the stress of a force depends on the distance alone.
+pub(super) struct Spectrum(Vec<f64>);
+
+impl Spectrum {
+    pub(super) fn new(quads: &Quads, c33: &FoldedMatrix) -> Self {
+        let of_class = |class| {
+            let basis = Basis::new(quads, class);
+            orthonormal(c33, &basis, &basis).symmetric_eigenvalues().as_slice().to_vec()
+        };
+        Self((0..CLASSES).into_par_iter().flat_map(of_class).collect())
+    }
+
+    /// Largest singular value.
+    pub(super) fn largest(&self) -> f64 {
+        self.0.iter().fold(0.0, |largest, value| value.abs().max(largest))
+    }
+
+    /// Condition number in the 2-norm of C33 with `share` added to its diagonal.
+    pub(super) fn condition(&self, share: f64) -> f64 {
+        condition(self.0.iter().map(|value| (value + share).abs()))
+    }
+}
+
+/// The largest of singular values over the smallest.
+fn condition(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    values.clone().fold(0.0, f64::max) / values.fold(f64::INFINITY, f64::min)
+}
+
 impl Factors {
     pub(super) fn new(quads: &Quads, c: &[FoldedMatrix; 3]) -> Self {
         let classes = (0..CLASSES).into_par_iter().map(|class| Class::new(quads, c, class)).collect();
         Self { classes }
     }
 
-    /// Condition number of C33 in the 2-norm.
-    pub(super) fn condition_c33(&self) -> f64 {
-        self.condition(|class| &class.c33)
-    }
-
-    /// Largest singular value of C33.
-    pub(super) fn largest_c33(&self) -> f64 {
-        let values = self.classes.par_iter().map(|class| class.c33.singular_values().max());
-        values.reduce(|| 0.0, f64::max)
-    }
-
     /// Condition number of A in the 2-norm.
     pub(super) fn condition_a(&self) -> f64 {
-        self.condition(|class| &class.r)
-    }
-
-    /// Largest over smallest singular value of a matrix with these blocks.
-    fn condition(&self, block: impl Fn(&Class) -> &DMatrix<f64> + Sync) -> f64 {
-        let values: Vec<DVector<f64>> = self.classes.par_iter().map(|class| block(class).singular_values()).collect();
-        let largest = values.iter().map(DVector::max).fold(0.0, f64::max);
-        let smallest = values.iter().map(DVector::min).fold(f64::INFINITY, f64::min);
-        largest / smallest
+        let values: Vec<DVector<f64>> = self.classes.par_iter().map(|class| class.r.singular_values()).collect();
+        condition(values.iter().flat_map(|of_class| of_class.iter().copied()))
     }
 
     /// C33^-1 and the three parts of A+; `None` where there is no inverse.

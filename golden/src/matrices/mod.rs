@@ -11,7 +11,7 @@ use crate::kernel::{self, Kernel};
 pub use crate::names::{MatrixName, UnknownMatrix};
 use crate::parity::{FoldedMatrix, Quads};
 use crate::sensor::Sensor;
-use factor::Factors;
+use factor::{Factors, Spectrum};
 
 /// Why the matrices of a sensor cannot be computed.
 #[derive(Debug, thiserror::Error)]
@@ -118,14 +118,14 @@ impl Matrices {
         };
         let quads = Quads::new(sensor.columns, sensor.rows);
         let mut c = kernel::folded(sensor, kernel);
-        let mut factors = Factors::new(&quads, &c);
+        let spectrum = Spectrum::new(&quads, &c[2]);
+        let share = factor * spectrum.largest();
         if factor > 0.0 {
-            let share = factor * factors.largest_c33();
             let diagonal = FoldedMatrix::from_fn(0, &quads, |row, column| if row == column { share } else { 0.0 });
             c[2].blocks.iter_mut().zip(&diagonal.blocks).for_each(|(block, diagonal)| *block += diagonal);
-            factors = Factors::new(&quads, &c);
         }
-        let condition_c33 = factors.condition_c33();
+        let factors = Factors::new(&quads, &c);
+        let condition_c33 = spectrum.condition(share);
         let condition_a = factors.condition_a();
         let condition_aat = condition_a * condition_a;
         if is_singular(condition_c33) {

@@ -33,15 +33,15 @@ impl FoldedMatrix {
     pub fn from_fn(parity: usize, quads: &Quads, entry: impl Fn(usize, usize) -> f64) -> Self {
         let n = quads.count();
         let mut blocks = [0, 1, 2, 3].map(|_| DMatrix::zeros(n, n));
-        for column in 0..n {
-            let members = quads.members(column);
+        let all = quads.all();
+        let exist: [Vec<bool>; CLASSES] = std::array::from_fn(|class| (0..n).map(|q| quads.exists(class, q)).collect());
+        for (column, &members) in all.iter().enumerate() {
             // Each member that is there twice is summed twice; the share is a power of two, so nothing is lost.
             let share = quads.size(column) as f64 / 4.0;
-            for q in 0..n {
-                let row = quads.members(q)[0];
+            for (q, &[row, ..]) in all.iter().enumerate() {
                 let sums = butterfly(members.map(|taxel| entry(row, taxel)));
                 for (class, sum) in sums.into_iter().enumerate() {
-                    if quads.exists(class ^ parity, q) && quads.exists(class, column) {
+                    if exist[class ^ parity][q] && exist[class][column] {
                         blocks[class][(q, column)] = share * sum;
                     }
                 }

@@ -9,6 +9,7 @@ use golden::matrices::Matrices;
 use golden::scene::Medium;
 use golden::solver::{Solver, Status};
 use nalgebra::DVector;
+use rayon::prelude::*;
 
 use crate::contacts::{errors_of, frames, inside};
 use crate::families::share;
@@ -97,7 +98,7 @@ fn table_of_new_designs() {
 fn thin_layers_are_as_bad_as_the_table_says_and_their_frames_say_so() {
     let constants = Settings::constants();
     let quick = Settings::quick();
-    for (ratio, kernel, settings, tangential, normal, doubted) in [
+    let cases = [
         (0.5, Kernel::Point, None, [12.0, 21.0], [48.0, 57.0], 20),
         (0.5, Kernel::Cell, None, [12.0, 30.0], [0.0, 8.0], 20),
         (0.5, Kernel::Point, Some(&constants), [4.0, 11.0], [0.0, 2.0], 0),
@@ -106,7 +107,8 @@ fn thin_layers_are_as_bad_as_the_table_says_and_their_frames_say_so() {
         (0.3, Kernel::Cell, Some(&constants), [5.0, 12.0], [0.0, 4.0], 20),
         (0.3, Kernel::Cell, Some(&quick), [1.0, 6.0], [0.0, 4.0], 0),
         (1.0, Kernel::Point, None, [1.0, 5.0], [5.0, 8.0], 0),
-    ] {
+    ];
+    cases.into_par_iter().for_each(|(ratio, kernel, settings, tangential, normal, doubted)| {
         let design = design(ratio, kernel, settings);
         let (errors, _, doubtful) = judge(&design, 20);
         let medians = errors.map(|errors| share(&errors, 0.5));
@@ -116,7 +118,7 @@ fn thin_layers_are_as_bad_as_the_table_says_and_their_frames_say_so() {
         }
         assert_eq!(doubtful, doubted, "{said}");
         assert_eq!(design.thin_layer().is_some(), doubted > 0, "{said}");
-    }
+    });
 }
 
 /// Median error of `F_z` in percent with `times` as many places for forces along each axis as taxels, of all forces that give

@@ -38,10 +38,8 @@ const VERILATOR_FLAGS: [&str; 10] = [
     "-DSIMULATION",
 ];
 /// Symbols stay inside their shared object, so that several simulated designs live in one process. The wrapper turns
-/// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning. `-O1` would save at
-/// most 6 % of a simulation and take some 1 s more to compile, and would need a precompiled header of its own: GCC takes the
-/// optimisation from the header, whatever the flags beside it say.
-const CXX_FLAGS: [&str; 9] = [
+/// run-time warnings into errors: to Verilator, a ROM file that is not there is but a warning.
+const CXX_FLAGS: [&str; 8] = [
     "-std=c++17",
     "-fPIC",
     "-fvisibility=hidden",
@@ -50,11 +48,19 @@ const CXX_FLAGS: [&str; 9] = [
     "-DVL_USER_STOP",
     "-DVL_USER_FINISH",
     "-DVL_USER_WARN",
-    "-Og",
 ];
+/// Of the optimisation. `-O1` would save at most 6 % of a simulation and take some 1 s more to compile, and would need a
+/// precompiled header of its own: GCC takes the optimisation from the header, whatever the flags beside it say.
+const OPTIMISATION: &str = "-Og";
 /// The redundancies that GCC's FRE looks for Verilator has removed: to look through functions of thousands of stores takes up
 /// to two fifths of the compiler's time, and the simulation is as quick without. Clang does not know the flag.
 const OF_GCC: &str = "-fno-tree-fre";
+
+/// How a compiler that says this of its version is to optimise what Verilator writes.
+fn optimisation(version: &str) -> impl Iterator<Item = &'static str> {
+    let of_gcc = (!version.contains("clang")).then_some(OF_GCC);
+    [OPTIMISATION].into_iter().chain(of_gcc)
+}
 
 /// The tools and flags of a build.
 #[derive(Clone)]
@@ -67,7 +73,7 @@ pub struct Toolchain {
 
 impl Toolchain {
     pub fn find(trace: Trace) -> Result<Self, BuildError> {
-        let compiler = version(tools::cxx()?, "the C++ compiler", "set CXX to one that runs, such as g++")?;
+        let compiler = cxx_version()?;
         let include = tools::verilator_root()?.join("include");
         Ok(Self { trace, include, version: super::verilator_version()?, compiler })
     }
@@ -82,10 +88,8 @@ impl Toolchain {
 
     fn cxx_flags(&self) -> Vec<String> {
         let traced = |format| u8::from(self.trace == format);
-        let mut flags: Vec<String> = CXX_FLAGS.iter().map(ToString::to_string).collect();
-        if !self.compiler.contains("clang") {
-            flags.push(OF_GCC.to_owned());
-        }
+        let mut flags: Vec<String> =
+            CXX_FLAGS.into_iter().chain(optimisation(&self.compiler)).map(ToOwned::to_owned).collect();
         for off in ["COVERAGE", "SC", "TIMING"] {
             flags.push(format!("-DVM_{off}=0"));
         }
@@ -284,6 +288,18 @@ pub fn fst_libraries_present() -> bool {
     };
     let written = child.stdin.take().map(|mut pipe| pipe.write_all(b"#include <lz4.h>\n#include <zlib.h>\n"));
     matches!(written, Some(Ok(()))) && child.wait().is_ok_and(|status| status.success())
+}
+
+fn cxx_version() -> Result<String, BuildError> {
+    version(tools::cxx()?, "the C++ compiler", "set CXX to one that runs, such as g++")
+}
+
+/// The flags by which the installed compiler is to optimise what Verilator writes: it compiles soonest for what it simulates.
+///
+/// # Errors
+/// [`BuildError`] if there is no compiler, or it does not run.
+pub fn cxx_optimisation() -> Result<Vec<&'static str>, BuildError> {
+    Ok(optimisation(&cxx_version()?).collect())
 }
 
 /// What a program says of its version, if it runs; `remedy` is for a user whose program does not.

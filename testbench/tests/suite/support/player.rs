@@ -6,7 +6,7 @@ use std::process::Command;
 use std::sync::LazyLock;
 
 use testbench::tools;
-use testbench::verilate::verilator_version;
+use testbench::verilate::{cxx_optimisation, verilator_version};
 
 use super::faults::replaced;
 use super::workspace;
@@ -35,12 +35,17 @@ static RUNTIME: LazyLock<PathBuf> = LazyLock::new(|| {
 });
 
 /// A header is precompiled for the flags of whoever includes it.
-const FLAGS: [&str; 3] = ["-std=c++17", "-Og", "-w"];
+static FLAGS: LazyLock<Vec<&str>> = LazyLock::new(|| {
+    let optimisation = cxx_optimisation().expect("installed");
+    ["-std=c++17", "-w"].into_iter().chain(optimisation).collect()
+});
+/// In front of what runs once: not optimised, as in [`testbench::verilate`].
+const SLOW: &str = "#pragma GCC optimize (\"O0\")\n";
 
 fn compiler() -> Command {
     let include = tools::verilator_root().expect("installed").join("include");
     let mut compiler = tools::cxx().expect("installed");
-    compiler.args(FLAGS).arg("-I").arg(&include).arg("-I").arg(include.join("vltstd"));
+    compiler.args(&*FLAGS).arg("-I").arg(&include).arg("-I").arg(include.join("vltstd"));
     compiler
 }
 
@@ -61,11 +66,14 @@ pub fn verilator(folder: &Path, cycles: usize) -> String {
     // A main of its own turns the clock: no coroutines, which delays would need.
     let mut translate = tools::verilator().expect("installed");
     translate.args(["--cc", "--x-assign", "unique", "--x-initial", "unique", "-Wno-fatal", "-DSIMULATION"]);
-    translate.args(["--top-module", "bench"]);
+    translate.args(["--no-decoration", "--top-module", "bench"]);
     translate.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).arg("bench.v");
     succeed(translate.current_dir(folder));
-    let parts = sorted_cpp(&folder.join("model")).into_iter().map(|part| format!("#include \"{}\"\n", part.display()));
-    fs::write(folder.join("main.cpp"), parts.collect::<String>() + &main).expect("writable");
+    let (slow, fast): (Vec<String>, Vec<String>) = sorted_cpp(&folder.join("model"))
+        .into_iter()
+        .map(|part| format!("#include \"{}\"\n", part.display()))
+        .partition(|part| part.contains("__Slow"));
+    fs::write(folder.join("main.cpp"), fast.concat() + &main + SLOW + &slow.concat()).expect("writable");
     let mut build = compiler();
     build
         .arg("-include")
