@@ -171,10 +171,13 @@ fn explained(plan: &Plan, cycles: u64, outcome: &Outcome) {
     let from = kept[FULL].first_in;
     let begun = kept.iter().map(|kept| (kept.first_in, true)).chain(outcome.dropped.iter().map(|&(_, at)| (at, false)));
     let decisions: Vec<(u64, bool)> = begun.filter(|&(at, _)| at > from).collect();
+    // Frames come and leave in one order: those that wait are the ones that have come and not left.
+    assert!(kept.is_sorted_by_key(|kept| kept.first_in) && kept.is_sorted_by_key(|kept| kept.last_out));
     let holds = |leaves_before: u64| {
         let wrong = |&&(at, had_room): &&(u64, bool)| {
-            let waits = |kept: &&Exchange| kept.first_in < at && kept.last_out >= at + leaves_before;
-            (kept.iter().filter(waits).count() < 2) != had_room
+            let come = kept.partition_point(|kept| kept.first_in < at);
+            let left = kept.partition_point(|kept| kept.last_out < at + leaves_before);
+            (come.saturating_sub(left) < 2) != had_room
         };
         decisions.iter().filter(wrong).count()
     };
