@@ -90,7 +90,8 @@ lint: ## Formatting and clippy, warnings are errors
 # Installing is work for one core, and lints need nothing of it. Both end before this does.
 .PHONY: lint-and-tools
 lint-and-tools:
-	@$(MAKE) --no-print-directory test-tools & $(MAKE) --no-print-directory lint; linted=$$?; wait $$! && exit $$linted
+	@$(MAKE) --no-print-directory test-tools & tools=$$!; trap 'kill $$tools' INT TERM; \
+	$(MAKE) --no-print-directory lint; linted=$$?; wait $$tools && exit $$linted
 
 .PHONY: format
 format: ## Format the Rust sources

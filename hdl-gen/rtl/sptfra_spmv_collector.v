@@ -16,7 +16,8 @@
 // | 8           | r, stored                    |                                      |
 // | 9 10 11     | A_p r, p = 1 2 3, the field  |                                      |
 //
-// Nobody else knows these numbers: on the bus each destination has a bit of its own, named by what the result is.
+// No other module knows these numbers: on the bus each destination has a bit of its own, in ports named by what the
+// result is. Of classes 4 is result_g[0], 5 to 8 are result_kept; of taxels 4 to 6 are result_kept, 7 to 15 result_g.
 
 `default_nettype none
 

@@ -62,7 +62,7 @@ fn folded(block: &DMatrix<f64>, result: &Basis, operand: &Basis, n: usize) -> DM
     whole
 }
 
-/// Eigenvalues of C33, which is symmetric: the stress of a force depends on the distance alone.
+/// Eigenvalues of C33 as the sensor has it, which is symmetric: the stress of a force depends on the distance alone.
 pub(super) struct Spectrum(Vec<f64>);
 
 impl Spectrum {

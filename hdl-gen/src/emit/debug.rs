@@ -1,5 +1,7 @@
 //! Nets that a logic analyser in the FPGA should see: marked in the core's Verilog where the design says `debug = true`.
 
+use crate::plan::Plan;
+
 /// Nets of the core in the order of the probes, each a wire that a line of its own declares: the handshakes of both
 /// streams, the lanes' turns, what leaves the lanes, answers and what is said of a frame.
 const NETS: [&str; 20] = [
@@ -25,35 +27,40 @@ const NETS: [&str; 20] = [
     "out_tdata",
 ];
 
-/// Always zero where taxels are not folded.
-const ONLY_FOLDED: &str = "result_force";
-
 /// What Vivado keeps a net for.
 const MARK: &str = "(* mark_debug = \"true\" *)";
 /// Samples that an analyser may have, powers of two between these.
 const LEAST_SAMPLES: u64 = 1024;
 const MOST_SAMPLES: u64 = 16_384;
 
-/// The net of [`NETS`] that a line declares, alone or with a value, unless it is always zero.
-fn declared(line: &str, folded: bool) -> Option<&'static str> {
+/// Those of [`NETS`] that are zero in all of a plan's cycles. Of the others that tell results some bits may be.
+pub fn always_zero(plan: &Plan) -> &'static [&'static str] {
+    match (plan.ways() > 1, plan.has_field()) {
+        (true, true) => &[],
+        (true, false) => &["result_kept", "result_force"],
+        (false, _) => &["result_force"],
+    }
+}
+
+/// The net of [`NETS`] that a line declares, alone or with a value, unless it is one of `zero`.
+fn declared(line: &str, zero: &[&str]) -> Option<&'static str> {
     let mut words = line.split_whitespace();
     if words.next()? != "wire" {
         return None;
     }
     let name = words.find(|word| *word != "signed" && !word.starts_with('['))?.trim_end_matches(';');
-    NETS.into_iter().find(|net| *net == name && (folded || *net != ONLY_FOLDED))
+    NETS.into_iter().find(|net| *net == name && !zero.contains(net))
 }
 
-/// The nets of a core that are marked, or would be, in the order of the probes.
-/// `folded`: whether the design folds taxels to parity classes.
-pub fn nets(core: &str, folded: bool) -> Vec<&'static str> {
-    let there: Vec<&str> = core.lines().filter_map(|line| declared(line, folded)).collect();
+/// The nets of a core that are marked, or would be, in the order of the probes: all but those that are [`always_zero`].
+pub fn nets(core: &str, zero: &[&str]) -> Vec<&'static str> {
+    let there: Vec<&str> = core.lines().filter_map(|line| declared(line, zero)).collect();
     NETS.into_iter().filter(|net| there.contains(net)).collect()
 }
 
 /// The core with a mark above each of its [`nets`].
-pub fn marked(core: &str, folded: bool) -> String {
-    let mark = |line: &str| match declared(line, folded) {
+pub fn marked(core: &str, zero: &[&str]) -> String {
+    let mark = |line: &str| match declared(line, zero) {
         Some(_) => format!("    {MARK}\n{line}\n"),
         None => format!("{line}\n"),
     };
@@ -73,8 +80,8 @@ mod tests {
     fn wires_of_these_names_are_marked_and_nothing_else() {
         let core = "module m (\n    output wire out_tdata_2\n);\n    wire in_tvalid;\n    wire [2:0] start;\n    \
                     wire signed [4:0] out_tdata; // words\n    reg issued;\n    assign in_tready = start[0];\n";
-        assert_eq!(nets(core, true), ["in_tvalid", "start", "out_tdata"]);
-        let marked = marked(core, true);
+        assert_eq!(nets(core, &[]), ["in_tvalid", "start", "out_tdata"]);
+        let marked = marked(core, &[]);
         assert_eq!(marked.matches(MARK).count(), 3);
         assert!(marked.contains("    (* mark_debug = \"true\" *)\n    wire [2:0] start;\n"), "{marked}");
         assert_eq!(marked.replace("    (* mark_debug = \"true\" *)\n", ""), core);
@@ -83,9 +90,9 @@ mod tests {
     #[test]
     fn a_result_that_the_plan_does_not_have_has_no_probe() {
         let core = "    wire result_y;\n    wire [2:0] result_force;\n";
-        assert_eq!(nets(core, true), ["result_y", "result_force"]);
-        assert_eq!(nets(core, false), ["result_y"]);
-        assert_eq!(marked(core, false).matches(MARK).count(), 1);
+        assert_eq!(nets(core, &[]), ["result_y", "result_force"]);
+        assert_eq!(nets(core, &["result_force"]), ["result_y"]);
+        assert_eq!(marked(core, &["result_force"]).matches(MARK).count(), 1);
     }
 
     #[test]

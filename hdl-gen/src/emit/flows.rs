@@ -134,7 +134,7 @@ impl View {
             dsp_block: plan.resources.dsp_block.name(),
             blocks: plan.resources.blocks.clone(),
             control: design.hardware.control,
-            debug: design.hardware.debug.then(|| debug::nets(&core, plan.ways() > 1)),
+            debug: design.hardware.debug.then(|| debug::nets(&core, debug::always_zero(plan))),
             samples: debug::samples(plan.timeline.latency_cycles),
             boards: boards.iter().map(Placed::new).collect(),
             name: design.name.clone(),

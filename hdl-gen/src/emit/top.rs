@@ -226,7 +226,7 @@ pub(super) fn render(plan: &Plan) -> Result<(String, String), EmitError> {
     let context =
         Context::from_serialize(&view).map_err(|source| EmitError::Template { template: "top".to_owned(), source })?;
     let text = design_module(&view.core_module, TEMPLATE, &context)?;
-    let text = if plan.design.hardware.debug { debug::marked(&text, plan.ways() > 1) } else { text };
+    let text = if plan.design.hardware.debug { debug::marked(&text, debug::always_zero(plan)) } else { text };
     Ok((view.core_module, text))
 }
 

@@ -49,7 +49,7 @@ const CXX_FLAGS: [&str; 8] = [
     "-DVL_USER_FINISH",
     "-DVL_USER_WARN",
 ];
-/// Of the optimisation. `-O1` would save at most 6 % of a simulation and take some 1 s more to compile, and would need a
+/// How far the compiler optimises: `-O1` would save at most 6 % of a simulation and take some 1 s more to compile, and would need a
 /// precompiled header of its own: GCC takes the optimisation from the header, whatever the flags beside it say.
 const OPTIMISATION: &str = "-Og";
 /// The redundancies that GCC's FRE looks for Verilator has removed: to look through functions of thousands of stores takes up
@@ -123,7 +123,8 @@ impl Toolchain {
 
 /// Folders with what all designs are linked with.
 pub struct Runtime {
-    /// The runtime and its precompiled header: one for all builds, as its code is the same whatever is traced.
+    /// The runtime, one for all builds, as its code is the same whatever is traced; and a precompiled header for those without
+    /// a trace.
     common: PathBuf,
     /// What writes the trace, of builds with one.
     tracer: Option<PathBuf>,
@@ -220,8 +221,11 @@ pub fn design(
     fs::write(&unit, everything(&sorted_cpp(&generated)?)).map_err(BuildError::io("write", &unit))?;
 
     let mut compile = toolchain.compile()?;
-    // The precompiled header works only as the first include; without one (a trace, another compiler) the plain one is read.
-    compile.arg("-include").arg(runtime.common.join(HEADER)).arg("-I").arg(&generated);
+    if toolchain.trace == Trace::Off {
+        // Works only as the first include; a compiler that does not take it reads the plain one.
+        compile.arg("-include").arg(runtime.common.join(HEADER));
+    }
+    compile.arg("-I").arg(&generated);
     compile.args(["-shared", "-o"]).arg(folder.join(LIBRARY)).arg(&unit).args(runtime.archives());
     compile.args(["-Wl,-Bsymbolic", "-Wl,--no-undefined"]).args(toolchain.libraries());
     output(compile, "the C++ compiler", &sources.top)?;

@@ -21,9 +21,9 @@ fn marked(design: &str) -> FileMap {
 
 #[test]
 fn every_kind_of_core_has_the_nets() {
-    // Of taxels by themselves there is one kind of result less.
+    // Of taxels by themselves there is one kind of result less, of classes without a field two.
     let designs = ["small.toml", "small-scanner.toml", "odd.toml", "sensor1-fast.toml", "sensor1-f1-l40.toml"];
-    for (design, nets) in designs.into_iter().zip([20, 20, 19, 20, 19]) {
+    for (design, nets) in designs.into_iter().zip([20, 18, 19, 20, 19]) {
         let files = marked(design);
         let marks = files.values().map(|text| String::from_utf8_lossy(text).matches(MARK).count()).sum::<usize>();
         assert_eq!(marks, nets, "{design}");

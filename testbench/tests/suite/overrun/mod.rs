@@ -14,7 +14,7 @@ use hdl_gen::plan::Plan;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use testbench::registers::{Controlled, address};
-use testbench::stream::{Exchange, Mode, Outcome, Pacing, Traffic, exchange};
+use testbench::stream::{Mode, Outcome, Pacing, Traffic, exchange};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
 
