@@ -81,7 +81,7 @@ impl Toolchain {
     /// All that can change the result, the sources apart.
     pub fn identity(&self) -> String {
         // A file of either kind stands for how they are put together.
-        let unit = everything(&["fast.cpp", "slow__Slow.cpp"].map(PathBuf::from));
+        let unit = everything(&["fast.cpp", "slow__Slow.cpp"].map(PathBuf::from), WRAPPER);
         let parts = [self.version.as_str(), self.compiler.as_str(), &unit, &VERILATOR_FLAGS.join(" ")];
         format!("{}\n{}", parts.join("\n"), self.cxx_flags().join(" "))
     }
@@ -218,7 +218,7 @@ pub fn design(
     let generated = folder.join("cpp");
     translate(toolchain, sources, folder, &generated, rom_folder)?;
     let unit = generated.join("everything.cc");
-    fs::write(&unit, everything(&sorted_cpp(&generated)?)).map_err(BuildError::io("write", &unit))?;
+    fs::write(&unit, one_unit(&generated, WRAPPER)?).map_err(BuildError::io("write", &unit))?;
 
     let mut compile = toolchain.compile()?;
     if toolchain.trace == Trace::Off {
@@ -232,14 +232,22 @@ pub fn design(
     fs::remove_dir_all(&generated).map_err(BuildError::io("remove", &generated))
 }
 
-/// The one translation unit. What Verilator calls slow runs once, at the start, and is not optimised: that takes a quarter
-/// off the compiler's time. It comes last, after the headers that the rest shares with it.
-fn everything(files: &[PathBuf]) -> String {
+/// The text of one translation unit with all C++ that Verilator has written into a folder, and `caller`, which uses it.
+///
+/// # Errors
+/// [`BuildError::Io`] if the folder cannot be read.
+pub fn one_unit(folder: &Path, caller: &str) -> Result<String, BuildError> {
+    Ok(everything(&sorted_cpp(folder)?, caller))
+}
+
+/// What Verilator calls slow runs once, at the start, and is not optimised: that takes a quarter off the compiler's time. It
+/// comes last, after the headers that the rest shares with it.
+fn everything(files: &[PathBuf], caller: &str) -> String {
     let is_slow = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem.to_string_lossy().ends_with("__Slow"));
     let (slow, fast): (Vec<&PathBuf>, Vec<&PathBuf>) = files.iter().partition(is_slow);
     let include = |path: &&PathBuf| format!("#include \"{}\"", path.display());
     let mut lines: Vec<String> = fast.iter().map(include).collect();
-    lines.push(WRAPPER.to_owned());
+    lines.push(caller.to_owned());
     lines.push("#pragma GCC optimize (\"O0\")".to_owned());
     lines.extend(slow.iter().map(include));
     lines.join("\n") + "\n"

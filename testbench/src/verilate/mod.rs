@@ -16,7 +16,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 pub use cache::default_cache;
-pub use compile::cxx_optimisation;
+pub use compile::{cxx_optimisation, one_unit};
 pub use translation::translation;
 
 use crate::dut::{Dut, DutError};

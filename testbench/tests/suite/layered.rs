@@ -1,5 +1,5 @@
-//! The line estimator on a bonded layer, as RTL, by both plans and with filter F3 (in `make test`, by the reduced plan): its errors are those of the f64
-//! solver.
+//! The line estimator on a bonded layer, as RTL, by both plans and with filter F3 (in `make test`, by the reduced plan): its
+//! errors are those of the f64 solver.
 
 use std::fmt::Write as _;
 use std::io::Write as _;

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::sync::LazyLock;
 
 use testbench::tools;
-use testbench::verilate::{cxx_optimisation, verilator_version};
+use testbench::verilate::{cxx_optimisation, one_unit, verilator_version};
 
 use super::faults::replaced;
 use super::workspace;
@@ -39,8 +39,6 @@ static FLAGS: LazyLock<Vec<&str>> = LazyLock::new(|| {
     let optimisation = cxx_optimisation().expect("installed");
     ["-std=c++17", "-w"].into_iter().chain(optimisation).collect()
 });
-/// In front of what runs once: not optimised, as in [`testbench::verilate`].
-const SLOW: &str = "#pragma GCC optimize (\"O0\")\n";
 
 fn compiler() -> Command {
     let include = tools::verilator_root().expect("installed").join("include");
@@ -69,11 +67,8 @@ pub fn verilator(folder: &Path, cycles: usize) -> String {
     translate.args(["--no-decoration", "--top-module", "bench"]);
     translate.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).arg("bench.v");
     succeed(translate.current_dir(folder));
-    let (slow, fast): (Vec<String>, Vec<String>) = sorted_cpp(&folder.join("model"))
-        .into_iter()
-        .map(|part| format!("#include \"{}\"\n", part.display()))
-        .partition(|part| part.contains("__Slow"));
-    fs::write(folder.join("main.cpp"), fast.concat() + &main + SLOW + &slow.concat()).expect("writable");
+    let unit = one_unit(&folder.join("model"), &main).expect("readable");
+    fs::write(folder.join("main.cpp"), unit).expect("writable");
     let mut build = compiler();
     build
         .arg("-include")
@@ -82,14 +77,6 @@ pub fn verilator(folder: &Path, cycles: usize) -> String {
         .arg(RUNTIME.join("runtime.a"));
     succeed(build.args(["-o", "bench", "-lpthread"]).current_dir(folder));
     succeed(Command::new(folder.join("bench")).current_dir(folder))
-}
-
-/// The C++ of a folder, in the order of its names.
-fn sorted_cpp(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).expect("readable").map(|entry| entry.expect("readable").path());
-    let mut parts: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|end| end == "cpp")).collect();
-    parts.sort();
-    parts
 }
 
 fn succeed(command: &mut Command) -> String {
