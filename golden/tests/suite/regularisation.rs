@@ -63,11 +63,12 @@ fn the_condition_is_bounded_by_the_share() {
             assert!(matrices.condition_aat() <= 3.0 * bound * bound, "{depth_mm} {share}");
         }
     }
-    // The entries off the diagonal stay.
+    // The entries off the diagonal stay, and those on it grow by the share of the largest singular value.
     let [plain, regularised] =
         ["", "regularisation = 0.01"].map(|key| Matrices::of(&design(6.0, key)).unwrap().c33.dense());
-    let difference = regularised - plain;
+    let difference = regularised - &plain;
     let share = difference[(0, 0)];
+    assert!((share / (0.01 * plain.singular_values().max()) - 1.0).abs() < 1e-9);
     assert!(share > 0.0);
     for row in 0..difference.nrows() {
         for column in 0..difference.ncols() {
