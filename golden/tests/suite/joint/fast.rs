@@ -1,11 +1,11 @@
-//! The errors of the fast designs, against the tables of docs/estimators.md that state them.
+//! Errors of the shipped designs on the standard sets of contacts, against `results/contact-sets.csv`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 use std::thread;
 
-use super::{DISC, FRICTIONS, HERTZ, LAYER, OTHER_SEED, SEED, SOFTER, design, within};
+use super::{DISC, HERTZ, LAYER, OTHER_SEED, SEED, SOFTER, design, within};
 use crate::contacts::{Pressed, Worst, anywhere, centred, inside, pairs, worst};
 use crate::effort::some_of;
 use golden::design::{Design, Sensor};
@@ -14,41 +14,40 @@ use golden::solver::Solver;
 
 /// Half of the last digit.
 const ROUNDED: f64 = 0.0501;
-/// Rows of errors in each table: of four designs for sensor 1, of two for sensor 2, of three of the wide family.
-const ROWS: [usize; 3] = [80, 40, 42];
+/// Rows of `results/contact-sets.csv`, without those of the line search.
+const ROWS: usize = 486;
 
-/// A contact's name in a table, the noise in percent, and three cells for each design.
-type Row = (String, f64, Vec<[f64; 2]>);
-
-/// `worst (median)`.
-fn stated(cell: &str) -> [f64; 2] {
-    let numbers: Vec<f64> = cell.split([' ', '(', ')']).filter_map(|number| number.parse().ok()).collect();
-    numbers.try_into().unwrap_or_else(|_| panic!("{cell} is no error"))
+/// A row of `results/contact-sets.csv`.
+struct Row {
+    design: String,
+    contacts: String,
+    /// Standard deviation in percent of the largest reading.
+    noise: f64,
+    friction: f64,
+    /// Largest and median error in percent of the normal force.
+    error: [f64; 2],
 }
 
-fn cells(line: &str) -> Vec<&str> {
-    line.trim_matches('|').split('|').map(str::trim).collect()
-}
-
-/// The tables of the page whose columns are designs: their names, and the rows.
-fn tables() -> Vec<(Vec<String>, Vec<Row>)> {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/estimators.md");
-    let text = fs::read_to_string(page).unwrap();
-    let lines: Vec<&str> = text.lines().collect();
-    let heads = (0..lines.len()).filter(|&at| lines[at].starts_with("| contacts | noise | `"));
-    let table = |head: usize| {
-        let names = lines[head].split('`').skip(1).step_by(2).map(str::to_owned).collect();
-        let rows = lines[head + 2..].iter().take_while(|line| line.starts_with('|'));
-        let row = |line: &&str| {
-            let cells = cells(line);
-            (cells[0].to_owned(), cells[1].parse().unwrap(), cells[2..].iter().map(|cell| stated(cell)).collect())
+/// The rows of designs with the grid search.
+fn stated() -> Vec<Row> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results/contact-sets.csv");
+    let text = fs::read_to_string(file).unwrap();
+    let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let row = |line: &str| {
+        // The name of a set may hold a comma, and is then quoted.
+        let (design, rest) = line.split_once(',').unwrap();
+        let (contacts, numbers) = match rest.strip_prefix('"') {
+            Some(quoted) => quoted.split_once("\",").unwrap(),
+            None => rest.split_once(',').unwrap(),
         };
-        (names, rows.map(row).collect())
+        let numbers: Vec<f64> = numbers.split(',').map(|number| number.parse().unwrap()).collect();
+        let [noise, friction, worst, median] = numbers[..] else { panic!("{line}") };
+        Row { design: design.to_owned(), contacts: contacts.to_owned(), noise, friction, error: [worst, median] }
     };
-    heads.map(table).collect()
+    lines.map(row).filter(|row| !row.design.ends_with("-none")).collect()
 }
 
-/// The contacts that a table calls so.
+/// The contacts of a set.
 fn set(taxels: &Sensor, contacts: &str) -> Vec<Pressed> {
     match contacts {
         "Hertz 7 mm" => centred(taxels, LAYER, HERTZ),
@@ -65,53 +64,39 @@ fn set(taxels: &Sensor, contacts: &str) -> Vec<Pressed> {
     }
 }
 
-/// The cells on these contacts that are not what the designs err by. The contacts are made once for each sensor.
-fn wrong_on(designs: &[Design], contacts: &str, rows: &[Row]) -> Vec<String> {
-    let mut sets: Vec<(&Sensor, Vec<Pressed>)> = Vec::new();
-    for Design { sensor, .. } in designs {
-        if sets.iter().all(|(of, _)| *of != sensor) {
-            sets.push((sensor, set(sensor, contacts)));
-        }
-    }
-    let on = |design: &Design| &sets.iter().find(|(of, _)| **of == design.sensor).unwrap().1;
-    let own = rows.iter().filter(|(of, ..)| of == contacts);
-    own.flat_map(|row| {
-        let designs = designs.iter().zip(row.2.chunks_exact(FRICTIONS.len()));
-        designs.flat_map(|(design, cells)| wrong(design, on(design), row, cells)).collect::<Vec<_>>()
-    })
-    .collect()
-}
-
-/// Those of a row and a design.
-fn wrong(design: &Design, set: &[Pressed], (contacts, noise, _): &Row, cells: &[[f64; 2]]) -> Vec<String> {
+/// The rows on these contacts that are not what the designs reach. The contacts are made once for each sensor.
+fn wrong_on(contacts: &str, rows: &[Row]) -> Vec<String> {
+    let mut sets: Vec<(Sensor, Vec<Pressed>)> = Vec::new();
+    let mut designs: BTreeMap<&str, Design> = BTreeMap::new();
     let mut wrong = Vec::new();
-    let solver = Solver::new(design).unwrap();
-    for (friction, stated) in FRICTIONS.into_iter().zip(cells) {
-        let Worst { error: [x, y, _], median, .. } = worst(&solver, set, friction, noise / 100.0);
+    for row in rows.iter().filter(|row| row.contacts == contacts) {
+        let design = designs.entry(&row.design).or_insert_with(|| design(&row.design));
+        if sets.iter().all(|(of, _)| *of != design.sensor) {
+            sets.push((design.sensor.clone(), set(&design.sensor, contacts)));
+        }
+        let (_, set) = sets.iter().find(|(of, _)| *of == design.sensor).unwrap();
+        let solver = Solver::new(design).unwrap();
+        let Worst { error: [x, y, _], median, .. } = worst(&solver, set, row.friction, row.noise / 100.0);
         let found = [x.max(y), median];
-        if stated.iter().zip(found).any(|(stated, found)| (stated - found).abs() > ROUNDED) {
-            let of = &design.name;
-            wrong.push(format!("{of}, {contacts}, noise {noise}, {friction}: {found:.1?}, stated {stated:?}"));
+        if row.error.iter().zip(found).any(|(stated, found)| (stated - found).abs() > ROUNDED) {
+            let Row { design, noise, friction, error, .. } = row;
+            wrong.push(format!("{design}, {contacts}, noise {noise}, {friction}: {found:.1?}, stated {error:?}"));
         }
     }
     wrong
 }
 
 #[test]
-fn the_errors_are_those_that_the_docs_state() {
-    let tables = tables();
-    assert_eq!(tables.iter().map(|(names, rows)| names.len() * rows.len()).collect::<Vec<_>>(), ROWS);
-    for (names, rows) in tables {
-        let designs: Vec<Design> = names.iter().map(|name| design(name)).collect();
-        let contacts: BTreeSet<&str> = rows.iter().map(|(of, ..)| &**of).collect();
-        let (designs, rows) = (&designs, &rows);
-        let wrong: Vec<String> = thread::scope(|scope| {
-            let running: Vec<_> =
-                some_of(contacts).into_iter().map(|of| scope.spawn(move || wrong_on(designs, of, rows))).collect();
-            running.into_iter().flat_map(|of| of.join().unwrap()).collect()
-        });
-        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    }
+fn the_errors_are_those_of_the_results() {
+    let rows = stated();
+    assert_eq!(rows.len(), ROWS);
+    let contacts: BTreeSet<&str> = rows.iter().map(|row| &*row.contacts).collect();
+    let rows = &rows;
+    let wrong: Vec<String> = thread::scope(|scope| {
+        let running: Vec<_> = some_of(contacts).into_iter().map(|of| scope.spawn(move || wrong_on(of, rows))).collect();
+        running.into_iter().flat_map(|of| of.join().unwrap()).collect()
+    });
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// The goals of `sensor1-joint`.
