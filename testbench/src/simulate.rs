@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::compare::Comparison;
 use crate::dut::{Dut, DutError};
-use crate::stream::{Mode, Pacing, StreamError, Traffic, exchange};
+use crate::stream::{Mode, Outcome, Pacing, StreamError, Traffic, exchange};
 use crate::stream_words::Shape;
 use crate::verilate::Built;
 
@@ -36,6 +36,8 @@ pub struct Job<'a> {
     pub shape: Shape,
     /// When packets follow each other, where they are not sent one at a time.
     pub pacing: Pacing,
+    /// Of a core that drops frames, the distance of their beginnings at which it must lose none.
+    pub spacing: Option<u64>,
     /// Whether frames take as long as what is in them.
     pub unlike: bool,
     /// See [`Traffic::timeout`].
@@ -64,7 +66,8 @@ pub struct ModeResult {
 pub struct Cycles {
     /// First beat in to last beat out of a frame alone, both counted.
     pub latency: u64,
-    /// Distance of the frames' last beats, back to back.
+    /// Distance of the frames' last beats, back to back. Of a core that drops frames: least distance of their beginnings at
+    /// which it loses none.
     pub interval: u64,
 }
 
@@ -177,6 +180,29 @@ fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResu
     Ok((ModeResult { mode, cycles: outcome.cycles, comparison }, answers))
 }
 
+/// The smallest distance of beginnings at which a core that drops frames loses none, if none is lost at the predicted one:
+/// that at which frames leave it when they pile up, or when they begin a cycle sooner than predicted, whichever is less.
+fn spacing_without_loss(job: &Job<'_>, spacing: u64, progress: &impl Fn()) -> Result<u64, StreamError> {
+    /// Beginnings for each frame that finds room, where they pile up.
+    const OFFERED: u64 = 4;
+    let run = |count: usize, cycles: u64, progress: &dyn Fn()| {
+        let mut core: Dut = job.built.load(job.seed)?;
+        let packets: Vec<Vec<u32>> = job.timed.iter().cycle().take(count).cloned().collect();
+        let pacing = Pacing::Spaced { cycles, inside: usize::MAX };
+        exchange(&mut core, &Traffic::new(&packets, job.timeout).with_pacing(pacing).with_drops(), |_| progress())
+    };
+    let interval = |outcome: &Outcome| {
+        if job.unlike { outcome.interval_of_unlike() } else { outcome.interval() }.unwrap_or_default()
+    };
+    let at_spacing = run(INTERVAL_FRAMES, spacing, &|| progress())?;
+    if !at_spacing.dropped.is_empty() {
+        return Ok(interval(&at_spacing).max(spacing + 1));
+    }
+    let piled_up = run(OFFERED as usize * INTERVAL_FRAMES, spacing / OFFERED, &|| ())?;
+    let sooner = run(INTERVAL_FRAMES, spacing - 1, &|| ())?;
+    Ok(interval(&piled_up).min(interval(&sooner)))
+}
+
 /// Latency and interval, on frames repeated as often as needed; those of several bodies by their number.
 fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<(Cycles, Vec<BodyCycles>), SimulationError> {
     let failed = |source| SimulationError::Stream { mode: "timing", source };
@@ -188,14 +214,12 @@ fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<(Cycles, Vec<BodyCycle
     };
     // Both are there: more than one frame was answered, or `run` had failed.
     let latency = run(LATENCY_FRAMES, Pacing::OneAtATime)?.latency().unwrap_or_default();
-    let many = run(INTERVAL_FRAMES, job.pacing)?;
-    let interval = match job.pacing {
-        // At a given distance each frame may be a cycle sooner or later.
-        Pacing::Spaced { .. } => many.mean_interval(),
-        _ if job.unlike => many.interval_of_unlike(),
-        Pacing::BackToBack | Pacing::OneAtATime => many.interval(),
+    let interval = if let Some(spacing) = job.spacing {
+        spacing_without_loss(job, spacing, progress).map_err(failed)?
+    } else {
+        let many = run(INTERVAL_FRAMES, job.pacing)?;
+        if job.unlike { many.interval_of_unlike() } else { many.interval() }.unwrap_or_default()
     };
-    let interval = interval.unwrap_or_default();
     let of_bodies = |(bodies, packet): &(usize, Vec<u32>)| {
         let packets = vec![packet.clone(); SEVERAL_FRAMES];
         let mut run = |pacing| {

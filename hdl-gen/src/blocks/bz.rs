@@ -96,6 +96,8 @@ pub fn beat_to_stress(plan: &Plan) -> u64 {
 /// When what a frame brings is there, in cycles after its first beat enters Bz, streams never waiting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Arrival {
+    /// Its last beat has entered Bz.
+    pub taken: u64,
     /// The frame is ready for the lanes.
     pub ready: u64,
     /// `CeAn` has its last stress.
@@ -112,13 +114,20 @@ pub fn arrival(plan: &Plan) -> Arrival {
     let stages = beat_to_stress(plan);
     if streams.intake != Intake::Whole {
         let dead = if plan.dead.is_some() { latency::dead_taxels(plan.taxels()) } else { 0 };
-        let last_stress = plan.taxels() as u64 - 1 + stages + dead;
+        let taken = plan.taxels() as u64 - 1;
+        let last_stress = taken + stages + dead;
         if plan.scales_frames() {
             let ready = last_stress + latency::range(plan.elements());
-            return Arrival { ready, last_stress, done: ready, waits_from: last_stress + latency::RANGE_TO_TURN + 1 };
+            return Arrival {
+                taken,
+                ready,
+                last_stress,
+                done: ready,
+                waits_from: last_stress + latency::RANGE_TO_TURN + 1,
+            };
         }
         let ready = last_stress + latency::stress_to_ready(plan.ways() > 1);
-        return Arrival { ready, last_stress, done: last_stress + 1, waits_from: 0 };
+        return Arrival { taken, ready, last_stress, done: last_stress + 1, waits_from: 0 };
     }
     let beat_there = |taxel: usize| (taxel / streams.samples()) as u64 + stages + 1;
     // A quad a cycle, from the middle rows on, each when its last taxel is there.
@@ -129,7 +138,8 @@ pub fn arrival(plan: &Plan) -> Arrival {
     let last_taxel = (0..plan.taxels()).fold(0, |before, taxel| beat_there(taxel).max(before + 1));
     let last_stress = last_taxel + latency::TAXEL_TO_CEAN;
     let done = last_stress.max(last_quad + 1) + 1;
-    Arrival { ready: last_quad + latency::QUAD_TO_READY, last_stress, done, waits_from: 0 }
+    let taken = streams.beats_in() as u64 - 1;
+    Arrival { taken, ready: last_quad + latency::QUAD_TO_READY, last_stress, done, waits_from: 0 }
 }
 
 /// A multiplier each for a count's slope, a stress's gain and each dead taxel.

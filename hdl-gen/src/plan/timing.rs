@@ -61,7 +61,8 @@ pub struct Timeline {
     /// First beat in to last beat out of a single frame, both included, with streams that never wait.
     pub latency_cycles: u64,
     /// Distance of consecutive frames' last beats, input always there, sink always ready: its mean over a turn of frames, rounded
-    /// up, or the longest of them where frames are dropped that come sooner or zeros are passed over.
+    /// up, or the longest of them where zeros are passed over. Where frames without room are dropped, the smallest distance
+    /// of their beginnings at which none is, however many there are.
     pub interval_cycles: u64,
     /// First to last issue of the lanes.
     pub spmv_cycles: u64,

@@ -11,11 +11,15 @@ use testbench::stream::{Mode, Outcome, Pacing, Pattern, Traffic, exchange};
 use testbench::trial::{model_answers, timeout};
 use testbench::verilate::Built;
 
-use crate::support::effort::{share_of, some_of};
+use crate::support::effort::{all, share_of, some_of};
 use crate::support::random::{self, Kind, Shape, seed};
 use crate::support::{built, frames, in_parallel, planned, simulate_exactly};
 
 const RANDOM_DESIGNS: u64 = 18;
+/// With every key drawn.
+const DESIGNS_OF_EVERY_KEY: u64 = 400;
+/// Of these, what `make test` tries.
+const FEW_OF_EVERY_KEY: u64 = 6;
 /// Cycles to simulate in each stream mode of one design, roughly.
 const MOST_CYCLES: usize = 150_000;
 /// Frames to send to a sink that is slower than the core: more than there are places inside.
@@ -25,6 +29,9 @@ fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     let mut packets = frames::extremes(plan, random);
     packets.extend((0..6).map(|_| frames::contact(plan, random)));
     packets.extend([1e-4, 1e-3, 0.03, 1.0, 1.2].map(|share| frames::noise(plan, share, random)));
+    if plan.design.input.counts() {
+        packets = packets.iter().map(|packet| in_counts(plan, packet)).collect();
+    }
     // An input that settles for a frame hides what it takes over from the frame before.
     for index in (1..packets.len()).rev() {
         packets.swap(index, random.random_range(0..=index));
@@ -33,9 +40,19 @@ fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     packets
 }
 
+/// A packet of pascals as the counts that a sensor of this design delivers.
+fn in_counts(plan: &Plan, packet: &[u32]) -> Vec<u32> {
+    let (input, samples) = (&plan.design.input, plan.design.hardware.samples);
+    let count =
+        |(taxel, &bits): (usize, &u32)| samples.clip(input.from_pa(taxel, f64::from(f32::from_bits(bits))).round());
+    plan.streams().packet(&packet.iter().enumerate().map(count).collect::<Vec<_>>())
+}
+
 /// Frames in a row through the RTL, judged by the model.
 fn agrees(plan: &Plan, built: &Built, packets: &[Vec<u32>], mode: &Mode, pacing: Pacing) -> Result<Outcome, String> {
     let failed = |error: &dyn std::fmt::Display| format!("{}: {error}", mode.name);
+    // A core that drops frames gets one at a time: of those that come while the sink stands still it would lose some.
+    let pacing = if plan.streams().drops { Pacing::OneAtATime } else { pacing };
     let traffic = Traffic::new(packets, 8 * timeout(plan)).with_mode(mode).with_pacing(pacing);
     let mut core = built.load(1).map_err(|error| failed(&error))?;
     let outcome = exchange(&mut core, &traffic, |_| ()).map_err(|error| failed(&error))?;
@@ -78,6 +95,18 @@ fn random_designs_agree_with_the_model() {
     let numbers = some_of(0..RANDOM_DESIGNS);
     let results = in_parallel(&numbers, |&number| {
         let (plan, mut random) = random::plan(number)?;
+        check(&plan, &mut random)
+    });
+    let failures: Vec<String> = results.into_iter().filter_map(Result::err).collect();
+    assert!(failures.is_empty(), "SPTFRA_TEST_SEED={}: {}", seed(), failures.join("\n\n"));
+}
+
+/// Every key of a design file drawn, among them those of the intake.
+#[test]
+fn random_designs_of_every_key_agree_with_the_model() {
+    let numbers: Vec<u64> = (0..if all() { DESIGNS_OF_EVERY_KEY } else { FEW_OF_EVERY_KEY }).collect();
+    let results = in_parallel(&numbers, |&number| {
+        let (plan, mut random) = random::plan_of_every_key(number)?;
         check(&plan, &mut random)
     });
     let failures: Vec<String> = results.into_iter().filter_map(Result::err).collect();

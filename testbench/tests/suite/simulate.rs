@@ -25,6 +25,7 @@ fn job<'a>(built: &'a Built, packets: &'a [Vec<u32>], expected: &'a [Vec<u32>]) 
         expected,
         shape: 4.into(),
         pacing,
+        spacing: None,
         unlike: false,
         timeout: 500,
         seed: 1,

@@ -16,25 +16,53 @@ use crate::blocks::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
     SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_RESIDUAL,
 };
+use crate::blocks::overrun;
 
 /// Frames whose stress, whose search, and whose field have a place.
 const PLACES: u64 = FIELD_PLACES as u64;
 /// Cycles after which a frame is taken for lost: a defect.
 const FOREVER: u64 = 100_000_000;
+/// Frames within which a core that keeps up with its source repeats itself.
+const SPACED_FRAMES: u64 = 96;
 
 /// Predicts latency and interval; of the plan everything else is there.
 pub(super) fn timeline(plan: &Plan) -> Timeline {
     let durations = Durations::new(plan);
     let ends = |frames| Control::new(&durations).play(frames);
     // Frames that take as long as what is in them keep to no turns.
-    let every_frame = plan.streams().drops || plan.design.hardware.skip_zeros;
-    let interval = if every_frame { longest_interval } else { mean_interval };
+    let interval = if plan.design.hardware.skip_zeros { longest_interval } else { mean_interval };
+    let interval = interval(&ends(INTERVAL_FRAMES));
     Timeline {
         latency_cycles: ends(1)[0],
-        interval_cycles: interval(&ends(INTERVAL_FRAMES)),
+        interval_cycles: if plan.streams().drops { smallest_spacing(&durations, interval) } else { interval },
         spmv_cycles: plan.schedule.issue_cycles(),
         search_cycles: durations.stages.iter().map(|stage| stage.cycles).sum(),
     }
+}
+
+/// What becomes of frames that begin at equal distances.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Pace {
+    /// The core's state repeats: it keeps up with them for ever.
+    Keeps,
+    /// They wait longer and longer, as far as was played.
+    PilesUp,
+    /// The ingress FIFO has no room for one.
+    Loses,
+}
+
+/// The smallest distance of frames' beginnings at which the ingress FIFO loses none. Frames that pile up go on in the
+/// `interval` of a core whose source waits. Frames that wait for nothing meet the lanes in another order, and may need less.
+fn smallest_spacing(durations: &Durations, interval: u64) -> u64 {
+    let pace = |spacing: u64| Control::new(durations).keep_pace(spacing);
+    let mut spacing = interval;
+    while pace(spacing) == Pace::Loses {
+        spacing += 1;
+    }
+    while spacing > 1 && pace(spacing - 1) == Pace::Keeps {
+        spacing -= 1;
+    }
+    spacing
 }
 
 /// The registers, as they stand in the current cycle. Times are cycles in which something happens or is first seen.
@@ -47,6 +75,10 @@ struct Control<'a> {
     beat_there: u64,
     idle_since: Option<u64>,
     stress_places: u64,
+    /// Frames in the ingress FIFO that Bz has not let in: when their first beats came. Empty where the source waits.
+    arrivals: VecDeque<u64>,
+    /// Frames in the ingress FIFO, with the one that is leaving it.
+    in_fifo: usize,
     /// Frames on their way through Bz: cycles since their first beat in which it did not stand still.
     arriving: VecDeque<u64>,
     /// Cycles in which results are written, and it does.
@@ -109,6 +141,8 @@ impl<'a> Control<'a> {
             beat_there: 1 + of.unpacking,
             idle_since: Some(0),
             stress_places: 0,
+            arrivals: VecDeque::new(),
+            in_fifo: 0,
             arriving: VecDeque::new(),
             writes: BTreeSet::new(),
             cean_idle: 0,
@@ -139,22 +173,88 @@ impl<'a> Control<'a> {
     fn play(mut self, frames: usize) -> Vec<u64> {
         let mut left = frames;
         while self.ends.len() < frames && self.now < FOREVER {
-            self.show_changes();
-            let stands_still = self.writes.remove(&self.now);
-            self.arrive(stands_still);
-            if left > 0 && self.opens(stands_still && self.of.arrival.waits_from == 0) {
+            if self.step(left > 0) {
                 left -= 1;
             }
-            self.give_turn();
-            if let Some(latency) = self.of.line {
-                self.find_line(latency);
-            }
-            self.search();
-            self.send();
-            self.now += 1;
         }
         self.ends.resize(frames, FOREVER);
         self.ends
+    }
+
+    /// Plays frames that begin so many cycles one after the other: what becomes of them.
+    fn keep_pace(mut self, spacing: u64) -> Pace {
+        let mut states = BTreeSet::new();
+        for _ in 0..SPACED_FRAMES {
+            if self.in_fifo == overrun::FRAMES {
+                return Pace::Loses;
+            }
+            self.in_fifo += 1;
+            self.arrivals.push_back(self.now);
+            if !states.insert(self.state()) {
+                return Pace::Keeps;
+            }
+            for _ in 0..spacing {
+                let is_there = |&came: &u64| came + 1 + self.of.unpacking <= self.now;
+                if self.step(self.arrivals.front().is_some_and(is_there)) {
+                    self.arrivals.pop_front();
+                }
+            }
+        }
+        Pace::PilesUp
+    }
+
+    /// All that decides what happens from this cycle on, its times counted from here.
+    fn state(&self) -> Vec<u64> {
+        // What was there a cycle ago is there for good.
+        let past = self.now.saturating_sub(1);
+        let since = |time: u64| if time >= FOREVER { FOREVER } else { time.saturating_sub(past) };
+        let counts = [self.stress_places, self.u_held, self.frames_held, self.fields_held, self.in_fifo as u64];
+        let flags = [self.idle_since.is_some(), self.residual_due, self.summary_busy].map(u64::from);
+        let line = match self.line {
+            Line::Idle { from } => [0, since(from)],
+            Line::Waits { from } => [1, since(from)],
+            Line::There { from } => [2, since(from)],
+        };
+        let times = [self.next_open, self.beat_there, self.cean_idle, self.lanes_free, self.output_idle];
+        let known = [self.summary_there, self.friction_known].map(|time| time.map_or(FOREVER, since));
+        let mut state = [&counts[..], &flags, &line, &times.map(since), &known].concat();
+        let queues = [
+            &self.arrivals,
+            &self.directions,
+            &self.frames_ready,
+            &self.residuals_there,
+            &self.sums_there,
+            &self.u_there,
+            &self.field_there,
+        ];
+        for queue in queues {
+            state.push(queue.len() as u64);
+            state.extend(queue.iter().map(|&time| since(time)));
+        }
+        state.push(self.arriving.len() as u64);
+        state.extend(&self.arriving);
+        for stage in &self.stages {
+            state.extend([stage.ends.map_or(FOREVER, since), since(stage.free)]);
+        }
+        state.extend(self.pending.iter().flat_map(|&(time, change)| [since(time), change as u64]));
+        state.extend(self.writes.iter().map(|&time| since(time)));
+        state
+    }
+
+    /// A cycle; whether a frame enters Bz, which `offered` says is there.
+    fn step(&mut self, offered: bool) -> bool {
+        self.show_changes();
+        let stands_still = self.writes.remove(&self.now);
+        self.arrive(stands_still);
+        let opens = self.opens(offered && !(stands_still && self.of.arrival.waits_from == 0));
+        self.give_turn();
+        if let Some(latency) = self.of.line {
+            self.find_line(latency);
+        }
+        self.search();
+        self.send();
+        self.now += 1;
+        opens
     }
 
     fn show_changes(&mut self) {
@@ -175,7 +275,7 @@ impl<'a> Control<'a> {
     }
 
     /// Bz lets a frame in: a register says so, one cycle after the conditions hold.
-    fn opens(&mut self, stands_still: bool) -> bool {
+    fn opens(&mut self, offered: bool) -> bool {
         let room = self.directions.iter().filter(|&&there| there <= self.now).count() < PLACES as usize;
         if self.now < self.next_open || self.now < self.cean_idle || self.stress_places == PLACES || !room {
             return false;
@@ -183,7 +283,7 @@ impl<'a> Control<'a> {
         if *self.idle_since.get_or_insert(self.now) == self.now {
             return false;
         }
-        if self.now < self.beat_there || stands_still {
+        if self.now < self.beat_there || !offered {
             return false;
         }
         self.idle_since = None;
@@ -196,7 +296,7 @@ impl<'a> Control<'a> {
 
     /// Frames move on in Bz, those that write to the lanes' memories not in this cycle if it `stands_still`.
     fn arrive(&mut self, stands_still: bool) {
-        let Arrival { ready, last_stress, done, waits_from } = self.of.arrival;
+        let Arrival { taken, ready, last_stress, done, waits_from } = self.of.arrival;
         for moved in &mut self.arriving {
             // With a range of its own a frame that is written waits for nothing more.
             let waits = *moved + 1 >= waits_from && (waits_from == 0 || *moved + 1 < ready);
@@ -204,6 +304,9 @@ impl<'a> Control<'a> {
                 continue;
             }
             *moved += 1;
+            if *moved == taken {
+                self.in_fifo = self.in_fifo.saturating_sub(1);
+            }
             if *moved == ready {
                 self.frames_ready.push_back(self.now);
             }

@@ -18,7 +18,7 @@ use testbench::stream::{Mode, Outcome, Pacing, Traffic, exchange};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
 
-use crate::support::effort::half_of;
+use crate::support::effort::{half_of, some_of};
 use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, simulate_exactly};
 
 /// A design, planned and compiled.
@@ -158,6 +158,22 @@ fn frames_are_dropped_from_the_interval_on_and_no_sooner() {
             assert_ne!(outcome.dropped, [], "{}, every {cycles} cycles", plan.design.name);
             explained(plan, cycles, &outcome);
         }
+    });
+}
+
+/// A cycle closer than the interval one is.
+#[test]
+fn a_frame_is_dropped_a_cycle_below_the_interval() {
+    in_parallel(&some_of(subjects()), |subject| {
+        let plan = &subject.plan;
+        let interval = plan.timeline.interval_cycles;
+        // They pile up by a cycle a frame, in the core and before it, until two wait.
+        let mut packets = packets(plan, 60);
+        packets.retain(|packet| plan.streams().is_frame(packet.len()));
+        let packets: Vec<Vec<u32>> = packets.into_iter().cycle().take(8 * interval as usize).collect();
+        let outcome = scan(subject, &packets, interval - 1);
+        judge(plan, &packets, &outcome);
+        assert_ne!(outcome.dropped, [], "{}, a cycle closer than {interval}", plan.design.name);
     });
 }
 

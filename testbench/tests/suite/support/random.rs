@@ -2,7 +2,10 @@
 
 use std::env;
 
-use golden::design::{Correction, Design, Doubt, Grid, InputRange, JointConstants, Sensor};
+use golden::design::{
+    Calibration, CalibrationIn, Correction, Curve, Design, Doubt, Grid, InputRange, JointConstants, Kernel, Optimise,
+    Outputs, Overrun, Regularisation, Samples, Sensor, Slip, Tension,
+};
 use hdl_gen::plan::{Plan, contacts};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -180,19 +183,110 @@ fn constants(sensor: &Sensor, correction: bool) -> JointConstants {
     constants
 }
 
+/// The design with every other key drawn: load model, samples, calibration, streams, what becomes of frames without room.
+///
+/// # Errors
+/// Why the keys do not go together.
+fn with_every_key(mut design: Design, random: &mut ChaCha8Rng) -> Result<Design, String> {
+    let taxels = design.sensor.taxels();
+    let (algorithm, input, hardware) = (&mut design.algorithm, &mut design.input, &mut design.hardware);
+    if random.random_bool(0.3) {
+        algorithm.kernel = Kernel::Cell;
+    }
+    if random.random_bool(0.3) {
+        algorithm.regularisation = Regularisation::Noise(random.random_range(0.0005..0.01));
+    }
+    if random.random_bool(0.3) {
+        let limit = random.random_range(0.1..0.9);
+        algorithm.slip = Some(Slip { limit, hysteresis: random.random_range(0.0..limit) });
+    }
+    if random.random_bool(0.3) {
+        algorithm.noise_floor_pa = hardware.full_scale_pa * 10_f64.powf(random.random_range(-5.0..-2.0));
+    }
+    if random.random_bool(0.3) {
+        input.tension = Tension::Clipped;
+    }
+    if random.random_bool(0.2) {
+        hardware.optimise = [Optimise::Area, Optimise::Latency][usize::from(algorithm.outputs == Outputs::Field)];
+    }
+    hardware.stream_bits = [32, 64, 128][random.random_range(0..3)];
+    if random.random_bool(0.5) {
+        hardware.overrun = Overrun::Drop;
+    }
+    hardware.control = random.random_bool(0.4);
+    // Counts reach somewhat beyond the full scale.
+    let largest = f64::from(random.random_range(1500..30_000_u32));
+    let pascals = -1.3 * hardware.full_scale_pa;
+    match random.random_range(0..4) {
+        0 | 1 => {}
+        2 => input.pa_per_count = Some(pascals / largest),
+        _ => {
+            let knots = random.random_range(1..12_u32);
+            let point = |knot: u32| [f64::from(knot), f64::from(knot).powf(1.3)];
+            let end = point(knots);
+            let points = (0..=knots).map(point).map(|[x, y]| [x / end[0] * largest, y / end[1] * pascals]);
+            input.curve = Some(Curve { points: points.collect(), law: None });
+        }
+    }
+    if input.counts() {
+        hardware.samples = [Samples::Float32, Samples::Int16, Samples::Uint16][random.random_range(0..3)];
+        if random.random_bool(0.5) {
+            let offsets = if input.curve.is_some() { 0.01 * hardware.full_scale_pa } else { 0.01 * largest };
+            input.calibration = Some(Calibration {
+                gain: (0..taxels).map(|_| random.random_range(0.6..1.5)).collect(),
+                offset: (0..taxels).map(|_| random.random_range(-offsets..offsets)).collect(),
+            });
+        }
+        if hardware.control && random.random_bool(0.6) {
+            hardware.calibration = CalibrationIn::Ram;
+            hardware.replaceable = [0, 1, 2, 4][random.random_range(0..4)];
+        }
+    }
+    if random.random_bool(0.25) {
+        let most = if hardware.replaceable > 0 { hardware.replaceable } else { 3 };
+        let mut dead: Vec<usize> = (0..most.min(taxels / 4)).map(|_| random.random_range(0..taxels)).collect();
+        dead.sort_unstable();
+        dead.dedup();
+        input.dead = dead;
+    }
+    let files = design.files();
+    let files: Vec<(&str, String)> = files.iter().map(|(name, text)| (*name, text.clone())).collect();
+    Design::from_parts(&design.to_toml(), &design.name, &files).map_err(|error| error.to_string())
+}
+
+/// As [`plan`], with every key drawn.
+///
+/// # Errors
+/// Why all of too many draws had no plan.
+pub fn plan_of_every_key(number: u64) -> Result<(Plan, ChaCha8Rng), String> {
+    // Other draws than those of `plan`.
+    draw(number, 1 << 32, |shape, name, random| with_every_key(shape.design(name), random))
+}
+
 /// The design with this number among those of the seed, and the generator as its draws left it.
 ///
 /// # Errors
 /// Why all of too many draws had no plan.
 pub fn plan(number: u64) -> Result<(Plan, ChaCha8Rng), String> {
+    draw(number, 0, |shape, name, _| Ok(shape.design(name)))
+}
+
+fn draw(
+    number: u64,
+    first_stream: u64,
+    design: impl Fn(&Shape, &str, &mut ChaCha8Rng) -> Result<Design, String>,
+) -> Result<(Plan, ChaCha8Rng), String> {
     let mut random = ChaCha8Rng::seed_from_u64(seed());
-    random.set_stream(number);
+    random.set_stream(first_stream + number);
     let name = format!("random_{number:02}");
     let mut refused = Vec::new();
     for _ in 0..MOST_REFUSED {
-        match Plan::new(&Shape::random(&mut random).design(&name)) {
+        let shape = Shape::random(&mut random);
+        let plan =
+            design(&shape, &name, &mut random).and_then(|design| Plan::new(&design).map_err(|error| error.to_string()));
+        match plan {
             Ok(plan) => return Ok((plan, random)),
-            Err(error) => refused.push(error.to_string()),
+            Err(error) => refused.push(error),
         }
     }
     Err(format!("no plan after {MOST_REFUSED} draws:\n{}", refused.join("\n")))
