@@ -52,7 +52,7 @@ test-long: lint-and-tools ## As test, with every design and broken copy (three q
 	$(CARGO) test -p hdl-gen -p testbench --test suite -- --ignored
 
 .PHONY: test-times
-test-times: test-tools ## All tests, one topic after the other, and the slowest ten (docs/testing.md)
+test-times: test-tools ## All tests, one topic after the other, and the slowest ten (CONTRIBUTING.md)
 	@tools/test_times.py
 
 .PHONY: formal
@@ -106,7 +106,7 @@ doc: ## The crates' documentation, in target/doc
 	$(CARGO) doc --workspace --no-deps
 
 .PHONY: wheel
-wheel: wheel-tools ## The Python package as a wheel, in target/wheels (docs/python.md)
+wheel: wheel-tools ## The Python package as a wheel, in target/wheels (docs/how-to/python.md)
 	@rm -f $(TARGET)/wheels/*.whl
 	@.venv/bin/maturin build --release --strip --manifest-path python/Cargo.toml --out $(TARGET)/wheels
 
@@ -163,7 +163,7 @@ test-tools: ## What `tools` installs, and what only tests need: a browser where 
 synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside the predicted ones (minutes)
 	@tools/synth.sh $(DESIGN)
 
-# Times are measured with a release build. Its page is docs/benchmarks.md.
+# Times are measured with a release build. The page is the source of several files in results/.
 BENCH_BIN     := $(TARGET)/release
 BENCH_FOLDER  := $(TARGET)/bench
 BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml sensor1-joint.toml \
@@ -173,7 +173,7 @@ BENCH_DESIGNS := designs/sensor1-reduced.toml designs/sensor2-reduced.toml desig
 BENCH_CELLS   := sensor1-reduced sensor1-reduced-64 sensor1-resultants sensor1-fast sensor1-fast-64
 
 .PHONY: bench
-bench: tools ## Measure solver, generator, simulation, cycles and cells, and write docs/benchmarks.md (Yosys: half an hour)
+bench: tools ## Measure solver, generator, simulation, cycles and cells, and write target/benchmarks.md (Yosys: half an hour)
 	@echo 'bench: a release build'
 	@$(CARGO) build --quiet --release $(PACKAGES) --bins
 	@echo 'bench: Yosys, five designs'
@@ -185,7 +185,7 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, and wri
 	@echo 'bench: generator, simulation, cycles (some minutes)'
 	@$(BENCH_BIN)/testbench bench $(BENCH_DESIGNS) --solver $(BENCH_FOLDER)/solver.json \
 	    $(foreach design,$(BENCH_CELLS),--cells $(TARGET)/synth/$(subst -,_,$(design)).cells.json) \
-	    --page docs/benchmarks.md --plot docs/latency.svg
+	    --page $(TARGET)/benchmarks.md --plot docs/figures/latency.svg
 
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep
@@ -206,8 +206,8 @@ report-full: tools build ## The same over every combination of filters, plans, w
 	@$(BIN)/testbench sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) --full
 
 .PHONY: hard
-hard: tools build ## Sensors, contacts and frames at the limits, all through the RTL (minutes): docs/hard-cases.md
-	@$(BIN)/testbench hard --page docs/hard-cases.md --plot docs/depth.svg
+hard: tools build ## Sensors, contacts and frames at the limits, all through the RTL (minutes): target/hard-cases.md
+	@$(BIN)/testbench hard --page $(TARGET)/hard-cases.md --plot docs/figures/depth.svg
 
 .PHONY: sweep-tools
 sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one machine

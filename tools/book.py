@@ -3,7 +3,7 @@
 """The README and docs/ as a site with a search, in target/book: what `make book` runs.
 
 The README becomes the first page. A link to a file that is no page leads to a copy of that file beside the pages; one
-to a folder becomes plain text.
+to a folder leads to its README, or becomes plain text.
 """
 
 import re
@@ -19,13 +19,18 @@ LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 
 
 def pages() -> dict[Path, str]:
-    """Each page's file and its name on the site."""
-    docs = sorted((ROOT / "docs").glob("*.md"))
-    return {ROOT / "README.md": "index.md", **{path: path.name for path in docs}}
+    """Each page's file and its name on the site, which has the folders of docs/."""
+    named = {"README.md": "index.md", "docs/README.md": "map.md", "docs/decisions/README.md": "decisions/index.md"}
+    named |= {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md", "results/README.md": "results.md"}
+    named |= {"data/README.md": "data.md"}
+    names = {ROOT / path: name for path, name in named.items()}
+    docs = ROOT / "docs"
+    return {path: path.relative_to(docs).as_posix() for path in sorted(docs.rglob("*.md"))} | names
 
 
 def rewritten(text: str, page: Path, names: dict[Path, str]) -> str:
     """A page's text with the links that hold on the site."""
+    depth = names[page].count("/")
 
     def link(match: re.Match[str]) -> str:
         mark, words, target = match.groups()
@@ -36,6 +41,8 @@ def rewritten(text: str, page: Path, names: dict[Path, str]) -> str:
         if not file.exists():
             sys.exit(f"{page.relative_to(ROOT)}: there is no {target}")
         if file.is_dir():
+            file = file / "README.md"
+        if not file.exists():
             return words
         name = names.get(file)
         if name is None:
@@ -43,7 +50,7 @@ def rewritten(text: str, page: Path, names: dict[Path, str]) -> str:
             copy = STAGE / name
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, copy)
-        return f"{mark}[{words}]({name}{'#' if anchor else ''}{anchor})"
+        return f"{mark}[{words}]({'../' * depth}{name}{'#' if anchor else ''}{anchor})"
 
     return LINK.sub(link, text)
 
@@ -53,6 +60,7 @@ def main() -> None:
     STAGE.mkdir(parents=True)
     names = pages()
     for page, name in names.items():
+        (STAGE / name).parent.mkdir(parents=True, exist_ok=True)
         (STAGE / name).write_text(rewritten(page.read_text(encoding="utf-8"), page, names), encoding="utf-8")
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--config-file", ROOT / "tools" / "book.yml"]
     done = subprocess.run(command, cwd=ROOT, check=False)

@@ -32,8 +32,8 @@ SHELLS = {
     "zsh": "share/zsh/site-functions/_{}",
     "fish": "share/fish/vendor_completions.d/{}.fish",
 }
-FILES = ["README.md", "CHANGELOG.md", "CITATION.cff", "LICENSE-MIT", "LICENSE-APACHE"]
-FOLDERS = ["designs", "scenes", "docs", "drivers", "data", "hdl-gen/boards"]
+FILES = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE-MIT", "LICENSE-APACHE"]
+FOLDERS = ["designs", "scenes", "docs", "results", "drivers", "data", "hdl-gen/boards"]
 
 
 def version() -> str:

@@ -316,11 +316,11 @@ fn keys_of_contacts_that_contradict_themselves() {
 /// The scene that the docs show has every key that they speak of, and makes frames.
 #[test]
 fn the_scene_of_the_docs_is_one() {
-    let page =
-        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/formats.md")).expect("a page");
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/reference/files.md"))
+        .expect("a page");
     let mut blocks = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
     let text = blocks.find(|block| block.contains("[medium]")).expect("a scene");
-    let mut scene = Scene::from_toml(text, "docs/formats.md").expect("a scene as it is written");
+    let mut scene = Scene::from_toml(text, "docs/reference/files.md").expect("a scene as it is written");
     assert_eq!(scene.frames().expect("frames").len(), 36);
     // What it has as a remark is the other way to be held.
     let held = text

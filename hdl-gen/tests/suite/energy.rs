@@ -1,6 +1,5 @@
-//! The estimate of a frame's energy: what it counts, and what the docs say of the shipped designs.
+//! The estimate of a frame's energy: what it counts.
 
-use std::fs;
 use std::path::Path;
 
 use golden::design::Design;
@@ -66,29 +65,4 @@ fn less_work_takes_less() {
     assert!(of("plan = \"reduced\"", "coefficient_bits = 12") < all);
     assert!(of("plan = \"reduced\"\noutputs = \"resultants\"", "") < all);
     assert!(of("plan = \"paper\"", "") > all);
-}
-
-#[test]
-fn the_docs_have_the_figures_of_the_shipped_designs() {
-    let page = fs::read_to_string(root().join("docs/choosing.md")).expect("readable");
-    let table = page.split("| energy a frame, estimated |").nth(1).expect("a table");
-    let rows: Vec<&str> = table.lines().skip(2).take_while(|line| line.starts_with('|')).collect();
-    // All designs but those that are for tests, or for one tool.
-    let small = ["odd", "small", "small-bodies", "small-control", "small-joint", "small-scanner"];
-    let others = [&small[..], &["timing", "timing-joint", "timing-points"]].concat();
-    for entry in fs::read_dir(root().join("designs")).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let name = path.file_stem().and_then(|name| name.to_str()).expect("a name").to_owned();
-        if path.extension().is_some_and(|ending| ending == "toml") && !others.contains(&&*name) {
-            assert!(rows.iter().any(|row| row.starts_with(&format!("| `{name}` |"))), "no row of {name}");
-        }
-    }
-    for row in rows {
-        let name = row.split('`').nth(1).expect("a design");
-        let plan = shipped(name);
-        let energy = Energy::of(&plan);
-        let rate = plan.design.hardware.clock_mhz * 1e6 / plan.timeline.interval_cycles as f64;
-        let expected = format!("| `{name}` | {:.1} µJ | {:.2} W |", energy.fabric_nj / 1e3, energy.watts(rate));
-        assert_eq!(row, expected);
-    }
 }

@@ -55,7 +55,7 @@ fn an_archive_has_all_that_the_commands_need_and_is_the_same_again() {
         "share/bash-completion/completions/hdl-gen",
         "share/zsh/site-functions/_testbench",
         "share/sptfra/LICENSE-MIT",
-        "share/sptfra/docs/formats.md",
+        "share/sptfra/docs/reference/files.md",
         "share/sptfra/hdl-gen/boards/zcu102.toml",
     ] {
         assert!(unpacked.join(file).is_file(), "no {file}");

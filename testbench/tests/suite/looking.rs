@@ -315,11 +315,11 @@ fn the_readmes_picture_is_what_view_draws() {
     let ran = view(&["--reference", "frames.forces.csv"]);
     assert!(ran.status.success(), "{}", text(&ran.stderr));
     let drawn = fs::read_to_string(folder.path().join("frame.svg")).expect("drawn");
-    let known = workspace("docs/frame.svg");
+    let known = workspace("docs/figures/frame.svg");
     if std::env::var_os("UPDATE_EXPECTED").is_some() {
         fs::write(&known, &drawn).expect("written");
     }
-    assert_eq!(drawn, fs::read_to_string(&known).expect("docs/frame.svg"), "UPDATE_EXPECTED=1 draws it anew");
+    assert_eq!(drawn, fs::read_to_string(&known).expect("docs/figures/frame.svg"), "UPDATE_EXPECTED=1 draws it anew");
     assert_eq!(drawn.matches("<rect").count(), 2 * design.sensor.taxels() + 2 * 24, "a cell a taxel, and both bars");
     assert!(drawn.contains("F true"), "{drawn}");
     // Without the true forces, there is none to draw.

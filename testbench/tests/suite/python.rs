@@ -49,9 +49,9 @@ fn installed(wheel: &Path, folder: &Path) -> PathBuf {
     own
 }
 
-/// The session of docs/python.md, as it is written.
+/// The session of docs/how-to/python.md, as it is written.
 fn session() -> String {
-    let page = fs::read_to_string(workspace("docs/python.md")).expect("a page");
+    let page = fs::read_to_string(workspace("docs/how-to/python.md")).expect("a page");
     let block = page.split("```python\n").nth(1).and_then(|rest| rest.split("```").next());
     block.expect("a session").to_owned()
 }

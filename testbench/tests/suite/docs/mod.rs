@@ -1,4 +1,4 @@
-//! The commands of README and docs: each exists as it is written, and the new user's session does what it says.
+//! README and docs: commands, links, numbers and words.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,9 +7,8 @@ use std::process::Command;
 use crate::browser;
 use crate::support::workspace;
 
-mod float32;
+mod results;
 mod sessions;
-mod stated;
 
 /// A line of a block of commands, without its comment.
 pub struct Line {
@@ -24,21 +23,46 @@ impl Line {
     }
 }
 
+/// The Markdown files of a folder and of the folders in it.
+fn markdown_in(folder: &Path, found: &mut Vec<PathBuf>) {
+    for path in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+        if path.is_dir() {
+            markdown_in(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "md") {
+            found.push(path);
+        }
+    }
+}
+
+/// The pages of `docs/`.
+fn docs() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    markdown_in(&workspace("docs"), &mut found);
+    found.sort();
+    found
+}
+
+/// All pages: those of `docs/` and those beside what they are about.
+fn pages() -> Vec<PathBuf> {
+    let named = [
+        "README.md",
+        "CONTRIBUTING.md",
+        "data/README.md",
+        "python/README.md",
+        "rtl-out/README.md",
+        "results/README.md",
+    ];
+    named.map(workspace).into_iter().chain(docs()).collect()
+}
+
 /// All lines of `sh` blocks; one that ends with a backslash goes on in the next.
 fn lines() -> Vec<Line> {
-    let root = workspace("");
-    let docs = fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
-    let mut files: Vec<PathBuf> = docs.filter(|path| path.extension().is_some_and(|ending| ending == "md")).collect();
-    files.extend(["README.md", "data/README.md"].map(|name| root.join(name)));
-    files.sort();
-    files.iter().flat_map(|file| lines_of(file)).collect()
+    pages().iter().flat_map(|file| lines_of(file)).collect()
 }
 
 /// How lines begin that are typed into a shell.
-const TYPED: [&str; 20] = [
-    "golden ",
-    "hdl-gen ",
-    "testbench ",
+const TYPED: [&str; 18] = [
+    "sptfra ",
     "make ",
     "cargo ",
     "python3 ",
@@ -61,10 +85,7 @@ const TYPED: [&str; 20] = [
 /// A block of commands without its language is run by no test.
 #[test]
 fn every_block_of_commands_says_that_it_is_one() {
-    let root = workspace("");
-    let docs = fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
-    let pages = ["README.md", "data/README.md", "python/README.md"].map(|name| root.join(name));
-    for page in docs.filter(|path| path.extension().is_some_and(|ending| ending == "md")).chain(pages) {
+    for page in pages() {
         let text = fs::read_to_string(&page).expect("readable");
         let lines: Vec<&str> = text.lines().collect();
         let fences = lines.iter().enumerate().filter(|(_, line)| line.starts_with("```")).map(|(index, _)| index);
@@ -87,7 +108,7 @@ pub fn lines_of(file: &Path) -> Vec<Line> {
         if !inside {
             continue;
         }
-        let words = line.split(" #").next().unwrap_or("").trim();
+        let words = if line.starts_with('#') { "" } else { line.split(" #").next().unwrap_or("").trim() };
         let (words, goes_on) = match words.strip_suffix('\\') {
             Some(words) => (words, true),
             None => (words, false),
@@ -115,9 +136,9 @@ pub fn commands() -> PathBuf {
     folder
 }
 
-fn help(folder: &Path, command: &str, subcommand: &str) -> String {
-    let output = Command::new(folder.join(command)).args([subcommand, "--help"]).output().expect("starts");
-    assert!(output.status.success(), "{command} has no {subcommand}");
+fn help(folder: &Path, subcommand: &str) -> String {
+    let output = Command::new(folder.join("sptfra")).args([subcommand, "--help"]).output().expect("starts");
+    assert!(output.status.success(), "sptfra has no {subcommand}");
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
@@ -129,10 +150,9 @@ fn every_command_of_the_docs_exists() {
     let mut checked = 0;
     for line in lines() {
         let words: Vec<&str> = line.text.split_whitespace().collect();
-        let name = words[0].trim_start_matches(". <(").trim_start_matches("target/debug/");
-        match (name, words.get(1)) {
-            ("golden" | "hdl-gen" | "testbench", Some(subcommand)) => {
-                let help = help(&folder, name, subcommand);
+        match (words[0], words.get(1)) {
+            ("sptfra", Some(subcommand)) => {
+                let help = help(&folder, subcommand);
                 let options = words.iter().filter_map(|word| word.trim_matches(['[', ']']).strip_prefix("--"));
                 for option in options {
                     assert!(help.contains(&format!("--{option}")), "{}: there is no --{option}", line.place());
@@ -185,12 +205,8 @@ fn targets(text: &str) -> Vec<&str> {
 
 #[test]
 fn every_link_leads_somewhere() {
-    let root = workspace("");
-    let pages = ["README.md", "CHANGELOG.md", "data/README.md"].map(|name| root.join(name));
-    let docs = fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
-    let is_page = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "md");
     let mut checked = 0;
-    for page in pages.into_iter().chain(docs.filter(is_page)) {
+    for page in pages().into_iter().chain([workspace("CHANGELOG.md")]) {
         let text = fs::read_to_string(&page).expect("readable");
         for target in targets(&text).into_iter().filter(|target| !target.contains("://")) {
             let (path, heading) = target.split_once('#').unwrap_or((target, ""));
@@ -206,14 +222,21 @@ fn every_link_leads_somewhere() {
             checked += 1;
         }
     }
-    assert!(checked > 40, "only {checked} links were found");
-    // Every page of the docs has its place on the site.
-    let site = fs::read_to_string(root.join("tools/book.yml")).expect("readable");
-    for page in
-        fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path()).filter(is_page)
-    {
-        let name = page.file_name().and_then(|name| name.to_str()).expect("a name");
-        assert!(site.contains(&format!(": {name}\n")), "tools/book.yml has no {name}");
+    assert!(checked > 100, "only {checked} links were found");
+    // Every page has its place on the map and on the site.
+    let site = fs::read_to_string(workspace("tools/book.yml")).expect("readable");
+    let maps = ["README.md", "decisions/README.md"].map(|map| workspace("docs").join(map));
+    let linked: Vec<PathBuf> = maps
+        .iter()
+        .flat_map(|map| {
+            let text = fs::read_to_string(map).expect("readable");
+            targets(&text).into_iter().map(|target| map.parent().expect("a folder").join(target)).collect::<Vec<_>>()
+        })
+        .collect();
+    for page in docs().into_iter().filter(|page| !page.ends_with("README.md")) {
+        let path = page.strip_prefix(workspace("docs")).expect("of the docs");
+        assert!(site.contains(&format!(": {}\n", path.display())), "tools/book.yml has no {}", path.display());
+        assert!(linked.contains(&page), "docs/README.md and docs/decisions/README.md have no {}", path.display());
     }
 }
 
@@ -232,19 +255,20 @@ fn the_site_has_every_page_and_finds_its_words() {
         String::from_utf8_lossy(&made.stderr)
     );
     let site = root.join("target/book");
-    let pages = fs::read_dir(root.join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
-    for page in pages.filter(|path| path.extension().is_some_and(|ending| ending == "md")) {
-        let made = site.join(page.file_name().expect("a name")).with_extension("html");
+    for page in docs().into_iter().filter(|page| !page.ends_with("README.md")) {
+        let path = page.strip_prefix(root.join("docs")).expect("of the docs");
+        let made = site.join(path).with_extension("html");
         assert!(made.is_file(), "{} is missing", made.display());
     }
     let index = fs::read_to_string(site.join("search/search_index.json")).expect("readable");
-    for word in ["taxel", "skid buffer", "sptfra_overrun", "device-tree"] {
+    for word in ["taxel", "skid buffer", "Cramér-Rao", "device-tree"] {
         assert!(index.contains(word), "the search does not know {word}");
     }
     // Pages with wide tables and long commands fit a telephone too.
-    for (name, width) in [("index", 1280), ("index", 400), ("contacts", 400)] {
-        let page = fs::read_to_string(site.join(name).with_extension("html")).expect("readable");
-        let mut wrong = browser::wrong(&page, &site, width);
+    for (name, width) in [("index", 1280), ("index", 400), ("reference/registers", 400)] {
+        let file = site.join(name).with_extension("html");
+        let page = fs::read_to_string(&file).expect("readable");
+        let mut wrong = browser::wrong(&page, file.parent().expect("a folder"), width);
         // A page that no server gave has no search.
         wrong.retain(|line| !line.contains("Worker"));
         assert!(wrong.is_empty(), "{name}, {width} wide:\n{}", wrong.join("\n"));

@@ -1,4 +1,4 @@
-//! The example programs: the recipe of docs/board.md as far as a desk goes, and what they say when something is wrong.
+//! The example programs: the recipe of docs/how-to/board.md as far as a desk goes, and what they say when something is wrong.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ use super::{DRIVER, FORCES, MACHINE, SANITIZED, compile};
 use crate::docs::{commands, lines_of};
 use crate::support::{built, workspace};
 
-const PAGE: &str = "docs/board.md";
+const PAGE: &str = "docs/how-to/board.md";
 const DESIGN: &str = "designs/small-control.toml";
 
 /// What the recipe is run with: a folder of its own, with what a checkout or a release has.
@@ -287,14 +287,14 @@ fn the_linux_program_finds_core_dma_and_buffer() {
     refused("core: no core at this address");
 }
 
-/// The table of docs/vivado.md: cycles of a frame, one at a time and with some on their way.
+/// `results/frames-in-flight.csv`: cycles of a frame, one at a time and with some on their way.
 #[test]
 #[ignore = "half a minute: part of `make test-long`"]
-fn frames_come_as_fast_as_the_page_says() {
+fn frames_come_as_fast_as_the_results_say() {
     let desk = desk();
     let made = bash(desk.path(), "make -C drivers/c/examples rate CFLAGS='-O2 -Werror'");
     assert!(made.status.success(), "{}", said(&made));
-    let page = fs::read_to_string(workspace("docs/vivado.md")).expect("readable");
+    let page = fs::read_to_string(workspace("results/frames-in-flight.csv")).expect("readable");
     for name in ["small-control", "sensor1-fast"] {
         let mut design = Design::load(&workspace("designs").join(format!("{name}.toml"))).expect("right");
         design.hardware.control = true;
@@ -306,12 +306,8 @@ fn frames_come_as_fast_as_the_page_says() {
             assert!(output.status.success(), "{text}");
             let cycles: Vec<u32> = text.lines().filter_map(|line| line.rsplit(' ').next()?.parse().ok()).collect();
             let [interval, alone, _, four, eight, sixteen] = cycles[..] else { panic!("{text}") };
-            let thousands = |cycles: u32| match cycles / 1000 {
-                0 => cycles.to_string(),
-                more => format!("{more},{:03}", cycles % 1000),
-            };
-            let row = [software, interval, alone, four, eight].map(thousands).join(" | ");
-            assert!(page.contains(&format!("| `{name}` | {row} |")), "docs/vivado.md: `{name}` | {row}");
+            let row = [software, interval, alone, four, eight].map(|cycles| cycles.to_string()).join(",");
+            assert!(page.contains(&format!("\n{name},{row}\n")), "results/frames-in-flight.csv: {name},{row}");
             // The queue reaches the interval, or what the software takes and no more than a few accesses.
             assert!(sixteen == eight && eight <= interval.max(software + 300) && eight < alone, "{text}");
         }

@@ -234,14 +234,14 @@ fn an_access_without_a_register_can_interrupt() {
 #[test]
 fn addresses_are_the_same_everywhere() {
     let map = map(&widest().plan);
-    let page = fs::read_to_string(workspace("docs/control.md")).expect("a page");
+    let page = fs::read_to_string(workspace("docs/reference/registers.md")).expect("a page");
     let python = fs::read_to_string(workspace("drivers/python/sptfra_registers.py")).expect("a driver");
     let source = include_str!("../../../src/registers/mod.rs");
     for Register { name, address, .. } in &map {
         // The testbench names those that it uses.
         let named = format!("pub const {name}: u32 = 0x{address:03X};");
         assert_eq!(source.contains(&format!("pub const {name}: ")), source.contains(&named), "{name} in the testbench");
-        assert!(page.contains(&format!("| 0x{address:03X} | `{name}` |")), "{name} in docs/control.md");
+        assert!(page.contains(&format!("| 0x{address:03X} | `{name}` |")), "{name} in docs/reference/registers.md");
         assert!(python.contains(&format!("    {name} = 0x{address:03X}\n")), "{name} in the Python driver");
     }
     let named = |name: &str| map.iter().any(|register| register.name == name);

@@ -1,0 +1,114 @@
+//! Words and numbers of README and docs: `tools/check_text.py`, `tools/plots.py`, and `results/designs.csv` of the plans.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use golden::design::Design;
+use hdl_gen::inspection::figures;
+use hdl_gen::plan::Plan;
+
+use crate::support::{in_parallel, workspace};
+
+const ABOUT: &str = "\
+# Predicted figures of the shipped designs. Simulation confirms cycles in every test; energy is an estimate.
+# command: UPDATE_EXPECTED=1 cargo test -p testbench --test suite docs::results
+design,latency_cycles,latency_us,interval_cycles,frames_per_second,dsp,ramb36,energy_uj
+";
+
+fn run(script: &str, arguments: &[&str]) -> Output {
+    let python = workspace(".venv/bin/python");
+    Command::new(python).arg(workspace(script)).args(arguments).output().expect("python starts")
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+fn designs_in(folder: &Path, found: &mut Vec<PathBuf>) {
+    for path in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+        if path.is_dir() {
+            designs_in(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "toml") {
+            found.push(path);
+        }
+    }
+}
+
+/// A row of `results/designs.csv`.
+fn row(path: &Path) -> String {
+    let design = Design::load(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let plan = Plan::new(&design).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let predicted = &figures(&plan)["predicted"];
+    let [latency, interval, dsp] =
+        ["latency_cycles", "interval_cycles", "dsp"].map(|key| predicted[key].as_u64().expect("a number"));
+    let [ramb36, energy_nj] = [&predicted["bram36"], &predicted["energy_estimate"]["fabric_nj"]]
+        .map(|value| value.as_f64().expect("a number"));
+    let mhz = design.hardware.clock_mhz;
+    let name = path.file_stem().and_then(|name| name.to_str()).expect("a name");
+    let [microseconds, rate] = [latency as f64 / mhz, mhz * 1e6 / interval as f64];
+    format!("{name},{latency},{microseconds:.2},{interval},{rate:.0},{dsp},{ramb36:.1},{:.1}\n", energy_nj / 1e3)
+}
+
+#[test]
+fn figures_of_designs_are_those_of_their_plans() {
+    let mut paths = Vec::new();
+    designs_in(&workspace("designs"), &mut paths);
+    paths.sort();
+    let file = workspace("results/designs.csv");
+    let expected = ABOUT.to_owned() + &in_parallel(&paths, |path| row(path)).concat();
+    if std::env::var_os("UPDATE_EXPECTED").is_some() {
+        fs::write(&file, &expected).expect("written");
+    }
+    let stated = fs::read_to_string(&file).expect("readable");
+    assert_eq!(stated, expected, "UPDATE_EXPECTED=1 writes results/designs.csv anew");
+}
+
+#[test]
+fn words_and_numbers_of_the_pages_keep_to_the_rules() {
+    let checked = run("tools/check_text.py", &[]);
+    assert!(checked.status.success(), "{}", said(&checked));
+}
+
+#[test]
+fn plots_are_those_of_the_results() {
+    let checked = run("tools/plots.py", &["--check"]);
+    assert!(checked.status.success(), "{}", said(&checked));
+}
+
+/// Each rule refuses a page that breaks it.
+#[test]
+fn a_page_that_breaks_a_rule_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let root = folder.path();
+    for name in ["docs", "results"] {
+        fs::create_dir(root.join(name)).expect("a folder");
+    }
+    fs::write(root.join("results/a.csv"), "# about\nkey,other,x\na b,c,2.25\n").expect("written");
+    let readme = root.join("README.md");
+    let check = |text: &str| {
+        fs::write(&readme, text).expect("written");
+        let checked = run("tools/check_text.py", &["--root", &root.display().to_string()]);
+        (checked.status.success(), said(&checked))
+    };
+    let right = "It takes 2.3<!--a.csv \"a b/c\" x--> cycles.\n\n<!-- table a.csv: other, x -->\n| d | o | x |\n|---|---|---|\n";
+    assert!(check(right).0, "{}", check(right).1);
+    let long = "word ".repeat(36) + "ends here.";
+    let thousand = "Four words a sentence. ".repeat(251);
+    for (text, message) in [
+        ("It takes 2.4<!--a.csv \"a b/c\" x--> cycles.", "states 2.4, results/a.csv \"a b/c\" x is 2.25"),
+        ("It takes 2.3<!--a.csv d x--> cycles.", "0 rows ['d']"),
+        ("It takes 2.3<!--b.csv d x--> cycles.", "No such file"),
+        ("<!-- table a.csv: x -->\n| d | x |\n|---|---|\n| `a b` | 3 |\n", "states 3"),
+        (&long, "38 words"),
+        (&thousand, "1004 words; at most 1000"),
+        ("It is doubtful here.", "write 'low confidence'"),
+        (&format!("| a | {} |\n|---|---|\n", "x".repeat(81)), "a cell of 81 characters"),
+        (&"One two three four five six seven eight nine ten eleven twelve thirteen, fourteen, fifteen, sixteen, seventeen, \
+           eighteen, nineteen. "
+            .repeat(3), "19.0 words a sentence"),
+    ] {
+        let (passed, said) = check(text);
+        assert!(!passed && said.contains(message), "{message}:\n{said}");
+    }
+}

@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT OR Apache-2.0
+"""Plots of the docs, drawn from results/*.csv into docs/figures: plots.py [--check]
+
+With --check nothing is written; the exit code is 1 if a plot is not what its data give.
+"""
+
+import csv
+import math
+import sys
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+ROOT = Path(__file__).resolve().parent.parent
+FIGURES = ROOT / "docs" / "figures"
+COLOURS = ["#8a8f98", "#2b6cb0", "#c05621", "#2f855a"]
+GRID, INK = "#e2e5ea", "#333333"
+
+
+def rows(name):
+    """The rows of a file of results, by the names of its columns."""
+    with open(ROOT / "results" / name, encoding="utf-8") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def text(x, y, words, anchor="start", colour=INK, size=13, more=""):
+    return (
+        f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{colour}" font-size="{size}"{more}>'
+        f"{escape(words)}</text>"
+    )
+
+
+def line(x1, y1, x2, y2, colour=GRID, width=1.0, more=""):
+    return (
+        f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}" '
+        f'stroke-width="{width}"{more}/>'
+    )
+
+
+def picture(width, height, title, parts):
+    """An SVG on white, so that it reads on dark pages too."""
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif">\n'
+        f'<title>{escape(title)}</title>\n<rect width="{width}" height="{height}" fill="#ffffff"/>\n'
+    )
+    return head + "\n".join(parts) + "\n</svg>\n"
+
+
+def dots(title, labels, series, limit, unit, panels):
+    """Dot plots side by side: median as a dot, a bar to the 95 % quantile.
+
+    series: names; panels: (heading, {(label, name): (median, p95)}).
+    """
+    left, panel, step, top = 250, 300, 22, 62
+    height = top + step * len(labels) + 54
+    width = left + len(panels) * (panel + 24) + 10
+    parts = []
+    for index, name in enumerate(series):
+        x = left - 120 + index * 150
+        parts.append(f'<circle cx="{x + 5}" cy="16" r="5" fill="{COLOURS[index + (len(series) < 3)]}"/>')
+        parts.append(text(x + 16, 21, name))
+    for place, label in enumerate(labels):
+        parts.append(text(left - 12, top + step * (place + 0.5) + 4, label, "end"))
+    for number, (heading, values) in enumerate(panels):
+        x0 = left + number * (panel + 24)
+
+        def at(value, x0=x0):
+            return x0 + panel * min(value, limit) / limit
+
+        parts.append(text(x0, 48, heading, more=' font-weight="bold"'))
+        bottom = top + step * len(labels)
+        for tick in range(0, limit + 1, 10 if limit > 20 else 5):
+            parts.append(line(at(tick), top, at(tick), bottom))
+            parts.append(text(at(tick), bottom + 18, str(tick), "middle", size=12))
+        parts.append(text(x0 + panel / 2, bottom + 38, unit, "middle", size=12))
+        for place, label in enumerate(labels):
+            for index, name in enumerate(series):
+                if (label, name) not in values:
+                    continue
+                median, most = values[(label, name)]
+                y = top + step * (place + 0.5) + 6 * (index - (len(series) - 1) / 2)
+                colour = COLOURS[index + (len(series) < 3)]
+                parts.append(line(at(median), y, at(most), y, colour, 1.6))
+                if most > limit:
+                    parts.append(text(x0 + panel + 2, y + 4, "›", colour=colour, size=12))
+                parts.append(f'<circle cx="{at(median):.1f}" cy="{y:.1f}" r="3.4" fill="{colour}"/>')
+    return picture(width, height, title, parts)
+
+
+KINDS = {
+    "sliding": "round, sliding",
+    "tilted-along": "pressure tilted along the push",
+    "tilted-across": "pressure tilted across it",
+    "held": "held (Mindlin)",
+    "even-shear": "even shear",
+    "turned": "ellipses, rectangles",
+    "soft-edge": "soft edge",
+    "hard-edge": "hard edge",
+    "spinning": "turns while it slides",
+    "border": "half beyond the edge",
+    "large-taxels": "taxels of 0.8 pitches",
+    "deeper": "layer 5 % deeper",
+    "shallower": "layer 5 % thinner",
+    "lower-poisson": "Poisson's ratio 0.4655",
+    "gain-spread": "gains spread by 2 %",
+    "mixed-inside": "all at random, inside",
+}
+ESTIMATORS = {"line": "line search", "sliding": "grid, sliding", "general": "grid, general"}
+ERROR = "error, % of the normal force"
+
+
+def contact_kinds():
+    panels = []
+    for sensor in "12":
+        values = {}
+        for row in rows("contact-kinds.csv"):
+            if row["sensor"] == sensor and row["friction"] in ("0.5", "0.1 to 1") and row["kind"] in KINDS:
+                key = (KINDS[row["kind"]], ESTIMATORS[row["estimator"]])
+                values[key] = (float(row["median"]), float(row["p95"]))
+        panels.append((f"sensor {sensor}", values))
+    return dots("Error by kind of contact", list(KINDS.values()), list(ESTIMATORS.values()), 30, ERROR, panels)
+
+
+def finite_elements():
+    errors, labels = {}, []
+    for row in rows("finite-elements.csv"):
+        if float(row["true_mu"]) < 0.05:
+            continue
+        label = f"{row['sensor']}: {row['case']}"
+        errors.setdefault((label, ESTIMATORS[row["estimator"]]), []).append(float(row["tangential"]))
+        if label not in labels:
+            labels.append(label)
+    middle = {key: (sorted(of)[len(of) // 2], max(of)) for key, of in errors.items()}
+    panels = [("sensor and case: median and largest", middle)]
+    return dots("Error on finite elements", labels, list(ESTIMATORS.values()), 30, ERROR, panels)
+
+
+def several_contacts():
+    sets = {"general": "reads tension", "general, clipped": "pressure only"}
+    labels = ["one alone", "two, 8 mm apart", "two, 6 mm apart", "two, 4 mm apart", "two, anyhow", "three, anyhow"]
+    panels = []
+    for sensor in "12":
+        values = {}
+        for row in rows("several-contacts.csv"):
+            if row["sensor"] == sensor and row["quantity"] == "each" and row["training_set"] in sets:
+                if row["frames"] in labels and row["median"]:
+                    values[(row["frames"], sets[row["training_set"]])] = (float(row["median"]), float(row["p95"]))
+        panels.append((f"sensor {sensor}, each contact", values))
+    return dots("Error of each contact", labels, list(sets.values()), 40, ERROR, panels)
+
+
+def error_latency():
+    """Error of one sliding contact in the middle against latency: ours and the published design."""
+    latency = {row["design"]: float(row["latency_us"]) for row in rows("designs.csv")}
+    worst = {
+        row["design"]: float(row["worst"])
+        for row in rows("contact-sets.csv")
+        if row["contacts"] == "Hertz 7 mm" and row["noise"] == "0" and row["friction"] == "0.5"
+    }
+    published = {row["design"]: row for row in rows("published.csv")}
+    width, height, left, right, top, bottom = 760, 380, 64, 740, 30, 320
+    ends, limit = (4.0, 60_000.0), 10.0
+
+    def x(us):
+        return left + (right - left) * math.log(us / ends[0]) / math.log(ends[1] / ends[0])
+
+    def y(error):
+        return bottom - (bottom - top) * error / limit
+
+    parts = []
+    for us, words in ((10, "10 µs"), (100, "100 µs"), (1e3, "1 ms"), (1e4, "10 ms")):
+        parts.append(line(x(us), top, x(us), bottom))
+        parts.append(text(x(us), bottom + 18, words, "middle", size=12))
+    for error in range(0, 11, 2):
+        parts.append(line(left, y(error), right, y(error)))
+        parts.append(text(left - 8, y(error) + 4, str(error), "end", size=12))
+    parts.append(text((left + right) / 2, bottom + 42, "latency of a frame of 10 × 10 taxels (logarithmic)", "middle"))
+    parts.append(text(left, top - 12, "largest tangential error, % of the normal force"))
+    shown = [
+        ("sensor1-none", "sensor1-reduced", "line search, 16 lanes", 1, 8, 4),
+        ("sensor1-joint", "sensor1-joint", "grid 21, 16 lanes", 2, 10, 4),
+        ("sensor1-fast", "sensor1-fast", "grid 15, 16 lanes", 2, -10, 20),
+        ("sensor1-fast-64", "sensor1-fast-64", "64 lanes", 2, -6, -12),
+        ("sensor1-fast-100", "sensor1-fast-100", "100 lanes", 2, -12, 20),
+    ]
+    for measured, design, words, colour, right_by, down in shown:
+        if measured not in worst or design not in latency:
+            continue
+        place = (x(latency[design]), y(worst[measured]))
+        parts.append(f'<circle cx="{place[0]:.1f}" cy="{place[1]:.1f}" r="6" fill="{COLOURS[colour]}"/>')
+        parts.append(text(place[0] + right_by, place[1] + down, words, size=12))
+    hw1 = published["HW1"]
+    place = (x(float(hw1["latency_us"])), y(float(hw1["tangential"])))
+    parts.append(f'<rect x="{place[0] - 6:.1f}" y="{place[1] - 6:.1f}" width="12" height="12" fill="{COLOURS[0]}"/>')
+    parts.append(text(place[0] + 4, place[1] - 14, "published design", "end", size=12))
+    return picture(width, height, "Error against latency", parts)
+
+
+def noise():
+    """Error against noise, with the bound of any estimator."""
+    sensors = sorted({row["sensor"] for row in rows("noise.csv")})
+    left, top, bottom, limit = 64, 66, 300, 60
+    parts = [text(left, 18, "solid: median, dotted: 95 %, grey: bound of the median", size=12)]
+    for index, name in enumerate(("sliding", "general")):
+        parts.append(text(left + 150 * index, 36, f"● trained on {name}", colour=COLOURS[index + 1], size=12))
+    for number, sensor in enumerate(sensors):
+        x0 = left + number * 360
+
+        def x(sigma, x0=x0):
+            return x0 + 300 * float(sigma) / 2
+
+        def y(error):
+            return bottom - (bottom - top) * float(error) / limit
+
+        parts.append(text(x0, 56, f"sensor {sensor}", more=' font-weight="bold"'))
+        for error in range(0, limit + 1, 10):
+            parts.append(line(x0, y(error), x0 + 300, y(error)))
+            parts.append(text(x0 - 8, y(error) + 4, str(error), "end", size=12))
+        for sigma in (0, 0.5, 1, 1.5, 2):
+            parts.append(text(x(sigma), bottom + 18, f"{sigma:g}", "middle", size=12))
+        parts.append(text(x0 + 150, bottom + 40, "noise, % of the frame's largest reading", "middle", size=12))
+        bound = {"1": 4.3, "2": 5.5}[sensor]
+        parts.append(line(x(0), y(0), x(2), y(2 * bound), COLOURS[0], 2))
+        for index, name in enumerate(("sliding", "general")):
+            of = [row for row in rows("noise.csv") if row["sensor"] == sensor and row["training_set"] == name]
+            points = sorted(of, key=lambda row: float(row["noise"]))
+            for kind, dash in (("median", ""), ("p95", ' stroke-dasharray="2 3"')):
+                path = " ".join(f"{x(row['noise']):.1f},{y(row[kind]):.1f}" for row in points)
+                colour = COLOURS[index + 1]
+                parts.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"{dash}/>')
+    return picture(left + 360 * len(sensors) + 20, bottom + 54, "Error against noise", parts)
+
+
+PLOTS = {
+    "contact-kinds.svg": contact_kinds,
+    "error-latency.svg": error_latency,
+    "finite-elements.svg": finite_elements,
+    "noise.svg": noise,
+    "several-contacts.svg": several_contacts,
+}
+
+
+def main() -> None:
+    check = "--check" in sys.argv[1:]
+    for name, draw in PLOTS.items():
+        drawn, place = draw(), FIGURES / name
+        if check:
+            if not place.exists() or place.read_text(encoding="utf-8") != drawn:
+                sys.exit(f"docs/figures/{name} is not what results/ give: run tools/plots.py")
+        else:
+            place.write_text(drawn, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
