@@ -42,7 +42,8 @@ def pages(root: Path) -> list[Path]:
 
 def prose(text: str) -> tuple[list[str], list[str]]:
     """Blocks of running text, and the cells of tables, without code, comments and headings."""
-    text = re.sub(r"^---\n.*?\n---\n|```.*?```|<!--.*?-->", "\n", text, flags=re.DOTALL)
+    text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
+    text = re.sub(r"^---\n.*?\n---\n|```.*?```", "\n", text, flags=re.DOTALL)
     blocks, cells = [], []
     for block in re.split(r"\n\s*\n", text):
         lines = block.splitlines()
