@@ -69,18 +69,17 @@ $(TARGET)/trust/small-%.toml: designs/small.toml
 	@sed 's/^name = .*/name = "small_$*"/; s/^\[algorithm\]/&\nplan = "$*"/' $< > $@
 
 .PHONY: stress
-stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan, the joint estimator's stages, with banks written among them, and of several bodies (an hour)
+stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan, the joint estimator's stages, with banks written among them (an hour)
 	@$(CARGO) build --quiet --release -p testbench
-	@set -e; for design in $(SMALL_DESIGNS) designs/small-joint.toml designs/small-scanner.toml designs/small-bodies.toml; do \
+	@set -e; for design in $(SMALL_DESIGNS) designs/small-joint.toml designs/small-scanner.toml; do \
 		$(TARGET)/release/testbench stress $$design --frames $(FRAMES_COUNT); done
 
 .PHONY: mutants
-mutants: tools $(SMALL_DESIGNS) ## 325 copies with a fault each: which does the comparison not notice? (half an hour)
+mutants: tools $(SMALL_DESIGNS) ## 280 copies with a fault each: which does the comparison not notice? (half an hour)
 	@$(CARGO) build --quiet -p testbench
 	@set -e; for design in $(SMALL_DESIGNS); do $(BIN)/testbench mutants $$design --count $(MUTANTS_COUNT) \
 		--explained testbench/survivors.toml; done
 	@$(BIN)/testbench mutants designs/small-joint.toml --count 60 --explained testbench/survivors.toml
-	@$(BIN)/testbench mutants designs/small-bodies.toml --count 45 --seed 2 --explained testbench/survivors.toml
 
 .PHONY: lint
 lint: ## Formatting and clippy, warnings are errors
@@ -190,8 +189,7 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, and wri
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep
 SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1-l40 f2-p50 f3 joint,designs/$(sensor)-$(kind).toml)) \
-	designs/sensor1-fast.toml designs/sensor1-wide.toml designs/sensor2-wide.toml designs/sensor1-fast-wide.toml \
-	designs/sensor1-bodies.toml
+	designs/sensor1-fast.toml designs/sensor1-wide.toml designs/sensor2-wide.toml designs/sensor1-fast-wide.toml
 SWEEP_SCENES  ?= $(addprefix scenes/,sensor1-hertz.toml sensor1-tilted.toml two-contacts.toml sensor2-disc.toml \
 	sensor2-punch.toml sensor2-held.toml)
 SWEEP_OPTIONS ?= --simulate base --hard --kinds

@@ -18,6 +18,12 @@ size_t sptfra_frame_bytes(const sptfra_shape *shape)
     return (shape->samples == SPTFRA_FLOAT32 ? 4u : 2u) * (size_t)shape->columns * shape->rows;
 }
 
+/* Words of an answer: the summary, and with a field three forces of each taxel. */
+static size_t answer_words(const sptfra_shape *shape)
+{
+    return SPTFRA_SUMMARY_WORDS + (shape->has_field ? 3u * (size_t)shape->columns * shape->rows : 0u);
+}
+
 /* ---- Registers */
 
 static uint32_t mapped_read(void *context, uintptr_t address)
@@ -79,7 +85,7 @@ int sptfra_open_streams(sptfra *device, const sptfra_platform *platform, uintptr
     device->platform = *platform;
     device->dma = dma;
     device->shape = *shape;
-    if (sptfra_records(shape) < 0) {
+    if (shape->words_out != answer_words(shape)) {
         return SPTFRA_BAD_SHAPE;
     }
     return sptfra_reset_dma(device, RESET_POLLS);

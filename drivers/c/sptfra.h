@@ -45,7 +45,7 @@ enum {
     SPTFRA_DROPS = -20,            /* the core drops frames that come too fast: send it one at a time */
     SPTFRA_CONTRADICTION = -21,    /* the words of a bank do not go together: nothing has changed */
     SPTFRA_BAD_FILE = -22,         /* a file that is no calibration: nothing has changed */
-    SPTFRA_BAD_SHAPE = -23         /* words_out is not what taxels, field and records of bodies take */
+    SPTFRA_BAD_SHAPE = -23         /* words_out is not what taxels and field take */
 };
 
 /* What went wrong, in words. */
@@ -78,18 +78,14 @@ extern const sptfra_platform sptfra_memory_mapped;
 
 typedef struct {
     uint16_t columns, rows;
-    uint16_t words_in, words_out; /* of a frame; what words_out has to spare are records, see sptfra_records */
-    uint8_t has_field;            /* three forces of each taxel follow the words of the summary and the records */
+    uint16_t words_in, words_out; /* of a frame */
+    uint8_t has_field;            /* three forces of each taxel follow the words of the summary */
     uint8_t has_counts;           /* frames hold counts, else pascals */
     uint8_t stream_bytes;         /* of a beat: 4, 8 or 16. Buffers begin on a multiple of it; 0 is as 4 */
     uint8_t samples;              /* what a value in a frame is: SPTFRA_FLOAT32, _INT16 or _UINT16 */
 } sptfra_shape;
 
 enum { SPTFRA_FLOAT32 = 0, SPTFRA_INT16 = 1, SPTFRA_UINT16 = 2 };
-
-/* Bodies that the core tells apart (contacts in the design), each with a record of SPTFRA_RECORD_WORDS words in an answer;
- * 0 of a core for one. SPTFRA_BAD_SHAPE if words_out leaves no whole number of records, or more than a core can have. */
-int sptfra_records(const sptfra_shape *shape);
 
 /* Bytes of a frame's values. words_in of them go to the core: what follows the last value should be zero. */
 size_t sptfra_frame_bytes(const sptfra_shape *shape);
@@ -183,7 +179,7 @@ enum {
     SPTFRA_NOT_FINITE = SPTFRA__LAST_STATUS__NOT_FINITE_bm,
     SPTFRA_BAD_LENGTH = SPTFRA__LAST_STATUS__BAD_LENGTH_bm,
     SPTFRA_DOUBTFUL = SPTFRA__LAST_STATUS__DOUBTFUL_bm,
-    SPTFRA_MORE_BODIES = SPTFRA__LAST_STATUS__MORE_BODIES_bm,
+    SPTFRA_SEVERAL_CONTACTS = SPTFRA__LAST_STATUS__SEVERAL_CONTACTS_bm,
     SPTFRA_REPLACED = SPTFRA__LAST_STATUS__REPLACED_bm,
     SPTFRA_TOO_MANY_REPLACED = SPTFRA__LAST_STATUS__TOO_MANY_REPLACED_bm,
     SPTFRA_SLIP = SPTFRA__LAST_STATUS__SLIP_bm,
@@ -204,27 +200,9 @@ enum {
     SPTFRA_WORD_DIRECTION = 9,
     SPTFRA_WORD_FRICTION_XY = 10,
     SPTFRA_WORD_STANDARD_ERROR = 12,
-    SPTFRA_WORD_CENSUS = 13,
-    SPTFRA_SUMMARY_WORDS = 16,
-    /* And in the words of a body's record, of which there are sptfra_records() between summary and field. */
-    SPTFRA_RECORD_STATUS = 0, /* above the taxels that it touches */
-    SPTFRA_RECORD_CENTRE = 1,
-    SPTFRA_RECORD_FORCE = 3,
-    SPTFRA_RECORD_FRICTION = 6,
-    SPTFRA_RECORD_STANDARD_ERROR = 7,
-    SPTFRA_RECORD_WORDS = 8,
-    SPTFRA_MOST_RECORDS = 8 /* of a frame, of any core */
+    SPTFRA_WORD_COUNTERS = 13,
+    SPTFRA_SUMMARY_WORDS = 16
 };
-
-/* One of several bodies. */
-typedef struct {
-    uint16_t taxels;      /* that it touches */
-    uint16_t status;      /* bits as above, of those that are about a body */
-    float centre[2];      /* x, y in m from the first taxel: where its normal force acts */
-    float force[3];       /* F_x, F_y, F_z in N */
-    float friction;       /* mu */
-    float standard_error; /* of (F_x, F_y) in N; 0 where the design has none */
-} sptfra_body;
 
 typedef struct {
     uint16_t status;      /* bits as above */
@@ -236,18 +214,15 @@ typedef struct {
     float direction;      /* phi in rad */
     float friction_xy[2];
     float standard_error; /* of (F_x, F_y) in N; 0 where the design has none */
-    uint8_t bodies;       /* in touch; at most 1 in a design with neither contacts nor count_bodies */
+    uint8_t contacts;     /* at most 1 in a design with count_contacts = false */
     uint8_t generation;   /* of the calibration */
     uint8_t replaced;     /* taxels */
-    uint8_t records;      /* of body: those that are there, of more bodies than the core has records for the largest */
-    /* Each body, the one that presses most first; zeros behind `records`. */
-    sptfra_body body[SPTFRA_MOST_RECORDS];
     /* f_x, f_y, f_z in N of taxel iy * columns + ix, taxel after taxel, in the buffer; NULL without a field. */
     const float *field;
 } sptfra_result;
 
 /* Reads the words of an answer, float32 as the processor has it. SPTFRA_BAD_BUFFER if they do not stand on a multiple
- * of four bytes, SPTFRA_BAD_SHAPE as sptfra_records. */
+ * of four bytes. */
 int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result);
 
 /* ---- Calibration in RAM (calibration = "ram" in the design), in sptfra_calibration.c and sptfra_bank.c; from files by

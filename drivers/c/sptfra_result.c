@@ -30,7 +30,7 @@ const char *sptfra_error(int code)
     case SPTFRA_DROPS: return "the core drops frames that come too fast (overrun = \"drop\"): send it one at a time";
     case SPTFRA_QUEUE_ONLY: return "the DMA goes by descriptors: use the queue (sptfra_queue.h)";
     case SPTFRA_NO_QUEUE: return "the DMA has no descriptors: make the block design with the word queue";
-    case SPTFRA_BAD_SHAPE: return "words_out is not what taxels, field and records of bodies take";
+    case SPTFRA_BAD_SHAPE: return "words_out is not what taxels and field take";
     default: return "unknown code";
     }
 }
@@ -45,7 +45,7 @@ const char *sptfra_status_name(unsigned bit)
         "NaN or infinity in",
         "frame length wrong",
         "doubtful",
-        "more bodies than records",
+        "more than one contact",
         "dead taxel replaced",
         "too many replaced",
         "slip",
@@ -56,49 +56,16 @@ const char *sptfra_status_name(unsigned bit)
     return bit < sizeof names / sizeof names[0] ? names[bit] : NULL;
 }
 
-static size_t field_words(const sptfra_shape *shape)
-{
-    return shape->has_field ? 3u * (size_t)shape->columns * shape->rows : 0;
-}
-
-int sptfra_records(const sptfra_shape *shape)
-{
-    const size_t known = SPTFRA_SUMMARY_WORDS + field_words(shape);
-    const size_t more = shape->words_out - known;
-
-    /* One body has no record of its own. */
-    if (shape->words_out < known || more % SPTFRA_RECORD_WORDS != 0 || more == SPTFRA_RECORD_WORDS
-        || more > SPTFRA_MOST_RECORDS * SPTFRA_RECORD_WORDS) {
-        return SPTFRA_BAD_SHAPE;
-    }
-    return (int)(more / SPTFRA_RECORD_WORDS);
-}
-
-static void decode_body(const uint32_t *raw, sptfra_body *body)
-{
-    body->taxels = (uint16_t)(raw[SPTFRA_RECORD_STATUS] & 0xFFFFu);
-    body->status = (uint16_t)(raw[SPTFRA_RECORD_STATUS] >> 16);
-    memcpy(body->centre, raw + SPTFRA_RECORD_CENTRE, sizeof body->centre);
-    memcpy(body->force, raw + SPTFRA_RECORD_FORCE, sizeof body->force);
-    memcpy(&body->friction, raw + SPTFRA_RECORD_FRICTION, sizeof body->friction);
-    memcpy(&body->standard_error, raw + SPTFRA_RECORD_STANDARD_ERROR, sizeof body->standard_error);
-}
-
 int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result)
 {
     const uint32_t *raw = words;
     const float *values = words;
-    const int records = sptfra_records(shape);
-    uint32_t census;
-    int index;
+    uint32_t counters;
 
     if ((uintptr_t)words % sizeof *raw != 0) {
         return SPTFRA_BAD_BUFFER;
     }
-    if (records < 0) {
-        return records;
-    }
-    census = raw[SPTFRA_WORD_CENSUS];
+    counters = raw[SPTFRA_WORD_COUNTERS];
 
     result->status = (uint16_t)(raw[SPTFRA_WORD_STATUS] & 0xFFFFu);
     result->number = (uint16_t)FIELD(raw[SPTFRA_WORD_STATUS], LAST_STATUS__NUMBER);
@@ -109,14 +76,9 @@ int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *r
     memcpy(&result->direction, values + SPTFRA_WORD_DIRECTION, sizeof result->direction);
     memcpy(result->friction_xy, values + SPTFRA_WORD_FRICTION_XY, sizeof result->friction_xy);
     memcpy(&result->standard_error, values + SPTFRA_WORD_STANDARD_ERROR, sizeof result->standard_error);
-    result->bodies = (uint8_t)(census & 0xFFu);
-    result->generation = (uint8_t)(census >> 8 & 0xFFu);
-    result->replaced = (uint8_t)(census >> 16 & 0xFFu);
-    result->records = (uint8_t)(result->bodies < records ? result->bodies : records);
-    memset(result->body, 0, sizeof result->body);
-    for (index = 0; index < result->records; index++) {
-        decode_body(raw + SPTFRA_SUMMARY_WORDS + SPTFRA_RECORD_WORDS * index, &result->body[index]);
-    }
-    result->field = shape->has_field ? values + SPTFRA_SUMMARY_WORDS + SPTFRA_RECORD_WORDS * records : NULL;
+    result->contacts = (uint8_t)(counters & 0xFFu);
+    result->generation = (uint8_t)(counters >> 8 & 0xFFu);
+    result->replaced = (uint8_t)(counters >> 16 & 0xFFu);
+    result->field = shape->has_field ? values + SPTFRA_SUMMARY_WORDS : NULL;
     return SPTFRA_OK;
 }

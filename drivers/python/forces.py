@@ -6,9 +6,6 @@
     forces.py ... --plot forces.png           F_x, F_y and F_z over the frames, with matplotlib
     forces.py ... --metadata metadata.json    of a core without registers (control = false): what the design is
     forces.py ... --queue 64                  batches of so many frames, by a DMA with descriptors
-
-Of a core that tells bodies apart (contacts) each line has their number and records behind the status, by the names that
-force files have for them.
 """
 
 import argparse
@@ -58,21 +55,6 @@ def read(path):
     return frames
 
 
-def names_of_bodies(forces):
-    """Names of the columns behind the status; none of a core for one body."""
-    if forces.records is None:
-        return []
-    count = range(forces.records.shape[1])
-    return ["bodies", *(f"body{body}_{name}" for body in count for name in forces.records.dtype.names)]
-
-
-def bodies(forces, index):
-    """The values of these columns."""
-    if forces.records is None:
-        return []
-    return [forces.bodies[index], *(f"{value:.9g}" for record in forces.records[index] for value in record.item())]
-
-
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("core")
@@ -85,11 +67,11 @@ def main():
         forces = opened(wanted.core, wanted.metadata, wanted.queue).reconstruct(read(wanted.frames))
     except (OSError, RuntimeError, ValueError) as error:
         sys.exit(f"error: {error}")
-    print("frame,F_x,F_y,F_z,mu,phi,status", *names_of_bodies(forces), sep=",")
+    print("frame,F_x,F_y,F_z,mu,phi,status")
     for index, number in enumerate(forces.number):
         values = [*forces.resultant[index], forces.friction[index], forces.direction[index]]
         shown = (f"{value:.9g}" for value in values)
-        print(number, *shown, "; ".join(forces.names(index)), *bodies(forces, index), sep=",")
+        print(number, *shown, "; ".join(forces.names(index)), sep=",")
     if wanted.plot:
         plot(forces, wanted.plot)
 

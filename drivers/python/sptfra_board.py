@@ -8,7 +8,7 @@
     sensor = Sptfra(overlay.core, overlay.dma, allocate)
     forces = sensor.reconstruct(frames)          # frames: (n, rows, columns) or (rows, columns), pascals or counts
     forces.resultant, forces.field, forces.status
-    forces.bodies, forces.records["F_z"]         # of a core that tells bodies apart (contacts): (n, contacts)
+    forces.contacts                              # how many; the forces are those of all together
 
 `core` is the IP with the register bank (`control = true` in the design): anything with `read(offset)` and
 `write(offset, value)`. A core without one is `None`, and the design's metadata.json says what it is:
@@ -72,8 +72,7 @@ class Sptfra:
             told = Identity.load(metadata).design_hash
             if told != self.identity.design_hash:
                 raise RuntimeError(f"{metadata} is of the design {told}, the core is {self.identity.design_hash}")
-        known = LAYOUT.with_records(self.identity.records)
-        self._layout = known if metadata is None else Layout.load(metadata)
+        self._layout = LAYOUT if metadata is None else Layout.load(metadata)
         if queue:
             self._transfers = Batches(dma, allocate, self.identity, queue)
         else:

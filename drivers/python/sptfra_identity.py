@@ -4,11 +4,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from sptfra_forces import LAYOUT, RECORD_WORDS, Status, read_metadata
+from sptfra_forces import Status, read_metadata
 from sptfra_registers import MAGIC, MAP_VERSION, Register
-
-#: Of any core.
-MOST_RECORDS = 8
 
 
 @dataclass(frozen=True)
@@ -42,16 +39,6 @@ class Identity:
     full_scale_pa: float | None
     latency_cycles: int
     interval_cycles: int
-
-    @property
-    def records(self):
-        """Bodies that the core tells apart, each with a record; 0 of a core for one. Raises RuntimeError if `words_out`
-        leaves no whole number of them."""
-        taxels = self.columns * self.rows if self.has_field else 0
-        count, rest = divmod(self.words_out - LAYOUT.field - 3 * taxels, RECORD_WORDS)
-        if rest or not 0 <= count <= MOST_RECORDS:
-            raise RuntimeError(f"an answer of {self.words_out} words is none of {self.rows} x {self.columns} taxels")
-        return count
 
     @classmethod
     def read(cls, core):

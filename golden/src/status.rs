@@ -27,8 +27,8 @@ impl Status {
     /// The tangential force may be far off: its standard error is above the design's limit, or the layer is too thin for the
     /// taxels ([`crate::design::Design::thin_layer`]), which is so of every frame of a design.
     pub const DOUBTFUL: Self = Self(1 << 6);
-    /// More bodies press than the design has records for.
-    pub const MORE_BODIES: Self = Self(1 << 7);
+    /// More than one contact, where contacts are counted.
+    pub const SEVERAL_CONTACTS: Self = Self(1 << 7);
     /// Friction is at the design's limit: what is held begins to slide.
     pub const SLIP: Self = Self(1 << 10);
     /// Nothing pulls in a frame of a sensor that reads tension, as its design says, though friction of
@@ -46,7 +46,7 @@ impl Status {
         (Self::NOT_FINITE, "NaN or infinity in"),
         (Self::FRAME_LENGTH, "frame length wrong"),
         (Self::DOUBTFUL, "doubtful"),
-        (Self::MORE_BODIES, "more bodies than records"),
+        (Self::SEVERAL_CONTACTS, "more than one contact"),
         (Self::REPLACED, "dead taxel replaced"),
         (Self::TOO_MANY_REPLACED, "too many replaced"),
         (Self::SLIP, "slip"),

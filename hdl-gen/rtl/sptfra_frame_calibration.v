@@ -43,10 +43,10 @@ module sptfra_frame_calibration #(
     output wire [32*WORDS-1:0] words
 );
 
-    localparam CENSUS = 13; // the word with the generation
-    localparam CENSUS_BEAT = CENSUS / WORDS;
-    localparam CENSUS_PLACE = CENSUS % WORDS;
-    localparam [3:0] HERE = CENSUS_BEAT;
+    localparam COUNTERS = 13; // the word with the generation
+    localparam COUNTERS_BEAT = COUNTERS / WORDS;
+    localparam COUNTERS_PLACE = COUNTERS % WORDS;
+    localparam [3:0] HERE = COUNTERS_BEAT;
 
     reg [31:0] contacts [0:15];
     reg [26:0] noises [0:15];
@@ -65,9 +65,9 @@ module sptfra_frame_calibration #(
     wire blank = words_in[0] || words_in[4] || words_in[5];
     reg blank_held;
     wire [3:0] counted = blank_held ? 4'd0 : oldest_replaces;
-    wire [32*WORDS-1:0] census = {{(32*WORDS-12){1'b0}}, counted, oldest_generation};
+    wire [32*WORDS-1:0] counters = {{(32*WORDS-12){1'b0}}, counted, oldest_generation};
     wire [32*WORDS-1:0] status = {{(32*WORDS-9){1'b0}}, !blank && (oldest_replaces != 4'd0), 8'd0};
-    wire [32*WORDS-1:0] more = (beat == HERE) ? census << (32 * CENSUS_PLACE + 8)
+    wire [32*WORDS-1:0] more = (beat == HERE) ? counters << (32 * COUNTERS_PLACE + 8)
         : (beat == 4'd0) ? status : {32*WORDS{1'b0}};
 
     wire [1:0] of_frame = seen[next_contact];

@@ -12,7 +12,7 @@
 // | 8, 9    | mu, phi in rad                                                               |
 // | 10, 11  | mu_x, mu_y                                                                   |
 // | 12      | standard error of (F_x, F_y) in N                                            |
-// | 13      | bodies in bits 7:0, generation of the calibration 15:8, replaced taxels 23:16 |
+// | 13      | contacts in bits 7:0, generation of the calibration 15:8, replaced taxels 23:16 |
 // | 14, 15  | 0                                                                            |
 //
 // A beat of WORDS words a cycle while the sink takes them, the first word in the lowest bits; the first beat 13 cycles
@@ -41,12 +41,12 @@ module sptfra_output #(
 ) (
     input  wire clock,
     input  wire reset,
-    // Start, with the timestamp and the census; all else but the field holds for a cycle more
+    // Start, with the timestamp and the counters; all else but the field holds for a cycle more
     input  wire start,
     output wire idle,
     input  wire [15:0] status,
     input  wire [31:0] timestamp,
-    input  wire [31:0] census, // word 13
+    input  wire [31:0] counters, // word 13
     input  wire blank, // no answer: zeros
     input  wire signed [63:0] force_x,
     input  wire signed [63:0] force_y,
@@ -101,7 +101,7 @@ module sptfra_output #(
     reg [15:0] frame_count;
     reg [15:0] held_status;
     reg [31:0] held_timestamp;
-    reg [31:0] held_census;
+    reg [31:0] held_counters;
     reg held_blank;
     reg signed [63:0] held_force_x;
     reg signed [63:0] held_force_y;
@@ -171,7 +171,7 @@ module sptfra_output #(
             beat <= {BEAT_WIDTH{1'b0}};
             reads <= 1'b0;
             held_timestamp <= timestamp;
-            held_census <= census;
+            held_counters <= counters;
         end
         // The many bits follow the decision through a register; the first beat needs them a cycle later
         load <= start;
@@ -248,7 +248,7 @@ module sptfra_output #(
                 .frame_2           (frame_2),
                 .status            (held_status),
                 .timestamp         (held_timestamp),
-                .census            (held_census),
+                .counters          (held_counters),
                 .force_x           (held_force_x),
                 .force_y           (held_force_y),
                 .force_z           (held_force_z),

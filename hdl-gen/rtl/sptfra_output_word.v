@@ -27,7 +27,7 @@ module sptfra_output_word #(
     input  wire [15:0] frame_2, // its number
     input  wire [15:0] status,
     input  wire [31:0] timestamp,
-    input  wire [31:0] census, // word 13
+    input  wire [31:0] counters, // word 13
     input  wire signed [63:0] force_x,
     input  wire signed [63:0] force_y,
     input  wire signed [63:0] force_z,
@@ -102,7 +102,7 @@ module sptfra_output_word #(
                     summary_3 <= error_value;
                     summary_exponent_3 <= error_exponent + FORCE_EXPONENT;
                 end
-                4'd13: summary_3 <= {32'd0, census};
+                4'd13: summary_3 <= {32'd0, counters};
                 default: summary_3 <= 64'sd0;
             endcase
             // Stage 4

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Keeps |w| of two frames as the weights come, and passes one of them taxel by taxel in raster order: whether it
-// touches, which is above a limit, and the label of a blob that would begin there. A step that touches nothing ends
-// each row.
+// Double frame buffer of |w|, read in raster order, a taxel a cycle: whether a taxel is a seed (above a limit), and the
+// label of a component that would begin there. A step without a seed ends each row.
 //
-// From start to the first step: 5 cycles, then a step a cycle; weight is a cycle behind its step.
+// Latency from start to the first step: 5 cycles, then a step a cycle; weight is a cycle behind its step.
 
 `default_nettype none
 
@@ -33,7 +32,7 @@ module sptfra_weight_raster #(
     input  wire [DATA_BITS-1:0] limit, // from the cycle after start
     // Its steps
     output wire step,
-    output reg  touches,
+    output reg  seed,
     output wire [LABEL_WIDTH-1:0] fresh,
     output reg  [DATA_BITS-1:0] weight,
     output wire last
@@ -75,7 +74,7 @@ module sptfra_weight_raster #(
         end
     end
 
-    // ---- Stages 1 and 2: the weights of its quad. Stage 3: its own. Stage 4: whether it touches
+    // ---- Stages 1 and 2: the weights of its quad. Stage 3: its own. Stage 4: whether it is a seed
     wire [ROW_WIDTH-1:0] element;
     wire [1:0] member;
     reg [ROW_WIDTH:0] address_1;
@@ -150,7 +149,7 @@ module sptfra_weight_raster #(
         weight_3 <= weight_2;
         weight_4 <= weight_3;
         weight <= weight_4;
-        touches <= !borders[3] && (weight_3 > limit);
+        seed <= !borders[3] && (weight_3 > limit);
         borders <= {borders[2:1], border};
         steps <= {steps[3:1], walks};
         lasts <= {lasts[3:1], walks && last_step};

@@ -1,6 +1,5 @@
 //! What a design will be, before anything is written: its figures, and what to tell its user.
 
-use golden::design::Design;
 use golden::kernel;
 use serde_json::{Value, json};
 
@@ -8,57 +7,25 @@ use crate::blocks::latency;
 use crate::cores::{DspBlock, OLDER_LONG_BITS};
 use crate::emit::boards::Board;
 use crate::emit::{nnz, predicted, products};
-use crate::plan::contacts;
+use crate::plan::Plan;
 use crate::plan::product::Coefficients;
 use crate::plan::savings::savings;
-use crate::plan::{Plan, PlanError};
 
 /// Rounding of the coefficients, as a share of their size, from which on it is told.
 const COARSE: f64 = 0.005;
 
-/// The plan of a design to be looked at: for several bodies with what no hardware for them has, that for one, with the
-/// design as it is.
-///
-/// # Errors
-///
-/// As [`Plan::new`].
-pub fn plan_to_inspect(design: &Design) -> Result<Plan, PlanError> {
-    let contacts = match Plan::new(design) {
-        Err(PlanError::Contacts { contacts, .. }) => contacts,
-        planned => return planned,
-    };
-    let mut of_one = design.clone();
-    of_one.algorithm.contacts = 1;
-    let mut plan = Plan::new(&of_one)?;
-    plan.design.algorithm.contacts = contacts;
-    Ok(plan)
-}
-
-/// What keeps a design for several bodies from having hardware.
-fn without_hardware(plan: &Plan) -> Option<String> {
-    let contacts = plan.design.algorithm.contacts;
-    let needs = contacts::needs(&plan.design).filter(|_| contacts > 1)?;
-    Some(format!(
-        "contacts {contacts} in golden solve and in Python; hardware for them needs {needs}; all figures here with contacts = 1"
-    ))
-}
-
-/// What to tell of a design for several bodies.
-pub fn several_bodies(plan: &Plan) -> Option<String> {
-    let Some(of) = &plan.contacts else { return without_hardware(plan) };
-    Some(format!(
-        "up to {} told apart, each solved as a frame of its own; all figures here of frames of one; places for {} frames",
-        of.contacts, of.banks
-    ))
-}
-
-/// What to tell of a design whose hardware counts bodies.
-pub fn counted_bodies(plan: &Plan) -> Option<String> {
-    let Plan { design, .. } = plan;
-    (design.algorithm.contacts == 1 && design.algorithm.count_bodies).then(|| {
-        let cycles = latency::bodies(&design.sensor);
-        format!("solved as one, counted in {cycles} cycles beside the search: status bit 7 tells of more than one")
-    })
+/// How a design counts contacts in hardware, and what separates them.
+pub fn contacts(plan: &Plan) -> Option<String> {
+    let algorithm = &plan.design.algorithm;
+    let cycles = latency::count_contacts(&plan.design.sensor);
+    let counted = format!("counted in {cycles} cycles beside the search; status bit 7 marks a frame of more than one");
+    let separated = format!("up to {} separated by software", algorithm.contacts);
+    match (algorithm.count_contacts, algorithm.contacts > 1) {
+        (true, true) => Some(format!("{counted}; {separated}")),
+        (true, false) => Some(counted),
+        (false, true) => Some(format!("{separated}; hardware does not count them")),
+        (false, false) => None,
+    }
 }
 
 /// All figures of a plan: what `hdl-gen inspect --json` prints.
@@ -85,8 +52,8 @@ pub fn figures(plan: &Plan) -> Value {
     if plan.scales_frames() {
         value["range"] = json!(plan.design.hardware.range);
     }
-    if plan.design.algorithm.count_bodies {
-        value["bodies"] = json!({ "cycles": latency::bodies(sensor) });
+    if plan.design.algorithm.count_contacts {
+        value["count_contacts"] = json!({ "cycles": latency::count_contacts(sensor) });
     }
     if plan.design.algorithm.contacts > 1 {
         value["contacts"] = plan.design.algorithm.contacts.into();
@@ -98,12 +65,9 @@ pub fn figures(plan: &Plan) -> Value {
 }
 
 /// What to tell of a plan: that its layer is too thin, that it does not fit its part or takes two multipliers there in
-/// place of one, that its coefficients are coarse, that it has no hardware for several bodies.
+/// place of one, that its coefficients are coarse.
 pub fn warnings(plan: &Plan) -> Vec<String> {
-    [plan.design.thin_layer(), excess(plan), doubled(plan), narrow(plan), without_hardware(plan)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [plan.design.thin_layer(), excess(plan), doubled(plan), narrow(plan)].into_iter().flatten().collect()
 }
 
 /// Shares of its part's DSP blocks and RAMB36 that a design takes, in percent, if the size of that part is known.

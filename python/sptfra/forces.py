@@ -22,7 +22,7 @@ class Status(enum.IntFlag):
     NOT_FINITE = 16
     BAD_LENGTH = 32
     DOUBTFUL = 64
-    MORE_BODIES = 128
+    SEVERAL_CONTACTS = 128
     REPLACED = 256
     TOO_MANY_REPLACED = 512
     SLIP = 1024
@@ -40,7 +40,7 @@ _NAMES = {
     "N m": "torque T_x T_y T_z",
     "rad": "direction phi",
     "m": "x y",
-    "": "status friction mu friction_xy mu_x mu_y bodies taxels",
+    "": "status friction mu friction_xy mu_x mu_y bodies contacts taxels",
 }
 _UNITS = MappingProxyType({name: unit for unit, names in _NAMES.items() for name in names.split()})
 
@@ -66,11 +66,11 @@ class Forces:
     friction_xy: np.ndarray
     #: (n,): standard error of (F_x, F_y) in N; 0 where the design has none.
     standard_error: np.ndarray
-    #: (n,) uint8: bodies in touch; at most 1 in a design that neither tells them apart nor counts them.
-    bodies: np.ndarray
+    #: (n,) uint8: contacts; at most 1 in a design that neither counts nor separates them.
+    contacts: np.ndarray
     #: (n, contacts) structured: `taxels`, `status`, `x`, `y` in m from the first taxel, `F_x`, `F_y`, `F_z` in N, `mu`,
-    #: `standard_error`, `T_x`, `T_y`, `T_z` in N m of each body, the one that presses most first, then zeros; None where only one is known.
-    #: The torques are not a number where they are not known: the core's records have none.
+    #: `standard_error`, `T_x`, `T_y`, `T_z` in N m of each body, the one that presses most first, then zeros;
+    #: None where only one is known, as of hardware, which does not separate contacts.
     records: np.ndarray | None
     #: (n, rows, columns, 3): f_x, f_y, f_z of each taxel in N; None where only resultants are known.
     field: np.ndarray | None
@@ -104,7 +104,7 @@ class Forces:
         """(n,) structured array with the columns of a force file, without the field."""
         names = "status F_x F_y F_z mu phi mu_x mu_y T_x T_y T_z standard_error bodies".split()
         columns = [self.status, *self.resultant.T, self.friction, self.direction, *self.friction_xy.T, *self.torque.T]
-        columns += [self.standard_error, self.bodies]
+        columns += [self.standard_error, self.contacts]
         if self.records is not None:
             # As in a force file, the torques behind the records of all bodies.
             for behind in (False, True):

@@ -216,7 +216,7 @@ impl Forces {
         put("direction", self.direction, &[frames])?;
         put("friction_xy", self.friction_xy, &[frames, 2])?;
         put("standard_error", self.standard_error, &[frames])?;
-        kwargs.set_item("bodies", self.bodies.into_pyarray(py))?;
+        kwargs.set_item("contacts", self.bodies.into_pyarray(py))?;
         if self.of_frame > 0 {
             let of_body = |body| golden::forces::record(body).into_iter().chain(body.torque);
             let values: Vec<f64> = self.records.iter().flat_map(of_body).collect();

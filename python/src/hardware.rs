@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use golden::solver::Solution;
 use hdl_gen::emit::emit;
-use hdl_gen::inspection::{figures, plan_to_inspect, warnings};
+use hdl_gen::inspection::{figures, warnings};
 use hdl_gen::plan::{Plan, PlanError};
 use hdl_gen::write::{check_folder, write_folder};
 use pyo3::prelude::*;
 use serde_json::json;
-use testbench::stream_words::{Answer, decode_bodies, packets};
+use testbench::stream_words::{Answer, decode, packets};
 use testbench::trial::{Trial, planned};
 
 use crate::arrays::{Forces, Frames};
@@ -21,7 +21,7 @@ use crate::errors::without_lock;
 #[pyfunction]
 pub fn inspect(py: Python<'_>, design: &Design) -> PyResult<String> {
     let design = &design.inner;
-    let plan = without_lock(py, || plan_to_inspect(design).map_err(|error| named(design, &error)))?;
+    let plan = without_lock(py, || Plan::new(design).map_err(|error| named(design, &error)))?;
     Ok(json!({ "figures": figures(&plan), "warnings": warnings(&plan), "clock_mhz": design.hardware.clock_mhz })
         .to_string())
 }
@@ -70,12 +70,11 @@ pub fn simulate<'py>(
             "clock_mhz": design.hardware.clock_mhz,
             "faults": faults,
         });
-        let records = plan.streams().records;
-        let mut forces = Forces::zeros(&design.sensor, frames.count(), records, plan.field_words() > 0);
+        let mut forces = Forces::zeros(&design.sensor, frames.count(), 0, plan.field_words() > 0);
         let mut places = forces.pieces();
         for (index, words) in verdict.simulation.answers.iter().enumerate() {
             // An answer of another length is a fault already; its forces stay zeros.
-            if let Some(answer) = decode_bodies(words, records) {
+            if let Some(answer) = decode(words) {
                 let place = (index / golden::solver::PIECE, index % golden::solver::PIECE);
                 places[place.0].put(place.1, &solution(answer));
             }
@@ -90,13 +89,9 @@ fn named(design: &golden::design::Design, error: &PlanError) -> String {
     format!("{}: {error}", design.name)
 }
 
-fn solution(mut answer: Answer) -> Solution {
-    // The records have no torques.
-    let there = answer.told_apart().len();
-    for body in &mut answer.records[..there] {
-        body.torque = [f64::NAN; 3];
-    }
-    let Answer { status, resultant, torque, mu, phi, mu_xy, standard_error, bodies, records, field, .. } = answer;
+fn solution(answer: Answer) -> Solution {
+    let Answer { status, resultant, torque, mu, phi, mu_xy, standard_error, contacts, field, .. } = answer;
     let (status, [mu_x, mu_y]) = (golden::solver::Status(status), mu_xy);
-    Solution { status, resultant, torque, standard_error, bodies, records, mu, phi, mu_x, mu_y, field }
+    let records = Vec::new();
+    Solution { status, resultant, torque, standard_error, bodies: contacts, records, mu, phi, mu_x, mu_y, field }
 }

@@ -1,9 +1,6 @@
 //! The core's answers against the f64 solver and against the true forces.
 
-use std::collections::BTreeMap;
-
-use golden::bodies::Body;
-use golden::metrics::{BodyErrors, ErrorSummary, Outcome, field_error, pairs};
+use golden::metrics::{ErrorSummary, Outcome, field_error};
 use golden::solver::{Solution, Status};
 use serde::{Deserialize, Serialize};
 
@@ -16,81 +13,20 @@ pub struct SolverError {
     pub resultant_max: f64,
     /// Over frames, taxels and axes: `|f - f_ref|` relative to the largest `|f_z,ref|` of the same frame.
     pub field_max: f64,
-    /// Of the records of bodies; absent where there are none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bodies: Option<RecordErrors>,
-}
-
-/// Largest errors of the records of bodies against those of the f64 solver.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct RecordErrors {
-    /// Frames,
-    pub frames: usize,
-    /// and those of them that have as many bodies as the solver finds: the errors are of these.
-    pub alike: usize,
-    /// Over bodies and axes: `|F - F_ref| / |F_z,ref|` of the same body.
-    pub force_max: f64,
-    /// Over bodies: distance of the centres in mm.
-    pub centre_mm_max: f64,
-    /// Over bodies: of the standard error, relative to `|F_z,ref|` of the body.
-    pub standard_error_max: f64,
 }
 
 impl SolverError {
     /// Compares answers with solutions, pair by pair. A frame that the solver calls empty and the core does not has an
     /// infinite error.
     pub fn new(answers: &[Answer], solutions: &[Solution]) -> Self {
-        let first = answers.first().filter(|answer| !answer.records.is_empty());
-        let start = Self { bodies: first.map(|_| RecordErrors::default()), ..Self::default() };
-        answers.iter().zip(solutions).fold(start, |worst, (answer, solution)| {
+        answers.iter().zip(solutions).fold(Self::default(), |worst, (answer, solution)| {
             let field = if answer.field[2].is_empty() { 0.0 } else { field_error(&solution.field, &answer.field) };
             Self {
                 resultant_max: worst.resultant_max.max(resultant_error(&solution.resultant, &answer.resultant)),
                 field_max: worst.field_max.max(field),
-                bodies: worst.bodies.map(|worst| worst.with(answer, solution)),
             }
         })
     }
-}
-
-impl RecordErrors {
-    /// The same with a frame more. A body is compared with the one whose centre is nearest: of two that press alike either
-    /// may come first.
-    fn with(mut self, answer: &Answer, solution: &Solution) -> Self {
-        self.frames += 1;
-        if answer.bodies != solution.bodies {
-            return self;
-        }
-        self.alike += 1;
-        let found = answer.told_apart();
-        for (expected, found) in pairs(&solution.records[..found.len()], found) {
-            let [x, y] = [0, 1].map(|axis| found.centre_m[axis] - expected.centre_m[axis]);
-            let told = [expected, found].map(|body| [body.standard_error, 0.0, expected.force[2]]);
-            self.force_max = self.force_max.max(resultant_error(&expected.force, &found.force));
-            self.centre_mm_max = self.centre_mm_max.max(1e3 * x.hypot(y));
-            self.standard_error_max = self.standard_error_max.max(resultant_error(&told[0], &told[1]));
-        }
-        self
-    }
-}
-
-/// Errors of each body's forces and centre against the true ones.
-pub fn against_true_bodies(answers: &[Answer], truth: &[Vec<Body>]) -> BodyErrors {
-    let found = |answer: &Answer| Solution {
-        bodies: answer.bodies,
-        records: answer.records.clone(),
-        ..Solution::zeros(Status(answer.status), 0)
-    };
-    let solutions: Vec<Solution> = answers.iter().map(found).collect();
-    BodyErrors::new(truth.iter().zip(&solutions))
-}
-
-/// Frames by the number of bodies in them.
-pub fn by_bodies(answers: &[Answer]) -> BTreeMap<usize, usize> {
-    answers.iter().fold(BTreeMap::new(), |mut counts, answer| {
-        *counts.entry(answer.bodies).or_default() += 1;
-        counts
-    })
 }
 
 fn resultant_error(reference: &[f64; 3], found: &[f64; 3]) -> f64 {
@@ -120,7 +56,7 @@ pub struct StatusCounts {
     pub doubtful: usize,
     /// Bit 7.
     #[serde(default)]
-    pub more_bodies: usize,
+    pub several_contacts: usize,
     /// Bit 8.
     #[serde(default)]
     pub replaced: usize,
@@ -153,7 +89,7 @@ impl StatusCounts {
             not_finite: with(Status::NOT_FINITE),
             frame_length: with(Status::FRAME_LENGTH),
             doubtful: with(Status::DOUBTFUL),
-            more_bodies: with(Status::MORE_BODIES),
+            several_contacts: with(Status::SEVERAL_CONTACTS),
             replaced: with(Status::REPLACED),
             too_many_replaced: with(Status::TOO_MANY_REPLACED),
             slip: with(Status::SLIP),
@@ -171,7 +107,7 @@ impl StatusCounts {
             (Status::NOT_FINITE, self.not_finite),
             (Status::FRAME_LENGTH, self.frame_length),
             (Status::DOUBTFUL, self.doubtful),
-            (Status::MORE_BODIES, self.more_bodies),
+            (Status::SEVERAL_CONTACTS, self.several_contacts),
             (Status::REPLACED, self.replaced),
             (Status::TOO_MANY_REPLACED, self.too_many_replaced),
             (Status::SLIP, self.slip),
@@ -213,7 +149,7 @@ mod tests {
     #[test]
     fn equal_results_have_no_error() {
         let error = SolverError::new(&[answer(0)], &[solution()]);
-        assert_eq!(error, SolverError { resultant_max: 0.0, field_max: 0.0, bodies: None });
+        assert_eq!(error, SolverError { resultant_max: 0.0, field_max: 0.0 });
     }
 
     #[test]
@@ -224,41 +160,6 @@ mod tests {
         let error = SolverError::new(&[answer(0), wrong, answer(0)], &[solution(), solution(), solution()]);
         assert!((error.resultant_max - 0.1).abs() < 1e-12, "{error:?}");
         assert!((error.field_max - 0.1).abs() < 1e-12, "{error:?}");
-    }
-
-    fn body(x: f64, force: [f64; 3], standard_error: f64) -> Body {
-        Body { centre_m: [x, 0.0], force, standard_error, ..Body::default() }
-    }
-
-    #[test]
-    fn each_body_is_compared_with_the_solvers() {
-        let [heavy, light] = [body(0.01, [1.0, 0.0, -4.0], 0.1), body(0.03, [0.0, 0.5, -2.0], 0.2)];
-        let expected = Solution { bodies: 2, records: vec![heavy, light, Body::default()], ..solution() };
-        let with = |bodies, records: [Body; 3]| Answer { bodies, records: records.into(), ..answer(0) };
-        let error =
-            |found: Answer| SolverError::new(&[found], std::slice::from_ref(&expected)).bodies.expect("records");
-        // In another order they are the same.
-        let same = RecordErrors { frames: 1, alike: 1, ..RecordErrors::default() };
-        assert_eq!(error(with(2, [light, heavy, Body::default()])), same);
-        let off = body(0.031, [0.0, 0.6, -2.0], 0.25);
-        let found = error(with(2, [heavy, off, Body::default()]));
-        assert!((found.force_max - 0.05).abs() < 1e-12 && (found.centre_mm_max - 1.0).abs() < 1e-9, "{found:?}");
-        assert!((found.standard_error_max - 0.025).abs() < 1e-12, "{found:?}");
-        // Another number is told, and has no errors.
-        assert_eq!(error(with(1, [heavy, Body::default(), Body::default()])), RecordErrors { alike: 0, ..same });
-        assert_eq!(SolverError::new(&[answer(0)], &[solution()]).bodies, None);
-    }
-
-    #[test]
-    fn true_bodies_are_compared_in_percent_and_frames_counted_by_bodies() {
-        let truth = vec![body(0.01, [1.0, 0.0, -4.0], 0.0), body(0.03, [0.0, 0.5, -2.0], 0.0)];
-        let records = vec![body(0.01, [1.2, 0.0, -4.0], 0.5), body(0.03, [0.0, 0.5, -1.9], 0.5)];
-        let two = Answer { bodies: 2, records, ..answer(0) };
-        let one = Answer { bodies: 1, ..two.clone() };
-        let found = against_true_bodies(&[two.clone(), one.clone()], &[truth.clone(), truth]);
-        assert_eq!((found.frames, found.right), (2, 1));
-        assert!((found.tangential.worst - 5.0).abs() < 1e-9 && (found.normal.worst - 5.0).abs() < 1e-9, "{found:?}");
-        assert_eq!(by_bodies(&[two.clone(), one, two]), BTreeMap::from([(1, 1), (2, 2)]));
     }
 
     #[test]

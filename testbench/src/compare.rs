@@ -5,7 +5,7 @@ use std::fmt;
 use hdl_gen::plan::words;
 use serde::Serialize;
 
-use crate::stream_words::{Shape, beat_name};
+use crate::stream_words::beat_name;
 
 /// Mismatches kept for the report; all are counted.
 const KEPT: usize = 8;
@@ -59,26 +59,21 @@ impl Comparison {
         self.mismatches == 0
     }
 
-    /// Compares frame by frame; `shape` serves to name the words, of one body the columns do. A missing or surplus frame counts
+    /// Compares frame by frame; the sensor's `columns` serve to name the words. A missing or surplus frame counts
     /// as one whose words all differ.
-    pub fn new<'a>(
-        expected: &'a [Vec<u32>],
-        got: impl IntoIterator<Item = &'a [u32]>,
-        shape: impl Into<Shape>,
-    ) -> Self {
-        let shape = shape.into();
+    pub fn new<'a>(expected: &'a [Vec<u32>], got: impl IntoIterator<Item = &'a [u32]>, columns: usize) -> Self {
         let mut comparison = Self::default();
         let mut got = got.into_iter();
         for (frame, expected) in expected.iter().enumerate() {
-            comparison.add(frame, expected, got.next().unwrap_or(&[]), shape);
+            comparison.add(frame, expected, got.next().unwrap_or(&[]), columns);
         }
         for (surplus, words) in got.enumerate() {
-            comparison.add(expected.len() + surplus, &[], words, shape);
+            comparison.add(expected.len() + surplus, &[], words, columns);
         }
         comparison
     }
 
-    fn add(&mut self, frame: usize, expected: &[u32], got: &[u32], shape: Shape) {
+    fn add(&mut self, frame: usize, expected: &[u32], got: &[u32], columns: usize) {
         let length = expected.len().max(got.len());
         self.words += length as u64;
         for beat in 0..length {
@@ -88,7 +83,7 @@ impl Comparison {
             }
             self.mismatches += 1;
             if self.first.len() < KEPT {
-                self.first.push(Mismatch { frame, beat, name: beat_name(beat, shape), expected, got });
+                self.first.push(Mismatch { frame, beat, name: beat_name(beat, columns), expected, got });
             }
         }
     }

@@ -1,7 +1,6 @@
 //! Pictures of one frame: the stress that the taxels feel, the forces found from it and what they are off; in
 //! millimetres, with scales.
 
-use golden::bodies::Body;
 use golden::sensor::Sensor;
 
 use crate::stream_words::Answer;
@@ -29,10 +28,6 @@ const FOUND: &str = "#1d2733";
 const TRUE: &str = "#e08a00";
 /// Found and true arrows of a taxel stand apart by so much of its cell, at either side of the middle.
 const APART: f64 = 0.1;
-/// A body's number stands so far behind the beginning of its arrow.
-const BEHIND: f64 = 10.0;
-/// Height of a line under the pictures, one for each of several bodies.
-const LINE: f64 = 18.0;
 /// Steps of the colour bar.
 const BAR_STEPS: usize = 24;
 
@@ -170,12 +165,6 @@ fn height(sensor: &Sensor) -> f64 {
     Grid::new(sensor, 0.0).edges()[3] + FOOT
 }
 
-/// The same with room for a line for each of several bodies.
-fn height_for(sensor: &Sensor, answer: &Answer) -> f64 {
-    let lines = answer.told_apart().len();
-    height(sensor) + if lines > 1 { LINE * lines as f64 } else { 0.0 }
-}
-
 fn draw_stress(svg: &mut Svg, sensor: &Sensor, stress: &[f64]) {
     let grid = Grid::new(sensor, 0.0);
     grid.frame(svg, "stress that the taxels feel");
@@ -220,40 +209,14 @@ fn arrows(svg: &mut Svg, grid: &Grid, fields: &[(&[Vec<f64>; 3], &str)]) {
     svg.sized_text((right + 16.0 + scale * sample, place + 4.0), "start", INK, 11, &format!("{} N", short(sample)));
 }
 
-/// Each body's number where its normal force acts, and its force as a wide arrow; under the picture its forces.
-fn draw_bodies(svg: &mut Svg, grid: &Grid, bodies: &[Body]) {
-    let [left, _, _, bottom] = grid.edges();
-    let (width, height) = grid.cell();
-    let [pitch_x, pitch_y] = grid.sensor.pitch_mm;
-    let largest = bodies.iter().map(|body| body.force[0].hypot(body.force[1])).fold(0.0, f64::max);
-    for (number, body) in (1..).zip(bodies) {
-        let ([x, y], [fx, fy, fz]) = (body.centre_m.map(|metres| 1e3 * metres), body.force);
-        let at = (left + width * (x / pitch_x + 0.5), bottom - height * (y / pitch_y + 0.5));
-        // The number behind the arrow's beginning.
-        let (length, mut name) = (fx.hypot(fy), at);
-        if length > 0.0 {
-            let scale = SUM_ARROW / largest;
-            svg.bold_arrow(at, (at.0 + scale * fx, at.1 - scale * fy), FOUND);
-            name = (at.0 - BEHIND * fx / length, at.1 + BEHIND * fy / length);
-        }
-        svg.text((name.0, name.1 + 4.0), "middle", FOUND, &number.to_string());
-        let error = if body.standard_error > 0.0 { format!(" ± {:.2}", body.standard_error) } else { String::new() };
-        let text = format!("{number} at ({x:.1}, {y:.1}) mm: ({fx:.2}, {fy:.2}, {fz:.2}){error} N");
-        svg.sized_text((left, bottom + FOOT + LINE * f64::from(number) - 10.0), "start", INK, 12, &text);
-    }
-}
-
 fn draw_forces(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, truth: Option<&Truth>) {
     let grid = Grid::new(sensor, x);
-    let ([_, _, fz], bodies) = (&answer.field, answer.told_apart());
+    let [_, _, fz] = &answer.field;
     grid.frame(svg, "forces found: f_z as colour, f_x and f_y as arrows");
     grid.colours(svg, fz, "N", 1.0);
     let known = truth.and_then(|truth| truth.field.as_ref()).map(|field| (field, TRUE));
     arrows(svg, &grid, &known.into_iter().chain([(&answer.field, FOUND)]).collect::<Vec<_>>());
     let [left, _, _, bottom] = grid.edges();
-    if bodies.len() > 1 {
-        draw_bodies(svg, &grid, bodies);
-    }
     let place = bottom + 34.0;
     let sum = |force: [f64; 3]| format!("({:.2}, {:.2}, {:.2}) N", force[0], force[1], force[2]);
     svg.text((left, place + 4.0), "start", INK, &format!("F found {}", sum(answer.resultant)));
@@ -265,8 +228,7 @@ fn draw_forces(svg: &mut Svg, sensor: &Sensor, x: f64, answer: &Answer, truth: O
         fz.iter().enumerate().map(|(taxel, force)| force * of(grid.middle(taxel))).sum::<f64>() / pressed
     };
     let largest = answer.resultant[0].hypot(answer.resultant[1]).max(truth[0].hypot(truth[1]));
-    // The sum of several has no place of its own.
-    if pressed == 0.0 || largest == 0.0 || bodies.len() > 1 {
+    if pressed == 0.0 || largest == 0.0 {
         return;
     }
     let from = (weighted(|(x, _)| x), weighted(|(_, y)| y));
@@ -303,7 +265,7 @@ pub fn stress(sensor: &Sensor, stress: &[f64]) -> String {
 
 /// The field of an answer, with the true forces as far as they are known.
 pub fn forces(sensor: &Sensor, answer: &Answer, truth: Option<&Truth>) -> String {
-    let mut svg = Svg::new(WIDTH, height_for(sensor, answer), "Forces that the hardware finds");
+    let mut svg = Svg::new(WIDTH, height(sensor), "Forces that the hardware finds");
     draw_forces(&mut svg, sensor, 0.0, answer, truth);
     svg.finish()
 }
@@ -319,8 +281,7 @@ pub fn errors(sensor: &Sensor, answer: &Answer, field: &[Vec<f64>; 3]) -> String
 pub fn frame(sensor: &Sensor, stress: &[f64], answer: &Answer, truth: Option<&Truth>) -> String {
     let field = truth.and_then(|truth| truth.field.as_ref());
     let width = if field.is_some() { 3.0 * WIDTH } else { 2.0 * WIDTH };
-    let mut svg =
-        Svg::new(width, height_for(sensor, answer), "Stress that the taxels feel, and the forces found from it");
+    let mut svg = Svg::new(width, height(sensor), "Stress that the taxels feel, and the forces found from it");
     draw_stress(&mut svg, sensor, stress);
     draw_forces(&mut svg, sensor, WIDTH, answer, truth);
     if let Some(field) = field {
@@ -353,26 +314,6 @@ mod tests {
         let text = frame(&sensor, &[0.0; 6], &answer, Some(&truth));
         assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
         assert_eq!(text.matches("<rect").count(), 18, "a cell a taxel in each, and no bar");
-    }
-
-    #[test]
-    fn several_bodies_stand_where_they_are() {
-        let sensor = Sensor { columns: 5, rows: 2, pitch_mm: [4.0, 2.0], depth_mm: 3.0 };
-        let body = |x: f64, standard_error: f64| Body {
-            centre_m: [x, 0.001],
-            force: [0.5, 0.0, -2.0],
-            standard_error,
-            ..Body::default()
-        };
-        let field = [(); 3].map(|()| vec![-0.4; 10]);
-        let several =
-            Answer { bodies: 2, records: vec![body(0.004, 0.03), body(0.012, 0.0)], field, ..Answer::default() };
-        let text = forces(&sensor, &several, None);
-        assert!(text.contains("1 at (4.0, 1.0) mm: (0.50, 0.00, -2.00) ± 0.03 N"), "{text}");
-        assert!(text.contains("2 at (12.0, 1.0) mm: (0.50, 0.00, -2.00) N"), "{text}");
-        // One body is the frame, which is drawn as ever.
-        let one = Answer { bodies: 1, ..several.clone() };
-        assert_eq!(forces(&sensor, &one, None), forces(&sensor, &Answer { records: Vec::new(), ..one.clone() }, None));
     }
 
     #[test]

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use golden::bodies::Body;
 use golden::design::{Design, Sensor};
-use golden::forces::{self, read_bodies, read_outcomes};
+use golden::forces::{self, read_outcomes};
 use golden::frames::{FrameError, read_frames_and_remark};
 use golden::geometry;
 use golden::metrics::Outcome;
@@ -21,8 +20,6 @@ pub struct FrameSet {
     pub stress: Vec<Vec<f64>>,
     /// True forces, one for each frame.
     pub truth: Option<Vec<Outcome>>,
-    /// True forces of each body of a frame, where they are known.
-    pub bodies: Option<Vec<Vec<Body>>>,
     /// What is to be known of the file that they are from.
     pub remark: Option<String>,
     /// The scene that the frames are of, where that is known: it knows each taxel's true force.
@@ -50,8 +47,7 @@ impl FrameSet {
     pub fn of_frames(frames: &[SceneFrame], origin: impl Into<String>) -> Self {
         let truth = Some(frames.iter().map(Outcome::from).collect());
         let stress = frames.iter().map(|frame| frame.stress.clone()).collect();
-        let bodies = Some(frames.iter().map(|frame| frame.bodies.clone()).collect());
-        Self { origin: origin.into(), stress, truth, bodies, remark: None, scene: None }
+        Self { origin: origin.into(), stress, truth, remark: None, scene: None }
     }
 
     /// What is known of the forces of a frame.
@@ -81,11 +77,6 @@ impl FrameSet {
             forces::compare_sensor(reference, &design.name, &design.sensor)?;
         }
         let truth = reference.map(|path| read_outcomes(path, stress.len())).transpose()?;
-        let bodies = reference
-            .filter(|_| design.algorithm.contacts > 1)
-            .map(|path| read_bodies(path, stress.len(), &design.sensor))
-            .transpose()?
-            .flatten();
-        Ok(Self { origin: frames.display().to_string(), stress, truth, bodies, remark, scene: None })
+        Ok(Self { origin: frames.display().to_string(), stress, truth, remark, scene: None })
     }
 }

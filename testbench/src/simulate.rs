@@ -10,14 +10,10 @@ use serde::Serialize;
 use crate::compare::Comparison;
 use crate::dut::{Dut, DutError};
 use crate::stream::{Mode, Outcome, Pacing, StreamError, Traffic, exchange};
-use crate::stream_words::Shape;
 use crate::verilate::Built;
 
 /// Frames sent one at a time for the latency.
 const LATENCY_FRAMES: usize = 3;
-
-/// Frames of several bodies sent for their cycles.
-const SEVERAL_FRAMES: usize = 5;
 
 /// What to send and what must come back.
 #[derive(Clone, Copy, Debug)]
@@ -28,12 +24,10 @@ pub struct Job<'a> {
     pub packets: &'a [Vec<u32>],
     /// Those whose cycles are predicted.
     pub timed: &'a [Vec<u32>],
-    /// A frame of each number of bodies above one that there is, with that number.
-    pub several: &'a [(usize, Vec<u32>)],
     /// The answers of the integer model, one for each packet, its frame counter starting at 0.
     pub expected: &'a [Vec<u32>],
-    /// What words are of, to name them.
-    pub shape: Shape,
+    /// Columns of the sensor, to name words.
+    pub columns: usize,
     /// When packets follow each other, where they are not sent one at a time.
     pub pacing: Pacing,
     /// Of a core that drops frames, the distance of their beginnings at which it must lose none.
@@ -77,17 +71,6 @@ impl fmt::Display for Cycles {
     }
 }
 
-/// What frames of several bodies take.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct BodyCycles {
-    /// Bodies of each frame, those that have a record.
-    pub bodies: usize,
-    /// As [`Cycles::latency`].
-    pub latency_cycles: u64,
-    /// As [`Cycles::interval`], the mean where frames take turns in how long they take.
-    pub interval_cycles: u64,
-}
-
 /// What the simulation showed.
 #[derive(Clone, Debug)]
 pub struct Simulation {
@@ -97,8 +80,6 @@ pub struct Simulation {
     pub answers: Vec<Vec<u32>>,
     /// Of a frame.
     pub cycles: Cycles,
-    /// Of frames of several bodies, where there are some.
-    pub several: Vec<BodyCycles>,
 }
 
 impl Simulation {
@@ -153,12 +134,12 @@ pub fn simulate(job: &Job<'_>, progress: &(impl Fn() + Sync)) -> Result<Simulati
             }
             modes.push(result);
         }
-        let (cycles, several) = join(timing)?;
-        Ok(Simulation { modes, answers, cycles, several })
+        let cycles = join(timing)?;
+        Ok(Simulation { modes, answers, cycles })
     })
 }
 
-/// How many frames [`simulate`] sends for a set of `frames`, but for those of several bodies that it measures.
+/// How many frames [`simulate`] sends for a set of `frames`.
 pub fn frames_to_simulate(frames: usize) -> u64 {
     (Mode::COUNT * frames + LATENCY_FRAMES + INTERVAL_FRAMES) as u64
 }
@@ -176,7 +157,7 @@ fn run_mode(job: &Job<'_>, mode: Mode, progress: &impl Fn()) -> Result<(ModeResu
     let outcome = exchange(&mut core, &traffic, |_| progress())
         .map_err(|source| SimulationError::Stream { mode: mode.name, source })?;
     let answers: Vec<Vec<u32>> = outcome.exchanges.into_iter().map(|exchange| exchange.words).collect();
-    let comparison = Comparison::new(job.expected, answers.iter().map(Vec::as_slice), job.shape);
+    let comparison = Comparison::new(job.expected, answers.iter().map(Vec::as_slice), job.columns);
     Ok((ModeResult { mode, cycles: outcome.cycles, comparison }, answers))
 }
 
@@ -203,8 +184,8 @@ fn spacing_without_loss(job: &Job<'_>, spacing: u64, progress: &impl Fn()) -> Re
     Ok(interval(&piled_up).min(interval(&sooner)))
 }
 
-/// Latency and interval, on frames repeated as often as needed; those of several bodies by their number.
-fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<(Cycles, Vec<BodyCycles>), SimulationError> {
+/// Latency and interval, on frames repeated as often as needed.
+fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<Cycles, SimulationError> {
     let failed = |source| SimulationError::Stream { mode: "timing", source };
     let mut core: Dut = job.built.load(job.seed)?;
     let mut run = |count, pacing| {
@@ -220,17 +201,5 @@ fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<(Cycles, Vec<BodyCycle
         let many = run(INTERVAL_FRAMES, job.pacing)?;
         if job.unlike { many.interval_of_unlike() } else { many.interval() }.unwrap_or_default()
     };
-    let of_bodies = |(bodies, packet): &(usize, Vec<u32>)| {
-        let packets = vec![packet.clone(); SEVERAL_FRAMES];
-        let mut run = |pacing| {
-            let traffic = Traffic::new(&packets, job.timeout).with_pacing(pacing);
-            exchange(&mut core, &traffic, |_| ()).map_err(failed)
-        };
-        let latency = run(Pacing::OneAtATime)?.latency().unwrap_or_default();
-        let interval = run(job.pacing)?.mean_interval().unwrap_or_default();
-        let cycles = BodyCycles { bodies: *bodies, latency_cycles: latency, interval_cycles: interval };
-        Ok::<_, SimulationError>(cycles)
-    };
-    let several = job.several.iter().map(of_bodies).collect::<Result<_, _>>()?;
-    Ok((Cycles { latency, interval }, several))
+    Ok(Cycles { latency, interval })
 }

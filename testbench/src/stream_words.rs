@@ -1,11 +1,8 @@
 //! Frames as the words of the two streams.
 
-use golden::bodies::Body;
 use golden::solver::Solution;
-use golden::status::Status;
-use hdl_gen::plan::Plan;
 use hdl_gen::plan::streams::Streams;
-use hdl_gen::plan::words::{self, RECORD_WORDS, Word};
+use hdl_gen::plan::words;
 
 /// Summary beats in front of the field.
 pub const SUMMARY_BEATS: usize = words::SUMMARY_WORDS;
@@ -30,37 +27,11 @@ pub fn as_received(streams: Streams, packet: &[u32]) -> Vec<f64> {
     streams.received(packet)
 }
 
-/// What the words of an output frame are of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shape {
-    /// Columns of the sensor.
-    pub columns: usize,
-    /// Records of bodies.
-    pub records: usize,
-}
-
-impl From<usize> for Shape {
-    /// That of a design for one body.
-    fn from(columns: usize) -> Self {
-        Self { columns, records: 0 }
-    }
-}
-
-impl From<&Plan> for Shape {
-    fn from(plan: &Plan) -> Self {
-        Self { columns: plan.design.sensor.columns, records: plan.streams().records }
-    }
-}
-
-/// What a beat of an output frame is, such as `F_z`, `mu of body 1`, or `f_x of taxel 12 (2, 1)` with column and row.
-pub fn beat_name(beat: usize, Shape { columns, records }: Shape) -> String {
-    let named = |words: &[Word], index: usize| {
-        let names: Vec<&str> = words.iter().filter(|word| word.index == index).map(|word| word.name).collect();
-        if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
-    };
-    let Some(behind) = beat.checked_sub(SUMMARY_BEATS) else { return named(&words::SUMMARY, beat) };
-    let Some(place) = behind.checked_sub(RECORD_WORDS * records) else {
-        return format!("{} of body {}", named(&words::RECORD, behind % RECORD_WORDS), 1 + behind / RECORD_WORDS);
+/// What a beat of an output frame is on a sensor of `columns`, such as `F_z` or `f_x of taxel 12 (2, 1)` with column and row.
+pub fn beat_name(beat: usize, columns: usize) -> String {
+    let Some(place) = beat.checked_sub(SUMMARY_BEATS) else {
+        let names: Vec<&str> = words::SUMMARY.iter().filter(|word| word.index == beat).map(|word| word.name).collect();
+        return if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
     };
     let (taxel, axis) = (place / 3, place % 3);
     let columns = columns.max(1);
@@ -86,19 +57,10 @@ pub struct Answer {
     pub mu_xy: [f64; 2],
     /// Standard error of `(F_x, F_y)` in N.
     pub standard_error: f64,
-    /// Number of bodies.
-    pub bodies: usize,
-    /// Records of bodies, those that are not there too; torques are in none.
-    pub records: Vec<Body>,
+    /// Number of contacts.
+    pub contacts: usize,
     /// `f_x`, `f_y`, `f_z` in N, each of m values; empty for a design that puts out resultants only.
     pub field: [Vec<f64>; 3],
-}
-
-impl Answer {
-    /// The records of bodies that are there, the one that presses most first.
-    pub fn told_apart(&self) -> &[Body] {
-        &self.records[..self.bodies.min(self.records.len())]
-    }
 }
 
 impl From<Solution> for Answer {
@@ -112,8 +74,7 @@ impl From<Solution> for Answer {
             phi: solution.phi,
             mu_xy: [solution.mu_x, solution.mu_y],
             standard_error: solution.standard_error,
-            bodies: solution.bodies,
-            records: solution.records,
+            contacts: solution.bodies,
             field: solution.field,
         }
     }
@@ -121,18 +82,12 @@ impl From<Solution> for Answer {
 
 /// Reads an output frame of 16 summary beats and three beats per taxel; `None` if its length is another.
 pub fn decode(words: &[u32]) -> Option<Answer> {
-    decode_bodies(words, 0)
-}
-
-/// The same with so many records of bodies, of 8 beats, before the field.
-pub fn decode_bodies(words: &[u32], records: usize) -> Option<Answer> {
-    let (summary, behind) = words.split_first_chunk::<SUMMARY_BEATS>()?;
-    let (records, field) = behind.split_at_checked(RECORD_WORDS * records)?;
+    let (summary, field) = words.split_first_chunk::<SUMMARY_BEATS>()?;
     let (triples, []) = field.as_chunks::<3>() else {
         return None;
     };
     let value = |word: u32| f64::from(f32::from_bits(word));
-    let [head, _, fx, fy, fz, tx, ty, tz, mu, phi, mu_x, mu_y, standard_error, census, ..] = *summary;
+    let [head, _, fx, fy, fz, tx, ty, tz, mu, phi, mu_x, mu_y, standard_error, counters, ..] = *summary;
     Some(Answer {
         status: head & STATUS_MASK,
         counter: (head >> 16) as u16,
@@ -142,25 +97,9 @@ pub fn decode_bodies(words: &[u32], records: usize) -> Option<Answer> {
         phi: value(phi),
         mu_xy: [mu_x, mu_y].map(value),
         standard_error: value(standard_error),
-        bodies: (census & 0xFF) as usize,
-        records: records.as_chunks().0.iter().map(body).collect(),
+        contacts: (counters & 0xFF) as usize,
         field: [0, 1, 2].map(|axis| triples.iter().map(|triple| value(triple[axis])).collect()),
     })
-}
-
-/// Reads the record of a body.
-fn body(record: &[u32; RECORD_WORDS]) -> Body {
-    let value = |word: u32| f64::from(f32::from_bits(word));
-    let [head, x, y, fx, fy, fz, mu, standard_error] = *record;
-    Body {
-        taxels: (head & 0xFFFF) as usize,
-        status: Status(head >> 16),
-        centre_m: [x, y].map(value),
-        force: [fx, fy, fz].map(value),
-        mu: value(mu),
-        standard_error: value(standard_error),
-        ..Body::default()
-    }
 }
 
 #[cfg(test)]
@@ -170,7 +109,7 @@ mod tests {
     #[test]
     fn names_follow_the_stream_format() {
         let beats = [0, 1, 4, 11, 15, 16, 18, 16 + 3 * 12 + 1];
-        let names: Vec<String> = beats.iter().map(|&beat| beat_name(beat, 10.into())).collect();
+        let names: Vec<String> = beats.iter().map(|&beat| beat_name(beat, 10)).collect();
         let of_taxels = ["f_x of taxel 0 (0, 0)", "f_z of taxel 0 (0, 0)", "f_y of taxel 12 (2, 1)"];
         let expected = [&["status, frame", "timestamp", "F_z", "mu_y", "nothing"][..], &of_taxels].concat();
         assert_eq!(names, expected);
@@ -192,39 +131,10 @@ mod tests {
             phi: 0.25,
             mu_xy: [-0.5, 0.125],
             standard_error: 0.0625,
-            bodies: 2,
-            records: Vec::new(),
+            contacts: 2,
             field: [vec![10.0, 11.0], vec![20.0, 21.0], vec![30.0, 31.0]],
         };
         assert_eq!(answer, expected);
-    }
-
-    #[test]
-    fn records_stand_between_summary_and_field() {
-        let mut words = vec![0x0001_0080; SUMMARY_BEATS];
-        words[words::CENSUS] = 3;
-        let record = |head: u32, values: [f32; 7]| [vec![head], values.map(f32::to_bits).to_vec()].concat();
-        words.extend(record(0x0040_0007, [0.01, 0.02, 1.0, 2.0, -3.0, 0.75, 0.125]));
-        words.extend(record(0x0000_0002, [0.03, 0.0, 0.5, 0.0, -1.0, 0.5, 0.0]));
-        words.extend(encode(&[10.0, 20.0, 30.0]));
-        let answer = decode_bodies(&words, 2).expect("a taxel");
-        let first = Body {
-            taxels: 7,
-            status: Status::DOUBTFUL,
-            centre_m: [0.01_f32, 0.02].map(f64::from),
-            force: [1.0, 2.0, -3.0],
-            mu: 0.75,
-            standard_error: 0.125,
-            ..Body::default()
-        };
-        assert_eq!((answer.records[0], answer.records[1].taxels, answer.field[2][0]), (first, 2, 30.0));
-        assert_eq!((answer.bodies, answer.told_apart().len()), (3, 2));
-        assert_eq!(decode_bodies(&words, 3), None, "with three there is no room for a field");
-        let named = |beat: usize| beat_name(beat, Shape { columns: 1, records: 2 });
-        assert_eq!(
-            [16, 22, 24, 32].map(named),
-            ["taxels, status of body 1", "mu of body 1", "taxels, status of body 2", "f_x of taxel 0 (0, 0)"]
-        );
     }
 
     #[test]

@@ -8,16 +8,14 @@ use golden::design::Design;
 use hdl_gen::emit::{EmitError, emit};
 use hdl_gen::model::Model;
 use hdl_gen::plan::timing::Timeline;
-use hdl_gen::plan::{Plan, PlanError, words};
+use hdl_gen::plan::{Plan, PlanError};
 use serde::Serialize;
 use thiserror::Error;
 
 use crate::compare::Mismatch;
 use crate::dut::{Dut, DutError};
-use crate::frame_set::FrameSet;
 use crate::simulate::{Cycles, Job, Simulation, SimulationError, simulate};
 use crate::stream::{Outcome, Pacing, Traffic, exchange};
-use crate::stream_words::packets;
 use crate::verilate::{BuildError, Built, RtlSources, Verilate};
 
 /// Why there was no trial.
@@ -97,36 +95,7 @@ pub fn model_answers(plan: &Plan, packets: &[Vec<u32>]) -> Vec<Vec<u32>> {
 
 /// Cycles without a handshake after which a design of this plan is stuck.
 pub fn timeout(plan: &Plan) -> u64 {
-    // The frames of several bodies are solved one behind the other, twice.
-    let frames = plan.contacts.as_ref().map_or(1, |of| 1 + 2 * of.contacts as u64);
-    10_000 + 4 * frames * plan.timeline.latency_cycles
-}
-
-/// Frames whose cycles are predicted: all, or where there may be several bodies those of one.
-fn of_one_body(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>]) -> Vec<Vec<u32>> {
-    let is_one = |answer: &[u32]| plan.contacts.is_none() || answer[words::CENSUS] & 0xFF == 1;
-    let ones = packets.iter().zip(expected).filter(|(_, answer)| is_one(answer));
-    ones.map(|(packet, _)| packet.clone()).collect()
-}
-
-/// Of each number of bodies above one, as many as have a record, the first frame.
-fn of_several_bodies(plan: &Plan, packets: &[Vec<u32>], expected: &[Vec<u32>]) -> Vec<(usize, Vec<u32>)> {
-    let Some(of) = &plan.contacts else { return Vec::new() };
-    let bodies = |answer: &[u32]| of.contacts.min((answer[words::CENSUS] & 0xFF) as usize);
-    let first = |bodies_of: usize| {
-        let found = expected.iter().position(|answer| bodies(answer) == bodies_of)?;
-        Some((bodies_of, packets[found].clone()))
-    };
-    (2..=of.contacts).filter_map(first).collect()
-}
-
-/// Frames of one body for where there is none among those of a trial; without one on the sensor, which is hardly possible,
-/// one of nothing, which takes no longer.
-fn made_of_one_body(plan: &Plan) -> Vec<Vec<u32>> {
-    let frames = FrameSet::standing(&plan.design.sensor).map_or_else(|_| Vec::new(), |frames| frames.stress);
-    let packets = packets(plan.streams(), &frames);
-    let ones = of_one_body(plan, &packets, &model_answers(plan, &packets));
-    if ones.is_empty() { vec![vec![0; plan.streams().words_in()]] } else { ones }
+    10_000 + 4 * plan.timeline.latency_cycles
 }
 
 impl Cycles {
@@ -142,7 +111,7 @@ impl Cycles {
 pub enum Timing {
     /// The same.
     AsPredicted,
-    /// No more than predicted, of a design that passes over zeros, or of one for several bodies where no frame has one.
+    /// No more than predicted, of a design that passes over zeros.
     WithinBound,
     /// Others.
     Wrong,
@@ -151,11 +120,7 @@ pub enum Timing {
 impl Timing {
     /// Judges the cycles of a frame: exact, or within the bound where zeros are passed over.
     pub fn of(plan: &Plan, simulated: Cycles) -> Self {
-        Self::within(plan, simulated, plan.design.hardware.skip_zeros)
-    }
-
-    /// The same where frames may take less than predicted, or must not.
-    fn within(plan: &Plan, simulated: Cycles, is_bound: bool) -> Self {
+        let is_bound = plan.design.hardware.skip_zeros;
         let predicted = Cycles::predicted(plan);
         let within = simulated.latency <= predicted.latency && simulated.interval <= predicted.interval;
         if simulated == predicted {
@@ -207,22 +172,20 @@ impl<'a> Trial<'a> {
         trace: Option<&Path>,
         progress: &(impl Fn() + Sync),
     ) -> Result<Verdict, SimulationError> {
-        let mut timed = of_one_body(self.plan, &self.packets, &self.expected);
+        let mut timed = self.packets.clone();
         if self.plan.streams().drops {
             // At a given distance one of another length moves the ends of its neighbours.
             timed.retain(|packet| self.plan.streams().is_frame(packet.len()));
         }
-        let is_bound = self.plan.design.hardware.skip_zeros || timed.is_empty();
         if timed.is_empty() {
-            timed = made_of_one_body(self.plan);
+            timed.push(vec![0; self.plan.streams().words_in()]);
         }
         let job = Job {
             built,
             packets: &self.packets,
             timed: &timed,
-            several: &of_several_bodies(self.plan, &self.packets, &self.expected),
             expected: &self.expected,
-            shape: self.plan.into(),
+            columns: self.plan.design.sensor.columns,
             pacing: pacing(self.plan),
             spacing: self.plan.streams().drops.then_some(self.plan.timeline.interval_cycles),
             unlike: self.plan.design.hardware.skip_zeros,
@@ -232,7 +195,7 @@ impl<'a> Trial<'a> {
             half_period: (5e5 / self.plan.design.hardware.clock_mhz).round() as u64,
         };
         let simulation = simulate(&job, progress)?;
-        let timing = Timing::within(self.plan, simulation.cycles, is_bound);
+        let timing = Timing::of(self.plan, simulation.cycles);
         Ok(Verdict { simulation, timing, predicted: Cycles::predicted(self.plan) })
     }
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* Frames in, forces out: a line of values (pascals, or counts) for each frame of FRAMES or of standard input becomes a
- * line of forces on standard output; of a core that tells bodies apart (contacts) with a record of each behind the status.
+ * line of forces on standard output.
  *
  *   forces_linux FRAMES                on the board, through /dev/uio* and u-dma-buf
  *   forces_simulated CORE.so FRAMES    on the desk, through the simulated core
@@ -78,7 +78,7 @@ static int answered(const sptfra_shape *shape, const void *words)
     const int code = sptfra_decode(shape, words, &result);
 
     if (code == SPTFRA_OK) {
-        text_answer(shape, &result);
+        text_answer(&result);
     }
     return code;
 }
@@ -245,7 +245,7 @@ int main(int count, char **arguments)
     if (wanted.queue == 0 && device.scatter_gather) {
         fprintf(stderr, "the DMA has descriptors, and takes frames through a queue alone: --queue 8\n");
     } else {
-        text_header(&device.shape);
+        text_header();
         good = wanted.queue > 0 ? run_queued(&device, &memory, wanted.queue, &frames)
                                 : run_one_by_one(&device, &memory, &frames);
     }

@@ -59,41 +59,12 @@ int text_numbers_columns(const char *line, size_t taxels)
     return *at == '\0';
 }
 
-/* Each body's record, by the columns of text_header. */
-static void print_bodies(const sptfra_shape *shape, const sptfra_result *result)
+void text_header(void)
 {
-    const int records = sptfra_records(shape);
-    int index;
-
-    if (records > 0) {
-        printf(",%u", (unsigned)result->bodies);
-    }
-    for (index = 0; index < records; index++) {
-        const sptfra_body *body = &result->body[index];
-
-        printf(",%u,%u,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", (unsigned)body->taxels, (unsigned)body->status,
-            (double)body->centre[0], (double)body->centre[1], (double)body->force[0], (double)body->force[1],
-            (double)body->force[2], (double)body->friction, (double)body->standard_error);
-    }
+    printf("frame,F_x,F_y,F_z,mu,phi,status\n");
 }
 
-void text_header(const sptfra_shape *shape)
-{
-    static const char *const names[] = {"taxels", "status", "x", "y", "F_x", "F_y", "F_z", "mu", "standard_error"};
-    const int records = sptfra_records(shape);
-    int index;
-    size_t name;
-
-    printf("frame,F_x,F_y,F_z,mu,phi,status%s", records > 0 ? ",bodies" : "");
-    for (index = 0; index < records; index++) {
-        for (name = 0; name < sizeof names / sizeof names[0]; name++) {
-            printf(",body%d_%s", index, names[name]);
-        }
-    }
-    printf("\n");
-}
-
-void text_answer(const sptfra_shape *shape, const sptfra_result *result)
+void text_answer(const sptfra_result *result)
 {
     unsigned bit;
 
@@ -104,7 +75,6 @@ void text_answer(const sptfra_shape *shape, const sptfra_result *result)
             printf("%s%s", result->status & ((1u << bit) - 1u) ? "; " : "", sptfra_status_name(bit));
         }
     }
-    print_bodies(shape, result);
     printf("\n");
     fflush(stdout);
 }

@@ -9,9 +9,9 @@
 int text_parse(const sptfra_shape *shape, const char *line, unsigned long number, void *words);
 /* Whether a line has the numbers of its columns alone, from 0 or 1 on, as pandas writes them above frames. */
 int text_numbers_columns(const char *line, size_t taxels);
-/* Names of the columns; those of bodies as in the force files of `golden solve`. */
-void text_header(const sptfra_shape *shape);
+/* Names of the columns. */
+void text_header(void);
 /* An answer's line. */
-void text_answer(const sptfra_shape *shape, const sptfra_result *result);
+void text_answer(const sptfra_result *result);
 
 #endif

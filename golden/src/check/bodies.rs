@@ -11,7 +11,7 @@ use crate::solver::reading::{Reader, Reading};
 /// What is to be said of a design that counts bodies and is solved as if there were one: in how many frames there are
 /// more. `frames` are the loaded ones: noise has many bodies.
 pub(super) fn check(design: &Design, frames: &[&Vec<f64>], matrices: &Matrices) -> Option<String> {
-    if design.algorithm.contacts > 1 || !design.algorithm.count_bodies {
+    if design.algorithm.contacts > 1 || !design.algorithm.count_contacts {
         return None;
     }
     let (reader, finder) = (Reader::new(design), Finder::new(&design.sensor, 1));

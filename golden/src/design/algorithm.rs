@@ -47,7 +47,7 @@ pub struct Algorithm {
     /// Most bodies that are told apart, 1 to [`crate::bodies::MOST`]; with 1 a frame is solved as that of one body.
     pub contacts: usize,
     /// Whether the bodies of a frame are counted where it is solved as that of one, so that a frame of more says so.
-    pub count_bodies: bool,
+    pub count_contacts: bool,
     /// Contents of the output.
     pub outputs: Outputs,
     /// Stress in pascals below which a taxel tells nothing; full scale / 65536 unless given.

@@ -77,6 +77,14 @@ impl Design {
         }
     }
 
+    /// The design with which every frame is solved as one contact, as by its hardware, which counts contacts alone.
+    #[must_use]
+    pub fn solved_as_one(&self) -> Self {
+        let mut design = self.clone();
+        design.algorithm.contacts = 1;
+        design
+    }
+
     /// Reads and checks a design file.
     ///
     /// # Errors

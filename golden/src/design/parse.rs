@@ -74,7 +74,7 @@ struct RawAlgorithm {
     correction: Option<RawCorrection>,
     fitted_to: Option<String>,
     contacts: Option<i64>,
-    count_bodies: Option<bool>,
+    count_contacts: Option<bool>,
     outputs: Option<String>,
     noise_floor_pa: Option<f64>,
     slip: Option<RawSlip>,
@@ -240,7 +240,7 @@ fn algorithm(
     let contacts =
         raw.contacts.map_or(Ok(1), |contacts| check.integer("algorithm.contacts", contacts, 1, bodies::MOST as i64))?;
     let contacts = contacts as usize;
-    let count_bodies = raw.count_bodies.unwrap_or(false);
+    let count_contacts = raw.count_contacts.unwrap_or(false);
     let outputs: Outputs = check.optional_word("algorithm.outputs", raw.outputs.as_deref())?.unwrap_or_default();
     let noise_floor_pa = match raw.noise_floor_pa {
         Some(value) => check.above_zero("algorithm.noise_floor_pa", value, full_scale_pa, "Pa")?,
@@ -257,7 +257,7 @@ fn algorithm(
         estimator,
         joint,
         contacts,
-        count_bodies,
+        count_contacts,
         outputs,
         noise_floor_pa,
         slip,

@@ -42,7 +42,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
         1 => String::new(),
         contacts => format!("contacts = {contacts}\n"),
     };
-    let count_bodies = if algorithm.count_bodies { "count_bodies = true\n" } else { "" };
+    let count_contacts = if algorithm.count_contacts { "count_contacts = true\n" } else { "" };
     let counts = match input.pa_per_count {
         Some(value) => format!("pa_per_count = {value:?}\n"),
         None => String::new(),
@@ -98,7 +98,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
         "name = \"{name}\"\n\n\
          [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{tension}{counts}{curve}{calibration}{dead}\n\
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
-         {constants}{contacts}{count_bodies}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
+         {constants}{contacts}{count_contacts}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
          full_scale_pa = {:?}\n{range}{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{overrun}{control}{banks}{map}{debug}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,

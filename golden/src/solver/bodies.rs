@@ -195,8 +195,8 @@ impl Solver {
                 solution.records.push(self.body(census.taxels, solution));
             }
             solution.bodies = census.bodies.max(1);
-            if census.bodies > finder.contacts() {
-                solution.status.insert(Status::MORE_BODIES);
+            if census.bodies > 1 {
+                solution.status.insert(Status::SEVERAL_CONTACTS);
             }
         }
         solution.records.resize(finder.records(), Body::default());

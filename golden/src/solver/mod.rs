@@ -231,7 +231,7 @@ impl Solver {
     fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
         let friction = Friction::new(design.algorithm.constants(), &design.sensor);
         let contacts = design.algorithm.contacts;
-        let finder = (contacts > 1 || design.algorithm.count_bodies).then(|| Finder::new(&design.sensor, contacts));
+        let finder = (contacts > 1 || design.algorithm.count_contacts).then(|| Finder::new(&design.sensor, contacts));
         let (reader, slip) = (Reader::new(design), design.algorithm.slip);
         let doubt = design.algorithm.joint.doubt;
         // By the paper's plan every solution has them.

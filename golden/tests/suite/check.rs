@@ -164,7 +164,7 @@ fn a_curve_is_named_where_it_says_what_a_count_is_worth() {
 fn a_wrong_sign_hides_nothing_else() {
     let mut design = design("sensor2-joint");
     // Nor does it make bodies out of one.
-    design.algorithm.count_bodies = true;
+    design.algorithm.count_contacts = true;
     let frames = frames(&design);
     found(&design, &changed(&frames, |pa| -pa), &[Kind::Sign], &["36 of 36 frames", "sensor.pa_per_count = -1.0"]);
     found(&design, &changed(&frames, |pa| (-pa).max(0.0)), &[Kind::Sign, Kind::NoTension], &["cannot read tension"]);
@@ -219,7 +219,7 @@ fn transposed_grids_and_rows_that_run_back() {
             frames.iter().map(order).collect()
         };
         let mut counting = design.clone();
-        counting.algorithm.count_bodies = true;
+        counting.algorithm.count_contacts = true;
         found(&counting, &reordered(&|x, y| x * rows + y), &[Kind::Order], &["column after column"]);
         let back = |x, y| y * columns + if y % 2 == 1 { columns - 1 - x } else { x };
         // A contact in the middle of rows that run back is nearly its own mirror image; put it aside.
@@ -374,7 +374,7 @@ fn the_order_shows_on_contacts_of_every_kind() {
 #[test]
 fn rest_is_told_and_no_contact_is_made_of_it() {
     let mut design = design("sensor1-joint");
-    design.algorithm.count_bodies = true;
+    design.algorithm.count_contacts = true;
     // As even as a generator of a line makes it: from -8 to 8 Pa.
     let noise = |frame: usize, taxel: usize| f64::from(((frame * 7919 + taxel * 104_729) % 1601) as u32) / 100.0 - 8.0;
     let rest: Vec<Vec<f64>> =

@@ -17,7 +17,7 @@ use super::{Parameters, calibration, latency};
 
 /// The module.
 pub fn module(plan: &Plan) -> &'static str {
-    match plan.streams_of_one().intake {
+    match plan.streams().intake {
         Intake::Whole => "sptfra_bz_wide",
         Intake::Single | Intake::Unpacked => match &plan.calibration {
             Some(of) if of.curve().is_some() => "sptfra_bz_curved",
@@ -38,7 +38,7 @@ pub fn taxel_files(streams: Streams) -> Vec<String> {
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let (stress, streams) = (plan.formats.stress, plan.streams_of_one());
+    let (stress, streams) = (plan.formats.stress, plan.streams());
     let (shift, bound) = match &plan.counts {
         Some(counts) => (counts.exponents[0], counts.curve.as_ref().map_or(LARGEST_NUMBER, |curve| curve.limit)),
         None => (-stress.lsb, stress.bound),
@@ -110,7 +110,7 @@ pub struct Arrival {
 
 /// Cycles of Bz.
 pub fn arrival(plan: &Plan) -> Arrival {
-    let (sensor, streams) = (&plan.design.sensor, plan.streams_of_one());
+    let (sensor, streams) = (&plan.design.sensor, plan.streams());
     let stages = beat_to_stress(plan);
     if streams.intake != Intake::Whole {
         let dead = if plan.dead.is_some() { latency::dead_taxels(plan.taxels()) } else { 0 };
@@ -144,7 +144,7 @@ pub fn arrival(plan: &Plan) -> Arrival {
 
 /// A multiplier each for a count's slope, a stress's gain and each dead taxel.
 pub fn cost(plan: &Plan) -> BlockCost {
-    let (streams, data) = (plan.streams_of_one(), plan.factors().outside_bits());
+    let (streams, data) = (plan.streams(), plan.factors().outside_bits());
     let (taxels, dead) = (plan.taxels(), plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()));
     let conversions = streams.conversions();
     let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());

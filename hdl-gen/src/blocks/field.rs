@@ -13,7 +13,7 @@ use super::Parameters;
 
 /// The module.
 pub fn module(plan: &Plan) -> &'static str {
-    match (plan.ways() > 1, plan.streams_of_one().words() > 1) {
+    match (plan.ways() > 1, plan.streams().words() > 1) {
         (true, false) => "sptfra_field",
         (true, true) => "sptfra_field_wide",
         (false, _) => "sptfra_coefficient_field",
@@ -27,7 +27,7 @@ pub fn stages(plan: &Plan) -> u64 {
 
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
-    let (data, words) = (plan.design.hardware.data_bits.into(), plan.streams_of_one().words());
+    let (data, words) = (plan.design.hardware.data_bits.into(), plan.streams().words());
     let Some(folded) = plan.formats.folded else {
         let parameters = Parameters::new().count("TAXELS", plan.taxels()).number("DATA_BITS", data);
         return if words > 1 { parameters.count("WORDS", words) } else { parameters };
@@ -45,7 +45,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
 /// What a frame's taxels leave until they go out, and the multipliers that put a force together.
 pub fn cost(plan: &Plan) -> BlockCost {
     let (data, elements) = (plan.design.hardware.data_bits, plan.elements());
-    let words = plan.streams_of_one().words();
+    let words = plan.streams().words();
     let modules = &["sptfra_field", "sptfra_field_wide", "sptfra_coefficient_field"];
     let narrow = plan.factors().element_is_narrow();
     let block =

@@ -121,7 +121,7 @@ pub fn bus_to_sums(folded: bool) -> u64 {
 /// From the last visit of the residual to the field's program being allowed.
 pub const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
 
-// ---- The count of bodies
+// ---- The count of contacts
 /// From the last weights of a frame to its count: a step for each taxel and for the end of each row, and the way through
 /// sums and comparisons.
 ///
@@ -129,7 +129,7 @@ pub const VISIT_TO_RESIDUAL: u64 = VISIT_TO_BUS + 1;
 /// longer; it takes `2 quads + 82` with many lanes, where that is longer than the count), and a frame is begun only when
 /// that stage of the one before the last is over. So a count is there before the search, and neither latency nor
 /// interval knows of it.
-pub fn bodies(sensor: &Sensor) -> u64 {
+pub fn count_contacts(sensor: &Sensor) -> u64 {
     ((sensor.columns + 1) * sensor.rows) as u64 + 12
 }
 

@@ -5,7 +5,6 @@
 //! there is an instance, stand in [`latency`].
 
 pub mod array;
-pub mod bodies;
 pub mod bz;
 pub mod calibration;
 pub mod cean;
@@ -17,8 +16,6 @@ pub mod op;
 pub mod overrun;
 pub mod parameters;
 pub mod range;
-pub mod records;
-pub mod regions;
 pub mod registers;
 pub mod turns;
 pub mod unfold;
@@ -43,10 +40,9 @@ pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     costs.extend([bz::cost(plan), slot.contact_block()]);
     costs.extend(range::cost(plan));
     costs.extend([array::cost(plan), we::cost(plan), co::cost(plan), field::cost(plan)]);
-    costs.extend(bodies::cost(plan));
+    costs.extend(contacts::cost(plan));
     costs.extend(slot.search_blocks(&plan.design.sensor));
     costs.push(op::cost());
-    costs.extend(contacts::costs(plan));
     costs
 }
 

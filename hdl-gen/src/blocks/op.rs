@@ -24,7 +24,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         None => parameters,
     };
     let parameters = if plan.thresholds.thin { parameters.flag("THIN", true) } else { parameters };
-    let words = plan.streams_of_one().words();
+    let words = plan.streams().words();
     let parameters = if words > 1 {
         parameters.count("WORDS", words).cycles("FIELD_STAGES", field::stages(plan))
     } else {

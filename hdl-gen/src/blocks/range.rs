@@ -24,7 +24,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
 
 /// Parameters of `sptfra_range_frames`.
 pub fn of_frames(plan: &Plan) -> Parameters {
-    Parameters::new().count("WORDS", plan.streams_of_one().words())
+    Parameters::new().count("WORDS", plan.streams().words())
 }
 
 /// The frame, folded without a rounding; nothing where all frames have the full scale's range.

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use golden::design::{Overrun, PlanKind};
 use golden::table::Table;
 use hdl_gen::emit::products;
-use hdl_gen::inspection::{counted_bodies, doubled, excess, figures, narrow, several_bodies, shares};
+use hdl_gen::inspection::{contacts, doubled, excess, figures, narrow, shares};
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::energy::Energy;
 use hdl_gen::plan::format::short;
@@ -65,8 +65,8 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         key("estimator = "),
         key("outputs = ")
     )?;
-    if let Some(several) = several_bodies(plan).or_else(|| counted_bodies(plan)) {
-        writeln!(out, "  bodies       {several}")?;
+    if let Some(contacts) = contacts(plan) {
+        writeln!(out, "  contacts     {contacts}")?;
     }
     writeln!(
         out,

@@ -12,7 +12,6 @@ use clap::{CommandFactory, Parser, Subcommand};
 use golden::arguments::design_file;
 use golden::design::Design;
 use golden::manual::Manual;
-use hdl_gen::inspection::plan_to_inspect;
 use hdl_gen::plan::{Plan, PlanError};
 
 use golden::progress::Progress;
@@ -71,7 +70,7 @@ fn run(command: Command) -> Result<String, Box<dyn Error>> {
         Command::New(new) => new::write(&new, &progress),
         Command::Inspect { design, json } => {
             let loaded = Design::load(&design)?;
-            let plan = planned(&loaded, &design, &progress, plan_to_inspect)?;
+            let plan = planned(&loaded, &design, &progress, Plan::new)?;
             inspect::report(&plan, json)
         }
         Command::Manual(manual) => manual.run(Arguments::command()),

@@ -10,7 +10,7 @@ use crate::plan::resources::BlockResources;
 use crate::plan::streams::WORD_BITS;
 
 use super::boards::Board;
-use super::top::core_module;
+use super::registers::core_module;
 use super::{EmitError, FileMap, VERSION, debug};
 
 /// Bytes of a word of memory.

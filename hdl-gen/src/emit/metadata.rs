@@ -83,18 +83,10 @@ pub fn products(plan: &Plan) -> Vec<ProductEntry<'_>> {
 /// Edition of the file and of the streams that it describes.
 const FORMAT: u32 = 2;
 
-/// The words of an output frame: values by name, then records of bodies, each of `words` words, and the taxels' forces, `count` words from `index` on.
+/// The words of an output frame: values by name, then the taxels' forces, `count` words from
+/// `index` on.
 fn output(plan: &Plan) -> Value {
     let mut output: Vec<Value> = words::SUMMARY.iter().map(|word| json!(word)).collect();
-    if let Some(of) = &plan.contacts {
-        output.push(json!({
-            "name": "body",
-            "index": words::SUMMARY_WORDS,
-            "count": of.contacts,
-            "words": words::RECORD_WORDS,
-            "of_each_body": words::RECORD,
-        }));
-    }
     if plan.field_words() > 0 {
         output.push(json!({
             "name": "field",
@@ -171,8 +163,8 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
     if plan.scales_frames() {
         value["range"] = json!(plan.design.hardware.range);
     }
-    if plan.design.algorithm.count_bodies {
-        value["bodies"] = json!({ "cycles": latency::bodies(&plan.design.sensor) });
+    if plan.design.algorithm.count_contacts {
+        value["count_contacts"] = json!({ "cycles": latency::count_contacts(&plan.design.sensor) });
     }
     if let Some(dead) = &plan.dead {
         value["dead_taxels"] = json!({ "taxels": dead.taxels, "weight_lsb": -i64::from(dead.shift) });

@@ -1,7 +1,6 @@
 //! Emission: a plan in, a map from relative path to bytes out. Nothing here touches the disk.
 
 pub mod boards;
-mod contacts;
 mod debug;
 mod flows;
 mod line_length;

@@ -4,7 +4,7 @@ use crate::cores::Multiplier;
 use crate::plan::Plan;
 
 use super::EmitError;
-use super::{contacts, registers, rtl, top};
+use super::{registers, rtl, top};
 
 /// `(module, text)` of every module of the design: the top, the register bank if there is one, and what they use of the
 /// library.
@@ -13,7 +13,6 @@ use super::{contacts, registers, rtl, top};
 /// [`EmitError::Template`] if a template does not fit its view.
 pub fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, EmitError> {
     let mut modules = vec![top::render(plan)?];
-    modules.extend(contacts::render(plan)?);
     modules.extend(registers::render(plan, hash)?);
     let multiplier = Multiplier::of_part(&plan.design.hardware.part);
     let library = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &top::without(plan), multiplier);

@@ -1,11 +1,10 @@
 //! ROM initialisation files: hexadecimal words, one a line, for `$readmemh` and Vivado's `read_mem`.
 
 use crate::blocks::array::column_bits;
-use crate::blocks::{bz, contacts, row_width};
-use crate::cores::{LONG_BITS, SHORT_BITS};
+use crate::blocks::{bz, row_width};
+use crate::cores::LONG_BITS;
 use crate::estimators::WEIGHT_BITS;
 use crate::plan::Plan;
-use crate::plan::contacts::records;
 use crate::plan::counts::EXPONENT_BITS;
 use crate::plan::curve::{SEGMENT_BITS, SHIFT_BITS};
 use crate::plan::format::address_bits;
@@ -39,8 +38,8 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     let visits = (0..schedule.visits.len()).map(|index| visit(plan, index));
     insert_rom(files, format!("rom/{name}_visits.mem"), hex(visits, schedule.visits.len(), visit_bits(plan)));
     if let Some(counts) = plan.counts.as_ref().filter(|counts| counts.per_taxel()) {
-        for (first, kind) in bz::taxel_files(plan.streams_of_one()).iter().enumerate() {
-            let step = plan.streams_of_one().conversions();
+        for (first, kind) in bz::taxel_files(plan.streams()).iter().enumerate() {
+            let step = plan.streams().conversions();
             let depth = plan.taxels().div_ceil(step);
             if counts.curve.is_none() {
                 let exponents = counts.exponents.iter().skip(first).step_by(step);
@@ -94,20 +93,6 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         files.insert(format!("rom/{name}_neighbours.mem"), weights(&dead.words()));
         let taxels = (0..plan.taxels()).map(|taxel| u128::from(dead.taxels.contains(&taxel)));
         files.insert(format!("rom/{name}_dead.mem"), hex(taxels, plan.taxels(), 1));
-    }
-    if let Some(of) = &plan.contacts {
-        let [columns, rows] = contacts::widths(plan);
-        let word = |row: usize, column: usize| {
-            let sensor = &plan.design.sensor;
-            let inside = row < sensor.rows && column < sensor.columns;
-            if inside { joined(&of.coefficients[row * sensor.columns + column], SHORT_BITS) } else { 0 }
-        };
-        let words = (0..1 << rows).flat_map(|row| (0..1 << columns).map(move |column| word(row, column)));
-        let text = hex(words, contacts::rom_depth(plan), contacts::rom_bits());
-        insert_rom(files, format!("rom/{}", contacts::rom_file(plan)), text);
-        let program = records::Program::of(&plan.design).rom();
-        let text = hex(program.iter().map(|&word| u128::from(word)), program.len(), records::INSTRUCTION_BITS);
-        insert_rom(files, format!("rom/{}", contacts::program_file(plan)), text);
     }
     for (contents, words) in plan.estimator.slot().roms() {
         insert_rom(files, format!("rom/{name}_{contents}.mem"), weights(&words));

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use golden::scene::{Contact, Medium, Scene, SceneError, Shape};
+use golden::scene::{Medium, Scene, SceneError};
 use serde::Serialize;
 use tera::Context;
 
@@ -64,9 +64,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     let answers: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
     let words = plan.streams().words();
     let beats = |packets: &[Vec<u32>]| packets.iter().map(|packet| packet.len().div_ceil(words)).sum();
-    // Several bodies are solved one behind the other, twice.
-    let solved = plan.contacts.as_ref().map_or(1, |of| 1 + 2 * of.contacts as u64);
-    let timeout = SLACK_CYCLES + 4 * solved * plan.timeline.latency_cycles * packets.len() as u64;
+    let timeout = SLACK_CYCLES + 4 * plan.timeline.latency_cycles * packets.len() as u64;
     let view = View {
         name,
         frames: packets.len(),
@@ -98,24 +96,7 @@ pub fn insert(plan: &Plan, files: &mut FileMap) -> Result<(), EmitError> {
     Ok(())
 }
 
-/// Two bodies in place of one, pushed apart, far enough from each other.
-fn two_bodies(mut scene: Scene) -> Scene {
-    let one = scene.contacts[0].clone();
-    let [half_x, half_y] = one.shape.half_extent_m().map(|extent| 0.5 * extent);
-    let body = |place: f64, share: f64, direction_deg: f64| Contact {
-        shape: Shape::Hertz { semi_axes_m: [half_x, half_y] },
-        centre_m: one.centre_m.map(|middle| place * middle),
-        normal_force_n: share * one.normal_force_n,
-        direction_deg,
-        ..one.clone()
-    };
-    scene.contacts = vec![body(0.4, 0.25, 180.0), body(1.6, 0.2, 30.0)];
-    scene.sweep_deg = Vec::new();
-    scene
-}
-
-/// A contact pushed in several directions; between them the frames that have no answer. Where bodies are told apart, two of
-/// them, and one again.
+/// A contact pushed in several directions; between them the frames that have no answer.
 fn packets(plan: &Plan) -> Result<Vec<Vec<u32>>, SceneError> {
     let streams = plan.streams();
     let of_scene = |scene: Scene| {
@@ -135,10 +116,6 @@ fn packets(plan: &Plan) -> Result<Vec<Vec<u32>>, SceneError> {
     packets.insert(3, not_a_number);
     // A beat less than a frame.
     packets.insert(5, vec![0; length - streams.words().min(length - 1)]);
-    if plan.contacts.is_some() {
-        packets.extend(of_scene(two_bodies(scene))?);
-        packets.push(packets[0].clone());
-    }
     Ok(packets)
 }
 
@@ -161,27 +138,7 @@ fn beat_file(packets: &[Vec<u32>], words: usize) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
-    use golden::design::Design;
-
-    use super::{Model, Plan, beat_file, packets};
-    use crate::plan::words::CENSUS;
-
-    #[test]
-    fn where_bodies_are_told_apart_there_are_two() {
-        let designs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs");
-        for (name, contacts) in [("small", 2), ("odd", 3), ("sensor1-bodies", 4), ("small", 1)] {
-            let mut design = Design::load(&designs.join(format!("{name}.toml"))).expect("right");
-            design.algorithm.contacts = contacts;
-            let plan = Plan::new(&design).expect("a plan");
-            let mut model = Model::new(&plan);
-            let packets = packets(&plan).expect("frames");
-            let found: Vec<u32> = packets.iter().map(|packet| model.process(packet)[CENSUS] & 0xFF).collect();
-            let expected: &[u32] = if contacts > 1 { &[1, 0, 1, 0, 1, 0, 1, 2, 1] } else { &[1, 0, 1, 0, 1, 0, 1] };
-            assert_eq!(found, expected, "{name}");
-        }
-    }
+    use super::beat_file;
 
     #[test]
     fn the_last_word_of_each_packet_is_marked() {

@@ -6,8 +6,8 @@ use tera::Context;
 use golden::design::{Filter, Samples};
 
 use crate::blocks::{
-    FEWEST_ELEMENTS, Parameters, array, bodies, bz, calibration, cean, co, field, op, overrun, range, row_width, turns,
-    unfold, we,
+    FEWEST_ELEMENTS, Parameters, array, bz, calibration, cean, co, contacts, field, op, overrun, range, row_width,
+    turns, unfold, we,
 };
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
@@ -16,7 +16,7 @@ use crate::plan::format::address_bits;
 use crate::plan::streams::Intake;
 
 use super::template::design_module;
-use super::{EmitError, contacts, debug, registers};
+use super::{EmitError, debug, registers};
 
 /// One module, cut along the data's way: ports, Bz and `CeAn`; what shares the lanes; estimator, field and Op.
 const TEMPLATE: &str = concat!(
@@ -29,7 +29,7 @@ const TEMPLATE: &str = concat!(
 #[derive(Serialize)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a question that the template asks")]
 struct View {
-    /// Whether a register bank or what parts bodies is around the core, and then the core's own module.
+    /// Whether a register bank is around the core, and then the core's own module.
     control: bool,
     core_module: String,
     columns: usize,
@@ -108,24 +108,24 @@ struct View {
     estimator_parameters: Parameters,
     field_module: &'static str,
     field_parameters: Parameters,
-    /// Of the count of bodies, if there is one.
-    bodies: Option<Parameters>,
+    /// Of the contact counter, if there is one.
+    contacts: Option<Parameters>,
     op: Parameters,
 }
 
 impl View {
     fn new(plan: &Plan) -> Self {
         let (design, hardware) = (&plan.design, &plan.design.hardware);
-        let timeline = plan.contacts.as_ref().map_or(&plan.timeline, |of| &of.core);
+        let timeline = &plan.timeline;
         let slot = plan.estimator.slot();
         let folded = plan.ways() > 1;
-        let streams = plan.streams_of_one();
+        let streams = plan.streams();
         let unpack = streams.intake == Intake::Unpacked;
         let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
-            control: hardware.control || plan.contacts.is_some(),
-            core_module: core_module(plan),
+            control: hardware.control,
+            core_module: registers::core_module(plan),
             columns: design.sensor.columns,
             rows: design.sensor.rows,
             taxels: plan.taxels(),
@@ -193,7 +193,7 @@ impl View {
             estimator_parameters: slot.parameters(design, plan.ways()),
             field_module: field::module(plan),
             field_parameters: field::parameters(plan),
-            bodies: design.algorithm.count_bodies.then(|| bodies::parameters(plan)),
+            contacts: design.algorithm.count_contacts.then(|| contacts::parameters(plan)),
             op: op::parameters(plan),
         }
     }
@@ -210,11 +210,6 @@ fn u_values(plan: &Plan) -> String {
         format!("taxels[{}:{}]", end - 1, end - factors.outside_bits() as usize)
     };
     format!("{{{}}}", (0..plan.ways()).rev().map(upper).collect::<Vec<_>>().join(", "))
-}
-
-/// Module of the core for one body: that of the design, unless there is something around it.
-pub(super) fn core_module(plan: &Plan) -> String {
-    if plan.contacts.is_some() { contacts::one(plan) } else { registers::core_module(plan) }
 }
 
 /// The module of the core and its text.
@@ -243,7 +238,7 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if curve || !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
         without.push("sptfra_exponents");
     }
-    if plan.streams_of_one().sample == Samples::Float32 {
+    if plan.streams().sample == Samples::Float32 {
         without.push("sptfra_int_to_fixed");
     } else if plan.calibration.is_none() {
         without.push("sptfra_float_to_fixed");

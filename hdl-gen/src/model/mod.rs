@@ -3,7 +3,6 @@
 //! One packet of input words in, one frame of output words out. Order of summation does not matter: every sum is
 //! exact in its width, by the bounds of the plan.
 
-pub mod bodies;
 pub mod contacts;
 mod integer;
 mod range;
@@ -20,14 +19,12 @@ use golden::products::{ByPq, Frame, Scalar};
 use crate::cores::{fixed_to_float, float_to_fixed};
 use crate::estimators::{Contact, Seen};
 use crate::plan::calibration::Bank;
-use crate::plan::contacts::records::Constants;
 use crate::plan::dead::GUESSED_SHARE;
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::product::{Coefficients, Product, Vector};
 use crate::plan::vector_formats::field_shifts;
 use crate::plan::{Plan, words};
 
-use contacts::records::Records;
 use integer::Integer;
 use range::Scaled;
 pub use status::*;
@@ -53,8 +50,6 @@ pub struct Model<'plan> {
     frames: u16,
     /// Whether the last frame slipped.
     slips: bool,
-    /// What makes the records of several bodies, if there may be several.
-    records: Option<Records>,
     /// Of a calibration in RAM, what acts, and how many have before it.
     bank: Option<Bank>,
     generation: u8,
@@ -64,8 +59,7 @@ impl<'plan> Model<'plan> {
     /// A model just out of reset.
     pub fn new(plan: &'plan Plan) -> Self {
         let bank = plan.calibration.as_ref().map(|calibration| calibration.power_up.clone());
-        let records = plan.contacts.as_ref().map(|of| Records::new(of.contacts, &Constants::of(&plan.design)));
-        Self { plan, frames: 0, slips: false, records, bank, generation: 0 }
+        Self { plan, frames: 0, slips: false, bank, generation: 0 }
     }
 
     /// The bank that acts on the frames from now on, where the design's calibration is in RAM.
@@ -78,28 +72,20 @@ impl<'plan> Model<'plan> {
     /// As after the hardware's reset: the frame counter starts again; the calibration stays.
     pub fn reset(&mut self) {
         (self.frames, self.slips) = (0, false);
-        self.records.iter_mut().for_each(Records::reset);
     }
 
     /// The output frame for one packet: its words in memory's order, float32 in Pa, up to the last of the beat with TLAST;
     /// words that are missing in that are 0. Its timestamp is 0: when a packet comes is not the model's to know.
     pub fn process(&mut self, packet: &[u32]) -> Vec<u32> {
-        let mut words = match (&self.plan.contacts, self.records.take()) {
-            (Some(of), Some(mut records)) => {
-                let words = self.answer_of_bodies(of, &mut records, packet);
-                self.records = Some(records);
-                words
-            }
-            _ => self.answer_to(packet),
-        };
-        words[words::CENSUS] |= u32::from(self.generation) << 8;
+        let mut words = self.answer_to(packet);
+        words[words::COUNTERS] |= u32::from(self.generation) << 8;
         words
     }
 
     fn answer_to(&mut self, packet: &[u32]) -> Vec<u32> {
         let counter = u32::from(self.frames) << 16;
         self.frames = self.frames.wrapping_add(1);
-        let (taxels, streams) = (self.plan.taxels(), self.plan.streams_of_one());
+        let (taxels, streams) = (self.plan.taxels(), self.plan.streams());
         let words = packet.iter().copied().chain(std::iter::repeat(0)).take(streams.whole_beats(packet.len()));
         let samples = streams.samples_of(words).take(taxels);
         // With a calibration in RAM these are pascals from here on.
@@ -137,7 +123,7 @@ impl<'plan> Model<'plan> {
             return self.blank(counter | NO_CONTACT);
         }
         let mut words = self.answer(counter | noted, &stress, saturated);
-        words[words::CENSUS] |= (self.replaced() as u32) << 16;
+        words[words::COUNTERS] |= (self.replaced() as u32) << 16;
         words
     }
 
@@ -205,11 +191,11 @@ impl<'plan> Model<'plan> {
         let search = products.iter().position(needs_friction).unwrap_or(products.len());
         let mut frame = frame(self.plan, integers, &scaled.stress);
         run(self.plan, integers, 0..search, [0, 0], &mut frame);
-        let bodies = self.count_bodies(&frame);
+        let contacts = self.count_contacts(&frame);
         let floor = self.noise_floor() << scaled.exponent;
         let (mut words, summary) = scalars(self.plan, counter, scaled, floor, saturated, &frame.sums, &frame.u);
-        words[words::CENSUS] |= bodies;
-        words[words::STATUS] |= if bodies > 1 { MORE_BODIES } else { 0 };
+        words[words::COUNTERS] |= contacts;
+        words[words::STATUS] |= if contacts > 1 { SEVERAL_CONTACTS } else { 0 };
         run(self.plan, integers, search..products.len(), summary.friction, &mut frame);
         if self.plan.has_field() {
             words.extend(self.field(&frame, summary.friction));
@@ -217,17 +203,17 @@ impl<'plan> Model<'plan> {
         (words, summary)
     }
 
-    /// Bodies of a frame whose weights are there: one, where the design does not count them.
-    fn count_bodies<const W: usize>(&self, frame: &Integers<'_, W>) -> u32 {
+    /// Contacts of a frame whose weights are there: one, where the design does not count them.
+    fn count_contacts<const W: usize>(&self, frame: &Integers<'_, W>) -> u32 {
         let Plan { design, formats, .. } = self.plan;
-        if !design.algorithm.count_bodies {
+        if !design.algorithm.count_contacts {
             return 1;
         }
         let weight = match formats.folded {
             None => frame.get(Vector::Weight).as_flattened(),
             Some(_) => &frame.weight,
         };
-        bodies::count(weight, design.sensor.columns)
+        contacts::count(weight, design.sensor.columns)
     }
 
     /// Forces of every taxel, from what the plan's products have left of them.
@@ -252,7 +238,7 @@ impl<'plan> Model<'plan> {
     }
 
     fn blank(&self, status: u32) -> Vec<u32> {
-        let mut words = vec![0; self.plan.streams_of_one().words_out];
+        let mut words = vec![0; self.plan.streams().words_out];
         words[0] = status;
         words
     }

@@ -16,8 +16,8 @@ pub const NOT_FINITE: u32 = Status::NOT_FINITE.0;
 pub const BAD_LENGTH: u32 = Status::FRAME_LENGTH.0;
 /// The error is above the design's limit.
 pub const DOUBTFUL: u32 = Status::DOUBTFUL.0;
-/// More bodies press than the one that is solved.
-pub const MORE_BODIES: u32 = Status::MORE_BODIES.0;
+/// More contacts than the one that is solved.
+pub const SEVERAL_CONTACTS: u32 = Status::SEVERAL_CONTACTS.0;
 /// A dead taxel was replaced.
 pub const REPLACED: u32 = Status::REPLACED.0;
 /// Too much of the stress is in replaced taxels.

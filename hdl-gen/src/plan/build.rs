@@ -5,7 +5,6 @@ use golden::estimators::DOUBT_FRACTION;
 use golden::matrices::Matrices;
 
 use super::calibration::CalibrationPlan;
-use super::contacts::{self, ContactsPlan};
 use super::counts::CountsPlan;
 use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
@@ -59,7 +58,6 @@ pub(super) struct Work {
     counts: Option<CountsPlan>,
     calibration: Option<CalibrationPlan>,
     dead: Option<DeadPlan>,
-    contacts: Option<ContactsPlan>,
     thresholds: Thresholds,
 }
 
@@ -67,9 +65,6 @@ impl Work {
     pub(super) fn new(design: &Design) -> Result<Self, PlanError> {
         let hardware = &design.hardware;
         let matrices = Matrices::of(design)?;
-        let contacts = ContactsPlan::new(design, &matrices)?;
-        let core = contacts::core(design);
-        let design = &*core;
         // What a frame can bring of it, so that a reading of just the full scale reaches the bound.
         let stress = Format::covering(hardware.full_scale_in_frames(), Factors::of(design).outside_bits());
         let thresholds = thresholds(design, stress)?;
@@ -84,18 +79,7 @@ impl Work {
         let Quantised { matrices: stored, formats, rounding_n, .. } = quantised;
         let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };
         check_force_resolution(design, &formats, condition, rounding_n)?;
-        Ok(Self {
-            condition,
-            nnz,
-            matrices: stored,
-            products,
-            formats,
-            counts,
-            calibration,
-            dead,
-            contacts,
-            thresholds,
-        })
+        Ok(Self { condition, nnz, matrices: stored, products, formats, counts, calibration, dead, thresholds })
     }
 
     /// Lays the work out on the lanes of `design`, which differs from the one it is of in nothing else.
@@ -117,7 +101,6 @@ impl Work {
             counts: self.counts.clone(),
             calibration: self.calibration.clone(),
             dead: self.dead.clone(),
-            contacts: self.contacts.clone(),
             thresholds: self.thresholds,
             estimator,
             operands: OperandLayout::new(&self.products, elements, ways as u32 * hardware.data_bits),
@@ -125,16 +108,7 @@ impl Work {
             timeline: Timeline::default(),
             resources: Resources::default(),
         };
-        if self.contacts.is_some() {
-            // Their number goes with their records.
-            plan.design.algorithm.count_bodies = false;
-        }
         plan.timeline = control::timeline(&plan);
-        if let Some(contacts) = plan.contacts.take() {
-            let core = std::mem::take(&mut plan.timeline);
-            plan.timeline = blocks::contacts::timeline(&plan.design, &core);
-            plan.contacts = Some(contacts.with_room(core, &plan.timeline));
-        }
         plan.resources = Resources::of(blocks::costs(&plan), DspBlock::of_part(&plan.design.hardware.part));
         plan
     }

@@ -20,17 +20,6 @@ pub enum PlanError {
          estimator = \"line\" and remove gain, tangential and correction"
     )]
     JointEstimator,
-    /// The hardware for several bodies does not go with something else that the design asks for.
-    #[error(
-        "[algorithm] contacts = {contacts}: hardware for several bodies needs {needs}; write that, or contacts = 1 (`golden \
-         solve` and the Python package's Solver tell up to {contacts} apart with this design as it is)"
-    )]
-    Contacts {
-        /// What the design asks for.
-        contacts: usize,
-        /// What goes with it.
-        needs: &'static str,
-    },
     /// The matrices of this geometry cannot be computed.
     #[error(transparent)]
     Matrix(#[from] MatrixError),

@@ -5,7 +5,6 @@
 
 mod build;
 pub mod calibration;
-pub mod contacts;
 mod control;
 pub mod counts;
 pub mod curve;
@@ -42,7 +41,6 @@ use serde::Serialize;
 
 use crate::estimators::EstimatorPlan;
 use calibration::CalibrationPlan;
-use contacts::ContactsPlan;
 use counts::CountsPlan;
 use dead::DeadPlan;
 pub use error::PlanError;
@@ -115,8 +113,6 @@ pub struct Plan {
     pub calibration: Option<CalibrationPlan>,
     /// Weights that replace the readings of dead taxels, if there are any.
     pub dead: Option<DeadPlan>,
-    /// What parts the forces of several bodies, if there may be several.
-    pub contacts: Option<ContactsPlan>,
     /// Status thresholds.
     pub thresholds: Thresholds,
     /// The estimator of friction: `CeAn`, and the search in Op.
@@ -177,14 +173,9 @@ impl Plan {
         Streams::of(&self.design)
     }
 
-    /// Words of every output frame: 16, for each record of a body 8, and for the field 3 m more.
+    /// Words of every output frame: 16, and for the field 3 m more.
     pub fn words_out(&self) -> usize {
         self.streams().words_out
-    }
-
-    /// Those of the core for one body.
-    pub fn streams_of_one(&self) -> Streams {
-        if self.contacts.is_some() { Streams::of(&contacts::core(&self.design)) } else { self.streams() }
     }
 
     /// Words of the field in an output frame: 3 m, or none.
@@ -195,9 +186,9 @@ impl Plan {
         }
     }
 
-    /// Whether the core computes the field: with several bodies always, as it parts them.
+    /// Whether the core computes the field.
     pub fn has_field(&self) -> bool {
-        self.design.algorithm.outputs == Outputs::Field || self.contacts.is_some()
+        self.design.algorithm.outputs == Outputs::Field
     }
 
     /// Index of the first product of `block`, and of the first after it.

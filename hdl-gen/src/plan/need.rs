@@ -14,8 +14,7 @@ impl Plan {
     /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
     ///
     /// # Errors
-    /// [`PlanError`] if the plan has no hardware for the estimator, or for several bodies with what else is asked for, the
-    /// geometry is singular, the filter empties a matrix, the widths are too small, or no number of lanes meets the target.
+    /// [`PlanError`] if the plan has no hardware for the estimator, the geometry is singular, the filter empties a matrix, the widths are too small, or no number of lanes meets the target.
     pub fn new(design: &Design) -> Result<Self, PlanError> {
         if !estimators::has_hardware(design) {
             return Err(PlanError::JointEstimator);

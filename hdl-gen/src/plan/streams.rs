@@ -3,7 +3,6 @@
 use golden::design::{CalibrationIn, Design, InputRange, Outputs, Overrun, PlanKind, Samples};
 
 use super::SUMMARY_WORDS;
-use super::words::RECORD_WORDS;
 
 /// Bits of a word of the output, and of memory.
 pub const WORD_BITS: usize = 32;
@@ -28,10 +27,8 @@ pub struct Streams {
     pub sample: Samples,
     /// Its bits.
     pub sample_bits: usize,
-    /// Words of every output frame: 16, for each record of a body 8, and for the field 3 m more.
+    /// Words of every output frame: 16, and for the field 3 m more.
     pub words_out: usize,
-    /// Records of bodies among them.
-    pub records: usize,
     /// How samples get to the lanes.
     pub intake: Intake,
     /// Whether a frame that finds no room is dropped, and the source never held.
@@ -47,11 +44,7 @@ impl Streams {
             Outputs::Field => 3 * taxels,
             Outputs::Resultants => 0,
         };
-        let records = match design.algorithm.contacts {
-            0 | 1 => 0,
-            contacts => contacts,
-        };
-        let words_out = SUMMARY_WORDS + RECORD_WORDS * records + field;
+        let words_out = SUMMARY_WORDS + field;
         let sample = design.hardware.samples;
         let [bits, sample_bits] = [design.hardware.stream_bits, sample.bits()].map(|bits| bits as usize);
         let intake = if bits == sample_bits {
@@ -66,7 +59,7 @@ impl Streams {
             Intake::Whole
         };
         let drops = design.hardware.overrun == Overrun::Drop;
-        Self { bits, sample, sample_bits, words_out, records, intake, drops, taxels }
+        Self { bits, sample, sample_bits, words_out, intake, drops, taxels }
     }
 
     /// Words of a beat.
@@ -129,14 +122,6 @@ impl Streams {
     /// Words of the beats that so many words fill, the last one with zeros.
     pub fn whole_beats(self, words: usize) -> usize {
         words.next_multiple_of(self.words())
-    }
-
-    /// The words of a packet one by one, as `sptfra_unpack` hands samples of a word on: of a frame without what fills its last
-    /// beat, of one with too many beats a word for each of them.
-    pub fn unpacked(self, packet: &[u32]) -> Vec<u32> {
-        let (beats, all) = (packet.len().div_ceil(self.words()), self.beats_in());
-        let count = if beats < all { beats * self.words() } else { self.taxels + beats - all };
-        packet.iter().copied().chain(std::iter::repeat(0)).take(count).collect()
     }
 
     /// Whether a packet of so many words has the beats of a frame.

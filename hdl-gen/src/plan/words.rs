@@ -58,8 +58,8 @@ pub const MU: usize = 8;
 pub const MU_XY: usize = 10;
 /// Standard error.
 pub const STANDARD_ERROR: usize = 12;
-/// Bodies, generation of the calibration, replaced taxels.
-pub const CENSUS: usize = 13;
+/// Contacts, generation of the calibration, replaced taxels.
+pub const COUNTERS: usize = 13;
 
 /// All values, in order; words that no value names are 0.
 pub const SUMMARY: [Word; 17] = [
@@ -77,25 +77,9 @@ pub const SUMMARY: [Word; 17] = [
     Word::float("mu_x", MU_XY, ""),
     Word::float("mu_y", MU_XY + 1, ""),
     Word::float("standard_error", STANDARD_ERROR, "N"),
-    Word::number("bodies", CENSUS, [7, 0], ""),
-    Word::number("generation", CENSUS, [15, 8], ""),
-    Word::number("replaced_taxels", CENSUS, [23, 16], "taxels"),
-];
-
-/// Words of the record of a body.
-pub const RECORD_WORDS: usize = 8;
-
-/// The values of a record, by their places in it; a body that is not there has zeros. The one that presses most comes first.
-pub const RECORD: [Word; 9] = [
-    Word::number("taxels", 0, [15, 0], "taxels"),
-    Word { name: "status", index: 0, bits: [31, 16], kind: Kind::Flags, unit: "" },
-    Word::float("x", 1, "m"),
-    Word::float("y", 2, "m"),
-    Word::float("F_x", 3, "N"),
-    Word::float("F_y", 4, "N"),
-    Word::float("F_z", 5, "N"),
-    Word::float("mu", 6, ""),
-    Word::float("standard_error", 7, "N"),
+    Word::number("contacts", COUNTERS, [7, 0], ""),
+    Word::number("generation", COUNTERS, [15, 8], ""),
+    Word::number("replaced_taxels", COUNTERS, [23, 16], "taxels"),
 ];
 
 /// The status bits that there are, as `(bit, name)`.

@@ -54,7 +54,7 @@ fn standing() -> Vec<Plan> {
         (7, 5, "plan = \"paper\"\n[hardware]\nstream_bits = 64"),
         (7, 5, "plan = \"reduced\"\n[hardware]\nstream_bits = 128\ncontrol = true"),
         (5, 9, "plan = \"paper\"\n[hardware]\nlanes = 128\npart = \"LFE5U-85F-6BG381C\""),
-        (7, 5, "plan = \"reduced\"\ncontacts = 2\n[hardware]\nstream_bits = 64\noverrun = \"drop\"\ncontrol = true"),
+        (7, 5, "plan = \"reduced\"\n[hardware]\nstream_bits = 64\noverrun = \"drop\"\ncontrol = true"),
     ] {
         let more = format!("[algorithm]\n{keys}");
         plans.push(plan(&design_text("array", [columns, rows], [4.0, 4.0], 3.0, &more)));

@@ -73,39 +73,28 @@ fn from_a_new_design_to_a_folder() {
     assert_eq!(beside.len(), 1, "nothing is left beside the folder");
 }
 
-/// Hardware for several bodies does not go with everything: who asks for it is told what works, and what to change.
+/// `contacts` is for software: hardware, its figures and its files are those of a design for one contact.
 #[test]
-fn several_bodies_are_inspected_and_generated_with_what_goes_with_them() {
+fn several_contacts_change_no_hardware() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    let one = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "");
-    let several = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "[algorithm]\ncontacts = 3\n");
-    let dead = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "dead = [3]\n[algorithm]\ncontacts = 3\n");
-    fs::write(here.join("one.toml"), &one).unwrap();
-    fs::write(here.join("several.toml"), &several).unwrap();
-    fs::write(here.join("dead.toml"), &dead).unwrap();
-    fs::write(here.join("dead_one.toml"), dead.replace("contacts = 3", "contacts = 1")).unwrap();
-    let refused = hdl_gen(here, &["generate", "dead.toml"]);
-    assert!(!refused.status.success());
-    let said = String::from_utf8(refused.stderr).unwrap();
-    for part in ["dead.toml", "contacts = 3", "golden solve", "Python", "no [sensor] dead", "or contacts = 1"] {
-        assert!(said.contains(part), "no {part:?} in: {said}");
-    }
-    assert!(said.lines().count() == 1 && !here.join("rtl-out").exists(), "{said}");
-    let [of_one, of_several] = ["dead_one.toml", "dead.toml"].map(|name| good(here, &["inspect", name]));
-    let remark = of_several.lines().find(|line| line.contains("contacts 3")).expect("a remark");
-    assert!(remark.contains("contacts = 1"), "{remark}");
-    assert_eq!(of_several.replacen(&format!("{remark}\n"), "", 1), of_one, "all else is that of one body");
-    let json: serde_json::Value = serde_json::from_str(&good(here, &["inspect", "several.toml", "--json"])).unwrap();
-    assert_eq!(json["contacts"], 3);
-    let said = good(here, &["inspect", "several.toml"]);
-    assert!(said.contains("up to 3 told apart"), "{said}");
-    good(here, &["generate", "several.toml", "--out", "out"]);
-    let metadata = fs::read_to_string(here.join("out/metadata.json")).unwrap();
-    let metadata: serde_json::Value = serde_json::from_str(&metadata).unwrap();
-    let body = metadata["output"].as_array().unwrap().iter().find(|entry| entry["name"] == "body").expect("records");
-    assert_eq!([&body["index"], &body["count"], &body["words"], &metadata["beats_out"]], [16, 3, 8, 16 + 24 + 36]);
-    assert!(!good(here, &["inspect", "one.toml", "--json"]).contains("contacts"));
+    let of = |keys: &str| design_text("pad", [4, 3], [4.0, 2.0], 3.0, &format!("dead = [3]\n[algorithm]\n{keys}"));
+    fs::write(here.join("one.toml"), of("count_contacts = true\n")).unwrap();
+    fs::write(here.join("several.toml"), of("count_contacts = true\ncontacts = 3\n")).unwrap();
+    let [one, several] = ["one.toml", "several.toml"].map(|name| good(here, &["inspect", name]));
+    let line = |text: &str| text.lines().find(|line| line.contains("  contacts ")).expect("a line").to_owned();
+    assert!(line(&several).contains("counted in ") && line(&several).contains("up to 3 separated by software"));
+    assert_eq!(several.replace(&line(&several), &line(&one)), one);
+    let json =
+        |name: &str| -> serde_json::Value { serde_json::from_str(&good(here, &["inspect", name, "--json"])).unwrap() };
+    assert_eq!(json("several.toml")["contacts"], 3);
+    assert!(json("one.toml").get("contacts").is_none());
+    let files = ["one", "several"].map(|name| {
+        good(here, &["generate", &format!("{name}.toml"), "--out", name]);
+        contents(&here.join(name))
+    });
+    let [one, several] = files.each_ref().map(|files| files.iter().filter(|(path, _)| path.starts_with('r')));
+    assert!(one.eq(several), "Verilog and ROM files differ");
 }
 
 /// Deeper than 1.5 pitches a new design is regularised: without it there would be no hardware.
@@ -129,8 +118,8 @@ fn new_design(options: &[&str]) -> golden::design::Design {
 fn the_new_designs_values_are_the_defaults() {
     let text = design_text("full", [10, 10], [4.0, 2.0], 3.0, "");
     let mut defaults = golden::design::Design::from_toml(&text, "full.toml").unwrap();
-    // But for the count of bodies, which designs without a word of it never had.
-    defaults.algorithm.count_bodies = true;
+    // But for the count of contacts, which designs without a word of it never had.
+    defaults.algorithm.count_contacts = true;
     // And for each frame's own range, likewise.
     defaults.hardware.range = InputRange::Frame;
     assert_eq!(new_design(&["--estimator", "line"]), defaults);

@@ -51,11 +51,11 @@ fn what_was_not_said_is_told() {
 
 /// What docs/estimators.md says of a new design beside `sensor1-fast`, which has neither.
 #[test]
-fn a_range_for_each_frame_and_counted_bodies_cost_some_latency() {
+fn a_range_for_each_frame_and_counted_contacts_cost_some_latency() {
     let (_, design) = new(&[]);
     let mut plain = design.clone();
     plain.hardware.range = InputRange::FullScale;
-    plain.algorithm.count_bodies = false;
+    plain.algorithm.count_contacts = false;
     let [new, plain] = [design, plain].map(|design| Plan::new(&design).unwrap().timeline);
     assert_eq!([new.latency_cycles - plain.latency_cycles, new.interval_cycles], [31, plain.interval_cycles]);
 }

@@ -75,7 +75,7 @@ impl<'a> Single<'a> {
             mu: f64::from(mu),
             phi: f64::from(y.atan2(x)),
             mu_xy: [f64::from(mu_x), f64::from(mu_y)],
-            bodies: 1,
+            contacts: 1,
             field,
             ..Answer::default()
         }

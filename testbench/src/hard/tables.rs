@@ -175,9 +175,9 @@ pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
          * **backward**: `|A f − b| / (|A| |f| + |b|)`, the largest.\n\
          * **e_F∥, e_Fz**: largest errors of the tangential and the normal resultant in % of the true normal force. \
          They are those of the estimator and the kernel where f64 has them too. Of the two contacts they are the errors of \
-         each over its own normal force, the length of that along the surface, by f64 and by the hardware with `contacts = 2`; \
-         all else in these rows is of hardware that counts the bodies, says so and solves them as one, whose forces next to \
-         cancel each other.\n\
+         each over its own normal force, the length of that along the surface, by f64 with `contacts = 2`. \
+         All else in these rows is of hardware, which counts the contacts, marks the frame and solves it as one contact. \
+         The forces of the two next to cancel each other.\n\
          * **wide**: the hardware of 27 × 35 bits, two multipliers a lane, with `range = \"frame\"`; its RTL is simulated \
          elsewhere. See [as exact as float32](choosing.md#as-exact-as-float32) for who wants it and where it ends.\n\
          * **field**: largest difference of a taxel's force to that of f64, relative to the largest |f_z|. **At its µ**: the \

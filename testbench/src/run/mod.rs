@@ -11,11 +11,11 @@ use golden::solver::{Solver, SolverError as SolveError};
 use hdl_gen::plan::Plan;
 use thiserror::Error;
 
-use crate::accuracy::{SolverError, StatusCounts, against_true_bodies, against_truth, by_bodies};
+use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
 use crate::registers;
 use crate::simulate::frames_to_simulate;
-use crate::stream_words::{Answer, as_received, decode_bodies, packets};
+use crate::stream_words::{Answer, as_received, decode, packets};
 use crate::trial::{Trial, TrialError, planned, rtl_sources};
 use crate::verilate::{Trace, Verilate, verilator_version};
 use crate::waves;
@@ -79,7 +79,7 @@ pub fn run_plan(
     let sources = rtl_sources(plan)?;
     progress.stage("computing what the hardware must answer");
     let trial = Trial::new(plan, packets(plan.streams(), &frames.stress), options.seed);
-    let solver = Solver::new(&plan.design)?;
+    let solver = Solver::new(&plan.design.solved_as_one())?;
     let solutions = trial
         .packets
         .iter()
@@ -100,9 +100,7 @@ pub fn run_plan(
     };
 
     // Answers of another length are mismatches already; here they count as missing.
-    let records = plan.streams().records;
-    let answers = verdict.simulation.answers.iter().filter_map(|words| decode_bodies(words, records));
-    let answers: Vec<Answer> = answers.collect();
+    let answers: Vec<Answer> = verdict.simulation.answers.iter().filter_map(|words| decode(words)).collect();
     let simulator = verilator_version().map_err(TrialError::from)?;
     let mut report = Report::new(plan, &verdict, registers, simulator);
     report.frames_from.clone_from(&frames.origin);
@@ -114,10 +112,6 @@ pub fn run_plan(
         }
     }
     report.status_counts = StatusCounts::new(&answers);
-    if records > 0 {
-        report.body_counts = Some(by_bodies(&answers));
-        report.true_body_errors = frames.bodies.as_ref().map(|truth| against_true_bodies(&answers, truth));
-    }
     report.true_force_errors = frames.truth.as_ref().map(|truth| against_truth(&answers, truth));
     Ok(report)
 }

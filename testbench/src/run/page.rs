@@ -1,6 +1,6 @@
 //! A report as a page of text. Without colours: it reads the same in a file.
 
-use golden::metrics::{BodyErrors, ERROR_NAMES, Quantiles};
+use golden::metrics::ERROR_NAMES;
 
 use super::report::{Published, Report};
 use crate::figures::{decimals, grouped};
@@ -70,13 +70,6 @@ fn speed(page: &mut String, report: &Report) {
     if let Some(them) = published {
         line(page, &format!("  published: {}", them.what));
     }
-    if !report.body_cycles.is_empty() {
-        let rows = report.body_cycles.iter().map(|of| {
-            let cycles = [of.latency_cycles, of.interval_cycles];
-            row(&of.bodies.to_string(), [grouped(cycles[0]), grouped(cycles[1]), rate(cycles[1])])
-        });
-        section(page, "Cycles by bodies, simulated", &["latency", "interval", "frames per second"], rows);
-    }
 }
 
 fn streams(page: &mut String, report: &Report) {
@@ -107,71 +100,25 @@ fn registers(page: &mut String, report: &Report) {
 
 fn accuracy(page: &mut String, report: &Report) {
     let largest = |name: &str, error: f64, of: &str| row(name, [format!("{error:.2e}"), of.to_owned()]);
-    let mut rows = vec![
+    let rows = [
         largest("resultants", report.error.resultant_max, "|F_z|"),
         largest("force field", report.error.field_max, "max |f_z|"),
     ];
-    if let Some(bodies) = &report.error.bodies {
-        rows.push(largest("forces of bodies", bodies.force_max, "their |F_z|"));
-        rows.push(largest("std. errors of bodies", bodies.standard_error_max, "their |F_z|"));
-        rows.push(largest("centres of bodies", bodies.centre_mm_max, "1 mm"));
-    }
     section(page, "Error against f64", &["largest", "relative to"], rows);
-    if let Some(bodies) = report.error.bodies.filter(|bodies| bodies.alike < bodies.frames) {
-        let [alike, frames] = [bodies.alike, bodies.frames].map(|count| grouped(count as u64));
-        line(page, &format!("  bodies: of the {alike} of {frames} frames that have as many as f64 finds"));
-    }
     if let Some(errors) = &report.true_force_errors {
         let spreads = ERROR_NAMES.iter().zip(errors.spreads());
         let rows =
             spreads.map(|(name, spread)| row(name, [spread.max, spread.standard_error].map(|of| decimals(of, 2))));
         section(page, "Error against true forces", &["largest, %", "std. error, %"], rows);
     }
-    if let Some(errors) = &report.true_body_errors {
-        bodies(page, errors);
-    }
-    if let Some(counts) = &report.body_counts {
-        let rows = counts.iter().map(|(count, frames)| row(&count.to_string(), [grouped(*frames as u64)]));
-        section(page, "Frames by bodies", &["frames"], rows);
-    }
     let counts = report.status_counts.present();
     let rows = counts.into_iter().map(|(name, count)| row(name, [grouped(count as u64)]));
     section(page, "Frames by status", &["frames"], rows);
 }
 
-/// Errors of each body's forces over its own normal force, and of where that acts.
-fn bodies(page: &mut String, errors: &BodyErrors) {
-    let of = |name: &str, Quantiles { median, most, worst }| row(name, [median, most, worst].map(|of| decimals(of, 2)));
-    if errors.right > 0 {
-        let rows = [
-            of("along the surface, %", errors.tangential),
-            of("normal, %", errors.normal),
-            of("centre, mm", errors.centre_mm),
-        ];
-        section(page, "Error of each body", &["median", "95 %", "worst"], rows);
-    } else {
-        line(page, "");
-    }
-    let [right, frames] = [errors.right, errors.frames].map(|count| grouped(count as u64));
-    let within = match errors.within {
-        share if share.is_finite() => {
-            format!("; {} % of the errors along the surface within 2 std. errors", decimals(share, 1))
-        }
-        _ => String::new(),
-    };
-    line(page, &format!("  {right} of {frames} frames have the right number of bodies{within}"));
-}
-
-/// Whether no frame of a design that tells bodies apart has one body.
-fn without_one(report: &Report) -> bool {
-    report.body_counts.as_ref().is_some_and(|counts| !counts.contains_key(&1))
-}
-
 fn verdict(page: &mut String, report: &Report) {
     *page += &rule(NAMES + COLUMNS * VALUES);
-    // Of frames of one body; of others it would not be true.
-    let published = report.published.filter(|_| !without_one(report));
-    let times = published.map_or_else(String::new, |them| {
+    let times = report.published.map_or_else(String::new, |them| {
         let factor = 1000.0 * them.milliseconds / report.microseconds.latency;
         format!(", {} times as fast as {}", grouped(factor.round() as u64), them.what)
     });
@@ -194,13 +141,8 @@ fn verdict(page: &mut String, report: &Report) {
     if let [activity] = &report.traces[..] {
         line(page, &format!("Activity of the nets in {}, for vivado/power.tcl.", activity.display()));
     }
-    if without_one(report) {
-        line(page, "No frame has one body, for which the cycles are predicted: they are of others that do.");
-    }
     match report.timing {
         Timing::AsPredicted => {}
-        // Without zeros passed over it is a frame without one body, see above.
-        Timing::WithinBound if !report.predicted.worst_case => {}
         Timing::WithinBound => {
             line(page, "Zeros were passed over: the predicted cycles are those of a frame without any.");
         }

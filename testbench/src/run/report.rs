@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use golden::design::Filter;
-use golden::metrics::{BodyErrors, ErrorSummary};
+use golden::metrics::ErrorSummary;
 use hdl_gen::plan::Plan;
 use serde::Serialize;
 
 use crate::accuracy::{SolverError, StatusCounts};
 use crate::compare::Mismatch;
 use crate::registers::RegisterReport;
-use crate::simulate::{BodyCycles, ModeResult};
+use crate::simulate::ModeResult;
 use crate::trial::{Timing, Verdict};
 
 /// The published hardware of the method with a filter, for one frame of a 10 × 10 sensor (Pinto-Salamanca et al., Sensors
@@ -122,9 +122,6 @@ pub struct Report {
     pub latency_cycles: u64,
     /// Measured: between the last beats of consecutive frames, sent back to back.
     pub interval_cycles: u64,
-    /// The same of frames of several bodies, by their number.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub body_cycles: Vec<BodyCycles>,
     /// Predicted by the plan.
     pub predicted: Predicted,
     /// The measured cycles at the design's clock.
@@ -136,12 +133,6 @@ pub struct Report {
     pub true_force_errors: Option<ErrorSummary>,
     /// Frames by status bit.
     pub status_counts: StatusCounts,
-    /// Frames by the number of bodies in them, of a design that tells bodies apart.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub body_counts: Option<BTreeMap<usize, usize>>,
-    /// Each body's forces and centre against the true ones, of such a design; absent if they are not known.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub true_body_errors: Option<BodyErrors>,
     /// The cycles beside the predicted ones.
     pub timing: Timing,
     /// All that is wrong, in words; nothing if the hardware is right.
@@ -201,7 +192,6 @@ impl Report {
             mismatches: simulation.mismatches(),
             latency_cycles: simulation.cycles.latency,
             interval_cycles: simulation.cycles.interval,
-            body_cycles: simulation.several.clone(),
             predicted: Predicted {
                 latency_cycles: predicted.latency,
                 interval_cycles: predicted.interval,
@@ -218,8 +208,6 @@ impl Report {
             error: SolverError::default(),
             true_force_errors: None,
             status_counts: StatusCounts::default(),
-            body_counts: None,
-            true_body_errors: None,
             modes: simulation.modes.iter().map(ModeReport::from).collect(),
             registers,
             traces: Vec::new(),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use hdl_gen::model::{DROPPED, Model};
-use hdl_gen::plan::{Plan, words};
+use hdl_gen::plan::Plan;
 
 use super::log::{Banks, Log};
 use super::{Kind, Report};
@@ -40,9 +40,6 @@ pub fn judge(
             banks.as_mut().map_or(Ok(()), |banks| banks.follow(exchange, &mut model))?;
             check(plan, exchange, kinds, packets, &mut model, !dropped.is_empty())?;
             report.answered.add(kinds[next]);
-            if plan.contacts.is_some() {
-                report.add_bodies((exchange.words[words::CENSUS] & 0xFF) as usize, 1);
-            }
             sent.next();
         }
         let to_the_end = resets == outcome.resumed.len();

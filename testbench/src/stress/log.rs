@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use hdl_gen::model::Model;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::calibration::Bank;
-use hdl_gen::plan::words::CENSUS;
+use hdl_gen::plan::words::COUNTERS;
 use serde::Serialize;
 
 use crate::stream::{Exchange, Outcome};
@@ -104,7 +104,7 @@ impl<'a> Banks<'a> {
     /// It goes back or there is no such generation, the frame began when another one acted already, or no frames are
     /// there that a tare can have made its bank of.
     pub fn follow(&mut self, exchange: &Exchange, model: &mut Model<'_>) -> Result<(), String> {
-        let Some(census) = exchange.words.get(CENSUS) else { return Ok(()) };
+        let Some(census) = exchange.words.get(COUNTERS) else { return Ok(()) };
         let (packet, stated) = (exchange.packet, (census >> 8) as u8);
         let generation = self.acts + usize::from(stated.wrapping_sub(self.acts as u8));
         let last = self.log.acting.len() - 1;
@@ -224,8 +224,8 @@ mod tests {
     fn generations_that_cannot_be_are_found() {
         type Fault = fn(&mut Vec<Exchange>, &mut Log);
         let faults: [(&str, Fault); 6] = [
-            ("generation 3 (modulo 256) after 2 of 2", |answers, _| answers[5].words[CENSUS] += 1 << 8),
-            ("generation 0 (modulo 256) after 1 of 2", |answers, _| answers[3].words[CENSUS] -= 1 << 8),
+            ("generation 3 (modulo 256) after 2 of 2", |answers, _| answers[5].words[COUNTERS] += 1 << 8),
+            ("generation 0 (modulo 256) after 1 of 2", |answers, _| answers[3].words[COUNTERS] -= 1 << 8),
             ("packet 3: generation 1, though the next one acts", |answers, _| answers[3].first_in = 350),
             ("packet 3 differs", |answers, _| answers[3].words[0] ^= 1),
             ("packet 4: no 2^1 frames", |_, log| log.acting[2].what = What::Tare { log2: 1, crc: 5 }),

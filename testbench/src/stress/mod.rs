@@ -65,9 +65,6 @@ pub struct Report {
     pub dropped: Counts,
     /// Packets inside, or on their way in, when a reset came.
     pub lost_to_resets: Counts,
-    /// Answers by the number of bodies that they state, from none on; of a design for one: nothing.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub bodies: Vec<u64>,
     /// Resets in the middle of the traffic.
     pub resets: u64,
     /// Cycles simulated.
@@ -83,19 +80,11 @@ impl Report {
         self.answered = self.answered.plus(other.answered);
         self.dropped = self.dropped.plus(other.dropped);
         self.lost_to_resets = self.lost_to_resets.plus(other.lost_to_resets);
-        other.bodies.iter().enumerate().for_each(|(bodies, &answers)| self.add_bodies(bodies, answers));
         self.resets += other.resets;
         self.cycles += other.cycles;
         if let Some(commits) = other.calibration {
             self.calibration = Some(self.calibration.unwrap_or_default().plus(commits));
         }
-    }
-
-    fn add_bodies(&mut self, bodies: usize, answers: u64) {
-        if self.bodies.len() <= bodies {
-            self.bodies.resize(bodies + 1, 0);
-        }
-        self.bodies[bodies] += answers;
     }
 }
 
@@ -121,10 +110,6 @@ impl fmt::Display for Report {
         for (name, counts) in rows.into_iter().filter(|(name, counts)| *name != "dropped" || counts.total() > 0) {
             let Counts { good, short, long, not_finite } = counts;
             writeln!(out, "{name:>16} {good:>10} {short:>10} {long:>10} {not_finite:>10}")?;
-        }
-        if !self.bodies.is_empty() {
-            let answers: Vec<String> = self.bodies.iter().map(u64::to_string).collect();
-            writeln!(out, "answers of no body, of one, of two and so on: {}", answers.join(", "))?;
         }
         let Some(Commits { banks, banks_refused, tares, tares_refused, lost_to_resets }) = self.calibration else {
             return Ok(());

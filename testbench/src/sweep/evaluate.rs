@@ -17,7 +17,7 @@ use super::point::{AgainstSolver, Calibration, Geometry, Hardware, Point, Verifi
 use super::{SweepError, SweepScene};
 use crate::accuracy::{SolverError, StatusCounts, against_truth};
 use crate::frame_set::FrameSet;
-use crate::stream_words::{Answer, as_received, decode_bodies, packets};
+use crate::stream_words::{Answer, as_received, decode, packets};
 use crate::trial::{Trial, model_answers, planned};
 
 /// Decides the pauses of the streams and the registers' random start.
@@ -67,8 +67,7 @@ pub fn evaluate(job: &Job, scene: &SweepScene, proof: &Proof<'_>) -> Result<Poin
         verdict.right().map_err(|fault| SweepError::NotExact { label: job.label(scene), fault: fault.into() })?;
         point.verified = Verified::Rtl;
     }
-    let answers: Vec<Answer> =
-        trial.expected.iter().filter_map(|words| decode_bodies(words, plan.streams().records)).collect();
+    let answers: Vec<Answer> = trial.expected.iter().filter_map(|words| decode(words)).collect();
     let error = SolverError::new(&answers, &solutions);
     let bounded = |value: f64| value.is_finite().then_some(value);
     point.against_solver =
@@ -146,6 +145,5 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 pub fn answers(design: &Design, frames: &FrameSet) -> Result<Vec<Answer>, SweepError> {
     let plan = planned(design).map_err(|error| SweepError::Run { label: design.name.clone(), source: error.into() })?;
     let packets = packets(plan.streams(), &frames.clone().as_delivered(design).stress);
-    let records = plan.streams().records;
-    Ok(model_answers(&plan, &packets).iter().filter_map(|words| decode_bodies(words, records)).collect())
+    Ok(model_answers(&plan, &packets).iter().filter_map(|words| decode(words)).collect())
 }

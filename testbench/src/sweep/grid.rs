@@ -149,8 +149,8 @@ pub fn jobs(designs: &[Design], axes: &Axes, scenes: &mut Vec<SweepScene>, kinds
     if jobs.is_empty() { Err(SweepError::NoPoints) } else { Ok(jobs) }
 }
 
-/// The design under the name of all points, and for one body: what more of them cost depends on the frame, and how well
-/// they are told apart is said beside the points.
+/// The design under the name of all points, and for one contact: how well several are separated is said
+/// beside the points.
 fn normal(design: &Design) -> Design {
     let mut normal = Design { name: NAME.to_owned(), ..design.clone() };
     normal.algorithm.contacts = 1;

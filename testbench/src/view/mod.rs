@@ -4,7 +4,6 @@ mod page;
 mod range;
 mod terminal;
 
-use golden::bodies::Body;
 use golden::design::Design;
 use golden::sensor::Sensor;
 use golden::solver::Status;
@@ -15,7 +14,7 @@ use thiserror::Error;
 
 use crate::field_plot::{self, Truth};
 use crate::frame_set::FrameSet;
-use crate::stream_words::{Answer, decode_bodies};
+use crate::stream_words::{Answer, decode};
 use golden::progress::Progress;
 use page::Look;
 pub use range::FrameRange;
@@ -72,40 +71,9 @@ struct Json<'a> {
     phi: f64,
     mu_x: f64,
     mu_y: f64,
-    /// Of a design that tells bodies apart: how many there are, and the record of each.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    bodies: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    records: Option<Vec<Record>>,
     /// Not there if the design puts out resultants only.
     #[serde(skip_serializing_if = "Option::is_none")]
     field: Option<Field<'a>>,
-}
-
-/// A body, as in the output stream.
-#[derive(Serialize)]
-struct Record {
-    taxels: usize,
-    status: u32,
-    /// Centre in m from the first taxel.
-    x: f64,
-    y: f64,
-    #[serde(rename = "F_x")]
-    force_x: f64,
-    #[serde(rename = "F_y")]
-    force_y: f64,
-    #[serde(rename = "F_z")]
-    force_z: f64,
-    mu: f64,
-    standard_error: f64,
-}
-
-impl From<&Body> for Record {
-    fn from(body: &Body) -> Self {
-        let Body { taxels, status, centre_m: [x, y], force: [force_x, force_y, force_z], mu, standard_error, .. } =
-            *body;
-        Self { taxels, status: status.0, x, y, force_x, force_y, force_z, mu, standard_error }
-    }
 }
 
 #[derive(Serialize)]
@@ -149,7 +117,6 @@ impl View {
     fn json(&self) -> Json<'_> {
         let Answer { status, resultant: [force_x, force_y, force_z], mu, phi, mu_xy: [mu_x, mu_y], .. } = self.answer;
         let [x, y, z] = &self.answer.field;
-        let tells = !self.answer.records.is_empty();
         Json {
             design: &self.design,
             origin: &self.origin,
@@ -164,8 +131,6 @@ impl View {
             phi,
             mu_x,
             mu_y,
-            bodies: tells.then_some(self.answer.bodies),
-            records: tells.then(|| self.answer.told_apart().iter().map(Record::from).collect()),
             field: (!z.is_empty()).then_some(Field { x, y, z }),
         }
     }
@@ -211,7 +176,7 @@ pub fn frames(
             stress: stress.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect(),
             truth: frames.truth_of(frame),
             // The model's answers have the length that it was made for.
-            answer: decode_bodies(&words, plan.streams().records).unwrap_or_default(),
+            answer: decode(&words).unwrap_or_default(),
         }
     };
     Ok(range.map(view).collect())
@@ -244,11 +209,6 @@ mod tests {
         assert_eq!((alone.svg(), alone.largest()), (None, 0.0));
         let read = |views: &[View]| serde_json::from_str::<serde_json::Value>(&json(views).unwrap()).unwrap();
         let one = read(&[alone]);
-        assert!(one.get("records").is_none() && one.get("bodies").is_none(), "{one}");
-        let body = Body { force: [0.0, 0.0, -2.0], centre_m: [0.01, 0.02], ..Body::default() };
-        let several = read(&[view(Answer { bodies: 1, records: vec![body, Body::default()], ..answer(&[]) })]);
-        assert_eq!((&several["bodies"], several["records"].as_array().map(Vec::len)), (&1.into(), Some(1)));
-        assert!(several["records"][0]["F_z"] == -2.0 && several["records"][0]["y"] == 0.02, "{several}");
         assert!(one.get("field").is_none() && one["F_z"] == -3.0 && one["mu_y"] == 0.4, "{one}");
         let two = read(&[view(answer(&[[1.0, 2.0, 3.0]])), view(answer(&[]))]);
         assert_eq!((&two[0]["field"]["f_y"], &two[1]["frame"]), (&serde_json::json!([2.0]), &serde_json::json!(3)));

@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use golden::bodies::Body;
 use golden::solver::Status;
 
 use crate::stream_words::Answer;
@@ -52,12 +51,6 @@ pub fn render(title: &str, answer: &Answer, columns: usize, look: Look) -> Strin
         answer.phi.to_degrees(),
         Status(answer.status)
     );
-    for (number, body) in (1..).zip(answer.told_apart()) {
-        let _ = writeln!(text, "{}", line_of(number, body));
-    }
-    if answer.bodies > answer.told_apart().len() && !answer.records.is_empty() {
-        let _ = writeln!(text, "{} bodies: more than the design has records for", answer.bodies);
-    }
     let [fx, fy, fz] = &answer.field;
     if fx.is_empty() {
         text.push_str("No field: the design puts out resultants only.\n");
@@ -88,17 +81,6 @@ pub fn render(title: &str, answer: &Answer, columns: usize, look: Look) -> Strin
     }
     text.push('\n');
     text
-}
-
-/// What is known of a body.
-fn line_of(number: usize, body: &Body) -> String {
-    let ([x, y, z], [across, along]) = (body.force, body.centre_m.map(|metres| 1e3 * metres));
-    let error = if body.standard_error > 0.0 { format!(" ± {:.3}", body.standard_error) } else { String::new() };
-    let status = if body.status.0 == 0 { String::new() } else { format!("   {}", body.status) };
-    format!(
-        "body {number} at ({across:.1}, {along:.1}) mm: F = ({x:.3}, {y:.3}, {z:.3}){error} N   mu = {:.3}   {} taxels{status}",
-        body.mu, body.taxels
-    )
 }
 
 /// A taxel on the page: arrow, shear, normal force; or one of them.
@@ -156,31 +138,6 @@ mod tests {
         assert!(lines[1].starts_with("F = (1.000, 2.000, -3.000) N   mu = 0.500   phi = 57.3°"), "{}", lines[1]);
         assert!(!page.contains('\x1b'));
         assert!(lines[4..].iter().all(|line| line.chars().count() == width(2)));
-    }
-
-    #[test]
-    fn each_body_has_a_line() {
-        let mut answer = super::super::tests::answer(&[[0.0; 3]; 2]);
-        let heavy = Body {
-            taxels: 9,
-            centre_m: [0.01, 0.0205],
-            force: [0.5, 0.0, -2.0],
-            mu: 0.25,
-            standard_error: 0.0314,
-            ..Body::default()
-        };
-        let light = Body { taxels: 1, status: Status::DOUBTFUL, standard_error: 0.0, ..heavy };
-        (answer.bodies, answer.records) = (2, vec![heavy, light, Body::default()]);
-        let page = render("t", &answer, 2, PLAIN);
-        let lines: Vec<&str> = page.lines().collect();
-        let of_heavy = "body 1 at (10.0, 20.5) mm: F = (0.500, 0.000, -2.000) ± 0.031 N   mu = 0.250   9 taxels";
-        let of_light = "body 2 at (10.0, 20.5) mm: F = (0.500, 0.000, -2.000) N   mu = 0.250   1 taxels   doubtful";
-        assert_eq!(lines[2..4], [of_heavy, of_light]);
-        answer.bodies = 5;
-        assert!(render("t", &answer, 2, PLAIN).contains("5 bodies: more than"));
-        // A design for one has no such lines, however many it counts.
-        answer.records.clear();
-        assert!(!render("t", &answer, 2, PLAIN).contains("bod"));
     }
 
     #[test]

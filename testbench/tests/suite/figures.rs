@@ -14,7 +14,7 @@ use hdl_gen::plan::Plan;
 use hdl_gen::plan::product::{Coefficients, Product};
 use testbench::accuracy::SolverError;
 use testbench::frame_set::FrameSet;
-use testbench::stream_words::{decode_bodies, encode};
+use testbench::stream_words::{decode, encode};
 use testbench::trial::model_answers;
 
 /// Of the largest `|f_z|` of a frame; of resultants, of `|F_z|`.
@@ -187,7 +187,7 @@ fn the_field_of_every_frame_is_close_to_the_solver() {
         for (index, (packet, words)) in packets.iter().zip(model_answers(&plan, &packets)).enumerate() {
             let stress: Vec<f64> = packet.iter().map(|&word| f64::from(f32::from_bits(word))).collect();
             let solution = solver.solve(&stress).expect("a frame of the right length");
-            let answer = decode_bodies(&words, plan.streams().records).expect("a whole frame");
+            let answer = decode(&words).expect("a whole frame");
             assert_eq!(answer.status, solution.status.0, "{name}, frame {index}: status");
             let error = SolverError::new(&[answer], &[solution]);
             let most = error.field_max.max(error.resultant_max);

@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 use fst_reader::{FstHierarchyEntry, FstReader};
 use golden::forces::write_reference;
 use golden::frames::write_frames;
-use golden::scene::{Scene, Shape};
+use golden::scene::Scene;
 use testbench::verilate::Trace;
 
 use crate::support::{shipped, workspace};
@@ -157,69 +157,6 @@ fn a_frame_is_shown_plainly_where_there_is_no_terminal() {
     let message = text(&refused.stderr);
     assert!(!refused.status.success() && refused.stdout.is_empty());
     assert_eq!(message, "error: --frame 36: the sensor's standing scene has 36 frames; choose 0 to 35\n");
-}
-
-/// Each body of a design that tells several apart has a line, a record, and errors of its own.
-#[test]
-fn each_body_is_shown_and_judged() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let several = fs::read_to_string(workspace("designs/odd.toml")).expect("a design");
-    fs::write(folder.path().join("d.toml"), several.replace("outputs =", "contacts = 2\noutputs =")).expect("written");
-    let sensor = shipped("odd").sensor;
-    let one = Scene { sweep_deg: vec![20.0], ..Scene::standing(&sensor) };
-    let mut two = one.clone();
-    let body = |place: f64, share: f64| {
-        let mut body = one.contacts[0].clone();
-        body.centre_m = body.centre_m.map(|middle| place * middle);
-        body.normal_force_n *= share;
-        body.shape = Shape::Hertz { semi_axes_m: body.shape.half_extent_m().map(|extent| 0.5 * extent) };
-        body
-    };
-    two.contacts = vec![body(1.7, 0.2), body(0.3, 0.3)];
-    let frames = two.frames().expect("computed");
-    let stress: Vec<Vec<f64>> = frames.iter().map(|frame| frame.stress.clone()).collect();
-    write_frames(&folder.path().join("f.csv"), &stress).expect("written");
-    write_reference(&folder.path().join("f.forces.csv"), &frames).expect("written");
-    let run = |arguments: &[&str]| {
-        let ran = testbench(folder.path(), &[arguments, &["--frames", "f.csv"]].concat());
-        assert!(ran.status.success(), "{}", text(&ran.stderr));
-        text(&ran.stdout)
-    };
-    let page = run(&["view", "d.toml"]);
-    let lines: Vec<&str> = page.lines().collect();
-    assert!(lines[2].starts_with("body 1 at (") && lines[3].starts_with("body 2 at ("), "{page}");
-    let json: serde_json::Value = serde_json::from_str(&run(&["view", "d.toml", "--json"])).expect("JSON");
-    let force = |body: usize| json["records"][body]["F_z"].as_f64().expect("a force");
-    assert!(json["bodies"] == 2 && force(0) < force(1) && force(1) < 0.0, "{json}");
-    assert!((force(0) + force(1) - json["F_z"].as_f64().expect("a force")).abs() < 1e-5, "{json}");
-
-    let judged = run(&["run", "d.toml", "--reference", "f.forces.csv"]);
-    for part in [
-        "  forces of bodies",
-        "  centres of bodies",
-        "Error of each body",
-        "  centre, mm",
-        "1 of 1 frames have the right number",
-    ] {
-        assert!(judged.contains(part), "{part}: {judged}");
-    }
-    assert!(judged.contains("Frames by bodies") && judged.contains("No frame has one body"), "{judged}");
-    // What frames of two take is said, and nothing is compared with what frames of one take.
-    assert!(judged.contains("Cycles by bodies") && !judged.contains("times as fast"), "{judged}");
-    let json = run(&["run", "d.toml", "--reference", "f.forces.csv", "--json"]);
-    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
-    let error = &json["error"]["bodies"];
-    assert!(error["alike"] == 1 && error["force_max"].as_f64().is_some_and(|error| error < 2e-3), "{error}");
-    let [one, two] =
-        [&json["latency_cycles"], &json["body_cycles"][0]["latency_cycles"]].map(|of| of.as_u64().unwrap_or(0));
-    assert!(json["body_cycles"][0]["bodies"] == 2 && two > 2 * one && one > 0, "{json}");
-    assert!(json["body_counts"]["2"] == 1 && json["true_body_errors"]["right"] == 1, "{json}");
-    // Of one body nothing of this is said.
-    let one = workspace("designs/odd.toml").display().to_string();
-    let page = run(&["run", &one, "--reference", "f.forces.csv"]);
-    for part in ["of bodies", "of each body", "by bodies", "number of bodies"] {
-        assert!(!page.contains(part), "{part}: {page}");
-    }
 }
 
 /// What a command writes to a terminal of so many columns.

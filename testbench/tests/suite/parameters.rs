@@ -7,7 +7,7 @@ use testbench::tools;
 use crate::support::workspace;
 
 /// Module, parameter, value, what the tool must name.
-const SENSELESS: [(&str, &str, &str, &str); 44] = [
+const SENSELESS: [(&str, &str, &str, &str); 37] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
     ("bz", "WAYS", "2", "ways_must_be_1_or_4"),
     ("bz", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
@@ -27,23 +27,16 @@ const SENSELESS: [(&str, &str, &str, &str); 44] = [
     ("spmv_collector", "DESTINATION_BITS", "5", "a_destination_has_3_or_4_bits"),
     ("unfold", "WAYS", "2", "ways_must_be_1_or_4"),
     ("we", "WAYS", "2", "ways_must_be_1_or_4"),
-    ("bodies", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("contact_counter", "WAYS", "2", "ways_must_be_1_or_4"),
     ("weight_raster", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
     ("weight_totals", "SUM_BITS", "29", "sums_must_have_three_bits_more_than_weights"),
-    ("blob_labels", "COLUMNS", "65", "columns_must_be_2_to_64"),
-    ("blob_sums", "SUM_BITS", "27", "sums_must_be_wider_than_weights"),
+    ("component_labels", "COLUMNS", "65", "columns_must_be_2_to_64"),
+    ("component_sums", "SUM_BITS", "27", "sums_must_be_wider_than_weights"),
     ("co", "WAYS", "2", "ways_must_be_1_or_4"),
     ("turns", "PROGRAMS", "4", "programs_must_be_1_to_3"),
     ("turns", "RESIDUALS", "3", "one_or_two_residuals_have_a_place"),
     ("op", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
     ("op", "SLIP_RELEASE", "1", "a_slip_ends_below_its_limit"),
-    ("records", "CONTACTS", "9", "contacts_must_be_2_to_8"),
-    ("records_control", "PROGRAM_LENGTH", "257", "a_program_has_2_to_256_instructions"),
-    ("regions", "STEP_DIAGONAL", "2097152", "steps_must_be_below_2_metres"),
-    ("regions_walk", "ROWS", "1", "columns_and_rows_must_be_2_to_64"),
-    ("regions_passes", "CONTACTS", "9", "contacts_must_be_2_to_8"),
-    ("regions_passes", "WEIGHT_LATENCY", "17", "a_weight_comes_1_to_16_cycles_behind_its_address"),
-    ("regions_spread", "STEP_Y", "3000", "a_diagonal_is_the_longest_step"),
     ("registers", "COLUMNS", "65", "columns_and_rows_must_be_2_to_64"),
     ("registers", "STREAM_BYTES", "12", "a_beat_has_4_8_or_16_bytes"),
     ("registers", "SAMPLES", "3", "samples_are_float32_int16_or_uint16"),

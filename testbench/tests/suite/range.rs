@@ -36,11 +36,11 @@ fn designs() -> Vec<Design> {
     let mut dead = small("dead", 64, reduced, Outputs::Field);
     dead.sensor.rows = 5;
     dead.input.dead = vec![3, 9];
-    dead.algorithm.count_bodies = true;
+    dead.algorithm.count_contacts = true;
     let mut joint = with_joint(with_lanes(shipped("odd"), 12));
     "scaled_joint".clone_into(&mut joint.name);
     joint.hardware.stream_bits = 128;
-    joint.algorithm.count_bodies = true;
+    joint.algorithm.count_contacts = true;
     let mut unsigned = small("unsigned", 32, paper, Outputs::Field);
     unsigned.input.pa_per_count = Some(-1.6);
     unsigned.hardware.samples = Samples::Uint16;

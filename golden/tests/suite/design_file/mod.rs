@@ -59,10 +59,10 @@ fn a_register_bank_is_asked_for_and_leaves_no_word_where_it_is_not() {
 fn several_bodies_are_asked_for_and_leave_no_word_where_they_are_not() {
     let of = |text: &str| Design::from_toml(&format!("{MINIMAL}[algorithm]\n{text}\n"), "pad.toml").unwrap();
     assert_eq!(of("contacts = 1").to_toml(), Design::from_toml(MINIMAL, "pad.toml").unwrap().to_toml());
-    let counting = of("count_bodies = true");
-    assert!(counting.algorithm.count_bodies && counting.to_toml().contains("\ncount_bodies = true\n"));
+    let counting = of("count_contacts = true");
+    assert!(counting.algorithm.count_contacts && counting.to_toml().contains("\ncount_contacts = true\n"));
     assert_eq!(Design::from_toml(&counting.to_toml(), "pad.toml").unwrap(), counting);
-    assert_eq!(of("count_bodies = false").to_toml(), Design::from_toml(MINIMAL, "pad.toml").unwrap().to_toml());
+    assert_eq!(of("count_contacts = false").to_toml(), Design::from_toml(MINIMAL, "pad.toml").unwrap().to_toml());
     let several = of("contacts = 8");
     assert!(several.algorithm.contacts == 8 && several.to_toml().contains("\ncontacts = 8\n"));
     assert_eq!(Design::from_toml(&several.to_toml(), "pad.toml").unwrap(), several);

@@ -55,8 +55,9 @@ impl PointsPlan {
         let u_left = (FRACTION as i32 + 1 - finer).max(1) as u32;
         let one = Self { side: grid.side(), grid, taxels: 1, u_left };
         let two = Self { taxels: 2, ..one.clone() };
-        // A count of bodies, a taxel a cycle, must be there before the search is.
-        let counted = || !design.algorithm.count_bodies || latency::bodies(&design.sensor) < two.search(&design.sensor);
+        // A count of contacts, a taxel a cycle, must be there before the search is.
+        let counted =
+            || !design.algorithm.count_contacts || latency::count_contacts(&design.sensor) < two.search(&design.sensor);
         let quick = design.hardware.lanes > MANY_LANES && counted();
         (grid.points() <= MOST_POINTS).then_some(if quick { two } else { one })
     }

@@ -43,7 +43,7 @@ fn grid(plan: &JointPlan, design: &Design) -> String {
     match &plan.points {
         Some(of) => {
             let taxels = match of.taxels {
-                1 if design.hardware.lanes > MANY_LANES => "a taxel a cycle: bodies are counted as slowly".to_owned(),
+                1 if design.hardware.lanes > MANY_LANES => "a taxel a cycle: contacts are counted as slowly".to_owned(),
                 1 => "a taxel a cycle".to_owned(),
                 taxels => format!("{taxels} taxels a cycle with more than {MANY_LANES} lanes"),
             };

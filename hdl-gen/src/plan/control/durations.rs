@@ -60,9 +60,9 @@ impl Durations {
         };
         let sums = schedule.visits.iter().filter(is_sum).map(|visit| visit.cycle);
         Self {
-            beats: plan.streams_of_one().beats_out() as u64,
-            unpacking: if plan.streams_of_one().drops { latency::OVERRUN } else { 0 }
-                + u64::from(plan.streams_of_one().intake == Intake::Unpacked)
+            beats: plan.streams().beats_out() as u64,
+            unpacking: if plan.streams().drops { latency::OVERRUN } else { 0 }
+                + u64::from(plan.streams().intake == Intake::Unpacked)
                 + bank::latency(plan),
             interval_of_beats: bank::interval(plan),
             arrival: bz::arrival(plan),
@@ -89,7 +89,7 @@ impl Durations {
 fn writes(plan: &Plan) -> Vec<Vec<u64>> {
     let folded = plan.ways() > 1;
     let mut writes = vec![Vec::new(); plan.schedule.programs.len()];
-    if plan.streams_of_one().intake == Intake::Whole {
+    if plan.streams().intake == Intake::Whole {
         return writes;
     }
     for visit in plan.schedule.visits.iter().filter(|visit| (visit.row as usize) < plan.elements()) {

@@ -8,7 +8,7 @@ use golden::design::{CalibrationIn, Design, InputRange};
 use golden::solver::Solver;
 use hdl_gen::model::{DIRECTION_UNKNOWN, Model, NO_CONTACT, NO_TENSION};
 use hdl_gen::plan::Plan;
-use hdl_gen::plan::words::CENSUS;
+use hdl_gen::plan::words::COUNTERS;
 
 use super::{Contact, frame};
 
@@ -58,8 +58,8 @@ fn a_banks_noise_floor_is_that_of_a_design_made_with_it() {
             let mut by_design = Model::new(&made);
             for frame in &frames {
                 let (mut found, expected) = (by_bank.process(frame), by_design.process(frame));
-                assert_eq!(found[CENSUS] >> 8 & 0xFF, 1);
-                found[CENSUS] &= !(0xFF << 8);
+                assert_eq!(found[COUNTERS] >> 8 & 0xFF, 1);
+                found[COUNTERS] &= !(0xFF << 8);
                 assert_eq!(found, expected, "{}, {} Pa", design.name, floor);
                 statuses.insert(found[0] & (NO_CONTACT | DIRECTION_UNKNOWN | NO_TENSION));
             }

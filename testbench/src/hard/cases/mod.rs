@@ -232,7 +232,7 @@ fn contacts(cases: &mut Cases) -> Result<(), HardError> {
         ..contact(&sensor, 5.0)
     };
     let opposed = swept(vec![apart(9.0, 0.0), apart(27.0, 180.0)]);
-    let case = cases.scene("contact", "two contacts, opposed pushes", "count_bodies = true", &opposed)?;
+    let case = cases.scene("contact", "two contacts, opposed pushes", "count_contacts = true", &opposed)?;
     case.bodies = Some(opposed.frames()?.into_iter().map(|frame| frame.bodies).collect());
     cases.scene("contact", "µ = 0", "", &swept(vec![Contact { friction: 0.0, ..contact(&sensor, 7.0) }]))?;
     for friction in [0.2, 0.8, 1.5] {

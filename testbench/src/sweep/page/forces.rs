@@ -1,6 +1,6 @@
-//! What is found of a scene's forces: the field of a frame beside the true one, and how well its bodies are told apart.
+//! What is found of a scene's forces: the field of a frame beside the true one, and how well its contacts are separated.
 
-use golden::bodies::{Body, MOST};
+use golden::bodies::MOST;
 use golden::design::{Design, Estimator, Input, Outputs};
 use golden::metrics::BodyErrors;
 use golden::scene::SceneFrame;
@@ -9,7 +9,6 @@ use hdl_gen::plan::Plan;
 
 use super::PageError;
 use super::matrices::Figure;
-use crate::accuracy::against_true_bodies;
 use crate::field_plot;
 use crate::sweep::SweepScene;
 use crate::sweep::evaluate::answers;
@@ -83,18 +82,11 @@ pub fn field(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Fig
     Ok((figures, caption))
 }
 
-/// How well the bodies of a scene are told apart: by the hardware of the first design that tells so many apart, or in f64 by
-/// the first one with the joint estimator.
-pub fn bodies(designs: &[&Design], scene: &SweepScene) -> Option<String> {
+/// How well the contacts of a scene are separated, in f64, by the first design with the joint estimator.
+pub fn contacts(designs: &[&Design], scene: &SweepScene) -> Option<String> {
     let contacts = scene.contacts.len();
     if !(2..=MOST).contains(&contacts) {
         return None;
-    }
-    let tells = |design: &&&Design| design.algorithm.contacts >= contacts && Plan::new(design).is_ok();
-    if let Some(design) = designs.iter().find(tells) {
-        let truth: Vec<Vec<Body>> = scene.made.iter().map(|frame| frame.bodies.clone()).collect();
-        let errors = against_true_bodies(&answers(design, &scene.frames).ok()?, &truth);
-        return Some(format!(". Told apart in hardware, by {}: {}", design.name, told(&errors)));
     }
     let of_joint = |design: &&&Design| design.algorithm.estimator == Estimator::Joint;
     let mut design = (*designs.iter().find(of_joint)?).clone();
@@ -105,11 +97,11 @@ pub fn bodies(designs: &[&Design], scene: &SweepScene) -> Option<String> {
     let solve = |frame: &SceneFrame| solver.solve(&frame.stress);
     let solutions: Vec<_> = scene.made.iter().map(solve).collect::<Result<_, _>>().ok()?;
     let errors = BodyErrors::new(scene.made.iter().map(|frame| &frame.bodies).zip(&solutions));
-    Some(format!(". Told apart in f64, by {} with contacts = {contacts}: {}", design.name, told(&errors)))
+    Some(format!(". Separated in f64, by {} with contacts = {contacts}: {}", design.name, figures(&errors)))
 }
 
-/// How many frames have the right number, and what is found of their bodies.
-fn told(errors: &BodyErrors) -> String {
+/// How many frames have the right number, and the errors of their contacts.
+fn figures(errors: &BodyErrors) -> String {
     let number = format!("number right in {} of {} frames", errors.right, errors.frames);
     let own = match errors.right {
         0 => String::new(),
@@ -126,19 +118,15 @@ mod tests {
     use super::super::conclusion::tests::point;
     use super::*;
 
-    /// Hardware that tells so many bodies apart is asked first; a scene of one body tells nothing of that.
+    /// A scene of one contact has nothing to separate.
     #[test]
-    fn bodies_are_told_apart_by_hardware_where_a_design_has_it() {
+    fn contacts_are_separated_in_f64() {
         let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let [one, several] = ["sensor1-fast", "sensor1-bodies"]
-            .map(|name| Design::load(&root.join(format!("designs/{name}.toml"))).expect("a design"));
+        let design = Design::load(&root.join("designs/sensor1-fast.toml")).expect("a design");
         let scene = |name: &str| SweepScene::load(&root.join(format!("scenes/{name}.toml"))).expect("a scene");
-        let two = scene("two-contacts");
-        let said = bodies(&[&one, &several], &two).expect("two bodies");
-        assert!(said.contains("in hardware, by sensor1_bodies: number right in 1 of 1 frames; "), "{said}");
-        let said = bodies(&[&one], &two).expect("two bodies");
-        assert!(said.contains("in f64, by sensor1_fast with contacts = 2: number right in 1 of 1 "), "{said}");
-        assert_eq!(bodies(&[&one, &several], &scene("sensor1-tilted")), None);
+        let said = contacts(&[&design], &scene("two-contacts")).expect("two contacts");
+        assert!(said.contains("in f64, by sensor1_fast with contacts = 2: number right in 1 of 1 frames; "), "{said}");
+        assert_eq!(contacts(&[&design], &scene("sensor1-tilted")), None);
     }
 
     #[test]

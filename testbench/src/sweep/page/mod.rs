@@ -183,11 +183,11 @@ fn section(sensor: &Geometry, designs: &[Design], sweep: &Sweep, points: &[Point
                 caption += ": contacts of all kinds, as many of each (what they are is in the table of kinds)";
             }
             if !scene.tells() {
-                caption += "; the bodies are pushed against each other, so that this error is that of a sum near zero, which \
+                caption += "; the contacts are pushed against each other, so that this error is that of a sum near zero, which \
                             tells nothing of either: no front, no conclusion";
             }
-            if let Some(bodies) = forces::bodies(&foremost, scene) {
-                caption += &bodies;
+            if let Some(contacts) = forces::contacts(&foremost, scene) {
+                caption += &contacts;
             }
             Figure { svg: front::front(&on(scene), paper, scene.tells()), caption }
         })

@@ -15,8 +15,8 @@ use testbench::trial::model_answers;
 
 use super::commits::commits_at_every_moment;
 use super::{
-    CENSUS, CONTRADICTION, OUT_OF_RANGE, Subject, WRONG_CRC, counts, design, errors, generation, judged, load, perform,
-    read_back, wait,
+    CONTRADICTION, COUNTERS, OUT_OF_RANGE, Subject, WRONG_CRC, counts, design, errors, generation, judged, load,
+    perform, read_back, wait,
 };
 use crate::support::effort::some_of;
 use crate::support::faults::broken;
@@ -71,7 +71,7 @@ fn at_power_up_the_designs_dead_taxels_are_replaced() {
     let answers = model_answers(&subject.plan, &packets);
     let with = |bit: u32| answers.iter().filter(|words| words[0] & bit != 0).count();
     assert!(with(REPLACED) > with(TOO_MANY_REPLACED) && with(TOO_MANY_REPLACED) > 0);
-    assert!(answers.iter().all(|words| words[CENSUS] >> 16 == (words[0] & REPLACED) >> 8));
+    assert!(answers.iter().all(|words| words[COUNTERS] >> 16 == (words[0] & REPLACED) >> 8));
     let mut core = subject.core(1);
     let words = subject.calibration().power_up.words();
     assert_eq!(words.len(), subject.calibration().words());
@@ -87,7 +87,7 @@ fn replaced_from_ram_as_from_rom() {
     rom.hardware.replaceable = 0;
     let packets = counts(&subject.plan, 20, &mut ChaCha8Rng::seed_from_u64(2));
     for (rom, ram) in model_answers(&planned(&rom), &packets).into_iter().zip(model_answers(&subject.plan, &packets)) {
-        assert_eq!((rom[0], rom[CENSUS]), (ram[0], ram[CENSUS]));
+        assert_eq!((rom[0], rom[COUNTERS]), (ram[0], ram[COUNTERS]));
         let force = |words: &[u32]| [2, 3, 4].map(|word| f64::from(f32::from_bits(words[word])));
         let size = force(&rom).iter().fold(0.0_f64, |most, force| most.max(force.abs()));
         for (a, b) in force(&rom).iter().zip(force(&ram)) {

@@ -13,7 +13,7 @@ use golden::design::{Calibration, CalibrationIn, Design, Outputs, PlanKind};
 use hdl_gen::model::Model;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::calibration::{Bank, CalibrationPlan};
-use hdl_gen::plan::words::{CENSUS, TIMESTAMP};
+use hdl_gen::plan::words::{COUNTERS, TIMESTAMP};
 use rand_chacha::ChaCha8Rng;
 use testbench::dut::{Beat, Core, Inputs};
 use testbench::registers::{Access, Controlled, address};
@@ -167,7 +167,7 @@ fn judge(plan: &Plan, packets: &[Vec<u32>], answers: &[Vec<u32>], banks: &[Bank]
     let mut acts = 0;
     let mut generations = Vec::new();
     for (frame, (words, packet)) in answers.iter().zip(packets).enumerate() {
-        let stated = (words[CENSUS] >> 8 & 0xFF) as usize;
+        let stated = (words[COUNTERS] >> 8 & 0xFF) as usize;
         if stated < acts || stated >= banks.len() {
             return Err(format!("frame {frame}: generation {stated} after {acts}"));
         }

@@ -135,7 +135,7 @@ fn the_examples_say_what_is_wrong() {
     refused(&format!("{examples}/bare_metal_simulated"), "IDENTITY is not TFRA");
 }
 
-/// Many frames on their way, and cores without registers, with and without a field, of one body and of several: what is
+/// Many frames on their way, and cores without registers, with and without a field: what is
 /// printed is what is printed of one frame at a time with registers.
 #[test]
 fn the_program_takes_queues_and_cores_without_registers() {
@@ -195,11 +195,8 @@ fn the_program_takes_queues_and_cores_without_registers() {
 type Change = fn(&mut Design);
 
 /// Cores whose answers have other lengths.
-const CORES: [(&str, Change); 3] = [
-    ("a field", |_| ()),
-    ("resultants alone", |design| design.algorithm.outputs = Outputs::Resultants),
-    ("bodies told apart", |design| design.algorithm.contacts = 2),
-];
+const CORES: [(&str, Change); 2] =
+    [("a field", |_| ()), ("resultants alone", |design| design.algorithm.outputs = Outputs::Resultants)];
 
 /// A DMA that stops in the middle of a frame: the program says so and ends, and leaves a core that answers.
 #[test]

@@ -6,7 +6,6 @@
 FRAMES as in host.c. Prints what the core is, and PASS.
 """
 
-import dataclasses
 import json
 import os
 import pathlib
@@ -43,38 +42,16 @@ def refused(kind, action):
     raise AssertionError(f"no {kind.__name__}")
 
 
-def check_bodies(forces, expected, count):
-    """Each record, word by word; what a core for one body has."""
-    if count == 0:
-        assert forces.records is None
-        return
-    records = forces.records
-    assert records.shape == (len(expected), count)
-    words = expected[:, 16 : 16 + 8 * count].reshape(len(expected), count, 8)
-    assert np.array_equal(records["taxels"] | records["status"].astype(np.uint32) << 16, words[..., 0])
-    names = "x y F_x F_y F_z mu standard_error".split()
-    found = np.stack([records[name].view(np.uint32) for name in names], axis=-1)
-    assert np.array_equal(found, words[..., 1:]) and records.dtype["F_z"] == np.float32
-    # Those that are there press, the others are zeros.
-    there = np.minimum(forces.bodies, count)[:, None] > np.arange(count)
-    assert np.array_equal(records["F_z"] < 0, there) and np.array_equal(records["taxels"] > 0, there)
-    assert set(forces.bodies) >= {0, 1, 2} and max(forces.bodies) > count
-
-
-def check_lengths(identity, metadata):
-    """Lengths and layouts that no core has."""
-    for words in (-1, 1, 9, 80):
-        wrong = dataclasses.replace(identity, words_out=16 + 36 * identity.has_field + words)
-        assert "none of 3 x 4 taxels" in refused(RuntimeError, lambda: wrong.records)
+def check_lengths(metadata):
+    """A layout that no core has."""
     text = pathlib.Path(metadata).read_text()
     broken = pathlib.Path(metadata).with_name("broken.json")
-    for name in ("body", "field") if identity.records else ("field",):
-        told = json.loads(text)
-        for value in told["output"]:
-            value["index"] += value["name"] == name
-        broken.write_text(json.dumps(told))
-        if name in [value["name"] for value in told["output"]]:
-            assert "do not fit" in refused(ValueError, lambda: Layout.load(broken))
+    told = json.loads(text)
+    for value in told["output"]:
+        value["index"] += value["name"] == "field"
+    broken.write_text(json.dumps(told))
+    if "field" in [value["name"] for value in told["output"]]:
+        assert "do not fit" in refused(ValueError, lambda: Layout.load(broken))
 
 
 def main():
@@ -88,12 +65,10 @@ def main():
     sensor = Sptfra(overlay.core, overlay.dma, allocate, metadata)
     identity = sensor.identity
     print(identity)
-    known = LAYOUT.with_records(identity.records)
-    assert design.values == known.values and design.field in (known.field, None)
-    assert design.units == {name: known.units[name] for name in design.units}
-    assert known.units.keys() - design.units.keys() == (set() if design.field else {"field"})
-    assert design.records == known.records and (known.records is None) == (identity.records == 0)
-    check_lengths(identity, metadata)
+    assert design.values == LAYOUT.values and design.field in (LAYOUT.field, None)
+    assert design.units == {name: LAYOUT.units[name] for name in design.units}
+    assert LAYOUT.units.keys() - design.units.keys() == (set() if design.field else {"field"})
+    check_lengths(metadata)
     rows, columns = identity.rows, identity.columns
     frames, answers = load(path, identity.words_out)
     whole = [index for index, frame in enumerate(frames) if len(frame) == identity.words_in]
@@ -114,27 +89,20 @@ def main():
     seen = np.column_stack([*parts, forces.standard_error])
     assert np.array_equal(seen.view(np.uint32), expected[:, 2:13])
     assert seen.dtype == np.float32
-    census = forces.bodies.astype(np.uint32) | forces.generation.astype(np.uint32) << 8
-    assert np.array_equal(census | forces.replaced.astype(np.uint32) << 16, expected[:, 13])
+    counters = forces.contacts.astype(np.uint32) | forces.generation.astype(np.uint32) << 8
+    assert np.array_equal(counters | forces.replaced.astype(np.uint32) << 16, expected[:, 13])
     if identity.has_field:
         assert forces.field.shape == (count, rows, columns, 3)
-        assert np.array_equal(forces.field.reshape(count, -1).view(np.uint32), expected[:, 16 + 8 * identity.records :])
+        assert np.array_equal(forces.field.reshape(count, -1).view(np.uint32), expected[:, 16:])
     else:
         assert forces.field is None
     bad = [index for index in range(count) if forces.status[index] & Status.NOT_FINITE]
     assert bool(bad) == (identity.samples == np.float32)  # no integer is NaN
     assert all("NOT_FINITE" in forces.names(index) for index in bad)
     assert "NOT_FINITE" not in forces.names(0)
-    check_bodies(forces, expected, identity.records)
     assert forces.units["resultant"] == "N" and forces.units["torque"] == "N m" and forces.units["friction"] == ""
     arrays = {name for name, value in vars(forces).items() if isinstance(value, np.ndarray)}
-    if forces.records is not None:
-        arrays = arrays - {"records"} | set(forces.records.dtype.names)
-        assert [forces.units[name] for name in ("x", "F_z", "mu", "taxels")] == ["m", "N", "", "taxels"]
     assert forces.units.keys() == arrays, forces.units
-    # Without metadata the registers say how many records there are.
-    alone = Sptfra(overlay.core, overlay.dma, allocate)
-    assert alone._layout.field == known.field and alone._layout.records == known.records
     counters = sensor.counters()
     assert (counters.frames_in, counters.frames_out, counters.frames_bad) == (count, count, len(bad))
     assert counters.last_status == Status(int(forces.status[-1]))

@@ -1,7 +1,6 @@
 //! The C and Python drivers against the simulated RTL: registers and DMA as a processor sees them.
 
 mod batches;
-mod bodies;
 mod calibration;
 mod cross;
 mod examples;
@@ -45,13 +44,13 @@ impl Subject {
         })
     }
 
-    /// Wide, with a range for each frame, bodies counted and a bit for slip: whatever changes words and no register.
+    /// Wide, with a range for each frame, contacts counted and a bit for slip: whatever changes words and no register.
     fn of_all_kinds() -> Self {
         Self::changed(Outputs::Field, |design| {
             design.hardware.control = true;
             design.hardware.stream_bits = 64;
             design.hardware.range = InputRange::Frame;
-            design.algorithm.count_bodies = true;
+            design.algorithm.count_contacts = true;
         })
     }
 
@@ -96,9 +95,6 @@ fn packets(plan: &Plan) -> Vec<Vec<u32>> {
     packets[2][3] = f32::NAN.to_bits();
     packets[5][0] = f32::INFINITY.to_bits();
     packets[7] = frames::empty(plan);
-    if plan.contacts.is_some() {
-        bodies::press(plan, &mut packets[12..18]);
-    }
     let width = plan.streams().words();
     packets[9].truncate(plan.taxels() - width);
     packets[11].extend(vec![0; width]);
@@ -113,15 +109,14 @@ fn packets(plan: &Plan) -> Vec<Vec<u32>> {
     packets
 }
 
-/// With and without a field, wide, of integers, of several bodies; and how many frames hold what is no number, as no
+/// With and without a field, wide, of integers; and how many frames hold what is no number, as no
 /// integer does.
 fn subjects() -> Vec<(Subject, usize)> {
-    let kinds: [(fn() -> Subject, usize); 5] = [
+    let kinds: [(fn() -> Subject, usize); 4] = [
         (Subject::of_integers, 0),
         (|| Subject::new(true, Outputs::Field), 2),
         (Subject::of_all_kinds, 2),
         (|| Subject::new(true, Outputs::Resultants), 2),
-        (|| bodies::subject(true), 2),
     ];
     half_of(kinds).into_iter().map(|(subject, bad)| (subject(), bad)).collect()
 }
@@ -228,9 +223,7 @@ fn the_c_driver_gets_every_word_and_knows_the_core() {
 
 #[test]
 fn the_c_driver_does_without_registers() {
-    for subject in [Subject::new(false, Outputs::Field), bodies::subject(false)] {
-        run(run_c(&subject, &DRIVER.map(workspace)));
-    }
+    run(run_c(&Subject::new(false, Outputs::Field), &DRIVER.map(workspace)));
 }
 
 /// Bare metal and C++: the driver alone, without an operating system's headers, with every warning.

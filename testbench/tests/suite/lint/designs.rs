@@ -71,7 +71,7 @@ pub fn designs() -> Vec<Design> {
     for design in [&mut curved, &mut uncorrected, &mut unpacked, &mut wide_control, &mut dropping] {
         design.hardware.debug = true;
     }
-    let others = vec![
+    vec![
         calibration::design(Outputs::Field),
         in_ram,
         mapped,
@@ -111,35 +111,11 @@ pub fn designs() -> Vec<Design> {
         curved,
         with_lanes(shipped("sensor1-f1-l40"), 64),
         narrow,
-    ];
-    others.into_iter().chain(bodies()).collect()
-}
-
-/// Several bodies, of either plan, with registers and marked nets, with fewest and most records, on the smallest sensor; with
-/// slip, resultants alone and wide streams; frames dropped.
-fn bodies() -> [Design; 5] {
-    let mut few = by_plan(shipped("odd"), PlanKind::Paper, Outputs::Field);
-    "few_bodies".clone_into(&mut few.name);
-    few.algorithm.contacts = 2;
-    let mut most = by_plan(shipped("small-control"), PlanKind::Reduced, Outputs::Field);
-    "most_bodies".clone_into(&mut most.name);
-    most.algorithm.contacts = 8;
-    most.hardware.debug = true;
-    let mut tiny = by_plan(shipped("small-bodies"), PlanKind::Reduced, Outputs::Field);
-    "tiny_bodies".clone_into(&mut tiny.name);
-    (tiny.sensor.columns, tiny.sensor.rows) = (2, 2);
-    let mut dropped = shipped("small-bodies");
-    "several_dropped".clone_into(&mut dropped.name);
-    dropped.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
-    let mut wide = Design { name: "several".to_owned(), ..dropped.clone() };
-    dropped.hardware.overrun = Overrun::Drop;
-    (wide.algorithm.outputs, wide.algorithm.contacts) = (Outputs::Resultants, 8);
-    (wide.hardware.stream_bits, wide.hardware.control) = (128, true);
-    [few, most, tiny, dropped, wide]
+    ]
 }
 
 /// Words of two multipliers a lane: all their bits, scaled by each frame's largest stress; in beats of several samples,
-/// bodies counted; vectors that are long beside short coefficients.
+/// contacts counted; vectors that are long beside short coefficients.
 fn long() -> [Design; 3] {
     let mut long = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
     (long.hardware.coefficient_bits, long.hardware.data_bits) = (27, 35);
@@ -148,7 +124,7 @@ fn long() -> [Design; 3] {
     long.hardware.range = InputRange::Frame;
     "long_beats".clone_into(&mut beats.name);
     beats.hardware.stream_bits = 128;
-    beats.algorithm.count_bodies = true;
+    beats.algorithm.count_contacts = true;
     "long_vectors".clone_into(&mut vectors.name);
     (vectors.hardware.coefficient_bits, vectors.hardware.data_bits) = (9, 30);
     vectors.hardware.skip_zeros = true;

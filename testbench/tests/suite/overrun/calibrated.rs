@@ -3,7 +3,7 @@
 use golden::design::CalibrationIn;
 use hdl_gen::model::{DROPPED, Model};
 use hdl_gen::plan::calibration::Bank;
-use hdl_gen::plan::words::CENSUS;
+use hdl_gen::plan::words::COUNTERS;
 use testbench::registers::{Access, Controlled, address};
 use testbench::stream::{Outcome, Pacing, Traffic, exchange};
 use testbench::trial::timeout;
@@ -35,7 +35,7 @@ fn judge(packets: &[Vec<u32>], outcome: &Outcome, next: &Bank) {
     let mut model = Model::new(&subject().plan);
     let mut stated = 0;
     for exchange in &outcome.exchanges {
-        let generation = exchange.words[CENSUS] >> 8 & 0xFF;
+        let generation = exchange.words[COUNTERS] >> 8 & 0xFF;
         assert!(generation >= stated && generation < 2, "generation {generation} after {stated}");
         if generation > stated {
             model.commit(next.clone());

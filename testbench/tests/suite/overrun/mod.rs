@@ -4,7 +4,6 @@
 mod calibrated;
 mod others;
 mod resets;
-mod several;
 
 use std::sync::OnceLock;
 

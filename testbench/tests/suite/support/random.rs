@@ -6,7 +6,7 @@ use golden::design::{
     Calibration, CalibrationIn, Correction, Curve, Design, Doubt, Grid, InputRange, JointConstants, Kernel, Optimise,
     Outputs, Overrun, Regularisation, Samples, Sensor, Slip, Tension,
 };
-use hdl_gen::plan::{Plan, contacts};
+use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -144,11 +144,7 @@ lanes = {lanes}
 "
         );
         let mut design = Design::from_toml(&text, name).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        design.algorithm.count_bodies = (columns + lanes) % 2 == 0;
-        // Of several bodies where the hardware can; drawn from what is drawn already, so that all else stays as it is.
-        if contacts::needs(&design).is_none() && (columns + 2 * rows + lanes) % 3 == 0 {
-            design.algorithm.contacts = 2 + (columns + rows) % 7;
-        }
+        design.algorithm.count_contacts = (columns + lanes) % 2 == 0;
         design.hardware.range = if (rows + lanes) % 3 == 0 { InputRange::Frame } else { InputRange::FullScale };
         if let Kind::Joint { correction, .. } = self.kind {
             *design.algorithm.joint = constants(&design.sensor, correction);

@@ -4,8 +4,8 @@
 // Triaxial contact forces from normal stress: 4 x 3 taxels, reduced plan, line estimator, filter none.
 //
 // In:  12 beats, float32 stress in Pa, compression negative, taxel order i = iy * 4 + ix, TLAST on the last.
-// Out: 52 beats, by name in metadata.json: status, timestamp, forces, torques, friction, error, bodies, f_x f_y f_z per
-// taxel;
+// Out: 52 beats, by name in metadata.json: status, timestamp, forces, torques, friction, error, contacts, f_x f_y f_z
+// per taxel;
 //      TLAST on the last. One frame out for each frame in.
 // Status: 0 no contact, 1 direction unknown, 2 optimum at the bound, 3 saturated, 4 NaN or infinity in,
 //      5 frame length wrong, 6 doubtful, 8 a taxel was replaced, 9 too many were, 10 slip, 11 no tension; 31:16 frame
@@ -538,7 +538,7 @@ module small_4x3 #(
         .field_step       (field_step),
         .field_release    (field_release),
         .field_value      (field_value),
-        .bodies           (8'd1),
+        .contacts         (8'd1),
         .timestamp        (timestamp),
         .timestamp_take   (timestamp_take),
         .m_tdata          (out_tdata),

@@ -72,7 +72,7 @@ module sptfra_op #(
     output wire field_release, // the frame's place is free again
     input  wire [64*WORDS-1:0] field_value,
     // Bodies of the oldest frame of which no output has begun, which is taken with its timestamp: 1 at least
-    input  wire [7:0] bodies,
+    input  wire [7:0] contacts,
     // When the oldest frame inside began
     input  wire [31:0] timestamp,
     output wire timestamp_take,
@@ -223,7 +223,7 @@ module sptfra_op #(
         size <= {1'b0, size_x} + {1'b0, size_y};
         pushed <= (size >= {1'b0, PULLING});
         doubtful <= (THIN != 0) || ((DOUBT != 0) && (summary_error_log > DOUBT_LIMIT));
-        several <= (bodies > 8'd1);
+        several <= (contacts > 8'd1);
     end
 
     wire [15:0] status = {
@@ -271,9 +271,9 @@ module sptfra_op #(
         end
     endgenerate
 
-    // Replaced taxels, generation of the calibration, bodies
+    // Replaced taxels, generation of the calibration, contacts
     wire [7:0] replaced = REPLACED[7:0];
-    wire [31:0] census = {8'd0, answered ? replaced : 8'd0, 8'd0, answered ? bodies : 8'd0};
+    wire [31:0] counters = {8'd0, answered ? replaced : 8'd0, 8'd0, answered ? contacts : 8'd0};
 
     // ---- Output
     sptfra_output #(
@@ -293,7 +293,7 @@ module sptfra_op #(
         .idle              (output_idle),
         .status            (status),
         .timestamp         (timestamp),
-        .census            (census),
+        .counters          (counters),
         .blank             (!answered),
         .force_x           (force_x),
         .force_y           (force_y),

@@ -32,7 +32,7 @@ module sptfra_we #(
     input  wire taxel_y,
     input  wire [ROW_WIDTH-1:0] taxel_row,
     input  wire [WAYS*DATA_BITS-1:0] taxels, // y, member 0 in the lowest bits
-    // Weights of the taxels, to the field and the count of bodies
+    // Weights of the taxels, to the field and the contact counter
     output wire weights_valid,
     output wire [ROW_WIDTH-1:0] weights_row,
     output wire [WAYS*DATA_BITS-1:0] weights,

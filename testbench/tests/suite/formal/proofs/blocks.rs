@@ -1,7 +1,7 @@
 //! Blocks on their own: the rules of the streams at their ports, and what they let in.
 
 use super::Proof;
-use super::designs::{bodies, calibrated, curved, mapped, paper, reduced, scaled, scanned};
+use super::designs::{calibrated, curved, mapped, paper, reduced, scaled, scanned};
 
 pub const PROOFS: &[Proof] = &[
     Proof {
@@ -177,37 +177,6 @@ pub const PROOFS: &[Proof] = &[
             ("replace", "ends_at <= place;", "ends_at <= place - 1;"),
             ("replace", "if (advance && out_valid && out_last)", "if (out_valid && out_last)"),
             ("replace", "if (holds) begin\n                hold <=", "if (start) begin\n                hold <="),
-        ],
-    },
-    Proof {
-        name: "several bodies around the core for one",
-        harness: "contacts",
-        design: bodies,
-        defines: &[],
-        top: "sptfra_contacts",
-        parameters: "-set COLUMNS 2 -set ROWS 2 -set CONTACTS 2 -set BANKS 2",
-        models: &[],
-        free: &["*sptfra_ram*", "*sptfra_contacts_bodies*", "*sptfra_contacts_parts*", "*sptfra_contacts_output*"],
-        free_wires: &[],
-        induction: "2",
-        altered: &[],
-        broken: &[
-            ("contacts", "core_m_tvalid && core_m_tlast && !with_bodies", "core_m_tvalid && core_m_tlast"),
-            ("contacts_turns", "if (core_is_empty) begin", "if (1'b1) begin"),
-            ("contacts_turns", "hold <= (kept > 4'd1);", "hold <= 1'b0;"),
-            ("contacts_turns", "hold <= !is_second;", "hold <= 1'b0;"),
-            ("contacts_turns", "if (answered == kept) begin", "if (answering == kept) begin"),
-            ("contacts_turns", "begins <= (body + 4'd1 != kept);", "begins <= 1'b0;"),
-            ("contacts_turns", "if (is_parted && output_idle) begin", "if (is_parted) begin"),
-            ("contacts_turns", "state <= is_second ? RECORDS : PARTS;", "state <= PARTS;"),
-            ("contacts_turns", "(state == LEAVES) && output_idle", "(state == LEAVES)"),
-            ("contacts_intake", "(next_used != BANKS_32[BANK_WIDTH:0])", "1'b1"),
-            ("contacts_intake", "!sends && !valid && !hold && (waiting", "!sends && !valid && (waiting"),
-            ("contacts_intake", "!sends && !valid && (unanswered", "(unanswered"),
-            ("contacts_intake", " - {{BANK_WIDTH{1'b0}}, answered};", ";"),
-            ("contacts_intake", "if (sent) begin", "if (begins) begin"),
-            ("contacts_answers", "wire kept = word_valid && keeps;", "wire kept = word_valid;"),
-            ("contacts_answers", "if (next) begin", "if (there) begin"),
         ],
     },
 ];

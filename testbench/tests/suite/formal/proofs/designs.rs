@@ -14,12 +14,6 @@ pub fn reduced(design: &mut Design) {
     design.algorithm.plan = PlanKind::Reduced;
 }
 
-/// Two bodies, and two frames that have a place.
-pub fn bodies(design: &mut Design) {
-    reduced(design);
-    design.algorithm.contacts = 2;
-}
-
 pub fn reduced_for_latency(design: &mut Design) {
     reduced(design);
     design.hardware.optimise = Optimise::Latency;

@@ -1,11 +1,9 @@
-//! Bodies counted in hardware: the module by itself, whole designs against the model, the model against the solver; and
-//! the module that tells where they are.
+//! Contacts counted in hardware: the module by itself, whole designs against the model, the model against the solver.
 
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
 #[path = "../../../../golden/tests/suite/bodies/kinds.rs"]
 pub mod kinds;
 mod module;
-mod regions;
 
 use std::collections::BTreeMap;
 
@@ -14,7 +12,7 @@ use golden::estimators::joint::Grid;
 use golden::matrices::{Matrices, MatrixName};
 use golden::solver::{Solver, Status};
 use hdl_gen::blocks;
-use hdl_gen::model::{BAD_LENGTH, MORE_BODIES, NO_CONTACT, NOT_FINITE};
+use hdl_gen::model::{BAD_LENGTH, NO_CONTACT, NOT_FINITE, SEVERAL_CONTACTS};
 use hdl_gen::plan::{Plan, words};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -28,7 +26,7 @@ use kinds::{Kind, frame};
 
 fn counting(mut design: Design) -> Design {
     design.name += "_counting";
-    design.algorithm.count_bodies = true;
+    design.algorithm.count_contacts = true;
     design
 }
 
@@ -50,7 +48,7 @@ fn designs() -> Vec<Design> {
     ]
 }
 
-/// Stress whose `|w|` touches where a drawing has no dot, with as many bodies as blobs, or fewer.
+/// Stress whose seeds are where a drawing has no dot, with as many contacts as components, or fewer.
 fn drawn(plan: &Plan, c33: &impl Fn(usize, usize) -> f64, touched: impl Fn(usize, usize) -> bool) -> Vec<u32> {
     let columns = plan.design.sensor.columns;
     let weight: Vec<f64> = (0..plan.taxels())
@@ -63,7 +61,7 @@ fn drawn(plan: &Plan, c33: &impl Fn(usize, usize) -> f64, touched: impl Fn(usize
     plan.streams().packet(&stress.iter().map(|stress| to * stress).collect::<Vec<_>>())
 }
 
-/// Blobs that are one late, boards, one to four bodies; between them frames without an answer.
+/// Components that join late, boards, one to four contacts; between them frames without an answer.
 fn packets(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<Vec<u32>> {
     let matrices = Matrices::of(&plan.design).expect("matrices");
     let c33 = matrices.dense(MatrixName::C33inv).try_inverse().expect("an inverse");
@@ -107,13 +105,13 @@ fn the_hardware_counts_as_the_model_does() {
         let packets = packets(&plan, &mut ChaCha8Rng::seed_from_u64(11));
         let mut seen = BTreeMap::new();
         for answer in model_answers(&plan, &packets) {
-            let (status, bodies) = (answer[words::STATUS] & 0xFFFF, answer[words::CENSUS] & 0xFF);
+            let (status, contacts) = (answer[words::STATUS] & 0xFFFF, answer[words::COUNTERS] & 0xFF);
             let blank = status & (NO_CONTACT | NOT_FINITE | BAD_LENGTH) != 0;
-            assert_eq!((status & MORE_BODIES != 0, blank), (bodies > 1, bodies == 0), "{}", design.name);
-            *seen.entry(bodies).or_insert(0) += 1;
+            assert_eq!((status & SEVERAL_CONTACTS != 0, blank), (contacts > 1, contacts == 0), "{}", design.name);
+            *seen.entry(contacts).or_insert(0) += 1;
         }
         let most = if plan.taxels() < 20 { 2 } else { 4 };
-        assert!((0..=most).all(|bodies| seen.contains_key(&bodies)), "{}: {seen:?}", design.name);
+        assert!((0..=most).all(|contacts| seen.contains_key(&contacts)), "{}: {seen:?}", design.name);
         simulate_exactly(&plan, &built(&plan), &packets, 3).err().map(|error| format!("{}: {error}", design.name))
     })
     .into_iter()
@@ -127,7 +125,7 @@ fn the_hardware_counts_as_the_model_does() {
 fn counting_is_over_before_the_search() {
     for design in designs() {
         let mut plain = design.clone();
-        plain.algorithm.count_bodies = false;
+        plain.algorithm.count_contacts = false;
         let [plain, counted] = [&plain, &design].map(planned);
         assert_eq!(plain.timeline, counted.timeline, "{}", design.name);
         // With a cell a point on any other grid, too; walk and line have as many cells as the grid at hand needs.
@@ -139,7 +137,7 @@ fn counting_is_over_before_the_search() {
             sensors.extend(grids.map(|(columns, rows)| Sensor { columns, rows, ..own.clone() }));
         }
         for sensor in sensors {
-            let (count, search) = (blocks::latency::bodies(&sensor), slot.stages(&sensor)[0].cycles);
+            let (count, search) = (blocks::latency::count_contacts(&sensor), slot.stages(&sensor)[0].cycles);
             assert!(count < search, "{}, {sensor}: {count} cycles to count, {search} to search", design.name);
         }
     }
@@ -177,13 +175,13 @@ fn counts_wait_for_their_frames() {
     let mut core = built(&plan).load(1).expect("loaded");
     let outcome = exchange(&mut core, &traffic, |_| ()).expect("all frames come out");
     let expected = model_answers(&plan, &packets);
-    let counts = |answer: &[u32]| (answer[words::STATUS] & MORE_BODIES, answer[words::CENSUS] & 0xFF);
+    let counts = |answer: &[u32]| (answer[words::STATUS] & SEVERAL_CONTACTS, answer[words::COUNTERS] & 0xFF);
     let found: Vec<_> = outcome.exchanges.iter().map(|exchange| counts(&exchange.words)).collect();
     assert_eq!(found, expected.iter().map(|answer| counts(answer)).collect::<Vec<_>>());
-    assert!([1, 2].iter().all(|&bodies| found.iter().any(|found| found.1 == bodies)), "{found:?}");
+    assert!([1, 2].iter().all(|&contacts| found.iter().any(|found| found.1 == contacts)), "{found:?}");
 }
 
-/// Frames of a kind, and in how many of them the hardware counts as many bodies as the solver, as the scene has, and more
+/// Frames of a kind, and in how many of them the hardware counts as many contacts as the solver, as the scene has, and more
 /// than one.
 fn agreement(plan: &Plan, solver: &Solver, kind: Kind, frames: u64, seed: u64) -> [usize; 3] {
     let scenes: Vec<_> = (0..frames).map(|number| frame(&plan.design.sensor, kind, seed + number)).collect();
@@ -191,9 +189,9 @@ fn agreement(plan: &Plan, solver: &Solver, kind: Kind, frames: u64, seed: u64) -
     let mut counts = [0; 3];
     for (answer, scene) in model_answers(plan, &packets).iter().zip(&scenes) {
         let found = solver.solve(&scene.stress).expect("a whole frame");
-        assert_eq!(found.status.contains(Status::MORE_BODIES), found.bodies > 1);
-        let bodies = (answer[words::CENSUS] & 0xFF) as usize;
-        let told = [bodies == found.bodies, bodies == scene.bodies.len(), bodies > 1];
+        assert_eq!(found.status.contains(Status::SEVERAL_CONTACTS), found.bodies > 1);
+        let contacts = (answer[words::COUNTERS] & 0xFF) as usize;
+        let told = [contacts == found.bodies, contacts == scene.bodies.len(), contacts > 1];
         counts.iter_mut().zip(told).for_each(|(count, told)| *count += usize::from(told));
     }
     counts

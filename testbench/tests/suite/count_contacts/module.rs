@@ -1,4 +1,4 @@
-//! `sptfra_bodies` by itself, against the integer model and the solver's own count.
+//! `sptfra_contact_counter` by itself, against the integer model and the solver's own count.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -7,7 +7,7 @@ use golden::bodies::{Finder, Found};
 use golden::parity::Quads;
 use golden::sensor::Sensor;
 use hdl_gen::blocks::latency;
-use hdl_gen::model::bodies::count;
+use hdl_gen::model::contacts::count;
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -143,15 +143,15 @@ fn blobs_are_counted_as_the_model_counts_them() {
 #[test]
 fn faults_are_noticed() {
     let faults = some_of([
-        // One taxel of a blob that is joined gets its new name.
-        ("blob_labels", "meets && (old == above)", "meets && (old == above) && (index == COLUMNS)"),
-        ("blob_labels", "(above != own)", "1'b1"),
-        ("blob_sums", "joins ? sums[joined] : NOTHING", "NOTHING"),
-        ("blob_sums", "(joined_1 >= least)", "1'b0"),
-        ("blob_sums", "was_body && !begins_2", "was_body"),
+        // One taxel of a component that is joined gets its new label.
+        ("component_labels", "meets && (old == above)", "meets && (old == above) && (index == COLUMNS)"),
+        ("component_labels", "(above != own)", "1'b1"),
+        ("component_sums", "joins ? sums[joined] : NOTHING", "NOTHING"),
+        ("component_sums", "(joined_1 >= least)", "1'b0"),
+        ("component_sums", "was_contact && !begins_2", "was_contact"),
         ("weight_raster", "!borders[3] && (weight_3 > limit)", "(weight_3 > limit)"),
         ("weight_totals", "counts_1[index] ?", "1'b1 ?"),
-        ("bodies", "left + {3'd0, done}", "left"),
+        ("contact_counter", "left + {3'd0, done}", "left"),
     ]);
     let copies: Vec<_> = std::iter::once(None).chain(faults.iter().map(Some)).collect();
     let found = in_parallel(&copies, |fault| {
@@ -179,14 +179,14 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
         longest = longest.max(cycles);
         fs::write(place(format!("{}.in", case.name)), lines.concat()).expect("writable");
         let (row, Sensor { columns, rows, .. }) = (case.row_width(), &case.sensor);
-        let (name, ways, expected) = (case.name, case.ways, latency::bodies(&case.sensor));
+        let (name, ways, expected) = (case.name, case.ways, latency::count_contacts(&case.sensor));
         let high = width + row + 2;
         let _ = write!(
             bench,
             "    generate if (1) begin : {name}
         reg [{high}:0] stimulus [0:{cycles}-1];
         reg [{high}:0] in;
-        wire [7:0] bodies;
+        wire [7:0] contacts;
         integer cycle, file;
         initial begin
             cycle = 0;
@@ -195,11 +195,11 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
             $readmemh(\"{name}.in\", stimulus, 0, {cycles} - 1);
             file = $fopen(\"{name}.out\", \"w\");
         end
-        sptfra_bodies #(.WAYS({ways}), .COLUMNS({columns}), .ROWS({rows}), .DATA_BITS({BITS}), .EXPECTED_LATENCY({expected}))
-            subject (.clock(clock), .reset(in[{high}]), .bodies_take(in[{take}]), .weights_valid(in[{valid}]),
-            .weights_row(in[{width} +: {row}]), .weights(in[{width}-1:0]), .bodies(bodies));
+        sptfra_contact_counter #(.WAYS({ways}), .COLUMNS({columns}), .ROWS({rows}), .DATA_BITS({BITS}), .EXPECTED_LATENCY({expected}))
+            subject (.clock(clock), .reset(in[{high}]), .contacts_take(in[{take}]), .weights_valid(in[{valid}]),
+            .weights_row(in[{width} +: {row}]), .weights(in[{width}-1:0]), .contacts(contacts));
         always @(posedge clock) if (cycle <= {cycles}) begin
-            if (in[{take}]) $fwrite(file, \"%0d\\n\", bodies);
+            if (in[{take}]) $fwrite(file, \"%0d\\n\", contacts);
             if (cycle == {cycles}) $fclose(file);
             in <= (cycle < {cycles}) ? stimulus[cycle] : 0;
             cycle <= cycle + 1;
@@ -219,7 +219,7 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
     }
     let counts = |case: &Case| {
         let text = fs::read_to_string(place(format!("{}.out", case.name))).expect("written");
-        text.lines().map(|line| line.parse().map_err(|_| format!("{}: {line} bodies", case.name))).collect()
+        text.lines().map(|line| line.parse().map_err(|_| format!("{}: {line} contacts", case.name))).collect()
     };
     cases.iter().map(counts).collect()
 }
@@ -228,7 +228,7 @@ fn play(cases: &[Case], fault: Option<&(&str, &str, &str)>, random: &mut ChaCha8
 fn stimulus(case: &Case, random: &mut ChaCha8Rng) -> Vec<String> {
     let (elements, row) = (case.elements(), case.row_width());
     let width = case.ways as u32 * BITS;
-    let took = latency::bodies(&case.sensor) as usize;
+    let took = latency::count_contacts(&case.sensor) as usize;
     let mut lines: Vec<u128> = vec![1 << (width + row + 2); 3];
     let (mut done, mut taken) = (0, 0);
     let mut takes = Vec::new();

@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Blobs of a grid's taxels in raster order, one taxel a cycle: neighbours along x or y that both touch are of one blob.
+// One-pass connected-component labelling, one taxel a cycle in raster order: seeds that are neighbours along x or y.
 //
-// The labels of the last row's taxels stand in a shift register, one step of it longer than a row: each row ends with a
-// step where nothing touches. A taxel whose neighbours have two labels makes one of them in the same cycle, wherever it
-// stands. A blob that begins is named after its row, odd or even, and half its column; so each run of taxels has a name
-// of its own in its row, gives it to what it touches above, and the names of a row are free again two rows later: for
+// The labels of the last row's taxels stand in a shift register, one step longer than a row: each row ends with a step
+// that is no seed. A taxel whose neighbours have two labels renames one to the other in the same cycle, everywhere in
+// the register. A new label is the parity of its row and half its column, so that each run of seeds has a label of its
+// own in its row. The run gives it to the component above, and the labels of a row are free again two rows later: for
 // any grid there are no more than COLUMNS + 1 of them.
 //
-// From a taxel to what it does: 1 cycle.
+// Latency from a taxel to its label: 1 cycle.
 
 `default_nettype none
 
-module sptfra_blob_labels #(
+module sptfra_component_labels #(
     // Taxels along x
     parameter COLUMNS = 10,
     // Derived
     parameter LABEL_WIDTH = (COLUMNS > 4) ? $clog2((COLUMNS + 1) / 2) + 1 : 2
 ) (
     input  wire clock,
-    input  wire clear, // a frame begins: nothing touches above it
-    // Taxels, and a step that touches nothing at the end of each row
+    input  wire clear, // a frame begins: no seed is above it
+    // Taxels, and a step without a seed at the end of each row
     input  wire step,
-    input  wire touches,
-    input  wire [LABEL_WIDTH-1:0] fresh, // of a blob that would begin here
+    input  wire seed,
+    input  wire [LABEL_WIDTH-1:0] fresh, // label of a component that would begin here
     // What the taxel is
-    output reg  counts, // it is of a blob,
+    output reg  counts, // it is a seed,
     output reg  begins, // the first of a run,
     output reg  [LABEL_WIDTH-1:0] label,
-    output reg  joins, // and one with another blob above it,
+    output reg  joins, // and it joins another component above,
     output reg  [LABEL_WIDTH-1:0] joined // which had this label until now
 );
 
@@ -39,12 +39,12 @@ module sptfra_blob_labels #(
         end
     endgenerate
 
-    // ---- What touched in the last row's steps, the newest in the lowest bits
+    // ---- Seeds of the last row's steps, the newest in the lowest bits
     reg [COLUMNS:0] there;
     reg [LABEL_WIDTH*(COLUMNS+1)-1:0] labels;
     wire [LABEL_WIDTH-1:0] above = labels[LABEL_WIDTH*COLUMNS +: LABEL_WIDTH];
     wire [LABEL_WIDTH-1:0] own = there[0] ? labels[LABEL_WIDTH-1:0] : fresh;
-    wire meets = touches && there[COLUMNS] && (above != own);
+    wire meets = seed && there[COLUMNS] && (above != own);
     wire [LABEL_WIDTH*(COLUMNS+1)-1:0] renamed;
     genvar index;
 
@@ -58,13 +58,13 @@ module sptfra_blob_labels #(
 
     always @(posedge clock) begin
         if (step) begin
-            there <= {there[COLUMNS-1:0], touches};
+            there <= {there[COLUMNS-1:0], seed};
             labels <= {renamed[LABEL_WIDTH*COLUMNS-1:0], own};
         end
         if (clear) begin
             there <= {(COLUMNS+1){1'b0}};
         end
-        counts <= step && touches;
+        counts <= step && seed;
         begins <= !there[0];
         label <= own;
         joins <= meets;

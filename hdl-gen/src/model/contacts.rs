@@ -1,4 +1,4 @@
-//! How many bodies press, in integers: what `sptfra_bodies` finds of `|w|`.
+//! How many bodies press, in integers: what `sptfra_contact_counter` finds of `|w|`.
 
 use golden::bodies::Labels;
 

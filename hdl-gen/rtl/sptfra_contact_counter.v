@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Counts the bodies of a frame by |w|: taxels above 5/64 of the frame's largest touch, touching neighbours along x or y
-// are one blob, and blobs with 5/64 of all |w| are bodies. Where none has so much, and without any |w|, it counts one.
+// Contact counter: one-pass connected-component labelling of |w|, with the components' sums.
 //
-// Takes the weights as We makes them, in any order, a quad or a taxel a cycle; two frames have a place. Then the taxels
-// pass in raster order, one a cycle, with a step between rows: from the last weights to the count it is (COLUMNS + 1) *
+// A taxel above 5/64 of the frame's largest |w| is a seed. Seeds that are neighbours along x or y are one connected
+// component. A component with 5/64 of all |w| is a contact. If none has, and without any |w|, the count is 1.
+//
+// Takes the weights as We makes them, in any order, a quad or a taxel a cycle; buffers two frames. Then the taxels pass
+// in raster order, one a cycle, with a step between rows. Latency from the last weights to the count: (COLUMNS + 1) *
 // ROWS + 12 cycles. The search takes longer, for any design, so that nothing ever waits here; simulations check it.
 
 `default_nettype none
 
-module sptfra_bodies #(
+module sptfra_contact_counter #(
     // 4: weights come by quads of a folded grid; 1: by taxels
     parameter WAYS = 4,
     // Taxels in x and y
@@ -30,9 +32,9 @@ module sptfra_bodies #(
     input  wire weights_valid,
     input  wire [ROW_WIDTH-1:0] weights_row,
     input  wire [WAYS*DATA_BITS-1:0] weights, // member 0 in the lowest bits
-    // To Op: bodies of the oldest frame of which no output has begun
-    output wire [7:0] bodies,
-    input  wire bodies_take
+    // To Op: contacts of the oldest frame of which no output has begun
+    output wire [7:0] contacts,
+    input  wire contacts_take
 );
 
     generate
@@ -121,7 +123,7 @@ module sptfra_bodies #(
     end
 
     wire step;
-    wire touches;
+    wire seed;
     wire [LABEL_WIDTH-1:0] fresh;
     wire [DATA_BITS-1:0] weight;
 
@@ -143,60 +145,60 @@ module sptfra_bodies #(
         .bank          (read_bank),
         .limit         (limit),
         .step          (step),
-        .touches       (touches),
+        .seed          (seed),
         .fresh         (fresh),
         .weight        (weight),
         .last          (last_step)
     );
 
-    // ---- A cycle behind: its blob. Three more: the sums of the blobs, and the count
-    wire is_of_blob;
+    // ---- A cycle behind: its component. Three more: the components' sums, and the count
+    wire is_seed;
     wire begins;
     wire [LABEL_WIDTH-1:0] label;
     wire joins;
     wire [LABEL_WIDTH-1:0] joined;
     wire [3:0] found;
 
-    sptfra_blob_labels #(
+    sptfra_component_labels #(
         .COLUMNS (COLUMNS)
-    ) blob_labels (
+    ) component_labels (
         .clock   (clock),
         .clear   (start),
         .step    (step),
-        .touches (touches),
+        .seed    (seed),
         .fresh   (fresh),
-        .counts  (is_of_blob),
+        .counts  (is_seed),
         .begins  (begins),
         .label   (label),
         .joins   (joins),
         .joined  (joined)
     );
 
-    sptfra_blob_sums #(
+    sptfra_component_sums #(
         .DATA_BITS   (DATA_BITS),
         .SUM_BITS    (SUM_BITS),
         .LABEL_WIDTH (LABEL_WIDTH)
-    ) blob_sums (
+    ) component_sums (
         .clock  (clock),
         .clear  (start),
         .least  (least),
-        .counts (is_of_blob),
+        .counts (is_seed),
         .begins (begins),
         .label  (label),
         .joins  (joins),
         .joined (joined),
         .weight (weight),
-        .bodies (found)
+        .contacts (found)
     );
 
     // ---- Counts until their frames go out: of two frames that are searched, of one at each later stage; five at most
     reg [31:0] counts;
     reg [3:0] waiting; // counts there
     wire [3:0] next_count = (found == 4'd0) ? 4'd1 : found;
-    wire [3:0] left = waiting - {3'd0, bodies_take};
-    wire [31:0] counts_left = bodies_take ? counts >> 4 : counts;
+    wire [3:0] left = waiting - {3'd0, contacts_take};
+    wire [31:0] counts_left = contacts_take ? counts >> 4 : counts;
 
-    assign bodies = {4'd0, counts[3:0]};
+    assign contacts = {4'd0, counts[3:0]};
 
     always @(posedge clock) begin
         waiting <= left + {3'd0, done};
@@ -218,8 +220,8 @@ module sptfra_bodies #(
             $fdisplay(32'h80000002, "%m: a ninth count has no place");
             $finish;
         end
-        if (!reset && bodies_take && (waiting == 4'd0)) begin
-            $fdisplay(32'h80000002, "%m: a frame goes out before its bodies are counted");
+        if (!reset && contacts_take && (waiting == 4'd0)) begin
+            $fdisplay(32'h80000002, "%m: a frame goes out before its contacts are counted");
             $finish;
         end
         if (!reset && weights_valid && (frames_inside == 2'd2)) begin

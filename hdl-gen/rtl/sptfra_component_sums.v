@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Adds up |w| of each blob and counts the blobs that have the least sum, a taxel a cycle.
+// Sums of |w| over connected components, a taxel a cycle, and the count of components with the least sum.
 //
-// A run of taxels adds its own and, where it joins another blob, what that one has. Between two runs a taxel passes
+// A run of taxels adds its own and, where it joins another component, that one's sum. Between two runs a taxel passes
 // that does not count, so that a sum is written before anything can join it. Sums only grow: one that reaches the
 // least is one more, two of them that join are one less. From a taxel to the count: 3 cycles.
 
 `default_nettype none
 
-module sptfra_blob_sums #(
+module sptfra_component_sums #(
     // Bits of |w|, of a sum, and of a label
     parameter DATA_BITS = 27,
     parameter SUM_BITS = 34,
@@ -18,15 +18,15 @@ module sptfra_blob_sums #(
     input  wire clock,
     input  wire clear, // a frame begins
     input  wire [SUM_BITS-1:0] least, // held
-    // Taxels, from sptfra_blob_labels
+    // Taxels, from sptfra_component_labels
     input  wire counts,
     input  wire begins,
     input  wire [LABEL_WIDTH-1:0] label,
     input  wire joins,
     input  wire [LABEL_WIDTH-1:0] joined,
     input  wire [DATA_BITS-1:0] weight,
-    // Blobs with the least sum: at most 12 have 5/64 of all
-    output reg  [3:0] bodies
+    // Components with the least sum: at most 12 have 5/64 of all
+    output reg  [3:0] contacts
 );
 
     generate
@@ -57,7 +57,7 @@ module sptfra_blob_sums #(
     reg [SUM_BITS-1:0] sum;
     reg counts_2;
     reg begins_2;
-    reg joined_body_2;
+    reg joined_contact_2;
     wire [SUM_BITS-1:0] grown = (begins_1 ? NOTHING : sum) + {{(SUM_BITS-DATA_BITS){1'b0}}, weight_1} + joined_1;
 
     always @(posedge clock) begin
@@ -67,21 +67,21 @@ module sptfra_blob_sums #(
         end
         counts_2 <= counts_1;
         begins_2 <= begins_1;
-        joined_body_2 <= (joined_1 >= least);
+        joined_contact_2 <= (joined_1 >= least);
     end
 
-    // ---- Stage 3: whether it is a body, and was one
-    reg was_body;
-    wire is_body = (sum >= least);
-    wire was_counted = was_body && !begins_2;
+    // ---- Stage 3: whether it is a contact, and was one
+    reg was_contact;
+    wire is_contact = (sum >= least);
+    wire was_counted = was_contact && !begins_2;
 
     always @(posedge clock) begin
         if (counts_2) begin
-            was_body <= is_body;
-            bodies <= bodies + {3'd0, is_body} - {3'd0, was_counted} - {3'd0, joined_body_2};
+            was_contact <= is_contact;
+            contacts <= contacts + {3'd0, is_contact} - {3'd0, was_counted} - {3'd0, joined_contact_2};
         end
         if (clear) begin
-            bodies <= 4'd0;
+            contacts <= 4'd0;
         end
     end
 
