@@ -108,7 +108,6 @@ int sptfra_identify(const sptfra *device, sptfra_identity *identity)
     identity->design_hash = (uint64_t)GET(device, HASH_HIGH) << 32 | GET(device, HASH_LOW);
     identity->lanes = (uint8_t)FIELD(GET(device, GEOMETRY), GEOMETRY__LANES);
     identity->reduced = (uint8_t)FIELD(features, FEATURES__REDUCED);
-    identity->skips_zeros = (uint8_t)FIELD(features, FEATURES__SKIPS_ZEROS);
     identity->calibration_in_ram = (uint8_t)FIELD(features, FEATURES__CALIBRATION_RAM);
     identity->curve_in_ram = (uint8_t)FIELD(features, FEATURES__CURVE_IN_RAM);
     identity->replaceable = (uint8_t)FIELD(features, FEATURES__REPLACEABLE);

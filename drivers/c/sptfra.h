@@ -110,7 +110,7 @@ int sptfra_open_streams(sptfra *device, const sptfra_platform *platform, uintptr
 typedef struct {
     uint8_t map_version, major, minor, patch; /* of the generator */
     uint64_t design_hash;
-    uint8_t lanes, reduced, skips_zeros;
+    uint8_t lanes, reduced;
     uint8_t calibration_in_ram; /* sptfra_load_calibration, sptfra_tare */
     uint8_t curve_in_ram;       /* sptfra_load_bank_and_curve */
     uint8_t replaceable;        /* dead taxels that a bank has room for */

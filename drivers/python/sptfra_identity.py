@@ -23,7 +23,6 @@ class Identity:
     has_field: bool
     reduced: bool | None
     has_counts: bool | None
-    skips_zeros: bool
     stream_bits: int
     #: Whether gains and offsets are in RAM: see `Sptfra.load_calibration`.
     calibration_in_ram: bool
@@ -63,7 +62,6 @@ class Identity:
             has_field=bool(features & 1),
             reduced=bool(features & 2),
             has_counts=bool(features & 4),
-            skips_zeros=bool(features & 8),
             calibration_in_ram=bool(features & 16),
             curve_in_ram=bool(features & 64),
             replaceable=features >> 20 & 15,
@@ -92,7 +90,6 @@ class Identity:
             has_field=any(value["name"] == "field" for value in metadata["output"]),
             reduced=None,
             has_counts=None,
-            skips_zeros=predicted["worst_case"],
             calibration_in_ram=False,
             curve_in_ram=False,
             replaceable=0,

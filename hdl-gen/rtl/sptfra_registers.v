@@ -32,7 +32,6 @@ module sptfra_registers #(
     // Frames hold counts, else pascals
     parameter [0:0] HAS_COUNTS = 1'd0,
     // Cycles depend on the data
-    parameter [0:0] SKIPS_ZEROS = 1'd0,
     // Bytes of a beat on either stream
     parameter [7:0] STREAM_BYTES = 8'd4,
     // A sample is: 0 float32, 1 int16, 2 uint16
@@ -130,7 +129,7 @@ module sptfra_registers #(
             HASH_HIGH: read_data = HASH[63:32];
             GEOMETRY: read_data = {8'd0, LANES, ROWS, COLUMNS};
             FRAME: read_data = {WORDS_OUT, WORDS_IN};
-            FEATURES: read_data = {14'd0, SAMPLES, STREAM_BYTES, 4'd0, SKIPS_ZEROS, HAS_COUNTS, IS_REDUCED, HAS_FIELD};
+            FEATURES: read_data = {14'd0, SAMPLES, STREAM_BYTES, 5'd0, HAS_COUNTS, IS_REDUCED, HAS_FIELD};
             CLOCK: read_data = CLOCK_KHZ;
             FULL_SCALE_PASCALS: read_data = FULL_SCALE;
             PREDICTED_LATENCY: read_data = LATENCY_CYCLES;

@@ -19,7 +19,6 @@ module sptfra_spmv_array #(
     // Vectors that a product reads side by side, at most
     parameter VECTORS = 3,
     // Words of the lanes' ROMs and operand memories, and of the visit ROM
-    parameter VALUE_DEPTH = 512,
     parameter WORD_DEPTH = 512,
     parameter SEGMENT_DEPTH = 64,
     parameter OPERAND_DEPTH = 200,
@@ -44,11 +43,6 @@ module sptfra_spmv_array #(
     parameter [PROGRAMS*32-1:0] START_WORDS = {(PROGRAMS*32){1'b0}},
     parameter [PROGRAMS*16-1:0] START_SEGMENTS = {(PROGRAMS*16){1'b0}},
     parameter [PROGRAMS*32-1:0] START_VISITS = {(PROGRAMS*32){1'b0}},
-    parameter SKIPS = 0,
-    parameter [PRODUCTS-1:0] IN_ROUNDS = {PRODUCTS{1'b0}},
-    parameter [PRODUCTS-1:0] ROUNDS_ONLY = {PRODUCTS{1'b0}},
-    parameter [PRODUCTS-1:0] PULLS = {PRODUCTS{1'b0}},
-    parameter [PRODUCTS*32-1:0] ROUND_WORDS = {(PRODUCTS*32){1'b0}},
     // Results: see sptfra_spmv_collector
     parameter AHEAD = 0,
     parameter DESTINATION_BITS = 4,
@@ -67,11 +61,6 @@ module sptfra_spmv_array #(
     output wire issued, // with the last issue of a program
     input  wire bank, // of the stress of the frame whose weights are computed
     input  wire field_bank, // of the residual of the frame whose field is
-    // Quads that are not zero
-    output wire list_pull,
-    output wire [ROW_WIDTH-1:0] list_address,
-    input  wire [ROW_WIDTH-1:0] list_quad,
-    input  wire [ROW_WIDTH+7:0] list_count,
     // Friction, held while a program that needs it runs
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
@@ -102,11 +91,8 @@ module sptfra_spmv_array #(
         end
     endgenerate
     localparam WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1;
-    localparam VALUE_WIDTH = (VALUE_DEPTH > 2) ? $clog2(VALUE_DEPTH) : 1;
     localparam VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1;
     localparam NAME_BITS = (LANES > 100) ? 24 : 16; // of a lane's number in its files' names
-    // What the last round brings: a row for so many lanes
-    localparam LAST_ROWS = (ELEMENTS - 1) % LANES + 1;
 
     // ---- From the sequencer; one register on the way to the lanes
     wire next_restart;
@@ -120,12 +106,6 @@ module sptfra_spmv_array #(
     wire [OPERAND_WIDTH-1:0] next_base;
     wire next_mirrored;
     wire next_friction;
-    wire next_skip;
-    wire [VALUE_WIDTH-1:0] next_skip_word;
-    wire [ROW_WIDTH-1:0] next_skip_quad;
-    wire next_skip_first;
-    wire next_skip_last;
-    wire next_skip_partial;
     reg  restart;
     reg  [WORD_WIDTH-1:0] start_word;
     reg  restart_segment;
@@ -137,10 +117,6 @@ module sptfra_spmv_array #(
     reg  [OPERAND_WIDTH-1:0] base;
     reg  mirrored;
     reg  friction;
-    reg  skip;
-    reg  [VALUE_WIDTH-1:0] skip_word;
-    reg  [ROW_WIDTH-1:0] skip_quad;
-    reg  skip_first, skip_last, skip_partial;
 
     always @(posedge clock) begin
         restart <= next_restart;
@@ -154,26 +130,17 @@ module sptfra_spmv_array #(
         base <= next_base;
         mirrored <= next_mirrored;
         friction <= next_friction;
-        skip <= next_skip;
-        skip_word <= next_skip_word;
-        skip_quad <= next_skip_quad;
-        skip_first <= next_skip_first;
-        skip_last <= next_skip_last;
-        skip_partial <= next_skip_partial;
         if (reset) begin
             restart <= 1'b0;
             restart_segment <= 1'b0;
             issue <= 1'b0;
             mark <= 1'b0;
             rewind <= 1'b0;
-            skip <= 1'b0;
         end
     end
 
     sptfra_spmv_sequencer #(
-        .LANES          (LANES),
         .ELEMENTS       (ELEMENTS),
-        .VALUE_DEPTH    (VALUE_DEPTH),
         .WORD_DEPTH     (WORD_DEPTH),
         .OPERAND_DEPTH  (OPERAND_DEPTH),
         .VISIT_DEPTH    (VISIT_DEPTH),
@@ -193,13 +160,7 @@ module sptfra_spmv_array #(
         .FIRSTS         (FIRSTS),
         .START_WORDS    (START_WORDS),
         .START_SEGMENTS (START_SEGMENTS),
-        .START_VISITS   (START_VISITS),
-        .SKIPS          (SKIPS),
-        .IN_ROUNDS      (IN_ROUNDS),
-        .ROUNDS_ONLY    (ROUNDS_ONLY),
-        .PULLS          (PULLS),
-        .ROUND_WORDS    (ROUND_WORDS),
-        .MIRROR_SIDE    (MIRROR_SIDE)
+        .START_VISITS   (START_VISITS)
     ) sequencer (
         .clock           (clock),
         .reset           (reset),
@@ -217,17 +178,7 @@ module sptfra_spmv_array #(
         .rewind          (next_rewind),
         .base            (next_base),
         .mirrored        (next_mirrored),
-        .friction        (next_friction),
-        .list_pull       (list_pull),
-        .list_address    (list_address),
-        .list_quad       (list_quad),
-        .list_count      (list_count),
-        .skip            (next_skip),
-        .skip_word       (next_skip_word),
-        .skip_quad       (next_skip_quad),
-        .skip_first      (next_skip_first),
-        .skip_last       (next_skip_last),
-        .skip_partial    (next_skip_partial)
+        .friction        (next_friction)
     );
 
     // ---- One register on the way to the operand memories
@@ -263,14 +214,11 @@ module sptfra_spmv_array #(
                 .DATA_BITS        (DATA_BITS),
                 .ELEMENTS         (ELEMENTS),
                 .VECTORS          (VECTORS),
-                .VALUE_DEPTH      (VALUE_DEPTH),
                 .WORD_DEPTH       (WORD_DEPTH),
                 .SEGMENT_DEPTH    (SEGMENT_DEPTH),
                 .OPERAND_DEPTH    (OPERAND_DEPTH),
                 .MIRROR_SIDE      (MIRROR_SIDE),
                 .FRICTION         (FRICTIONS != {PRODUCTS{1'b0}}),
-                .SKIPS            (SKIPS),
-                .HAS_LAST_ROW     (index < LAST_ROWS),
                 .ROM_DIR          (ROM_DIR),
                 .VALUES_FILE      ((ROM_NAME == "") ? "" : {ROM_NAME, "_values_lane", DIGITS[NAME_BITS-1:0], ".mem"}),
                 .COLUMNS_FILE     ((ROM_NAME == "") ? "" : {ROM_NAME, "_columns_lane", DIGITS[NAME_BITS-1:0], ".mem"}),
@@ -287,12 +235,6 @@ module sptfra_spmv_array #(
                 .rewind          (rewind),
                 .base            (base),
                 .mirrored        (mirrored),
-                .skip            (skip),
-                .skip_word       (skip_word),
-                .skip_quad       (skip_quad),
-                .skip_first      (skip_first),
-                .skip_last       (skip_last),
-                .skip_partial    (skip_partial),
                 .friction        (friction),
                 .mu_x            (mu_x),
                 .mu_y            (mu_y),

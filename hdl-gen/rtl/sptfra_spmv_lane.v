@@ -21,7 +21,6 @@ module sptfra_spmv_lane #(
     // Vectors that a product reads side by side, at most
     parameter VECTORS = 3,
     // Words of the ROMs and of the operand memory
-    parameter VALUE_DEPTH = 512,
     parameter WORD_DEPTH = 512,
     parameter SEGMENT_DEPTH = 64,
     parameter OPERAND_DEPTH = 200,
@@ -29,10 +28,6 @@ module sptfra_spmv_lane #(
     parameter MIRROR_SIDE = 0,
     // Whether friction components take the coefficients' place in some products
     parameter FRICTION = 1,
-    // Whether some products pass over zeros, in rounds over dense rows; and whether the last, partial round has a row
-    // for this lane
-    parameter SKIPS = 0,
-    parameter HAS_LAST_ROW = 1,
     // Prefix of the ROM file names, and the names
     parameter ROM_DIR = "",
     parameter VALUES_FILE = "",
@@ -41,7 +36,6 @@ module sptfra_spmv_lane #(
     // Derived
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1,
-    parameter VALUE_WIDTH = (VALUE_DEPTH > 2) ? $clog2(VALUE_DEPTH) : 1,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
 ) (
     input  wire clock,
@@ -56,13 +50,6 @@ module sptfra_spmv_lane #(
     input  wire rewind,
     input  wire [OPERAND_WIDTH-1:0] base,
     input  wire mirrored, // one cycle after its issue: the operand's mirror image is meant
-    // Dense rows, in which all lanes are at the same column: with the issue
-    input  wire skip,
-    input  wire [VALUE_WIDTH-1:0] skip_word,
-    input  wire [ROW_WIDTH-1:0] skip_quad,
-    input  wire skip_first,
-    input  wire skip_last,
-    input  wire skip_partial, // the last round
     input  wire friction, // three cycles after its issue: a friction component takes the coefficient's place
     input  wire signed [17:0] mu_x,
     input  wire signed [17:0] mu_y,
@@ -103,7 +90,7 @@ module sptfra_spmv_lane #(
         .clock         (clock),
         .restart       (restart_segment),
         .start_address (start_segment),
-        .issue         (issue && !skip),
+        .issue         (issue),
         .row_word      (segment),
         .row_address   (segment_address),
         .row_fetch     (segment_fetch),
@@ -128,15 +115,10 @@ module sptfra_spmv_lane #(
     reg  [WORD_WIDTH-1:0] next_word;
     reg  [WORD_WIDTH-1:0] marked_word;
     wire [WORD_WIDTH-1:0] word = rewind ? marked_word : next_word;
-    wire [31:0] word_wide = {{(32-WORD_WIDTH){1'b0}}, word};
-    wire own_issue = issue && !skip && (kind != IDLE);
-    wire mac_issue = own_issue || (issue && skip);
-    wire mac_is_first = skip ? skip_first : first;
-    wire segment_ends = skip ? skip_last && ((HAS_LAST_ROW != 0) || !skip_partial) : last;
-    wire [VALUE_WIDTH-1:0] value_address = skip ? skip_word : word_wide[VALUE_WIDTH-1:0];
+    wire mac_issue = issue && (kind != IDLE);
 
     always @(posedge clock) begin
-        next_word <= restart ? start_word : own_issue ? word + 1 : word;
+        next_word <= restart ? start_word : mac_issue ? word + 1 : word;
         if (mark) begin
             marked_word <= next_word;
         end
@@ -147,14 +129,14 @@ module sptfra_spmv_lane #(
 
     sptfra_rom #(
         .WIDTH         (WAYS * COEFFICIENT_BITS),
-        .DEPTH         (VALUE_DEPTH),
-        .ADDRESS_WIDTH (VALUE_WIDTH),
+        .DEPTH         (WORD_DEPTH),
+        .ADDRESS_WIDTH (WORD_WIDTH),
         .ROM_DIR       (ROM_DIR),
         .FILE          (VALUES_FILE)
     ) values (
         .clock   (clock),
         .enable  (1'b1),
-        .address (value_address),
+        .address (word),
         .data    (value)
     );
 
@@ -171,12 +153,12 @@ module sptfra_spmv_lane #(
         .data    (column)
     );
 
-    // ---- Operand: the column, its mirror image, or the quad that all lanes are at. A register stands behind the ROM,
+    // ---- Operand: the column, or its mirror image. A register stands behind the ROM,
     // and the adder in front of the operand memory: neither memory has more than its own register beside it. Registers
     // that are equal in all lanes are kept, for each lane to have its own at hand
     wire [31:0] column_wide = {{(32-COLUMN_WIDTH){1'b0}}, column};
     wire [ROW_WIDTH-1:0] mirror_image;
-    wire [31:0] element; // one cycle after its issue
+    wire [31:0] element = mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide; // a cycle after its issue
     reg  [OPERAND_WIDTH-1:0] element_2;
     (* keep = "true" *) reg [OPERAND_WIDTH-1:0] base_2;
     wire [OPERAND_WIDTH-1:0] operand_address = base_2 + element_2;
@@ -196,21 +178,6 @@ module sptfra_spmv_lane #(
             );
         end else begin : gen_no_mirror
             assign mirror_image = {ROW_WIDTH{1'b0}};
-        end
-        if (SKIPS != 0) begin : gen_skips
-            (* keep = "true" *) reg skip_1;
-            (* keep = "true" *) reg [ROW_WIDTH-1:0] skip_quad_1;
-
-            always @(posedge clock) begin
-                skip_1 <= skip;
-                skip_quad_1 <= skip_quad;
-            end
-
-            assign element = skip_1 ? {{(32-ROW_WIDTH){1'b0}}, skip_quad_1}
-                : mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide;
-        end else begin : gen_no_skips
-            assign element = mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide;
-            wire _unused = &{1'b0, skip_quad};
         end
     endgenerate
 
@@ -247,9 +214,9 @@ module sptfra_spmv_lane #(
 
     always @(posedge clock) begin
         mac_valid <= {mac_valid[2:1], mac_issue};
-        mac_first <= {mac_first[2:1], mac_is_first};
-        segment_ends_1 <= issue && segment_ends;
-        kind_1 <= skip ? ROW : kind;
+        mac_first <= {mac_first[2:1], first};
+        segment_ends_1 <= issue && last;
+        kind_1 <= kind;
         result_ends <= {result_ends[5:2], segment_ends_1 && ((kind_1 == ROW) || (kind_1 == HEAD))};
         tail_ends <= {tail_ends[5:2], segment_ends_1 && (kind_1 == TAIL)};
         is_head <= {is_head[5:2], kind_1 == HEAD};
@@ -317,7 +284,7 @@ module sptfra_spmv_lane #(
         end
     endgenerate
 
-    wire _unused = &{1'b0, segment_address, word_wide, column_wide, element, swaps};
+    wire _unused = &{1'b0, segment_address, column_wide, element, swaps};
 
 endmodule
 

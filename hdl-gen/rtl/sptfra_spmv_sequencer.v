@@ -3,19 +3,16 @@
 //
 // Walks through the sparse products of a program in their fixed order and at their fixed times.
 //
-// A start pulse runs one program, products that follow each other at fixed distances, but for zeros passed over; issued
-// marks the last issue of a program. The next start may come in the cycle after that. The tables say what a product is:
-// number 0 stands in the lowest bits.
+// A start pulse runs one program: products that follow each other at fixed distances. issued marks the last issue of a
+// program. The next start may come in the cycle after that. The tables describe the products: number 0 stands in the
+// lowest bits.
 
 `default_nettype none
 
 module sptfra_spmv_sequencer #(
-    // Lanes
-    parameter LANES = 4,
     // Elements of a vector: taxels, or quads of a folded grid
     parameter ELEMENTS = 25,
     // Words of the lanes' ROMs and operand memories, and of the visit ROM
-    parameter VALUE_DEPTH = 512,
     parameter WORD_DEPTH = 512,
     parameter OPERAND_DEPTH = 200,
     parameter VISIT_DEPTH = 200,
@@ -45,19 +42,8 @@ module sptfra_spmv_sequencer #(
     parameter [PROGRAMS*32-1:0] START_WORDS = {(PROGRAMS*32){1'b0}},
     parameter [PROGRAMS*16-1:0] START_SEGMENTS = {(PROGRAMS*16){1'b0}},
     parameter [PROGRAMS*32-1:0] START_VISITS = {(PROGRAMS*32){1'b0}},
-    // Whether some products pass over zeros, in rounds over dense rows: which do, which of them have no pieces of rows
-    // in front, which multiply y+ rather than |w|, and the first word of their dense rows
-    parameter SKIPS = 0,
-    parameter [PRODUCTS-1:0] IN_ROUNDS = {PRODUCTS{1'b0}},
-    parameter [PRODUCTS-1:0] ROUNDS_ONLY = {PRODUCTS{1'b0}},
-    parameter [PRODUCTS-1:0] PULLS = {PRODUCTS{1'b0}},
-    parameter [PRODUCTS*32-1:0] ROUND_WORDS = {(PRODUCTS*32){1'b0}},
-    // Quads along a side of the grid that is mirrored; 0: none is
-    parameter MIRROR_SIDE = 0,
     // Derived
-    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter WORD_WIDTH = (WORD_DEPTH > 2) ? $clog2(WORD_DEPTH) : 1,
-    parameter VALUE_WIDTH = (VALUE_DEPTH > 2) ? $clog2(VALUE_DEPTH) : 1,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1,
     parameter VISIT_WIDTH = (VISIT_DEPTH > 2) ? $clog2(VISIT_DEPTH) : 1
 ) (
@@ -79,18 +65,7 @@ module sptfra_spmv_sequencer #(
     output wire rewind, // first issue of reading it again
     output reg  [OPERAND_WIDTH-1:0] base, // of the operand, one cycle after its issue
     output reg  mirrored, // one cycle after its issue: the operand's mirror image is meant
-    output wire friction, // three cycles after its issue: friction components are the coefficients
-    // Rounds: one row a lane, and only the quads in a list are multiplied
-    output wire list_pull,
-    output wire [ROW_WIDTH-1:0] list_address,
-    input  wire [ROW_WIDTH-1:0] list_quad,
-    input  wire [ROW_WIDTH+7:0] list_count,
-    output wire skip,
-    output wire [VALUE_WIDTH-1:0] skip_word,
-    output wire [ROW_WIDTH-1:0] skip_quad,
-    output wire skip_first,
-    output wire skip_last,
-    output wire skip_partial // the last round has no row for every lane
+    output wire friction // three cycles after its issue: friction components are the coefficients
 );
 
     generate
@@ -100,20 +75,14 @@ module sptfra_spmv_sequencer #(
         if (!LASTS[PRODUCTS-1]) begin : gen_check_last
             sptfra_error_the_last_product_must_end_its_program invalid ();
         end
-        if ((SKIPS == 0) && (IN_ROUNDS != {PRODUCTS{1'b0}})) begin : gen_check_rounds
-            sptfra_error_products_in_rounds_pass_over_zeros invalid ();
-        end
-        if ((MIRROR_SIDE != 0) && (MIRROR_SIDE * MIRROR_SIDE != ELEMENTS)) begin : gen_check_mirror
-            sptfra_error_only_a_square_grid_is_mirrored invalid ();
-        end
     endgenerate
 
     localparam PRODUCT_WIDTH = (PRODUCTS > 2) ? $clog2(PRODUCTS) : 1;
-    localparam [2:0] IDLE = 3'd0, WAIT = 3'd1, RUN = 3'd2, FETCH = 3'd3, ROUNDS = 3'd4;
+    localparam [1:0] IDLE = 2'd0, WAIT = 2'd1, RUN = 2'd2;
     localparam [COUNT_BITS-1:0] ONE = 1;
 
     // ---- The program that is started: what is known of its first product, one cycle behind start
-    reg [2:0] state;
+    reg [1:0] state;
     reg [PRODUCT_WIDTH-1:0] product;
     reg [COUNT_BITS-1:0] count;
     reg over; // count is 1
@@ -154,10 +123,7 @@ module sptfra_spmv_sequencer #(
     // ---- The next product, all looked up before it is known which is wanted
     reg started; // one cycle behind start, with the program's data
     reg program_last;
-    wire pieces_end = (state == RUN) && over;
-    wire rounds_end;
-    wire rounds_follow; // the pieces of this product
-    wire run_last = rounds_end || (pieces_end && !rounds_follow);
+    wire run_last = (state == RUN) && over;
     wire advance = started || (run_last && !program_last);
     wire [PRODUCT_WIDTH-1:0] following = product + 1;
     wire [PRODUCT_WIDTH-1:0] next_product = started ? first_product : following;
@@ -165,11 +131,10 @@ module sptfra_spmv_sequencer #(
     wire [COUNT_BITS-1:0] next_length = started ? first_length : LENGTHS[COUNT_BITS*following +: COUNT_BITS];
     wire [COUNT_BITS-1:0] own_length = LENGTHS[COUNT_BITS*product +: COUNT_BITS];
     wire next_last = started ? first_is_last : LASTS[following];
-    wire next_in_rounds = (SKIPS != 0) && ROUNDS_ONLY[next_product];
-    wire own_in_rounds = (SKIPS != 0) && ROUNDS_ONLY[product];
 
     assign restart_segment = (start != {PROGRAMS{1'b0}});
     assign restart = started;
+    assign issue = (state == RUN);
     assign issued = run_last && program_last;
     assign mark = issue && first_issue && MARKS[product];
     assign rewind = issue && first_issue && REWINDS[product];
@@ -185,7 +150,7 @@ module sptfra_spmv_sequencer #(
                 count <= next_wait;
                 over <= (next_wait == ONE);
             end else begin
-                state <= next_in_rounds ? FETCH : RUN;
+                state <= RUN;
                 count <= next_length;
                 over <= (next_length == ONE);
             end
@@ -195,22 +160,14 @@ module sptfra_spmv_sequencer #(
             case (state)
                 WAIT: begin
                     if (over) begin
-                        state <= own_in_rounds ? FETCH : RUN;
+                        state <= RUN;
                         count <= own_length;
                         over <= (own_length == ONE);
                     end
                 end
                 RUN: begin
                     first_issue <= 1'b0;
-                    if (pieces_end) begin
-                        state <= rounds_follow ? FETCH : IDLE;
-                    end
-                end
-                FETCH: begin
-                    state <= ROUNDS;
-                end
-                ROUNDS: begin
-                    if (rounds_end) begin
+                    if (run_last) begin
                         state <= IDLE;
                     end
                 end
@@ -241,81 +198,6 @@ module sptfra_spmv_sequencer #(
         mirrored <= MIRRORED[product];
         frictions <= {frictions[2:1], FRICTIONS[product]};
     end
-
-    // ---- Rounds over dense rows
-    generate
-        if (SKIPS != 0) begin : gen_rounds
-            localparam ROUND_COUNT = (ELEMENTS + LANES - 1) / LANES;
-            localparam [ROW_WIDTH+7:0] FEWEST = LANES;
-            localparam [ROW_WIDTH+7:0] NOTHING = 0;
-
-            reg [ROW_WIDTH-1:0] round;
-            reg [ROW_WIDTH+7:0] position; // in the round
-            reg [VALUE_WIDTH-1:0] row_word; // first word of the round's rows
-            wire [ROW_WIDTH+7:0] nonzeros = (list_count == NOTHING) ? NOTHING + 1 : list_count;
-            // The collector takes one result a cycle, and each round brings one a lane
-            wire [ROW_WIDTH+7:0] period = (nonzeros < FEWEST) ? FEWEST : nonzeros;
-            wire round_ends = (state == ROUNDS) && (position == period - 1);
-            wire last_round = (round == ROUND_COUNT - 1);
-            wire [ROW_WIDTH+7:0] next_position = ((state == FETCH) || round_ends) ? NOTHING : position + 1;
-            wire [ROW_WIDTH-1:0] column; // of the quad in its row as it is stored
-            wire [31:0] column_wide = {{(32-ROW_WIDTH){1'b0}}, column};
-
-            if (MIRROR_SIDE > 0) begin : gen_mirror
-                wire [ROW_WIDTH-1:0] image;
-
-                sptfra_diagonal_mirror #(
-                    .SIDE      (MIRROR_SIDE),
-                    .ROW_WIDTH (ROW_WIDTH)
-                ) diagonal_mirror (
-                    .quad  (list_quad),
-                    .image (image)
-                );
-                assign column = MIRRORED[product] ? image : list_quad;
-            end else begin : gen_no_mirror
-                assign column = list_quad;
-            end
-
-            assign rounds_end = round_ends && last_round;
-            assign rounds_follow = IN_ROUNDS[product];
-            assign issue = (state == RUN) || ((state == ROUNDS) && (position < nonzeros));
-            assign list_pull = PULLS[product];
-            assign list_address = next_position[ROW_WIDTH-1:0];
-            assign skip = (state == ROUNDS);
-            assign skip_quad = list_quad;
-            assign skip_first = (position == NOTHING);
-            assign skip_last = (position == nonzeros - 1);
-            assign skip_partial = last_round;
-            assign skip_word = row_word + column_wide[VALUE_WIDTH-1:0];
-
-            always @(posedge clock) begin
-                position <= next_position;
-                if (state == FETCH) begin
-                    round <= {ROW_WIDTH{1'b0}};
-                    row_word <= ROUND_WORDS[32*product +: VALUE_WIDTH];
-                end else if (round_ends) begin
-                    round <= round + 1;
-                    row_word <= row_word + SECOND_BANK[VALUE_WIDTH-1:0]; // as many words as elements
-                end
-            end
-
-            wire _unused = &{1'b0, column_wide};
-        end else begin : gen_no_rounds
-            assign rounds_end = 1'b0;
-            assign rounds_follow = 1'b0;
-            assign issue = (state == RUN);
-            assign list_pull = 1'b0;
-            assign list_address = {ROW_WIDTH{1'b0}};
-            assign skip = 1'b0;
-            assign skip_word = {VALUE_WIDTH{1'b0}};
-            assign skip_quad = {ROW_WIDTH{1'b0}};
-            assign skip_first = 1'b0;
-            assign skip_last = 1'b0;
-            assign skip_partial = 1'b0;
-
-            wire _unused = &{1'b0, list_quad, list_count};
-        end
-    endgenerate
 
 endmodule
 

@@ -20,8 +20,6 @@ module sptfra_we #(
     // Words of the operand memories, and where |w| stands there; y+ stands ELEMENTS before it
     parameter OPERAND_DEPTH = 200,
     parameter WEIGHT_BASE = 100,
-    // Whether the quads that are not zero are listed
-    parameter SKIPS = 0,
     // Derived
     parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter OPERAND_WIDTH = (OPERAND_DEPTH > 2) ? $clog2(OPERAND_DEPTH) : 1
@@ -36,12 +34,6 @@ module sptfra_we #(
     output wire weights_valid,
     output wire [ROW_WIDTH-1:0] weights_row,
     output wire [WAYS*DATA_BITS-1:0] weights,
-    // To the sequencer: the quads that are not zero
-    input  wire frame_start,
-    input  wire list_pull, // of y+, rather than of |w|
-    input  wire [ROW_WIDTH-1:0] list_address,
-    output wire [ROW_WIDTH-1:0] list_quad,
-    output wire [ROW_WIDTH+7:0] list_count,
     // Operand memories
     output wire write_next, // write_valid of the next cycle
     output reg  write_valid,
@@ -163,35 +155,6 @@ module sptfra_we #(
                 .done  (pull_written)
             );
 
-            if (SKIPS != 0) begin : gen_list
-                reg write_pull;
-                reg [ROW_WIDTH-1:0] write_quad;
-
-                always @(posedge clock) begin
-                    write_pull <= !valid[3];
-                    if (valid[3]) begin
-                        write_quad <= quad_3;
-                    end
-                end
-
-                sptfra_nonzeros #(
-                    .ELEMENTS  (ELEMENTS),
-                    .DATA_BITS (DATA_BITS)
-                ) nonzeros (
-                    .clock    (clock),
-                    .reset    (reset),
-                    .clear    (frame_start),
-                    .we_valid (write_valid),
-                    .we_pull  (write_pull),
-                    .we_quad  (write_quad),
-                    .we_data  (write_data),
-                    .pull     (list_pull),
-                    .address  (list_address),
-                    .quad     (list_quad),
-                    .count    (list_count)
-                );
-            end
-
             wire _unused = &{1'b0, quad_wide};
         end else begin : gen_taxels
             wire signed [DATA_BITS-1:0] y = taxels[DATA_BITS-1:0];
@@ -224,11 +187,6 @@ module sptfra_we #(
             );
 
             wire _unused = &{1'b0, row_wide};
-        end
-        if (SKIPS == 0) begin : gen_no_list
-            assign list_quad = {ROW_WIDTH{1'b0}};
-            assign list_count = {(ROW_WIDTH+8){1'b0}};
-            wire _unused = &{1'b0, frame_start, list_pull, list_address};
         end
     endgenerate
 

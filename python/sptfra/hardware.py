@@ -23,7 +23,6 @@ def plan(design: _native.Design) -> Plan:
     return Plan(
         latency_cycles=predicted["latency_cycles"],
         interval_cycles=predicted["interval_cycles"],
-        worst_case=predicted["worst_case"],
         clock_mhz=answer["clock_mhz"],
         lanes=figures["lanes"],
         dsp=predicted["dsp"],

@@ -101,8 +101,6 @@ class Plan:
     latency_cycles: int
     #: Between frames back to back.
     interval_cycles: int
-    #: True if a frame may take less than these cycles.
-    worst_case: bool
     clock_mhz: float
     lanes: int
     #: DSP48E2.

@@ -24,7 +24,7 @@ enum Command {
     /// Run frames through a design's RTL, word by word against the integer model and the f64 solver.
     ///
     /// The streams run free, with an idle source, with a stalled sink, and with both. The exit code is 0 only if every
-    /// word is the model's, latency and interval are the predicted ones (with `skip_zeros`: no more), and every
+    /// word is the model's, latency and interval are the predicted ones, and every
     /// register of a design with `control = true` has the value that it should have.
     Run(run::Arguments),
     /// Compile a design's RTL for a program of your own, and print the path of the shared object.

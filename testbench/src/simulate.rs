@@ -32,8 +32,6 @@ pub struct Job<'a> {
     pub pacing: Pacing,
     /// Of a core that drops frames, the distance of their beginnings at which it must lose none.
     pub spacing: Option<u64>,
-    /// Whether frames take as long as what is in them.
-    pub unlike: bool,
     /// See [`Traffic::timeout`].
     pub timeout: u64,
     /// Decides the pauses and the registers' random start.
@@ -172,9 +170,7 @@ fn spacing_without_loss(job: &Job<'_>, spacing: u64, progress: &impl Fn()) -> Re
         let pacing = Pacing::Spaced { cycles, inside: usize::MAX };
         exchange(&mut core, &Traffic::new(&packets, job.timeout).with_pacing(pacing).with_drops(), |_| progress())
     };
-    let interval = |outcome: &Outcome| {
-        if job.unlike { outcome.interval_of_unlike() } else { outcome.interval() }.unwrap_or_default()
-    };
+    let interval = |outcome: &Outcome| outcome.interval().unwrap_or_default();
     let at_spacing = run(INTERVAL_FRAMES, spacing, &|| progress())?;
     if !at_spacing.dropped.is_empty() {
         return Ok(interval(&at_spacing).max(spacing + 1));
@@ -198,8 +194,7 @@ fn measure(job: &Job<'_>, progress: &impl Fn()) -> Result<Cycles, SimulationErro
     let interval = if let Some(spacing) = job.spacing {
         spacing_without_loss(job, spacing, progress).map_err(failed)?
     } else {
-        let many = run(INTERVAL_FRAMES, job.pacing)?;
-        if job.unlike { many.interval_of_unlike() } else { many.interval() }.unwrap_or_default()
+        run(INTERVAL_FRAMES, job.pacing)?.interval().unwrap_or_default()
     };
     Ok(Cycles { latency, interval })
 }

@@ -99,7 +99,7 @@ pub fn timeout(plan: &Plan) -> u64 {
 }
 
 impl Cycles {
-    /// What the plan says; of a design that passes over zeros, what no frame exceeds.
+    /// What the plan says.
     pub fn predicted(plan: &Plan) -> Self {
         Self { latency: plan.timeline.latency_cycles, interval: plan.timeline.interval_cycles }
     }
@@ -111,25 +111,14 @@ impl Cycles {
 pub enum Timing {
     /// The same.
     AsPredicted,
-    /// No more than predicted, of a design that passes over zeros.
-    WithinBound,
     /// Others.
     Wrong,
 }
 
 impl Timing {
-    /// Judges the cycles of a frame: exact, or within the bound where zeros are passed over.
+    /// Judges the cycles of a frame.
     pub fn of(plan: &Plan, simulated: Cycles) -> Self {
-        let is_bound = plan.design.hardware.skip_zeros;
-        let predicted = Cycles::predicted(plan);
-        let within = simulated.latency <= predicted.latency && simulated.interval <= predicted.interval;
-        if simulated == predicted {
-            Self::AsPredicted
-        } else if is_bound && within {
-            Self::WithinBound
-        } else {
-            Self::Wrong
-        }
+        if simulated == Cycles::predicted(plan) { Self::AsPredicted } else { Self::Wrong }
     }
 }
 
@@ -188,7 +177,6 @@ impl<'a> Trial<'a> {
             columns: self.plan.design.sensor.columns,
             pacing: pacing(self.plan),
             spacing: self.plan.streams().drops.then_some(self.plan.timeline.interval_cycles),
-            unlike: self.plan.design.hardware.skip_zeros,
             timeout: timeout(self.plan),
             seed: self.seed,
             trace,
@@ -244,7 +232,7 @@ pub enum Fault {
         /// Its first one.
         first: Mismatch,
     },
-    /// The cycles are not the predicted ones, nor within a bound.
+    /// The cycles are not the predicted ones.
     Cycles {
         /// What was found.
         simulated: Cycles,
@@ -268,24 +256,19 @@ impl fmt::Display for Fault {
 
 #[cfg(test)]
 mod tests {
-    use super::Timing::{AsPredicted, WithinBound, Wrong};
+    use super::Timing::{AsPredicted, Wrong};
     use super::*;
 
     #[test]
-    fn cycles_are_exact_or_where_zeros_are_passed_over_within_the_bound() {
-        let timings = |skip_zeros: bool| {
-            let text = format!(
-                "name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
-                 [algorithm]\nplan = \"reduced\"\n[hardware]\nlanes = 4\nskip_zeros = {skip_zeros}\n"
-            );
-            let plan = planned(&Design::from_toml(&text, "tiny").expect("a design")).expect("a plan");
-            let Cycles { latency, interval } = Cycles::predicted(&plan);
-            [(0, 0), (-1, 0), (0, -1), (-1, 1), (1, -1), (1, 0)].map(|(one, other): (i64, i64)| {
-                let (latency, interval) = (latency.strict_add_signed(one), interval.strict_add_signed(other));
-                Timing::of(&plan, Cycles { latency, interval })
-            })
-        };
-        assert_eq!(timings(true), [AsPredicted, WithinBound, WithinBound, Wrong, Wrong, Wrong]);
-        assert_eq!(timings(false), [AsPredicted, Wrong, Wrong, Wrong, Wrong, Wrong]);
+    fn cycles_are_exact() {
+        let text = "name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+             [algorithm]\nplan = \"reduced\"\n[hardware]\nlanes = 4\n";
+        let plan = planned(&Design::from_toml(text, "tiny").expect("a design")).expect("a plan");
+        let Cycles { latency, interval } = Cycles::predicted(&plan);
+        let timings = [(0, 0), (-1, 0), (0, -1), (1, 0), (0, 1)].map(|(one, other): (i64, i64)| {
+            let (latency, interval) = (latency.strict_add_signed(one), interval.strict_add_signed(other));
+            Timing::of(&plan, Cycles { latency, interval })
+        });
+        assert_eq!(timings, [AsPredicted, Wrong, Wrong, Wrong, Wrong]);
     }
 }

@@ -15,15 +15,6 @@ pub const STREAM_BITS: [u32; 3] = [32, 64, 128];
 /// Numbers of dead taxels for which a bank of a calibration can have room.
 pub const REPLACEABLE: [usize; 5] = [0, 1, 2, 4, 8];
 
-/// Number system of the hardware.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Arithmetic {
-    /// Two's complement with one power-of-two scale for each matrix and vector.
-    #[default]
-    Fixed,
-}
-
 /// What the hardware spends its area on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -121,8 +112,6 @@ pub enum Overrun {
 /// The `[hardware]` table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hardware {
-    /// Number system.
-    pub arithmetic: Arithmetic,
     /// Width of matrix entries, 8 to 27 bits; beyond 18 a lane has two multipliers.
     pub coefficient_bits: u32,
     /// Width of vector entries, 16 to 35 bits; beyond 27 a lane has two multipliers.
@@ -138,8 +127,6 @@ pub struct Hardware {
     pub target_us: Option<f64>,
     /// What the area is spent on.
     pub optimise: Optimise,
-    /// Whether zeros of |w| are skipped; with the reduced plan and no filter.
-    pub skip_zeros: bool,
     /// Bits of a beat on both streams, one of [`STREAM_BITS`].
     pub stream_bits: u32,
     /// What a sample on the stream is; integers only with counts.
@@ -170,4 +157,4 @@ impl Hardware {
     }
 }
 
-print_as_words!(Arithmetic, InputRange, Optimise, Samples, Overrun, CalibrationIn);
+print_as_words!(InputRange, Optimise, Samples, Overrun, CalibrationIn);

@@ -37,8 +37,7 @@ pub(crate) use files::Beside;
 pub use files::{CALIBRATION_FILE, CURVE_FILE, FileNames, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
 pub use hardware::{
-    Arithmetic, CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, InputRange, MAX_LANES, Optimise, Overrun, STREAM_BITS,
-    Samples,
+    CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, InputRange, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples,
 };
 pub use input::{Input, Tension};
 pub use joint::conditions;

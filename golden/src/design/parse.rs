@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 use super::calibration_in_ram::{calibration_in_ram, replaceable};
 use super::checks::{self, Check};
@@ -15,9 +16,8 @@ use super::parse_filter::{self, RawFilter};
 use super::parse_plan::{self, PlanKeys};
 use super::regularisation;
 use super::{
-    Algorithm, Arithmetic, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input,
-    JointConstants, Kernel, MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, STREAM_BITS, Samples, Sensor,
-    Slip, Tension,
+    Algorithm, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input, JointConstants, Kernel,
+    MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, STREAM_BITS, Samples, Sensor, Slip, Tension,
 };
 use crate::{bodies, words};
 
@@ -90,7 +90,6 @@ struct RawSlip {
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 struct RawHardware {
-    arithmetic: Option<String>,
     coefficient_bits: Option<i64>,
     data_bits: Option<i64>,
     full_scale_pa: Option<f64>,
@@ -98,7 +97,6 @@ struct RawHardware {
     lanes: Option<i64>,
     target_us: Option<f64>,
     optimise: Option<String>,
-    skip_zeros: Option<bool>,
     stream_bits: Option<i64>,
     samples: Option<String>,
     overrun: Option<String>,
@@ -108,6 +106,9 @@ struct RawHardware {
     debug: Option<bool>,
     clock_mhz: Option<f64>,
     part: Option<String>,
+    // Keys of old design files, refused by name.
+    arithmetic: Option<IgnoredAny>,
+    skip_zeros: Option<IgnoredAny>,
 }
 
 fn raw(text: &str, origin: &str) -> Result<RawDesign, DesignError> {
@@ -276,8 +277,10 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         Some(value) => check.integer(key, value, low, high),
         None => Ok(default),
     };
-    let arithmetic: Arithmetic =
-        check.optional_word("hardware.arithmetic", raw.arithmetic.as_deref())?.unwrap_or_default();
+    let gone = [("hardware.arithmetic", raw.arithmetic.is_some()), ("hardware.skip_zeros", raw.skip_zeros.is_some())];
+    if let Some((key, _)) = gone.into_iter().find(|&(_, is_there)| is_there) {
+        return Err(check.value(key, "is no longer a key".to_owned(), "remove the line".to_owned()));
+    }
     let optimise: Optimise = check.optional_word("hardware.optimise", raw.optimise.as_deref())?.unwrap_or_default();
     let target_us = raw.target_us.map(|target| check.above_zero("hardware.target_us", target, f64::MAX, ""));
     let stream_bits = raw.stream_bits.map_or(Ok(STREAM_BITS[0]), |bits| {
@@ -289,7 +292,6 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
     let part = raw.part.unwrap_or_else(|| "xczu9eg-ffvb1156-2-e".to_owned());
     checks::part(check, &part)?;
     Ok(Hardware {
-        arithmetic,
         coefficient_bits: integer("hardware.coefficient_bits", raw.coefficient_bits, 18, 8, 27)? as u32,
         data_bits: integer("hardware.data_bits", raw.data_bits, 27, 16, 35)? as u32,
         // Far above the smallest float32, so that a stress or a force of one step has no denormal.
@@ -304,7 +306,6 @@ fn hardware(check: &Check, raw: RawHardware) -> Result<Hardware, DesignError> {
         lanes: integer("hardware.lanes", raw.lanes, 16, 1, MAX_LANES as i64)? as usize,
         target_us: target_us.transpose()?,
         optimise,
-        skip_zeros: raw.skip_zeros.unwrap_or(false),
         stream_bits,
         samples: check.optional_word("hardware.samples", raw.samples.as_deref())?.unwrap_or_default(),
         overrun: check.optional_word("hardware.overrun", raw.overrun.as_deref())?.unwrap_or_default(),

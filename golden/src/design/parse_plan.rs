@@ -64,9 +64,6 @@ fn paper(check: &Check, sensor: &Sensor, algorithm: &Algorithm, hardware: &Hardw
     if let Some(target) = hardware.target_us {
         return needs("hardware.target_us", format!("is {target} with the paper's plan"));
     }
-    if hardware.skip_zeros {
-        return needs("hardware.skip_zeros", "is true with the paper's plan".to_owned());
-    }
     for (key, side) in [("sensor.columns", sensor.columns), ("sensor.rows", sensor.rows)] {
         if side > MAX_SIDE_PAPER {
             return Err(check.value(
@@ -103,13 +100,6 @@ fn reduced(check: &Check, algorithm: &Algorithm, hardware: &Hardware) -> Result<
             "is \"area\", which makes the walk over the joint estimator's grid smaller, and there is no walk"
                 .to_owned(),
             "write estimator = \"joint\" and grid = 21, or remove the key".to_owned(),
-        ));
-    }
-    if hardware.skip_zeros && algorithm.filter != Filter::None {
-        return Err(check.value(
-            "hardware.skip_zeros",
-            "is true with a filter".to_owned(),
-            "write filter = { kind = \"none\" }, or remove the key".to_owned(),
         ));
     }
     Ok(())

@@ -17,7 +17,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
     let Design { name, sensor, input, algorithm, hardware } = design;
     let regularisation = regularisation::print(algorithm.regularisation);
     let Algorithm { plan, kernel, estimator, outputs, .. } = algorithm;
-    let Hardware { arithmetic, optimise, .. } = hardware;
+    let Hardware { optimise, .. } = hardware;
     let kind = algorithm.filter.kind();
     // A filter for each matrix is too long for one line, and a table can only follow the other keys.
     let (filter, filter_table) = match &algorithm.filter {
@@ -99,8 +99,8 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
          [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{tension}{counts}{curve}{calibration}{dead}\n\
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}{contacts}{count_contacts}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
-         [hardware]\narithmetic = \"{arithmetic}\"\ncoefficient_bits = {}\ndata_bits = {}\n\
-         full_scale_pa = {:?}\n{range}{speed}\noptimise = \"{optimise}\"\nskip_zeros = {}\n{streams}{samples}{overrun}{control}{banks}{map}{debug}clock_mhz = {:?}\npart = \"{}\"\n",
+         [hardware]\ncoefficient_bits = {}\ndata_bits = {}\n\
+         full_scale_pa = {:?}\n{range}{speed}\noptimise = \"{optimise}\"\n{streams}{samples}{overrun}{control}{banks}{map}{debug}clock_mhz = {:?}\npart = \"{}\"\n",
         sensor.columns,
         sensor.rows,
         sensor.pitch_mm[0],
@@ -110,7 +110,6 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
         hardware.coefficient_bits,
         hardware.data_bits,
         hardware.full_scale_pa,
-        hardware.skip_zeros,
         hardware.clock_mhz,
         hardware.part,
     );

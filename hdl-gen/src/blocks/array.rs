@@ -4,7 +4,7 @@ use crate::plan::Plan;
 use crate::plan::format::address_bits;
 use crate::plan::layout::Place;
 use crate::plan::memory::memory;
-use crate::plan::product::{Coefficients, DESTINATIONS, SUMS_DESTINATION, Vector, destination, destination_bits};
+use crate::plan::product::{Coefficients, DESTINATIONS, SUMS_DESTINATION, destination, destination_bits};
 use crate::plan::resources::BlockCost;
 
 use super::latency::TURN_GAP;
@@ -28,7 +28,6 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("DATA_BITS", hardware.data_bits.into())
         .count("ELEMENTS", plan.elements())
         .count("VECTORS", vectors(plan))
-        .count("VALUE_DEPTH", schedule.value_depth())
         .count("WORD_DEPTH", schedule.word_depth())
         .count("SEGMENT_DEPTH", schedule.segment_depth())
         .count("OPERAND_DEPTH", plan.operands.words())
@@ -52,7 +51,7 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let multipliers = hardware.lanes * plan.factors().multipliers();
     let narrow = if plan.factors().lane_is_narrow() { multipliers } else { 0 };
     BlockCost::new("lanes", &["sptfra_spmv_array"], multipliers).narrow(narrow).with([
-        memory("values", walkers, schedule.value_depth(), ways * hardware.coefficient_bits, true),
+        memory("values", walkers, schedule.word_depth(), ways * hardware.coefficient_bits, true),
         memory("columns", walkers, schedule.word_depth(), column_bits(plan), true),
         memory("MACs per row", walkers, schedule.segment_depth(), SEGMENT_BITS, true),
         memory("visits", 1, schedule.visits.len(), visit, true),
@@ -72,7 +71,7 @@ fn mirror_side(plan: &Plan) -> usize {
 fn products(plan: &Plan, parameters: Parameters) -> Parameters {
     let (products, windows, programs) = (&plan.products, &plan.schedule.windows, &plan.schedule.programs);
     let gap = |index| programs.iter().find(|program| program.first == index).map_or(0, |next| next.gap - TURN_GAP);
-    let length = |index: usize| windows[index].rounds.map_or(windows[index].length, |rounds| rounds.lead).max(1);
+    let length = |index: usize| windows[index].length.max(1);
     let wait = |index: usize| windows[index].wait + gap(index);
     let longest = (0..products.len()).map(|index| length(index).max(wait(index))).max().unwrap_or(1);
     let bits = address_bits(longest as usize + 1);
@@ -97,7 +96,7 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
     let rereads = |index: usize| products[..index].iter().position(|other| other.matrix == products[index].matrix);
     let is_read_again = |index: usize| (index + 1..products.len()).any(|later| rereads(later) == Some(index));
     let mask = |condition: &dyn Fn(usize) -> bool| -> Vec<bool> { (0..products.len()).map(condition).collect() };
-    let parameters = parameters
+    parameters
         .count("PRODUCTS", products.len())
         .number("COUNT_BITS", bits.into())
         .table("LENGTHS", bits, &of_each(&length, &name))
@@ -109,18 +108,7 @@ fn products(plan: &Plan, parameters: Parameters) -> Parameters {
         .mask("MIRRORED", &mask(&|index| products[index].mirrored.is_some()))
         .mask("FRICTIONS", &mask(&|index| products[index].coefficients == Coefficients::Friction))
         .wide("RESIDUAL_BANK", 16, plan.operands.residual_bank() as i64)
-        .mask("LASTS", &mask(&|index| programs.iter().any(|program| program.end == index + 1)));
-    if windows.iter().all(|window| window.rounds.is_none()) {
-        return parameters;
-    }
-    let word =
-        |index: usize| windows[index].rounds.map_or(0, |rounds| (plan.schedule.word_depth() + rounds.word) as u64);
-    parameters
-        .flag("SKIPS", true)
-        .mask("IN_ROUNDS", &mask(&|index| windows[index].rounds.is_some()))
-        .mask("ROUNDS_ONLY", &mask(&|index| windows[index].rounds.is_some_and(|rounds| rounds.lead == 0)))
-        .mask("PULLS", &mask(&|index| products[index].operand() == Vector::Pull))
-        .table("ROUND_WORDS", 32, &of_each(&word, &|_| String::new()))
+        .mask("LASTS", &mask(&|index| programs.iter().any(|program| program.end == index + 1)))
 }
 
 fn programs(plan: &Plan, parameters: Parameters) -> Parameters {

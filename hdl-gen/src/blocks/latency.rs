@@ -79,8 +79,6 @@ pub fn start_to_issue(gap: u64) -> u64 {
 
 /// Without issue when the lanes pass from one program to the next, at least.
 pub const TURN_GAP: u64 = 2;
-/// Without issue in front of a product's rounds: the list's first entry is fetched.
-pub const ROUNDS_FETCH: u64 = 1;
 /// From the issue of a row's last MAC to its sum standing in the lane's result register.
 pub const ISSUE_TO_RESULT: u64 = 7;
 /// From taking a program's last result to taking the next program's first: the order is read from a ROM, whose address is
@@ -93,9 +91,6 @@ pub const VISIT_TO_BUS: u64 = 3;
 /// From a write at the array's port to the first issue that may read the word: the write passes a register and enters the
 /// memory; the operand is read two cycles after its issue.
 pub const WRITE_TO_ISSUE: u64 = 0;
-/// From the last operand being there to the list of those that are not zero, as the lanes see it: the sequencer reads it
-/// before them.
-pub const WRITE_TO_LIST: u64 = 2 + SEQUENCER_TO_LANES;
 
 // ---- Unfold, We, Co
 /// From the result bus to taxels.

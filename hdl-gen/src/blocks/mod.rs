@@ -39,7 +39,7 @@ pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     let mut costs: Vec<BlockCost> = overrun::cost(plan).into_iter().chain(calibration::cost(plan)).collect();
     costs.extend([bz::cost(plan), slot.contact_block()]);
     costs.extend(range::cost(plan));
-    costs.extend([array::cost(plan), we::cost(plan), co::cost(plan), field::cost(plan)]);
+    costs.extend([array::cost(plan), we::cost(), co::cost(plan), field::cost(plan)]);
     costs.extend(contacts::cost(plan));
     costs.extend(slot.search_blocks(&plan.design.sensor));
     costs.push(op::cost());

@@ -50,7 +50,6 @@ impl Constants {
             decimal("HAS_FIELD", 1, &u8::from(plan.field_words() > 0)),
             decimal("IS_REDUCED", 1, &u8::from(plan.ways() > 1)),
             decimal("HAS_COUNTS", 1, &u8::from(design.input.counts())),
-            decimal("SKIPS_ZEROS", 1, &u8::from(hardware.skip_zeros)),
             decimal("STREAM_BYTES", 8, &(plan.streams().bits / 8)),
             decimal("SAMPLES", 2, &samples(plan)),
             decimal("CLOCK_KHZ", 32, &((hardware.clock_mhz * 1e3).round() as u64)),

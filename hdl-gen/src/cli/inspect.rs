@@ -130,9 +130,6 @@ fn reductions(out: &mut String, plan: &Plan) -> std::fmt::Result {
         table.row([step.step.to_owned(), step.macs.to_string(), share, step.coefficients.to_string()]);
     }
     write!(out, "\n{}", table.text(0, 0))?;
-    if plan.design.hardware.skip_zeros {
-        writeln!(out, "  the cycles below are those of a frame without zeros, the worst case")?;
-    }
     Ok(())
 }
 

@@ -17,7 +17,6 @@ pub fn predicted(plan: &Plan) -> Value {
     json!({
         "latency_cycles": plan.timeline.latency_cycles,
         "interval_cycles": plan.timeline.interval_cycles,
-        "worst_case": plan.design.hardware.skip_zeros,
         "spmv_cycles": plan.timeline.spmv_cycles,
         "search_cycles": plan.timeline.search_cycles,
         "lanes_busy": plan.schedule.busy_fraction(),

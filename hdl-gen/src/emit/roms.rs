@@ -26,10 +26,9 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     for (lane, program) in schedule.lanes.iter().enumerate() {
         let depth = schedule.word_depth();
         let word = |ways: &[i32]| joined(&ways[..plan.ways()], coefficient_bits);
-        let values = program.words.iter().map(|(_, ways)| word(ways)).chain(std::iter::repeat(0)).take(depth);
-        let values = values.chain(program.rounds.iter().map(|ways| word(ways)));
+        let values = program.words.iter().map(|(_, ways)| word(ways));
         let bits = coefficient_bits * plan.ways() as u32;
-        insert_rom(files, lane_file(name, "values", lane, lanes), hex(values, schedule.value_depth(), bits));
+        insert_rom(files, lane_file(name, "values", lane, lanes), hex(values, depth, bits));
         let columns = program.words.iter().map(|&(column, _)| u128::from(column));
         insert_rom(files, lane_file(name, "columns", lane, lanes), hex(columns, depth, column_bits));
         let segments = program.segments.iter().map(|segment| u128::from((segment.kind as u32) << 14 | segment.macs));

@@ -78,7 +78,6 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_multiply",
     "sptfra_multiply_wide",
     "sptfra_network",
-    "sptfra_nonzeros",
     "sptfra_op",
     "sptfra_output",
     "sptfra_output_word",

@@ -68,7 +68,6 @@ struct View {
     range_frames: Parameters,
     range_row_width: u32,
     field: bool,
-    at_most: &'static str,
     latency_cycles: u64,
     latency_us: String,
     interval_cycles: u64,
@@ -154,7 +153,6 @@ impl View {
             range_frames: range::of_frames(plan),
             range_row_width: address_bits(plan.taxels().max(FEWEST_ELEMENTS)),
             field: plan.has_field(),
-            at_most: if hardware.skip_zeros { "at most " } else { "" },
             latency_cycles: timeline.latency_cycles,
             latency_us: microseconds(timeline.latency_cycles),
             interval_cycles: timeline.interval_cycles,
@@ -259,9 +257,6 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     }
     if !plan.factors().has_wide_data() {
         without.push("sptfra_multiply_wide");
-    }
-    if !plan.design.hardware.skip_zeros {
-        without.push("sptfra_nonzeros");
     }
     if plan.products.iter().all(|product| product.mirrored.is_none()) {
         without.push("sptfra_diagonal_mirror");

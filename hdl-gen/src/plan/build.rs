@@ -74,7 +74,7 @@ impl Work {
         let list = passes::products(design);
         let filtered = Filtered::new(design, &matrices)?;
         let quantised = quantise(&list, &filtered, design, stress)?;
-        let products = passes::bind(&list, &quantised, hardware.skip_zeros);
+        let products = passes::bind(&list, &quantised);
         let nnz = Nnz(filtered.nnz(&design.algorithm.filter)?);
         let Quantised { matrices: stored, formats, rounding_n, .. } = quantised;
         let condition = Condition { c33: matrices.condition_c33(), aat: matrices.condition_aat() };

@@ -3,8 +3,6 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap, VecDeque};
 
-use golden::parity::CLASSES;
-
 use super::lane::{LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
 use crate::blocks::latency::ISSUE_TO_RESULT;
@@ -64,8 +62,6 @@ pub(super) struct Dealer {
     pub visits: Vec<Visit>,
     /// When the collector may take the next result.
     collector_free: u64,
-    /// Where the dense rows of a stored matrix begin.
-    pub rounds_of: BTreeMap<usize, usize>,
     /// Where the words of a stored matrix begin, in each lane.
     words_of: BTreeMap<usize, Vec<usize>>,
 }
@@ -77,7 +73,6 @@ impl Dealer {
             taken: vec![VecDeque::with_capacity(RESULT_PLACES); lanes],
             visits: Vec::new(),
             collector_free: 0,
-            rounds_of: BTreeMap::new(),
             words_of: BTreeMap::new(),
         }
     }
@@ -117,38 +112,6 @@ impl Dealer {
             (0..).zip(words).map(|(issue, &(column, _))| readable(column).saturating_sub(issue))
         });
         cycles.max().unwrap_or(0)
-    }
-
-    /// Deals the rows of a product that passes over zeros, whole rows in rounds of one a lane, `start` being the cycle
-    /// of the first issue. All lanes multiply the same column of their rows, so that one list of columns serves all.
-    /// Returns the length and the cycle in which the last result is taken, both for an operand without zeros.
-    pub fn deal_rounds(&mut self, stream: &Stream<'_>) -> (u64, u64) {
-        let (lanes, columns) = (self.programs.len(), stream.rows.len());
-        let period = rounds_period(columns, lanes);
-        for (round, rows) in stream.rows.chunks(lanes).enumerate() {
-            let ready = stream.start + (round as u64 + 1) * period - 1 + ISSUE_TO_RESULT;
-            for (lane, &(row, entries)) in rows.iter().enumerate() {
-                let visit = ready.max(self.collector_free);
-                self.collector_free = visit + stream.spacing;
-                self.visits.push(Visit { cycle: visit, lane: lane as u32, product: stream.product, row });
-                if stream.store {
-                    let dense = entries.iter().map(|&(_, ways)| ways);
-                    self.programs[lane].rounds.extend(dense);
-                }
-            }
-            if stream.store {
-                for program in &mut self.programs[rows.len()..] {
-                    program.rounds.extend(std::iter::repeat_n([0; CLASSES], columns));
-                }
-            }
-        }
-        let length = columns.div_ceil(lanes) as u64 * period;
-        (length, self.visits.last().map_or(stream.start, |visit| visit.cycle))
-    }
-
-    /// Words of every lane's dense rows so far.
-    pub fn round_words(&self) -> usize {
-        self.programs.first().map_or(0, |lane| lane.rounds.len())
     }
 
     /// Cuts the product's stream of MACs into equal shares; appends the words to the lanes' ROMs if they are new.
@@ -248,11 +211,6 @@ fn arranged(entries: &[Entry], room: usize, readable: Readable<'_>) -> Vec<Entry
         entries.rotate_left(early);
     }
     entries
-}
-
-/// Cycles of a round for `columns` columns that are not zero: the collector takes one result a cycle.
-pub(super) fn rounds_period(columns: usize, lanes: usize) -> u64 {
-    columns.max(lanes).max(1) as u64
 }
 
 /// Appends a segment, split where a count would not fit the ROM word.

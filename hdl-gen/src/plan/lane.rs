@@ -1,6 +1,5 @@
 //! What a lane works through, and the results that it leaves.
 
-use golden::parity::CLASSES;
 use serde::Serialize;
 
 use super::matrix::Entry;
@@ -39,8 +38,6 @@ pub struct LaneProgram {
     pub words: Vec<Entry>,
     /// MACs per row, product after product.
     pub segments: Vec<Segment>,
-    /// Dense rows of the matrices whose products pass over zeros; they stand behind the words in the values ROM.
-    pub rounds: Vec<[i32; CLASSES]>,
 }
 
 /// The collector takes a result from a lane.

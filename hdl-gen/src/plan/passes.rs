@@ -50,7 +50,7 @@ fn mirrored_side(design: &Design) -> Option<usize> {
 }
 
 /// The last pass: products of stored matrices, in the blocks that the lanes' turns belong to.
-pub fn bind(list: &ProductList, quantised: &Quantised, skip_zeros: bool) -> Vec<Product> {
+pub fn bind(list: &ProductList, quantised: &Quantised) -> Vec<Product> {
     let formats = &quantised.formats;
     let bound = |step: &Step| {
         let matrix = quantised.place[step.matrix];
@@ -67,7 +67,6 @@ pub fn bind(list: &ProductList, quantised: &Quantised, skip_zeros: bool) -> Vec<
             lead: lead.map(|matrix| Lead { matrix, shift: shift(matrix, formats.g.lsb) }),
             block,
             program,
-            skips: skip_zeros && matches!(step.operand(), Vector::Weight | Vector::Pull),
             shift: shift(matrix, result.lsb),
         }
     };

@@ -106,8 +106,6 @@ pub struct Product {
     pub block: Block,
     /// Its program: products of one program follow each other at fixed distances.
     pub program: usize,
-    /// Zeros of the operand cost nothing: the lanes pass over its quads that are zero, see [`super::schedule::Rounds`].
-    pub skips: bool,
     /// Bits dropped, with rounding, between accumulator and result.
     pub shift: u32,
 }

@@ -52,11 +52,5 @@ pub fn savings(plan: &Plan) -> Vec<Saving> {
     if kept < whole {
         steps.push(Saving { step: "filter (not exact)", macs: kept + friction, coefficients: kept - saved });
     }
-    if plan.design.hardware.skip_zeros {
-        // With one quad that is not zero in each vector, as few as a contact can have.
-        let passed: usize = of_products().filter(|product| product.skips).count() * (block - ways * plan.elements());
-        let coefficients = steps.last().map_or(0, |step| step.coefficients);
-        steps.push(Saving { step: "zeros skipped, at the very best", macs: kept + friction - passed, coefficients });
-    }
     steps
 }

@@ -1,7 +1,7 @@
 //! Who computes what, and when: the static schedule of the SpMV lanes.
 //!
-//! Unless zeros are passed over, nothing in the lanes' timing depends on data: a frame is laid out here, cycle by
-//! cycle, and the hardware needs neither arbiter nor stall. The MACs of a product form one long stream, row after row,
+//! Nothing in the lanes' timing depends on data: a frame is laid out here, cycle by cycle, and the hardware needs
+//! neither arbiter nor stall. The MACs of a product form one long stream, row after row,
 //! that is cut into equal pieces, one per lane: all lanes finish together. A row cut in two leaves its end as a *tail*
 //! in the next lane, kept in that lane's carry register, and its beginning as a *head* that adds the carry.
 //! A collector takes one result a cycle, in the order in which they become ready. Where rows are so short that a
@@ -13,11 +13,11 @@
 
 use serde::Serialize;
 
-use super::dealing::{Dealer, Dealt, Stream, rounds_period};
+use super::dealing::{Dealer, Dealt, Stream};
 pub use super::lane::{LaneProgram, MAX_SEGMENT, RESULT_PLACES, Segment, SegmentKind, Visit};
 use super::matrix::{Entry, QuantisedMatrix};
 use super::product::{Epilogue, Product, Vector, mirror, spacing, visit_to_operand};
-use crate::blocks::latency::{ISSUE_TO_RESULT, ROUNDS_FETCH, TURN_GAP, WRITE_TO_LIST, collector_jump};
+use crate::blocks::latency::{TURN_GAP, collector_jump};
 
 /// When a product runs, in cycles from the first issue of its program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -30,22 +30,6 @@ pub struct Window {
     pub wait: u64,
     /// MACs of all lanes in this window; with four ways a lane counts once.
     pub macs: u64,
-    /// Of a product that passes over zeros.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rounds: Option<Rounds>,
-}
-
-/// How a product passes over zeros: whole rows are dealt to the lanes, one a lane and round, and all lanes multiply the
-/// same column at a time, from a list of the operand's quads that are not zero. The window's length is that of an
-/// operand without zeros; the hardware takes `count * max(nonzeros, lanes)` cycles after the rows of sums.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Rounds {
-    /// Issue cycles of the rows of sums in front.
-    pub lead: u64,
-    /// Rounds.
-    pub count: usize,
-    /// First word of the dense rows, from the first dense row of the ROM.
-    pub word: usize,
 }
 
 /// Products that follow each other at fixed distances.
@@ -106,12 +90,8 @@ impl Schedule {
                 let index = (first + offset) as u32;
                 let work = Work { product, index, lead, main, start: next_start.max(addend(product, &made)) };
                 let first_visit = dealer.visits.len();
-                let (Dealt { start, length, last_visit }, macs, rounds) = if product.skips {
-                    work.in_rounds(&mut dealer, &made, new)
-                } else {
-                    work.in_pieces(&mut dealer, &made, new)
-                };
-                windows.push(Window { start, length, wait: start - next_start, macs, rounds });
+                let (Dealt { start, length, last_visit }, macs) = work.deal(&mut dealer, &made, new);
+                windows.push(Window { start, length, wait: start - next_start, macs });
                 made.push(Made::new(product, main.rows.len(), &dealer.visits[first_visit..], last_visit));
                 next_start = start + length;
             }
@@ -123,11 +103,7 @@ impl Schedule {
                 segment,
                 visit,
                 length: next_start,
-                // Where zeros are passed over, the first round may be as short as the lanes are many.
-                first_visit: match windows[first].rounds {
-                    Some(Rounds { lead: 0, .. }) => ROUNDS_FETCH + rounds_period(0, lanes) - 1 + ISSUE_TO_RESULT,
-                    _ => cycles(dealer.visits.get(visit)),
-                },
+                first_visit: cycles(dealer.visits.get(visit)),
                 last_visit: cycles(dealer.visits.last()),
                 gap: 0,
             });
@@ -135,18 +111,12 @@ impl Schedule {
         }
         let longest_drain = programs.iter().map(|program| program.last_visit - program.length).max().unwrap_or(0);
         for program in &mut programs {
-            let left = longest_drain + collector_jump(ahead);
-            program.gap = gap(program, &windows[program.first..program.end], longest_drain, left, lanes);
+            program.gap = gap(program, longest_drain, longest_drain + collector_jump(ahead));
         }
         Self { lanes: dealer.programs, programs, windows, visits: dealer.visits, ahead }
     }
 
-    /// Words in the values ROMs: those with a column, then the dense rows.
-    pub fn value_depth(&self) -> usize {
-        self.word_depth() + self.lanes.first().map_or(0, |lane| lane.rounds.len())
-    }
-
-    /// Words in the columns ROMs: the longest lane's.
+    /// Words in the values and columns ROMs: the longest lane's.
     pub fn word_depth(&self) -> usize {
         self.lanes.iter().map(|lane| lane.words.len()).max().unwrap_or(0).max(1)
     }
@@ -177,9 +147,6 @@ struct Work<'a> {
     start: u64,
 }
 
-/// When it runs, MACs, and the rounds if there are any.
-type Worked = (Dealt, u64, Option<Rounds>);
-
 impl<'a> Work<'a> {
     fn stream(&self, mut rows: Vec<(u32, &'a [Entry])>, store: bool, start: u64) -> Stream<'a> {
         let Self { product, index, .. } = *self;
@@ -188,8 +155,8 @@ impl<'a> Work<'a> {
         Stream { product: index, matrix: product.matrix, rows, store, start, spacing }
     }
 
-    /// Starts while the operand is still being made, if its MACs find what they need.
-    fn in_pieces(&self, dealer: &mut Dealer, made: &[Made], mut new: impl FnMut(usize) -> bool) -> Worked {
+    /// Starts while the operand is still being made, if its MACs find what they need. Returns its MACs, too.
+    fn deal(&self, dealer: &mut Dealer, made: &[Made], mut new: impl FnMut(usize) -> bool) -> (Dealt, u64) {
         let rows = Stream::rows_of(self.lead, self.main);
         let macs = rows.iter().map(|(_, entries)| entries.len() as u64).sum();
         let sources: Vec<Option<&Made>> =
@@ -201,26 +168,7 @@ impl<'a> Work<'a> {
             sources[operand].map_or(0, |made| made.readable[element])
         };
         let stream = self.stream(rows, new(self.product.matrix), self.start);
-        (dealer.deal(&stream, &readable), macs, None)
-    }
-
-    /// Starts when the operand is complete and the list of what is not zero in it.
-    fn in_rounds(&self, dealer: &mut Dealer, made: &[Made], mut new: impl FnMut(usize) -> bool) -> Worked {
-        let sources = || made.iter().filter(|made| self.product.operands.iter().any(|&part| made.result.holds(part)));
-        let complete = sources().filter_map(|made| made.readable.iter().max()).max();
-        let start = self.start.max(complete.map_or(0, |cycle| cycle + WRITE_TO_LIST));
-        let mut rows = Stream::rows_of(self.lead, self.main);
-        let main = rows.split_off(rows.len() - self.main.rows.len());
-        let macs = rows.iter().chain(&main).map(|(_, entries)| entries.len() as u64).sum();
-        let lead = if rows.is_empty() { 0 } else { dealer.deal(&self.stream(rows, true, start), &|_| 0).length };
-        let store = new(self.product.matrix);
-        // A matrix that is read again stands where its first product put it.
-        let end = dealer.round_words();
-        let word = *dealer.rounds_of.entry(self.product.matrix).or_insert(end);
-        let count = main.len().div_ceil(dealer.programs.len());
-        let (length, last_visit) = dealer.deal_rounds(&self.stream(main, store, start + lead + ROUNDS_FETCH));
-        let length = lead + ROUNDS_FETCH + length;
-        (Dealt { start, length, last_visit }, macs, Some(Rounds { lead, count, word }))
+        (dealer.deal(&stream, &readable), macs)
     }
 }
 
@@ -255,14 +203,8 @@ fn addend(product: &Product, made: &[Made]) -> u64 {
 /// The gap before a program: the results of the one before, `longest_drain` cycles after its last issue at most, must
 /// have left the lanes, and the collector gone on, `left` cycles after that issue, before the first of this one is ready;
 /// and it must have done so before the one after it is started: it remembers one.
-fn gap(program: &Program, windows: &[Window], longest_drain: u64, left: u64, lanes: usize) -> u64 {
-    let saved = |window: &Window| {
-        // An operand of nothing but zeros.
-        let shortest = |rounds: Rounds| rounds.lead + ROUNDS_FETCH + rounds.count as u64 * rounds_period(0, lanes);
-        window.rounds.map_or(0, |rounds| window.length - shortest(rounds))
-    };
-    let shortest = program.length - windows.iter().map(saved).sum::<u64>();
+fn gap(program: &Program, longest_drain: u64, left: u64) -> u64 {
     let before_result = left.saturating_sub(program.first_visit);
-    let before_start = (longest_drain + 1).saturating_sub(shortest);
+    let before_start = (longest_drain + 1).saturating_sub(program.length);
     before_result.max(before_start).max(TURN_GAP)
 }

@@ -20,13 +20,6 @@ pub fn mean_interval(ends: &[u64]) -> u64 {
     mean(turn(full).unwrap_or(full))
 }
 
-/// As [`mean_interval`], of frames that take as long as what is in them: where the distances do not repeat, the mean is over
-/// all. Behind quick frames those that follow take longer than the core has for each in the long run.
-pub fn mean_interval_of_unlike(ends: &[u64]) -> u64 {
-    let distances = distances(ends);
-    mean(turn(full(&distances)).unwrap_or(&distances))
-}
-
 fn distances(ends: &[u64]) -> Vec<u64> {
     ends.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }
@@ -49,20 +42,14 @@ fn mean(distances: &[u64]) -> u64 {
     if distances.is_empty() { 0 } else { distances.iter().sum::<u64>().div_ceil(distances.len() as u64) }
 }
 
-/// Longest distance between the ends of frames from the middle on: what every frame keeps, where they take turns in how
-/// long they take.
-pub fn longest_interval(ends: &[u64]) -> u64 {
-    ends.windows(2).skip((ends.len() / 2).saturating_sub(1)).map(|pair| pair[1] - pair[0]).max().unwrap_or(0)
-}
-
 /// Predicted times of one design, in clock cycles.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Timeline {
     /// First beat in to last beat out of a single frame, both included, with streams that never wait.
     pub latency_cycles: u64,
     /// Distance of consecutive frames' last beats, input always there, sink always ready: its mean over a turn of frames, rounded
-    /// up, or the longest of them where zeros are passed over. Where frames without room are dropped, the smallest distance
-    /// of their beginnings at which none is, however many there are.
+    /// up. Where frames without room are dropped, the smallest distance of their beginnings at which none is, however many
+    /// there are.
     pub interval_cycles: u64,
     /// First to last issue of the lanes.
     pub spmv_cycles: u64,
@@ -99,15 +86,5 @@ mod tests {
     #[test]
     fn few_frames_have_an_interval_too() {
         assert_eq!([&[][..], &[5], &[5, 12], &[5, 12, 20]].map(mean_interval), [0, 0, 7, 7]);
-        assert_eq!([&[][..], &[5], &[5, 12], &[5, 12, 20]].map(mean_interval_of_unlike), [0, 0, 7, 8]);
-    }
-
-    /// Quick frames first, so that the others seem to take longer than the core has for each.
-    #[test]
-    fn unlike_frames_have_the_mean_of_all() {
-        let unlike =
-            ends(&[10, 20, 30, 20, 10, 30, 20, 10, 10, 40, 50, 60, 50, 40, 60, 60, 50, 40, 70, 10, 20, 30, 40]);
-        assert_eq!([mean_interval(&unlike), mean_interval_of_unlike(&unlike)], [52, 34]);
-        assert_eq!(mean_interval_of_unlike(&ends(&[10, 20, 30])), 20);
     }
 }

@@ -80,7 +80,6 @@ fn sizes_make_sense() {
         ("full_scale_pa", "inf"),
         ("full_scale_pa", "1e-300"),
         ("part", "\"x; exec rm\""),
-        ("arithmetic", "\"float\""),
     ] {
         let text = changed("depth_mm = 3.0", &format!("depth_mm = 3.0\n[hardware]\n{key} = {value}"));
         check_design(&text, &[&format!("hardware.{key}")]);

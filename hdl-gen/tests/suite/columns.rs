@@ -46,8 +46,6 @@ fn standing() -> Vec<Plan> {
         (7, 5, "plan = \"paper\"\n[hardware]\nlanes = 1"),
         (7, 5, "plan = \"reduced\"\n[hardware]\noptimise = \"latency\""),
         (7, 5, "plan = \"reduced\"\noutputs = \"resultants\"\n[hardware]\noptimise = \"latency\""),
-        (8, 8, "plan = \"reduced\"\n[hardware]\nskip_zeros = true"),
-        (8, 8, "plan = \"reduced\"\noutputs = \"resultants\"\n[hardware]\nskip_zeros = true"),
         (8, 8, "plan = \"reduced\"\nestimator = \"joint\""),
         (8, 8, "plan = \"reduced\"\nestimator = \"joint\"\noutputs = \"resultants\""),
         (64, 27, "plan = \"reduced\"\n[hardware]\nlanes = 128"),

@@ -38,19 +38,6 @@ fn products_and_accesses_are_counted() {
     assert!((energy.watts(1e6) - energy.fabric_nj / 1e3).abs() < 1e-12);
 }
 
-/// A design that passes over zeros is estimated by a frame that has none: all products, in the longest interval.
-#[test]
-fn zeros_that_may_be_skipped_are_counted() {
-    let mut design = shipped("sensor1-reduced").design;
-    let [all, skipping] = [false, true].map(|skip_zeros| {
-        design.hardware.skip_zeros = skip_zeros;
-        let plan = Plan::new(&design).expect("a plan");
-        (Energy::of(&plan), plan.timeline.interval_cycles)
-    });
-    assert_eq!(all.0.lane_products, skipping.0.lane_products);
-    assert!(skipping.1 >= all.1 && skipping.0.memory_bits >= all.0.memory_bits, "{all:?} {skipping:?}");
-}
-
 /// Fewer bits, fewer products and no field take less.
 #[test]
 fn less_work_takes_less() {

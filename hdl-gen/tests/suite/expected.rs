@@ -1,4 +1,5 @@
-//! The complete output of one small design lies in git, so that the review of a change sees what it does to the Verilog.
+//! The output of one small design lies in git, so that the review of a change sees what it does to the Verilog. Modules of
+//! the library, which are emitted as they stand in `hdl-gen/rtl`, are listed by name.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,13 +15,27 @@ const RENEW: &str = "UPDATE_EXPECTED=1 cargo test -p hdl-gen --test suite expect
 /// More would hide a change in the review that is to show it.
 const MOST_BYTES: usize = 450_000;
 
+/// The list of the library's modules in the output.
+const LIBRARY: &str = "rtl/library.txt";
+
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/expected/small")
 }
 
 fn generated() -> FileMap {
-    let design = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join("designs/small.toml");
-    emit(&Plan::new(&Design::load(&design).expect("right")).expect("a plan")).expect("emitted")
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let design = here.parent().expect("a workspace").join("designs/small.toml");
+    let mut files = emit(&Plan::new(&Design::load(&design).expect("right")).expect("a plan")).expect("emitted");
+    let mut library = FileMap::new();
+    read(&here.join("rtl"), "", &mut library);
+    let copies: BTreeMap<String, Vec<u8>> = library
+        .into_iter()
+        .map(|(path, text)| (format!("rtl/{}", path.rsplit('/').next().unwrap_or(&path)), text))
+        .collect();
+    let listed: String =
+        files.extract_if(.., |path, text| copies.get(path) == Some(text)).map(|(path, _)| path + "\n").collect();
+    files.insert(LIBRARY.to_owned(), listed.into_bytes());
+    files
 }
 
 /// The files of a folder and of those in it, by their paths within.

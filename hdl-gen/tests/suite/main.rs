@@ -18,7 +18,6 @@ mod need;
 mod new_command;
 mod reduced;
 mod roms;
-mod rounds;
 mod savings;
 mod scale;
 mod schedule;

@@ -110,7 +110,6 @@ pub fn product(parity: usize, mirrored: Option<usize>) -> Product {
         lead: None,
         block: Block::Co,
         program: 0,
-        skips: false,
         shift: 0,
     }
 }

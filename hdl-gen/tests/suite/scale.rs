@@ -69,7 +69,7 @@ fn a_mat_of_4096_taxels_has_hardware() {
     let files = emit(&plan).unwrap();
     let words: Vec<usize> = (0..16).map(|lane| lines(&files, &format!("rom/mat_values_lane{lane:02}.mem"))).collect();
     let entries: usize = plan.matrices.iter().map(QuantisedMatrix::nnz).sum();
-    assert!(words.iter().all(|&count| count == plan.schedule.value_depth()), "{words:?}");
+    assert!(words.iter().all(|&count| count == plan.schedule.word_depth()), "{words:?}");
     // A sixteenth each, but for the last rows of each product. The friction product's codes are shared.
     assert!((0.95..1.2).contains(&(16.0 * words[0] as f64 / entries as f64)), "{} words, {entries} entries", words[0]);
     // Ten matrices of 1024 folded rows, the sums, the friction's codes; a filter per row is not the mirror image of one

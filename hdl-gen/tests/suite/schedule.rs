@@ -297,7 +297,6 @@ fn a_product_starts_as_soon_as_its_macs_find_their_operands() {
         lead: None,
         block,
         program: 0,
-        skips: false,
         shift: 0,
     };
     let chain = |first: Epilogue, second: Epilogue| {

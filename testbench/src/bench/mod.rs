@@ -10,7 +10,6 @@ pub mod page;
 pub mod plot;
 pub mod simulation_rate;
 pub mod solver;
-pub mod zeros;
 
 use std::path::PathBuf;
 
@@ -30,7 +29,6 @@ use generation::Generation;
 use machine::Machine;
 use simulation_rate::Rate;
 use solver::SolverRate;
-use zeros::Zeros;
 
 /// Why there are no figures.
 #[derive(Debug, Error)]
@@ -152,8 +150,6 @@ pub struct Figures {
     pub cycles: Vec<Point>,
     /// What filters save of folded blocks, and their error.
     pub filters: Vec<Filtered>,
-    /// What passing over zeros saves.
-    pub zeros: Vec<Zeros>,
     /// Yosys' cell counts by block.
     pub cells: Vec<Cells>,
 }
@@ -172,7 +168,6 @@ pub fn measure(scope: &Scope, progress: &Progress) -> Result<Figures, BenchError
         simulation: simulation_rate::measure(scope, progress)?,
         cycles: cycles::measure(scope.largest, progress)?,
         filters: filters::measure(scope, progress)?,
-        zeros: zeros::measure(scope.largest, progress)?,
         cells,
     })
 }

@@ -6,7 +6,6 @@ use super::filters::Filtered;
 use super::generation::Generation;
 use super::simulation_rate::Rate;
 use super::solver::SolverRate;
-use super::zeros::Zeros;
 use super::{Figures, generation, simulation_rate};
 use crate::figures::{decimals, grouped, or_dash};
 use crate::markdown::Page;
@@ -29,7 +28,6 @@ pub fn render(figures: &Figures, command: &str, plot: Option<&str>) -> String {
     simulated(&mut page, &figures.simulation, command);
     cycles(&mut page, &figures.cycles, command, plot);
     filters(&mut page, &figures.filters, command);
-    zeros(&mut page, &figures.zeros, command);
     cells(&mut page, &figures.cells);
     page.0
 }
@@ -145,7 +143,7 @@ fn cycles(page: &mut Page, points: &[Point], command: &str, plot: Option<&str>) 
         "Latency (first word in to last word out of a frame alone) and interval (between frames back to back) of \
          square sensors with the pitch and depth of the paper's sensor 1, force field included. Predicted by the \
          plan; those in **bold** were simulated too, and {exact} of {} gave exactly the predicted cycles. The tests \
-         demand that of every design they simulate, and no more than the predicted ones where zeros are passed over.",
+         demand that of every design they simulate.",
         simulated.len()
     ));
     if let Some(plot) = plot {
@@ -202,28 +200,6 @@ fn filters(page: &mut Page, rows: &[Filtered], command: &str) {
         &Table::new(["design", "filter", "MACs a frame", "latency", "interval", "RAMB36", "force, %", "friction"])
             .with(cells),
     );
-    page.command(command);
-}
-
-fn zeros(page: &mut Page, rows: &[Zeros], command: &str) {
-    let Some(first) = rows.first() else { return };
-    page.heading("Zeros passed over");
-    page.line(
-        "Latency / interval with `skip_zeros`, simulated, for a round contact of three pitches in a corner of the \
-         grid (half-space, the most over six directions), beside the bound for any frame and the cycles of the same \
-         design without `skip_zeros`. `C33⁻¹ b` has faint ripples of either sign around any contact, and one that is \
-         dragged pulls and presses all over the grid; so does noise. Nothing of that is zero, a quad is passed over \
-         only if all its four taxels are, and the last products multiply r, which never is: little is gained on real \
-         contacts.",
-    );
-    let mut header = vec!["taxels".to_owned(), "without".to_owned(), "bound".to_owned()];
-    header.extend(first.contacts.iter().map(|(friction, _)| format!("µ = {friction}")));
-    let cells = rows.iter().map(|row| {
-        let mut cells = vec![format!("{0} × {0}", row.side), both(row.without), both(row.worst)];
-        cells.extend(row.contacts.iter().map(|&(_, cycles)| both(cycles)));
-        cells
-    });
-    page.table(&Table::new(header).with(cells));
     page.command(command);
 }
 

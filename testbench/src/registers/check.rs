@@ -103,7 +103,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         plan.field_words() > 0,
         plan.ways() > 1,
         plan.design.input.counts(),
-        hardware.skip_zeros,
+        false,
         plan.calibration.is_some(),
         plan.streams().drops,
         plan.calibration.as_ref().is_some_and(|of| of.curve().is_some()),

@@ -143,9 +143,6 @@ fn verdict(page: &mut String, report: &Report) {
     }
     match report.timing {
         Timing::AsPredicted => {}
-        Timing::WithinBound => {
-            line(page, "Zeros were passed over: the predicted cycles are those of a frame without any.");
-        }
         Timing::Wrong => line(page, "WRONG CYCLES: latency and interval are not the predicted ones."),
     }
 }

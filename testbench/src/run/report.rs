@@ -58,8 +58,6 @@ pub struct Predicted {
     pub dsp: usize,
     /// RAMB36; a RAMB18 counts one half.
     pub bram36: f64,
-    /// Whether the cycles are those of the worst frame: a design that passes over zeros may be faster.
-    pub worst_case: bool,
 }
 
 /// Times at the design's clock.
@@ -197,7 +195,6 @@ impl Report {
                 interval_cycles: predicted.interval,
                 dsp: plan.resources.dsp,
                 bram36: plan.resources.bram36,
-                worst_case: plan.design.hardware.skip_zeros,
             },
             microseconds: Microseconds {
                 latency: microseconds(simulation.cycles.latency),

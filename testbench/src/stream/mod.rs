@@ -164,13 +164,6 @@ impl Outcome {
         (ends.len() > 1).then(|| timing::mean_interval(&ends))
     }
 
-    /// As [`Outcome::interval`], of a core whose frames take as long as what is in them
-    /// ([`timing::mean_interval_of_unlike`]).
-    pub fn interval_of_unlike(&self) -> Option<u64> {
-        let ends: Vec<u64> = self.exchanges.iter().map(|exchange| exchange.last_out).collect();
-        (ends.len() > 1).then(|| timing::mean_interval_of_unlike(&ends))
-    }
-
     /// Mean distance between the ends of the packets, to the nearest cycle.
     pub fn mean_interval(&self) -> Option<u64> {
         let [first, .., last] = self.exchanges.as_slice() else { return None };

@@ -80,9 +80,8 @@ fn each_point_has_its_own() {
 fn each_lane_and_cell_has_its_own() {
     let mut line = by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field);
     line.hardware.lanes = 8;
-    line.hardware.skip_zeros = true;
     let joint = with_joint(line.clone());
-    let of_lanes = ["lane.base_2", "lane.gen_skips.skip_1", "lane.gen_skips.skip_quad_1"];
+    let of_lanes = ["lane.base_2"];
     let of_cells = ["hinges.element_1", "hinges.element_2", "hinges.element_3"];
     // A flag of a leaf core, and what becomes a register of the multiplier.
     let of_none = ["lane.row_sequencer.primes"];

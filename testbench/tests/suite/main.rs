@@ -41,7 +41,6 @@ mod ram;
 mod range;
 mod registers;
 mod simulate;
-mod skip_zeros;
 mod standin;
 mod stream_faults;
 mod stream_modes;

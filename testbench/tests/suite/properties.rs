@@ -236,7 +236,6 @@ fn corner_designs_with_a_range_for_each_frame_agree_with_the_model() {
         ("paper_narrow_scaled", Shape { coefficient_bits: 8, data_bits: 16, ..base(Kind::Paper, 6, 4, 3) }),
         ("one_quad_scaled", base(Kind::Resultants, 2, 2, 64)),
         ("odd_for_latency_scaled", base(Kind::Field { latency: true }, 3, 5, 4)),
-        ("zeros_scaled", base(Kind::Skips { field: true }, 6, 5, 8)),
         ("most_lanes_scaled", base(Kind::Field { latency: false }, 10, 10, 100)),
         ("one_quad_joint_scaled", base(joint(true, true), 2, 2, 4)),
         ("joint_scaled", Shape { full_scale_pa: 1e-3, ..base(joint(true, true), 9, 4, 16) }),

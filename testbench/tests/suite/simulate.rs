@@ -25,7 +25,6 @@ fn job<'a>(built: &'a Built, packets: &'a [Vec<u32>], expected: &'a [Vec<u32>]) 
         columns: 4,
         pacing,
         spacing: None,
-        unlike: false,
         timeout: 500,
         seed: 1,
         trace: None,

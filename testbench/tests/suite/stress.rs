@@ -8,11 +8,8 @@ use crate::support::faults::broken;
 use crate::support::{by_plan, in_parallel, planned, shipped, with_points};
 use golden::design::{Design, Estimator, Outputs, Overrun, PlanKind};
 use golden::progress::Progress;
-use testbench::frame_set::FrameSet;
 use testbench::mutants::{self, Kind, mutants};
-use testbench::run::{self, page, run};
 use testbench::stress::{self, Commits, StressError, stress};
-use testbench::trial::Timing;
 
 const FRAMES: u64 = 3000;
 
@@ -199,24 +196,4 @@ fn faults_in_the_rtl_are_noticed() {
     assert_eq!(report.mutants.iter().filter(|mutant| mutant.fate.counts()).count(), kinds);
 
     assert!(report.survivors().count() <= 2, "{report}");
-}
-
-/// A contact in a corner of a shallow sensor leaves quads out: fewer cycles than predicted, and nothing is wrong.
-#[test]
-fn a_design_that_passes_over_zeros_is_sound() {
-    let text = "name = \"shallow\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 1.2\n\
-                [algorithm]\nplan = \"reduced\"\noutputs = \"resultants\"\n[hardware]\nlanes = 4\nskip_zeros = true\n";
-    let design = Design::from_toml(text, "shallow").expect("a design");
-    let frames = FrameSet::standing(&design.sensor).expect("frames");
-    let report = run(&design, &frames, &run::Options::default(), &Progress::hidden()).expect("runs");
-    assert_eq!(report.timing, Timing::WithinBound, "{report:#?}");
-    assert!(report.latency_cycles < report.predicted.latency_cycles && report.is_right());
-    assert!(page::render(&report).contains("Zeros were passed over"));
-    let none = mutants(
-        &design,
-        &mutants::Options { count: 0, seed: 1, explained: mutants::Explained::default() },
-        &Progress::hidden(),
-    )
-    .expect("sound");
-    assert!(none.mutants.is_empty());
 }

@@ -40,7 +40,6 @@ fn everything_but_name_and_sensor_has_a_default() {
     assert_eq!(design.hardware.part, "xczu9eg-ffvb1156-2-e");
     assert_eq!((design.algorithm.plan, design.algorithm.outputs), (PlanKind::Reduced, Outputs::Field));
     assert_eq!((design.hardware.target_us, design.hardware.optimise), (None, Optimise::Interval));
-    assert!(!design.hardware.skip_zeros);
     assert!(!design.hardware.debug && !design.to_toml().contains("debug"));
     assert_eq!(design.hardware.stream_bits, 32);
 }
@@ -94,8 +93,8 @@ fn keys_of_the_reduced_plan_read_back_the_same() {
     for (more, parts) in [
         ("[algorithm]\noutputs = \"resultants\"", ["outputs = \"resultants\"", "plan = \"reduced\""]),
         ("[hardware]\ntarget_us = 20", ["target_us = 20.0", "plan = \"reduced\""]),
-        ("[hardware]\noptimise = \"latency\"\nskip_zeros = true", ["optimise = \"latency\"", "skip_zeros = true"]),
-        ("[algorithm]\nplan = \"paper\"", ["plan = \"paper\"", "skip_zeros = false"]),
+        ("[hardware]\noptimise = \"latency\"", ["optimise = \"latency\"", "plan = \"reduced\""]),
+        ("[algorithm]\nplan = \"paper\"", ["plan = \"paper\"", "optimise = \"interval\""]),
         (
             "[algorithm]\nestimator = \"joint\"\n[hardware]\noptimise = \"area\"",
             ["optimise = \"area\"", "plan = \"reduced\""],

@@ -22,15 +22,10 @@ fn keys_that_contradict_the_plan() {
         ),
         (format!("{reduced}[hardware]\noptimise = \"area\""), ["hardware.optimise", "no walk", "\"joint\""]),
         (format!("{paper}[hardware]\ntarget_us = 5"), ["hardware.target_us", "is 5", "plan = \"reduced\""]),
-        (format!("{paper}[hardware]\nskip_zeros = true"), ["hardware.skip_zeros", "paper", "plan = \"reduced\""]),
         (format!("{reduced}[hardware]\nlanes = 6"), ["hardware.lanes", "is 6", "multiple of 4"]),
         (
             format!("{reduced}filter = {{ kind = \"f3\", scenes = [\"a\"] }}"),
             ["algorithm.filter", "f3", "plan = \"paper\""],
-        ),
-        (
-            format!("{reduced}filter = {{ kind = \"f2\", p = 3 }}\n[hardware]\nskip_zeros = true"),
-            ["hardware.skip_zeros", "with a filter", "none"],
         ),
         (
             "[hardware]\nlanes = 8\ntarget_us = 5".to_owned(),
@@ -150,7 +145,7 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
         refused(&format!("{MINIMAL}[algorithm]\n{line}\n"), &parts);
     }
     for (line, parts) in [
-        ("arithmetic = \"float\"", ["hardware.arithmetic", "float", "fixed"]),
+        ("arithmetic = \"fixed\"", ["hardware.arithmetic", "no longer a key", "remove the line"]),
         ("coefficient_bits = 28", ["hardware.coefficient_bits", "28", "8 to 27"]),
         ("data_bits = 15", ["hardware.data_bits", "15", "16 to 35"]),
         ("lanes = 0", ["hardware.lanes", "is 0", "1 to 128"]),
@@ -159,8 +154,9 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
         ("target_us = 0.0", ["hardware.target_us", "is 0", "greater than 0"]),
         ("target_us = inf", ["hardware.target_us", "inf", "finite"]),
         ("optimise = \"speed\"", ["hardware.optimise", "speed", "interval, latency, area"]),
+        ("control = 1", ["control", "line 8", "boolean"]),
         ("range = \"taxel\"", ["hardware.range", "taxel", "full_scale, frame"]),
-        ("skip_zeros = 1", ["skip_zeros", "line 8", "boolean"]),
+        ("skip_zeros = false", ["hardware.skip_zeros", "no longer a key", "remove the line"]),
         ("full_scale_pa = -1.0", ["hardware.full_scale_pa", "-1", "0"]),
         ("full_scale_pa = 1e10", ["hardware.full_scale_pa", "10000000000", "1000000000"]),
         ("clock_mhz = 0.5", ["hardware.clock_mhz", "0.5", "1 to 1000"]),

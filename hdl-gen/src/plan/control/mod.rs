@@ -10,7 +10,7 @@ use std::collections::{BTreeSet, VecDeque};
 use self::durations::Durations;
 use super::Plan;
 use super::places::FIELD_PLACES;
-use super::timing::{INTERVAL_FRAMES, Timeline, longest_interval, mean_interval};
+use super::timing::{INTERVAL_FRAMES, Timeline, mean_interval};
 use crate::blocks::bz::Arrival;
 use crate::blocks::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
@@ -29,9 +29,7 @@ const SPACED_FRAMES: u64 = 96;
 pub(super) fn timeline(plan: &Plan) -> Timeline {
     let durations = Durations::new(plan);
     let ends = |frames| Control::new(&durations).play(frames);
-    // Frames that take as long as what is in them keep to no turns.
-    let interval = if plan.design.hardware.skip_zeros { longest_interval } else { mean_interval };
-    let interval = interval(&ends(INTERVAL_FRAMES));
+    let interval = mean_interval(&ends(INTERVAL_FRAMES));
     Timeline {
         latency_cycles: ends(1)[0],
         interval_cycles: if plan.streams().drops { smallest_spacing(&durations, interval) } else { interval },

@@ -127,7 +127,6 @@ fn long() -> [Design; 3] {
     beats.algorithm.count_contacts = true;
     "long_vectors".clone_into(&mut vectors.name);
     (vectors.hardware.coefficient_bits, vectors.hardware.data_bits) = (9, 30);
-    vectors.hardware.skip_zeros = true;
     vectors.algorithm.estimator = Estimator::Joint;
     [long, beats, vectors]
 }

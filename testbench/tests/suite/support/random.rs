@@ -30,10 +30,6 @@ pub enum Kind {
         latency: bool,
     },
     Resultants,
-    /// Zeros passed over, with the field or without.
-    Skips {
-        field: bool,
-    },
     /// The joint estimator, with or without a correction.
     Joint {
         field: bool,
@@ -49,8 +45,6 @@ impl Kind {
             Self::Field { latency: true } => ["plan = \"reduced\"", "optimise = \"latency\""],
             Self::Field { latency: false } => ["plan = \"reduced\"", "optimise = \"interval\""],
             Self::Resultants => ["plan = \"reduced\"\noutputs = \"resultants\"", ""],
-            Self::Skips { field: true } => ["plan = \"reduced\"", "skip_zeros = true"],
-            Self::Skips { field: false } => ["plan = \"reduced\"\noutputs = \"resultants\"", "skip_zeros = true"],
             Self::Joint { field: true, .. } => ["plan = \"reduced\"\nestimator = \"joint\"", ""],
             Self::Joint { field: false, .. } => {
                 ["plan = \"reduced\"\nestimator = \"joint\"\noutputs = \"resultants\"", ""]
@@ -80,13 +74,12 @@ impl Shape {
             || if random.random_bool(0.8) { random.random_range(2..=8) } else { random.random_range(9..=12) };
         let (columns, mut rows) = (side(), side());
         let mut pitch_mm = [0, 1].map(|_| (random.random_range(1.0..6.0_f64) * 100.0).round() / 100.0);
-        let kind = match random.random_range(0..12) {
+        let kind = match random.random_range(0..10) {
             0..3 => Kind::Paper,
             3 | 4 => Kind::Field { latency: false },
             5 => Kind::Field { latency: true },
             6 => Kind::Resultants,
-            skips @ (7 | 8) => Kind::Skips { field: skips == 7 },
-            joint => Kind::Joint { field: joint != 10, correction: joint != 9 },
+            joint => Kind::Joint { field: joint != 8, correction: joint != 7 },
         };
         // Where everything is square, a matrix serves both directions.
         if kind != Kind::Paper && random.random_bool(0.4) {
@@ -95,7 +88,6 @@ impl Shape {
         let taxels = columns * rows;
         let spacing = (pitch_mm[0] * pitch_mm[1]).sqrt();
         let filter = match random.random_range(0..3) {
-            _ if matches!(kind, Kind::Skips { .. }) => "{ kind = \"none\" }".to_owned(),
             0 => "{ kind = \"none\" }".to_owned(),
             1 => format!("{{ kind = \"f1\", l = {} }}", random.random_range(1..=taxels - 2)),
             _ => format!("{{ kind = \"f2\", p = {:.4} }}", 10_f64.powf(random.random_range(-2.0..2.0))),

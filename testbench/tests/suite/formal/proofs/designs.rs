@@ -19,11 +19,6 @@ pub fn reduced_for_latency(design: &mut Design) {
     design.hardware.optimise = Optimise::Latency;
 }
 
-pub fn reduced_with_zeros_skipped(design: &mut Design) {
-    reduced(design);
-    design.hardware.skip_zeros = true;
-}
-
 pub fn calibrated(design: &mut Design) {
     reduced(design);
     design.hardware.control = true;

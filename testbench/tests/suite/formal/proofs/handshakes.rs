@@ -1,8 +1,7 @@
 //! The handshakes between the blocks of a whole design: no frame is lost, doubled or overwritten on its way.
 
 use super::designs::{
-    corrected, corrected_after_points, corrected_resultants, joint, paper, reduced, reduced_for_latency,
-    reduced_with_zeros_skipped, resultants,
+    corrected, corrected_after_points, corrected_resultants, joint, paper, reduced, reduced_for_latency, resultants,
 };
 use super::{Broken, Proof};
 
@@ -154,20 +153,6 @@ pub const PROOFS: &[Proof] = &[
         induction: "5",
         altered: &[],
         broken: LATENCY_BROKEN,
-    },
-    Proof {
-        name: "frame handshake, reduced plan, zeros skipped",
-        harness: "reduced",
-        design: reduced_with_zeros_skipped,
-        defines: &[],
-        top: "subject",
-        parameters: "",
-        models: &[("sptfra_spmv_array", "reduced_lanes")],
-        free: FREE,
-        free_wires: &["turns.residual_written"],
-        induction: "5",
-        altered: &[],
-        broken: &[("turns", "(residuals_there != 2'd0) && friction_known", "(fields_due != 2'd0) && friction_known")],
     },
     Proof {
         name: "frame handshake, joint estimator",
