@@ -22,8 +22,8 @@ module sptfra_estimator_line #(
     parameter integer CELLS = 16,
     // Taxels of a cell, a power of two
     parameter integer CELL_ELEMENTS = 8,
-    // 1: a round of the search cuts its interval into eight parts, 0: in half
-    parameter integer EIGHTHS = 0,
+    // Points of a round of the search: 1, or 3 for two bisections at a time
+    parameter integer POINTS = 1,
     // Left shift (negative: right) that turns sum |b| into the level above the least B
     parameter integer LEVEL_SHIFT = -1,
     // From the direction to the line, checked in simulation; 0: unchecked
@@ -185,68 +185,36 @@ module sptfra_estimator_line #(
         end
     end
 
-    generate
-        if (EIGHTHS == 0) begin : gen_halves
-            sptfra_search #(
-                .COLUMNS          (COLUMNS),
-                .ROWS             (ROWS),
-                .WAYS             (WAYS),
-                .DATA_BITS        (DATA_BITS),
-                .ROW_WIDTH        (ROW_WIDTH),
-                .CELLS            (CELLS),
-                .CELL_ELEMENTS    (CELL_ELEMENTS),
-                .LEVEL_SHIFT      (LEVEL_SHIFT),
-                .EXPECTED_LATENCY (EXPECTED_SEARCH_LATENCY)
-            ) search (
-                .clock       (clock),
-                .reset       (reset),
-                .u_valid     (fill_valid),
-                .u_row       (fill_row),
-                .u_values    (fill_values),
-                .fill_bank   (fill_bank),
-                .search_bank (search_bank),
-                .start       (search_start),
-                .x_is_free   (x_is_free),
-                .next_c0     (line_c0),
-                .c0          (c0),
-                .c1          (c1),
-                .stress_sum  (search_stress_sum),
-                .done        (search_done),
-                .t           (free),
-                .at_bound    (at_bound),
-                .saturated   (saturated)
-            );
-        end else begin : gen_eighths
-            sptfra_search_eighths #(
-                .COLUMNS          (COLUMNS),
-                .ROWS             (ROWS),
-                .WAYS             (WAYS),
-                .DATA_BITS        (DATA_BITS),
-                .ROW_WIDTH        (ROW_WIDTH),
-                .CELLS            (CELLS),
-                .CELL_ELEMENTS    (CELL_ELEMENTS),
-                .LEVEL_SHIFT      (LEVEL_SHIFT),
-                .EXPECTED_LATENCY (EXPECTED_SEARCH_LATENCY)
-            ) search (
-                .clock       (clock),
-                .reset       (reset),
-                .u_valid     (fill_valid),
-                .u_row       (fill_row),
-                .u_values    (fill_values),
-                .fill_bank   (fill_bank),
-                .search_bank (search_bank),
-                .start       (search_start),
-                .x_is_free   (x_is_free),
-                .c0          (c0),
-                .c1          (c1),
-                .stress_sum  (search_stress_sum),
-                .done        (search_done),
-                .t           (free),
-                .at_bound    (at_bound),
-                .saturated   (saturated)
-            );
-        end
-    endgenerate
+    sptfra_search #(
+        .COLUMNS          (COLUMNS),
+        .ROWS             (ROWS),
+        .WAYS             (WAYS),
+        .DATA_BITS        (DATA_BITS),
+        .ROW_WIDTH        (ROW_WIDTH),
+        .CELLS            (CELLS),
+        .CELL_ELEMENTS    (CELL_ELEMENTS),
+        .POINTS           (POINTS),
+        .LEVEL_SHIFT      (LEVEL_SHIFT),
+        .EXPECTED_LATENCY (EXPECTED_SEARCH_LATENCY)
+    ) search (
+        .clock       (clock),
+        .reset       (reset),
+        .u_valid     (fill_valid),
+        .u_row       (fill_row),
+        .u_values    (fill_values),
+        .fill_bank   (fill_bank),
+        .search_bank (search_bank),
+        .start       (search_start),
+        .x_is_free   (x_is_free),
+        .next_c0     (line_c0),
+        .c0          (c0),
+        .c1          (c1),
+        .stress_sum  (search_stress_sum),
+        .done        (search_done),
+        .t           (free),
+        .at_bound    (at_bound),
+        .saturated   (saturated)
+    );
 
     // Only other estimators want to know
     wire _unused = &{1'b0, largest};

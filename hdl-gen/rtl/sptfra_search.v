@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Finds the friction on the line: t in [-1, 1], the midpoint of the level set of B(t) = sum max(0, alpha_i + t beta_i).
+// Search along the line: t in [-1, 1], the midpoint of the level set of B(t) = sum max(0, alpha_i + t beta_i).
 //
-// B is Condition 1 (Eq. 20), convex and piecewise linear. 17 bisections on the sign of its slope find the minimum, 17
-// more on its value find both ends of {t : B(t) <= B_min + 2^-9 sum |b|}. CELLS cells with up to CELL_ELEMENTS taxels
-// each work side by side. t has 16 fraction bits.
+// B is Condition 1 (Eq. 20), convex and piecewise linear. Bisection on the sign of its slope finds the minimum.
+// Bisection on its value finds both ends of {t : B(t) <= B_min + 2^-9 sum |b|}. Each finds a distance of 17 bits, the
+// highest bit first: of the minimum from -1, of the ends from the minimum. With POINTS = 3 a round evaluates both
+// candidates of the next bisection too, and finds two bits of the same answer. CELLS cells with up to CELL_ELEMENTS
+// taxels each work side by side. t has 16 fraction bits.
 
 `default_nettype none
 
@@ -24,6 +26,8 @@ module sptfra_search #(
     parameter integer CELLS = 16,
     // Taxels of a cell, a power of two
     parameter integer CELL_ELEMENTS = 8,
+    // Points of a round: 1, or 3
+    parameter integer POINTS = 1,
     // Left shift (negative: right) that turns sum |b| into the level above the least B
     parameter integer LEVEL_SHIFT = -1,
     // From start to done, checked in simulation; 0: unchecked
@@ -44,22 +48,24 @@ module sptfra_search #(
     input  wire signed [17:0] c0,
     input  wire signed [17:0] c1,
     input  wire [39:0] stress_sum,
-    // Result, held until the next start
+    // Result, held until the next one
     output reg  done, // one cycle
-    output wire signed [17:0] t,
-    output wire at_bound, // the minimum lies at an end of [-1, 1]
+    output reg  signed [17:0] t,
+    output reg  at_bound, // the minimum lies at an end of [-1, 1]
     output reg  saturated
 );
 
-    localparam integer SEARCH_STEPS = 17;
-    localparam [4:0] LAST_STEP = SEARCH_STEPS[4:0] - 5'd1;
+    localparam integer SEARCH_STEPS = 17; // bits of a distance
+    localparam [SEARCH_STEPS-1:0] NONE = 0;
+    localparam [SEARCH_STEPS-1:0] TOP = {1'b1, NONE[SEARCH_STEPS-2:0]};
+    localparam integer ROUND_BITS = (POINTS == 3) ? 2 : 1;
     localparam integer ELEMENT_WIDTH = (CELL_ELEMENTS <= 2) ? 1 : $clog2(CELL_ELEMENTS);
     localparam integer LAST_ELEMENT = CELL_ELEMENTS - 1;
     // From the last taxel's address of an evaluation to the decision: the cell, the tree, the decision
-    localparam integer DECISION_CYCLES = 5 + $clog2(CELLS);
+    localparam integer DECISION_CYCLES = ((POINTS == 3) ? 6 : 5) + $clog2(CELLS);
     // The other end is read while one waits for its decision; of so many taxels that it is known when they are over
     localparam [0:0] KNOWN_IN_TIME = (LAST_ELEMENT > DECISION_CYCLES);
-    localparam signed [18:0] ONE = 19'sd65536;
+    localparam signed [17:0] ONE = 18'sd65536;
     localparam integer LEVEL_LEFT = (LEVEL_SHIFT > 0) ? LEVEL_SHIFT : 0;
     localparam integer LEVEL_RIGHT = (LEVEL_SHIFT < 0) ? -LEVEL_SHIFT : 0;
 
@@ -71,26 +77,47 @@ module sptfra_search #(
     reg second; // of a pair of evaluations
     reg reading;
     reg resume; // reading goes on in the next cycle
-    reg [3:0] wait_count;
-    reg [4:0] step;
+    reg [1:0] wait_count;
 
-    // ---- The interval of the minimum, then those of the two ends
-    reg signed [18:0] low;
-    reg signed [18:0] high;
-    reg signed [18:0] left_out;
-    reg signed [18:0] left_in;
-    reg signed [18:0] right_in;
-    reg signed [18:0] right_out;
-    // What follows a decision is read a cycle later
-    reg signed [18:0] left_sum;
-    reg signed [18:0] right_sum;
-    reg signed [18:0] middle_sum;
-    wire signed [18:0] result_sum = left_in + right_in;
+    // ---- Distances: of the minimum from -1, then of the left end from the minimum; of the right end. The unit is the
+    // weight of the bit that is bisected, below which a distance is still 0
+    reg [SEARCH_STEPS-1:0] left;
+    reg [SEARCH_STEPS-1:0] left_unit;
+    reg [SEARCH_STEPS-1:0] right;
+    reg [SEARCH_STEPS-1:0] right_unit;
+    reg signed [17:0] lowest; // t of the least B
+    wire signed [17:0] low = {1'b0, left} - ONE;
+    wire signed [17:0] high = low + 18'sd1;
+    wire signed [18:0] ends_sum = {lowest, 1'b0} + {2'd0, right} - {2'd0, left};
+
+    // Distances of a round's points. The second bit's unit is 0 where a round has one bit
+    wire [SEARCH_STEPS-1:0] left_half = (POINTS == 3) ? left_unit >> 1 : NONE;
+    wire [SEARCH_STEPS-1:0] left_near = left | ((left_half == NONE) ? left_unit : left_half);
+    wire [SEARCH_STEPS-1:0] left_middle = left | left_unit;
+    wire [SEARCH_STEPS-1:0] left_far = left_middle | left_half;
+    wire [SEARCH_STEPS-1:0] right_half = (POINTS == 3) ? right_unit >> 1 : NONE;
+    wire [SEARCH_STEPS-1:0] right_near = right | ((right_half == NONE) ? right_unit : right_half);
+    wire [SEARCH_STEPS-1:0] right_middle = right | right_unit;
+    wire [SEARCH_STEPS-1:0] right_far = right_middle | right_half;
+
+    // The ends lie within (-1, 1)
+    wire [17:0] left_room = lowest + ONE;
+    wire [17:0] right_room = ONE - lowest;
+    reg [2:0] left_within; // far, middle, near
+    reg [2:0] right_within;
+
+    always @(posedge clock) begin
+        left_within <= { {1'b0, left_far} < left_room, {1'b0, left_middle} < left_room, {1'b0, left_near} < left_room};
+        right_within <= { {1'b0, right_far} < right_room, {1'b0, right_middle} < right_room,
+            {1'b0, right_near} < right_room};
+    end
+
+    // Of a round's points the cells take the one with the largest t
+    wire signed [17:0] slope_t = {1'b0, left_far} - ONE;
+    wire signed [17:0] left_t = lowest - {1'b0, left_near};
+    wire signed [17:0] right_t = lowest + {1'b0, right_far};
 
     // The factor is a register, which goes all the way to the cells' multipliers: it is chosen for the next cycle
-    wire signed [18:0] left = left_out + left_in;
-    wire signed [18:0] right = right_in + right_out;
-    wire signed [18:0] middle = low + high;
     wire pair = (state == FLOOR) || (state == LEVEL);
     reg raise; // floor_low is B_min: the level follows
     wire last_element;
@@ -102,16 +129,19 @@ module sptfra_search #(
             IDLE: factor <= next_c0;
             ALPHA: factor <= last_element ? c1 : c0;
             BETA: factor <= c1;
-            FLOOR: factor <= raise ? left[18:1] : next_second ? high[17:0] : low[17:0];
-            LEVEL: factor <= next_second ? right[18:1] : left[18:1];
-            default: factor <= middle[18:1];
+            FLOOR: factor <= raise ? left_t : next_second ? high : low;
+            LEVEL: factor <= next_second ? right_t : left_t;
+            default: factor <= slope_t;
         endcase
     end
 
     // ---- Cells
     reg signed [47:0] level;
-    wire signed [47:0] total;
-    wire fits_level; // total <= level
+    wire [48*POINTS-1:0] totals; // B or its slope at t, t - h, t - 2 h
+    wire [POINTS-1:0] fits_level; // B <= level
+    wire [SEARCH_STEPS-1:0] half = ((state == LEVEL) && second) ? right_half : left_half; // h = 2^(15 - 2 round)
+    wire [2:0] round = {half[7] || half[5] || half[3] || half[1], half[11] || half[9] || half[3] || half[1],
+        half[13] || half[9] || half[5] || half[1]};
     wire cells_saturated;
 
     sptfra_search_cells #(
@@ -122,7 +152,8 @@ module sptfra_search #(
         .ROW_WIDTH     (ROW_WIDTH),
         .CELLS         (CELLS),
         .CELL_ELEMENTS (CELL_ELEMENTS),
-        .ELEMENT_WIDTH (ELEMENT_WIDTH)
+        .ELEMENT_WIDTH (ELEMENT_WIDTH),
+        .POINTS        (POINTS)
     ) cells (
         .clock      (clock),
         .reset      (reset),
@@ -138,9 +169,9 @@ module sptfra_search #(
         .x_is_free  (x_is_free),
         .want_slope (state == SLOPE),
         .factor     (factor),
-        .round      (3'd0),
+        .round      (round),
         .level      (level),
-        .totals     (total),
+        .totals     (totals),
         .fits_level (fits_level),
         .saturated  (cells_saturated)
     );
@@ -158,8 +189,54 @@ module sptfra_search #(
     reg high_is_lower;
     wire [47:0] margin = ({8'd0, stress_sum} << LEVEL_LEFT) >> LEVEL_RIGHT;
 
-    assign at_bound = (low == -ONE) || (high == ONE);
-    assign t = result_sum[18:1];
+    // Bits of a round: of the middle point, then of the one behind it or before it
+    wire [2:0] falls; // the slope: far, middle, near
+    wire [2:0] left_fits;
+    wire [2:0] right_fits;
+
+    generate
+        if ((POINTS != 1) && (POINTS != 3)) begin : gen_check_points
+            sptfra_error_points_must_be_1_or_3 invalid ();
+        end
+        if (POINTS == 3) begin : gen_three
+            // Of a round with one bit all is at t
+            assign falls = left_unit[0] ? {3{totals[47]}} : {totals[47], totals[95], totals[143]};
+            assign left_fits = left_unit[0] ? {3{fits_level[0]}} : {fits_level[2], fits_level[1], fits_level[0]};
+            assign right_fits = right_unit[0] ? {3{fits_level[0]}} : {fits_level[0], fits_level[1], fits_level[2]};
+        end else begin : gen_one
+            assign falls = {3{totals[47]}};
+            assign left_fits = {3{fits_level[0]}};
+            assign right_fits = {3{fits_level[0]}};
+        end
+    endgenerate
+
+    wire [2:0] left_keep = (state == SLOPE) ? falls : left_fits & left_within;
+    wire [2:0] right_keep = right_fits & right_within;
+    wire [SEARCH_STEPS-1:0] left_found = left | (left_keep[1] ? left_unit : NONE)
+        | ((left_keep[1] ? left_keep[2] : left_keep[0]) ? left_half : NONE);
+    wire [SEARCH_STEPS-1:0] right_found = right | (right_keep[1] ? right_unit : NONE)
+        | ((right_keep[1] ? right_keep[2] : right_keep[0]) ? right_half : NONE);
+    wire left_over = (state == SLOPE) ? step_over : (state == LEVEL) && first_over;
+    wire right_over = (state == LEVEL) && step_over;
+    wire restart = (state == ALPHA) || ((state == FLOOR) && compared); // both distances
+
+    always @(posedge clock) begin
+        if (restart) begin
+            left <= NONE;
+            left_unit <= TOP;
+            right <= NONE;
+            right_unit <= TOP;
+        end else begin
+            if (left_over) begin
+                left <= left_found;
+                left_unit <= left_unit >> ROUND_BITS;
+            end
+            if (right_over) begin
+                right <= right_found;
+                right_unit <= right_unit >> ROUND_BITS;
+            end
+        end
+    end
 
     always @(posedge clock) begin
         ends <= {ends[DECISION_CYCLES-2:1], last_element && (state != ALPHA) && (state != BETA)};
@@ -180,17 +257,14 @@ module sptfra_search #(
             element <= last_element ? {ELEMENT_WIDTH{1'b0}} : element + 1'b1;
             if (last_element) begin
                 second <= pair && !second;
-                reading <= (pair && !second) || (KNOWN_IN_TIME && (state == LEVEL) && (step != LAST_STEP));
+                reading <= (pair && !second) || (KNOWN_IN_TIME && (state == LEVEL) && !right_unit[0]);
             end
         end
         resume <= 1'b0;
         if (resume) begin
             reading <= 1'b1;
         end
-        left_sum <= left;
-        right_sum <= right;
-        middle_sum <= middle;
-        wait_count <= wait_count + 4'd1;
+        wait_count <= wait_count + 2'd1;
         if (cells_saturated) begin
             saturated <= 1'b1;
         end
@@ -198,7 +272,6 @@ module sptfra_search #(
             IDLE: begin
                 element <= {ELEMENT_WIDTH{1'b0}};
                 second <= 1'b0;
-                step <= 5'd0;
                 if (start) begin
                     saturated <= 1'b0;
                     reading <= 1'b1;
@@ -206,43 +279,32 @@ module sptfra_search #(
                 end
             end
             ALPHA: begin
-                low <= -ONE;
-                high <= ONE;
                 if (last_element) begin
                     reading <= 1'b1;
                     state <= BETA;
                 end
             end
             BETA: begin
-                wait_count <= 4'd0;
+                wait_count <= 2'd0;
                 if (last_element) begin
                     state <= SETTLE;
                 end
             end
             SETTLE: begin
-                if (wait_count == 4'd3) begin
+                if (wait_count == 2'd3) begin
                     reading <= 1'b1;
                     state <= SLOPE;
                 end
             end
             SLOPE: begin
                 if (step_over) begin
-                    if (total[47]) begin
-                        low <= {middle_sum[18], middle_sum[18:1]};
-                    end else begin
-                        high <= {middle_sum[18], middle_sum[18:1]};
-                    end
                     resume <= 1'b1;
-                    step <= step + 5'd1;
-                    if (step == LAST_STEP) begin
-                        step <= 5'd0;
+                    if (left_unit[0]) begin
                         state <= FLOOR;
                     end
                 end
             end
             FLOOR: begin
-                left_out <= -ONE;
-                right_out <= ONE;
                 raise <= 1'b0;
                 if (raise) begin
                     level <= floor_low + margin;
@@ -250,43 +312,31 @@ module sptfra_search #(
                     state <= LEVEL;
                 end
                 if (first_over) begin
-                    floor_low <= total;
+                    floor_low <= totals[47:0];
                 end
                 compare <= step_over;
                 compared <= compare;
                 high_is_lower <= (floor_high < floor_low);
                 if (step_over) begin
-                    floor_high <= total;
+                    floor_high <= totals[47:0];
                 end
                 if (compared) begin
-                    left_in <= high_is_lower ? high : low;
-                    right_in <= high_is_lower ? high : low;
+                    lowest <= high_is_lower ? high : low;
+                    at_bound <= (left == NONE) || (left == ~NONE);
                     floor_low <= high_is_lower ? floor_high : floor_low;
                     raise <= 1'b1;
                 end
             end
             LEVEL: begin
                 if (first_over) begin
-                    if (fits_level) begin
-                        left_in <= {left_sum[18], left_sum[18:1]};
-                    end else begin
-                        left_out <= {left_sum[18], left_sum[18:1]};
-                    end
-                    resume <= !KNOWN_IN_TIME && (step != LAST_STEP);
+                    resume <= !KNOWN_IN_TIME && !left_unit[0];
                 end
-                if (step_over) begin
-                    if (fits_level) begin
-                        right_in <= {right_sum[18], right_sum[18:1]};
-                    end else begin
-                        right_out <= {right_sum[18], right_sum[18:1]};
-                    end
-                    step <= step + 5'd1;
-                    if (step == LAST_STEP) begin
-                        state <= FINISH;
-                    end
+                if (step_over && right_unit[0]) begin
+                    state <= FINISH;
                 end
             end
             default: begin
+                t <= ends_sum[18:1];
                 done <= 1'b1;
                 state <= IDLE;
             end
@@ -316,7 +366,8 @@ module sptfra_search #(
     wire _unused_check = (EXPECTED_LATENCY != 0);
 `endif
 
-    wire _unused = &{1'b0, left_sum[0], right_sum[0], middle_sum[0], result_sum[0]};
+    // Of a slope its sign; h is 0 with one point
+    wire _unused = &{1'b0, totals, ends_sum[0], half};
 
 endmodule
 

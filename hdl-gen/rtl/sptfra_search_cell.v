@@ -6,7 +6,7 @@
 // Fill: u0, u1, u2 of its taxels arrive, also of the next frame while this one is searched. Passes: alpha = u0 + c0
 // u_dependent, then beta = u_free + c1 u_dependent. Search: for each taxel with alpha + t beta > 0 either beta (slope
 // of B) or alpha + t beta without its last 8 bits (B itself) is summed. Address to sum: 5 cycles; one taxel a cycle.
-// With four points also those at t - h, t - 2 h, t - 3 h, h the round's part of an interval: a cycle more.
+// With three points also those at t - h and t - 2 h, h = 2^(15 - 2 round): a cycle more.
 
 `default_nettype none
 
@@ -17,7 +17,7 @@ module sptfra_search_cell #(
     parameter integer ELEMENT_WIDTH = 3,
     // Taxels of this cell
     parameter integer COUNT = 8,
-    // Points at a time: 1 or 4
+    // Points at a time: 1 or 3
     parameter integer POINTS = 1
 ) (
     input  wire clock,
@@ -37,9 +37,9 @@ module sptfra_search_cell #(
     input  wire x_is_free,
     input  wire want_slope, // rather than B
     input  wire signed [17:0] factor, // t, c0 or c1
-    input  wire [2:0] round, // of points: their distance
+    input  wire [2:0] round,
     // Results
-    output wire [48*POINTS-1:0] sums, // the last one that of t
+    output wire [48*POINTS-1:0] sums, // at t, t - h, t - 2 h
     output reg  saturated // alpha or beta in the cycle before
 );
 
@@ -148,7 +148,7 @@ module sptfra_search_cell #(
         end
     end
 
-    // ---- With four points a stage between: hinges at the others
+    // ---- With three points a stage between: hinges at the others
     wire [45*POINTS-1:0] point_hinges;
     wire signed [26:0] slope_term;
     wire term_valid;
@@ -166,35 +166,33 @@ module sptfra_search_cell #(
             wire _unused = &{1'b0, valid[4], slopes[4], firsts[5], round};
         end else begin : gen_points
             (* keep = "true" *) reg [2:0] round_1;
-            reg signed [41:0] part_2; // beta times the points' distance, in steps of a hinge
+            reg signed [41:0] part_2; // beta h
             reg signed [41:0] part_3;
-            reg signed [43:0] parts_3; // three of them
             reg signed [44:0] hinge_4;
             reg signed [44:0] hinge_less_4;
             reg signed [44:0] hinge_less_2_4;
-            reg signed [44:0] hinge_less_3_4;
             reg signed [26:0] multiplicand_4;
 
             always @(posedge clock) begin
                 round_1 <= round;
                 case (round_1)
-                    3'd0: part_2 <= { {1{multiplicand_1[26]}}, multiplicand_1, 14'd0};
-                    3'd1: part_2 <= { {4{multiplicand_1[26]}}, multiplicand_1, 11'd0};
-                    3'd2: part_2 <= { {7{multiplicand_1[26]}}, multiplicand_1, 8'd0};
-                    3'd3: part_2 <= { {10{multiplicand_1[26]}}, multiplicand_1, 5'd0};
-                    3'd4: part_2 <= { {13{multiplicand_1[26]}}, multiplicand_1, 2'd0};
-                    default: part_2 <= { {15{multiplicand_1[26]}}, multiplicand_1};
+                    3'd0: part_2 <= {multiplicand_1, 15'd0};
+                    3'd1: part_2 <= { {2{multiplicand_1[26]}}, multiplicand_1, 13'd0};
+                    3'd2: part_2 <= { {4{multiplicand_1[26]}}, multiplicand_1, 11'd0};
+                    3'd3: part_2 <= { {6{multiplicand_1[26]}}, multiplicand_1, 9'd0};
+                    3'd4: part_2 <= { {8{multiplicand_1[26]}}, multiplicand_1, 7'd0};
+                    3'd5: part_2 <= { {10{multiplicand_1[26]}}, multiplicand_1, 5'd0};
+                    3'd6: part_2 <= { {12{multiplicand_1[26]}}, multiplicand_1, 3'd0};
+                    default: part_2 <= { {14{multiplicand_1[26]}}, multiplicand_1, 1'd0};
                 endcase
                 part_3 <= part_2;
-                parts_3 <= { {2{part_2[41]}}, part_2} + {part_2[41], part_2, 1'b0};
                 hinge_4 <= hinge_3;
                 hinge_less_4 <= hinge_3 - { {3{part_3[41]}}, part_3};
                 hinge_less_2_4 <= hinge_3 - { {2{part_3[41]}}, part_3, 1'b0};
-                hinge_less_3_4 <= hinge_3 - {parts_3[43], parts_3};
                 multiplicand_4 <= multiplicand_3;
             end
 
-            assign point_hinges = {hinge_4, hinge_less_4, hinge_less_2_4, hinge_less_3_4};
+            assign point_hinges = {hinge_less_2_4, hinge_less_4, hinge_4};
             assign slope_term = multiplicand_4;
             assign term_valid = valid[4];
             assign term_slope = slopes[4];

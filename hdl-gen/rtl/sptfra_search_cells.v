@@ -3,7 +3,7 @@
 //
 // The cells of the search side by side, as many for each way, and the tree that adds their sums.
 //
-// Every taxel's u_q goes to its own cell. Last taxel's address to totals: 5 cycles, with four points 6, and one for
+// Every taxel's u_q goes to its own cell. Last taxel's address to totals: 5 cycles, with three points 6, and one for
 // each level of the tree.
 
 `default_nettype none
@@ -25,7 +25,7 @@ module sptfra_search_cells #(
     parameter integer CELL_ELEMENTS = 8,
     // Bits of a taxel's place in its cell
     parameter integer ELEMENT_WIDTH = 3,
-    // Points at a time, 1 or 4, a tree each
+    // Points at a time, 1 or 3, a tree each
     parameter integer POINTS = 1
 ) (
     input  wire clock,
@@ -44,7 +44,7 @@ module sptfra_search_cells #(
     input  wire x_is_free,
     input  wire want_slope,
     input  wire signed [17:0] factor,
-    input  wire [2:0] round, // of points: their distance
+    input  wire [2:0] round, // with three points: see sptfra_search_cell
     // Results
     input  wire signed [47:0] level,
     output wire [48*POINTS-1:0] totals, // of all taxels

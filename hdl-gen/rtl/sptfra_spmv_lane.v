@@ -158,7 +158,7 @@ module sptfra_spmv_lane #(
     // that are equal in all lanes are kept, for each lane to have its own at hand
     wire [31:0] column_wide = {{(32-COLUMN_WIDTH){1'b0}}, column};
     wire [ROW_WIDTH-1:0] mirror_image;
-    wire [31:0] element = mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide; // a cycle after its issue
+    wire [31:0] element; // one cycle after its issue
     reg  [OPERAND_WIDTH-1:0] element_2;
     (* keep = "true" *) reg [OPERAND_WIDTH-1:0] base_2;
     wire [OPERAND_WIDTH-1:0] operand_address = base_2 + element_2;
@@ -166,6 +166,8 @@ module sptfra_spmv_lane #(
     reg  [WAYS*COEFFICIENT_BITS-1:0] value_2;
     reg  [WAYS*COEFFICIENT_BITS-1:0] coefficient;
     (* keep = "true" *) reg [3:2] swaps; // the classes that are odd in x only and in y only
+
+    assign element = mirrored ? {{(32-ROW_WIDTH){1'b0}}, mirror_image} : column_wide;
 
     generate
         if (MIRROR_SIDE > 0) begin : gen_mirror

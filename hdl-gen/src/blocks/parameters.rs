@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 44] = [
+        let expected: [(&str, &str, i64); 41] = [
             // A cycle more counts the frame.
             ("sptfra_fold", "LAST_TO_WRITTEN", stress_to_ready(true) as i64 - 1),
             ("sptfra_fold_frame", "TURN_TO_WRITTEN", QUAD_TO_READY as i64 - 1),
@@ -157,9 +157,6 @@ mod tests {
             ("sptfra_line", "LINE_SUM_BITS", line::LINE_SUM_BITS.into()),
             ("sptfra_search", "SEARCH_STEPS", line::SEARCH_STEPS.into()),
             ("sptfra_search", "ONE", one),
-            ("sptfra_search_eighths", "ONE", one),
-            ("sptfra_search_place", "ONE", one),
-            ("sptfra_search_eighths", "LAST_ROUND", line::PART_BITS.len() as i64 - 1),
             ("sptfra_search_cell", "FRICTION_FRACTION", FRICTION_FRACTION.into()),
             ("sptfra_search_cell", "LINE_FRACTION", line::LINE_FRACTION.into()),
             ("sptfra_search_cell", "HINGE_DROP", line::HINGE_DROP.into()),

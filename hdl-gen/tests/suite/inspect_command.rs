@@ -94,9 +94,9 @@ fn inspect_says_how_the_line_is_searched() {
         );
         rounds.to_owned()
     };
-    assert!(said(32, 10).starts_with("17 of two parts: up to 32 lanes do not wait"));
-    assert!(said(64, 10).starts_with("6 of eight parts: 64 lanes, more than 32, would wait for 17 of two; 4 taxels"));
-    assert!(said(64, 20).starts_with("17 of two parts: 16 taxels a cell, more than 8"));
+    assert!(said(32, 10).starts_with("17 of a bisection: up to 32 lanes do not wait"));
+    assert!(said(64, 10).starts_with("9 of two bisections: 64 lanes, more than 32, would wait for 17; 4 taxels"));
+    assert!(said(64, 20).starts_with("17 of a bisection: 16 taxels a cell, more than 8"));
 }
 
 /// The joint estimator's gain belongs to a kernel.

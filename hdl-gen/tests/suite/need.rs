@@ -52,7 +52,7 @@ fn only_remedies_that_meet_the_need_are_offered() {
         // The smallest change, and if that is the streams' width one that leaves it.
         (line(8.0), "stream_bits = 64, outputs = \"resultants\", "),
         (line(7.0), "stream_bits = 128, outputs = \"resultants\", "),
-        (line(6.0), "outputs = \"resultants\", "),
+        (line(6.5), "outputs = \"resultants\", "),
         (line(5.0), ""),
         (joint(20.0), "grid = 15, "),
         (joint(6.0), "grid = 15 with stream_bits = 64, grid = 15 with outputs = \"resultants\", "),
@@ -73,7 +73,7 @@ fn remedies_do_what_is_said_of_them() {
     assert!(!met(&fine, "stream_bits = 128", 6.0) && !met(&coarse, "", 6.0) && met(&coarse, "stream_bits = 64", 6.0));
     assert!(met(&format!("{coarse}\noutputs = \"resultants\""), "", 6.0));
     assert!(!met("", "stream_bits = 64", 7.0) && met("", "stream_bits = 128", 7.0));
-    assert!(!met("", "stream_bits = 128", 6.0) && met("outputs = \"resultants\"", "", 6.0));
+    assert!(!met("", "stream_bits = 128", 6.5) && met("outputs = \"resultants\"", "", 6.5));
 }
 
 /// A coarser grid takes constants of its own, which `fitted_to` insists on; the walk made smaller is the fine grid's.

@@ -182,7 +182,7 @@ fn corner_designs_of_the_reduced_plan_agree_with_the_model() {
         ("tall_resultants", base(Kind::Resultants, 3, 32, 16)),
         ("wide", base(field, 40, 2, 8)),
         ("narrow_words_reduced", Shape { coefficient_bits: 8, data_bits: 16, ..base(latency, 6, 4, 8) }),
-        // Two and eight taxels a cell of the search by eighths.
+        // Two and eight taxels a cell of the search with three points.
         ("two_a_cell", base(field, 7, 7, 64)),
         ("eight_a_cell", base(Kind::Resultants, 12, 12, 64)),
         ("one_quad_joint", base(joint(true, true), 2, 2, 4)),

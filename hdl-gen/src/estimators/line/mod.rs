@@ -27,23 +27,21 @@ pub const LINE_SUM_BITS: u32 = 17;
 pub const HINGE_DROP: u32 = 8;
 /// The level set lies below `B_min + 2^-LEVEL_SHIFT sum |b|`.
 pub const LEVEL_SHIFT: i32 = 9;
-/// Bisections of an interval of the search variable.
+/// Bisections of the search variable, for the minimum and for each end of the level set.
 pub const SEARCH_STEPS: u32 = 17;
-/// Of rounds that cut an interval into eight parts, the last one into four: logarithm of a part, in steps of the variable.
-pub const PART_BITS: [u32; 6] = [14, 11, 8, 5, 2, 0];
-/// Lanes beyond which a round of the search cuts its interval into eight parts: from 10 × 10 taxels on fewer lanes take
-/// longer than the search, and smaller grids keep the smaller one.
-pub const BISECTING_LANES: usize = 32;
+/// Lanes beyond which a round of the search evaluates three points and finds two bits: from 10 × 10 taxels on fewer lanes
+/// take longer than the search.
+pub const ONE_POINT_LANES: usize = 32;
 /// Taxels of a cell beyond which it does not: they, not the way to a decision, take most of a bisection's time.
-pub const EIGHTHS_ELEMENTS: usize = 8;
+pub const THREE_POINTS_ELEMENTS: usize = 8;
 
 /// Constants of the direction of push and of the search on its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinePlan {
     /// Evaluation cells, one multiplier each.
     pub cells: Cells,
-    /// Whether a round of the search cuts its interval into eight parts, by four points at a time, rather than in half.
-    pub eighths: bool,
+    /// Points of a round of the search: 1, or 3 for two bisections at a time.
+    pub points: usize,
     /// Left shift (negative: right) that turns `sum |b|` into the level above `B_min`.
     pub level_shift: i32,
     /// Pitch in x and y over the larger of the two, with [`PITCH_FRACTION`] fraction bits.
@@ -61,7 +59,11 @@ impl LinePlan {
         let one = f64::from(1_u32 << PITCH_FRACTION);
         Self {
             cells: Cells::new(given.elements, given.ways, per_cell),
-            eighths: given.design.hardware.lanes > BISECTING_LANES && per_cell <= EIGHTHS_ELEMENTS,
+            points: if given.design.hardware.lanes > ONE_POINT_LANES && per_cell <= THREE_POINTS_ELEMENTS {
+                3
+            } else {
+                1
+            },
             level_shift: given.stress.lsb - LEVEL_SHIFT - hinge_lsb,
             pitch: pitch_mm.map(|pitch| (pitch / larger * one).round() as i64),
         }
@@ -94,8 +96,7 @@ impl Slot for LinePlan {
     }
 
     fn search_blocks(&self, _sensor: &Sensor) -> Vec<BlockCost> {
-        let search: &[_] = if self.eighths { &["sptfra_search_eighths"] } else { &["sptfra_search"] };
-        vec![BlockCost::new("line", &["sptfra_line"], 1), BlockCost::new("cells", search, self.cells.cells)]
+        vec![BlockCost::new("line", &["sptfra_line"], 1), BlockCost::new("cells", &["sptfra_search"], self.cells.cells)]
     }
 
     fn module(&self) -> &'static str {
@@ -103,22 +104,17 @@ impl Slot for LinePlan {
     }
 
     fn parameters(&self, design: &Design, ways: usize) -> Parameters {
-        let parameters = Parameters::new()
+        Parameters::new()
             .count("COLUMNS", design.sensor.columns)
             .count("ROWS", design.sensor.rows)
             .count("WAYS", ways)
             .number("DATA_BITS", Factors::of(design).outside_bits().into())
             .count("CELLS", self.cells.cells)
             .count("CELL_ELEMENTS", self.cells.elements)
-            .number("LEVEL_SHIFT", self.level_shift.into());
-        let parameters = if self.eighths { parameters.count("EIGHTHS", 1) } else { parameters };
-        parameters
+            .count("POINTS", self.points)
+            .number("LEVEL_SHIFT", self.level_shift.into())
             .cycles("EXPECTED_LINE_LATENCY", timing::LINE_LATENCY)
             .cycles("EXPECTED_SEARCH_LATENCY", timing::search(self))
-    }
-
-    fn without(&self) -> Vec<&'static str> {
-        vec![if self.eighths { "sptfra_search" } else { "sptfra_search_eighths" }]
     }
 
     fn pitch(&self) -> Option<[i64; 2]> {
@@ -133,7 +129,7 @@ impl Slot for LinePlan {
         let Cells { cells, elements } = self.cells;
         Metadata {
             search: json!({
-                "cells": cells, "elements": elements, "parts": if self.eighths { 8 } else { 2 },
+                "cells": cells, "elements": elements, "points": self.points,
                 "level_shift": self.level_shift,
             }),
             direction: json!({ "pitch": self.pitch }),

@@ -3,24 +3,24 @@
 use golden::design::{Design, Kernel};
 use golden::kernel::gain;
 
-use super::{BISECTING_LANES, EIGHTHS_ELEMENTS, LinePlan, PART_BITS, SEARCH_STEPS, timing};
+use super::{LinePlan, ONE_POINT_LANES, SEARCH_STEPS, THREE_POINTS_ELEMENTS, timing};
 
 /// How the line is searched, and why so.
 pub fn report(plan: &LinePlan, design: &Design) -> String {
     let (lanes, taxels) = (design.hardware.lanes, plan.cells.elements);
-    let rounds = if plan.eighths {
-        let eighths = PART_BITS.len();
+    let rounds = timing::rounds(plan);
+    let rounds = if plan.points > 1 {
         format!(
-            "{eighths} of eight parts: {lanes} lanes, more than {BISECTING_LANES}, would wait for {SEARCH_STEPS} of two; \
-             {taxels} taxels a cell, {EIGHTHS_ELEMENTS} at most"
+            "{rounds} of two bisections: {lanes} lanes, more than {ONE_POINT_LANES}, would wait for {SEARCH_STEPS}; \
+             {taxels} taxels a cell, {THREE_POINTS_ELEMENTS} at most"
         )
-    } else if lanes <= BISECTING_LANES {
+    } else if lanes <= ONE_POINT_LANES {
         format!(
-            "{SEARCH_STEPS} of two parts: up to {BISECTING_LANES} lanes do not wait for them; eight parts take more adders"
+            "{rounds} of a bisection: up to {ONE_POINT_LANES} lanes do not wait for them; two at a time take more adders"
         )
     } else {
         format!(
-            "{SEARCH_STEPS} of two parts: {taxels} taxels a cell, more than {EIGHTHS_ELEMENTS}, take most of a round's time"
+            "{rounds} of a bisection: {taxels} taxels a cell, more than {THREE_POINTS_ELEMENTS}, take most of a round's time"
         )
     };
     format!(

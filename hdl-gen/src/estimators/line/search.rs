@@ -4,7 +4,7 @@ use golden::products::ByPq;
 
 use super::super::{Found, Seen};
 use super::direction::Direction;
-use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, PART_BITS, SEARCH_STEPS};
+use super::{HINGE_DROP, LINE_FRACTION, LINE_SUM_BITS, LinePlan, SEARCH_STEPS};
 use crate::cores::{LONG_BITS, divider};
 use crate::plan::format::{FRICTION_BITS, FRICTION_FRACTION, largest, round_shift};
 
@@ -78,12 +78,8 @@ pub struct Optimum {
 
 /// Searches for the minimum of `B(t)` and for both ends of its level set, in the hardware's steps.
 fn search(hinges: &Hinges, stress_sum: i64, plan: &LinePlan) -> Optimum {
-    let (low, high) = if plan.eighths {
-        let low = last_place(|t| hinges.slope(t) < 0);
-        (low, low + 1)
-    } else {
-        bisected_minimum(hinges)
-    };
+    let low = distance(|distance| hinges.slope(distance - ONE) < 0) - ONE;
+    let high = low + 1;
     let (at_low, at_high) = (hinges.value(low), hinges.value(high));
     let (lowest, floor) = if at_high < at_low { (high, at_high) } else { (low, at_low) };
     let margin = match plan.level_shift {
@@ -91,53 +87,17 @@ fn search(hinges: &Hinges, stress_sum: i64, plan: &LinePlan) -> Optimum {
         shift => stress_sum >> -shift,
     };
     let below = |t| hinges.value(t) <= floor + margin;
-    let [left, right] = if plan.eighths {
-        let left = last_place(|t| t < lowest && !below(t));
-        let right = last_place(|t| t <= lowest || below(t));
-        [(left + 1).min(lowest), right.max(lowest)]
-    } else {
-        bisected_ends(lowest, below)
-    };
+    let left = lowest - distance(|distance| distance < lowest + ONE && below(lowest - distance));
+    let right = lowest + distance(|distance| distance < ONE - lowest && below(lowest + distance));
     Optimum { t: (left + right) >> 1, at_bound: low == -ONE || high == ONE, saturated: hinges.saturated }
 }
 
-fn bisected_minimum(hinges: &Hinges) -> (i64, i64) {
-    let (mut low, mut high) = (-ONE, ONE);
-    for _ in 0..SEARCH_STEPS {
-        let middle = (low + high) >> 1;
-        if hinges.slope(middle) < 0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    (low, high)
-}
-
-/// The ends of the places around `lowest` that are below the level.
-fn bisected_ends(lowest: i64, below: impl Fn(i64) -> bool) -> [i64; 2] {
-    let (mut left_out, mut left_in, mut right_in, mut right_out) = (-ONE, lowest, lowest, ONE);
-    for _ in 0..SEARCH_STEPS {
-        let left = (left_out + left_in) >> 1;
-        *(if below(left) { &mut left_in } else { &mut left_out }) = left;
-        let right = (right_in + right_out) >> 1;
-        *(if below(right) { &mut right_in } else { &mut right_out }) = right;
-    }
-    [left_in, right_in]
-}
-
-/// The last place in [-1, 1) of those before which all places are `before`, -1 if none is. Each round cuts the interval
-/// into parts and counts the points between them.
-fn last_place(before: impl Fn(i64) -> bool) -> i64 {
-    let mut place = -ONE;
-    let mut width = 2 * ONE;
-    for bits in PART_BITS {
-        let part = 1 << bits;
-        let passed = (1..width / part).filter(|count| before(place + count * part)).count();
-        place += passed as i64 * part;
-        width = part;
-    }
-    place
+/// The largest distance of those before which all are kept, by bisection: bit by bit, the highest first.
+fn distance(keep: impl Fn(i64) -> bool) -> i64 {
+    (0..SEARCH_STEPS).rev().fold(0, |found, bit| {
+        let trial = found | 1 << bit;
+        if keep(trial) { trial } else { found }
+    })
 }
 
 /// `alpha_i + t beta_i` for every taxel.
@@ -179,34 +139,11 @@ impl Hinges {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
-
     use super::*;
     use crate::estimators::Cells;
 
-    fn found(hinges: &Hinges, stress_sum: i64, eighths: bool) -> Optimum {
-        let cells = Cells { cells: 28, elements: 4 };
-        search(hinges, stress_sum, &LinePlan { cells, eighths, level_shift: -1, pitch: [1 << 16; 2] })
-    }
-
-    proptest! {
-        /// Both searches look at the same places, of which each finds the same one; only the first place of all, -1, is
-        /// none that the rounds of eight parts look at. Hinges of a few steps are another matter: their sum, rounded, is
-        /// flat for long, and each search finds a place of its own there.
-        #[test]
-        fn eight_parts_find_what_halves_find(
-            lines in proptest::collection::vec((-1_i64 << 22..1 << 22, -1_i64 << 22..1 << 22), 1..60),
-            stress_sum in 0_i64..1 << 30,
-        ) {
-            let hinges = Hinges { lines, saturated: false };
-            let [halves, eighths] = [false, true].map(|eighths| found(&hinges, stress_sum, eighths));
-            prop_assert!((halves.t - eighths.t).abs() <= 1, "{halves:?} {eighths:?}");
-            prop_assert_eq!(halves.at_bound, eighths.at_bound);
-        }
-    }
-
     #[test]
-    fn eight_parts_find_ends_and_flat_valleys() {
+    fn bisections_find_ends_and_flat_valleys() {
         let hinges = |lines: &[(i64, i64)]| Hinges { lines: lines.to_vec(), saturated: false };
         // No hinge at all; one that rises, one that falls throughout; a valley between both.
         let valley = [(-1 << 19, 1 << 20), (-1 << 19, -1 << 20)];
@@ -217,7 +154,8 @@ mod tests {
             (hinges(&valley), 0, false),
         ];
         for (hinges, t, at_bound) in cases {
-            let of = found(&hinges, 0, true);
+            let cells = Cells { cells: 28, elements: 4 };
+            let of = search(&hinges, 0, &LinePlan { cells, points: 1, level_shift: -1, pitch: [1 << 16; 2] });
             assert!((of.t - t).abs() <= 1 && of.at_bound == at_bound, "{of:?} for {t}");
         }
     }

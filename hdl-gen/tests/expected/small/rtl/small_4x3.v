@@ -419,6 +419,7 @@ module small_4x3 #(
         .DATA_BITS               (27),
         .CELLS                   (4),
         .CELL_ELEMENTS           (4),
+        .POINTS                  (1),
         .LEVEL_SHIFT             (-2),
         .EXPECTED_LINE_LATENCY   (36),
         .EXPECTED_SEARCH_LATENCY (443)
