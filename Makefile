@@ -9,9 +9,9 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 # The development profile: what computes in it is optimised, a frame is simulated by compiled C++ in any profile, and
 # `make test` builds on what `make run` has built. A release build would take minutes more to save under a second.
 BIN    := $(TARGET)/debug
-# All but the leaf cores: their Verilog lies in git, and only a test prints it anew.
-PACKAGES := -p golden -p hdl-gen -p testbench
-
+# What only developers run, in a crate that no other target builds.
+XTASK         := $(CARGO) run --quiet -p xtask --
+XTASK_RELEASE := $(CARGO) run --quiet --release -p xtask --
 PIP_INSTALL := .venv/bin/pip install --quiet --disable-pip-version-check --no-compile
 
 DESIGN ?= designs/sensor1-reduced.toml
@@ -30,16 +30,16 @@ help: ## This menu
 .PHONY: run
 run: tools build ## Design to Verilog to simulation: 36 frames through the RTL, with a table of the results
 	@mkdir -p $(dir $(FRAMES))
-	@$(BIN)/hdl-gen generate $(DESIGN)
-	@$(BIN)/golden scene $(SCENE) --out $(FRAMES)
+	@$(BIN)/sptfra generate $(DESIGN)
+	@$(BIN)/sptfra scene $(SCENE) --out $(FRAMES)
 	@echo
-	@$(BIN)/testbench run $(DESIGN) --frames $(FRAMES) --reference $(FORCES)
+	@$(BIN)/sptfra run $(DESIGN) --frames $(FRAMES) --reference $(FORCES)
 
 .PHONY: run-mat
 run-mat: tools build ## The same for a mat of 1,728 taxels, on recordings of a lying person
-	@$(BIN)/hdl-gen generate designs/bed-mat.toml
+	@$(BIN)/sptfra generate designs/bed-mat.toml
 	@echo
-	@$(BIN)/testbench run designs/bed-mat.toml --frames data/bed_mat_64x27.csv --labels 2
+	@$(BIN)/sptfra run designs/bed-mat.toml --frames data/bed_mat_64x27.csv --labels 2
 
 # What fails soonest comes first: formatting and lints, then the crates in the order in which they use each other.
 .PHONY: test
@@ -49,7 +49,7 @@ test: lint-and-tools ## Formatting, lints, all tests of all crates
 .PHONY: test-long
 test-long: lint-and-tools ## As test, with every design and broken copy (three quarters of an hour)
 	SPTFRA_TEST_ALL=1 $(CARGO) test --workspace
-	$(CARGO) test -p hdl-gen -p testbench --test suite -- --ignored
+	$(CARGO) test -p hdl-gen -p testbench -p xtask --test suite -- --ignored
 
 .PHONY: test-times
 test-times: test-tools ## All tests, one topic after the other, and the slowest ten (CONTRIBUTING.md)
@@ -70,16 +70,14 @@ $(TARGET)/trust/small-%.toml: designs/small.toml
 
 .PHONY: stress
 stress: tools $(SMALL_DESIGNS) ## A million frames, good and bad, with pauses and resets, through either plan, the joint estimator's stages, with banks written among them (an hour)
-	@$(CARGO) build --quiet --release -p testbench
 	@set -e; for design in $(SMALL_DESIGNS) designs/small-joint.toml designs/small-scanner.toml; do \
-		$(TARGET)/release/testbench stress $$design --frames $(FRAMES_COUNT); done
+		$(XTASK_RELEASE) stress $$design --frames $(FRAMES_COUNT); done
 
 .PHONY: mutants
 mutants: tools $(SMALL_DESIGNS) ## 280 copies with a fault each: which does the comparison not notice? (half an hour)
-	@$(CARGO) build --quiet -p testbench
-	@set -e; for design in $(SMALL_DESIGNS); do $(BIN)/testbench mutants $$design --count $(MUTANTS_COUNT) \
-		--explained testbench/survivors.toml; done
-	@$(BIN)/testbench mutants designs/small-joint.toml --count 60 --explained testbench/survivors.toml
+	@set -e; for design in $(SMALL_DESIGNS); do $(XTASK) mutants $$design --count $(MUTANTS_COUNT) \
+		--explained xtask/survivors.toml; done
+	@$(XTASK) mutants designs/small-joint.toml --count 60 --explained xtask/survivors.toml
 
 .PHONY: lint
 lint: ## Formatting and clippy, warnings are errors
@@ -97,8 +95,8 @@ format: ## Format the Rust sources
 	$(CARGO) fmt --all
 
 .PHONY: build
-build: ## The three commands: golden, hdl-gen, testbench
-	$(CARGO) build $(PACKAGES) --bins
+build: ## The command, target/debug/sptfra
+	$(CARGO) build -p sptfra
 
 .PHONY: doc
 doc: ## The crates' documentation, in target/doc
@@ -125,27 +123,24 @@ book-tools: tools ## Install MkDocs into .venv, for the site and its test
 cocotb-tools: tools ## Install cocotb into .venv, for the test of the generated example
 	@$(PIP_INSTALL) -r tools/requirements-cocotb.txt
 
-# golden and hdl-gen need nothing of the system they run on; testbench loads the cores that it compiles, so it cannot be static.
-HOST = $(shell rustc -vV | sed -n 's/^host: //p')
 .PHONY: dist
-dist: wheel ## A release: commands, manual pages, completions, designs in an archive, and the wheel, in target/dist (minutes)
+dist: wheel ## A release: command, manual pages, completions, designs in an archive, and the wheel, in target/dist (minutes)
 	@rm -rf $(TARGET)/dist
 	@mkdir -p $(TARGET)/dist/commands
-	RUSTFLAGS='-C target-feature=+crt-static' $(CARGO) build --release --target $(HOST) -p golden -p hdl-gen --bins
-	$(CARGO) build --release -p testbench --bins
-	@cp $(TARGET)/$(HOST)/release/golden $(TARGET)/$(HOST)/release/hdl-gen $(TARGET)/release/testbench $(TARGET)/dist/commands
+	$(CARGO) build --release -p sptfra
+	@cp $(TARGET)/release/sptfra $(TARGET)/dist/commands
 	@strip $(TARGET)/dist/commands/*
 	@cp $(TARGET)/wheels/*.whl $(TARGET)/dist
 	@.venv/bin/python tools/dist.py $(TARGET)/dist/commands $(TARGET)/dist
 	@rm -r $(TARGET)/dist/commands
 
 .PHONY: man
-man: build ## Manual pages of the three commands, in target/man
-	@for command in golden hdl-gen testbench; do $(BIN)/$$command man --out $(TARGET)/man; done
+man: build ## Manual pages of the command, in target/man
+	@$(BIN)/sptfra man --out $(TARGET)/man
 
 .PHONY: registers
 registers: tools build ## C header, page and IP-XACT file of a register bank, by PeakRDL, for a design with control = true
-	@$(BIN)/hdl-gen generate $(DESIGN)
+	@$(BIN)/sptfra generate $(DESIGN)
 	@name=$$(sed -n 's/^name *= *"\(.*\)".*/\1/p' $(DESIGN)); \
 	    tools/registers.sh "rtl-out/$$name/control/$$name.rdl" "$(TARGET)/registers/$$name"
 
@@ -160,10 +155,10 @@ test-tools: ## What `tools` installs, and what only tests need: a browser where 
 
 .PHONY: synth
 synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside the predicted ones (minutes)
+	@$(CARGO) build --quiet -p xtask
 	@tools/synth.sh $(DESIGN)
 
 # Times are measured with a release build. The page is the source of several files in results/.
-BENCH_BIN     := $(TARGET)/release
 BENCH_FOLDER  := $(TARGET)/bench
 BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml sensor1-joint.toml \
 	sensor1-fast.toml bed-mat.toml)
@@ -174,15 +169,15 @@ BENCH_CELLS   := sensor1-reduced sensor1-reduced-64 sensor1-resultants sensor1-f
 .PHONY: bench
 bench: tools ## Measure solver, generator, simulation, cycles and cells, and write target/benchmarks.md (Yosys: half an hour)
 	@echo 'bench: a release build'
-	@$(CARGO) build --quiet --release $(PACKAGES) --bins
+	@$(CARGO) build --quiet --release -p sptfra -p xtask --bins
 	@echo 'bench: Yosys, five designs'
 	@PROFILE=release tools/bench.sh $(BENCH_CELLS:%=designs/%.toml)
 	@mkdir -p $(BENCH_FOLDER)
 	@echo 'bench: the f64 solver (a minute)'
-	@$(BENCH_BIN)/golden bench --json $(BENCH_SOLVER) > $(BENCH_FOLDER)/solver.json
+	@$(XTASK_RELEASE) solver --json $(BENCH_SOLVER) > $(BENCH_FOLDER)/solver.json
 	@.venv/bin/python tools/bench_numpy.py --add $(BENCH_FOLDER)/solver.json
 	@echo 'bench: generator, simulation, cycles (some minutes)'
-	@$(BENCH_BIN)/testbench bench $(BENCH_DESIGNS) --solver $(BENCH_FOLDER)/solver.json \
+	@$(XTASK_RELEASE) bench $(BENCH_DESIGNS) --solver $(BENCH_FOLDER)/solver.json \
 	    $(foreach design,$(BENCH_CELLS),--cells $(TARGET)/synth/$(subst -,_,$(design)).cells.json) \
 	    --page $(TARGET)/benchmarks.md --plot docs/figures/latency.svg
 
@@ -192,29 +187,29 @@ SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1
 	designs/sensor1-fast.toml designs/sensor1-wide.toml designs/sensor2-wide.toml designs/sensor1-fast-wide.toml
 SWEEP_SCENES  ?= $(addprefix scenes/,sensor1-hertz.toml sensor1-tilted.toml two-contacts.toml sensor2-disc.toml \
 	sensor2-punch.toml sensor2-held.toml)
-SWEEP_OPTIONS ?= --simulate base --hard --kinds
+SWEEP_OPTIONS ?= --simulate base --kinds
 SNAKEMAKE_OPTIONS ?= --cores all
 
 .PHONY: report
 report: tools build ## Speed against error: target/sweep/report.html, a page to look at (minutes; goes on where it stopped)
-	@$(BIN)/testbench sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) $(SWEEP_OPTIONS)
+	@$(BIN)/sptfra sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) $(SWEEP_OPTIONS)
 
 .PHONY: report-full
 report-full: tools build ## The same over every combination of filters, plans, widths and lanes: thousands of points
-	@$(BIN)/testbench sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) --full
+	@$(BIN)/sptfra sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) --full
 
-.PHONY: hard
-hard: tools build ## Sensors, contacts and frames at the limits, all through the RTL (minutes): target/hard-cases.md
-	@$(BIN)/testbench hard --page $(TARGET)/hard-cases.md --plot docs/figures/depth.svg
+.PHONY: corner-cases
+corner-cases: tools ## Sensors, contacts and frames at the limits, all through the RTL (minutes): target/hard-cases.md
+	@$(XTASK) corner-cases --page $(TARGET)/hard-cases.md --plot docs/figures/depth.svg
 
 .PHONY: sweep-tools
 sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one machine
 	@$(PIP_INSTALL) -r tools/requirements-sweep.txt
 
 .PHONY: sweep-cluster
-sweep-cluster: sweep-tools build ## The report by Snakemake, one `testbench run --json` a job
+sweep-cluster: sweep-tools build ## The report by Snakemake, one `sptfra run --json` a job
 	@SWEEP_DESIGNS='$(SWEEP_DESIGNS)' SWEEP_SCENES='$(SWEEP_SCENES)' SWEEP_OPTIONS='$(SWEEP_OPTIONS)' SWEEP_FOLDER='$(SWEEP_FOLDER)' \
-	    TESTBENCH='$(BIN)/testbench' .venv/bin/snakemake --snakefile tools/sweep.smk $(SNAKEMAKE_OPTIONS)
+	    SPTFRA='$(BIN)/sptfra' .venv/bin/snakemake --snakefile tools/sweep.smk $(SNAKEMAKE_OPTIONS)
 
 # For parts that an open flow places and routes.
 DESIGNS ?= designs/timing.toml

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Frames a second of the paper's plan in numpy, beside those of `golden bench`: bench_numpy.py [--add] [SOLVER.json]
+"""Frames a second of the paper's plan in numpy, beside those of `cargo xtask solver`: bench_numpy.py [--add] [SOLVER.json]
 
 The sixteen products of the paper's list and the search along the line, for a batch of frames at a time, on one BLAS
 thread, as somebody would write them down who has the matrices. These are random here: the time does not depend on what
-they hold. SOLVER.json is what `golden bench --json` prints; of its designs with the paper's plan the ratio is printed.
-With --add the frames a second are added to it, for the page of `testbench bench --solver`.
+they hold. SOLVER.json is what `cargo xtask solver --json` prints; of its designs with the paper's plan the ratio is printed.
+With --add the frames a second are added to it, for the page of `cargo xtask bench --solver`.
 """
 
 import argparse

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
 """A release of the version in Cargo.toml: dist.py COMMANDS OUT
 
-COMMANDS is the folder with the three built commands; the archive goes to OUT. It holds
-them with their manual pages, completions, licences, designs, scenes and boards, docs, drivers, and this version's part of
+COMMANDS is the folder with the built command; the archive goes to OUT. It holds
+it with its manual pages, completions, licences, designs, scenes and boards, docs, drivers, and this version's part of
 CHANGELOG.md. The same files give the same bytes.
 
     dist.py --notes             prints that part alone, as a release's description
@@ -25,7 +25,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-COMMANDS = ["golden", "hdl-gen", "testbench"]
+COMMANDS = ["sptfra"]
 # Where each shell looks for completions under a prefix.
 SHELLS = {
     "bash": "share/bash-completion/completions/{}",

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-# Snakemake workflow of `testbench sweep`: `testbench run --json` for each point, one a job, then the report. Started by
+# Snakemake workflow of `sptfra sweep`: `sptfra run --json` for each point, one a job, then the report. Started by
 # `make sweep-cluster`; the machines of a cluster need the same folder and the same program. Runs that are there are not
 # made again.
 import os
 from pathlib import Path
 
-TESTBENCH = os.environ.get("TESTBENCH", "target/debug/testbench")
+SPTFRA = os.environ.get("SPTFRA", "target/debug/sptfra")
 FOLDER = os.environ.get("SWEEP_FOLDER", "target/sweep")
 DESIGNS = os.environ["SWEEP_DESIGNS"].split()
 SCENES = os.environ.get("SWEEP_SCENES", "").split()
 OPTIONS = os.environ.get("SWEEP_OPTIONS", "").split()
 
 JOBS = f"{FOLDER}/jobs"
-SWEEP = [TESTBENCH, "sweep", *DESIGNS, *(["--scene", *SCENES] if SCENES else []), *OPTIONS, "--out", FOLDER]
+SWEEP = [SPTFRA, "sweep", *DESIGNS, *(["--scene", *SCENES] if SCENES else []), *OPTIONS, "--out", FOLDER]
 
 
 def reports(wildcards):
@@ -43,7 +43,7 @@ checkpoint prepare:
     input:
         scenes=SCENES,
         designs=DESIGNS,
-        program=TESTBENCH,
+        program=SPTFRA,
     output:
         directory(JOBS),
     params:
@@ -60,11 +60,11 @@ rule run:
     output:
         FOLDER + "/runs/{key}.json",
     params:
-        testbench=TESTBENCH,
+        sptfra=SPTFRA,
     threads: 1
     resources:
         mem_mb=2000,
         runtime=30,
     shell:
-        "{params.testbench:q} run {input.design:q} --frames {input.frames:q} --reference {input.forces:q} --json"
+        "{params.sptfra:q} run {input.design:q} --frames {input.frames:q} --reference {input.forces:q} --json"
         " > {output:q}"

@@ -1,18 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT OR Apache-2.0
 # Synthesises a design with Yosys for UltraScale+ and prints its cells by block beside the generator's prediction.
-# The levels of logic of a block's longest way may not be more than testbench/levels.toml has; RECORD=1 writes them there.
+# The levels of logic of a block's longest way may not be more than xtask/levels.toml has; RECORD=1 writes them there.
 # Usage: tools/synth.sh DESIGN.toml    (make tools and make build first; PROFILE=release for the release build)
 set -eu
 cd "$(dirname "$0")/.."
 tools=$PWD/.venv/bin
 design=$1
-record=$PWD/testbench/levels.toml
+record=$PWD/xtask/levels.toml
 target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
 bin=$target/${PROFILE:-debug}
 work=$target/synth/$(basename "$design" .toml)
 mkdir -p "$(dirname "$work")"
-"$bin/hdl-gen" generate "$design" --out "$work" > /dev/null
+"$bin/sptfra" generate "$design" --out "$work" > /dev/null
 name=$(sed -n 's/^name = "\(.*\)"/\1/p' "$work/design.toml")
 # Yosys and nextpnr from PyPI see their working folder and what is below.
 cd "$(dirname "$work")"
@@ -28,7 +28,7 @@ echo "Yosys is at work on $name (some minutes; log: $PWD/$log)"
     tee -o $name.stat.json stat -json; write_json $name.netlist.json" > /dev/null 2>&1 || { tail -n 5 "$log" >&2; exit 1; }
 
 cells() {
-    "$bin/testbench" cells "$design" "$work" "$name.stat.json" --netlist "$name.netlist.json" "$@"
+    "$bin/xtask" cells "$design" "$work" "$name.stat.json" --netlist "$name.netlist.json" "$@"
 }
 cells --json > "$name.cells.json"
 cells --levels "$record" ${RECORD:+--record}

@@ -20,7 +20,7 @@ bin=${CARGO_TARGET_DIR:-target}/debug
 work=${CARGO_TARGET_DIR:-target}/timing/$(basename "$design" .toml)
 mkdir -p "$(dirname "$work")"
 .venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements-timing.txt
-"$bin/hdl-gen" generate "$design" --out "$work" > /dev/null
+"$bin/sptfra" generate "$design" --out "$work" > /dev/null
 name=$(sed -n 's/^name = "\(.*\)"/\1/p' "$work/design.toml")
 # LFE5UM5G-85F-8BG381C: a family (LFE5U, LFE5UM, LFE5UM5G), a size in thousands of LUT, a speed grade, a package of so many
 # balls.

@@ -236,7 +236,7 @@ int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *r
 int sptfra_load_calibration(
     const sptfra *device, const double *gain, const double *offset, double noise_floor_pa, uint32_t polls);
 /* Dead taxels, ascending, and the weights of all taxels in the stress of each, one after the other: the columns of a
- * file of `golden bank`. */
+ * file of `sptfra export-calibration`. */
 typedef struct {
     uint32_t count;
     const uint16_t *taxels; /* count of them */

@@ -205,7 +205,7 @@ static int refused(
             of->gain[place], of->offset[place]);
     case SPTFRA_NOT_REPLACED:
         return sptfra_say(
-            said, code, path, line, "nothing replaces taxel %u of gain 0: write the file with golden bank", place);
+            said, code, path, line, "nothing replaces taxel %u of gain 0: write the file with sptfra export-calibration", place);
     case SPTFRA_TOO_MANY_DEAD:
         return sptfra_say(said, code, path, of->header,
             "%u dead taxels, and the core has room for %u: [hardware] replaceable", (unsigned)of->dead_count, place);

@@ -12,7 +12,7 @@ extern "C" {
 /* Room enough for a message. */
 #define SPTFRA_MESSAGE_BYTES 512u
 
-/* Loads the gains and offsets of the file that a design names as its calibration, or of one of `golden bank`: then the
+/* Loads the gains and offsets of the file that a design names as its calibration, or of one of `sptfra export-calibration`: then the
  * dead taxels of its header are replaced, and no others, and a curve behind them acts, too. A header without dead
  * taxels, `gain,offset` alone, says that none is, even of those that the design's `dead` names: the file of `golden
  * bank` has them. `curve` is the file that the design names as its curve, or NULL: points stand in one file. What a

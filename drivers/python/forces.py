@@ -2,7 +2,7 @@
 """Frames in, forces out, on the board or on the desk:
 
     forces.py NAME_BOARD.bit FRAMES.csv       on a PYNQ image, as root
-    forces.py core.so FRAMES.csv              the simulated core that `testbench build DESIGN` names
+    forces.py core.so FRAMES.csv              the simulated core that `sptfra build DESIGN` names
     forces.py ... --plot forces.png           F_x, F_y and F_z over the frames, with matplotlib
     forces.py ... --metadata metadata.json    of a core without registers (control = false): what the design is
     forces.py ... --queue 64                  batches of so many frames, by a DMA with descriptors

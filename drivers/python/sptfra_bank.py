@@ -58,7 +58,7 @@ def _points(path, rows):
 
 
 def read_curve(path):
-    """The points (count, pascals) of a file with a line for each, or of those behind the taxels of one of `golden bank`.
+    """The points (count, pascals) of a file with a line for each, or of those behind the taxels of one of `sptfra export-calibration`.
 
     Raises ValueError, with the line.
     """
@@ -77,7 +77,7 @@ def read_curve(path):
 def read_calibration(path, taxels):
     """Gains and offsets of a file with a line `gain,offset` for each taxel, and what it says of dead taxels and a curve.
 
-    A file of `golden bank` has a header, `gain,offset,taxel 37,...`, and in each line the taxel's weight in the stress of
+    A file of `sptfra export-calibration` has a header, `gain,offset,taxel 37,...`, and in each line the taxel's weight in the stress of
     each dead one: `{37: [weights], ...}`, of files without a header None. Behind a header `count,pascals` stand the points
     of a curve, else it is None. Values are separated as those of frames. Raises ValueError, with the line.
     """
@@ -92,7 +92,7 @@ def read_calibration(path, taxels):
             if names[:2] != ["gain", "offset"] or any(
                 len(name) != 2 or name[0] != "taxel" or not name[1].isdecimal() for name in named
             ):
-                raise ValueError(f"{path}, line {number}: a header is gain,offset,taxel 37,... as golden bank writes it")
+                raise ValueError(f"{path}, line {number}: a header is gain,offset,taxel 37,... as sptfra export-calibration writes it")
             dead = {int(name[1]): [] for name in named}
             if list(dead) != sorted(dead) or len(dead) != len(named) or any(taxel >= taxels for taxel in dead):
                 raise ValueError(f"{path}, line {number}: dead taxels ascend, and the core has {taxels} taxels")

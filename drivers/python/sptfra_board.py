@@ -167,7 +167,7 @@ class Sptfra:
     def load_calibration(self, path, noise_floor_pa=None, timeout=1.0, *, curve=None):
         """Lets the gains and offsets of a `calibration.csv` act from the next frame on; frames may run meanwhile.
 
-        The file has a line `gain,offset` for each taxel, as the design's own, or is one of `golden bank`: then the dead
+        The file has a line `gain,offset` for each taxel, as the design's own, or is one of `sptfra export-calibration`: then the dead
         taxels of its header are replaced, and no others, by a header `gain,offset` alone none, even of those that the
         design's `dead` names; without a header those that were. So with the points of a curve, whose
         offsets are in pascals: they stand in the same file, or in that of the design's curve, `curve`. `noise_floor_pa` is
@@ -205,7 +205,7 @@ class Sptfra:
             replaced = {int(taxel) for taxel in in_map[1 : 1 + (int(in_map[0]) & 15)]}
             bare = [taxel for taxel, gain in enumerate(gains) if gain == 0 and taxel not in replaced]
             if bare:
-                raise ValueError(f"{path}: nothing replaces the taxels {bare} of gain 0: write it with golden bank")
+                raise ValueError(f"{path}: nothing replaces the taxels {bare} of gain 0: write it with sptfra export-calibration")
         in_curve = self._curve_words(points, len(words) + 2 + len(in_map))
         words = np.concatenate([words, np.array([*thresholds, *in_map, *in_curve], dtype=np.uint32)]).astype("<u4")
         crc = zlib.crc32(words.tobytes())

@@ -4,7 +4,7 @@
     from sptfra_board import Sptfra
     from sptfra_desk import Overlay, allocate    # on the board: from pynq import Overlay, allocate
 
-    overlay = Overlay("core.so")                 # on the board: Overlay("NAME_BOARD.bit"); `testbench build DESIGN` names it
+    overlay = Overlay("core.so")                 # on the board: Overlay("NAME_BOARD.bit"); `sptfra build DESIGN` names it
     sensor = Sptfra(overlay.core, overlay.dma, allocate)
 
 Needs a C compiler, once for each start: registers, DMA and memory are drivers/simulated.
@@ -55,7 +55,7 @@ class Machine:
         self.calls.machine_fail.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_uint32]
         self.handle = self.calls.machine_open(str(core).encode(), 3, registers)
         if not self.handle:
-            raise RuntimeError(f"{core}: no simulated core; `testbench build DESIGN` names one")
+            raise RuntimeError(f"{core}: no simulated core; `sptfra build DESIGN` names one")
         if queue:
             self.calls.machine_scatter_gather(self.handle)
 

@@ -13,7 +13,7 @@ use crate::parity::{FoldedMatrix, sign};
 pub enum FilterError {
     /// F3 before its search.
     #[error(
-        "the filter f3 has reference scenes but no choices yet; run `golden choose DESIGN.toml --out RESOLVED.toml` \
+        "the filter f3 has reference scenes but no choices yet; run `sptfra tune-filter DESIGN.toml --out RESOLVED.toml` \
          once and use RESOLVED.toml"
     )]
     Unresolved,

@@ -1,6 +1,6 @@
 //! The sensor that a file of frames belongs to, in a small file beside it.
 //!
-//! Frames are numbers and do not tell how far apart their taxels lie. `golden scene` writes `FRAMES.sensor.toml` beside
+//! Frames are numbers and do not tell how far apart their taxels lie. `sptfra scene` writes `FRAMES.sensor.toml` beside
 //! its frames, with the `[sensor]` table of the scene; who reads the frames compares it with the design. Frames in a pipe
 //! have no file beside them, so a remark above them says the same. Where there is neither, there is nothing to compare.
 
@@ -19,14 +19,14 @@ pub enum GeometryError {
     /// Another sensor.
     #[error(
         "{}: the frames belong to {}, as {beside} says, and the design {} to {}; make frames for the design with \
-         `golden scene --design`, or remove {beside} if the frames are others",
+         `sptfra scene --design`, or remove {beside} if the frames are others",
         .0.path.display(), .0.frames, .0.design_name, .0.design, beside = .0.beside.display()
     )]
     Other(Box<OtherSensor>),
     /// A remark above the frames names another sensor.
     #[error(
         "{}, line {line}: the frames belong to {frames}, as this remark says, and the design to {design}; make frames for \
-         the design with `golden scene --design`, or leave the remark out if the frames are others", path.display()
+         the design with `sptfra scene --design`, or leave the remark out if the frames are others", path.display()
     )]
     Remark {
         /// The frames.
@@ -150,7 +150,7 @@ mod tests {
         ] {
             let said = compare(&frames, "pad", &other).expect_err("another sensor").to_string();
             for part in
-                ["push.csv", "push.sensor.toml", "10 x 7 taxels of 4 x 2.1 mm, 3.3 mm deep", "golden scene --design"]
+                ["push.csv", "push.sensor.toml", "10 x 7 taxels of 4 x 2.1 mm, 3.3 mm deep", "sptfra scene --design"]
             {
                 assert!(said.contains(part), "no {part:?} in: {said}");
             }
@@ -162,7 +162,7 @@ mod tests {
         compared(&sensor()).expect("the same");
         let said = compared(&Sensor { pitch_mm: [2.1, 4.0], ..sensor() }).expect_err("another sensor").to_string();
         for part in
-            ["standard input, line 1", "10 x 7 taxels of 4 x 2.1 mm", "10 x 7 taxels of 2.1 x 4 mm", "golden scene"]
+            ["standard input, line 1", "10 x 7 taxels of 4 x 2.1 mm", "10 x 7 taxels of 2.1 x 4 mm", "sptfra scene"]
         {
             assert!(said.contains(part), "no {part:?} in: {said}");
         }

@@ -21,7 +21,6 @@
 //! (millimetres only in files); stress is positive in tension and **negative in compression**; `f_z < 0`
 //! presses on the sensor and `(f_x, f_y)` is the force the object exerts along the surface.
 
-pub mod arguments;
 pub mod bank;
 pub mod bodies;
 pub mod calibrate;
@@ -36,7 +35,6 @@ pub mod frames;
 pub mod geometry;
 pub mod half_space;
 pub mod kernel;
-pub mod manual;
 pub mod matrices;
 pub mod metrics;
 pub mod missing_file;

@@ -20,7 +20,7 @@ const NO_CHANCE: f64 = 1e-3;
 const FAR: f64 = 10.0;
 /// This share of the readings at the least of all is a converter that clips there.
 const CLIPPED: f64 = 0.05;
-/// The noise floor in deviations, as `golden calibrate` has it.
+/// The noise floor in deviations, as `sptfra calibrate` has it.
 const QUIET: f64 = 3.0;
 /// A deviation, or a step, of this share of the full scale is no noise.
 const LOUD: f64 = 0.01;

@@ -5,7 +5,6 @@
 
 use std::fmt;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::de::{DeserializeOwned, Error, value::StrDeserializer};
 
 /// A word that no variant has; prints the words there are.
@@ -22,12 +21,6 @@ pub struct Unknown {
 /// [`Unknown`], with the words there are.
 pub fn read<T: DeserializeOwned>(word: &str) -> Result<T, Unknown> {
     T::deserialize(StrDeserializer::new(word))
-}
-
-/// The parser of a command's option whose values are these words.
-pub fn parser<T: DeserializeOwned + Clone + Send + Sync + 'static>() -> impl TypedValueParser<Value = T> {
-    let words = read::<T>("").err().map_or(&[][..], |unknown| unknown.allowed);
-    PossibleValuesParser::new(words).try_map(|word| read::<T>(&word))
 }
 
 impl Error for Unknown {
@@ -78,12 +71,6 @@ mod tests {
     fn a_word_reads_back_and_an_unknown_one_names_the_others() {
         assert_eq!(read::<Layer>("half_space").unwrap(), Layer::HalfSpace);
         assert_eq!(format!("{:<8}|{}", Layer::Bonded, Layer::HalfSpace), "bonded  |half_space");
-        let option = clap::Arg::new("layer").value_parser(parser::<Layer>());
-        let command = clap::Command::new("read").arg(option);
-        let given = command.clone().get_matches_from(["read", "bonded"]);
-        assert_eq!(given.get_one("layer"), Some(&Layer::Bonded));
-        let refused = command.try_get_matches_from(["read", "Bonded"]).unwrap_err().to_string();
-        assert!(refused.contains("[possible values: half_space, bonded]"), "{refused}");
         assert_eq!(read::<Layer>("HalfSpace").unwrap_err().to_string(), "half_space, bonded");
     }
 }

@@ -28,7 +28,7 @@ pub fn contacts(plan: &Plan) -> Option<String> {
     }
 }
 
-/// All figures of a plan: what `hdl-gen inspect --json` prints.
+/// All figures of a plan: what `sptfra inspect --json` prints.
 pub fn figures(plan: &Plan) -> Value {
     let sensor = &plan.design.sensor;
     let mut value = json!({

@@ -166,15 +166,15 @@ fn text(new: &NewDesign, stage: &mut dyn FnMut(&'static str)) -> Result<String, 
     let bare = text.replace(CONSTANTS, "");
     if new.estimator == Estimator::Line {
         let text = with(&bare, "estimator", "\"line\"");
-        Design::from_toml(&text, "hdl-gen new")?;
+        Design::from_toml(&text, "sptfra new")?;
         return Ok(text);
     }
     let design =
-        Design::from_toml(&text.replace(CONSTANTS, &format!("grid = {}\n", Grid::COARSE.side())), "hdl-gen new")?;
+        Design::from_toml(&text.replace(CONSTANTS, &format!("grid = {}\n", Grid::COARSE.side())), "sptfra new")?;
     stage("fitting gain and friction to contacts with known forces");
     let found = calibrate(&design, &Settings::constants(), &mut |_| ())?;
     let text = text.replace(CONSTANTS, &constants(&found));
-    Design::from_toml(&text, "hdl-gen new")?;
+    Design::from_toml(&text, "sptfra new")?;
     Ok(text)
 }
 
@@ -184,9 +184,9 @@ fn constants(JointConstants { grid, gain, tangential: [c1, c3], fitted_to, .. }:
         "points of the plane along each axis, a cell of hardware each; 21: finer, walked over",
         "factor on all forces, fitted to the sensor above",
         "friction c1 mu + c3 mu |mu|^2, likewise; the correction, which",
-        "  halves the error, is trained by golden calibrate",
+        "  halves the error, is trained by sptfra calibrate",
         "what they belong to: for another sensor, kernel or regularisation remove",
-        "  these lines, and run golden calibrate",
+        "  these lines, and run sptfra calibrate",
     ];
     let keys = [
         format!("grid = {}", grid.side()),

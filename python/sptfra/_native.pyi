@@ -30,7 +30,7 @@ class Design:
         counts: int | None = None,
         full_scale_pa: float = 100000.0,
     ) -> Design:
-        """The design that `hdl-gen new` writes: for a grid of taxels, under a layer of `depth_mm`, that read a pull or, with
+        """The design that `sptfra new` writes: for a grid of taxels, under a layer of `depth_mm`, that read a pull or, with
         tension "clipped", nothing of it. With `counts` its frames are those of a converter of so many bits. The joint estimator's constants are fitted to it, which takes a second."""
 
     @classmethod
@@ -121,7 +121,7 @@ class Design:
 
 @final
 class Solver:
-    """Forces from frames in double precision, as `golden solve` finds them."""
+    """Forces from frames in double precision, as `sptfra solve` finds them."""
 
     def __new__(cls, design: Design) -> Solver: ...
     @property
@@ -159,7 +159,7 @@ def scene(
     """Frames with their true forces: of a scene file, else a round contact that suits the design, in 36 directions.
 
     With `kind`, such as "held" or "mixed-inside", so many contacts of that kind on the design's sensor, one of each seed:
-    what `golden scene --kind` makes.
+    what `sptfra scene --kind` makes.
     """
 
 def check(design: Design, frames: npt.ArrayLike) -> list[Finding]:

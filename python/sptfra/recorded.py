@@ -22,7 +22,7 @@ def calibrate_forces(
     """Curve, common gain, taxels' gains and friction constants, from contacts with measured forces.
 
     Frames as for `Solver.solve`. Forces in newtons: F_z alone, (n,), or (n, 3), NaN where one is not known; or the path of
-    a file as `golden calibrate --forces` reads it. What the recording cannot tell is not fitted.
+    a file as `sptfra calibrate --forces` reads it. What the recording cannot tell is not fitted.
     """
     return _recorded(_native.calibrate_forces(design, frames, forces, name=name))
 
@@ -36,7 +36,7 @@ def calibrate_uniform(
 ) -> Recorded:
     """Taxels' gains, curve and dead taxels from frames under uniform pressure, of a bladder over all taxels.
 
-    Pressures (n,) in pascals, NaN where one is not known; or the path of a file as `golden calibrate --pressures` reads it.
+    Pressures (n,) in pascals, NaN where one is not known; or the path of a file as `sptfra calibrate --pressures` reads it.
     """
     return _recorded(_native.calibrate_uniform(design, frames, pressures, name=name))
 

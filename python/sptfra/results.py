@@ -110,7 +110,7 @@ class Plan:
     rom_bits: int
     #: What to look at before it is built.
     warnings: tuple[str, ...]
-    #: All that `hdl-gen inspect --json` prints.
+    #: All that `sptfra inspect --json` prints.
     details: dict[str, Any] = field(repr=False)
 
     @property
@@ -144,7 +144,7 @@ class Recorded:
     errors: dict[str, float] | None
     #: An HTML page with plots.
     page: str = field(repr=False)
-    #: All that `golden calibrate --json` prints of it.
+    #: All that `sptfra calibrate --json` prints of it.
     details: dict[str, Any] = field(repr=False)
 
 

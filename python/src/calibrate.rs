@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use golden::arguments::with_ending;
 use golden::calibrate::{Work, calibrate as fit};
 use golden::design::{Design as Checked, Family};
 use pyo3::exceptions::PyTypeError;
@@ -63,5 +62,5 @@ fn unfitted(design: &Bound<'_, PyAny>) -> PyResult<Checked> {
             "design is of type {found}; give a Design, or the path of a design file"
         )));
     };
-    Checked::load_unfitted(&with_ending(path)).map_err(raised)
+    Checked::load_unfitted(&sptfra::arguments::with_ending(path)).map_err(raised)
 }

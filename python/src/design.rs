@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use golden::arguments::with_ending;
 use golden::design::{Design as Checked, Estimator, Samples, Tension};
 use golden::output::write_together;
 use golden::resolved::Resolved;
@@ -112,7 +111,7 @@ impl Design {
 
     #[classmethod]
     fn load(_class: &Bound<'_, PyType>, py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let path = with_ending(path);
+        let path = sptfra::arguments::with_ending(path);
         let inner = without_lock(py, || Checked::load(&path))?;
         Ok(Self { inner, source: Some(path) })
     }

@@ -17,7 +17,7 @@ use crate::arrays::{Forces, Frames};
 use crate::design::Design;
 use crate::errors::without_lock;
 
-/// The figures of `hdl-gen inspect --json`, and what to warn of, as JSON.
+/// The figures of `sptfra inspect --json`, and what to warn of, as JSON.
 #[pyfunction]
 pub fn inspect(py: Python<'_>, design: &Design) -> PyResult<String> {
     let design = &design.inner;

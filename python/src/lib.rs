@@ -1,4 +1,4 @@
-//! The Python package's native part: thin calls of the crates `golden`, `hdl-gen` and `testbench`.
+//! The Python package's native part: thin calls of the crates `golden`, `hdl-gen`, `testbench` and `sptfra`.
 //!
 //! Long work runs without the interpreter's lock. Arrays are copied on their way in, so that nobody changes them
 //! meanwhile; those on the way out are made here and handed over. The package's other half, with the classes that hold
@@ -8,6 +8,7 @@
 
 mod arrays;
 mod calibrate;
+mod command;
 mod design;
 mod errors;
 mod hardware;
@@ -20,6 +21,8 @@ mod solver;
 mod native {
     #[pymodule_export]
     use super::calibrate::calibrate;
+    #[pymodule_export]
+    use super::command::command;
     #[pymodule_export]
     use super::design::Design;
     #[pymodule_export]

@@ -2,21 +2,17 @@
 //! the f64 solver judge the result.
 
 pub mod accuracy;
-pub mod bench;
+pub mod banks;
 pub mod compare;
 pub mod dut;
 pub mod field_plot;
 pub mod figures;
 pub mod frame_set;
-pub mod hard;
-pub mod markdown;
-pub mod mutants;
 pub mod registers;
 pub mod run;
 pub mod simulate;
 pub mod stream;
 pub mod stream_words;
-pub mod stress;
 pub mod svg;
 pub mod sweep;
 pub mod tools;

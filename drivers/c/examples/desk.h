@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* The simulated core, for bare_metal.c: its only argument is what `testbench build DESIGN` names. */
+/* The simulated core, for bare_metal.c: its only argument is what `sptfra build DESIGN` names. */
 #ifndef DESK_H
 #define DESK_H
 

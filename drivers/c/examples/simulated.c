@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* The simulated core on the desk: CORE.so is what `testbench build DESIGN` names. */
+/* The simulated core on the desk: CORE.so is what `sptfra build DESIGN` names. */
 #include "system.h"
 
 #include "machine.h"

@@ -193,7 +193,7 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
             format!(
                 "no reading of {} is a pull: where the sensor cannot read tension, or a converter clips it, the force \
                  along the surface comes out too small; let the converter's range reach below 0, or write \
-                 sensor.tension = \"clipped\" with estimator = \"joint\" and run `golden calibrate`",
+                 sensor.tension = \"clipped\" with estimator = \"joint\" and run `sptfra calibrate`",
                 count(loaded.len())
             ),
         );

@@ -22,7 +22,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Reads one line `gain,offset` for each of the taxels, with a header or none; or a file of `golden bank`, whose
+    /// Reads one line `gain,offset` for each of the taxels, with a header or none; or a file of `sptfra export-calibration`, whose
     /// weights of dead taxels follow from their gains of 0, and whose curve has to be the design's, since the offsets are
     /// made for it.
     pub(super) fn load(
@@ -88,7 +88,7 @@ impl Calibration {
     }
 }
 
-/// The dead taxels that a header of `golden bank` names, ascending; none of a plain one.
+/// The dead taxels that a header of `sptfra export-calibration` names, ascending; none of a plain one.
 fn dead_taxels(table: &Rows, names: &[String], taxels: usize) -> Result<Vec<usize>, DesignError> {
     let wrong = |problem: &str, remedy: &str| {
         let shown = format!("{:?} {problem}", table.rows[0].shown());
@@ -106,13 +106,13 @@ fn dead_taxels(table: &Rows, names: &[String], taxels: usize) -> Result<Vec<usiz
                 None => Ok(dead),
                 Some(pair) => wrong(
                     &format!("has taxel {} behind taxel {}", pair[1], pair[0]),
-                    "write each dead taxel once, ascending, as golden bank does, and the weights in the same order",
+                    "write each dead taxel once, ascending, as sptfra export-calibration does, and the weights in the same order",
                 ),
             }
         }
         _ => wrong(
             "is no header of gains and offsets",
-            "write gain,offset, or none; golden bank writes behind it the numbers of dead taxels of this sensor, taxel 37",
+            "write gain,offset, or none; sptfra export-calibration writes behind it the numbers of dead taxels of this sensor, taxel 37",
         ),
     }
 }

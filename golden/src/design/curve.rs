@@ -95,7 +95,7 @@ impl Curve {
         Self { points, law: Some([power, scale]) }
     }
 
-    /// Reads one line `count,pascals` for each point, or those behind the taxels of a file of `golden bank`.
+    /// Reads one line `count,pascals` for each point, or those behind the taxels of a file of `sptfra export-calibration`.
     fn load(file: &str, beside: Beside<'_>) -> Result<Self, DesignError> {
         let table = Rows::read(file, beside)?;
         let header = table.rows.first().and_then(Row::header).unwrap_or_default();

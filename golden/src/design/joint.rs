@@ -65,7 +65,7 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
             "algorithm.fitted_to",
             format!("says that the constants belong to \"{other}\", but the design is \"{conditions}\""),
             format!(
-                "run `golden calibrate {0} --out {1}`, which fits new ones",
+                "run `sptfra calibrate {0} --out {1}`, which fits new ones",
                 check.origin,
                 resolved_name(check.origin).display()
             ),
@@ -81,7 +81,7 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
         return Err(check.value(
             "algorithm.doubt",
             "is a limit for an error that the design does not tell".to_owned(),
-            "remove it, or write family = \"wide\" and run `golden calibrate`".to_owned(),
+            "remove it, or write family = \"wide\" and run `sptfra calibrate`".to_owned(),
         ));
     }
     let doubt = check.real("algorithm.doubt", raw.doubt.unwrap_or(DEFAULT_DOUBT), 0.001, 3.9, "")?;
@@ -120,7 +120,7 @@ fn key(name: &str) -> String {
 }
 
 /// What to do about weights that are not there, or others than those of the design.
-const RESTORE: &str = "copy the file that was written with the design to its side, or remove [algorithm.correction] and run `golden calibrate`";
+const RESTORE: &str = "copy the file that was written with the design to its side, or remove [algorithm.correction] and run `sptfra calibrate`";
 
 /// Checks the correction, and reads its file if it has one.
 pub(super) fn correction(
@@ -152,7 +152,7 @@ pub(super) fn correction(
         (None, None, ..) => refuse(
             "file",
             "is missing",
-            "name the file of weights, or remove [algorithm.correction] and run `golden calibrate`".to_owned(),
+            "name the file of weights, or remove [algorithm.correction] and run `sptfra calibrate`".to_owned(),
         ),
     }
 }
@@ -191,7 +191,7 @@ fn from_table(
     hidden: &[Vec<i64>],
     output: &[Vec<i64>],
 ) -> Result<Correction, DesignError> {
-    let again = || "remove [algorithm.correction] and run `golden calibrate`".to_owned();
+    let again = || "remove [algorithm.correction] and run `sptfra calibrate`".to_owned();
     check.integer(&key("hidden (number of rows)"), hidden.len() as i64, 1, MAX_HIDDEN as i64)?;
     let row = |name: String, row: &[i64], length: usize| -> Result<Vec<i32>, DesignError> {
         if row.len() != length {

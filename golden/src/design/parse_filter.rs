@@ -90,7 +90,8 @@ fn choices(check: &Check, raw: &BTreeMap<String, String>, sensor: &Sensor) -> Re
             check.value(
                 &key,
                 "is missing".to_owned(),
-                "give a filter for each of the 13 matrices, or remove the choices and run `golden choose`".to_owned(),
+                "give a filter for each of the 13 matrices, or remove the choices and run `sptfra tune-filter`"
+                    .to_owned(),
             )
         })?;
         *filter = match text.parse::<MatrixFilter>() {

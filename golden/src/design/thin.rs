@@ -40,11 +40,11 @@ mod tests {
         assert!(line.contains("line estimator tangential forces are off"), "{line}");
         assert_eq!(by_kernel(1.9, "joint", "cell"), None);
         let cells = by_kernel(1.5, "joint", "cell").expect("thin");
-        assert!(cells.contains("0.38 of a pitch") && cells.contains("golden calibrate serves"), "{cells}");
+        assert!(cells.contains("0.38 of a pitch") && cells.contains("sptfra calibrate serves"), "{cells}");
         let thinnest = by_kernel(1.0, "joint", "cell").expect("thin");
         assert!(thinnest.contains("thicker layer") && !thinnest.contains("calibrate"), "{thinnest}");
         let joint = said(1.9, "joint").expect("thin");
-        assert!(joint.contains("0.47 of a pitch") && joint.contains("golden calibrate"), "{joint}");
+        assert!(joint.contains("0.47 of a pitch") && joint.contains("sptfra calibrate"), "{joint}");
     }
 
     #[test]

@@ -48,7 +48,7 @@ impl Estimator {
 pub enum Constants<'a> {
     /// It has none.
     Line,
-    /// Those that `golden calibrate` finds.
+    /// Those that `sptfra calibrate` finds.
     Joint(&'a JointConstants),
 }
 

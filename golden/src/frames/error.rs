@@ -115,7 +115,7 @@ pub enum FrameError {
     },
     /// A file of forces that holds something else.
     #[error(
-        "{}, line {line}: {problem}, so these are no forces; true forces lie beside the frames of `golden scene`, in \
+        "{}, line {line}: {problem}, so these are no forces; true forces lie beside the frames of `sptfra scene`, in \
          FRAMES.forces.csv, a line each that begins with status, F_x, F_y, F_z, mu and phi", path.display()
     )]
     NoForces {

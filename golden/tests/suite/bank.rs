@@ -1,7 +1,4 @@
-//! `golden bank`: what a board loads, and which designs have room for dead taxels.
-
-use std::fs;
-use std::process::Command;
+//! Banks that a board loads, and which designs have room for dead taxels.
 
 use golden::bank;
 use golden::dead_taxels::DeadTaxels;
@@ -60,7 +57,7 @@ fn a_bank_has_the_weights_of_the_dead_taxels() {
     assert!(of_rom.starts_with("gain,offset\n1.0,0.0\n0.0,0.0\n"), "{of_rom}");
 }
 
-/// What `golden bank` writes is a calibration that a design can name, and a curve.
+/// What `sptfra export-calibration` writes is a calibration that a design can name, and a curve.
 #[test]
 fn a_design_can_name_a_bank() {
     let load = |sensor: &str, files: &[(&str, String)]| {
@@ -110,26 +107,4 @@ fn a_design_can_name_a_bank() {
         let message = load("pa_per_count = -2.0\ncalibration = \"bank.csv\"", &[file]).unwrap_err();
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
-}
-
-#[test]
-fn the_command_writes_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let [file, rom, out] = ["pad.toml", "rom.toml", "pad.bank.csv"].map(|name| folder.path().join(name));
-    let design = design("dead = [1]", "replaceable = 1").unwrap();
-    fs::write(&file, design.to_toml()).unwrap();
-    fs::write(&rom, PAD).unwrap();
-    let golden = |design: &std::path::Path| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_golden"));
-        command.arg("bank").arg(design).arg("--out").arg(&out).arg("--json").output().unwrap()
-    };
-    let refused = golden(&rom);
-    assert!(!refused.status.success() && !out.exists());
-    let message = String::from_utf8(refused.stderr).unwrap();
-    assert!(message.contains("is in ROM") && message.contains("calibration = \"ram\""), "{message}");
-    let done = golden(&file);
-    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    assert_eq!(fs::read_to_string(&out).unwrap(), bank::to_csv(&design).unwrap());
-    let report: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
-    assert_eq!((&report["taxels"], &report["replaced"]), (&6.into(), &serde_json::json!([1])));
 }

@@ -258,7 +258,7 @@ fn the_end_of_a_converter_below_full_scale() {
     found(&design, &clipped, &[Kind::Stuck], &["of their sign", "range reach farther"]);
 }
 
-/// A pad as `hdl-gen new` makes it: taxels of 4 mm, so deep.
+/// A pad as `sptfra new` makes it: taxels of 4 mm, so deep.
 fn pad(columns: usize, rows: usize, depth_mm: f64) -> Design {
     let text = format!(
         "name = \"pad\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth_mm:?}\n"

@@ -144,7 +144,7 @@ fn a_design_without_choices_is_refused_with_the_way_on() {
     let mut design = design("sensor1-f3");
     design.algorithm.filter = Filter::F3 { scenes: vec!["../scenes/sensor1-hertz.toml".to_owned()], choices: None };
     let message = Solver::new(&design).unwrap_err().to_string();
-    for part in ["sensor1_f3", "no choices", "golden choose", "--out"] {
+    for part in ["sensor1_f3", "no choices", "sptfra tune-filter", "--out"] {
         assert!(message.contains(part), "no {part:?} in: {message}");
     }
 }

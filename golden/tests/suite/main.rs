@@ -5,7 +5,6 @@ mod bodies;
 mod check;
 mod choose;
 mod clipped;
-mod command;
 mod contacts;
 mod curve;
 mod dead_taxels;

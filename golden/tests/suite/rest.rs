@@ -1,11 +1,7 @@
 //! Recordings of a sensor on which nothing presses, and taxels that are broken.
 
-use std::fs;
-use std::process::{Command, Output};
-
 use golden::check::{Kind, beyond, check};
 use golden::design::{Curve, Design};
-use golden::frames::write_frames;
 use golden::matrices::Matrices;
 use golden::rest::{AtRest, RestError};
 use golden::scene::{Scene, SensorErrors};
@@ -198,59 +194,4 @@ fn readings_beyond_the_calibration_are_counted() {
     (recording[2][1], recording[2][3], recording[7][2]) = (5000.0, 1.0, -20.0);
     let found = beyond(&curved, &recording);
     assert_eq!((found.readings, found.frames), (4, 3));
-}
-
-fn golden(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_golden")).args(arguments).output().unwrap()
-}
-
-#[test]
-fn the_calibration_takes_the_offsets_off() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let [design, rest, out] = ["mat.toml", "rest.csv", "mat.calibration.csv"].map(path);
-    fs::write(&design, text("calibration = \"gains.csv\"\n")).unwrap();
-    let gains: String = (0..TAXELS).map(|taxel| format!("{},1.0\n", 1.0 + 0.001 * taxel as f64)).collect();
-    fs::write(path("gains.csv"), gains).unwrap();
-    let recording =
-        frames(100, |frame, taxel| if taxel == 9 { 0.0 } else { offset(taxel) + 2.0 * noise(frame, taxel) });
-    write_frames(rest.as_ref(), &recording).unwrap();
-    let asked = ["check", &design, "--frames", &rest, "--rest", "--out", &out];
-    let said = golden(&asked);
-    let lines = String::from_utf8(said.stdout).unwrap();
-    assert!(said.status.success() && said.stderr.is_empty(), "{:?}", String::from_utf8(said.stderr));
-    for part in
-        ["Dead: [9]", "noise_floor_pa = 1", "noise = 0.0", "calibration = \"mat.calibration.csv\"", "No readings"]
-    {
-        assert!(lines.contains(part), "no {part:?} in: {lines}");
-    }
-    let report: serde_json::Value =
-        serde_json::from_slice(&golden(&[&asked[..], &["--json"]].concat()).stdout).unwrap();
-    assert_eq!((&report["dead"][0], report["taxels"].as_array().unwrap().len()), (&serde_json::json!(9), TAXELS));
-    assert_eq!(report["beyond"]["readings"], 0);
-
-    // The design reads it, and is tared.
-    fs::write(&design, text("calibration = \"mat.calibration.csv\"\n")).unwrap();
-    let tared = Design::load(design.as_ref()).unwrap();
-    assert_eq!(tared.input.dead, [9]);
-    for taxel in (0..TAXELS).filter(|taxel| *taxel != 9) {
-        let mean = recording.iter().map(|frame| tared.input.to_pa(taxel, frame[taxel])).sum::<f64>() / 100.0;
-        assert!(mean.abs() < 1e-6, "{taxel}: {mean}");
-        let gain = tared.input.calibration.as_ref().unwrap().gain[taxel];
-        assert!((gain - 1.0 - 0.001 * taxel as f64).abs() < 1e-12, "{gain}");
-    }
-    // Not over a file that the design names, and not for pascals.
-    let said = golden(&asked);
-    assert!(!said.status.success(), "{said:?}");
-    fs::write(&design, text("").replace(&format!("pa_per_count = {PA_PER_COUNT}\n"), "")).unwrap();
-    let other = path("other.csv");
-    let said = golden(&["check", &design, "--frames", &rest, "--rest", "--out", &other]);
-    let wrong = String::from_utf8(said.stderr).unwrap();
-    assert!(!said.status.success() && wrong.contains("pa_per_count"), "{wrong}");
-    assert!(!std::path::Path::new(&other).exists());
-    // More dead ones than can be replaced.
-    let many = frames(100, |frame, taxel| if taxel < 9 { 0.0 } else { offset(taxel) + 2.0 * noise(frame, taxel) });
-    let design = mat("");
-    let found = AtRest::of(&design, &many).unwrap();
-    assert_eq!(found.calibration(&design, &many).unwrap_err(), RestError::Dead(9, 8));
 }

@@ -72,7 +72,7 @@ fn table() {
     }
 }
 
-/// What `hdl-gen new` and `golden calibrate` make of thin layers, 15 × 15 points and 64 hidden units, by either kernel.
+/// What `sptfra new` and `sptfra calibrate` make of thin layers, 15 × 15 points and 64 hidden units, by either kernel.
 #[test]
 #[ignore = "prints the table of new designs on thin layers in docs/contacts.md; a quarter of an hour"]
 fn table_of_new_designs() {

@@ -12,7 +12,7 @@ use crate::plan::{Plan, words};
 
 use super::{EmitError, FileMap, VERSION, registers};
 
-/// The predicted figures, under the names that `hdl-gen inspect --json` uses too.
+/// The predicted figures, under the names that `sptfra inspect --json` uses too.
 pub fn predicted(plan: &Plan) -> Value {
     json!({
         "latency_cycles": plan.timeline.latency_cycles,
@@ -33,7 +33,7 @@ pub fn nnz(plan: &Plan) -> Map<String, Value> {
     plan.nnz.0.iter().map(|&(name, count)| (name.to_string(), json!(count))).collect()
 }
 
-/// A product of the plan as `metadata.json` and `hdl-gen inspect` show it.
+/// A product of the plan as `metadata.json` and `sptfra inspect` show it.
 #[derive(Serialize)]
 pub struct ProductEntry<'a> {
     /// The stored matrix.

@@ -171,7 +171,7 @@ pub trait Slot {
     /// What `metadata.json` says of it.
     fn metadata(&self) -> Metadata;
 
-    /// What `hdl-gen inspect` says of it: a paragraph, or nothing.
+    /// What `sptfra inspect` says of it: a paragraph, or nothing.
     fn report(&self, _design: &Design) -> String {
         String::new()
     }

@@ -165,5 +165,5 @@ fn anew(constants: &JointConstants) -> String {
     if units == 0 && constants.fitted_to.is_none() {
         return String::new();
     }
-    format!(" (which `golden calibrate --hidden {units}` fits the constants to)")
+    format!(" (which `sptfra calibrate --hidden {units}` fits the constants to)")
 }

@@ -5,8 +5,6 @@ use std::path::Path;
 use golden::design::Design;
 use hdl_gen::plan::{Plan, PlanError};
 
-use crate::command::good;
-
 /// Sensor 1 by the reduced plan.
 fn sensor(algorithm: &str, hardware: &str) -> Design {
     let text = format!(
@@ -84,7 +82,7 @@ fn a_grid_is_offered_with_what_it_takes() {
         let mut design = Design::load(&folder.join(design).with_extension("toml")).expect("right");
         design.hardware.target_us = Some(15.0);
         let refusal = Plan::new(&design).expect_err("too slow").to_string();
-        let grid = format!("grid = 15 (which `golden calibrate --hidden {units}` fits the constants to), ");
+        let grid = format!("grid = 15 (which `sptfra calibrate --hidden {units}` fits the constants to), ");
         assert_eq!(offered(&refusal), grid, "{}", design.name);
     }
     let area = Plan::new(&sensor("estimator = \"joint\"", "optimise = \"area\"\ntarget_us = 40.0"));
@@ -97,50 +95,4 @@ fn the_clock_that_is_offered_meets_the_need() {
     let Err(PlanError::Target { needed_mhz, .. }) = Plan::new(&sensor("", "target_us = 8.0")) else { panic!() };
     let faster = format!("target_us = 8.0\nclock_mhz = {needed_mhz:?}");
     assert!(Plan::new(&sensor("", &faster)).is_ok(), "{needed_mhz}");
-}
-
-#[test]
-fn a_design_that_is_too_large_for_its_part_is_written_with_a_warning() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let text = "name = \"big_pad\"\n[sensor]\ncolumns = 20\nrows = 20\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
-                [algorithm]\nplan = \"paper\"\n[hardware]\nlanes = 8\n";
-    std::fs::write(folder.path().join("large.toml"), text).expect("a file");
-    let warned = |arguments: &[&str]| good(folder.path(), arguments).contains("too much for xczu9eg");
-    assert!(warned(&["inspect", "large.toml"]) && warned(&["generate", "large.toml", "--out", "large"]));
-    assert!(folder.path().join("large/rtl").is_dir());
-}
-
-#[test]
-fn each_board_s_part_has_its_shares_and_its_limit() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let said = |name: &str, part: &str, hardware: &str| {
-        let text = format!(
-            "name = \"pad\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
-             [algorithm]\nplan = \"reduced\"\nestimator = \"line\"\n[hardware]\npart = \"{part}\"\n{hardware}\n"
-        );
-        std::fs::write(folder.path().join(format!("{name}.toml")), text).expect("a file");
-        good(folder.path(), &["inspect", &format!("{name}.toml")])
-    };
-    let resources = |said: &str| said.lines().find(|line| line.contains(" bits of ROM")).expect("its line").to_owned();
-    // Of 36 multipliers on each part and the memories of one board's design: DSP, RAMB36 that the device has.
-    for (part, dsp) in
-        [("xczu9eg-ffvb1156-2-e", 2520.0), ("xczu7ev-ffvc1156-2-e", 1728.0), ("xck26-sfvc784-2LV-c", 1248.0)]
-    {
-        let line = resources(&said("pad", part, "lanes = 16"));
-        let share = format!(": {:.1} and ", 100.0 * 36.0 / dsp);
-        assert!(line.contains("36 DSP48E2") && line.contains(&share) && line.ends_with(part), "{line}");
-    }
-    // The older multipliers: two for each but those of lanes and field, with 25 bits; two for all with 27.
-    let narrow = said("pad", "xc7z020clg400-1", "lanes = 16\ndata_bits = 25");
-    assert!(resources(&narrow).contains("55 DSP48E1") && !narrow.contains("data_bits = 25"), "{narrow}");
-    let wide = said("pad", "xc7z020clg400-1", "lanes = 16");
-    assert!(resources(&wide).contains("72 DSP48E1"), "{wide}");
-    assert!(wide.contains("36 multipliers take 72 of them; with data_bits = 25"), "{wide}");
-    let large = said("pad", "xc7z020clg400-1", "lanes = 112");
-    assert!(
-        large.contains("too much for xc7z020clg400-1, which has 220 DSP48E1 and 140 RAMB36; take fewer"),
-        "{large}"
-    );
-    // Of a part without a board nothing is known.
-    assert!(resources(&said("pad", "xc7k325tffg900-2", "lanes = 112")).ends_with(" bits of ROM"));
 }

@@ -1,4 +1,4 @@
-//! What `testbench run` asks of a register bank: who it is, and whether it counts what happens.
+//! What `sptfra run` asks of a register bank: who it is, and whether it counts what happens.
 
 use hdl_gen::blocks::registers::{self, MAP_VERSION};
 use hdl_gen::emit::{VERSION, resolved_hash};

@@ -1,4 +1,4 @@
-//! `testbench run`: a design and frames in, a [`Report`] out.
+//! `sptfra run`: a design and frames in, a [`Report`] out.
 
 pub mod page;
 pub mod report;

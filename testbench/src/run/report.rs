@@ -100,7 +100,7 @@ impl From<&ModeResult> for ModeReport {
     }
 }
 
-/// The result of `testbench run`.
+/// The result of `sptfra run`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// The design's name.

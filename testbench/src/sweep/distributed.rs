@@ -1,4 +1,4 @@
-//! Points as jobs of their own: what `testbench run --json` needs for each, and its reports as the proof of a point.
+//! Points as jobs of their own: what `sptfra run --json` needs for each, and its reports as the proof of a point.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ const JOBS: &str = "jobs";
 /// Errors of a report were computed from the same words: what may differ is the last digit of a sum.
 const SAME: f64 = 1e-9;
 
-/// What a point needs of a report of `testbench run --json`.
+/// What a point needs of a report of `sptfra run --json`.
 #[derive(Clone, Debug, Deserialize)]
 pub struct RunReport {
     frames: usize,
@@ -40,7 +40,7 @@ impl RunReport {
     /// What is wrong, for people.
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = fs::read_to_string(path).map_err(|error| format!("cannot be read: {error}"))?;
-        serde_json::from_str(&text).map_err(|error| format!("is no report of `testbench run --json`: {error}"))
+        serde_json::from_str(&text).map_err(|error| format!("is no report of `sptfra run --json`: {error}"))
     }
 
     /// Whether the run was one of `frames` frames with these results of the model, and found its words in the RTL.
@@ -72,7 +72,7 @@ impl RunReport {
 }
 
 impl Sweep {
-    /// Writes a folder for each point that has hardware, with its design, frames and true forces: what `testbench run`
+    /// Writes a folder for each point that has hardware, with its design, frames and true forces: what `sptfra run`
     /// takes. Returns how many there are.
     ///
     /// # Errors

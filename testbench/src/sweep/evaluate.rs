@@ -30,7 +30,7 @@ pub enum Proof<'a> {
     None,
     /// A simulation now; compilations take turns.
     Simulation(&'a Mutex<()>),
-    /// A report of `testbench run --json`.
+    /// A report of `sptfra run --json`.
     Report(PathBuf),
 }
 

@@ -1,4 +1,4 @@
-//! `testbench sweep`: speed against error, one point a variant of a design and a scene.
+//! `sptfra sweep`: speed against error, one point a variant of a design and a scene.
 //!
 //! The way of the data: [`grid`] (which points) → [`evaluate`] (one point) → [`store`] (a file each) → [`csv_file`].
 
@@ -19,6 +19,7 @@ use golden::output::OutputError;
 use golden::scene::{Contact, Kind, Scene, SceneError, SceneFrame, Shear};
 use golden::solver::SolverError;
 use rayon::prelude::*;
+use serde::Deserialize;
 use thiserror::Error;
 
 use crate::frame_set::FrameSet;
@@ -211,7 +212,8 @@ impl SweepScene {
 }
 
 /// How far the RTL itself is asked.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Simulate {
     /// Nowhere: the integer model, bit-exact to the RTL, answers for it.
     #[default]
@@ -231,7 +233,7 @@ pub struct Sweep {
     pub scenes: Vec<SweepScene>,
     /// Which of them go through the RTL.
     pub simulate: Simulate,
-    /// Folder with reports of `testbench run --json`, `KEY.json` each, that stand for the simulation of their points.
+    /// Folder with reports of `sptfra run --json`, `KEY.json` each, that stand for the simulation of their points.
     pub runs: Option<PathBuf>,
     /// Frames of each kind of contact in the page's table of kinds; without it for 0.
     pub kinds: u64,

@@ -4,12 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use golden::design::{Design, Estimator};
-use testbench::hard::judge::{Judged, Row};
-use testbench::sweep::page::{Contents, render};
-use testbench::sweep::{Simulate, Sweep};
+use golden::design::Design;
 
-use crate::support::workspace;
+use crate::support::{sptfra, workspace};
 
 /// What the page is asked once it is there; names of dots are shown while they are measured.
 const QUESTIONS: &str = r#"<script>
@@ -79,7 +76,7 @@ pub fn wrong(page: &str, folder: &Path, width: u32) -> Vec<String> {
 
 fn report(folder: &Path) -> String {
     let out = folder.join("out");
-    let mut testbench = Command::new(env!("CARGO_BIN_EXE_testbench"));
+    let mut sweep = Command::new(sptfra());
     let designs = [
         "sensor1-fast",
         "sensor1-reduced",
@@ -90,63 +87,12 @@ fn report(folder: &Path) -> String {
         "sensor2-f3",
     ];
     let scenes = ["sensor1-tilted", "two-contacts", "sensor2-held", "sensor2-punch"];
-    testbench.arg("sweep").args(designs.map(|name| workspace(&format!("designs/{name}.toml"))));
-    testbench.arg("--scene").args(scenes.map(|name| workspace(&format!("scenes/{name}.toml"))));
-    testbench.args(["--kinds", "1"]);
-    let output = testbench.arg("--out").arg(&out).output().expect("starts");
+    sweep.arg("sweep").args(designs.map(|name| workspace(&format!("designs/{name}.toml"))));
+    sweep.arg("--scene").args(scenes.map(|name| workspace(&format!("scenes/{name}.toml"))));
+    sweep.args(["--kinds", "1"]);
+    let output = sweep.arg("--out").arg(&out).output().expect("starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     fs::read_to_string(out.join("report.html")).expect("written")
-}
-
-/// Rows of hard cases as wide as they come, by both estimators.
-fn hard_rows() -> Vec<Row> {
-    let judged = Judged {
-        tangential: Some(50.0),
-        normal: Some(94.5),
-        against_f64: Some(9e-5),
-        at_its_friction: Some(3e-6),
-        backward: Some(2e-16),
-        silent: 0,
-        status: vec![
-            ("good".to_owned(), 1),
-            ("direction unknown".to_owned(), 7),
-            ("optimum at the bound".to_owned(), 4),
-        ],
-    };
-    let row = |estimator, case: &str| Row {
-        group: "depth",
-        case: case.to_owned(),
-        estimator,
-        frames: 12,
-        condition_c33: Some(1.2e9),
-        condition_aat: Some(5.2e18),
-        f64: Some(judged.clone()),
-        f32: Some(judged.clone()),
-        fixed: Some(judged.clone()),
-        wide: Some(judged.clone()),
-        rtl_is_model: Some(true),
-        refusal: None,
-    };
-    let cases = ["h/s = 0.5, noise 0.2 %, regularised", "two contacts, opposed pushes"];
-    [Estimator::Line, Estimator::Joint].into_iter().flat_map(|one| cases.map(|case| row(one, case))).collect()
-}
-
-#[test]
-fn the_hard_cases_fit_a_desk_and_a_telephone() {
-    let sweep = Sweep { jobs: Vec::new(), scenes: Vec::new(), simulate: Simulate::None, runs: None, kinds: 0 };
-    let contents = Contents::new(&[], &sweep, &[]).expect("nothing to compute").with_hard_cases(&hard_rows());
-    let page = render(&contents).expect("a page");
-    assert_eq!(page.matches("<h3>Depth over pitch, line estimator</h3>").count(), 1);
-    let folder = tempfile::tempdir().expect("a folder");
-    for width in [1280, 400] {
-        let wrong = wrong(&page, folder.path(), width);
-        assert!(wrong.is_empty(), "{width} wide:\n{}", wrong.join("\n"));
-    }
-    // A table that is too wide is found on a desk, and on a telephone if nothing says that it moves.
-    let broken = page.replace("</style>", "td { min-width: 9rem; }</style>");
-    assert!(wrong(&broken, folder.path(), 1280).concat().contains("of a table are cut off"));
-    let silent = page.replace("</style>", ".narrow { display: none !important; }</style>");
-    assert!(wrong(&silent, folder.path(), 400).concat().contains("nothing says that tables move"));
 }
 
 #[test]
@@ -179,6 +125,11 @@ fn the_report_fits_a_desk_and_a_telephone() {
         let wrong = wrong(&page, folder.path(), width);
         assert!(wrong.is_empty(), "{width} wide:\n{}", wrong.join("\n"));
     }
+    // A table that is too wide is found on a desk, and on a telephone if nothing says that it moves.
+    let wide = page.replace("</style>", "td { min-width: 9rem; }</style>");
+    assert!(wrong(&wide, folder.path(), 1280).concat().contains("of a table are cut off"));
+    let silent = page.replace("</style>", ".narrow { display: none !important; }</style>");
+    assert!(wrong(&silent, folder.path(), 400).concat().contains("nothing says that tables move"));
     // The questions find what is wrong.
     let broken = page
         .replacen("<h1>", "<script>console.error('broken')</script><h1>", 1)

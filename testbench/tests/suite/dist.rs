@@ -5,7 +5,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::support::workspace;
+use crate::support::{sptfra, workspace};
 use testbench::tools;
 
 fn dist(arguments: &[&Path]) -> Output {
@@ -16,16 +16,13 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// The archive of the three commands, which are stood in for by scripts that start them: they are large.
+/// The archive of the command, for which a script that starts it stands in: the program is large.
 fn archive(folder: &Path) -> PathBuf {
     let commands = folder.join("commands");
     fs::create_dir_all(&commands).expect("a folder");
-    for name in ["golden", "hdl-gen", "testbench"] {
-        let program = Path::new(env!("CARGO_BIN_EXE_testbench")).with_file_name(name);
-        let script = commands.join(name);
-        fs::write(&script, format!("#!/bin/sh\nexec {} \"$@\"\n", program.display())).expect("writable");
-        fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).expect("writable");
-    }
+    let script = commands.join("sptfra");
+    fs::write(&script, format!("#!/bin/sh\nexec {} \"$@\"\n", sptfra().display())).expect("writable");
+    fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).expect("writable");
     let out = folder.join("out");
     let made = dist(&[&commands, &out]);
     assert!(made.status.success(), "{}", text(&made.stderr));
@@ -36,8 +33,7 @@ fn archive(folder: &Path) -> PathBuf {
 }
 
 #[test]
-fn an_archive_has_all_that_the_commands_need_and_is_the_same_again() {
-    crate::docs::commands();
+fn an_archive_has_all_that_the_command_needs_and_is_the_same_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let first = archive(folder.path());
     let bytes = fs::read(&first).expect("readable");
@@ -51,9 +47,9 @@ fn an_archive_has_all_that_the_commands_need_and_is_the_same_again() {
     let notes = fs::read_to_string(unpacked.join("NOTES.md")).expect("there");
     assert!(notes.starts_with("### ") && !notes.contains("\n## "), "{notes}");
     for file in [
-        "share/man/man1/golden-calibrate.1",
-        "share/bash-completion/completions/hdl-gen",
-        "share/zsh/site-functions/_testbench",
+        "share/man/man1/sptfra-calibrate.1",
+        "share/bash-completion/completions/sptfra",
+        "share/zsh/site-functions/_sptfra",
         "share/sptfra/LICENSE-MIT",
         "share/sptfra/docs/reference/files.md",
         "share/sptfra/hdl-gen/boards/zcu102.toml",
@@ -61,9 +57,9 @@ fn an_archive_has_all_that_the_commands_need_and_is_the_same_again() {
         assert!(unpacked.join(file).is_file(), "no {file}");
     }
     // What is unpacked works where it lies.
-    let mut golden = Command::new(unpacked.join("bin/golden"));
-    golden.args(["scene", "scenes/sensor1-hertz.toml", "--out", "frames.csv"]);
-    assert!(golden.current_dir(unpacked.join("share/sptfra")).status().expect("starts").success());
+    let mut sptfra = Command::new(unpacked.join("bin/sptfra"));
+    sptfra.args(["scene", "scenes/sensor1-hertz.toml", "--out", "frames.csv"]);
+    assert!(sptfra.current_dir(unpacked.join("share/sptfra")).status().expect("starts").success());
 }
 
 #[test]
@@ -120,10 +116,10 @@ fn a_release_is_cut_by_the_script() {
     let version = hdl_gen::emit::VERSION;
     assert_eq!(manifest, before[1].replacen(&format!("\nversion = \"{version}\""), "\nversion = \"9.1.0\"", 1));
     assert_eq!(citation, before[3].replace(&format!("version: {version}"), "version: 9.1.0"));
-    for name in ["golden", "hdl-cores", "hdl-gen", "sptfra-python", "testbench"] {
+    for name in ["golden", "hdl-cores", "hdl-gen", "sptfra", "sptfra-python", "testbench", "xtask"] {
         assert!(lock.contains(&format!("name = \"{name}\"\nversion = \"9.1.0\"\n")), "{name}");
     }
-    assert_eq!(lock.matches("version = \"9.1.0\"").count(), 5);
+    assert_eq!(lock.matches("version = \"9.1.0\"").count(), 7);
     let again = run(&["--cut", "9.1.0", "2031-04-05"]);
     let said = text(&again.stderr);
     assert!(!again.status.success() && said.contains("[9.1.0] already"), "{said}");
@@ -142,5 +138,5 @@ fn a_missing_command_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let made = dist(&[folder.path(), &folder.path().join("out")]);
     let said = text(&made.stderr);
-    assert!(!made.status.success() && said.contains("golden is missing") && said.contains("make dist"), "{said}");
+    assert!(!made.status.success() && said.contains("sptfra is missing") && said.contains("make dist"), "{said}");
 }

@@ -44,7 +44,7 @@ fn uncorrected(mut design: Design) -> Design {
     design
 }
 
-/// What `hdl-gen new` makes of a layer of 0.4 pitches: the kernel "cell", no correction.
+/// What `sptfra new` makes of a layer of 0.4 pitches: the kernel "cell", no correction.
 fn thin() -> Design {
     let new = NewDesign { name: "thin".to_owned(), pitch_mm: [4.0; 2], depth_mm: 1.6, ..NewDesign::default() };
     let design = Design::from_toml(&new.text(&mut |_| ()).expect("can be fitted"), "thin").expect("a design");

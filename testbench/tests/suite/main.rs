@@ -1,13 +1,10 @@
 //! Tests of the emitted RTL and of what runs it, one module a topic.
 
 mod bad_frames;
-mod bench;
 mod browser;
 mod build_cache;
 mod calibration;
-mod cells;
 mod checks;
-mod command;
 #[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
 #[path = "../../../golden/tests/suite/contacts.rs"]
 mod contacts;
@@ -23,14 +20,11 @@ mod drivers;
 mod figures;
 mod flows;
 mod formal;
-mod hard;
 mod icarus;
 mod joint;
 mod layered;
 mod licence;
 mod lint;
-mod looking;
-mod netlist;
 mod older_parts;
 mod overrun;
 mod pack_registers;
@@ -45,7 +39,5 @@ mod standin;
 mod stream_faults;
 mod stream_modes;
 mod streams;
-mod stress;
 mod support;
-mod sweep;
 mod unreal_matrices;

@@ -36,10 +36,10 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     let mut solver = Rows::new(design)?;
     let (mut work, lost) = Work::new(design, &mut holds, &mut solver);
     if lost > 0 {
-        remarks.push(format!("{lost} holds have readings that no contact makes, and are left out: see `golden check`"));
+        remarks.push(format!("{lost} holds have readings that no contact makes, and are left out: see `sptfra check`"));
     }
     if work.loads.is_empty() {
-        return Err(wrong(("no hold has an answer".to_owned(), "run `golden check` on the frames".to_owned())));
+        return Err(wrong(("no hold has an answer".to_owned(), "run `sptfra check` on the frames".to_owned())));
     }
     let folds = Folds::new(&work.holds.all);
     let steps = levels(work.loads.iter().copied());

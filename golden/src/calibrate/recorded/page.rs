@@ -137,7 +137,7 @@ fn gains(found: &Recorded, sensor: &Sensor) -> String {
     let spread = found.gains.iter().fold(0.01_f64, |most, gain| most.max((gain.gain - 1.0).abs()));
     let mut cells = String::new();
     for (taxel, gain) in found.gains.iter().enumerate() {
-        // Rows upwards, as `testbench view` has them.
+        // Rows upwards, as `sptfra view` has them.
         let x = (taxel % sensor.columns) as f64 * side;
         let y = (sensor.rows - 1 - taxel / sensor.columns) as f64 * side;
         let share = (gain.gain - 1.0) / spread;

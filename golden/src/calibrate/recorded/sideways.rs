@@ -49,7 +49,7 @@ pub(super) fn fit(
         };
         return Err(wrong((
             problem,
-            "calibrate the design with F_z first, weights do; `golden check` says what is wrong with the frames"
+            "calibrate the design with F_z first, weights do; `sptfra check` says what is wrong with the frames"
                 .to_owned(),
         )));
     }

@@ -59,7 +59,7 @@ pub fn read_forces(path: &Path) -> Result<Measured, RecordedError> {
         (2, true) => Some(vec![None, Some(Meaning::Force(2))]),
         (3, _) => Some((0..3).map(|axis| Some(Meaning::Force(axis))).collect()),
         (4, true) => Some([None].into_iter().chain((0..3).map(|axis| Some(Meaning::Force(axis)))).collect()),
-        // As `golden solve` writes them.
+        // As `sptfra solve` writes them.
         (8.., _) => {
             Some((0..count).map(|column| (1..4).contains(&column).then(|| Meaning::Force(column - 1))).collect())
         }

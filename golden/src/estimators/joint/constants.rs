@@ -1,4 +1,4 @@
-//! What `golden calibrate` finds for the joint estimator.
+//! What `sptfra calibrate` finds for the joint estimator.
 
 use serde::{Deserialize, Serialize};
 

@@ -17,10 +17,10 @@ impl JointConstants {
             (false, Kernel::Point) => (
                 0.5,
                 "tangential forces are off by tenths of F_z",
-                "kernel = \"cell\" and golden calibrate serve to 0.3",
+                "kernel = \"cell\" and sptfra calibrate serve to 0.3",
             ),
             (false, Kernel::Cell) => {
-                (0.4, "tangential forces are off by tenths of F_z", "golden calibrate serves down to 0.3")
+                (0.4, "tangential forces are off by tenths of F_z", "sptfra calibrate serves down to 0.3")
             }
             (true, Kernel::Point) => {
                 (0.4, "many frames have no direction", "kernel = \"cell\", calibrated anew, serves down to 0.3")

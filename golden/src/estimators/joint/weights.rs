@@ -54,7 +54,7 @@ impl Correction {
     pub(crate) fn read_csv(text: &str, half_window: [usize; 2], error_base: Option<i32>) -> Result<Self, WeightsError> {
         let wrong =
             |line: usize, problem: String, remedy: &str| WeightsError { line, problem, remedy: remedy.to_owned() };
-        let again = "take the file that was written with the design, or remove [algorithm.correction] and run `golden calibrate`";
+        let again = "take the file that was written with the design, or remove [algorithm.correction] and run `sptfra calibrate`";
         let mut lines = (1..).zip(text.lines());
         if lines.next().is_none_or(|(_, line)| line != header(half_window, error_base.is_some())) {
             let [x, y] = half_window;
@@ -140,7 +140,7 @@ mod tests {
         ] {
             let error = Correction::read_csv(&damaged, half_window, None).expect_err("it is damaged");
             assert!(error.line == line && error.problem.contains(part), "{error:?}");
-            assert!(error.remedy.contains("golden calibrate"), "{error:?}");
+            assert!(error.remedy.contains("sptfra calibrate"), "{error:?}");
         }
     }
 }

@@ -144,7 +144,7 @@ fn try_frame(sensor: &Sensor, kind: Kind, seed: u64) -> Option<(SceneFrame, Scen
 }
 
 /// A contact of any shape and traction, from numbers of 0 to 1: half as wide as long at least, as the calibration's wide family
-/// and `golden scene --kind mixed-inside` have them.
+/// and `sptfra scene --kind mixed-inside` have them.
 fn any(radius: f64, [kind, push, ratio, turn, edge, along, across, share, spin]: [f64; 9]) -> (Shape, Traction) {
     let half = [radius, radius / (1.0 + ratio)];
     let mut shape = match kind {

@@ -1,7 +1,6 @@
 //! Several bodies on one sensor, each with its own forces: what is left of their accuracy, and what is told of each.
 
 mod clipped;
-mod command;
 mod kinds;
 mod tables;
 

@@ -46,7 +46,7 @@ fn keys_that_contradict_the_plan() {
 #[test]
 fn choices_that_are_none() {
     for (line, parts) in [
-        ("", ["algorithm.filter.choices.A2", "missing", "golden choose"]),
+        ("", ["algorithm.filter.choices.A2", "missing", "sptfra tune-filter"]),
         ("A2 = \"f3\"", ["algorithm.filter.choices.A2", "f3", "f1 l=40"]),
         ("A2 = \"f1 p=3\"", ["algorithm.filter.choices.A2", "f1 p=3", "f2 p=30"]),
         ("A2 = \"f1 l=-3\"", ["algorithm.filter.choices.A2", "f1 l=-3", "f2 p=30"]),
@@ -120,7 +120,7 @@ fn options_are_refused_with_the_list_of_allowed_ones() {
         ("kernel = \"line\"", ["algorithm.kernel", "line", "point, cell"]),
         ("fitted_to = \"x\"", ["algorithm.fitted_to", "joint estimator", "remove it"]),
         ("grid = 15\ngain = 1.1", ["algorithm.grid", "and so do gain", "remove all of them"]),
-        ("estimator = \"joint\"\nfitted_to = \"x\"", ["algorithm.fitted_to", "\"x\"", "golden calibrate"]),
+        ("estimator = \"joint\"\nfitted_to = \"x\"", ["algorithm.fitted_to", "\"x\"", "sptfra calibrate"]),
         ("estimator = \"point\"", ["algorithm.estimator", "point", "line, joint"]),
         ("outputs = \"forces\"", ["algorithm.outputs", "forces", "field, resultants"]),
         ("plan = \"fast\"", ["algorithm.plan", "fast", "paper, reduced"]),
@@ -185,7 +185,7 @@ fn constants_of_another_sensor_are_refused() {
         assert_ne!(changed, text, "{key}");
         refused(
             &changed,
-            &["algorithm.fitted_to", "10 x 10 taxels of 4 x 4 mm, 3 mm deep, point, 0", "golden calibrate"],
+            &["algorithm.fitted_to", "10 x 10 taxels of 4 x 4 mm, 3 mm deep, point, 0", "sptfra calibrate"],
         );
     }
     // What the constants do not depend on may change.

@@ -48,10 +48,10 @@ fn weights_that_are_not_those_of_the_design() {
         Design::from_parts(&resolved, "pad.toml", &files).unwrap_err().to_string()
     };
     for (message, parts) in [
-        (said(None), ["pad.toml", "algorithm.correction.file", "weights.csv", "cannot be read", "golden calibrate"]),
+        (said(None), ["pad.toml", "algorithm.correction.file", "weights.csv", "cannot be read", "sptfra calibrate"]),
         (
             said(Some(weights.replace("131071", "131070"))),
-            ["pad.toml", "algorithm.correction.sha256", "weights.csv", "other weights", "golden calibrate"],
+            ["pad.toml", "algorithm.correction.sha256", "weights.csv", "other weights", "sptfra calibrate"],
         ),
     ] {
         assert!(parts.iter().all(|part| message.contains(part)) && !message.contains('\n'), "{message}");
@@ -88,7 +88,7 @@ fn a_doubt_goes_with_the_wide_family() {
     let joint = |keys: &str| format!("{MINIMAL}[algorithm]\nestimator = \"joint\"\n{keys}");
     let mut design = Design::from_toml(&joint("family = \"wide\"\ndoubt = 0.1\n"), "pad.toml").unwrap();
     assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
-    refused(&joint("doubt = 0.1\n"), &["algorithm.doubt", "family = \"wide\"", "golden calibrate"]);
+    refused(&joint("doubt = 0.1\n"), &["algorithm.doubt", "family = \"wide\"", "sptfra calibrate"]);
     design.algorithm.joint.family = Family::Narrow;
     assert!(!design.to_toml().contains("doubt"), "{}", design.to_toml());
     assert!(Design::from_toml(&design.to_toml(), "resolved").is_ok());
@@ -101,5 +101,5 @@ fn the_family_is_part_of_what_constants_were_fitted_to() {
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(Design::load(&path).is_ok());
     let other = text.replace("family = \"wide\"\n", "").replace("doubt = 0.06\n", "");
-    refused(&other, &["algorithm.fitted_to", "wide\"", "golden calibrate"]);
+    refused(&other, &["algorithm.fitted_to", "wide\"", "sptfra calibrate"]);
 }

@@ -1,7 +1,6 @@
 //! Constants from recordings with measured forces.
 
 mod bladder;
-mod command;
 mod friction;
 mod simulated;
 mod table;

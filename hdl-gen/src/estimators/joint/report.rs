@@ -1,4 +1,4 @@
-//! The joint estimator in the words of `hdl-gen inspect`.
+//! The joint estimator in the words of `sptfra inspect`.
 
 use golden::design::{Correction, Design, Kernel};
 use golden::kernel::gain;
@@ -25,7 +25,7 @@ pub fn report(plan: &JointPlan, design: &Design) -> String {
             network.length,
             CLASSES * network.at_once
         ),
-        _ => "none: `golden calibrate` trains one".to_owned(),
+        _ => "none: `sptfra calibrate` trains one".to_owned(),
     };
     format!(
         "\nFriction, joint estimator\n  grid         {}\n  gain         {}, in the matrices\n  \
@@ -86,7 +86,7 @@ pub fn kernel_advice(design: &Design, indent: &str) -> String {
         Kernel::Cell => ["\"cell\"", "\"point\""],
     };
     let verdict = match (is_better, (has / wants - 1.0).abs() > STALE_GAIN) {
-        (_, true) => "run golden calibrate, or F_z is off by as much as they differ".to_owned(),
+        (_, true) => "run sptfra calibrate, or F_z is off by as much as they differ".to_owned(),
         (true, false) => format!("so F_z is right, and mu comes out better than with {other}"),
         (false, false) => format!("so F_z is right; mu comes out better with {other} than with {own}, calibrated anew"),
     };

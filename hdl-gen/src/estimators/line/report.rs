@@ -1,4 +1,4 @@
-//! The line estimator in the words of `hdl-gen inspect`.
+//! The line estimator in the words of `sptfra inspect`.
 
 use golden::design::{Design, Kernel};
 use golden::kernel::gain;

@@ -202,12 +202,12 @@ fn keys(point: &Point) -> String {
         }
         // The choices of F3 are the design's.
         None if point.filter == "f3" => {
-            "{ kind = \"f3\", scenes = [\"SCENE.toml\"] }   # your own, then golden choose".to_owned()
+            "{ kind = \"f3\", scenes = [\"SCENE.toml\"] }   # your own, then sptfra tune-filter".to_owned()
         }
         None => format!("{{ kind = \"{}\" }}", point.filter),
     };
     let calibrated = point.calibration.map_or_else(String::new, |Calibration { grid, units, family }| {
-        let remark = if units > 0 { format!("   # golden calibrate --hidden {units}") } else { String::new() };
+        let remark = if units > 0 { format!("   # sptfra calibrate --hidden {units}") } else { String::new() };
         format!("\ngrid = {grid}\nfamily = \"{family}\"{remark}")
     });
     let plan = if point.plan == PlanKind::Paper { "paper" } else { "reduced" };

@@ -4,7 +4,6 @@ pub mod conclusion;
 mod dots;
 pub mod forces;
 pub mod front;
-pub mod hard;
 mod kinds;
 pub mod lanes;
 pub mod matrices;
@@ -18,7 +17,6 @@ use serde::Serialize;
 use tera::{Context, Tera};
 use thiserror::Error;
 
-use crate::hard::judge::Row;
 use crate::sweep::point::{Geometry, Point, Verified, sensor_title, sensors};
 use crate::sweep::{Sweep, SweepError, SweepScene};
 use front::{DASHES, Series};
@@ -54,9 +52,6 @@ pub struct Contents {
     legend: front::Legend,
     ramp: Vec<(String, &'static str)>,
     sensors: Vec<SensorSection>,
-    hard: Option<hard::Section>,
-    /// What is not on the page yet.
-    pending: Option<&'static str>,
 }
 
 /// One sensor's part.
@@ -110,8 +105,6 @@ impl Contents {
             legend: front::legend(points),
             ramp: matrices::ramp_legend(),
             sensors: sections,
-            hard: None,
-            pending: None,
         })
     }
 }
@@ -134,21 +127,6 @@ impl Contents {
     /// The designs that the page recommends, as files: their places beside the page, and contents.
     pub fn recommended(&self) -> impl Iterator<Item = &(String, String)> {
         self.sensors.iter().flat_map(|sensor| &sensor.recommended)
-    }
-
-    /// The same with the table of hard cases.
-    #[must_use]
-    pub fn with_hard_cases(mut self, rows: &[Row]) -> Self {
-        self.hard = Some(hard::section(rows));
-        self.pending = None;
-        self
-    }
-
-    /// The same, saying that the table of hard cases is being made.
-    #[must_use]
-    pub fn awaiting_hard_cases(mut self) -> Self {
-        self.pending = Some("The hard cases are still being computed: load this page again in some minutes.");
-        self
     }
 }
 
@@ -284,18 +262,4 @@ fn widths(points: &[&Point]) -> Vec<Figure> {
     .into_iter()
     .flatten()
     .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Contents, render};
-    use crate::sweep::{Simulate, Sweep};
-
-    #[test]
-    fn a_page_says_that_hard_cases_follow_until_they_are_there() {
-        let sweep = Sweep { jobs: Vec::new(), scenes: Vec::new(), simulate: Simulate::None, runs: None, kinds: 0 };
-        let waiting = Contents::new(&[], &sweep, &[]).expect("nothing to compute").awaiting_hard_cases();
-        let says = |contents: &Contents| render(contents).expect("a page").contains("still being computed");
-        assert!(says(&waiting) && !says(&waiting.clone().with_hard_cases(&[])));
-    }
 }

@@ -4,9 +4,9 @@ use golden::design::{Outputs, Samples};
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::banks::random_bank;
 use testbench::dut::{Core, Inputs};
 use testbench::registers::{Access, address};
-use testbench::stress::banks::random_bank;
 use testbench::trial::model_answers;
 
 use super::{

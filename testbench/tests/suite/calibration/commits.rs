@@ -3,8 +3,8 @@
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::banks::random_bank;
 use testbench::stream::{Mode, Pattern, Traffic};
-use testbench::stress::banks::random_bank;
 use testbench::trial::timeout;
 use testbench::verilate::Built;
 

@@ -3,39 +3,27 @@
 
 use std::sync::OnceLock;
 
-use golden::design::{Calibration, Curve, Design, Outputs, Samples};
+use golden::design::{Outputs, Samples};
 use golden::progress::Progress;
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::banks::{random_bank, random_curve};
 use testbench::frame_set::FrameSet;
 use testbench::registers::address;
 use testbench::run::{Options, run};
 use testbench::stream::{Mode, Traffic};
-use testbench::stress::banks::{random_bank, random_curve};
 use testbench::trial::{model_answers, timeout};
 
 use super::commits::commits_at_every_moment;
-use super::{Subject, core, design, errors, generation, judged, judged_in, load, perform, read_back};
+use super::{Subject, core, errors, generation, judged, judged_in, load, perform, read_back};
+pub use crate::support::calibrated::design_with_curve;
 use crate::support::effort::some_of;
 use crate::support::faults::broken;
 use crate::support::{built, frames, in_parallel, planned, simulate_exactly};
 
 mod refused;
 mod tares;
-
-/// The small design along a curve, with gains and offsets.
-pub fn design_with_curve() -> Design {
-    let mut design = design(Outputs::Resultants);
-    design.name += "_curve";
-    design.input.pa_per_count = None;
-    let points = vec![[0.0, 0.0], [200.0, -900.0], [1500.0, -20e3], [5000.0, -90e3], [9000.0, -300e3]];
-    design.input.curve = Some(Curve { points, law: None });
-    let gain = (0..12).map(|taxel| 0.7 + 0.05 * f64::from(taxel)).collect();
-    let offset = (0..12).map(|taxel| 30.25 * f64::from(taxel) - 200.0).collect();
-    design.input.calibration = Some(Calibration { gain, offset });
-    design
-}
 
 fn subject() -> &'static Subject {
     static SUBJECT: OnceLock<Subject> = OnceLock::new();
@@ -86,7 +74,7 @@ fn at_power_up_the_designs_curve_acts() {
     assert_eq!(core.read(address::FEATURES).expect("a reply") >> 6 & 1, 1);
 }
 
-/// `testbench run`, which reads every register, knows what they say of a curve in the banks.
+/// `sptfra run`, which reads every register, knows what they say of a curve in the banks.
 #[test]
 fn a_run_finds_all_registers_right() {
     let frames = FrameSet::standing(&subject().plan.design.sensor).expect("frames");

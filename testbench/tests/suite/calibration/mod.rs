@@ -9,7 +9,7 @@ mod tare;
 
 use std::sync::OnceLock;
 
-use golden::design::{Calibration, CalibrationIn, Design, Outputs, PlanKind};
+use golden::design::Outputs;
 use hdl_gen::model::Model;
 use hdl_gen::plan::Plan;
 use hdl_gen::plan::calibration::{Bank, CalibrationPlan};
@@ -21,7 +21,8 @@ use testbench::stream::{Traffic, exchange};
 use testbench::trial::timeout;
 use testbench::verilate::Built;
 
-use crate::support::{built, by_plan, frames, planned, shipped};
+pub use crate::support::calibrated::design;
+use crate::support::{built, frames, planned};
 
 /// Bits of `CALIBRATION_ERRORS`.
 const OUT_OF_RANGE: u32 = 1;
@@ -34,18 +35,6 @@ const CONTRADICTION: u32 = 1 << 5;
 const STATUS_BUSY: u32 = 1 << 9;
 /// `CALIBRATION_INDEX`: of the bank that acts.
 const ACTIVE: u32 = 1 << 31;
-
-/// The small design with counts and its calibration in RAM.
-pub fn design(outputs: Outputs) -> Design {
-    let mut design = by_plan(shipped("small-control"), PlanKind::Reduced, outputs);
-    design.name += "_calibrated";
-    design.hardware.calibration = CalibrationIn::Ram;
-    design.input.pa_per_count = Some(-12.5);
-    let gain = (0..12).map(|taxel| 0.7 + 0.05 * f64::from(taxel)).collect();
-    let offset = (0..12).map(|taxel| 3.25 * f64::from(taxel) - 20.0).collect();
-    design.input.calibration = Some(Calibration { gain, offset });
-    design
-}
 
 struct Subject {
     plan: Plan,

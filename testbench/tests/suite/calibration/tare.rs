@@ -3,9 +3,9 @@
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use testbench::banks::random_bank;
 use testbench::registers::{Access, address};
 use testbench::stream::{Mode, Pattern, Traffic, exchange};
-use testbench::stress::banks::random_bank;
 use testbench::trial::timeout;
 
 use super::{

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::browser;
-use crate::support::workspace;
+use crate::support::{sptfra, workspace};
 
 mod results;
 mod sessions;
@@ -123,17 +123,9 @@ pub fn lines_of(file: &Path) -> Vec<Line> {
     found
 }
 
-/// The folder of the three commands, which are built if they are not: all three, since cargo builds what two of them
-/// depend on with other features, and that takes minutes.
+/// The folder of the command, which is built if it is not there.
 pub fn commands() -> PathBuf {
-    let folder = Path::new(env!("CARGO_BIN_EXE_testbench")).parent().expect("a folder").to_owned();
-    let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--quiet", "--bins"]).current_dir(workspace(""));
-    if folder.ends_with("release") {
-        cargo.arg("--release");
-    }
-    assert!(cargo.status().expect("cargo starts").success());
-    folder
+    sptfra().parent().expect("a folder").to_owned()
 }
 
 fn help(folder: &Path, subcommand: &str) -> String {

@@ -92,7 +92,7 @@ fn activity_of_another_design_or_clock_is_refused() {
 #[test]
 fn what_is_missing_is_named_with_what_makes_it() {
     let folder = routed(ACTIVITY);
-    folder.vivado(POWER, &["other.saif"], &[]).refused("testbench run DESIGN.toml --saif makes it");
+    folder.vivado(POWER, &["other.saif"], &[]).refused("sptfra run DESIGN.toml --saif makes it");
     fs::remove_dir_all(folder.work().join(format!("{NAME}_synth"))).expect("can be removed");
     folder.vivado(POWER, &[], &[]).refused("run synth.tcl in this folder first");
 }

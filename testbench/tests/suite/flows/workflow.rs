@@ -8,6 +8,7 @@ use std::process::Command;
 use serde_json::Value;
 
 use crate::support::effort::ALL;
+use crate::support::sptfra;
 
 use super::folder::{environment, run, workspace, yaml};
 
@@ -20,19 +21,12 @@ fn text<'a>(step: &'a Value, key: &str) -> Option<&'a str> {
     step[key].as_str()
 }
 
-/// The programs as `make build` makes them, in the target folder that this test was built in.
-fn build(target: &Path) {
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    let arguments = ["build", "--quiet", "--workspace", "--bins", "--target-dir"];
-    run(cargo.args(arguments).arg(target).current_dir(workspace())).succeeded();
-}
-
 #[test]
 fn its_steps_generate_lint_and_simulate_a_design() {
     let workflow = yaml(&workspace().join("docs/ci/tactile-design.yml"));
     let place = tempfile::tempdir().expect("a folder");
-    let target = Path::new(env!("CARGO_BIN_EXE_testbench")).ancestors().nth(2).expect("a target folder");
-    build(target);
+    let program = sptfra();
+    let target = program.ancestors().nth(2).expect("a target folder");
     let generator = place.path().join("generator");
     fs::create_dir(&generator).expect("can be made");
     symlink(target, generator.join("target")).expect("can be linked");

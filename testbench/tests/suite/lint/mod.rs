@@ -19,7 +19,7 @@ use testbench::tools;
 
 const RANDOM_DESIGNS: u64 = 20;
 
-/// A design's folder, as `hdl-gen generate` writes it.
+/// A design's folder, as `sptfra generate` writes it.
 struct Written {
     name: String,
     folder: TempDir,

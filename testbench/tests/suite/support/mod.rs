@@ -1,5 +1,6 @@
 //! Designs for tests of the emitted RTL: planned, built through the shared cache, simulated, judged.
 
+pub mod calibrated;
 #[path = "../../../../golden/tests/suite/effort.rs"]
 pub mod effort;
 pub mod faults;
@@ -8,6 +9,8 @@ pub mod player;
 pub mod random;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
@@ -21,6 +24,23 @@ use testbench::verilate::{Built, Verilate};
 /// A file of the workspace.
 pub fn workspace(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join(path)
+}
+
+/// The `sptfra` command among the programs of this build; built if it is not there.
+pub fn sptfra() -> PathBuf {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    let build = || {
+        let test = std::env::current_exe().expect("this test");
+        let folder = test.ancestors().nth(2).expect("a target folder");
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["build", "--quiet", "--bins", "--target-dir"]).arg(folder.parent().expect("a target folder"));
+        if folder.ends_with("release") {
+            cargo.arg("--release");
+        }
+        assert!(cargo.current_dir(workspace("")).status().expect("cargo starts").success());
+        folder.join("sptfra")
+    };
+    PROGRAM.get_or_init(build).clone()
 }
 
 /// One of the designs that come with the project, by its file name without the ending.

@@ -4,7 +4,7 @@
 # Estimates the power of small_4x3 by itself, placed and routed,
 # from how often its nets changed in simulation.
 #
-#   testbench run DESIGN.toml --saif                          makes small_4x3.saif
+#   sptfra run DESIGN.toml --saif                          makes small_4x3.saif
 #   vivado -mode batch -source FOLDER/vivado/synth.tcl        makes small_4x3_synth/small_4x3.dcp
 #   vivado -mode batch -source FOLDER/vivado/power.tcl [-tclargs FILE.saif]
 #
@@ -20,7 +20,7 @@ if {![file isfile $checkpoint]} {
     error "no file $checkpoint: run synth.tcl in this folder first"
 }
 if {![file isfile $activity]} {
-    error "no file $activity: testbench run DESIGN.toml --saif makes it"
+    error "no file $activity: sptfra run DESIGN.toml --saif makes it"
 }
 
 set channel [open $activity]

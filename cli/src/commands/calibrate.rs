@@ -1,0 +1,152 @@
+//! `sptfra calibrate`: the constants of a design, from simulated contacts or recordings.
+
+use std::path::{Path, PathBuf};
+
+use golden::calibrate::{Work, calibrate};
+use golden::choose::rebase_scenes;
+use golden::design::{Design, Family, Filter, is_name};
+use golden::output::write_together;
+use golden::progress::Progress;
+use golden::resolved::{Resolved, folder};
+use serde::Serialize;
+
+use super::calibrate_recorded::{self, Recordings};
+use crate::arguments::{design_file, word};
+use crate::message::{self, json_or, say};
+
+const CALIBRATE_FILES: &str = r#"FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (N); any of them may be missing, blanks are
+unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
+load, with the force 0, give the offsets. PRESSURES.csv: pressure (kPa), one line a frame.
+
+For the joint estimator's constants from simulated contacts, in the design file:
+  [algorithm]
+  estimator = "joint"
+
+In RESOLVED.toml, besides:
+  gain = 1.1                        # factor on all forces
+  tangential = [1.0, 0.0]           # friction vector c1 mu + c3 mu |mu|^2
+  family = "wide"                   # contacts that all of it was fitted to, unless "narrow"
+  doubt = 0.06                      # with family "wide": a standard error above this share of F_z is doubtful
+  [algorithm.correction]            # of the friction vector, by a small network
+  half_window = [3, 7]              # taxels either side of the contact's centre, along x and y
+  file = "RESOLVED.weights.csv"     # its weights in steps of 2^-12, written beside RESOLVED.toml: a line for each
+                                    # hidden unit, under a header
+  sha256 = "..."                    # of that file
+  error_base = -17123               # with family "wide": what is added to the logarithm of the error that is left"#;
+
+/// Fits a design's constants to simulated contacts, or to recordings with measured forces.
+///
+/// Without --frames and --uniform: the constants of the estimator "joint". Makes random contacts on a bonded layer, from
+/// the seed alone, and fits to their known forces a gain, two constants of the friction, and the weights of the
+/// correction. The weights go to RESOLVED.weights.csv beside RESOLVED.toml: both are written, or none.
+///
+/// With --frames and --forces: the scale of a count (a curve, a gain for all taxels, and the taxels' own), and the
+/// constants of friction where tangential forces are known. Reports what the recording determines, with errors at places
+/// that were left out, and what it does not, which stays as the design has it. With --uniform and --pressures: gains and
+/// curve from a bladder's pressure. Both may be given.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  sptfra calibrate pad --out pad-calibrated.toml\n  sptfra calibrate pad --frames weights.csv --forces weights.forces.csv --out pad-fitted.toml",
+    after_long_help = CALIBRATE_FILES
+)]
+pub struct Args {
+    /// Design file (TOML).
+    #[arg(value_parser = design_file())]
+    design: PathBuf,
+    /// Where to write the design with the constants (TOML).
+    #[arg(long, value_name = "RESOLVED.toml")]
+    out: PathBuf,
+    #[command(flatten)]
+    recordings: Recordings,
+    /// Seed of the contacts and of the training.
+    #[arg(long, default_value_t = 1, conflicts_with = "recordings")]
+    seed: u64,
+    /// Training contacts: "narrow", round and sliding, or "wide", of any shape, tilted, held; default: the design's.
+    #[arg(long, value_parser = word::<Family>(), conflicts_with = "recordings")]
+    family: Option<Family>,
+    /// Hidden units of the correction, 0 for none; default: 128, or 204 with family "wide".
+    ///
+    /// With family "narrow" and grid = 15 the default is 64, with --quick 24.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with = "recordings")]
+    hidden: Option<u16>,
+    /// Take a tenth of the time, for constants with twice the error.
+    #[arg(long, conflicts_with = "recordings")]
+    quick: bool,
+    /// Take about ten times the time, for a network that is as exact with half of the hidden units.
+    #[arg(long, conflicts_with_all = ["recordings", "quick"])]
+    thorough: bool,
+    /// Report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    design: &'a str,
+    resolved: &'a Path,
+    family: Family,
+    gain: f64,
+    tangential: [f64; 2],
+    half_window: Option<[usize; 2]>,
+    weights: usize,
+}
+
+/// Calibrates a design and writes the resolved one.
+pub fn run(args: &Args) -> message::Result {
+    let Args { design: path, out, recordings, seed, family, hidden, quick, thorough, json } = args;
+    if recordings.given() {
+        return calibrate_recorded::run(path, out, recordings, *json);
+    }
+    let work = Work { seed: *seed, hidden: hidden.map(usize::from), quick: *quick, thorough: *thorough };
+    let mut design = Design::load_unfitted(path)?;
+    if let Some(name) = name_of(out) {
+        design.name = name;
+    }
+    if let Some(family) = family {
+        design.algorithm.joint.family = *family;
+    }
+    let family = design.algorithm.joint.family;
+    let settings = work.settings(family, design.algorithm.joint.grid)?;
+    let resolved = Resolved::new(&design, path, out)?;
+    let progress = Progress::new();
+    progress.counted_in("steps", "calibrating", settings.work(family) as u64);
+    *design.algorithm.joint = calibrate(&design, &settings, &mut |_| progress.step())?;
+    drop(progress);
+    if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
+        *scenes = rebase_scenes(scenes, folder(path), folder(out));
+    }
+    let remark =
+        format!("Resolved by `sptfra calibrate`, seed {}: the constants of the joint estimator.", settings.seed);
+    write_together(&resolved.contents(&design, &remark))?;
+
+    let constants = &design.algorithm.joint;
+    let correction = constants.correction.as_ref();
+    let report = Report {
+        design: &design.name,
+        resolved: out,
+        family: constants.family,
+        gain: constants.gain,
+        tangential: constants.tangential,
+        half_window: correction.map(|correction| correction.half_window),
+        weights: correction.map_or(0, |found| found.hidden.iter().chain(&found.output).map(Vec::len).sum()),
+    };
+    let text = |report: &Report<'_>| {
+        let mut text = String::new();
+        say!(text, "{}: calibrated design in {}", report.design, out.display());
+        say!(text, "  family      {}", report.family);
+        say!(text, "  gain        {:.4}", report.gain);
+        say!(text, "  tangential  {:.4} mu + {:.4} mu |mu|^2", report.tangential[0], report.tangential[1]);
+        if let Some([x, y]) = report.half_window {
+            say!(text, "  correction  {} weights, window {} x {} taxels", report.weights, 2 * x + 1, 2 * y + 1);
+        }
+        text
+    };
+    Ok(json_or(&report, *json, text)?.into())
+}
+
+/// The name of a design in a file: a design of its own, beside whose hardware that of the first one stays. Nothing if the
+/// file is called what no module can be.
+pub(super) fn name_of(file: &Path) -> Option<String> {
+    let name = file.file_stem()?.to_str()?.replace('-', "_");
+    is_name(&name).then_some(name)
+}

@@ -1,0 +1,158 @@
+//! `sptfra calibrate` from recordings with measured forces or pressures.
+
+use std::path::{Path, PathBuf};
+
+use golden::calibrate::recorded::{Recorded, fit_forces, fit_uniform, page, read_forces, read_pressures};
+use golden::check::check;
+use golden::choose::rebase_scenes;
+use golden::design::{Design, Filter};
+use golden::matrices::Matrices;
+use golden::output::write_together;
+use golden::progress::Progress;
+use golden::resolved::{Resolved, folder, keep_apart};
+use serde::Serialize;
+
+use super::calibrate::name_of;
+use super::recording::{Recording, warn};
+use crate::message::{self, json_or, say};
+
+/// Recordings with measured forces or pressures.
+#[derive(clap::Args, Debug)]
+#[group(id = "recordings", multiple = true)]
+pub struct Recordings {
+    /// Frames of contacts, as for `sptfra solve`.
+    #[arg(long, value_name = "FRAMES.csv", requires = "forces")]
+    frames: Option<PathBuf>,
+    /// Forces measured with them (CSV or .npy), one line a frame.
+    #[arg(long, value_name = "FORCES.csv", requires = "frames")]
+    forces: Option<PathBuf>,
+    /// Frames under uniform pressure, from a bladder over all taxels.
+    #[arg(long, value_name = "FRAMES.csv", requires = "pressures")]
+    uniform: Option<PathBuf>,
+    /// Pressures measured with them (CSV or .npy), one line a frame.
+    #[arg(long, value_name = "P.csv", requires = "uniform")]
+    pressures: Option<PathBuf>,
+    /// Columns of labels before the values of a frame.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    labels: usize,
+    /// Where to write a page with plots (HTML, complete in itself).
+    #[arg(long, value_name = "PAGE.html")]
+    page: Option<PathBuf>,
+}
+
+impl Recordings {
+    /// Whether there is anything recorded.
+    pub fn given(&self) -> bool {
+        self.frames.is_some() || self.uniform.is_some() || self.page.is_some() || self.labels > 0
+    }
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    design: &'a str,
+    resolved: &'a Path,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    uniform: Option<&'a Recorded>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    forces: Option<&'a Recorded>,
+    next: String,
+}
+
+/// Fits the design in `path` to recordings and writes it to `out`.
+pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> message::Result {
+    let Recordings { frames, forces, uniform, pressures, labels, page: page_file } = recordings;
+    if frames.is_none() && uniform.is_none() {
+        return Err(
+            "--labels and --page are for recordings: give --frames and --forces, or --uniform and --pressures".into()
+        );
+    }
+    let mut design = Design::load(path)?;
+    let resolved = Resolved::anew(path, out)?;
+    let inputs: Vec<&Path> = [frames, forces, uniform, pressures].into_iter().flatten().map(AsRef::as_ref).collect();
+    let outputs = resolved.all();
+    for output in outputs.iter().chain(page_file) {
+        keep_apart(output, &inputs)?;
+    }
+    if let Some(page_file) = page_file
+        && outputs.contains(page_file)
+    {
+        return Err(format!("{}: named for both the design and the page; choose two names", page_file.display()).into());
+    }
+    if let Some(name) = name_of(out) {
+        design.name = name;
+    }
+    let progress = Progress::of("fitting");
+    let mut results: [Option<Recorded>; 2] = [None, None];
+    let mut findings = Vec::new();
+    for (place, (file, measured)) in [(uniform, pressures), (frames, forces)].into_iter().enumerate() {
+        let (Some(file), Some(measured)) = (file, measured) else { continue };
+        let frames = Recording { file, labels: *labels }.read(&design)?;
+        let found = match place {
+            0 => fit_uniform(&design, &frames, &read_pressures(measured)?),
+            _ => fit_forces(&design, &frames, &read_forces(measured)?),
+        }?;
+        // As the design reads them now: sign, unit and tare are what was fitted. A bladder loads every taxel.
+        if place == 1 {
+            findings = check(&found.design, &frames, Matrices::of(&found.design).ok().as_ref());
+        }
+        design = found.design.clone();
+        results[place] = Some(found);
+    }
+    drop(progress);
+    warn(&findings);
+    if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
+        *scenes = rebase_scenes(scenes, folder(path), folder(out));
+    }
+    let mut contents = resolved.contents(&design, "Calibrated by `sptfra calibrate` from recordings.");
+    if let Some(page_file) = page_file {
+        let parts = [("Uniform pressure", "Pa", &results[0]), ("Contacts with known forces", "N", &results[1])];
+        let parts: Vec<_> =
+            parts.iter().filter_map(|(title, unit, found)| Some((*title, *unit, found.as_ref()?))).collect();
+        contents.insert(0, (page_file.clone(), page(&design, &parts)));
+    }
+    write_together(&contents)?;
+    let next = match frames {
+        Some(frames) => {
+            let labels = if *labels > 0 { format!(" --labels {labels}") } else { String::new() };
+            format!(
+                "sptfra solve {} --frames {}{labels} --out {}",
+                out.display(),
+                frames.display(),
+                out.with_extension("forces.csv").display()
+            )
+        }
+        None => {
+            format!("sptfra calibrate {} --frames FRAMES.csv --forces FORCES.csv --out CHECKED.toml", out.display())
+        }
+    };
+    let [uniform, forces] = &results;
+    let report =
+        Report { design: &design.name, resolved: out, uniform: uniform.as_ref(), forces: forces.as_ref(), next };
+    Ok(json_or(&report, json, text)?.into())
+}
+
+fn text(report: &Report<'_>) -> String {
+    let mut text = String::new();
+    say!(text, "{}: calibrated design in {}", report.design, report.resolved.display());
+    for (what, found) in [("uniform pressure", report.uniform), ("contacts", report.forces)] {
+        let Some(found) = found else { continue };
+        match found.holds.len() {
+            0 => say!(text, "from {what}: {} contacts", found.contacts),
+            holds => say!(text, "from {what}: {holds} holds, {} contacts", found.contacts),
+        }
+        for (title, lines) in [
+            ("determined", &found.determined),
+            ("not determined", &found.undetermined),
+            ("to be known", &found.remarks),
+        ] {
+            if !lines.is_empty() {
+                say!(text, "  {title}");
+            }
+            for line in lines {
+                say!(text, "    {line}");
+            }
+        }
+    }
+    say!(text, "next: {}", report.next);
+    text
+}

@@ -1,0 +1,106 @@
+//! `sptfra check`: faults of a recording.
+
+use std::path::PathBuf;
+
+use golden::check::{Beyond, beyond, check};
+use golden::design::Design;
+use golden::matrices::Matrices;
+use golden::progress::Progress;
+use serde::Serialize;
+
+use super::recording::{Recording, is_standard};
+use super::unloaded;
+use crate::arguments::design_file;
+use crate::message::{self, Message, say};
+
+/// Checks a recording before its forces are trusted.
+///
+/// Reports, in a line each, the likely cause and the key to change: values in another unit than the design says, stress
+/// with the wrong sign, no tension anywhere, a missing tare, taxels in another order, readings at the end of the
+/// converter, broken taxels. Then the share that lies beyond the calibration. The exit code is 0 only if nothing is
+/// found.
+///
+/// With `--unloaded`: offset, noise and drift of each taxel from a recording without load, and doubts as warnings.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  sptfra check pad --frames frames.csv\n  sptfra check pad --frames unloaded.csv --unloaded --out tare.csv"
+)]
+pub struct Args {
+    /// Design file (TOML).
+    #[arg(value_parser = design_file())]
+    design: PathBuf,
+    /// Frames (CSV or .npy), as for `sptfra solve`.
+    #[arg(long, value_name = "FRAMES.csv")]
+    frames: PathBuf,
+    /// Columns of labels before the values of a frame; the file may then have a header.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    labels: usize,
+    /// Nothing presses in the frames: report offsets, noise, drift, dead taxels, and the keys that suit the noise.
+    #[arg(long)]
+    unloaded: bool,
+    /// Where to write the calibration that removes the offsets (lines gain,offset), for `sensor.calibration`.
+    #[arg(long, value_name = "CALIBRATION.csv", requires = "unloaded")]
+    out: Option<PathBuf>,
+    /// Report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    design: &'a str,
+    frames: usize,
+    findings: Vec<Line>,
+    beyond: Beyond,
+}
+
+#[derive(Serialize)]
+struct Line {
+    kind: String,
+    message: String,
+}
+
+/// Checks the frames of a file; an error if anything is found.
+pub fn run(args: &Args) -> message::Result {
+    let Args { design: path, frames, labels, unloaded, out, json } = args;
+    let recording = &Recording { file: frames, labels: *labels };
+    if is_standard(recording.file) {
+        return Err("--frames -: this looks at all frames of a recording; write them into a file first".into());
+    }
+    let design = Design::load(path)?;
+    let frames = recording.read(&design)?;
+    if *unloaded {
+        return unloaded::run(path, &design, recording, &frames, out.as_deref(), *json);
+    }
+    let beyond = beyond(&design, &frames);
+    let matrices = {
+        let _progress = Progress::of("matrices");
+        Matrices::of(&design).map_err(|error| format!("{}: {error}", design.name))?
+    };
+    let findings = check(&design, &frames, Some(&matrices));
+    let file = recording.file.display();
+    let mut text = String::new();
+    if *json {
+        let line = |kind: String, message: String| Line { kind, message };
+        let findings = findings.iter().map(|found| line(found.kind.to_string(), found.to_string())).collect();
+        let report = Report { design: &design.name, frames: frames.len(), findings, beyond };
+        text += &(serde_json::to_string_pretty(&report)? + "\n");
+    } else {
+        for finding in &findings {
+            say!(text, "{finding}");
+        }
+        if findings.is_empty() {
+            say!(text, "{}: {} frames of {file}, nothing suspicious", design.name, frames.len());
+        }
+        if findings.is_empty() || beyond.readings > 0 {
+            say!(text, "{beyond}");
+        }
+    }
+    let things = match findings.len() {
+        0 => return Ok(text.into()),
+        1 => "one thing".to_owned(),
+        count => format!("{count} things"),
+    };
+    let fault = format!("{file}: {things} to look at before the forces are trusted");
+    Ok(Message { text, faults: vec![fault] })
+}

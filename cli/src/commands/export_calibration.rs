@@ -1,0 +1,78 @@
+//! `sptfra export-calibration`: the calibration that a board loads into its bank.
+
+use std::path::{Path, PathBuf};
+
+use golden::bank;
+use golden::design::Design;
+use golden::output::write_whole;
+use golden::resolved::keep_apart;
+use serde::Serialize;
+
+use crate::arguments::design_file;
+use crate::message::{self, json_or};
+
+const BANK_FILE: &str = r#"BANK.csv: a header line, gain,offset,taxel 37,taxel 38, that names the dead taxels; then a line for each taxel: its gain
+(0 of a dead one), its offset in counts, and its weight in the stress of each dead taxel. Of a design with a curve offsets
+are in pascals, and a header count,pascals and its points follow. A design can name the file, as sensor.calibration and as
+sensor.curve.
+
+In the design file:
+  [sensor]
+  calibration = "calibration.csv"   # a line gain,offset for each taxel, such as sptfra calibrate writes; gain 0: dead
+  dead = [37, 38]                   # others that read nothing
+
+  [hardware]
+  control = true
+  calibration = "ram"
+  replaceable = 8                   # dead taxels for which a bank has room: 1, 2, 4 or 8"#;
+
+/// Writes the calibration that a board loads into its bank, as CSV.
+///
+/// For a design with [hardware] calibration = "ram": each taxel's gain and offset and, with `replaceable`, its weights in
+/// the stress of the dead taxels that the design names. `load_calibration` of the Python driver reads the file. Nothing
+/// is synthesized again.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  sptfra export-calibration pad --out pad.bank.csv", after_long_help = BANK_FILE)]
+pub struct Args {
+    /// Design file (TOML), with the calibration and the dead taxels of today.
+    #[arg(value_parser = design_file())]
+    design: PathBuf,
+    /// Where to write the bank (CSV).
+    #[arg(long, value_name = "BANK.csv")]
+    out: PathBuf,
+    /// Report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    design: &'a str,
+    bank: &'a Path,
+    taxels: usize,
+    replaced: &'a [usize],
+}
+
+/// Writes the bank of a design.
+pub fn run(args: &Args) -> message::Result {
+    let Args { design: path, out, json } = args;
+    let named = Design::files_named_in(path)?;
+    keep_apart(out, &[path.as_path()].into_iter().chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
+    let design = Design::load(path)?;
+    let text = bank::to_csv(&design)?;
+    write_whole(out, text.as_bytes())?;
+    let replaced: &[usize] = if design.hardware.replaceable == 0 { &[] } else { &design.input.dead };
+    let taxels = design.sensor.taxels();
+    let report = Report { design: &design.name, bank: out, taxels, replaced };
+    let text = |report: &Report<'_>| {
+        let dead = match replaced {
+            [] => "no taxel replaced".to_owned(),
+            replaced => format!("taxels {replaced:?} replaced"),
+        };
+        let (name, out) = (report.design, out.display());
+        format!(
+            "{name}: {taxels} gains and offsets, {dead}: {out}\nnext: load_calibration(\"{out}\") of the board's driver\n"
+        )
+    };
+    Ok(json_or(&report, *json, text)?.into())
+}

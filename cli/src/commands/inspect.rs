@@ -1,0 +1,272 @@
+//! `sptfra inspect`: a design's figures before anything is written.
+
+use std::error::Error;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use golden::design::{Design, Overrun, PlanKind};
+use golden::progress::Progress;
+use golden::table::Table;
+use hdl_gen::emit::products;
+use hdl_gen::inspection::{contacts, doubled, excess, figures, narrow, shares};
+use hdl_gen::plan::Plan;
+use hdl_gen::plan::energy::Energy;
+use hdl_gen::plan::format::short;
+use hdl_gen::plan::savings::savings;
+
+use crate::arguments::design_file;
+use crate::message;
+
+/// Shows a design's geometry, condition numbers, nonzeros, cycles, memories and multipliers.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  sptfra inspect designs/sensor1-fast.toml --json")]
+pub struct Args {
+    /// Design file (TOML).
+    #[arg(value_parser = design_file())]
+    design: PathBuf,
+    /// Report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Condition number of A Aᵀ above which noise of a thousandth of the stress is no longer a small error of the force.
+const ILL_CONDITIONED: f64 = 1e4;
+/// Second lines stand under the values of the first.
+const INDENT: &str = "               ";
+/// Matrix names in one line of the table.
+const MATRICES_PER_LINE: usize = 7;
+
+/// Plans the design and reports it.
+pub fn run(args: &Args) -> message::Result {
+    let Args { design: path, json } = args;
+    let plan = planned(&Design::load(path)?, path, &Progress::new())?;
+    Ok(report(&plan, *json)?.into())
+}
+
+/// The plan of the design of file `path`.
+pub(super) fn planned(design: &Design, path: &Path, progress: &Progress) -> Result<Plan, Box<dyn Error>> {
+    progress.stage(format!("matrices and plan of {} taxels", design.sensor.taxels()));
+    Plan::new(design).map_err(|error| format!("{}: {error}", path.display()).into())
+}
+
+fn report(plan: &Plan, as_json: bool) -> Result<String, Box<dyn Error>> {
+    if as_json { json_report(plan) } else { Ok(text_report(plan)?) }
+}
+
+fn json_report(plan: &Plan) -> Result<String, Box<dyn Error>> {
+    Ok(serde_json::to_string_pretty(&figures(plan))? + "\n")
+}
+
+fn text_report(plan: &Plan) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
+    writeln!(text, "{}", plan.design.name)?;
+    sensor(&mut text, plan)?;
+    matrices(&mut text, plan)?;
+    reductions(&mut text, plan)?;
+    work(&mut text, plan)?;
+    speed(&mut text, plan)?;
+    text += &plan.estimator.slot().report(&plan.design);
+    resources(&mut text, plan)?;
+    energy(&mut text, plan)?;
+    numbers(&mut text, plan)?;
+    Ok(text)
+}
+
+fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let sensor = &plan.design.sensor;
+    let [x, y] = sensor.pitch_mm;
+    writeln!(out, "\nSensor")?;
+    writeln!(
+        out,
+        "  geometry     {} x {} = {} taxels, pitch {x} x {y} mm, depth {} mm",
+        sensor.columns,
+        sensor.rows,
+        plan.taxels(),
+        sensor.depth_mm
+    )?;
+    // As the design file writes them; those that it does not state are decided by filter and lanes.
+    let design = plan.design.to_toml();
+    let key = |name: &str| design.lines().find_map(|line| line.strip_prefix(name)).unwrap_or("").replace('"', "");
+    writeln!(
+        out,
+        "  design       plan {}, estimator {}, outputs {}",
+        key("plan = "),
+        key("estimator = "),
+        key("outputs = ")
+    )?;
+    if let Some(contacts) = contacts(plan) {
+        writeln!(out, "  contacts     {contacts}")?;
+    }
+    writeln!(
+        out,
+        "  streams      {} bits a beat, samples {}",
+        plan.design.hardware.stream_bits, plan.design.hardware.samples
+    )?;
+    if let Some(curve) = &plan.design.input.curve
+        && let Some(first) = curve.exact_from()
+    {
+        // Three digits of a small one, whole counts of others.
+        let digits = usize::from(first < 100.0);
+        let last = curve.largest_count();
+        writeln!(out, "  curve        power law, exact from {first:.digits$} counts on, saturated from {last:.0} on")?;
+    }
+    let condition = &plan.condition;
+    let thin = plan.design.thin_layer();
+    let verdict = if condition.aat > ILL_CONDITIONED {
+        format!(
+            "ill-conditioned: the depth is {:.2} pitches; a smaller one forgives more noise",
+            sensor.depth_mm / x.min(y)
+        )
+    } else if thin.is_some() {
+        "no noise is amplified, but the layer is too thin, see below".to_owned()
+    } else {
+        "well conditioned".to_owned()
+    };
+    writeln!(out, "  condition    C33 {}, A A^T {}: {verdict}", short(condition.c33), short(condition.aat))?;
+    writeln!(out, "  kernel       {}", plan.estimator.slot().kernel_advice(&plan.design, INDENT))?;
+    if let Some((layer, remedy)) = thin.as_deref().and_then(|thin| thin.split_once(": ")) {
+        writeln!(out, "  thin         {layer}:\n{INDENT}{remedy}")?;
+    }
+    Ok(())
+}
+
+fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let all = plan.taxels() * plan.taxels();
+    let kept: usize = plan.nnz.0.iter().map(|&(_, count)| count).sum();
+    let share = 100.0 * kept as f64 / (all * plan.nnz.0.len()) as f64;
+    // The filter as the design file writes it.
+    let design = plan.design.to_toml();
+    let filter = design.lines().find_map(|line| line.strip_prefix("filter = ")).unwrap_or("");
+    let whose = match plan.design.algorithm.plan {
+        PlanKind::Paper => "Matrices",
+        PlanKind::Reduced => "Matrices of the paper's plan",
+    };
+    writeln!(out, "\n{whose}, filter = {filter}: {share:.1} % of {all} entries each")?;
+    for chunk in plan.nnz.0.chunks(MATRICES_PER_LINE) {
+        let names: String = chunk.iter().map(|(name, _)| format!("{name:>9}")).collect();
+        let counts: String = chunk.iter().map(|(_, count)| format!("{count:>9}")).collect();
+        writeln!(out, "  {names}\n  {counts}")?;
+    }
+    Ok(())
+}
+
+fn reductions(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let steps = savings(plan);
+    let Some(first) = steps.first() else { return Ok(()) };
+    let mut table = Table::new(["Reductions", "MACs a frame", "share", "coefficients in ROM"]);
+    for step in &steps {
+        let share = format!("{:.1} %", 100.0 * step.macs as f64 / first.macs as f64);
+        table.row([step.step.to_owned(), step.macs.to_string(), share, step.coefficients.to_string()]);
+    }
+    write!(out, "\n{}", table.text(0, 0))?;
+    Ok(())
+}
+
+fn work(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let mut table = Table::new(["Products", "entries", "cycles", "busy", "result"]).ending_in_words();
+    for product in products(plan) {
+        table.row([
+            format!("{} of {}", product.matrix, product.operand),
+            product.nnz.to_string(),
+            product.issue_cycles.to_string(),
+            format!("{:.1} %", 100.0 * product.busy),
+            product.result,
+        ]);
+    }
+    write!(out, "\n{}", table.text(0, 0))
+}
+
+fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let clock = plan.design.hardware.clock_mhz;
+    let timeline = &plan.timeline;
+    let busy = 100.0 * plan.schedule.busy_fraction();
+    let rate = clock * 1e6 / timeline.interval_cycles as f64;
+    let faster = match plan.design.hardware.overrun {
+        Overrun::Stall => "",
+        Overrun::Drop => "; of faster ones some are dropped",
+    };
+    let header = [format!("Speed at {clock} MHz"), "cycles".to_owned(), "us".to_owned(), String::new()];
+    let mut table = Table::new(header).ending_in_words();
+    for (what, cycles, remark) in [
+        ("latency", timeline.latency_cycles, "first beat in to last beat out".to_owned()),
+        ("interval", timeline.interval_cycles, format!("between frames, {rate:.0} frames a second{faster}")),
+        ("products", timeline.spmv_cycles, format!("{} busy {busy:.1} %", count(plan.design.hardware.lanes, "lane"))),
+        ("search", timeline.search_cycles, count(plan.estimator.slot().cells().cells, "evaluation cell")),
+    ] {
+        table.row([what.to_owned(), cycles.to_string(), format!("{:.2}", cycles as f64 / clock), remark]);
+    }
+    write!(out, "\n{}", table.text(0, 0))
+}
+
+fn resources(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let resources = &plan.resources;
+    let part = &plan.design.hardware.part;
+    writeln!(out, "\nResources, predicted")?;
+    let (dsp, block) = (resources.dsp, resources.dsp_block.name());
+    write!(out, "  {dsp} {block}, {} RAMB36, {} bits of ROM", resources.bram36, resources.rom_bits)?;
+    match shares(plan) {
+        Some([dsp, bram36]) => writeln!(out, ": {dsp:.1} and {bram36:.1} % of {part}")?,
+        None => writeln!(out)?,
+    }
+    for told in [excess(plan), doubled(plan)].into_iter().flatten() {
+        writeln!(out, "  {told}")?;
+    }
+    let mut table = Table::new(["Memories", "block", "how many", "words", "bits", "RAMB36"]);
+    for memory in &resources.memories {
+        table.row([
+            memory.name.to_owned(),
+            memory.block.to_owned(),
+            memory.count.to_string(),
+            memory.depth.to_string(),
+            memory.width.to_string(),
+            memory.all_bram36().to_string(),
+        ]);
+    }
+    write!(out, "\n{}", table.text(0, 0))
+}
+
+fn energy(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let energy = Energy::of(plan);
+    let rate = plan.design.hardware.clock_mhz * 1e6 / plan.timeline.interval_cycles as f64;
+    let (microjoules, watts) = (energy.fabric_nj / 1e3, energy.watts(rate));
+    writeln!(
+        out,
+        "\nEnergy, estimated: {microjoules:.1} uJ a frame, {watts:.2} W at {rate:.0} frames a second, without static power"
+    )?;
+    writeln!(out, "  from counted products and memory accesses; nothing of it was measured")
+}
+
+fn numbers(out: &mut String, plan: &Plan) -> std::fmt::Result {
+    let hardware = &plan.design.hardware;
+    writeln!(
+        out,
+        "\nNumbers: {}-bit coefficients, {}-bit vectors, 48-bit sums; no stress within full scale overflows them",
+        hardware.coefficient_bits, hardware.data_bits
+    )?;
+    for (what, unit, format) in [
+        ("stress b", "Pa", plan.formats.stress),
+        ("weights |w|", "N", plan.formats.weight),
+        ("g", "N", plan.formats.g),
+        ("u", "Pa", plan.formats.u),
+    ] {
+        let step = format!("2^{}", format.lsb);
+        let worst = short(format.bound as f64 * format.step());
+        writeln!(out, "  {what:<12} steps of {step:<6} {unit:<2}   worst case {worst} {unit}")?;
+    }
+    if plan.scales_frames() {
+        let octaves = 63 - plan.formats.stress.bound.leading_zeros();
+        writeln!(
+            out,
+            "  range        each frame's own: forces are up to 2^{octaves} times as fine where all of it is faint"
+        )?;
+    }
+    if let Some(narrow) = narrow(plan) {
+        writeln!(out, "  {narrow}")?;
+    }
+    Ok(())
+}
+
+/// `1 lane`, `2 lanes`.
+pub fn count(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}

@@ -1,0 +1,180 @@
+//! `sptfra scene`: frames with known forces.
+
+use std::path::{Path, PathBuf};
+
+use golden::design::Design;
+use golden::output::write_whole;
+use golden::progress::Progress;
+use golden::resolved::keep_apart;
+use golden::scene::{Kind, Scene};
+use golden::{forces, frames, geometry};
+use serde::Serialize;
+
+use super::recording::is_standard;
+use crate::arguments::{design_file, rows_file, word};
+use crate::message::{self, json_or};
+
+const SCENE_FILE: &str = r#"Scene file:
+  [sensor]                          # as in the design file
+  columns = 10
+  rows = 10
+  pitch_mm = [4.0, 2.0]
+  depth_mm = 3.0
+  taxel_mm = [3.0, 1.5]             # optional: sides of the part of its cell over which a taxel averages
+
+  [medium]
+  kind = "bonded_layer"             # on a rigid ground, with poisson; or "half_space" without
+  poisson = 0.49
+
+  [[contact]]                       # one table for each contact; their stresses add up
+  shape = "hertz"                   # ellipse: semi_axes_mm; "rectangle", uniform: sides_mm;
+  semi_axes_mm = [7.0, 7.0]         # "disc", uniform, and "punch", flat and rigid: radius_mm
+  centre_mm = [18.0, 9.0]           # from the first taxel
+  normal_force_n = 6.0              # positive when pressing
+  friction = 0.5                    # tangential over normal force
+  direction_deg = 30.0              # of the tangential force, from x towards y
+  turn_deg = 25.0                   # optional, and so are all below: the shape's axes, from x towards y
+  edge = 2.0                        # pressure (1 - rho^2)^edge: soft above 0.5, Hertz's; even at 0; hard below
+  tilt = [0.6, 0.0]                 # of the pressure along and across the push: times 1 + 0.6 u/a + 0 v/b
+  shear = "sliding"                 # friction times pressure; with spin = 1.0 it turns, too, at its edge as fast as it
+                                    # slides. Or "even", the same everywhere; or "held" (shape "hertz"), Mindlin's
+                                    # partial slip, with held = 0.5, the share of the largest tangential force
+
+  [sweep]                           # optional: one frame for each direction, which is
+  direction_deg = { from = 0, to = 350, step = 10 } # added to those of the contacts
+
+  [sensor_errors]                   # optional, and so is every key; applied in this order
+  depth = 0.05                      # share by which the layer is deeper than depth_mm says
+  seed = 1                          # of gains and noise
+  gain_spread = 0.01                # standard deviation of the taxels' gains around 1
+  noise = 0.002                     # standard deviation, share of the frame's largest stress
+  quantisation_bits = 12            # of a converter with the range full_scale_pa
+  full_scale_pa = 100000.0
+  dead = [37]                       # taxels that read 0
+  saturated = [58]                  # taxels that read minus full_scale_pa"#;
+
+/// Makes frames of stress from contacts with known forces.
+///
+/// The frames go to FRAMES.csv, one a line, and the true forces to FRAMES.forces.csv, in the columns of `sptfra solve`.
+/// FRAMES.sensor.toml names their sensor: `solve`, `check`, `run` and `view` refuse them for a design of another one.
+///
+/// With --design alone: a round contact in the middle of the design's sensor, friction 0.5, in 36 directions. With --kind
+/// too: contacts that the calibration may not have seen, to test an estimator on.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  sptfra scene scenes/sensor1-hertz.toml --out frames.csv\n  sptfra scene --design pad --kind held --out held.csv",
+    after_long_help = SCENE_FILE
+)]
+pub struct Args {
+    /// Scene file (TOML).
+    #[arg(required_unless_present = "design")]
+    scene: Option<PathBuf>,
+    /// Design file (TOML) whose sensor the frames are for; in counts, if it counts.
+    #[arg(long, value_name = "DESIGN.toml", value_parser = design_file())]
+    design: Option<PathBuf>,
+    /// Contacts of a kind, anywhere on the design's sensor and pushed in any direction, in place of a scene.
+    #[arg(long, value_parser = word::<Kind>(), requires = "design", conflicts_with = "scene")]
+    kind: Option<Kind>,
+    #[command(flatten)]
+    random: RandomContacts,
+    /// Where to write the frames (CSV, or .npy by its ending); `-`: the frames alone, on standard output.
+    #[arg(long, value_name = "FRAMES.csv", value_parser = rows_file())]
+    out: PathBuf,
+    /// Report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct SceneReport<'a> {
+    frames: usize,
+    taxels: usize,
+    frames_file: &'a Path,
+    forces_file: &'a Path,
+    sensor_file: &'a Path,
+}
+
+/// The random choice of contacts of a kind.
+#[derive(Clone, Copy, clap::Args)]
+pub struct RandomContacts {
+    /// Number of frames of --kind.
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=100_000), requires = "kind")]
+    count: u64,
+    /// Friction of contacts of --kind; mixed ones have their own.
+    #[arg(long, value_name = "MU", default_value_t = 0.5, value_parser = friction, requires = "kind")]
+    friction: f64,
+    /// First of the seeds of --kind, one a frame.
+    #[arg(long, value_name = "SEED", default_value_t = 1, value_parser = clap::value_parser!(u64).range(..1 << 32), requires = "kind")]
+    seed: u64,
+}
+
+fn friction(text: &str) -> Result<f64, String> {
+    let friction: f64 = text.parse().map_err(|_| "a number, such as 0.5".to_owned())?;
+    if (0.0..=2.0).contains(&friction) { Ok(friction) } else { Err("from 0 to 2".to_owned()) }
+}
+
+/// Makes the frames with their forces and sensor beside them; for `-` the frames alone, under a comment with their
+/// sensor.
+pub fn run(args: &Args) -> message::Result {
+    let Args { scene, design, kind, random, out, json } = args;
+    let (scene, design, kind) = (scene.as_deref(), design.as_deref(), kind.map(|kind| (kind, *random)));
+    let to_a_pipe = is_standard(out);
+    if to_a_pipe && *json {
+        return Err("--json and --out - both write to standard output; name a file, or leave --json out".into());
+    }
+    let (forces_file, sensor_file) = (forces::reference_path(out), geometry::beside(out));
+    let inputs: Vec<&Path> = [scene, design].into_iter().flatten().collect();
+    if !to_a_pipe {
+        for file in [out.as_path(), &forces_file, &sensor_file] {
+            keep_apart(file, &inputs)?;
+        }
+    }
+    let design = design.map(Design::load).transpose()?;
+    let (sensor, made) = {
+        let _progress = Progress::of("computing the stress");
+        if let (Some((kind, RandomContacts { count, friction, seed })), Some(design)) = (kind, &design) {
+            (design.sensor.clone(), kind.frames(&design.sensor, friction, seed..seed + count)?)
+        } else {
+            let scene = Scene::for_design(scene, design.as_ref())?;
+            (scene.sensor.clone(), scene.frames()?)
+        }
+    };
+    if forces_file == *out {
+        return Err(
+            format!("{}: the true forces would overwrite the frames; choose another name", out.display()).into()
+        );
+    }
+    if !to_a_pipe {
+        // The forces first: a frame file always has its forces and its sensor beside it.
+        forces::write_reference(&forces_file, &made)?;
+        write_whole(&sensor_file, geometry::to_toml(&sensor).as_bytes())?;
+    }
+    let mut stresses: Vec<Vec<f64>> = made.into_iter().map(|frame| frame.stress).collect();
+    if let Some(design) = &design {
+        for frame in &mut stresses {
+            design.deliver(frame);
+        }
+    }
+    if to_a_pipe {
+        return Ok((geometry::remark(&sensor) + &frames::to_text(&stresses)).into());
+    }
+    frames::write_frames(out, &stresses)?;
+    let report = SceneReport {
+        frames: stresses.len(),
+        taxels: sensor.taxels(),
+        frames_file: out,
+        forces_file: &forces_file,
+        sensor_file: &sensor_file,
+    };
+    let text = |report: &SceneReport<'_>| {
+        format!(
+            "{} frames of {} taxels in {}\ntheir true forces in {}\ntheir sensor, {sensor}, in {}\n",
+            report.frames,
+            report.taxels,
+            out.display(),
+            forces_file.display(),
+            sensor_file.display()
+        )
+    };
+    Ok(json_or(&report, *json, text)?.into())
+}

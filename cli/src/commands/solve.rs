@@ -1,0 +1,194 @@
+//! `sptfra solve`: forces from frames.
+
+use std::path::{Path, PathBuf};
+
+use golden::check::check;
+use golden::design::Design;
+use golden::forces;
+use golden::metrics::{BodyErrors, ERROR_NAMES, ErrorSummary, Outcome, Quantiles};
+use golden::progress::Progress;
+use golden::resolved::keep_apart;
+use golden::solver::{Solution, Solver, Status};
+use golden::table::Table;
+use serde::Serialize;
+
+use super::recording::{Recording, is_standard, warn};
+use super::solve_lines;
+use crate::arguments::{design_file, rows_file};
+use crate::message::{self, Message, json_or, say};
+
+const ALGORITHM: &str = r#"In the design file, what changes the result:
+  [sensor]                          # besides the geometry, for frames in counts:
+  pa_per_count = -12.5              # pascals of one count, negative where larger counts press
+  calibration = "calibration.csv"   # a line gain,offset for each taxel: Pa = (gain * count + offset) * pa_per_count
+  curve = "curve.csv"               # in place of pa_per_count: lines count,pascals; or { power = 1.25, scale = -0.0066 }
+  dead = [44, 45]                   # taxels that read nothing, up to 8: others replace them; so does gain 0
+
+  [algorithm]
+  plan = "reduced"                  # the paper's result from ten folded matrices, the default without a filter; or
+                                    # "paper": thirteen matrices
+  kernel = "point"                  # point forces, as in the paper, for layers of half a pitch and more. Or "cell":
+                                    # forces spread over a cell of the grid, for thinner ones; F_z is right without a gain
+  filter = { kind = "none" }        # or { kind = "f1", l = 40 }: l diagonals removed on either side;
+                                    # { kind = "f2", p = 30 }: kept is |B_ij| >= row maximum / (1000 p);
+                                    # { kind = "f3", ... }: a filter for each matrix, see `sptfra tune-filter --help`
+  estimator = "line"                # the paper's; or "joint", better, see `sptfra calibrate --help`
+  outputs = "field"                 # or "resultants": no field; reduced plan only
+  noise_floor_pa = 1.5              # stress below which a taxel tells nothing; full scale / 65536 if absent"#;
+
+/// Computes forces from frames in double precision.
+///
+/// A line of FORCES.csv has, for one frame: status, `F_x`, `F_y`, `F_z`, mu, phi, `mu_x`, `mu_y`, and with --field then
+/// `f_x`, `f_y`, `f_z` of each taxel. Newtons and radians.
+///
+/// With `--out -` the lines go to standard output, each as soon as its frame is there. With `--frames -`, from standard
+/// input, the command is a filter for frames as they come from a sensor. The first frames are checked.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  sptfra solve pad --frames frames.csv --out forces.csv", after_long_help = ALGORITHM)]
+pub struct Args {
+    /// Design file (TOML).
+    #[arg(value_parser = design_file())]
+    design: PathBuf,
+    /// Frames (CSV or .npy), one a line, in pascals, compression negative, or in counts; `-`: standard input.
+    #[arg(long, value_name = "FRAMES.csv")]
+    frames: PathBuf,
+    /// Columns of labels before the values of a frame; the file may then have a header.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    labels: usize,
+    /// Where to write the forces (CSV, or .npy by its ending); `-`: standard output.
+    #[arg(long, value_name = "FORCES.csv", value_parser = rows_file())]
+    out: PathBuf,
+    /// Write the forces of each taxel too.
+    #[arg(long)]
+    field: bool,
+    /// True forces of the same frames (CSV, as `sptfra scene` writes them), to report the errors.
+    #[arg(long, value_name = "FORCES.csv")]
+    reference: Option<PathBuf>,
+    /// Report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct StatusCount {
+    status: u32,
+    meaning: String,
+    frames: usize,
+}
+
+#[derive(Serialize)]
+struct SolveReport<'a> {
+    design: &'a str,
+    frames: usize,
+    forces_file: &'a Path,
+    status_counts: Vec<StatusCount>,
+    /// Errors against the true forces, in percent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    errors: Option<ErrorSummary>,
+    /// Those of each body, where the design tells several apart and the true forces do so too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bodies: Option<BodyErrors>,
+}
+
+/// Solves frames and writes the forces, or prints them as they come.
+pub fn run(args: &Args) -> message::Result {
+    let Args { design, frames, labels, out, field, reference, json } = args;
+    let (frames, reference) = (&Recording { file: frames, labels: *labels }, reference.as_deref());
+    if is_standard(out) {
+        if reference.is_some() || *json {
+            return Err("--out -: standard output has the forces alone; name a file with --reference and --json".into());
+        }
+        return solve_lines::run(design, frames, *field).map(|()| Message::default());
+    }
+    if is_standard(frames.file) {
+        return Err("--frames -: forces of standard input go to standard output; write --out - too".into());
+    }
+    let named = Design::files_named_in(design)?;
+    let inputs = [Some(design.as_path()), Some(frames.file), reference].into_iter().flatten();
+    keep_apart(out, &inputs.chain(named.iter().map(AsRef::as_ref)).collect::<Vec<_>>())?;
+    let design = Design::load(design)?;
+    let frames = frames.read(&design)?;
+    if let Some(reference) = reference {
+        forces::compare_sensor(reference, &design.name, &design.sensor)?;
+    }
+    let truth = reference.map(|path| forces::read_outcomes(path, frames.len())).transpose()?;
+    let bodies = reference
+        .filter(|_| design.algorithm.contacts > 1)
+        .map(|path| forces::read_bodies(path, frames.len(), &design.sensor))
+        .transpose()?
+        .flatten();
+    if let Some(thin) = design.thin_layer() {
+        eprintln!("warning: {thin}");
+    }
+    let progress = Progress::of("matrices");
+    let solver = Solver::new(&design)?;
+    progress.counted("solving", frames.len() as u64);
+    let mut workspace = solver.workspace();
+    let mut solutions = vec![Solution::zeros(Status::default(), 0); frames.len()];
+    for (frame, solution) in frames.iter().zip(&mut solutions) {
+        solver.solve_into(&mut workspace, frame, solution)?;
+        progress.step();
+    }
+    drop(progress);
+    forces::write_solutions(out, &solutions, *field)?;
+    warn(&check(&design, &frames, Some(solver.matrices())));
+
+    let report = SolveReport {
+        design: &design.name,
+        frames: solutions.len(),
+        forces_file: out,
+        status_counts: count_statuses(&solutions),
+        errors: truth.map(|truth| {
+            let found = solutions.iter().map(Outcome::from);
+            ErrorSummary::new(&truth.into_iter().zip(found).collect::<Vec<_>>())
+        }),
+        bodies: bodies.map(|truth| BodyErrors::new(truth.iter().zip(&solutions))),
+    };
+    Ok(json_or(&report, *json, text)?.into())
+}
+
+fn count_statuses(solutions: &[Solution]) -> Vec<StatusCount> {
+    let mut words: Vec<u32> = solutions.iter().map(|solution| solution.status.0).collect();
+    words.sort_unstable();
+    words
+        .chunk_by(|a, b| a == b)
+        .map(|equal| StatusCount { status: equal[0], meaning: Status(equal[0]).to_string(), frames: equal.len() })
+        .collect()
+}
+
+fn text(report: &SolveReport<'_>) -> String {
+    let mut text = String::new();
+    say!(text, "{}: forces of {} frames in {}", report.design, report.frames, report.forces_file.display());
+    for count in &report.status_counts {
+        say!(text, "  {:>6} frames: {}", count.frames, count.meaning);
+    }
+    if let Some(errors) = &report.errors {
+        let mut table = Table::new(["errors in %", "max", "std. error"]);
+        for (name, spread) in ERROR_NAMES.iter().zip(errors.spreads()) {
+            table.row([name.to_string(), format!("{:.2}", spread.max), format!("{:.2}", spread.standard_error)]);
+        }
+        text += &table.text(0, 0);
+        text.push('\n');
+    }
+    if let Some(bodies) = &report.bodies {
+        say!(text, "{} of {} frames have the right number of bodies", bodies.right, bodies.frames);
+        if bodies.right == 0 {
+            say!(text, "there is no body to compare with a true one");
+            return text;
+        }
+        let mut table = Table::new(["errors of each body", "median", "95 %", "worst"]);
+        let rows = [
+            ("along the surface, %", bodies.tangential),
+            ("normal, %", bodies.normal),
+            ("centre, mm", bodies.centre_mm),
+            ("T_z over F_z, mm", bodies.turn_mm),
+        ];
+        // A file of true forces may have no torques.
+        for (name, Quantiles { median, most, worst }) in rows.into_iter().filter(|(_, of)| !of.worst.is_nan()) {
+            table.row([name.to_owned(), format!("{median:.2}"), format!("{most:.2}"), format!("{worst:.2}")]);
+        }
+        text += &table.text(0, 0);
+        text.push('\n');
+    }
+    text
+}

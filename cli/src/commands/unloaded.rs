@@ -1,0 +1,101 @@
+//! `sptfra check --unloaded`: offset, noise and drift from a recording without load.
+
+use std::path::Path;
+
+use golden::check::{Beyond, beyond};
+use golden::design::Design;
+use golden::output::write_whole;
+use golden::resolved::{folder, keep_apart};
+use golden::rest::{AtRest, TaxelAtRest};
+use serde::Serialize;
+
+use super::recording::Recording;
+use crate::message::{self, say};
+
+#[derive(Serialize)]
+struct Report<'a> {
+    design: &'a str,
+    frames: usize,
+    #[serde(flatten)]
+    rest: &'a AtRest,
+    beyond: Beyond,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    calibration: Option<&'a Path>,
+}
+
+/// Reports what each taxel reads at rest, and writes the calibration that takes it off.
+pub fn run(
+    path: &Path,
+    design: &Design,
+    recording: &Recording,
+    frames: &[Vec<f64>],
+    out: Option<&Path>,
+    json: bool,
+) -> message::Result {
+    let named = |error| format!("{}: {error}", design.name);
+    let rest = AtRest::of(design, frames).map_err(named)?;
+    if let Some(out) = out {
+        let files = Design::files_named_in(path)?;
+        let inputs: Vec<&Path> = files.iter().map(AsRef::as_ref).chain([path, recording.file]).collect();
+        keep_apart(out, &inputs)?;
+        let calibration = rest.calibration(design, frames).map_err(named)?;
+        write_whole(out, calibration.to_csv().as_bytes())?;
+    }
+    for warning in &rest.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let beyond = beyond(design, frames);
+    let report = Report { design: &design.name, frames: frames.len(), rest: &rest, beyond, calibration: out };
+    if json {
+        return Ok((serde_json::to_string_pretty(&report)? + "\n").into());
+    }
+    let mut text = String::new();
+    let counts = if design.input.counts() { "counts" } else { "Pa" };
+    say!(text, "{}: {} frames of {} without load", design.name, frames.len(), recording.file.display());
+    say!(text, "{:>6} {:>9} {:>9} {:>9}", "taxel", "offset", "noise", "drift");
+    for TaxelAtRest { taxel, offset, noise, drift } in &rest.taxels {
+        let kinds = [(&rest.dead, "dead"), (&rest.stuck, "stuck"), (&rest.noisy, "noisy")];
+        let kind = kinds.iter().find(|(taxels, _)| taxels.contains(taxel)).map_or("", |(_, kind)| kind);
+        let line = format!("{taxel:>6} {offset:>9.2} {noise:>9.2} {drift:>9.2}  {kind}");
+        say!(text, "{}", line.trim_end());
+    }
+    say!(text, "In {counts}: the median taxel varies by {:.2} and drifts by {:.2}", rest.noise, rest.drift);
+    for (kind, taxels) in [("Dead", &rest.dead), ("Stuck", &rest.stuck), ("Noisy", &rest.noisy)] {
+        if !taxels.is_empty() {
+            say!(text, "{kind}: {taxels:?}");
+        }
+    }
+    say!(text, "{beyond}");
+    say!(text, "[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
+    if rest.noise_of_full_scale > 0.0 {
+        say!(
+            text,
+            "[algorithm] regularisation = {{ noise = {} }}  # for deep layers; relative to contacts whose largest stress is \
+             full_scale_pa: for those of a tenth of it, ten times that",
+            shown(rest.noise_of_full_scale)
+        );
+    }
+    if let Some(out) = out {
+        let same = folder(out) == folder(path);
+        let name = out.file_name().filter(|_| same).map_or_else(|| out.into(), Into::<std::path::PathBuf>::into);
+        say!(
+            text,
+            "[sensor] calibration = {:?}  # written; the file is found from the design's folder",
+            name.display().to_string()
+        );
+    }
+    Ok(text.into())
+}
+
+/// Rounded up to a tenth, and not to 0.
+fn ceil(pascals: f64) -> f64 {
+    (10.0 * pascals).ceil().max(1.0) / 10.0
+}
+
+/// With two digits, rounded up.
+fn shown(share: f64) -> f64 {
+    let unit = 10_f64.powi(share.log10().floor() as i32 - 1);
+    let digits = (share / unit).ceil();
+    // So that 0.00024 is no 0.00024000000000000003.
+    format!("{:e}", digits * unit).parse::<f64>().map_or(share, |value| (value * 1e9).round() / 1e9).max(1e-9)
+}

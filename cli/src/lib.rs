@@ -1,0 +1,106 @@
+//! The one command, `sptfra`: forces from frames, designs, the hardware and its simulation.
+//!
+//! The program and the Python wheel both call [`run`]. What computes lives in the crates `golden`, `hdl-gen` and
+//! `testbench`; here are options, messages and reports.
+
+pub mod arguments;
+mod commands;
+pub mod manual;
+pub mod message;
+
+use std::ffi::OsString;
+
+use clap::{CommandFactory, Parser, Subcommand};
+
+use commands::{
+    build, calibrate, check, export_calibration, generate, inspect, new, run, scene, solve, sweep, tune_filter, view,
+};
+use manual::Manual;
+use message::Message;
+
+/// Reconstructs three-axis contact forces from the normal stress of a tactile array, in software and in hardware.
+#[derive(Parser)]
+#[command(name = "sptfra", version, after_help = START)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const START: &str = "Example: from a sensor to its forces and its hardware
+  sptfra new pad --columns 10 --rows 10 --pitch-mm 4 2 --depth-mm 3
+  sptfra solve pad --frames frames.csv --out forces.csv
+  sptfra generate pad --out rtl-out/pad
+  sptfra run pad --frames frames.csv";
+
+#[derive(Subcommand)]
+enum Command {
+    New(new::Args),
+    Check(check::Args),
+    Scene(scene::Args),
+    Calibrate(calibrate::Args),
+    TuneFilter(tune_filter::Args),
+    Solve(solve::Args),
+    Inspect(inspect::Args),
+    Generate(generate::Args),
+    Run(run::Args),
+    View(view::Args),
+    Sweep(sweep::Args),
+    ExportCalibration(export_calibration::Args),
+    Build(build::Args),
+    #[command(flatten)]
+    Manual(Manual),
+}
+
+/// Runs the command of a command line, whose first word is the program's name. Prints what it has to say.
+///
+/// Returns the exit code: 0 if all is well, 1 for what is wrong, 2 for a command line that cannot be read.
+pub fn run(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
+    let command = match Arguments::try_parse_from(words) {
+        Ok(arguments) => arguments.command,
+        Err(error) => {
+            // A reader that has gone away is no error.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(2);
+        }
+    };
+    message::show(execute(command))
+}
+
+fn execute(command: Command) -> message::Result {
+    match command {
+        Command::New(args) => new::run(&args).map(Message::from),
+        Command::Check(args) => check::run(&args),
+        Command::Scene(args) => scene::run(&args),
+        Command::Calibrate(args) => calibrate::run(&args),
+        Command::TuneFilter(args) => tune_filter::run(&args),
+        Command::Solve(args) => solve::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Generate(args) => generate::run(&args),
+        Command::Run(args) => run::run(&args),
+        Command::View(args) => view::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
+        Command::ExportCalibration(args) => export_calibration::run(&args),
+        Command::Build(args) => build::run(&args),
+        Command::Manual(manual) => manual.run(Arguments::command()).map(Message::from),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_has_an_example_and_short_lines() {
+        let command = Arguments::command();
+        for sub in command.get_subcommands().filter(|sub| !["man", "completions"].contains(&sub.get_name())) {
+            let help = sub.clone().render_long_help().to_string();
+            assert!(help.contains(&format!("sptfra {}", sub.get_name())), "{} has no example", sub.get_name());
+            assert!(sub.get_about().is_some_and(|about| !about.to_string().contains('\n')), "{}", sub.get_name());
+            for option in sub.get_arguments() {
+                let line = option.get_help().map(ToString::to_string).unwrap_or_default();
+                assert!(!line.is_empty() && line.len() <= 140, "{} --{}: {line}", sub.get_name(), option.get_id());
+            }
+        }
+        command.debug_assert();
+    }
+}

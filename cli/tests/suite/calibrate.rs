@@ -1,0 +1,154 @@
+//! The command, from files to a design that solves.
+
+use std::fs;
+
+use golden::design::Design;
+use golden::frames::write_frames;
+use golden::scene::Kind;
+use tempfile::TempDir;
+
+use crate::support::{sptfra, text};
+use simulated::{Body, Recipe, record, sensor as sensor_of_tests};
+
+#[allow(dead_code, reason = "shared with the tests of the solver, which use all of it")]
+#[path = "../../../golden/tests/suite/recorded/simulated.rs"]
+mod simulated;
+
+#[test]
+fn from_recordings_to_a_design() {
+    let folder = TempDir::new().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let [pad, frames, forces, out, page] =
+        ["pad.toml", "press.npy", "weights.csv", "pad-calibrated.toml", "page.html"].map(file);
+    let sensor = "[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n";
+    fs::write(&pad, format!("name = \"pad\"\n{sensor}tension = \"clipped\"\npa_per_count = -1.0\n")).unwrap();
+    let recipe = Recipe {
+        power: 0.8,
+        scale: 150.0,
+        rest: 40.0,
+        noise: 2.0,
+        places: 10,
+        frames: 2,
+        ..Recipe::new(81, Body::Ball)
+    };
+    let recording = record(&recipe);
+    write_frames(&frames, &recording.frames).unwrap();
+    let lines: String =
+        recording.measured.forces.iter().map(|force| format!("{}\n", -1000.0 * force[2].unwrap())).collect();
+    fs::write(&forces, format!("F_z (mN)\n{lines}")).unwrap();
+    let calibrate = |more: &[&str]| {
+        sptfra(
+            &[
+                &["calibrate", text(&pad), "--frames", text(&frames), "--forces", text(&forces), "--out", text(&out)],
+                more,
+            ]
+            .concat(),
+        )
+    };
+    let output = calibrate(&["--page", text(&page)]);
+    let said = String::from_utf8(output.stdout.clone()).unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    for part in [
+        "pad_calibrated: calibrated design",
+        "determined",
+        "F_z: errs by",
+        "not determined",
+        "friction: no tangential",
+        "next: sptfra solve",
+    ] {
+        assert!(said.contains(part), "no {part:?} in {said}");
+    }
+    let calibrated = Design::load(&out).unwrap();
+    assert!(
+        calibrated.name == "pad_calibrated"
+            && calibrated.input.calibration.is_some()
+            && calibrated.input.curve.is_some()
+    );
+    assert!(file("pad-calibrated.calibration.csv").exists() && file("pad-calibrated.curve.csv").exists());
+    let html = fs::read_to_string(&page).unwrap();
+    assert!(html.starts_with("<!DOCTYPE html>") && html.matches("<svg").count() == 3 && html.ends_with("</html>\n"));
+    // The command that it says runs as it stands.
+    let next = said.lines().last().unwrap().strip_prefix("next: golden ").unwrap();
+    let output = sptfra(&next.split(' ').collect::<Vec<_>>());
+    assert!(output.status.success(), "{output:?}");
+    // Again on its own result, to another name: nothing is left to find.
+    let output = sptfra(&[
+        "calibrate",
+        text(&out),
+        "--frames",
+        text(&frames),
+        "--forces",
+        text(&forces),
+        "--out",
+        text(&file("again.toml")),
+        "--json",
+    ]);
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(report["forces"]["errors"]["median"].as_f64().unwrap() < 4.0, "{report}");
+
+    for (arguments, part) in [
+        (vec!["calibrate", text(&pad), "--frames", text(&frames), "--out", text(&out)], "--forces"),
+        (
+            vec![
+                "calibrate",
+                text(&pad),
+                "--frames",
+                text(&frames),
+                "--forces",
+                text(&forces),
+                "--out",
+                text(&out),
+                "--quick",
+            ],
+            "--quick",
+        ),
+        (
+            vec!["calibrate", text(&pad), "--frames", text(&frames), "--forces", text(&forces), "--out", text(&pad)],
+            "overwrite the input",
+        ),
+        (vec!["calibrate", text(&pad), "--page", text(&page), "--out", text(&out)], "for recordings"),
+    ] {
+        let output = sptfra(&arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.contains(part), "{said}");
+    }
+    let output = calibrate(&["--page", text(&frames)]);
+    assert!(!output.status.success() && String::from_utf8(output.stderr).unwrap().contains("overwrite the input"));
+}
+
+/// What other commands warn of, of the frames as the calibrated design reads them: sign and unit are what was fitted.
+#[test]
+fn frames_of_another_order_are_told_of() {
+    let folder = TempDir::new().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let [pad, frames, forces, out] = ["pad.toml", "press.npy", "weights.csv", "out.toml"].map(file);
+    let sensor = "[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n";
+    fs::write(&pad, format!("name = \"pad\"\n{sensor}tension = \"clipped\"\npa_per_count = 1.0\n")).unwrap();
+    let pressed = Kind::MixedInside.frames(&sensor_of_tests(), 0.5, 0..60).unwrap();
+    let counts = |stress: &Vec<f64>| stress.iter().map(|pascals| (-pascals / 40.0).max(0.0).round()).collect();
+    let mut recording: Vec<Vec<f64>> = pressed.iter().map(|frame| counts(&frame.stress)).collect();
+    let mut lines: String = pressed.iter().map(|frame| format!("{}\n", frame.force[2])).collect();
+    for _ in 0..10 {
+        recording.push(vec![0.0; 78]);
+        lines += "0\n";
+    }
+    fs::write(&forces, format!("F_z (N)\n{lines}")).unwrap();
+    let calibrate = |of: &dyn Fn(&Vec<f64>) -> Vec<f64>| {
+        write_frames(&frames, &recording.iter().map(of).collect::<Vec<_>>()).unwrap();
+        let paths = ["--frames", text(&frames), "--forces", text(&forces), "--out", text(&out)];
+        let output = sptfra(&[&["calibrate", text(&pad)], &paths[..]].concat());
+        assert!(output.status.success(), "{output:?}");
+        let [said, warned] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        assert!(said.contains("sign: pressing changes the readings the other way"), "{said}");
+        warned
+    };
+    assert_eq!(calibrate(&Clone::clone), "");
+    let transposed = |frame: &Vec<f64>| (0..78).map(|at| frame[(at % 13) * 6 + at / 13]).collect();
+    let warned = calibrate(&transposed);
+    assert!(warned.starts_with("warning: ") && warned.contains("column after column"), "{warned}");
+    // One that is broken.
+    let dead =
+        |frame: &Vec<f64>| frame.iter().enumerate().map(|(taxel, &v)| if taxel == 38 { 0.0 } else { v }).collect();
+    let warned = calibrate(&dead);
+    assert!(warned.contains("38 (2, 6)"), "{warned}");
+}

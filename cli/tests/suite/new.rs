@@ -1,0 +1,87 @@
+//! What `sptfra new` takes of a sensor, and what it says of it.
+
+use std::fs;
+
+use golden::design::{Design, InputRange};
+use hdl_gen::plan::Plan;
+
+use crate::generate::good;
+use crate::support::sptfra_in;
+
+/// What is said of a new design, and the design.
+fn new(options: &[&str]) -> (String, Design) {
+    let folder = tempfile::tempdir().unwrap();
+    let said = good(folder.path(), &[&["new", "pad"], options].concat());
+    (said, Design::load(&folder.path().join("pad.toml")).unwrap())
+}
+
+#[test]
+fn a_pitch_is_one_number_or_two() {
+    for pitch in [&["3.4"][..], &["3.4", "3.4"], &["3.4,3.4"]] {
+        let (said, design) = new(&[&["--estimator", "line", "--pitch-mm"], pitch].concat());
+        assert_eq!(design.sensor.pitch_mm.map(f64::to_bits), [3.4_f64.to_bits(); 2]);
+        assert!(said.contains("taxels of 3.4 x 3.4 mm"), "{said}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (pitch, part) in
+        [(&["4,4,4"][..], "3 lengths; give one or two"), (&["wide"], "as 4 2 or 4,2"), (&["nan"], "nan")]
+    {
+        let output = sptfra_in(folder.path(), &[&["new", "pad", "--pitch-mm"], pitch].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.contains(part), "{said}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is written");
+}
+
+#[test]
+fn what_was_not_said_is_told() {
+    let (said, _) = new(&["--estimator", "line", "--rows", "8"]);
+    let assumed = "Not said, and taken from the paper's first sensor: --columns 10, --pitch-mm 4 2, --depth-mm 3\n";
+    assert!(said.contains("10 x 8 taxels of 4 x 2 mm, 3 mm deep") && said.contains(assumed), "{said}");
+    let all = ["--columns", "6", "--rows", "6", "--pitch-mm", "4", "--depth-mm", "3", "--estimator", "line"];
+    assert!(!new(&all).0.contains("Not said"));
+    // What a count is worth, and which way it goes.
+    let (counts, _) = new(&[&all[..], &["--counts", "12"]].concat());
+    assert!(
+        counts.contains(": --full-scale-pa 100000, a guess") && counts.contains("Larger counts are taken to press"),
+        "{counts}"
+    );
+    let (counts, _) = new(&[&all[..], &["--counts", "12", "--full-scale-pa", "60000"]].concat());
+    assert!(!counts.contains("Not said") && counts.contains("Larger counts are taken to press"), "{counts}");
+}
+
+/// What docs/estimators.md says of a new design beside `sensor1-fast`, which has neither.
+#[test]
+fn a_range_for_each_frame_and_counted_contacts_cost_some_latency() {
+    let (_, design) = new(&[]);
+    let mut plain = design.clone();
+    plain.hardware.range = InputRange::FullScale;
+    plain.algorithm.count_contacts = false;
+    let [new, plain] = [design, plain].map(|design| Plan::new(&design).unwrap().timeline);
+    assert_eq!([new.latency_cycles - plain.latency_cycles, new.interval_cycles], [31, plain.interval_cycles]);
+}
+
+/// The errors that are told are those of the sensor at hand.
+#[test]
+fn a_new_design_tells_how_far_to_trust_it() {
+    let of_depth = |depth: &str| {
+        let (said, design) = new(&["--columns", "8", "--rows", "8", "--pitch-mm", "4", "--depth-mm", depth]);
+        let text = said.split("err by ").nth(1).and_then(|rest| rest.split(" % of the normal force").next());
+        let told: f64 = text.expect("errors").parse().unwrap();
+        let found = hdl_gen::new_design::errors(&design).expect("frames").median;
+        assert!((told - found).abs() < 0.06, "{told} {found}");
+        (said, told)
+    };
+    let (said, usual) = of_depth("3");
+    assert!((1.0..6.0).contains(&usual) && !said.contains("warning"), "{said}");
+    // By the kernel "point" it would be over 20.
+    let (said, thin) = of_depth("1");
+    assert!(thin > usual && thin < 20.0 && said.contains("\nwarning: the layer is 0.25 of a pitch thin"), "{said}");
+    for (depth, kernel) in [("2", "point"), ("1.9", "cell")] {
+        let (said, design) = new(&["--pitch-mm", "4", "--depth-mm", depth]);
+        assert_eq!(design.algorithm.kernel.to_string(), kernel, "{depth}");
+        assert_eq!(said.contains("kernel = \"cell\""), kernel == "cell", "{said}");
+    }
+    let (said, deep) = of_depth("12");
+    assert!(deep > usual && said.contains("`regularisation`"), "{said}");
+}

@@ -1,0 +1,186 @@
+//! Filters and constants that are found from frames.
+
+use std::fs;
+use std::path::Path;
+
+use golden::design::Design;
+use tempfile::TempDir;
+
+use super::{folder_with, row};
+use crate::support::{sptfra, text, workspace};
+
+#[test]
+fn choose_then_solve() {
+    let folder = TempDir::new().unwrap();
+    let [design, resolved, table] = ["pad.toml", "resolved.toml", "c.csv"].map(|name| folder.path().join(name));
+    let scene = "[medium]\nkind = \"half_space\"\n[[contact]]\nshape = \"rectangle\"\nsides_mm = [7.0, 6.0]\n\
+        centre_mm = [6.0, 4.0]\nnormal_force_n = 2.0\nfriction = 0.4\n\
+        [sweep]\ndirection_deg = { from = 0, to = 315, step = 45 }\n";
+    let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+    fs::write(folder.path().join("scene.toml"), format!("{sensor}{scene}")).unwrap();
+    let filter = "[algorithm]\nfilter = { kind = \"f3\", scenes = [\"scene.toml\"] }\n";
+    fs::write(&design, format!("name = \"pad\"\n{sensor}{filter}")).unwrap();
+
+    let (_frames_folder, frames) = folder_with(&row("-900"));
+    let out = folder.path().join("out.csv");
+    let solve = |design: &Path| sptfra(&["solve", text(design), "--frames", text(&frames), "--out", text(&out)]);
+    let refused = solve(&design);
+    assert!(!refused.status.success());
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(said.contains("sptfra tune-filter") && said.lines().count() == 1, "{said}");
+
+    let output = sptfra(&["tune-filter", text(&design), "--out", text(&resolved), "--csv", text(&table), "--json"]);
+    assert!(output.status.success(), "{output:?}");
+    assert!(output.stderr.is_empty(), "progress belongs on a terminal");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&report["design"], &report["frames"]), (&"pad".into(), &8.into()));
+    let candidates = report["candidates"].as_array().unwrap();
+    let lines = fs::read_to_string(&table).unwrap();
+    assert_eq!(lines.lines().count(), 1 + 13 * 10);
+    assert_eq!(lines.lines().next(), Some("matrix,filter,nnz,e_mu,e_mu_nnz,chosen"));
+    for (line, candidate) in lines.lines().skip(1).zip(candidates) {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(
+            (cells[0], cells[1]),
+            (candidate["matrix"].as_str().unwrap(), candidate["filter"].as_str().unwrap())
+        );
+        assert_eq!(cells[2].parse::<u64>().unwrap(), candidate["nnz"].as_u64().unwrap());
+        assert_eq!(cells[5] == "1", candidate["chosen"].as_bool().unwrap());
+        let choice = format!("\n{} = \"{}\"\n", cells[0], cells[1]);
+        assert_eq!(fs::read_to_string(&resolved).unwrap().contains(&choice), cells[5] == "1", "{choice}");
+    }
+    assert!(solve(&resolved).status.success());
+
+    // From the resolved design, to another folder: the scenes are found from there, and the choices are the same.
+    let elsewhere = folder.path().join("elsewhere");
+    fs::create_dir(&elsewhere).unwrap();
+    let again = elsewhere.join("again.toml");
+    let output = sptfra(&["tune-filter", text(&resolved), "--out", text(&again)]);
+    assert!(output.status.success(), "{output:?}");
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("8 frames") && said.contains("all together"), "{said}");
+    let moved = fs::read_to_string(&again).unwrap();
+    assert!(moved.contains("\"../scene.toml\""), "{moved}");
+    assert_eq!(moved.replace("../scene.toml", "scene.toml"), fs::read_to_string(&resolved).unwrap());
+
+    for (arguments, part) in [
+        (vec!["tune-filter", text(&design), "--out", text(&design)], "overwrite the input"),
+        (vec!["tune-filter", text(&design), "--out", text(&again), "--csv", text(&again)], "two names"),
+        (vec!["tune-filter", text(&workspace("designs/small.toml")), "--out", text(&again)], "nothing to choose"),
+    ] {
+        let output = sptfra(&arguments);
+        assert!(!output.status.success(), "{arguments:?}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(part) && said.lines().count() == 1, "{said}");
+    }
+    assert_eq!(fs::read_to_string(&again).unwrap(), moved);
+}
+
+#[test]
+fn a_choice_keeps_the_calibration() {
+    let folder = TempDir::new().unwrap();
+    let [design, gains, out] = ["pad.toml", "gains.csv", "out"].map(|name| folder.path().join(name));
+    let scene = workspace("scenes/sensor1-hertz.toml");
+    let f3 = fs::read_to_string(workspace("designs/sensor1-f3.toml")).unwrap();
+    let start = f3.split("[algorithm.filter]").next().unwrap();
+    let start = start.replace("depth_mm = 3.0", "depth_mm = 3.0\npa_per_count = -0.5\ncalibration = \"gains.csv\"");
+    fs::write(&design, format!("{start}[algorithm.filter]\nkind = \"f3\"\nscenes = [{:?}]\n", text(&scene))).unwrap();
+    fs::write(&gains, "1.25,-3\n".repeat(100)).unwrap();
+    fs::create_dir(&out).unwrap();
+    let resolved = out.join("resolved.toml");
+    let choose = || sptfra(&["tune-filter", text(&design), "--out", text(&resolved)]);
+    // The second time it is there already.
+    for _ in 0..2 {
+        assert!(choose().status.success());
+        let [before, after] = [&design, &resolved].map(|path| golden::design::Design::load(path).unwrap());
+        assert_eq!(before.input, after.input);
+        // Scenes are in pascals: the counts change nothing of the choice.
+        let stored = golden::design::Design::load(&workspace("designs/sensor1-f3.toml")).unwrap();
+        for name in golden::matrices::MatrixName::ALL {
+            assert_eq!(after.algorithm.filter.of(name), stored.algorithm.filter.of(name));
+        }
+    }
+    fs::write(out.join("calibration.csv"), "1.5,-3\n".repeat(100)).unwrap();
+    fs::remove_file(&resolved).unwrap();
+    let refused = choose();
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(!refused.status.success() && message.contains("another folder"), "{message}");
+    assert!(!resolved.exists());
+}
+
+#[test]
+fn calibrate_then_solve() {
+    let folder = TempDir::new().unwrap();
+    let [design, resolved, frames, out] =
+        ["pad.toml", "out/resolved.toml", "f.csv", "out.csv"].map(|name| folder.path().join(name));
+    fs::create_dir(folder.path().join("out")).unwrap();
+    fs::write(folder.path().join("gains.csv"), "1.25,-3\n".repeat(12)).unwrap();
+    let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\npa_per_count = 2.0\n\
+                  calibration = \"gains.csv\"\n";
+    fs::write(&design, format!("name = \"pad\"\n{sensor}[algorithm]\nestimator = \"joint\"\n")).unwrap();
+    fs::write(&frames, row("-900")).unwrap();
+
+    let calibrate = |more: &[&str]| {
+        sptfra(&[&["calibrate", text(&design), "--out", text(&resolved), "--quick", "--hidden", "3"], more].concat())
+    };
+    let output = calibrate(&["--json", "--seed", "9"]);
+    assert!(output.status.success(), "{output:?}");
+    assert!(output.stderr.is_empty(), "progress belongs on a terminal");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let written = fs::read_to_string(&resolved).unwrap();
+    assert!(written.contains("seed 9") && written.contains("\nfile = \"resolved.weights.csv\"\n"), "{written}");
+    let weights = resolved.with_file_name("resolved.weights.csv");
+    assert_eq!(fs::read_to_string(&weights).unwrap().lines().count(), 4, "a header and three hidden units");
+    let before = Design::load(&design).unwrap();
+    let Design { algorithm, input, .. } = Design::load(&resolved).unwrap();
+    assert_eq!(input, before.input, "the file of gains is there too");
+    let found = algorithm.joint;
+    assert_eq!(found.correction.unwrap().hidden.len(), 3);
+    // JSON is read with an error in the last digit.
+    let near = |said: &serde_json::Value, found: f64| (said.as_f64().unwrap() - found).abs() < 1e-12;
+    assert!(near(&report["gain"], found.gain) && near(&report["tangential"][1], found.tangential[1]), "{report}");
+    let solve = |design: &Path| sptfra(&["solve", text(design), "--frames", text(&frames), "--out", text(&out)]);
+    assert!(solve(&resolved).status.success());
+    let calibrated = fs::read_to_string(&out).unwrap();
+    assert!(solve(&design).status.success());
+    assert_ne!(calibrated, fs::read_to_string(&out).unwrap());
+
+    let said = String::from_utf8(calibrate(&[]).stdout).unwrap();
+    assert!(said.contains("gain") && said.contains("mu |mu|^2") && said.contains("weights"), "{said}");
+    // Another design's weights are not written over.
+    let other = resolved.with_file_name("other.toml");
+    fs::rename(&weights, resolved.with_file_name("other.weights.csv")).unwrap();
+    fs::write(&resolved, fs::read_to_string(&resolved).unwrap().replace("resolved.w", "other.w")).unwrap();
+    for (arguments, part) in [
+        (vec!["calibrate", text(&resolved), "--out", text(&other)], "overwrite the input"),
+        (vec!["calibrate", text(&design), "--out", text(&design)], "overwrite the input"),
+        (vec!["calibrate", text(&workspace("designs/small.toml")), "--out", text(&out)], "nothing to calibrate"),
+    ] {
+        let output = sptfra(&arguments);
+        assert!(!output.status.success(), "{arguments:?}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(part) && said.lines().count() == 1, "{said}");
+    }
+}
+
+#[test]
+fn one_command_fits_the_constants_to_a_changed_sensor() {
+    let folder = TempDir::new().unwrap();
+    let [pad, fitted] = ["pad.toml", "pad-calibrated.toml"].map(|name| folder.path().join(name));
+    let sensor = "[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+    let stale = "[algorithm]\nestimator = \"joint\"\ngain = 1.1\n\
+        fitted_to = \"6 x 5 taxels of 4 x 2 mm, 3 mm deep, point, 0\"\n";
+    fs::write(&pad, format!("name = \"pad\"\n{sensor}{stale}")).unwrap();
+    let frames = folder.path().join("f.csv");
+    let output = sptfra(&["scene", "--design", text(&pad), "--out", text(&frames)]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    let command = said.split('`').nth(1).unwrap_or_else(|| panic!("no command in: {said}")).to_owned();
+    let mut words = command.split(' ');
+    assert_eq!(words.next(), Some("sptfra"));
+    let arguments: Vec<&str> = words.chain(["--hidden", "0", "--quick"]).collect();
+    let output = sptfra(&arguments);
+    assert!(output.status.success(), "{output:?}");
+    let design = Design::load(&fitted).unwrap();
+    assert_eq!(design.name, "pad_calibrated", "a design of its own");
+    assert!(design.algorithm.joint.fitted_to.is_some_and(|sensor| sensor.contains("4 x 4 mm")));
+}

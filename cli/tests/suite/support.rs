@@ -1,0 +1,45 @@
+//! Shared by the commands' tests: the program, files of the workspace, designs.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use golden::design::Design;
+
+/// A file of the workspace.
+pub fn workspace(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join(path)
+}
+
+/// One of the designs that come with the project, by its file name without the ending.
+pub fn shipped(file: &str) -> Design {
+    Design::load(&workspace(&format!("designs/{file}.toml"))).expect("a good design")
+}
+
+/// The program.
+pub fn program() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_sptfra"))
+}
+
+/// The program's answer.
+pub fn sptfra(arguments: &[&str]) -> Output {
+    program().args(arguments).output().expect("starts")
+}
+
+/// The program's answer in a folder.
+pub fn sptfra_in(folder: &Path, arguments: &[&str]) -> Output {
+    program().current_dir(folder).args(arguments).output().expect("starts")
+}
+
+/// A path as text.
+pub fn text(path: &Path) -> &str {
+    path.to_str().expect("UTF-8")
+}
+
+/// A design file's text with every optional key left out but those of `more`, which may open tables.
+pub fn design_text(name: &str, size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f64, more: &str) -> String {
+    format!(
+        "name = \"{name}\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n\
+         {more}\n",
+        size[0], size[1]
+    )
+}

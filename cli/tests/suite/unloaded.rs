@@ -1,0 +1,99 @@
+//! Recordings without load: the tare that they give.
+
+use std::fs;
+
+use golden::design::Design;
+use golden::frames::write_frames;
+use golden::rest::{AtRest, RestError};
+
+use crate::support::sptfra;
+
+const TAXELS: usize = 78;
+const PA_PER_COUNT: f64 = -24.4;
+
+fn text(more: &str) -> String {
+    format!(
+        "name = \"mat\"\n[sensor]\ncolumns = 6\nrows = 13\npitch_mm = [3.4, 3.4]\ndepth_mm = 3.0\n\
+         pa_per_count = {PA_PER_COUNT}\n{more}"
+    )
+}
+
+fn mat(more: &str) -> Design {
+    Design::from_toml(&text(more), "mat.toml").unwrap()
+}
+
+/// A number from 0 to 1 of two numbers.
+fn uniform(a: usize, b: usize) -> f64 {
+    let mut bits = (a as u64) << 32 ^ b as u64 ^ 0x9e37_79b9_7f4a_7c15;
+    for _ in 0..2 {
+        bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        bits ^= bits >> 31;
+    }
+    (bits >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Nearly Gaussian, of deviation 1.
+fn noise(frame: usize, taxel: usize) -> f64 {
+    (0..12).map(|part| uniform(frame * TAXELS + taxel, part)).sum::<f64>() - 6.0
+}
+
+/// Offsets from 20 to 100 counts.
+fn offset(taxel: usize) -> f64 {
+    20.0 + 80.0 * uniform(taxel, 99)
+}
+
+fn frames(count: usize, reads: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    (0..count).map(|frame| (0..TAXELS).map(|taxel| reads(frame, taxel).round() + 0.0).collect()).collect()
+}
+
+#[test]
+fn the_calibration_takes_the_offsets_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [design, rest, out] = ["mat.toml", "rest.csv", "mat.calibration.csv"].map(path);
+    fs::write(&design, text("calibration = \"gains.csv\"\n")).unwrap();
+    let gains: String = (0..TAXELS).map(|taxel| format!("{},1.0\n", 1.0 + 0.001 * taxel as f64)).collect();
+    fs::write(path("gains.csv"), gains).unwrap();
+    let recording =
+        frames(100, |frame, taxel| if taxel == 9 { 0.0 } else { offset(taxel) + 2.0 * noise(frame, taxel) });
+    write_frames(rest.as_ref(), &recording).unwrap();
+    let asked = ["check", &design, "--frames", &rest, "--unloaded", "--out", &out];
+    let said = sptfra(&asked);
+    let lines = String::from_utf8(said.stdout).unwrap();
+    assert!(said.status.success() && said.stderr.is_empty(), "{:?}", String::from_utf8(said.stderr));
+    for part in
+        ["Dead: [9]", "noise_floor_pa = 1", "noise = 0.0", "calibration = \"mat.calibration.csv\"", "No readings"]
+    {
+        assert!(lines.contains(part), "no {part:?} in: {lines}");
+    }
+    let report: serde_json::Value =
+        serde_json::from_slice(&sptfra(&[&asked[..], &["--json"]].concat()).stdout).unwrap();
+    assert_eq!((&report["dead"][0], report["taxels"].as_array().unwrap().len()), (&serde_json::json!(9), TAXELS));
+    assert_eq!(report["beyond"]["readings"], 0);
+
+    // The design reads it, and is tared.
+    fs::write(&design, text("calibration = \"mat.calibration.csv\"\n")).unwrap();
+    let tared = Design::load(design.as_ref()).unwrap();
+    assert_eq!(tared.input.dead, [9]);
+    for taxel in (0..TAXELS).filter(|taxel| *taxel != 9) {
+        let mean = recording.iter().map(|frame| tared.input.to_pa(taxel, frame[taxel])).sum::<f64>() / 100.0;
+        assert!(mean.abs() < 1e-6, "{taxel}: {mean}");
+        let gain = tared.input.calibration.as_ref().unwrap().gain[taxel];
+        assert!((gain - 1.0 - 0.001 * taxel as f64).abs() < 1e-12, "{gain}");
+    }
+    // Not over a file that the design names, and not for pascals.
+    let said = sptfra(&asked);
+    assert!(!said.status.success(), "{said:?}");
+    fs::write(&design, text("").replace(&format!("pa_per_count = {PA_PER_COUNT}\n"), "")).unwrap();
+    let other = path("other.csv");
+    let said = sptfra(&["check", &design, "--frames", &rest, "--unloaded", "--out", &other]);
+    let wrong = String::from_utf8(said.stderr).unwrap();
+    assert!(!said.status.success() && wrong.contains("pa_per_count"), "{wrong}");
+    assert!(!std::path::Path::new(&other).exists());
+    // More dead ones than can be replaced.
+    let many = frames(100, |frame, taxel| if taxel < 9 { 0.0 } else { offset(taxel) + 2.0 * noise(frame, taxel) });
+    let design = mat("");
+    let found = AtRest::of(&design, &many).unwrap();
+    assert_eq!(found.calibration(&design, &many).unwrap_err(), RestError::Dead(9, 8));
+}

@@ -1,0 +1,26 @@
+//! The tasks, one file each.
+
+pub mod bench;
+pub mod cells;
+pub mod corner_cases;
+pub mod mutants;
+pub mod solver;
+pub mod stress;
+
+use std::path::PathBuf;
+
+use sptfra::arguments::design_file;
+
+/// Options of the tasks that draw at random.
+#[derive(clap::Args)]
+pub struct SeededArgs {
+    /// Design file (TOML).
+    #[arg(value_parser = design_file())]
+    design: PathBuf,
+    /// Decides everything that is random.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Report as JSON.
+    #[arg(long)]
+    json: bool,
+}

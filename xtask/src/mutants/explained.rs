@@ -1,0 +1,66 @@
+//! Survivors that somebody has looked into.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use thiserror::Error;
+
+use super::Mutation;
+
+/// Changes of which it is known why no comparison can notice them, or why none does. As a file: a TOML table
+/// `[[survivor]]` for each, with the keys `file`, `before`, `after` (as `cargo xtask mutants` prints them) and `why`.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Explained {
+    #[serde(default)]
+    survivor: Vec<Survivor>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Survivor {
+    file: String,
+    before: String,
+    after: String,
+    why: String,
+}
+
+/// Why a file of explanations cannot be used.
+#[derive(Debug, Error)]
+pub enum ExplainedError {
+    /// It cannot be read.
+    #[error("cannot read {}: {source}", .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It is not as it should be.
+    #[error("{}: {source}", .path.display())]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and where.
+        source: Box<toml::de::Error>,
+    },
+}
+
+impl Explained {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`ExplainedError`] with the file, and the line where there is one.
+    pub fn load(path: &Path) -> Result<Self, ExplainedError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ExplainedError::Read { path: path.to_owned(), source })?;
+        toml::from_str(&text).map_err(|source| ExplainedError::Form { path: path.to_owned(), source: Box::new(source) })
+    }
+
+    /// Why this change is not noticed, if that is known. The line's number does not count: lines move.
+    pub fn why(&self, mutation: &Mutation) -> Option<&str> {
+        let known =
+            |of: &&Survivor| of.file == mutation.file && of.before == mutation.before && of.after == mutation.after;
+        self.survivor.iter().find(known).map(|survivor| survivor.why.as_str())
+    }
+}
