@@ -202,7 +202,7 @@ fn faults_in_the_rtl_are_noticed() {
 fn streams_with_pauses_faults_and_resets_are_counted() {
     let mut design = by_plan(shipped("odd"), PlanKind::Reduced, Outputs::Field);
     design.name += "_counting";
-    design.algorithm.count_bodies = true;
+    design.algorithm.count_contacts = true;
     let report = stress(&design, &stress::Options { frames: 600, seed: 3 }, &Progress::hidden());
     let report = report.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(report.sent, report.answered.plus(report.lost_to_resets));
