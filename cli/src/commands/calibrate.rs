@@ -14,6 +14,8 @@ use super::calibrate_recorded::{self, Recordings};
 use crate::arguments::{design_file, word};
 use crate::message::{self, json_or, say};
 
+const EXAMPLE: &str = "Example:\n  sptfra calibrate pad --out pad-calibrated.toml\n  sptfra calibrate pad --frames weights.csv --forces weights.forces.csv --out pad-fitted.toml";
+
 const CALIBRATE_FILES: &str = r#"FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (N); any of them may be missing, blanks are
 unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
 load, with the force 0, give the offsets. PRESSURES.csv: pressure (kPa), one line a frame.
@@ -45,10 +47,7 @@ In RESOLVED.toml, besides:
 /// that were left out, and what it does not, which stays as the design has it. With --uniform and --pressures: gains and
 /// curve from a bladder's pressure. Both may be given.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  sptfra calibrate pad --out pad-calibrated.toml\n  sptfra calibrate pad --frames weights.csv --forces weights.forces.csv --out pad-fitted.toml",
-    after_long_help = CALIBRATE_FILES
-)]
+#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{CALIBRATE_FILES}"))]
 pub struct Args {
     /// Design file (TOML).
     #[arg(value_parser = design_file())]

@@ -11,6 +11,8 @@ use serde::Serialize;
 use crate::arguments::design_file;
 use crate::message::{self, json_or};
 
+const EXAMPLE: &str = "Example:\n  sptfra export-calibration pad --out pad.bank.csv";
+
 const BANK_FILE: &str = r#"BANK.csv: a header line, gain,offset,taxel 37,taxel 38, that names the dead taxels; then a line for each taxel: its gain
 (0 of a dead one), its offset in counts, and its weight in the stress of each dead taxel. Of a design with a curve offsets
 are in pascals, and a header count,pascals and its points follow. A design can name the file, as sensor.calibration and as
@@ -32,7 +34,7 @@ In the design file:
 /// the stress of the dead taxels that the design names. `load_calibration` of the Python driver reads the file. Nothing
 /// is synthesized again.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  sptfra export-calibration pad --out pad.bank.csv", after_long_help = BANK_FILE)]
+#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{BANK_FILE}"))]
 pub struct Args {
     /// Design file (TOML), with the calibration and the dead taxels of today.
     #[arg(value_parser = design_file())]

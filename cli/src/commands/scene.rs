@@ -14,6 +14,8 @@ use super::recording::is_standard;
 use crate::arguments::{design_file, rows_file, word};
 use crate::message::{self, json_or};
 
+const EXAMPLE: &str = "Example:\n  sptfra scene scenes/sensor1-hertz.toml --out frames.csv\n  sptfra scene --design pad --kind held --out held.csv";
+
 const SCENE_FILE: &str = r#"Scene file:
   [sensor]                          # as in the design file
   columns = 10
@@ -61,10 +63,7 @@ const SCENE_FILE: &str = r#"Scene file:
 /// With --design alone: a round contact in the middle of the design's sensor, friction 0.5, in 36 directions. With --kind
 /// too: contacts that the calibration may not have seen, to test an estimator on.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  sptfra scene scenes/sensor1-hertz.toml --out frames.csv\n  sptfra scene --design pad --kind held --out held.csv",
-    after_long_help = SCENE_FILE
-)]
+#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{SCENE_FILE}"))]
 pub struct Args {
     /// Scene file (TOML).
     #[arg(required_unless_present = "design")]

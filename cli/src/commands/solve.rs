@@ -17,6 +17,8 @@ use super::solve_lines;
 use crate::arguments::{design_file, rows_file};
 use crate::message::{self, Message, json_or, say};
 
+const EXAMPLE: &str = "Example:\n  sptfra solve pad --frames frames.csv --out forces.csv";
+
 const ALGORITHM: &str = r#"In the design file, what changes the result:
   [sensor]                          # besides the geometry, for frames in counts:
   pa_per_count = -12.5              # pascals of one count, negative where larger counts press
@@ -44,7 +46,7 @@ const ALGORITHM: &str = r#"In the design file, what changes the result:
 /// With `--out -` the lines go to standard output, each as soon as its frame is there. With `--frames -`, from standard
 /// input, the command is a filter for frames as they come from a sensor. The first frames are checked.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  sptfra solve pad --frames frames.csv --out forces.csv", after_long_help = ALGORITHM)]
+#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{ALGORITHM}"))]
 pub struct Args {
     /// Design file (TOML).
     #[arg(value_parser = design_file())]

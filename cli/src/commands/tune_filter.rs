@@ -14,6 +14,8 @@ use serde::Serialize;
 use crate::arguments::design_file;
 use crate::message::{self, json_or, say};
 
+const EXAMPLE: &str = "Example:\n  sptfra tune-filter designs/sensor1-f3.toml --out tuned.toml";
+
 const CHOOSE_FILES: &str = r#"In the design file:
   [algorithm]
   filter = { kind = "f3", scenes = ["../scenes/sensor1-hertz.toml"] } # relative to the design file
@@ -31,10 +33,7 @@ percent (e_mu, mean over the frames), e_mu * Nnz, and 1 for the candidate chosen
 /// of the design's reference scenes. Chooses the least product of friction error and entries kept. Hardware is then
 /// generated from RESOLVED.toml without a search.
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  sptfra tune-filter designs/sensor1-f3.toml --out tuned.toml",
-    after_long_help = CHOOSE_FILES
-)]
+#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{CHOOSE_FILES}"))]
 pub struct Args {
     /// Design file (TOML).
     #[arg(value_parser = design_file())]

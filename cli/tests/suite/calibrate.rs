@@ -68,7 +68,7 @@ fn from_recordings_to_a_design() {
     let html = fs::read_to_string(&page).unwrap();
     assert!(html.starts_with("<!DOCTYPE html>") && html.matches("<svg").count() == 3 && html.ends_with("</html>\n"));
     // The command that it says runs as it stands.
-    let next = said.lines().last().unwrap().strip_prefix("next: golden ").unwrap();
+    let next = said.lines().last().unwrap().strip_prefix("next: sptfra ").unwrap();
     let output = sptfra(&next.split(' ').collect::<Vec<_>>());
     assert!(output.status.success(), "{output:?}");
     // Again on its own result, to another name: nothing is left to find.

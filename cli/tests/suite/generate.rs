@@ -84,12 +84,13 @@ fn several_contacts_change_no_hardware() {
         |name: &str| -> serde_json::Value { serde_json::from_str(&good(here, &["inspect", name, "--json"])).unwrap() };
     assert_eq!(json("several.toml")["contacts"], 3);
     assert!(json("one.toml").get("contacts").is_none());
-    let files = ["one", "several"].map(|name| {
+    let [one, several] = ["one", "several"].map(|name| {
         good(here, &["generate", &format!("{name}.toml"), "--out", name]);
-        contents(&here.join(name))
+        let mut files = contents(&here.join(name));
+        files.retain(|path, _| path.starts_with("rtl/sptfra_") || path.starts_with("rom/"));
+        files
     });
-    let [one, several] = files.each_ref().map(|files| files.iter().filter(|(path, _)| path.starts_with('r')));
-    assert!(one.eq(several), "Verilog and ROM files differ");
+    assert!(one.len() > 20 && one == several, "Verilog or ROM files differ");
 }
 
 /// Deeper than 1.5 pitches a new design is regularised: without it there would be no hardware.
