@@ -13,7 +13,7 @@ use super::{Line, commands, lines, lines_of};
 use crate::support::workspace;
 
 /// What is not run here, by how the line begins, and why.
-const ELSEWHERE: [(&str, &str); 28] = [
+const ELSEWHERE: [(&str, &str); 29] = [
     ("make ", "installs tools, builds all, or takes minutes; the targets are looked up"),
     ("cargo ", "builds all, or runs tests of minutes; topics are looked up"),
     ("export ", "of the shell that the next lines are typed into"),
@@ -42,6 +42,7 @@ const ELSEWHERE: [(&str, &str); 28] = [
     ("drivers/c/examples/", "likewise"),
     ("python3 drivers/python/forces.py", "likewise"),
     ("python3 forces.py", "on a board"),
+    ("python3 -m venv", "installs tools"),
 ];
 /// Likewise, with a name that a user puts in.
 const PLACEHOLDERS: [&str; 1] = ["DESIGN.toml"];

@@ -68,7 +68,7 @@ fn model(folder: &Path) -> Vec<Vec<u32>> {
 fn the_recipe_comes_to_forces_on_the_terminal() {
     let desk = desk();
     let page = fs::read_to_string(workspace(PAGE)).expect("readable");
-    let on_the_board = page.lines().position(|line| line == "## On the board").expect("its part");
+    let on_the_board = page.lines().position(|line| line == "## Make the bitstream").expect("its part");
     let mut printed = Vec::new();
     for line in lines_of(&workspace(PAGE)).iter().filter(|line| line.number < on_the_board) {
         let output = bash(desk.path(), &line.text);
