@@ -158,7 +158,7 @@ synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside t
 	@$(CARGO) build --quiet -p xtask
 	@tools/synth.sh $(DESIGN)
 
-# Times are measured with a release build. The page is the source of several files in results/.
+# Times are measured with a release build. tools/results.py writes its files in results/.
 BENCH_FOLDER  := $(TARGET)/bench
 BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml sensor1-joint.toml \
 	sensor1-fast.toml bed-mat.toml)
@@ -167,7 +167,7 @@ BENCH_DESIGNS := designs/sensor1-reduced.toml designs/sensor2-reduced.toml desig
 BENCH_CELLS   := sensor1-reduced sensor1-reduced-64 sensor1-resultants sensor1-fast sensor1-fast-64
 
 .PHONY: bench
-bench: tools ## Measure solver, generator, simulation, cycles and cells, and write target/benchmarks.md (Yosys: half an hour)
+bench: tools ## Measure solver, generator, simulation, cycles and cells, into results/ (Yosys: half an hour)
 	@echo 'bench: a release build'
 	@$(CARGO) build --quiet --release -p sptfra -p xtask --bins
 	@echo 'bench: Yosys, five designs'
@@ -179,7 +179,8 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, and wri
 	@echo 'bench: generator, simulation, cycles (some minutes)'
 	@$(XTASK_RELEASE) bench $(BENCH_DESIGNS) --solver $(BENCH_FOLDER)/solver.json \
 	    $(foreach design,$(BENCH_CELLS),--cells $(TARGET)/synth/$(subst -,_,$(design)).cells.json) \
-	    --page $(TARGET)/benchmarks.md --plot docs/figures/latency.svg
+	    --plot docs/figures/latency.svg --json > $(BENCH_FOLDER)/figures.json
+	@python3 tools/results.py bench $(BENCH_FOLDER)/figures.json
 
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep
@@ -199,8 +200,9 @@ report-full: tools build ## The same over every combination of filters, plans, w
 	@$(BIN)/sptfra sweep $(SWEEP_DESIGNS) --scene $(SWEEP_SCENES) --out $(SWEEP_FOLDER) --full
 
 .PHONY: corner-cases
-corner-cases: tools ## Sensors, contacts and frames at the limits, all through the RTL (minutes): target/hard-cases.md
-	@$(XTASK) corner-cases --page $(TARGET)/hard-cases.md --plot docs/figures/depth.svg
+corner-cases: tools ## Sensors, contacts and frames at the limits, all through the RTL (minutes): results/corner-cases.csv
+	@$(XTASK) corner-cases --plot docs/figures/depth.svg --json > $(TARGET)/corner-cases.json
+	@python3 tools/results.py corner-cases $(TARGET)/corner-cases.json
 
 .PHONY: sweep-tools
 sweep-tools: tools ## Install Snakemake into .venv, for sweeps on more than one machine
