@@ -225,6 +225,20 @@ typedef struct {
  * of four bytes. */
 int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *result);
 
+/* What separates the contacts of a frame that the core marks by SPTFRA_SEVERAL_CONTACTS: on Linux the library of
+ * drivers/solver, on bare metal a function of the program. `frame` is what was sent, words_in words; `result` has the
+ * frame's number and the version of the calibration (generation) that it was computed by. Returns SPTFRA_OK or any other
+ * code. */
+typedef struct {
+    void *context;
+    int (*separate)(void *context, const sptfra_result *result, const void *frame);
+} sptfra_separator;
+
+/* As sptfra_decode, and hands a marked frame to the separator. `frame` is the one that the words answer: the buffer of
+ * sptfra_start, or sptfra_queue_frame. Returns the separator's code. */
+int sptfra_decode_and_separate(const sptfra_shape *shape, const void *words, const void *frame,
+    const sptfra_separator *separator, sptfra_result *result);
+
 /* ---- Calibration in RAM (calibration = "ram" in the design), in sptfra_calibration.c and sptfra_bank.c; from files by
  * sptfra_file.h */
 

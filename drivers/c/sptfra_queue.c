@@ -254,6 +254,11 @@ int sptfra_queue_take(sptfra_queue *queue, const void **answer, uint32_t polls)
     return SPTFRA_OK;
 }
 
+const void *sptfra_queue_frame(const sptfra_queue *queue)
+{
+    return queue->held ? at(queue, queue->stress + queue->next_out * queue->stride_in) : NULL;
+}
+
 void sptfra_queue_acknowledge(const sptfra_queue *queue)
 {
     if (queue->device != NULL) {

@@ -52,6 +52,9 @@ int sptfra_queue_send(sptfra_queue *queue);
 /* Waits for the answer to the oldest frame, asking at most so many times: words_out words, the caller's until the next
  * call but sptfra_queue_send and _room. SPTFRA_NOT_STARTED if no frame is on its way. */
 int sptfra_queue_take(sptfra_queue *queue, const void **answer, uint32_t polls);
+/* The frame that the caller's answer is the answer to, words_in words as they were sent, as long as that is the caller's;
+ * else NULL. */
+const void *sptfra_queue_frame(const sptfra_queue *queue);
 /* Lets the DMA's interrupts come again. To wait by them: this, then _take with 0 polls, and if that is SPTFRA_TIMEOUT wait
  * for the interrupt, and once more from the beginning. */
 void sptfra_queue_acknowledge(const sptfra_queue *queue);

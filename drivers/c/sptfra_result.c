@@ -82,3 +82,14 @@ int sptfra_decode(const sptfra_shape *shape, const void *words, sptfra_result *r
     result->field = shape->has_field ? values + SPTFRA_SUMMARY_WORDS : NULL;
     return SPTFRA_OK;
 }
+
+int sptfra_decode_and_separate(const sptfra_shape *shape, const void *words, const void *frame,
+    const sptfra_separator *separator, sptfra_result *result)
+{
+    const int code = sptfra_decode(shape, words, result);
+
+    if (code != SPTFRA_OK || !(result->status & SPTFRA_SEVERAL_CONTACTS)) {
+        return code;
+    }
+    return frame == NULL ? SPTFRA_NOT_STARTED : separator->separate(separator->context, result, frame);
+}

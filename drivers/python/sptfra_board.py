@@ -9,6 +9,8 @@
     forces = sensor.reconstruct(frames)          # frames: (n, rows, columns) or (rows, columns), pascals or counts
     forces.resultant, forces.field, forces.status
     forces.contacts                              # how many; the forces are those of all together
+    for indices, found in separate(forces, frames, sptfra.Solver(design)):      # of each, by software
+        found.records["F_z"]                     # (len(indices), contacts)
 
 `core` is the IP with the register bank (`control = true` in the design): anything with `read(offset)` and
 `write(offset, value)`. A core without one is `None`, and the design's metadata.json says what it is:
@@ -28,7 +30,7 @@ import zlib
 import numpy as np
 from sptfra_bank import bank_words, curve_length, curve_words, map_words, read_calibration, read_curve
 from sptfra_dma import Batches, OneByOne
-from sptfra_forces import LAYOUT, Forces, Layout, Status, decode
+from sptfra_forces import LAYOUT, Forces, Layout, Status, decode, separate
 from sptfra_identity import Counters, Identity
 from sptfra_registers import (
     CALIBRATION_BUSY,
@@ -40,7 +42,7 @@ from sptfra_registers import (
     Register,
 )
 
-__all__ = ["LAYOUT", "CalibrationError", "Counters", "Event", "Forces", "Identity", "Layout", "Register", "Sptfra", "Status"]
+__all__ = ["LAYOUT", "CalibrationError", "Counters", "Event", "Forces", "Identity", "Layout", "Register", "Sptfra", "Status", "separate"]
 
 MOST_TARE_LOG2 = 10
 

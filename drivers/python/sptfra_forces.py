@@ -4,6 +4,7 @@
 import enum
 import json
 import pathlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -165,3 +166,23 @@ def decode(words, rows, columns, has_field, layout=LAYOUT):
         field=field,
         units={array: layout.units[name] for array, name in _OF.items() if has_field or array != "field"},
     )
+
+
+def separate(forces, frames, solver):
+    """The forces of each contact, by software, of the frames that the core marks by `SEVERAL_CONTACTS`.
+
+    `frames` are those that `Sptfra.reconstruct` was given for these forces. `solver` has `solve(frames)`, as the
+    `sptfra.Solver` of a design with `contacts = N`; or it maps versions of the calibration (`generation`) to solvers.
+    Yields, for each version, the indices of its marked frames and what its solver returns for them. Raises ValueError
+    on another number of frames, KeyError for a version without a solver.
+    """
+    count = len(forces.status)
+    frames = np.asarray(frames)
+    if frames.ndim == 0 or len(frames) != count and count != 1:
+        raise ValueError(f"frames of shape {frames.shape} for the forces of {count}")
+    frames = frames.reshape(count, -1)
+    marked = np.flatnonzero(forces.status & Status.SEVERAL_CONTACTS)
+    for version in np.unique(forces.generation[marked]):
+        indices = marked[forces.generation[marked] == version]
+        of_version = solver[int(version)] if isinstance(solver, Mapping) else solver
+        yield indices, of_version.solve(frames[indices])

@@ -107,6 +107,40 @@ static void check_shapes(const sptfra_shape *shape)
     CHECK(strncmp(sptfra_error(SPTFRA_BAD_SHAPE), "words_out is not", 16) == 0);
 }
 
+/* What a separator was given. */
+static unsigned marked;
+static const void *marked_frame;
+static uint16_t marked_number;
+
+static int separate(void *context, const sptfra_result *result, const void *frame)
+{
+    ++*(unsigned *)context;
+    marked_number = result->number;
+    marked_frame = frame;
+    return -77;
+}
+
+/* A frame of more than one contact goes to the separator, whose code comes back; no other does. */
+static void check_separator(const sptfra_shape *shape)
+{
+    const sptfra_separator separator = {&marked, separate};
+    const unsigned before = marked;
+    const uint32_t status = force_words[0];
+    sptfra_result result;
+
+    force_words[0] = status & ~(uint32_t)SPTFRA_SEVERAL_CONTACTS;
+    CHECK(sptfra_decode_and_separate(shape, force_words, stress_words, &separator, &result) == SPTFRA_OK);
+    CHECK(marked == before && result.number == status >> 16);
+    force_words[0] = status | SPTFRA_SEVERAL_CONTACTS;
+    CHECK(sptfra_decode_and_separate(shape, force_words, stress_words, &separator, &result) == -77);
+    CHECK(marked == before + 1 && marked_frame == stress_words && marked_number == status >> 16);
+    CHECK(sptfra_decode_and_separate(shape, force_words, NULL, &separator, &result) == SPTFRA_NOT_STARTED);
+    CHECK(sptfra_decode_and_separate(shape, (const char *)force_words + 2, stress_words, &separator, &result)
+        == SPTFRA_BAD_BUFFER);
+    CHECK(marked == before + 1);
+    force_words[0] = status;
+}
+
 static void check_result(const sptfra_shape *shape)
 {
     sptfra_result result;
@@ -122,6 +156,7 @@ static void check_result(const sptfra_shape *shape)
     CHECK(memcmp(result.friction_xy, values + 10, 8) == 0 && memcmp(&result.standard_error, values + 12, 4) == 0);
     CHECK((result.contacts | result.generation << 8 | result.replaced << 16) == (int)force_words[13]);
     CHECK(result.field == (shape->has_field ? values + shape->words_out - 3 * shape->columns * shape->rows : NULL));
+    check_separator(shape);
     for (bit = 0; bit < 16; bit++) {
         CHECK((sptfra_status_name(bit) != NULL) == (bit < 13));
     }

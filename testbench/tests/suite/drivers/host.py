@@ -6,6 +6,7 @@
 FRAMES as in host.c. Prints what the core is, and PASS.
 """
 
+import dataclasses
 import json
 import os
 import pathlib
@@ -18,7 +19,7 @@ import numpy as np
 ALL = os.environ.get("SPTFRA_TEST_ALL", "0") != "0"
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[4] / "drivers" / "python"))
-from sptfra_board import LAYOUT, Event, Layout, Sptfra, Status  # noqa: E402
+from sptfra_board import LAYOUT, Event, Layout, Sptfra, Status, separate  # noqa: E402
 from sptfra_desk import CORE, Block, Machine, Overlay, allocate  # noqa: E402
 
 
@@ -52,6 +53,34 @@ def check_lengths(metadata):
     broken.write_text(json.dumps(told))
     if "field" in [value["name"] for value in told["output"]]:
         assert "do not fit" in refused(ValueError, lambda: Layout.load(broken))
+
+
+class Echo:
+    """In place of a solver: returns its own name and the frames that it is given."""
+
+    def __init__(self, name):
+        self.name = name
+
+    def solve(self, frames):
+        return self.name, frames
+
+
+def check_separation(forces, stress):
+    """Marked frames, and no others, go to the solver of their version."""
+    bit = np.uint16(Status.SEVERAL_CONTACTS)
+    status, generation = forces.status & ~bit, np.zeros_like(forces.generation)
+    status[[1, 4, 6]] |= bit
+    generation[4:] = 3
+    marked = dataclasses.replace(forces, status=status, generation=generation)
+    flat = stress.reshape(len(stress), -1)
+    found = list(separate(marked, stress, {0: Echo("old"), 3: Echo("new")}))
+    assert [(list(indices), name) for indices, (name, _) in found] == [([1], "old"), ([4, 6], "new")]
+    assert all(np.array_equal(frames, flat[indices]) for indices, (_, frames) in found)
+    (both,) = separate(dataclasses.replace(marked, generation=0 * generation), flat, Echo("one"))
+    assert list(both[0]) == [1, 4, 6]
+    assert list(separate(dataclasses.replace(forces, status=status & ~bit), stress, None)) == []
+    refused(KeyError, lambda: list(separate(marked, stress, {0: Echo("old")})))
+    refused(ValueError, lambda: list(separate(marked, stress[1:], Echo("old"))))
 
 
 def main():
@@ -100,6 +129,7 @@ def main():
     assert bool(bad) == (identity.samples == np.float32)  # no integer is NaN
     assert all("NOT_FINITE" in forces.names(index) for index in bad)
     assert "NOT_FINITE" not in forces.names(0)
+    check_separation(forces, stress)
     assert forces.units["resultant"] == "N" and forces.units["torque"] == "N m" and forces.units["friction"] == ""
     arrays = {name for name, value in vars(forces).items() if isinstance(value, np.ndarray)}
     assert forces.units.keys() == arrays, forces.units

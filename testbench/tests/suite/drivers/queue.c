@@ -82,13 +82,15 @@ static void send(sptfra_queue *queue, const sptfra_shape *shape)
     expected[waiting++] = frame;
 }
 
-/* The answer is that to the oldest frame, word by word. */
-static void check(const sptfra_shape *shape, const uint32_t *answer)
+/* The answer is that to the oldest frame, word by word, and the queue still has that frame. */
+static void check(const sptfra_queue *queue, const sptfra_shape *shape, const uint32_t *answer)
 {
     const uint32_t *words = answers[expected[0]];
+    const void *frame = sptfra_queue_frame(queue);
 
     CHECK((answer[0] & 0xFFFFu) == (words[0] & 0xFFFFu));
     CHECK(memcmp(answer + 2, words + 2, 4u * (shape->words_out - 2u)) == 0);
+    CHECK(frame != NULL && memcmp(frame, frames[expected[0]], 4u * (size_t)shape->words_in) == 0);
     waiting--;
     memmove(expected, expected + 1, waiting * sizeof expected[0]);
 }
@@ -180,7 +182,7 @@ int main(int count, char **arguments)
             }
             code = sptfra_queue_take(&queue, &answer, what < 310 ? 0 : POLLS);
             if (code == SPTFRA_OK) {
-                check(&shape, answer);
+                check(&queue, &shape, answer);
                 taken++;
                 continue;
             }
@@ -206,7 +208,7 @@ int main(int count, char **arguments)
         send(&queue, &shape);
         sent++;
         CHECK(sptfra_queue_take(&queue, &answer, POLLS) == SPTFRA_OK);
-        check(&shape, answer);
+        check(&queue, &shape, answer);
         taken++;
         CHECK((machine_read(system, MACHINE_DMA + 0x04) & machine_read(system, MACHINE_DMA + 0x34) & EVENTS) != 0);
         sptfra_queue_acknowledge(&queue);

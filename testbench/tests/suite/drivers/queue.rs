@@ -56,6 +56,8 @@ fn a_wrong_queue_is_noticed() {
         ("        return SPTFRA_DROPS;\n", ""),
         ("    queue->failed = 1;\n    if (depth", "    if (depth"),
         ("queue->forces + slot * queue->stride_out)\n", "queue->forces)\n"),
+        // Another frame than the one that is answered.
+        ("queue->stress + queue->next_out * queue->stride_in", "queue->stress"),
     ]) {
         let text = fs::read_to_string(workspace("drivers/c/sptfra_queue.c")).expect("is there");
         assert_eq!(text.matches(right).count(), 1, "{right}");
