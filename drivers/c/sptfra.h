@@ -129,7 +129,7 @@ typedef struct {
 
 int sptfra_count(const sptfra *device, sptfra_counters *counters);
 
-/* Resets the core without cutting a packet, see docs/control.md. Frames inside are lost; the packet going out still
+/* Resets the core without cutting a packet, see docs/reference/registers.md. Frames inside are lost; the packet going out still
  * needs a transfer that takes it. With a queue SPTFRA_QUEUE_ONLY: sptfra_queue_recover does it. */
 int sptfra_soft_reset(sptfra *device, uint32_t polls);
 

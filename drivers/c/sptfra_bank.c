@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* See sptfra_bank.h, and docs/control.md for the words of a bank. */
+/* See sptfra_bank.h, and docs/reference/registers.md for the words of a bank. */
 #include "sptfra_bank.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* Calibration in RAM and tare: see sptfra.h, and docs/control.md for the words of a bank. */
+/* Calibration in RAM and tare: see sptfra.h, and docs/reference/registers.md for the words of a bank. */
 #include "sptfra_bank.h"
 
 #define ALL_ERRORS 0x3Fu

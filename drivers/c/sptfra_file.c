@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* See sptfra_file.h, and docs/formats.md for the files. */
+/* See sptfra_file.h, and docs/reference/files.md for the files. */
 #include "sptfra_file.h"
 #include "sptfra_lines.h"
 #include "sptfra_private.h"

@@ -171,7 +171,7 @@ class Batches(Transfers):
         """Resets the DMA, and lets both channels wait at the beginning of the first half."""
         self._reset(timeout)
         if not self._dma.read(SEND + STATUS) & HAS_DESCRIPTORS:
-            raise RuntimeError("the DMA has no descriptors: make the system with the word queue (docs/vivado.md)")
+            raise RuntimeError("the DMA has no descriptors: make the system with the word queue (docs/how-to/vivado.md)")
         self._next = 0
         for channel in (SEND, RECEIVE):
             self._write_address(channel + FIRST, self._halves[0].place(channel, 0))

@@ -13,7 +13,7 @@ import numpy as np
 
 
 class Status(enum.IntFlag):
-    """Status bits of a frame; what each means stands in `docs/formats.md`."""
+    """Status bits of a frame; what each means stands in `docs/reference/status-bits.md`."""
 
     NO_CONTACT = 1
     DIRECTION_UNKNOWN = 2

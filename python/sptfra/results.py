@@ -18,7 +18,7 @@ class Finding(NamedTuple):
     """One thing that is suspicious in frames, with its likely cause and what to change."""
 
     #: What it is about: empty, rest, range, sign, no_tension, tension, tare, dead, order, stuck or bodies
-    #: (`docs/formats.md`).
+    #: (`docs/reference/status-bits.md`).
     kind: str
     message: str
 

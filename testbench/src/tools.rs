@@ -22,7 +22,7 @@ pub enum ToolError {
     /// The virtual environment holds no such tool.
     #[error(
         "{tool} not found in {}: run `make tools` in a checkout, or set {TOOLS_VARIABLE} to a virtual environment that has it \
-         (docs/releases.md)",
+         (docs/reference/commands.md)",
         places(.searched)
     )]
     NotInEnvironment {

@@ -71,7 +71,7 @@ fn the_testbench_runs_in_icarus_and_verilator() {
     }
 }
 
-/// As docs/vivado.md has it.
+/// As docs/how-to/vivado.md has it.
 #[test]
 fn the_testbench_runs_as_a_binary_of_verilator() {
     let folder = Folder::small();
