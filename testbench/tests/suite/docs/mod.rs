@@ -253,7 +253,7 @@ fn the_site_has_every_page_and_finds_its_words() {
         assert!(made.is_file(), "{} is missing", made.display());
     }
     let index = fs::read_to_string(site.join("search/search_index.json")).expect("readable");
-    for word in ["taxel", "skid buffer", "Cramér-Rao", "device-tree"] {
+    for word in ["taxel", "skid buffer", "ridge regression", "device-tree"] {
         assert!(index.contains(word), "the search does not know {word}");
     }
     // Pages with wide tables and long commands fit a telephone too.
