@@ -52,6 +52,18 @@ pub enum Violation {
         /// When.
         cycle: u64,
     },
+    /// An answer went on beyond its length.
+    #[error("cycle {cycle}: the answer to frame {frame} has {excess} words too many: no m_axis_tlast after {longest} words")]
+    NoEnd {
+        /// When the word too many was taken.
+        cycle: u64,
+        /// Position of its packet in the traffic.
+        frame: usize,
+        /// Words beyond the longest answer so far.
+        excess: usize,
+        /// Words of the longest answer.
+        longest: usize,
+    },
     /// A frame came out that no frame in accounts for.
     #[error("cycle {cycle}: the core sends a frame that nothing was sent in for")]
     UnexpectedFrame {

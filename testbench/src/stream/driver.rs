@@ -211,6 +211,13 @@ impl<'a> Driver<'a> {
             return Err(Violation::Keep { cycle: self.cycle, beat }.into());
         }
         self.words.extend((0..kept).map(|place| (beat.data >> (32 * place)) as u32));
+        let longest = self.traffic.longest_answer;
+        if self.words.len() > longest {
+            // An answer may begin while its packet is still coming in.
+            let frame = self.inside.front().map_or(self.packet, |&(packet, _)| packet);
+            let excess = self.words.len() - longest;
+            return Err(Violation::NoEnd { cycle: self.cycle, frame, excess, longest }.into());
+        }
         if beat.last {
             let mut words = std::mem::take(&mut self.words);
             if self.traffic.drops {

@@ -6,7 +6,9 @@ mod pattern;
 
 use std::ops::Range;
 
+use golden::design::MAX_SIDE;
 use hdl_gen::plan::timing;
+use hdl_gen::plan::words::SUMMARY_WORDS;
 use thiserror::Error;
 
 pub use check::{Checker, Violation};
@@ -14,6 +16,9 @@ pub use driver::exchange;
 pub use pattern::{Gate, Mode, Pattern};
 
 use crate::dut::DutError;
+
+/// Words of the longest answer that any design has: the summary, then three forces for each of 64 x 64 taxels.
+const LONGEST_ANSWER: usize = SUMMARY_WORDS + 3 * MAX_SIDE * MAX_SIDE;
 
 /// Reset before the first packet, in cycles.
 pub const INITIAL_RESET: u64 = 8;
@@ -64,6 +69,8 @@ pub struct Traffic<'a> {
     pub drops: bool,
     /// Give up after so many cycles without a handshake on either stream.
     pub timeout: u64,
+    /// Most 32-bit words of an answer: a core whose answer has no end must not run for ever.
+    pub longest_answer: usize,
 }
 
 impl<'a> Traffic<'a> {
@@ -77,7 +84,14 @@ impl<'a> Traffic<'a> {
             resets: &[],
             drops: false,
             timeout,
+            longest_answer: LONGEST_ANSWER,
         }
+    }
+
+    /// To a core whose answers have so many 32-bit words.
+    #[must_use]
+    pub fn with_longest_answer(self, words: usize) -> Self {
+        Self { longest_answer: words, ..self }
     }
 
     /// With the pauses of a mode.

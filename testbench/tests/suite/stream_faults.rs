@@ -40,3 +40,15 @@ fn two_answers() {
     let error = run(4, Pattern::Free).expect_err("must be caught");
     assert!(matches!(error, StreamError::Violation(Violation::UnexpectedFrame { .. })), "{error}");
 }
+
+#[test]
+fn an_answer_without_an_end() {
+    let packets = packets(6);
+    let traffic = Traffic::new(&packets, TIMEOUT).with_longest_answer(4);
+    let error = exchange(&mut load(5), &traffic, |_| ()).expect_err("must be caught");
+    assert!(matches!(error, StreamError::Violation(Violation::NoEnd { frame: 0, excess: 1, .. })), "{error}");
+    assert!(error.to_string().contains("no m_axis_tlast after 4 words"), "{error}");
+    // Without a plan the longest answer of any design bounds it.
+    let error = exchange(&mut load(5), &Traffic::new(&packets, TIMEOUT), |_| ()).expect_err("must be caught");
+    assert!(matches!(error, StreamError::Violation(Violation::NoEnd { longest: 12_304, .. })), "{error}");
+}

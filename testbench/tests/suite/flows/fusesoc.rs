@@ -71,6 +71,52 @@ fn the_testbench_runs_in_icarus_and_verilator() {
     }
 }
 
+/// A flipped bit of an expected word ends each simulator with an error, and so the flow.
+#[test]
+#[ignore = "twenty seconds: part of `make test-long`"]
+fn a_wrong_word_fails_in_icarus_and_verilator() {
+    let folder = Folder::small();
+    flip_a_bit(&folder);
+    for simulator in ["sim", "sim_verilator"] {
+        let ran = target(&folder, simulator);
+        assert!(!ran.ok && format!("{}{}", ran.stdout, ran.stderr).contains("FAIL: 1 words wrong"), "{ran:?}");
+    }
+}
+
+fn flip_a_bit(folder: &Folder) {
+    let expected = folder.design().join(format!("sim/{NAME}_expected.mem"));
+    let text = fs::read_to_string(&expected).expect("readable");
+    fs::write(&expected, text.replacen("000000000", "000000001", 1)).expect("can be written");
+}
+
+/// Plain `vvp`, without a flow around it.
+#[test]
+fn a_wrong_word_or_a_missing_rom_ends_plain_icarus_with_an_error() {
+    let simulate = |folder: &Folder| {
+        let files = ["-g2005", "-Wall", "-DSIMULATION", "-o", "tb.vvp", "-c", &format!("{NAME}.f")].map(str::to_owned);
+        let mut compile = Command::new("iverilog");
+        compile.args(files).arg(format!("sim/{NAME}_tb.v"));
+        for (parameter, value) in [("ROM_DIR", "rom/"), ("STIMULUS", &stream("stimulus")), ("EXPECTED", &stream("expected"))] {
+            compile.arg(format!("-P{NAME}_tb.{parameter}=\"{value}\""));
+        }
+        run(compile.current_dir(folder.design())).succeeded();
+        run(Command::new("vvp").args(["-n", "tb.vvp"]).current_dir(folder.design()))
+    };
+    let folder = Folder::small();
+    simulate(&folder).succeeded();
+    flip_a_bit(&folder);
+    let ran = simulate(&folder);
+    assert!(!ran.ok && ran.stdout.contains("FAIL: 1 words wrong"), "{ran:?}");
+    let folder = Folder::small();
+    fs::remove_file(folder.design().join(format!("rom/{NAME}_visits.mem"))).expect("can be removed");
+    let ran = simulate(&folder);
+    assert!(!ran.ok && ran.stdout.contains("FAIL: "), "{ran:?}");
+}
+
+fn stream(name: &str) -> String {
+    format!("sim/{NAME}_{name}.mem")
+}
+
 /// As docs/how-to/vivado.md has it.
 #[test]
 fn the_testbench_runs_as_a_binary_of_verilator() {

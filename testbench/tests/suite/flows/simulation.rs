@@ -124,7 +124,7 @@ fn every_fault_is_refused_for_its_reason() {
         (" -runall", "", "xsim failed"),
         (" -snapshot ", " -snap ", "xelab failed"),
         (" -timescale 1ns/1ps", "", "xelab failed"),
-        ("call xvlog -define SIMULATION {*}$rtl $testbench", "", "xelab failed"),
+        ("call xvlog -sv -define SIMULATION {*}$rtl $testbench", "", "xelab failed"),
         ("{*}$rtl $testbench", "{*}$rtl", "xelab failed"),
         ("xsim ${design}_tb", "xsim $design", "xsim failed"),
         // Without its ROMs the core's words are unknown, without its frames the testbench's.

@@ -10,7 +10,7 @@
 module packet_sum #(
     // Prefix of the ROM file names
     parameter ROM_DIR = "",
-    // 1: withdraws tvalid while the sink stalls; 2: changes tdata; 3: never answers; 4: answers twice
+    // 1: withdraws tvalid while the sink stalls; 2: changes tdata; 3: never answers; 4: answers twice; 5: never ends an answer
     parameter FAULT = 0,
     // Cycles between the last word in and the first one out
     parameter DELAY = 5
@@ -41,7 +41,7 @@ module packet_sum #(
 
     assign s_axis_tready = aresetn && state == READ;
     assign m_axis_tvalid = aresetn && state == WRITE && !hidden;
-    assign m_axis_tlast  = beat == 2'd3;
+    assign m_axis_tlast  = beat == 2'd3 && FAULT != 5;
 
     always @* begin
         case (beat)
