@@ -18,6 +18,23 @@ pub struct Frames {
     taxels: usize,
 }
 
+/// An array of double precision with NaN for each masked value, in whose place numpy would hand on what the mask hides;
+/// any other value as it is.
+///
+/// # Errors
+///
+/// What numpy raises.
+pub fn unmasked<'py>(values: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let py = values.py();
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let ma = numpy.getattr(intern!(py, "ma"))?;
+    if !ma.call_method1(intern!(py, "is_masked"), (values,))?.extract::<bool>()? {
+        return Ok(values.clone());
+    }
+    let double = values.call_method1(intern!(py, "astype"), (numpy.getattr(intern!(py, "float64"))?,))?;
+    ma.call_method1(intern!(py, "filled"), (double, f64::NAN))
+}
+
 impl Frames {
     /// A copy of an array of numbers of shape (n, rows, columns) or (n, taxels); (rows, columns) and (taxels,) are one frame.
     ///
@@ -28,7 +45,7 @@ impl Frames {
     pub fn of(design: &Design, frames: &Bound<'_, PyAny>) -> PyResult<Self> {
         let py = frames.py();
         let numpy = py.import(intern!(py, "numpy"))?;
-        let array = numpy.call_method1(intern!(py, "asarray"), (frames,))?;
+        let array = numpy.call_method1(intern!(py, "asarray"), (unmasked(frames)?,))?;
         let dtype = array.getattr(intern!(py, "dtype"))?;
         let kind: String = dtype.getattr(intern!(py, "kind"))?.extract()?;
         if !matches!(kind.as_str(), "f" | "i" | "u") {

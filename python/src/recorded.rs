@@ -8,7 +8,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
 
-use crate::arrays::Frames;
+use crate::arrays::{Frames, unmasked};
 use crate::design::{Design, named_anew};
 use crate::errors::{raised, without_lock};
 
@@ -40,7 +40,7 @@ impl Kind {
         }
         let numpy = py.import(intern!(py, "numpy"))?;
         let double = numpy.getattr(intern!(py, "float64"))?;
-        let array = numpy.call_method1(intern!(py, "asarray"), (measured, double))?;
+        let array = numpy.call_method1(intern!(py, "asarray"), (unmasked(measured)?, double))?;
         let array: PyReadonlyArrayDyn<'_, f64> = array.extract()?;
         let values: Vec<Option<f64>> = array.as_array().iter().map(|&x| (!x.is_nan()).then_some(x)).collect();
         match (self, array.shape()) {

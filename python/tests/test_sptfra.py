@@ -157,6 +157,9 @@ class Solving(unittest.TestCase):
         self.assertEqual([forces.names(index) for index in range(2)], [["NO_CONTACT"], ["NOT_FINITE"]])
         np.testing.assert_array_equal(forces.has(sptfra.Status.NO_CONTACT | sptfra.Status.NOT_FINITE), [True, True, False])
         self.assertFalse(forces.field[:2].any())
+        # What a mask hides is not sent.
+        hidden = np.ma.array(np.zeros((3, 12)) + self.frames[0].ravel(), mask=np.isnan(frames))
+        np.testing.assert_array_equal(self.solver.solve(hidden).has(sptfra.Status.NOT_FINITE), [False, True, False])
         # The driver of a board has the same bits.
         driver = (ROOT / "drivers" / "python" / "sptfra_forces.py").read_text(encoding="utf-8")
         for bit in sptfra.Status:

@@ -154,13 +154,22 @@ pub fn icarus_runtime() -> Result<Command, ToolError> {
     on_path("vvp", "iverilog")
 }
 
-/// The C++ compiler: `$CXX` if set, else `g++`, else `c++`.
+/// The C++ compiler: `$CXX` if set, with arguments as in `ccache g++`, else `g++`, else `c++`.
 ///
 /// # Errors
 /// [`ToolError::NotOnPath`] if there is none.
 pub fn cxx() -> Result<Command, ToolError> {
-    match env::var_os("CXX").filter(|name| !name.is_empty()) {
-        Some(name) => Ok(Command::new(name)),
+    let chosen = env::var_os("CXX").filter(|name| !name.is_empty());
+    match chosen {
+        // A path with blanks is one program, as build tools have it; otherwise blanks separate arguments.
+        Some(name) if Path::new(&name).is_file() => Ok(Command::new(name)),
+        Some(name) => {
+            let words = name.to_string_lossy().into_owned();
+            let mut words = words.split_whitespace();
+            let mut command = Command::new(words.next().unwrap_or("g++"));
+            command.args(words);
+            Ok(command)
+        }
         None => on_path("g++", "g++").or_else(|_| on_path("c++", "g++")),
     }
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use golden::design::Design;
 use golden::progress::Progress;
 use hdl_gen::emit::boards::Board;
-use hdl_gen::emit::emit_for;
+use hdl_gen::emit::{Options, Prefix, emit_for};
 use hdl_gen::inspection::{excess_on, warnings};
 use hdl_gen::write::{check_folder, write_folder};
 
@@ -27,6 +27,9 @@ pub struct Args {
     /// File of your own board, for block design and device tree; its keys are those of hdl-gen/boards/zcu102.toml.
     #[arg(long = "board", value_name = "FILE")]
     boards: Vec<PathBuf>,
+    /// Prefix of the library's module names, for two cores of different versions in one project.
+    #[arg(long, value_name = "NAME_")]
+    prefix: Option<Prefix>,
 }
 
 /// A user's own board, from its file.
@@ -39,7 +42,7 @@ fn own_board(path: &Path) -> Result<Board, Box<dyn Error>> {
 
 /// Writes the folder, for the user's own boards too.
 pub fn run(args: &Args) -> message::Result {
-    let Args { design: path, out, boards } = args;
+    let Args { design: path, out, boards, prefix } = args;
     let progress = Progress::new();
     let design = Design::load(path)?;
     let own = boards.iter().map(|board| own_board(board)).collect::<Result<Vec<_>, _>>()?;
@@ -53,7 +56,7 @@ pub fn run(args: &Args) -> message::Result {
     check_folder(&folder)?;
     let plan = super::inspect::planned(&design, path, &progress)?;
     progress.stage("Verilog and ROM files".to_owned());
-    let files = emit_for(&plan, &own)?;
+    let files = emit_for(&plan, &Options { boards: own.clone(), prefix: prefix.clone() })?;
     let kibibytes = files.values().map(Vec::len).sum::<usize>() / 1024;
     progress.stage(format!("writing {kibibytes} KiB"));
     write_folder(&folder, &files)?;

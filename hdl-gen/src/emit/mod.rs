@@ -9,6 +9,7 @@ mod mcsr;
 mod metadata;
 mod modules;
 mod origin;
+mod prefix;
 mod registers;
 mod roms;
 pub mod rtl;
@@ -26,6 +27,8 @@ use thiserror::Error;
 use crate::plan::Plan;
 
 use boards::Board;
+
+pub use prefix::{Prefix, PrefixError};
 
 pub use metadata::{ProductEntry, nnz, predicted, products};
 
@@ -63,15 +66,24 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// # Errors
 /// [`EmitError`] if a template and its data do not fit each other.
 pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
-    emit_for(plan, &[])
+    emit_for(plan, &Options::default())
 }
 
-/// As [`emit`], with scripts that know a user's own boards too.
+/// What a folder has besides what its design says.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The user's own boards, which the scripts know too.
+    pub boards: Vec<Board>,
+    /// Before the names of the library's modules; none: they keep their own.
+    pub prefix: Option<Prefix>,
+}
+
+/// As [`emit`], with options.
 ///
 /// # Errors
 /// As [`emit`].
-pub fn emit_for(plan: &Plan, own: &[Board]) -> Result<FileMap, EmitError> {
-    let boards: Vec<Board> = Board::all()?.into_iter().chain(own.iter().cloned()).collect();
+pub fn emit_for(plan: &Plan, options: &Options) -> Result<FileMap, EmitError> {
+    let boards: Vec<Board> = Board::all()?.into_iter().chain(options.boards.iter().cloned()).collect();
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
     let hash = resolved_hash(&plan.design);
@@ -90,6 +102,10 @@ pub fn emit_for(plan: &Plan, own: &[Board]) -> Result<FileMap, EmitError> {
     flows::insert(plan, &hash, &boards, &mut files)?;
     linux::insert(plan, &boards, &mut files)?;
     origin::insert(&plan.design.name, &hash, &mut files);
+    prefix::stamp(&mut files);
+    if let Some(prefix) = &options.prefix {
+        prefix::rename(&mut files, prefix);
+    }
     let metadata = metadata::metadata(plan, &hash, &files)?;
     files.insert("metadata.json".to_owned(), metadata);
     Ok(files)
