@@ -107,7 +107,10 @@ mod tests {
         assert_eq!(text("pad.f"), "rtl/pad.v\nrtl/old_sptfra_mac.v\n");
         assert_eq!(text("design.toml"), "name = \"sptfra_mac\"\n");
         let library = text("rtl/old_sptfra_mac.v");
-        assert!(library.contains(&format!("hardware generator. Version {VERSION}.\nmodule old_sptfra_mac")), "{library}");
+        assert!(
+            library.contains(&format!("hardware generator. Version {VERSION}.\nmodule old_sptfra_mac")),
+            "{library}"
+        );
     }
 
     #[test]

@@ -53,7 +53,9 @@ pub enum Violation {
         cycle: u64,
     },
     /// An answer went on beyond its length.
-    #[error("cycle {cycle}: the answer to frame {frame} has {excess} words too many: no m_axis_tlast after {longest} words")]
+    #[error(
+        "cycle {cycle}: the answer to frame {frame} has {excess} words too many: no m_axis_tlast after {longest} words"
+    )]
     NoEnd {
         /// When the word too many was taken.
         cycle: u64,

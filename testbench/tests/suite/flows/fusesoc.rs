@@ -96,7 +96,9 @@ fn a_wrong_word_or_a_missing_rom_ends_plain_icarus_with_an_error() {
         let files = ["-g2005", "-Wall", "-DSIMULATION", "-o", "tb.vvp", "-c", &format!("{NAME}.f")].map(str::to_owned);
         let mut compile = Command::new("iverilog");
         compile.args(files).arg(format!("sim/{NAME}_tb.v"));
-        for (parameter, value) in [("ROM_DIR", "rom/"), ("STIMULUS", &stream("stimulus")), ("EXPECTED", &stream("expected"))] {
+        for (parameter, value) in
+            [("ROM_DIR", "rom/"), ("STIMULUS", &stream("stimulus")), ("EXPECTED", &stream("expected"))]
+        {
             compile.arg(format!("-P{NAME}_tb.{parameter}=\"{value}\""));
         }
         run(compile.current_dir(folder.design())).succeeded();

@@ -15,4 +15,5 @@ mod lists;
 mod power;
 mod scripts;
 mod simulation;
+mod two_cores;
 mod workflow;
