@@ -34,7 +34,7 @@ impl std::str::FromStr for Prefix {
 
 /// Writes the generator's version into every file of the library.
 pub fn stamp(files: &mut FileMap) {
-    let stamped = format!("{} Version {VERSION}.", PART);
+    let stamped = format!("{PART} Version {VERSION}.");
     for (_, contents) in files.iter_mut().filter(|(path, _)| is_library(path)) {
         *contents = String::from_utf8_lossy(contents).replacen(PART, &stamped, 1).into_bytes();
     }
