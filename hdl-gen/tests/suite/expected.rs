@@ -1,12 +1,12 @@
 //! The output of one small design lies in git, so that the review of a change sees what it does to the Verilog. Modules of
-//! the library, which are emitted as they stand in `hdl-gen/rtl`, are listed by name.
+//! the library, which are emitted as they stand in `hdl-gen/rtl` with the generator's version, are listed by name.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use golden::design::Design;
-use hdl_gen::emit::{FileMap, emit};
+use hdl_gen::emit::{FileMap, VERSION, emit};
 use hdl_gen::plan::Plan;
 
 /// What writes the folder anew.
@@ -30,7 +30,11 @@ fn generated() -> FileMap {
     read(&here.join("rtl"), "", &mut library);
     let copies: BTreeMap<String, Vec<u8>> = library
         .into_iter()
-        .map(|(path, text)| (format!("rtl/{}", path.rsplit('/').next().unwrap_or(&path)), text))
+        .map(|(path, text)| {
+            let stamped =
+                String::from_utf8_lossy(&text).replacen(" generator.", &format!(" generator. Version {VERSION}."), 1);
+            (format!("rtl/{}", path.rsplit('/').next().unwrap_or(&path)), stamped.into_bytes())
+        })
         .collect();
     let listed: String =
         files.extract_if(.., |path, text| copies.get(path) == Some(text)).map(|(path, _)| path + "\n").collect();
