@@ -4,7 +4,7 @@
 // Self-checking testbench of small_4x3:
 // sends 7 frames, with pauses on both streams, and compares every word with what the integer model answers, and
 // the timestamps with the cycles in which the frames began.
-// Prints PASS or FAIL, with counts, and ends.
+// Prints PASS and finishes, or FAIL with counts and ends with $fatal, so that the simulator's exit code is not 0.
 //
 // Plain Verilog: Icarus Verilog (-g2005) runs it, Verilator (--binary --timing), and Vivado's simulator by
 // vivado/simulate.tcl. Without parameters the ROM files and both files of frames are looked for in the working
@@ -138,10 +138,12 @@ module small_4x3_tb #(
         if ((quiet == QUIET) || (cycle == TIMEOUT)) begin
             if ((wrong == 0) && (received == WORDS_OUT)) begin
                 $display("PASS: 7 frames, %0d words, %0d cycles", received, cycle);
+                $finish;
             end else begin
                 $display("FAIL: %0d words wrong, %0d received, %0d expected", wrong, received, WORDS_OUT);
+                // The simulator's exit code says so too.
+                $fatal(1, "the core is not the integer model's");
             end
-            $finish;
         end
     end
 
