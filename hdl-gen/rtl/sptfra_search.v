@@ -57,8 +57,6 @@ module sptfra_search #(
 
     localparam integer SEARCH_STEPS = 17; // bits of a distance
     localparam [SEARCH_STEPS-1:0] NONE = 0;
-    localparam [SEARCH_STEPS-1:0] TOP = {1'b1, NONE[SEARCH_STEPS-2:0]};
-    localparam integer ROUND_BITS = (POINTS == 3) ? 2 : 1;
     localparam integer ELEMENT_WIDTH = (CELL_ELEMENTS <= 2) ? 1 : $clog2(CELL_ELEMENTS);
     localparam integer LAST_ELEMENT = CELL_ELEMENTS - 1;
     // From the last taxel's address of an evaluation to the decision: the cell, the tree, the decision
@@ -79,38 +77,46 @@ module sptfra_search #(
     reg resume; // reading goes on in the next cycle
     reg [1:0] wait_count;
 
-    // ---- Distances: of the minimum from -1, then of the left end from the minimum; of the right end. The unit is the
-    // weight of the bit that is bisected, below which a distance is still 0
-    reg [SEARCH_STEPS-1:0] left;
-    reg [SEARCH_STEPS-1:0] left_unit;
-    reg [SEARCH_STEPS-1:0] right;
-    reg [SEARCH_STEPS-1:0] right_unit;
+    // ---- Distances: of the minimum from -1, then of the left end from the minimum; of the right end
+    wire [SEARCH_STEPS-1:0] left, left_half, left_near, left_far;
+    wire [SEARCH_STEPS-1:0] right, right_half, right_near, right_far;
+    wire left_last, right_last; // the last round
+    wire [2:0] left_keep, right_keep;
+    wire left_over, right_over;
+    wire restart; // both distances
     reg signed [17:0] lowest; // t of the least B
     wire signed [17:0] low = {1'b0, left} - ONE;
     wire signed [17:0] high = low + 18'sd1;
     wire signed [18:0] ends_sum = {lowest, 1'b0} + {2'd0, right} - {2'd0, left};
 
-    // Distances of a round's points. The second bit's unit is 0 where a round has one bit
-    wire [SEARCH_STEPS-1:0] left_half = (POINTS == 3) ? left_unit >> 1 : NONE;
-    wire [SEARCH_STEPS-1:0] left_near = left | ((left_half == NONE) ? left_unit : left_half);
-    wire [SEARCH_STEPS-1:0] left_middle = left | left_unit;
-    wire [SEARCH_STEPS-1:0] left_far = left_middle | left_half;
-    wire [SEARCH_STEPS-1:0] right_half = (POINTS == 3) ? right_unit >> 1 : NONE;
-    wire [SEARCH_STEPS-1:0] right_near = right | ((right_half == NONE) ? right_unit : right_half);
-    wire [SEARCH_STEPS-1:0] right_middle = right | right_unit;
-    wire [SEARCH_STEPS-1:0] right_far = right_middle | right_half;
-
     // The ends lie within (-1, 1)
-    wire [17:0] left_room = lowest + ONE;
-    wire [17:0] right_room = ONE - lowest;
-    reg [2:0] left_within; // far, middle, near
-    reg [2:0] right_within;
+    sptfra_search_distance #(.BITS(SEARCH_STEPS), .POINTS(POINTS)) left_distance (
+        .clock     (clock),
+        .restart   (restart),
+        .over      (left_over),
+        .keep      (left_keep),
+        .unbounded (state == SLOPE),
+        .room      (lowest + ONE),
+        .distance  (left),
+        .last      (left_last),
+        .half      (left_half),
+        .near      (left_near),
+        .far       (left_far)
+    );
 
-    always @(posedge clock) begin
-        left_within <= { {1'b0, left_far} < left_room, {1'b0, left_middle} < left_room, {1'b0, left_near} < left_room};
-        right_within <= { {1'b0, right_far} < right_room, {1'b0, right_middle} < right_room,
-            {1'b0, right_near} < right_room};
-    end
+    sptfra_search_distance #(.BITS(SEARCH_STEPS), .POINTS(POINTS)) right_distance (
+        .clock     (clock),
+        .restart   (restart),
+        .over      (right_over),
+        .keep      (right_keep),
+        .unbounded (1'b0),
+        .room      (ONE - lowest),
+        .distance  (right),
+        .last      (right_last),
+        .half      (right_half),
+        .near      (right_near),
+        .far       (right_far)
+    );
 
     // Of a round's points the cells take the one with the largest t
     wire signed [17:0] slope_t = {1'b0, left_far} - ONE;
@@ -200,9 +206,9 @@ module sptfra_search #(
         end
         if (POINTS == 3) begin : gen_three
             // Of a round with one bit all is at t
-            assign falls = left_unit[0] ? {3{totals[47]}} : {totals[47], totals[95], totals[143]};
-            assign left_fits = left_unit[0] ? {3{fits_level[0]}} : {fits_level[2], fits_level[1], fits_level[0]};
-            assign right_fits = right_unit[0] ? {3{fits_level[0]}} : {fits_level[0], fits_level[1], fits_level[2]};
+            assign falls = left_last ? {3{totals[47]}} : {totals[47], totals[95], totals[143]};
+            assign left_fits = left_last ? {3{fits_level[0]}} : {fits_level[2], fits_level[1], fits_level[0]};
+            assign right_fits = right_last ? {3{fits_level[0]}} : {fits_level[0], fits_level[1], fits_level[2]};
         end else begin : gen_one
             assign falls = {3{totals[47]}};
             assign left_fits = {3{fits_level[0]}};
@@ -210,33 +216,11 @@ module sptfra_search #(
         end
     endgenerate
 
-    wire [2:0] left_keep = (state == SLOPE) ? falls : left_fits & left_within;
-    wire [2:0] right_keep = right_fits & right_within;
-    wire [SEARCH_STEPS-1:0] left_found = left | (left_keep[1] ? left_unit : NONE)
-        | ((left_keep[1] ? left_keep[2] : left_keep[0]) ? left_half : NONE);
-    wire [SEARCH_STEPS-1:0] right_found = right | (right_keep[1] ? right_unit : NONE)
-        | ((right_keep[1] ? right_keep[2] : right_keep[0]) ? right_half : NONE);
-    wire left_over = (state == SLOPE) ? step_over : (state == LEVEL) && first_over;
-    wire right_over = (state == LEVEL) && step_over;
-    wire restart = (state == ALPHA) || ((state == FLOOR) && compared); // both distances
-
-    always @(posedge clock) begin
-        if (restart) begin
-            left <= NONE;
-            left_unit <= TOP;
-            right <= NONE;
-            right_unit <= TOP;
-        end else begin
-            if (left_over) begin
-                left <= left_found;
-                left_unit <= left_unit >> ROUND_BITS;
-            end
-            if (right_over) begin
-                right <= right_found;
-                right_unit <= right_unit >> ROUND_BITS;
-            end
-        end
-    end
+    assign left_keep = (state == SLOPE) ? falls : left_fits;
+    assign right_keep = right_fits;
+    assign left_over = (state == SLOPE) ? step_over : (state == LEVEL) && first_over;
+    assign right_over = (state == LEVEL) && step_over;
+    assign restart = (state == ALPHA) || ((state == FLOOR) && compared);
 
     always @(posedge clock) begin
         ends <= {ends[DECISION_CYCLES-2:1], last_element && (state != ALPHA) && (state != BETA)};
@@ -257,7 +241,7 @@ module sptfra_search #(
             element <= last_element ? {ELEMENT_WIDTH{1'b0}} : element + 1'b1;
             if (last_element) begin
                 second <= pair && !second;
-                reading <= (pair && !second) || (KNOWN_IN_TIME && (state == LEVEL) && !right_unit[0]);
+                reading <= (pair && !second) || (KNOWN_IN_TIME && (state == LEVEL) && !right_last);
             end
         end
         resume <= 1'b0;
@@ -299,7 +283,7 @@ module sptfra_search #(
             SLOPE: begin
                 if (step_over) begin
                     resume <= 1'b1;
-                    if (left_unit[0]) begin
+                    if (left_last) begin
                         state <= FLOOR;
                     end
                 end
@@ -329,9 +313,9 @@ module sptfra_search #(
             end
             LEVEL: begin
                 if (first_over) begin
-                    resume <= !KNOWN_IN_TIME && !left_unit[0];
+                    resume <= !KNOWN_IN_TIME && !left_last;
                 end
-                if (step_over && right_unit[0]) begin
+                if (step_over && right_last) begin
                     state <= FINISH;
                 end
             end
@@ -367,7 +351,7 @@ module sptfra_search #(
 `endif
 
     // Of a slope its sign; h is 0 with one point
-    wire _unused = &{1'b0, totals, ends_sum[0], half};
+    wire _unused = &{1'b0, totals, ends_sum[0], half, right_near};
 
 endmodule
 

@@ -105,6 +105,7 @@ const LIBRARY: &[(&str, &str)] = library![
     "sptfra_search",
     "sptfra_search_cell",
     "sptfra_search_cells",
+    "sptfra_search_distance",
     "sptfra_spmv_array",
     "sptfra_spmv_collector",
     "sptfra_spmv_lane",
