@@ -103,7 +103,6 @@ fn the_report_fits_a_desk_and_a_telephone() {
     for (part, times) in [
         ("Take no filter", 2),
         ("tells nothing of either", 1),
-        ("Told apart in f64", 1),
         ("[hardware]\nlanes = ", 2),
         // What is held, one body, tells of sensor 2, and what errs least there is not what is least bad under a punch.
         ("Take no filter, reduced plan, joint, 21 × 21 points, 160 units, wide family", 2),

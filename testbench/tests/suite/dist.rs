@@ -116,10 +116,10 @@ fn a_release_is_cut_by_the_script() {
     let version = hdl_gen::emit::VERSION;
     assert_eq!(manifest, before[1].replacen(&format!("\nversion = \"{version}\""), "\nversion = \"9.1.0\"", 1));
     assert_eq!(citation, before[3].replace(&format!("version: {version}"), "version: 9.1.0"));
-    for name in ["golden", "hdl-cores", "hdl-gen", "sptfra", "sptfra-python", "testbench", "xtask"] {
+    for name in ["golden", "hdl-cores", "hdl-gen", "sptfra", "sptfra-python", "sptfra-solver", "testbench", "xtask"] {
         assert!(lock.contains(&format!("name = \"{name}\"\nversion = \"9.1.0\"\n")), "{name}");
     }
-    assert_eq!(lock.matches("version = \"9.1.0\"").count(), 7);
+    assert_eq!(lock.matches("version = \"9.1.0\"").count(), 8);
     let again = run(&["--cut", "9.1.0", "2031-04-05"]);
     let said = text(&again.stderr);
     assert!(!again.status.success() && said.contains("[9.1.0] already"), "{said}");
