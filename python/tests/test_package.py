@@ -187,7 +187,8 @@ class Package(unittest.TestCase):
             self.assertIn("write HOST:PORT", refused.stderr.decode())
 
     def test_the_page_of_the_docs_runs(self):
-        page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+        pages = ["how-to/python.md", "reference/python.md"]
+        page = "".join((ROOT / "docs" / name).read_text(encoding="utf-8") for name in pages)
         blocks = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
         self.assertTrue(blocks)
         names = {}

@@ -57,7 +57,7 @@ class Designs(unittest.TestCase):
             (lambda: sptfra.calibrate(design("[algorithm]\nestimator = 'line'\n")), "nothing to calibrate"),
             (lambda: sptfra.calibrate(design(), family="odd"), 'family is "odd"; choose one of: narrow, wide'),
             (lambda: sptfra.load_frames(ROOT / "data" / "bed_mat_64x27.csv", design()), "line 2"),
-            (lambda: sptfra.generate(design(), ROOT), "which hdl-gen did not write; move it away or choose another folder"),
+            (lambda: sptfra.generate(design(), ROOT), "which `sptfra generate` did not write; move it away or choose another folder"),
         ]:
             with self.assertRaises(sptfra.Error) as raised:
                 call()

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* See metadata.h. No reader of JSON: the keys looked for stand at the beginning of what hdl-gen writes, once each. */
+/* See metadata.h. No reader of JSON: the keys looked for stand at the beginning of what `sptfra generate` writes, once each. */
 #include "metadata.h"
 
 #include <errno.h>

@@ -16,7 +16,7 @@ const CLEAR: f64 = 3.0;
 /// A message where frames, in pascals, are those of a sensor at rest.
 pub(super) fn check(design: &Design, stress: &[Vec<f64>], is_loaded: &[bool], peak: f64) -> Option<String> {
     let full_scale = design.hardware.full_scale_pa;
-    let remedy = "`sptfra check DESIGN --frames FRAMES --rest` gives each taxel's offset, noise and drift";
+    let remedy = "`sptfra check DESIGN --frames FRAMES --unloaded` gives each taxel's offset, noise and drift";
     let floor = |mean: f64| (10.0 * ABOVE_NOISE * mean).ceil() / 10.0;
     if peak < LOUD * full_scale
         && let Some((noise, of, mean)) = noise(&design.sensor, stress, is_loaded)

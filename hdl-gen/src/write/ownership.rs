@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use super::{MANIFEST, WriteError, io_error};
 
-const HISTORY: &str = "hdl-gen did not write";
+const HISTORY: &str = "`sptfra generate` did not write";
 
 /// Whether `folder` may be replaced: it is not there, or each file in it is as the generator wrote it.
 pub(super) fn check(folder: &Path) -> Result<(), WriteError> {
@@ -66,7 +66,7 @@ fn foreign_below(root: &Path, folder: &Path, owned: &Owned<'_>) -> Result<Option
                 if digest(&contents) == expected {
                     continue;
                 }
-                "was changed after hdl-gen wrote it"
+                "was changed after `sptfra generate` wrote it"
             }
         };
         return Ok(Some((file, history)));

@@ -23,7 +23,7 @@ fn leaves_the_users_files_alone() {
     write_folder(&folder, &files(&["rtl/a.v"])).unwrap();
     fs::write(folder.join("rtl/mine.v"), "mine").unwrap();
     let error = write_folder(&folder, &files(&["rtl/c.v"])).unwrap_err().to_string();
-    assert!(error.contains("rtl/mine.v, which hdl-gen did not write"), "{error}");
+    assert!(error.contains("rtl/mine.v, which `sptfra generate` did not write"), "{error}");
     assert_eq!(fs::read_to_string(folder.join("rtl/mine.v")).unwrap(), "mine");
     assert!(folder.join("rtl/a.v").exists() && !folder.join("rtl/c.v").exists());
 }
@@ -36,7 +36,7 @@ fn leaves_the_users_empty_folders_alone() {
         write_folder(&folder, &files(&["rtl/a.v"])).unwrap();
         fs::create_dir_all(folder.join(mine)).unwrap();
         let error = write_folder(&folder, &files(&["rtl/c.v"])).unwrap_err().to_string();
-        assert!(error.contains(&format!("holds {named}, which hdl-gen did not write")), "{error}");
+        assert!(error.contains(&format!("holds {named}, which `sptfra generate` did not write")), "{error}");
         assert!(folder.join(mine).is_dir() && folder.join("rtl/a.v").exists());
     }
 }
@@ -177,7 +177,7 @@ fn a_file_that_came_in_meanwhile_is_given_back() {
     // After the check and before the swap.
     fs::write(folder.join("mine"), "mine").unwrap();
     let error = swap::into_place(&fresh, &folder, staging).unwrap_err().to_string();
-    assert!(error.contains("mine, which hdl-gen did not write"), "{error}");
+    assert!(error.contains("mine, which `sptfra generate` did not write"), "{error}");
     assert!(folder.join("mine").exists() && folder.join("rtl/a.v").exists());
 }
 

@@ -64,8 +64,8 @@ fn the_reduced_plan_keeps_to_its_limits() {
     let rows = [
         (shipped("sensor1-reduced"), limits(3_000, 2_000, 40, 40.0)),
         (latency(shipped("sensor1-reduced")), None),
-        (shipped("sensor1-reduced-64"), limits(1_150, 480, 100, 45.0)),
-        (wide(shipped("sensor1-reduced-64")), limits(850, 480, 110, 45.0)),
+        (shipped("sensor1-reduced-64"), limits(1_220, 480, 100, 45.0)),
+        (wide(shipped("sensor1-reduced-64")), limits(900, 480, 110, 45.0)),
         (shipped("sensor1-resultants"), limits(1_900, 1_100, 40, 30.0)),
         (shipped("sensor2-reduced"), limits(3_000, 2_000, 40, 40.0)),
         (mat, None),
