@@ -96,7 +96,7 @@ module sptfra_bz_calibrated #(
     localparam [31:0] FIRST_OF_DEAD = 2 * TAXELS + 2;
     localparam REPLACING = (REPLACEABLE != 0) ? TAXELS + 6 : 0;
 
-    wire active, write_gain, write_offset, tare_run;
+    wire active, write_gain, write_offset, tare_run, frame_begins;
     wire [7:0] generation;
     wire [31:0] contact;
     wire [26:0] noise;
@@ -113,7 +113,7 @@ module sptfra_bz_calibrated #(
     // ---- Counts to pascals
     wire [31:0] pascals_tdata;
     wire pascals_tlast, pascals_tvalid, pascals_tready;
-    wire frame_begins, bank_held, hold;
+    wire bank_held, hold;
     wire reading_valid, reading_marked, reading_last, reading_bad, reading_not_finite, reading_advance;
     wire signed [26:0] reading, back_stress;
     wire back_valid, back_last, back_not_finite;
