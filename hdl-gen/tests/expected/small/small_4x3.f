@@ -34,6 +34,7 @@ rtl/sptfra_samples.v
 rtl/sptfra_search.v
 rtl/sptfra_search_cell.v
 rtl/sptfra_search_cells.v
+rtl/sptfra_search_distance.v
 rtl/sptfra_spmv_array.v
 rtl/sptfra_spmv_collector.v
 rtl/sptfra_spmv_lane.v

@@ -49,6 +49,7 @@ foreach file {
     sptfra_search.v
     sptfra_search_cell.v
     sptfra_search_cells.v
+    sptfra_search_distance.v
     sptfra_spmv_array.v
     sptfra_spmv_collector.v
     sptfra_spmv_lane.v
