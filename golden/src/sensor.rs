@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Largest number of columns or rows of a sensor.
 pub const MAX_SIDE: usize = 64;
-/// Layers of fewer pitches are better served by the kernel "cell" (`docs/contacts.md`, "Thin layers").
+/// Layers of fewer pitches are better served by the kernel "cell" (`docs/explanation/accuracy.md`, "Thin layers").
 const CELL_BELOW: f64 = 0.5;
 /// What a quotient of two lengths in millimetres may be off by.
 const ROUNDING: f64 = 1e-9;

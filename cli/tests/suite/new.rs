@@ -50,7 +50,7 @@ fn what_was_not_said_is_told() {
     assert!(!counts.contains("Not said") && counts.contains("Larger counts are taken to press"), "{counts}");
 }
 
-/// What docs/estimators.md says of a new design beside `sensor1-fast`, which has neither.
+/// What docs/explanation/estimators.md says of a new design beside `sensor1-fast`, which has neither.
 #[test]
 fn a_range_for_each_frame_and_counted_contacts_cost_some_latency() {
     let (_, design) = new(&[]);

@@ -2,7 +2,7 @@
 //!
 //! An estimator finds the friction components of a frame from what either plan knows of it, [`Seen`]. Each has a folder of
 //! its own; outside of it the registry here, the design file's parser and the calibration, which is the joint one's, know
-//! its name. `docs/estimators.md` compares them.
+//! its name. `docs/explanation/estimators.md` compares them.
 
 pub(crate) mod doubt;
 pub mod joint;

@@ -1,7 +1,7 @@
 //! How thin a layer an estimator can do with.
 
 /// A depth below which the forces are wrong by more than a few percent. Each estimator's is in its own folder: of 200 unseen
-/// round contacts at each depth (`docs/contacts.md`, "Thin layers").
+/// round contacts at each depth (`docs/explanation/accuracy.md`, "Thin layers").
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Thin {
     /// Depth over the coarser pitch.

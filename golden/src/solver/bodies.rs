@@ -12,7 +12,7 @@ const ROUNDS: usize = 2;
 
 /// What is not known of the other bodies, in a body's standard error: so many times what the last round has changed of its
 /// force, and the others' normal forces, each over `1 + (d / REACH)^4` for a distance of so many of the coarser pitch between
-/// the centres. Of 5,256 bodies in frames of eighteen kinds, by likelihood (`docs/contacts.md`).
+/// the centres. Of 5,256 bodies in frames of eighteen kinds, by likelihood (`docs/explanation/accuracy.md`).
 pub const CHANGE: f64 = 1.25;
 /// See [`CHANGE`].
 pub const REACH: f64 = 2.0;

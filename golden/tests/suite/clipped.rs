@@ -51,7 +51,7 @@ fn one_contact_keeps_to_the_figures() {
 }
 
 #[test]
-#[ignore = "prints the first table of clipped sensors in docs/contacts.md; seconds"]
+#[ignore = "prints the first table of clipped sensors in docs/explanation/accuracy.md; seconds"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
         for kind in ["joint", "clipped", "clipped-wide"] {
@@ -73,7 +73,7 @@ fn table() {
 }
 
 #[test]
-#[ignore = "prints the table of clipped families in docs/contacts.md; minutes"]
+#[ignore = "prints the table of clipped families in docs/explanation/accuracy.md; minutes"]
 fn families() {
     for sensor in ["sensor1", "sensor2"] {
         let solvers = ["clipped", "clipped-wide"].map(|kind| {
@@ -102,7 +102,7 @@ fn families() {
 
 /// Which contacts make a sensor's 95 %: errors of one contact, as [`table`], by shape and radius.
 #[test]
-#[ignore = "prints which contacts of clipped sensors err most, for docs/contacts.md; seconds"]
+#[ignore = "prints which contacts of clipped sensors err most, for docs/explanation/accuracy.md; seconds"]
 fn by_size() {
     for sensor in ["sensor1", "sensor2"] {
         let design = design(&format!("{sensor}-clipped"));

@@ -334,7 +334,7 @@ fn a_transposed_frame_has_transposed_forces_on_a_square() {
 }
 
 #[test]
-#[ignore = "prints the table of docs/estimators.md; a minute"]
+#[ignore = "prints the table of docs/explanation/estimators.md; a minute"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
         let (line, joint) = (design(&format!("{sensor}-none")), design(&format!("{sensor}-joint")));
@@ -345,7 +345,7 @@ fn table() {
 }
 
 #[test]
-#[ignore = "prints the wide designs' table of docs/estimators.md; a minute"]
+#[ignore = "prints the wide designs' table of docs/explanation/estimators.md; a minute"]
 fn wide_table() {
     for (sensor, names) in [
         ("sensor1", &["sensor1-joint", "sensor1-wide", "sensor1-fast-wide"][..]),

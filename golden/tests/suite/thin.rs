@@ -51,7 +51,7 @@ fn judge(design: &Design, count: usize) -> ([Vec<f64>; 2], usize, usize) {
 }
 
 #[test]
-#[ignore = "prints the tables of thin layers in docs/contacts.md; minutes"]
+#[ignore = "prints the tables of thin layers in docs/explanation/accuracy.md; minutes"]
 fn table() {
     for kernel in [Kernel::Point, Kernel::Cell] {
         // By points there is nothing below 0.3.
@@ -74,7 +74,7 @@ fn table() {
 
 /// What `sptfra new` and `sptfra calibrate` make of thin layers, 15 × 15 points and 64 hidden units, by either kernel.
 #[test]
-#[ignore = "prints the table of new designs on thin layers in docs/contacts.md; a quarter of an hour"]
+#[ignore = "prints the table of new designs on thin layers in docs/explanation/accuracy.md; a quarter of an hour"]
 fn table_of_new_designs() {
     let settings = Settings { hidden: 64, ..Settings::default() };
     for pitch_mm in [[4.0, 4.0], [4.0, 2.0]] {
@@ -150,7 +150,7 @@ fn finer(ratio: f64, times: usize) -> f64 {
 }
 
 #[test]
-#[ignore = "prints what a finer grid of forces does to thin layers, for docs/contacts.md; a minute"]
+#[ignore = "prints what a finer grid of forces does to thin layers, for docs/explanation/accuracy.md; a minute"]
 fn table_of_finer_grids() {
     for ratio in [0.3, 0.4, 0.5, 0.75] {
         let cells: String = [1, 2, 3].map(|times| format!(" {:.1} |", finer(ratio, times))).concat();

@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: figures of docs/benchmarks.md.
+//! `cargo xtask bench`: figures of results/README.md.
 
 use sptfra::arguments::design_file;
 use sptfra::message::{self, json_or};

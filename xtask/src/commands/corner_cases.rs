@@ -1,4 +1,4 @@
-//! `cargo xtask corner-cases`: the table of docs/hard-cases.md.
+//! `cargo xtask corner-cases`: the table of results/README.md.
 
 use sptfra::message::{self, Message, json_or};
 use std::path::{Path, PathBuf};

@@ -175,7 +175,7 @@ mod tests {
         }
     }
 
-    /// The steps of `docs/estimators.md` in integers: `u_q` of 27 bits, weights of 18.
+    /// The steps of `docs/explanation/estimators.md` in integers: `u_q` of 27 bits, weights of 18.
     fn search_in_integers(u: &[Vec<i64>; 3], dead_zone: i64, allowance: i64) -> [f64; 2] {
         let mut values = Vec::new();
         // Times 8, so that a step of the grid adds `u_1` or `u_2` as they are.

@@ -2,7 +2,7 @@
 //!
 //! Condition 1, `B(mu_x, mu_y) = sum_i max(0, u0_i + mu_x u1_i + mu_y u2_i)`, is convex in both components together.
 //! Here it is evaluated on a fixed grid by additions alone, and the estimate is the weighted centroid of a level set.
-//! `docs/estimators.md` gives the steps as the hardware takes them.
+//! `docs/explanation/estimators.md` gives the steps as the hardware takes them.
 
 mod constants;
 mod grid;

@@ -32,7 +32,7 @@ fn header([half_x, half_y]: [usize; 2], doubt: bool) -> String {
 }
 
 impl Correction {
-    /// The weights as CSV, in the form of `docs/formats.md`; a design reads them back.
+    /// The weights as CSV, in the form of `docs/reference/files.md`; a design reads them back.
     pub fn to_csv(&self) -> String {
         let mut text = header(self.half_window, self.doubt.is_some()) + "\n";
         let [along_x, along_y] = &self.output;

@@ -20,7 +20,7 @@ fn frames(sensor: &Sensor, kind: Kind, seeds: Range<u64>) -> Vec<SceneFrame> {
     frames
 }
 
-/// Bodies are told apart as well as where tension is read, and their own forces are half as exact, as docs/contacts.md says.
+/// Bodies are told apart as well as where tension is read, and their own forces are half as exact, as docs/explanation/accuracy.md says.
 /// With the tension that each would cause alone left in its frame they would err by 6 to 8 and 28 to 33 %.
 #[test]
 fn half_of_the_bodies_are_known() {
@@ -39,7 +39,7 @@ fn half_of_the_bodies_are_known() {
 }
 
 #[test]
-#[ignore = "prints the table of clipped bodies in docs/contacts.md; minutes"]
+#[ignore = "prints the table of clipped bodies in docs/explanation/accuracy.md; minutes"]
 fn table() {
     let shown = |kind: &Kind| match kind {
         Kind::Apart(micrometres) => *micrometres >= 6000,

@@ -1,4 +1,4 @@
-//! The tables of several bodies in `docs/contacts.md`, errors in percent of the normal force.
+//! The tables of several bodies in `docs/explanation/accuracy.md`, errors in percent of the normal force.
 
 use golden::bodies::Body;
 use golden::metrics::Quantiles;
@@ -37,7 +37,7 @@ pub const KINDS: [(Kind, &str); 19] = [
 ];
 
 #[test]
-#[ignore = "prints the table of bodies in docs/contacts.md; minutes"]
+#[ignore = "prints the table of bodies in docs/explanation/accuracy.md; minutes"]
 fn told_apart() {
     for sensor in ["sensor1", "sensor2"] {
         for (kind, label) in KINDS {
@@ -62,7 +62,7 @@ fn told_apart() {
 
 /// The same of a shipped fast design with `contacts = 4`, and how many of the bodies, in percent, are doubtful.
 #[test]
-#[ignore = "prints the table of sensor1-fast-wide in docs/contacts.md; minutes"]
+#[ignore = "prints the table of sensor1-fast-wide in docs/explanation/accuracy.md; minutes"]
 fn of_the_shipped_one() {
     let solver = Solver::new(&design("sensor1-fast-wide", 4)).unwrap();
     for (kind, label) in KINDS {
@@ -81,7 +81,7 @@ fn of_the_shipped_one() {
 /// Where the errors of each body come from: in percent of its normal force, with the correction and without, of the frames as
 /// they are; and of those that each body would cause alone, as if they were parted without an error.
 #[test]
-#[ignore = "prints the table of what parting costs in docs/contacts.md; minutes"]
+#[ignore = "prints the table of what parting costs in docs/explanation/accuracy.md; minutes"]
 fn of_parting() {
     for sensor in ["sensor1", "sensor2"] {
         let joint = design(&format!("{sensor}-joint"), 4);
@@ -121,7 +121,7 @@ fn nearest(bodies: &[Body]) -> f64 {
 }
 
 #[test]
-#[ignore = "prints the table of single bodies in docs/contacts.md; minutes"]
+#[ignore = "prints the table of single bodies in docs/explanation/accuracy.md; minutes"]
 fn of_one_body() {
     for sensor in ["sensor1", "sensor2"] {
         let names = ["joint", "wide"].map(|calibration| format!("{sensor}-{calibration}"));

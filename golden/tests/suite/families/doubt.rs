@@ -48,7 +48,7 @@ fn marked(pairs: &[[f64; 2]], limit: f64, split: Split) -> [f64; 3] {
 }
 
 #[test]
-#[ignore = "prints the table of limits of the doubt in docs/contacts.md; minutes"]
+#[ignore = "prints the table of limits of the doubt in docs/explanation/accuracy.md; minutes"]
 fn table() {
     const LIMITS: [f64; 8] = [3.0, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 10.0];
     let both = ["sensor1-wide", "sensor2-wide"].map(|name| pairs(name, Kind::MixedInside, 2000));

@@ -30,7 +30,7 @@ fn frames(sensor: &Sensor, (_, poisson, depth): Layer, seeds: std::ops::Range<u6
 }
 
 #[test]
-#[ignore = "prints the table of other layers in docs/contacts.md; minutes"]
+#[ignore = "prints the table of other layers in docs/explanation/accuracy.md; minutes"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
         let solvers = ["none", "joint", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap());

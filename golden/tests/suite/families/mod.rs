@@ -102,7 +102,7 @@ pub fn row(Judged { errors, .. }: &Judged) -> String {
 }
 
 #[test]
-#[ignore = "prints the tables of families in docs/contacts.md; a quarter of an hour"]
+#[ignore = "prints the tables of families in docs/explanation/accuracy.md; a quarter of an hour"]
 fn table() {
     const FRAMES: u64 = 200;
     for sensor in ["sensor1", "sensor2"] {
@@ -137,7 +137,7 @@ fn table() {
 }
 
 #[test]
-#[ignore = "prints the table of sensor1-fast-wide in docs/estimators.md; minutes"]
+#[ignore = "prints the table of sensor1-fast-wide in docs/explanation/estimators.md; minutes"]
 fn fast() {
     let designs = ["sensor1-wide", "sensor1-fast-wide"].map(design);
     let solvers = designs.each_ref().map(|design| Solver::new(design).unwrap());

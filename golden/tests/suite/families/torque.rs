@@ -79,7 +79,7 @@ fn torques_are_near_the_true_ones_on_every_kind() {
 }
 
 #[test]
-#[ignore = "prints the table of torques in docs/contacts.md; minutes"]
+#[ignore = "prints the table of torques in docs/explanation/accuracy.md; minutes"]
 fn table() {
     let row = |Quantiles { median, most, worst }: Quantiles| format!(" {median:.2} / {most:.2} / {worst:.2} |");
     let solvers = ["sensor1", "sensor2"]

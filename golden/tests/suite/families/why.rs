@@ -158,7 +158,7 @@ fn known_kinds(rows: &[Row]) -> Vec<Row> {
 }
 
 #[test]
-#[ignore = "prints which way kinds of contacts err, and which of them, for docs/contacts.md; minutes"]
+#[ignore = "prints which way kinds of contacts err, and which of them, for docs/explanation/accuracy.md; minutes"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
         let [design, narrow] = ["wide", "joint"].map(|kind| design(&format!("{sensor}-{kind}")));

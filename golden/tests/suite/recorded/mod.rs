@@ -82,7 +82,7 @@ fn check(what: &str, recipe: &Recipe, limits: [f64; 4]) -> Recorded {
     found
 }
 
-/// The table of docs/calibrating.md, from seeds and bodies that no choice was made on.
+/// The table of docs/how-to/calibrate-with-weights.md, from seeds and bodies that no choice was made on.
 #[test]
 #[ignore = "two minutes, for the docs"]
 fn figures() {

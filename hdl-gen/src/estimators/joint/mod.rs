@@ -1,6 +1,6 @@
 //! The joint estimator in integers: formats and constants of its grid, its friction and its network.
 //!
-//! The steps are those of `docs/estimators.md`. Stresses `u_q` come as the taxels have them; the values on the grid are
+//! The steps are those of `docs/explanation/estimators.md`. Stresses `u_q` come as the taxels have them; the values on the grid are
 //! 8 times finer, so that a step of the grid adds `u_1` or `u_2` as they are.
 
 mod model;

@@ -134,7 +134,7 @@ fn what_a_frame_is_said_to_be_does_not_depend_on_its_range() {
     }
 }
 
-/// The figures of docs/hard-cases.md, in short.
+/// The figures of results/README.md, in short.
 #[test]
 fn faint_contacts_are_as_exact_as_strong_ones() {
     for name in ["sensor1-reduced", "sensor1-joint"] {

@@ -208,7 +208,7 @@ fn the_solver_counts_as_the_hardware_does() {
 }
 
 #[test]
-#[ignore = "prints the table of marked frames in docs/contacts.md; a minute"]
+#[ignore = "prints the table of marked frames in docs/explanation/accuracy.md; a minute"]
 fn table() {
     let kinds = [
         (Kind::One, "one alone"),
