@@ -100,8 +100,8 @@ module sptfra_search #(
         .distance  (left),
         .last      (left_last),
         .half      (left_half),
-        .near      (left_near),
-        .far       (left_far)
+        .below     (left_near),
+        .above     (left_far)
     );
 
     sptfra_search_distance #(.BITS(SEARCH_STEPS), .POINTS(POINTS)) right_distance (
@@ -114,8 +114,8 @@ module sptfra_search #(
         .distance  (right),
         .last      (right_last),
         .half      (right_half),
-        .near      (right_near),
-        .far       (right_far)
+        .below     (right_near),
+        .above     (right_far)
     );
 
     // Of a round's points the cells take the one with the largest t

@@ -4,7 +4,7 @@
 // Distance that a bisection finds, highest bit first, one bit a round, or two with three points.
 //
 // A bit is kept where `keep` says so and the distance with it is less than `room`. A round's points lie at the distance
-// with the bit that is bisected (middle), with the next one too (far), and with the next one alone (near).
+// with the bit that is bisected (middle), with the next one too (above), and with the next one alone (below).
 
 `default_nettype none
 
@@ -17,14 +17,14 @@ module sptfra_search_distance #(
     input  wire clock,
     input  wire restart, // from 0, with the highest bit
     input  wire over, // a round's answers are there
-    input  wire [2:0] keep, // far, middle, near
+    input  wire [2:0] keep, // above, middle, below
     input  wire unbounded, // whatever the room
     input  wire [BITS:0] room,
     output reg  [BITS-1:0] distance, // 0 below the bits that are found
     output wire last, // the round finds the lowest bit
     output wire [BITS-1:0] half, // weight of the second bit of a round, 0 without
-    output wire [BITS-1:0] near,
-    output wire [BITS-1:0] far
+    output wire [BITS-1:0] below,
+    output wire [BITS-1:0] above
 );
 
     localparam [BITS-1:0] NONE = 0;
@@ -34,14 +34,14 @@ module sptfra_search_distance #(
     wire [BITS-1:0] middle = distance | unit;
     assign last = unit[0];
     assign half = (POINTS == 3) ? unit >> 1 : NONE;
-    assign near = distance | ((half == NONE) ? unit : half);
-    assign far = middle | half;
+    assign below = distance | ((half == NONE) ? unit : half);
+    assign above = middle | half;
 
-    reg [2:0] fits; // far, middle, near
+    reg [2:0] fits; // above, middle, below
     wire [2:0] kept = keep & (fits | {3{unbounded}});
 
     always @(posedge clock) begin
-        fits <= { {1'b0, far} < room, {1'b0, middle} < room, {1'b0, near} < room};
+        fits <= { {1'b0, above} < room, {1'b0, middle} < room, {1'b0, below} < room};
         if (restart) begin
             distance <= NONE;
             unit <= {1'b1, NONE[BITS-2:0]};
