@@ -62,7 +62,7 @@ fn rest_is_told_with_offsets_tared_and_clipped() {
         for more in ["", "tension = \"clipped\"\n"] {
             let (kinds, said) = kinds(&mat(more), recording);
             assert_eq!(kinds, [Kind::Rest], "{what}: {said}");
-            assert!(said.contains("--rest"), "{what}: {said}");
+            assert!(said.contains("--unloaded"), "{what}: {said}");
         }
     }
 }
