@@ -19,10 +19,10 @@ module sptfra_op #(
     parameter integer DEPENDENT = 1,
     // Dead taxels of the design, whose readings others replace
     parameter integer REPLACED = 0,
-    // 1: the answer has an error, and above DOUBT_LIMIT, a logarithm of base 2 with 12 fraction bits, it is doubtful
-    parameter integer DOUBT = 0,
-    parameter signed [17:0] DOUBT_LIMIT = 18'sd0,
-    // 1: the layer is too thin for the taxels, and every answer doubtful
+    // 1: the answer has an error; above ERROR_LIMIT, a logarithm of base 2 with 12 fraction bits, it has low confidence
+    parameter integer WITH_ERROR = 0,
+    parameter signed [17:0] ERROR_LIMIT = 18'sd0,
+    // 1: the layer is too thin for the taxels, and every answer has low confidence
     parameter integer THIN = 0,
     // A step of the frame sums G is 2^SUM_LSB N, of those of the torques 2^TORQUE_LSB N m, of a taxel's force
     // 2^FIELD_LSB N
@@ -213,7 +213,7 @@ module sptfra_op #(
     reg [17:0] size_y;
     reg [18:0] size;
     reg pushed;
-    reg doubtful;
+    reg low_confidence;
     reg several; // of the frame whose output has just begun
     wire slips;
 
@@ -222,7 +222,7 @@ module sptfra_op #(
         size_y <= mu_y[17] ? -mu_y : mu_y;
         size <= {1'b0, size_x} + {1'b0, size_y};
         pushed <= (size >= {1'b0, PULLING});
-        doubtful <= (THIN != 0) || ((DOUBT != 0) && (summary_error_log > DOUBT_LIMIT));
+        low_confidence <= (THIN != 0) || ((WITH_ERROR != 0) && (summary_error_log > ERROR_LIMIT));
         several <= (contacts > 8'd1);
     end
 
@@ -233,7 +233,7 @@ module sptfra_op #(
         answered && summary_flags[4],
         answered && (REPLACED != 0),
         answered && several,
-        answered && doubtful,
+        answered && low_confidence,
         bad_length,
         not_finite,
         answered && (summary_flags[2] || summary_saturated),
@@ -304,7 +304,7 @@ module sptfra_op #(
         .friction_quotient (friction_quotient),
         .friction_exponent (friction_exponent),
         .angle             (angle),
-        .error_value       ((DOUBT != 0) ? error_value : 64'd0),
+        .error_value       ((WITH_ERROR != 0) ? error_value : 64'd0),
         .error_exponent    (error_exponent),
         .mu_x              (mu_x),
         .mu_y              (mu_y),

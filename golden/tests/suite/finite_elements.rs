@@ -82,7 +82,7 @@ fn the_frames_are_what_they_say() {
 #[test]
 fn errors_are_those_of_the_results() {
     for (name, limit) in
-        [("sensor1-joint", 30.0), ("sensor2-joint", 18.0), ("sensor1-wide", 16.0), ("sensor2-wide", 13.0)]
+        [("sensor1-fast", 30.0), ("sensor2-fast", 18.0), ("sensor1-wide", 16.0), ("sensor2-wide", 13.0)]
     {
         let solver = Solver::new(&design(name)).unwrap();
         for frame in frames(&name[..7]) {

@@ -62,9 +62,9 @@ fn told_apart() {
 
 /// The same of a shipped fast design with `contacts = 4`, and how many of the bodies, in percent, are doubtful.
 #[test]
-#[ignore = "prints the table of sensor1-fast-wide in docs/contacts.md; minutes"]
+#[ignore = "prints the table of sensor1-wide in docs/contacts.md; minutes"]
 fn of_the_shipped_one() {
-    let solver = Solver::new(&design("sensor1-fast-wide", 4)).unwrap();
+    let solver = Solver::new(&design("sensor1-wide", 4)).unwrap();
     for (kind, label) in KINDS {
         let frames: Vec<SceneFrame> =
             (0..100).map(|seed| frame(solver.matrices().sensor(), kind, 3000 + seed)).collect();

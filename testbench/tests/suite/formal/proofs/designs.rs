@@ -3,7 +3,6 @@
 use golden::design::{
     CalibrationIn, Correction, Curve, Design, Estimator, InputRange, Optimise, Outputs, Overrun, PlanKind,
 };
-use golden::estimators::joint::Grid;
 
 pub fn paper(design: &mut Design) {
     design.algorithm.plan = PlanKind::Paper;
@@ -60,17 +59,12 @@ pub fn corrected(design: &mut Design) {
         half_window: [0, 0],
         hidden: vec![vec![1; inputs]],
         output: [vec![1], vec![1]],
-        doubt: None,
+        error: None,
     });
 }
 
-pub fn corrected_after_points(design: &mut Design) {
-    corrected(design);
-    design.algorithm.joint.grid = Grid::COARSE;
-}
-
 pub fn corrected_resultants(design: &mut Design) {
-    corrected_after_points(design);
+    corrected(design);
     design.algorithm.outputs = Outputs::Resultants;
 }
 

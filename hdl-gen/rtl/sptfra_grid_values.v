@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Condition 1 at every point of the (mu_x, mu_y) plane at once: B = sum max(0, u0 + mu_x u1 + mu_y u2), SIDE x SIDE
-// points 3/16 apart, a cell a point.
+// Condition 1 at the points of the grid: B = sum max(0, u0 + mu_x u1 + mu_y u2) over all taxels.
 //
-// A taxel a cycle, or two: a cell adds X of its column and Y of its row, and accumulates what is above zero; a sum that
-// leaves its width is the largest number. From start to the first row of points: four cycles a quad, and 13, or two a
-// quad, and 14; then a row a cycle. The rows stay until the next start, and each can be asked for again.
+// An evaluator adds X of its column and Y of its row, and accumulates what is above zero. A sum beyond its width stays
+// the largest number.
+//
+//   PARALLEL     evaluators               start to first row        next row
+//   SIDE * SIDE  one a point              4 Q + 13, or 2 Q + 14     1 cycle
+//   SIDE         one a column, row after  4 Q + 13                  4 Q + 1 cycles
+//                row of the grid
+//
+// Q: quads; the second figure is with two taxels a cycle. Each row can be read again until the next start.
 
 `default_nettype none
 
-module sptfra_points #(
+module sptfra_grid_values #(
     // Taxels along x
     parameter integer COLUMNS = 10,
     // Taxels along y
@@ -19,14 +24,21 @@ module sptfra_points #(
     parameter integer DATA_BITS = 27,
     // Bits of the number of a quad
     parameter integer ROW_WIDTH = 5,
-    // Points along an axis, odd
-    parameter integer SIDE = 15,
-    // Taxels a cycle: 1 or 2
+    // Points along an axis, 11 or 13
+    parameter integer SIDE = 13,
+    // Points evaluated at a time: all of them, or SIDE
+    parameter integer PARALLEL = SIDE * SIDE,
+    // Taxels a cycle: 1, or 2 with all points at a time
     parameter integer TAXELS = 1,
+    // Bits of a value below the leading bit of sum |b|
+    parameter integer FRACTION = 21,
     // Left shift of u before the right shift by the bits of sum |b|
-    parameter integer U_LEFT = 24,
+    parameter integer U_LEFT = 22,
     // From start to the first row, checked in simulation; 0: unchecked
-    parameter integer EXPECTED_LATENCY = 0
+    parameter integer EXPECTED_LATENCY = 0,
+    // Derived: bits of a value, and of the margin
+    parameter integer VALUE_BITS = FRACTION + 2,
+    parameter integer MARGIN_BITS = FRACTION - 7
 ) (
     input  wire clock,
     input  wire reset,
@@ -41,36 +53,43 @@ module sptfra_points #(
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest, // max |b|
     // 2^-8 sum |b|, in the steps of B
-    output wire [15:0] margin,
-    // All of a quad as it is read, u_0 in the lowest bits
+    output wire [MARGIN_BITS-1:0] margin,
+    // All of a quad as it is first read, u_0 in the lowest bits
     output reg  read_valid,
     output reg  [ROW_WIDTH-1:0] read_quad,
     output reg  [3*4*27-1:0] read_values,
     // B, a row of points at a time, mu_x from the least one on in the lowest bits; held until the next one
     output reg  row_valid,
     input  wire again, // after the last row: the first one once more, three cycles later, and so on
-    output reg  [SIDE*28-1:0] row_values,
+    output reg  [SIDE*VALUE_BITS-1:0] row_values,
     output wire clipped // a u was; held until the next start
 );
 
     localparam integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
     localparam integer LAST_QUAD = QUADS - 1;
-    localparam integer VALUE_BITS = 28;
-    localparam integer POINT_BITS = 27;
-    localparam integer TENSION_BITS = POINT_BITS - 2 + TAXELS; // of the taxels of a cycle
+    localparam integer AT_ONCE = PARALLEL / SIDE; // rows of the grid
+    localparam integer IS_SERIAL = (AT_ONCE == 1) ? 1 : 0;
+    localparam integer TERM_BITS = FRACTION + 4;
+    localparam integer ONE_BITS = FRACTION + 2; // of a taxel's tension
+    localparam integer TENSION_BITS = ONE_BITS - 1 + TAXELS; // of the taxels of a cycle
     localparam integer STAGES = 10 + TAXELS; // from a taxel's address to its tension being added to the sums
     localparam [1:0] STEP = TAXELS[1:0];
     localparam [1:0] LAST_MEMBER = 2'd0 - STEP;
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
 
     generate
-        if ((TAXELS != 1) && (TAXELS != 2)) begin : gen_check
-            sptfra_error_one_or_two_taxels_a_cycle invalid ();
+        if ((TAXELS != 1) && ((TAXELS != 2) || (IS_SERIAL != 0))) begin : gen_check_taxels
+            sptfra_error_one_taxel_a_cycle_or_two_with_all_points invalid ();
+        end
+        if ((PARALLEL != SIDE) && (PARALLEL != SIDE * SIDE)) begin : gen_check_parallel
+            sptfra_error_a_row_of_points_at_a_time_or_all_of_them invalid ();
         end
     endgenerate
 
     // ---- Taxels: the members of a quad one after the other, or two. Index k: k cycles after the address
     reg reading;
+    reg pausing; // a cycle from one row of the grid to the next
+    reg [3:0] pass; // serial: the row of the grid
     reg [ROW_WIDTH-1:0] quad;
     reg [1:0] member;
     reg [1:0] member_1;
@@ -106,40 +125,61 @@ module sptfra_points #(
         end
         if (reading && last_taxel) begin
             reading <= 1'b0;
+            pausing <= (IS_SERIAL != 0) && (pass != LAST_ROW);
+        end
+        if (pausing) begin
+            pausing <= 1'b0;
+            reading <= 1'b1;
+            pass <= pass + 4'd1;
+        end
+        if (pausing || start) begin
+            quad <= {ROW_WIDTH{1'b0}};
+            member <= 2'd0;
         end
         if (start) begin
             reading <= 1'b1;
-            quad <= {ROW_WIDTH{1'b0}};
-            member <= 2'd0;
+            pausing <= 1'b0;
+            pass <= 4'd0;
         end
         member_1 <= member;
         member_2 <= member_1;
         taxels_3 <= taxels_2;
-        read_valid <= valids[1] && (member_1 == 2'd0);
+        read_valid <= valids[1] && (member_1 == 2'd0) && (pass == 4'd0);
         read_quad <= quad; // of the same: it is read for two cycles at least
         read_values <= quad_1;
         valids <= {valids[STAGES-1:1], reading};
         lasts <= {lasts[STAGES-1:1], reading && last_taxel};
         if (reset) begin
             reading <= 1'b0;
+            pausing <= 1'b0;
             valids <= {STAGES{1'b0}};
             lasts <= {STAGES{1'b0}};
             read_valid <= 1'b0;
         end
     end
 
-    // ---- Their parts in each column and in each row of points
-    wire [TAXELS*SIDE*27-1:0] along_x_9;
-    wire [TAXELS*SIDE*27-1:0] along_y_9;
-    wire [TAXELS*16-1:0] margins;
+    // ---- Their terms in each column and row of the grid
+    wire [TAXELS*SIDE*TERM_BITS-1:0] along_x_9;
+    wire [TAXELS*AT_ONCE*TERM_BITS-1:0] along_y_9;
+    wire [TAXELS*MARGIN_BITS-1:0] margins;
     wire [TAXELS-1:0] clips;
+    reg [3:0] pass_8; // of the terms that are formed
 
-    assign margin = margins[15:0];
+    assign margin = margins[MARGIN_BITS-1:0];
     assign clipped = (clips != {TAXELS{1'b0}});
 
     genvar index;
     genvar column;
     genvar taxel;
+
+    always @(posedge clock) begin
+        if (lasts[8]) begin
+            pass_8 <= pass_8 + 4'd1;
+        end
+        if (start) begin
+            pass_8 <= 4'd0;
+        end
+    end
 
     generate
         for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
@@ -152,50 +192,55 @@ module sptfra_points #(
                 assign taxels_2[27*(3*taxel + index) +: 27] = of_q[27*of_quad_2 +: 27];
             end
 
-            sptfra_points_taxel #(
-                .SIDE   (SIDE),
-                .U_LEFT (U_LEFT)
-            ) parts (
+            sptfra_grid_terms #(
+                .SIDE     (SIDE),
+                .AT_ONCE  (AT_ONCE),
+                .FRACTION (FRACTION),
+                .U_LEFT   (U_LEFT)
+            ) terms (
                 .clock      (clock),
                 .reset      (reset),
                 .start      (start),
                 .stress_sum (stress_sum),
                 .largest    (largest),
-                .margin     (margins[16*taxel +: 16]),
+                .margin     (margins[MARGIN_BITS*taxel +: MARGIN_BITS]),
                 .valid      (valids[3]),
                 .u0         (taxels_3[27*(3*taxel + 0) +: 27]),
                 .u1         (taxels_3[27*(3*taxel + 1) +: 27]),
                 .u2         (taxels_3[27*(3*taxel + 2) +: 27]),
-                .along_x    (along_x_9[SIDE*27*taxel +: SIDE*27]),
-                .along_y    (along_y_9[SIDE*27*taxel +: SIDE*27]),
+                .row        (pass_8),
+                .along_x    (along_x_9[SIDE*TERM_BITS*taxel +: SIDE*TERM_BITS]),
+                .along_y    (along_y_9[AT_ONCE*TERM_BITS*taxel +: AT_ONCE*TERM_BITS]),
                 .clipped    (clips[taxel])
             );
         end
     endgenerate
 
-    // ---- Cells, a point each: the tension, and its sum with a bit that stays once it has overflowed. A sum begins
-    // with its register's reset. For a row to leave, all move down by one, through the cells' own adders, and what was
-    // in row 0 goes to the last one: there is no choice among rows, and no memory of them
+    // ---- Evaluators: the tension, and its sum with a bit that stays once it has overflowed. A sum begins with its
+    // register's reset. With one for each point, all rows move down by one for a row to leave, through the evaluators'
+    // own adders, and row 0 goes to the last one: no choice among rows, and no memory of them
     reg giving;
     reg [3:0] row;
     reg turn; // this cycle
     reg turn_next;
     reg count_next;
     reg nothing_8;
-    wire turn_after_next = lasts[STAGES-1] || lasts[STAGES] || (giving && (row < LAST_ROW - 4'd1)) || again;
-    wire [(SIDE+1)*SIDE*(VALUE_BITS+1)-1:0] sums; // row 0 above the last row once more
+    reg all_given;
+    wire turn_after_next = again || lasts[STAGES-1]
+        || ((IS_SERIAL == 0) && (lasts[STAGES] || (giving && (row < LAST_ROW - 4'd1))));
+    wire [(AT_ONCE+1)*SIDE*(VALUE_BITS+1)-1:0] sums; // row 0 above the last row once more
 
-    assign sums[SIDE*SIDE*(VALUE_BITS+1) +: SIDE*(VALUE_BITS+1)] = sums[0 +: SIDE*(VALUE_BITS+1)];
+    assign sums[AT_ONCE*SIDE*(VALUE_BITS+1) +: SIDE*(VALUE_BITS+1)] = sums[0 +: SIDE*(VALUE_BITS+1)];
 
     generate
-        for (index = 0; index < SIDE; index = index + 1) begin : gen_rows
+        for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_rows
             for (column = 0; column < SIDE; column = column + 1) begin : gen_points
                 // For each point its own: a tool puts a row's points where there is room, all over a device
-                (* keep = "true" *) reg clears; // a frame begins
+                (* keep = "true" *) reg clears; // a frame begins, or a row
                 (* keep = "true" *) reg nothing; // no taxel is there
                 (* keep = "true" *) reg counts; // a tension, or the row above, is taken
                 (* keep = "true" *) reg turns; // the row above
-                wire [TAXELS*(POINT_BITS-1)-1:0] tensions_11;
+                wire [TAXELS*ONE_BITS-1:0] tensions_11;
                 wire [TENSION_BITS-1:0] tension; // of all taxels of a cycle; none in a turn
                 wire [VALUE_BITS:0] above = sums[(VALUE_BITS+1)*(SIDE*(index + 1) + column) +: VALUE_BITS+1];
                 reg [VALUE_BITS-1:0] sum;
@@ -204,27 +249,29 @@ module sptfra_points #(
                     + {1'b0, turns ? above[VALUE_BITS-1:0] : sum};
 
                 for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_tensions
-                    wire signed [POINT_BITS-1:0] x = along_x_9[27*(SIDE*taxel + column) +: 27];
-                    wire signed [POINT_BITS-1:0] y = along_y_9[27*(SIDE*taxel + index) +: 27];
-                    wire signed [POINT_BITS-1:0] stress = x + y;
+                    wire signed [TERM_BITS-1:0] x = along_x_9[TERM_BITS*(SIDE*taxel + column) +: TERM_BITS];
+                    wire signed [TERM_BITS-1:0] y = along_y_9[TERM_BITS*(AT_ONCE*taxel + index) +: TERM_BITS];
+                    wire signed [TERM_BITS-1:0] stress = x + y;
                     reg presses_10;
-                    reg [POINT_BITS-2:0] stress_10;
-                    reg [POINT_BITS-2:0] tension_11;
+                    reg [ONE_BITS-1:0] stress_10;
+                    reg [ONE_BITS-1:0] tension_11;
 
-                    // The sign waits in a register of its own: it resets 26
+                    wire _unused_stress = &{1'b0, stress[TERM_BITS-2]}; // of a tension, which is below four powers, 0
+
+                    // The sign waits in a register of its own: it resets all bits
                     always @(posedge clock) begin
-                        presses_10 <= stress[POINT_BITS-1];
+                        presses_10 <= stress[TERM_BITS-1];
                         if (nothing) begin
                             presses_10 <= 1'b1;
                         end
-                        stress_10 <= stress[POINT_BITS-2:0];
+                        stress_10 <= stress[ONE_BITS-1:0];
                         tension_11 <= stress_10;
                         if (presses_10) begin
-                            tension_11 <= {(POINT_BITS - 1){1'b0}};
+                            tension_11 <= {ONE_BITS{1'b0}};
                         end
                     end
 
-                    assign tensions_11[(POINT_BITS-1)*taxel +: POINT_BITS-1] = tension_11;
+                    assign tensions_11[ONE_BITS*taxel +: ONE_BITS] = tension_11;
                 end
 
                 if (TAXELS == 1) begin : gen_one
@@ -233,18 +280,18 @@ module sptfra_points #(
                     reg [TENSION_BITS-1:0] both_12;
 
                     always @(posedge clock) begin
-                        both_12 <= {1'b0, tensions_11[0 +: POINT_BITS-1]}
-                            + {1'b0, tensions_11[(TAXELS-1)*(POINT_BITS-1) +: POINT_BITS-1]};
+                        both_12 <= {1'b0, tensions_11[0 +: ONE_BITS]}
+                            + {1'b0, tensions_11[(TAXELS-1)*ONE_BITS +: ONE_BITS]};
                     end
 
                     assign tension = both_12;
                 end
 
                 always @(posedge clock) begin
-                    clears <= start;
+                    clears <= start || ((IS_SERIAL != 0) && lasts[STAGES]);
                     nothing <= nothing_8;
                     counts <= count_next;
-                    turns <= turn_next;
+                    turns <= turn_next && (IS_SERIAL == 0);
                     if (clears) begin
                         sum <= {VALUE_BITS{1'b0}};
                         over <= 1'b0;
@@ -262,18 +309,24 @@ module sptfra_points #(
     // ---- Rows, when all taxels are in
     always @(posedge clock) begin
         turn_next <= turn_after_next;
-        count_next <= valids[STAGES-2] || turn_after_next;
+        count_next <= valids[STAGES-2] || (turn_after_next && (IS_SERIAL == 0));
         nothing_8 <= !valids[7];
         turn <= turn_next;
-        if (giving) begin
-            row <= row + 4'd1;
+        if (giving || (turn && all_given)) begin
+            row <= (row == LAST_ROW) ? 4'd0 : row + 4'd1;
+        end
+        if (giving && ((row == LAST_ROW) || (IS_SERIAL != 0))) begin
+            giving <= 1'b0;
         end
         if (giving && (row == LAST_ROW)) begin
-            giving <= 1'b0;
+            all_given <= 1'b1;
         end
         if (lasts[STAGES]) begin
             giving <= 1'b1;
+        end
+        if (start) begin
             row <= 4'd0;
+            all_given <= 1'b0;
         end
         row_valid <= giving;
         if (reset) begin
@@ -283,18 +336,36 @@ module sptfra_points #(
         end
     end
 
+    wire [SIDE*VALUE_BITS-1:0] row_0;
+    wire [SIDE*VALUE_BITS-1:0] row_next;
+
     generate
         for (column = 0; column < SIDE; column = column + 1) begin : gen_values
             wire [VALUE_BITS:0] of_column = sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
 
+            assign row_0[VALUE_BITS*column +: VALUE_BITS] = of_column[VALUE_BITS-1:0]
+                | {VALUE_BITS{of_column[VALUE_BITS]}};
+        end
+        if (IS_SERIAL != 0) begin : gen_memory
+            (* ram_style = "distributed" *) reg [SIDE*VALUE_BITS-1:0] memory [0:15];
+
             always @(posedge clock) begin
-                if (turn) begin
-                    row_values[VALUE_BITS*column +: VALUE_BITS] <= of_column[VALUE_BITS-1:0]
-                        | {VALUE_BITS{of_column[VALUE_BITS]}};
+                if (giving) begin
+                    memory[row] <= row_0;
                 end
             end
+
+            assign row_next = all_given ? memory[row] : row_0;
+        end else begin : gen_none
+            assign row_next = row_0;
         end
     endgenerate
+
+    always @(posedge clock) begin
+        if (turn) begin
+            row_values <= row_next;
+        end
+    end
 
 `ifdef SIMULATION
     sptfra_check_latency #(
