@@ -199,7 +199,7 @@ enum Command {
     },
     /// Write what a board loads into a bank of its calibration.
     ///
-    /// For a design with [hardware] calibration = "ram": each taxel's gain and offset and, with `replaceable`, its weights in
+    /// For a design with [hardware] calibration = "ram": each taxel's gain and offset and, with `room` for them, its weights in
     /// the stress of the dead taxels that the design names. `load_calibration` of the Python driver reads the file; nothing
     /// is synthesized.
     #[command(after_long_help = BANK_FILE)]
@@ -265,7 +265,7 @@ const ALGORITHM: &str = r#"In the design file, what changes the result:
   dead = [44, 45]                   # taxels that read nothing, up to 8: others replace them; so does gain 0
 
   [algorithm]
-  plan = "reduced"                  # the paper's result from ten folded matrices, the default without a filter; or
+  plan = "reduced"                  # the paper's result from ten folded matrices, the default; or
                                     # "paper": thirteen matrices
   kernel = "point"                  # point forces, as in the paper, for layers of half a pitch and more. Or "cell":
                                     # forces spread over a cell of the grid, for thinner ones; F_z is right without a gain
@@ -297,15 +297,15 @@ For the joint estimator's constants from simulated contacts, in the design file:
 
 In RESOLVED.toml, besides:
   gain = 1.1                        # factor on all forces
-  tangential = [1.0, 0.0]           # friction vector c1 mu + c3 mu |mu|^2
-  family = "wide"                   # contacts that all of it was fitted to, unless "narrow"
-  doubt = 0.06                      # with family "wide": a standard error above this share of F_z is doubtful
+  friction_correction = [1.0, 0.0]  # friction vector c1 mu + c3 mu |mu|^2
+  training_set = "general"          # contacts that all of it was fitted to, unless "sliding"
+  max_standard_error = 0.06         # with "general": a standard error above this share of F_z is doubtful
   [algorithm.correction]            # of the friction vector, by a small network
   half_window = [3, 7]              # taxels either side of the contact's centre, along x and y
   file = "RESOLVED.weights.csv"     # its weights in steps of 2^-12, written beside RESOLVED.toml: a line for each
                                     # hidden unit, under a header
   sha256 = "..."                    # of that file
-  error_base = -17123               # with family "wide": what is added to the logarithm of the error that is left"#;
+  error_base = -17123               # with "general": what is added to the logarithm of the error that is left"#;
 
 const BANK_FILE: &str = r#"BANK.csv: a header line, gain,offset,taxel 37,taxel 38, that names the dead taxels; then a line for each taxel: its gain
 (0 of a dead one), its offset in counts, and its weight in the stress of each dead taxel. Of a design with a curve offsets
@@ -315,12 +315,11 @@ sensor.curve.
 In the design file:
   [sensor]
   calibration = "calibration.csv"   # a line gain,offset for each taxel, such as golden calibrate writes; gain 0: dead
-  dead = [37, 38]                   # others that read nothing
+  dead = { taxels = [37, 38], room = 8 } # others that read nothing; room for 1, 2, 4 or 8 in a bank
 
   [hardware]
   control = true
-  calibration = "ram"
-  replaceable = 8                   # dead taxels for which a bank has room: 1, 2, 4 or 8"#;
+  calibration = "ram""#;
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {

@@ -14,7 +14,7 @@ import numpy as np
 import sptfra
 
 ROOT = Path(os.environ["SPTFRA_ROOT"])
-SMALL = "name = 'pad'\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
+SMALL = "format = 3\nname = 'pad'\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
 
 
 def design(more=""):
@@ -55,7 +55,7 @@ class Designs(unittest.TestCase):
             (lambda: sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml", design=design()), "the scene has"),
             (lambda: sptfra.scene(), "nothing to make frames of"),
             (lambda: sptfra.calibrate(design("[algorithm]\nestimator = 'line'\n")), "nothing to calibrate"),
-            (lambda: sptfra.calibrate(design(), family="odd"), 'family is "odd"; choose one of: narrow, wide'),
+            (lambda: sptfra.calibrate(design(), family="odd"), 'family is "odd"; choose one of: sliding, general'),
             (lambda: sptfra.load_frames(ROOT / "data" / "bed_mat_64x27.csv", design()), "line 2"),
             (lambda: sptfra.generate(design(), ROOT), "which hdl-gen did not write; move it away or choose another folder"),
         ]:

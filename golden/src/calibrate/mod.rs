@@ -141,7 +141,7 @@ pub enum CalibrateError {
     },
     /// The fitted constants are outside what a design file may hold.
     #[error(
-        "{name}: the calibration finds gain {gain:.3} and tangential = [{c1:.3}, {c3:.3}], which is out of range: this \
+        "{name}: the calibration finds gain {gain:.3} and friction_correction = [{c1:.3}, {c3:.3}], which is out of range: this \
          sensor cannot be calibrated; check its pitch and depth"
     )]
     OutOfRange {

@@ -25,7 +25,7 @@ pub fn run(path: &Path, out: &Path, json: bool) -> Result<(), Box<dyn Error>> {
     let design = Design::load(path)?;
     let text = bank::to_csv(&design)?;
     write_whole(out, text.as_bytes())?;
-    let replaced: &[usize] = if design.hardware.replaceable == 0 { &[] } else { &design.input.dead };
+    let replaced: &[usize] = if design.input.room == 0 { &[] } else { &design.input.dead };
     let taxels = design.sensor.taxels();
     if json {
         let report = Report { design: &design.name, bank: out, taxels, replaced };

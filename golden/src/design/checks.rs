@@ -52,14 +52,19 @@ impl Check<'_> {
         }
     }
 
-    /// The variant that a word of the file means.
-    pub(crate) fn word<T: DeserializeOwned>(&self, key: &str, found: &str) -> Result<T, DesignError> {
-        words::read(found).map_err(|unknown| DesignError::Choice {
+    /// A word that is not among the allowed ones.
+    pub(crate) fn choice(&self, key: &str, found: &str, allowed: &[&str]) -> DesignError {
+        DesignError::Choice {
             origin: self.origin.to_owned(),
             key: key.to_owned(),
             found: found.to_owned(),
-            allowed: unknown.allowed,
-        })
+            allowed: allowed.join(", "),
+        }
+    }
+
+    /// The variant that a word of the file means.
+    pub(crate) fn word<T: DeserializeOwned>(&self, key: &str, found: &str) -> Result<T, DesignError> {
+        words::read(found).map_err(|unknown| self.choice(key, found, unknown.allowed))
     }
 
     /// As [`Check::word`], for a key that may be absent.

@@ -52,7 +52,7 @@ pub enum DesignError {
         remedy: String,
     },
     /// A word that is not among the allowed ones.
-    #[error("{origin}: {key} is {found:?}; choose one of: {}", allowed.join(", "))]
+    #[error("{origin}: {key} is {found:?}; choose one of: {allowed}")]
     Choice {
         /// File name.
         origin: String,
@@ -61,7 +61,7 @@ pub enum DesignError {
         /// The word found.
         found: String,
         /// The words allowed.
-        allowed: &'static [&'static str],
+        allowed: String,
     },
 }
 

@@ -3,22 +3,24 @@
 use std::fmt;
 use std::str::FromStr;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::names::MatrixName;
 use crate::words::{self, print_as_words};
 
 /// The kinds of filters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum FilterKind {
     /// All entries are kept.
+    #[default]
     None,
-    /// A band around the diagonal.
+    /// A band around the diagonal: `l` diagonals are removed on either side.
     F1,
-    /// Entries that are large within their row.
+    /// Entries that are large within their row: what is below `1 / (1000 p)` of the maximum is removed.
     F2,
-    /// For each matrix its own filter.
+    /// For each matrix its own filter, chosen on reference scenes by `tune-filter`; with the paper's plan.
     F3,
 }
 
@@ -67,6 +69,18 @@ impl Filter {
             Self::F1 { l } => Some(MatrixFilter::F1 { l: *l }),
             Self::F2 { p } => Some(MatrixFilter::F2 { p: *p }),
             Self::F3 { choices, .. } => choices.as_ref().map(|choices| choices.of(matrix)),
+        }
+    }
+}
+
+/// As the design file writes it on one line.
+impl fmt::Display for Filter {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = self.kind();
+        match self {
+            Self::None | Self::F3 { .. } => write!(formatter, "{{ kind = \"{kind}\" }}"),
+            Self::F1 { l } => write!(formatter, "{{ kind = \"{kind}\", l = {l} }}"),
+            Self::F2 { p } => write!(formatter, "{{ kind = \"{kind}\", p = {p:?} }}"),
         }
     }
 }

@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
-
 use super::checks::Check;
 use super::files::{Beside, sha256};
+use super::keys::{AlgorithmKeys, CorrectionKeys};
 use super::{DesignError, Kernel, Regularisation, Sensor, Tension};
 use crate::estimators::joint::{
     CUBIC_LIMIT, Correction, DEFAULT_DOUBT, Family, Grid, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT,
@@ -27,28 +26,6 @@ pub fn conditions(
     format!("{sensor}, {kernel}, {}{reads}{of_grid}{of_family}", regularisation.factor())
 }
 
-/// The `[algorithm.correction]` table: the weights in a file with its hash, or in the table itself.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawCorrection {
-    half_window: Vec<i64>,
-    pub(super) file: Option<String>,
-    sha256: Option<String>,
-    error_base: Option<i64>,
-    hidden: Option<Vec<Vec<i64>>>,
-    output: Option<Vec<Vec<i64>>>,
-}
-
-/// The constants as a file has them, without the correction.
-pub(super) struct Raw<'a> {
-    pub grid: Grid,
-    pub family: Family,
-    pub doubt: Option<f64>,
-    pub gain: Option<f64>,
-    pub tangential: Option<&'a [f64]>,
-    pub fitted_to: Option<String>,
-}
-
 /// The grid that a design names by its points along an axis; the fine one if it names none.
 pub(super) fn grid(check: &Check, side: Option<i64>) -> Result<Grid, DesignError> {
     let Some(side) = side else { return Ok(Grid::FINE) };
@@ -58,11 +35,18 @@ pub(super) fn grid(check: &Check, side: Option<i64>) -> Result<Grid, DesignError
     })
 }
 
-/// Checks the constants; a design without any has the default ones. `conditions` are those of the design.
-pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result<JointConstants, DesignError> {
-    if let Some(other) = raw.fitted_to.as_ref().filter(|&fitted_to| fitted_to != conditions) {
+/// From the keys; the constants must belong to `conditions`, those of the design with its grid and training set.
+pub(super) fn constants(
+    check: &Check,
+    keys: &AlgorithmKeys,
+    conditions: impl Fn(Grid, Family) -> String,
+) -> Result<JointConstants, DesignError> {
+    let grid = grid(check, keys.grid)?;
+    let family = keys.training_set.unwrap_or_default();
+    let conditions = conditions(grid, family);
+    if let Some(other) = keys.calibrated_for.as_ref().filter(|&calibrated_for| *calibrated_for != conditions) {
         return Err(check.value(
-            "algorithm.fitted_to",
+            "algorithm.calibrated_for",
             format!("says that the constants belong to \"{other}\", but the design is \"{conditions}\""),
             format!(
                 "run `golden calibrate {0} --out {1}`, which fits new ones",
@@ -71,22 +55,27 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
             ),
         ));
     }
-    let gain = check.real("algorithm.gain", raw.gain.unwrap_or(1.0), 0.1, 10.0, "")?;
-    let [c1, c3] = two(check, "algorithm.tangential", raw.tangential.unwrap_or(&[1.0, 0.0]), "c1 and c3")?;
+    let [c1, c3] = keys.friction_correction.unwrap_or([1.0, 0.0]);
     let tangential = [
-        check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
-        check.real("algorithm.tangential[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
+        check.real("algorithm.friction_correction[0]", c1, 0.1, 10.0, "")?,
+        check.real("algorithm.friction_correction[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
     ];
-    if raw.doubt.is_some() && raw.family == Family::Narrow {
+    if keys.max_standard_error.is_some() && family == Family::Narrow {
         return Err(check.value(
-            "algorithm.doubt",
-            "is a limit for an error that the design does not tell".to_owned(),
-            "remove it, or write family = \"wide\" and run `golden calibrate`".to_owned(),
+            "algorithm.max_standard_error",
+            "is a limit for an error that the design does not estimate".to_owned(),
+            "remove it, or write training_set = \"general\" and run `golden calibrate`".to_owned(),
         ));
     }
-    let doubt = check.real("algorithm.doubt", raw.doubt.unwrap_or(DEFAULT_DOUBT), 0.001, 3.9, "")?;
-    let Raw { grid, family, fitted_to, .. } = raw;
-    Ok(JointConstants { grid, family, gain, tangential, correction: None, doubt, fitted_to })
+    Ok(JointConstants {
+        grid,
+        family,
+        gain: keys.gain.unwrap_or(1.0),
+        tangential,
+        correction: None,
+        doubt: keys.max_standard_error.unwrap_or(DEFAULT_DOUBT),
+        fitted_to: keys.calibrated_for.clone(),
+    })
 }
 
 /// A name for the calibrated design beside the one at `origin`.
@@ -96,10 +85,18 @@ fn resolved_name(origin: &str) -> PathBuf {
     path.with_file_name(format!("{stem}-calibrated.toml"))
 }
 
-/// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
-pub(super) fn refuse(check: &Check, given: [bool; 7]) -> Result<(), DesignError> {
-    let keys = ["grid", "family", "doubt", "gain", "tangential", "correction", "fitted_to"];
-    let given: Vec<&str> = keys.into_iter().zip(given).filter_map(|(key, given)| given.then_some(key)).collect();
+/// Refuses the keys of the joint estimator beside another one.
+pub(super) fn refuse(check: &Check, keys: &AlgorithmKeys) -> Result<(), DesignError> {
+    let given = [
+        ("grid", keys.grid.is_some()),
+        ("training_set", keys.training_set.is_some()),
+        ("max_standard_error", keys.max_standard_error.is_some()),
+        ("gain", keys.gain.is_some()),
+        ("friction_correction", keys.friction_correction.is_some()),
+        ("correction", keys.correction.is_some()),
+        ("calibrated_for", keys.calibrated_for.is_some()),
+    ];
+    let given: Vec<&str> = given.into_iter().filter_map(|(key, given)| given.then_some(key)).collect();
     match given.as_slice() {
         [] => Ok(()),
         [key] => Err(check.value(
@@ -125,22 +122,22 @@ const RESTORE: &str = "copy the file that was written with the design to its sid
 /// Checks the correction, and reads its file if it has one.
 pub(super) fn correction(
     check: &Check,
-    raw: RawCorrection,
+    keys: CorrectionKeys,
     sensor: &Sensor,
     beside: Beside<'_>,
 ) -> Result<Correction, DesignError> {
-    let [x, y] = two(check, &key("half_window"), &raw.half_window, "for x and y")?;
+    let [x, y] = keys.half_window;
     let half = |name: &str, value, side: usize| check.integer(&key(name), value, 0, side as i64 - 1);
     let half_window =
         [half("half_window[0]", x, sensor.columns)? as usize, half("half_window[1]", y, sensor.rows)? as usize];
     let refuse = |name: &str, problem: &str, remedy: String| Err(check.value(&key(name), problem.to_owned(), remedy));
-    match (raw.file, raw.sha256, raw.hidden, raw.output) {
+    match (keys.file, keys.sha256, keys.hidden, keys.output) {
         (Some(file), Some(hash), None, None) => {
             let limit = i64::from(WEIGHT_LIMIT);
-            let base = raw.error_base.map(|base| check.integer(&key("error_base"), base, -limit, limit - 1));
+            let base = keys.error_base.map(|base| check.integer(&key("error_base"), base, -limit, limit - 1));
             from_file(check, (&file, &hash), half_window, base.transpose()?.map(|base| base as i32), beside)
         }
-        (None, ..) if raw.error_base.is_some() => {
+        (None, ..) if keys.error_base.is_some() => {
             refuse("error_base", "is given without a file", "add the key file, or remove it".to_owned())
         }
         (None, None, Some(hidden), Some(output)) => from_table(check, half_window, &hidden, &output),
@@ -221,23 +218,23 @@ fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<
     }
 }
 
-/// The keys of `[algorithm]`, and the table that follows all of them, with the weights in the file named `weights`.
-pub(super) fn print(constants: &JointConstants, weights: &str) -> [String; 2] {
-    let JointConstants { grid, family, gain, tangential: [c1, c3], correction, doubt, fitted_to } = constants;
-    let told = correction.as_ref().and_then(|correction| correction.doubt.as_ref());
-    // Of the narrow family no error is told, and a limit for one is refused.
-    let says = *family == Family::Wide && (told.is_some() || doubt.to_bits() != DEFAULT_DOUBT.to_bits());
-    let doubt = if says { format!("doubt = {doubt:?}\n") } else { String::new() };
-    // Only where it is another one: a design without it keeps the hash that it had before there was such a key.
-    let grid = if *grid == Grid::FINE { String::new() } else { format!("grid = {}\n", grid.side()) };
-    let family = if *family == Family::Narrow { String::new() } else { format!("family = \"{family}\"\n") };
-    let fitted_to = fitted_to.as_ref().map_or_else(String::new, |conditions| format!("fitted_to = {conditions:?}\n"));
-    let keys = format!("{grid}{family}{doubt}{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
-    let table = correction.as_ref().map_or_else(String::new, |correction| {
-        let ([x, y], hash) = (correction.half_window, sha256(&correction.to_csv()));
-        let file = toml::Value::from(weights);
-        let base = told.map_or_else(String::new, |doubt| format!("error_base = {}\n", doubt.base));
-        format!("\n[algorithm.correction]\nhalf_window = [{x}, {y}]\nfile = {file}\nsha256 = \"{hash}\"\n{base}")
+/// Writes the constants into `keys`, with the weights in the file named `weights`.
+pub(super) fn state(constants: &JointConstants, weights: &str, keys: &mut AlgorithmKeys) {
+    let JointConstants { grid, family, gain, tangential, correction, doubt, fitted_to } = constants;
+    let estimated = correction.as_ref().and_then(|correction| correction.doubt.as_ref());
+    keys.grid = Some(grid.side() as i64);
+    keys.training_set = Some(*family);
+    // A limit for an error that is not estimated is refused.
+    keys.max_standard_error = (*family == Family::Wide).then_some(*doubt);
+    keys.calibrated_for.clone_from(fitted_to);
+    keys.gain = Some(*gain);
+    keys.friction_correction = Some(*tangential);
+    keys.correction = correction.as_ref().map(|correction| CorrectionKeys {
+        half_window: correction.half_window.map(|half| half as i64),
+        file: Some(weights.to_owned()),
+        sha256: Some(sha256(&correction.to_csv())),
+        error_base: estimated.map(|doubt| i64::from(doubt.base)),
+        hidden: None,
+        output: None,
     });
-    [keys, table]
 }

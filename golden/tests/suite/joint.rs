@@ -29,7 +29,7 @@ fn design(name: &str) -> Design {
 }
 
 fn small(algorithm: &str) -> Design {
-    let sensor = "name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n";
+    let sensor = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n";
     Design::from_toml(&format!("{sensor}[algorithm]\n{algorithm}\n"), "pad.toml").unwrap()
 }
 
@@ -215,7 +215,8 @@ fn the_line_estimator_has_nothing_to_calibrate() {
 #[test]
 fn constants_that_make_no_sense_are_refused() {
     let text = |algorithm: &str| {
-        let sensor = "name = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
+        let sensor =
+            "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
         format!("{sensor}[algorithm]\n{algorithm}\n")
     };
     let joint = |keys: &str| text(&format!("estimator = \"joint\"\n{keys}"));
@@ -223,20 +224,20 @@ fn constants_that_make_no_sense_are_refused() {
     let row = |length: usize| format!("{:?}", vec![1; length]);
     for (text, parts) in [
         (text("gain = 1.1"), ["algorithm.gain", "joint estimator"]),
-        (text("tangential = [1.0, 0.0]"), ["algorithm.tangential", "joint estimator"]),
+        (text("friction_correction = [1.0, 0.0]"), ["algorithm.tangential", "joint estimator"]),
         (text("grid = 15"), ["algorithm.grid", "joint estimator"]),
         (joint("grid = 13"), ["algorithm.grid", "15 or 21"]),
-        (text("family = \"wide\""), ["algorithm.family", "joint estimator"]),
+        (text("training_set = \"general\""), ["algorithm.family", "joint estimator"]),
         (joint("family = \"broad\""), ["algorithm.family", "narrow"]),
         (joint("grid = -15"), ["algorithm.grid", "15 or 21"]),
         (
-            joint("grid = 15\nfitted_to = \"4 x 3 taxels of 4 x 2 mm, 3 mm deep, point, 0\""),
+            joint("grid = 15\ncalibrated_for = \"4 x 3 taxels of 4 x 2 mm, 3 mm deep, point, 0\""),
             ["algorithm.fitted_to", "grid 15"],
         ),
         (joint("gain = 0.0"), ["algorithm.gain", "0.1"]),
         (joint("gain = nan"), ["algorithm.gain", "NaN"]),
-        (joint("tangential = [1.0]"), ["algorithm.tangential", "has 1 values"]),
-        (joint("tangential = [1.0, 9.0]"), ["algorithm.tangential[1]", "-3.9 to 3.9"]),
+        (joint("friction_correction = [1.0]"), ["algorithm.tangential", "has 1 values"]),
+        (joint("friction_correction = [1.0, 9.0]"), ["algorithm.tangential[1]", "-3.9 to 3.9"]),
         (correction("half_window = [0]\nhidden = []\noutput = []"), ["half_window", "has 1 values"]),
         (correction("half_window = [4, 0]\nhidden = []\noutput = []"), ["half_window[0]", "0 to 3"]),
         (correction("half_window = [0, 0]\nhidden = []\noutput = []"), ["hidden", "1 to 256"]),
@@ -306,7 +307,7 @@ fn a_mirrored_frame_has_mirrored_forces() {
 /// On a square x and y may change places, for any frame.
 #[test]
 fn a_transposed_frame_has_transposed_forces_on_a_square() {
-    let square = "name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+    let square = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
                   [algorithm]\nestimator = \"joint\"\n";
     for (family, hidden) in [(Family::Narrow, 5), (Family::Wide, 4)] {
         let mut design = Design::from_toml(square, "pad.toml").unwrap();

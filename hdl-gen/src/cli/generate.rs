@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use golden::design::Design;
 use hdl_gen::emit::boards::Board;
-use hdl_gen::emit::emit_for;
+use hdl_gen::emit::{Extras, emit_with};
 use hdl_gen::inspection::{excess_on, warnings};
+use hdl_gen::plan::Plan;
 use hdl_gen::write::{check_folder, write_folder};
 
 use golden::progress::Progress;
@@ -20,11 +21,13 @@ fn own_board(path: &Path) -> Result<Board, Box<dyn Error>> {
     Ok(Board::from_toml(&text, path)?)
 }
 
-/// Writes the folder of the design in file `path`, for the user's own `boards` too; returns what to tell the user.
+/// Writes the folder of the design in file `path`, for the user's own `boards` too, on lanes that
+/// meet `target_us` if there is one, with nets marked if `debug`; returns what to tell the user.
 pub fn generate(
     path: &Path,
     out: Option<PathBuf>,
     boards: &[PathBuf],
+    (target_us, debug): (Option<f64>, bool),
     progress: &Progress,
 ) -> Result<String, Box<dyn Error>> {
     let design = Design::load(path)?;
@@ -37,9 +40,9 @@ pub fn generate(
     let folder = out.unwrap_or_else(|| Path::new("rtl-out").join(&design.name));
     // Before the work rather than after it.
     check_folder(&folder)?;
-    let plan = super::plan(&design, path, progress)?;
+    let plan = super::planned(&design, path, progress, target_us, Plan::new)?;
     progress.stage("Verilog and ROM files".to_owned());
-    let files = emit_for(&plan, &own)?;
+    let files = emit_with(&plan, &Extras { boards: &own, debug })?;
     let kibibytes = files.values().map(Vec::len).sum::<usize>() / 1024;
     progress.stage(format!("writing {kibibytes} KiB"));
     write_folder(&folder, &files)?;

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use golden::design::{Overrun, PlanKind};
+use golden::design::{Algorithm, Overrun, PlanKind};
 use golden::table::Table;
 use hdl_gen::emit::products;
 use hdl_gen::inspection::{contacts, doubled, excess, figures, narrow, shares};
@@ -55,16 +55,8 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         plan.taxels(),
         sensor.depth_mm
     )?;
-    // As the design file writes them; those that it does not state are decided by filter and lanes.
-    let design = plan.design.to_toml();
-    let key = |name: &str| design.lines().find_map(|line| line.strip_prefix(name)).unwrap_or("").replace('"', "");
-    writeln!(
-        out,
-        "  design       plan {}, estimator {}, outputs {}",
-        key("plan = "),
-        key("estimator = "),
-        key("outputs = ")
-    )?;
+    let Algorithm { plan: kind, estimator, outputs, .. } = &plan.design.algorithm;
+    writeln!(out, "  design       plan {kind}, estimator {estimator}, outputs {outputs}")?;
     if let Some(contacts) = contacts(plan) {
         writeln!(out, "  contacts     {contacts}")?;
     }
@@ -105,9 +97,7 @@ fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
     let all = plan.taxels() * plan.taxels();
     let kept: usize = plan.nnz.0.iter().map(|&(_, count)| count).sum();
     let share = 100.0 * kept as f64 / (all * plan.nnz.0.len()) as f64;
-    // The filter as the design file writes it.
-    let design = plan.design.to_toml();
-    let filter = design.lines().find_map(|line| line.strip_prefix("filter = ")).unwrap_or("");
+    let filter = &plan.design.algorithm.filter;
     let whose = match plan.design.algorithm.plan {
         PlanKind::Paper => "Matrices",
         PlanKind::Reduced => "Matrices of the paper's plan",

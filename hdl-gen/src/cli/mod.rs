@@ -36,6 +36,9 @@ enum Command {
         /// For machines
         #[arg(long)]
         json: bool,
+        /// Latency in microseconds that a frame may take: the fewest lanes that meet it, in place of the design's
+        #[arg(long, value_name = "US", value_parser = microseconds)]
+        target_us: Option<f64>,
     },
     /// Writes RTL, ROM files, MCSR listings and metadata.json
     Generate {
@@ -48,6 +51,12 @@ enum Command {
         /// A file of your own board, for block design and device tree; its keys are those of hdl-gen/boards/zcu102.toml
         #[arg(long = "board", value_name = "FILE")]
         boards: Vec<PathBuf>,
+        /// Latency in microseconds that a frame may take: the fewest lanes that meet it, in place of the design's
+        #[arg(long, value_name = "US", value_parser = microseconds)]
+        target_us: Option<f64>,
+        /// Mark nets for a logic analyser in the FPGA, and write the script that attaches it
+        #[arg(long)]
+        debug: bool,
     },
     #[command(flatten)]
     Manual(Manual),
@@ -68,30 +77,35 @@ fn run(command: Command) -> Result<String, Box<dyn Error>> {
     let progress = Progress::new();
     match command {
         Command::New(new) => new::write(&new, &progress),
-        Command::Inspect { design, json } => {
+        Command::Inspect { design, json, target_us } => {
             let loaded = Design::load(&design)?;
-            let plan = planned(&loaded, &design, &progress, Plan::new)?;
+            let plan = planned(&loaded, &design, &progress, target_us, Plan::new)?;
             inspect::report(&plan, json)
         }
         Command::Manual(manual) => manual.run(Arguments::command()),
-        Command::Generate { design, out, boards } => generate::generate(&design, out, &boards, &progress),
+        Command::Generate { design, out, boards, target_us, debug } => {
+            generate::generate(&design, out, &boards, (target_us, debug), &progress)
+        }
     }
 }
 
-/// The plan of a design from file `path`.
-fn plan(design: &Design, path: &Path, progress: &Progress) -> Result<Plan, Box<dyn Error>> {
-    planned(design, path, progress, Plan::new)
+/// A time of the command line.
+fn microseconds(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| *time > 0.0 && time.is_finite());
+    time.ok_or_else(|| "a time in microseconds, greater than 0, such as 15".to_owned())
 }
 
-/// A design of file `path`, planned in one of the ways there are.
+/// A design of file `path`, planned on lanes that meet `target_us`, or without one in a `way` that there is.
 fn planned(
     design: &Design,
     path: &Path,
     progress: &Progress,
+    target_us: Option<f64>,
     way: impl Fn(&Design) -> Result<Plan, PlanError>,
 ) -> Result<Plan, Box<dyn Error>> {
     progress.stage(format!("matrices and plan of {} taxels", design.sensor.taxels()));
-    way(design).map_err(|error| format!("{}: {error}", path.display()).into())
+    let plan = target_us.map_or_else(|| way(design), |target_us| Plan::meeting(design, target_us));
+    plan.map_err(|error| format!("{}: {error}", path.display()).into())
 }
 
 /// Prints to standard output; a reader that has gone away is no error.

@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension, design_schema};
 use golden::kernel::Kernel;
 use golden::metrics::Quantiles;
 use golden::words;
@@ -48,7 +48,14 @@ pub struct New {
     /// Stress at the end of the sensor's range; 100000 if it is not said
     #[arg(long, value_name = "PA")]
     full_scale_pa: Option<f64>,
+    /// Write the JSON schema of design files too, as `design.schema.json` in the same folder: editors with Taplo (Even Better
+    /// TOML) then show what keys mean, complete them and mark what is wrong
+    #[arg(long)]
+    schema: bool,
 }
+
+/// Name of the schema beside a design.
+const SCHEMA_FILE: &str = "design.schema.json";
 
 /// A length of the command line.
 fn length(text: &str) -> Result<f64, String> {
@@ -113,7 +120,13 @@ pub fn write(new: &New, progress: &Progress) -> Result<String, Box<dyn Error>> {
         return Err(failed(ErrorKind::AlreadyExists.into()).into());
     }
     let (wanted, assumed) = new.design()?;
-    let text = wanted.text(&mut |what| progress.stage(what.to_owned()))?;
+    let mut text = wanted.text(&mut |what| progress.stage(what.to_owned()))?;
+    if new.schema {
+        let beside = folder.join(SCHEMA_FILE);
+        let failed = |error| format!("{}: cannot write the file: {error}", beside.display());
+        std::fs::write(&beside, design_schema()).map_err(failed)?;
+        text = format!("#:schema {SCHEMA_FILE}\n{text}");
+    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hdl-gen-");
     #[cfg(unix)]
@@ -162,7 +175,7 @@ fn lines(new: &New, design: &Design, path: &Path, assumed: &[String], progress: 
             // Sensors that read no tension were judged with all units.
             let units = if design.input.tension == Tension::Read { " --hidden 64" } else { "" };
             format!(
-                "{trains}; with --family wide{units}, in some\n\
+                "{trains}; with --family general{units}, in some\n\
                  minutes, on bodies of other shapes too, held or tilted, and the network tells its standard error."
             )
         } else {

@@ -63,19 +63,28 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// # Errors
 /// [`EmitError`] if a template and its data do not fit each other.
 pub fn emit(plan: &Plan) -> Result<FileMap, EmitError> {
-    emit_for(plan, &[])
+    emit_with(plan, &Extras::default())
 }
 
-/// As [`emit`], with scripts that know a user's own boards too.
+/// What is printed besides the design.
+#[derive(Clone, Copy, Default)]
+pub struct Extras<'a> {
+    /// A user's own boards, which the scripts know too.
+    pub boards: &'a [Board],
+    /// Whether nets are marked for a logic analyser in the FPGA, with the script that attaches it.
+    pub debug: bool,
+}
+
+/// As [`emit`], with more.
 ///
 /// # Errors
 /// As [`emit`].
-pub fn emit_for(plan: &Plan, own: &[Board]) -> Result<FileMap, EmitError> {
-    let boards: Vec<Board> = Board::all()?.into_iter().chain(own.iter().cloned()).collect();
+pub fn emit_with(plan: &Plan, extras: &Extras<'_>) -> Result<FileMap, EmitError> {
+    let boards: Vec<Board> = Board::all()?.into_iter().chain(extras.boards.iter().cloned()).collect();
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
     let hash = resolved_hash(&plan.design);
-    for (module, text) in modules::render(plan, &hash)? {
+    for (module, text) in modules::render(plan, &hash, extras.debug)? {
         files.insert(format!("rtl/{module}.v"), text.into_bytes());
     }
     roms::insert(plan, &mut files);
@@ -87,7 +96,7 @@ pub fn emit_for(plan: &Plan, own: &[Board]) -> Result<FileMap, EmitError> {
         files.insert(name.to_owned(), content.into_bytes());
     }
     // After every file that a list or script names.
-    flows::insert(plan, &hash, &boards, &mut files)?;
+    flows::insert(plan, &hash, (&boards, extras.debug), &mut files)?;
     linux::insert(plan, &boards, &mut files)?;
     origin::insert(&plan.design.name, &hash, &mut files);
     let metadata = metadata::metadata(plan, &hash, &files)?;

@@ -41,7 +41,7 @@ fn changed(from: &str, to: &str) -> String {
 fn keys_are_known_and_complete() {
     check_design(&changed("rows = 3", "rows = 3\ncolour = 3"), &["line 5", "colour", "rows"]);
     check_design(&changed("rows = 3\n", ""), &["rows", "missing"]);
-    check_design(&changed("name = \"pad\"\n", ""), &["name", "missing"]);
+    check_design(&changed("format = 3\nname = \"pad\"\n", ""), &["name", "missing"]);
     check_design(&changed("depth_mm = 3.0", "depth_mm = 3.0\n[hardware]\nspeed = 3"), &["speed", "lanes"]);
     check_design(&changed("rows = 3", "rows = 3\nrows = 3"), &["line 5", "duplicate"]);
     check_design("", &["name"]);
@@ -116,7 +116,9 @@ fn names_are_verilog_identifiers() {
 
 #[test]
 fn filters_leave_something() {
-    let with = |filter: &str| changed("depth_mm = 3.0", &format!("depth_mm = 3.0\n[algorithm]\nfilter = {filter}"));
+    let with = |filter: &str| {
+        changed("depth_mm = 3.0", &format!("depth_mm = 3.0\n[algorithm]\nplan = \"paper\"\nfilter = {filter}"))
+    };
     check_design(&with("{ kind = \"f2\", p = 1e-9 }"), &["C33inv", "weaker"]);
     check_design(&with("{ kind = \"f1\", l = 11 }"), &["algorithm.filter.l", "1 to 10"]);
     check_design(&with("{ kind = \"f1\" }"), &["algorithm.filter.l", "missing"]);
@@ -227,7 +229,7 @@ fn folders_that_cannot_be_written() {
 #[cfg(unix)]
 #[test]
 fn a_generation_that_fails_or_is_killed_midway_leaves_the_old_folder() {
-    let folder = folder_with_design("lanes = 2");
+    let folder = folder_with_design("lanes = 2\n[algorithm]\nplan = \"paper\"");
     let here = folder.path();
     good(here, &["generate", "pad.toml", "--out", "out"]);
     let before = contents(&here.join("out"));

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use golden::design::{Estimator, InputRange, Samples, Tension};
+use golden::design::{Estimator, Samples, Scaling, Tension};
 use tempfile::TempDir;
 
 use crate::support::design_text;
@@ -61,7 +61,9 @@ fn from_a_new_design_to_a_folder() {
     let here = folder.path();
     assert!(good(here, &["new", "my_pad"]).contains("my_pad.toml"));
     let text = fs::read_to_string(here.join("my_pad.toml")).unwrap();
-    assert!(text.contains("name = \"my_pad\"") && text.lines().filter(|line| line.contains('#')).count() > 15);
+    assert!(
+        text.contains("format = 3\nname = \"my_pad\"") && text.lines().filter(|line| line.contains('#')).count() > 15
+    );
     assert!(good(here, &["inspect", "my_pad.toml"]).starts_with("my_pad\n"));
     let said = good(here, &["generate", "my_pad.toml"]);
     assert!(said.starts_with("rtl-out/my_pad: ") && said.contains("100 taxels, 16 lanes"), "{said}");
@@ -121,7 +123,7 @@ fn the_new_designs_values_are_the_defaults() {
     // But for the count of contacts, which designs without a word of it never had.
     defaults.algorithm.count_contacts = true;
     // And for each frame's own range, likewise.
-    defaults.hardware.range = InputRange::Frame;
+    defaults.hardware.scaling = Scaling::PerFrame;
     assert_eq!(new_design(&["--estimator", "line"]), defaults);
     // And for the estimator, which is the better one.
     let mut joint = new_design(&[]);

@@ -15,7 +15,7 @@ fn text_files(files: &FileMap) -> impl Iterator<Item = (&str, &str)> {
 
 #[test]
 fn the_same_design_gives_the_same_bytes() {
-    let text = design_text("pad", [5, 4], [4.0, 2.0], 3.0, "[hardware]\nlanes = 6");
+    let text = design_text("pad", [5, 4], [4.0, 2.0], 3.0, "[algorithm]\nplan = \"paper\"\n[hardware]\nlanes = 6");
     let once = emit(&plan(&text)).unwrap();
     let threads: Vec<_> = (0..2)
         .map(|_| {
@@ -54,7 +54,7 @@ fn files_tell_neither_place_nor_time() {
 
 #[test]
 fn the_resolved_design_gives_the_same_files() {
-    let hardware = "lanes = 3\nfull_scale_pa = 12345.6\nclock_mhz = 99.9\ncoefficient_bits = 17\ndata_bits = 26";
+    let hardware = "lanes = 3\nfull_scale_pa = 12345.6\nclock_mhz = 99.9\ncoefficient_bits = 17\ndata_bits = 26\n[algorithm]\nplan = \"paper\"";
     let files = emit(&small_plan(hardware)).unwrap();
     let resolved = std::str::from_utf8(&files["design.toml"]).unwrap();
     assert_eq!(Design::from_toml(resolved, "design.toml").unwrap(), small_plan(hardware).design);
@@ -63,7 +63,7 @@ fn the_resolved_design_gives_the_same_files() {
 
 #[test]
 fn metadata_describes_the_folder() {
-    let plan = small_plan("lanes = 5");
+    let plan = small_plan("lanes = 5\n[algorithm]\nplan = \"paper\"");
     let files = emit(&plan).unwrap();
     let metadata: Value = serde_json::from_slice(&files["metadata.json"]).unwrap();
     assert_eq!(metadata["name"], "pad");
@@ -98,9 +98,10 @@ fn metadata_describes_the_folder() {
 
 #[test]
 fn every_file_holds_the_module_it_is_named_after() {
-    for plan in
-        [small_plan("lanes = 1"), plan(&design_text("wide", [10, 10], [4.0, 2.0], 3.0, "[hardware]\nlanes = 64"))]
-    {
+    for plan in [
+        small_plan("lanes = 1\n[algorithm]\nplan = \"paper\""),
+        plan(&design_text("wide", [10, 10], [4.0, 2.0], 3.0, "[hardware]\nlanes = 64")),
+    ] {
         let files = emit(&plan).unwrap();
         let modules: Vec<_> = text_files(&files).filter(|(name, _)| name.starts_with("rtl/")).collect();
         assert!(modules.len() > 20);
@@ -123,7 +124,7 @@ fn a_design_that_differs_differs_in_its_hash() {
         metadata["design_hash"].as_str().unwrap().to_owned()
     };
     assert_eq!(hash("lanes = 4"), hash("lanes = 4\nclock_mhz = 125.0"));
-    assert_ne!(hash("lanes = 4"), hash("lanes = 5"));
+    assert_ne!(hash("lanes = 4"), hash("lanes = 8"));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::support::design_text;
 
 #[test]
 fn inspect_tells_machines_what_is_promised() {
-    let folder = folder_with_design("lanes = 5");
+    let folder = folder_with_design("lanes = 5\n[algorithm]\nplan = \"paper\"");
     let report: Value = serde_json::from_str(&good(folder.path(), &["inspect", "pad.toml", "--json"])).unwrap();
     let keys = |value: &Value| {
         let mut keys: Vec<String> = value.as_object().unwrap().keys().cloned().collect();
@@ -39,7 +39,7 @@ fn inspect_tells_machines_what_is_promised() {
 
 #[test]
 fn inspect_tells_people_the_same_figures() {
-    let folder = folder_with_design("lanes = 1");
+    let folder = folder_with_design("lanes = 1\n[algorithm]\nplan = \"paper\"");
     let report: Value = serde_json::from_str(&good(folder.path(), &["inspect", "pad.toml", "--json"])).unwrap();
     let text = good(folder.path(), &["inspect", "pad.toml"]);
     for (line, figure) in [

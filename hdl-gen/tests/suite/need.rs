@@ -1,23 +1,23 @@
-//! `target_us`: the fewest lanes that meet the need, or what would.
+//! `--target-us`: the fewest lanes that meet the need, or what would.
 
 use std::path::Path;
 
-use golden::design::Design;
+use golden::design::{Design, PlanKind};
 use hdl_gen::plan::{Plan, PlanError};
 
-use crate::command::good;
+use crate::command::{good, hdl_gen};
 
 /// Sensor 1 by the reduced plan.
 fn sensor(algorithm: &str, hardware: &str) -> Design {
     let text = format!(
-        "name = \"need\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+        "format = 3\nname = \"need\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
          [algorithm]\nplan = \"reduced\"\n{algorithm}\n[hardware]\n{hardware}\n"
     );
     Design::from_toml(&text, "need.toml").expect("a design")
 }
 
 fn refusal(algorithm: &str, target_us: f64) -> String {
-    match Plan::new(&sensor(algorithm, &format!("target_us = {target_us:?}"))) {
+    match Plan::meeting(&sensor(algorithm, ""), target_us) {
         Err(error @ PlanError::Target { .. }) => error.to_string(),
         other => panic!("{other:?}"),
     }
@@ -26,7 +26,7 @@ fn refusal(algorithm: &str, target_us: f64) -> String {
 #[test]
 fn the_fewest_lanes_that_meet_the_need() {
     for target_us in [13.0, 20.0, 40.0] {
-        let found = Plan::new(&sensor("", &format!("target_us = {target_us:?}"))).expect("a plan");
+        let found = Plan::meeting(&sensor("", ""), target_us).expect("a plan");
         let lanes = found.design.hardware.lanes;
         assert!(found.timeline.latency_cycles as f64 <= target_us * found.design.hardware.clock_mhz);
         // The plan that names as many lanes is the same, and one with a group of four less is too slow.
@@ -67,7 +67,7 @@ fn only_remedies_that_meet_the_need_are_offered() {
 #[test]
 fn remedies_do_what_is_said_of_them() {
     let met = |algorithm: &str, hardware: &str, target_us: f64| {
-        Plan::new(&sensor(algorithm, &format!("target_us = {target_us:?}\n{hardware}"))).is_ok()
+        Plan::meeting(&sensor(algorithm, hardware), target_us).is_ok()
     };
     let [fine, coarse] = ["", "\ngrid = 15"].map(|grid| format!("estimator = \"joint\"{grid}"));
     assert!(!met(&fine, "stream_bits = 128", 6.0) && !met(&coarse, "", 6.0) && met(&coarse, "stream_bits = 64", 6.0));
@@ -81,28 +81,42 @@ fn remedies_do_what_is_said_of_them() {
 fn a_grid_is_offered_with_what_it_takes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join("designs");
     for (design, units) in [("sensor1-joint", 128), ("sensor2-wide", 128)] {
-        let mut design = Design::load(&folder.join(design).with_extension("toml")).expect("right");
-        design.hardware.target_us = Some(15.0);
-        let refusal = Plan::new(&design).expect_err("too slow").to_string();
+        let design = Design::load(&folder.join(design).with_extension("toml")).expect("right");
+        let refusal = Plan::meeting(&design, 15.0).expect_err("too slow").to_string();
         let grid = format!("grid = 15 (which `golden calibrate --hidden {units}` fits the constants to), ");
         assert_eq!(offered(&refusal), grid, "{}", design.name);
     }
-    let area = Plan::new(&sensor("estimator = \"joint\"", "optimise = \"area\"\ntarget_us = 40.0"));
+    let area = Plan::meeting(&sensor("estimator = \"joint\"", "optimise = \"area\""), 40.0);
     assert_eq!(offered(&area.expect_err("too slow").to_string()), "");
 }
 
 /// What is offered does what is said of it.
 #[test]
 fn the_clock_that_is_offered_meets_the_need() {
-    let Err(PlanError::Target { needed_mhz, .. }) = Plan::new(&sensor("", "target_us = 8.0")) else { panic!() };
-    let faster = format!("target_us = 8.0\nclock_mhz = {needed_mhz:?}");
-    assert!(Plan::new(&sensor("", &faster)).is_ok(), "{needed_mhz}");
+    let Err(PlanError::Target { needed_mhz, .. }) = Plan::meeting(&sensor("", ""), 8.0) else { panic!() };
+    let faster = sensor("", &format!("clock_mhz = {needed_mhz:?}"));
+    assert!(Plan::meeting(&faster, 8.0).is_ok(), "{needed_mhz}");
+}
+
+/// The paper's plan has lanes of its own choice, and times are above 0.
+#[test]
+fn a_need_that_nothing_can_be_found_for_is_refused() {
+    let mut design = sensor("", "");
+    design.algorithm.plan = PlanKind::Paper;
+    let paper = Plan::meeting(&design, 5.0).expect_err("refused").to_string();
+    assert!(paper.contains("5 us") && paper.contains("plan = \"reduced\""), "{paper}");
+    let folder = tempfile::tempdir().expect("a folder");
+    for wrong in ["0", "-1", "inf", "nan", "soon"] {
+        let output = hdl_gen(folder.path(), &["inspect", "need.toml", &format!("--target-us={wrong}")]);
+        let refused = String::from_utf8_lossy(&output.stderr);
+        assert!(refused.contains("microseconds") && refused.contains("greater than 0"), "{refused}");
+    }
 }
 
 #[test]
 fn a_design_that_is_too_large_for_its_part_is_written_with_a_warning() {
     let folder = tempfile::tempdir().expect("a folder");
-    let text = "name = \"big_pad\"\n[sensor]\ncolumns = 20\nrows = 20\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+    let text = "format = 3\nname = \"big_pad\"\n[sensor]\ncolumns = 20\nrows = 20\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
                 [algorithm]\nplan = \"paper\"\n[hardware]\nlanes = 8\n";
     std::fs::write(folder.path().join("large.toml"), text).expect("a file");
     let warned = |arguments: &[&str]| good(folder.path(), arguments).contains("too much for xczu9eg");
@@ -115,7 +129,7 @@ fn each_board_s_part_has_its_shares_and_its_limit() {
     let folder = tempfile::tempdir().expect("a folder");
     let said = |name: &str, part: &str, hardware: &str| {
         let text = format!(
-            "name = \"pad\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+            "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
              [algorithm]\nplan = \"reduced\"\nestimator = \"line\"\n[hardware]\npart = \"{part}\"\n{hardware}\n"
         );
         std::fs::write(folder.path().join(format!("{name}.toml")), text).expect("a file");

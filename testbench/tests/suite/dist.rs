@@ -121,7 +121,7 @@ fn a_release_is_cut_by_the_script() {
     assert_eq!(manifest, before[1].replacen(&format!("\nversion = \"{version}\""), "\nversion = \"9.1.0\"", 1));
     assert_eq!(citation, before[3].replace(&format!("version: {version}"), "version: 9.1.0"));
     for name in ["golden", "hdl-cores", "hdl-gen", "sptfra-python", "testbench"] {
-        assert!(lock.contains(&format!("name = \"{name}\"\nversion = \"9.1.0\"\n")), "{name}");
+        assert!(lock.contains(&format!("format = 3\nname = \"{name}\"\nversion = \"9.1.0\"\n")), "{name}");
     }
     assert_eq!(lock.matches("version = \"9.1.0\"").count(), 5);
     let again = run(&["--cut", "9.1.0", "2031-04-05"]);

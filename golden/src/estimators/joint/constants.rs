@@ -1,5 +1,6 @@
 //! What `golden calibrate` finds for the joint estimator.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::grid::Grid;
@@ -20,13 +21,14 @@ pub const DEFAULT_DOUBT: f64 = 0.06;
 pub const EXTRA_INPUTS: usize = 5;
 
 /// Contacts that the constants are fitted to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Family {
     /// Round or nearly so, sliding, with a pressure that is the same in front and behind.
     #[default]
+    #[serde(rename = "sliding")]
     Narrow,
     /// Of any shape, tilted, held, turning, over the grid's edge, on a sensor that is not quite what the design says.
+    #[serde(rename = "general")]
     Wide,
 }
 

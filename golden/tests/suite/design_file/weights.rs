@@ -76,7 +76,7 @@ fn corrections_that_contradict_themselves() {
         (format!("half_window = [0, 0]\n{file}"), ["algorithm.correction.sha256", "missing", "sha256sum w.csv"]),
         (format!("{INLINE}sha256 = \"0\"\n"), ["algorithm.correction.sha256", "without a file", "file"]),
         (format!("half_window = [0, 9]\n{file}sha256 = \"0\"\n"), ["half_window[1]", "is 9", "0 to 7"]),
-        (format!("half_window = [0, 0]\n{file}sha256 = \"0\"\nhash = 1\n"), ["hash", "unknown field", "sha256"]),
+        (format!("half_window = [0, 0]\n{file}sha256 = \"0\"\nhash = 1\n"), ["hash", "unknown key", "sha256"]),
     ] {
         refused(&corrected(&keys), &parts);
     }
@@ -84,13 +84,17 @@ fn corrections_that_contradict_themselves() {
 
 /// A limit for an error that a design does not tell is refused, and so is not written either.
 #[test]
-fn a_doubt_goes_with_the_wide_family() {
+fn a_limit_of_the_standard_error_goes_with_the_general_training_set() {
     let joint = |keys: &str| format!("{MINIMAL}[algorithm]\nestimator = \"joint\"\n{keys}");
-    let mut design = Design::from_toml(&joint("family = \"wide\"\ndoubt = 0.1\n"), "pad.toml").unwrap();
+    let mut design =
+        Design::from_toml(&joint("training_set = \"general\"\nmax_standard_error = 0.1\n"), "pad.toml").unwrap();
     assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
-    refused(&joint("doubt = 0.1\n"), &["algorithm.doubt", "family = \"wide\"", "golden calibrate"]);
+    refused(
+        &joint("max_standard_error = 0.1\n"),
+        &["algorithm.max_standard_error", "training_set = \"general\"", "golden calibrate"],
+    );
     design.algorithm.joint.family = Family::Narrow;
-    assert!(!design.to_toml().contains("doubt"), "{}", design.to_toml());
+    assert!(!design.to_toml().contains("max_standard_error"), "{}", design.to_toml());
     assert!(Design::from_toml(&design.to_toml(), "resolved").is_ok());
 }
 
@@ -100,6 +104,6 @@ fn the_family_is_part_of_what_constants_were_fitted_to() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/sensor2-wide.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(Design::load(&path).is_ok());
-    let other = text.replace("family = \"wide\"\n", "").replace("doubt = 0.06\n", "");
-    refused(&other, &["algorithm.fitted_to", "wide\"", "golden calibrate"]);
+    let other = text.replace("training_set = \"general\"\n", "").replace("max_standard_error = 0.06\n", "");
+    refused(&other, &["algorithm.calibrated_for", "general\"", "golden calibrate"]);
 }

@@ -21,10 +21,10 @@ fn tangential_forces_tell_the_constants_of_friction() {
     let fit = |keys: &str| {
         fit_forces(&design("", &format!("{joint}{keys}")), &recording.frames, &recording.measured).unwrap()
     };
-    let found = fit("tangential = [2.0, 0.0]");
+    let found = fit("friction_correction = [2.0, 0.0]");
     assert!(says(&found.determined, &["friction: tangential = ["]), "{:?} {:?}", found.determined, found.undetermined);
     let [c1, c3] = found.design.algorithm.joint.tangential;
-    let again = fit(&format!("tangential = [{c1:?}, {c3:?}]"));
+    let again = fit(&format!("friction_correction = [{c1:?}, {c3:?}]"));
     assert!(says(&again.undetermined, &["friction: other constants do no better"]), "{:?}", again.undetermined);
     let solver = Solver::new(&found.design).unwrap();
     let mut off: Vec<f64> = recording
@@ -42,7 +42,7 @@ fn tangential_forces_tell_the_constants_of_friction() {
     // Without F_z the design's own stands for it, and all but friction stays.
     let mut sideways = recording.measured.clone();
     sideways.forces.iter_mut().for_each(|force| force[2] = None);
-    let before = design("", &format!("{joint}tangential = [2.0, 0.0]"));
+    let before = design("", &format!("{joint}friction_correction = [2.0, 0.0]"));
     let alone = fit_forces(&before, &recording.frames, &sideways).unwrap();
     assert!(says(&alone.determined, &["friction: tangential = ["]), "{:?} {:?}", alone.determined, alone.undetermined);
     assert!(says(&alone.undetermined, &["F_z, curve and gains: no normal force is known"]), "{:?}", alone.undetermined);

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use hdl_gen::emit::boards::Board;
-use hdl_gen::emit::emit_for;
+use hdl_gen::emit::{Extras, emit_with};
 use hdl_gen::plan::Plan;
 
 use super::folder::{Folder, files, workspace};
@@ -131,7 +131,7 @@ fn a_board_of_ones_own_has_a_system() {
     let own = text.replace("0xA0000000", "0xA0040000").replace("*:zcu102:*", "acme.org:carrier:*");
     let board = Board::from_toml(&own, Path::new("my-carrier.toml")).expect("is one");
     let plan = Plan::new(&shipped("small")).expect("can be planned");
-    let folder = Folder::new(&emit_for(&plan, &[board]).expect("is printed"));
+    let folder = Folder::new(&emit_with(&plan, &Extras { boards: &[board], debug: false }).expect("is printed"));
     let ran = folder.vivado(SCRIPT, &["bitstream"], &[]).succeeded();
     assert!(ran.call("set_property board_part").contains("acme.org:carrier:part0:1.0"));
     assert!(ran.stdout.contains("SEG_dma_S_AXI_LITE: offset 0xA0040000, range 64K"), "{}", ran.stdout);

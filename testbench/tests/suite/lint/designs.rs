@@ -3,7 +3,7 @@
 use crate::calibration;
 use crate::support::{by_plan, shipped, with_lanes};
 use golden::design::{
-    Calibration, CalibrationIn, Curve, Design, Estimator, Input, InputRange, Outputs, Overrun, PlanKind, Samples, Slip,
+    Calibration, CalibrationIn, Curve, Design, Estimator, Input, Outputs, Overrun, PlanKind, Samples, Scaling, Slip,
     Tension,
 };
 use golden::estimators::joint::Grid;
@@ -23,13 +23,20 @@ pub fn designs() -> Vec<Design> {
     let taxels = broken.sensor.taxels();
     let gain = (0..taxels).map(|taxel| (1.0 + taxel as f64) / 4.0).collect();
     let calibration = Some(Calibration { gain, offset: vec![-7.5; taxels] });
-    broken.input =
-        Input { pa_per_count: Some(-3.0), calibration, dead: vec![0, 1, 7], curve: None, tension: Tension::Clipped };
+    broken.input = Input {
+        pa_per_count: Some(-3.0),
+        calibration,
+        dead: vec![0, 1, 7],
+        room: 0,
+        curve: None,
+        tension: Tension::Clipped,
+    };
     let mut curved = by_plan(shipped("small"), reduced, Outputs::Field);
     "curved".clone_into(&mut curved.name);
     curved.input.curve = Some(Curve { points: vec![[0.0, 0.0], [50.0, -100.0], [4095.0, -1e5]], law: None });
     // With more than 64 lanes: two taxels a cycle, a row of points weighed in one, a collector that looks ahead.
     let mut uncorrected = by_plan(with_lanes(shipped("odd"), 68), reduced, Outputs::Resultants);
+    "uncorrected".clone_into(&mut uncorrected.name);
     uncorrected.algorithm.estimator = Estimator::Joint;
     uncorrected.algorithm.joint.grid = Grid::COARSE;
     uncorrected.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
@@ -45,6 +52,7 @@ pub fn designs() -> Vec<Design> {
     "unpacked".clone_into(&mut unpacked.name);
     unpacked.hardware.stream_bits = 64;
     let mut wide_control = by_plan(shipped("small-control"), reduced, Outputs::Resultants);
+    "wide_control".clone_into(&mut wide_control.name);
     wide_control.hardware.stream_bits = 64;
     let mut in_ram = integers.clone();
     "in_ram".clone_into(&mut in_ram.name);
@@ -53,11 +61,11 @@ pub fn designs() -> Vec<Design> {
     // Without a place for dead taxels, with one, with many.
     let mut mapped = in_ram.clone();
     "mapped".clone_into(&mut mapped.name);
-    mapped.hardware.replaceable = 8;
+    mapped.input.room = 8;
     mapped.input.dead = vec![0, 1, 7];
     let mut mapped_once = calibration::design(Outputs::Resultants);
     "mapped_once".clone_into(&mut mapped_once.name);
-    mapped_once.hardware.replaceable = 1;
+    mapped_once.input.room = 1;
     let [curve_in_ram, curve_of_floats] = with_curves_in_ram(&mapped, &curved);
     // Frames dropped, with and without registers, samples one by one and at once.
     let mut dropping = Design { name: "dropping".to_owned(), ..in_ram.clone() };
@@ -67,10 +75,6 @@ pub fn designs() -> Vec<Design> {
         design.hardware.overrun = Overrun::Drop;
     }
     let [scaled, scaled_fold, scaled_banks] = scaled(&curve_in_ram);
-    // Nets marked for a logic analyser, in every kind of core.
-    for design in [&mut curved, &mut uncorrected, &mut unpacked, &mut wide_control, &mut dropping] {
-        design.hardware.debug = true;
-    }
     vec![
         calibration::design(Outputs::Field),
         in_ram,
@@ -121,7 +125,7 @@ fn long() -> [Design; 3] {
     (long.hardware.coefficient_bits, long.hardware.data_bits) = (27, 35);
     let [mut beats, mut vectors] = [long.clone(), long.clone()];
     "long".clone_into(&mut long.name);
-    long.hardware.range = InputRange::Frame;
+    long.hardware.scaling = Scaling::PerFrame;
     "long_beats".clone_into(&mut beats.name);
     beats.hardware.stream_bits = 128;
     beats.algorithm.count_contacts = true;
@@ -154,7 +158,7 @@ fn scaled(banks: &Design) -> [Design; 3] {
     "scaled_banks".clone_into(&mut scaled_banks.name);
     scaled_banks.hardware.overrun = Overrun::Drop;
     for design in [&mut scaled, &mut scaled_fold, &mut scaled_banks] {
-        design.hardware.range = InputRange::Frame;
+        design.hardware.scaling = Scaling::PerFrame;
     }
     [scaled, scaled_fold, scaled_banks]
 }

@@ -1,7 +1,7 @@
 //! The designs that are proved: the 4 × 3 one of `designs/small.toml`, changed.
 
 use golden::design::{
-    CalibrationIn, Correction, Curve, Design, Estimator, InputRange, Optimise, Outputs, Overrun, PlanKind,
+    CalibrationIn, Correction, Curve, Design, Estimator, Optimise, Outputs, Overrun, PlanKind, Scaling,
 };
 use golden::estimators::joint::Grid;
 
@@ -34,7 +34,7 @@ pub fn curved(design: &mut Design) {
 
 pub fn mapped(design: &mut Design) {
     calibrated(design);
-    design.hardware.replaceable = 1;
+    design.input.room = 1;
 }
 
 pub fn scanned(design: &mut Design) {
@@ -44,7 +44,7 @@ pub fn scanned(design: &mut Design) {
 
 pub fn scaled(design: &mut Design) {
     paper(design);
-    design.hardware.range = InputRange::Frame;
+    design.hardware.scaling = Scaling::PerFrame;
 }
 
 pub fn joint(design: &mut Design) {

@@ -1,26 +1,14 @@
-//! From the `filter` of a design file to a checked [`Filter`].
+//! From the key `filter` to a checked [`Filter`], and back.
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
-
 use super::checks::Check;
+use super::keys::FilterKeys;
 use super::{Choices, DesignError, Filter, FilterKind, MatrixFilter, Sensor};
 use crate::names::MatrixName;
 
-// Not a tagged enum: those lose the position of an error and cannot say which key belongs to which kind.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawFilter {
-    kind: String,
-    l: Option<i64>,
-    p: Option<f64>,
-    scenes: Option<Vec<String>>,
-    choices: Option<BTreeMap<String, String>>,
-}
-
-pub(super) fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<Filter, DesignError> {
-    let kind: FilterKind = check.word("algorithm.filter.kind", &raw.kind)?;
+pub(super) fn filter(check: &Check, keys: &FilterKeys, sensor: &Sensor) -> Result<Filter, DesignError> {
+    let kind = keys.kind;
     let own: &[&str] = match kind {
         FilterKind::None => &[],
         FilterKind::F1 => &["l"],
@@ -28,10 +16,10 @@ pub(super) fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<
         FilterKind::F3 => &["scenes", "choices"],
     };
     let given = [
-        ("l", raw.l.is_some()),
-        ("p", raw.p.is_some()),
-        ("scenes", raw.scenes.is_some()),
-        ("choices", raw.choices.is_some()),
+        ("l", keys.l.is_some()),
+        ("p", keys.p.is_some()),
+        ("scenes", keys.scenes.is_some()),
+        ("choices", keys.choices.is_some()),
     ];
     if let Some((foreign, _)) = given.into_iter().find(|&(key, given)| given && !own.contains(&key)) {
         return Err(check.value(
@@ -49,22 +37,37 @@ pub(super) fn filter(check: &Check, raw: &RawFilter, sensor: &Sensor) -> Result<
     };
     match kind {
         FilterKind::F1 => {
-            let l = band(check, "algorithm.filter.l", raw.l.ok_or_else(|| missing("l", "l = 40"))?, sensor)?;
+            let l = band(check, "algorithm.filter.l", keys.l.ok_or_else(|| missing("l", "l = 40"))?, sensor)?;
             Ok(Filter::F1 { l })
         }
         FilterKind::F2 => {
-            let value = raw.p.ok_or_else(|| missing("p", "p = 30"))?;
-            Ok(Filter::F2 { p: check.above_zero("algorithm.filter.p", value, f64::MAX, "")? })
+            let p = keys.p.ok_or_else(|| missing("p", "p = 30"))?;
+            Ok(Filter::F2 { p })
         }
         FilterKind::F3 => {
-            let scenes = raw.scenes.clone().unwrap_or_default();
-            if scenes.is_empty() && raw.choices.is_none() {
+            let scenes = keys.scenes.clone().unwrap_or_default();
+            if scenes.is_empty() && keys.choices.is_none() {
                 return Err(missing("scenes", "scenes = [\"../scenes/sensor1-hertz.toml\"]"));
             }
-            let choices = raw.choices.as_ref().map(|raw| choices(check, raw, sensor)).transpose()?;
+            let choices = keys.choices.as_ref().map(|given| choices(check, given, sensor)).transpose()?;
             Ok(Filter::F3 { scenes, choices: choices.map(Box::new) })
         }
         FilterKind::None => Ok(Filter::None),
+    }
+}
+
+/// The key of a filter.
+pub(super) fn keys(filter: &Filter) -> FilterKeys {
+    let kind = filter.kind();
+    match filter {
+        Filter::None => FilterKeys::default(),
+        Filter::F1 { l } => FilterKeys { kind, l: Some(*l as i64), ..FilterKeys::default() },
+        Filter::F2 { p } => FilterKeys { kind, p: Some(*p), ..FilterKeys::default() },
+        Filter::F3 { scenes, choices } => {
+            let named = |matrix: MatrixName, choices: &Choices| (matrix.to_string(), choices.of(matrix).to_string());
+            let choices = choices.as_ref().map(|all| MatrixName::ALL.map(|matrix| named(matrix, all)).into());
+            FilterKeys { kind, scenes: Some(scenes.clone()), choices, ..FilterKeys::default() }
+        }
     }
 }
 
@@ -73,8 +76,8 @@ fn band(check: &Check, key: &str, value: i64, sensor: &Sensor) -> Result<usize, 
     check.integer(key, value, 1, sensor.taxels() as i64 - 2).map(|l| l as usize)
 }
 
-fn choices(check: &Check, raw: &BTreeMap<String, String>, sensor: &Sensor) -> Result<Choices, DesignError> {
-    for name in raw.keys() {
+fn choices(check: &Check, given: &BTreeMap<String, String>, sensor: &Sensor) -> Result<Choices, DesignError> {
+    for name in given.keys() {
         if let Err(error) = name.parse::<MatrixName>() {
             return Err(check.value(
                 &format!("algorithm.filter.choices.{name}"),
@@ -86,7 +89,7 @@ fn choices(check: &Check, raw: &BTreeMap<String, String>, sensor: &Sensor) -> Re
     let mut filters = [MatrixFilter::None; MatrixName::ALL.len()];
     for (name, filter) in MatrixName::ALL.into_iter().zip(&mut filters) {
         let key = format!("algorithm.filter.choices.{name}");
-        let text = raw.get(&name.to_string()).ok_or_else(|| {
+        let text = given.get(&name.to_string()).ok_or_else(|| {
             check.value(
                 &key,
                 "is missing".to_owned(),
