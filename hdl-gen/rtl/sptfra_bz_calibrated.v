@@ -3,7 +3,7 @@
 //
 // Bz with a calibration in RAM: counts become pascals by the bank that acts at a frame's first beat
 // (sptfra_calibrate), a tare listens, taxels that the bank says are dead are replaced (sptfra_replace), Bz takes
-// pascals, and thresholds and generation of that bank follow the frame (sptfra_frame_calibration).
+// pascals. Thresholds and version of that bank go into the frame's context.
 
 `default_nettype none
 
@@ -33,9 +33,6 @@ module sptfra_bz_calibrated #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    // As of sptfra_frame_calibration
-    parameter WORDS = 1,
-    parameter TENSION_READ = 1,
     // Derived
     parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16,
     parameter TAXELS = COLUMNS * ROWS,
@@ -80,16 +77,9 @@ module sptfra_bz_calibrated #(
     // {run, log2 of frames, taxel}; {finished, restless, bad frame, mean}
     input  wire [TAXEL_WIDTH+4:0] tare_command,
     output wire [29:0] tare_result,
-    // Flags and answers with what their frames began with: see sptfra_frame_calibration
-    input  wire direction_take,
-    input  wire [39:0] stress_sum,
-    input  wire [5:0] flags_in,
-    output wire [5:0] flags,
-    output wire no_direction,
-    input  wire word_taken,
-    input  wire word_last,
-    input  wire [32*WORDS-1:0] words_in,
-    output wire [32*WORDS-1:0] words
+    // What a frame begins with: see sptfra_frame_context
+    output wire frame_calibrates,
+    output wire [70:0] frame_calibration // {contact, noise, version, replaced taxels}
 );
 
     // Word of a bank with which dead taxels begin, and the cycles that a frame takes for them
@@ -107,6 +97,8 @@ module sptfra_bz_calibrated #(
     wire [TAXEL_WIDTH-1:0] tare_taxel, reading_taxel_8, reading_taxel;
 
     assign {active, generation, contact, noise} = calibration_acting;
+    assign frame_calibrates = frame_begins;
+    assign frame_calibration = {contact, noise, generation, replaced_count};
     assign {write_gain, write_offset, bank_address, gain_in, offset_in} = bank_command[TAXEL_WIDTH+OFFSET_BITS+30:0];
     assign {tare_run, tare_log2, tare_taxel} = tare_command;
 
@@ -302,32 +294,6 @@ module sptfra_bz_calibrated #(
         .frame_ready      (frame_ready),
         .frame_start      (frame_start),
         .frame_release    (frame_release)
-    );
-
-    // ---- What frames keep
-    sptfra_frame_calibration #(
-        .WORDS        (WORDS),
-        .TENSION_READ (TENSION_READ)
-    ) frame_calibration (
-        .clock          (clock),
-        .reset          (reset),
-        .begins         (frame_begins),
-        .contact        (contact),
-        .noise          (noise),
-        .generation     (generation),
-        .replaced       (replaced_count),
-        .stress_valid   (stress_valid),
-        .stress         (stress),
-        .frame_done     (frame_done),
-        .direction_take (direction_take),
-        .stress_sum     (stress_sum),
-        .flags_in       (flags_in),
-        .flags          (flags),
-        .no_direction   (no_direction),
-        .word_taken     (word_taken),
-        .word_last      (word_last),
-        .words_in       (words_in),
-        .words          (words)
     );
 
 endmodule

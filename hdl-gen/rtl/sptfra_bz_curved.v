@@ -33,8 +33,6 @@ module sptfra_bz_curved #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
-    parameter WORDS = 1,
-    parameter TENSION_READ = 1,
     // As of sptfra_count_curve and sptfra_curve_bank
     parameter CURVE_LEVELS = 4,
     parameter integer CURVE_NUMBER_SHIFT = 0,
@@ -85,16 +83,9 @@ module sptfra_bz_curved #(
     output wire [TAXEL_RESULT+33:0] bank_words,
     input  wire [TAXEL_WIDTH+4:0] tare_command,
     output wire [29:0] tare_result,
-    // Flags and answers with what their frames began with
-    input  wire direction_take,
-    input  wire [39:0] stress_sum,
-    input  wire [5:0] flags_in,
-    output wire [5:0] flags,
-    output wire no_direction,
-    input  wire word_taken,
-    input  wire word_last,
-    input  wire [32*WORDS-1:0] words_in,
-    output wire [32*WORDS-1:0] words
+    // What a frame begins with: see sptfra_frame_context
+    output wire frame_calibrates,
+    output wire [70:0] frame_calibration
 );
 
     localparam SEGMENTS = 1 << CURVE_LEVELS;
@@ -283,9 +274,7 @@ module sptfra_bz_curved #(
         .REPLACEABLE          (REPLACEABLE),
         .REPLACED_COUNT       (REPLACED_COUNT),
         .REPLACED_SHIFT       (REPLACED_SHIFT),
-        .REPLACED_TAXELS      (REPLACED_TAXELS),
-        .WORDS                (WORDS),
-        .TENSION_READ         (TENSION_READ)
+        .REPLACED_TAXELS      (REPLACED_TAXELS)
     ) calibrated (
         .clock                  (clock),
         .reset                  (reset),
@@ -316,15 +305,8 @@ module sptfra_bz_curved #(
         .bank_words             (inner_words),
         .tare_command           ({tare_here, tare_command[TAXEL_WIDTH+3:0]}),
         .tare_result            (inner_result),
-        .direction_take         (direction_take),
-        .stress_sum             (stress_sum),
-        .flags_in               (flags_in),
-        .flags                  (flags),
-        .no_direction           (no_direction),
-        .word_taken             (word_taken),
-        .word_last              (word_last),
-        .words_in               (words_in),
-        .words                  (words)
+        .frame_calibrates       (frame_calibrates),
+        .frame_calibration      (frame_calibration)
     );
 
 endmodule

@@ -17,10 +17,6 @@ module sptfra_cean #(
     parameter integer DIRECTION = 0,
     // 1: the sensor reads what pulls, so that a frame in which nothing does is to be told
     parameter integer TENSION_READ = 1,
-    // Noise floor of a taxel, in steps of the stress
-    parameter [26:0] TAXEL_FLOOR = 27'd100,
-    // Noise floor of the frame's sum |b|, in steps of the stress
-    parameter [39:0] CONTACT_FLOOR = 40'd1000,
     // Pitch in x over the larger pitch, 16 fraction bits
     parameter signed [17:0] PITCH_X = 18'sd65536,
     // Pitch in y over the larger pitch, 16 fraction bits
@@ -39,6 +35,10 @@ module sptfra_cean #(
     input  wire frame_not_finite,
     input  wire frame_bad_length,
     input  wire [29:0] frame_replaced, // sum of what took the place of dead taxels
+    // Thresholds of the frame, in steps of the stress: a taxel's noise, and the least sum |b| of a contact
+    input  wire [26:0] noise,
+    input  wire [39:0] contact,
+    output wire frame_take, // the next frame's from the second cycle on
     // To Op
     output wire direction_room, // for the result of another frame
     output wire direction_valid,
@@ -73,7 +73,7 @@ module sptfra_cean #(
         if (valid_1) begin
             sum <= sum + {13'd0, magnitude_1};
             most <= (magnitude_1 > most) ? magnitude_1 : most;
-            pulled <= pulled || (tensile_1 && (magnitude_1 > TAXEL_FLOOR));
+            pulled <= pulled || (tensile_1 && (magnitude_1 > noise));
         end
         if (reset) begin
             valid_1 <= 1'b0;
@@ -104,7 +104,7 @@ module sptfra_cean #(
 
     always @(posedge clock) begin
         clear <= reset;
-        below_floor <= (sum < CONTACT_FLOOR);
+        below_floor <= (sum < contact);
         guessed <= ({7'd0, replaced, 3'd0} > sum);
         case (state)
             COLLECT: begin
@@ -132,15 +132,15 @@ module sptfra_cean #(
     generate
         if (DIRECTION != 0) begin : gen_direction
             sptfra_direction #(
-                .COLUMNS     (COLUMNS),
-                .ROWS        (ROWS),
-                .TAXEL_FLOOR (TAXEL_FLOOR),
-                .PITCH_X     (PITCH_X),
-                .PITCH_Y     (PITCH_Y)
+                .COLUMNS (COLUMNS),
+                .ROWS    (ROWS),
+                .PITCH_X (PITCH_X),
+                .PITCH_Y (PITCH_Y)
             ) direction (
                 .clock     (clock),
                 .reset     (reset),
                 .clear     (clear),
+                .noise     (noise),
                 .valid     (valid_1),
                 .tensile   (tensile_1),
                 .magnitude (magnitude_1),
@@ -163,7 +163,7 @@ module sptfra_cean #(
             assign push_y = 27'sd0;
             assign no_push = 1'b1;
 
-            wire _unused = &{1'b0, tensile_1, COLUMNS != 0, ROWS != 0, TAXEL_FLOOR, PITCH_X, PITCH_Y};
+            wire _unused = &{1'b0, tensile_1, COLUMNS != 0, ROWS != 0, PITCH_X, PITCH_Y};
         end
     endgenerate
 
@@ -175,6 +175,7 @@ module sptfra_cean #(
     reg [1:0] waiting;
     wire push = (state == PUSH);
 
+    assign frame_take = push;
     assign direction_valid = (waiting != 2'd0);
     assign direction_room = (waiting != 2'd2);
     assign {direction_x, direction_y, no_direction, stress_sum, largest, flags} = waiting_0;

@@ -14,8 +14,6 @@ module sptfra_direction #(
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Noise floor of a taxel, in steps of the stress
-    parameter [26:0] TAXEL_FLOOR = 27'd100,
     // Pitch in x over the larger pitch, 16 fraction bits
     parameter signed [17:0] PITCH_X = 18'sd65536,
     // Pitch in y over the larger pitch, 16 fraction bits
@@ -25,6 +23,7 @@ module sptfra_direction #(
     input  wire reset,
     // Stress, taxel by taxel in rows
     input  wire clear, // for a new frame, and after a reset
+    input  wire [26:0] noise, // of a taxel, in steps of the stress
     input  wire valid,
     input  wire tensile,
     input  wire [26:0] magnitude,
@@ -53,7 +52,7 @@ module sptfra_direction #(
     reg compression_seen;
     reg tension_seen;
     wire last_column = (column == LAST_COLUMN[X_WIDTH-1:0]);
-    wire above_floor = (magnitude > TAXEL_FLOOR);
+    wire above_floor = (magnitude > noise);
     wire [2*X_HALF-1:0] column_wide = {{(2*X_HALF-X_WIDTH){1'b0}}, column};
     wire [2*Y_HALF-1:0] row_wide = {{(2*Y_HALF-Y_WIDTH){1'b0}}, row};
     wire [47:0] lower_x;

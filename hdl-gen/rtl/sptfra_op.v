@@ -17,8 +17,6 @@ module sptfra_op #(
     parameter integer FIELD = 1,
     // 1: the answer's other component is other + slope * free; 0: it is as it comes
     parameter integer DEPENDENT = 1,
-    // Dead taxels of the design, whose readings others replace
-    parameter integer REPLACED = 0,
     // 1: the answer has an error, and above DOUBT_LIMIT, a logarithm of base 2 with 12 fraction bits, it is doubtful
     parameter integer DOUBT = 0,
     parameter signed [17:0] DOUBT_LIMIT = 18'sd0,
@@ -71,11 +69,15 @@ module sptfra_op #(
     output wire field_step,
     output wire field_release, // the frame's place is free again
     input  wire [64*WORDS-1:0] field_value,
-    // Bodies of the oldest frame of which no output has begun, which is taken with its timestamp: 1 at least
+    // Contacts of the oldest frame of which no output has begun, which is taken with its context: 1 at least
     input  wire [7:0] contacts,
-    // When the oldest frame inside began
+    // Context of the oldest frame inside: see sptfra_frame_context
     input  wire [31:0] timestamp,
-    output wire timestamp_take,
+    input  wire dropped, // frames before it
+    input  wire [7:0] version, // of the calibration
+    input  wire [3:0] replaced, // dead taxels
+    input  wire [4:0] exponent, // of its scale
+    output wire context_take,
     // Stream out
     output wire [32*WORDS-1:0] m_tdata,
     output wire m_tlast,
@@ -127,7 +129,7 @@ module sptfra_op #(
     wire output_start = summary_there && output_idle && ((FIELD == 0) || (fields_there != 2'd0));
 
     assign answer_take = answer_valid && !summary_busy;
-    assign timestamp_take = output_start;
+    assign context_take = output_start;
 
     always @(posedge clock) begin
         taken <= answer_take;
@@ -214,7 +216,10 @@ module sptfra_op #(
     reg [18:0] size;
     reg pushed;
     reg doubtful;
-    reg several; // of the frame whose output has just begun
+    // Of the frame whose output has just begun
+    reg several;
+    reg replaces;
+    reg follows_dropped;
     wire slips;
 
     always @(posedge clock) begin
@@ -224,14 +229,17 @@ module sptfra_op #(
         pushed <= (size >= {1'b0, PULLING});
         doubtful <= (THIN != 0) || ((DOUBT != 0) && (summary_error_log > DOUBT_LIMIT));
         several <= (contacts > 8'd1);
+        replaces <= (replaced != 4'd0);
+        follows_dropped <= dropped;
     end
 
     wire [15:0] status = {
-        4'd0,
+        3'd0,
+        follows_dropped,
         answered && summary_flags[5] && (summary_unknown || pushed),
         answered && slips,
         answered && summary_flags[4],
-        answered && (REPLACED != 0),
+        answered && replaces,
         answered && several,
         answered && doubtful,
         bad_length,
@@ -271,9 +279,8 @@ module sptfra_op #(
         end
     endgenerate
 
-    // Replaced taxels, generation of the calibration, contacts
-    wire [7:0] replaced = REPLACED[7:0];
-    wire [31:0] counters = {8'd0, answered ? replaced : 8'd0, 8'd0, answered ? contacts : 8'd0};
+    // Replaced taxels, version of the calibration, contacts
+    wire [31:0] counters = {12'd0, answered ? replaced : 4'd0, version, answered ? contacts : 8'd0};
 
     // ---- Output
     sptfra_output #(
@@ -294,6 +301,7 @@ module sptfra_op #(
         .status            (status),
         .timestamp         (timestamp),
         .counters          (counters),
+        .exponent          (exponent),
         .blank             (!answered),
         .force_x           (force_x),
         .force_y           (force_y),

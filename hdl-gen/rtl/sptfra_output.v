@@ -41,12 +41,13 @@ module sptfra_output #(
 ) (
     input  wire clock,
     input  wire reset,
-    // Start, with the timestamp and the counters; all else but the field holds for a cycle more
+    // Start, with timestamp, counters and exponent; all else but the field holds for a cycle more
     input  wire start,
     output wire idle,
     input  wire [15:0] status,
     input  wire [31:0] timestamp,
     input  wire [31:0] counters, // word 13
+    input  wire [4:0] exponent, // of the frame's scale: forces, torques and error are divided by two to its power
     input  wire blank, // no answer: zeros
     input  wire signed [63:0] force_x,
     input  wire signed [63:0] force_y,
@@ -102,6 +103,7 @@ module sptfra_output #(
     reg [15:0] held_status;
     reg [31:0] held_timestamp;
     reg [31:0] held_counters;
+    reg [4:0] held_scale;
     reg held_blank;
     reg signed [63:0] held_force_x;
     reg signed [63:0] held_force_y;
@@ -172,6 +174,7 @@ module sptfra_output #(
             reads <= 1'b0;
             held_timestamp <= timestamp;
             held_counters <= counters;
+            held_scale <= exponent;
         end
         // The many bits follow the decision through a register; the first beat needs them a cycle later
         load <= start;
@@ -249,6 +252,7 @@ module sptfra_output #(
                 .status            (held_status),
                 .timestamp         (held_timestamp),
                 .counters          (held_counters),
+                .scale             (held_scale),
                 .force_x           (held_force_x),
                 .force_y           (held_force_y),
                 .force_z           (held_force_z),

@@ -28,6 +28,7 @@ module sptfra_output_word #(
     input  wire [15:0] status,
     input  wire [31:0] timestamp,
     input  wire [31:0] counters, // word 13
+    input  wire [4:0] scale, // forces, torques and error are divided by two to its power
     input  wire signed [63:0] force_x,
     input  wire signed [63:0] force_y,
     input  wire signed [63:0] force_z,
@@ -50,9 +51,11 @@ module sptfra_output_word #(
     localparam signed [9:0] ANGLE_EXPONENT = -10'sd29;
 
     // ---- Stages 3 and 4: the summary's words, and the field's in stage 4
+    wire signed [9:0] scale_exponent = $signed({5'd0, scale});
     reg [3:0] word_3;
     reg signed [63:0] summary_3;
     reg signed [9:0] summary_exponent_3;
+    reg signed [9:0] field_exponent_3; // the next frame may be held while a last word is here
     reg signed [63:0] value_4;
     reg signed [9:0] exponent_4;
     reg [11:4] raws; // words that are no float32
@@ -63,7 +66,8 @@ module sptfra_output_word #(
             raws <= {raws[10:4], raw_3};
             // Stage 3
             word_3 <= word_2;
-            summary_exponent_3 <= FORCE_EXPONENT;
+            field_exponent_3 <= FIELD_EXPONENT - scale_exponent;
+            summary_exponent_3 <= FORCE_EXPONENT - scale_exponent;
             case (word_2)
                 4'd0: summary_3 <= {32'd0, frame_2, status};
                 4'd1: summary_3 <= {32'd0, timestamp};
@@ -72,15 +76,15 @@ module sptfra_output_word #(
                 4'd4: summary_3 <= force_z;
                 4'd5: begin
                     summary_3 <= torque_x;
-                    summary_exponent_3 <= TORQUE_EXPONENT;
+                    summary_exponent_3 <= TORQUE_EXPONENT - scale_exponent;
                 end
                 4'd6: begin
                     summary_3 <= torque_y;
-                    summary_exponent_3 <= TORQUE_EXPONENT;
+                    summary_exponent_3 <= TORQUE_EXPONENT - scale_exponent;
                 end
                 4'd7: begin
                     summary_3 <= torque_z;
-                    summary_exponent_3 <= TORQUE_EXPONENT;
+                    summary_exponent_3 <= TORQUE_EXPONENT - scale_exponent;
                 end
                 4'd8: begin
                     summary_3 <= friction_quotient;
@@ -100,7 +104,7 @@ module sptfra_output_word #(
                 end
                 4'd12: begin
                     summary_3 <= error_value;
-                    summary_exponent_3 <= error_exponent + FORCE_EXPONENT;
+                    summary_exponent_3 <= error_exponent + FORCE_EXPONENT - scale_exponent;
                 end
                 4'd13: summary_3 <= {32'd0, counters};
                 default: summary_3 <= 64'sd0;
@@ -108,7 +112,7 @@ module sptfra_output_word #(
             // Stage 4
             if (in_field_3) begin
                 value_4 <= (blank_3 || behind_3) ? 64'sd0 : field_value_3;
-                exponent_4 <= FIELD_EXPONENT;
+                exponent_4 <= field_exponent_3;
             end else begin
                 value_4 <= (blank_3 && !raw_3) ? 64'sd0 : summary_3;
                 exponent_4 <= summary_exponent_3;

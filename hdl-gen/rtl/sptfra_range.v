@@ -6,7 +6,7 @@
 //
 // A frame is folded as it comes, without a rounding, and kept; with its last stress the largest is known. From there to
 // the last write: 9 cycles and one an element. Everything behind the lanes' operands is homogeneous, so that the
-// scaled frame has the friction of the frame, and forces that are larger by its power of two: see sptfra_range_frames.
+// scaled frame has the friction of the frame, and forces that are larger by its power of two: see sptfra_frame_context.
 
 `default_nettype none
 

@@ -73,7 +73,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         None => parameters,
     };
     let parameters = match &plan.calibration {
-        Some(of) => calibration::of_frames(parameters, of, streams.words(), plan.design.input.tension),
+        Some(of) => calibration::of_frames(parameters, of),
         None => parameters,
     };
     let parameters = if plan.counts.is_none() && plan.dead.is_none() && plan.calibration.is_none() {

@@ -1,7 +1,5 @@
 //! A calibration in RAM: `sptfra_calibrate` in the core, the banks' control and its registers beside the core's.
 
-use golden::design::Tension;
-
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
 use crate::plan::calibration::{CalibrationPlan, CurveMap};
@@ -27,14 +25,12 @@ const MODULES: [&str; 6] = [
 const TARE_BITS: u32 = 37 + 2 * LONG_BITS;
 
 /// Parameters of `sptfra_bz_calibrated` that Bz alone has not.
-pub fn of_frames(parameters: Parameters, of: &CalibrationPlan, words: usize, tension: Tension) -> Parameters {
+pub fn of_frames(parameters: Parameters, of: &CalibrationPlan) -> Parameters {
     let parameters = parameters
         .number("OFFSET_BITS", of.offset_bits().into())
         .number("COUNT_SHIFT", of.shift.into())
         .wide("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale)
-        .cycles("EXPECTED_CALIBRATION", cycles(of))
-        .count("WORDS", words)
-        .flag("TENSION_READ", tension == Tension::Read);
+        .cycles("EXPECTED_CALIBRATION", cycles(of));
     let parameters = match &of.power_up.curve {
         Some(curve) => of_curve(parameters, curve),
         None => parameters,

@@ -18,9 +18,14 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("ROWS", plan.design.sensor.rows)
         .flag("DIRECTION", pitch.is_some())
         .flag("TENSION_READ", plan.design.input.tension == Tension::Read)
-        .wide("TAXEL_FLOOR", LONG_BITS, plan.thresholds.taxel)
-        .wide("CONTACT_FLOOR", SUM_BITS, plan.thresholds.contact)
         .wide("PITCH_X", SHORT_BITS, pitch_x)
         .wide("PITCH_Y", SHORT_BITS, pitch_y)
         .cycles("EXPECTED_LATENCY", slot.contact_latency())
+}
+
+/// The design's thresholds as constants, a taxel's noise and the least sum `|b|` of a contact, in steps of the stress: those
+/// of every frame, unless a calibration in RAM brings them.
+pub fn thresholds(plan: &Plan) -> [String; 2] {
+    let thresholds = &plan.thresholds;
+    [format!("{LONG_BITS}'d{}", thresholds.taxel), format!("{SUM_BITS}'d{}", thresholds.contact)]
 }

@@ -11,9 +11,10 @@ pub mod cean;
 pub mod co;
 pub mod contacts;
 pub mod field;
+pub mod frame_context;
+pub mod ingress_fifo;
 pub mod latency;
 pub mod op;
-pub mod overrun;
 pub mod parameters;
 pub mod range;
 pub mod registers;
@@ -36,7 +37,7 @@ const _: () = assert!(SUM_ROWS <= FEWEST_ELEMENTS);
 /// What each block of the design takes, in the data's order.
 pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     let slot = plan.estimator.slot();
-    let mut costs: Vec<BlockCost> = overrun::cost(plan).into_iter().chain(calibration::cost(plan)).collect();
+    let mut costs: Vec<BlockCost> = ingress_fifo::cost(plan).into_iter().chain(calibration::cost(plan)).collect();
     costs.extend([bz::cost(plan), slot.contact_block()]);
     costs.extend(range::cost(plan));
     costs.extend([array::cost(plan), we::cost(), co::cost(plan), field::cost(plan)]);

@@ -15,7 +15,6 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .count("ROWS", plan.design.sensor.rows)
         .flag("FIELD", plan.has_field())
         .flag("DEPENDENT", plan.estimator.slot().answers_with_a_line())
-        .count("REPLACED", plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()))
         .number("SUM_LSB", plan.formats.g.lsb.into())
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into());

@@ -1,5 +1,4 @@
-//! A range of its own for each frame, `sptfra_range` behind Bz and `sptfra_range_frames` beside the estimator and the
-//! output, where the design asks for it.
+//! A range of its own for each frame, `sptfra_range` behind Bz, where the design asks for it.
 
 use crate::cores::LONG_BITS;
 use crate::plan::Plan;
@@ -22,11 +21,6 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .cycles("EXPECTED_LATENCY", latency::range(plan.elements()) - 1)
 }
 
-/// Parameters of `sptfra_range_frames`.
-pub fn of_frames(plan: &Plan) -> Parameters {
-    Parameters::new().count("WORDS", plan.streams().words())
-}
-
 /// The frame, folded without a rounding; nothing where all frames have the full scale's range.
 pub fn cost(plan: &Plan) -> Option<BlockCost> {
     plan.scales_frames().then(|| {
@@ -36,6 +30,6 @@ pub fn cost(plan: &Plan) -> Option<BlockCost> {
         if folded {
             memories.push(memory("half-folded b", 1, plan.elements(), 2 * stress + 2, false));
         }
-        BlockCost::new("range", &["sptfra_range", "sptfra_range_frames"], 0).with(memories)
+        BlockCost::new("range", &["sptfra_range"], 0).with(memories)
     })
 }

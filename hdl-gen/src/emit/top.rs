@@ -6,8 +6,8 @@ use tera::Context;
 use golden::design::{Filter, Samples};
 
 use crate::blocks::{
-    FEWEST_ELEMENTS, Parameters, array, bz, calibration, cean, co, contacts, field, op, overrun, range, row_width,
-    turns, unfold, we,
+    FEWEST_ELEMENTS, Parameters, array, bz, calibration, cean, co, contacts, field, frame_context, ingress_fifo, op,
+    range, row_width, turns, unfold, we,
 };
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
@@ -46,7 +46,7 @@ struct View {
     /// Bits of what goes between the banks' control and what they say of dead taxels, there and back.
     dead_command_bits: u32,
     dead_result_bits: u32,
-    /// Of a door that drops frames, its parameters.
+    /// Of an ingress FIFO that drops frames, its parameters.
     overrun: Option<Parameters>,
     /// Bits and bytes of a beat, 32-bit words of it, samples of it; bits of a sample and what it is.
     stream_bits: usize,
@@ -62,10 +62,14 @@ struct View {
     /// Whether samples go to Bz one by one, and what the stream is called that does.
     unpack: bool,
     samples_from: &'static str,
-    /// Of a range of its own for each frame, if it has one: what finds it, what follows it, and bits of a taxel's number
-    /// as Bz has it.
+    /// Of a range of its own for each frame, if it has one: what finds it, and bits of a taxel's number as Bz has it.
     range: Option<Parameters>,
-    range_frames: Parameters,
+    context: Parameters,
+    /// Thresholds of the design: a taxel's noise, the least sum `|b|` of a contact.
+    noise: String,
+    contact: String,
+    /// Dead taxels of the design.
+    dead: usize,
     range_row_width: u32,
     field: bool,
     latency_cycles: u64,
@@ -121,6 +125,7 @@ impl View {
         let streams = plan.streams();
         let unpack = streams.intake == Intake::Unpacked;
         let [dead_command_bits, dead_result_bits] = plan.calibration.as_ref().map_or([0, 0], calibration::dead_bits);
+        let [noise, contact] = cean::thresholds(plan);
         let microseconds = |cycles: u64| format!("{:.2}", cycles as f64 / hardware.clock_mhz);
         Self {
             control: hardware.control,
@@ -137,7 +142,7 @@ impl View {
             offset_bits: plan.calibration.as_ref().map_or(0, CalibrationPlan::offset_bits),
             dead_command_bits,
             dead_result_bits,
-            overrun: streams.drops.then(|| overrun::parameters(plan)),
+            overrun: streams.drops.then(|| ingress_fifo::parameters(plan)),
             stream_bits: streams.bits,
             stream_bytes: streams.bits / 8,
             words: streams.words(),
@@ -150,7 +155,10 @@ impl View {
             unpack,
             samples_from: if unpack { "sample" } else { "in" },
             range: plan.scales_frames().then(|| range::parameters(plan)),
-            range_frames: range::of_frames(plan),
+            context: frame_context::parameters(plan),
+            noise,
+            contact,
+            dead: plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()),
             range_row_width: address_bits(plan.taxels().max(FEWEST_ELEMENTS)),
             field: plan.has_field(),
             latency_cycles: timeline.latency_cycles,

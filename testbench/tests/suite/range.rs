@@ -96,9 +96,13 @@ fn a_wrong_range_is_noticed() {
         ("sptfra_range", "(guessed > STRESS_BOUND)", "(guessed > STRESS_BOUND + 5000000)"),
         ("sptfra_range", "exact_4 <= octets_3 <<< exponent[2:0]", "exact_4 <= octets_3 <<< exponent[1:0]"),
         ("sptfra_range", "rounded_5 <= exact_4 + HALF", "rounded_5 <= exact_4"),
-        ("sptfra_range_frames", "stress_sum_in << of_direction", "stress_sum_in << of_words"),
-        ("sptfra_range_frames", "of_words = exponents[oldest]", "of_words = exponents[next_direction]"),
-        ("sptfra_range_frames", "16'b0001_0000_1111_1100", "16'b0000_0000_1111_1100"),
+        ("sptfra_frame_context", "(next_direction),", "(oldest),"),
+        (
+            "sptfra_frame_context",
+            "(oldest),\n                .read_data   (exponent)",
+            "(next_direction),\n                .read_data   (exponent)",
+        ),
+        ("sptfra_output_word", "error_exponent + FORCE_EXPONENT - scale_exponent", "error_exponent + FORCE_EXPONENT"),
     ]);
     let plan = planned(&designs().swap_remove(2));
     let packets = packets(&plan);

@@ -12,11 +12,11 @@ use super::Plan;
 use super::places::FIELD_PLACES;
 use super::timing::{INTERVAL_FRAMES, Timeline, mean_interval};
 use crate::blocks::bz::Arrival;
+use crate::blocks::ingress_fifo;
 use crate::blocks::latency::{
     self, OUTPUT_LATENCY, OUTPUT_SKID, OUTPUT_TO_IDLE, OUTPUT_TO_RELEASE, SEARCH_TO_FRICTION, SEQUENCER_TO_LANES,
     SUMMARY_LATENCY, TAXELS_TO_CELLS, TAXELS_TO_FIELD, VISIT_TO_RESIDUAL,
 };
-use crate::blocks::overrun;
 
 /// Frames whose stress, whose search, and whose field have a place.
 const PLACES: u64 = FIELD_PLACES as u64;
@@ -183,7 +183,7 @@ impl<'a> Control<'a> {
     fn keep_pace(mut self, spacing: u64) -> Pace {
         let mut states = BTreeSet::new();
         for _ in 0..SPACED_FRAMES {
-            if self.in_fifo == overrun::FRAMES {
+            if self.in_fifo == ingress_fifo::FRAMES {
                 return Pace::Loses;
             }
             self.in_fifo += 1;

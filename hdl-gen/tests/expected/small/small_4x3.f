@@ -7,6 +7,7 @@ rtl/sptfra_cean.v
 rtl/sptfra_check_delay.v
 rtl/sptfra_check_latency.v
 rtl/sptfra_co.v
+rtl/sptfra_context_words.v
 rtl/sptfra_cordic.v
 rtl/sptfra_direction.v
 rtl/sptfra_divider.v
@@ -15,6 +16,7 @@ rtl/sptfra_field.v
 rtl/sptfra_fixed_to_float.v
 rtl/sptfra_float_to_fixed.v
 rtl/sptfra_fold.v
+rtl/sptfra_frame_context.v
 rtl/sptfra_leading_bit.v
 rtl/sptfra_line.v
 rtl/sptfra_mac.v
@@ -42,7 +44,6 @@ rtl/sptfra_spmv_sequencer.v
 rtl/sptfra_spmv_way.v
 rtl/sptfra_summary.v
 rtl/sptfra_times_index.v
-rtl/sptfra_timestamp.v
 rtl/sptfra_turns.v
 rtl/sptfra_unfold.v
 rtl/sptfra_we.v

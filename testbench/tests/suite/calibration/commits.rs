@@ -14,7 +14,7 @@ use crate::support::faults::broken;
 use crate::support::in_parallel;
 
 /// A direction whatever presses and pulls.
-const ALWAYS_KNOWN: &str = "assign no_direction = &{1'b0, of_frame};";
+const ALWAYS_KNOWN: &str = "assign no_push = &{1'b0, compression_seen, tension_seen};";
 
 /// Cycles in which a bank of so many words is written, before the first commit.
 fn loaded(words: usize) -> u64 {
@@ -138,9 +138,19 @@ fn half_a_frame_by_another_bank_is_noticed() {
     let [other_gains, other_threshold, other_floor] = others(subject);
     for (module, from, to, bank) in some_of([
         ("sptfra_calibrate", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", other_gains),
-        ("sptfra_frame_calibration", "contacts[next_contact]", "contact", other_threshold),
-        ("sptfra_frame_calibration", "noises[next_noise];", "noise;", other_floor.clone()),
-        ("sptfra_frame_calibration", "assign no_direction = (of_frame != 2'b11);", ALWAYS_KNOWN, other_floor),
+        (
+            "sptfra_frame_context",
+            "thresholds <= of_cean;",
+            "thresholds <= {in_contact, of_cean[26:0]};",
+            other_threshold,
+        ),
+        (
+            "sptfra_frame_context",
+            "thresholds <= of_cean;",
+            "thresholds <= {of_cean[58:27], in_noise};",
+            other_floor.clone(),
+        ),
+        ("sptfra_direction", "assign no_push = !(compression_seen && tension_seen);", ALWAYS_KNOWN, other_floor),
     ]) {
         let built = broken(&subject.plan, module, from, to);
         let cycles = (0..subject.plan.timeline.interval_cycles).step_by(3);

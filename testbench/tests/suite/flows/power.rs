@@ -23,7 +23,7 @@ const ACTIVITY: &str = "(SAIFILE
   (INSTANCE small_4x3
    (NET
     (reset (T0 7992000) (T1 8000) (TZ 0) (TX 0) (TB 0) (TC 1))
-    (timestamp_take (T0 7984000) (T1 16000) (TZ 0) (TX 0) (TB 0) (TC 4))
+    (context_take (T0 7984000) (T1 16000) (TZ 0) (TX 0) (TB 0) (TC 4))
    )
   )
  )

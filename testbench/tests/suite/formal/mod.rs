@@ -141,7 +141,10 @@ fn inside(harness: &str, defines: &[&str]) -> String {
     };
     let lines = ports.lines().filter(|line| there(line));
     let names = lines.filter_map(|line| line.trim().strip_prefix('.')?.split_whitespace().next());
-    names.map(|name| format!("w:{}", name.trim_start_matches('\\'))).collect::<Vec<_>>().join(" ")
+    names
+        .map(|name| format!("w:{}", name.trim_start_matches('\\').replace(['[', ']'], "?")))
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 fn run(command: &mut Command, folder: &Path) -> String {

@@ -81,16 +81,38 @@ module small_4x3 #(
         .m_tready (m_axis_tready)
     );
 
-    // ---- When each frame inside began
-    wire [31:0] timestamp;
-    wire timestamp_take;
-    sptfra_timestamp frame_beginnings (
-        .clock     (aclk),
-        .reset     (reset),
-        .in_taken  (s_axis_tvalid && s_axis_tready),
-        .in_last   (s_axis_tlast),
-        .timestamp (timestamp),
-        .take      (timestamp_take)
+    // ---- Frame contexts: what a frame carries beside its numbers
+    wire cean_take, direction_take, context_take, context_dropped;
+    wire [31:0] timestamp, contact;
+    wire [26:0] noise;
+    wire [7:0] version;
+    wire [3:0] replaced;
+    wire [4:0] direction_exponent, exponent;
+
+    sptfra_frame_context frame_context (
+        .clock              (aclk),
+        .reset              (reset),
+        .in_taken           (s_axis_tvalid && s_axis_tready),
+        .in_last            (s_axis_tlast),
+        .in_dropped         (1'b0),
+        .calibrated         (1'b0),
+        .in_contact         (32'd0),
+        .in_noise           (27'd0),
+        .in_version         (8'd0),
+        .in_replaced        (4'd0),
+        .scaled             (1'b0),
+        .in_exponent        (5'd0),
+        .cean_take          (cean_take),
+        .contact            (contact),
+        .noise              (noise),
+        .direction_take     (direction_take),
+        .direction_exponent (direction_exponent),
+        .take               (context_take),
+        .timestamp          (timestamp),
+        .dropped            (context_dropped),
+        .version            (version),
+        .replaced           (replaced),
+        .exponent           (exponent)
     );
 
     // ---- Bz: stream to fixed point, taxels to parity classes
@@ -143,7 +165,6 @@ module small_4x3 #(
 
     // ---- CeAn: what of the frame needs no lanes
     wire direction_valid, no_direction;
-    wire direction_take;
     wire signed [26:0] direction_x, direction_y;
     wire [39:0] stress_sum;
     wire [26:0] largest;
@@ -154,8 +175,6 @@ module small_4x3 #(
         .ROWS             (3),
         .DIRECTION        (1),
         .TENSION_READ     (1),
-        .TAXEL_FLOOR      (27'sd781),
-        .CONTACT_FLOOR    (40'sd9375),
         .PITCH_X          (18'sd65536),
         .PITCH_Y          (18'sd65536),
         .EXPECTED_LATENCY (142)
@@ -170,6 +189,9 @@ module small_4x3 #(
         .frame_not_finite (frame_not_finite),
         .frame_bad_length (frame_bad_length),
         .frame_replaced   (frame_replaced),
+        .noise            (27'd781),
+        .contact          (40'd9375),
+        .frame_take       (cean_take),
         .direction_room   (direction_room),
         .direction_valid  (direction_valid),
         .direction_take   (direction_take),
@@ -494,7 +516,6 @@ module small_4x3 #(
         .ROWS                     (3),
         .FIELD                    (1),
         .DEPENDENT                (1),
-        .REPLACED                 (0),
         .SUM_LSB                  (-20),
         .TORQUE_LSB               (-27),
         .FIELD_LSB                (-40),
@@ -529,7 +550,11 @@ module small_4x3 #(
         .field_value      (field_value),
         .contacts         (8'd1),
         .timestamp        (timestamp),
-        .timestamp_take   (timestamp_take),
+        .dropped          (context_dropped),
+        .version          (version),
+        .replaced         (4'd0),
+        .exponent         (exponent),
+        .context_take     (context_take),
         .m_tdata          (out_tdata),
         .m_tlast          (out_tlast),
         .m_tvalid         (out_tvalid),
@@ -538,7 +563,8 @@ module small_4x3 #(
 
     // What this design has no use for
     wire _unused = &{1'b0, bz_row_wide, taxel_last, taxel_force, weights_valid, weights_row, weights, g_valid,
-        g_component, g, g_last, friction_known, field_mu_x, field_mu_y, field_enable, field_rewind, field_step};
+        g_component, g, g_last, friction_known, field_mu_x, field_mu_y, field_enable, field_rewind, field_step,
+            contact, noise, version, replaced, cean_take, direction_exponent};
 
 endmodule
 

@@ -22,6 +22,7 @@ foreach file {
     sptfra_check_delay.v
     sptfra_check_latency.v
     sptfra_co.v
+    sptfra_context_words.v
     sptfra_cordic.v
     sptfra_direction.v
     sptfra_divider.v
@@ -30,6 +31,7 @@ foreach file {
     sptfra_fixed_to_float.v
     sptfra_float_to_fixed.v
     sptfra_fold.v
+    sptfra_frame_context.v
     sptfra_leading_bit.v
     sptfra_line.v
     sptfra_mac.v
@@ -57,7 +59,6 @@ foreach file {
     sptfra_spmv_way.v
     sptfra_summary.v
     sptfra_times_index.v
-    sptfra_timestamp.v
     sptfra_turns.v
     sptfra_unfold.v
     sptfra_we.v

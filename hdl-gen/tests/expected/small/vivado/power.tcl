@@ -32,8 +32,8 @@ if {![regexp {\(INSTANCE\s+(\S+)} $text -> outer] || ![regexp "\\(INSTANCE\\s+$d
 if {![regexp {\(TIMESCALE\s+([0-9]+)\s*([fpnu])s\s*\)} $text -> count unit]
     || ![regexp {\(DURATION\s+([0-9.]+)\s*\)} $text -> duration]
     || ![regexp {\(aclk\s.*?\(TC\s+([0-9]+)\)} $text -> changes]
-    || ![regexp {\(timestamp_take\s.*?\(TC\s+([0-9]+)\)} $text -> takes]} {
-    error "$activity states no time scale, no duration, or no changes of aclk or timestamp_take"
+    || ![regexp {\(context_take\s.*?\(TC\s+([0-9]+)\)} $text -> takes]} {
+    error "$activity states no time scale, no duration, or no changes of aclk or context_take"
 }
 # A pulse for each answer.
 set frames [expr {$takes / 2}]

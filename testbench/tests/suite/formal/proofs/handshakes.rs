@@ -8,7 +8,7 @@ use super::{Broken, Proof};
 /// The leaf cores that the handshake does not need, and the blocks of arithmetic.
 const FREE: &[&str] = &[
     "*sptfra_axis_skid*",
-    "*sptfra_timestamp*",
+    "*sptfra_frame_context*",
     "*sptfra_fixed_to_float*",
     "*sptfra_divider*",
     "*sptfra_ratio*",

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The door of a core whose source cannot be held: two frames wait here, and one that begins while neither of them has
-// left is dropped whole. The first answer behind dropped frames says so: bit 12 of its status.
+// Ingress frame FIFO for a source without back-pressure, two frames deep. A frame that finds it full is dropped whole.
 //
-// Latency 2 cycles, one beat a cycle. A frame is handed on while it comes in. Of beats that it has too many only the
-// last one goes on, so that it stays too long and yet has room. Sixteen frames may be inside the core; answers pass in
-// the same cycle, in their frames' order.
+// Latency 2 cycles, one beat a cycle. A frame is handed on while it comes in. Of surplus beats only the last one goes
+// on: the frame stays too long, and has room.
 
 `default_nettype none
 
-module sptfra_overrun #(
+module sptfra_ingress_fifo #(
     // Beats of a frame
     parameter BEATS = 12,
     // 32-bit words of a beat: 1, 2 or 4
@@ -25,16 +23,12 @@ module sptfra_overrun #(
     output wire s_tready,
     output wire kept, // the beat taken now is one of a frame that has room
     output wire dropped, // a frame that had none ends now
+    output wire follows_dropped, // with a first beat that is kept: frames before it had no room
     // Frames that have room
     output wire [32*WORDS-1:0] m_tdata,
     output wire m_tlast,
     output wire m_tvalid,
-    input  wire m_tready,
-    // Answers
-    input  wire word_taken,
-    input  wire word_last,
-    input  wire [32*WORDS-1:0] words_in,
-    output wire [32*WORDS-1:0] words
+    input  wire m_tready
 );
 
     localparam FRAMES = 2; // that wait
@@ -47,7 +41,6 @@ module sptfra_overrun #(
     localparam [31:0] TOP_WIDE = DEPTH - 1;
     localparam [INDEX_WIDTH-1:0] END = END_WIDE[INDEX_WIDTH-1:0];
     localparam [ADDRESS_WIDTH-1:0] TOP = TOP_WIDE[ADDRESS_WIDTH-1:0];
-    localparam DROPPED = 12; // bit of the status, the first word of an answer
 
     generate
         if ((WORDS != 1) && (WORDS != 2) && (WORDS != 4)) begin : gen_check_words
@@ -122,36 +115,20 @@ module sptfra_overrun #(
         end
     end
 
-    // ---- Which frames inside have dropped ones before them
-    reg [15:0] marks;
-    reg [3:0] newest;
-    reg [3:0] oldest;
-    reg mark; // the next one
-    reg in_answer;
-    wire [32*WORDS-1:0] bit_of_status = {{(32*WORDS-1){1'b0}}, marks[oldest] && !in_answer};
+    // ---- Whether frames were dropped since the last one that has room
+    reg follows;
 
-    assign words = words_in | (bit_of_status << DROPPED);
+    assign follows_dropped = follows;
 
     always @(posedge clock) begin
         if (begins) begin
-            marks[newest] <= mark;
-            newest <= newest + 4'd1;
-            mark <= 1'b0;
+            follows <= 1'b0;
         end
         if (dropped) begin
-            mark <= 1'b1;
-        end
-        if (word_taken) begin
-            in_answer <= !word_last;
-            if (word_last) begin
-                oldest <= oldest + 4'd1;
-            end
+            follows <= 1'b1;
         end
         if (reset) begin
-            newest <= 4'd0;
-            oldest <= 4'd0;
-            mark <= 1'b0;
-            in_answer <= 1'b0;
+            follows <= 1'b0;
         end
     end
 

@@ -1,4 +1,4 @@
-//! The door of a core whose source cannot be held, `sptfra_overrun`; other cores have a skid buffer there.
+//! Ingress FIFO of a core whose source has no back-pressure, `sptfra_ingress_fifo`. Other cores have a skid buffer there.
 
 use crate::plan::Plan;
 use crate::plan::memory::memory;
@@ -22,5 +22,5 @@ pub fn cost(plan: &Plan) -> Option<BlockCost> {
     let streams = plan.streams();
     let depth = FRAMES * (streams.beats_in() + 1);
     let ring = memory("waiting frames", 1, depth, (streams.words() * WORD_BITS + 1) as u32, false);
-    streams.drops.then(|| BlockCost::new("Intake", &["sptfra_overrun"], 0).with([ring]))
+    streams.drops.then(|| BlockCost::new("Intake", &["sptfra_ingress_fifo"], 0).with([ring]))
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// The door that drops frames: the source is never held; a frame that begins while fewer than two wait is handed on
-// whole, beat by beat and in order, however long it is; of any other not a beat is; each ends as one of them, and the
-// next answer says of those that were dropped.
+// Ingress FIFO that drops frames: the source is never held. A frame that begins while fewer than two wait is handed on
+// whole, beat by beat and in order, however long it is. Of any other not a beat is. A frame that is kept says whether
+// frames were dropped before it.
 //
-// A queue of beats and one of marks stand beside the door, filled by the rule alone. Frames of two beats, so that three
+// A queue of beats stands beside the FIFO, filled by the rule alone. Frames of two beats, so that three
 // are stored of one that is too long, and six in all.
 module harness (
     input wire clock,
@@ -12,10 +12,7 @@ module harness (
     input wire [31:0] s_tdata,
     input wire s_tlast,
     input wire s_tvalid,
-    input wire m_tready,
-    input wire word_taken,
-    input wire word_last,
-    input wire [31:0] words_in
+    input wire m_tready
 );
 
     localparam BEATS = 2;
@@ -28,7 +25,8 @@ module harness (
     wire [31:0] m_tdata;
     wire m_tlast;
     wire m_tvalid;
-    wire [31:0] words;
+    wire follows_dropped;
+    wire follows;
     wire in_frame;
     wire keeps;
     wire [1:0] frames;
@@ -36,14 +34,9 @@ module harness (
     wire [2:0] write_address;
     wire [2:0] read_address;
     wire [2:0] waiting;
-    wire [15:0] marks;
-    wire [3:0] newest;
-    wire [3:0] oldest;
-    wire mark;
-    wire in_answer;
     wire [33*DEPTH-1:0] ring;
 
-    sptfra_overrun subject (
+    sptfra_ingress_fifo subject (
         .clock      (clock),
         .reset      (reset),
         .s_tdata    (s_tdata),
@@ -52,14 +45,11 @@ module harness (
         .s_tready   (s_tready),
         .kept       (kept),
         .dropped    (dropped),
+        .follows_dropped (follows_dropped),
         .m_tdata    (m_tdata),
         .m_tlast    (m_tlast),
         .m_tvalid   (m_tvalid),
         .m_tready   (m_tready),
-        .word_taken (word_taken),
-        .word_last  (word_last),
-        .words_in   (words_in),
-        .words      (words),
         // Inside
         .\whole_frames.in_frame (in_frame),
         .\whole_frames.keeps (keeps),
@@ -68,11 +58,7 @@ module harness (
         .write_address (write_address),
         .read_address  (read_address),
         .waiting       (waiting),
-        .marks         (marks),
-        .newest        (newest),
-        .oldest        (oldest),
-        .mark          (mark),
-        .in_answer     (in_answer),
+        .follows       (follows),
         .\ring.words   (ring)
     );
 
@@ -94,13 +80,7 @@ module harness (
     wire [2:0] left = held - {2'd0, given};
     wire [33*DEPTH-1:0] shifted = given ? queue >> 33 : queue;
 
-    // ---- Marks of the frames inside, the oldest lowest
-    reg [15:0] said;
-    reg [4:0] answers;
-    reg after_dropped;
-    reg answering;
-    wire answered = word_taken && word_last;
-    wire [4:0] answers_left = answers - {4'd0, answered};
+    reg after_dropped; // frames, since the last one that has room
     integer place;
 
     always @(posedge clock) begin
@@ -116,26 +96,18 @@ module harness (
             queue[33*left +: 33] <= {s_tlast, s_tdata};
         end
         held <= left + {2'd0, push};
-        said <= answered ? said >> 1 : said;
         if (begins) begin
-            said[answers_left[3:0]] <= after_dropped;
             after_dropped <= 1'b0;
         end
         if (taken && s_tlast && !room) begin
             after_dropped <= 1'b1;
-        end
-        answers <= answers_left + {4'd0, begins};
-        if (word_taken) begin
-            answering <= !word_last;
         end
         if (reset) begin
             open <= 1'b0;
             stored <= 2'd0;
             inside <= 2'd0;
             held <= 3'd0;
-            answers <= 5'd0;
             after_dropped <= 1'b0;
-            answering <= 1'b0;
         end
     end
 
@@ -143,9 +115,6 @@ module harness (
         if (!started) begin
             assume (reset);
         end
-        // What the core behind it keeps: an answer for each frame, and no more than sixteen frames inside
-        assume (!word_taken || (answers != 5'd0));
-        assume (!begins || (answers != 5'd16));
     end
 
     // ---- What was on offer in the cycle before
@@ -174,8 +143,8 @@ module harness (
             // A beat that is offered stays, and one that is held is offered
             assert (!waited || (m_tvalid && ({m_tlast, m_tdata} == offered)));
             assert (!arrived || m_tvalid);
-            // The first word of an answer, and no other, says that frames were dropped
-            assert (!word_taken || (words == (words_in | {19'd0, said[0] && !answering, 12'd0})));
+            // The first beat of a frame that is kept says whether frames were dropped before it
+            assert (!begins || (follows_dropped == after_dropped));
         end
     end
 
@@ -206,23 +175,14 @@ module harness (
     wire [2:0] first = m_tvalid ? 3'd1 : 3'd0;
     reg [3:0] at;
     reg same;
-    reg same_marks;
-    reg [3:0] at_mark;
 
     always @(*) begin
         same = 1'b1;
-        same_marks = 1'b1;
         for (place = 0; place < DEPTH; place = place + 1) begin
             at = read_address + place;
             at = (at >= DEPTH) ? at - DEPTH : at;
             if (place < waiting) begin
                 same = same && (ring[33*at +: 33] == queue[33*(place + first) +: 33]);
-            end
-        end
-        for (place = 0; place < 16; place = place + 1) begin
-            at_mark = oldest + place;
-            if (place < answers) begin
-                same_marks = same_marks && (marks[at_mark] == said[place]);
             end
         end
     end
@@ -245,11 +205,7 @@ module harness (
             assert (write_address == (({1'b0, read_address} + waiting >= DEPTH) ? read_address + waiting - DEPTH
                 : read_address + waiting));
             assert (same);
-            assert (answers <= 5'd16);
-            assert (newest == oldest + answers[3:0]);
-            assert (same_marks);
-            assert (mark == after_dropped);
-            assert (in_answer == answering);
+            assert (follows == after_dropped);
         end
     end
 `endif

@@ -1,0 +1,13 @@
+//! Frame-context FIFO, `sptfra_frame_context`: what a frame carries beside its numbers.
+
+use crate::plan::Plan;
+
+use super::Parameters;
+
+/// The instance's parameters: which fields contexts hold beside the timestamp.
+pub fn parameters(plan: &Plan) -> Parameters {
+    let fields =
+        [("DROPS", plan.streams().drops), ("CALIBRATED", plan.calibration.is_some()), ("SCALED", plan.scales_frames())];
+    let there = fields.into_iter().filter(|&(_, there)| there);
+    there.fold(Parameters::new(), |parameters, (name, there)| parameters.flag(name, there))
+}
