@@ -33,7 +33,6 @@ module sptfra_bz_wide #(
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
     parameter CURVE_LEVELS = 0,
     parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
-    parameter signed [26:0] CURVE_FIRST = 27'sd0,
     parameter signed [26:0] CURVE_LAST = 27'sd33554431,
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
     // Prefix of the ROM file names, and what they begin with; those of taxels have _sampleN behind that, N from 0 on
@@ -83,11 +82,10 @@ module sptfra_bz_wide #(
     localparam COUNT_WIDTH = $clog2(BEATS + 1);
     localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
     localparam REST = TAXELS - (BEATS - 1) * SAMPLES; // samples of the last beat
-    localparam [31:0] END_WIDE = BEATS;
     localparam [31:0] LAST_BEAT_WIDE = BEATS - 1;
-    localparam [COUNT_WIDTH-1:0] END = END_WIDE[COUNT_WIDTH-1:0];
     localparam [COUNT_WIDTH-1:0] LAST_BEAT = LAST_BEAT_WIDE[COUNT_WIDTH-1:0];
     localparam STRESS_BITS = (DATA_BITS < 27) ? DATA_BITS : 27;
+    localparam LEVELS = (CURVE_LEVELS != 0) ? CURVE_LEVELS : 1;
     localparam NUMBER_STAGES = 5;
     localparam CURVE_STAGES = (CURVE_LEVELS != 0) ? NUMBER_STAGES + CURVE_LEVELS + 7 : NUMBER_STAGES;
     localparam STAGES = (COUNTS != 0) ? CURVE_STAGES + 4 : CURVE_STAGES;
@@ -107,41 +105,33 @@ module sptfra_bz_wide #(
         end
     endgenerate
 
-    // ---- Which beats belong to a frame
-    reg [COUNT_WIDTH-1:0] index; // of the next beat, stops at BEATS
-    reg in_frame;
-    reg [1:0] banks_taken;
+    // ---- Frames, one at a time in the pipeline
     reg ended; // the frame's last beat is there, and not all that is made of it
-    reg [STAGES:1] valid;
-    reg [STAGES:1] stores;
-    reg [STAGES:1] lasts;
-    reg [STAGES:1] bad_lengths;
-    wire busy = (valid != {STAGES{1'b0}}) || ended;
+    reg [1:0] banks_taken;
+    wire accept, frame_opens, in_frame, under_way, arrives, arrives_bad_length;
+    wire [STAGES:0] takes;
+    wire [STAGES:0] ends;
 
-    // A frame may begin: a register, so that the stream's ready has a short way. What it looks at changes to the worse
-    // with a frame's first beat only
-    reg may_open;
-    assign s_tready = in_frame || may_open;
-    wire accept = s_tvalid && s_tready;
-    wire store = (index != END);
-
-    always @(posedge clock) begin
-        if (accept) begin
-            in_frame <= !s_tlast;
-            index <= s_tlast ? {COUNT_WIDTH{1'b0}} : store ? index + 1'b1 : index;
-        end
-        may_open <= !accept && !busy && cean_idle && (banks_taken != 2'd2) && direction_room;
-        valid <= {valid[STAGES-1:1], accept};
-        stores <= {stores[STAGES-1:1], store};
-        lasts <= {lasts[STAGES-1:1], s_tlast};
-        bad_lengths <= {bad_lengths[STAGES-1:1], index != LAST_BEAT};
-        if (reset) begin
-            may_open <= 1'b1;
-            in_frame <= 1'b0;
-            index <= {COUNT_WIDTH{1'b0}};
-            valid <= {STAGES{1'b0}};
-        end
-    end
+    sptfra_frame_gate #(
+        .BEATS  (BEATS),
+        .STAGES (STAGES)
+    ) gate (
+        .clock          (clock),
+        .reset          (reset),
+        .s_tlast        (s_tlast),
+        .s_tvalid       (s_tvalid),
+        .s_tready       (s_tready),
+        .room           (!ended && cean_idle && (banks_taken != 2'd2) && direction_room),
+        .advance        (1'b1),
+        .accept         (accept),
+        .opens          (frame_opens),
+        .in_frame       (in_frame),
+        .under_way      (under_way),
+        .takes          (takes),
+        .ends           (ends),
+        .out_valid      (arrives),
+        .out_bad_length (arrives_bad_length)
+    );
 
     // ---- Samples to stress
     wire [27*SAMPLES-1:0] stresses;
@@ -154,6 +144,7 @@ module sptfra_bz_wide #(
         for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
             localparam [7:0] DIGIT = 48 + sample;
             wire signed [26:0] fixed;
+            wire [LEVELS-1:0] segment;
 
             sptfra_samples #(
                 .TAXELS       (BEATS),
@@ -169,26 +160,34 @@ module sptfra_bz_wide #(
                 .FULL_SCALE   (FULL_SCALE),
                 .CURVE_LEVELS (CURVE_LEVELS),
                 .CURVE_KNOTS  (CURVE_KNOTS),
-                .CURVE_FIRST  (CURVE_FIRST),
                 .CURVE_LAST   (CURVE_LAST),
                 .STRESS_BOUND (STRESS_BOUND),
                 .ROM_DIR      (ROM_DIR),
                 .ROM_NAME     (ROM_NAME),
                 .TAXEL_NAME   ((ROM_NAME == "") ? "" : {ROM_NAME, "_sample", DIGIT})
             ) samples (
-                .clock      (clock),
-                .reset      (reset),
-                .advance    (1'b1),
-                .accept     (accept),
-                .sample     (s_tdata[SAMPLE_BITS*sample +: SAMPLE_BITS]),
-                .last       (s_tlast),
-                .next_taxel (valid[CURVE_STAGES] && stores[CURVE_STAGES]),
-                .frame_ends (valid[CURVE_STAGES] && lasts[CURVE_STAGES]),
-                .stress     (fixed),
-                .saturated  (saturated[sample]),
-                .not_finite (not_finite[sample])
+                .clock         (clock),
+                .reset         (reset),
+                .advance       (1'b1),
+                .accept        (accept),
+                .sample        (s_tdata[SAMPLE_BITS*sample +: SAMPLE_BITS]),
+                .last          (s_tlast),
+                .next_taxel    (takes[CURVE_STAGES]),
+                .frame_ends    (ends[CURVE_STAGES]),
+                .bank_gain     (28'd0),
+                .bank_offset   ({OFFSET_BITS{1'b0}}),
+                .bank_knots    ({27*(1<<LEVELS){1'b0}}),
+                .bank_segments (7'd0),
+                .bank_last     (27'sd0),
+                .bank_reach    (27'd0),
+                .segment       (segment),
+                .bank_line     (78'd0),
+                .stress        (fixed),
+                .saturated     (saturated[sample]),
+                .not_finite    (not_finite[sample])
             );
 
+            wire _unused_segment = &{1'b0, segment};
             assign stresses[27*sample +: 27] = fixed;
             assign narrow_stresses[STRESS_BITS*sample +: STRESS_BITS] = fixed[STRESS_BITS-1:0];
         end
@@ -200,8 +199,7 @@ module sptfra_bz_wide #(
     reg bad_length;
     reg seen_saturated;
     reg seen_not_finite;
-    wire arrives = valid[STAGES];
-    wire beat_valid = arrives && stores[STAGES];
+    wire beat_valid = takes[STAGES];
     wire [SAMPLES-1:0] counts = (written == LAST_BEAT) ? REST_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
     wire [31:0] written_wide = {{(32-COUNT_WIDTH){1'b0}}, written};
     wire over; // all is made of the frame
@@ -212,9 +210,9 @@ module sptfra_bz_wide #(
             seen_saturated <= seen_saturated || ((saturated & counts) != {SAMPLES{1'b0}});
             seen_not_finite <= seen_not_finite || ((not_finite & counts) != {SAMPLES{1'b0}});
         end
-        if (arrives && lasts[STAGES]) begin
+        if (ends[STAGES]) begin
             ended <= 1'b1;
-            bad_length <= bad_lengths[STAGES];
+            bad_length <= arrives_bad_length;
         end
         if (reset || over) begin
             written <= {COUNT_WIDTH{1'b0}};
@@ -312,7 +310,6 @@ module sptfra_bz_wide #(
 
     // ---- Banks
     reg [1:0] frames_waiting;
-    wire frame_opens = accept && !in_frame;
 
     assign frame_ready = (frames_waiting != 2'd0);
 
@@ -325,7 +322,7 @@ module sptfra_bz_wide #(
         end
     end
 
-    wire _unused = &{1'b0, written_wide};
+    wire _unused = &{1'b0, written_wide, arrives, in_frame, under_way};
 
 endmodule
 

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Counts along a curve of straight pieces: finds the segment of a count, comparison by comparison, and its line.
+// Piecewise-linear curve: finds the segment of a number, comparison by comparison, and interpolates on its line.
 //
-// Number to value: LEVELS + 7 cycles, one a cycle. A number beyond the ends of the curve has the value of the end.
+// Number to value: LEVELS + 7 cycles, one a cycle. A number beyond the ends of the curve has the value of the end. The
+// curve holds while numbers are under way.
 
 `default_nettype none
 
 module sptfra_curve #(
     // Comparisons: the curve has up to 2^LEVELS segments
-    parameter LEVELS = 4,
-    // First number of each segment, 27 bits each; beyond every number where there are fewer
-    parameter [27*(1<<LEVELS)-1:0] KNOTS = {(1<<LEVELS){27'h3ffffff}},
-    // Ends of the curve
-    parameter signed [26:0] FIRST = 27'sd0,
-    parameter signed [26:0] LAST = 27'sd33554431,
-    // Prefix of the ROM file names, and what they begin with
-    parameter ROM_DIR = "",
-    parameter ROM_NAME = ""
+    parameter LEVELS = 4
 ) (
     input  wire clock,
     input  wire advance,
@@ -28,7 +21,14 @@ module sptfra_curve #(
     // What they are worth
     output wire signed [26:0] value,
     output wire saturated,
-    output wire not_finite
+    output wire not_finite,
+    // Curve: first number of each segment, 27 bits each, the count of segments, the end of the last one
+    input  wire [27*(1<<LEVELS)-1:0] knots,
+    input  wire [6:0] count,
+    input  wire signed [26:0] last,
+    // Memory of lines: first number, value there, slope, bits dropped less one, an enabled cycle after the segment
+    output wire [LEVELS-1:0] segment,
+    input  wire [77:0] line_1
 );
 
     localparam STAGES = LEVELS + 7;
@@ -36,6 +36,7 @@ module sptfra_curve #(
     // ---- The segment: bit by bit of its number, the highest first
     wire [27*(LEVELS+1)-1:0] numbers;
     wire [LEVELS*(LEVELS+1)-1:0] segments;
+    wire signed [26:0] first = $signed(knots[26:0]);
     reg signed [26:0] number_in;
     genvar level;
 
@@ -44,7 +45,7 @@ module sptfra_curve #(
 
     always @(posedge clock) begin
         if (advance) begin
-            number_in <= (number < FIRST) ? FIRST : (number > LAST) ? LAST : number;
+            number_in <= (number < first) ? first : (number > last) ? last : number;
         end
     end
 
@@ -54,9 +55,9 @@ module sptfra_curve #(
             reg signed [26:0] held_number;
             reg [LEVELS-1:0] held_segment;
             wire signed [26:0] here = $signed(numbers[27*level +: 27]);
-            wire [LEVELS-1:0] segment = segments[LEVELS*level +: LEVELS];
-            wire [LEVELS-1:0] upper = segment | BIT;
-            wire signed [26:0] knot = $signed(KNOTS[27*upper +: 27]);
+            wire [LEVELS-1:0] lower = segments[LEVELS*level +: LEVELS];
+            wire [LEVELS-1:0] upper = lower | BIT;
+            wire signed [26:0] knot = $signed(knots[27*upper +: 27]);
 
             assign numbers[27*(level+1) +: 27] = held_number;
             assign segments[LEVELS*(level+1) +: LEVELS] = held_segment;
@@ -64,7 +65,7 @@ module sptfra_curve #(
             always @(posedge clock) begin
                 if (advance) begin
                     held_number <= here;
-                    held_segment <= (here >= knot) ? upper : segment;
+                    held_segment <= (({{(7-LEVELS){1'b0}}, upper} < count) && (here >= knot)) ? upper : lower;
                 end
             end
         end
@@ -75,22 +76,9 @@ module sptfra_curve #(
     wire signed [26:0] value_1;
     wire signed [17:0] slope_1;
     wire [5:0] shift_1;
-    wire [77:0] line_1;
 
+    assign segment = segments[LEVELS*LEVELS +: LEVELS];
     assign {from_1, value_1, slope_1, shift_1} = line_1;
-
-    sptfra_rom #(
-        .WIDTH         (78),
-        .DEPTH         (1 << LEVELS),
-        .ADDRESS_WIDTH (LEVELS),
-        .ROM_DIR       (ROM_DIR),
-        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_curve.mem"})
-    ) lines (
-        .clock   (clock),
-        .enable  (advance),
-        .address (segments[LEVELS*LEVELS +: LEVELS]),
-        .data    (line_1)
-    );
 
     reg signed [26:0] number_1;
     reg signed [26:0] along_2;

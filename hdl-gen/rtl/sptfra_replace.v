@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Gives each taxel that a frame's bank says is dead a weighted sum of the others in place of its own reading: as
-// sptfra_dead_taxels, with map and weights from a bank of the calibration (sptfra_dead_bank).
+// Replaces a frame's dead taxels: each takes a weighted sum of the other taxels in place of its own reading.
 //
-// A frame is kept while one accumulator for each place of the map adds up its sum, then read again with the sums in
-// theirs. Last reading in to first one out: 7 cycles. The next frame may begin while this one is read again; `hold`
-// keeps it back until then. A frame comes out with as many readings as it came in, one too many where there were more.
+// A frame is kept while one accumulator for each place adds up its sum, then read again with the sums in theirs. Last
+// reading in to first one out: 7 cycles. `busy` keeps the next frame back until the last one is out. A frame comes out
+// with as many readings as it came in, without those beyond the last taxel.
 
 `default_nettype none
 
 module sptfra_replace #(
     // Taxels of a frame
     parameter TAXELS = 100,
-    // Places of the map: 1, 2, 4 or 8
+    // Places for dead taxels, 1 to 8
     parameter REPLACEABLE = 8,
     // Full scale: what a larger sum becomes
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000
@@ -21,109 +20,94 @@ module sptfra_replace #(
     input  wire clock,
     input  wire reset,
     input  wire advance,
-    // Frames before their readings
-    input  wire begins,
-    output reg  hold, // one has begun and is not complete: no other may
     // Readings
     input  wire in_valid,
+    input  wire in_store, // a taxel of the frame, rather than what follows a frame that is too long
     input  wire in_last,
     input  wire signed [26:0] in_stress,
+    input  wire in_saturated,
     input  wire in_not_finite,
-    // What the bank of the frame that is kept has: of the reading that comes next; of the frame
+    // Weights of the reading that comes next; of the frame, which taxels are dead
     input  wire [18*REPLACEABLE-1:0] weights_ahead,
     input  wire [3:0] count,
     input  wire [4:0] weight_shift,
     input  wire [16*REPLACEABLE-1:0] taxels, // ascending
     // The frame again
+    output reg  busy, // from the last reading in to the last one out
     output wire out_valid,
     output wire out_last,
     output wire signed [26:0] out_stress,
+    output wire out_saturated,
     output wire out_not_finite,
-    // Sum of the magnitudes that took a reading's place, of the oldest frame that has left and was not taken
-    output wire [29:0] replaced,
-    input  wire replaced_take
+    output wire [29:0] replaced // sum of the magnitudes that took a reading's place, with the last reading
 );
 
     localparam TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1;
-    localparam INDEX_WIDTH = $clog2(TAXELS + 1);
-    localparam [31:0] TAXELS_WIDE = TAXELS;
-    localparam [INDEX_WIDTH-1:0] BEYOND = TAXELS_WIDE[INDEX_WIDTH-1:0];
     localparam signed [47:0] MOST = {{21{STRESS_BOUND[26]}}, STRESS_BOUND};
 
     generate
-        if ((REPLACEABLE != 1) && (REPLACEABLE != 2) && (REPLACEABLE != 4) && (REPLACEABLE != 8)) begin : gen_check_map
-            sptfra_error_replaceable_must_be_1_2_4_or_8 invalid ();
+        if ((REPLACEABLE < 1) || (REPLACEABLE > 8)) begin : gen_check_map
+            sptfra_error_places_for_dead_taxels_must_be_1_to_8 invalid ();
         end
     endgenerate
 
     // ---- Keep: the frame as it comes, then once more from its first taxel
-    reg [INDEX_WIDTH-1:0] place; // of the reading that comes, stops behind the last taxel
-    reg [INDEX_WIDTH-1:0] ends_at; // place of the last reading
+    reg [TAXEL_WIDTH-1:0] place; // of the reading that comes, or that is read again
+    reg [TAXEL_WIDTH-1:0] end_place; // of the last reading
     reg [2:1] settles; // until the last product is in its sum
-    reg pending; // complete, but the frame before is not read again yet
     reg replays;
-    reg [INDEX_WIDTH-1:0] replay_place;
-    reg [INDEX_WIDTH-1:0] replay_end;
     reg holds; // the sums are complete
-    wire takes = in_valid && (place != BEYOND);
-    wire replays_last = replays && (replay_place == replay_end);
-    wire complete = settles[2] || pending;
-    wire start = complete && (!replays || replays_last);
+    wire takes = in_valid && in_store;
+    wire ends = in_valid && in_last;
+    wire replays_last = replays && (place == end_place);
 
     always @(posedge clock) begin
         if (advance) begin
-            settles <= {settles[1], in_valid && in_last};
-            pending <= complete && !start;
-            holds <= start;
-            if (in_valid) begin
-                place <= in_last ? {INDEX_WIDTH{1'b0}} : takes ? place + 1 : place;
+            settles <= {settles[1], ends};
+            holds <= settles[2];
+            if (takes || replays) begin
+                place <= place + 1'b1;
             end
-            if (in_valid && in_last) begin
-                ends_at <= place;
+            if (takes) begin
+                end_place <= place;
             end
-            replay_place <= replay_place + 1;
-            if (replays_last) begin
+            if (ends) begin
+                busy <= 1'b1;
+            end
+            if (ends || replays_last) begin
+                place <= {TAXEL_WIDTH{1'b0}};
                 replays <= 1'b0;
             end
-            if (start) begin
+            if (settles[2]) begin
                 replays <= 1'b1;
-                replay_place <= {INDEX_WIDTH{1'b0}};
-                replay_end <= ends_at;
             end
-            if (holds) begin
-                hold <= 1'b0;
+            if (out_valid && out_last) begin
+                busy <= 1'b0;
             end
-        end
-        if (begins) begin
-            hold <= 1'b1;
         end
         if (reset) begin
-            place <= {INDEX_WIDTH{1'b0}};
+            place <= {TAXEL_WIDTH{1'b0}};
             settles <= 2'd0;
-            pending <= 1'b0;
             replays <= 1'b0;
             holds <= 1'b0;
-            hold <= 1'b0;
+            busy <= 1'b0;
         end
     end
 
-    wire signed [26:0] kept_stress;
-    wire kept_not_finite;
-    // What is beyond the last taxel is nothing
-    wire [INDEX_WIDTH-1:0] replay_taxel = (replay_place == BEYOND) ? {INDEX_WIDTH{1'b0}} : replay_place;
+    wire [28:0] kept; // no number, clipped, stress
 
     sptfra_ram #(
-        .WIDTH         (28),
+        .WIDTH         (29),
         .DEPTH         (TAXELS),
         .ADDRESS_WIDTH (TAXEL_WIDTH)
     ) frame (
         .clock         (clock),
         .write_enable  (takes && advance),
-        .write_address (place[TAXEL_WIDTH-1:0]),
-        .write_data    ({in_not_finite, in_stress}),
+        .write_address (place),
+        .write_data    ({in_not_finite, in_saturated, in_stress}),
         .read_enable   (advance),
-        .read_address  (replay_taxel[TAXEL_WIDTH-1:0]),
-        .read_data     ({kept_not_finite, kept_stress})
+        .read_address  (place),
+        .read_data     (kept)
     );
 
     // ---- Sums, then the first of them that has not gone out, and whose it is
@@ -137,7 +121,7 @@ module sptfra_replace #(
     reg valid_1;
     reg [15:0] taxel_1;
     wire dead_1 = valid_1 && (left != 4'd0) && (waiting_taxels[15:0] == taxel_1);
-    wire [31:0] replay_wide = {{(32-INDEX_WIDTH){1'b0}}, replay_place};
+    wire [31:0] place_wide = {{(32-TAXEL_WIDTH){1'b0}}, place};
     genvar index;
 
     generate
@@ -148,7 +132,7 @@ module sptfra_replace #(
                 .clock       (clock),
                 .reset       (reset),
                 .valid       (takes && advance),
-                .first       (place == {INDEX_WIDTH{1'b0}}),
+                .first       (place == {TAXEL_WIDTH{1'b0}}),
                 .coefficient (weight),
                 .data        (in_stress),
                 .accumulator (sums[48*index +: 48])
@@ -171,7 +155,7 @@ module sptfra_replace #(
         if (advance) begin
             weights <= weights_ahead;
             valid_1 <= replays;
-            taxel_1 <= replay_wide[15:0];
+            taxel_1 <= place_wide[15:0];
             if (dead_1) begin
                 left <= left - 4'd1;
             end
@@ -194,21 +178,23 @@ module sptfra_replace #(
     reg [4:0] shift_2;
     reg signed [47:0] sum_2;
     reg signed [47:0] sum_3;
-    reg [27:0] read_2;
-    reg [27:0] read_3;
+    reg [28:0] read_2;
+    reg [28:0] read_3;
     reg signed [26:0] stress_4;
+    reg saturated_4;
     reg not_finite_4;
     reg [29:0] replaced_before; // without that of the reading that goes out
     wire above = (sum_3 > MOST);
     wire below = (sum_3 < -MOST);
     wire signed [26:0] clipped = above ? STRESS_BOUND : below ? -STRESS_BOUND : $signed(sum_3[26:0]);
     wire [26:0] magnitude = stress_4[26] ? -stress_4 : stress_4;
-    wire [29:0] replaced_here = replaced_before + (replaces_4 ? {3'd0, magnitude} : 30'd0);
 
     assign out_valid = valid[4];
     assign out_last = lasts[4];
     assign out_stress = stress_4;
+    assign out_saturated = saturated_4;
     assign out_not_finite = not_finite_4;
+    assign replaced = replaced_before + (replaces_4 ? {3'd0, magnitude} : 30'd0);
 
     always @(posedge clock) begin
         if (advance) begin
@@ -216,15 +202,16 @@ module sptfra_replace #(
             lasts <= {lasts[3:1], replays_last};
             replaces <= {replaces[2], dead_1};
             replaces_4 <= replaces[3];
-            read_2 <= {kept_not_finite, kept_stress};
+            read_2 <= kept;
             read_3 <= read_2;
             shift_2 <= shift_1;
             sum_2 <= $signed(waiting[47:0]) + half_1;
             sum_3 <= sum_2 >>> shift_2;
             stress_4 <= replaces[3] ? clipped : $signed(read_3[26:0]);
-            not_finite_4 <= !replaces[3] && read_3[27];
+            saturated_4 <= replaces[3] ? above || below : read_3[27];
+            not_finite_4 <= !replaces[3] && read_3[28];
             if (valid[4]) begin
-                replaced_before <= out_last ? 30'd0 : replaced_here;
+                replaced_before <= out_last ? 30'd0 : replaced;
             end
         end
         if (reset) begin
@@ -233,28 +220,7 @@ module sptfra_replace #(
         end
     end
 
-    // ---- Frames between here and Bz: three ends before the skid buffer, two in it, one in Bz
-    reg [29:0] replaced_of [0:7];
-    reg [2:0] newest;
-    reg [2:0] oldest;
-
-    assign replaced = replaced_of[oldest];
-
-    always @(posedge clock) begin
-        if (advance && out_valid && out_last) begin
-            replaced_of[newest] <= replaced_here;
-            newest <= newest + 3'd1;
-        end
-        if (replaced_take) begin
-            oldest <= oldest + 3'd1;
-        end
-        if (reset) begin
-            newest <= 3'd0;
-            oldest <= 3'd0;
-        end
-    end
-
-    wire _unused = &{1'b0, replay_wide[31:16], replay_taxel};
+    wire _unused = &{1'b0, place_wide[31:16]};
 
 endmodule
 

@@ -4,7 +4,8 @@
 // The stream's samples to stress: float32 pascals to fixed point, or counts, float32 or integers, which a curve and
 // taxels' gains make stresses.
 //
-// Sample to stress: 5 cycles, with counts 9, with a curve CURVE_LEVELS + 7 more; one a cycle.
+// Sample to stress: 5 cycles, with a curve CURVE_LEVELS + 7 more, with counts 4 more. By a calibration in RAM: 10
+// cycles, with a curve CURVE_LEVELS + 12 more. One a cycle.
 
 `default_nettype none
 
@@ -17,8 +18,9 @@ module sptfra_samples #(
     // each taxel has one of its own
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
-    // Whether the stream carries counts: see sptfra_counts
+    // Whether the stream carries counts: see sptfra_counts, with CALIBRATED sptfra_calibrate
     parameter COUNTS = 0,
+    parameter CALIBRATED = 0,
     parameter PER_TAXEL = 0,
     parameter EXPONENTS = 0,
     parameter signed [17:0] GAIN = 18'sd65536,
@@ -28,8 +30,8 @@ module sptfra_samples #(
     // Curve between counts and stress, of 2^CURVE_LEVELS segments, if there is one: see sptfra_curve
     parameter CURVE_LEVELS = 0,
     parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
-    parameter signed [26:0] CURVE_FIRST = 27'sd0,
     parameter signed [26:0] CURVE_LAST = 27'sd33554431,
+    parameter integer CURVE_LSB = 0, // with CALIBRATED, a step of its values is 2^CURVE_LSB Pa
     // Full scale, in steps of the stress
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
     // Prefix of the ROM file names, and what they begin with; those of the taxels
@@ -37,7 +39,8 @@ module sptfra_samples #(
     parameter ROM_NAME = "",
     parameter TAXEL_NAME = ROM_NAME,
     // Derived
-    parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16
+    parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16,
+    parameter LEVELS = (CURVE_LEVELS != 0) ? CURVE_LEVELS : 1
 ) (
     input  wire clock,
     input  wire reset,
@@ -49,6 +52,15 @@ module sptfra_samples #(
     // When the number, or the curve's value, is there
     input  wire next_taxel, // the number is of a taxel, the next one of the taxel after it
     input  wire frame_ends, // the next one is of the first taxel
+    // Of a calibration in RAM: see sptfra_banks. The gain comes a cycle after the number or the value
+    input  wire [27:0] bank_gain,
+    input  wire [OFFSET_BITS-1:0] bank_offset,
+    input  wire [27*(1<<LEVELS)-1:0] bank_knots,
+    input  wire [6:0] bank_segments,
+    input  wire signed [26:0] bank_last,
+    input  wire [26:0] bank_reach,
+    output wire [LEVELS-1:0] segment,
+    input  wire [77:0] bank_line,
     // Stress
     output wire signed [26:0] stress,
     output wire saturated,
@@ -79,34 +91,24 @@ module sptfra_samples #(
         end else begin : gen_exponent
             assign shift = SHIFT;
         end
-    endgenerate
-
-    generate
-        if (SAMPLE == 0) begin : gen_float
-            sptfra_float_to_fixed float_to_fixed (
+        if ((CALIBRATED == 0) || (CURVE_LEVELS != 0)) begin : gen_decode
+            sptfra_decode #(
+                .SAMPLE (SAMPLE)
+            ) decode (
                 .clock      (clock),
                 .enable     (advance),
-                .float_bits (sample),
+                .sample     (sample),
                 .shift      (shift),
-                .limit      (NUMBER_BOUND),
-                .fixed      (number),
+                .limit      ((CALIBRATED != 0) ? bank_reach : NUMBER_BOUND),
+                .number     (number),
                 .saturated  (number_saturated),
                 .not_finite (number_not_finite)
             );
-        end else begin : gen_integer
-            sptfra_int_to_fixed #(
-                .SIGNED ((SAMPLE == 1) ? 1 : 0)
-            ) int_to_fixed (
-                .clock     (clock),
-                .enable    (advance),
-                .count     (sample),
-                .shift     (shift),
-                .limit     (NUMBER_BOUND),
-                .fixed     (number),
-                .saturated (number_saturated)
-            );
-
+        end else begin : gen_later
+            assign number = 27'sd0;
+            assign number_saturated = 1'b0;
             assign number_not_finite = 1'b0;
+            wire _unused_shift = &{1'b0, shift};
         end
     endgenerate
 
@@ -117,13 +119,28 @@ module sptfra_samples #(
 
     generate
         if (CURVE_LEVELS != 0) begin : gen_curve
+            localparam [31:0] SEGMENTS = 1 << CURVE_LEVELS;
+            wire [77:0] line;
+
+            if (CALIBRATED != 0) begin : gen_bank
+                assign line = bank_line;
+            end else begin : gen_lines
+                sptfra_rom #(
+                    .WIDTH         (78),
+                    .DEPTH         (1 << CURVE_LEVELS),
+                    .ADDRESS_WIDTH (CURVE_LEVELS),
+                    .ROM_DIR       (ROM_DIR),
+                    .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_curve.mem"})
+                ) lines (
+                    .clock   (clock),
+                    .enable  (advance),
+                    .address (segment),
+                    .data    (line)
+                );
+            end
+
             sptfra_curve #(
-                .LEVELS   (CURVE_LEVELS),
-                .KNOTS    (CURVE_KNOTS),
-                .FIRST    (CURVE_FIRST),
-                .LAST     (CURVE_LAST),
-                .ROM_DIR  (ROM_DIR),
-                .ROM_NAME (ROM_NAME)
+                .LEVELS (CURVE_LEVELS)
             ) curve (
                 .clock             (clock),
                 .advance           (advance),
@@ -132,19 +149,57 @@ module sptfra_samples #(
                 .number_not_finite (number_not_finite),
                 .value             (count),
                 .saturated         (count_saturated),
-                .not_finite        (count_not_finite)
+                .not_finite        (count_not_finite),
+                .knots             ((CALIBRATED != 0) ? bank_knots : CURVE_KNOTS),
+                .count             ((CALIBRATED != 0) ? bank_segments : SEGMENTS[6:0]),
+                .last              ((CALIBRATED != 0) ? bank_last : CURVE_LAST),
+                .segment           (segment),
+                .line_1            (line)
             );
         end else begin : gen_straight
             assign count = number;
             assign count_saturated = number_saturated;
             assign count_not_finite = number_not_finite;
-            wire _unused = &{1'b0, CURVE_KNOTS, CURVE_FIRST, CURVE_LAST};
+            assign segment = {LEVELS{1'b0}};
+            wire _unused = &{1'b0, CURVE_KNOTS, CURVE_LAST};
         end
     endgenerate
 
     // ---- Counts to stress
     generate
-        if (COUNTS != 0) begin : gen_counts
+        if (CALIBRATED != 0) begin : gen_calibrated
+            localparam FROM_CURVE = (CURVE_LEVELS != 0) ? 1 : 0;
+            wire [((FROM_CURVE != 0) ? 27 : SAMPLE_BITS)-1:0] from;
+
+            if (FROM_CURVE != 0) begin : gen_value
+                assign from = count;
+            end else begin : gen_sample
+                assign from = sample;
+                wire _unused_count = &{1'b0, count};
+            end
+
+            sptfra_calibrate #(
+                .SAMPLE       ((FROM_CURVE != 0) ? 3 : SAMPLE),
+                .VALUE_LSB    (CURVE_LSB),
+                .OFFSET_BITS  (OFFSET_BITS),
+                .COUNT_SHIFT  (COUNT_SHIFT),
+                .FULL_SCALE   (FULL_SCALE),
+                .STRESS_BOUND (STRESS_BOUND)
+            ) calibrate (
+                .clock      (clock),
+                .advance    (advance),
+                .sample     (from),
+                .beyond     (count_saturated),
+                .no_number  (count_not_finite),
+                .gain_1     (bank_gain),
+                .offset_1   (bank_offset),
+                .stress     (stress),
+                .saturated  (saturated),
+                .not_finite (not_finite)
+            );
+
+            wire _unused = next_taxel || frame_ends || (PER_TAXEL != 0) || (GAIN != 0);
+        end else if (COUNTS != 0) begin : gen_counts
             sptfra_counts #(
                 .TAXELS       (TAXELS),
                 .PER_TAXEL    (PER_TAXEL),
@@ -176,6 +231,9 @@ module sptfra_samples #(
                 || (COUNT_SHIFT != 0) || (FULL_SCALE != 0) || (STRESS_BOUND != 0);
         end
     endgenerate
+
+    wire _unused_bank = &{1'b0, bank_gain, bank_offset, bank_knots, bank_segments, bank_last, bank_reach, bank_line,
+        CURVE_LSB != 0};
 
     generate
         if (EXPONENTS == 0) begin : gen_none

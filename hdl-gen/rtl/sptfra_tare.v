@@ -21,14 +21,13 @@ module sptfra_tare #(
     input  wire run,
     input  wire [3:0] log2_frames, // 10 at most
     input  wire [26:0] most_spread,
-    // Readings, from sptfra_calibrate
+    // Readings
     input  wire advance,
     input  wire valid,
     input  wire marked, // of a frame that began after the command
     input  wire last,
     input  wire bad,
-    input  wire [TAXEL_WIDTH-1:0] taxel_ahead,
-    input  wire [TAXEL_WIDTH-1:0] taxel,
+    input  wire [TAXEL_WIDTH-1:0] taxel_ahead, // of two cycles before the reading
     input  wire signed [26:0] reading,
     // Result
     output wire finished,
@@ -51,6 +50,8 @@ module sptfra_tare #(
 
     // ---- What the frames before had
     wire [WIDTH-1:0] stored_9;
+    reg [TAXEL_WIDTH-1:0] taxel_9;
+    reg [TAXEL_WIDTH-1:0] taxel;
     reg signed [SUM_BITS-1:0] sum_10;
     reg signed [26:0] largest_10;
     reg signed [26:0] smallest_10;
@@ -74,6 +75,10 @@ module sptfra_tare #(
     );
 
     always @(posedge clock) begin
+        if (advance) begin
+            taxel_9 <= taxel_ahead;
+            taxel <= taxel_9;
+        end
         if (advance || complete[0]) begin
             {sum_10, largest_10, smallest_10} <= stored_9;
         end

@@ -81,21 +81,21 @@ module harness (
         // Inside
         .advance          (advance),
         .in_frame         (in_frame),
-        .may_open         (may_open),
-        .index            (index),
-        .banks_taken      (banks_taken),
-        .frames_waiting   (frames_waiting),
-        .valid            (valid),
-        .stores           (stores),
-        .lasts            (lasts),
-        .bad_lengths      (bad_lengths),
-        .seen_saturated   (seen_saturated),
-        .seen_not_finite  (seen_not_finite),
-        .frame_written    (frame_written),
+        .\gate.may_open (may_open),
+        .\gate.index (index),
+        .\writer.banks_taken (banks_taken),
+        .\writer.frames_waiting (frames_waiting),
+        .\gate.valid (valid),
+        .\gate.stores (stores),
+        .\gate.lasts (lasts),
+        .\gate.bad_lengths (bad_lengths),
+        .\writer.seen_saturated (seen_saturated),
+        .\writer.seen_not_finite (seen_not_finite),
+        .\writer.frame_written (frame_written),
 `ifndef PAPER
-        .\gen_fold.fold.lasts (fold_lasts),
+        .\writer.gen_fold.fold.lasts (fold_lasts),
 `endif
-        .\samples.gen_float.float_to_fixed.stages (stages)
+        .\samples.gen_decode.decode.gen_float.float_to_fixed.stages (stages)
     );
 
     // ---- Each beat with its place in its frame; a place of 31 is that or more

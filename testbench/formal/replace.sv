@@ -1,141 +1,128 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //
-// Replacing dead taxels of a bank's map: one frame at a time is kept back, each is read again whole and once, from its
-// first reading to its last, and nothing waits for ever.
+// Replacing dead taxels: a frame is read again whole and once, from its first reading to its last, without what was
+// beyond its last taxel, and `busy` says so until it has left.
 //
-// Assumed: a frame begins only while none is kept back, its readings come after that, and Bz takes no frame that has not
-// left.
+// Assumed: readings come only while no frame is inside, and the first one is of the frame.
 module harness (
     input wire clock,
     input wire advance,
-    input wire begins,
     input wire in_valid,
-    input wire in_last,
-    input wire take
+    input wire in_store,
+    input wire in_last
 );
 
     localparam TAXELS = 4;
 
     reg started = 1'b0;
     wire reset = !started;
-    wire hold;
+    wire busy;
     wire out_valid;
     wire out_last;
-    wire [2:0] place;
-    wire [2:0] ends_at;
+    wire [1:0] place;
+    wire [1:0] end_place;
     wire [2:1] settles;
-    wire pending;
     wire replays;
-    wire [2:0] replay_place;
-    wire [2:0] replay_end;
     wire holds;
-    wire start;
     wire valid_1;
     wire [4:2] valid;
     wire [4:1] lasts;
-    wire [2:0] newest;
-    wire [2:0] oldest;
 
     sptfra_replace subject (
-        .clock         (clock),
-        .reset         (reset),
-        .advance       (advance),
-        .begins        (begins),
-        .hold          (hold),
-        .in_valid      (in_valid),
-        .in_last       (in_last),
-        .out_valid     (out_valid),
-        .out_last      (out_last),
-        .replaced_take (take),
+        .clock     (clock),
+        .reset     (reset),
+        .advance   (advance),
+        .in_valid  (in_valid),
+        .in_store  (in_store),
+        .in_last   (in_last),
+        .busy      (busy),
+        .out_valid (out_valid),
+        .out_last  (out_last),
         // Inside
-        .place         (place),
-        .ends_at       (ends_at),
-        .settles       (settles),
-        .pending       (pending),
-        .replays       (replays),
-        .replay_place  (replay_place),
-        .replay_end    (replay_end),
-        .holds         (holds),
-        .start         (start),
-        .valid_1       (valid_1),
-        .valid         (valid),
-        .lasts         (lasts),
-        .newest        (newest),
-        .oldest        (oldest)
+        .place     (place),
+        .end_place (end_place),
+        .settles   (settles),
+        .replays   (replays),
+        .holds     (holds),
+        .valid_1   (valid_1),
+        .valid     (valid),
+        .lasts     (lasts)
     );
 
-    // ---- The frame whose readings come, and how many have
-    reg coming;
-    reg [2:0] count; // as many as a frame has, and one too many, are counted
-    reg [2:0] length; // of the frame that is whole and not read again yet
+    // ---- Readings of the frame that comes, of the one that is whole, and of those that have gone out
+    reg [2:0] count;
+    reg [2:0] length;
+    reg [2:0] out;
     reg whole;
     wire moves = in_valid && advance;
-    // ---- What has been read again, on its way out
-    reg [4:1] read;
-    reg [4:1] ends;
-    wire last_read = replays && (replay_place == replay_end);
-    reg [2:0] outside; // frames that have left, and were not taken
+    wire leaves = out_valid && advance;
+    wire [2:0] counted = count + {2'd0, in_store};
 
     always @(posedge clock) begin
         started <= 1'b1;
-        coming <= begins || (coming && !(moves && in_last));
         if (moves) begin
-            count <= in_last ? 3'd0 : (count == TAXELS) ? count : count + 3'd1;
+            count <= in_last ? 3'd0 : counted;
         end
         if (moves && in_last) begin
-            length <= count;
+            length <= counted;
+            whole <= 1'b1;
         end
-        whole <= (moves && in_last) || (whole && !(start && advance));
-        if (advance) begin
-            read <= {read[3:1], replays};
-            ends <= {ends[3:1], last_read};
+        if (leaves) begin
+            out <= out + 3'd1;
         end
-        outside <= outside + {2'd0, advance && out_valid && out_last} - {2'd0, take};
+        if (leaves && out_last) begin
+            whole <= 1'b0;
+            out <= 3'd0;
+        end
         if (reset) begin
-            coming <= 1'b0;
             count <= 3'd0;
             whole <= 1'b0;
-            read <= 4'd0;
-            outside <= 3'd0;
+            out <= 3'd0;
         end
     end
 
     always @(*) begin
-        assume (!begins || (started && advance && !hold));
-        assume (!in_valid || coming);
-        assume (!take || (outside != 3'd0));
-        assume (outside != 3'd6);
+        assume (!in_valid || !whole);
+        assume (!in_valid || (in_store == (count != TAXELS)));
     end
 
     always @(posedge clock) begin
         if (!reset) begin
-            // Held from the first beat until its sums are taken; whoever holds is on the way to let go
-            assert (hold == (coming || (settles != 2'd0) || pending || holds));
-            // A frame is read again once, when it is whole, as far as it goes
-            assert (!(start && advance) || (whole && (ends_at == length)));
-            assert (!(start && advance) || !replays || last_read);
-            assert (!replays || (replay_place <= replay_end));
-            assert (!replays || (replay_end <= TAXELS));
-            // It leaves as it is read
-            assert (out_valid == read[4]);
-            assert (!out_valid || (out_last == ends[4]));
-            // A frame that is whole waits for nothing but the one that is read
-            assert (!pending || replays);
-            assert (newest - oldest == outside);
+            assert (busy == whole);
+            // As many readings leave as came, and the last one says so
+            assert (!out_valid || (whole && (out < length)));
+            assert (!out_valid || (out_last == (out + 3'd1 == length)));
+            // Reading again begins when the last product is in its sum
+            assert (!replays || (settles == 2'd0));
+            assert (!holds || (replays && (place == 2'd0)));
         end
     end
 
 `ifdef INVARIANTS
+    wire [4:1] read = {valid, valid_1};
+    // Readings that have been read again
+    wire [2:0] again = out + read[1] + read[2] + read[3] + read[4];
+    wire [2:0] at_3 = out + read[4];
+    wire [2:0] at_2 = at_3 + read[3];
+    wire [2:0] at_1 = at_2 + read[2];
+
     always @(posedge clock) begin
         if (!reset) begin
-            assert (place == count);
             assert (count <= TAXELS);
-            assert (!whole || ((length <= TAXELS) && (ends_at == length)));
-            assert (whole == ((settles != 2'd0) || pending));
-            assert (coming + settles[1] + settles[2] + pending + holds <= 1);
-            assert (coming || (count == 3'd0));
-            assert ({valid, valid_1} == read);
-            assert ((read & lasts) == (read & ends));
+            assert (whole || ({1'b0, place} == count) || ((count == TAXELS) && (place == 2'd0)));
+            assert (whole || (count == 3'd0) || ({1'b0, end_place} + 3'd1 == count));
+            assert (!whole || (count == 3'd0));
+            assert (!whole || ((length != 3'd0) && (length <= TAXELS) && ({1'b0, end_place} + 3'd1 == length)));
+            assert (whole || ((settles == 2'd0) && !replays && !holds && (read == 4'd0) && (out == 3'd0)));
+            assert (!whole || (out < length));
+            assert (settles != 2'd3);
+            assert ((settles == 2'd0) || (!replays && (read == 4'd0) && (out == 3'd0) && (place == 2'd0)));
+            assert (!replays || (({1'b0, place} == again) && (again < length)));
+            assert (!whole || replays || (settles != 2'd0) || ((again == length) && (place == 2'd0)));
+            assert (!read[4] || (lasts[4] == (out + 3'd1 == length)));
+            assert (!read[3] || (lasts[3] == (at_3 + 3'd1 == length)));
+            assert (!read[2] || (lasts[2] == (at_2 + 3'd1 == length)));
+            assert (!read[1] || (lasts[1] == (at_1 + 3'd1 == length)));
         end
     end
 `endif

@@ -5,9 +5,10 @@ use golden::parity::CLASSES;
 
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
+use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::{CountsPlan, EXPONENT_BITS, LARGEST_NUMBER};
-use crate::plan::curve::{CurvePlan, SEGMENT_BITS};
-use crate::plan::dead::WEIGHT_BITS;
+use crate::plan::curve::{self, CurvePlan, SEGMENT_BITS};
+use crate::plan::dead::{DeadPlan, WEIGHT_BITS};
 use crate::plan::gain::GAIN_BITS;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
@@ -19,11 +20,7 @@ use super::{Parameters, calibration, latency};
 pub fn module(plan: &Plan) -> &'static str {
     match plan.streams().intake {
         Intake::Whole => "sptfra_bz_wide",
-        Intake::Single | Intake::Unpacked => match &plan.calibration {
-            Some(of) if of.curve().is_some() => "sptfra_bz_curved",
-            Some(_) => "sptfra_bz_calibrated",
-            None => "sptfra_bz",
-        },
+        Intake::Single | Intake::Unpacked => "sptfra_bz",
     }
 }
 
@@ -39,9 +36,10 @@ pub fn taxel_files(streams: Streams) -> Vec<String> {
 /// The instance's parameters.
 pub fn parameters(plan: &Plan) -> Parameters {
     let (stress, streams) = (plan.formats.stress, plan.streams());
+    let curve_in_ram = plan.calibration.as_ref().and_then(CalibrationPlan::curve);
     let (shift, bound) = match &plan.counts {
         Some(counts) => (counts.exponents[0], counts.curve.as_ref().map_or(LARGEST_NUMBER, |curve| curve.limit)),
-        None => (-stress.lsb, stress.bound),
+        None => (curve_in_ram.map_or(-stress.lsb, |curve| curve.exponent), stress.bound),
     };
     let parameters =
         Parameters::new().count("COLUMNS", plan.design.sensor.columns).count("ROWS", plan.design.sensor.rows);
@@ -69,7 +67,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         None => parameters,
     };
     let parameters = match &plan.dead {
-        Some(dead) => parameters.count("DEAD", dead.taxels.len()).number("WEIGHT_SHIFT", dead.shift.into()),
+        Some(dead) => of_dead(parameters.count("REPLACEABLE", dead.taxels.len()), dead, dead.taxels.len()),
         None => parameters,
     };
     let parameters = match &plan.calibration {
@@ -89,8 +87,11 @@ pub fn parameters(plan: &Plan) -> Parameters {
 
 /// Cycles from a beat to its stress.
 pub fn beat_to_stress(plan: &Plan) -> u64 {
+    if let Some(of) = &plan.calibration {
+        return latency::calibrated(of.power_up.curve.as_ref().map(|map| curve::stages(map.format.levels())));
+    }
     let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());
-    latency::beat_to_stress(plan.counts.is_some(), curve.map(CurvePlan::stages))
+    latency::beat_to_stress(plan.counts.is_some(), curve.map(|curve| curve::stages(curve.levels())))
 }
 
 /// When what a frame brings is there, in cycles after its first beat enters Bz, streams never waiting.
@@ -113,7 +114,7 @@ pub fn arrival(plan: &Plan) -> Arrival {
     let (sensor, streams) = (&plan.design.sensor, plan.streams());
     let stages = beat_to_stress(plan);
     if streams.intake != Intake::Whole {
-        let dead = if plan.dead.is_some() { latency::dead_taxels(plan.taxels()) } else { 0 };
+        let dead = if plan.places_for_dead() > 0 { latency::replacing(plan.taxels()) } else { 0 };
         let taken = plan.taxels() as u64 - 1;
         let last_stress = taken + stages + dead;
         if plan.scales_frames() {
@@ -142,10 +143,10 @@ pub fn arrival(plan: &Plan) -> Arrival {
     Arrival { taken, ready: last_quad + latency::QUAD_TO_READY, last_stress, done, waits_from: 0 }
 }
 
-/// A multiplier each for a count's slope, a stress's gain and each dead taxel.
+/// A multiplier each for a count's slope, a stress's gain and each place for a dead taxel.
 pub fn cost(plan: &Plan) -> BlockCost {
     let (streams, data) = (plan.streams(), plan.factors().outside_bits());
-    let (taxels, dead) = (plan.taxels(), plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()));
+    let (taxels, places) = (plan.taxels(), plan.places_for_dead());
     let conversions = streams.conversions();
     let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());
     let mut memories = Vec::new();
@@ -160,11 +161,12 @@ pub fn cost(plan: &Plan) -> BlockCost {
     if let Some(curve) = curve {
         memories.push(memory("curve", conversions, 1 << curve.levels(), SEGMENT_BITS, true));
     }
-    if dead > 0 {
+    if places > 0 {
         // With a stress, whether it was clipped and whether it was a number.
         memories.push(memory("whole frame", 1, taxels, LONG_BITS + 2, false));
-        memories.push(memory("neighbours", 1, taxels, WEIGHT_BITS * dead as u32, true));
-        memories.push(memory("dead taxels", 1, taxels, 1, true));
+    }
+    if plan.dead.is_some() {
+        memories.push(memory("neighbours", 1, taxels, WEIGHT_BITS * places as u32, true));
     }
     if streams.intake == Intake::Whole {
         // One for each taxel of a quad, and one for CeAn.
@@ -174,7 +176,9 @@ pub fn cost(plan: &Plan) -> BlockCost {
     } else if plan.ways() > 1 && !plan.scales_frames() {
         memories.push(memory("half-folded b", 1, plan.elements(), 2 * data + 2, false));
     }
-    let dsp = conversions * (usize::from(plan.counts.is_some()) + usize::from(curve.is_some())) + dead;
+    let gain = plan.counts.is_some() || plan.calibration.is_some();
+    let curve = plan.design.input.curve.is_some();
+    let dsp = conversions * (usize::from(gain) + usize::from(curve)) + places;
     BlockCost::new("Bz", &["sptfra_bz", "sptfra_bz_wide"], dsp).with(memories)
 }
 
@@ -190,9 +194,20 @@ fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
 }
 
 fn of_curve(parameters: Parameters, curve: &CurvePlan) -> Parameters {
+    parameters.number("CURVE_LEVELS", curve.levels().into()).numbers("CURVE_KNOTS", LONG_BITS, &curve.knots()).wide(
+        "CURVE_LAST",
+        LONG_BITS,
+        curve.last,
+    )
+}
+
+/// Which taxels are replaced at power-up, in so many places.
+pub(super) fn of_dead(parameters: Parameters, dead: &DeadPlan, places: usize) -> Parameters {
+    let numbers = dead.taxels.iter().copied().chain(std::iter::repeat(0)).take(places);
+    let numbers: Vec<String> = numbers.map(|number| format!("16'd{number}")).collect();
+    let numbers: Vec<&str> = numbers.iter().rev().map(String::as_str).collect();
     parameters
-        .number("CURVE_LEVELS", curve.levels().into())
-        .numbers("CURVE_KNOTS", LONG_BITS, &curve.knots())
-        .wide("CURVE_FIRST", LONG_BITS, curve.segments[0].first)
-        .wide("CURVE_LAST", LONG_BITS, curve.last)
+        .expression("REPLACED_COUNT", format!("4'd{}", dead.taxels.len()))
+        .expression("REPLACED_SHIFT", format!("5'd{}", dead.shift))
+        .expression("REPLACED_TAXELS", format!("{{{}}}", numbers.join(", ")))
 }

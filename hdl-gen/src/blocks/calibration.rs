@@ -10,27 +10,18 @@ use crate::plan::gain::GAIN_BITS;
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 
-use super::{Parameters, latency};
+use super::{Parameters, bz};
 
-/// Modules of a calibration in the core; the third and fourth only with a map of dead taxels, the last two with a curve.
-const MODULES: [&str; 6] = [
-    "sptfra_calibrate",
-    "sptfra_tare",
-    "sptfra_dead_bank",
-    "sptfra_replace",
-    "sptfra_count_curve",
-    "sptfra_curve_bank",
-];
 /// Bits of a taxel's sum and extremes while it is tared.
 const TARE_BITS: u32 = 37 + 2 * LONG_BITS;
 
-/// Parameters of `sptfra_bz_calibrated` that Bz alone has not.
+/// Parameters of `sptfra_bz` for a calibration in RAM.
 pub fn of_frames(parameters: Parameters, of: &CalibrationPlan) -> Parameters {
     let parameters = parameters
+        .flag("CALIBRATED", true)
         .number("OFFSET_BITS", of.offset_bits().into())
         .number("COUNT_SHIFT", of.shift.into())
-        .wide("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale)
-        .cycles("EXPECTED_CALIBRATION", cycles(of));
+        .wide("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale);
     let parameters = match &of.power_up.curve {
         Some(curve) => of_curve(parameters, curve),
         None => parameters,
@@ -39,27 +30,18 @@ pub fn of_frames(parameters: Parameters, of: &CalibrationPlan) -> Parameters {
     if map.room == 0 {
         return parameters;
     }
-    let numbers: Vec<String> = map.numbers().map(|number| format!("16'd{number}")).collect();
-    let numbers: Vec<&str> = numbers.iter().rev().map(String::as_str).collect();
-    parameters
-        .count("REPLACEABLE", map.room)
-        .expression("REPLACED_COUNT", format!("4'd{}", map.dead.taxels.len()))
-        .expression("REPLACED_SHIFT", format!("5'd{}", map.dead.shift))
-        .expression("REPLACED_TAXELS", format!("{{{}}}", numbers.join(", ")))
+    bz::of_dead(parameters.count("REPLACEABLE", map.room).flag("MAPPED", true), &map.dead, map.room)
 }
 
-/// Parameters of `sptfra_bz_curved` that `sptfra_bz_calibrated` has not.
 fn of_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
     let knots = (0..map.format.room).map(|place| i64::from(map.segment(place)[0].cast_signed()));
     parameters
         .number("CURVE_LEVELS", map.format.levels().into())
-        .number("CURVE_NUMBER_SHIFT", map.format.exponent.into())
-        .number("CURVE_VALUE_LSB", map.format.lsb.into())
-        .expression("CURVE_COUNT", format!("7'd{}", map.curve.segments.len()))
         .numbers("CURVE_KNOTS", LONG_BITS, &knots.collect::<Vec<_>>())
         .wide("CURVE_LAST", LONG_BITS, map.curve.last)
+        .number("CURVE_LSB", map.format.lsb.into())
+        .expression("CURVE_COUNT", format!("7'd{}", map.curve.segments.len()))
         .wide("CURVE_LAST_VALUE", LONG_BITS, map.end)
-        .cycles("EXPECTED_CURVE", latency::curve_in_ram(map.format.levels()))
 }
 
 /// Whether banks have words behind the thresholds.
@@ -70,24 +52,6 @@ pub fn has_more(of: &CalibrationPlan) -> bool {
 /// Bits that go between the banks' control and what they say of dead taxels and of the curve, there and back.
 pub fn dead_bits(of: &CalibrationPlan) -> [u32; 2] {
     if has_more(of) { [56, 34] } else { [0, 0] }
-}
-
-/// Cycles from a frame's first beat, behind the curve, to the first of its stress.
-fn cycles(of: &CalibrationPlan) -> u64 {
-    latency::CALIBRATION + if of.power_up.dead.room > 0 { latency::replacing(of.taxels) } else { 0 }
-}
-
-/// What a calibration in RAM adds to a frame's way to Bz, in cycles; 0 without one.
-pub fn latency(plan: &Plan) -> u64 {
-    plan.calibration
-        .as_ref()
-        .map_or(0, |of| cycles(of) + of.curve().map_or(0, |curve| latency::curve_in_ram(curve.levels())))
-}
-
-/// Cycles from a frame's first beat to the next one's, at least, as far as the calibration keeps it.
-pub fn interval(plan: &Plan) -> u64 {
-    let replaces = plan.calibration.as_ref().filter(|of| of.power_up.dead.room > 0);
-    replaces.map_or(0, |of| latency::replaced_frame(of.taxels))
 }
 
 /// Parameters of `sptfra_calibration`.
@@ -148,8 +112,6 @@ pub fn cost(plan: &Plan) -> Option<BlockCost> {
     let room = of.power_up.dead.room;
     if room > 0 {
         memories.push(memory("neighbours", 2 * room, 2 * words, WEIGHT_BITS, false));
-        // With a stress, whether it was a number.
-        memories.push(memory("whole frame", 1, of.taxels, LONG_BITS + 1, false));
     }
     let curve = of.curve();
     if let Some(curve) = curve {
@@ -157,5 +119,5 @@ pub fn cost(plan: &Plan) -> Option<BlockCost> {
             memories.push(memory(name, 2, 2 * curve.room, bits, false));
         }
     }
-    Some(BlockCost::new("Calibration", &MODULES, 1 + room + usize::from(curve.is_some())).with(memories))
+    Some(BlockCost::new("Calibration", &["sptfra_banks"], 0).with(memories))
 }

@@ -5,38 +5,11 @@
 
 use golden::sensor::Sensor;
 
-use crate::cores::{axis_skid, cordic, fixed_to_float, float_to_fixed};
+use crate::cores::{axis_skid, cordic, float_to_fixed};
 
 // ---- Intake
 /// What a door that drops frames takes more than the skid buffer in its place: a memory is written, then read.
 pub const OVERRUN: u64 = 2 - axis_skid::LATENCY as u64;
-
-// ---- Calibration in RAM
-/// From a beat of counts to its stress as float32: the memory and a register, the conversion, product, sum, limits, the
-/// conversion to float32, and a skid buffer.
-pub const CALIBRATION: u64 =
-    2 + float_to_fixed::LATENCY as u64 + 3 + fixed_to_float::LATENCY as u64 + axis_skid::LATENCY as u64;
-
-/// What a curve in the banks adds to that, found by so many comparisons: a register, the conversion, the ends, the
-/// comparisons, its line, the conversion to float32, and a skid buffer.
-pub fn curve_in_ram(levels: u32) -> u64 {
-    1 + u64::from(float_to_fixed::LATENCY)
-        + 1
-        + u64::from(levels)
-        + 6
-        + u64::from(fixed_to_float::LATENCY)
-        + u64::from(axis_skid::LATENCY)
-}
-
-/// What replacing dead taxels of a bank's map adds to that: the frame is read once more.
-pub fn replacing(taxels: usize) -> u64 {
-    taxels as u64 + 6
-}
-
-/// There, from a frame's first beat to the first beat of the next, at least.
-pub fn replaced_frame(taxels: usize) -> u64 {
-    taxels as u64 + 13
-}
 
 // ---- Bz
 /// From a beat entering the conversion to its stress: of the float conversion, and of the counts' if there is one.
@@ -46,9 +19,16 @@ pub fn beat_to_stress(counts: bool, curve: Option<u64>) -> u64 {
     u64::from(float_to_fixed::LATENCY) + if counts { COUNT_STAGES } else { 0 } + curve.unwrap_or(0)
 }
 
+/// The same by a calibration in RAM: the memory and a register, the conversion, product, sum, limits; with a curve of its
+/// values another conversion before.
+pub fn calibrated(curve: Option<u64>) -> u64 {
+    let conversion = u64::from(float_to_fixed::LATENCY);
+    2 + conversion + 3 + curve.map_or(0, |stages| conversion + stages)
+}
+
 /// What replacing dead taxels adds to that: the frame is read once more.
-pub fn dead_taxels(taxels: usize) -> u64 {
-    taxels as u64 + 7
+pub fn replacing(taxels: usize) -> u64 {
+    taxels as u64 + 6
 }
 
 /// From a frame's last stress to the frame being ready for the lanes: the fold, and the count of frames.

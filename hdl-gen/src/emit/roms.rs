@@ -90,8 +90,6 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
     }
     if let Some(dead) = &plan.dead {
         files.insert(format!("rom/{name}_neighbours.mem"), weights(&dead.words()));
-        let taxels = (0..plan.taxels()).map(|taxel| u128::from(dead.taxels.contains(&taxel)));
-        files.insert(format!("rom/{name}_dead.mem"), hex(taxels, plan.taxels(), 1));
     }
     for (contents, words) in plan.estimator.slot().roms() {
         insert_rom(files, format!("rom/{name}_{contents}.mem"), weights(&words));

@@ -100,6 +100,8 @@ struct View {
     u_values: String,
 
     bz_module: &'static str,
+    /// Whether it has the ports of a calibration in RAM.
+    bz_calibrates: bool,
     bz: Parameters,
     cean: Parameters,
     turns: Parameters,
@@ -188,6 +190,7 @@ impl View {
             u_values: u_values(plan),
 
             bz_module: bz::module(plan),
+            bz_calibrates: streams.intake != Intake::Whole,
             bz: bz::parameters(plan),
             cean: cean::parameters(plan),
             turns: turns::parameters(plan),
@@ -237,23 +240,28 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if plan.counts.is_none() {
         without.push("sptfra_counts");
     }
-    let curve = plan.counts.as_ref().is_some_and(|counts| counts.curve.is_some());
+    let curve = plan.design.input.curve.is_some();
     if !curve {
         without.push("sptfra_curve");
     }
     if curve || !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
         without.push("sptfra_exponents");
     }
-    if plan.streams().sample == Samples::Float32 {
-        without.push("sptfra_int_to_fixed");
-    } else if plan.calibration.is_none() {
+    if plan.streams().sample != Samples::Float32 {
         without.push("sptfra_float_to_fixed");
+    } else if !(curve && plan.calibration.is_some()) {
+        without.push("sptfra_int_to_fixed");
     }
-    if plan.dead.is_none() {
-        without.push("sptfra_dead_taxels");
+    if plan.calibration.is_none() {
+        without.extend(["sptfra_banks", "sptfra_calibrate", "sptfra_curve_bank", "sptfra_tare"]);
+    } else if !curve {
+        without.push("sptfra_curve_bank");
     }
-    if calibration::interval(plan) == 0 {
-        without.extend(["sptfra_dead_bank", "sptfra_replace"]);
+    if plan.places_for_dead() == 0 {
+        without.push("sptfra_replace");
+    }
+    if plan.calibration.as_ref().is_none_or(|of| of.power_up.dead.room == 0) {
+        without.push("sptfra_dead_bank");
     }
     if plan.ways() > 1 {
         without.push("sptfra_coefficients");

@@ -18,8 +18,8 @@ use golden::products::{ByPq, Frame, Scalar};
 
 use crate::cores::{fixed_to_float, float_to_fixed};
 use crate::estimators::{Contact, Seen};
-use crate::plan::calibration::Bank;
-use crate::plan::dead::GUESSED_SHARE;
+use crate::plan::calibration::{Bank, Reading};
+use crate::plan::dead::{DeadPlan, GUESSED_SHARE};
 use crate::plan::format::FRICTION_FRACTION;
 use crate::plan::product::{Coefficients, Product, Vector};
 use crate::plan::vector_formats::field_shifts;
@@ -35,13 +35,6 @@ pub use summary::inverse_gain;
 pub const PULLING: i64 = (golden::solver::PULLING * (1_u32 << FRICTION_FRACTION) as f64) as i64;
 
 pub use crate::plan::SUMMARY_WORDS;
-
-/// The stress of a taxel, and what is to be said of it.
-struct Stress {
-    steps: i64,
-    saturated: bool,
-    not_finite: bool,
-}
 
 /// Executes a plan, frame by frame.
 #[derive(Clone, Debug)]
@@ -88,13 +81,7 @@ impl<'plan> Model<'plan> {
         let (taxels, streams) = (self.plan.taxels(), self.plan.streams());
         let words = packet.iter().copied().chain(std::iter::repeat(0)).take(streams.whole_beats(packet.len()));
         let samples = streams.samples_of(words).take(taxels);
-        // With a calibration in RAM these are pascals from here on.
-        let (samples, in_banks) = match self.plan.calibration.as_ref().zip(self.bank.as_ref()) {
-            Some((calibration, bank)) => calibration.floats_of(bank, samples),
-            None => (samples.collect(), 0),
-        };
-        let converted: Vec<Stress> =
-            samples.into_iter().enumerate().map(|(taxel, word)| self.convert(taxel, word)).collect();
+        let converted: Vec<Reading> = samples.enumerate().map(|(taxel, word)| self.convert(taxel, word)).collect();
         let mut bad = 0;
         if !streams.is_frame(packet.len()) {
             bad |= BAD_LENGTH;
@@ -107,8 +94,8 @@ impl<'plan> Model<'plan> {
         }
         let mut saturated = converted.iter().any(|stress| stress.saturated);
         let mut stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
-        let mut replaced_sum = in_banks;
-        if let Some(dead) = &self.plan.dead {
+        let mut replaced_sum = 0;
+        if let Some(dead) = self.dead() {
             let replaced = dead.replace(&mut stress, self.plan.formats.stress);
             saturated |= replaced.saturated;
             replaced_sum = replaced.sum;
@@ -127,10 +114,13 @@ impl<'plan> Model<'plan> {
         words
     }
 
-    /// Taxels whose readings others replace.
+    /// Taxels whose readings others replace, in ROM or of the bank that acts.
+    fn dead(&self) -> Option<&DeadPlan> {
+        self.plan.dead.as_ref().or(self.bank.as_ref().map(|bank| &bank.dead.dead))
+    }
+
     fn replaced(&self) -> usize {
-        let of_bank = self.bank.as_ref().map_or(0, |bank| bank.dead.dead.taxels.len());
-        self.plan.dead.as_ref().map_or(of_bank, |dead| dead.taxels.len())
+        self.dead().map_or(0, |dead| dead.taxels.len())
     }
 
     /// Stress of a taxel that is noise, in steps of what was read: of the bank that acts, where there is one.
@@ -139,22 +129,25 @@ impl<'plan> Model<'plan> {
     }
 
     /// One input word as stress.
-    fn convert(&self, taxel: usize, word: u32) -> Stress {
+    fn convert(&self, taxel: usize, word: u32) -> Reading {
         let format = self.plan.formats.stress;
-        if self.plan.dead.as_ref().is_some_and(|dead| dead.taxels.contains(&taxel)) {
-            return Stress { steps: 0, saturated: false, not_finite: false };
+        if self.dead().is_some_and(|dead| dead.taxels.contains(&taxel)) {
+            return Reading { steps: 0, saturated: false, not_finite: false };
+        }
+        if let Some((calibration, bank)) = self.plan.calibration.as_ref().zip(self.bank.as_ref()) {
+            return calibration.stress_of(bank, taxel, word);
         }
         let Some(counts) = &self.plan.counts else {
             let converted = float_to_fixed::convert(word, -format.lsb, format.bound as u32);
             let steps = i64::from(converted.fixed);
-            return Stress { steps, saturated: converted.saturated, not_finite: converted.not_finite };
+            return Reading { steps, saturated: converted.saturated, not_finite: converted.not_finite };
         };
         let converted = counts.number(taxel, word);
         let (mut steps, mut saturated) = (counts.to_stress(taxel, i64::from(converted.fixed)), converted.saturated);
         if steps.abs() >= counts.full_scale {
             (steps, saturated) = (steps.signum() * format.bound, true);
         }
-        Stress { steps, saturated, not_finite: converted.not_finite }
+        Reading { steps, saturated, not_finite: converted.not_finite }
     }
 
     fn answer(&mut self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {

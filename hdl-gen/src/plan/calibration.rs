@@ -16,7 +16,7 @@ use super::dead::DeadPlan;
 use super::format::{Format, largest, pow2, round_shift};
 use super::gain::{GAIN_BITS, Gain};
 use super::{PlanError, Thresholds};
-use crate::cores::{fixed_to_float, float_to_fixed};
+use crate::cores::float_to_fixed::{self, Converted};
 
 /// Offsets are within so many full scales of either sign.
 const OFFSET_FULL_SCALES: i64 = 2;
@@ -25,12 +25,12 @@ const MOST_SHIFT: u32 = 40;
 
 /// How counts become stress where gains and offsets are written while frames run:
 /// `number = round(count * 2^exponent)`, then `stress = round(number * mantissa / 2^shift) + offset`, clipped to the full
-/// scale and handed on as float32.
+/// scale.
 ///
 /// Mantissas have all of their bits in use and offsets are at most `offset_limit`, so that a number at its bound is beyond
 /// the full scale by every content of a bank. Behind the clipping stand the formats that hold for every stress.
 ///
-/// Along a curve the banks' own makes pascals of counts before, and these are the counts here.
+/// Along a curve the banks' own makes pascals of counts before: `number = round(value * 2^(exponent + lsb))`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CalibrationPlan {
     /// Taxels of a frame.
@@ -119,8 +119,8 @@ impl CalibrationPlan {
         Ok(Some(plan))
     }
 
-    /// Steps of the stress by which a curve's reading of the full scale may fall short of it: its slope's part, the value's
-    /// rounding at the largest gain, and that of float32.
+    /// Steps of the stress by which a curve's reading of the full scale may fall short of it: its slope's part, and the
+    /// value's rounding at the largest gain.
     fn curve_rounding(curve: &CurveMap, stress: Format) -> i64 {
         /// Of a taxel.
         const LARGEST_GAIN: f64 = 16.0;
@@ -176,29 +176,18 @@ impl CalibrationPlan {
     /// The stress of a taxel's count, given as float32.
     pub fn stress_of(&self, bank: &Bank, taxel: usize, count: u32) -> Reading {
         let (mantissa, exponent) = bank.gains[taxel];
-        let count = bank.curve.as_ref().map_or(count, |curve| curve.float_of(count));
-        let number = float_to_fixed::convert(count, exponent, LARGEST_NUMBER as u32);
+        let number = match &bank.curve {
+            Some(curve) => {
+                let value = curve.value_of(count);
+                Converted { fixed: rescaled(value, exponent + curve.format.lsb), ..value }
+            }
+            None => float_to_fixed::convert(count, exponent, LARGEST_NUMBER as u32),
+        };
         let product = i64::from(number.fixed) * i64::from(mantissa);
         let steps = round_shift(product, self.shift) + i64::from(bank.offsets[taxel]);
         let saturated = steps.abs() >= self.full_scale;
         let steps = if saturated { steps.signum() * self.stress.bound } else { steps };
         Reading { steps, saturated, not_finite: number.not_finite }
-    }
-
-    /// The stress of a frame's counts as Bz takes it, float32, NaN for what is no number; dead taxels of the bank's map
-    /// are replaced. And the sum of the magnitudes that took a reading's place.
-    pub fn floats_of(&self, bank: &Bank, counts: impl Iterator<Item = u32>) -> (Vec<u32>, i64) {
-        let readings: Vec<Reading> =
-            counts.enumerate().map(|(taxel, count)| self.stress_of(bank, taxel, count)).collect();
-        let mut steps: Vec<i64> = readings.iter().map(|reading| reading.steps).collect();
-        let dead = &bank.dead.dead;
-        // Of a frame that is too short nothing is asked.
-        let replaced = if steps.len() == self.taxels { dead.replace(&mut steps, self.stress).sum } else { 0 };
-        let float = |(taxel, steps): (usize, i64)| {
-            let is_nan = readings[taxel].not_finite && !dead.taxels.contains(&taxel);
-            if is_nan { f32::NAN.to_bits() } else { fixed_to_float::convert(steps, self.stress.lsb) }
-        };
-        (steps.into_iter().enumerate().map(float).collect(), replaced)
     }
 
     /// Bits of the widest offset, sign included.
@@ -217,6 +206,19 @@ impl CalibrationPlan {
         let curve = self.curve().map_or(0, |curve| curve.length());
         2 * self.taxels + 2 + DeadMap::length(self.power_up.dead.room, self.taxels) + curve
     }
+}
+
+/// A curve's value with the step of a number, rounded half away from zero; at an end of the curve the largest number.
+fn rescaled(value: Converted, shift: i32) -> i32 {
+    const LARGEST: u64 = LARGEST_NUMBER.unsigned_abs();
+    let doubled = match u32::try_from(27 - shift) {
+        Ok(right) => (u64::from(value.fixed.unsigned_abs()) << 28).checked_shr(right).unwrap_or(0),
+        Err(_) if value.fixed == 0 => 0,
+        Err(_) => u64::MAX,
+    };
+    let over = value.saturated || doubled >= 2 * LARGEST - 1;
+    let magnitude = if over { LARGEST } else { doubled.div_ceil(2) } as i32;
+    if value.fixed < 0 { -magnitude } else { magnitude }
 }
 
 // The bound of an offset has room in a word.

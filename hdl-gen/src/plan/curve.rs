@@ -123,9 +123,9 @@ impl CurvePlan {
         words.resize(1 << self.levels(), 0);
         words
     }
+}
 
-    /// Pipeline registers from a number to its value.
-    pub fn stages(&self) -> u64 {
-        u64::from(self.levels()) + 7
-    }
+/// Pipeline registers from a number to its value, found by so many comparisons.
+pub fn stages(levels: u32) -> u64 {
+    u64::from(levels) + 7
 }

@@ -148,6 +148,12 @@ impl Plan {
         self.schedule.lanes.len()
     }
 
+    /// Dead taxels that a frame has room for, in ROM or in the banks of a calibration.
+    pub fn places_for_dead(&self) -> usize {
+        let of_banks = self.calibration.as_ref().map_or(0, |of| of.power_up.dead.room);
+        self.dead.as_ref().map_or(of_banks, |dead| dead.taxels.len())
+    }
+
     /// Whether each frame is scaled by its own largest stress.
     pub fn scales_frames(&self) -> bool {
         self.design.hardware.range == InputRange::Frame

@@ -9,8 +9,8 @@ use crate::support::workspace;
 /// Module, parameter, value, what the tool must name.
 const SENSELESS: [(&str, &str, &str, &str); 35] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
-    ("bz", "WAYS", "2", "ways_must_be_1_or_4"),
-    ("bz", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
+    ("frame_writer", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("frame_writer", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
     ("bz", "EXPECTED_STAGES", "6", "the_plan_counts_on_other_stages"),
     ("cean", "ROWS", "65", "columns_and_rows_must_be_2_to_64"),
     ("spmv_array", "WAYS", "3", "ways_must_be_1_or_4"),

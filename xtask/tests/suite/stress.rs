@@ -152,14 +152,14 @@ fn faults_at_rare_moments_are_noticed() {
 fn faults_in_the_banks_are_noticed() {
     let [scanner, curved, _] = &with_banks()[..] else { panic!("three") };
     let cases = [
-        (scanner, "sptfra_calibrate", "wire bank = in_frame ? bank_held : active;", "wire bank = active;"),
+        (scanner, "sptfra_bz", "wire bank = in_frame ? bank_held : active;", "wire bank = active;"),
         (scanner, "sptfra_frame_context", "thresholds <= of_cean;", "thresholds <= {in_contact, of_cean[26:0]};"),
         (scanner, "sptfra_frame_context", "thresholds <= of_cean;", "thresholds <= {of_cean[58:27], in_noise};"),
         (scanner, "sptfra_frame_context", "assign dropped =", "assign dropped = 1'b1 ||"),
         (scanner, "sptfra_calibration", "wire wrong = checks && (", "wire wrong = checks && !expected[0] && ("),
         (scanner, "sptfra_calibration", "if (!old_in_use) begin", "if (!reset) begin"),
-        (curved, "sptfra_bz_curved", "offered ? began_with : calibration_acting;", "calibration_acting;"),
-        (curved, "sptfra_count_curve", "wire bank = in_frame ? bank_held : active;", "wire bank = active;"),
+        (curved, "sptfra_bz", "((VALUE_STAGES == 0) ? bank : bank_held)", "(active)"),
+        (curved, "sptfra_bz", ".bank         (bank_held)", ".bank         (active)"),
     ];
     assert_eq!(missed(&cases), Vec::<String>::new());
 }

@@ -3,7 +3,7 @@
 use golden::design::{Curve, Design, Samples};
 use serde::Serialize;
 
-use crate::cores::{fixed_to_float, float_to_fixed};
+use crate::cores::float_to_fixed::{self, Converted};
 use crate::plan::PlanError;
 use crate::plan::curve::{COUNT_BITS, CurvePlan, MOST_SHIFT, Segment};
 use crate::plan::format::{Format, largest, round_shift};
@@ -133,23 +133,18 @@ impl CurveMap {
             && (ways.iter().all(|&way| way >= 0) || ways.iter().all(|&way| way <= 0))
     }
 
-    /// The pascals of a count, both float32: NaN for what is no number, the largest float with the value's sign at an
-    /// end of the curve.
-    pub fn float_of(&self, count: u32) -> u32 {
-        let number = float_to_fixed::convert(count, self.format.exponent, MOST_NUMBER as u32);
-        if number.not_finite {
-            return f32::NAN.to_bits();
-        }
-        let number = i64::from(number.fixed);
-        let float = fixed_to_float::convert(self.curve.value(number), self.format.lsb);
+    /// The curve's value at a count, given as float32, in steps. It is saturated at an end of the curve.
+    pub fn value_of(&self, count: u32) -> Converted {
         let reach = self.curve.segments[0].first.abs().max(self.curve.last.abs());
-        if number.abs() >= reach { float & 1 << 31 | f32::MAX.to_bits() } else { float }
+        let number = float_to_fixed::convert(count, self.format.exponent, reach as u32);
+        Converted { fixed: self.curve.value(i64::from(number.fixed)) as i32, ..number }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{CurveFormat, CurveMap};
+    use super::{Converted, CurveFormat, CurveMap, SLOPE_SHARE};
+    use crate::plan::format::pow2;
     use golden::design::{Curve, Design};
 
     const DESIGN: &str = "name = \"tiny\"\n[sensor]\ncolumns = 2\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
@@ -169,13 +164,14 @@ mod tests {
         assert_eq!((format.room, map.words().len()), (64, 259));
         for step in 1..400 {
             let count = f64::from(step) * curve.largest_count() / 400.5;
-            let value = f64::from(f32::from_bits(map.float_of((count as f32).to_bits())));
+            let value = f64::from(map.value_of((count as f32).to_bits()).fixed) * pow2(format.lsb);
             assert!((value / curve.at(count) - 1.0).abs() < 1e-4, "{count}: {value}");
         }
-        let beyond = |count: f64| f32::from_bits(map.float_of((count as f32).to_bits()));
-        assert_eq!(beyond(curve.largest_count() * 1.01).to_bits(), f32::MIN.to_bits());
-        assert!(beyond(f64::NAN).is_nan());
-        assert_eq!(beyond(-3.0).to_bits(), 0);
+        let beyond = |count: f64| map.value_of((count as f32).to_bits());
+        let end = beyond(curve.largest_count() * 1.01);
+        assert!(end.saturated && (i64::from(end.fixed) - map.end).abs() <= 1 + (map.end.abs() >> SLOPE_SHARE));
+        assert!(beyond(f64::NAN).not_finite);
+        assert_eq!(beyond(-3.0), Converted { fixed: 0, saturated: false, not_finite: false });
     }
 
     type Change = fn(&mut CurveMap);

@@ -3,7 +3,6 @@
 use golden::design::Optimise;
 
 use crate::blocks::bz::{self, Arrival};
-use crate::blocks::calibration as bank;
 use crate::blocks::latency::{self, VISIT_TO_BUS};
 use crate::estimators;
 use crate::plan::Plan;
@@ -15,11 +14,9 @@ use crate::plan::streams::Intake;
 /// Durations that do not depend on the frames under way.
 pub(super) struct Durations {
     pub(super) beats: u64,
-    /// From a frame's first beat out of the skid buffer to the first that enters Bz: where it waits for room, is unpacked,
-    /// or calibrated.
+    /// From a frame's first beat out of the skid buffer to the first that enters Bz: where it waits for room, or is
+    /// unpacked.
     pub(super) unpacking: u64,
-    /// Least from one frame's first beat there to the next one's.
-    pub(super) interval_of_beats: u64,
     /// What a frame brings, counted from there.
     pub(super) arrival: Arrival,
     /// From a visit to its taxels having left the unfolding.
@@ -62,9 +59,7 @@ impl Durations {
         Self {
             beats: plan.streams().beats_out() as u64,
             unpacking: if plan.streams().drops { latency::OVERRUN } else { 0 }
-                + u64::from(plan.streams().intake == Intake::Unpacked)
-                + bank::latency(plan),
-            interval_of_beats: bank::interval(plan),
+                + u64::from(plan.streams().intake == Intake::Unpacked),
             arrival: bz::arrival(plan),
             visit_to_taxels: VISIT_TO_BUS + latency::bus_to_taxels(folded),
             visit_to_sums: VISIT_TO_BUS + latency::bus_to_sums(folded),

@@ -285,7 +285,6 @@ impl<'a> Control<'a> {
             return false;
         }
         self.idle_since = None;
-        self.beat_there = self.now + self.of.interval_of_beats;
         self.stress_places += 1;
         (self.next_open, self.cean_idle) = (FOREVER, FOREVER);
         self.arriving.push_back(0);

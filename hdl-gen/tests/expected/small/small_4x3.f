@@ -9,6 +9,7 @@ rtl/sptfra_check_latency.v
 rtl/sptfra_co.v
 rtl/sptfra_context_words.v
 rtl/sptfra_cordic.v
+rtl/sptfra_decode.v
 rtl/sptfra_direction.v
 rtl/sptfra_divider.v
 rtl/sptfra_estimator_line.v
@@ -17,6 +18,8 @@ rtl/sptfra_fixed_to_float.v
 rtl/sptfra_float_to_fixed.v
 rtl/sptfra_fold.v
 rtl/sptfra_frame_context.v
+rtl/sptfra_frame_gate.v
+rtl/sptfra_frame_writer.v
 rtl/sptfra_leading_bit.v
 rtl/sptfra_line.v
 rtl/sptfra_mac.v

@@ -137,7 +137,7 @@ fn half_a_frame_by_another_bank_is_noticed() {
     let subject = subject();
     let [other_gains, other_threshold, other_floor] = others(subject);
     for (module, from, to, bank) in some_of([
-        ("sptfra_calibrate", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", other_gains),
+        ("sptfra_bz", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", other_gains),
         (
             "sptfra_frame_context",
             "thresholds <= of_cean;",

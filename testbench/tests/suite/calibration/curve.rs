@@ -209,8 +209,8 @@ fn commits_on_each_others_heels_among_bad_frames() {
     assert!(told.iter().all(|&last| last > Some(4)), "{told:?}");
 }
 
-/// Copies in which a frame changes its curve within, takes another bank behind the curve than in front of it, or lets
-/// the bank be written that it still reads.
+/// Copies in which a frame changes its curve within, takes another bank behind the curve than in front of it, or the
+/// threshold of another one.
 #[test]
 fn half_a_frame_by_another_curve_is_noticed() {
     let subject = subject();
@@ -218,15 +218,15 @@ fn half_a_frame_by_another_curve_is_noticed() {
     let [other_curve, other_gains] = others(subject);
     let other_floor = Bank { noise: (1 << 26) - 1, ..subject.calibration().power_up.clone() };
     for (module, from, to, bank) in some_of([
-        ("sptfra_count_curve", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", &other_curve),
-        ("sptfra_bz_curved", "offered ? began_with : calibration_acting;", "calibration_acting;", &other_gains),
+        ("sptfra_bz", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", &other_curve),
+        ("sptfra_bz", "((VALUE_STAGES == 0) ? bank : bank_held)", "(active)", &other_gains),
+        ("sptfra_frame_context", "thresholds <= of_cean;", "thresholds <= {of_cean[58:27], in_noise};", &other_floor),
         (
-            "sptfra_bz_curved",
-            ".calibration_acting     (acting)",
-            ".calibration_acting     ({acting[67:27], calibration_acting[26:0]})",
-            &other_floor,
+            "sptfra_banks",
+            ".read_bank    (bank),\n                .read_segment",
+            ".read_bank    (active),\n                .read_segment",
+            &other_curve,
         ),
-        ("sptfra_count_curve", "assign line_bank = banks[FOUND];", "assign line_bank = active;", &other_curve),
     ]) {
         let built = broken(&subject.plan, module, from, to);
         let cycles = 0..interval;

@@ -82,6 +82,8 @@ module small_4x3 #(
     );
 
     // ---- Frame contexts: what a frame carries beside its numbers
+    wire frame_calibrates;
+    wire [70:0] frame_calibration; // thresholds, version, replaced taxels
     wire cean_take, direction_take, context_take, context_dropped;
     wire [31:0] timestamp, contact;
     wire [26:0] noise;
@@ -95,11 +97,11 @@ module small_4x3 #(
         .in_taken           (s_axis_tvalid && s_axis_tready),
         .in_last            (s_axis_tlast),
         .in_dropped         (1'b0),
-        .calibrated         (1'b0),
-        .in_contact         (32'd0),
-        .in_noise           (27'd0),
-        .in_version         (8'd0),
-        .in_replaced        (4'd0),
+        .calibrated         (frame_calibrates),
+        .in_contact         (frame_calibration[70:39]),
+        .in_noise           (frame_calibration[38:12]),
+        .in_version         (frame_calibration[11:4]),
+        .in_replaced        (frame_calibration[3:0]),
         .scaled             (1'b0),
         .in_exponent        (5'd0),
         .cean_take          (cean_take),
@@ -126,6 +128,9 @@ module small_4x3 #(
     wire [ROW_WIDTH-1:0] bz_write_row;
     wire [VECTOR_BITS-1:0] bz_write_data;
     reg bz_write_ready;
+    // Without a calibration in RAM
+    wire calibration_old_in_use, bank_words;
+    wire [29:0] tare_result;
     wire [2:0] start;
     wire coefficients_complete;
 
@@ -160,7 +165,15 @@ module small_4x3 #(
         .frame_replaced   (frame_replaced),
         .frame_ready      (frame_ready),
         .frame_start      (start[0]),
-        .frame_release    (coefficients_complete)
+        .frame_release    (coefficients_complete),
+        .calibration_acting     (68'd0),
+        .calibration_old_in_use (calibration_old_in_use),
+        .bank_command           (1'b0),
+        .bank_words             (bank_words),
+        .tare_command           (9'd0),
+        .tare_result            (tare_result),
+        .frame_calibrates       (frame_calibrates),
+        .frame_calibration      (frame_calibration)
     );
 
     // ---- CeAn: what of the frame needs no lanes
@@ -564,7 +577,8 @@ module small_4x3 #(
     // What this design has no use for
     wire _unused = &{1'b0, bz_row_wide, taxel_last, taxel_force, weights_valid, weights_row, weights, g_valid,
         g_component, g, g_last, friction_known, field_mu_x, field_mu_y, field_enable, field_rewind, field_step,
-            contact, noise, version, replaced, cean_take, direction_exponent};
+            contact, noise, version, replaced, cean_take, direction_exponent,
+        calibration_old_in_use, bank_words, tare_result};
 
 endmodule
 

@@ -24,6 +24,7 @@ foreach file {
     sptfra_co.v
     sptfra_context_words.v
     sptfra_cordic.v
+    sptfra_decode.v
     sptfra_direction.v
     sptfra_divider.v
     sptfra_estimator_line.v
@@ -32,6 +33,8 @@ foreach file {
     sptfra_float_to_fixed.v
     sptfra_fold.v
     sptfra_frame_context.v
+    sptfra_frame_gate.v
+    sptfra_frame_writer.v
     sptfra_leading_bit.v
     sptfra_line.v
     sptfra_mac.v

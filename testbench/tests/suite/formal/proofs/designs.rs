@@ -1,8 +1,6 @@
 //! The designs that are proved: the 4 × 3 one of `designs/small.toml`, changed.
 
-use golden::design::{
-    CalibrationIn, Correction, Curve, Design, Estimator, InputRange, Optimise, Outputs, Overrun, PlanKind,
-};
+use golden::design::{CalibrationIn, Correction, Design, Estimator, InputRange, Optimise, Outputs, Overrun, PlanKind};
 use golden::estimators::joint::Grid;
 
 pub fn paper(design: &mut Design) {
@@ -19,17 +17,11 @@ pub fn reduced_for_latency(design: &mut Design) {
     design.hardware.optimise = Optimise::Latency;
 }
 
-pub fn calibrated(design: &mut Design) {
+fn calibrated(design: &mut Design) {
     reduced(design);
     design.hardware.control = true;
     design.hardware.calibration = CalibrationIn::Ram;
     design.input.pa_per_count = Some(-12.5);
-}
-
-pub fn curved(design: &mut Design) {
-    calibrated(design);
-    design.input.pa_per_count = None;
-    design.input.curve = Some(Curve { points: vec![[0.0, 0.0], [50.0, -100.0], [4095.0, -2e5]], law: None });
 }
 
 pub fn mapped(design: &mut Design) {
