@@ -16,7 +16,7 @@ mod swap;
 
 /// Lists what the generator wrote into a folder, so that it can tell its own files from the user's: a SHA-256 and a
 /// path a line, as `sha256sum --check` reads it.
-pub const MANIFEST: &str = ".hdl-gen-manifest";
+pub const MANIFEST: &str = ".sptfra-manifest";
 
 /// Why a folder was not written. In each case it is as it was before.
 #[derive(Debug, Error)]

@@ -72,10 +72,13 @@ pub fn run(args: &Args) -> message::Result {
         }
     }
     let warnings: String = warned.iter().map(|warning| format!("warning: {warning}\n")).collect();
+    let shown = folder.display();
     Ok(format!(
-        "{}: {} files, {kibibytes} KiB\n\
-         {} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{warnings}",
-        folder.display(),
+        "{shown}: {} files, {kibibytes} KiB\n\
+         {} taxels, {}: latency {} cycles, interval {} cycles, {} DSP, {} RAMB36\n{warnings}\
+         next: {shown}/README.md has ports and words\n      \
+         sptfra run {} --frames FRAMES.csv simulates your frames\n      \
+         vivado -mode batch -source {shown}/vivado/synth.tcl synthesizes\n",
         files.len(),
         plan.taxels(),
         super::inspect::count(plan.design.hardware.lanes, "lane"),
@@ -83,6 +86,7 @@ pub fn run(args: &Args) -> message::Result {
         timeline.interval_cycles,
         plan.resources.dsp,
         plan.resources.bram36,
+        path.display(),
     )
     .into())
 }

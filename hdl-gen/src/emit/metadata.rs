@@ -117,7 +117,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
     let mut value = json!({
         "format": FORMAT,
         "name": plan.design.name,
-        "generator": format!("hdl-gen {VERSION}"),
+        "generator": format!("sptfra {VERSION}"),
         "design_hash": hash,
         "taxels": plan.taxels(),
         "columns": plan.design.sensor.columns,

@@ -10,6 +10,7 @@ mod metadata;
 mod modules;
 mod origin;
 mod prefix;
+mod readme;
 mod registers;
 mod roms;
 pub mod rtl;
@@ -61,7 +62,7 @@ pub enum EmitError {
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Prints every file of the design's folder: `rtl/`, `rom/`, `sim/`, `mcsr/`, `vivado/`, `linux/`, `control/`, file
-/// lists, `metadata.json`, `design.toml` and the files that it names.
+/// lists, `README.md`, `metadata.json`, `design.toml` and the files that it names.
 ///
 /// # Errors
 /// [`EmitError`] if a template and its data do not fit each other.
@@ -101,6 +102,7 @@ pub fn emit_for(plan: &Plan, options: &Options) -> Result<FileMap, EmitError> {
     // After every file that a list or script names.
     flows::insert(plan, &hash, &boards, &mut files)?;
     linux::insert(plan, &boards, &mut files)?;
+    readme::insert(plan, &hash, &mut files)?;
     origin::insert(&plan.design.name, &hash, &mut files);
     prefix::stamp(&mut files);
     if let Some(prefix) = &options.prefix {

@@ -14,6 +14,7 @@ use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::CountsPlan;
 use crate::plan::format::address_bits;
 use crate::plan::streams::Intake;
+use crate::plan::words::status_bits;
 
 use super::template::design_module;
 use super::{EmitError, debug, registers};
@@ -36,7 +37,7 @@ struct View {
     rows: usize,
     taxels: usize,
     plan: &'static str,
-    estimator: String,
+    estimator: &'static str,
     filter: String,
     counts: bool,
     /// Whether gains and offsets stand in RAM; bits of a taxel's number and of an offset there.
@@ -85,6 +86,8 @@ struct View {
     u_lsb: i32,
     g_lsb: i32,
     torque_lsb: i32,
+    /// Status bits, with their meanings.
+    status: Vec<(u32, &'static str)>,
 
     /// What an element of a vector is, how many there are, and how many values come at a time.
     element: &'static str,
@@ -136,7 +139,7 @@ impl View {
             rows: design.sensor.rows,
             taxels: plan.taxels(),
             plan: if folded { "reduced" } else { "paper's" },
-            estimator: slot.module().trim_start_matches("sptfra_estimator_").to_owned(),
+            estimator: if design.algorithm.estimator.is_calibrated() { "grid search" } else { "line search" },
             filter: filter_text(&design.algorithm.filter),
             counts: design.input.counts(),
             calibration: plan.calibration.is_some(),
@@ -176,6 +179,7 @@ impl View {
             u_lsb: plan.formats.u.lsb,
             g_lsb: plan.formats.g.lsb,
             torque_lsb: plan.formats.torque_lsb,
+            status: status_bits().collect(),
 
             element: if folded { "quad" } else { "taxel" },
             elements: plan.elements(),

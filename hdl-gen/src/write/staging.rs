@@ -10,7 +10,7 @@ use super::ownership::{check, digest};
 /// How the names of the folders begin in which a folder is built: no other's begin like that.
 pub(super) fn staging_prefix(target: &Path) -> String {
     let name = target.file_name().unwrap_or_default();
-    format!(".hdl-gen-{}-", &digest(name.as_encoded_bytes())[..12])
+    format!(".sptfra-{}-", &digest(name.as_encoded_bytes())[..12])
 }
 
 /// Removes the folders that generators left as they were killed. Whoever holds the lock knows that nobody builds there.

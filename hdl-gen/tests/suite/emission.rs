@@ -96,6 +96,24 @@ fn metadata_describes_the_folder() {
     assert_eq!(listed, there);
 }
 
+/// Every file that the folder's page names is in the folder, and its figures are those of `metadata.json`.
+#[test]
+fn the_readme_describes_the_folder() {
+    for hardware in ["", "control = true\nstream_bits = 64"] {
+        let files = emit(&small_plan(hardware)).unwrap();
+        let readme = std::str::from_utf8(&files["README.md"]).unwrap();
+        let named = readme.split(['`', ' ', '\n']).map(|word| word.trim_start_matches("FOLDER/"));
+        let named: BTreeSet<&str> = named.filter(|word| word.contains('/') && word.contains('.')).collect();
+        assert!(named.len() > 1 && named.iter().all(|path| files.contains_key(*path)), "{named:?}");
+        assert_eq!(readme.contains("control/"), !hardware.is_empty());
+        let metadata: Value = serde_json::from_slice(&files["metadata.json"]).unwrap();
+        let cycles = |key: &str| format!("{} cycles, ", metadata["predicted"][key]);
+        assert!(readme.contains(&format!("| {}", cycles("latency_cycles"))), "{readme}");
+        assert!(readme.contains(&format!("| {}", cycles("interval_cycles"))), "{readme}");
+        assert!(readme.contains(&format!("an answer is {} beats", metadata["beats_out"])), "{readme}");
+    }
+}
+
 #[test]
 fn every_file_holds_the_module_it_is_named_after() {
     for plan in
