@@ -7,6 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::bodies::{Body, MOST};
+use crate::calibrate::recorded::{Measured, read_forces};
 use crate::frames::{self, FrameError};
 use crate::geometry::{self, GeometryError, OtherSensor};
 use crate::metrics::Outcome;
@@ -136,17 +137,56 @@ pub fn push_line(text: &mut String, row: &[f64]) {
     frames::push_row(text, row.iter().skip(1).copied());
 }
 
-/// Reads the resultants, friction and direction of a force file of `frames` lines.
+/// Reads the resultants, friction and direction of a force file of `frames` lines: one of [`row`], or any table of measured
+/// `F_x`, `F_y` and `F_z` that [`read_forces`] reads, where a positive `F_z` presses if most are positive.
 ///
 /// # Errors
 ///
 /// [`FrameError`], with file, line and column, for a line that is too short or holds something else than finite
 /// numbers, for a file with another number of lines, and for one of something else.
 pub fn read_outcomes(path: &Path, frames: usize) -> Result<Vec<Outcome>, FrameError> {
-    Ok(read_rows(path, frames)?
+    let own = read_rows(path, frames);
+    let is_named = frames::first_line(path)?.is_some_and(|line| {
+        let name = line.trim_start_matches(['"', '\u{feff}']);
+        name.starts_with(char::is_alphabetic) && !name.starts_with("status")
+    });
+    if is_named || matches!(own, Err(FrameError::Length { .. })) {
+        match (read_forces(path), &own) {
+            (Err(_), Err(_)) => {}
+            (Err(error), Ok(_)) => return Err(unusable(path, 1, error.to_string())),
+            (Ok(measured), _) => match measured_outcomes(path, frames, &measured) {
+                Err(_) if own.is_err() && !is_named => {}
+                outcomes => return outcomes,
+            },
+        }
+    }
+    Ok(own?
         .iter()
         .map(|row| Outcome { force: [row[1], row[2], row[3]], friction: row[4], direction: row[5] })
         .collect())
+}
+
+/// An error of forces that errors cannot be taken against.
+fn unusable(path: &Path, line: usize, problem: String) -> FrameError {
+    FrameError::NoForces { path: path.to_path_buf(), line, problem }
+}
+
+/// The same of a table of measured forces.
+fn measured_outcomes(path: &Path, frames: usize, measured: &Measured) -> Result<Vec<Outcome>, FrameError> {
+    if measured.forces.len() != frames {
+        let found = measured.forces.len();
+        return Err(FrameError::Count { path: path.to_path_buf(), found, expected: frames });
+    }
+    let sign = if measured.forces.iter().filter_map(|force| force[2]).sum::<f64>() > 0.0 { -1.0 } else { 1.0 };
+    let outcome = |(line, force): (usize, &[Option<f64>; 3])| match *force {
+        [Some(x), Some(y), Some(z)] => {
+            let tangential = x.hypot(y);
+            let friction = if tangential > 0.0 { tangential / z.abs().max(f64::MIN_POSITIVE) } else { 0.0 };
+            Ok(Outcome { force: [x, y, sign * z], friction, direction: y.atan2(x) })
+        }
+        _ => Err(unusable(path, line + 1, "F_x, F_y or F_z is not known, and errors need all three".to_owned())),
+    };
+    measured.forces.iter().enumerate().map(outcome).collect()
 }
 
 /// Reads the bodies of a force file of `frames` lines, of each line those that there are. Nothing if the file does not tell

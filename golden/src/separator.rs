@@ -1,4 +1,7 @@
-//! What stands between the values of a line, in all files of numbers.
+//! Separators and numbers of a line of text, in all files of numbers.
+//!
+//! By hand and not by a CSV library: the separator is found from the line, spaces count as one, a comma may be a decimal
+//! point, and lines come one at a time from a port.
 
 /// What stands between the values of a line.
 #[derive(Clone, Copy, Debug)]
@@ -9,16 +12,54 @@ pub(crate) enum Separator {
     Spaces,
 }
 
+/// What the comma within a number is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Comma {
+    /// A decimal point for certain.
+    Decimal,
+    /// A decimal point or a separator of thousands: three digits follow each.
+    Unclear,
+}
+
+impl Comma {
+    /// The commas of a field; nothing if it has none.
+    pub(crate) fn of(field: &[u8]) -> Option<Self> {
+        let digits = field.strip_prefix(b"-").or(field.strip_prefix(b"+")).unwrap_or(field);
+        let mut groups = digits.split(|&byte| byte == b',');
+        let first = groups.next()?;
+        let mut groups = groups.peekable();
+        groups.peek()?;
+        let is_first = (1..=3).contains(&first.len()) && first[0] != b'0' && first.iter().all(u8::is_ascii_digit);
+        // A point behind the last group is that of the fraction.
+        let is_group = |group: &[u8]| {
+            let whole = group.split(|&byte| byte == b'.').next().unwrap_or(group);
+            whole.len() == 3 && whole.iter().all(u8::is_ascii_digit)
+        };
+        Some(if is_first && groups.all(is_group) { Self::Unclear } else { Self::Decimal })
+    }
+}
+
 impl Separator {
     /// The separator of a line: the first of those that it has, a space being one only where there is no other.
     pub(crate) fn of(line: &[u8]) -> Self {
         let byte = b";\t,".iter().copied().find(|byte| line.contains(byte));
-        byte.map_or(Self::Spaces, Self::Byte)
+        match byte {
+            // Numbers with decimal commas, between spaces.
+            Some(b',') if Self::Spaces.split(line).len() > 1 && is_row_of_decimals(line) => Self::Spaces,
+            byte => byte.map_or(Self::Spaces, Self::Byte),
+        }
     }
 
     pub(crate) fn split(self, line: &[u8]) -> Vec<&[u8]> {
         match self {
-            Self::Byte(separator) => line.split(|&byte| byte == separator).map(bare).collect(),
+            Self::Byte(separator) => {
+                let mut quoted = false;
+                let between = |&byte: &u8| {
+                    quoted ^= byte == b'"';
+                    byte == separator && !quoted
+                };
+                line.split(between).map(bare).collect()
+            }
             Self::Spaces => line.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty()).map(bare).collect(),
         }
     }
@@ -31,16 +72,29 @@ impl Separator {
         }
         fields
     }
+}
 
-    /// The number of any kind that a field holds.
-    pub(crate) fn value(self, field: &[u8]) -> Option<f64> {
-        let text = std::str::from_utf8(field).ok()?;
-        match self {
-            // Where it separates nothing, a comma is a decimal point.
-            Self::Byte(b';' | b'\t') => text.replace(',', ".").parse().ok(),
-            _ => text.parse().ok(),
-        }
-    }
+/// The number of any kind that a field holds. A comma in it separates nothing and is a decimal point.
+pub(crate) fn number(field: &[u8]) -> Option<f64> {
+    let text = std::str::from_utf8(field).ok()?;
+    if text.contains(',') { text.replace(',', ".").parse().ok() } else { text.parse().ok() }
+}
+
+/// Whether every word of a line is a number, and some have a decimal comma.
+fn is_row_of_decimals(line: &[u8]) -> bool {
+    let is_number = |word: &[u8]| !word.ends_with(b",") && !word.starts_with(b",") && number(word).is_some();
+    Separator::Spaces.split(line).into_iter().all(is_number)
+}
+
+/// Whether a field stands for a reading that is not there.
+pub(crate) fn is_unknown(field: &str) -> bool {
+    ["", "-", "--", "---", "nan", "na", "n/a", "none", "null", "b"].contains(&field.to_ascii_lowercase().as_str())
+}
+
+/// The lines of a text: a line's end is that of Unix, Windows or, where there is no other, a carriage return alone.
+pub(crate) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let end = if text.contains(&b'\n') { b'\n' } else { b'\r' };
+    text.split(move |&byte| byte == end)
 }
 
 /// A field without the quotes that some programs put around each.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use golden::design::{Design, Sensor};
 use golden::forces::{self, read_outcomes};
-use golden::frames::{FrameError, read_frames_and_remark};
+use golden::frames::{FrameError, Layout, read_frames_and_remark};
 use golden::geometry;
 use golden::metrics::Outcome;
 use golden::scene::{Scene, SceneError, SceneFrame};
@@ -65,14 +65,19 @@ impl FrameSet {
         self
     }
 
-    /// Frames for a design from a file whose lines begin with `labels` columns of other things, with true forces
-    /// from another file if there is one.
+    /// Frames for a design from a file whose values stand as `layout` says, with true forces from another
+    /// file if there is one.
     ///
     /// # Errors
     /// [`FrameError`], with file, line and column, or for frames that are known to be another sensor's.
-    pub fn load(frames: &Path, labels: usize, reference: Option<&Path>, design: &Design) -> Result<Self, FrameError> {
+    pub fn load(
+        frames: &Path,
+        layout: impl Into<Layout>,
+        reference: Option<&Path>,
+        design: &Design,
+    ) -> Result<Self, FrameError> {
         geometry::compare(frames, &design.name, &design.sensor)?;
-        let (stress, remark) = read_frames_and_remark(frames, design, labels)?;
+        let (stress, remark) = read_frames_and_remark(frames, design, layout)?;
         if let Some(reference) = reference {
             forces::compare_sensor(reference, &design.name, &design.sensor)?;
         }

@@ -6,6 +6,7 @@ use golden::calibrate::recorded::{Recorded, fit_forces, fit_uniform, page, read_
 use golden::check::check;
 use golden::choose::rebase_scenes;
 use golden::design::{Design, Filter};
+use golden::frames::Frames;
 use golden::matrices::Matrices;
 use golden::output::write_together;
 use golden::progress::Progress;
@@ -13,7 +14,7 @@ use golden::resolved::{Resolved, folder, keep_apart};
 use serde::Serialize;
 
 use super::calibrate::name_of;
-use super::recording::{Recording, warn};
+use super::recording::{LayoutArguments, Recording, warn};
 use crate::message::{self, json_or, say};
 
 /// Recordings with measured forces or pressures.
@@ -32,9 +33,8 @@ pub struct Recordings {
     /// Pressures measured with them (CSV or .npy), one line a frame.
     #[arg(long, value_name = "P.csv", requires = "uniform")]
     pressures: Option<PathBuf>,
-    /// Columns of labels before the values of a frame.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    labels: usize,
+    #[command(flatten)]
+    layout: LayoutArguments,
     /// Where to write a page with plots (HTML, complete in itself).
     #[arg(long, value_name = "PAGE.html")]
     page: Option<PathBuf>,
@@ -43,7 +43,7 @@ pub struct Recordings {
 impl Recordings {
     /// Whether there is anything recorded.
     pub fn given(&self) -> bool {
-        self.frames.is_some() || self.uniform.is_some() || self.page.is_some() || self.labels > 0
+        self.frames.is_some() || self.uniform.is_some() || self.page.is_some() || self.layout.given()
     }
 }
 
@@ -60,11 +60,11 @@ struct Report<'a> {
 
 /// Fits the design in `path` to recordings and writes it to `out`.
 pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> message::Result {
-    let Recordings { frames, forces, uniform, pressures, labels, page: page_file } = recordings;
+    let Recordings { frames, forces, uniform, pressures, layout, page: page_file } = recordings;
     if frames.is_none() && uniform.is_none() {
-        return Err(
-            "--labels and --page are for recordings: give --frames and --forces, or --uniform and --pressures".into()
-        );
+        return Err("--labels, --columns, --skip-lines, --skip-bad and --page are for recordings: give --frames and \
+             --forces, or --uniform and --pressures"
+            .into());
     }
     let mut design = Design::load(path)?;
     let resolved = Resolved::anew(path, out)?;
@@ -86,11 +86,12 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     let mut findings = Vec::new();
     for (place, (file, measured)) in [(uniform, pressures), (frames, forces)].into_iter().enumerate() {
         let (Some(file), Some(measured)) = (file, measured) else { continue };
-        let frames = Recording { file, labels: *labels }.read(&design)?;
-        let found = match place {
-            0 => fit_uniform(&design, &frames, &read_pressures(measured)?),
-            _ => fit_forces(&design, &frames, &read_forces(measured)?),
-        }?;
+        let Frames { frames, times, .. } = Recording { file, layout: layout.layout() }.read_all(&design)?;
+        let table = if place == 0 { read_pressures(measured) } else { read_forces(measured) }?;
+        let paired = times.map_or(Ok(table.clone()), |times| table.at(&times));
+        let table = paired.map_err(|problem| format!("{}: {problem}", measured.display()))?;
+        let found =
+            if place == 0 { fit_uniform(&design, &frames, &table) } else { fit_forces(&design, &frames, &table) }?;
         // As the design reads them now: sign, unit and tare are what was fitted. A bladder loads every taxel.
         if place == 1 {
             findings = check(&found.design, &frames, Matrices::of(&found.design).ok().as_ref());
@@ -113,9 +114,9 @@ pub fn run(path: &Path, out: &Path, recordings: &Recordings, json: bool) -> mess
     write_together(&contents)?;
     let next = match frames {
         Some(frames) => {
-            let labels = if *labels > 0 { format!(" --labels {labels}") } else { String::new() };
+            let layout = layout.options();
             format!(
-                "sptfra solve {} --frames {}{labels} --out {}",
+                "sptfra solve {} --frames {}{layout} --out {}",
                 out.display(),
                 frames.display(),
                 out.with_extension("forces.csv").display()

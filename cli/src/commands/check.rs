@@ -8,7 +8,7 @@ use golden::matrices::Matrices;
 use golden::progress::Progress;
 use serde::Serialize;
 
-use super::recording::{Recording, is_standard};
+use super::recording::{LayoutArguments, Recording, is_standard};
 use super::unloaded;
 use crate::arguments::design_file;
 use crate::message::{self, Message, say};
@@ -32,9 +32,8 @@ pub struct Args {
     /// Frames (CSV or .npy), as for `sptfra solve`.
     #[arg(long, value_name = "FRAMES.csv")]
     frames: PathBuf,
-    /// Columns of labels before the values of a frame; the file may then have a header.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    labels: usize,
+    #[command(flatten)]
+    layout: LayoutArguments,
     /// Nothing presses in the frames: report offsets, noise, drift, dead taxels, and the keys that suit the noise.
     #[arg(long)]
     unloaded: bool,
@@ -62,8 +61,8 @@ struct Line {
 
 /// Checks the frames of a file; an error if anything is found.
 pub fn run(args: &Args) -> message::Result {
-    let Args { design: path, frames, labels, unloaded, out, json } = args;
-    let recording = &Recording { file: frames, labels: *labels };
+    let Args { design: path, frames, layout, unloaded, out, json } = args;
+    let recording = &Recording { file: frames, layout: layout.layout() };
     if is_standard(recording.file) {
         return Err("--frames -: this looks at all frames of a recording; write them into a file first".into());
     }

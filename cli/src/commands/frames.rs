@@ -10,14 +10,15 @@ use golden::matrices::Matrices;
 use golden::progress::Progress;
 use testbench::frame_set::FrameSet;
 
+use super::recording::LayoutArguments;
+
 #[derive(clap::Args)]
 pub struct FrameArguments {
     /// Frames (CSV or .npy), one a line, in pascals or counts; default: a contact made for the sensor.
     #[arg(long)]
     frames: Option<PathBuf>,
-    /// Columns of labels before the values of a frame.
-    #[arg(long, default_value_t = 0, requires = "frames")]
-    labels: usize,
+    #[command(flatten)]
+    layout: LayoutArguments,
 }
 
 impl FrameArguments {
@@ -29,7 +30,7 @@ impl FrameArguments {
         progress: &Progress,
     ) -> Result<FrameSet, Box<dyn Error>> {
         if let Some(path) = &self.frames {
-            let frames = FrameSet::load(path, self.labels, reference, design)?;
+            let frames = FrameSet::load(path, self.layout.layout(), reference, design)?;
             if let Some(remark) = &frames.remark {
                 eprintln!("note: {remark}");
             }
@@ -38,6 +39,9 @@ impl FrameArguments {
                 eprintln!("warning: {finding}");
             }
             return Ok(frames);
+        }
+        if self.layout.given() {
+            return Err("--labels, --columns, --skip-lines and --skip-bad are for recordings: give --frames".into());
         }
         progress.stage("making ground-truth frames");
         Ok(FrameSet::standing(&design.sensor)?.as_delivered(design))

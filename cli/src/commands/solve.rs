@@ -12,7 +12,7 @@ use golden::solver::{Solution, Solver, Status};
 use golden::table::Table;
 use serde::Serialize;
 
-use super::recording::{Recording, is_standard, warn};
+use super::recording::{LayoutArguments, Recording, is_standard, warn};
 use super::solve_lines;
 use crate::arguments::{design_file, rows_file};
 use crate::message::{self, Message, json_or, say};
@@ -54,9 +54,8 @@ pub struct Args {
     /// Frames (CSV or .npy), one a line, in pascals, compression negative, or in counts; `-`: standard input.
     #[arg(long, value_name = "FRAMES.csv")]
     frames: PathBuf,
-    /// Columns of labels before the values of a frame; the file may then have a header.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    labels: usize,
+    #[command(flatten)]
+    layout: LayoutArguments,
     /// Where to write the forces (CSV, or .npy by its ending); `-`: standard output.
     #[arg(long, value_name = "FORCES.csv", value_parser = rows_file())]
     out: PathBuf,
@@ -94,8 +93,8 @@ struct SolveReport<'a> {
 
 /// Solves frames and writes the forces, or prints them as they come.
 pub fn run(args: &Args) -> message::Result {
-    let Args { design, frames, labels, out, field, reference, json } = args;
-    let (frames, reference) = (&Recording { file: frames, labels: *labels }, reference.as_deref());
+    let Args { design, frames, layout, out, field, reference, json } = args;
+    let (frames, reference) = (&Recording { file: frames, layout: layout.layout() }, reference.as_deref());
     if is_standard(out) {
         if reference.is_some() || *json {
             return Err("--out -: standard output has the forces alone; name a file with --reference and --json".into());

@@ -20,7 +20,7 @@ const LOOKED_AT: usize = 32;
 pub fn run(design: &Path, frames: &Recording, with_field: bool) -> Result<(), Box<dyn Error>> {
     let design = Design::load(design)?;
     let solver = Solver::new(&design)?;
-    let lines = FrameLines::new(Path::new("standard input"), &design, frames.labels);
+    let lines = FrameLines::new(Path::new("standard input"), &design, frames.layout.clone());
     let mut stream = FrameStream::new(io::stdin().lock(), lines);
     let mut said = false;
     let mut next: Box<dyn FnMut() -> Result<Option<Vec<f64>>, FrameError>> = if is_standard(frames.file) {

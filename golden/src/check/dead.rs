@@ -39,6 +39,9 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], c
             || loaded.iter().filter(|frame| beyond(frame, OFTEN_WITHIN)).count() as f64
                 >= (OFTEN * loaded.len() as f64).max(3.0)
     };
+    if let Some(line) = dead_line(design, loaded, &constant) {
+        return Some(line);
+    }
     let known = |taxel: &usize| !design.input.dead.contains(taxel);
     let dead: Vec<usize> =
         (0..design.sensor.taxels()).filter(known).filter(|&taxel| constant(taxel) && within(taxel)).collect();
@@ -52,6 +55,33 @@ pub(super) fn check(design: &Design, frames: &[Vec<f64>], loaded: &[Vec<f64>], c
             "taxel{plural} {} {verb} the same in all frames, with something pressing on both sides: dead? Name up to 8 of \
              them in sensor.dead, and their neighbours stand for them",
             names.join(", ")
+        )
+    })
+}
+
+/// A row or a column within the grid that reads the same in all frames while taxels on both sides of it are pressed.
+fn dead_line(design: &Design, loaded: &[Vec<f64>], constant: &dyn Fn(usize) -> bool) -> Option<String> {
+    let (columns, rows) = (design.sensor.columns, design.sensor.rows);
+    let pressed = |taxel: usize, frame: &Vec<f64>| frame[taxel] < -WITHIN * largest(frame);
+    let mut lines = Vec::new();
+    for (what, count, length, steps) in [("row", rows, columns, [columns, 1]), ("column", columns, rows, [1, columns])]
+    {
+        for line in 1..count.saturating_sub(1) {
+            let taxel = |index: usize| line * steps[0] + index * steps[1];
+            let between = |index: usize| {
+                let [before, after] = [taxel(index) - steps[0], taxel(index) + steps[0]];
+                loaded.iter().any(|frame| pressed(before, frame) && pressed(after, frame))
+            };
+            if length > 1 && (0..length).all(|index| constant(taxel(index))) && (0..length).any(between) {
+                lines.push(format!("{what} {line}"));
+            }
+        }
+    }
+    (!lines.is_empty()).then(|| {
+        format!(
+            "{} of the matrix (from 0) reads the same in all frames, with something pressing on both sides: is its wire \
+             broken? So many taxels cannot be replaced: mend it, or leave out that part of the sensor",
+            lines.join(", ")
         )
     })
 }

@@ -11,6 +11,7 @@ pub(crate) mod ends;
 mod order;
 mod quiet;
 mod rest;
+mod scaled;
 mod unit;
 
 use std::fmt;
@@ -48,6 +49,8 @@ pub enum Kind {
     Order,
     /// Readings at the end of the converter's range, below the full scale.
     Stuck,
+    /// Each frame is divided by its own largest reading.
+    Scaled,
     /// More bodies press than one, in a design that counts them and solves one.
     Bodies,
 }
@@ -76,6 +79,8 @@ const LOADED: f64 = 0.1;
 const MOST: f64 = 0.9;
 /// A pull of this share of a frame's peak is one, and no noise.
 const PULL: f64 = 0.01;
+/// Neighbours that pull beside a contact have this much in common.
+const PULLS_TOGETHER: f64 = 0.25;
 /// Stresses that add up to less than this share of their magnitudes press as much as they pull: a contact that is dragged with
 /// a friction of 1 has twice as much.
 const PRESSES: f64 = 0.2;
@@ -117,6 +122,10 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     if peak <= 0.0 {
         let (kind, message) = unit::nothing(design, frames);
         found(kind, message);
+        return findings;
+    }
+    if let Some(message) = scaled::check(frames) {
+        found(Kind::Scaled, message);
         return findings;
     }
     let is_loaded: Vec<bool> = stress.iter().map(|frame| largest(frame) >= LOADED * peak).collect();
@@ -198,7 +207,11 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
             ),
         );
     }
-    let pulled = |frame: &Vec<f64>| frame.iter().any(|&stress| stress >= PULL * largest(frame));
+    // What pulls beside a contact does so on neighbours; noise about the tare does on taxels here and there.
+    let pulled = |frame: &Vec<f64>| {
+        let pulls: Vec<f64> = frame.iter().map(|&stress| stress.max(0.0)).collect();
+        largest(&pulls) >= PULL * largest(frame) && together(&design.sensor, &pulls) >= PULLS_TOGETHER
+    };
     let pulled = loaded.iter().filter(|frame| pulled(frame)).count();
     if design.input.tension == Tension::Clipped && holds(pulled, loaded.len()) {
         found(
@@ -212,9 +225,12 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     }
     if let Some(message) = dead::check(design, frames, &loaded, clipped) {
         found(Kind::Dead, message);
+    } else if let Some(message) = order::axes(&design.sensor, frames) {
+        found(Kind::Order, message);
     } else if let Some(message) = matrices.and_then(|matrices| order::check(design, matrices, &loaded)) {
         found(Kind::Order, message);
     }
+    let mut found = |kind, message| findings.push(Finding { kind, message });
     for message in ends::check(design, frames, loaded.len(), peak) {
         found(Kind::Stuck, message);
     }

@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::together;
 use crate::design::{Design, Sensor, Tension};
 use crate::matrices::Matrices;
 use crate::names::MatrixName;
@@ -17,6 +18,10 @@ const SUSPICIOUS: f64 = 0.13;
 const NOISE: f64 = 0.01;
 /// and how many times as many pulls as a contact with that noise has are suspicious.
 const MORE: f64 = 1.3;
+/// Another order explains the frames if neighbours have so much more in common in it,
+const SMOOTHER: f64 = 0.2;
+/// and this much.
+const ALIKE: f64 = 0.4;
 /// Directions in degrees in which that contact is pushed.
 const DIRECTIONS: [f64; 3] = [0.0, 45.0, 90.0];
 /// Another order explains the frames if it leaves this share of the pulls,
@@ -50,6 +55,16 @@ pub(super) fn check(design: &Design, matrices: &Matrices, loaded: &[Vec<f64>]) -
     let inverse = matrices.folded(MatrixName::C33inv);
     let step = loaded.len().div_ceil(FRAMES);
     let frames: Vec<&Vec<f64>> = loaded.iter().step_by(step.max(1)).collect();
+    let alike = |order: Order| alike(sensor, &frames, order);
+    let own = alike(|sensor, ix, iy| iy * sensor.columns + ix);
+    for (order, cause) in OTHERS {
+        let other = alike(order);
+        if other > own + SMOOTHER && other > ALIKE {
+            return Some(format!(
+                "neighbours have little in common (correlation {own:.2}), as if the frames held {cause} (it would be {other:.2})"
+            ));
+        }
+    }
     let pulls = |order: Order| pulls(sensor, &inverse, &frames, order);
     let found = pulls(|sensor, ix, iy| iy * sensor.columns + ix);
     if found < FEW {
@@ -80,6 +95,46 @@ pub(super) fn check(design: &Design, matrices: &Matrices, loaded: &[Vec<f64>]) -
         let [first, second] = if usual > SUSPICIOUS { [depth, order] } else { [order, depth] };
         format!("the normal forces alternate like a checkerboard, {percent:.0} % of them pull: {first}, or {second}?")
     })
+}
+
+/// Whether an array of as many frames as rows and columns has another axis for its frames, by how smooth it is along each:
+/// two axes are of the sensor and alike.
+pub(super) fn axes(sensor: &Sensor, frames: &[Vec<f64>]) -> Option<String> {
+    let side = sensor.columns;
+    if sensor.rows != side || frames.len() != side || side < 4 {
+        return None;
+    }
+    let at = |[i, j, k]: [usize; 3]| frames[i][j * side + k];
+    // Squares of the steps along an axis.
+    let steps = |axis: usize| -> f64 {
+        let step = |index: usize| {
+            let mut place = [index / (side * side), index / side % side, index % side];
+            let here = at(place);
+            place[axis] += 1;
+            if place[axis] < side { (at(place) - here).powi(2) } else { 0.0 }
+        };
+        (0..side.pow(3)).map(step).sum()
+    };
+    let steps = [0, 1, 2].map(steps);
+    let apart = |a: usize, b: usize| (steps[a] / steps[b]).ln().abs();
+    let [first, middle, last] = [apart(1, 2), apart(0, 2), apart(0, 1)];
+    if !first.is_finite() || first < 1.5_f64.ln() || middle.min(last) > 0.5 * first {
+        return None;
+    }
+    let (axis, remedy) = if last <= middle { ("last", "2") } else { ("middle", "1") };
+    Some(format!(
+        "the array is as rough along its first axis as along one of the others, and the {axis} one is unlike both: are its \
+         frames along the {axis} axis? Save numpy.moveaxis(frames, {remedy}, 0)"
+    ))
+}
+
+/// Correlation of neighbours, the mean over frames, where they stand in an order.
+fn alike(sensor: &Sensor, frames: &[&Vec<f64>], order: Order) -> f64 {
+    let place = |frame: &&Vec<f64>| -> f64 {
+        let taxel = |taxel: usize| frame[order(sensor, taxel % sensor.columns, taxel / sensor.columns)];
+        together(sensor, &(0..sensor.taxels()).map(taxel).collect::<Vec<_>>())
+    };
+    frames.iter().map(place).sum::<f64>() / frames.len().max(1) as f64
 }
 
 /// What is to be said of frames with so large a share of pulls, of which another order leaves so many.

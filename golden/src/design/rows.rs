@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::DesignError;
 use super::files::Beside;
-use crate::separator::Separator;
+use crate::separator::{self, Comma, Separator};
 
 /// A line that is neither blank nor a remark.
 pub(super) struct Row {
@@ -59,11 +59,30 @@ impl Rows {
             Row {
                 line,
                 content: content.to_owned(),
-                numbers: fields.iter().map(|field| separator.value(field)).collect(),
+                numbers: fields.iter().map(|field| separator::number(field)).collect(),
                 fields: fields.iter().map(|field| String::from_utf8_lossy(field).into_owned()).collect(),
             }
         };
-        Ok(Self { rows: lines.map(row).collect(), path })
+        let rows = Self { rows: lines.map(row).collect(), path };
+        rows.refuse_thousands()?;
+        Ok(rows)
+    }
+
+    /// Refuses commas of which each has three digits behind it: decimal points, or separators of thousands?
+    fn refuse_thousands(&self) -> Result<(), DesignError> {
+        let commas = || self.rows.iter().flat_map(|row| row.fields.iter().map(|field| (row.line, field)));
+        let unclear = |&(_, field): &(usize, &String)| Comma::of(field.as_bytes()) == Some(Comma::Unclear);
+        let is_number = |field: &str| field.replace(',', ".").parse::<f64>().is_ok();
+        let decimal =
+            |(_, field): (usize, &String)| is_number(field) && Comma::of(field.as_bytes()) == Some(Comma::Decimal);
+        match commas().find(unclear) {
+            Some((line, field)) if !commas().any(decimal) => Err(self.wrong(
+                line,
+                format!("\"{field}\" has a decimal comma or a separator of thousands"),
+                "write decimal points, or remove the separators",
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// The last row's line, or the first line of an empty file.

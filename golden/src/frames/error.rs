@@ -36,8 +36,7 @@ pub enum FrameError {
     },
     /// A line with too few or too many values.
     #[error(
-        "{}, line {line}: the line ends at column {found} where {expected} values are needed; \
-         give one stress for each taxel of the sensor{}", path.display(), surplus(*found, *expected)
+        "{}, line {line}: the line ends at column {found} where {expected} values are needed; {hint}", path.display()
     )]
     Length {
         /// The file.
@@ -48,13 +47,11 @@ pub enum FrameError {
         found: usize,
         /// Values in a frame.
         expected: usize,
+        /// What to do.
+        hint: String,
     },
     /// A value that is no finite number.
-    #[error(
-        "{}, line {line}, column {column}: \"{text}\" is no finite float32 number; give the stress in pascals, \
-         such as -1250.5, separated by commas, semicolons, tabs or spaces; columns before the values need --labels, and a \
-         header has no number in it", path.display()
-    )]
+    #[error("{}, line {line}, column {column}: \"{text}\" is no finite float32 number; {remedy}", path.display())]
     Value {
         /// The file.
         path: PathBuf,
@@ -64,6 +61,43 @@ pub enum FrameError {
         column: usize,
         /// What is there.
         text: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// Commas that are decimal points or separators of thousands.
+    #[error(
+        "{}, line {line}, column {column}: \"{text}\" is a number with a decimal comma or one with separators of thousands, \
+         and three digits follow every comma of the file; write decimal points, or remove the separators", path.display()
+    )]
+    Thousands {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// Position on the line, from 1.
+        column: usize,
+        /// What is there.
+        text: String,
+    },
+    /// A header that names other columns for the taxels than those that were asked for.
+    #[error("{}, line {line}: {problem}", path.display())]
+    Columns {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// A block of rows that is no frame.
+    #[error("{}, line {line}: {problem}", path.display())]
+    Block {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong, and what to do.
+        problem: String,
     },
     /// A character between the values that separates none.
     #[error(
@@ -145,15 +179,6 @@ pub enum FrameError {
     /// The file could not be written.
     #[error(transparent)]
     Write(#[from] OutputError),
-}
-
-/// What to do with a line that has a few values too many: a time, a number of the frame.
-fn surplus(found: usize, expected: usize) -> String {
-    match found.saturating_sub(expected) {
-        0 => String::new(),
-        more @ 1..=8 => format!("; if the first {more} are a time or a name, say so with --labels {more}"),
-        _ => "; columns before the values need --labels".to_owned(),
-    }
 }
 
 impl FrameError {

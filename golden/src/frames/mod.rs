@@ -2,10 +2,13 @@
 //! sensor's count.
 //!
 //! As text, one frame a line, with a header line or none, separated by commas, semicolons, tabs or spaces; recordings may
-//! have label columns before the values. Or `NumPy`'s `.npy`, of frames by taxels or frames by rows by columns.
+//! have other columns before the values and behind them ([`Layout`]). Or a line for each row of taxels. Or `NumPy`'s `.npy`,
+//! of frames by taxels or frames by rows by columns.
 
+mod blocks;
 mod error;
 mod format;
+mod layout;
 mod npy;
 mod stream;
 mod text;
@@ -16,7 +19,11 @@ use std::fmt::Write;
 use std::path::Path;
 
 pub use error::FrameError;
+pub use layout::Layout;
+use layout::Target;
 pub use stream::{FrameLines, FrameStream};
+use text::Text;
+pub(crate) use text::seconds;
 
 use crate::design::Design;
 use crate::output;
@@ -24,6 +31,17 @@ use crate::sensor::Sensor;
 
 /// Frames, one value for each taxel, and a remark about the file they are from.
 pub type WithRemark = (Vec<Vec<f64>>, Option<String>);
+
+/// Frames of a recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frames {
+    /// One value for each taxel.
+    pub frames: Vec<Vec<f64>>,
+    /// The time of each frame in seconds, where the file's header names a column of times before the values.
+    pub times: Option<Vec<f64>>,
+    /// What was taken for what, on one line.
+    pub remark: Option<String>,
+}
 
 /// Reads all frames of a file; each has a finite value for each taxel of the sensor.
 ///
@@ -34,50 +52,73 @@ pub fn read_frames(path: &Path, sensor: &Sensor) -> Result<Vec<Vec<f64>>, FrameE
     read_labelled_frames(path, sensor, 0)
 }
 
-/// As [`read_frames`], of a file whose lines begin with `labels` columns of any text, which are skipped.
+/// As [`read_frames`], of a file whose values stand where `layout` says: a number is that of columns of any text before
+/// them.
 ///
 /// # Errors
 ///
 /// As [`read_frames`].
-pub fn read_labelled_frames(path: &Path, sensor: &Sensor, labels: usize) -> Result<Vec<Vec<f64>>, FrameError> {
-    Ok(read_with_remark(path, sensor, labels)?.0)
+pub fn read_labelled_frames(
+    path: &Path,
+    sensor: &Sensor,
+    layout: impl Into<Layout>,
+) -> Result<Vec<Vec<f64>>, FrameError> {
+    Ok(read_text(path, &layout.into(), &sensor.into())?.rows)
 }
 
-/// The frames, and what is to be said of a header that numbers the columns.
-fn read_with_remark(path: &Path, sensor: &Sensor, labels: usize) -> Result<WithRemark, FrameError> {
-    let taxels = sensor.taxels();
-    let wrong_length = |found| (found != labels + taxels).then_some(labels + taxels);
-    let (frames, remark) = read_table(path, labels, Some(sensor), wrong_length, |shape| of_grid(shape, sensor))?;
-    match (frames.is_empty(), remark) {
-        (true, None) => Err(FrameError::Empty { path: path.to_path_buf(), expected: taxels }),
-        (true, Some(remark)) => Err(FrameError::HeaderAlone { remark }),
-        (false, remark) => Ok((frames, remark)),
+/// The frames of a file with their lines, at least one.
+fn read_text(path: &Path, layout: &Layout, target: &Target) -> Result<Text, FrameError> {
+    let taxels = target.sensor.taxels();
+    let wrong_length = |found| (found != taxels).then_some(taxels);
+    let text = read_table(path, layout, Some(target), wrong_length, |shape| of_grid(shape, &target.sensor))?;
+    match (text.rows.is_empty(), text.remarks.is_empty()) {
+        (true, true) => Err(FrameError::Empty { path: path.to_path_buf(), expected: taxels }),
+        (true, false) => Err(FrameError::HeaderAlone { remark: text.remarks.join("; ") }),
+        (false, _) => Ok(text),
     }
 }
 
-/// Reads the frames of a design: as [`read_labelled_frames`], and each value is one that the design's samples can be.
+/// Reads the frames of a design: as [`read_labelled_frames`], and each value is one that the design's samples can be. Of a
+/// dead taxel any text is read, as 0.
 ///
 /// # Errors
 ///
 /// As [`read_frames`].
-pub fn read_frames_of(path: &Path, design: &Design, labels: usize) -> Result<Vec<Vec<f64>>, FrameError> {
-    Ok(read_frames_and_remark(path, design, labels)?.0)
+pub fn read_frames_of(path: &Path, design: &Design, layout: impl Into<Layout>) -> Result<Vec<Vec<f64>>, FrameError> {
+    Ok(read_recording(path, design, layout)?.frames)
 }
 
-/// As [`read_frames_of`], and what is to be said of a first line that holds the numbers of the columns, from 0 or 1 on: it
-/// is taken for a header.
+/// As [`read_frames_of`], and what is to be said of the file, as of a first line that holds the numbers of the columns.
 ///
 /// # Errors
 ///
 /// As [`read_frames`].
-pub fn read_frames_and_remark(path: &Path, design: &Design, labels: usize) -> Result<WithRemark, FrameError> {
-    let (frames, remark) = read_with_remark(path, &design.sensor, labels)?;
+pub fn read_frames_and_remark(
+    path: &Path,
+    design: &Design,
+    layout: impl Into<Layout>,
+) -> Result<WithRemark, FrameError> {
+    let Frames { frames, remark, .. } = read_recording(path, design, layout)?;
+    Ok((frames, remark))
+}
+
+/// As [`read_frames_of`], with the times of the frames and what is to be said of the file.
+///
+/// # Errors
+///
+/// As [`read_frames`].
+pub fn read_recording(path: &Path, design: &Design, layout: impl Into<Layout>) -> Result<Frames, FrameError> {
+    let Text { rows: frames, lines, labels, times, remarks } = read_text(path, &layout.into(), &design.into())?;
     let samples = design.hardware.samples;
     let wrong = |values: &Vec<f64>| values.iter().position(|&value| !samples.takes(value));
     let found = frames.iter().enumerate().find_map(|(frame, values)| Some((frame, wrong(values)?)));
-    let Some((frame, column)) = found else { return Ok((frames, remark)) };
-    let at = text::line_of(path, labels, frame);
-    let place = match at {
+    let Some((frame, column)) = found else {
+        let remark = (!remarks.is_empty()).then(|| remarks.join("; "));
+        // A header of numbers has no time, and a bad line has one.
+        let times = times.filter(|times| times.len() == frames.len() && times.iter().all(|time| time.is_finite()));
+        return Ok(Frames { frames, times, remark });
+    };
+    let place = match lines.get(frame) {
         Some(line) => format!("line {line}, column {}", labels + column + 1),
         None => format!("[{frame}, {}]", labels + column),
     };
@@ -90,40 +131,66 @@ pub(crate) fn read_rows(
     path: &Path,
     wrong_length: impl Fn(usize) -> Option<usize>,
 ) -> Result<Vec<Vec<f64>>, FrameError> {
-    Ok(read_table(path, 0, None, wrong_length, |_| Ok(()))?.0)
+    Ok(read_table(path, &Layout::default(), None, wrong_length, |_| Ok(()))?.rows)
 }
 
-/// Reads the columns after the labels; `wrong_length` is given the number of all columns, `check` an array's shape, and a
-/// remark about the sensor has to be of `sensor`.
+/// Reads the columns after the labels; `wrong_length` is given the number of values of a row, `check` an array's shape.
 fn read_table(
     path: &Path,
-    labels: usize,
-    sensor: Option<&Sensor>,
+    layout: &Layout,
+    target: Option<&Target>,
     wrong_length: impl Fn(usize) -> Option<usize>,
     check: impl Fn(&[usize]) -> Result<(), String>,
-) -> Result<WithRemark, FrameError> {
+) -> Result<Text, FrameError> {
     let bytes = bytes_of(path)?;
     if !bytes.starts_with(npy::MAGIC) {
-        return text::read(path, &bytes, labels, sensor, wrong_length);
+        return text::read(path, &bytes, layout, target, wrong_length);
     }
     let wrong = |problem| FrameError::Array { path: path.to_path_buf(), problem };
     let array = npy::parse(&bytes).map_err(wrong)?;
     let [count, row @ ..] = array.shape.as_slice() else {
         return Err(wrong("it holds a single number".to_owned()));
     };
+    if array.values.is_empty() {
+        return Err(wrong(format!("the array is empty, {:?}", array.shape)));
+    }
     check(row).map_err(wrong)?;
     let length: usize = row.iter().product();
-    if let Some(expected) = wrong_length(length).filter(|_| *count > 0) {
-        return Err(wrong(format!("it has {length} values a row where {expected} are needed")));
+    let first = layout.first().min(length);
+    let end = layout.columns.map_or(length, |[_, last]| last.clamp(first, length));
+    if let Some(expected) = wrong_length(end - first) {
+        let more = if *count == expected { "; are frames its columns? Give its transpose" } else { "" };
+        return Err(wrong(format!(
+            "it has {length} values a row where {} are needed{more}",
+            layout.first() + expected
+        )));
     }
-    let rows: Vec<Vec<f64>> =
-        array.values.chunks(length.max(1)).map(|row| row[labels.min(length)..].to_vec()).collect();
-    for (row, values) in rows.iter().enumerate() {
-        if let Some(column) = values.iter().position(|value| !is_number(*value)) {
-            return Err(wrong(format!("[{row}, {}] is {}, no finite float32", labels + column, values[column])));
+    let dead = target.map_or(&[][..], |target| &target.dead);
+    let mut text = Text { labels: first, ..Text::default() };
+    for (row, values) in array.values.chunks(length.max(1)).enumerate() {
+        let mut values = values[first..end].to_vec();
+        for &taxel in dead {
+            values[taxel] = if is_number(values[taxel]) { values[taxel] } else { 0.0 };
+        }
+        match values.iter().position(|value| !is_number(*value)) {
+            None => text.rows.push(values),
+            Some(_) if layout.skip_bad => {}
+            Some(column) => {
+                let value = values[column];
+                return Err(wrong(format!(
+                    "[{row}, {}] is {value}, no finite float32: name a taxel that is dead in sensor.dead, or leave such \
+                     frames out with --skip-bad",
+                    first + column
+                )));
+            }
         }
     }
-    Ok((rows, None))
+    let bad = count - text.rows.len();
+    if bad > 0 {
+        text.remarks
+            .push(format!("{}: {bad} of {count} frames have values that are no numbers: left out", path.display()));
+    }
+    Ok(text)
 }
 
 /// The content of a file that may be one of frames.
@@ -142,7 +209,7 @@ pub(crate) fn first_line(path: &Path) -> Result<Option<String>, FrameError> {
         return Ok(None);
     }
     let text = String::from_utf8_lossy(&bytes);
-    let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
+    let line = text.split(['\n', '\r']).map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
     Ok(Some(line.unwrap_or("").to_owned()))
 }
 

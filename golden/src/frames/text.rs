@@ -2,49 +2,78 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{FrameError, is_number, npy};
+use super::layout::{Layout, Target};
+use super::{FrameError, blocks, is_number};
 use crate::geometry;
-use crate::sensor::Sensor;
-use crate::separator::Separator;
+use crate::separator::{self, Comma, Separator, is_unknown};
 
 /// What some programs write before the first line.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// So few numbers in turn may be a frame: no sensor has fewer taxels.
 const FEWEST_NUMBERED: usize = 4;
 
-/// The finite number, within the range of a float32, that a field holds.
-fn number(separator: Separator, field: &[u8]) -> Option<f64> {
-    separator.value(field).filter(|&value| is_number(value))
+/// Rows of a file with their lines, and what is to be said of it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Text {
+    pub(super) rows: Vec<Vec<f64>>,
+    /// The line of each row, from 1.
+    pub(super) lines: Vec<usize>,
+    /// Columns before the values.
+    pub(super) labels: usize,
+    /// The time of each row in seconds, where the header names such a column.
+    pub(super) times: Option<Vec<f64>>,
+    pub(super) remarks: Vec<String>,
 }
 
-/// Reads lines one after the other; of each the columns after the labels.
+/// What has been read of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Begin,
+    /// A line of names.
+    Header,
+    Rows,
+}
+
+/// Reads lines one after the other; of each the columns of the values.
 #[derive(Clone, Debug)]
 pub(super) struct Lines {
     /// Where they come from, for messages.
     path: PathBuf,
-    labels: usize,
-    /// The sensor that they are read for, if it is to be that of a remark.
-    sensor: Option<Sensor>,
+    layout: Layout,
+    /// What they are read for; nothing for tables that are no frames.
+    target: Option<Target>,
     /// That of the first line which has one; spaces between the words of a header are none.
     separator: Option<Separator>,
-    /// Whether a line was a header or a frame.
-    begun: bool,
-    /// How many there were.
+    state: State,
+    /// The line of names.
+    header: Option<Vec<u8>>,
+    /// Which column holds times, and seconds of their unit.
+    time: Option<(usize, f64)>,
+    /// How many lines there were.
     number: usize,
-    /// The line whose numbers were taken for those of the columns, and the last one of them.
-    numbered: Option<[usize; 2]>,
+    /// Whether a comma is a decimal point for certain, and the first one of which that is not clear.
+    decimal: bool,
+    unclear: Option<(usize, usize, String)>,
+    /// Lines that were left out, and what was wrong with the first.
+    bad: Option<(usize, String)>,
+    remarks: Vec<String>,
 }
 
 impl Lines {
-    pub(super) fn new(path: &Path, labels: usize, sensor: Option<&Sensor>) -> Self {
+    pub(super) fn new(path: &Path, layout: &Layout, target: Option<&Target>) -> Self {
         Self {
             path: path.to_path_buf(),
-            labels,
-            sensor: sensor.cloned(),
+            layout: layout.clone(),
+            target: target.cloned(),
             separator: None,
-            begun: false,
+            state: State::Begin,
+            header: None,
+            time: None,
             number: 0,
-            numbered: None,
+            decimal: false,
+            unclear: None,
+            bad: None,
+            remarks: Vec::new(),
         }
     }
 
@@ -58,22 +87,22 @@ impl Lines {
         self.number
     }
 
-    /// What is to be said of a first line that numbers the columns.
-    pub(super) fn remark(&self) -> Option<String> {
-        let [line, last] = self.numbered?;
-        Some(format!(
-            "{}, line {line}: numbers in turn up to {last} are those of the columns, as pandas writes them; the line is taken for a header",
-            self.path.display()
-        ))
+    /// What is to be said of the lines so far.
+    pub(super) fn remarks(&self) -> Vec<String> {
+        let path = self.path.display();
+        let bad =
+            self.bad.as_ref().map(|(count, first)| format!("{path}: {count} lines are left out; the first: {first}"));
+        self.remarks.iter().cloned().chain(bad).collect()
     }
 
     /// Columns before the values.
     pub(super) fn labels(&self) -> usize {
-        self.labels
+        self.layout.first()
     }
 
-    /// The numbers of the next line. Nothing for a blank one, for one that begins with #, and for a first one without any
-    /// number after the labels, or with those of the taxels in turn; a byte order mark is skipped. `wrong_length` is given the number of all columns.
+    /// The numbers of the next line. Nothing for a blank one, for one that begins with #, for lines of names and units,
+    /// and for a first one with the numbers of the columns. `wrong_length` is given the number of values and returns the
+    /// number wanted, if that is another.
     pub(super) fn row(
         &mut self,
         line: &[u8],
@@ -83,77 +112,307 @@ impl Lines {
         let line = if self.number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(line) } else { line };
         let content = line.trim_ascii();
         if content.starts_with(b"#")
-            && let Some(sensor) = &self.sensor
+            && let Some(target) = &self.target
         {
-            geometry::compare_remark(content, &self.path, self.number, sensor)?;
+            geometry::compare_remark(content, &self.path, self.number, &target.sensor)?;
         }
-        if content.is_empty() || content.starts_with(b"#") {
+        if self.number <= self.layout.skip_lines || content.is_empty() || content.starts_with(b"#") {
             return Ok(None);
         }
-        let is_first = !std::mem::replace(&mut self.begun, true);
+        // As spreadsheets have it.
+        if let [b's' | b'S', b'e' | b'E', b'p' | b'P', b'=', separator] = content {
+            self.separator = Some(Separator::Byte(*separator));
+            return Ok(None);
+        }
+        if self.header.as_deref() == Some(content) {
+            let remark = format!(
+                "{}, line {}: the header again, as between recordings that were put behind each other; what follows are frames of \
+                 the same",
+                self.path.display(),
+                self.number
+            );
+            if !self.remarks.iter().any(|said| said.contains("the header again")) {
+                self.remarks.push(remark);
+            }
+            return Ok(None);
+        }
         let separator = self.separator.unwrap_or_else(|| Separator::of(content));
         let fields = separator.fields(content);
         if let Some(separator) = foreign(content) {
             return Err(FrameError::Separator { path: self.path.clone(), line: self.number, separator });
         }
-        let is_header = is_first && fields.iter().skip(self.labels).all(|field| no_number(field));
+        let is_words = fields.iter().skip(self.labels()).all(|field| no_number(field));
+        let is_header = match self.state {
+            State::Begin => is_words,
+            State::Header => is_words && self.is_units(&fields),
+            State::Rows => false,
+        };
         self.separator = Some(separator).filter(|separator| !is_header || matches!(separator, Separator::Byte(_)));
         if is_header {
+            if self.state == State::Begin {
+                self.header = Some(content.to_vec());
+                self.names(&fields)?;
+            }
+            self.state = State::Header;
             return Ok(None);
         }
-        let mut row = Vec::with_capacity(fields.len());
-        for (index, field) in fields.iter().enumerate().skip(self.labels) {
-            row.push(number(separator, field).ok_or_else(|| FrameError::Value {
-                path: self.path.clone(),
-                line: self.number,
-                column: index + 1,
-                text: String::from_utf8_lossy(field).chars().take(40).collect(),
-            })?);
-        }
-        match wrong_length(fields.len()) {
-            None if is_first && self.sensor.is_some() && numbers_columns(&row, self.labels) => {
-                self.numbered = Some([self.number, row[row.len() - 1] as usize]);
+        let is_first = std::mem::replace(&mut self.state, State::Rows) == State::Begin;
+        match self.values(separator, content, wrong_length) {
+            Ok(row) if is_first && self.target.is_some() && numbers_columns(&row, self.labels()) => {
+                self.numbered(self.number, &row);
                 Ok(None)
             }
-            None => Ok(Some(row)),
-            Some(expected) => {
-                Err(FrameError::Length { path: self.path.clone(), line: self.number, found: fields.len(), expected })
+            Ok(row) => Ok(Some(row)),
+            Err(error) if self.layout.skip_bad => {
+                self.bad.get_or_insert_with(|| (0, error.to_string())).0 += 1;
+                Ok(None)
             }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Says that a row was taken for the numbers of the columns.
+    pub(super) fn numbered(&mut self, line: usize, row: &[f64]) {
+        let remark = format!(
+            "{}, line {line}: numbers in turn up to {} are those of the columns, as pandas writes them; the line is taken for a header",
+            self.path.display(),
+            row[row.len() - 1]
+        );
+        self.remarks.push(remark);
+    }
+
+    /// The values of a line behind the labels.
+    fn values(
+        &mut self,
+        separator: Separator,
+        content: &[u8],
+        wrong_length: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Vec<f64>, FrameError> {
+        let first = self.labels();
+        let is_dead = |taxel: usize| self.target.as_ref().is_some_and(|target| target.dead.contains(&taxel));
+        let mut fields = separator.fields(content);
+        let right = |count: usize| count >= first && wrong_length(count - first).is_none();
+        // A blank at the end is the last taxel, if that is dead, and else nothing.
+        let all = separator.split(content);
+        if !right(fields.len()) && right(all.len()) && is_dead(all.len() - first - 1) {
+            fields = all;
+        }
+        let (path, line) = (self.path.clone(), self.number);
+        let end = self.layout.columns.map_or(fields.len(), |[_, last]| last);
+        if fields.len() < end {
+            let hint = self.length_hint(fields.len(), end);
+            return Err(FrameError::Length { path, line, found: fields.len(), expected: end, hint });
+        }
+        let mut row = Vec::with_capacity(end);
+        for (index, field) in fields.iter().enumerate().take(end).skip(first) {
+            let number = separator::number(field).filter(|&value| is_number(value));
+            let comma = Comma::of(field);
+            let text = || String::from_utf8_lossy(field).chars().take(40).collect::<String>();
+            match comma {
+                Some(Comma::Decimal) if number.is_some() => self.decimal = true,
+                Some(Comma::Unclear) if number.is_none() => {
+                    return Err(FrameError::Thousands { path, line, column: index + 1, text: text() });
+                }
+                Some(Comma::Unclear) => {
+                    self.unclear.get_or_insert_with(|| (line, index + 1, text()));
+                }
+                _ => {}
+            }
+            let is_dead = self.target.as_ref().is_some_and(|target| target.dead.contains(&(index - first)));
+            let value = number.or(is_dead.then_some(0.0)).ok_or_else(|| {
+                let text = text();
+                FrameError::Value {
+                    path: path.clone(),
+                    line,
+                    column: index + 1,
+                    remedy: self.value_remedy(&text),
+                    text,
+                }
+            })?;
+            row.push(value);
+        }
+        match wrong_length(row.len()) {
+            None => Ok(row),
+            Some(wanted) => {
+                let expected = first + wanted;
+                let hint = self.length_hint(fields.len(), expected);
+                Err(FrameError::Length { path, line, found: fields.len(), expected, hint })
+            }
+        }
+    }
+
+    /// What to do about a field that is no number.
+    fn value_remedy(&self, text: &str) -> String {
+        let counts = self.target.as_ref().is_some_and(|target| target.counts);
+        if is_unknown(text) && self.target.is_some() {
+            return "name a taxel that is dead in sensor.dead, or leave such frames out with --skip-bad".to_owned();
+        }
+        let what = if counts { "the sensor's count, such as 1012" } else { "the stress in pascals, such as -1250.5" };
+        format!(
+            "give {what}, separated by commas, semicolons, tabs or spaces; columns before the values need --labels, columns \
+             behind them --columns FIRST-LAST, lines above them --skip-lines, and a header has no number in it"
+        )
+    }
+
+    /// What to do about a line of another length than `expected`, the labels among it.
+    fn length_hint(&self, found: usize, expected: usize) -> String {
+        let Some(target) = &self.target else { return "give a line of forces for each frame".to_owned() };
+        let (first, taxels) = (self.labels(), target.sensor.taxels());
+        let hint = match found.saturating_sub(expected) {
+            0 => String::new(),
+            more if more == taxels => format!(
+                "; are these decimal commas? Separate the values by semicolons. Or two arrays in a line? Say which with \
+                 --columns {}-{} or --columns {}-{}",
+                first + 1,
+                first + taxels,
+                first + taxels + 1,
+                first + 2 * taxels
+            ),
+            more => format!(
+                "; {more} columns more than taxels, a time or a total: in front of the values? Say so with --labels {}. Behind \
+                 them? With --columns {}-{}",
+                first + more,
+                first + 1,
+                first + taxels
+            ),
+        };
+        let what = if target.counts { "count" } else { "stress" };
+        format!("give one {what} for each taxel of the sensor{hint}")
+    }
+
+    /// Finds the columns of the values and of times by the names of a header.
+    fn names(&mut self, fields: &[&[u8]]) -> Result<(), FrameError> {
+        let Some(target) = &self.target else { return Ok(()) };
+        let (first, taxels) = (self.labels(), target.sensor.taxels());
+        let names: Vec<String> = fields.iter().map(|field| String::from_utf8_lossy(field).into_owned()).collect();
+        // Names that differ by numbers alone.
+        let kinds: Vec<String> = names.iter().map(|name| kind_of(name)).collect();
+        let mut runs: Vec<[usize; 2]> = Vec::new();
+        let mut at = 0;
+        for run in kinds.chunk_by(|a, b| a == b) {
+            if run.len() == taxels && run[0].contains('#') {
+                runs.push([at + 1, at + taxels]);
+            }
+            at += run.len();
+        }
+        let wrong = |problem: String| FrameError::Columns { path: self.path.clone(), line: self.number, problem };
+        let shown = |[first, last]: [usize; 2]| format!("{} to {}", names[first - 1], names[last - 1]);
+        if let (&[[from, to]], None) = (&runs[..], self.layout.columns) {
+            if first > 0 && first != from - 1 {
+                return Err(wrong(format!(
+                    "the header names columns {from} to {to}, {}, for the taxels, and --labels {first} takes others: \
+                     leave --labels away",
+                    shown([from, to])
+                )));
+            }
+            if from > 1 && first == 0 || names.len() > to {
+                self.remarks.push(format!(
+                    "{}, line {}: columns {from} to {to}, {}, are the taxels, as the header names them",
+                    self.path.display(),
+                    self.number,
+                    shown([from, to])
+                ));
+                self.layout.columns = Some([from, to]);
+            }
+        } else if let (&[a, b, ..], None, true) = (&runs[..], self.layout.columns, names.len() > first + taxels) {
+            let [left, right] = [a, b].map(|[from, to]| format!("--columns {from}-{to} ({})", shown([from, to])));
+            return Err(wrong(format!("a line holds several arrays: say which with {left} or {right}")));
+        }
+        let before = self.labels().min(names.len());
+        self.time = names[..before].iter().enumerate().find_map(|(column, name)| Some((column, seconds(name)?)));
+        Ok(())
+    }
+
+    /// Whether the fields of a second line of words are units: the same for all taxels.
+    fn is_units(&self, fields: &[&[u8]]) -> bool {
+        let values = fields.get(self.labels()..).unwrap_or_default();
+        self.target.is_some() && values.len() > 1 && values.iter().all(|field| *field == values[0])
+    }
+
+    /// What is still to be refused at the end: commas that may be either.
+    pub(super) fn unclear(&self) -> Result<(), FrameError> {
+        match &self.unclear {
+            Some((line, column, text)) if !self.decimal => {
+                Err(FrameError::Thousands { path: self.path.clone(), line: *line, column: *column, text: text.clone() })
+            }
+            _ => Ok(()),
         }
     }
 }
 
-/// Reads all rows of a text, see [`Lines::row`], and what is to be said of its header.
+/// A name with `#` in the place of each of its numbers.
+fn kind_of(name: &str) -> String {
+    let mut kind = String::new();
+    for letter in name.chars() {
+        if !letter.is_ascii_digit() {
+            kind.push(letter);
+        } else if !kind.ends_with('#') {
+            kind.push('#');
+        }
+    }
+    kind
+}
+
+/// Seconds of the unit of a column of times, by its name; nothing for another column.
+pub(crate) fn seconds(name: &str) -> Option<f64> {
+    let lower = name.to_lowercase();
+    let mut words = lower.split(|c: char| !c.is_alphanumeric() && c != 'µ').filter(|word| !word.is_empty());
+    let is_time = matches!(words.next()?, "t" | "time" | "timestamp" | "zeit");
+    let unit = match words.next() {
+        None | Some("s" | "sec" | "seconds") => 1.0,
+        Some("ms" | "millis" | "milliseconds") => 1e-3,
+        Some("us" | "µs" | "micros" | "microseconds") => 1e-6,
+        Some("ns") => 1e-9,
+        Some(_) => return None,
+    };
+    is_time.then_some(unit)
+}
+
+/// Reads all rows of a text, see [`Lines::row`], or blocks of rows where the shape of the file says so.
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
-    labels: usize,
-    sensor: Option<&Sensor>,
+    layout: &Layout,
+    target: Option<&Target>,
     wrong_length: impl Fn(usize) -> Option<usize>,
-) -> Result<(Vec<Vec<f64>>, Option<String>), FrameError> {
-    // By hand, since a CSV reader skips blank lines without counting them and a message needs the right line.
-    let mut lines = Lines::new(path, labels, sensor);
-    let rows = bytes.split(|&byte| byte == b'\n').filter_map(|line| lines.row(line, &wrong_length).transpose());
-    let rows = rows.collect::<Result<_, _>>()?;
-    Ok((rows, lines.remark()))
-}
-
-/// The line, from 1, on which a frame of a file that was read before stands; none in an array.
-pub(super) fn line_of(path: &Path, labels: usize, frame: usize) -> Option<usize> {
-    let bytes = std::fs::read(path).ok().filter(|bytes| !bytes.starts_with(npy::MAGIC))?;
-    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes);
-    let lines = text.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).enumerate();
-    let mut rows = lines.filter(|(_, content)| !content.is_empty() && !content.starts_with(b"#"));
-    let (first, content) = rows.next()?;
-    let separator = Separator::of(content);
-    // A header may have fewer fields than there are labels.
-    let fields: Vec<_> = separator.fields(content).into_iter().skip(labels).collect();
-    let row: Option<Vec<f64>> = fields.iter().map(|field| number(separator, field)).collect();
-    let has_header =
-        fields.iter().all(|field| no_number(field)) || row.is_some_and(|row| numbers_columns(&row, labels));
-    let (index, _) =
-        if has_header { rows.nth(frame)? } else { std::iter::once((first, content)).chain(rows).nth(frame)? };
-    Some(index + 1)
+) -> Result<Text, FrameError> {
+    if let Some(target) = target.filter(|_| layout.first() == 0 && layout.columns.is_none())
+        && let Some(text) = blocks::read(path, bytes, layout, target)?
+    {
+        return Ok(text);
+    }
+    let mut lines = Lines::new(path, layout, target);
+    let mut text = Text::default();
+    let mut labels: Vec<bool> = Vec::new();
+    for line in separator::lines(bytes) {
+        let Some(row) = lines.row(line, &wrong_length)? else { continue };
+        let fields = lines.separator.map(|separator| separator.split(line.trim_ascii())).unwrap_or_default();
+        let label = |column: usize| {
+            let label = *fields.get(column)?;
+            separator::number(label)
+        };
+        if let Some((column, unit)) = lines.time {
+            text.times.get_or_insert_default().push(label(column).map_or(f64::NAN, |time| unit * time));
+        }
+        labels.push(lines.labels() == 0 || label(0).is_some());
+        text.rows.push(row);
+        text.lines.push(lines.number);
+    }
+    lines.unclear()?;
+    // A header of numbers: its label is a word where all others are numbers, or its values ascend as no other's do.
+    let is_numbers = target.is_some()
+        && lines.header.is_none()
+        && text.rows.len() > 1
+        && is_whole(&text.rows[0])
+        && (!labels[0] && labels[1..].iter().all(|&is_number| is_number)
+            || ascends(&text.rows[0]) && !text.rows[1..].iter().any(|row| ascends(row)));
+    if is_numbers {
+        let row = text.rows.remove(0);
+        lines.numbered(text.lines.remove(0), &row);
+    }
+    text.labels = lines.labels();
+    text.remarks = lines.remarks();
+    Ok(text)
 }
 
 /// What separates the numbers of a line, where that is nothing that separates values here.
@@ -181,7 +440,17 @@ fn numbers_columns(row: &[f64], labels: usize) -> bool {
     row.len() >= FEWEST_NUMBERED && [0, 1, labels].into_iter().any(from)
 }
 
-/// Whether a field is that of a header: text and no number of any kind.
+/// Whether all values are those of a count from 0 on.
+fn is_whole(row: &[f64]) -> bool {
+    row.len() >= FEWEST_NUMBERED && row.iter().all(|&value| value >= 0.0 && value.fract() == 0.0)
+}
+
+/// Whether values are whole and each is larger than the one before, as the numbers of a sensor's taxels with gaps.
+pub(super) fn ascends(row: &[f64]) -> bool {
+    is_whole(row) && row.windows(2).all(|pair| pair[1] > pair[0])
+}
+
+/// Whether a field is that of a header: text, of any encoding, and no number of any kind.
 fn no_number(field: &[u8]) -> bool {
-    std::str::from_utf8(field).is_ok_and(|text| text.replace(',', ".").parse::<f64>().is_err())
+    String::from_utf8_lossy(field).replace(',', ".").parse::<f64>().is_err()
 }

@@ -322,7 +322,9 @@ fn dead_taxels_within_a_contact_are_named() {
     found(&design, &without(&[44], 0.0), &[Kind::Dead], &["taxel 44 (4, 4) reads", "sensor.dead"]);
     found(&design, &without(&[54], -300.0), &[Kind::Dead], &["taxel 54 (4, 5) reads"]);
     let row: Vec<usize> = (50..60).collect();
-    found(&design, &without(&row, 0.0), &[Kind::Dead], &["taxels 5", "(4, 5)", "read the same"]);
+    found(&design, &without(&row, 0.0), &[Kind::Dead], &["row 5 of the matrix", "reads the same", "wire broken"]);
+    let column: Vec<usize> = (0..10).map(|row| 10 * row + 4).collect();
+    found(&design, &without(&column, 0.0), &[Kind::Dead], &["column 4 of the matrix", "leave out that part"]);
     // One far from the contact may well read nothing, and the design knows of this one.
     found(&design, &without(&[0], 0.0), &[], &[]);
     design.input.dead = vec![44];
@@ -387,4 +389,59 @@ fn rest_is_told_and_no_contact_is_made_of_it() {
     assert!(status(&design).contains(golden::solver::Status::NO_CONTACT), "as the message says");
     let contacts = frames(&design);
     found(&design, &[rest, contacts].concat(), &[], &[]);
+}
+
+#[test]
+fn frames_that_are_each_scaled_by_their_own_peak() {
+    let design = design("sensor1-joint");
+    let frames = frames(&design);
+    for largest in [1.0, 255.0] {
+        let scaled: Vec<Vec<f64>> = frames
+            .iter()
+            .map(|frame| {
+                let peak = frame.iter().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
+                frame.iter().map(|pa| largest * pa / peak).collect()
+            })
+            .collect();
+        found(
+            &design,
+            &scaled,
+            &[Kind::Scaled],
+            &["all 36 frames have the same largest reading", "scale all frames alike"],
+        );
+    }
+}
+
+#[test]
+fn noise_about_the_tare_is_no_tension() {
+    let reads = design("sensor1-clipped");
+    let noise = |frame: usize, taxel: usize| f64::from(((frame * 7919 + taxel * 104_729) % 1601) as u32) / 800.0 - 1.0;
+    let frames = frames(&reads);
+    let peak = frames.iter().flatten().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
+    let noisy: Vec<Vec<f64>> = frames
+        .iter()
+        .enumerate()
+        .map(|(k, frame)| frame.iter().enumerate().map(|(i, pa)| pa.min(0.0) + 0.03 * peak * noise(k, i)).collect())
+        .collect();
+    let findings = look(&reads, &noisy);
+    assert!(findings.iter().all(|finding| finding.kind != Kind::Tension), "{findings:?}");
+}
+
+/// An array of as many frames as rows and columns says which axis the frames are along, if that shows.
+#[test]
+fn an_array_with_its_frames_last() {
+    let (design, mut found) = (pad(10, 10, 3.0), 0);
+    for kind in golden::scene::Kind::ALL {
+        let frames: Vec<Vec<f64>> =
+            kind.frames(&design.sensor, 0.8, 500..510).unwrap().into_iter().map(|frame| frame.stress).collect();
+        let last: Vec<Vec<f64>> =
+            (0..10).map(|y| (0..100).map(|at| frames[at % 10][10 * y + at / 10]).collect()).collect();
+        let axis = |frames: &[Vec<f64>]| {
+            let findings = check(&design, frames, None);
+            findings.into_iter().find(|finding| finding.to_string().contains("moveaxis(frames, 2, 0)"))
+        };
+        assert_eq!(axis(&frames), None, "{}", kind.title());
+        found += usize::from(axis(&last).is_some());
+    }
+    assert!(found >= 9, "found in {found} of 18 kinds");
 }

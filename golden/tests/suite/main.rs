@@ -20,6 +20,7 @@ mod joint;
 mod large;
 mod matrices;
 mod products;
+mod readers;
 mod recorded;
 mod recording;
 mod reduced;

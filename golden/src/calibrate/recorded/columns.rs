@@ -1,5 +1,7 @@
 //! What the columns of a table mean, by their names and units.
 
+use crate::frames::seconds;
+
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
@@ -8,6 +10,8 @@ pub(super) enum Meaning {
     Pressure,
     /// Which contact, in words.
     Contact,
+    /// When, in seconds.
+    Time,
 }
 
 /// Newtons of a kilogram's weight.
@@ -21,6 +25,10 @@ pub(super) fn meanings(
     let mut unused = Vec::new();
     let mut found = Vec::new();
     for (column, name) in names.iter().enumerate() {
+        if let Some(unit) = seconds(name) {
+            found.push(Some((Meaning::Time, unit)));
+            continue;
+        }
         let lower = name.to_lowercase();
         let cut = lower.find(['(', '[', '{', '/']).unwrap_or(lower.len());
         let (mut base, mut unit) =
@@ -43,7 +51,7 @@ pub(super) fn meanings(
         let is_mass = base.contains("mass");
         let factor = match (unit.to_lowercase().as_str(), meaning) {
             ("", Meaning::Force(_)) if is_mass => return Err(format!("column {name:?} has no unit")),
-            ("", _) | (_, Meaning::Contact) => 1.0,
+            ("", _) | (_, Meaning::Contact | Meaning::Time) => 1.0,
             (unit, meaning) => match worth(unit) {
                 Some((factor, pressure)) if pressure == (meaning == Meaning::Pressure) => factor,
                 _ => {
@@ -81,6 +89,11 @@ fn meaning(name: &str) -> Option<Meaning> {
         "contact" | "place" | "hold" | "trial" | "position" | "point" => Meaning::Contact,
         _ => return None,
     })
+}
+
+/// What a unit of pressure, in small letters, is worth in pascals.
+pub(crate) fn pressure_unit(unit: &str) -> Option<f64> {
+    worth(unit).and_then(|(factor, pressure)| pressure.then_some(factor))
 }
 
 /// What a unit is worth in newtons, or in pascals, and whether it is a pressure.

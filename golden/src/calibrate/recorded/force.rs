@@ -1,6 +1,6 @@
 //! Constants from frames with measured forces.
 
-use super::fit::Work;
+use super::fit::{Validated, Work};
 use super::folds::{Folds, levels};
 use super::gains::Evidence;
 use super::report::{Errors, Hold, Recorded, TaxelGain};
@@ -10,11 +10,20 @@ use super::table::Measured;
 use super::{RecordedError, friction, report, sideways};
 use super::{holds, loads};
 use crate::design::Design;
+use crate::solver::{Solver, Status};
 
 /// Fewer places tell no gains of taxels.
 const PLACES: usize = 6;
 /// A correlation of loads found and measured below this means that they do not belong together.
 const FOLLOWS: f64 = 0.5;
+/// Loads of this share of the largest are solved again with what was found,
+const HEAVY: f64 = 0.1;
+/// of about so many frames,
+const SOLVED: usize = 400;
+/// of which this share at most may be no contact.
+const NOTHING: f64 = 0.25;
+/// An error that is this much larger than twice the fitted one is another.
+const APART: f64 = 0.03;
 
 /// Fits curve, common gain, gains of the taxels and constants of friction to frames (values as they are in the file, one
 /// a taxel) and the forces measured with them, and says what they could tell. Where `F_x` and `F_y` are known and no `F_z`,
@@ -62,10 +71,14 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
     let stresses: Vec<Vec<f64>> = work.holds.all.iter().map(|hold| work.stress(&found, &hold.x)).collect();
     let largest = stresses.iter().map(|stress| peak(stress)).fold(0.0, f64::max);
     let gains: Vec<f64> = found.delta.iter().zip(&work.before).map(|(delta, before)| before * (1.0 + delta)).collect();
-    let mut calibrated = work.readings.calibrated(design, &found.shape, &gains, largest, &mut remarks);
+    let heavy = |load: f64| load >= HEAVY * steps.last().map_or(0.0, |last| last[1]);
+    let pressed = stresses.iter().zip(&work.loads).filter(|(_, load)| heavy(**load));
+    let range = [pressed.map(|(stress, _)| peak(stress)).fold(f64::INFINITY, f64::min), largest];
+    let mut calibrated = work.readings.calibrated(design, &found.shape, &gains, range, &mut remarks);
     remarks.extend(work.readings.far_from(design, &calibrated));
     let halves = prior.zip(folds.as_ref()).map(|(prior, folds)| work.halves(&found, prior, folds));
     let friction = friction::fit(&mut calibrated, &work.holds.all, &stresses, folds.as_ref())?;
+    remarks.extend(verify(&calibrated, frames, &work, &fitted)?);
     let validated = left_out.as_ref().unwrap_or(&fitted);
     let shown = work.holds.all.iter().zip(&validated.errors).map(|(hold, error)| Hold {
         frames: [hold.frames.start, hold.frames.end - 1],
@@ -109,6 +122,60 @@ pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> 
         },
     );
     Ok(recorded)
+}
+
+/// Solves the recording with what was found: loaded frames are contacts, with the loads that the fit has. What is to be said
+/// of those that are none.
+fn verify(
+    design: &Design,
+    frames: &[Vec<f64>],
+    work: &Work<'_>,
+    fitted: &Validated,
+) -> Result<Option<String>, RecordedError> {
+    let wrong = |problem: String| {
+        RecordedError::Recording {
+        name: design.name.clone(),
+        problem,
+        remedy: "do frames and forces belong together? Give both a column of times, or cut them so that both begin with the \
+                 same touch"
+            .to_owned(),
+    }
+    };
+    let solver = Solver::new(design)?;
+    let largest = work.loads.iter().fold(0.0_f64, |most, &load| most.max(load));
+    let step = frames.len().div_ceil(SOLVED);
+    let (mut errors, mut fits, mut counts) = (Vec::new(), Vec::new(), [0; 2]);
+    for (index, hold) in work.holds.all.iter().enumerate().filter(|(_, hold)| hold.load >= HEAVY * largest) {
+        for frame in hold.frames.clone().step_by(step) {
+            counts[0] += 1;
+            counts[1] += usize::from(solver.solve(&frames[frame])?.status.contains(Status::NO_CONTACT));
+        }
+        let mean: Vec<f64> = hold.x.iter().zip(&work.holds.rest).map(|(x, rest)| work.holds.sign * x + rest).collect();
+        errors.push((solver.solve(&mean)?.resultant[2].abs() / hold.load - 1.0).abs());
+        fits.push(fitted.errors[index].abs());
+    }
+    let [loaded, nothing] = counts;
+    if nothing as f64 > NOTHING * loaded as f64 {
+        return Err(wrong(format!(
+            "with the constants found, {nothing} of {loaded} loaded frames are \"no contact\": frames without load vary as much \
+             as those"
+        )));
+    }
+    let [error, fit] = [errors, fits].map(|mut errors| {
+        errors.sort_by(f64::total_cmp);
+        errors.get(errors.len() / 2).copied().unwrap_or(0.0)
+    });
+    if error > 2.0 * fit + APART {
+        return Err(wrong(format!(
+            "solved with the constants found, the recording's loads err by {:.1} % in the median, and they were fitted to \
+             {:.1} %",
+            100.0 * error,
+            100.0 * fit
+        )));
+    }
+    Ok((nothing > 0).then(|| {
+        format!("{nothing} of {loaded} loaded frames are \"no contact\" by algorithm.noise_floor_pa: light loads lie within the noise")
+    }))
 }
 
 fn peak(stress: &[f64]) -> f64 {

@@ -14,7 +14,6 @@ mod gains;
 mod holds;
 mod loads;
 mod page;
-
 mod readings;
 mod report;
 mod rows;
@@ -25,6 +24,7 @@ mod uniform;
 
 use std::path::PathBuf;
 
+pub(crate) use columns::pressure_unit;
 pub use force::fit_forces;
 pub use page::page;
 pub use report::{Errors, Hold, Recorded, TaxelGain};

@@ -82,13 +82,13 @@ impl Readings {
         }
     }
 
-    /// The design with a curve and gains, for stress as large as was seen.
+    /// The design with a curve and gains, for stress as large as was seen, the least and the largest of loaded frames.
     pub(super) fn calibrated(
         &self,
         design: &Design,
         shape: &Shape,
         gains: &[f64],
-        largest: f64,
+        [least, largest]: [f64; 2],
         remarks: &mut Vec<String>,
     ) -> Design {
         let mut calibrated = design.clone();
@@ -158,7 +158,12 @@ impl Readings {
             calibrated.algorithm.noise_floor_pa = full_scale / NOISE_FLOOR_DIVISOR;
         }
         let was = calibrated.algorithm.noise_floor_pa;
-        if let Some(floor) = floor.filter(|&floor| floor > was && floor < 0.1 * full_scale) {
+        if let Some(floor) = floor.filter(|&floor| floor >= least) {
+            remarks.push(format!(
+                "algorithm.noise_floor_pa stays {was:.1}: the frames without load vary by up to {floor:.1}, and loaded ones read \
+                 no more than {least:.1}"
+            ));
+        } else if let Some(floor) = floor.filter(|&floor| floor > was && floor < 0.1 * full_scale) {
             remarks.push(format!(
                 "algorithm.noise_floor_pa is {floor:.1} now, it was {was:.1}: {QUIET} deviations of the frames without load"
             ));

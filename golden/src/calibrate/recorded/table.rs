@@ -8,10 +8,7 @@ use std::path::Path;
 use super::RecordedError;
 use super::columns::{Meaning, meanings};
 use crate::frames::{Array, read_array};
-use crate::separator::Separator;
-
-/// What stands for an unknown value.
-const UNKNOWN: [&str; 6] = ["", "-", "nan", "na", "n/a", "none"];
+use crate::separator::{self, Comma, Separator, is_unknown};
 
 /// What was measured, frame by frame: forces and pressures have an entry for each, known or not.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,6 +19,8 @@ pub struct Measured {
     pub pressures: Vec<Option<f64>>,
     /// The name of the contact, where a column has one.
     pub contacts: Option<Vec<String>>,
+    /// The time of each line in seconds, where a column has it.
+    pub times: Option<Vec<f64>>,
     /// What was taken for what.
     pub remarks: Vec<String>,
 }
@@ -38,13 +37,75 @@ impl Measured {
     }
 }
 
+/// Frames and forces must have this share of the frames' time in common.
+const COMMON: f64 = 0.5;
+
+impl Measured {
+    /// What was measured at the times of the frames, in seconds: between two lines a straight line, beyond the first and the
+    /// last nothing. Without times of its own it stays as it is.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with times that fall, or that have less than half of the frames' in common with them.
+    pub fn at(&self, frames: &[f64]) -> Result<Self, String> {
+        let Some(times) = &self.times else { return Ok(self.clone()) };
+        let falls = |times: &[f64]| times.windows(2).any(|pair| pair[1] < pair[0]);
+        if falls(frames) || falls(times) || times.is_empty() {
+            return Err("times fall from one line to the next: leave their column out, or sort the lines".to_owned());
+        }
+        let (begin, end) = (times[0], times[times.len() - 1]);
+        let common = frames.iter().filter(|time| (begin..=end).contains(*time)).count();
+        if (common as f64) < COMMON * frames.len() as f64 {
+            return Err(format!(
+                "the frames' times go from {} to {} s, the forces' from {begin} to {end} s: give both the same clock and a unit \
+                 in the header, or leave the columns of times out",
+                frames[0],
+                frames[frames.len() - 1]
+            ));
+        }
+        let lines: Vec<Option<(usize, f64)>> = frames
+            .iter()
+            .map(|&time| {
+                let next = times.partition_point(|&other| other < time);
+                match (times.get(next), next.checked_sub(1)) {
+                    (Some(&at), Some(before)) if at > time => {
+                        Some((before, (time - times[before]) / (at - times[before])))
+                    }
+                    (Some(&at), _) if at.total_cmp(&time).is_eq() => Some((next, 0.0)),
+                    _ => None,
+                }
+            })
+            .collect();
+        let value = |of: &dyn Fn(usize) -> Option<f64>| -> Vec<Option<f64>> {
+            let between = |&(line, share): &(usize, f64)| match share {
+                0.0 => of(line),
+                share => Some((1.0 - share) * of(line)? + share * of(line + 1)?),
+            };
+            lines.iter().map(|line| line.as_ref().and_then(between)).collect()
+        };
+        let force = [0, 1, 2].map(|axis| value(&|line| self.forces[line][axis]));
+        let nearest = |(line, share): (usize, f64)| line + usize::from(share > 0.5);
+        let contact = |names: &Vec<String>| {
+            lines.iter().map(|line| line.map_or(String::new(), |line| names[nearest(line)].clone())).collect()
+        };
+        let mut remarks = self.remarks.clone();
+        remarks.push("forces and frames are paired by their times".to_owned());
+        Ok(Self {
+            forces: (0..frames.len()).map(|frame| force.each_ref().map(|axis| axis[frame])).collect(),
+            pressures: value(&|line| self.pressures[line]),
+            contacts: self.contacts.as_ref().map(contact),
+            times: Some(frames.to_vec()),
+            remarks,
+        })
+    }
+}
+
 /// A table as it is, before anybody knows what its columns mean.
 struct Raw {
     names: Option<Vec<String>>,
     units: Option<Vec<String>>,
     /// Line number and fields.
     rows: Vec<(usize, Vec<String>)>,
-    decimal_comma: bool,
 }
 
 /// Reads the forces of a file: columns `F_x`, `F_y`, `F_z`, of which any may be missing, in newtons unless the header
@@ -123,34 +184,54 @@ fn read(path: &Path, example: &str, guess: &Guess) -> Result<Measured, RecordedE
     }
     let contact = named.iter().position(|column| matches!(column, Some((Meaning::Contact, _))));
     let mut measured = Measured { remarks, ..Measured::default() };
-    let mut contacts = Vec::new();
+    let (mut contacts, mut times) = (Vec::new(), Vec::new());
+    let (mut decimal, mut unclear) = (false, None);
     for (line, fields) in &raw.rows {
-        let (mut force, mut pressure) = ([None; 3], None);
+        let (mut force, mut pressure, mut time) = ([None; 3], None, f64::NAN);
         for (column, told) in named.iter().enumerate() {
             let text = fields.get(column).map_or("", String::as_str);
             let &Some((meaning, unit)) = told else { continue };
-            if meaning == Meaning::Contact || UNKNOWN.contains(&text.to_ascii_lowercase().as_str()) {
+            if meaning == Meaning::Contact || is_unknown(text) {
                 continue;
             }
-            let parsed = if raw.decimal_comma { text.replace(',', ".").parse() } else { text.parse::<f64>() };
-            let value = parsed.ok().filter(|value| value.is_finite()).ok_or_else(|| {
-                let shown: String = text.chars().take(40).collect();
-                wrong(
-                    format!("line {line}, column {}: {shown:?} is no number", column + 1),
-                    "leave blank what is unknown".to_owned(),
-                )
-            })?;
+            match Comma::of(text.as_bytes()) {
+                Some(Comma::Decimal) => decimal = true,
+                Some(Comma::Unclear) => {
+                    unclear.get_or_insert((*line, column + 1, text));
+                }
+                None => {}
+            }
+            let value =
+                text.replace(',', ".").parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
+                    let shown: String = text.chars().take(40).collect();
+                    wrong(
+                        format!("line {line}, column {}: {shown:?} is no number", column + 1),
+                        "leave blank what is unknown".to_owned(),
+                    )
+                })?;
             match meaning {
                 Meaning::Force(axis) => force[axis] = Some(unit * value),
                 Meaning::Pressure => pressure = Some(unit * value),
+                Meaning::Time => time = unit * value,
                 Meaning::Contact => {}
             }
         }
+        times.push(time);
         measured.forces.push(force);
         measured.pressures.push(pressure);
         contacts.extend(contact.map(|column| fields.get(column).cloned().unwrap_or_default()));
     }
+    if let (false, Some((line, column, text))) = (decimal, unclear) {
+        return Err(wrong(
+            format!(
+                "line {line}, column {column}: \"{text}\" has a decimal comma or a separator of thousands, and three digits \
+                 follow every comma"
+            ),
+            "write decimal points, or remove the separators".to_owned(),
+        ));
+    }
     measured.contacts = contact.map(|_| contacts);
+    measured.times = times.iter().all(|time| time.is_finite()).then_some(times).filter(|times| !times.is_empty());
     Ok(measured)
 }
 
@@ -172,19 +253,23 @@ fn raw(path: &Path) -> Result<Raw, RecordedError> {
         let text = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
         let rows = values.chunks(columns).enumerate();
         let rows = rows.map(|(row, values)| (row + 1, values.iter().map(text).collect())).collect();
-        return Ok(Raw { names: None, units: None, rows, decimal_comma: false });
+        return Ok(Raw { names: None, units: None, rows });
     }
     let bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let (mut heads, mut comments, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     let mut separator = None;
-    for (index, content) in bytes.split(|&byte| byte == b'\n').enumerate() {
+    for (index, content) in separator::lines(bytes).enumerate() {
         let content = content.trim_ascii();
         if content.is_empty() {
             // A file of one column may leave a line blank: the force is unknown.
             if separator.is_some_and(|_| !rows.is_empty()) {
                 rows.push((index + 1, Vec::new()));
             }
+            continue;
+        }
+        if content.len() == 5 && content[..4].eq_ignore_ascii_case(b"sep=") {
+            separator = Some(Separator::Byte(content[4]));
             continue;
         }
         let is_comment = content.starts_with(b"#");
@@ -201,13 +286,17 @@ fn raw(path: &Path) -> Result<Raw, RecordedError> {
             comments = vec![(of_line, words())];
             continue;
         }
+        // The header again, between logs that were put behind each other.
+        if !rows.is_empty() && heads.first().is_some_and(|(_, head)| *head == words()) {
+            continue;
+        }
         let fields = split(*separator.get_or_insert(of_line));
         let number = |field: &String| field.replace(',', ".").parse::<f64>().is_ok_and(f64::is_finite);
         if rows.is_empty()
             && heads.len() < 2
             && !fields.iter().any(number)
             && fields.iter().any(|field| !field.is_empty())
-            && !fields.iter().all(|field| UNKNOWN.contains(&field.to_ascii_lowercase().as_str()))
+            && !fields.iter().all(|field| is_unknown(field))
         {
             // What separates a header of words may be another character than what separates the numbers.
             heads.push((of_line, words()));
@@ -224,7 +313,6 @@ fn raw(path: &Path) -> Result<Raw, RecordedError> {
         // Blank lines between the lines of a table are nothing.
         rows.retain(|(_, fields)| !fields.is_empty());
     }
-    let decimal_comma = matches!(separator, Some(Separator::Byte(b';' | b'\t')));
     // Of one column the whole line is the name, whatever is in it.
     let fields = |(separator, line): &(Separator, String)| -> Vec<String> {
         let parts = if columns == 1 { vec![line.as_bytes()] } else { separator.split(line.as_bytes()) };
@@ -233,5 +321,5 @@ fn raw(path: &Path) -> Result<Raw, RecordedError> {
     let mut heads = heads.iter().map(fields);
     let commented = || comments.first().map(fields).filter(|names| names.len() == columns);
     let names = heads.next().or_else(commented);
-    Ok(Raw { names, units: heads.next(), rows, decimal_comma })
+    Ok(Raw { names, units: heads.next(), rows })
 }

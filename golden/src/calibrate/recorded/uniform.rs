@@ -89,7 +89,7 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     let (shape, gains) = work.fit(kind, &all);
     let fitted = work.errors(&shape, &gains, &all);
     let largest = work.stress(&shape, &gains).fold(0.0, f64::max);
-    let calibrated = work.readings.calibrated(&design, &shape, &gains, largest, &mut remarks);
+    let calibrated = work.readings.calibrated(&design, &shape, &gains, [f64::INFINITY, largest], &mut remarks);
     let mean = |holds: &Step| {
         let terms = work.terms(&[], &[], &[]);
         let of = |taxel: usize| gains[taxel] * shape.at(taxel, holds.x[taxel], &terms);

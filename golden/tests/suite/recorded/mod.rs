@@ -2,6 +2,7 @@
 
 mod bladder;
 mod friction;
+mod rates;
 mod simulated;
 mod table;
 

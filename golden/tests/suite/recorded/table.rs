@@ -39,8 +39,10 @@ fn columns_units_and_blanks() {
     }
     let found = forces("place,F_z\nA,1\nA,2\nB,\n").unwrap();
     assert_eq!(found.contacts.unwrap(), ["A", "A", "B"]);
-    let found = forces("time,F_z\n0,1\n").unwrap();
-    assert!(found.remarks.iter().any(|line| line.contains("not used") && line.contains("time")));
+    let found = forces("operator,F_z\n0,1\n").unwrap();
+    assert!(found.remarks.iter().any(|line| line.contains("not used") && line.contains("operator")));
+    let found = forces("time (ms),F_z\n0,1\n1500,2\n").unwrap();
+    assert_eq!(found.times, Some(vec![0.0, 1.5]));
     assert!(forces("3\n").unwrap().remarks.iter().any(|line| line.contains("taken for F_z in newtons")));
 }
 
@@ -54,6 +56,7 @@ fn what_nobody_can_tell_is_refused() {
         ("F_z (stone)\n5\n", ["\"stone\" is no unit of a force", "name the unit", "mN"]),
         ("F_z (kPa)\n5\n", ["\"kpa\" is no unit of a force", "name the unit", "mN"]),
         ("F_z\n5\nheavy\n", ["line 3, column 1", "\"heavy\" is no number", "leave blank"]),
+        ("F_z\n\"1,010\"\n\"2,500\"\n", ["line 2, column 1", "separator of thousands", "write decimal points"]),
         ("F_z,load\n5,5\n", ["2 columns are the force along z", "name", "unit"]),
     ] {
         let said = forces(text).unwrap_err();

@@ -1,0 +1,256 @@
+//! Kinds of files that people have: read as they are meant, or refused with what to do.
+
+#![allow(clippy::float_cmp)] // the same bits are meant
+
+use std::fs;
+use std::path::Path;
+
+use golden::design::Design;
+use golden::forces::read_outcomes;
+use golden::frames::{FrameLines, Frames, Layout, read_recording};
+
+/// A sensor of 3 columns and 2 rows, with more keys of its `[sensor]`.
+fn pad(keys: &str) -> Design {
+    let text =
+        format!("name = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n{keys}\n");
+    Design::from_toml(&text, "pad.toml").unwrap()
+}
+
+fn read_bytes(name: &str, bytes: &[u8], design: &Design, layout: impl Into<Layout>) -> Result<Frames, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).unwrap();
+    read_recording(&path, design, layout).map_err(|error| error.to_string())
+}
+
+fn read(text: &str, layout: impl Into<Layout>) -> Result<Frames, String> {
+    read_bytes("frames.csv", text.as_bytes(), &pad(""), layout)
+}
+
+#[track_caller]
+fn refused(found: Result<Frames, String>, parts: &[&str]) {
+    let said = found.expect_err("a refusal");
+    assert!(parts.iter().all(|part| said.contains(part)) && !said.contains(char::is_control), "{said:?}");
+}
+
+const A: [f64; 6] = [-7.5, -1.0, 0.0, 2.0, -3.0, 5.0];
+const B: [f64; 6] = [-8.0, -2.0, 1.0, 0.5, -4.0, 6.0];
+const LINES: &str = "-7.5,-1,0,2,-3,5\n-8,-2,1,0.5,-4,6\n";
+
+#[track_caller]
+fn both(found: Result<Frames, String>) -> Frames {
+    let found = found.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(found.frames, [A, B]);
+    found
+}
+
+#[test]
+fn separators_of_thousands_are_asked_for() {
+    for text in [
+        "1,010\t2,020\t3\t4\t5\t6\n",
+        "1;2;3;4;5;12,345\n1;2;3;4;5;6\n",
+        "1\t2\t3\t4\t5\t1,234,567\n",
+        "\"1,010\",2,3,4,5,6\n",
+        "1,010 2,020 3 4 5 6\n",
+    ] {
+        refused(read(text, 0), &["line 1, column", "separators of thousands", "write decimal points"]);
+    }
+    // One comma that is a decimal point for certain says what all are.
+    for text in ["1,010\t2,020\t0,500\t4\t5\t6\n", "1,010;2,5;3;4;5;6\n", "1,010 2,02 3 4 5 6\n"] {
+        assert_eq!(read(text, 0).unwrap().frames[0][0], 1.01, "{text:?}");
+    }
+    let mut lines = FrameLines::new(Path::new("port"), &pad(""), 0);
+    assert!(lines.frame(b"1,010;2;3;4;5;6\n").is_err());
+    // In blocks of rows as well.
+    refused(read("1,010;2;3\n4;5;6\n", 0), &["separators of thousands"]);
+    let decimal = "-7,5,-1,0,0,0,2,0,-3,0,5,0\n";
+    refused(read(decimal, 0), &["line 1", "column 12 where 6", "decimal commas? Separate the values by semicolons"]);
+}
+
+#[test]
+fn a_header_of_sensor_numbers_is_none_of_the_frames() {
+    for (text, labels) in [
+        // With gaps, and behind a word.
+        (format!("3,5,7,11,12,20\n{LINES}"), 0),
+        (format!("taxel,3,5,7,11,12,20\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8")), 1),
+        // In the order of the wiring.
+        (format!("electrode,20,3,5,12,11,7\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8")), 1),
+    ] {
+        let found = both(read(&text, labels));
+        assert!(found.remark.is_some_and(|remark| remark.contains("line 1") && remark.contains("header")), "{text:?}");
+    }
+    // Frames whose values happen to rise are frames, and so are those with words as labels.
+    let rising = "1,2,3,4,5,7\n1,2,3,4,6,9\n";
+    assert_eq!(read(rising, 0).unwrap().frames.len(), 2);
+    assert_eq!(read("left,1,5,3,4,5,7\nright,1,2,3,4,6,9\n", 1).unwrap().frames.len(), 2);
+    let mut lines = FrameLines::new(Path::new("port"), &pad(""), 0);
+    assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_none() && lines.remark().is_some());
+    assert!(lines.frame(b"3,5,7,11,12,20\n").unwrap().is_some());
+}
+
+#[test]
+fn a_dead_taxel_may_read_anything() {
+    let design = pad("dead = [5]");
+    let whole = Layout::default();
+    for text in ["NaN", "--", "B", "", "inf"] {
+        let lines = format!("-7.5,-1,0,2,-3,{text}\n");
+        let found = read_bytes("frames.csv", lines.as_bytes(), &design, whole.clone());
+        assert_eq!(found.unwrap().frames, [[-7.5, -1.0, 0.0, 2.0, -3.0, 0.0]], "{text:?}");
+    }
+    let middle = pad("dead = [1]");
+    assert_eq!(read_bytes("f.csv", b"1,,3,4,5,6\n", &middle, 0).unwrap().frames[0][1], 0.0);
+    let blocks = read_bytes("f.csv", b"1 nan 3\n4 5 6\n", &middle, 0).unwrap();
+    assert_eq!(blocks.frames, [[1.0, 0.0, 3.0, 4.0, 5.0, 6.0]]);
+    let mut array = b"\x93NUMPY\x01\x00".to_vec();
+    let header = b"{'descr': '<f8', 'fortran_order': False, 'shape': (1, 6), }\n";
+    array.extend((header.len() as u16).to_le_bytes());
+    array.extend(header);
+    array.extend([1.0, f64::NAN, 3.0, 4.0, 5.0, 6.0_f64].iter().flat_map(|value| value.to_le_bytes()));
+    assert_eq!(read_bytes("f.npy", &array, &middle, 0).unwrap().frames, [[1.0, 0.0, 3.0, 4.0, 5.0, 6.0]]);
+    refused(read_bytes("f.npy", &array, &pad(""), 0), &["[0, 1] is NaN", "sensor.dead", "--skip-bad"]);
+    refused(read("1,nan,3,4,5,6\n", 0), &["line 1, column 2", "\"nan\"", "sensor.dead", "--skip-bad"]);
+}
+
+#[test]
+fn bad_frames_are_left_out_where_that_is_asked_for() {
+    let skip = Layout { skip_bad: true, ..Layout::default() };
+    let text = format!("{LINES}1,2,nan,4,5,6\n1,2\n{LINES}");
+    refused(read(&text, 0), &["line 3, column 3"]);
+    let found = read(&text, skip.clone()).unwrap();
+    assert_eq!(found.frames, [A, B, A, B]);
+    let remark = found.remark.unwrap();
+    assert!(remark.contains("2 lines are left out; the first: ") && remark.contains("line 3, column 3"), "{remark}");
+    let found = read("1 2 3\n4 5 6\n\n1 nan 3\n4 5 6\n", skip.clone()).unwrap();
+    assert!(found.frames.len() == 1 && found.remark.unwrap().contains("1 frames with values that are no numbers"));
+    refused(read("1,2,nan,4,5,6\n", skip), &["1 lines are left out"]);
+}
+
+#[test]
+fn columns_in_front_and_behind() {
+    let body = LINES
+        .replace("-7.5", "0,1,-7.5")
+        .replace("-8", "10,2,-8")
+        .replace(",5\n", ",5,99\n")
+        .replace(",6\n", ",6,98\n");
+    let names = "t (ms),frame,p0,p1,p2,p3,p4,p5,total\n";
+    let found = both(read(&format!("{names}{body}"), 0));
+    assert_eq!(found.times, Some(vec![0.0, 0.01]));
+    assert!(found.remark.unwrap().contains("columns 3 to 8, p0 to p5, are the taxels"));
+    both(read(&format!("{names}{body}"), 2));
+    refused(read(&format!("{names}{body}"), 3), &["line 1", "columns 3 to 8, p0 to p5", "leave --labels away"]);
+    refused(read(&body, 0), &["line 1", "3 columns more", "in front of the values?", "--labels 3", "--columns 1-6"]);
+    both(read(&body, Layout { columns: Some([3, 8]), ..Layout::default() }));
+    refused(read(&body, Layout { columns: Some([3, 7]), ..Layout::default() }), &["where 8"]);
+    // Two arrays in a line.
+    let two = "-7.5,-1,0,2,-3,5,1,1,1,1,1,1\n-8,-2,1,0.5,-4,6,1,1,1,1,1,1\n";
+    refused(read(two, 0), &["two arrays in a line?", "--columns 1-6", "--columns 7-12"]);
+    let names = "l0,l1,l2,l3,l4,l5,r0,r1,r2,r3,r4,r5\n";
+    refused(read(&format!("{names}{two}"), 0), &["several arrays", "--columns 1-6 (l0 to l5)", "--columns 7-12 (r0"]);
+    both(read(&format!("{names}{two}"), Layout { columns: Some([1, 6]), ..Layout::default() }));
+    // Names of rows and columns.
+    both(read(
+        &format!("time,r0c0,r0c1,r0c2,r1c0,r1c1,r1c2\n{}", LINES.replace("-7.5", "0,-7.5").replace("-8", "1,-8")),
+        0,
+    ));
+}
+
+#[test]
+fn frames_as_blocks_of_rows() {
+    let both = |text: &str| {
+        let found = both(read(text, 0));
+        assert!(found.remark.unwrap().contains("blocks of 2 lines of 3 values"), "{text:?}");
+    };
+    both("-7.5 -1 0\n2 -3 5\n\n-8 -2 1\n0.5 -4 6\n");
+    both("-7.5,-1,0\n2,-3,5\n-8,-2,1\n0.5,-4,6\n");
+    both("Frame 1\n-7.5\t-1\t0\n2\t-3\t5\nFrame 2\n-8\t-2\t1\n0.5\t-4\t6\n@@\n");
+    both("# one\n-7.50e+00 -1 0\n2 -3 5\n# two\n-8 -2 1\n0.5 -4 6\n");
+    let export = "DATA_TYPE MOVIE\r\nROWS 2\r\nCOLS 3\r\nUNITS kPa\r\nSTART_FRAME 1\r\nASCII_DATA @@\r\n\r\nFrame 1\r\n\
+                  1,2,0\r\n0,0.5,B\r\n\r\nFrame 2\r\n0,0,3\r\n0,0,0\r\n@@\r\n";
+    let found = read_bytes("movie.asf", export.as_bytes(), &pad("dead = [5]"), 0).unwrap();
+    assert_eq!(found.frames[0], [-1000.0, -2000.0, 0.0, 0.0, -500.0, 0.0]);
+    assert!(found.remark.unwrap().contains("the unit kPa; pressure presses, so that 1 kPa is -1000 Pa"));
+    let counting = read_bytes("movie.asf", export.as_bytes(), &pad("pa_per_count = -1000.0\ndead = [5]"), 0).unwrap();
+    assert_eq!(counting.frames[0][..3], [1.0, 2.0, 0.0]);
+    for (text, parts) in [
+        ("1 2 3\n\n4 5 6\n", ["line 2", "a block of 1 rows ends here where the sensor has 2"]),
+        ("1 2 3\n4 5 6\n1 2 3", ["ends within a frame", "after 1 of 2 rows"]),
+        ("1 2\n3 4\n5 6\n", ["blocks of 3 lines of 2 values are the transposed grid", "2 rows of 3 columns"]),
+        ("1 2 3\n4 nan 6\n", ["line 2: column 2", "sensor.dead"]),
+    ] {
+        refused(read(text, 0), &parts);
+    }
+    let skip = Layout { skip_lines: 2, ..Layout::default() };
+    assert_eq!(read("1 2 3\n9 9 9\n1 2 3\n4 5 6\n", skip.clone()).unwrap().frames, [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]]);
+    assert_eq!(read(&format!("1,2,3\nanything: 5\n{LINES}"), skip).unwrap().frames, [A, B]);
+}
+
+#[test]
+fn headers_as_programs_write_them() {
+    both(read(&format!("p0,p1,p2,p3,p4,p5\nPa,Pa,Pa,Pa,Pa,Pa\n{LINES}"), 0));
+    both(read(&format!("sep=;\np0;p1;p2;p3;p4;p5\n{}", LINES.replace(',', ";")), 0));
+    let names = b"Kan\xe4le 0,\xe4 1,\xe4 2,\xe4 3,\xe4 4,\xe4 5\n";
+    both(read_bytes("frames.csv", &[names, LINES.as_bytes()].concat(), &pad(""), 0));
+    both(read(&format!("p0,p1,p2,p3,p4,p5\n{LINES}").replace('\n', "\r"), 0));
+    let quoted = "\"-7,5\",\"-1,0\",0,2,\"-3,0\",5\n-8,-2,1,\"0,5\",-4,6\n";
+    both(read(quoted, 0));
+    both(read("-7,5 -1 0 2 -3 5\n-8 -2 1 0,5 -4 6\n", 0));
+    let again = read(&format!("p0,p1,p2,p3,p4,p5\n{LINES}p0,p1,p2,p3,p4,p5\n{LINES}"), 0).unwrap();
+    assert_eq!(again.frames, [A, B, A, B]);
+    assert!(again.remark.unwrap().contains("line 4: the header again"));
+}
+
+#[test]
+fn other_formats_are_named() {
+    for (bytes, parts) in [
+        (&b"PAR1\x15\x04"[..], ["Parquet", "CSV"]),
+        (b"#ROSBAG V2.0\n", ["ROS 1", "rostopic echo"]),
+        (b"\x89MCAP0\r\n", ["MCAP", "CSV"]),
+        (b"SQLite format 3\0", ["SQLite", "sqlite3"]),
+        (b"\x80\x04\x95\x10", ["pickle", "numpy.save"]),
+        (b"\xd0\xcf\x11\xe0\xa1", ["spreadsheet", "CSV"]),
+        (b"BZh91AY", ["bzip2", "bunzip2"]),
+        (b"\xfd7zXZ\0\0", ["xz", "unxz"]),
+        (b"\x28\xb5\x2f\xfd\x04", ["Zstandard", "unzstd"]),
+        (b"{\"t\": 0, \"p\": [1, 2]}\n", ["JSON", "jq"]),
+        (b"12:00:01.123 -> 1,2,3,4,5,6\n", ["serial monitor", "timestamps off"]),
+    ] {
+        refused(read_bytes("file", bytes, &pad(""), 0), &parts);
+    }
+}
+
+#[test]
+fn a_message_names_the_unit_of_the_design() {
+    let text = b"1,2,3,4,five,6\n";
+    let counts = read_bytes("f.csv", text, &pad("pa_per_count = -10.0"), 0);
+    refused(counts, &["column 5", "give the sensor's count, such as 1012"]);
+    refused(read_bytes("f.csv", text, &pad(""), 0), &["give the stress in pascals"]);
+}
+
+/// What `calibrate --forces` takes, `solve --reference` takes.
+#[test]
+fn true_forces_are_read_in_each_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("forces.csv");
+    let read = |text: &str, frames| {
+        fs::write(&path, text).unwrap();
+        read_outcomes(&path, frames).map_err(|error| error.to_string())
+    };
+    let own = read("status,F_x (N),F_y (N),F_z (N),mu,phi (rad),mu_x,mu_y\n0,3,0,-6,0.5,0,0.5,0\n", 1).unwrap();
+    for text in [
+        "F_x,F_y,F_z\n3,0,-6\n",
+        "Fx;Fy;Fz\n3;0;6\n",
+        "t (s),F_x (mN),F_y (mN),F_z (mN),M_x,M_y,M_z,x,y\n0,3000,0,-6000,1,1,1,1,1\n",
+        "3 0 -6\n",
+        "0,3,0,-6,0.5,0,0.5,0\n",
+    ] {
+        assert_eq!(read(text, 1).as_ref(), Ok(&own), "{text:?}");
+    }
+    for (text, frames, part) in [
+        ("F_z\n-6\n", 1, "F_x, F_y or F_z is not known"),
+        ("F_x,F_y,F_z\n3,0,-6\n", 2, "forces of 1 frames where there are 2"),
+        ("1,2\n", 1, "column 2 where 8"),
+    ] {
+        let said = read(text, frames).unwrap_err();
+        assert!(said.contains(part), "no {part:?} in {said}");
+    }
+}

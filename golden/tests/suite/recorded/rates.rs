@@ -1,0 +1,69 @@
+//! Frames and forces whose logs run at other rates or tell other times.
+
+use golden::calibrate::recorded::{Measured, fit_forces};
+use golden::solver::{Solver, Status};
+
+use super::simulated::{Body, Recipe, Recording, design, record};
+use super::{COUNTS, says};
+
+fn recording() -> Recording {
+    record(&Recipe { scale: 40.0, noise: 2.0, places: 12, frames: 8, ..Recipe::new(81, Body::Disc) })
+}
+
+/// Whatever is wrong with the times of loads, no design comes out for which loaded frames are none.
+#[test]
+fn no_loaded_frame_becomes_no_contact() {
+    let recording = recording();
+    for wrong in 1..8 {
+        let mut measured = recording.measured.clone();
+        for (frame, force) in measured.forces.iter_mut().enumerate() {
+            // Written down too early, in each hold.
+            if frame % 10 >= 8 - wrong {
+                *force = [Some(0.0); 3];
+            }
+        }
+        let Ok(found) = fit_forces(&design(COUNTS, ""), &recording.frames, &measured) else { continue };
+        let solver = Solver::new(&found.design).unwrap();
+        let loaded = recording.frames.iter().zip(&recording.measured.forces).filter(|(_, force)| force[2] != Some(0.0));
+        let nothing = |(frame, _): &(&Vec<f64>, &[Option<f64>; 3])| {
+            solver.solve(frame).unwrap().status.contains(Status::NO_CONTACT)
+        };
+        let nothing = loaded.filter(nothing).count();
+        assert!(nothing < 20, "{wrong} frames of each hold: {nothing} loaded frames are no contact");
+    }
+}
+
+#[test]
+fn logs_of_other_rates_are_paired_by_their_times() {
+    let recording = recording();
+    // Frames at 100 Hz, forces at 1 kHz that begin half a second earlier.
+    let times: Vec<f64> = (0..recording.frames.len()).map(|frame| 0.01 * frame as f64).collect();
+    let count = 10 * recording.frames.len();
+    let line = |line: usize| ((line as f64 - 500.0) / 10.0).round();
+    let forces = (0..count + 500).map(|at| {
+        let frame = line(at);
+        recording.measured.forces.get(frame as usize).filter(|_| frame >= 0.0).copied().unwrap_or([Some(0.0); 3])
+    });
+    let mut measured = Measured::of_forces(forces.collect());
+    measured.times = Some((0..count + 500).map(|at| 0.001 * (at as f64 - 500.0)).collect());
+    let paired = measured.at(&times).unwrap();
+    assert_eq!(paired.forces.len(), recording.frames.len());
+    assert!(
+        paired
+            .forces
+            .iter()
+            .flatten()
+            .flatten()
+            .zip(recording.measured.forces.iter().flatten().flatten())
+            .all(|(a, b)| (a - b).abs() < 1e-9)
+    );
+    assert!(says(&paired.remarks, &["paired by their times"]));
+    let far: Vec<f64> = times.iter().map(|time| time + 1e4).collect();
+    assert!(measured.at(&far).unwrap_err().contains("the same clock"));
+    let falling: Vec<f64> = times.iter().map(|time| -time).collect();
+    assert!(measured.at(&falling).unwrap_err().contains("times fall"));
+    // Between two lines a straight one.
+    let mut two = Measured::of_forces(vec![[None, None, Some(0.0)], [None, None, Some(-10.0)]]);
+    two.times = Some(vec![0.0, 1.0]);
+    assert_eq!(two.at(&[0.25, 1.0]).unwrap().forces, [[None, None, Some(-2.5)], [None, None, Some(-10.0)]]);
+}
