@@ -144,8 +144,20 @@ class FrameLines:
     def frame(self, line: bytes) -> npt.NDArray[np.float64] | None:
         """The frame (rows, columns) of the next line; None for a header, a blank line and a remark."""
 
-def load_frames(path: str | os.PathLike[str], design: Design, *, labels: int = 0) -> npt.NDArray[np.float64]:
-    """Frames (n, rows, columns) of a CSV or .npy file, whose lines begin with so many columns of other things."""
+def load_frames(
+    path: str | os.PathLike[str],
+    design: Design,
+    *,
+    labels: int = 0,
+    columns: tuple[int, int] | None = None,
+    skip_lines: int = 0,
+    skip_bad: bool = False,
+) -> npt.NDArray[np.float64]:
+    """Frames (n, rows, columns) of a CSV or .npy file.
+
+    Its lines begin with `labels` other columns, or the values are the `columns` (first, last), from 1. `skip_lines` are
+    passed over at the beginning. With `skip_bad` frames with a value that is no number are left out.
+    """
 
 def scene(
     design: Design | None = None,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use golden::check::{Beyond, beyond as count_beyond, check as look_for_faults};
-use golden::frames::read_frames_and_remark;
+use golden::frames::{Layout, read_frames_and_remark};
 use golden::geometry;
 use golden::matrices::Matrices;
 use golden::metrics::{ERROR_NAMES, ErrorSummary, Outcome};
@@ -22,12 +22,26 @@ use crate::errors::{raised, without_lock};
 
 /// Frames of a file, as the commands read them.
 #[pyfunction]
-#[pyo3(signature = (path, design, *, labels = 0))]
-pub fn load_frames<'py>(py: Python<'py>, path: PathBuf, design: &Design, labels: usize) -> PyResult<Bound<'py, PyAny>> {
+#[pyo3(signature = (path, design, *, labels = 0, columns = None, skip_lines = 0, skip_bad = false))]
+pub fn load_frames<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    design: &Design,
+    labels: usize,
+    columns: Option<[usize; 2]>,
+    skip_lines: usize,
+    skip_bad: bool,
+) -> PyResult<Bound<'py, PyAny>> {
     let design = &design.inner;
+    if columns.is_some_and(|[first, last]| labels > 0 || !(1..=last).contains(&first)) {
+        return Err(PyValueError::new_err(
+            "columns are (first, last) of the values, from 1, and take the place of labels",
+        ));
+    }
+    let layout = Layout { labels, columns, skip_lines, skip_bad };
     let (frames, remark) = without_lock(py, || {
         geometry::compare(&path, &design.name, &design.sensor)?;
-        read_frames_and_remark(&path, design, labels)
+        read_frames_and_remark(&path, design, layout)
     })?;
     warn(py, remark)?;
     let shape = [frames.len(), design.sensor.rows, design.sensor.columns];

@@ -62,8 +62,12 @@ class Judging(unittest.TestCase):
             file = Path(folder) / "frames.csv"
             numbers, line = ",".join(map(str, range(12))), ",".join(["-1000"] * 12)
             file.write_text(f"{numbers}\n{line}\n", encoding="utf-8")
-            with self.assertWarnsRegex(UserWarning, "line 1: numbers in turn up to 11"):
+            with self.assertWarnsRegex(UserWarning, "line 1: numbers up to 11"):
                 self.assertEqual(sptfra.load_frames(file, design()).shape, (1, 3, 4))
+            file.write_text(f"anything: 5\n{line},99\n{line},--\n{line.replace('-', 'x', 1)},99\n", encoding="utf-8")
+            with self.assertWarnsRegex(UserWarning, "1 lines are left out"):
+                found = sptfra.load_frames(file, design(), columns=(1, 12), skip_lines=1, skip_bad=True)
+            self.assertEqual(found.shape, (2, 3, 4))
         lines = sptfra.FrameLines(design())
         with self.assertWarns(UserWarning):
             self.assertIsNone(lines.frame(numbers.encode()))

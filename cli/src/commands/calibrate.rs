@@ -58,21 +58,21 @@ pub struct Args {
     #[command(flatten)]
     recordings: Recordings,
     /// Seed of the contacts and of the training.
-    #[arg(long, default_value_t = 1, conflicts_with = "recordings")]
+    #[arg(long, default_value_t = 1, conflicts_with_all = ["frames", "uniform"])]
     seed: u64,
     /// Training contacts: "narrow", round and sliding, or "wide", of any shape, tilted, held; default: the design's.
-    #[arg(long, value_parser = word::<Family>(), conflicts_with = "recordings")]
+    #[arg(long, value_parser = word::<Family>(), conflicts_with_all = ["frames", "uniform"])]
     family: Option<Family>,
     /// Hidden units of the correction, 0 for none; default: 128, or 204 with family "wide".
     ///
     /// With family "narrow" and grid = 15 the default is 64, with --quick 24.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with = "recordings")]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = ["frames", "uniform"])]
     hidden: Option<u16>,
     /// Take a tenth of the time, for constants with twice the error.
-    #[arg(long, conflicts_with = "recordings")]
+    #[arg(long, conflicts_with_all = ["frames", "uniform"])]
     quick: bool,
     /// Take about ten times the time, for a network that is as exact with half of the hidden units.
-    #[arg(long, conflicts_with_all = ["recordings", "quick"])]
+    #[arg(long, conflicts_with_all = ["frames", "uniform", "quick"])]
     thorough: bool,
     /// Report as JSON.
     #[arg(long)]

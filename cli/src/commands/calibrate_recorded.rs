@@ -19,7 +19,6 @@ use crate::message::{self, json_or, say};
 
 /// Recordings with measured forces or pressures.
 #[derive(clap::Args, Debug)]
-#[group(id = "recordings", multiple = true)]
 pub struct Recordings {
     /// Frames of contacts, as for `sptfra solve`.
     #[arg(long, value_name = "FRAMES.csv", requires = "forces")]

@@ -5,35 +5,42 @@
 
 use std::path::Path;
 
+use super::FrameError;
 use super::layout::{Layout, Target};
-use super::text::Text;
-use super::{FrameError, is_number};
 use crate::calibrate::recorded::pressure_unit;
-use crate::separator::{self, Comma, Separator, is_unknown};
+use crate::separator::{self, Separator, is_unknown};
 
 /// A line of a file.
 struct Line<'a> {
     number: usize,
     content: &'a [u8],
-    /// Its numbers, NaN where one is not there, if it has nothing else.
-    row: Option<Vec<f64>>,
+    /// Its fields, if they are numbers.
+    row: Option<Vec<&'a [u8]>>,
 }
 
-/// Reads blocks of rows; nothing if the file does not hold any: its lines have a value for each taxel, or other lengths.
-pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) -> Result<Option<Text>, FrameError> {
+/// Frames of a file, each on one line.
+pub(super) struct Blocks {
+    /// The first line of each, from 1, and its fields, separated by semicolons.
+    pub(super) frames: Vec<(usize, Vec<u8>)>,
+    /// A unit of pressure that the header names, in pascals.
+    pub(super) unit: Option<(String, f64)>,
+}
+
+/// Puts the rows of each frame on one line; nothing if the file has a line for each frame, or lines of other lengths.
+pub(super) fn join(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) -> Result<Option<Blocks>, FrameError> {
     let (columns, rows) = (target.sensor.columns, target.sensor.rows);
     let all: Vec<Line> = separator::lines(bytes)
         .enumerate()
         .skip(layout.skip_lines)
         .map(|(index, line)| (index + 1, line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line).trim_ascii()))
-        .map(|(number, content)| Line { number, content, row: numbers(content) })
+        .map(|(number, content)| Line { number, content, row: row(content) })
         .collect();
     let of_length =
         |length: usize| all.iter().filter(move |line| line.row.as_ref().is_some_and(|row| row.len() == length)).count();
     if rows == 1 || of_length(target.sensor.taxels()) > 0 {
         return Ok(None);
     }
-    let wrong = |line: usize, problem: String| FrameError::Block { path: path.to_path_buf(), line, problem };
+    let wrong = |line: usize, problem: String| FrameError::Shape { path: path.to_path_buf(), line, problem };
     if of_length(columns) < rows {
         // The rows of the grid laid on its side.
         return match of_length(rows) {
@@ -47,15 +54,13 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
             _ => Ok(None),
         };
     }
-    let (unit, mut text) = (unit(&all), Text::default());
-    let mut block: Vec<f64> = Vec::new();
-    let (mut bad, mut commas) = (0, (false, None));
+    let (mut frames, mut block) = (Vec::new(), Vec::new());
     for Line { number, content, row } in &all {
         match row {
-            Some(row) if row.len() == columns => block.extend(row),
-            _ if block.is_empty() || content.starts_with(b"#") => continue,
+            Some(row) if row.len() == columns => block.push(row.join(&b";"[..])),
+            _ if block.is_empty() || content.starts_with(b"#") => {}
             _ => {
-                let found = block.len() / columns;
+                let found = block.len();
                 return Err(wrong(
                     *number,
                     format!(
@@ -65,73 +70,23 @@ pub(super) fn read(path: &Path, bytes: &[u8], layout: &Layout, target: &Target) 
                 ));
             }
         }
-        for field in Separator::of(content).fields(content) {
-            match Comma::of(field) {
-                Some(Comma::Decimal) => commas.0 = true,
-                Some(Comma::Unclear) => {
-                    commas.1.get_or_insert_with(|| (*number, String::from_utf8_lossy(field).into_owned()));
-                }
-                None => {}
-            }
+        if block.len() == rows {
+            frames.push((number + 1 - rows, std::mem::take(&mut block).join(&b";"[..])));
         }
-        if block.len() < columns * rows {
-            continue;
-        }
-        let mut frame = std::mem::take(&mut block);
-        for &taxel in &target.dead {
-            frame[taxel] = if is_number(frame[taxel]) { frame[taxel] } else { 0.0 };
-        }
-        match frame.iter().position(|value| !is_number(*value)) {
-            None => {
-                text.rows.push(frame);
-                text.lines.push(number + 1 - rows);
-            }
-            Some(_) if layout.skip_bad => bad += 1,
-            Some(taxel) => {
-                return Err(wrong(
-                    number + 1 - rows + taxel / columns,
-                    format!(
-                        "column {} is no number; name a taxel that is dead in sensor.dead, or leave such frames out with \
-                         --skip-bad",
-                        taxel % columns + 1
-                    ),
-                ));
-            }
-        }
-    }
-    if let (false, Some((line, text))) = commas {
-        return Err(FrameError::Thousands { path: path.to_path_buf(), line, column: 1, text });
     }
     if !block.is_empty() {
-        let problem = format!("the file ends within a frame, after {} of {rows} rows", block.len() / columns);
+        let problem = format!("the file ends within a frame, after {} of {rows} rows", block.len());
         return Err(wrong(all.len(), problem));
     }
-    let path = path.display();
-    text.remarks.push(format!("{path}: frames are blocks of {rows} lines of {columns} values"));
-    if bad > 0 {
-        text.remarks.push(format!("{path}: {bad} frames with values that are no numbers are left out"));
-    }
-    if let Some((name, pascals)) = unit {
-        text.remarks.push(if target.counts {
-            format!("{path}: the header gives the unit {name}; the design says what a value is worth")
-        } else {
-            text.rows.iter_mut().flatten().for_each(|value| *value *= -pascals);
-            format!("{path}: the header gives the unit {name}; pressure presses, so that 1 {name} is {} Pa", -pascals)
-        });
-    }
-    Ok(Some(text))
+    Ok(Some(Blocks { frames, unit: unit(&all) }))
 }
 
-/// The numbers of a line that has nothing else.
-fn numbers(content: &[u8]) -> Option<Vec<f64>> {
-    let separator = Separator::of(content);
-    let fields = separator.fields(content);
-    let number = |field: &&[u8]| match separator::number(field) {
-        Some(value) => Some(value),
-        None => is_unknown(&String::from_utf8_lossy(field)).then_some(f64::NAN),
-    };
-    let row: Vec<f64> = fields.iter().map(number).collect::<Option<_>>()?;
-    row.iter().any(|value| value.is_finite()).then_some(row)
+/// The fields of a line that has nothing but numbers and readings that are not there.
+fn row(content: &[u8]) -> Option<Vec<&[u8]>> {
+    let fields = Separator::of(content).fields(content);
+    let is_number = |field: &&[u8]| separator::number(field).is_some_and(f64::is_finite);
+    let is_reading = |field: &&[u8]| separator::number(field).is_some() || is_unknown(&String::from_utf8_lossy(field));
+    (fields.iter().all(is_reading) && fields.iter().any(is_number)).then_some(fields)
 }
 
 /// The unit of pressure that a line of words above the frames names, and what it is worth in pascals.

@@ -79,19 +79,9 @@ pub enum FrameError {
         /// What is there.
         text: String,
     },
-    /// A header that names other columns for the taxels than those that were asked for.
+    /// Lines or columns that do not fit the sensor.
     #[error("{}, line {line}: {problem}", path.display())]
-    Columns {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// What is wrong, and what to do.
-        problem: String,
-    },
-    /// A block of rows that is no frame.
-    #[error("{}, line {line}: {problem}", path.display())]
-    Block {
+    Shape {
         /// The file.
         path: PathBuf,
         /// Line, from 1.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::FrameError;
 use super::layout::{Layout, Target};
-use super::text::{Lines, ascends};
+use super::text::Lines;
 use crate::design::{Design, Samples};
 
 /// Makes frames of lines of text, one after the other.
@@ -41,7 +41,7 @@ impl FrameLines {
         let taxels = self.taxels;
         let Some(frame) = self.lines.row(line, |found| (found != taxels).then_some(taxels))? else { return Ok(None) };
         self.lines.unclear()?;
-        if !std::mem::replace(&mut self.begun, true) && ascends(&frame) {
+        if !std::mem::replace(&mut self.begun, true) && self.lines.is_numbered(&frame, &[]) {
             self.lines.numbered(self.lines.number(), &frame);
             return Ok(None);
         }

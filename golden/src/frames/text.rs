@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use super::blocks::{self, Blocks};
 use super::layout::{Layout, Target};
-use super::{FrameError, blocks, is_number};
+use super::{FrameError, is_number};
 use crate::geometry;
 use crate::separator::{self, Comma, Separator, is_unknown};
 
@@ -49,6 +50,8 @@ pub(super) struct Lines {
     header: Option<Vec<u8>>,
     /// Which column holds times, and seconds of their unit.
     time: Option<(usize, f64)>,
+    /// Columns of the sensor, where a frame is a block of lines.
+    block: Option<usize>,
     /// How many lines there were.
     number: usize,
     /// Whether a comma is a decimal point for certain, and the first one of which that is not clear.
@@ -69,6 +72,7 @@ impl Lines {
             state: State::Begin,
             header: None,
             time: None,
+            block: None,
             number: 0,
             decimal: false,
             unclear: None,
@@ -100,8 +104,8 @@ impl Lines {
         self.layout.first()
     }
 
-    /// The numbers of the next line. Nothing for a blank one, for one that begins with #, for lines of names and units,
-    /// and for a first one with the numbers of the columns. `wrong_length` is given the number of values and returns the
+    /// The numbers of the next line. Nothing for a blank one, for one that begins with #, for lines of names and units.
+    /// `wrong_length` is given the number of values and returns the
     /// number wanted, if that is another.
     pub(super) fn row(
         &mut self,
@@ -156,12 +160,8 @@ impl Lines {
             self.state = State::Header;
             return Ok(None);
         }
-        let is_first = std::mem::replace(&mut self.state, State::Rows) == State::Begin;
+        self.state = State::Rows;
         match self.values(separator, content, wrong_length) {
-            Ok(row) if is_first && self.target.is_some() && numbers_columns(&row, self.labels()) => {
-                self.numbered(self.number, &row);
-                Ok(None)
-            }
             Ok(row) => Ok(Some(row)),
             Err(error) if self.layout.skip_bad => {
                 self.bad.get_or_insert_with(|| (0, error.to_string())).0 += 1;
@@ -171,10 +171,15 @@ impl Lines {
         }
     }
 
+    /// Whether the first row is a header of the sensor's numbers: they are whole and ascend, as those of no other row.
+    pub(super) fn is_numbered(&self, first: &[f64], others: &[Vec<f64>]) -> bool {
+        self.target.is_some() && self.header.is_none() && ascends(first) && !others.iter().any(|row| ascends(row))
+    }
+
     /// Says that a row was taken for the numbers of the columns.
     pub(super) fn numbered(&mut self, line: usize, row: &[f64]) {
         let remark = format!(
-            "{}, line {line}: numbers in turn up to {} are those of the columns, as pandas writes them; the line is taken for a header",
+            "{}, line {line}: numbers up to {} are those of the columns, as pandas writes them; the line is taken for a header",
             self.path.display(),
             row[row.len() - 1]
         );
@@ -189,55 +194,49 @@ impl Lines {
         wrong_length: impl Fn(usize) -> Option<usize>,
     ) -> Result<Vec<f64>, FrameError> {
         let first = self.labels();
-        let is_dead = |taxel: usize| self.target.as_ref().is_some_and(|target| target.dead.contains(&taxel));
+        let dead = self.target.as_ref().map_or(Vec::new(), |target| target.dead.clone());
         let mut fields = separator.fields(content);
         let right = |count: usize| count >= first && wrong_length(count - first).is_none();
         // A blank at the end is the last taxel, if that is dead, and else nothing.
         let all = separator.split(content);
-        if !right(fields.len()) && right(all.len()) && is_dead(all.len() - first - 1) {
+        if !right(fields.len()) && right(all.len()) && dead.contains(&(all.len() - first - 1)) {
             fields = all;
         }
-        let (path, line) = (self.path.clone(), self.number);
+        let path = self.path.clone();
         let end = self.layout.columns.map_or(fields.len(), |[_, last]| last);
         if fields.len() < end {
-            let hint = self.length_hint(fields.len(), end);
-            return Err(FrameError::Length { path, line, found: fields.len(), expected: end, hint });
+            return Err(self.wrong_length(fields.len(), end));
         }
         let mut row = Vec::with_capacity(end);
         for (index, field) in fields.iter().enumerate().take(end).skip(first) {
-            let number = separator::number(field).filter(|&value| is_number(value));
-            let comma = Comma::of(field);
+            let (line, column) = match self.block {
+                Some(columns) => (self.number + index / columns, index % columns + 1),
+                None => (self.number, index + 1),
+            };
             let text = || String::from_utf8_lossy(field).chars().take(40).collect::<String>();
-            match comma {
-                Some(Comma::Decimal) if number.is_some() => self.decimal = true,
-                Some(Comma::Unclear) if number.is_none() => {
-                    return Err(FrameError::Thousands { path, line, column: index + 1, text: text() });
+            let number = separator::number(field).filter(|&value| is_number(value));
+            match (Comma::of(field), number) {
+                (Some(Comma::Decimal), Some(_)) => self.decimal = true,
+                (Some(Comma::Unclear), Some(_)) => {
+                    self.unclear.get_or_insert_with(|| (line, column, text()));
                 }
-                Some(Comma::Unclear) => {
-                    self.unclear.get_or_insert_with(|| (line, index + 1, text()));
+                (Some(Comma::Unclear), None) => {
+                    return Err(FrameError::Thousands { path, line, column, text: text() });
                 }
                 _ => {}
             }
-            let is_dead = self.target.as_ref().is_some_and(|target| target.dead.contains(&(index - first)));
-            let value = number.or(is_dead.then_some(0.0)).ok_or_else(|| {
-                let text = text();
-                FrameError::Value {
-                    path: path.clone(),
-                    line,
-                    column: index + 1,
-                    remedy: self.value_remedy(&text),
-                    text,
+            match number {
+                Some(number) => row.push(number),
+                None if dead.contains(&(index - first)) => row.push(0.0),
+                None => {
+                    let (text, remedy) = (text(), self.value_remedy(&text()));
+                    return Err(FrameError::Value { path, line, column, remedy, text });
                 }
-            })?;
-            row.push(value);
+            }
         }
         match wrong_length(row.len()) {
             None => Ok(row),
-            Some(wanted) => {
-                let expected = first + wanted;
-                let hint = self.length_hint(fields.len(), expected);
-                Err(FrameError::Length { path, line, found: fields.len(), expected, hint })
-            }
+            Some(wanted) => Err(self.wrong_length(fields.len(), first + wanted)),
         }
     }
 
@@ -254,9 +253,17 @@ impl Lines {
         )
     }
 
-    /// What to do about a line of another length than `expected`, the labels among it.
-    fn length_hint(&self, found: usize, expected: usize) -> String {
-        let Some(target) = &self.target else { return "give a line of forces for each frame".to_owned() };
+    /// A line of another length than `expected`, the labels among it.
+    fn wrong_length(&self, found: usize, expected: usize) -> FrameError {
+        let hint = match &self.target {
+            Some(target) => self.length_hint(target, found, expected),
+            None => "give a line of forces for each frame".to_owned(),
+        };
+        FrameError::Length { path: self.path.clone(), line: self.number, found, expected, hint }
+    }
+
+    /// What to do about it.
+    fn length_hint(&self, target: &Target, found: usize, expected: usize) -> String {
         let (first, taxels) = (self.labels(), target.sensor.taxels());
         let hint = match found.saturating_sub(expected) {
             0 => String::new(),
@@ -295,7 +302,7 @@ impl Lines {
             }
             at += run.len();
         }
-        let wrong = |problem: String| FrameError::Columns { path: self.path.clone(), line: self.number, problem };
+        let wrong = |problem: String| FrameError::Shape { path: self.path.clone(), line: self.number, problem };
         let shown = |[first, last]: [usize; 2]| format!("{} to {}", names[first - 1], names[last - 1]);
         if let (&[[from, to]], None) = (&runs[..], self.layout.columns) {
             if first > 0 && first != from - 1 {
@@ -327,6 +334,41 @@ impl Lines {
     fn is_units(&self, fields: &[&[u8]]) -> bool {
         let values = fields.get(self.labels()..).unwrap_or_default();
         self.target.is_some() && values.len() > 1 && values.iter().all(|field| *field == values[0])
+    }
+
+    /// The frames of a file of blocks.
+    fn blocks(
+        mut self,
+        blocks: &Blocks,
+        target: &Target,
+        wrong_length: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Text, FrameError> {
+        let (columns, rows) = (target.sensor.columns, target.sensor.rows);
+        (self.state, self.separator, self.block) = (State::Rows, Some(Separator::Byte(b';')), Some(columns));
+        let mut text = Text::default();
+        for (line, frame) in &blocks.frames {
+            self.number = line - 1;
+            if let Some(row) = self.row(frame, &wrong_length)? {
+                text.rows.push(row);
+                text.lines.push(*line);
+            }
+        }
+        self.unclear()?;
+        let path = self.path.display();
+        text.remarks = self.remarks();
+        text.remarks.push(format!("{path}: frames are blocks of {rows} lines of {columns} values"));
+        if let Some((name, pascals)) = &blocks.unit {
+            text.remarks.push(if target.counts {
+                format!("{path}: the header gives the unit {name}; the design says what a value is worth")
+            } else {
+                text.rows.iter_mut().flatten().for_each(|value| *value *= -pascals);
+                format!(
+                    "{path}: the header gives the unit {name}; pressure presses, so that 1 {name} is {} Pa",
+                    -pascals
+                )
+            });
+        }
+        Ok(text)
     }
 
     /// What is still to be refused at the end: commas that may be either.
@@ -376,21 +418,18 @@ pub(super) fn read(
     target: Option<&Target>,
     wrong_length: impl Fn(usize) -> Option<usize>,
 ) -> Result<Text, FrameError> {
-    if let Some(target) = target.filter(|_| layout.first() == 0 && layout.columns.is_none())
-        && let Some(text) = blocks::read(path, bytes, layout, target)?
-    {
-        return Ok(text);
-    }
     let mut lines = Lines::new(path, layout, target);
+    if let Some(target) = target.filter(|_| layout.first() == 0 && layout.columns.is_none())
+        && let Some(blocks) = blocks::join(path, bytes, layout, target)?
+    {
+        return lines.blocks(&blocks, target, wrong_length);
+    }
     let mut text = Text::default();
     let mut labels: Vec<bool> = Vec::new();
     for line in separator::lines(bytes) {
         let Some(row) = lines.row(line, &wrong_length)? else { continue };
         let fields = lines.separator.map(|separator| separator.split(line.trim_ascii())).unwrap_or_default();
-        let label = |column: usize| {
-            let label = *fields.get(column)?;
-            separator::number(label)
-        };
+        let label = |column: usize| fields.get(column).and_then(|label| separator::number(label));
         if let Some((column, unit)) = lines.time {
             text.times.get_or_insert_default().push(label(column).map_or(f64::NAN, |time| unit * time));
         }
@@ -399,16 +438,18 @@ pub(super) fn read(
         text.lines.push(lines.number);
     }
     lines.unclear()?;
-    // A header of numbers: its label is a word where all others are numbers, or its values ascend as no other's do.
-    let is_numbers = target.is_some()
-        && lines.header.is_none()
-        && text.rows.len() > 1
-        && is_whole(&text.rows[0])
-        && (!labels[0] && labels[1..].iter().all(|&is_number| is_number)
-            || ascends(&text.rows[0]) && !text.rows[1..].iter().any(|row| ascends(row)));
-    if is_numbers {
-        let row = text.rows.remove(0);
-        lines.numbered(text.lines.remove(0), &row);
+    if let [first, others @ ..] = &text.rows[..] {
+        // Its label is a word where all others are numbers.
+        let is_labelled = || {
+            target.is_some() && is_whole(first) && !others.is_empty() && !labels[0] && labels[1..].iter().all(|&is| is)
+        };
+        // A single row may be a frame whose values happen to ascend.
+        let is_numbered = lines.is_numbered(first, others)
+            && (!others.is_empty() || first.windows(2).all(|pair| pair[1] - pair[0] < 1.5) && first[0] < 2.0);
+        if is_numbered || lines.header.is_none() && is_labelled() {
+            let row = text.rows.remove(0);
+            lines.numbered(text.lines.remove(0), &row);
+        }
     }
     text.labels = lines.labels();
     text.remarks = lines.remarks();
@@ -433,20 +474,13 @@ fn foreign(content: &[u8]) -> Option<&'static str> {
     SEPARATORS.iter().find(|&separator| separates(separator)).map(|&(_, name)| name)
 }
 
-/// Whether a line's values, behind the labels, are the numbers of its columns: from 0 or 1 on, or as the labels have it.
-fn numbers_columns(row: &[f64], labels: usize) -> bool {
-    let from =
-        |first: usize| row.iter().zip(first..).all(|(&value, number)| value.to_bits() == (number as f64).to_bits());
-    row.len() >= FEWEST_NUMBERED && [0, 1, labels].into_iter().any(from)
-}
-
 /// Whether all values are those of a count from 0 on.
 fn is_whole(row: &[f64]) -> bool {
     row.len() >= FEWEST_NUMBERED && row.iter().all(|&value| value >= 0.0 && value.fract() == 0.0)
 }
 
 /// Whether values are whole and each is larger than the one before, as the numbers of a sensor's taxels with gaps.
-pub(super) fn ascends(row: &[f64]) -> bool {
+fn ascends(row: &[f64]) -> bool {
     is_whole(row) && row.windows(2).all(|pair| pair[1] > pair[0])
 }
 

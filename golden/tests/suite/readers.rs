@@ -121,7 +121,7 @@ fn bad_frames_are_left_out_where_that_is_asked_for() {
     let remark = found.remark.unwrap();
     assert!(remark.contains("2 lines are left out; the first: ") && remark.contains("line 3, column 3"), "{remark}");
     let found = read("1 2 3\n4 5 6\n\n1 nan 3\n4 5 6\n", skip.clone()).unwrap();
-    assert!(found.frames.len() == 1 && found.remark.unwrap().contains("1 frames with values that are no numbers"));
+    assert!(found.frames.len() == 1 && found.remark.unwrap().contains("1 lines are left out"));
     refused(read("1,2,nan,4,5,6\n", skip), &["1 lines are left out"]);
 }
 
@@ -175,7 +175,7 @@ fn frames_as_blocks_of_rows() {
         ("1 2 3\n\n4 5 6\n", ["line 2", "a block of 1 rows ends here where the sensor has 2"]),
         ("1 2 3\n4 5 6\n1 2 3", ["ends within a frame", "after 1 of 2 rows"]),
         ("1 2\n3 4\n5 6\n", ["blocks of 3 lines of 2 values are the transposed grid", "2 rows of 3 columns"]),
-        ("1 2 3\n4 nan 6\n", ["line 2: column 2", "sensor.dead"]),
+        ("1 2 3\n4 nan 6\n", ["line 2, column 2", "sensor.dead"]),
     ] {
         refused(read(text, 0), &parts);
     }

@@ -204,7 +204,7 @@ fn numbers_of_columns_are_a_header() {
         let (frames, remark) = read(&text, labels).unwrap_or_else(|error| panic!("{error}: {text:?}"));
         assert_eq!(frames, std::slice::from_ref(&frame), "{text:?}");
         let remark = remark.expect("a remark");
-        let said = format!("frames.csv, line {place}: numbers in turn up to {last} are those of the columns");
+        let said = format!("frames.csv, line {place}: numbers up to {last} are those of the columns");
         assert!(remark.contains(&said) && remark.contains("taken for a header"), "{remark}");
     }
     // Any other frame is one, and so is a later one.
@@ -224,7 +224,7 @@ fn numbers_of_columns_are_a_header() {
     }
     let message = read("0,1,2,3,4,5\n", 0).unwrap_err();
     assert!(
-        message.contains("line 1: numbers in turn") && message.contains("write a line of names above it"),
+        message.contains("line 1: numbers up to 5") && message.contains("write a line of names above it"),
         "{message}"
     );
     // As the lines come, too.
