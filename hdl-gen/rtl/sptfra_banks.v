@@ -4,8 +4,8 @@
 // Both banks of a calibration, and its tare: gains and offsets, then a map of dead taxels and a curve where the design
 // has them. One bank is active, the other one is written.
 //
-// Reads take an enabled cycle: gain and offset of the next taxel, weights of `taxel_ahead`, the line of `segment`. All
-// else is that of the chosen bank in the same cycle.
+// Reads take an enabled cycle: exponents, gains and offsets, weights of `taxel_ahead`, the line of `segment`. All else
+// is that of the chosen bank in the same cycle.
 
 `default_nettype none
 
@@ -50,12 +50,13 @@ module sptfra_banks #(
     // Reads
     input  wire advance,
     input  wire opens, // a frame begins
-    input  wire gain_bank,
-    input  wire next_taxel, // the number or the curve's value of a taxel is there, next that of the taxel after it
-    input  wire frame_ends, // next that of the first taxel
-    output wire [27:0] gain, // {exponent, mantissa}
+    input  wire exponent_bank,
+    input  wire [TAXEL_WIDTH-1:0] exponent_taxel,
+    output wire [9:0] exponent,
+    input  wire bank, // of all else
+    input  wire [TAXEL_WIDTH-1:0] gain_taxel,
+    output wire [17:0] gain,
     output wire [OFFSET_BITS-1:0] offset,
-    input  wire bank, // of the map and of the curve
     input  wire [TAXEL_WIDTH-1:0] taxel_ahead,
     output wire [18*PLACES-1:0] weights,
     output wire [3:0] count,
@@ -89,21 +90,27 @@ module sptfra_banks #(
     wire [TAXEL_WIDTH:0] address;
     wire [27:0] gain_in;
     wire [OFFSET_BITS-1:0] offset_in;
-    reg [TAXEL_WIDTH-1:0] taxel;
 
     assign {write_gain, write_offset, address, gain_in, offset_in} = command[TAXEL_WIDTH+OFFSET_BITS+30:0];
 
-    always @(posedge clock) begin
-        if (advance && next_taxel) begin
-            taxel <= taxel + 1'b1;
-        end
-        if (reset || (advance && frame_ends)) begin
-            taxel <= {TAXEL_WIDTH{1'b0}};
-        end
-    end
+    sptfra_bank #(
+        .WIDTH         (10),
+        .ADDRESS_WIDTH (TAXEL_WIDTH + 1),
+        .ROM_DIR       (ROM_DIR),
+        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_exponents.mem"})
+    ) exponents (
+        .clock        (clock),
+        .write_enable (write_gain),
+        .address      (address),
+        .write_data   (gain_in[27:18]),
+        .data         (words[OFFSET_BITS+18 +: 10]),
+        .read_enable  (advance),
+        .read_address ({exponent_bank, exponent_taxel}),
+        .read_data    (exponent)
+    );
 
     sptfra_bank #(
-        .WIDTH         (28),
+        .WIDTH         (18),
         .ADDRESS_WIDTH (TAXEL_WIDTH + 1),
         .ROM_DIR       (ROM_DIR),
         .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_bank_gains.mem"})
@@ -111,10 +118,10 @@ module sptfra_banks #(
         .clock        (clock),
         .write_enable (write_gain),
         .address      (address),
-        .write_data   (gain_in),
-        .data         (words[OFFSET_BITS +: 28]),
+        .write_data   (gain_in[17:0]),
+        .data         (words[OFFSET_BITS +: 18]),
         .read_enable  (advance),
-        .read_address ({gain_bank, taxel}),
+        .read_address ({bank, gain_taxel}),
         .read_data    (gain)
     );
 
@@ -130,7 +137,7 @@ module sptfra_banks #(
         .write_data   (offset_in),
         .data         (words[OFFSET_BITS-1:0]),
         .read_enable  (advance),
-        .read_address ({gain_bank, taxel}),
+        .read_address ({bank, gain_taxel}),
         .read_data    (offset)
     );
 
@@ -245,7 +252,7 @@ module sptfra_banks #(
             wire _unused_curve = &{1'b0, segment, tare_run, CURVE_COUNT, CURVE_KNOTS, CURVE_LAST, CURVE_LAST_VALUE};
         end
         if (HAS_MORE == 0) begin : gen_only
-            wire _unused_more = &{1'b0, bank, active, FIRST_OF_CURVE};
+            wire _unused_more = &{1'b0, active, FIRST_OF_CURVE};
         end
     endgenerate
 

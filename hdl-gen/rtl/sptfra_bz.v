@@ -26,16 +26,15 @@ module sptfra_bz #(
     parameter COUNTS = 0,
     parameter CALIBRATED = 0,
     parameter PER_TAXEL = 0,
-    parameter EXPONENTS = 0,
+    parameter signed [9:0] EXPONENT = 10'sd0,
     parameter signed [17:0] GAIN = 18'sd65536,
     parameter OFFSET_BITS = 27,
-    parameter COUNT_SHIFT = 16,
+    parameter integer COUNT_SHIFT = 16,
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
     parameter CURVE_LEVELS = 0,
     parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
     parameter signed [26:0] CURVE_LAST = 27'sd33554431,
-    parameter integer CURVE_LSB = 0,
     // As of sptfra_banks
     parameter [6:0] CURVE_COUNT = 7'd1,
     parameter signed [26:0] CURVE_LAST_VALUE = 27'sd0,
@@ -104,9 +103,8 @@ module sptfra_bz #(
     localparam LEVELS = (CURVE_LEVELS != 0) ? CURVE_LEVELS : 1;
     localparam PLACES = (REPLACEABLE != 0) ? REPLACEABLE : 1;
     localparam NUMBER_STAGES = 5;
-    localparam VALUE_STAGES = (CURVE_LEVELS != 0) ? NUMBER_STAGES + CURVE_LEVELS + 7
-        : (CALIBRATED != 0) ? 0 : NUMBER_STAGES;
-    localparam STAGES = VALUE_STAGES + ((CALIBRATED != 0) ? 10 : (COUNTS != 0) ? 4 : 0);
+    localparam VALUE_STAGES = NUMBER_STAGES + ((CURVE_LEVELS != 0) ? CURVE_LEVELS + 7 : (PER_TAXEL != 0) ? 2 : 0);
+    localparam STAGES = VALUE_STAGES + ((COUNTS == 0) ? 0 : (CURVE_LEVELS != 0) ? 7 : 4);
 
     generate
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
@@ -174,7 +172,9 @@ module sptfra_bz #(
     end
 
     // ---- Samples to stress
-    wire [27:0] gain;
+    wire [TAXEL_WIDTH-1:0] exponent_taxel, gain_taxel;
+    wire [9:0] exponent;
+    wire [17:0] gain;
     wire [OFFSET_BITS-1:0] offset;
     wire [27*(1<<LEVELS)-1:0] knots;
     wire [6:0] segments;
@@ -193,7 +193,7 @@ module sptfra_bz #(
         .COUNTS       (COUNTS),
         .CALIBRATED   (CALIBRATED),
         .PER_TAXEL    (PER_TAXEL),
-        .EXPONENTS    (EXPONENTS),
+        .EXPONENT     (EXPONENT),
         .GAIN         (GAIN),
         .OFFSET_BITS  (OFFSET_BITS),
         .COUNT_SHIFT  (COUNT_SHIFT),
@@ -201,30 +201,32 @@ module sptfra_bz #(
         .CURVE_LEVELS (CURVE_LEVELS),
         .CURVE_KNOTS  (CURVE_KNOTS),
         .CURVE_LAST   (CURVE_LAST),
-        .CURVE_LSB    (CURVE_LSB),
         .STRESS_BOUND (STRESS_BOUND),
         .ROM_DIR      (ROM_DIR),
         .ROM_NAME     (ROM_NAME)
     ) samples (
-        .clock         (clock),
-        .reset         (reset),
-        .advance       (advance),
-        .accept        (accept),
-        .sample        (s_tdata),
-        .last          (s_tlast),
-        .next_taxel    (takes[VALUE_STAGES]),
-        .frame_ends    (ends[VALUE_STAGES]),
-        .bank_gain     (gain),
-        .bank_offset   (offset),
-        .bank_knots    (knots),
-        .bank_segments (segments),
-        .bank_last     (last_number),
-        .bank_reach    (reach),
-        .segment       (segment),
-        .bank_line     (line),
-        .stress        (read),
-        .saturated     (read_saturated),
-        .not_finite    (read_not_finite)
+        .clock          (clock),
+        .reset          (reset),
+        .advance        (advance),
+        .sample         (s_tdata),
+        .sample_taken   (takes[0]),
+        .sample_ends    (ends[0]),
+        .value_taken    (takes[VALUE_STAGES]),
+        .value_ends     (ends[VALUE_STAGES]),
+        .exponent_taxel (exponent_taxel),
+        .gain_taxel     (gain_taxel),
+        .bank_exponent  (exponent),
+        .bank_gain      (gain),
+        .bank_offset    (offset),
+        .bank_knots     (knots),
+        .bank_segments  (segments),
+        .bank_last      (last_number),
+        .bank_reach     (reach),
+        .segment        (segment),
+        .bank_line      (line),
+        .stress         (read),
+        .saturated      (read_saturated),
+        .not_finite     (read_not_finite)
     );
 
     // ---- A calibration in RAM
@@ -254,48 +256,50 @@ module sptfra_bz #(
                 .ROM_DIR          (ROM_DIR),
                 .ROM_NAME         (ROM_NAME)
             ) banks (
-                .clock        (clock),
-                .reset        (reset),
-                .command      (bank_command),
-                .words        (bank_words),
-                .tare_command (tare_command),
-                .tare_result  (tare_result),
-                .most_spread  (calibration_acting[26:0]),
-                .active       (active),
-                .active_count (replaced),
-                .advance      (advance),
-                .opens        (opens),
-                .gain_bank    ((VALUE_STAGES == 0) ? bank : bank_held),
-                .next_taxel   (takes[VALUE_STAGES]),
-                .frame_ends   (ends[VALUE_STAGES]),
-                .gain         (gain),
-                .offset       (offset),
-                .bank         (bank_held),
-                .taxel_ahead  (taxel_ahead),
-                .weights      (weights),
-                .count        (count),
-                .weight_shift (weight_shift),
-                .numbers      (numbers),
-                .knots        (knots),
-                .segments     (segments),
-                .last         (last_number),
-                .reach        (reach),
-                .segment      (segment),
-                .line         (line),
-                .read_valid   (out_valid),
-                .read_last    (ends[STAGES]),
-                .read_bad     (read_saturated || read_not_finite || !takes[STAGES] || (ends[STAGES] && out_bad_length)),
-                .read         (read)
+                .clock          (clock),
+                .reset          (reset),
+                .command        (bank_command),
+                .words          (bank_words),
+                .tare_command   (tare_command),
+                .tare_result    (tare_result),
+                .most_spread    (calibration_acting[26:0]),
+                .active         (active),
+                .active_count   (replaced),
+                .advance        (advance),
+                .opens          (opens),
+                .exponent_bank  ((CURVE_LEVELS == 0) ? bank : bank_held),
+                .exponent_taxel (exponent_taxel),
+                .exponent       (exponent),
+                .bank           (bank_held),
+                .gain_taxel     (gain_taxel),
+                .gain           (gain),
+                .offset         (offset),
+                .taxel_ahead    (taxel_ahead),
+                .weights        (weights),
+                .count          (count),
+                .weight_shift   (weight_shift),
+                .numbers        (numbers),
+                .knots          (knots),
+                .segments       (segments),
+                .last           (last_number),
+                .reach          (reach),
+                .segment        (segment),
+                .line           (line),
+                .read_valid     (out_valid),
+                .read_last      (ends[STAGES]),
+                .read_bad       (read_saturated || read_not_finite || !takes[STAGES]
+                    || (ends[STAGES] && out_bad_length)),
+                .read           (read)
             );
         end else begin : gen_constant
             assign frame_calibration = 71'd0;
             assign bank_words = 1'b0;
             assign tare_result = 30'd0;
-            assign {gain, offset} = {(28+OFFSET_BITS){1'b0}};
+            assign {exponent, gain, offset} = {(28+OFFSET_BITS){1'b0}};
             assign {knots, segments, last_number, reach, line} = {(27*(1<<LEVELS)+139){1'b0}};
             assign {weights, count, weight_shift, numbers} = {(34*PLACES+9){1'b0}};
             wire _unused_calibration = &{1'b0, calibration_acting, bank_command, tare_command, segment, CURVE_COUNT,
-                CURVE_LAST_VALUE};
+                CURVE_LAST_VALUE, exponent_taxel, gain_taxel, bank};
         end
     endgenerate
 

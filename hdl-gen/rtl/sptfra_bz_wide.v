@@ -26,10 +26,10 @@ module sptfra_bz_wide #(
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
     parameter COUNTS = 0,
     parameter PER_TAXEL = 0,
-    parameter EXPONENTS = 0,
+    parameter signed [9:0] EXPONENT = 10'sd0,
     parameter signed [17:0] GAIN = 18'sd65536,
     parameter OFFSET_BITS = 27,
-    parameter COUNT_SHIFT = 16,
+    parameter integer COUNT_SHIFT = 16,
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
     parameter CURVE_LEVELS = 0,
     parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
@@ -87,8 +87,8 @@ module sptfra_bz_wide #(
     localparam STRESS_BITS = (DATA_BITS < 27) ? DATA_BITS : 27;
     localparam LEVELS = (CURVE_LEVELS != 0) ? CURVE_LEVELS : 1;
     localparam NUMBER_STAGES = 5;
-    localparam CURVE_STAGES = (CURVE_LEVELS != 0) ? NUMBER_STAGES + CURVE_LEVELS + 7 : NUMBER_STAGES;
-    localparam STAGES = (COUNTS != 0) ? CURVE_STAGES + 4 : CURVE_STAGES;
+    localparam VALUE_STAGES = NUMBER_STAGES + ((CURVE_LEVELS != 0) ? CURVE_LEVELS + 7 : (PER_TAXEL != 0) ? 2 : 0);
+    localparam STAGES = VALUE_STAGES + ((COUNTS == 0) ? 0 : (CURVE_LEVELS != 0) ? 7 : 4);
 
     generate
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
@@ -145,6 +145,7 @@ module sptfra_bz_wide #(
             localparam [7:0] DIGIT = 48 + sample;
             wire signed [26:0] fixed;
             wire [LEVELS-1:0] segment;
+            wire [BEAT_WIDTH-1:0] exponent_beat, gain_beat;
 
             sptfra_samples #(
                 .TAXELS       (BEATS),
@@ -153,7 +154,7 @@ module sptfra_bz_wide #(
                 .NUMBER_BOUND (NUMBER_BOUND),
                 .COUNTS       (COUNTS),
                 .PER_TAXEL    (PER_TAXEL),
-                .EXPONENTS    (EXPONENTS),
+                .EXPONENT     (EXPONENT),
                 .GAIN         (GAIN),
                 .OFFSET_BITS  (OFFSET_BITS),
                 .COUNT_SHIFT  (COUNT_SHIFT),
@@ -166,28 +167,31 @@ module sptfra_bz_wide #(
                 .ROM_NAME     (ROM_NAME),
                 .TAXEL_NAME   ((ROM_NAME == "") ? "" : {ROM_NAME, "_sample", DIGIT})
             ) samples (
-                .clock         (clock),
-                .reset         (reset),
-                .advance       (1'b1),
-                .accept        (accept),
-                .sample        (s_tdata[SAMPLE_BITS*sample +: SAMPLE_BITS]),
-                .last          (s_tlast),
-                .next_taxel    (takes[CURVE_STAGES]),
-                .frame_ends    (ends[CURVE_STAGES]),
-                .bank_gain     (28'd0),
-                .bank_offset   ({OFFSET_BITS{1'b0}}),
-                .bank_knots    ({27*(1<<LEVELS){1'b0}}),
-                .bank_segments (7'd0),
-                .bank_last     (27'sd0),
-                .bank_reach    (27'd0),
-                .segment       (segment),
-                .bank_line     (78'd0),
-                .stress        (fixed),
-                .saturated     (saturated[sample]),
-                .not_finite    (not_finite[sample])
+                .clock          (clock),
+                .reset          (reset),
+                .advance        (1'b1),
+                .sample         (s_tdata[SAMPLE_BITS*sample +: SAMPLE_BITS]),
+                .sample_taken   (takes[0]),
+                .sample_ends    (ends[0]),
+                .value_taken    (takes[VALUE_STAGES]),
+                .value_ends     (ends[VALUE_STAGES]),
+                .exponent_taxel (exponent_beat),
+                .gain_taxel     (gain_beat),
+                .bank_exponent  (10'd0),
+                .bank_gain      (18'd0),
+                .bank_offset    ({OFFSET_BITS{1'b0}}),
+                .bank_knots     ({27*(1<<LEVELS){1'b0}}),
+                .bank_segments  (7'd0),
+                .bank_last      (27'sd0),
+                .bank_reach     (27'd0),
+                .segment        (segment),
+                .bank_line      (78'd0),
+                .stress         (fixed),
+                .saturated      (saturated[sample]),
+                .not_finite     (not_finite[sample])
             );
 
-            wire _unused_segment = &{1'b0, segment};
+            wire _unused_banks = &{1'b0, segment, exponent_beat, gain_beat};
             assign stresses[27*sample +: 27] = fixed;
             assign narrow_stresses[STRESS_BITS*sample +: STRESS_BITS] = fixed[STRESS_BITS-1:0];
         end
@@ -322,7 +326,7 @@ module sptfra_bz_wide #(
         end
     end
 
-    wire _unused = &{1'b0, written_wide, arrives, in_frame, under_way};
+    wire _unused = &{1'b0, written_wide, accept, arrives, in_frame, under_way};
 
 endmodule
 

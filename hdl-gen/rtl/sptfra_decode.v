@@ -42,7 +42,6 @@ module sptfra_decode #(
                 .clock     (clock),
                 .enable    (enable),
                 .count     (sample),
-                .beyond    (1'b0),
                 .shift     (shift),
                 .limit     (limit),
                 .fixed     (number),

@@ -4,56 +4,57 @@
 // The stream's samples to stress: float32 pascals to fixed point, or counts, float32 or integers, which a curve and
 // taxels' gains make stresses.
 //
-// Sample to stress: 5 cycles, with a curve CURVE_LEVELS + 7 more, with counts 4 more. By a calibration in RAM: 10
-// cycles, with a curve CURVE_LEVELS + 12 more. One a cycle.
+// Sample to number: 5 cycles, where each taxel's gain has an exponent for it 7. With a curve CURVE_LEVELS + 7 more to
+// its value. With counts 4 more to the stress, behind a curve 7. One a cycle.
 
 `default_nettype none
 
 module sptfra_samples #(
     // Taxels of a frame
     parameter TAXELS = 100,
-    // What a sample is: 0 float32, 1 a 16-bit integer, 2 one without a sign
+    // What a sample is: see sptfra_decode
     parameter SAMPLE = 0,
-    // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts; with EXPONENTS
-    // each taxel has one of its own
+    // Exponent of the number's step, negated, and its largest magnitude, of the stress or of the counts
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
-    // Whether the stream carries counts: see sptfra_counts, with CALIBRATED sptfra_calibrate
+    // 1: the stream carries counts; gains and full scale: see sptfra_gains and sptfra_counts
     parameter COUNTS = 0,
     parameter CALIBRATED = 0,
     parameter PER_TAXEL = 0,
-    parameter EXPONENTS = 0,
+    parameter signed [9:0] EXPONENT = 10'sd0,
     parameter signed [17:0] GAIN = 18'sd65536,
     parameter OFFSET_BITS = 27,
-    parameter COUNT_SHIFT = 16,
+    parameter integer COUNT_SHIFT = 16,
     parameter signed [47:0] FULL_SCALE = 48'sd51200000,
+    parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
     // Curve between counts and stress, of 2^CURVE_LEVELS segments, if there is one: see sptfra_curve
     parameter CURVE_LEVELS = 0,
     parameter [27*(1<<CURVE_LEVELS)-1:0] CURVE_KNOTS = {27*(1<<CURVE_LEVELS){1'b1}},
     parameter signed [26:0] CURVE_LAST = 27'sd33554431,
-    parameter integer CURVE_LSB = 0, // with CALIBRATED, a step of its values is 2^CURVE_LSB Pa
-    // Full scale, in steps of the stress
-    parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
     // Prefix of the ROM file names, and what they begin with; those of the taxels
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
     parameter TAXEL_NAME = ROM_NAME,
     // Derived
     parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16,
-    parameter LEVELS = (CURVE_LEVELS != 0) ? CURVE_LEVELS : 1
+    parameter LEVELS = (CURVE_LEVELS != 0) ? CURVE_LEVELS : 1,
+    parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1
 ) (
     input  wire clock,
     input  wire reset,
     input  wire advance,
     // Samples of the stream
-    input  wire accept,
     input  wire [SAMPLE_BITS-1:0] sample,
-    input  wire last,
-    // When the number, or the curve's value, is there
-    input  wire next_taxel, // the number is of a taxel, the next one of the taxel after it
-    input  wire frame_ends, // the next one is of the first taxel
-    // Of a calibration in RAM: see sptfra_banks. The gain comes a cycle after the number or the value
-    input  wire [27:0] bank_gain,
+    input  wire sample_taken, // it is of a taxel, the next one of the taxel after it
+    input  wire sample_ends, // the next one is of the first taxel
+    // The same when the number, or the curve's value, is there
+    input  wire value_taken,
+    input  wire value_ends,
+    // Of a calibration in RAM: see sptfra_banks
+    output wire [TAXEL_WIDTH-1:0] exponent_taxel,
+    output wire [TAXEL_WIDTH-1:0] gain_taxel,
+    input  wire [9:0] bank_exponent,
+    input  wire [17:0] bank_gain,
     input  wire [OFFSET_BITS-1:0] bank_offset,
     input  wire [27*(1<<LEVELS)-1:0] bank_knots,
     input  wire [6:0] bank_segments,
@@ -68,49 +69,51 @@ module sptfra_samples #(
 );
 
     localparam signed [9:0] SHIFT = NUMBER_SHIFT[9:0];
+    localparam SHIFTS = (CURVE_LEVELS != 0) ? 1 : 0;
 
     // ---- To fixed point
     wire signed [26:0] number;
     wire number_saturated;
     wire number_not_finite;
+    wire signed [9:0] exponent;
+    wire [SAMPLE_BITS-1:0] decoded;
     wire signed [9:0] shift;
 
     generate
-        if (EXPONENTS != 0) begin : gen_exponents
-            sptfra_exponents #(
-                .TAXELS   (TAXELS),
-                .ROM_DIR  (ROM_DIR),
-                .ROM_NAME (TAXEL_NAME)
-            ) exponents (
-                .clock    (clock),
-                .reset    (reset),
-                .accept   (accept),
-                .last     (last),
-                .exponent (shift)
-            );
+        if ((PER_TAXEL != 0) && (SHIFTS == 0)) begin : gen_exponents
+            // Behind the memory stands a register
+            reg [SAMPLE_BITS-1:0] sample_1;
+            reg [SAMPLE_BITS-1:0] sample_2;
+            reg signed [9:0] exponent_2;
+
+            assign decoded = sample_2;
+            assign shift = exponent_2;
+
+            always @(posedge clock) begin
+                if (advance) begin
+                    sample_1 <= sample;
+                    sample_2 <= sample_1;
+                    exponent_2 <= exponent;
+                end
+            end
         end else begin : gen_exponent
+            assign decoded = sample;
             assign shift = SHIFT;
         end
-        if ((CALIBRATED == 0) || (CURVE_LEVELS != 0)) begin : gen_decode
-            sptfra_decode #(
-                .SAMPLE (SAMPLE)
-            ) decode (
-                .clock      (clock),
-                .enable     (advance),
-                .sample     (sample),
-                .shift      (shift),
-                .limit      ((CALIBRATED != 0) ? bank_reach : NUMBER_BOUND),
-                .number     (number),
-                .saturated  (number_saturated),
-                .not_finite (number_not_finite)
-            );
-        end else begin : gen_later
-            assign number = 27'sd0;
-            assign number_saturated = 1'b0;
-            assign number_not_finite = 1'b0;
-            wire _unused_shift = &{1'b0, shift};
-        end
     endgenerate
+
+    sptfra_decode #(
+        .SAMPLE (SAMPLE)
+    ) decode (
+        .clock      (clock),
+        .enable     (advance),
+        .sample     (decoded),
+        .shift      (shift),
+        .limit      (((CALIBRATED != 0) && (SHIFTS != 0)) ? bank_reach : NUMBER_BOUND),
+        .number     (number),
+        .saturated  (number_saturated),
+        .not_finite (number_not_finite)
+    );
 
     // ---- Counts along the curve
     wire signed [26:0] count;
@@ -167,80 +170,71 @@ module sptfra_samples #(
 
     // ---- Counts to stress
     generate
-        if (CALIBRATED != 0) begin : gen_calibrated
-            localparam FROM_CURVE = (CURVE_LEVELS != 0) ? 1 : 0;
-            wire [((FROM_CURVE != 0) ? 27 : SAMPLE_BITS)-1:0] from;
+        if (COUNTS != 0) begin : gen_counts
+            wire [17:0] gain;
+            wire [OFFSET_BITS-1:0] offset;
 
-            if (FROM_CURVE != 0) begin : gen_value
-                assign from = count;
-            end else begin : gen_sample
-                assign from = sample;
-                wire _unused_count = &{1'b0, count};
-            end
-
-            sptfra_calibrate #(
-                .SAMPLE       ((FROM_CURVE != 0) ? 3 : SAMPLE),
-                .VALUE_LSB    (CURVE_LSB),
-                .OFFSET_BITS  (OFFSET_BITS),
-                .COUNT_SHIFT  (COUNT_SHIFT),
-                .FULL_SCALE   (FULL_SCALE),
-                .STRESS_BOUND (STRESS_BOUND)
-            ) calibrate (
-                .clock      (clock),
-                .advance    (advance),
-                .sample     (from),
-                .beyond     (count_saturated),
-                .no_number  (count_not_finite),
-                .gain_1     (bank_gain),
-                .offset_1   (bank_offset),
-                .stress     (stress),
-                .saturated  (saturated),
-                .not_finite (not_finite)
+            sptfra_gains #(
+                .TAXELS      (TAXELS),
+                .PER_TAXEL   (PER_TAXEL),
+                .EXPONENT    (EXPONENT),
+                .GAIN        (GAIN),
+                .OFFSET_BITS (OFFSET_BITS),
+                .CALIBRATED  (CALIBRATED),
+                .SHIFTS      (SHIFTS),
+                .ROM_DIR     (ROM_DIR),
+                .ROM_NAME    (TAXEL_NAME)
+            ) gains (
+                .clock          (clock),
+                .reset          (reset),
+                .advance        (advance),
+                .sample_taken   (sample_taken),
+                .sample_ends    (sample_ends),
+                .value_taken    (value_taken),
+                .value_ends     (value_ends),
+                .exponent_taxel (exponent_taxel),
+                .gain_taxel     (gain_taxel),
+                .bank_exponent  (bank_exponent),
+                .bank_gain      (bank_gain),
+                .bank_offset    (bank_offset),
+                .exponent       (exponent),
+                .gain           (gain),
+                .offset         (offset)
             );
 
-            wire _unused = next_taxel || frame_ends || (PER_TAXEL != 0) || (GAIN != 0);
-        end else if (COUNTS != 0) begin : gen_counts
             sptfra_counts #(
-                .TAXELS       (TAXELS),
-                .PER_TAXEL    (PER_TAXEL),
-                .GAIN         (GAIN),
+                .SHIFTS       (SHIFTS),
                 .OFFSET_BITS  (OFFSET_BITS),
                 .SHIFT        (COUNT_SHIFT),
                 .FULL_SCALE   (FULL_SCALE),
-                .STRESS_BOUND (STRESS_BOUND),
-                .ROM_DIR      (ROM_DIR),
-                .ROM_NAME     (TAXEL_NAME)
+                .STRESS_BOUND (STRESS_BOUND)
             ) counts (
                 .clock             (clock),
-                .reset             (reset),
                 .advance           (advance),
-                .next_taxel        (next_taxel),
-                .frame_ends        (frame_ends),
                 .number            (count),
                 .number_saturated  (count_saturated),
                 .number_not_finite (count_not_finite),
+                .exponent_1        (exponent),
+                .gain_1            (gain),
+                .offset_1          (offset),
                 .stress            (stress),
                 .saturated         (saturated),
                 .not_finite        (not_finite)
             );
         end else begin : gen_stress
+            assign exponent = 10'sd0;
+            assign exponent_taxel = {TAXEL_WIDTH{1'b0}};
+            assign gain_taxel = {TAXEL_WIDTH{1'b0}};
             assign stress = count;
             assign saturated = count_saturated;
             assign not_finite = count_not_finite;
-            wire _unused = next_taxel || frame_ends || (PER_TAXEL != 0) || (GAIN != 0) || (OFFSET_BITS != 0)
-                || (COUNT_SHIFT != 0) || (FULL_SCALE != 0) || (STRESS_BOUND != 0);
+            wire _unused = &{1'b0, reset, sample_taken, sample_ends, value_taken, value_ends, exponent, EXPONENT, GAIN,
+                OFFSET_BITS != 0, COUNT_SHIFT != 0, FULL_SCALE, STRESS_BOUND, TAXEL_NAME != ""};
         end
     endgenerate
 
-    wire _unused_bank = &{1'b0, bank_gain, bank_offset, bank_knots, bank_segments, bank_last, bank_reach, bank_line,
-        CURVE_LSB != 0};
-
-    generate
-        if (EXPONENTS == 0) begin : gen_none
-            wire _unused = reset || accept || last || (TAXELS != 0) || (ROM_DIR != "") || (ROM_NAME != "")
-                || (TAXEL_NAME != "");
-        end
-    endgenerate
+    wire _unused_bank = &{1'b0, bank_exponent, bank_gain, bank_offset, bank_knots, bank_segments, bank_last,
+        bank_reach, bank_line, ROM_DIR != "", ROM_NAME != ""};
 
 endmodule
 

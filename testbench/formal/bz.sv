@@ -95,7 +95,7 @@ module harness (
 `ifndef PAPER
         .\writer.gen_fold.fold.lasts (fold_lasts),
 `endif
-        .\samples.gen_decode.decode.gen_float.float_to_fixed.stages (stages)
+        .\samples.decode.gen_float.float_to_fixed.stages (stages)
     );
 
     // ---- Each beat with its place in its frame; a place of 31 is that or more

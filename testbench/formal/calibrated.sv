@@ -20,7 +20,7 @@ module harness (
     input wire written_bank
 );
 
-    localparam STAGES = 10;
+    localparam STAGES = 11;
 
     reg started = 1'b0;
     reg active = 1'b0;

@@ -6,10 +6,10 @@ use golden::parity::CLASSES;
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
-use crate::plan::counts::{CountsPlan, EXPONENT_BITS, LARGEST_NUMBER};
+use crate::plan::counts::{CountsPlan, EXPONENT_BITS};
 use crate::plan::curve::{self, CurvePlan, SEGMENT_BITS};
 use crate::plan::dead::{DeadPlan, WEIGHT_BITS};
-use crate::plan::gain::GAIN_BITS;
+use crate::plan::gain::{GAIN_BITS, LARGEST_NUMBER};
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
 use crate::plan::streams::{Intake, Streams};
@@ -37,10 +37,14 @@ pub fn taxel_files(streams: Streams) -> Vec<String> {
 pub fn parameters(plan: &Plan) -> Parameters {
     let (stress, streams) = (plan.formats.stress, plan.streams());
     let curve_in_ram = plan.calibration.as_ref().and_then(CalibrationPlan::curve);
-    let (shift, bound) = match &plan.counts {
-        Some(counts) => (counts.exponents[0], counts.curve.as_ref().map_or(LARGEST_NUMBER, |curve| curve.limit)),
-        None => (curve_in_ram.map_or(-stress.lsb, |curve| curve.exponent), stress.bound),
+    let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());
+    let shift = match (&plan.counts, curve) {
+        (Some(counts), None) => counts.exponents[0],
+        (Some(_), Some(curve)) => curve.exponent,
+        (None, _) => curve_in_ram.map_or(-stress.lsb, |curve| curve.exponent),
     };
+    let counts = plan.counts.is_some() || plan.calibration.is_some();
+    let bound = if counts { curve.map_or(LARGEST_NUMBER, CurvePlan::reach) } else { stress.bound };
     let parameters =
         Parameters::new().count("COLUMNS", plan.design.sensor.columns).count("ROWS", plan.design.sensor.rows);
     let parameters = if streams.intake == Intake::Whole {
@@ -62,7 +66,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         Some(counts) => of_counts(parameters, counts),
         None => parameters,
     };
-    let parameters = match plan.counts.as_ref().and_then(|counts| counts.curve.as_ref()) {
+    let parameters = match curve {
         Some(curve) => of_curve(parameters, curve),
         None => parameters,
     };
@@ -87,11 +91,11 @@ pub fn parameters(plan: &Plan) -> Parameters {
 
 /// Cycles from a beat to its stress.
 pub fn beat_to_stress(plan: &Plan) -> u64 {
-    if let Some(of) = &plan.calibration {
-        return latency::calibrated(of.power_up.curve.as_ref().map(|map| curve::stages(map.format.levels())));
-    }
-    let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());
-    latency::beat_to_stress(plan.counts.is_some(), curve.map(|curve| curve::stages(curve.levels())))
+    let in_ram = plan.calibration.as_ref().and_then(CalibrationPlan::curve).map(|curve| curve.levels());
+    let in_rom = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref()).map(CurvePlan::levels);
+    let per_taxel = plan.calibration.is_some() || plan.counts.as_ref().is_some_and(CountsPlan::per_taxel);
+    let counts = plan.calibration.is_some() || plan.counts.is_some();
+    latency::beat_to_stress(counts, per_taxel, in_ram.or(in_rom).map(curve::stages))
 }
 
 /// When what a frame brings is there, in cycles after its first beat enters Bz, streams never waiting.
@@ -186,10 +190,10 @@ fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
     parameters
         .flag("COUNTS", true)
         .flag("PER_TAXEL", counts.per_taxel())
-        .flag("EXPONENTS", counts.per_taxel() && counts.curve.is_none())
+        .wide("EXPONENT", EXPONENT_BITS, counts.exponents[0].into())
         .wide("GAIN", GAIN_BITS, counts.gains[0].into())
         .number("OFFSET_BITS", counts.offset_bits().into())
-        .number("COUNT_SHIFT", counts.shift.into())
+        .number("COUNT_SHIFT", i64::from(counts.shift) - counts.curve.as_ref().map_or(0, |curve| curve.lsb.into()))
         .wide("FULL_SCALE", ACCUMULATOR_BITS, counts.full_scale)
 }
 

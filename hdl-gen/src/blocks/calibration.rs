@@ -18,9 +18,11 @@ const TARE_BITS: u32 = 37 + 2 * LONG_BITS;
 /// Parameters of `sptfra_bz` for a calibration in RAM.
 pub fn of_frames(parameters: Parameters, of: &CalibrationPlan) -> Parameters {
     let parameters = parameters
+        .flag("COUNTS", true)
         .flag("CALIBRATED", true)
+        .flag("PER_TAXEL", true)
         .number("OFFSET_BITS", of.offset_bits().into())
-        .number("COUNT_SHIFT", of.shift.into())
+        .number("COUNT_SHIFT", i64::from(of.shift) - of.curve().map_or(0, |curve| curve.lsb.into()))
         .wide("FULL_SCALE", ACCUMULATOR_BITS, of.full_scale);
     let parameters = match &of.power_up.curve {
         Some(curve) => of_curve(parameters, curve),
@@ -39,7 +41,6 @@ fn of_curve(parameters: Parameters, map: &CurveMap) -> Parameters {
         .number("CURVE_LEVELS", map.format.levels().into())
         .numbers("CURVE_KNOTS", LONG_BITS, &knots.collect::<Vec<_>>())
         .wide("CURVE_LAST", LONG_BITS, map.curve.last)
-        .number("CURVE_LSB", map.format.lsb.into())
         .expression("CURVE_COUNT", format!("7'd{}", map.curve.segments.len()))
         .wide("CURVE_LAST_VALUE", LONG_BITS, map.end)
 }
@@ -105,7 +106,8 @@ pub fn cost(plan: &Plan) -> Option<BlockCost> {
     let of = plan.calibration.as_ref()?;
     let words = 1 << address_bits(of.taxels);
     let mut memories = vec![
-        memory("gains", 2, 2 * words, GAIN_BITS + EXPONENT_BITS, false),
+        memory("exponents", 2, 2 * words, EXPONENT_BITS, false),
+        memory("gains", 2, 2 * words, GAIN_BITS, false),
         memory("offsets", 2, 2 * words, of.offset_bits(), false),
         memory("tare", 1, words, TARE_BITS, false),
     ];

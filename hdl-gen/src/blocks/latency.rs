@@ -12,18 +12,13 @@ use crate::cores::{axis_skid, cordic, float_to_fixed};
 pub const OVERRUN: u64 = 2 - axis_skid::LATENCY as u64;
 
 // ---- Bz
-/// From a beat entering the conversion to its stress: of the float conversion, and of the counts' if there is one.
-pub fn beat_to_stress(counts: bool, curve: Option<u64>) -> u64 {
-    /// Gain, product, sum, limits.
-    const COUNT_STAGES: u64 = 4;
-    u64::from(float_to_fixed::LATENCY) + if counts { COUNT_STAGES } else { 0 } + curve.unwrap_or(0)
-}
-
-/// The same by a calibration in RAM: the memory and a register, the conversion, product, sum, limits; with a curve of its
-/// values another conversion before.
-pub fn calibrated(curve: Option<u64>) -> u64 {
-    let conversion = u64::from(float_to_fixed::LATENCY);
-    2 + conversion + 3 + curve.map_or(0, |stages| conversion + stages)
+/// From a beat entering the conversion to its stress: of the float conversion, behind the memory of its exponent and a
+/// register where each taxel has one, or of the conversion and a curve; of the counts' gains if there are any.
+pub fn beat_to_stress(counts: bool, per_taxel: bool, curve: Option<u64>) -> u64 {
+    let exponent = if per_taxel { 2 } else { 0 };
+    // Gain, product, sum, limits; behind a curve the product is shifted in three more.
+    let gain = if counts { curve.map_or(4, |_| 7) } else { 0 };
+    u64::from(float_to_fixed::LATENCY) + curve.unwrap_or(exponent) + gain
 }
 
 /// What replacing dead taxels adds to that: the frame is read once more.

@@ -40,11 +40,9 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
         for (first, kind) in bz::taxel_files(plan.streams()).iter().enumerate() {
             let step = plan.streams().conversions();
             let depth = plan.taxels().div_ceil(step);
-            if counts.curve.is_none() {
-                let exponents = counts.exponents.iter().skip(first).step_by(step);
-                let exponents = exponents.map(|&exponent| u128::from(exponent as u32));
-                files.insert(format!("rom/{name}{kind}_exponents.mem"), hex(exponents, depth, EXPONENT_BITS));
-            }
+            let exponents = counts.exponents.iter().skip(first).step_by(step);
+            let exponents = exponents.map(|&exponent| u128::from(exponent as u32));
+            files.insert(format!("rom/{name}{kind}_exponents.mem"), hex(exponents, depth, EXPONENT_BITS));
             let gains = counts.gains.iter().skip(first).step_by(step).map(|&gain| u128::from(gain as u32));
             files.insert(format!("rom/{name}{kind}_gains.mem"), hex(gains, depth, GAIN_BITS));
             let offsets = counts.offsets.iter().skip(first).step_by(step).map(|&offset| u128::from(offset as u64));
@@ -59,8 +57,10 @@ pub fn insert(plan: &Plan, files: &mut FileMap) {
             let padded = words.into_iter().chain(std::iter::repeat(0)).take(depth);
             padded.clone().chain(padded)
         };
-        let gains = both(bank.gain_words().map(u128::from).collect());
-        files.insert(format!("rom/{name}_bank_gains.mem"), hex(gains, 2 * depth, GAIN_BITS + EXPONENT_BITS));
+        let exponents = both(bank.gains.iter().map(|&(_, exponent)| u128::from(exponent.cast_unsigned())).collect());
+        files.insert(format!("rom/{name}_bank_exponents.mem"), hex(exponents, 2 * depth, EXPONENT_BITS));
+        let gains = both(bank.gains.iter().map(|&(mantissa, _)| u128::from(mantissa.cast_unsigned())).collect());
+        files.insert(format!("rom/{name}_bank_gains.mem"), hex(gains, 2 * depth, GAIN_BITS));
         let offsets = both(bank.offsets.iter().map(|&offset| u128::from(offset.cast_unsigned())).collect());
         files.insert(format!("rom/{name}_bank_offsets.mem"), hex(offsets, 2 * depth, calibration.offset_bits()));
     }

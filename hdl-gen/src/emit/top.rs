@@ -11,7 +11,6 @@ use crate::blocks::{
 };
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
-use crate::plan::counts::CountsPlan;
 use crate::plan::format::address_bits;
 use crate::plan::streams::Intake;
 use crate::plan::words::status_bits;
@@ -241,23 +240,19 @@ pub(super) fn render(plan: &Plan) -> Result<(String, String), EmitError> {
 /// Modules of the library that stand only in a `generate if` that the design does not take.
 pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     let mut without = plan.estimator.slot().without();
-    if plan.counts.is_none() {
-        without.push("sptfra_counts");
-    }
     let curve = plan.design.input.curve.is_some();
+    if !plan.design.input.counts() {
+        without.extend(["sptfra_counts", "sptfra_gains"]);
+    }
     if !curve {
         without.push("sptfra_curve");
     }
-    if curve || !plan.counts.as_ref().is_some_and(CountsPlan::per_taxel) {
-        without.push("sptfra_exponents");
-    }
-    if plan.streams().sample != Samples::Float32 {
-        without.push("sptfra_float_to_fixed");
-    } else if !(curve && plan.calibration.is_some()) {
-        without.push("sptfra_int_to_fixed");
-    }
+    without.push(match plan.streams().sample {
+        Samples::Float32 => "sptfra_int_to_fixed",
+        Samples::Int16 | Samples::Uint16 => "sptfra_float_to_fixed",
+    });
     if plan.calibration.is_none() {
-        without.extend(["sptfra_banks", "sptfra_calibrate", "sptfra_curve_bank", "sptfra_tare"]);
+        without.extend(["sptfra_banks", "sptfra_curve_bank", "sptfra_tare"]);
     } else if !curve {
         without.push("sptfra_curve_bank");
     }

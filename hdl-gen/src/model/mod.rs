@@ -142,12 +142,7 @@ impl<'plan> Model<'plan> {
             let steps = i64::from(converted.fixed);
             return Reading { steps, saturated: converted.saturated, not_finite: converted.not_finite };
         };
-        let converted = counts.number(taxel, word);
-        let (mut steps, mut saturated) = (counts.to_stress(taxel, i64::from(converted.fixed)), converted.saturated);
-        if steps.abs() >= counts.full_scale {
-            (steps, saturated) = (steps.signum() * format.bound, true);
-        }
-        Reading { steps, saturated, not_finite: converted.not_finite }
+        counts.stress_of(taxel, word, format)
     }
 
     fn answer(&mut self, counter: u32, stress: &[i64], saturated: bool) -> Vec<u32> {

@@ -11,17 +11,13 @@ pub use dead_map::DeadMap;
 use golden::design::{Calibration, CalibrationIn, Design};
 use serde::Serialize;
 
-use super::counts::LARGEST_NUMBER;
+use super::counts::OFFSET_FULL_SCALES;
 use super::dead::DeadPlan;
-use super::format::{Format, largest, pow2, round_shift};
-use super::gain::{GAIN_BITS, Gain};
+use super::format::{Format, largest, pow2};
+pub use super::gain::Reading;
+use super::gain::{GAIN_BITS, Gain, LARGEST_NUMBER, Scale};
 use super::{PlanError, Thresholds};
-use crate::cores::float_to_fixed::{self, Converted};
-
-/// Offsets are within so many full scales of either sign.
-const OFFSET_FULL_SCALES: i64 = 2;
-/// Bits dropped after the product, at most.
-const MOST_SHIFT: u32 = 40;
+use crate::cores::float_to_fixed;
 
 /// How counts become stress where gains and offsets are written while frames run:
 /// `number = round(count * 2^exponent)`, then `stress = round(number * mantissa / 2^shift) + offset`, clipped to the full
@@ -30,7 +26,8 @@ const MOST_SHIFT: u32 = 40;
 /// Mantissas have all of their bits in use and offsets are at most `offset_limit`, so that a number at its bound is beyond
 /// the full scale by every content of a bank. Behind the clipping stand the formats that hold for every stress.
 ///
-/// Along a curve the banks' own makes pascals of counts before: `number = round(value * 2^(exponent + lsb))`.
+/// Along a curve the banks' own makes values of counts before, in steps of `2^lsb` Pa, and
+/// `stress = round(value * mantissa * 2^(exponent + lsb) / 2^shift) + offset`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CalibrationPlan {
     /// Taxels of a frame.
@@ -49,17 +46,6 @@ pub struct CalibrationPlan {
     pub power_up: Bank,
 }
 
-/// What `CalibrationPlan::stress_of` makes of a count.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reading {
-    /// Stress, clipped to the full scale.
-    pub steps: i64,
-    /// It was clipped.
-    pub saturated: bool,
-    /// The count was NaN or an infinity.
-    pub not_finite: bool,
-}
-
 impl CalibrationPlan {
     /// The conversion, if the design's calibration is in RAM.
     ///
@@ -75,20 +61,15 @@ impl CalibrationPlan {
         let curve = design.input.curve.as_ref();
         let curve = curve.map(|curve| CurveFormat::new(design, curve).map(curve)).transpose()?;
         let offset_limit = OFFSET_FULL_SCALES * stress.bound;
-        // The least mantissa times the largest number is beyond full scale and offset.
-        let reach = (offset_limit + stress.bound + 1) as f64;
-        let least = pow2(GAIN_BITS as i32 - 2) * LARGEST_NUMBER as f64;
-        let fits = |&shift: &u32| reach * pow2(shift as i32) <= least;
-        let shift = (0..=MOST_SHIFT).rev().find(fits).unwrap_or(0);
-        // A gain's rounding, that of half a number's step, and those of product and offset.
-        let rounding = (stress.bound >> (GAIN_BITS - 1)) + (1 << (GAIN_BITS - 2)) / (1 << shift.min(16)) + 3;
-        let rounding = rounding + curve.as_ref().map_or(0, |curve| Self::curve_rounding(curve, stress));
+        let Scale { shift, full_scale } =
+            Scale::new(stress, offset_limit, curve.as_ref().map(|curve| curve.format.lsb))
+                .unwrap_or(Scale { shift: 0, full_scale: 1 });
         let mut plan = Self {
             taxels: design.sensor.taxels(),
             count_steps: pa_per_count * pow2(-stress.lsb),
             shift,
             offset_limit,
-            full_scale: (stress.bound - rounding).max(1),
+            full_scale,
             stress,
             power_up: Bank {
                 gains: Vec::new(),
@@ -119,14 +100,6 @@ impl CalibrationPlan {
         Ok(Some(plan))
     }
 
-    /// Steps of the stress by which a curve's reading of the full scale may fall short of it: its slope's part, and the
-    /// value's rounding at the largest gain.
-    fn curve_rounding(curve: &CurveMap, stress: Format) -> i64 {
-        /// Of a taxel.
-        const LARGEST_GAIN: f64 = 16.0;
-        (stress.bound >> (GAIN_BITS - 2)) + (LARGEST_GAIN * pow2(curve.format.lsb - stress.lsb)).ceil() as i64 + 4
-    }
-
     /// The design's own dead taxels, where banks have room for them.
     fn dead_map(design: &Design) -> DeadMap {
         let room = design.hardware.replaceable;
@@ -147,13 +120,12 @@ impl CalibrationPlan {
                 bank.offsets.push(0);
                 continue;
             }
-            let Gain { mantissa, exponent } = Gain::new(gain * self.count_steps);
-            // By the gain as it is stored, so that the count of no stress at all gives none.
-            let steps = (offset / gain * f64::from(mantissa) * pow2(exponent)).round();
+            let of = Gain::new(gain * self.count_steps);
+            let steps = of.offset(gain, offset);
             if steps.abs() > self.offset_limit as f64 {
                 return Err(taxel);
             }
-            bank.gains.push((mantissa, exponent + self.shift as i32));
+            bank.gains.push((of.mantissa, of.exponent + self.shift as i32));
             bank.offsets.push(steps as i32);
         }
         Ok(bank)
@@ -175,19 +147,14 @@ impl CalibrationPlan {
 
     /// The stress of a taxel's count, given as float32.
     pub fn stress_of(&self, bank: &Bank, taxel: usize, count: u32) -> Reading {
-        let (mantissa, exponent) = bank.gains[taxel];
+        let gain = bank.gains[taxel];
+        let scale = Scale { shift: self.shift, full_scale: self.full_scale };
+        let lsb = bank.curve.as_ref().map(|curve| curve.format.lsb);
         let number = match &bank.curve {
-            Some(curve) => {
-                let value = curve.value_of(count);
-                Converted { fixed: rescaled(value, exponent + curve.format.lsb), ..value }
-            }
-            None => float_to_fixed::convert(count, exponent, LARGEST_NUMBER as u32),
+            Some(curve) => curve.curve.value_of(count),
+            None => float_to_fixed::convert(count, gain.1, LARGEST_NUMBER as u32),
         };
-        let product = i64::from(number.fixed) * i64::from(mantissa);
-        let steps = round_shift(product, self.shift) + i64::from(bank.offsets[taxel]);
-        let saturated = steps.abs() >= self.full_scale;
-        let steps = if saturated { steps.signum() * self.stress.bound } else { steps };
-        Reading { steps, saturated, not_finite: number.not_finite }
+        scale.reading(number, gain, bank.offsets[taxel].into(), lsb, self.stress.bound)
     }
 
     /// Bits of the widest offset, sign included.
@@ -206,19 +173,6 @@ impl CalibrationPlan {
         let curve = self.curve().map_or(0, |curve| curve.length());
         2 * self.taxels + 2 + DeadMap::length(self.power_up.dead.room, self.taxels) + curve
     }
-}
-
-/// A curve's value with the step of a number, rounded half away from zero; at an end of the curve the largest number.
-fn rescaled(value: Converted, shift: i32) -> i32 {
-    const LARGEST: u64 = LARGEST_NUMBER.unsigned_abs();
-    let doubled = match u32::try_from(27 - shift) {
-        Ok(right) => (u64::from(value.fixed.unsigned_abs()) << 28).checked_shr(right).unwrap_or(0),
-        Err(_) if value.fixed == 0 => 0,
-        Err(_) => u64::MAX,
-    };
-    let over = value.saturated || doubled >= 2 * LARGEST - 1;
-    let magnitude = if over { LARGEST } else { doubled.div_ceil(2) } as i32;
-    if value.fixed < 0 { -magnitude } else { magnitude }
 }
 
 // The bound of an offset has room in a word.

@@ -1,12 +1,14 @@
 //! The curve from counts to pascals, in fixed point: the segment of a count, then a straight line.
 
-use golden::design::Curve;
+use golden::design::{Curve, Design};
 use serde::Serialize;
 
 use super::PlanError;
+use super::calibration::CurveFormat;
 use super::format::{Format, largest, pow2, round_shift};
 use super::gain::{GAIN_BITS, Gain};
 use crate::cores::LONG_BITS;
+use crate::cores::float_to_fixed::{self, Converted};
 
 /// Width of a count on the curve: the difference of two is the longer operand of a multiplier.
 pub const COUNT_BITS: u32 = LONG_BITS - 1;
@@ -39,8 +41,6 @@ pub struct Segment {
 pub struct CurvePlan {
     /// Exponent of the numbers: `number = round(count * 2^exponent)`.
     pub exponent: i32,
-    /// The numbers' largest magnitude: counts are clipped there, and say so.
-    pub limit: i64,
     /// Last number of the curve.
     pub last: i64,
     /// Exponent of a step of the values, in Pa.
@@ -50,15 +50,15 @@ pub struct CurvePlan {
 }
 
 impl CurvePlan {
-    /// The curve in numbers as fine as their widths allow.
+    /// The curve of a design in the numbers of one in RAM, with coarser values where they reach further than those.
     ///
     /// # Errors
     /// [`PlanError::Curve`] where it rises too steeply for that.
-    pub fn new(curve: &Curve) -> Result<Self, PlanError> {
-        let count = Format::covering(curve.largest_count(), COUNT_BITS);
+    pub fn new(design: &Design, curve: &Curve) -> Result<Self, PlanError> {
+        let format = CurveFormat::new(design, curve);
         let largest = curve.points.iter().fold(0.0_f64, |most, point| most.max(point[1].abs()));
         let value = Format::covering(largest, VALUE_BITS);
-        Self::in_steps(curve, count.lsb, value.lsb)
+        Self::in_steps(curve, -format.exponent, format.lsb.max(value.lsb))
     }
 
     /// The curve in numbers whose steps are `2^count_lsb` counts and `2^value_lsb` Pa.
@@ -88,8 +88,7 @@ impl CurvePlan {
         };
         let segments = points.windows(2).zip(curve.points.windows(2)).map(segment).collect::<Result<_, _>>()?;
         let last = points.last().map_or(0, |point| point[0]);
-        let limit = points.iter().fold(0, |most, point| most.max(point[0].abs()));
-        Ok(Self { exponent: -count_lsb, limit, last, lsb: value_lsb, segments })
+        Ok(Self { exponent: -count_lsb, last, lsb: value_lsb, segments })
     }
 
     /// The value of a number.
@@ -98,6 +97,17 @@ impl CurvePlan {
         let index = self.segments[1..].partition_point(|segment| segment.first <= number);
         let Segment { first, value, slope, shift } = self.segments[index];
         value + round_shift(i64::from(slope) * (number - first), shift)
+    }
+
+    /// The numbers' largest magnitude: counts are clipped there, and say so.
+    pub fn reach(&self) -> i64 {
+        self.segments[0].first.abs().max(self.last.abs())
+    }
+
+    /// The value at a count, given as float32, in steps. It is saturated at an end of the curve.
+    pub fn value_of(&self, count: u32) -> Converted {
+        let number = float_to_fixed::convert(count, self.exponent, self.reach() as u32);
+        Converted { fixed: self.value(i64::from(number.fixed)) as i32, ..number }
     }
 
     /// Comparisons that find a segment, one after the other.

@@ -128,21 +128,6 @@ pub enum PlanError {
         /// Most segments.
         segments: usize,
     },
-    /// With a curve, a gain that is small beside another.
-    #[error(
-        "[sensor] calibration: the gain of taxel {taxel} is {gain:e} where the largest is {largest}; with a curve gains \
-         may differ by a factor of {spread}: correct the file, or give 0 if the taxel is dead"
-    )]
-    GainSpread {
-        /// The taxel, from 0.
-        taxel: usize,
-        /// Its gain.
-        gain: f64,
-        /// The largest gain.
-        largest: f64,
-        /// The factor.
-        spread: i32,
-    },
     /// The geometry amplifies so much that the worst case leaves the forces too few bits.
     #[error(
         "[hardware] data_bits = {bits}: the worst case of {vector} is {worst_n:.3e} N, so one step is {step_n:.3e} N, \

@@ -22,8 +22,8 @@ fn one_of(gain: f64, offset: f64) -> Vec<(f64, f64)> {
 
 /// The stress in pascals that a taxel's count becomes.
 fn stress(plan: &Plan, counts: &CountsPlan, taxel: usize, count: f64) -> f64 {
-    let number = counts.number(taxel, (count as f32).to_bits()).fixed;
-    counts.to_stress(taxel, number.into()) as f64 * plan.formats.stress.step()
+    let stress = plan.formats.stress;
+    counts.stress_of(taxel, (count as f32).to_bits(), stress).steps as f64 * stress.step()
 }
 
 #[test]
@@ -113,13 +113,12 @@ fn a_curve_that_has_no_steps_is_refused() {
         Err(error) => error.to_string(),
         Ok(_) => panic!("a plan"),
     };
-    let message = error("0,0\n10000,-1\n10000.1,-100000\n", &one_of(1.0, 0.0));
+    let message = error("0,0\n10000,-1\n10000.02,-100000\n", &one_of(1.0, 0.0));
     assert!(
-        ["between the counts 10000 and 10000.1", "leave one out"].iter().all(|part| message.contains(part)),
+        ["between the counts 10000 and 10000.02", "leave one out"].iter().all(|part| message.contains(part)),
         "{message}"
     );
-    let message = error(POINTS, &one_of(1e-3, 0.0));
-    assert!(["the gain of taxel 5 is 1e-3", "a factor of 64"].iter().all(|part| message.contains(part)), "{message}");
+    assert!(Plan::new(&curved("\"points.csv\"", POINTS, &one_of(1e-3, 0.0))).is_ok(), "a gain of any size");
 }
 
 #[test]

@@ -158,8 +158,8 @@ fn faults_in_the_banks_are_noticed() {
         (scanner, "sptfra_frame_context", "assign dropped =", "assign dropped = 1'b1 ||"),
         (scanner, "sptfra_calibration", "wire wrong = checks && (", "wire wrong = checks && !expected[0] && ("),
         (scanner, "sptfra_calibration", "if (!old_in_use) begin", "if (!reset) begin"),
-        (curved, "sptfra_bz", "((VALUE_STAGES == 0) ? bank : bank_held)", "(active)"),
-        (curved, "sptfra_bz", ".bank         (bank_held)", ".bank         (active)"),
+        (curved, "sptfra_bz", "((CURVE_LEVELS == 0) ? bank : bank_held)", "(active)"),
+        (curved, "sptfra_bz", ".bank           (bank_held)", ".bank           (active)"),
     ];
     assert_eq!(missed(&cases), Vec::<String>::new());
 }

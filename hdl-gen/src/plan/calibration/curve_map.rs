@@ -3,7 +3,6 @@
 use golden::design::{Curve, Design, Samples};
 use serde::Serialize;
 
-use crate::cores::float_to_fixed::{self, Converted};
 use crate::plan::PlanError;
 use crate::plan::curve::{COUNT_BITS, CurvePlan, MOST_SHIFT, Segment};
 use crate::plan::format::{Format, largest, round_shift};
@@ -132,18 +131,12 @@ impl CurveMap {
             && segments.iter().zip(ends).all(leads)
             && (ways.iter().all(|&way| way >= 0) || ways.iter().all(|&way| way <= 0))
     }
-
-    /// The curve's value at a count, given as float32, in steps. It is saturated at an end of the curve.
-    pub fn value_of(&self, count: u32) -> Converted {
-        let reach = self.curve.segments[0].first.abs().max(self.curve.last.abs());
-        let number = float_to_fixed::convert(count, self.format.exponent, reach as u32);
-        Converted { fixed: self.curve.value(i64::from(number.fixed)) as i32, ..number }
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Converted, CurveFormat, CurveMap, SLOPE_SHARE};
+    use super::{CurveFormat, CurveMap, SLOPE_SHARE};
+    use crate::cores::float_to_fixed::Converted;
     use crate::plan::format::pow2;
     use golden::design::{Curve, Design};
 
@@ -164,10 +157,10 @@ mod tests {
         assert_eq!((format.room, map.words().len()), (64, 259));
         for step in 1..400 {
             let count = f64::from(step) * curve.largest_count() / 400.5;
-            let value = f64::from(map.value_of((count as f32).to_bits()).fixed) * pow2(format.lsb);
+            let value = f64::from(map.curve.value_of((count as f32).to_bits()).fixed) * pow2(format.lsb);
             assert!((value / curve.at(count) - 1.0).abs() < 1e-4, "{count}: {value}");
         }
-        let beyond = |count: f64| map.value_of((count as f32).to_bits());
+        let beyond = |count: f64| map.curve.value_of((count as f32).to_bits());
         let end = beyond(curve.largest_count() * 1.01);
         assert!(end.saturated && (i64::from(end.fixed) - map.end).abs() <= 1 + (map.end.abs() >> SLOPE_SHARE));
         assert!(beyond(f64::NAN).not_finite);

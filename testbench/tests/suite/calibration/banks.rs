@@ -1,6 +1,6 @@
 //! The banks themselves: what is in them at power-up, what they take and what they refuse.
 
-use golden::design::{Outputs, Samples};
+use golden::design::{CalibrationIn, Curve, Outputs, Samples};
 use hdl_gen::plan::calibration::Bank;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -10,8 +10,8 @@ use testbench::registers::{Access, address};
 use testbench::trial::model_answers;
 
 use super::{
-    ACTIVE, BUSY, OUT_OF_RANGE, WRONG_CRC, counts, design, errors, generation, judged, load, perform, read_back,
-    subject, wait,
+    ACTIVE, BUSY, COUNTERS, OUT_OF_RANGE, WRONG_CRC, counts, design, errors, generation, judged, load, perform,
+    read_back, subject, wait,
 };
 use crate::support::{built, planned, shipped, simulate_exactly};
 
@@ -27,20 +27,45 @@ fn at_power_up_the_designs_calibration_acts() {
     assert_eq!(read_back(&mut core, false), words);
 }
 
-/// The same numbers as from ROM, but for the last bits: gains are rounded alike, offsets and full scale nearly.
+/// To the last bit, for samples of every format, along a curve or not, with a calibration or without, and dead taxels.
 #[test]
 fn ram_and_rom_say_the_same() {
-    let subject = subject();
-    let mut rom = subject.plan.design.clone();
-    rom.hardware.calibration = golden::design::CalibrationIn::Rom;
-    let packets = counts(&subject.plan, 20, &mut ChaCha8Rng::seed_from_u64(2));
-    let answers = model_answers(&planned(&rom), &packets).into_iter().zip(model_answers(&subject.plan, &packets));
-    for (rom, ram) in answers {
-        assert_eq!(rom[0], ram[0]);
-        let force = |words: &[u32]| [2, 3, 4].map(|word| f64::from(f32::from_bits(words[word])));
-        let size = force(&rom).iter().fold(0.0_f64, |most, force| most.max(force.abs()));
-        for (a, b) in force(&rom).iter().zip(force(&ram)) {
-            assert!((a - b).abs() <= 1e-4 * size, "{rom:x?} {ram:x?}");
+    let curve = Curve { points: vec![[-90.0, 700.0], [0.0, 0.0], [60.0, -700.0], [4000.0, -2.2e5]], law: None };
+    for (samples, curve) in [Samples::Float32, Samples::Int16, Samples::Uint16]
+        .into_iter()
+        .flat_map(|samples| [None, Some(&curve)].map(|curve| (samples, curve)))
+    {
+        for (calibrated, dead) in [(true, vec![]), (false, vec![]), (true, vec![3, 6])] {
+            let mut ram = design(Outputs::Field);
+            ram.hardware.samples = samples;
+            ram.input.dead = dead;
+            if let Some(curve) = curve {
+                (ram.input.pa_per_count, ram.input.curve) = (None, Some(curve.clone()));
+            }
+            if !calibrated {
+                ram.input.calibration = None;
+            }
+            let mut rom = ram.clone();
+            rom.hardware.calibration = CalibrationIn::Rom;
+            let [ram, rom] = [ram, rom].map(|design| planned(&design));
+            let mut random = ChaCha8Rng::seed_from_u64(2);
+            let mut packet = |_| -> Vec<u32> {
+                let reach: f64 = random.random_range(10.0..5000.0);
+                let mut count = |_| random.random_range(-reach..reach);
+                let counts: Vec<f64> = (0..ram.taxels()).map(&mut count).collect();
+                ram.streams().packet(&counts)
+            };
+            let packets: Vec<Vec<u32>> = (0..40).map(&mut packet).collect();
+            let [answers, of_ram] = [&rom, &ram].map(|plan| {
+                let mut answers = model_answers(plan, &packets);
+                // The version of a bank, which ROM has not.
+                for words in &mut answers {
+                    words[COUNTERS] &= !0xff00;
+                }
+                answers
+            });
+            assert_eq!(answers, of_ram, "{samples}, {curve:?}, {calibrated}");
+            assert!(answers.iter().any(|words| words[2] != 0), "{samples}, {curve:?}: forces");
         }
     }
 }

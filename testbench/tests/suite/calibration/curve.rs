@@ -13,7 +13,7 @@ use testbench::frame_set::FrameSet;
 use testbench::registers::address;
 use testbench::run::{Options, run};
 use testbench::stream::{Mode, Traffic};
-use testbench::trial::{model_answers, timeout};
+use testbench::trial::timeout;
 
 use super::commits::commits_at_every_moment;
 use super::{Subject, core, errors, generation, judged, judged_in, load, perform, read_back};
@@ -80,25 +80,6 @@ fn a_run_finds_all_registers_right() {
     let frames = FrameSet::standing(&subject().plan.design.sensor).expect("frames");
     let report = run(&design_with_curve(), &frames, &Options::default(), &Progress::hidden()).expect("runs");
     assert!(report.is_right(), "{report:#?}");
-}
-
-/// The same numbers as from ROM, but for the last bits.
-#[test]
-fn ram_and_rom_say_the_same() {
-    let subject = subject();
-    let mut rom = subject.plan.design.clone();
-    rom.hardware.calibration = golden::design::CalibrationIn::Rom;
-    let packets: Vec<Vec<u32>> =
-        (0..5).flat_map(|seed| counts(subject, 4, &mut ChaCha8Rng::seed_from_u64(seed))).collect();
-    let answers = model_answers(&planned(&rom), &packets).into_iter().zip(model_answers(&subject.plan, &packets));
-    for (rom, ram) in answers {
-        assert_eq!(rom[0], ram[0]);
-        let force = |words: &[u32]| [2, 3, 4].map(|word| f64::from(f32::from_bits(words[word])));
-        let size = force(&rom).iter().fold(0.0_f64, |most, force| most.max(force.abs()));
-        for (a, b) in force(&rom).iter().zip(force(&ram)) {
-            assert!((a - b).abs() <= 1e-4 * size, "{rom:x?} {ram:x?}");
-        }
-    }
 }
 
 /// Integers of either kind, several in a beat, dead taxels in the banks and in ROM, a field, a scanner that is not held.
@@ -219,7 +200,7 @@ fn half_a_frame_by_another_curve_is_noticed() {
     let other_floor = Bank { noise: (1 << 26) - 1, ..subject.calibration().power_up.clone() };
     for (module, from, to, bank) in some_of([
         ("sptfra_bz", "wire bank = in_frame ? bank_held : active;", "wire bank = active;", &other_curve),
-        ("sptfra_bz", "((VALUE_STAGES == 0) ? bank : bank_held)", "(active)", &other_gains),
+        ("sptfra_bz", "((CURVE_LEVELS == 0) ? bank : bank_held)", "(active)", &other_gains),
         ("sptfra_frame_context", "thresholds <= of_cean;", "thresholds <= {of_cean[58:27], in_noise};", &other_floor),
         (
             "sptfra_banks",

@@ -133,7 +133,7 @@ fn a_map_of_another_bank_is_noticed() {
     let bank = with_dead(&subject.plan, &of.power_up, &[6, 7]);
     let interval = subject.plan.timeline.interval_cycles;
     for (module, from, to) in some_of([
-        ("sptfra_bz", ".bank         (bank_held)", ".bank         (active)"),
+        ("sptfra_bz", ".bank           (bank_held)", ".bank           (active)"),
         ("sptfra_bz", "calibration_acting[66:59], replaced}", "calibration_acting[66:59], 4'd1}"),
     ]) {
         let built = broken(&subject.plan, module, from, to);

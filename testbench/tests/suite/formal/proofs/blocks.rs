@@ -164,7 +164,8 @@ pub const PROOFS: &[Proof] = &[
         design: mapped,
         defines: &[],
         top: "sptfra_bz",
-        parameters: "-set COLUMNS 4 -set ROWS 3 -set CALIBRATED 1 -set OFFSET_BITS 29 -set REPLACEABLE 1 -set MAPPED 1",
+        parameters: "-set COLUMNS 4 -set ROWS 3 -set COUNTS 1 -set CALIBRATED 1 -set PER_TAXEL 1 \
+                     -set OFFSET_BITS 29 -set REPLACEABLE 1 -set MAPPED 1",
         models: &[],
         free: &[
             "*sptfra_samples",
@@ -185,7 +186,7 @@ pub const PROOFS: &[Proof] = &[
             ("frame_gate", "!accept && !under_way && room", "!accept && room"),
             ("frame_gate", "in_frame <= !s_tlast;", "in_frame <= 1'b1;"),
             ("banks", "if (reset || !tare_run) begin", "if (reset) begin"),
-            ("banks", "if (opens) begin", "if (next_taxel) begin"),
+            ("banks", "if (opens) begin", "if (read_valid) begin"),
         ],
     },
     Proof {
