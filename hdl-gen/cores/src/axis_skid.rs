@@ -71,7 +71,7 @@ impl Logic for AxisSkid {
 }
 
 const DESCRIPTION: Description = Description {
-    path: "sptfra_axis_skid.v",
+    path: "axis/sptfra_axis_skid.v",
     banner: "\
 AXI-Stream skid buffer: a register in every wire of a stream, tready included.
 

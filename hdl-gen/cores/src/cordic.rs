@@ -193,7 +193,7 @@ impl Logic for Cordic {
 }
 
 const DESCRIPTION: Description = Description {
-    path: "sptfra_cordic.v",
+    path: "common/sptfra_cordic.v",
     banner: "\
 Vectoring CORDIC: magnitude (34 bits) and angle (32 bits) of (x, y), components within +-2^30.
 

@@ -71,7 +71,7 @@ impl Logic for Divider {
 }
 
 const DESCRIPTION: Description = Description {
-    path: "sptfra_divider.v",
+    path: "common/sptfra_divider.v",
     banner: "\
 Unsigned restoring divider: quotient (64 bits) = numerator (64 bits) / denominator (48 bits), rounded down.
 

@@ -177,7 +177,7 @@ impl Logic for FixedToFloat {
 }
 
 const DESCRIPTION: Description = Description {
-    path: "sptfra_fixed_to_float.v",
+    path: "common/sptfra_fixed_to_float.v",
     banner: "\
 64-bit fixed point to float32: float_bits = fixed * 2^exponent, rounded to nearest even.
 

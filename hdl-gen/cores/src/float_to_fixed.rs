@@ -126,7 +126,7 @@ impl Logic for FloatToFixed {
 }
 
 const DESCRIPTION: Description = Description {
-    path: "sptfra_float_to_fixed.v",
+    path: "common/sptfra_float_to_fixed.v",
     banner: "\
 float32 to 27-bit fixed point: fixed = float_bits * 2^shift, rounded half away from zero, clipped to +-limit.
 

@@ -60,7 +60,7 @@ impl Logic for Mac {
 }
 
 const DESCRIPTION: Description = Description {
-    path: "sptfra_mac.v",
+    path: "common/sptfra_mac.v",
     banner: "\
 Multiply-accumulate lane: sums coefficient * data in one DSP block of 27 by 18 bits.
 

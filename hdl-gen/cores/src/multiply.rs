@@ -41,7 +41,7 @@ pub(crate) const PORTS: [(&str, &str); 6] = [
 ];
 
 const DESCRIPTION: Description = Description {
-    path: "sptfra_multiply.v",
+    path: "common/sptfra_multiply.v",
     banner: "\
 Multiplier of one DSP block of 27 by 18 bits: coefficient * data = low + high, high being zero.
 

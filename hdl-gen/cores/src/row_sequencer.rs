@@ -71,7 +71,7 @@ impl Logic for RowSequencer {
 }
 
 const DESCRIPTION: Description = Description {
-    path: "sptfra_row_sequencer.v",
+    path: "spmv/sptfra_row_sequencer.v",
     banner: "\
 Row sequencer of a sparse matrix-vector lane: marks the first and the last product of every row.
 

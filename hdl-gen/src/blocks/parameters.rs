@@ -121,15 +121,15 @@ mod tests {
     };
     use golden::estimators::{DOUBT_FRACTION, DOUBT_RANGE};
 
-    use crate::cores::cordic;
+    use crate::cores::{Multiplier, cordic};
+    use crate::emit::rtl::library;
     use crate::estimators::{joint, line};
     use crate::model::{PULLING, inverse_gain};
     use crate::plan::format::FRICTION_FRACTION;
 
     /// What a constant in a module of the library is.
     fn literal(module: &str, name: &str) -> String {
-        let path = format!("{}/rtl/{module}.v", env!("CARGO_MANIFEST_DIR"));
-        let text = std::fs::read_to_string(path).unwrap();
+        let text = library(Multiplier::Whole)[module];
         let (_, rest) = text.split_once(&format!(" {name} = ")).unwrap_or_else(|| panic!("{module} has no {name}"));
         rest.split_once(';').unwrap().0.to_owned()
     }

@@ -85,8 +85,8 @@ struct View {
     u_lsb: i32,
     g_lsb: i32,
     torque_lsb: i32,
-    /// Status bits, with their meanings.
-    status: Vec<(u32, &'static str)>,
+    /// Status bits with their meanings, two in a line.
+    status: Vec<String>,
 
     /// What an element of a vector is, how many there are, and how many values come at a time.
     element: &'static str,
@@ -178,7 +178,7 @@ impl View {
             u_lsb: plan.formats.u.lsb,
             g_lsb: plan.formats.g.lsb,
             torque_lsb: plan.formats.torque_lsb,
-            status: status_bits().collect(),
+            status: status_lines(),
 
             element: if folded { "quad" } else { "taxel" },
             elements: plan.elements(),
@@ -209,6 +209,15 @@ impl View {
             op: op::parameters(plan),
         }
     }
+}
+
+/// The status bits as a table of two columns.
+fn status_lines() -> Vec<String> {
+    let bits: Vec<_> = status_bits().map(|(bit, meaning)| format!("{bit:>2}  {meaning:<22}")).collect();
+    let rows = bits.len().div_ceil(2);
+    (0..rows)
+        .map(|row| bits[row..].iter().step_by(rows).map(String::as_str).collect::<String>().trim_end().to_owned())
+        .collect()
 }
 
 /// What the estimator has of the taxels: the upper bits of each, where there are more than it takes.

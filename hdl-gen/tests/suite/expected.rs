@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use golden::design::Design;
+use hdl_gen::cores::Multiplier;
+use hdl_gen::emit::rtl::library;
 use hdl_gen::emit::{FileMap, VERSION, emit};
 use hdl_gen::plan::Plan;
 
@@ -26,18 +28,16 @@ fn generated() -> FileMap {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let design = here.parent().expect("a workspace").join("designs/small.toml");
     let mut files = emit(&Plan::new(&Design::load(&design).expect("right")).expect("a plan")).expect("emitted");
-    let mut library = FileMap::new();
-    read(&here.join("rtl"), "", &mut library);
-    let copies: BTreeMap<String, Vec<u8>> = library
+    let copies: BTreeMap<String, String> = library(Multiplier::Whole)
         .into_iter()
-        .map(|(path, text)| {
-            let stamped =
-                String::from_utf8_lossy(&text).replacen(" generator.", &format!(" generator. Version {VERSION}."), 1);
-            (format!("rtl/{}", path.rsplit('/').next().unwrap_or(&path)), stamped.into_bytes())
+        .map(|(module, text)| {
+            (format!("rtl/{module}.v"), text.replacen(" generator.", &format!(" generator. Version {VERSION}."), 1))
         })
         .collect();
-    let listed: String =
-        files.extract_if(.., |path, text| copies.get(path) == Some(text)).map(|(path, _)| path + "\n").collect();
+    let listed: String = files
+        .extract_if(.., |path, text| copies.get(path).is_some_and(|copy| copy.as_bytes() == text))
+        .map(|(path, _)| path + "\n")
+        .collect();
     files.insert(LIBRARY.to_owned(), listed.into_bytes());
     files
 }

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use tempfile::TempDir;
 use testbench::tools;
 
-use crate::support::workspace;
+use crate::support::library_file;
 
 /// A ROM of the mat's lanes, of its collector, and one whose last bank is shallow.
 const SHAPES: [(usize, u32); 3] = [(12_015, 11), (4_935, 18), (BANK + 300, 36)];
@@ -19,7 +19,7 @@ fn folder(depth: usize, width: u32) -> (TempDir, Vec<u128>) {
     let folder = tempfile::tempdir().expect("a folder");
     for module in ["sptfra_rom", "sptfra_rom_bank"] {
         let name = format!("{module}.v");
-        fs::copy(workspace("hdl-gen/rtl").join(&name), folder.path().join(&name)).expect("a module");
+        fs::copy(library_file(module), folder.path().join(&name)).expect("a module");
     }
     let mut random = ChaCha8Rng::seed_from_u64(depth as u64);
     let words: Vec<u128> = (0..depth).map(|_| random.random::<u128>() >> (128 - width)).collect();

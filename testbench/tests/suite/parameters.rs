@@ -4,7 +4,7 @@ use std::fs;
 
 use testbench::tools;
 
-use crate::support::workspace;
+use crate::support::{library_file, library_folders, look_in};
 
 /// Module, parameter, value, what the tool must name.
 const SENSELESS: [(&str, &str, &str, &str); 35] = [
@@ -48,10 +48,9 @@ const SENSELESS: [(&str, &str, &str, &str); 35] = [
 /// What Verilator says of a module of the library with these parameters.
 fn said(module: &str, parameters: &[String]) -> String {
     let mut verilator = tools::verilator().expect("installed");
-    let library = workspace("hdl-gen/rtl");
     verilator.args(["--lint-only", "-Wno-fatal", "--top-module", &format!("sptfra_{module}")]);
-    verilator.args(parameters).arg("-y").arg(&library);
-    let output = verilator.arg(library.join(format!("sptfra_{module}.v"))).output().expect("starts");
+    verilator.args(parameters).args(look_in(library_folders()));
+    let output = verilator.arg(library_file(&format!("sptfra_{module}"))).output().expect("starts");
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
@@ -61,7 +60,7 @@ fn senseless_parameters_are_named() {
         let name = format!("sptfra_error_{reason}");
         let text = said(module, &[format!("-G{parameter}={value}")]);
         assert!(text.contains(&name), "{module} with {parameter} = {value}: {text}");
-        let path = workspace("hdl-gen/rtl").join(format!("sptfra_{module}.v"));
+        let path = library_file(&format!("sptfra_{module}"));
         assert!(fs::read_to_string(path).expect("is there").contains(&name), "{module}");
     }
 }

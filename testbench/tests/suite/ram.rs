@@ -5,7 +5,7 @@ use std::fs;
 use tempfile::TempDir;
 use testbench::tools;
 
-use crate::support::workspace;
+use crate::support::library_file;
 
 /// Reads old words, a word in the cycle that writes it, it again, and one held without an enable.
 const BENCH: &str = "module bench;
@@ -47,7 +47,7 @@ endmodule
 /// What the bench reads, from a memory with a change.
 fn read(simulation: bool, right: &str, wrong: &str) -> Vec<u32> {
     let folder = TempDir::new().expect("a folder");
-    let text = fs::read_to_string(workspace("hdl-gen/rtl/sptfra_ram.v")).expect("a module");
+    let text = fs::read_to_string(library_file("sptfra_ram")).expect("a module");
     assert!(text.contains(right), "{right}");
     fs::write(folder.path().join("ram.v"), text.replace(right, wrong)).expect("writable");
     fs::write(folder.path().join("bench.v"), BENCH).expect("writable");

@@ -4,6 +4,7 @@ mod designs;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::iter;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::LazyLock;
@@ -11,7 +12,7 @@ use std::sync::LazyLock;
 use self::designs::designs;
 use crate::support::effort::{self, some_of};
 use crate::support::random;
-use crate::support::{in_parallel, planned, shipped};
+use crate::support::{in_parallel, library_folders, look_in, planned, shipped};
 use golden::design::Design;
 use hdl_gen::emit::{FileMap, emit};
 use tempfile::TempDir;
@@ -53,8 +54,8 @@ impl Written {
 
     /// Where a tool finds what a module instantiates: in the design, and where this does without a part, in the library.
     /// Nothing else is read.
-    fn libraries(&self) -> [PathBuf; 4] {
-        ["-y".into(), self.folder.path().join("rtl"), "-y".into(), crate::support::workspace("hdl-gen/rtl")]
+    fn libraries(&self) -> Vec<PathBuf> {
+        look_in(iter::once(self.folder.path().join("rtl")).chain(library_folders()))
     }
 
     /// Runs a tool beside the ROM files, where the parameter `ROM_DIR` looks for them unless it is set; what the tool

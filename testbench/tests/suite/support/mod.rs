@@ -26,6 +26,26 @@ pub fn workspace(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join(path)
 }
 
+/// The rooms of the Verilog library, but for modules that other fabrics take in place of them.
+pub fn library_folders() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(workspace("hdl-gen/rtl")).expect("a folder");
+    let rooms = entries.map(|entry| entry.expect("readable").path()).filter(|path| !path.ends_with("ecp5"));
+    let mut rooms: Vec<PathBuf> = rooms.collect();
+    rooms.sort();
+    rooms
+}
+
+/// The file of a module of the library.
+pub fn library_file(module: &str) -> PathBuf {
+    let mut files = library_folders().into_iter().map(|folder| folder.join(format!("{module}.v")));
+    files.find(|path| path.is_file()).unwrap_or_else(|| panic!("no {module}.v below hdl-gen/rtl"))
+}
+
+/// Options by which Verilator and Icarus Verilog look for modules in these folders.
+pub fn look_in(folders: impl IntoIterator<Item = PathBuf>) -> Vec<PathBuf> {
+    folders.into_iter().flat_map(|folder| ["-y".into(), folder]).collect()
+}
+
 /// The `sptfra` command among the programs of this build; built if it is not there.
 pub fn sptfra() -> PathBuf {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();

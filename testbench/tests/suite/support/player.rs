@@ -9,7 +9,7 @@ use testbench::tools;
 use testbench::verilate::{cxx_optimisation, one_unit, verilator_version};
 
 use super::faults::replaced;
-use super::workspace;
+use super::{library_file, library_folders, look_in};
 
 /// Verilator's runtime and its precompiled headers, once for all benches: with them a bench takes a fourth of the time.
 static RUNTIME: LazyLock<PathBuf> = LazyLock::new(|| {
@@ -50,7 +50,7 @@ fn compiler() -> Command {
 /// A copy of one of the project's modules with a fault, in a bench's folder, where it goes ahead of the right one.
 pub fn write_broken(folder: &Path, module: &str, from: &str, to: &str) {
     let name = format!("{module}.v");
-    let text = fs::read_to_string(workspace("hdl-gen/rtl").join(&name)).expect("is there");
+    let text = fs::read_to_string(library_file(module)).expect("is there");
     fs::write(folder.join(name), replaced(module, &text, from, to)).expect("writable");
 }
 
@@ -65,7 +65,7 @@ pub fn verilator(folder: &Path, cycles: usize) -> String {
     let mut translate = tools::verilator().expect("installed");
     translate.args(["--cc", "--x-assign", "unique", "--x-initial", "unique", "-Wno-fatal", "-DSIMULATION"]);
     translate.args(["--no-decoration", "--top-module", "bench"]);
-    translate.args(["--Mdir", "model", "-y", ".", "-y"]).arg(workspace("hdl-gen/rtl")).arg("bench.v");
+    translate.args(["--Mdir", "model", "-y", "."]).args(look_in(library_folders())).arg("bench.v");
     succeed(translate.current_dir(folder));
     let unit = one_unit(&folder.join("model"), &main).expect("readable");
     fs::write(folder.join("main.cpp"), unit).expect("writable");

@@ -13,19 +13,13 @@
 //   steps      stress 2^-9 Pa, weight 2^-24 N, u 2^-8 Pa, G 2^-20 N, torque 2^-27 N m
 //
 // Word 0: frame counter in bits 31:16, status in the others:
-//    0  no contact
-//    1  direction unknown
-//    2  optimum at the bound
-//    3  saturated
-//    4  NaN or infinity in
-//    5  frame length wrong
+//    0  no contact             7  more than one contact
+//    1  direction unknown      8  dead taxel replaced
+//    2  optimum at the bound   9  too many replaced
+//    3  saturated             10  slip
+//    4  NaN or infinity in    11  no tension
+//    5  frame length wrong    12  frames dropped before
 //    6  doubtful
-//    7  more than one contact
-//    8  dead taxel replaced
-//    9  too many replaced
-//   10  slip
-//   11  no tension
-//   12  frames dropped before
 
 `default_nettype none
 
