@@ -14,7 +14,7 @@ XTASK         := $(CARGO) run --quiet -p xtask --
 XTASK_RELEASE := $(CARGO) run --quiet --release -p xtask --
 PIP_INSTALL := .venv/bin/pip install --quiet --disable-pip-version-check --no-compile
 
-DESIGN ?= designs/sensor1-reduced.toml
+DESIGN ?= designs/sensor1-fast.toml
 SCENE  ?= scenes/sensor1-hertz.toml
 FRAMES := $(TARGET)/run/$(basename $(notdir $(SCENE))).csv
 FORCES := $(FRAMES:.csv=.forces.csv)

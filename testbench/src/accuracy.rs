@@ -119,11 +119,18 @@ impl StatusCounts {
     }
 }
 
-/// Errors of the answers against true forces, in percent.
-pub fn against_truth(answers: &[Answer], truth: &[Outcome]) -> ErrorSummary {
-    let found =
-        answers.iter().map(|answer| Outcome { force: answer.resultant, friction: answer.mu, direction: answer.phi });
-    ErrorSummary::new(&truth.iter().copied().zip(found).collect::<Vec<_>>())
+impl From<&Answer> for Outcome {
+    fn from(answer: &Answer) -> Self {
+        Self { force: answer.resultant, friction: answer.mu, direction: answer.phi }
+    }
+}
+
+/// Errors of answers or solutions against true forces, in percent.
+pub fn against_truth<'a, T: 'a>(found: &'a [T], truth: &[Outcome]) -> ErrorSummary
+where
+    Outcome: From<&'a T>,
+{
+    ErrorSummary::new(&truth.iter().copied().zip(found.iter().map(Outcome::from)).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

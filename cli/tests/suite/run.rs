@@ -66,6 +66,24 @@ fn the_small_design_is_bit_exact_and_its_json_is_complete() {
     assert_eq!(report["nnz"].as_object().map(serde_json::Map::len), Some(13));
 }
 
+/// Beside the grid search stands the paper's line search on the same frames; beside the line search stands nothing.
+#[test]
+fn the_paper_is_in_the_same_table() {
+    let run = |design: &str| {
+        let plan = Plan::new(&Design::load(Path::new(design)).expect("a design")).expect("a plan");
+        let frames = FrameSet::standing(&plan.design.sensor).expect("frames");
+        run_plan(&plan, &frames, &Options::default(), &Progress::hidden()).expect("runs")
+    };
+    let [line, grid] = ["small.toml", "sensor1-fast.toml"].map(|name| run(&design(name)));
+    assert_eq!(line.paper_errors, None);
+    assert!(!page::render(&line).contains("paper's, %"));
+    let page = page::render(&grid);
+    assert!(page.contains("paper's, %"), "{page}");
+    let [own, papers] = [grid.true_force_errors, grid.paper_errors].map(|errors| errors.expect("both").e_fz.max);
+    // The largest error of the line search is eleven percent of the normal force; the correction leaves a tenth of it.
+    assert!(own < 3.0 && (10.0..12.0).contains(&papers), "{own} {papers}");
+}
+
 #[test]
 fn the_table_has_no_control_codes_off_a_terminal() {
     let output = sptfra(&["run", &design("small.toml")]);

@@ -5,7 +5,7 @@ pub mod report;
 
 use std::path::{Path, PathBuf};
 
-use golden::design::Design;
+use golden::design::{Design, Estimator, Filter, Tension};
 use golden::output::OutputError;
 use golden::solver::{Solver, SolverError as SolveError};
 use hdl_gen::plan::Plan;
@@ -79,12 +79,12 @@ pub fn run_plan(
     let sources = rtl_sources(plan)?;
     progress.stage("computing what the hardware must answer");
     let trial = Trial::new(plan, packets(plan.streams(), &frames.stress), options.seed);
-    let solver = Solver::new(&plan.design.solved_as_one())?;
-    let solutions = trial
-        .packets
-        .iter()
-        .map(|packet| solver.solve(&as_received(plan.streams(), packet)))
-        .collect::<Result<Vec<_>, _>>()?;
+    let solved = |design: &Design| {
+        let solver = Solver::new(design)?;
+        let solve = |packet: &Vec<u32>| solver.solve(&as_received(plan.streams(), packet));
+        trial.packets.iter().map(solve).collect::<Result<Vec<_>, SolveError>>()
+    };
+    let solutions = solved(&plan.design.solved_as_one())?;
 
     progress.stage("building the simulation with Verilator");
     let verilate = Verilate::default().with_trace(trace_format(options.trace)?);
@@ -112,8 +112,24 @@ pub fn run_plan(
         }
     }
     report.status_counts = StatusCounts::new(&answers);
-    report.true_force_errors = frames.truth.as_ref().map(|truth| against_truth(&answers, truth));
+    if let Some(truth) = &frames.truth {
+        report.true_force_errors = Some(against_truth(&answers, truth));
+        if let Some(design) = paper_method(&plan.design) {
+            report.paper_errors = Some(against_truth(&solved(&design)?, truth));
+        }
+    }
     Ok(report)
+}
+
+/// The design with the paper's estimator, which needs tension, if it has another one.
+fn paper_method(design: &Design) -> Option<Design> {
+    let mut design = design.solved_as_one();
+    if !design.algorithm.estimator.is_calibrated() || design.input.tension == Tension::Clipped {
+        return None;
+    }
+    design.algorithm.estimator = Estimator::Line;
+    design.algorithm.filter = Filter::None;
+    Some(design)
 }
 
 fn trace_format(file: Option<&Path>) -> Result<Trace, RunError> {

@@ -1,6 +1,6 @@
 //! A report as a page of text. Without colours: it reads the same in a file.
 
-use golden::metrics::ERROR_NAMES;
+use golden::metrics::{ERROR_NAMES, ErrorSummary};
 
 use super::report::{Published, Report};
 use crate::figures::{decimals, grouped};
@@ -37,7 +37,7 @@ fn line(page: &mut String, text: &str) {
     page.push('\n');
 }
 
-fn row<const N: usize>(name: &str, values: [String; N]) -> Vec<String> {
+fn row(name: &str, values: impl IntoIterator<Item = String>) -> Vec<String> {
     [name.to_owned()].into_iter().chain(values).collect()
 }
 
@@ -107,9 +107,17 @@ fn accuracy(page: &mut String, report: &Report) {
     section(page, "Error against f64", &["largest", "relative to"], rows);
     if let Some(errors) = &report.true_force_errors {
         let spreads = ERROR_NAMES.iter().zip(errors.spreads());
-        let rows =
-            spreads.map(|(name, spread)| row(name, [spread.max, spread.standard_error].map(|of| decimals(of, 2))));
-        section(page, "Error against true forces", &["largest, %", "std. error, %"], rows);
+        let papers = report.paper_errors.as_ref().map(ErrorSummary::spreads);
+        let rows = spreads.enumerate().map(|(at, (name, spread))| {
+            let paper = papers.iter().map(|papers| papers[at].max);
+            row(name, [spread.max, spread.standard_error].into_iter().chain(paper).map(|of| decimals(of, 2)))
+        });
+        let headings = ["largest, %", "std. error, %", "paper's, %"];
+        let shown = if papers.is_some() { 3 } else { 2 };
+        section(page, "Error against true forces", &headings[..shown], rows);
+        if papers.is_some() {
+            line(page, "  paper's: largest error of its line search without a filter, in f64");
+        }
     }
     let counts = report.status_counts.present();
     let rows = counts.into_iter().map(|(name, count)| row(name, [grouped(count as u64)]));

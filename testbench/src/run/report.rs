@@ -129,6 +129,9 @@ pub struct Report {
     /// Against the true forces, in percent; absent if they are not known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub true_force_errors: Option<ErrorSummary>,
+    /// The same of the paper's method in f64, the line search without a filter, beside a design with another estimator.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub paper_errors: Option<ErrorSummary>,
     /// Frames by status bit.
     pub status_counts: StatusCounts,
     /// The cycles beside the predicted ones.
@@ -204,6 +207,7 @@ impl Report {
             faults,
             error: SolverError::default(),
             true_force_errors: None,
+            paper_errors: None,
             status_counts: StatusCounts::default(),
             modes: simulation.modes.iter().map(ModeReport::from).collect(),
             registers,
