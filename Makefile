@@ -160,8 +160,8 @@ synth: tools build ## Yosys' count of multipliers, memories, LUT and FF beside t
 
 # Times are measured with a release build. tools/results.py writes its files in results/.
 BENCH_FOLDER  := $(TARGET)/bench
-BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml sensor1-joint.toml \
-	sensor1-fast.toml bed-mat.toml)
+BENCH_SOLVER  := $(addprefix designs/,sensor1-none.toml sensor1-reduced.toml sensor1-resultants.toml sensor1-fast.toml \
+	bed-mat.toml)
 BENCH_DESIGNS := designs/sensor1-reduced.toml designs/sensor2-reduced.toml designs/sensor1-fast.toml designs/sensor1-fast-64.toml \
 	designs/bed-mat.toml
 BENCH_CELLS   := sensor1-reduced sensor1-reduced-64 sensor1-resultants sensor1-fast sensor1-fast-64
@@ -184,8 +184,8 @@ bench: tools ## Measure solver, generator, simulation, cycles and cells, into re
 
 # One point a job; sweeps on more than one machine: `make sweep-cluster SNAKEMAKE_OPTIONS='--executor slurm --jobs 100'`.
 SWEEP_FOLDER  := $(TARGET)/sweep
-SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1-l40 f2-p50 f3 joint,designs/$(sensor)-$(kind).toml)) \
-	designs/sensor1-fast.toml designs/sensor1-wide.toml designs/sensor2-wide.toml designs/sensor1-fast-wide.toml
+SWEEP_DESIGNS ?= $(foreach sensor,sensor1 sensor2,$(foreach kind,reduced none f1-l40 f2-p50 f3 fast,designs/$(sensor)-$(kind).toml)) \
+	designs/sensor1-wide.toml designs/sensor2-wide.toml
 SWEEP_SCENES  ?= $(addprefix scenes/,sensor1-hertz.toml sensor1-tilted.toml two-contacts.toml sensor2-disc.toml \
 	sensor2-punch.toml sensor2-held.toml)
 SWEEP_OPTIONS ?= --simulate base --kinds

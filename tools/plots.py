@@ -178,8 +178,7 @@ def error_latency():
     parts.append(text(left, top - 12, "largest tangential error, % of the normal force"))
     shown = [
         ("sensor1-none", "sensor1-reduced", "line search, 16 lanes", 1, 8, 4),
-        ("sensor1-joint", "sensor1-joint", "grid 21, 16 lanes", 2, 10, 4),
-        ("sensor1-fast", "sensor1-fast", "grid 15, 16 lanes", 2, -10, 20),
+        ("sensor1-fast", "sensor1-fast", "grid search, 16 lanes", 2, -10, 20),
         ("sensor1-fast-64", "sensor1-fast-64", "64 lanes", 2, -6, -12),
         ("sensor1-fast-100", "sensor1-fast-100", "100 lanes", 2, -12, 20),
     ]

@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn a_misspelt_name_is_told() {
         let folder = tempfile::tempdir().expect("a folder");
-        for name in ["sensor1-fast.gtkw", "sensor1-fast.toml", "sensor1-joint.toml", "frames.csv", "frames.html"] {
+        for name in ["sensor1-fast.gtkw", "sensor1-fast.toml", "sensor1-fast.toml", "frames.csv", "frames.html"] {
             fs::write(folder.path().join(name), "").expect("writable");
         }
         let missing = io::Error::from(io::ErrorKind::NotFound);

@@ -3,9 +3,7 @@
 use std::ops::RangeInclusive;
 
 use golden::calibrate::{CalibrateError, Settings, calibrate};
-use golden::design::{
-    DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Grid, Input, JointConstants, Samples, Tension,
-};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Input, JointConstants, Samples, Tension};
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
 use golden::sensor::Sensor;
@@ -169,8 +167,7 @@ fn text(new: &NewDesign, stage: &mut dyn FnMut(&'static str)) -> Result<String, 
         Design::from_toml(&text, "sptfra new")?;
         return Ok(text);
     }
-    let design =
-        Design::from_toml(&text.replace(CONSTANTS, &format!("grid = {}\n", Grid::COARSE.side())), "sptfra new")?;
+    let design = Design::from_toml(&bare, "sptfra new")?;
     stage("fitting gain and friction to contacts with known forces");
     let found = calibrate(&design, &Settings::constants(), &mut |_| ())?;
     let text = text.replace(CONSTANTS, &constants(&found));
@@ -179,27 +176,25 @@ fn text(new: &NewDesign, stage: &mut dyn FnMut(&'static str)) -> Result<String, 
 }
 
 /// The lines of the joint estimator's constants; four digits, which no processor rounds otherwise and no contact shows.
-fn constants(JointConstants { grid, gain, tangential: [c1, c3], fitted_to, .. }: &JointConstants) -> String {
+fn constants(JointConstants { gain, friction_correction: [c1, c3], calibrated_for, .. }: &JointConstants) -> String {
     let remarks = [
-        "points of the plane along each axis, a cell of hardware each; 21: finer, walked over",
         "factor on all forces, fitted to the sensor above",
         "friction c1 mu + c3 mu |mu|^2, likewise; the correction, which",
         "  halves the error, is trained by sptfra calibrate",
-        "what they belong to: for another sensor, kernel or regularisation remove",
+        "what they are for: for another sensor, noise, kernel or regularisation remove",
         "  these lines, and run sptfra calibrate",
     ];
     let keys = [
-        format!("grid = {}", grid.side()),
         format!("gain = {gain:.4}"),
-        format!("tangential = [{c1:.4}, {c3:.4}]"),
+        format!("friction_correction = [{c1:.4}, {c3:.4}]"),
         String::new(),
         String::new(),
         String::new(),
     ];
-    let fitted_to = format!("fitted_to = {:?}\n", fitted_to.as_deref().unwrap_or_default());
+    let calibrated_for = format!("calibrated_for = {:?}\n", calibrated_for.as_deref().unwrap_or_default());
     let constants: String =
         keys.iter().zip(remarks).map(|(key, remark)| format!("{key:<COMMENTS$}# {remark}\n")).collect();
-    constants + &fitted_to
+    constants + &calibrated_for
 }
 
 /// The text with another value of a key, its comment where it was.

@@ -3,7 +3,7 @@
 
     import sptfra
 
-    design = sptfra.Design.load("designs/sensor1-joint.toml")
+    design = sptfra.Design.load("designs/sensor1-fast.toml")
     scene = sptfra.scene(design)
     forces = sptfra.Solver(design).solve(scene.frames)
     forces.resultant, forces.field, forces.status

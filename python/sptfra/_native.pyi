@@ -190,7 +190,7 @@ def calibrate(
     design: Design | str | os.PathLike[str],
     *,
     name: str | None = None,
-    family: str | None = None,
+    training_set: str | None = None,
     seed: int = 1,
     hidden: int | None = None,
     quick: bool = False,
@@ -199,7 +199,7 @@ def calibrate(
 ) -> Design:
     """The design with constants and a network fitted to its sensor, in a minute or some; Ctrl-C ends it.
 
-    `family` is "narrow" or "wide"; a path may be that of a design whose constants are those of another sensor. Without a
+    `training_set` is "sliding" or "general"; a path may be that of a design whose constants are those of another sensor. Without a
     `name` it is that of the design with `_calibrated` behind it.
     `progress` is called with the pieces of work done and all, ten times a second.
     """

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use golden::calibrate::{Work, calibrate as fit};
-use golden::design::{Design as Checked, Family};
+use golden::design::{Design as Checked, TrainingSet};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
@@ -16,13 +16,13 @@ const PAUSE: Duration = Duration::from_millis(100);
 
 /// A design with constants and network fitted to its sensor. Ctrl-C ends it.
 #[pyfunction]
-#[pyo3(signature = (design, *, name = None, family = None, seed = 1, hidden = None, quick = false, thorough = false, progress = None))]
+#[pyo3(signature = (design, *, name = None, training_set = None, seed = 1, hidden = None, quick = false, thorough = false, progress = None))]
 #[allow(clippy::too_many_arguments, reason = "keywords, most of them left out")]
 pub fn calibrate(
     py: Python<'_>,
     design: &Bound<'_, PyAny>,
     name: Option<String>,
-    family: Option<&str>,
+    training_set: Option<&str>,
     seed: u64,
     hidden: Option<usize>,
     quick: bool,
@@ -30,13 +30,12 @@ pub fn calibrate(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Design> {
     let mut design = unfitted(design)?;
-    if let Some(family) = family {
-        design.algorithm.joint.family = word::<Family>("family", family)?;
+    if let Some(training_set) = training_set {
+        design.algorithm.joint.training_set = word::<TrainingSet>("training_set", training_set)?;
     }
-    let family = design.algorithm.joint.family;
-    let grid = design.algorithm.joint.grid;
-    let settings = Work { seed, hidden, quick, thorough }.settings(family, grid).map_err(raised)?;
-    let all = settings.work(family);
+    let training_set = design.algorithm.joint.training_set;
+    let settings = Work { seed, hidden, quick, thorough }.settings(training_set).map_err(raised)?;
+    let all = settings.work(training_set);
     let (mut done, mut told) = (0, Instant::now());
     let found = without_lock(py, || {
         fit(&design, &settings, &mut |_| {

@@ -106,7 +106,7 @@ class Package(unittest.TestCase):
             sptfra.plot_field(design(), forces, 36)
         with self.assertRaisesRegex(ValueError, "contacts = 2"):
             sptfra.plot_bodies(design(), forces)
-        pad = sptfra.Design.load(ROOT / "designs" / "sensor1-joint.toml")
+        pad = sptfra.Design.load(ROOT / "designs" / "sensor1-fast.toml")
         truth = sptfra.scene(path=ROOT / "scenes" / "two-contacts.toml").truth
         axes = sptfra.plot_bodies(pad, truth)
         centres = [tuple(map(float, dots.get_offsets()[0])) for dots in axes.collections]

@@ -31,7 +31,7 @@ class Designs(unittest.TestCase):
         self.assertIn("6 x 5 taxels", repr(made))
 
     def test_files_and_pickles_give_the_same_design(self):
-        loaded = sptfra.Design.load(ROOT / "designs" / "sensor1-joint")
+        loaded = sptfra.Design.load(ROOT / "designs" / "sensor1-fast")
         self.assertEqual(pickle.loads(pickle.dumps(loaded)), loaded)
         self.assertNotEqual(loaded, design())
         with tempfile.TemporaryDirectory() as folder:
@@ -55,7 +55,7 @@ class Designs(unittest.TestCase):
             (lambda: sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml", design=design()), "the scene has"),
             (lambda: sptfra.scene(), "nothing to make frames of"),
             (lambda: sptfra.calibrate(design("[algorithm]\nestimator = 'line'\n")), "nothing to calibrate"),
-            (lambda: sptfra.calibrate(design(), family="odd"), 'family is "odd"; choose one of: narrow, wide'),
+            (lambda: sptfra.calibrate(design(), training_set="odd"), 'training_set is "odd"; choose one of: sliding, general'),
             (lambda: sptfra.load_frames(ROOT / "data" / "bed_mat_64x27.csv", design()), "line 2"),
             (lambda: sptfra.generate(design(), ROOT), "which `sptfra generate` did not write; move it away or choose another folder"),
         ]:

@@ -5,8 +5,7 @@
 // The generated top level with its control logic. Left out, and free to do anything in any cycle: the skid buffers,
 // Bz, CeAn, the arithmetic, and how long programs, search and summary take. The sink may stall for ever. With JOINT the
 // search is that of the joint estimator, which has no line before it, and stages of their own behind it: search, LOOK and
-// correction have a frame each. With HANDED_ON a frame's u are free for another when they were searched; else, with a
-// LOOK, when they were looked at. With LATENCY frames wait for fields; with ONE_RESIDUAL only one has a place.
+// correction have a frame each. A frame's u are free for another when they were searched. With LATENCY frames wait for fields; with ONE_RESIDUAL only one has a place.
 `include "progress.svh"
 
 module harness (
@@ -74,12 +73,6 @@ module harness (
     wire correction_start;
     wire fill_bank;
     wire search_bank;
-    wire look_bank;
-`ifdef HANDED_ON
-    wire u_seen = 1'b0; // by the look: the frame in it needs its u
-`else
-    wire u_seen = looking;
-`endif
     wire found_waits = centroid_waits; // of what is searched
     wire answering = correcting; // what an answer is of
 `else
@@ -92,7 +85,6 @@ module harness (
     wire centre_waits = 1'b0;
     wire look_done = 1'b0;
     wire window_done = 1'b0;
-    wire u_seen = 1'b0;
     wire correcting = 1'b0;
     wire found_waits = answer_waits;
     wire answering = searching;
@@ -161,7 +153,6 @@ module harness (
         .\estimator.correction_start (correction_start),
         .\estimator.next_fill_bank (fill_bank),
         .\estimator.search_bank (search_bank),
-        .\estimator.look_bank (look_bank),
 `else
         .\estimator.fill_complete (u_complete),
         .\estimator.u_waiting (u_waiting),
@@ -294,10 +285,8 @@ module harness (
 `endif
             assert (!search_start || !searching);
             // The bank that is filled is neither searched nor looked at, and those two are not the same one
-            assert (!open[0] || (u_there + searching + u_seen < 3'd2));
+            assert (!open[0] || (u_there + searching < 3'd2));
             assert (!open[0] || !searching || (fill_bank != search_bank));
-            assert (!open[0] || !u_seen || (fill_bank != look_bank));
-            assert (!searching || !u_seen || (search_bank != look_bank));
 `endif
         end
     end
@@ -305,7 +294,7 @@ module harness (
 `ifdef INVARIANTS
     always @(posedge clock) begin
         if (!reset) begin
-            assert ({2'd0, u_held} == {3'd0, open[0]} + u_there + searching + u_seen);
+            assert ({2'd0, u_held} == {3'd0, open[0]} + u_there + searching);
             assert ((u_held <= 2'd2) && !(start[0] && (u_held == 2'd2)));
             assert ({1'b0, frames_held} == frames_due + summary_busy + at_output);
             assert ({2'd0, fields_held} == {3'd0, field_started} + at_output);
@@ -316,7 +305,6 @@ module harness (
             assert (!sums_take || sums_wait);
             // Banks are taken in turn
             assert (fill_bank == (search_bank ^ searching ^ u_waiting[0]));
-            assert (search_bank == (look_bank ^ looking));
             // The frame before is searched at once
             assert (!open[0] || (u_there == 3'd0) || searching || (young != 3'd0));
 `else

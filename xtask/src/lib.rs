@@ -4,4 +4,5 @@ pub mod bench;
 pub mod corner_cases;
 pub mod markdown;
 pub mod mutants;
+pub mod noise;
 pub mod stress;

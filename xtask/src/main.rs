@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use sptfra::message;
 
-use commands::{bench, cells, corner_cases, mutants, solver, stress};
+use commands::{bench, cells, corner_cases, mutants, noise, solver, stress};
 
 /// Runs what only developers run.
 #[derive(Parser)]
@@ -24,6 +24,7 @@ enum Command {
     CornerCases(corner_cases::Args),
     Stress(stress::Args),
     Mutants(mutants::Args),
+    Noise(noise::Args),
     Cells(cells::Args),
 }
 
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::CornerCases(args) => corner_cases::run(&args),
         Command::Stress(args) => stress::run(&args),
         Command::Mutants(args) => mutants::run(&args),
+        Command::Noise(args) => noise::run(&args),
         Command::Cells(args) => cells::run(&args),
     }))
 }

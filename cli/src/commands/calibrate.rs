@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use golden::calibrate::{Work, calibrate};
 use golden::choose::rebase_scenes;
-use golden::design::{Design, Family, Filter, is_name};
+use golden::design::{Design, Filter, TrainingSet, is_name};
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder};
@@ -26,15 +26,15 @@ For the joint estimator's constants from simulated contacts, in the design file:
 
 In RESOLVED.toml, besides:
   gain = 1.1                        # factor on all forces
-  tangential = [1.0, 0.0]           # friction vector c1 mu + c3 mu |mu|^2
-  family = "wide"                   # contacts that all of it was fitted to, unless "narrow"
-  doubt = 0.06                      # with family "wide": a standard error above this share of F_z is doubtful
+  friction_correction = [1.0, 0.0]  # friction vector c1 mu + c3 mu |mu|^2
+  training_set = "general"          # contacts that all of it was trained on, unless "sliding"
+  max_standard_error = 0.06         # with "general": a larger share of F_z marks a frame as of low confidence
   [algorithm.correction]            # of the friction vector, by a small network
   half_window = [3, 7]              # taxels either side of the contact's centre, along x and y
   file = "RESOLVED.weights.csv"     # its weights in steps of 2^-12, written beside RESOLVED.toml: a line for each
                                     # hidden unit, under a header
   sha256 = "..."                    # of that file
-  error_base = -17123               # with family "wide": what is added to the logarithm of the error that is left"#;
+  error_base = -17123               # with "general": what is added to the logarithm of the error that is left"#;
 
 /// Fits a design's constants to simulated contacts, or to recordings with measured forces.
 ///
@@ -60,12 +60,10 @@ pub struct Args {
     /// Seed of the contacts and of the training.
     #[arg(long, default_value_t = 1, conflicts_with_all = ["frames", "uniform"])]
     seed: u64,
-    /// Training contacts: "narrow", round and sliding, or "wide", of any shape, tilted, held; default: the design's.
-    #[arg(long, value_parser = word::<Family>(), conflicts_with_all = ["frames", "uniform"])]
-    family: Option<Family>,
-    /// Hidden units of the correction, 0 for none; default: 128, or 204 with family "wide".
-    ///
-    /// With family "narrow" and grid = 15 the default is 64, with --quick 24.
+    /// Training contacts: "sliding", round ones, or "general", of any shape, tilted, held; default: the design's.
+    #[arg(long, value_parser = word::<TrainingSet>(), conflicts_with_all = ["frames", "uniform"])]
+    training_set: Option<TrainingSet>,
+    /// Hidden units of the correction, 0 for none; default: 128, with "sliding" 64, with --quick 24.
     #[arg(long, value_parser = clap::value_parser!(u16).range(0..=256), conflicts_with_all = ["frames", "uniform"])]
     hidden: Option<u16>,
     /// Take a tenth of the time, for constants with twice the error.
@@ -83,16 +81,16 @@ pub struct Args {
 struct Report<'a> {
     design: &'a str,
     resolved: &'a Path,
-    family: Family,
+    training_set: TrainingSet,
     gain: f64,
-    tangential: [f64; 2],
+    friction_correction: [f64; 2],
     half_window: Option<[usize; 2]>,
     weights: usize,
 }
 
 /// Calibrates a design and writes the resolved one.
 pub fn run(args: &Args) -> message::Result {
-    let Args { design: path, out, recordings, seed, family, hidden, quick, thorough, json } = args;
+    let Args { design: path, out, recordings, seed, training_set, hidden, quick, thorough, json } = args;
     if recordings.given() {
         return calibrate_recorded::run(path, out, recordings, *json);
     }
@@ -101,14 +99,14 @@ pub fn run(args: &Args) -> message::Result {
     if let Some(name) = name_of(out) {
         design.name = name;
     }
-    if let Some(family) = family {
-        design.algorithm.joint.family = *family;
+    if let Some(training_set) = training_set {
+        design.algorithm.joint.training_set = *training_set;
     }
-    let family = design.algorithm.joint.family;
-    let settings = work.settings(family, design.algorithm.joint.grid)?;
+    let training_set = design.algorithm.joint.training_set;
+    let settings = work.settings(training_set)?;
     let resolved = Resolved::new(&design, path, out)?;
     let progress = Progress::new();
-    progress.counted_in("steps", "calibrating", settings.work(family) as u64);
+    progress.counted_in("steps", "calibrating", settings.work(training_set) as u64);
     *design.algorithm.joint = calibrate(&design, &settings, &mut |_| progress.step())?;
     drop(progress);
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
@@ -123,18 +121,20 @@ pub fn run(args: &Args) -> message::Result {
     let report = Report {
         design: &design.name,
         resolved: out,
-        family: constants.family,
+        training_set: constants.training_set,
         gain: constants.gain,
-        tangential: constants.tangential,
+        friction_correction: constants.friction_correction,
         half_window: correction.map(|correction| correction.half_window),
         weights: correction.map_or(0, |found| found.hidden.iter().chain(&found.output).map(Vec::len).sum()),
     };
     let text = |report: &Report<'_>| {
         let mut text = String::new();
         say!(text, "{}: calibrated design in {}", report.design, out.display());
-        say!(text, "  family      {}", report.family);
+        say!(text, "  training set  {}", report.training_set);
+        say!(text, "  noise       up to {} % of the largest reading", 100.0 * design.input.noise);
         say!(text, "  gain        {:.4}", report.gain);
-        say!(text, "  tangential  {:.4} mu + {:.4} mu |mu|^2", report.tangential[0], report.tangential[1]);
+        let [c1, c3] = report.friction_correction;
+        say!(text, "  friction    {c1:.4} mu + {c3:.4} mu |mu|^2");
         if let Some([x, y]) = report.half_window {
             say!(text, "  correction  {} weights, window {} x {} taxels", report.weights, 2 * x + 1, 2 * y + 1);
         }

@@ -191,7 +191,11 @@ fn speed(out: &mut String, plan: &Plan) -> std::fmt::Result {
         ("latency", timeline.latency_cycles, "first beat in to last beat out".to_owned()),
         ("interval", timeline.interval_cycles, format!("between frames, {rate:.0} frames a second{faster}")),
         ("products", timeline.spmv_cycles, format!("{} busy {busy:.1} %", count(plan.design.hardware.lanes, "lane"))),
-        ("search", timeline.search_cycles, count(plan.estimator.slot().cells().cells, "evaluation cell")),
+        (
+            "search",
+            timeline.search_cycles,
+            count(plan.estimator.slot().cells(&plan.design.sensor).cells, "evaluation cell"),
+        ),
     ] {
         table.row([what.to_owned(), cycles.to_string(), format!("{:.2}", cycles as f64 / clock), remark]);
     }

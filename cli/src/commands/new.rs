@@ -159,13 +159,13 @@ fn lines(new: &Args, design: &Design, path: &Path, assumed: &[String], progress:
         });
         lines.push(format!("Gain and friction are fitted to this sensor.{}", errors.unwrap_or_default()));
         let trains = "sptfra calibrate trains a network against what is left";
-        // The wide family was judged on points only.
+        // General contacts were tried on points only.
         lines.push(if design.algorithm.kernel == Kernel::Point {
             // Sensors that read no tension were judged with all units.
             let units = if design.input.tension == Tension::Read { " --hidden 64" } else { "" };
             format!(
-                "{trains}; with --family wide{units}, in some\n\
-                 minutes, on bodies of other shapes too, held or tilted, and the network tells its standard error."
+                "{trains}; with --training-set general{units}, in some\n\
+                 minutes, on contacts of other shapes too, held or tilted, and the network estimates its standard error."
             )
         } else {
             format!("{trains}.")

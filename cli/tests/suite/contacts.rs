@@ -19,10 +19,10 @@ fn done(folder: &Path, arguments: &[&str]) -> Output {
 /// A folder with a design for three bodies, calibrated, and the frame of two without what is wrong with the sensor.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let text = fs::read_to_string(workspace("designs/sensor1-joint.toml")).unwrap();
+    let text = fs::read_to_string(workspace("designs/sensor1-fast.toml")).unwrap();
     let text = text.replacen("[algorithm]\n", "[algorithm]\ncontacts = 3\n", 1);
     fs::write(folder.path().join("pad.toml"), text).unwrap();
-    let weights = "sensor1-joint.weights.csv";
+    let weights = "sensor1-fast.weights.csv";
     fs::copy(workspace("designs").join(weights), folder.path().join(weights)).unwrap();
     let scene = fs::read_to_string(workspace("scenes/two-contacts.toml")).unwrap();
     let scene = scene.split("[sensor_errors]").next().unwrap().to_owned();

@@ -108,7 +108,7 @@ fn inspect_compares_the_gain_with_what_the_kernel_lacks() {
     assert!(good(here, &["inspect", "pad.toml"]).contains("has 1.254:\n               so F_z is right"));
     let text = fs::read_to_string(here.join("pad.toml")).unwrap();
     // Without a word of what the constants belong to, which would refuse the design.
-    let kept = text.lines().filter(|line| !line.starts_with("fitted_to")).collect::<Vec<_>>().join("\n");
+    let kept = text.lines().filter(|line| !line.starts_with("calibrated_for")).collect::<Vec<_>>().join("\n");
     fs::write(here.join("cell.toml"), kept.replace("kernel = \"point\"", "kernel = \"cell\"")).unwrap();
     let said = good(here, &["inspect", "cell.toml"]);
     assert!(said.contains("wants a gain of 1.000") && said.contains("run sptfra calibrate"), "{said}");

@@ -146,9 +146,9 @@ fn bad_files_are_refused_with_their_place() {
     assert!(refused(&["run", "no-such.toml"]).contains("no-such.toml"));
     let (_, unknown) = file(&folder, "unknown.toml", "name = \"x\"\nfrobnicate = 1\n");
     assert!(refused(&["run", &unknown]).contains("frobnicate"));
-    let joint = fs::read_to_string(design("sensor1-joint.toml")).expect("a design");
-    let weights = fs::read_to_string(design("sensor1-joint.weights.csv")).expect("weights");
-    file(&folder, "sensor1-joint.weights.csv", &weights);
+    let joint = fs::read_to_string(design("sensor1-fast.toml")).expect("a design");
+    let weights = fs::read_to_string(design("sensor1-fast.weights.csv")).expect("weights");
+    file(&folder, "sensor1-fast.weights.csv", &weights);
     let (_, paper) = file(&folder, "paper.toml", &joint.replace("plan = \"reduced\"", "plan = \"paper\""));
     assert!(refused(&["run", &paper]).contains("plan = \"reduced\""));
     let (_, short) = file(&folder, "short.csv", "1,2,3\n");

@@ -11,7 +11,7 @@ fn contacts_of_a_kind_are_made_by_command() {
     let made = |name: &str, more: &[&str]| {
         let file = folder.path().join(name);
         let mut command = program();
-        command.args(["scene", "--design"]).arg(workspace("designs/sensor2-joint.toml"));
+        command.args(["scene", "--design"]).arg(workspace("designs/sensor2-fast.toml"));
         let output = command.args(more).arg("--out").arg(&file).output().unwrap();
         (output, file)
     };
@@ -22,7 +22,7 @@ fn contacts_of_a_kind_are_made_by_command() {
         std::fs::read(file).unwrap()
     });
     assert!(first == second && first != other);
-    let joint = shipped("sensor2-joint");
+    let joint = shipped("sensor2-fast");
     let frames = Kind::Held.frames(&joint.sensor, 0.5, 7..10).unwrap();
     let expected = folder.path().join("expected.csv");
     golden::frames::write_frames(&expected, &frames.into_iter().map(|frame| frame.stress).collect::<Vec<_>>()).unwrap();

@@ -233,14 +233,14 @@ fn a_picture_of_the_standing_scene_shows_errors() {
 #[test]
 fn the_readmes_picture_is_what_view_draws() {
     let folder = tempfile::tempdir().expect("a folder");
-    let design = shipped("sensor1-joint");
+    let design = shipped("sensor1-fast");
     let scene = Scene::load(&workspace("scenes/sensor1-hertz.toml")).expect("a scene");
     let [frames, forces] = ["frames.csv", "frames.forces.csv"].map(|name| folder.path().join(name));
     let made = scene.frames().expect("computed");
     let stress: Vec<Vec<f64>> = made.iter().map(|frame| frame.stress.clone()).collect();
     write_frames(&frames, &stress).expect("written");
     write_reference(&forces, &made).expect("written");
-    let path = workspace("designs/sensor1-joint.toml").display().to_string();
+    let path = workspace("designs/sensor1-fast.toml").display().to_string();
     let view = |more: &[&str]| {
         let arguments = [&["view", &path, "--frames", "frames.csv", "--frame", "4", "--svg", "frame.svg"], more];
         sptfra_in(folder.path(), &arguments.concat())

@@ -104,9 +104,9 @@ fn c_gets_every_figure_of_golden() {
     let folder = tempfile::tempdir().expect("a folder");
     let program = host(folder.path());
     let text = |name: &str| fs::read_to_string(root().join("designs").join(name)).expect("a design");
-    let weights = "sensor1-fast-wide.weights.csv";
+    let weights = "sensor1-wide.weights.csv";
     fs::copy(root().join("designs").join(weights), folder.path().join(weights)).expect("copied");
-    let network = text("sensor1-fast-wide.toml").replace("outputs =", "contacts = 4\noutputs =");
+    let network = text("sensor1-wide.toml").replace("outputs =", "contacts = 4\noutputs =");
     let counts = text("sensor2-reduced.toml")
         .replace("outputs =", "contacts = 2\noutputs =")
         .replace("depth_mm =", "pa_per_count = -12.5\ndead = [12]\ntension = \"clipped\"\ndepth_mm =")

@@ -4,23 +4,23 @@
 //! before it is calibrated, then a gain, two constants for the friction, and the weights of the correction.
 
 mod contacts;
-mod doubt;
+mod error_output;
+mod general;
 mod looks;
 mod observer;
 pub mod recorded;
 mod samples;
 mod train;
 mod twins;
-mod wide;
 mod work;
 
-pub use doubt::MOST_FOUND as MOST_HIDDEN_WIDE;
+pub use error_output::MOST_FOUND as MOST_HIDDEN_GENERAL;
 
 pub use contacts::random_contacts;
 pub use work::Work;
 
 use crate::design::{Design, Estimator, Input, JointConstants, conditions};
-use crate::estimators::joint::{CUBIC_LIMIT, Family, Joint};
+use crate::estimators::joint::{CUBIC_LIMIT, Joint, TrainingSet};
 use crate::scene::SceneError;
 use crate::solver::SolverError;
 use observer::{Observer, Sample};
@@ -40,18 +40,20 @@ pub struct Settings {
     pub spare: usize,
     /// Steps of its training.
     pub steps: usize,
-    /// Whether pressures of the narrow family go as far as one that is nothing in a contact's middle.
+    /// Whether pressures of sliding contacts go as far as one that is nothing in a contact's middle.
     pub hollow: bool,
 }
 
 impl Settings {
-    /// The work that a family of contacts takes, or a tenth of it, for a first look: errors are up to twice as large.
-    pub fn of(family: Family, quick: bool) -> Self {
+    /// The work that a training set takes, or a tenth of it, for a first look: errors are up to twice as large.
+    pub fn of(training_set: TrainingSet, quick: bool) -> Self {
         let work = if quick { Self::quick() } else { Self::default() };
-        match family {
-            Family::Narrow => work,
-            // A body has one direction only, so there are more of them.
-            Family::Wide => Self { contacts: 2 * work.contacts, samples: work.samples + work.samples / 5, ..work },
+        match training_set {
+            TrainingSet::Sliding => work,
+            // A contact has one direction only, so there are more of them.
+            TrainingSet::General => {
+                Self { contacts: 2 * work.contacts, samples: work.samples + work.samples / 5, ..work }
+            }
         }
     }
 
@@ -65,21 +67,22 @@ impl Settings {
         Self { contacts: 4 * contacts, samples: 4 * samples, steps: 4 * steps, spare, hollow: true, ..self }
     }
 
-    /// Pieces of work with a family, each of which is reported.
-    pub fn work(&self, family: Family) -> usize {
-        let doubt = if family == Family::Wide { 2 * self.doubted() + self.doubt_steps() } else { 0 };
+    /// Pieces of work with a training set, each of which is reported.
+    pub fn work(&self, training_set: TrainingSet) -> usize {
+        let error =
+            if training_set == TrainingSet::General { 2 * self.error_samples() + self.error_steps() } else { 0 };
         // Without hidden units nothing is trained.
-        let training = if self.hidden > 0 { self.steps + doubt } else { 0 };
+        let training = if self.hidden > 0 { self.steps + error } else { 0 };
         self.contacts + self.samples + training
     }
 
-    /// Frames, each of a body of its own, that tell what to doubt.
-    fn doubted(&self) -> usize {
+    /// Frames, each of a contact of its own, that the standard error is trained on.
+    fn error_samples(&self) -> usize {
         self.samples / 5
     }
 
-    /// Steps of the training of the doubt.
-    fn doubt_steps(&self) -> usize {
+    /// Steps of the training of the standard error.
+    fn error_steps(&self) -> usize {
         self.steps / 4
     }
 
@@ -141,7 +144,7 @@ pub enum CalibrateError {
     },
     /// The fitted constants are outside what a design file may hold.
     #[error(
-        "{name}: the calibration finds gain {gain:.3} and tangential = [{c1:.3}, {c3:.3}], which is out of range: this \
+        "{name}: the calibration finds gain {gain:.3} and friction_correction = [{c1:.3}, {c3:.3}], which is out of range: this \
          sensor cannot be calibrated; check its pitch and depth"
     )]
     OutOfRange {
@@ -185,8 +188,8 @@ pub fn calibrate(
         return Err(CalibrateError::OtherEstimator { name: name() });
     }
     // The contacts are in pascals, whatever the sensor counts.
-    let tension = design.input.tension;
-    let design = &Design { input: Input { tension, ..Input::default() }, ..design.clone() };
+    let Input { tension, noise, .. } = design.input;
+    let design = &Design { input: Input { tension, noise, ..Input::default() }, ..design.clone() };
     let half_window = contacts::half_window(&design.sensor);
     let mut observer = Observer::new(design, half_window)?;
     let samples = samples::make(&mut observer, settings, tick)?;
@@ -194,37 +197,42 @@ pub fn calibrate(
         return Err(CalibrateError::NoAnswer { name: name(), samples: settings.samples });
     }
     let (gain, targets) = samples::gain_and_targets(&samples);
-    let tangential = fit_tangential(&samples, &targets);
-    let [c1, c3] = tangential;
+    let friction_correction = fit_friction_correction(&samples, &targets);
+    let [c1, c3] = friction_correction;
     let legal = (0.1..=10.0).contains(&gain) && (0.1..=10.0).contains(&c1) && c3.abs() <= CUBIC_LIMIT;
     if !legal {
         return Err(CalibrateError::OutOfRange { name: name(), gain, c1, c3 });
     }
-    let (sensor, family) = (&design.sensor, design.algorithm.joint.family);
-    let mut correction = (settings.hidden > 0)
-        .then(|| train::train((sensor, family), &samples, &targets, tangential, half_window, settings, tick));
-    // What knows one kind of contact alone cannot tell what to doubt.
-    if family == Family::Wide
+    let (sensor, training_set) = (&design.sensor, design.algorithm.joint.training_set);
+    let mut correction = (settings.hidden > 0).then(|| {
+        train::train((sensor, training_set), &samples, &targets, friction_correction, half_window, settings, tick)
+    });
+    // A network trained on one kind of contact cannot estimate its error on others.
+    if training_set == TrainingSet::General
         && let Some(found) = correction.take()
     {
         drop(samples);
         let constants =
-            JointConstants { gain, tangential, correction: Some(found.clone()), ..JointConstants::default() };
+            JointConstants { gain, friction_correction, correction: Some(found.clone()), ..JointConstants::default() };
         let estimator = Joint::new(&constants, sensor.columns);
-        let samples = doubt::samples(&mut observer, settings, tick)?;
+        let samples = error_output::samples(&mut observer, settings, tick)?;
         let square = twins::has_diagonal(sensor);
-        correction = Some(doubt::train(&estimator, found, &samples, (square, settings), tick));
+        correction = Some(error_output::train(&estimator, found, &samples, (square, settings), tick));
     }
     let algorithm = &design.algorithm;
-    let grid = algorithm.joint.grid;
-    let of = (grid, algorithm.joint.family);
-    let fitted_to = Some(conditions(&design.sensor, tension, algorithm.kernel, algorithm.regularisation, of));
-    let doubt = algorithm.joint.doubt;
-    Ok(JointConstants { grid, family, gain, tangential, correction, doubt, fitted_to })
+    let conditions = conditions(sensor, tension, algorithm.kernel, algorithm.regularisation, noise, training_set);
+    Ok(JointConstants {
+        training_set,
+        gain,
+        friction_correction,
+        correction,
+        max_standard_error: algorithm.joint.max_standard_error,
+        calibrated_for: Some(conditions),
+    })
 }
 
 /// The constants `c1, c3` that bring `c1 mu + c3 mu |mu|^2` closest to the targets, by least squares.
-fn fit_tangential<S: std::borrow::Borrow<Sample>>(samples: &[S], targets: &[[f64; 2]]) -> [f64; 2] {
+fn fit_friction_correction<S: std::borrow::Borrow<Sample>>(samples: &[S], targets: &[[f64; 2]]) -> [f64; 2] {
     let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (sample, target) in samples.iter().map(std::borrow::Borrow::borrow).zip(targets) {
         let square = sample.mu[0].powi(2) + sample.mu[1].powi(2);

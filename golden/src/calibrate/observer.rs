@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::CalibrateError;
 use crate::design::{Design, Sensor, Tension};
-use crate::estimators::joint::{self, Family, JointScratch, Look};
+use crate::estimators::joint::{self, JointScratch, Look, TrainingSet};
 use crate::products::ByPq;
 use crate::scene::normal;
 use crate::solver::{Solver, Status, Workspace};
@@ -54,9 +54,14 @@ impl<'a> Observer<'a> {
         self.design.input.tension
     }
 
-    /// The family of contacts that the design is calibrated on.
-    pub(super) fn family(&self) -> Family {
-        self.design.algorithm.joint.family
+    /// Standard deviation of a reading's noise, as a share of the frame's largest reading.
+    pub(super) fn noise(&self) -> f64 {
+        self.design.input.noise
+    }
+
+    /// The contacts that the design is trained on.
+    pub(super) fn training_set(&self) -> TrainingSet {
+        self.design.algorithm.joint.training_set
     }
 
     /// Estimates a frame with its true resultant, of any size, and with noise of a deviation that is a share of its largest
@@ -81,7 +86,7 @@ impl<'a> Observer<'a> {
             *stress = tension.of(scale * (*stress + deviation * normal(random)));
         }
         let Some(seen) = self.solver.see(&mut self.workspace, &frame)? else { return Ok(None) };
-        let found = joint::raw(self.design.algorithm.joint.grid, &seen, &mut self.scratch);
+        let found = joint::raw(&seen, &mut self.scratch);
         if found.status.contains(Status::DIRECTION_UNKNOWN) {
             return Ok(None);
         }

@@ -1,13 +1,13 @@
-//! Frames with known forces, of either family, and what they say of the gain.
+//! Frames with known forces, of either training set, and what they say of the gain.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::general::{self, Body};
 use super::observer::{Observer, Sample};
-use super::wide::{self, Body};
 use super::{CalibrateError, Settings, Stage, random_contacts};
 use crate::design::Tension;
-use crate::estimators::joint::Family;
+use crate::estimators::joint::TrainingSet;
 use crate::scene::{Contact, Medium, Shape, unit_responses};
 
 /// Poisson's ratio of the layers, from and to: rubber, give or take.
@@ -17,8 +17,6 @@ const POISSON: [f64; 2] = [0.45, 0.49];
 const POISSON_CLIPPED: [f64; 2] = [0.48, 0.495];
 /// Layers of different Poisson's ratio.
 const LAYERS: usize = 5;
-/// Largest standard deviation of the noise, as a share of the frame's largest stress.
-const NOISE: f64 = 0.003;
 
 /// One sample in this many has a second contact, pushed the same way: what the correction makes of one contact must not
 /// do harm where there are two.
@@ -39,19 +37,19 @@ pub(super) fn stream(seed: u64, stream: u64) -> ChaCha8Rng {
     random
 }
 
-/// Makes the frames of a family and estimates them; frames without an answer are left out.
+/// Makes the frames of a training set and estimates them; frames without an answer are left out.
 pub(super) fn make(
     observer: &mut Observer<'_>,
     settings: &Settings,
     tick: &mut dyn FnMut(Stage),
 ) -> Result<Vec<Sample>, CalibrateError> {
-    match observer.family() {
-        Family::Narrow => narrow(observer, settings, tick),
-        Family::Wide => wide(observer, settings, tick),
+    match observer.training_set() {
+        TrainingSet::Sliding => sliding(observer, settings, tick),
+        TrainingSet::General => general(observer, settings, tick),
     }
 }
 
-fn narrow(
+fn sliding(
     observer: &mut Observer<'_>,
     settings: &Settings,
     tick: &mut dyn FnMut(Stage),
@@ -93,13 +91,13 @@ fn narrow(
         let load = |kind: usize, taxel: usize| (1.0 - share) * one[kind][taxel] + share * other[kind][taxel];
         let frame: Vec<f64> =
             (0..one[0].len()).map(|taxel| load(0, taxel) + x * load(1, taxel) + y * load(2, taxel)).collect();
-        let noise = NOISE * random.random::<f64>();
+        let noise = observer.noise() * random.random::<f64>();
         samples.extend(observer.sample(frame, [x, y, -1.0], noise, &mut random)?);
     }
     Ok(samples)
 }
 
-fn wide(
+fn general(
     observer: &mut Observer<'_>,
     settings: &Settings,
     tick: &mut dyn FnMut(Stage),
@@ -115,7 +113,7 @@ fn wide(
     let mut samples = Vec::with_capacity(settings.samples);
     for index in 0..settings.samples {
         tick(Stage::Sample);
-        samples.extend(wide::sample(&bodies, index, false, observer, &mut random)?);
+        samples.extend(general::sample(&bodies, index, false, observer, &mut random)?);
     }
     Ok(samples)
 }

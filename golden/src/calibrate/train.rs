@@ -9,7 +9,7 @@ use super::observer::Sample;
 use super::twins::Diagonal;
 use super::{Settings, Stage, twins};
 use crate::design::Sensor;
-use crate::estimators::joint::{self, Correction, Family, LARGEST, WEIGHT_FRACTION, WEIGHT_LIMIT};
+use crate::estimators::joint::{self, Correction, LARGEST, TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use crate::parity::{CLASSES, butterfly};
 use crate::scene::normal;
 
@@ -39,10 +39,10 @@ const QUARTER: f32 = 0.25;
 
 /// Trains the network to add what the scaled estimates lack of their targets.
 pub(super) fn train(
-    (sensor, family): (&Sensor, Family),
+    (sensor, training_set): (&Sensor, TrainingSet),
     samples: &[Sample],
     targets: &[[f64; 2]],
-    tangential: [f64; 2],
+    friction_correction: [f64; 2],
     half_window: [usize; 2],
     settings: &Settings,
     tick: &mut dyn FnMut(Stage),
@@ -51,19 +51,19 @@ pub(super) fn train(
         .iter()
         .zip(targets)
         .map(|(sample, target)| {
-            let scaled = joint::scaled(sample.mu, tangential);
+            let scaled = joint::scaled(sample.mu, friction_correction);
             let missing = [0, 1].map(|axis| target[axis] - scaled[axis]);
-            match family {
-                Family::Narrow => missing,
+            match training_set {
+                TrainingSet::Sliding => missing,
                 // More is never added.
-                Family::Wide => missing.map(|part| part.clamp(-LARGEST, LARGEST)),
+                TrainingSet::General => missing.map(|part| part.clamp(-LARGEST, LARGEST)),
             }
             .map(|part| part as f32)
         })
         .collect();
     let basis = Basis::new(samples, half_window, twins::has_diagonal(sensor));
     let looks = basis.looks(samples);
-    let soft = (family == Family::Wide).then_some(SOFT);
+    let soft = (training_set == TrainingSet::General).then_some(SOFT);
     let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
     // Streams 0 and 1 of the seed made the samples.
     random.set_stream(2);
@@ -239,7 +239,7 @@ impl Learner {
         scaled_alike(&mut hidden, &mut output);
         let mut output = quantised(&output.transpose()).into_iter();
         let output = [0, 1].map(|_| output.next().unwrap_or_default());
-        let mut correction = Correction { half_window, hidden: quantised(&hidden), output, doubt: None };
+        let mut correction = Correction { half_window, hidden: quantised(&hidden), output, error: None };
         if self.diagonal.is_some() {
             twins::tie(&mut correction);
         }

@@ -1,11 +1,10 @@
 //! How much work a calibration is asked to take on.
 
-use super::{CalibrateError, MOST_HIDDEN_WIDE, Settings};
-use crate::estimators::joint::{Family, Grid, MAX_HIDDEN};
+use super::{CalibrateError, MOST_HIDDEN_GENERAL, Settings};
+use crate::estimators::joint::{MAX_HIDDEN, TrainingSet};
 
-/// Hidden units for the narrow family on the coarse grid, which is for speed: with twice as many a frame takes a quarter
-/// longer on 16 lanes.
-const HIDDEN_COARSE: usize = 64;
+/// Hidden units for sliding contacts: with twice as many a frame takes a quarter longer on 16 lanes.
+const HIDDEN_SLIDING: usize = 64;
 
 /// What a user asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,24 +20,25 @@ pub struct Work {
 }
 
 impl Work {
-    /// What that means for a family of contacts and a grid of the search.
+    /// What that means for a training set.
     ///
     /// # Errors
     ///
     /// [`CalibrateError::Hidden`] for more units than the hardware has room for.
-    pub fn settings(self, family: Family, grid: Grid) -> Result<Settings, CalibrateError> {
-        let (most, why) = match family {
-            Family::Narrow => (MAX_HIDDEN, ""),
-            Family::Wide => {
-                (MOST_HIDDEN_WIDE, "with family \"wide\" a quarter as many units more tell the error, and ")
-            }
+    pub fn settings(self, training_set: TrainingSet) -> Result<Settings, CalibrateError> {
+        let (most, why) = match training_set {
+            TrainingSet::Sliding => (MAX_HIDDEN, ""),
+            TrainingSet::General => (
+                MOST_HIDDEN_GENERAL,
+                "with training_set \"general\" a quarter as many units more estimate the error, and ",
+            ),
         };
         if let Some(hidden) = self.hidden.filter(|&hidden| hidden > most) {
             return Err(CalibrateError::Hidden { hidden, why, most });
         }
-        let usual = Settings::of(family, self.quick);
-        let coarse = family == Family::Narrow && grid == Grid::COARSE;
-        let units = if coarse { usual.hidden.min(HIDDEN_COARSE) } else { usual.hidden };
+        let usual = Settings::of(training_set, self.quick);
+        let is_sliding = training_set == TrainingSet::Sliding;
+        let units = if is_sliding { usual.hidden.min(HIDDEN_SLIDING) } else { usual.hidden };
         let settings = Settings { seed: self.seed, hidden: self.hidden.unwrap_or(units), ..usual };
         Ok(if self.thorough { settings.thorough() } else { settings })
     }
@@ -49,15 +49,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_coarse_grid_has_fewer_units() {
-        let units = |family, grid, quick, hidden| {
+    fn sliding_contacts_have_fewer_units() {
+        let units = |training_set, quick, hidden| {
             let work = Work { seed: 1, hidden, quick, thorough: false };
-            work.settings(family, grid).unwrap().hidden
+            work.settings(training_set).unwrap().hidden
         };
-        assert_eq!(units(Family::Narrow, Grid::COARSE, false, None), 64);
-        assert_eq!(units(Family::Narrow, Grid::FINE, false, None), 128);
-        assert_eq!(units(Family::Wide, Grid::COARSE, false, None), 128);
-        assert_eq!(units(Family::Narrow, Grid::COARSE, true, None), 24);
-        assert_eq!(units(Family::Narrow, Grid::COARSE, false, Some(200)), 200);
+        assert_eq!(units(TrainingSet::Sliding, false, None), 64);
+        assert_eq!(units(TrainingSet::General, false, None), 128);
+        assert_eq!(units(TrainingSet::Sliding, true, None), 24);
+        assert_eq!(units(TrainingSet::Sliding, false, Some(200)), 200);
     }
 }

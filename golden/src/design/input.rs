@@ -12,12 +12,16 @@ use crate::dead_taxels::MOST_DEAD;
 use crate::sensor::Sensor;
 use crate::words::print_as_words;
 
+/// Standard deviation of a reading's noise where a design names none, as a share of the frame's largest reading.
+pub const DEFAULT_NOISE: f64 = 0.005;
+/// Range of that share.
+const NOISE: [f64; 2] = [0.0, 0.1];
 /// Range of the magnitude of pascals per count.
 const PA_PER_COUNT: [f64; 2] = [1e-9, 1e9];
 
 /// From the values of a frame to stress: `Pa = (gain_i * count + offset_i) * pa_per_count`, or, with a curve,
 /// `Pa = gain_i * curve(count) + offset_i`.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Pascals of one count, with the sign that makes compression negative; `None` where frames are in pascals.
     pub pa_per_count: Option<f64>,
@@ -29,6 +33,22 @@ pub struct Input {
     pub dead: Vec<usize>,
     /// Whether the sensor reads what pulls.
     pub tension: Tension,
+    /// Standard deviation of a reading's noise, as a share of the frame's largest reading: `sptfra calibrate` trains at this
+    /// noise and below.
+    pub noise: f64,
+}
+
+impl Default for Input {
+    fn default() -> Self {
+        Self {
+            pa_per_count: None,
+            curve: None,
+            calibration: None,
+            dead: Vec::new(),
+            tension: Tension::default(),
+            noise: DEFAULT_NOISE,
+        }
+    }
 }
 
 /// What a taxel reads that is pulled.
@@ -61,6 +81,13 @@ pub(super) struct RawInput {
     pub(super) calibration: Option<String>,
     pub(super) dead: Vec<i64>,
     pub(super) tension: Tension,
+    pub(super) noise: f64,
+}
+
+/// The noise of a design, or the default one.
+pub(super) fn noise(check: &Check, given: Option<f64>) -> Result<f64, DesignError> {
+    let [low, high] = NOISE;
+    check.real("sensor.noise", given.unwrap_or(DEFAULT_NOISE), low, high, "of the frame's largest reading")
 }
 
 impl Input {
@@ -134,7 +161,7 @@ impl Input {
         sensor: &Sensor,
         hardware: &Hardware,
     ) -> Result<Self, DesignError> {
-        let RawInput { pa_per_count, curve, calibration, dead, tension } = raw;
+        let RawInput { pa_per_count, curve, calibration, dead, tension, noise } = raw;
         let taxels = sensor.taxels();
         let [low, high] = PA_PER_COUNT;
         if let Some(value) = pa_per_count
@@ -180,6 +207,6 @@ impl Input {
                 ),
             ));
         }
-        Ok(Self { pa_per_count, curve, calibration, dead, tension })
+        Ok(Self { pa_per_count, curve, calibration, dead, tension, noise })
     }
 }

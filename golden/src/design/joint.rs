@@ -8,7 +8,7 @@ use super::checks::Check;
 use super::files::{Beside, sha256};
 use super::{DesignError, Kernel, Regularisation, Sensor, Tension};
 use crate::estimators::joint::{
-    CUBIC_LIMIT, Correction, DEFAULT_DOUBT, Family, Grid, JointConstants, MAX_HIDDEN, WEIGHT_LIMIT,
+    CUBIC_LIMIT, Correction, DEFAULT_MAX_STANDARD_ERROR, JointConstants, MAX_HIDDEN, TrainingSet, WEIGHT_LIMIT,
 };
 
 /// What the constants depend on, for people and for comparison.
@@ -17,14 +17,11 @@ pub fn conditions(
     tension: Tension,
     kernel: Kernel,
     regularisation: Regularisation,
-    (grid, family): (Grid, Family),
+    noise: f64,
+    training_set: TrainingSet,
 ) -> String {
     let reads = if tension == Tension::Clipped { ", tension clipped" } else { "" };
-    // Constants of the fine grid were fitted before there was another one.
-    let of_grid = if grid == Grid::FINE { String::new() } else { format!(", grid {}", grid.side()) };
-    // Nor was there another family than the narrow one.
-    let of_family = if family == Family::Narrow { String::new() } else { format!(", {family}") };
-    format!("{sensor}, {kernel}, {}{reads}{of_grid}{of_family}", regularisation.factor())
+    format!("{sensor}, {kernel}, {}{reads}, noise {noise}, {training_set}", regularisation.factor())
 }
 
 /// The `[algorithm.correction]` table: the weights in a file with its hash, or in the table itself.
@@ -41,28 +38,18 @@ pub(super) struct RawCorrection {
 
 /// The constants as a file has them, without the correction.
 pub(super) struct Raw<'a> {
-    pub grid: Grid,
-    pub family: Family,
-    pub doubt: Option<f64>,
+    pub training_set: TrainingSet,
+    pub max_standard_error: Option<f64>,
     pub gain: Option<f64>,
-    pub tangential: Option<&'a [f64]>,
-    pub fitted_to: Option<String>,
-}
-
-/// The grid that a design names by its points along an axis; the fine one if it names none.
-pub(super) fn grid(check: &Check, side: Option<i64>) -> Result<Grid, DesignError> {
-    let Some(side) = side else { return Ok(Grid::FINE) };
-    usize::try_from(side).ok().and_then(Grid::of_side).ok_or_else(|| {
-        let sides = Grid::ALL.map(|grid| grid.side().to_string()).join(" or ");
-        check.value("algorithm.grid", format!("is {side}"), format!("use {sides}"))
-    })
+    pub friction_correction: Option<&'a [f64]>,
+    pub calibrated_for: Option<String>,
 }
 
 /// Checks the constants; a design without any has the default ones. `conditions` are those of the design.
 pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result<JointConstants, DesignError> {
-    if let Some(other) = raw.fitted_to.as_ref().filter(|&fitted_to| fitted_to != conditions) {
+    if let Some(other) = raw.calibrated_for.as_ref().filter(|&calibrated_for| calibrated_for != conditions) {
         return Err(check.value(
-            "algorithm.fitted_to",
+            "algorithm.calibrated_for",
             format!("says that the constants belong to \"{other}\", but the design is \"{conditions}\""),
             format!(
                 "run `sptfra calibrate {0} --out {1}`, which fits new ones",
@@ -72,21 +59,23 @@ pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result
         ));
     }
     let gain = check.real("algorithm.gain", raw.gain.unwrap_or(1.0), 0.1, 10.0, "")?;
-    let [c1, c3] = two(check, "algorithm.tangential", raw.tangential.unwrap_or(&[1.0, 0.0]), "c1 and c3")?;
-    let tangential = [
-        check.real("algorithm.tangential[0]", c1, 0.1, 10.0, "")?,
-        check.real("algorithm.tangential[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
+    let [c1, c3] =
+        two(check, "algorithm.friction_correction", raw.friction_correction.unwrap_or(&[1.0, 0.0]), "c1 and c3")?;
+    let friction_correction = [
+        check.real("algorithm.friction_correction[0]", c1, 0.1, 10.0, "")?,
+        check.real("algorithm.friction_correction[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
     ];
-    if raw.doubt.is_some() && raw.family == Family::Narrow {
+    if raw.max_standard_error.is_some() && raw.training_set == TrainingSet::Sliding {
         return Err(check.value(
-            "algorithm.doubt",
-            "is a limit for an error that the design does not tell".to_owned(),
-            "remove it, or write family = \"wide\" and run `sptfra calibrate`".to_owned(),
+            "algorithm.max_standard_error",
+            "limits a standard error that the design does not estimate".to_owned(),
+            "remove it, or write training_set = \"general\" and run `sptfra calibrate`".to_owned(),
         ));
     }
-    let doubt = check.real("algorithm.doubt", raw.doubt.unwrap_or(DEFAULT_DOUBT), 0.001, 3.9, "")?;
-    let Raw { grid, family, fitted_to, .. } = raw;
-    Ok(JointConstants { grid, family, gain, tangential, correction: None, doubt, fitted_to })
+    let limit = raw.max_standard_error.unwrap_or(DEFAULT_MAX_STANDARD_ERROR);
+    let max_standard_error = check.real("algorithm.max_standard_error", limit, 0.001, 3.9, "")?;
+    let Raw { training_set, calibrated_for, .. } = raw;
+    Ok(JointConstants { training_set, gain, friction_correction, correction: None, max_standard_error, calibrated_for })
 }
 
 /// A name for the calibrated design beside the one at `origin`.
@@ -97,8 +86,8 @@ fn resolved_name(origin: &str) -> PathBuf {
 }
 
 /// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
-pub(super) fn refuse(check: &Check, given: [bool; 7]) -> Result<(), DesignError> {
-    let keys = ["grid", "family", "doubt", "gain", "tangential", "correction", "fitted_to"];
+pub(super) fn refuse(check: &Check, given: [bool; 6]) -> Result<(), DesignError> {
+    let keys = ["training_set", "max_standard_error", "gain", "friction_correction", "correction", "calibrated_for"];
     let given: Vec<&str> = keys.into_iter().zip(given).filter_map(|(key, given)| given.then_some(key)).collect();
     match given.as_slice() {
         [] => Ok(()),
@@ -210,7 +199,7 @@ fn from_table(
     let [along_x, along_y] = two(check, &key("output"), output, "for x and y")?;
     let output =
         [row("output[0]".to_owned(), &along_x, hidden.len())?, row("output[1]".to_owned(), &along_y, hidden.len())?];
-    Ok(Correction { half_window, hidden, output, doubt: None })
+    Ok(Correction { half_window, hidden, output, error: None })
 }
 
 /// Two values, where a TOML reader would drop a third without a word.
@@ -223,20 +212,25 @@ fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<
 
 /// The keys of `[algorithm]`, and the table that follows all of them, with the weights in the file named `weights`.
 pub(super) fn print(constants: &JointConstants, weights: &str) -> [String; 2] {
-    let JointConstants { grid, family, gain, tangential: [c1, c3], correction, doubt, fitted_to } = constants;
-    let told = correction.as_ref().and_then(|correction| correction.doubt.as_ref());
-    // Of the narrow family no error is told, and a limit for one is refused.
-    let says = *family == Family::Wide && (told.is_some() || doubt.to_bits() != DEFAULT_DOUBT.to_bits());
-    let doubt = if says { format!("doubt = {doubt:?}\n") } else { String::new() };
-    // Only where it is another one: a design without it keeps the hash that it had before there was such a key.
-    let grid = if *grid == Grid::FINE { String::new() } else { format!("grid = {}\n", grid.side()) };
-    let family = if *family == Family::Narrow { String::new() } else { format!("family = \"{family}\"\n") };
-    let fitted_to = fitted_to.as_ref().map_or_else(String::new, |conditions| format!("fitted_to = {conditions:?}\n"));
-    let keys = format!("{grid}{family}{doubt}{fitted_to}gain = {gain:?}\ntangential = [{c1:?}, {c3:?}]\n");
+    let JointConstants { training_set, gain, friction_correction: [c1, c3], correction, .. } = constants;
+    let output = correction.as_ref().and_then(|correction| correction.error.as_ref());
+    let limit = constants.max_standard_error;
+    // A design of sliding contacts estimates no error, and a limit for one is refused.
+    let is_limited = *training_set == TrainingSet::General
+        && (output.is_some() || limit.to_bits() != DEFAULT_MAX_STANDARD_ERROR.to_bits());
+    let limit = if is_limited { format!("max_standard_error = {limit:?}\n") } else { String::new() };
+    let calibrated_for = constants
+        .calibrated_for
+        .as_ref()
+        .map_or_else(String::new, |conditions| format!("calibrated_for = {conditions:?}\n"));
+    let keys = format!(
+        "training_set = \"{training_set}\"\n{limit}{calibrated_for}gain = {gain:?}\n\
+         friction_correction = [{c1:?}, {c3:?}]\n"
+    );
     let table = correction.as_ref().map_or_else(String::new, |correction| {
         let ([x, y], hash) = (correction.half_window, sha256(&correction.to_csv()));
         let file = toml::Value::from(weights);
-        let base = told.map_or_else(String::new, |doubt| format!("error_base = {}\n", doubt.base));
+        let base = output.map_or_else(String::new, |output| format!("error_base = {}\n", output.base));
         format!("\n[algorithm.correction]\nhalf_window = [{x}, {y}]\nfile = {file}\nsha256 = \"{hash}\"\n{base}")
     });
     [keys, table]

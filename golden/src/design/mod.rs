@@ -19,13 +19,14 @@ mod parse_filter;
 mod parse_plan;
 mod print;
 mod regularisation;
+mod renamed;
 mod rows;
 mod thin;
 
 use std::path::{Path, PathBuf};
 
 pub use crate::estimators::Estimator;
-pub use crate::estimators::joint::{Correction, Doubt, Family, Grid, JointConstants};
+pub use crate::estimators::joint::{Correction, ErrorOutput, Grid, JointConstants, TrainingSet};
 pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
 pub use algorithm::{Algorithm, Outputs, PlanKind, Slip};
@@ -39,7 +40,7 @@ pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter}
 pub use hardware::{
     CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, InputRange, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples,
 };
-pub use input::{Input, Tension};
+pub use input::{DEFAULT_NOISE, Input, Tension};
 pub use joint::conditions;
 pub(crate) use lengths::Lengths;
 pub(crate) use parse::RawSensor;

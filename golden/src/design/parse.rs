@@ -9,16 +9,16 @@ use super::calibration_in_ram::{calibration_in_ram, replaceable};
 use super::checks::{self, Check};
 use super::curve::RawCurve;
 use super::files::Beside;
-use super::input::RawInput;
+use super::input::{self, RawInput};
 use super::joint::{self, RawCorrection};
 use super::lengths::Lengths;
 use super::parse_filter::{self, RawFilter};
 use super::parse_plan::{self, PlanKeys};
-use super::regularisation;
 use super::{
     Algorithm, DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Filter, Hardware, Input, JointConstants, Kernel,
     MAX_LANES, MAX_SIDE, NOISE_FLOOR_DIVISOR, Optimise, Outputs, STREAM_BITS, Samples, Sensor, Slip, Tension,
 };
+use super::{regularisation, renamed};
 use crate::{bodies, words};
 
 #[derive(Deserialize)]
@@ -51,6 +51,7 @@ struct RawDesignSensor {
     pitch_mm: Lengths,
     depth_mm: f64,
     tension: Option<String>,
+    noise: Option<f64>,
     pa_per_count: Option<f64>,
     curve: Option<RawCurve>,
     calibration: Option<String>,
@@ -66,13 +67,12 @@ struct RawAlgorithm {
     regularisation: Option<toml::Value>,
     filter: Option<RawFilter>,
     estimator: Option<String>,
-    grid: Option<i64>,
-    family: Option<String>,
-    doubt: Option<f64>,
+    training_set: Option<String>,
+    max_standard_error: Option<f64>,
     gain: Option<f64>,
-    tangential: Option<Vec<f64>>,
+    friction_correction: Option<Vec<f64>>,
     correction: Option<RawCorrection>,
-    fitted_to: Option<String>,
+    calibrated_for: Option<String>,
     contacts: Option<i64>,
     count_contacts: Option<bool>,
     outputs: Option<String>,
@@ -112,6 +112,7 @@ struct RawHardware {
 }
 
 fn raw(text: &str, origin: &str) -> Result<RawDesign, DesignError> {
+    renamed::refuse(text, origin)?;
     toml::from_str(text).map_err(|error| syntax_position(&error, text, origin))
 }
 
@@ -137,8 +138,8 @@ pub(super) fn unfitted(text: &str, origin: &str, beside: Beside<'_>) -> Result<D
     // Of another estimator they stay, to be refused.
     let estimator = raw.algorithm.estimator.as_deref().map(words::read::<Estimator>);
     if matches!(estimator, Some(Ok(Estimator::Joint))) {
-        let RawAlgorithm { gain, tangential, correction, fitted_to, .. } = &mut raw.algorithm;
-        (*gain, *tangential, *correction, *fitted_to) = (None, None, None, None);
+        let RawAlgorithm { gain, friction_correction, correction, calibrated_for, .. } = &mut raw.algorithm;
+        (*gain, *friction_correction, *correction, *calibrated_for) = (None, None, None, None);
     }
     checked(raw, origin, beside)
 }
@@ -146,17 +147,23 @@ pub(super) fn unfitted(text: &str, origin: &str, beside: Beside<'_>) -> Result<D
 fn checked(raw: RawDesign, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
     let check = Check { origin };
     checks::name(&check, &raw.name)?;
-    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, tension, pa_per_count, curve, calibration, dead } =
+    let RawDesignSensor { columns, rows, pitch_mm, depth_mm, tension, noise, pa_per_count, curve, calibration, dead } =
         raw.sensor;
     let tension = check.optional_word("sensor.tension", tension.as_deref())?.unwrap_or_default();
+    let noise = input::noise(&check, noise)?;
     let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
     let lanes_given = raw.hardware.lanes.is_some();
     let hardware = hardware(&check, raw.hardware)?;
-    let (mut algorithm, correction) = algorithm(&check, raw.algorithm, (&sensor, tension), &hardware)?;
+    let (mut algorithm, correction) = algorithm(&check, raw.algorithm, (&sensor, tension, noise), &hardware)?;
     parse_plan::check(&check, &PlanKeys { sensor: &sensor, algorithm: &algorithm, hardware: &hardware, lanes_given })?;
     // Last, so that what is wrong with the design itself is said before its files are read.
-    let input =
-        Input::new(&check, RawInput { pa_per_count, curve, calibration, dead, tension }, beside, &sensor, &hardware)?;
+    let input = Input::new(
+        &check,
+        RawInput { pa_per_count, curve, calibration, dead, tension, noise },
+        beside,
+        &sensor,
+        &hardware,
+    )?;
     if hardware.samples != Samples::Float32 && !input.counts() {
         return Err(check.value(
             "hardware.samples",
@@ -210,7 +217,7 @@ impl RawSensor {
 fn algorithm(
     check: &Check,
     raw: RawAlgorithm,
-    (sensor, tension): (&Sensor, Tension),
+    (sensor, tension, noise): (&Sensor, Tension, f64),
     hardware: &Hardware,
 ) -> Result<(Algorithm, Option<RawCorrection>), DesignError> {
     let full_scale_pa = hardware.full_scale_pa;
@@ -223,18 +230,28 @@ fn algorithm(
     let estimator: Estimator =
         check.optional_word("algorithm.estimator", raw.estimator.as_deref())?.unwrap_or_default();
     let joint = if estimator == Estimator::Joint {
-        let grid = joint::grid(check, raw.grid)?;
-        let family = check.optional_word("algorithm.family", raw.family.as_deref())?.unwrap_or_default();
-        let conditions = joint::conditions(sensor, tension, kernel, regularisation, (grid, family));
-        let (gain, tangential, fitted_to) = (raw.gain, raw.tangential.as_deref(), raw.fitted_to);
-        let constants = joint::Raw { grid, family, doubt: raw.doubt, gain, tangential, fitted_to };
+        let training_set =
+            check.optional_word("algorithm.training_set", raw.training_set.as_deref())?.unwrap_or_default();
+        let conditions = joint::conditions(sensor, tension, kernel, regularisation, noise, training_set);
+        let constants = joint::Raw {
+            training_set,
+            max_standard_error: raw.max_standard_error,
+            gain: raw.gain,
+            friction_correction: raw.friction_correction.as_deref(),
+            calibrated_for: raw.calibrated_for,
+        };
         joint::constants(check, constants, &conditions)?
     } else {
-        let [gain, tangential] = [raw.gain.is_some(), raw.tangential.is_some()];
-        let [correction, fitted_to] = [raw.correction.is_some(), raw.fitted_to.is_some()];
         joint::refuse(
             check,
-            [raw.grid.is_some(), raw.family.is_some(), raw.doubt.is_some(), gain, tangential, correction, fitted_to],
+            [
+                raw.training_set.is_some(),
+                raw.max_standard_error.is_some(),
+                raw.gain.is_some(),
+                raw.friction_correction.is_some(),
+                raw.correction.is_some(),
+                raw.calibrated_for.is_some(),
+            ],
         )?;
         JointConstants::default()
     };

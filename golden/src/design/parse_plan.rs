@@ -4,7 +4,6 @@ use super::checks::Check;
 use super::{
     Algorithm, DesignError, Estimator, Filter, Hardware, MAX_LANES, MAX_SIDE_PAPER, Optimise, Outputs, PlanKind, Sensor,
 };
-use crate::estimators::joint::Grid;
 
 /// Lanes of the reduced plan come in fours, one for each class of parity.
 const LANES_MULTIPLE: usize = 4;
@@ -92,14 +91,11 @@ fn reduced(check: &Check, algorithm: &Algorithm, hardware: &Hardware) -> Result<
             format!("use a multiple of 4 from 4 to {MAX_LANES}, or write plan = \"paper\" under [algorithm]"),
         ));
     }
-    if hardware.optimise == Optimise::Area
-        && (algorithm.estimator != Estimator::Joint || algorithm.joint.grid != Grid::FINE)
-    {
+    if hardware.optimise == Optimise::Area && algorithm.estimator != Estimator::Joint {
         return Err(check.value(
             "hardware.optimise",
-            "is \"area\", which makes the walk over the joint estimator's grid smaller, and there is no walk"
-                .to_owned(),
-            "write estimator = \"joint\" and grid = 21, or remove the key".to_owned(),
+            "is \"area\", which needs estimator = \"joint\"".to_owned(),
+            "set it, or remove the key".to_owned(),
         ));
     }
     Ok(())

@@ -35,6 +35,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
         Tension::Read => String::new(),
         Tension::Clipped => format!("tension = \"{}\"\n", input.tension),
     };
+    let noise = format!("noise = {:?}\n", input.noise);
     let slip = algorithm.slip.map_or_else(String::new, |Slip { limit, hysteresis }| {
         format!("slip = {{ limit = {limit:?}, hysteresis = {hysteresis:?} }}\n")
     });
@@ -96,7 +97,7 @@ pub(super) fn to_toml(design: &Design, names: &FileNames) -> String {
     let _ = write!(
         text,
         "name = \"{name}\"\n\n\
-         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{tension}{counts}{curve}{calibration}{dead}\n\
+         [sensor]\ncolumns = {}\nrows = {}\npitch_mm = [{:?}, {:?}]\ndepth_mm = {:?}\n{tension}{noise}{counts}{curve}{calibration}{dead}\n\
          [algorithm]\nplan = \"{plan}\"\nkernel = \"{kernel}\"\n{regularisation}{filter}estimator = \"{estimator}\"\n\
          {constants}{contacts}{count_contacts}outputs = \"{outputs}\"\nnoise_floor_pa = {:?}\n{slip}{filter_table}{correction}\n\
          [hardware]\ncoefficient_bits = {}\ndata_bits = {}\n\

@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn a_correction_carries_further() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/sensor1-joint.toml");
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/sensor1-fast.toml");
         let mut design = Design::load(&path).expect("a design");
         for (depth_mm, thin) in [(1.7, false), (1.5, true)] {
             design.sensor.depth_mm = depth_mm;

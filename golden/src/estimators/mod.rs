@@ -4,10 +4,10 @@
 //! its own; outside of it the registry here, the design file's parser and the calibration, which is the joint one's, know
 //! its name. `docs/explanation/estimators.md` compares them.
 
-pub(crate) mod doubt;
 pub mod joint;
 pub mod line;
 mod seen;
+pub(crate) mod standard_error;
 mod thin;
 
 use serde::{Deserialize, Serialize};
@@ -15,11 +15,11 @@ use serde::{Deserialize, Serialize};
 use crate::kernel::Kernel;
 use crate::sensor::Sensor;
 use crate::words::print_as_words;
-pub use doubt::{DOUBT_FRACTION, DOUBT_RANGE};
 use joint::{Joint, JointConstants, JointScratch};
 use line::LineScratch;
 pub(crate) use seen::{Answer, Seen};
 pub use seen::{Contact, RANGE};
+pub use standard_error::{ERROR_FRACTION, ERROR_RANGE};
 pub(crate) use thin::Thin;
 
 /// How the friction components are found once the optimisation problem is set up.
@@ -61,11 +61,11 @@ impl<'a> Constants<'a> {
         }
     }
 
-    /// The logarithm of base 2 that stands for the error over `|F_z|` above which a frame is doubtful; nothing if the
-    /// estimator does not tell its error.
-    pub fn doubt_log(self) -> Option<f64> {
+    /// The logarithm of base 2 that stands for the error over `|F_z|` above which a frame has low confidence; nothing if
+    /// the estimator does not estimate its error.
+    pub fn max_error_log(self) -> Option<f64> {
         let Self::Joint(joint) = self else { return None };
-        joint.correction.as_ref()?.doubt.as_ref().map(|_| doubt::log(joint.doubt))
+        joint.correction.as_ref()?.error.as_ref().map(|_| standard_error::log(joint.max_standard_error))
     }
 
     /// How thin a layer may be for this estimator.

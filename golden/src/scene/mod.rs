@@ -21,7 +21,7 @@ use std::path::Path;
 
 pub use choice::ChoiceError;
 pub use kind::Kind;
-pub(crate) use sensor_errors::normal;
+pub use sensor_errors::normal;
 pub use sensor_errors::{Converter, SensorErrors};
 pub use shape::Shape;
 pub use traction::{Shear, Traction};

@@ -93,7 +93,7 @@ impl SensorErrors {
 }
 
 /// A normally distributed number with mean 0 and deviation 1 (Box and Muller).
-pub(crate) fn normal(generator: &mut ChaCha8Rng) -> f64 {
+pub fn normal(generator: &mut ChaCha8Rng) -> f64 {
     // Within (0, 1], so that the logarithm is finite.
     let radius = 1.0 - generator.random::<f64>();
     let angle = generator.random::<f64>();

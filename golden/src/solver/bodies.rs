@@ -134,7 +134,7 @@ impl Solver {
                 })
                 .sum();
             body.standard_error = body.standard_error.hypot(CHANGE * changed).hypot(felt);
-            if body.standard_error > self.doubt * body.force[2].abs() {
+            if body.standard_error > self.max_standard_error * body.force[2].abs() {
                 body.status.insert(Status::DOUBTFUL);
             }
         }

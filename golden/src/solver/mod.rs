@@ -166,8 +166,8 @@ pub struct Solver {
     finder: Option<Finder>,
     /// Whether solutions have the forces of all taxels.
     keeps_field: bool,
-    /// Share of the normal force above which a standard error is doubtful.
-    doubt: f64,
+    /// Standard error as a share of the normal force above which a contact has low confidence.
+    max_standard_error: f64,
     slip: Option<Slip>,
 }
 
@@ -233,10 +233,10 @@ impl Solver {
         let contacts = design.algorithm.contacts;
         let finder = (contacts > 1 || design.algorithm.count_contacts).then(|| Finder::new(&design.sensor, contacts));
         let (reader, slip) = (Reader::new(design), design.algorithm.slip);
-        let doubt = design.algorithm.joint.doubt;
+        let max_standard_error = design.algorithm.joint.max_standard_error;
         // By the paper's plan every solution has them.
         let keeps_field = design.algorithm.outputs == Outputs::Field || matches!(products, Products::Paper(_));
-        Self { reader, matrices, products, friction, finder, keeps_field, doubt, slip }
+        Self { reader, matrices, products, friction, finder, keeps_field, max_standard_error, slip }
     }
 
     /// The unfiltered matrices.

@@ -55,15 +55,15 @@ fn found(design: &Design, frames: &[Vec<f64>], kinds: &[Kind], words: &[&str]) {
 
 #[test]
 fn good_frames_are_left_alone() {
-    for name in ["sensor1-joint", "sensor2-joint", "odd", "small", "sensor1-none"] {
+    for name in ["sensor1-fast", "sensor2-fast", "odd", "small", "sensor1-none"] {
         let design = design(name);
         found(&design, &frames(&design), &[], &[]);
     }
     for (scene, name) in [
-        ("sensor1-hertz", "sensor1-joint"),
-        ("sensor2-disc", "sensor2-joint"),
-        ("sensor2-punch", "sensor2-joint"),
-        ("two-contacts", "sensor1-joint"),
+        ("sensor1-hertz", "sensor1-fast"),
+        ("sensor2-disc", "sensor2-fast"),
+        ("sensor2-punch", "sensor2-fast"),
+        ("two-contacts", "sensor1-fast"),
     ] {
         let (design, scene) = (design(name), Scene::load(&repository(&format!("scenes/{scene}.toml"))).unwrap());
         found(&design, &stress(&design, &scene), &[], &[]);
@@ -87,13 +87,13 @@ fn a_real_mat_reads_no_tension_and_reaches_the_end_of_its_range() {
 
 #[test]
 fn other_units() {
-    let design = design("sensor1-joint");
+    let design = design("sensor1-fast");
     let pascals = frames(&design);
     found(&design, &changed(&pascals, |pa| pa / 1000.0), &[Kind::Range], &["kilopascals", "sensor.pa_per_count"]);
     found(&design, &changed(&pascals, |pa| pa * 100.0), &[Kind::Range], &["above hardware.full_scale_pa"]);
     let counting = Design::from_toml(
         &design.to_toml().replace("depth_mm", "pa_per_count = -24.4\ndepth_mm"),
-        &repository("designs/counting.toml").display().to_string().replace("counting", "sensor1-joint"),
+        &repository("designs/counting.toml").display().to_string().replace("counting", "sensor1-fast"),
     );
     // The weights have another name there; what counts is the input.
     let mut counting = counting.unwrap_or(design.clone());
@@ -130,7 +130,7 @@ fn other_units() {
 /// What is to be changed is the curve, where one says what a count is worth.
 #[test]
 fn a_curve_is_named_where_it_says_what_a_count_is_worth() {
-    let plain = design("sensor1-joint");
+    let plain = design("sensor1-fast");
     let counts = changed(&frames(&plain), |pa| (pa / -24.4).round());
     let along = |points: &[[f64; 2]], law: Option<[f64; 2]>| {
         let mut design = plain.clone();
@@ -162,7 +162,7 @@ fn a_curve_is_named_where_it_says_what_a_count_is_worth() {
 
 #[test]
 fn a_wrong_sign_hides_nothing_else() {
-    let mut design = design("sensor2-joint");
+    let mut design = design("sensor2-fast");
     // Nor does it make bodies out of one.
     design.algorithm.count_contacts = true;
     let frames = frames(&design);
@@ -172,31 +172,31 @@ fn a_wrong_sign_hides_nothing_else() {
 
 #[test]
 fn a_converter_without_a_sign_clips_tension() {
-    let design = design("sensor1-joint");
+    let design = design("sensor1-fast");
     found(&design, &changed(&frames(&design), |pa| pa.min(0.0)), &[Kind::NoTension], &["below 0"]);
 }
 
 #[test]
 fn a_pull_where_the_design_says_that_none_is_read() {
-    let reads = design("sensor1-joint");
+    let reads = design("sensor1-fast");
     let pulls = frames(&reads);
-    found(&design("sensor1-clipped"), &pulls, &[Kind::Tension], &["36 of 36 frames", "remove sensor.tension"]);
+    found(&design("sensor1-clipped-wide"), &pulls, &[Kind::Tension], &["36 of 36 frames", "remove sensor.tension"]);
     // Noise about zero is no pull.
     let noisy = changed(&pulls, |pa| if pa > 0.0 { 0.004 * pa.min(5e4) } else { pa });
-    found(&design("sensor1-clipped"), &noisy, &[], &[]);
+    found(&design("sensor1-clipped-wide"), &noisy, &[], &[]);
 }
 
 #[test]
 fn a_missing_tare_is_found_where_the_answer_still_looks_good() {
-    let design = design("sensor1-joint");
+    let design = design("sensor1-fast");
     let frames = frames(&design);
     let solver = Solver::new(&design).unwrap();
     // 20 and 300 steps of a converter of 12 bits.
-    for (counts, good) in [(20.0, true), (300.0, false)] {
+    for counts in [20.0, 300.0] {
         let loaded = changed(&frames, |pa| pa - 24.4 * counts);
         found(&design, &loaded, &[Kind::Tare], &["36 of 36 frames", "tare", "sensor.calibration"]);
         let solution = solver.solve(&loaded[0]).unwrap();
-        assert_eq!(solution.status.0 == 0, good, "{}", solution.status);
+        assert_eq!(solution.status.0, 0, "{counts}: {}", solution.status);
         assert!(solution.resultant[2] < -6.3, "the load of the tare counts as force: {:?}", solution.resultant);
     }
 }
@@ -205,7 +205,7 @@ fn a_missing_tare_is_found_where_the_answer_still_looks_good() {
 fn transposed_grids_and_rows_that_run_back() {
     // Pitches of 4 and 2 mm tell a transposed grid from another contact, and so do unequal sides.
     let oblong = "name = \"oblong\"\n[sensor]\ncolumns = 12\nrows = 8\npitch_mm = [3.0, 3.0]\ndepth_mm = 3.0\n";
-    for design in [design("sensor1-joint"), Design::from_toml(oblong, "oblong.toml").unwrap()] {
+    for design in [design("sensor1-fast"), Design::from_toml(oblong, "oblong.toml").unwrap()] {
         let (columns, rows) = (design.sensor.columns, design.sensor.rows);
         let frames = frames(&design);
         let reordered = |place: &dyn Fn(usize, usize) -> usize| -> Vec<Vec<f64>> {
@@ -239,7 +239,7 @@ fn transposed_grids_and_rows_that_run_back() {
 
 #[test]
 fn the_end_of_a_converter_below_full_scale() {
-    let mut design = design("sensor1-joint");
+    let mut design = design("sensor1-fast");
     design.hardware.full_scale_pa = 200_000.0;
     let mut scene = Scene::standing(&design.sensor);
     scene.contacts[0].normal_force_n *= 2.5;
@@ -293,7 +293,7 @@ fn good_frames_of_any_grid_and_depth_are_left_alone() {
 
 #[test]
 fn an_offset_of_either_sign_is_one() {
-    for (name, share) in [("sensor1-joint", 0.05), ("sensor2-joint", 0.05), ("sensor2-joint", 0.1)] {
+    for (name, share) in [("sensor1-fast", 0.05), ("sensor2-fast", 0.05), ("sensor2-fast", 0.1)] {
         let design = design(name);
         let frames = frames(&design);
         let peak = frames.iter().flatten().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
@@ -301,14 +301,14 @@ fn an_offset_of_either_sign_is_one() {
         let tare = lifted.iter().find(|finding| finding.kind == Kind::Tare);
         assert!(tare.is_some_and(|finding| finding.to_string().contains("drifted")), "{name}: {lifted:?}");
     }
-    let design = design("sensor2-joint");
+    let design = design("sensor2-fast");
     let falling = changed(&frames(&design), |pa| -100_000.0 - pa);
     assert!(look(&design, &falling)[0].to_string().contains("do the readings fall"), "{:?}", look(&design, &falling));
 }
 
 #[test]
 fn dead_taxels_within_a_contact_are_named() {
-    let mut design = design("sensor2-joint");
+    let mut design = design("sensor2-fast");
     let frames = frames(&design);
     let without = |dead: &[usize], reads: f64| -> Vec<Vec<f64>> {
         let mut frames = frames.clone();
@@ -355,7 +355,7 @@ fn coarse_counts_are_not_at_an_end() {
 #[test]
 fn the_order_shows_on_contacts_of_every_kind() {
     for (depth_mm, least) in [(3.0, 18), (2.0, 12)] {
-        let (mut design, mut found) = (design("sensor1-joint"), 0);
+        let (mut design, mut found) = (design("sensor1-fast"), 0);
         (design.sensor.rows, design.sensor.depth_mm) = (6, depth_mm);
         let (columns, rows) = (design.sensor.columns, design.sensor.rows);
         for kind in golden::scene::Kind::ALL {
@@ -375,7 +375,7 @@ fn the_order_shows_on_contacts_of_every_kind() {
 /// Frames at rest are no contact in another unit, in another order, or of several bodies; beside contacts they are nothing.
 #[test]
 fn rest_is_told_and_no_contact_is_made_of_it() {
-    let mut design = design("sensor1-joint");
+    let mut design = design("sensor1-fast");
     design.algorithm.count_contacts = true;
     // As even as a generator of a line makes it: from -8 to 8 Pa.
     let noise = |frame: usize, taxel: usize| f64::from(((frame * 7919 + taxel * 104_729) % 1601) as u32) / 100.0 - 8.0;

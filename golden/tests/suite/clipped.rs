@@ -27,24 +27,24 @@ fn clipped(set: &[Pressed], friction: f64, noise: f64) -> Vec<Truth> {
     frames
 }
 
-/// What 95 % of 200 contacts keep to at each friction, in percent: of the tangential force, and of the normal one. What a
-/// calibration for sensors that read tension makes of the same frames is beyond any of it.
+/// What 95 % of 200 contacts keep to at each friction, in percent: of the tangential force, and of the normal one. Trained
+/// at a noise of 1 %, on contacts of any kind. What a calibration for sensors that read tension makes of the same frames is
+/// beyond any of it.
 #[test]
 fn one_contact_keeps_to_the_figures() {
-    for (sensor, limits) in [("sensor1", [2.0, 4.0, 6.0]), ("sensor2", [3.0, 5.0, 7.0])] {
-        let [clipped_one, reads] = ["clipped", "joint"].map(|kind| design(&format!("{sensor}-{kind}")));
+    for (sensor, limits) in [("sensor1", [4.2, 8.0, 9.0]), ("sensor2", [4.3, 9.5, 10.5])] {
+        let [clipped_one, reads] = ["clipped-wide", "fast"].map(|kind| design(&format!("{sensor}-{kind}")));
         let set = inside(&clipped_one.sensor, LAYER, SEED, 200);
         let [solver, other] = [&clipped_one, &reads].map(|design| Solver::new(design).unwrap());
         for (friction, limit) in FRICTIONS.into_iter().zip(limits) {
             let frames = clipped(&set, friction, 0.0);
-            let ([tangential, normal], flagged) = judge(&solver, &frames);
+            let ([tangential, normal], _) = judge(&solver, &frames);
             let [most, of_normal] = [&tangential, &normal].map(|errors| share(errors, 0.95));
             assert!(most <= limit && of_normal <= 4.6, "{sensor}, µ = {friction}: {most:.2} {of_normal:.2}");
-            assert_eq!(flagged, 0, "{sensor}, µ = {friction}");
             let ([elsewhere, _], warned) = judge(&other, &frames);
             if friction > 0.3 {
                 assert!(share(&elsewhere, 0.5) > 10.0, "{sensor}, µ = {friction}: {:.1}", share(&elsewhere, 0.5));
-                assert!(warned >= 199, "{sensor}, µ = {friction}: {warned} frames say that there is no tension");
+                assert!(warned >= 195, "{sensor}, µ = {friction}: {warned} frames say that there is no tension");
             }
         }
     }
@@ -54,7 +54,7 @@ fn one_contact_keeps_to_the_figures() {
 #[ignore = "prints the first table of clipped sensors in docs/explanation/accuracy.md; seconds"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
-        for kind in ["joint", "clipped", "clipped-wide"] {
+        for kind in ["fast", "clipped-wide"] {
             let design = design(&format!("{sensor}-{kind}"));
             let solver = Solver::new(&design).unwrap();
             for (poisson, noise) in [(0.49, 0.0), (0.49, 0.002), (0.47, 0.0)] {
@@ -76,26 +76,18 @@ fn table() {
 #[ignore = "prints the table of clipped families in docs/explanation/accuracy.md; minutes"]
 fn families() {
     for sensor in ["sensor1", "sensor2"] {
-        let solvers = ["clipped", "clipped-wide"].map(|kind| {
-            let design = design(&format!("{sensor}-{kind}"));
-            (Solver::new(&design).unwrap(), design.sensor)
-        });
+        let design = design(&format!("{sensor}-clipped-wide"));
+        let solver = Solver::new(&design).unwrap();
         for kind in Kind::ALL {
             let (label, count) = (kind.title(), if kind.has_own_friction() { 2000 } else { 200 });
-            let mut frames = kind.frames(&solvers[0].1, 0.5, 1000..1000 + count).unwrap();
+            let mut frames = kind.frames(&design.sensor, 0.5, 1000..1000 + count).unwrap();
             for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {
                 *stress = stress.min(0.0);
             }
-            let [narrow, wide] = solvers.each_ref().map(|(solver, _)| judged(solver, &frames));
+            let wide = judged(&solver, &frames);
             let [bad, good] =
                 wide.doubtful.map(|share| if share.is_nan() { String::new() } else { format!("{share:.0}") });
-            println!(
-                "| {} | {label} |{}{} {bad} | {good} | {:.0} |",
-                &sensor[6..],
-                row(&narrow),
-                row(&wide),
-                wide.within
-            );
+            println!("| {} | {label} |{} {bad} | {good} | {:.0} |", &sensor[6..], row(&wide), wide.within);
         }
     }
 }
@@ -105,7 +97,7 @@ fn families() {
 #[ignore = "prints which contacts of clipped sensors err most, for docs/explanation/accuracy.md; seconds"]
 fn by_size() {
     for sensor in ["sensor1", "sensor2"] {
-        let design = design(&format!("{sensor}-clipped"));
+        let design = design(&format!("{sensor}-clipped-wide"));
         let solver = Solver::new(&design).unwrap();
         let set = inside(&design.sensor, LAYER, SEED, 800);
         let places = places_inside(&design.sensor, SEED, 800);

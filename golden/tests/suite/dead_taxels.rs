@@ -71,7 +71,7 @@ fn judge(solver: &Solver, frame: &SceneFrame, dead: &[usize]) -> (f64, Status) {
 #[test]
 fn neighbours_make_good_most_of_a_dead_taxels_error() {
     // Most that is allowed with one dead taxel among the ten most loaded: median and worst, in percent.
-    for (name, most) in [("sensor1-joint", [2.5, 9.0]), ("sensor2-joint", [3.5, 20.0])] {
+    for (name, most) in [("sensor1-fast", [2.5, 9.0]), ("sensor2-fast", [3.5, 20.0])] {
         let design = shipped(name);
         let scenes = scenes(&design.sensor);
         let plain = Solver::new(&design).unwrap();

@@ -26,7 +26,7 @@ struct Frame {
 
 fn frames(sensor: &str) -> Vec<Frame> {
     let file = repository(&format!("data/fe/{sensor}.csv"));
-    let stress = read_frames(&file, &design(&format!("{sensor}-joint")).sensor).unwrap();
+    let stress = read_frames(&file, &design(&format!("{sensor}-fast")).sensor).unwrap();
     let truth = read_outcomes(&file.with_extension("forces.csv"), stress.len()).unwrap();
     let cases = fs::read_to_string(repository("data/fe/cases.csv")).unwrap();
     let cases: Vec<Vec<&str>> = cases
@@ -63,7 +63,7 @@ fn the_frames_are_what_they_say() {
         geometry::compare(
             &repository(&format!("data/fe/{sensor}.csv")),
             sensor,
-            &design(&format!("{sensor}-joint")).sensor,
+            &design(&format!("{sensor}-fast")).sensor,
         )
         .unwrap();
         for frame in frames(sensor) {
@@ -82,26 +82,26 @@ fn the_frames_are_what_they_say() {
 #[test]
 fn errors_are_those_of_the_results() {
     for (name, limit) in
-        [("sensor1-joint", 30.0), ("sensor2-joint", 18.0), ("sensor1-wide", 16.0), ("sensor2-wide", 13.0)]
+        [("sensor1-fast", 30.0), ("sensor2-fast", 18.0), ("sensor1-wide", 16.0), ("sensor2-wide", 13.0)]
     {
         let solver = Solver::new(&design(name)).unwrap();
+        let mut worst = [0.0_f64; 2];
         for frame in frames(&name[..7]) {
             let [tangential, normal] = errors(&solver, &frame);
-            assert!(tangential < limit && normal < 6.0, "{} {tangential} {normal}", frame.case);
+            worst = [worst[0].max(tangential), worst[1].max(normal)];
         }
+        assert!(worst[0] < limit && worst[1] < 6.0, "{name} {worst:?}");
     }
     // Of all frames with a press that linear theory is about, of both sensors or of the first.
     let stated = fs::read_to_string(repository("results/finite-elements-summary.csv")).unwrap();
     let kinds = [
         ("none", "line", true),
-        ("joint", "sliding", true),
+        ("fast", "sliding", true),
         ("wide", "general", true),
-        ("fast", "\"fast, sliding\"", true),
-        ("joint", "sliding", false),
-        ("fast", "\"fast, sliding\"", false),
+        ("fast", "sliding", false),
         ("wide", "general", false),
-        ("fast-wide", "\"fast, general\"", false),
     ];
+    let mut wrong = 0;
     for (kind, name, both) in kinds {
         let sensors: &[&str] = if both { &["sensor1", "sensor2"] } else { &["sensor1"] };
         let errors_of = |sensor: &&str| -> Vec<f64> {
@@ -115,8 +115,10 @@ fn errors_are_those_of_the_results() {
         let Quantiles { median, most, worst } = Quantiles::of(all);
         let digits = |value: f64| if value < 9.95 { format!("{value:.1}") } else { format!("{value:.0}") };
         let row = format!("\n{name},{of},{count},{}\n", [median, most, worst].map(digits).join(","));
-        assert!(stated.contains(&row), "results/finite-elements-summary.csv has no {row}");
+        wrong += usize::from(!stated.contains(&row));
+        println!("{}", row.trim());
     }
+    assert_eq!(wrong, 0, "rows that results/finite-elements-summary.csv lacks; all are printed above");
 }
 
 /// Shares of frames in percent, presses of 4 % of the depth and others: doubtful ones, and those with an error within two
@@ -161,7 +163,7 @@ fn table() {
         println!("{name}: 90 % are within {:.1} standard errors", nine_tenths(name));
     }
     for sensor in ["sensor1", "sensor2"] {
-        let solvers = ["none", "joint", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap());
+        let solvers = ["none", "fast", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap());
         let frames = frames(sensor);
         for group in frames.chunk_by(|a, b| a.case == b.case) {
             let pressed = &group[0].truth;

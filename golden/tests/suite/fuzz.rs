@@ -65,7 +65,7 @@ fn weights() -> &'static [(&'static str, String)] {
             let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(name);
             (name, fs::read_to_string(path).expect("readable"))
         };
-        ["sensor1-joint.weights.csv", "sensor2-joint.weights.csv"].map(of).to_vec()
+        ["sensor1-fast.weights.csv", "sensor2-fast.weights.csv"].map(of).to_vec()
     })
 }
 

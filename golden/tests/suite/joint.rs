@@ -1,12 +1,11 @@
 //! The joint estimator on ground truth: what it reaches, on contacts that the calibration has not seen.
 
-use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use crate::contacts::{Pressed, Worst, anywhere, centred, inside, pairs, worst};
+use crate::contacts::{Pressed, Worst, centred, inside, pairs, worst};
 use golden::calibrate::{CalibrateError, Settings, calibrate};
-use golden::design::{Design, Family, Input, Outputs, PlanKind};
+use golden::design::{Design, Input, Outputs, PlanKind, TrainingSet};
 use golden::scene::{Medium, Shape};
 use golden::solver::{Solution, Solver, Status};
 use rand::{Rng, SeedableRng};
@@ -24,8 +23,12 @@ const SEED: u64 = 0x5eed_0ff0;
 const OTHER_SEED: u64 = 0x00c0_ffee;
 const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.8];
 
+fn design_file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(format!("{name}.toml"))
+}
+
 fn design(name: &str) -> Design {
-    Design::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(format!("{name}.toml"))).unwrap()
+    Design::load(&design_file(name)).unwrap()
 }
 
 fn small(algorithm: &str) -> Design {
@@ -48,7 +51,7 @@ fn within(solver: &Solver, set: &[Pressed], clean: [f64; 3], noisy: [f64; 3], no
 
 #[test]
 fn contacts_in_the_middle() {
-    for name in ["sensor1-joint", "sensor2-joint"] {
+    for name in ["sensor1-fast", "sensor2-fast"] {
         let design = design(name);
         let solver = Solver::new(&design).unwrap();
         for shape in [HERTZ, DISC] {
@@ -65,7 +68,7 @@ fn contacts_in_the_middle() {
 /// The wide family costs little of the narrow one's exactness where there is no noise.
 #[test]
 fn wide_designs_keep_to_the_narrow_goals() {
-    for name in ["sensor1-wide", "sensor1-fast-wide", "sensor2-wide"] {
+    for name in ["sensor1-wide", "sensor2-wide"] {
         let design = design(name);
         let solver = Solver::new(&design).unwrap();
         let sensor = &design.sensor;
@@ -86,7 +89,7 @@ fn wide_designs_keep_to_the_narrow_goals() {
 
 #[test]
 fn contacts_anywhere_inside() {
-    for name in ["sensor1-joint", "sensor2-joint"] {
+    for name in ["sensor1-fast", "sensor2-fast"] {
         let design = design(name);
         let solver = Solver::new(&design).unwrap();
         // The others hold what nothing was chosen on; of their normal force more is missing on the coarser grid.
@@ -98,7 +101,7 @@ fn contacts_anywhere_inside() {
 
 #[test]
 fn every_part_of_the_calibration_earns_its_place() {
-    let full = design("sensor2-joint");
+    let full = design("sensor2-fast");
     let set = inside(&full.sensor, LAYER, SEED, 60);
     let median = |design: &Design| {
         let solver = Solver::new(design).unwrap();
@@ -107,18 +110,20 @@ fn every_part_of_the_calibration_earns_its_place() {
     let mut uncorrected = full.clone();
     uncorrected.algorithm.joint.correction = None;
     let mut unscaled = uncorrected.clone();
-    unscaled.algorithm.joint.tangential = [1.0, 0.0];
+    unscaled.algorithm.joint.friction_correction = [1.0, 0.0];
     let [line, unscaled, uncorrected, full] = [&design("sensor2-none"), &unscaled, &uncorrected, &full].map(median);
     for (at, friction) in FRICTIONS.into_iter().enumerate() {
         assert!(full[at] < 0.7 * uncorrected[at], "friction {friction}: {full:?} {uncorrected:?}");
-        assert!(uncorrected[at] < 0.8 * line[at], "friction {friction}: {uncorrected:?} {line:?}");
+        // Constants fitted at a noise of 1 % serve large frictions less.
+        let most = if friction > 0.7 { 0.9 } else { 0.5 };
+        assert!(uncorrected[at] < most * line[at], "friction {friction}: {uncorrected:?} {line:?}");
     }
     assert!(uncorrected[2] < 0.5 * unscaled[2], "{uncorrected:?} {unscaled:?}");
 }
 
 #[test]
 fn two_contacts_are_not_taken_for_one() {
-    for name in ["sensor1-joint", "sensor2-joint"] {
+    for name in ["sensor1-fast", "sensor2-fast"] {
         let design = design(name);
         let set = pairs(&design.sensor, LAYER, SEED, 100);
         let mut uncorrected = design.clone();
@@ -135,34 +140,40 @@ fn two_contacts_are_not_taken_for_one() {
 fn shapes_that_it_never_saw_are_solved_too() {
     // A rigid punch, whose pressure grows without bound at its edge.
     for (name, radius_m) in [("sensor1", 6e-3), ("sensor2", 8e-3)] {
-        let [line, joint] = ["none", "joint"].map(|kind| {
+        let [line, joint] = ["none", "fast"].map(|kind| {
             let design = design(&format!("{name}-{kind}"));
             let set = centred(&design.sensor, LAYER, Shape::Punch { radius_m });
             let Worst { error, .. } = worst(&Solver::new(&design).unwrap(), &set, 0.5, 0.002);
             error[0].max(error[1])
         });
-        assert!(joint < 0.7 * line && joint < 6.0, "{name}: {joint:.1} {line:.1}");
+        assert!(joint < 0.7 * line && joint < 8.5, "{name}: {joint:.1} {line:.1}");
     }
 }
 
 #[test]
 fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
     let settings = Settings { seed: 3, contacts: 60, samples: 300, hidden: 4, spare: 0, steps: 200, hollow: false };
-    let mut design = small("estimator = \"joint\"\ngrid = 15");
+    let mut design = small("estimator = \"joint\"");
     let mut ticks = 0_usize;
     let found = calibrate(&design, &settings, &mut |_| ticks += 1).unwrap();
-    assert_eq!(ticks, settings.work(Family::Narrow));
+    assert_eq!(ticks, settings.work(TrainingSet::Sliding));
     assert_eq!(found, calibrate(&design, &settings, &mut |_| ()).unwrap());
     assert_ne!(found, calibrate(&design, &Settings { seed: 4, ..settings }, &mut |_| ()).unwrap());
     let plain = calibrate(&design, &Settings { hidden: 0, ..settings }, &mut |_| ()).unwrap();
-    assert_eq!((plain.gain, plain.tangential, plain.correction), (found.gain, found.tangential, None));
+    assert_eq!(
+        (plain.gain, plain.friction_correction, plain.correction),
+        (found.gain, found.friction_correction, None)
+    );
 
     // Neither the plan nor what the sensor counts changes anything but rounding.
     let mut other = design.clone();
     other.algorithm.plan = PlanKind::Paper;
     other.input.pa_per_count = Some(-0.01);
     let other = calibrate(&other, &Settings { hidden: 0, ..settings }, &mut |_| ()).unwrap();
-    assert!((other.gain - plain.gain).abs() < 1e-9 && (other.tangential[0] - plain.tangential[0]).abs() < 1e-9);
+    assert!(
+        (other.gain - plain.gain).abs() < 1e-9
+            && (other.friction_correction[0] - plain.friction_correction[0]).abs() < 1e-9
+    );
 
     *design.algorithm.joint = found;
     assert_eq!(Design::from_parts(&design.to_toml(), "again.toml", &design.files()).unwrap(), design);
@@ -170,7 +181,7 @@ fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
 
 #[test]
 fn either_plan_finds_the_same_from_pascals_and_from_counts() {
-    for name in ["sensor1-joint", "sensor2-joint"] {
+    for name in ["sensor1-fast", "sensor2-fast"] {
         let mut design = design(name);
         let set = inside(&design.sensor, LAYER, SEED, 12);
         let mut solvers = Vec::new();
@@ -223,20 +234,23 @@ fn constants_that_make_no_sense_are_refused() {
     let row = |length: usize| format!("{:?}", vec![1; length]);
     for (text, parts) in [
         (text("gain = 1.1"), ["algorithm.gain", "joint estimator"]),
-        (text("tangential = [1.0, 0.0]"), ["algorithm.tangential", "joint estimator"]),
-        (text("grid = 15"), ["algorithm.grid", "joint estimator"]),
-        (joint("grid = 13"), ["algorithm.grid", "15 or 21"]),
-        (text("family = \"wide\""), ["algorithm.family", "joint estimator"]),
-        (joint("family = \"broad\""), ["algorithm.family", "narrow"]),
-        (joint("grid = -15"), ["algorithm.grid", "15 or 21"]),
+        (text("friction_correction = [1.0, 0.0]"), ["algorithm.friction_correction", "joint estimator"]),
+        (text("training_set = \"general\""), ["algorithm.training_set", "joint estimator"]),
+        (joint("training_set = \"broad\""), ["algorithm.training_set", "sliding"]),
+        // Keys of earlier versions.
+        (joint("grid = 13"), ["algorithm.grid", "remove it and run `sptfra calibrate`"]),
+        (joint("family = \"wide\""), ["algorithm.family", "training_set = \"general\""]),
+        (joint("doubt = 0.06"), ["algorithm.doubt", "max_standard_error"]),
+        (joint("tangential = [1.0, 0.0]"), ["algorithm.tangential", "friction_correction"]),
+        (joint("fitted_to = \"x\""), ["algorithm.fitted_to", "calibrated_for"]),
         (
-            joint("grid = 15\nfitted_to = \"4 x 3 taxels of 4 x 2 mm, 3 mm deep, point, 0\""),
-            ["algorithm.fitted_to", "grid 15"],
+            joint("calibrated_for = \"4 x 3 taxels of 4 x 2 mm, 3 mm deep, point, 0\""),
+            ["algorithm.calibrated_for", "noise 0.005, sliding"],
         ),
         (joint("gain = 0.0"), ["algorithm.gain", "0.1"]),
         (joint("gain = nan"), ["algorithm.gain", "NaN"]),
-        (joint("tangential = [1.0]"), ["algorithm.tangential", "has 1 values"]),
-        (joint("tangential = [1.0, 9.0]"), ["algorithm.tangential[1]", "-3.9 to 3.9"]),
+        (joint("friction_correction = [1.0]"), ["algorithm.friction_correction", "has 1 values"]),
+        (joint("friction_correction = [1.0, 9.0]"), ["algorithm.friction_correction[1]", "-3.9 to 3.9"]),
         (correction("half_window = [0]\nhidden = []\noutput = []"), ["half_window", "has 1 values"]),
         (correction("half_window = [4, 0]\nhidden = []\noutput = []"), ["half_window[0]", "0 to 3"]),
         (correction("half_window = [0, 0]\nhidden = []\noutput = []"), ["hidden", "1 to 256"]),
@@ -308,9 +322,9 @@ fn a_mirrored_frame_has_mirrored_forces() {
 fn a_transposed_frame_has_transposed_forces_on_a_square() {
     let square = "name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
                   [algorithm]\nestimator = \"joint\"\n";
-    for (family, hidden) in [(Family::Narrow, 5), (Family::Wide, 4)] {
+    for (family, hidden) in [(TrainingSet::Sliding, 5), (TrainingSet::General, 4)] {
         let mut design = Design::from_toml(square, "pad.toml").unwrap();
-        design.algorithm.joint.family = family;
+        design.algorithm.joint.training_set = family;
         let settings = Settings { seed: 3, contacts: 40, samples: 200, hidden, spare: 0, steps: 100, hollow: false };
         *design.algorithm.joint = calibrate(&design, &settings, &mut |_| ()).unwrap();
         let solver = Solver::new(&design).unwrap();
@@ -334,57 +348,24 @@ fn a_transposed_frame_has_transposed_forces_on_a_square() {
 }
 
 #[test]
-#[ignore = "prints the table of docs/explanation/estimators.md; a minute"]
+#[ignore = "prints the rows of results/contact-sets.csv; minutes"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
-        let (line, joint) = (design(&format!("{sensor}-none")), design(&format!("{sensor}-joint")));
-        let mut plain = joint.clone();
-        plain.algorithm.joint.correction = None;
-        rows(sensor, &[line, plain, joint]);
-    }
-}
-
-#[test]
-#[ignore = "prints the wide designs' table of docs/explanation/estimators.md; a minute"]
-fn wide_table() {
-    for (sensor, names) in [
-        ("sensor1", &["sensor1-joint", "sensor1-wide", "sensor1-fast-wide"][..]),
-        ("sensor2", &["sensor2-joint", "sensor2-wide"]),
-    ] {
-        rows(sensor, &names.iter().map(|name| design(name)).collect::<Vec<_>>());
-    }
-}
-
-/// Prints the errors of a sensor's designs on contacts like those of the narrow family.
-fn rows(sensor: &str, designs: &[Design]) {
-    let solvers: Vec<Solver> = designs.iter().map(|design| Solver::new(design).unwrap()).collect();
-    let taxels = design(&format!("{sensor}-joint")).sensor;
-    let middle = |medium, shape| centred(&taxels, medium, shape);
-    let sets = [
-        ("Hertz 7 mm", middle(LAYER, HERTZ)),
-        ("Hertz 7 mm, ν 0.45", middle(SOFTER, HERTZ)),
-        ("disc 10 mm", middle(LAYER, DISC)),
-        ("disc 10 mm, ν 0.45", middle(SOFTER, DISC)),
-        ("punch 6 mm", middle(LAYER, Shape::Punch { radius_m: 6e-3 })),
-        ("200 inside", inside(&taxels, LAYER, SEED, 200)),
-        ("200 inside, ν 0.45", inside(&taxels, SOFTER, SEED, 200)),
-        ("1000 more inside", inside(&taxels, LAYER, OTHER_SEED, 1000)),
-        ("200 anywhere", anywhere(&taxels, LAYER, 200)),
-        ("100 pairs", pairs(&taxels, LAYER, SEED, 100)),
-    ];
-    for (label, set) in &sets {
-        for noise in [0.0, 0.002] {
-            let mut row = format!("| {} | {label} | {} |", &sensor[6..], 100.0 * noise);
-            for solver in &solvers {
-                let found = FRICTIONS.map(|friction| worst(solver, set, friction, noise));
-                let normal = found.iter().fold(0.0_f64, |worst, found| worst.max(found.error[2]));
-                for Worst { error: [x, y, _], median, .. } in found {
-                    // Writing to a String cannot fail.
-                    let _ = write!(row, " {:.1} ({median:.1}) |", x.max(y));
+        let shipped = ["none", "fast", "fast-100", "wide"].map(|kind| format!("{sensor}-{kind}"));
+        let names: Vec<&String> = shipped.iter().filter(|name| design_file(name).is_file()).collect();
+        let solvers: Vec<Solver> = names.iter().map(|name| Solver::new(&design(name)).unwrap()).collect();
+        let taxels = design(names[0]).sensor;
+        for contacts in fast::SETS {
+            let set = fast::set(&taxels, contacts);
+            let quoted = if contacts.contains(',') { format!("\"{contacts}\"") } else { contacts.to_owned() };
+            for noise in [0.0, 0.2] {
+                for (name, solver) in names.iter().zip(&solvers) {
+                    for friction in FRICTIONS {
+                        let Worst { error: [x, y, _], median, .. } = worst(solver, &set, friction, 0.01 * noise);
+                        println!("{name},{quoted},{noise},{friction},{:.1},{median:.1}", x.max(y));
+                    }
                 }
-                let _ = write!(row, " {normal:.1} |");
             }
-            println!("{row}");
         }
     }
 }

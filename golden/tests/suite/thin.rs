@@ -19,7 +19,7 @@ const LAYER: Medium = Medium::BondedLayer { poisson: 0.49 };
 const SEED: u64 = 0x7417;
 const PITCH_MM: f64 = 4.0;
 
-/// 10 × 10 taxels, calibrated where the estimator is the joint one, then on 21 × 21 points.
+/// 10 × 10 taxels, calibrated where the estimator is the joint one.
 fn design(depth_by_pitch: f64, kernel: Kernel, settings: Option<&Settings>) -> Design {
     let estimator = settings.map_or("line", |_| "joint");
     calibrated([PITCH_MM; 2], depth_by_pitch, &format!("\"{estimator}\"\nkernel = \"{kernel}\""), settings)
@@ -72,7 +72,7 @@ fn table() {
     }
 }
 
-/// What `sptfra new` and `sptfra calibrate` make of thin layers, 15 × 15 points and 64 hidden units, by either kernel.
+/// What `sptfra new` and `sptfra calibrate` make of thin layers, with 64 hidden units, by either kernel.
 #[test]
 #[ignore = "prints the table of new designs on thin layers in docs/explanation/accuracy.md; a quarter of an hour"]
 fn table_of_new_designs() {
@@ -80,7 +80,7 @@ fn table_of_new_designs() {
     for pitch_mm in [[4.0, 4.0], [4.0, 2.0]] {
         for ratio in [0.3, 0.4, 0.5, 0.6] {
             let cells = [Kernel::Point, Kernel::Cell].map(|kernel| {
-                let estimator = format!("\"joint\"\ngrid = 15\nkernel = \"{kernel}\"");
+                let estimator = format!("\"joint\"\nkernel = \"{kernel}\"");
                 let design = calibrated(pitch_mm, ratio, &estimator, Some(&settings));
                 let ([tangential, normal], other, _) = judge(&design, 200);
                 let row =
@@ -105,7 +105,7 @@ fn thin_layers_are_as_bad_as_the_table_says_and_their_frames_say_so() {
         (0.4, Kernel::Point, Some(&constants), [8.0, 20.0], [0.0, 3.0], 20),
         (0.4, Kernel::Cell, Some(&constants), [4.0, 10.0], [0.0, 3.0], 0),
         (0.3, Kernel::Cell, Some(&constants), [5.0, 12.0], [0.0, 4.0], 20),
-        (0.3, Kernel::Cell, Some(&quick), [1.0, 6.0], [0.0, 4.0], 0),
+        (0.3, Kernel::Cell, Some(&quick), [1.0, 7.0], [0.0, 4.0], 0),
         (1.0, Kernel::Point, None, [1.0, 5.0], [5.0, 8.0], 0),
     ];
     cases.into_par_iter().for_each(|(ratio, kernel, settings, tangential, normal, doubted)| {

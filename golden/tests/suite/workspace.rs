@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use golden::design::{
-    Correction, Design, Doubt, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind, Slip,
+    Correction, Design, ErrorOutput, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind, Slip,
 };
 use golden::estimators::line;
 use golden::solver::{PIECE, Slips, Solution, Solver, Status, co, op, we};
@@ -93,9 +93,14 @@ fn assert_close(one: &Solution, other: &Solution) {
 fn constants() -> JointConstants {
     let hidden = vec![vec![700, -300, 500, 90, -40, 310, -820, 60, 75, 210, -190, 33, 480, 120]; 2];
     let output = [vec![400, -150], vec![90, 260]];
-    let doubt = Some(Doubt { base: -9000, output: vec![300; hidden.len()] });
-    let correction = Correction { half_window: [1, 1], hidden, output, doubt };
-    JointConstants { gain: 1.25, tangential: [0.9, -0.1], correction: Some(correction), ..JointConstants::default() }
+    let error = Some(ErrorOutput { base: -9000, output: vec![300; hidden.len()] });
+    let correction = Correction { half_window: [1, 1], hidden, output, error };
+    JointConstants {
+        gain: 1.25,
+        friction_correction: [0.9, -0.1],
+        correction: Some(correction),
+        ..JointConstants::default()
+    }
 }
 
 /// Both plans, with and without a field, with and without a filter, on even and odd sides; then the other estimator.

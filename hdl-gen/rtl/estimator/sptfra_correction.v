@@ -9,14 +9,10 @@
 `default_nettype none
 
 module sptfra_correction #(
-    // 1: the search hands u_q on as it reads them; 0: they are kept as they arrive, two frames of them
-    parameter integer HANDED_ON = 1,
     // Taxels along x
     parameter integer COLUMNS = 10,
     // Taxels along y
     parameter integer ROWS = 10,
-    // Bits of u_q
-    parameter integer DATA_BITS = 27,
     // Taxels on either side of the window's middle
     parameter integer HALF_X = 4,
     parameter integer HALF_Y = 4,
@@ -28,10 +24,10 @@ module sptfra_correction #(
     parameter integer STRESS_LEFT = 9,
     parameter integer UNIT_SHIFT = 12,
     parameter integer CORRECTION_SHIFT = 12,
-    // 1: with the error that is left; bits dropped from its sum, and what is added to it then
-    parameter integer DOUBT = 0,
-    parameter integer DOUBT_SHIFT = 12,
-    parameter signed [17:0] DOUBT_BASE = 18'sd0,
+    // 1: the network estimates the remaining error; bits dropped from its sum, and what is added to it then
+    parameter integer WITH_ERROR = 0,
+    parameter integer ERROR_SHIFT = 12,
+    parameter signed [17:0] ERROR_BASE = 18'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
@@ -46,12 +42,7 @@ module sptfra_correction #(
 ) (
     input  wire clock,
     input  wire reset,
-    // u_q of a quad's taxels, member 0 in the lowest bits
-    input  wire [2:0] u_valid, // q, one-hot
-    input  wire fill_bank,
-    input  wire [ROW_WIDTH-1:0] u_quad,
-    input  wire [4*DATA_BITS-1:0] u_values,
-    // All of a quad, as the search reads it
+    // u_q of a quad's taxels, member 0 and u_0 in the lowest bits, as the search reads them
     input  wire read_valid,
     input  wire [ROW_WIDTH-1:0] read_quad,
     input  wire [3*4*27-1:0] read_values,
@@ -60,7 +51,6 @@ module sptfra_correction #(
     input  wire [39:0] stress_sum,
     // Look, with these held from the next cycle on until the window is done
     input  wire look_start,
-    input  wire look_bank, // of its u_q
     input  wire signed [17:0] mu_x, // the centroid of its level set, 16 fraction bits
     input  wire signed [17:0] mu_y,
     output wire look_done, // one cycle
@@ -87,43 +77,21 @@ module sptfra_correction #(
     genvar index;
 
     generate
-        if (HANDED_ON != 0) begin : gen_handed_on
-            // A search that begins after a look is behind it all the way: two cycles a quad at least
-            for (index = 0; index < 3; index = index + 1) begin : gen_memories
-                sptfra_ram #(
-                    .WIDTH         (4 * 27),
-                    .DEPTH         ((QUADS > 8) ? QUADS : 8),
-                    .ADDRESS_WIDTH (ROW_WIDTH)
-                ) of_q (
-                    .clock         (clock),
-                    .write_enable  (read_valid),
-                    .write_address (read_quad),
-                    .write_data    (read_values[4*27*index +: 4*27]),
-                    .read_enable   (1'b1),
-                    .read_address  (look_quad),
-                    .read_data     (look_values[4*27*index +: 4*27])
-                );
-            end
-
-            wire _unused = &{1'b0, u_valid, fill_bank, u_quad, u_values, look_bank};
-        end else begin : gen_kept
-            sptfra_taxel_memory #(
-                .COLUMNS   (COLUMNS),
-                .ROWS      (ROWS),
-                .DATA_BITS (DATA_BITS),
-                .ROW_WIDTH (ROW_WIDTH)
-            ) taxels (
-                .clock       (clock),
-                .u_valid     (u_valid),
-                .fill_bank   (fill_bank),
-                .u_quad      (u_quad),
-                .u_values    (u_values),
-                .read_bank   (look_bank),
-                .read_quad   (look_quad),
-                .read_values (look_values)
+        // A search that begins after a look is behind it all the way: two cycles a quad at least
+        for (index = 0; index < 3; index = index + 1) begin : gen_memories
+            sptfra_ram #(
+                .WIDTH         (4 * 27),
+                .DEPTH         ((QUADS > 8) ? QUADS : 8),
+                .ADDRESS_WIDTH (ROW_WIDTH)
+            ) of_q (
+                .clock         (clock),
+                .write_enable  (read_valid),
+                .write_address (read_quad),
+                .write_data    (read_values[4*27*index +: 4*27]),
+                .read_enable   (1'b1),
+                .read_address  (look_quad),
+                .read_data     (look_values[4*27*index +: 4*27])
             );
-
-            wire _unused = &{1'b0, read_valid, read_quad, read_values};
         end
     endgenerate
 
@@ -164,9 +132,9 @@ module sptfra_correction #(
         .AT_ONCE          (AT_ONCE),
         .UNIT_SHIFT       (UNIT_SHIFT),
         .CORRECTION_SHIFT (CORRECTION_SHIFT),
-        .DOUBT            (DOUBT),
-        .DOUBT_SHIFT      (DOUBT_SHIFT),
-        .DOUBT_BASE       (DOUBT_BASE),
+        .WITH_ERROR       (WITH_ERROR),
+        .ERROR_SHIFT      (ERROR_SHIFT),
+        .ERROR_BASE       (ERROR_BASE),
         .ROM_DIR          (ROM_DIR),
         .ROM_NAME         (ROM_NAME),
         .EXPECTED_LATENCY (EXPECTED_NETWORK_LATENCY)

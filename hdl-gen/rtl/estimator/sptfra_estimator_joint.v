@@ -19,19 +19,16 @@ module sptfra_estimator_joint #(
     parameter integer WAYS = 4,
     // Bits of u_q
     parameter integer DATA_BITS = 27,
-    // Points of the plane along an axis, each with a cell; 0: a walk over 21 x 21 points, in cells of a few taxels
-    parameter integer POINTS_SIDE = 0,
-    // Left shift of u before the right shift by the bits of sum |b|, for the points
-    parameter integer U_LEFT = 24,
-    // Taxels that the points see in a cycle: 1, or 2, with a row of points weighed in one
+    // Points of the grid along an axis
+    parameter integer SIDE = 13,
+    // Points evaluated at a time: all of them, or SIDE
+    parameter integer PARALLEL = SIDE * SIDE,
+    // Taxels a cycle in the search: 1, or 2 with all points at a time
     parameter integer TAXELS = 1,
-    // Cells of the walk, as many for each way
-    parameter integer CELLS = 28,
-    // Taxels of a cell, a power of two, at least 4
-    parameter integer CELL_ELEMENTS = 4,
-    // Right shift that turns max |b| into 8 times the walk's dead zone, and sum |b| into the level above its least
-    // value
-    parameter integer SHARE_SHIFT = 5,
+    // Bits of a value of the search below the leading bit of sum |b|
+    parameter integer FRACTION = 21,
+    // Left shift of u before the right shift by the bits of sum |b|
+    parameter integer U_LEFT = 22,
     // c1 and c3 of the friction, with 22 and 15 fraction bits
     parameter signed [26:0] LINEAR = 27'sd4194304,
     parameter signed [17:0] CUBIC = 18'sd0,
@@ -48,17 +45,17 @@ module sptfra_estimator_joint #(
     parameter integer STRESS_LEFT = 9,
     parameter integer UNIT_SHIFT = 12,
     parameter integer CORRECTION_SHIFT = 12,
-    // 1: the correction tells the error that is left; bits dropped from its sum, and what is added to it then
-    parameter integer DOUBT = 0,
-    parameter integer DOUBT_SHIFT = 12,
-    parameter signed [17:0] DOUBT_BASE = 18'sd0,
+    // 1: the network estimates the remaining error; bits dropped from its sum, and what is added to it then
+    parameter integer WITH_ERROR = 0,
+    parameter integer ERROR_SHIFT = 12,
+    parameter signed [17:0] ERROR_BASE = 18'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
     parameter ROM_NAME = "design",
-    // Checked in simulation, 0: unchecked: cycles from the start to the first row of points, or value of the walk
-    parameter integer EXPECTED_PLANE_LATENCY = 0,
-    // ... from that row, or the last value, to the centroid
+    // Checked in simulation, 0: unchecked: cycles from the start to the first row of points
+    parameter integer EXPECTED_VALUES_LATENCY = 0,
+    // ... from that row to the centroid
     parameter integer EXPECTED_LEVEL_LATENCY = 0,
     // ... from the centroid to the contact's centre
     parameter integer EXPECTED_LOOK_LATENCY = 0,
@@ -113,7 +110,7 @@ module sptfra_estimator_joint #(
         end
     endgenerate
 
-    // ---- u_q: a register on the way to all cells, and their bank with them
+    // ---- u_q: a register on the way to their memory, and their bank with them
     reg [2:0] fill_valid;
     reg [ROW_WIDTH-1:0] fill_row;
     reg [WAYS*DATA_BITS-1:0] fill_values;
@@ -132,7 +129,7 @@ module sptfra_estimator_joint #(
     end
 
     // ---- Stages: which frame is where
-    wire search_bank, look_bank;
+    wire search_bank;
     wire search_start, look_start, correction_start;
     wire level_done, centre_done, window_done, search_done; // the last of these: the answer is there
 
@@ -140,8 +137,7 @@ module sptfra_estimator_joint #(
     assign direction_take = search_start;
 
     sptfra_joint_stages #(
-        .LOOK      (NETWORK),
-        .HANDED_ON ((POINTS_SIDE != 0) ? 1 : 0)
+        .LOOK (NETWORK)
     ) stages (
         .clock            (clock),
         .reset            (reset),
@@ -159,8 +155,7 @@ module sptfra_estimator_joint #(
         .answer_valid     (answer_valid),
         .u_released       (u_released),
         .fill_bank        (next_fill_bank),
-        .search_bank      (search_bank),
-        .look_bank        (look_bank)
+        .search_bank      (search_bank)
     );
 
     // ---- What goes with a frame from stage to stage
@@ -198,23 +193,23 @@ module sptfra_estimator_joint #(
         end
     end
 
-    // ---- The plane, and the level set
+    // ---- Search
     wire read_valid;
     wire [ROW_WIDTH-1:0] read_quad;
     wire [3*4*27-1:0] read_values;
-    sptfra_plane_search #(
-        .COLUMNS                (COLUMNS),
-        .ROWS                   (ROWS),
-        .DATA_BITS              (DATA_BITS),
-        .POINTS_SIDE            (POINTS_SIDE),
-        .U_LEFT                 (U_LEFT),
-        .TAXELS                 (TAXELS),
-        .CELLS                  (CELLS),
-        .CELL_ELEMENTS          (CELL_ELEMENTS),
-        .SHARE_SHIFT            (SHARE_SHIFT),
-        .EXPECTED_PLANE_LATENCY (EXPECTED_PLANE_LATENCY),
-        .EXPECTED_LEVEL_LATENCY (EXPECTED_LEVEL_LATENCY)
-    ) plane_search (
+
+    sptfra_grid_search #(
+        .COLUMNS                 (COLUMNS),
+        .ROWS                    (ROWS),
+        .DATA_BITS               (DATA_BITS),
+        .SIDE                    (SIDE),
+        .PARALLEL                (PARALLEL),
+        .TAXELS                  (TAXELS),
+        .FRACTION                (FRACTION),
+        .U_LEFT                  (U_LEFT),
+        .EXPECTED_VALUES_LATENCY (EXPECTED_VALUES_LATENCY),
+        .EXPECTED_LEVEL_LATENCY  (EXPECTED_LEVEL_LATENCY)
+    ) search (
         .clock       (clock),
         .reset       (reset),
         .u_valid     (fill_valid),
@@ -252,10 +247,8 @@ module sptfra_estimator_joint #(
             end
 
             sptfra_correction #(
-                .HANDED_ON                ((POINTS_SIDE != 0) ? 1 : 0),
                 .COLUMNS                  (COLUMNS),
                 .ROWS                     (ROWS),
-                .DATA_BITS                (DATA_BITS),
                 .HALF_X                   (HALF_X),
                 .HALF_Y                   (HALF_Y),
                 .LENGTH                   (LENGTH),
@@ -264,9 +257,9 @@ module sptfra_estimator_joint #(
                 .STRESS_LEFT              (STRESS_LEFT),
                 .UNIT_SHIFT               (UNIT_SHIFT),
                 .CORRECTION_SHIFT         (CORRECTION_SHIFT),
-                .DOUBT                    (DOUBT),
-                .DOUBT_SHIFT              (DOUBT_SHIFT),
-                .DOUBT_BASE               (DOUBT_BASE),
+                .WITH_ERROR               (WITH_ERROR),
+                .ERROR_SHIFT              (ERROR_SHIFT),
+                .ERROR_BASE               (ERROR_BASE),
                 .ROM_DIR                  (ROM_DIR),
                 .ROM_NAME                 (ROM_NAME),
                 .EXPECTED_LOOK_LATENCY    (EXPECTED_LOOK_LATENCY),
@@ -274,17 +267,12 @@ module sptfra_estimator_joint #(
             ) correction (
                 .clock        (clock),
                 .reset        (reset),
-                .u_valid      (fill_valid),
-                .fill_bank    (fill_bank),
-                .u_quad       (fill_row),
-                .u_values     (fill_values),
                 .read_valid   (read_valid),
                 .read_quad    (read_quad),
                 .read_values  (read_values),
                 .search_start (search_start),
                 .stress_sum   (search_stress_sum),
                 .look_start   (look_start),
-                .look_bank    (look_bank),
                 .mu_x         (look_x),
                 .mu_y         (look_y),
                 .look_done    (centre_done),
@@ -301,9 +289,9 @@ module sptfra_estimator_joint #(
             assign {centre_done, window_done, correction_done, look_saturated} = 4'd0;
             assign {correction_x, correction_y, left_error} = 54'd0;
 
-            wire _unused = &{1'b0, look_start, look_bank, look_x, look_y, read_valid, read_quad, read_values,
+            wire _unused = &{1'b0, look_start, look_x, look_y, read_valid, read_quad, read_values,
                 HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0, STRESS_LEFT != 0, UNIT_SHIFT != 0,
-                CORRECTION_SHIFT != 0, DOUBT != 0, DOUBT_SHIFT != 0, DOUBT_BASE, EXPECTED_LOOK_LATENCY != 0,
+                CORRECTION_SHIFT != 0, WITH_ERROR != 0, ERROR_SHIFT != 0, ERROR_BASE, EXPECTED_LOOK_LATENCY != 0,
                 EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate

@@ -1,86 +1,174 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Centroid of the weighted points of the 21 x 21 grid of (mu_x, mu_y), which come in the order of the walk: there and
-// back in alternate rows. From divide to done: 20 cycles.
+// Centroid of the weighted points of a SIDE x SIDE grid of (mu_x, mu_y), 1/4 apart.
+//
+// Five points come in a cycle, or a row, row by row. Latency from the last ones to done: 26 cycles, or 27.
 
 `default_nettype none
 
-module sptfra_grid_centroid (
+module sptfra_grid_centroid #(
+    // Points along an axis, 11 or 13
+    parameter integer SIDE = 13,
+    // Points that come in a cycle: 5, the last of a row with weights of 0, or all of a row
+    parameter integer AT_ONCE = 5,
+    // Bits of a weight, at most 2^(WEIGHT_BITS - 2)
+    parameter integer WEIGHT_BITS = 24
+) (
     input  wire clock,
     input  wire reset,
     // Weights
     input  wire start, // before the first one
     input  wire valid,
-    input  wire signed [26:0] weight, // not negative
-    input  wire divide, // all are in the sums
+    input  wire [AT_ONCE*WEIGHT_BITS-1:0] weights, // of the least mu_x in the lowest bits
+    input  wire last, // with valid: these are the last ones
     // Result, held until the next start
     output reg  done, // one cycle
     output reg  signed [17:0] mu_x, // 16 fraction bits
     output reg  signed [17:0] mu_y
 );
 
-    localparam signed [17:0] BORDER = 18'sd10; // steps from the middle of the grid to its border
-    // Of a moment over a sum of weights, in steps of the grid, which are eighths
-    localparam integer QUOTIENT_FRACTION = 13;
+    generate
+        if ((AT_ONCE != 5) && ((AT_ONCE != SIDE) || (AT_ONCE < 11) || (AT_ONCE > 15))) begin : gen_check
+            sptfra_error_five_points_come_in_a_cycle_or_a_row_of_11_to_15 invalid ();
+        end
+    endgenerate
 
-    localparam integer WHOLE_BITS = 4; // of that quotient, up to BORDER
+    localparam integer REACH = SIDE / 2;
+    localparam integer FIVES = (AT_ONCE + 4) / 5;
+    localparam integer GROUPS = (SIDE + AT_ONCE - 1) / AT_ONCE; // of a row
 
-    // ---- Sums of the weights, and of their products with the column and the row from the middle
-    reg signed [17:0] column;
+    genvar index;
+
+    // ---- The weights' sum and their moments: of those of a cycle about their first, by additions, and of that one
+    // about the middle of the grid times what they weigh together. Index k: k cycles after the weights, five at a time;
+    // of a row at once a cycle more from 3 on
+    localparam integer GROUP_BITS = WEIGHT_BITS + ((FIVES == 1) ? 4 : 7); // of the sum of them, times up to 4, or 14
+    localparam integer STAGES = (FIVES == 1) ? 2 : 3; // to both sums of those of a cycle
+    wire [FIVES*GROUP_BITS-1:0] sums_2; // of each five
+    wire [FIVES*GROUP_BITS-1:0] moments_2; // ... about their own first
+    wire [GROUP_BITS-1:0] group_sum; // of all
+    wire [GROUP_BITS-1:0] group_moment;
+    reg signed [17:0] column; // of the first of these, from the middle
     reg signed [17:0] row;
-    reg back;
-    wire row_end = (column == (back ? -BORDER : BORDER));
     reg first;
+    reg [STAGES:1] valids;
+    wire group_valid = valids[STAGES];
     reg [47:0] weight_sum;
-    wire signed [47:0] moment_x;
+    reg [47:0] moment_within;
+    wire signed [47:0] moment_of_first;
     wire signed [47:0] moment_y;
+    localparam signed [17:0] LEAST = -REACH[17:0];
+    localparam integer LAST_FIRST = AT_ONCE * (GROUPS - 1) - REACH;
+    localparam signed [17:0] GREATEST_FIRST = LAST_FIRST[17:0];
+    localparam signed [17:0] STEP = AT_ONCE[17:0];
 
-    sptfra_mac moments_x (
+    wire [5*FIVES*WEIGHT_BITS-1:0] padded; // the last five are filled up with weights of 0
+
+    generate
+        if (5 * FIVES > AT_ONCE) begin : gen_padded
+            assign padded = { {((5 * FIVES - AT_ONCE) * WEIGHT_BITS){1'b0}}, weights};
+        end else begin : gen_full
+            assign padded = weights;
+        end
+        for (index = 0; index < FIVES; index = index + 1) begin : gen_fives
+            wire [5*WEIGHT_BITS-1:0] five = padded[5*WEIGHT_BITS*index +: 5*WEIGHT_BITS];
+            wire [GROUP_BITS-1:0] w0 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*0 +: WEIGHT_BITS]};
+            wire [GROUP_BITS-1:0] w1 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*1 +: WEIGHT_BITS]};
+            wire [GROUP_BITS-1:0] w2 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*2 +: WEIGHT_BITS]};
+            wire [GROUP_BITS-1:0] w3 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*3 +: WEIGHT_BITS]};
+            wire [GROUP_BITS-1:0] w4 = { {(GROUP_BITS - WEIGHT_BITS){1'b0}}, five[WEIGHT_BITS*4 +: WEIGHT_BITS]};
+            reg [GROUP_BITS-1:0] sum_012_1;
+            reg [GROUP_BITS-1:0] sum_34_1;
+            reg [GROUP_BITS-1:0] moment_12_1;
+            reg [GROUP_BITS-1:0] moment_34_1;
+            reg [GROUP_BITS-1:0] sum_2;
+            reg [GROUP_BITS-1:0] moment_2;
+
+            always @(posedge clock) begin
+                sum_012_1 <= w0 + w1 + w2;
+                sum_34_1 <= w3 + w4;
+                moment_12_1 <= w1 + (w2 << 1);
+                moment_34_1 <= w3 + (w3 << 1) + (w4 << 2);
+                sum_2 <= sum_012_1 + sum_34_1;
+                moment_2 <= moment_12_1 + moment_34_1;
+            end
+
+            assign sums_2[GROUP_BITS*index +: GROUP_BITS] = sum_2;
+            assign moments_2[GROUP_BITS*index +: GROUP_BITS] = moment_2;
+        end
+        if (FIVES == 1) begin : gen_five
+            assign group_sum = sums_2;
+            assign group_moment = moments_2;
+        end else begin : gen_row
+            // The second five begin 5 points after the first, the third 10
+            wire [GROUP_BITS-1:0] second = sums_2[GROUP_BITS*1 +: GROUP_BITS];
+            wire [GROUP_BITS-1:0] third = sums_2[GROUP_BITS*2 +: GROUP_BITS];
+            wire [GROUP_BITS-1:0] once = second + (third << 1);
+            reg [GROUP_BITS-1:0] sum_3;
+            reg [GROUP_BITS-1:0] moment_3;
+
+            always @(posedge clock) begin
+                sum_3 <= sums_2[0 +: GROUP_BITS] + second + third;
+                moment_3 <= moments_2[0 +: GROUP_BITS] + moments_2[GROUP_BITS*1 +: GROUP_BITS]
+                    + moments_2[GROUP_BITS*2 +: GROUP_BITS] + once + (once << 2);
+            end
+
+            assign group_sum = sum_3;
+            assign group_moment = moment_3;
+        end
+    endgenerate
+
+    sptfra_mac of_first (
         .clock       (clock),
         .reset       (reset),
-        .valid       (valid),
+        .valid       (group_valid),
         .first       (first),
         .coefficient (column),
-        .data        (weight),
-        .accumulator (moment_x)
+        .data        (group_sum[26:0]),
+        .accumulator (moment_of_first)
     );
 
-    sptfra_mac moments_y (
+    sptfra_mac of_row (
         .clock       (clock),
         .reset       (reset),
-        .valid       (valid),
+        .valid       (group_valid),
         .first       (first),
         .coefficient (row),
-        .data        (weight),
+        .data        (group_sum[26:0]),
         .accumulator (moment_y)
     );
 
     always @(posedge clock) begin
-        if (valid) begin
+        valids <= {valids[STAGES-1:1], valid};
+        if (group_valid) begin
             first <= 1'b0;
-            weight_sum <= weight_sum + {21'd0, weight};
-            if (row_end) begin
-                back <= !back;
-                row <= row + 18'sd1;
-            end else begin
-                column <= back ? column - 18'sd1 : column + 18'sd1;
-            end
+            weight_sum <= weight_sum + { {(48 - GROUP_BITS){1'b0}}, group_sum};
+            moment_within <= moment_within + { {(48 - GROUP_BITS){1'b0}}, group_moment};
+            column <= (column == GREATEST_FIRST) ? LEAST : column + STEP;
+            row <= (column == GREATEST_FIRST) ? row + 18'sd1 : row;
         end
         if (start) begin
             first <= 1'b1;
             weight_sum <= 48'd0;
-            column <= -BORDER;
-            row <= -BORDER;
-            back <= 1'b0;
+            moment_within <= 48'd0;
+            column <= LEAST;
+            row <= LEAST;
+        end
+        if (reset) begin
+            valids <= {STAGES{1'b0}};
         end
     end
 
-    // ---- Centroid: mu = (moment / sum of weights) / 8
-    localparam integer RATIO_BITS = WHOLE_BITS + QUOTIENT_FRACTION;
-    reg divide_start;
-    reg [47:0] magnitude_x;
-    reg [47:0] magnitude_y;
+    // ---- Centroid: mu = 1 / 4 of the moments over the sum of the weights
+    localparam integer WHOLE_BITS = 3; // of that quotient, up to REACH
+    localparam integer RATIO_BITS = WHOLE_BITS + 14;
+    localparam integer DIVIDE_STAGES = 5 + STAGES; // from the last weights to the division
+    reg [DIVIDE_STAGES:1] drains;
+    reg signed [47:0] moment_x_6;
+    reg signed [47:0] moment_y_6;
+    reg [47:0] magnitude_x_7;
+    reg [47:0] magnitude_y_7;
     wire divide_done;
     wire [RATIO_BITS-1:0] ratio_x;
     wire [RATIO_BITS-1:0] ratio_y;
@@ -92,9 +180,9 @@ module sptfra_grid_centroid (
     ) ratio (
         .clock       (clock),
         .reset       (reset),
-        .start       (divide_start),
-        .numerator_x (magnitude_x),
-        .numerator_y (magnitude_y),
+        .start       (drains[DIVIDE_STAGES]),
+        .numerator_x (magnitude_x_7),
+        .numerator_y (magnitude_y_7),
         .denominator (weight_sum),
         .done        (divide_done),
         .quotient_x  (ratio_x),
@@ -102,19 +190,23 @@ module sptfra_grid_centroid (
     );
 
     always @(posedge clock) begin
-        magnitude_x <= moment_x[47] ? -moment_x : moment_x;
-        magnitude_y <= moment_y[47] ? -moment_y : moment_y;
-        divide_start <= divide;
+        drains <= {drains[DIVIDE_STAGES-1:1], last};
+        moment_x_6 <= moment_of_first + moment_within;
+        moment_y_6 <= moment_y;
+        magnitude_x_7 <= moment_x_6[47] ? -moment_x_6 : moment_x_6;
+        magnitude_y_7 <= moment_y_6[47] ? -moment_y_6 : moment_y_6;
         done <= divide_done;
         if (divide_done) begin
-            mu_x <= moment_x[47] ? -{1'b0, ratio_x} : {1'b0, ratio_x};
-            mu_y <= moment_y[47] ? -{1'b0, ratio_y} : {1'b0, ratio_y};
+            mu_x <= moment_x_6[47] ? -{1'b0, ratio_x} : {1'b0, ratio_x};
+            mu_y <= moment_y_6[47] ? -{1'b0, ratio_y} : {1'b0, ratio_y};
         end
         if (reset) begin
-            divide_start <= 1'b0;
+            drains <= {DIVIDE_STAGES{1'b0}};
             done <= 1'b0;
         end
     end
+
+    wire _unused = &{1'b0, group_sum};
 
 endmodule
 

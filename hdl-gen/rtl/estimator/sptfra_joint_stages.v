@@ -12,9 +12,7 @@
 
 module sptfra_joint_stages #(
     // 1: there is a look; 0: none
-    parameter integer LOOK = 1,
-    // 1: the search hands u_q on to the look as it reads them; 0: the look has the memory that is filled, too
-    parameter integer HANDED_ON = 1
+    parameter integer LOOK = 1
 ) (
     input  wire clock,
     input  wire reset,
@@ -34,12 +32,11 @@ module sptfra_joint_stages #(
     output wire look_start,
     output wire correction_start,
     output wire answer_valid,
-    // One cycle: no stage needs the u_q of its frame any more
+    // One cycle: the search needs the u_q of its frame no more
     output wire u_released,
-    // Of u_q: that which is to come into the memories, that which is searched, looked at
+    // Of u_q: that which is to come into the memory, that which is searched
     output reg  fill_bank,
-    output reg  search_bank,
-    output reg  look_bank
+    output reg  search_bank
 );
 
     generate
@@ -64,7 +61,7 @@ module sptfra_joint_stages #(
     assign look_start = centroid_there && ((LOOK != 0) ? !looking && !showing : !correcting);
     assign correction_start = (LOOK != 0) ? (look_done || centre_waits) && !correcting : look_start;
     assign answer_valid = correction_done || answer_waits;
-    assign u_released = ((LOOK == 0) || (HANDED_ON != 0)) ? look_start : correction_start;
+    assign u_released = look_start;
 
     always @(posedge clock) begin
         search_start <= sums_complete && contact_valid && u_there && search_free;
@@ -94,7 +91,6 @@ module sptfra_joint_stages #(
             looking <= 1'b0;
             showing <= (LOOK != 0);
             centre_waits <= 1'b0;
-            look_bank <= !look_bank;
             correcting <= 1'b1;
         end
         if (correction_done) begin
@@ -109,7 +105,6 @@ module sptfra_joint_stages #(
             u_waiting <= 2'd0;
             fill_bank <= 1'b0;
             search_bank <= 1'b0;
-            look_bank <= 1'b0;
             searching <= 1'b0;
             centroid_waits <= 1'b0;
             looking <= 1'b0;

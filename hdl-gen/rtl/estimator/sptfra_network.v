@@ -2,7 +2,7 @@
 // Part of the SpTFRA hardware generator.
 //
 // The network of the correction: one layer of hinges, then two sums, as a mean over its input's four mirror images;
-// with DOUBT a third one, the logarithm of the error that is left.
+// with WITH_ERROR a third one, the logarithm of the error that is left.
 //
 // The input stands in the basis of the parity classes, and so do the weights: one pass gives four classes' sums of
 // AT_ONCE hidden units, which a butterfly turns into the units of the four images, one after the other. PASSES passes
@@ -23,11 +23,11 @@ module sptfra_network #(
     parameter integer UNIT_SHIFT = 12,
     // Bits dropped from the sum of the output; negative: added
     parameter integer CORRECTION_SHIFT = 12,
-    // 1: with the error that is left; bits dropped from its sum, negative: added, and what is added to it then, 12
+    // 1: the network estimates the remaining error; bits dropped from its sum, negative: added; what is added to it, 12
     // fraction bits
-    parameter integer DOUBT = 0,
-    parameter integer DOUBT_SHIFT = 12,
-    parameter signed [17:0] DOUBT_BASE = 18'sd0,
+    parameter integer WITH_ERROR = 0,
+    parameter integer ERROR_SHIFT = 12,
+    parameter signed [17:0] ERROR_BASE = 18'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
@@ -218,7 +218,7 @@ module sptfra_network #(
     // ---- Output: odd in x, and odd in y
     reg [READOUT_WIDTH-1:0] readout_address;
     reg first_5;
-    localparam integer READOUT_BITS = (DOUBT != 0) ? 54 : 36;
+    localparam integer READOUT_BITS = (WITH_ERROR != 0) ? 54 : 36;
     wire [READOUT_BITS-1:0] readout_5;
     wire signed [47:0] sum_x;
     wire signed [47:0] sum_y;
@@ -260,8 +260,8 @@ module sptfra_network #(
 
     // ---- The error that is left: of four that are not negative half of the sum fits
     generate
-        if (DOUBT != 0) begin : gen_doubt
-            sptfra_doubt #(.SHIFT (DOUBT_SHIFT), .BASE (DOUBT_BASE)) doubt (
+        if (WITH_ERROR != 0) begin : gen_error
+            sptfra_error_log #(.SHIFT (ERROR_SHIFT), .BASE (ERROR_BASE)) of_units (
                 .clock     (clock),
                 .reset     (reset),
                 .valid     (unit_there[5]),
@@ -270,9 +270,9 @@ module sptfra_network #(
                 .unit      (mean_5[1 +: 27]),
                 .error_log (error_log)
             );
-        end else begin : gen_certain
+        end else begin : gen_no_error
             assign error_log = 18'sd0;
-            wire _unused_doubt = &{1'b0, DOUBT_SHIFT != 0, DOUBT_BASE};
+            wire _unused_error = &{1'b0, ERROR_SHIFT != 0, ERROR_BASE};
         end
     endgenerate
 

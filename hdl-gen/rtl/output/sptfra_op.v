@@ -17,10 +17,10 @@ module sptfra_op #(
     parameter integer FIELD = 1,
     // 1: the answer's other component is other + slope * free; 0: it is as it comes
     parameter integer DEPENDENT = 1,
-    // 1: the answer has an error, and above DOUBT_LIMIT, a logarithm of base 2 with 12 fraction bits, it is doubtful
-    parameter integer DOUBT = 0,
-    parameter signed [17:0] DOUBT_LIMIT = 18'sd0,
-    // 1: the layer is too thin for the taxels, and every answer doubtful
+    // 1: the answer has an error; above ERROR_LIMIT, a logarithm of base 2 with 12 fraction bits, it has low confidence
+    parameter integer WITH_ERROR = 0,
+    parameter signed [17:0] ERROR_LIMIT = 18'sd0,
+    // 1: the layer is too thin for the taxels, and every answer has low confidence
     parameter integer THIN = 0,
     // A step of the frame sums G is 2^SUM_LSB N, of those of the torques 2^TORQUE_LSB N m, of a taxel's force
     // 2^FIELD_LSB N
@@ -215,7 +215,7 @@ module sptfra_op #(
     reg [17:0] size_y;
     reg [18:0] size;
     reg pushed;
-    reg doubtful;
+    reg low_confidence;
     // Of the frame whose output has just begun
     reg several;
     reg replaces;
@@ -227,7 +227,7 @@ module sptfra_op #(
         size_y <= mu_y[17] ? -mu_y : mu_y;
         size <= {1'b0, size_x} + {1'b0, size_y};
         pushed <= (size >= {1'b0, PULLING});
-        doubtful <= (THIN != 0) || ((DOUBT != 0) && (summary_error_log > DOUBT_LIMIT));
+        low_confidence <= (THIN != 0) || ((WITH_ERROR != 0) && (summary_error_log > ERROR_LIMIT));
         several <= (contacts > 8'd1);
         replaces <= (replaced != 4'd0);
         follows_dropped <= dropped;
@@ -241,7 +241,7 @@ module sptfra_op #(
         answered && summary_flags[4],
         answered && replaces,
         answered && several,
-        answered && doubtful,
+        answered && low_confidence,
         bad_length,
         not_finite,
         answered && (summary_flags[2] || summary_saturated),
@@ -312,7 +312,7 @@ module sptfra_op #(
         .friction_quotient (friction_quotient),
         .friction_exponent (friction_exponent),
         .angle             (angle),
-        .error_value       ((DOUBT != 0) ? error_value : 64'd0),
+        .error_value       ((WITH_ERROR != 0) ? error_value : 64'd0),
         .error_exponent    (error_exponent),
         .mu_x              (mu_x),
         .mu_y              (mu_y),

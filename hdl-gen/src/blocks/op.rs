@@ -18,8 +18,8 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("SUM_LSB", plan.formats.g.lsb.into())
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into());
-    let parameters = match plan.thresholds.doubt {
-        Some(limit) => parameters.flag("DOUBT", true).wide("DOUBT_LIMIT", 18, limit),
+    let parameters = match plan.thresholds.error {
+        Some(limit) => parameters.flag("WITH_ERROR", true).wide("ERROR_LIMIT", 18, limit),
         None => parameters,
     };
     let parameters = if plan.thresholds.thin { parameters.flag("THIN", true) } else { parameters };

@@ -119,7 +119,7 @@ mod tests {
         QUAD_TO_READY, TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, stress_to_ready,
         taxels_to_write,
     };
-    use golden::estimators::{DOUBT_FRACTION, DOUBT_RANGE};
+    use golden::estimators::{ERROR_FRACTION, ERROR_RANGE};
 
     use crate::cores::{Multiplier, cordic};
     use crate::emit::rtl::library;
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 41] = [
+        let expected: [(&str, &str, i64); 31] = [
             // A cycle more counts the frame.
             ("sptfra_fold", "LAST_TO_WRITTEN", stress_to_ready(true) as i64 - 1),
             ("sptfra_fold_frame", "TURN_TO_WRITTEN", QUAD_TO_READY as i64 - 1),
@@ -167,17 +167,7 @@ mod tests {
             ("sptfra_op", "PULLING", PULLING),
             ("sptfra_output_word", "FRICTION_EXPONENT", FRICTION_FRACTION.into()), // a negative one
             ("sptfra_output_word", "ANGLE_EXPONENT", cordic::ANGLE_FRACTION_BITS.into()),
-            ("sptfra_plane", "LAST", joint::SIDE as i64 - 1),
-            ("sptfra_plane", "BLOCK_ELEMENTS", joint::BLOCK_ELEMENTS as i64),
-            ("sptfra_plane_cell", "POINT_BITS", joint::POINT_BITS.into()),
-            ("sptfra_level_set", "REACH", joint::SIDE as i64 / 2),
-            ("sptfra_level_set", "DEPTH_BITS", joint::DEPTH_BITS.into()),
-            ("sptfra_level_set", "WEIGHT_DROP", joint::WEIGHT_DROP.into()),
-            ("sptfra_grid_centroid", "BORDER", joint::SIDE as i64 / 2),
-            ("sptfra_points_taxel", "FRACTION", joint::points::FRACTION.into()),
-            ("sptfra_points_taxel", "U_BITS", joint::points::U_BITS.into()),
-            ("sptfra_points", "VALUE_BITS", joint::points::VALUE_BITS.into()),
-            ("sptfra_points_level", "WEIGHT_DROP", joint::WEIGHT_DROP.into()),
+            ("sptfra_grid_level", "WEIGHT_BITS", joint::search::WEIGHT_BITS.into()),
             ("sptfra_friction", "LINEAR_FRACTION", joint::LINEAR_FRACTION.into()),
             ("sptfra_friction", "CUBIC_FRACTION", joint::CUBIC_FRACTION.into()),
             ("sptfra_friction", "FACTOR_FRACTION", joint::FACTOR_FRACTION.into()),
@@ -187,8 +177,8 @@ mod tests {
             ("sptfra_network", "UNIT_BITS", joint::UNIT_BITS.into()),
             ("sptfra_network", "LIMIT", joint::CORRECTION_LIMIT),
             // A negative one, and the last step below the other.
-            ("sptfra_doubt", "LEAST", -i64::from(DOUBT_RANGE[0]) << DOUBT_FRACTION),
-            ("sptfra_doubt", "MOST", (i64::from(DOUBT_RANGE[1]) << DOUBT_FRACTION) - 1),
+            ("sptfra_error_log", "LEAST", -i64::from(ERROR_RANGE[0]) << ERROR_FRACTION),
+            ("sptfra_error_log", "MOST", (i64::from(ERROR_RANGE[1]) << ERROR_FRACTION) - 1),
         ];
         for (module, name, value) in expected {
             assert_eq!(constant(module, name), value, "{module}: {name}");

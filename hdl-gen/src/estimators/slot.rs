@@ -2,7 +2,7 @@
 
 use golden::design::Design;
 #[cfg(doc)]
-use golden::estimators::DOUBT_FRACTION;
+use golden::estimators::ERROR_FRACTION;
 use golden::products::ByPq;
 use golden::sensor::Sensor;
 use serde_json::Value;
@@ -75,8 +75,8 @@ pub struct Found {
     pub at_bound: bool,
     /// An intermediate value was clipped.
     pub saturated: bool,
-    /// Logarithm of base 2 of the error of `(F_x, F_y)` over `|F_z|`, [`DOUBT_FRACTION`] fraction bits, for estimators
-    /// that tell it.
+    /// Logarithm of base 2 of the error of `(F_x, F_y)` over `|F_z|`, [`ERROR_FRACTION`] fraction bits, for estimators
+    /// that have one.
     pub error_log: i64,
 }
 
@@ -125,7 +125,7 @@ pub struct Metadata {
 /// An estimator as the rest of the generator knows it. Latencies are counts of registers in the emitted modules.
 pub trait Slot {
     /// The cells of its search.
-    fn cells(&self) -> Cells;
+    fn cells(&self, sensor: &Sensor) -> Cells;
 
     /// Cycles from the last stress of a frame to what `CeAn` knows of it.
     fn contact_latency(&self) -> u64;
@@ -134,11 +134,9 @@ pub trait Slot {
     /// the search waits for all that it needs at once.
     fn line_latency(&self) -> Option<u64>;
 
-    /// The stages of the search, in the data's order. A stage holds what it found until the next one takes it.
+    /// The stages of the search, in the data's order. A stage holds what it found until the next one takes it. When a
+    /// frame leaves the first one, the place of its `u_q` is free, of which there are two.
     fn stages(&self, sensor: &Sensor) -> Vec<Stage>;
-
-    /// The stage of which a frame, when it leaves, frees the place of its `u_q`, of which there are two.
-    fn releases(&self) -> usize;
 
     /// `CeAn`.
     fn contact_block(&self) -> BlockCost;

@@ -302,13 +302,13 @@ fn scalars(
     put(words::MU, &[summary.friction_quotient as i64], summary.friction_exponent);
     put(words::MU + 1, &[i64::from(summary.angle)], angle_exponent);
     put(words::MU_XY, &summary.friction, -friction);
-    let mut doubtful = plan.thresholds.thin;
-    if let Some(limit) = plan.thresholds.doubt {
+    let mut is_uncertain = plan.thresholds.thin;
+    if let Some(limit) = plan.thresholds.error {
         let (error, exponent) = summary.standard_error(found.error_log);
         put(words::STANDARD_ERROR, &[error], plan.formats.g.lsb - friction + exponent);
-        doubtful |= found.error_log > limit;
+        is_uncertain |= found.error_log > limit;
     }
-    if doubtful {
+    if is_uncertain {
         answer[words::STATUS] |= DOUBTFUL;
     }
     (answer, summary)

@@ -2,7 +2,7 @@
 
 use crate::cores::{cordic, divider};
 use crate::plan::format::FRICTION_FRACTION;
-use golden::estimators::DOUBT_FRACTION;
+use golden::estimators::ERROR_FRACTION;
 use golden::products::ByPq;
 
 /// Fraction bits of the CORDIC's inverse gain.
@@ -62,9 +62,9 @@ impl Summary {
         let normal = self.forces[2].unsigned_abs();
         let normal_bits = bits(normal);
         let unit = if normal == 0 { 0 } else { (u128::from(normal) << (64 - normal_bits)) >> 32 } as i64;
-        let factor = (1 << DOUBT_FRACTION) + (log & ((1 << DOUBT_FRACTION) - 1));
-        let error = (unit >> 6) * (factor << (FRICTION_FRACTION - DOUBT_FRACTION));
-        (error, normal_bits as i32 - 42 + (log >> DOUBT_FRACTION) as i32)
+        let factor = (1 << ERROR_FRACTION) + (log & ((1 << ERROR_FRACTION) - 1));
+        let error = (unit >> 6) * (factor << (FRICTION_FRACTION - ERROR_FRACTION));
+        (error, normal_bits as i32 - 42 + (log >> ERROR_FRACTION) as i32)
     }
 
     /// The friction coefficient with [`FRICTION_FRACTION`] fraction bits, rounded down; one far too large is all ones.

@@ -1,7 +1,7 @@
 //! From a checked design to its plan on so many lanes.
 
 use golden::design::{Design, Outputs, PlanKind, Slip};
-use golden::estimators::DOUBT_FRACTION;
+use golden::estimators::ERROR_FRACTION;
 use golden::matrices::Matrices;
 
 use super::calibration::CalibrationPlan;
@@ -157,6 +157,7 @@ fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> 
         // Never 0: that friction of 0 slips is no limit's meaning.
         [limit, limit - hysteresis].map(|friction| ((friction * pow2(FRICTION_FRACTION as i32)).round() as i64).max(1))
     });
-    let doubt = design.algorithm.constants().doubt_log().map(|log| (log * pow2(DOUBT_FRACTION as i32)).round() as i64);
-    Ok(Thresholds { taxel, contact, slip, doubt, thin: design.thin_layer().is_some() })
+    let error =
+        design.algorithm.constants().max_error_log().map(|log| (log * pow2(ERROR_FRACTION as i32)).round() as i64);
+    Ok(Thresholds { taxel, contact, slip, error, thin: design.thin_layer().is_some() })
 }

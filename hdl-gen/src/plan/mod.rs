@@ -34,7 +34,7 @@ pub mod words;
 
 use golden::design::{Design, InputRange, Outputs, PlanKind};
 #[cfg(doc)]
-use golden::estimators::DOUBT_FRACTION;
+use golden::estimators::ERROR_FRACTION;
 use golden::matrices::MatrixName;
 use golden::parity::{CLASSES, Quads};
 use serde::Serialize;
@@ -66,11 +66,11 @@ pub struct Thresholds {
     /// [`format::FRICTION_FRACTION`] fraction bits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slip: Option<[i64; 2]>,
-    /// A frame whose error over `|F_z|` is larger is doubtful: a logarithm of base 2 with [`DOUBT_FRACTION`] fraction bits,
-    /// where the estimator tells its error.
+    /// A frame whose error over `|F_z|` is larger has low confidence: a logarithm of base 2 with [`ERROR_FRACTION`] fraction bits,
+    /// where the estimator has one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub doubt: Option<i64>,
-    /// Whether every answer is doubtful, as the layer is too thin for the taxels.
+    pub error: Option<i64>,
+    /// Whether every answer has low confidence, as the layer is too thin for the taxels.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub thin: bool,
 }

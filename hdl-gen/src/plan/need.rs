@@ -1,7 +1,6 @@
 //! From a design to what it needs: its lanes, or with `target_us` the fewest that meet it, or what else would.
 
 use golden::design::{Design, Estimator, MAX_LANES, Optimise, Outputs, STREAM_BITS};
-use golden::estimators::joint::{Grid, JointConstants};
 use golden::parity::CLASSES;
 
 use super::build::{Work, check_widths};
@@ -83,7 +82,7 @@ fn remedies(design: &Design, target_us: f64) -> String {
     let same_streams = first
         .filter(|first| first.stream_bits.is_some())
         .and_then(|_| changes.find(|change| change.stream_bits.is_none() && meets(change)));
-    let named = |change: Change| change.keys(design) + ", ";
+    let named = |change: Change| change.keys() + ", ";
     [first, same_streams].into_iter().flatten().map(named).collect()
 }
 
@@ -93,28 +92,23 @@ struct Change {
     outputs: Option<Outputs>,
     /// An estimator that needs fewer cycles, and the key that names it.
     quicker: Option<(Estimator, &'static str)>,
-    grid: Option<Grid>,
     stream_bits: Option<u32>,
 }
 
-/// What can be changed of a design, the smallest change first: wider streams cost pins, a coarser grid and the line
-/// exactness, resultants alone the forces of the taxels.
+/// What can be changed of a design, the smallest change first: wider streams cost pins, the line exactness, resultants alone the forces of the taxels.
 fn changes(design: &Design) -> Vec<Change> {
     let algorithm = &design.algorithm;
-    // The walk that is made smaller belongs to the fine grid.
-    let walks = design.hardware.optimise == Optimise::Area;
-    let is_fine = algorithm.estimator == Estimator::Joint && algorithm.joint.grid == Grid::FINE;
-    let grid = (is_fine && !walks).then_some(Grid::COARSE);
-    let quicker = estimators::quicker(algorithm.estimator).filter(|_| !walks);
+    // An area that is kept small belongs to the estimator.
+    let quicker = estimators::quicker(algorithm.estimator).filter(|_| design.hardware.optimise != Optimise::Area);
     let outputs = (algorithm.outputs == Outputs::Field).then_some(Outputs::Resultants);
     let outputs = [Some(None), outputs.map(Some)].into_iter().flatten();
-    let ways = [Some((None, None)), grid.map(|grid| (Some(grid), None)), quicker.map(|quicker| (None, Some(quicker)))];
+    let ways = [Some(None), quicker.map(Some)];
     let wider = STREAM_BITS.into_iter().filter(|&bits| bits > design.hardware.stream_bits).map(Some);
     let streams: Vec<Option<u32>> = [None].into_iter().chain(wider).collect();
     let mut all = Vec::new();
     for outputs in outputs {
-        for (grid, quicker) in ways.into_iter().flatten() {
-            all.extend(streams.iter().map(|&stream_bits| Change { outputs, quicker, grid, stream_bits }));
+        for quicker in ways.into_iter().flatten() {
+            all.extend(streams.iter().map(|&stream_bits| Change { outputs, quicker, stream_bits }));
         }
     }
     // The first is the design as it is.
@@ -122,7 +116,7 @@ fn changes(design: &Design) -> Vec<Change> {
 }
 
 impl Change {
-    /// The design with it. A network for another grid stands for the one that would be trained.
+    /// The design with it.
     fn apply(&self, design: &Design) -> Design {
         let mut changed = design.clone();
         changed.hardware.target_us = None;
@@ -132,9 +126,6 @@ impl Change {
         if let Some((estimator, _)) = self.quicker {
             changed.algorithm.estimator = estimator;
         }
-        if let Some(grid) = self.grid {
-            changed.algorithm.joint.grid = grid;
-        }
         if let Some(bits) = self.stream_bits {
             changed.hardware.stream_bits = bits;
         }
@@ -142,28 +133,14 @@ impl Change {
     }
 
     /// As the design file states it: `key = value with key = value and key = value`.
-    fn keys(&self, design: &Design) -> String {
-        let grid = self.grid.map(|grid| format!("grid = {}{}", grid.side(), anew(&design.algorithm.joint)));
+    fn keys(&self) -> String {
         let quicker = self.quicker.map(|(_, key)| key.to_owned());
         let outputs = self.outputs.map(|outputs| format!("outputs = \"{outputs}\""));
         let streams = self.stream_bits.map(|bits| format!("stream_bits = {bits}"));
-        let keys: Vec<String> = [grid, quicker, outputs, streams].into_iter().flatten().collect();
+        let keys: Vec<String> = [quicker, outputs, streams].into_iter().flatten().collect();
         match keys.as_slice() {
             [first, others @ ..] if !others.is_empty() => format!("{first} with {}", others.join(" and ")),
             _ => keys.concat(),
         }
     }
-}
-
-/// What has to be done besides where constants belong to the grid that they were fitted on: `fitted_to` refuses another.
-fn anew(constants: &JointConstants) -> String {
-    let units = constants.correction.as_ref().map_or(0, |correction| {
-        // A quarter more units tell the doubt.
-        let units = correction.hidden.len();
-        if correction.doubt.is_some() { units * 4 / 5 } else { units }
-    });
-    if units == 0 && constants.fitted_to.is_none() {
-        return String::new();
-    }
-    format!(" (which `sptfra calibrate --hidden {units}` fits the constants to)")
 }

@@ -1,8 +1,9 @@
 //! The joint estimator's plan: formats that no frame can leave, ROMs that hold what the plan says.
 
-use golden::design::{Correction, Design, Doubt, Estimator};
+use golden::design::{Correction, Design, ErrorOutput, Estimator};
 use hdl_gen::emit::emit;
-use hdl_gen::estimators::joint::{CORRECTION_LIMIT, INPUT_BITS, NetworkPlan, POINT_BITS, STRESS_BITS, UNIT_BITS};
+use hdl_gen::estimators::joint::search::{FRACTION, GRID, MARGIN_BITS, U_BITS, VALUE_BITS, WEIGHT_DROP};
+use hdl_gen::estimators::joint::{CORRECTION_LIMIT, INPUT_BITS, NetworkPlan, STRESS_BITS, UNIT_BITS};
 use hdl_gen::model::{Model, SATURATED};
 use hdl_gen::plan::Plan;
 
@@ -23,7 +24,7 @@ fn with_weights(half_window: [usize; 2], units: usize, hidden: i32, output: i32,
         half_window,
         hidden: (0..units).map(row).collect(),
         output: [readout(0), readout(1)],
-        doubt: alternating.then(|| Doubt { base: -9000, output: readout(0) }),
+        error: alternating.then(|| ErrorOutput { base: -9000, output: readout(0) }),
     });
     Plan::new(&design).unwrap()
 }
@@ -61,8 +62,8 @@ fn no_sum_of_the_network_can_overflow() {
             }
             let total: i64 = network.readout.iter().map(|weights| i64::from(weights[0].abs())).sum();
             assert!(total << (UNIT_BITS) < 1 << 47, "the output fits the accumulator");
-            if let Some(doubt) = &network.doubt {
-                let total: i64 = doubt.readout.iter().map(|weight| i64::from(weight.abs())).sum();
+            if let Some(error) = &network.error {
+                let total: i64 = error.readout.iter().map(|weight| i64::from(weight.abs())).sum();
                 assert!(total << (UNIT_BITS) < 1 << 47, "the sum of the error fits the accumulator");
             }
             // The worst look: every value of the window at its limit, with the signs of the weights.
@@ -75,21 +76,31 @@ fn no_sum_of_the_network_can_overflow() {
     }
 }
 
+/// A normalised `u` at its limits, at the corners of the grid: terms fit `FRACTION + 4` bits with their sign, and tensions
+/// as many bits as a value has.
 #[test]
-fn values_on_the_grid_have_room_for_every_frame() {
-    for (size, data_bits) in [([2, 2], 27), ([10, 10], 27), ([10, 10], 16), ([64, 9], 27)] {
-        let more = format!("[algorithm]\nestimator = \"joint\"\n[hardware]\ndata_bits = {data_bits}");
-        let plan = plan(&design_text("pad", size, [4.0, 3.0], 2.0, &more));
-        let (joint, formats) = (plan.estimator.joint().unwrap(), &plan.formats);
-        // 8 u0 and, at the farthest point and one step beyond, 10 u1 and 11 u2; and the dead zone.
-        let point = 29 * formats.u.bound + joint.share(formats.stress.bound);
-        assert!(point < 1 << (POINT_BITS - 1), "{size:?}");
-        let most = plan.taxels() as i64 * point;
-        assert!(most < 1 << joint.value_bits && joint.share(formats.stress.bound * plan.taxels() as i64) < most);
-        // A dead zone and a level of the shares that they are meant to be.
-        let share = joint.share(formats.stress.bound) as f64 * formats.u.step() / 8.0;
-        assert!((share / (formats.stress.bound as f64 * formats.stress.step()) * 256.0 - 1.0).abs() < 0.01, "{size:?}");
+fn terms_of_the_grid_search_have_room_for_every_taxel() {
+    let largest = (1_i64 << (U_BITS - 1)) - 1;
+    let limits = [-largest - 1, largest];
+    let corners = [-i64::from(GRID.reach), i64::from(GRID.reach)];
+    let mut sums = Vec::new();
+    for (u0, u1, u2) in
+        limits.iter().flat_map(|u0| limits.map(|u1| (u0, u1))).flat_map(|(u0, u1)| limits.map(|u2| (u0, u1, u2)))
+    {
+        for (x, y) in corners.iter().flat_map(|x| corners.map(|y| (x, y))) {
+            // The dead zone is from nothing to a share of all.
+            for dead_zone in [0, 1 << (FRACTION - 8)] {
+                sums.push(u0 - dead_zone + ((x * u1) >> GRID.shift) + ((y * u2) >> GRID.shift));
+            }
+        }
     }
+    let most = 1 << (FRACTION + 3);
+    assert!(sums.iter().all(|sum| (-most..most).contains(sum)));
+    assert!(sums.iter().all(|sum| *sum < 1 << VALUE_BITS));
+    // Depths of the level, squared, are weights of which a row of points fits 26 bits.
+    let depth = (1_i64 << (FRACTION - 8)) + 1;
+    assert!(depth < 1 << MARGIN_BITS);
+    assert!(GRID.side() as i64 * ((depth * depth) >> WEIGHT_DROP) < 1 << 26);
 }
 
 /// The gain is in the matrices, so forces have it and friction does not.
@@ -156,8 +167,8 @@ fn a_square_is_symmetric_about_its_diagonal() {
     };
     let hidden: Vec<Vec<i32>> = (1..4).flat_map(|seed| [unit(seed), transposed(&unit(seed))]).collect();
     let output = [vec![300, -500, 90, 20, -700, 40], vec![-500, 300, 20, 90, 40, -700]];
-    let doubt = Some(Doubt { base: -16_000, output: vec![150, 150, -80, -80, 60, 60] });
-    design.algorithm.joint.correction = Some(Correction { half_window: [HALF; 2], hidden, output, doubt });
+    let error = Some(ErrorOutput { base: -16_000, output: vec![150, 150, -80, -80, 60, 60] });
+    design.algorithm.joint.correction = Some(Correction { half_window: [HALF; 2], hidden, output, error });
     let plan = Plan::new(&design).unwrap();
     for shift in 0..5 {
         let frame: Vec<f32> = (0..100)
@@ -207,29 +218,29 @@ fn the_roms_hold_the_weights() {
     for (index, line) in readout.iter().enumerate() {
         let wanted = network.readout.get(index).copied().unwrap_or_default();
         assert_eq!([weight(line, 0), weight(line, 1)], wanted);
-        let doubt = network.doubt.as_ref().and_then(|doubt| doubt.readout.get(index)).copied();
-        assert_eq!(weight(line, 2), doubt.unwrap_or_default());
+        let of_error = network.error.as_ref().and_then(|error| error.readout.get(index)).copied();
+        assert_eq!(weight(line, 2), of_error.unwrap_or_default());
     }
-    assert!(files.contains_key("rtl/sptfra_plane.v") && !files.contains_key("rtl/sptfra_line.v"));
+    assert!(files.contains_key("rtl/sptfra_grid_search.v") && !files.contains_key("rtl/sptfra_line.v"));
     let metadata: serde_json::Value = serde_json::from_slice(&files["metadata.json"]).unwrap();
     assert_eq!(metadata["joint"]["network"]["length"], network.length);
 }
 
-/// Whether points or taxels have the cells, and why: with both counts.
+/// How many points of the grid are evaluated at a time.
 #[test]
-fn inspect_says_why_points_or_taxels_have_the_cells() {
-    let said = |columns: usize, rows: usize, keys: &str| {
+fn inspect_says_how_many_points_are_evaluated_at_a_time() {
+    let said = |keys: &str| {
         let more = format!("[algorithm]\nestimator = \"joint\"\n{keys}");
-        let plan = plan(&design_text("pad", [columns, rows], [4.0, 4.0], 3.0, &more));
+        let plan = plan(&design_text("pad", [10, 10], [4.0, 4.0], 3.0, &more));
         let report = plan.estimator.slot().report(&plan.design);
         assert!(report.lines().all(|line| line.chars().count() <= 110), "{report}");
-        report.lines().find_map(|line| line.strip_prefix("  grid ")).expect("a grid").trim().to_owned()
+        report
+            .lines()
+            .find_map(|line| line.strip_prefix("  search       13 x 13 points, "))
+            .expect("a search")
+            .to_owned()
     };
-    let [fine, coarse] =
-        ["21 x 21 points: 441, more than 256, so no cell each", "15 x 15 points: 225, at most 256, so a cell each"];
-    assert_eq!(said(10, 10, ""), format!("{fine}: walked over in 28 cells of 4 taxels"));
-    assert_eq!(said(64, 27, ""), format!("{fine}: walked over in 28 cells of 64 taxels"));
-    assert_eq!(said(64, 27, "grid = 15"), format!("{coarse}: a taxel a cycle"));
-    let many = said(10, 10, "grid = 15\n[hardware]\nlanes = 100");
-    assert_eq!(many, format!("{coarse}: 2 taxels a cycle with more than 64 lanes"));
+    assert_eq!(said(""), "all at a time, a taxel a cycle");
+    assert_eq!(said("[hardware]\nlanes = 100"), "all at a time, 2 taxels a cycle with more than 64 lanes");
+    assert_eq!(said("[hardware]\noptimise = \"area\""), "13 at a time, as optimise is \"area\"");
 }

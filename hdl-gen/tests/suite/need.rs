@@ -1,7 +1,5 @@
 //! `target_us`: the fewest lanes that meet the need, or what would.
 
-use std::path::Path;
-
 use golden::design::Design;
 use hdl_gen::plan::{Plan, PlanError};
 
@@ -52,10 +50,8 @@ fn only_remedies_that_meet_the_need_are_offered() {
         (line(7.0), "stream_bits = 128, outputs = \"resultants\", "),
         (line(6.5), "outputs = \"resultants\", "),
         (line(5.0), ""),
-        (joint(20.0), "grid = 15, "),
-        (joint(6.0), "grid = 15 with stream_bits = 64, grid = 15 with outputs = \"resultants\", "),
+        (joint(6.0), "stream_bits = 64, outputs = \"resultants\", "),
         (joint(4.0), ""),
-        (refusal("estimator = \"joint\"\ngrid = 15", 6.0), "stream_bits = 64, outputs = \"resultants\", "),
     ] {
         assert_eq!(offered(&refusal), expected, "{refusal}");
     }
@@ -67,26 +63,19 @@ fn remedies_do_what_is_said_of_them() {
     let met = |algorithm: &str, hardware: &str, target_us: f64| {
         Plan::new(&sensor(algorithm, &format!("target_us = {target_us:?}\n{hardware}"))).is_ok()
     };
-    let [fine, coarse] = ["", "\ngrid = 15"].map(|grid| format!("estimator = \"joint\"{grid}"));
-    assert!(!met(&fine, "stream_bits = 128", 6.0) && !met(&coarse, "", 6.0) && met(&coarse, "stream_bits = 64", 6.0));
-    assert!(met(&format!("{coarse}\noutputs = \"resultants\""), "", 6.0));
+    let joint = "estimator = \"joint\"";
+    assert!(!met(joint, "", 6.0) && met(joint, "stream_bits = 64", 6.0));
+    assert!(met(&format!("{joint}\noutputs = \"resultants\""), "", 6.0));
     assert!(!met("", "stream_bits = 64", 7.0) && met("", "stream_bits = 128", 7.0));
     assert!(!met("", "stream_bits = 128", 6.5) && met("outputs = \"resultants\"", "", 6.5));
 }
 
-/// A coarser grid takes constants of its own, which `fitted_to` insists on; the walk made smaller is the fine grid's.
+/// A design that keeps its area small is offered no other estimator.
 #[test]
-fn a_grid_is_offered_with_what_it_takes() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join("designs");
-    for (design, units) in [("sensor1-joint", 128), ("sensor2-wide", 128)] {
-        let mut design = Design::load(&folder.join(design).with_extension("toml")).expect("right");
-        design.hardware.target_us = Some(15.0);
-        let refusal = Plan::new(&design).expect_err("too slow").to_string();
-        let grid = format!("grid = 15 (which `sptfra calibrate --hidden {units}` fits the constants to), ");
-        assert_eq!(offered(&refusal), grid, "{}", design.name);
-    }
-    let area = Plan::new(&sensor("estimator = \"joint\"", "optimise = \"area\"\ntarget_us = 40.0"));
-    assert_eq!(offered(&area.expect_err("too slow").to_string()), "");
+fn a_small_area_keeps_its_estimator() {
+    let area = Plan::new(&sensor("estimator = \"joint\"", "optimise = \"area\"\ntarget_us = 5.0"));
+    let refusal = area.expect_err("too slow").to_string();
+    assert!(!offered(&refusal).contains("estimator"), "{refusal}");
 }
 
 /// What is offered does what is said of it.

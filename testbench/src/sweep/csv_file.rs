@@ -21,7 +21,7 @@ pub fn csv(points: &[Point]) -> Result<String, SweepError> {
 }
 
 fn header() -> Vec<String> {
-    let fixed = "key scene columns rows pitch_x_mm pitch_y_mm depth_mm plan kernel filter estimator joint_grid joint_units joint_family \
+    let fixed = "key scene columns rows pitch_x_mm pitch_y_mm depth_mm plan kernel filter estimator joint_units joint_training_set \
                  coefficient_bits data_bits lanes verified latency_cycles interval_cycles latency_us interval_us \
                  dsp bram36 rom_bits macs nnz_total frames mean_mu";
     let mut names: Vec<String> = fixed.split_whitespace().map(str::to_owned).collect();
@@ -49,9 +49,8 @@ fn row(point: &Point) -> Vec<String> {
         point.kernel.to_string(),
         point.filter.clone(),
         point.estimator.to_string(),
-        of(point.calibration.map(|joint| joint.grid.to_string())),
         of(point.calibration.map(|joint| joint.units.to_string())),
-        of(point.calibration.map(|joint| joint.family.to_string())),
+        of(point.calibration.map(|joint| joint.training_set.to_string())),
         point.coefficient_bits.to_string(),
         point.data_bits.to_string(),
         point.lanes.to_string(),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use golden::design::{Algorithm, Estimator, Family, JointConstants, Kernel, PlanKind, Sensor};
+use golden::design::{Algorithm, Estimator, JointConstants, Kernel, PlanKind, Sensor, TrainingSet};
 use golden::metrics::ErrorSummary;
 use serde::{Deserialize, Serialize};
 
@@ -54,20 +54,18 @@ impl From<&Sensor> for Geometry {
 /// What tells one joint estimator from another.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Calibration {
-    /// Points along each axis of the plane that is searched.
-    pub grid: usize,
     /// Hidden units of the correction; 0 without one.
     pub units: usize,
-    /// Contacts that it was calibrated on.
-    pub family: Family,
+    /// Contacts that it was trained on.
+    pub training_set: TrainingSet,
 }
 
 impl Calibration {
     /// That of a design.
     pub fn of(algorithm: &Algorithm) -> Option<Self> {
-        let JointConstants { grid, family, correction, .. } = algorithm.joint.as_ref();
+        let JointConstants { training_set, correction, .. } = algorithm.joint.as_ref();
         let units = correction.as_ref().map_or(0, |correction| correction.hidden.len());
-        (algorithm.estimator == Estimator::Joint).then_some(Self { grid: grid.side(), units, family: *family })
+        (algorithm.estimator == Estimator::Joint).then_some(Self { units, training_set: *training_set })
     }
 }
 
@@ -169,12 +167,12 @@ impl Point {
         )
     }
 
-    /// The estimator with what tells one calibration from another: `joint, 15 × 15 points, 48 units`.
+    /// The estimator with what tells one calibration from another: `joint, 48 units`.
     pub fn estimator_title(&self) -> String {
-        let Some(Calibration { grid, units, family }) = self.calibration else { return self.estimator.to_string() };
-        let family = if family == Family::Wide { ", wide family" } else { "" };
-        let correction = if units > 0 { format!("{units} units{family}") } else { "no correction".to_owned() };
-        format!("{}, {grid} × {grid} points, {correction}", self.estimator)
+        let Some(Calibration { units, training_set }) = self.calibration else { return self.estimator.to_string() };
+        let general = if training_set == TrainingSet::General { ", general" } else { "" };
+        let correction = if units > 0 { format!("{units} units{general}") } else { "no correction".to_owned() };
+        format!("{}, {correction}", self.estimator)
     }
 
     /// The filter as people write it: `no filter`, `F1 L = 40`.

@@ -4,6 +4,7 @@ pub mod bench;
 pub mod cells;
 pub mod corner_cases;
 pub mod mutants;
+pub mod noise;
 pub mod solver;
 pub mod stress;
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::support::calibrated;
 use crate::support::effort::{share_of, some_of};
 use crate::support::faults::broken;
-use crate::support::{by_plan, in_parallel, planned, shipped, with_points};
+use crate::support::{by_plan, in_parallel, planned, shipped, with_joint};
 use golden::design::{Design, Estimator, Outputs, Overrun, PlanKind};
 use golden::progress::Progress;
 use xtask::mutants::{self, Kind, mutants};
@@ -16,16 +16,16 @@ const FRAMES: u64 = 3000;
 #[test]
 fn every_answer_is_right_and_none_is_lost() {
     // With a standard error, and several words a beat.
-    let mut points = with_points(shipped("small"));
-    points.name += "_points";
-    points.hardware.stream_bits = 128;
+    let mut with_error = with_joint(shipped("small"));
+    with_error.name += "_with_error";
+    with_error.hardware.stream_bits = 128;
     let designs = [
         by_plan(shipped("small"), PlanKind::Paper, Outputs::Field),
         by_plan(shipped("small"), PlanKind::Reduced, Outputs::Field),
         by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants),
         // Search, look and correction a frame each.
         shipped("small-joint"),
-        points,
+        with_error,
     ];
     let frames = share_of(FRAMES as usize) as u64;
     let options = stress::Options { frames, seed: 5 };
@@ -118,13 +118,13 @@ fn faults_at_rare_moments_are_noticed() {
         // The least value on the border is that of the rows' ends, or of the outer rows, alone.
         (
             &joint,
-            "sptfra_points_level",
+            "sptfra_grid_level",
             "outers[LEVELS]) ? least_between : least_of_ends",
             "outers[LEVELS]) ? least_of_ends : least_of_ends",
         ),
         (
             &joint,
-            "sptfra_points_level",
+            "sptfra_grid_level",
             "outers[LEVELS]) ? least_between : least_of_ends",
             "outers[LEVELS]) ? least_between : {VALUE_BITS{1'b1}}",
         ),

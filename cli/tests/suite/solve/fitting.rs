@@ -138,7 +138,10 @@ fn calibrate_then_solve() {
     assert_eq!(found.correction.unwrap().hidden.len(), 3);
     // JSON is read with an error in the last digit.
     let near = |said: &serde_json::Value, found: f64| (said.as_f64().unwrap() - found).abs() < 1e-12;
-    assert!(near(&report["gain"], found.gain) && near(&report["tangential"][1], found.tangential[1]), "{report}");
+    assert!(
+        near(&report["gain"], found.gain) && near(&report["friction_correction"][1], found.friction_correction[1]),
+        "{report}"
+    );
     let solve = |design: &Path| sptfra(&["solve", text(design), "--frames", text(&frames), "--out", text(&out)]);
     assert!(solve(&resolved).status.success());
     let calibrated = fs::read_to_string(&out).unwrap();
@@ -169,7 +172,7 @@ fn one_command_fits_the_constants_to_a_changed_sensor() {
     let [pad, fitted] = ["pad.toml", "pad-calibrated.toml"].map(|name| folder.path().join(name));
     let sensor = "[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
     let stale = "[algorithm]\nestimator = \"joint\"\ngain = 1.1\n\
-        fitted_to = \"6 x 5 taxels of 4 x 2 mm, 3 mm deep, point, 0\"\n";
+        calibrated_for = \"6 x 5 taxels of 4 x 2 mm, 3 mm deep, point, 0, noise 0.005, sliding\"\n";
     fs::write(&pad, format!("name = \"pad\"\n{sensor}{stale}")).unwrap();
     let frames = folder.path().join("f.csv");
     let output = sptfra(&["scene", "--design", text(&pad), "--out", text(&frames)]);
@@ -182,5 +185,5 @@ fn one_command_fits_the_constants_to_a_changed_sensor() {
     assert!(output.status.success(), "{output:?}");
     let design = Design::load(&fitted).unwrap();
     assert_eq!(design.name, "pad_calibrated", "a design of its own");
-    assert!(design.algorithm.joint.fitted_to.is_some_and(|sensor| sensor.contains("4 x 4 mm")));
+    assert!(design.algorithm.joint.calibrated_for.is_some_and(|sensor| sensor.contains("4 x 4 mm")));
 }

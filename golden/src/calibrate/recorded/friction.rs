@@ -4,7 +4,7 @@ use super::folds::Folds;
 use super::holds::Hold;
 use crate::calibrate::observer::{Observer, Sample};
 use crate::calibrate::samples::{stream, target};
-use crate::calibrate::{CalibrateError, contacts, fit_tangential};
+use crate::calibrate::{CalibrateError, contacts, fit_friction_correction};
 use crate::design::{Design, Estimator, Input};
 use crate::estimators::joint::{CUBIC_LIMIT, Joint, JointConstants, NetworkScratch};
 
@@ -25,7 +25,7 @@ pub(super) enum Verdict {
     Not(String),
 }
 
-/// Fits `tangential` of a calibrated design to holds with their stress that presses.
+/// Fits `friction_correction` of a calibrated design to holds with their stress that presses.
 pub(super) fn fit(
     design: &mut Design,
     holds: &[Hold],
@@ -68,7 +68,7 @@ pub(super) fn fit(
     if along <= 0.0 {
         return not("F_x and F_y point against what the sensor finds: they must be what the object exerts on the sensor, along its columns and rows. Its constants stay".to_owned());
     }
-    let before = design.algorithm.joint.tangential;
+    let before = design.algorithm.joint.friction_correction;
     let gain = design.algorithm.joint.gain;
     let all: Vec<usize> = (0..samples.len()).collect();
     let error = |constants: [f64; 2], of: &[usize]| -> f64 {
@@ -91,7 +91,7 @@ pub(super) fn fit(
     let free = |of: &[usize]| {
         let kept: Vec<&Sample> = of.iter().map(|&s| &samples[s].sample).collect();
         let targets: Vec<[f64; 2]> = of.iter().map(|&s| samples[s].wanted()).collect();
-        fit_tangential(&kept, &targets)
+        fit_friction_correction(&kept, &targets)
     };
     let legal = |[c1, c3]: [f64; 2]| (LINEAR[0]..=LINEAR[1]).contains(&c1) && c3.abs() <= CUBIC_LIMIT;
     let as_it_was = score(&|_| before);
@@ -110,10 +110,10 @@ pub(super) fn fit(
             samples.len()
         ));
     }
-    design.algorithm.joint.tangential = constants;
+    design.algorithm.joint.friction_correction = constants;
     let [c1, c3] = constants;
     Ok(Verdict::Fitted(format!(
-        "friction: tangential = [{c1:.3}, {c3:.3}]; (F_x, F_y) err by {:.1} % of F_z where left out, {:.1} % before (root mean square of {} holds)",
+        "friction: friction_correction = [{c1:.3}, {c3:.3}]; (F_x, F_y) err by {:.1} % of F_z where left out, {:.1} % before (root mean square of {} holds)",
         100.0 * now,
         100.0 * as_it_was,
         samples.len()
@@ -161,7 +161,8 @@ fn samples(
         .as_ref()
         .map_or_else(|| contacts::half_window(&design.sensor), |correction| correction.half_window);
     let mut observer = Observer::new(&plain, half_window)?;
-    let bare = Joint::new(&JointConstants { tangential: [0.0, 0.0], ..(**constants).clone() }, design.sensor.columns);
+    let bare =
+        Joint::new(&JointConstants { friction_correction: [0.0, 0.0], ..(**constants).clone() }, design.sensor.columns);
     let mut scratch = NetworkScratch::default();
     // Without noise nothing is drawn that counts.
     let mut random = stream(0, 0);

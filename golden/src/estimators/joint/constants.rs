@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::grid::Grid;
 use crate::words::print_as_words;
 
 /// Weights of a correction are whole numbers of `2^-WEIGHT_FRACTION`.
@@ -14,54 +13,52 @@ pub const MAX_HIDDEN: usize = 256;
 /// Largest magnitude of `c3`, less than 4, as far as the hardware's word for it reaches. Sensors that read no tension
 /// need more than 2.
 pub const CUBIC_LIMIT: f64 = 3.9;
-/// Share of the normal force above which a standard error is doubtful, unless a design says otherwise.
-pub const DEFAULT_DOUBT: f64 = 0.06;
+/// Standard error as a share of the normal force above which a frame has low confidence, unless a design says otherwise.
+pub const DEFAULT_MAX_STANDARD_ERROR: f64 = 0.06;
 /// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.
 pub const EXTRA_INPUTS: usize = 5;
 
-/// Contacts that the constants are fitted to.
+/// Contacts that the constants are trained on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Family {
+pub enum TrainingSet {
     /// Round or nearly so, sliding, with a pressure that is the same in front and behind.
     #[default]
-    Narrow,
+    Sliding,
     /// Of any shape, tilted, held, turning, over the grid's edge, on a sensor that is not quite what the design says.
-    Wide,
+    General,
 }
 
-print_as_words!(Family);
+print_as_words!(TrainingSet);
 
 /// Constants of the joint estimator for one design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointConstants {
-    /// Points of the plane at which Condition 1 is evaluated.
-    pub grid: Grid,
-    /// Contacts that the other constants are fitted to.
-    pub family: Family,
+    /// Contacts that the other constants are trained on.
+    pub training_set: TrainingSet,
     /// Factor on all forces; what a kernel of point forces lacks at long waves.
     pub gain: f64,
     /// `[c1, c3]`: the friction vector is `c1 mu + c3 mu |mu|^2` of the centroid of the level set.
-    pub tangential: [f64; 2],
+    pub friction_correction: [f64; 2],
     /// What a small network adds to that; nothing unless trained.
     pub correction: Option<Correction>,
-    /// A frame whose standard error of `(F_x, F_y)` is a larger share of `|F_z|` is doubtful, if the correction tells it.
-    pub doubt: f64,
-    /// What they were fitted to, as [`crate::design::conditions`] states it; a design of other conditions is refused. `None` for
+    /// A frame whose standard error of `(F_x, F_y)` is a larger share of `|F_z|` has low confidence, if the correction
+    /// estimates it.
+    pub max_standard_error: f64,
+    /// What they were calibrated for, as [`crate::design::conditions`] states it; a design of other conditions is refused. `None` for
     /// constants of unknown origin.
-    pub fitted_to: Option<String>,
+    pub calibrated_for: Option<String>,
 }
 
 impl Default for JointConstants {
     fn default() -> Self {
         Self {
-            grid: Grid::FINE,
-            family: Family::default(),
+            training_set: TrainingSet::default(),
             gain: 1.0,
-            tangential: [1.0, 0.0],
+            friction_correction: [1.0, 0.0],
             correction: None,
-            doubt: DEFAULT_DOUBT,
-            fitted_to: None,
+            max_standard_error: DEFAULT_MAX_STANDARD_ERROR,
+            calibrated_for: None,
         }
     }
 }
@@ -78,8 +75,8 @@ pub struct Correction {
     pub hidden: Vec<Vec<i32>>,
     /// Weights of the hidden units in the x and the y component of the correction.
     pub output: [Vec<i32>; 2],
-    /// The error that is left, where that has been found.
-    pub doubt: Option<Doubt>,
+    /// The output for the remaining error, where it was trained.
+    pub error: Option<ErrorOutput>,
 }
 
 impl Correction {
@@ -89,10 +86,10 @@ impl Correction {
     }
 }
 
-/// What a correction knows of the error that it leaves, a third sum of its hidden units: the logarithm of the error of `(F_x, F_y)` over `|F_z|`.
+/// A third output of the network: the logarithm of the remaining error of `(F_x, F_y)` over `|F_z|`, to the base 2.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Doubt {
-    /// What is added to the sum, in steps of `2^-`[`DOUBT_FRACTION`](crate::estimators::DOUBT_FRACTION).
+pub struct ErrorOutput {
+    /// What is added to the sum, in steps of `2^-`[`ERROR_FRACTION`](crate::estimators::ERROR_FRACTION).
     pub base: i32,
     /// Weight of each hidden unit, as the mean over the mirror images, in steps of
     /// [`WEIGHT_FRACTION`].

@@ -145,7 +145,7 @@ mod tests {
     }
 
     fn search(u: &[Vec<f64>; 3], dead_zone: f64, allowance: f64) -> Found {
-        super::search(Grid::FINE, u.each_ref().map(Vec::as_slice), dead_zone, allowance, &mut GridScratch::default())
+        super::search(Grid::SEARCH, u.each_ref().map(Vec::as_slice), dead_zone, allowance, &mut GridScratch::default())
     }
 
     #[test]
@@ -166,22 +166,24 @@ mod tests {
 
     #[test]
     fn between_grid_points_the_weights_interpolate() {
-        // The valley moves by a quarter of a step at a time, and the estimate with it.
+        // The valley moves by a quarter of a step at a time, and the estimate with it. The level set is 8 steps wide.
+        let allowance = 4.0 * Grid::SEARCH.step();
         for quarter in 0..8 {
-            let at = Grid::FINE.step() * f64::from(quarter) / 4.0;
+            let at = Grid::SEARCH.step() * f64::from(quarter) / 4.0;
             let u = vectors([[-at, 1.0, 0.0], [at, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]);
-            let found = search(&u, 0.0, 0.5);
-            assert!((found.mu[0] - at).abs() < 0.02 * Grid::FINE.step(), "{at} {found:?}");
+            let found = search(&u, 0.0, allowance);
+            assert!((found.mu[0] - at).abs() < 0.02 * Grid::SEARCH.step(), "{at} {found:?}");
         }
     }
 
     /// The steps of `docs/explanation/estimators.md` in integers: `u_q` of 27 bits, weights of 18.
     fn search_in_integers(u: &[Vec<i64>; 3], dead_zone: i64, allowance: i64) -> [f64; 2] {
         let mut values = Vec::new();
-        // Times 8, so that a step of the grid adds `u_1` or `u_2` as they are.
-        let (side, reach) = (Grid::FINE.side(), i64::from(Grid::FINE.reach));
+        // Finer by the grid's step, so that a step adds `u_1` or `u_2` as they are.
+        let finer = 1_i64 << Grid::SEARCH.shift;
+        let (side, reach) = (Grid::SEARCH.side(), i64::from(Grid::SEARCH.reach));
         let terms = u[0].iter().zip(&u[1]).zip(&u[2]);
-        let mut row: Vec<i64> = terms.map(|((u0, u1), u2)| 8 * (u0 - dead_zone) - reach * (u1 + u2)).collect();
+        let mut row: Vec<i64> = terms.map(|((u0, u1), u2)| finer * (u0 - dead_zone) - reach * (u1 + u2)).collect();
         for _ in 0..side {
             let mut point = row.clone();
             for _ in 0..side {
@@ -190,7 +192,7 @@ mod tests {
             }
             row.iter_mut().zip(&u[2]).for_each(|(stress, step)| *stress += step);
         }
-        let allowance = 8 * allowance;
+        let allowance = finer * allowance;
         let level = values.iter().min().unwrap() + allowance;
         // The weights keep the 18 leading bits of the allowance.
         let shift = (64 - allowance.leading_zeros()).saturating_sub(18);
@@ -201,7 +203,7 @@ mod tests {
             sums[1] += weight * ((index % side) as i64 - reach);
             sums[2] += weight * ((index / side) as i64 - reach);
         }
-        [sums[1], sums[2]].map(|sum| Grid::FINE.step() * sum as f64 / sums[0] as f64)
+        [sums[1], sums[2]].map(|sum| Grid::SEARCH.step() * sum as f64 / sums[0] as f64)
     }
 
     #[test]

@@ -12,12 +12,12 @@ mod network;
 mod thin;
 mod weights;
 
-use super::doubt::{log, ratio};
 use super::seen::{Answer, RANGE, Seen};
+use super::standard_error::{log, ratio};
 use crate::status::Status;
 pub use constants::{
-    CUBIC_LIMIT, Correction, DEFAULT_DOUBT, Doubt, EXTRA_INPUTS, Family, JointConstants, MAX_HIDDEN, WEIGHT_FRACTION,
-    WEIGHT_LIMIT,
+    CUBIC_LIMIT, Correction, DEFAULT_MAX_STANDARD_ERROR, EXTRA_INPUTS, ErrorOutput, JointConstants, MAX_HIDDEN,
+    TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT,
 };
 pub use grid::Grid;
 pub(crate) use level_set::Found;
@@ -45,9 +45,9 @@ pub(crate) struct JointScratch {
 }
 
 /// The estimate before it is calibrated.
-pub(crate) fn raw(grid: Grid, seen: &Seen, scratch: &mut JointScratch) -> Found {
+pub(crate) fn raw(seen: &Seen, scratch: &mut JointScratch) -> Found {
     let largest = seen.b.iter().fold(0.0_f64, |largest, stress| largest.max(stress.abs()));
-    search(grid, seen.u, DEAD_ZONE * largest, LEVEL * seen.contact.stress_sum, &mut scratch.grid)
+    search(Grid::SEARCH, seen.u, DEAD_ZONE * largest, LEVEL * seen.contact.stress_sum, &mut scratch.grid)
 }
 
 /// Looks at the stress that the normal forces alone would cause at the friction `mu`, in a grid of `columns`.
@@ -71,36 +71,34 @@ pub(crate) fn look(
 pub(crate) struct Joint {
     /// Factor on all forces.
     pub(crate) gain: f64,
-    grid: Grid,
-    tangential: [f64; 2],
+    friction_correction: [f64; 2],
     columns: usize,
     network: Option<Network>,
-    /// A frame whose error has a larger logarithm is doubtful.
-    doubt_log: f64,
+    /// A frame whose error has a larger logarithm has low confidence.
+    max_error_log: f64,
 }
 
 impl Joint {
     pub(crate) fn new(constants: &JointConstants, columns: usize) -> Self {
         Self {
             gain: constants.gain,
-            grid: constants.grid,
-            tangential: constants.tangential,
+            friction_correction: constants.friction_correction,
             columns,
             network: constants.correction.as_ref().map(Network::new),
-            doubt_log: log(constants.doubt),
+            max_error_log: log(constants.max_standard_error),
         }
     }
 
     /// Finds the friction components, and the error of `(F_x, F_y)` over `|F_z|` where the network tells it.
     pub(crate) fn find(&self, seen: &Seen, scratch: &mut JointScratch) -> Answer {
-        let Found { status, mu } = raw(self.grid, seen, scratch);
+        let Found { status, mu } = raw(seen, scratch);
         let tells = self.network.as_ref().is_some_and(Network::tells_its_error);
         if status.contains(Status::DIRECTION_UNKNOWN) {
             // The error is as much as presses.
             return self.answer(status, mu, tells.then_some(0.0));
         }
         let Some(network) = &self.network else {
-            let (status, mu) = within(status, scaled(mu, self.tangential));
+            let (status, mu) = within(status, scaled(mu, self.friction_correction));
             return self.answer(status, mu, None);
         };
         look(seen, mu, self.columns, network.half_window, TIE, scratch);
@@ -109,7 +107,7 @@ impl Joint {
     }
 
     fn answer(&self, mut status: Status, mu: [f64; 2], error_log: Option<f64>) -> Answer {
-        if error_log.is_some_and(|log| log > self.doubt_log) {
+        if error_log.is_some_and(|log| log > self.max_error_log) {
             status.insert(Status::DOUBTFUL);
         }
         Answer { status, mu, error: error_log.map_or(0.0, ratio) }
@@ -117,7 +115,7 @@ impl Joint {
 
     /// The friction components for the centroid of the level set and what the network sees; not clipped.
     pub(crate) fn corrected(&self, mu: [f64; 2], look: &Look, scratch: &mut NetworkScratch) -> [f64; 2] {
-        let scaled = scaled(mu, self.tangential);
+        let scaled = scaled(mu, self.friction_correction);
         let Some(network) = &self.network else { return scaled };
         let added = network.correct(look, scratch);
         [scaled[0] + added[0], scaled[1] + added[1]]

@@ -4,9 +4,9 @@
 //! percent, in a way that repeats with the pitch. The network sees the stress that the normal forces alone would
 //! cause, in a window that moves with the contact, and adds a bounded amount to the estimate.
 
-use super::constants::{Correction, Doubt, WEIGHT_FRACTION};
+use super::constants::{Correction, ErrorOutput, WEIGHT_FRACTION};
 use super::look::Look;
-use crate::estimators::doubt::{DOUBT_FRACTION, limited};
+use crate::estimators::standard_error::{ERROR_FRACTION, limited};
 use crate::parity::{CLASSES, Quads, butterfly};
 
 /// The correction of a component is at most this, so that an unforeseen contact is never made much worse.
@@ -30,7 +30,7 @@ pub(crate) struct Network {
     hidden: Vec<[Vec<f64>; CLASSES]>,
     output: [Vec<f64>; 2],
     /// What is added to the logarithm of the error, and the weights in it.
-    doubt: Option<(f64, Vec<f64>)>,
+    error: Option<(f64, Vec<f64>)>,
 }
 
 /// Memory of the network, to be used again for the next frame.
@@ -54,7 +54,7 @@ impl NetworkScratch {
 impl Network {
     pub(crate) fn new(correction: &Correction) -> Self {
         let step = (-f64::from(WEIGHT_FRACTION)).exp2();
-        let Correction { half_window, hidden, output, doubt } = correction;
+        let Correction { half_window, hidden, output, error } = correction;
         let [half_x, half_y] = *half_window;
         let quads = Quads::new(2 * half_x + 1, 2 * half_y + 1);
         let weight = |unit: &Vec<i32>, input: usize| step * f64::from(unit[input]);
@@ -83,11 +83,11 @@ impl Network {
             })));
         }
         let output = output.each_ref().map(|weights| weights.iter().map(|of| step * f64::from(*of)).collect());
-        let doubt = doubt.as_ref().map(|Doubt { base, output }| {
-            let base = f64::from(*base) * (-f64::from(DOUBT_FRACTION)).exp2();
+        let error = error.as_ref().map(|ErrorOutput { base, output }| {
+            let base = f64::from(*base) * (-f64::from(ERROR_FRACTION)).exp2();
             (base, output.iter().map(|of| step * f64::from(*of)).collect())
         });
-        Self { half_window: *half_window, window, hidden: words, output, doubt }
+        Self { half_window: *half_window, window, hidden: words, output, error }
     }
 
     /// The correction, each component within [`LARGEST`].
@@ -134,12 +134,12 @@ impl Network {
 
     /// Whether it tells the error that it leaves.
     pub(crate) fn tells_its_error(&self) -> bool {
-        self.doubt.is_some()
+        self.error.is_some()
     }
 
     /// The logarithm of base 2 of the error of the last correction, over the normal force, if it tells that.
     pub(crate) fn error_log(&self, scratch: &NetworkScratch) -> Option<f64> {
-        let (base, weights) = self.doubt.as_ref()?;
+        let (base, weights) = self.error.as_ref()?;
         let sum: f64 = scratch.even.iter().zip(weights).map(|(unit, weight)| unit * weight).sum();
         Some(limited(base + sum))
     }
@@ -198,7 +198,7 @@ mod tests {
         for half_window in [[1, 2], [0, 1], [2, 0]] {
             let length = Correction::inputs(half_window);
             let hidden = (1..6).map(|unit| numbers(length, 91 * unit)).collect();
-            let correction = Correction { half_window, hidden, output: [numbers(5, 3), numbers(5, 8)], doubt: None };
+            let correction = Correction { half_window, hidden, output: [numbers(5, 3), numbers(5, 8)], error: None };
             let values = numbers(length, 55).into_iter().map(|value| f64::from(value) / 700.0).collect();
             let seen = Look { half_window, values };
             let found = Network::new(&correction).correct(&seen, &mut NetworkScratch::default());
@@ -216,7 +216,7 @@ mod tests {
             half_window: [1, 0],
             hidden: vec![vec![4096, -2048, 512, 300, 20, -7, 900, 100], vec![-900, 4096, 77, -100, 5, 80, 1, 50]],
             output: [vec![300, -200], vec![150, 60]],
-            doubt: None,
+            error: None,
         };
         let network = Network::new(&correction);
         let correct = |look: &Look| network.correct(look, &mut NetworkScratch::default());

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::constants::{Correction, Doubt, EXTRA_INPUTS, MAX_HIDDEN, WEIGHT_LIMIT};
+use super::constants::{Correction, EXTRA_INPUTS, ErrorOutput, MAX_HIDDEN, WEIGHT_LIMIT};
 
 /// Names of the inputs behind the window, in order: friction of the level set's centre, the contact's centre within its
 /// taxel, and one.
@@ -10,7 +10,7 @@ const EXTRA: [&str; EXTRA_INPUTS] = ["mu_x", "mu_y", "centre_x", "centre_y", "on
 /// The last columns: the hidden unit's weights in both components of the correction,
 const OUTPUT: [&str; 2] = ["to_x", "to_y"];
 /// and in the logarithm of the error that is left, where that is known.
-const DOUBT: &str = "to_error";
+const ERROR: &str = "to_error";
 
 /// What is wrong with a table of weights.
 #[derive(Debug, PartialEq, Eq)]
@@ -24,17 +24,17 @@ pub(crate) struct WeightsError {
 }
 
 /// The columns: places of the window, row by row, seen from the contact's centre; the other inputs; the outputs.
-fn header([half_x, half_y]: [usize; 2], doubt: bool) -> String {
+fn header([half_x, half_y]: [usize; 2], error: bool) -> String {
     let steps = |half: usize| -(half as i64)..=half as i64;
     let places = steps(half_y).flat_map(|y| steps(half_x).map(move |x| format!("x{x:+}y{y:+}")));
-    let others = EXTRA.into_iter().chain(OUTPUT).chain(doubt.then_some(DOUBT));
+    let others = EXTRA.into_iter().chain(OUTPUT).chain(error.then_some(ERROR));
     places.chain(others.map(str::to_owned)).collect::<Vec<_>>().join(",")
 }
 
 impl Correction {
     /// The weights as CSV, in the form of `docs/reference/files.md`; a design reads them back.
     pub fn to_csv(&self) -> String {
-        let mut text = header(self.half_window, self.doubt.is_some()) + "\n";
+        let mut text = header(self.half_window, self.error.is_some()) + "\n";
         let [along_x, along_y] = &self.output;
         for (index, ((unit, to_x), to_y)) in self.hidden.iter().zip(along_x).zip(along_y).enumerate() {
             for weight in unit {
@@ -42,8 +42,8 @@ impl Correction {
                 let _ = write!(text, "{weight},");
             }
             let _ = write!(text, "{to_x},{to_y}");
-            let _ = match &self.doubt {
-                Some(doubt) => writeln!(text, ",{}", doubt.output[index]),
+            let _ = match &self.error {
+                Some(error) => writeln!(text, ",{}", error.output[index]),
                 None => writeln!(text),
             };
         }
@@ -63,16 +63,16 @@ impl Correction {
             return Err(wrong(1, problem, again));
         }
         let (mut hidden, mut output) = (Vec::new(), [Vec::new(), Vec::new()]);
-        let mut doubt = error_base.map(|base| Doubt { base, output: Vec::new() });
-        let columns = Self::inputs(half_window) + OUTPUT.len() + usize::from(doubt.is_some());
+        let mut error = error_base.map(|base| ErrorOutput { base, output: Vec::new() });
+        let columns = Self::inputs(half_window) + OUTPUT.len() + usize::from(error.is_some());
         for (line, content) in lines {
             let weights = content.split(',').map(|word| weight(word).map_err(|problem| wrong(line, problem, again)));
             let mut weights: Vec<i32> = weights.collect::<Result<_, _>>()?;
             if weights.len() != columns {
                 return Err(wrong(line, format!("{} weights in place of {columns}", weights.len()), again));
             }
-            if let Some(doubt) = &mut doubt {
-                doubt.output.extend(weights.pop());
+            if let Some(error) = &mut error {
+                error.output.extend(weights.pop());
             }
             for (output, weight) in output.iter_mut().zip(weights.split_off(Self::inputs(half_window))) {
                 output.push(weight);
@@ -83,7 +83,7 @@ impl Correction {
             let problem = format!("{} hidden units, not 1 to {MAX_HIDDEN}", hidden.len());
             return Err(wrong(hidden.len() + 1, problem, again));
         }
-        Ok(Self { half_window, hidden, output, doubt })
+        Ok(Self { half_window, hidden, output, error })
     }
 }
 
@@ -107,7 +107,7 @@ mod tests {
             half_window: [1, 0],
             hidden: vec![vec![1, -2, 3, 4, 5, 6, 7, -131_072], vec![0, 0, 0, 0, 0, 0, 0, 131_071]],
             output: [vec![9, -10], vec![11, 12]],
-            doubt: None,
+            error: None,
         }
     }
 
@@ -118,10 +118,10 @@ mod tests {
                         1,-2,3,4,5,6,7,-131072,9,11\n0,0,0,0,0,0,0,131071,-10,12\n";
         assert_eq!(text, expected);
         assert_eq!(Correction::read_csv(&text, [1, 0], None), Ok(small()));
-        let doubtful = Correction { doubt: Some(Doubt { base: -5, output: vec![13, -14] }), ..small() };
-        let text = doubtful.to_csv();
+        let with_error = Correction { error: Some(ErrorOutput { base: -5, output: vec![13, -14] }), ..small() };
+        let text = with_error.to_csv();
         assert!(text.starts_with("x-1y+0,") && text.contains("to_y,to_error\n") && text.ends_with(",-10,12,-14\n"));
-        assert_eq!(Correction::read_csv(&text, [1, 0], Some(-5)), Ok(doubtful));
+        assert_eq!(Correction::read_csv(&text, [1, 0], Some(-5)), Ok(with_error));
         assert_eq!(Correction::read_csv(&text, [1, 0], None).map_err(|error| error.line), Err(1));
     }
 

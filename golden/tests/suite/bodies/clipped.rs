@@ -31,7 +31,7 @@ fn half_of_the_bodies_are_known() {
         let BodyErrors { tangential, normal, right, within, .. } = several.bodies;
         let said = format!("{name}, {kind:?}: {right} of 24, {tangential:.1?}, {normal:.1?}, {within:.0}");
         assert!(
-            right >= 20 && tangential.median < 7.0 && tangential.most < 22.0 && normal.median < 1.8 && within > 90.0,
+            right >= 20 && tangential.median < 8.0 && tangential.most < 22.0 && normal.median < 1.8 && within > 90.0,
             "{said}"
         );
         assert!(several.total.median < 0.5 * one.total.median, "{said}: {:.1?} {:.1?}", several.total, one.total);

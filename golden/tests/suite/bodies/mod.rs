@@ -39,7 +39,7 @@ fn design(name: &str, contacts: usize) -> Design {
 
 #[test]
 fn one_body_is_solved_as_if_there_could_be_no_more() {
-    for name in ["sensor1-joint", "sensor2-wide", "sensor1-none", "sensor1-f2-p30", "sensor1-resultants"] {
+    for name in ["sensor1-fast", "sensor2-wide", "sensor1-none", "sensor1-f2-p30", "sensor1-resultants"] {
         let [one, several] = [1, 4].map(|contacts| Solver::new(&design(name, contacts)).unwrap());
         let frames: Vec<Vec<f64>> =
             (0..8).map(|seed| frame(one.matrices().sensor(), Kind::One, seed).stress).chain([vec![0.0; 100]]).collect();
@@ -129,12 +129,12 @@ fn bodies_are_counted_where_they_are_solved_as_one() {
 #[test]
 fn each_body_has_its_own_forces() {
     for (name, kind, most) in [
-        ("sensor1-joint", Kind::Same, [6.0, 20.0, 1.4]),
-        ("sensor1-joint", Kind::Opposed, [5.5, 17.0, 1.4]),
-        ("sensor2-joint", Kind::Anyhow, [5.5, 18.0, 1.4]),
+        ("sensor1-fast", Kind::Same, [6.0, 20.0, 1.4]),
+        ("sensor1-fast", Kind::Opposed, [5.5, 17.0, 1.4]),
+        ("sensor2-fast", Kind::Anyhow, [5.5, 18.0, 1.4]),
         ("sensor2-wide", Kind::Held, [5.5, 17.0, 1.4]),
-        ("sensor2-wide", Kind::Three, [8.0, 22.0, 1.7]),
-        ("sensor1-fast-wide", Kind::Anyhow, [5.5, 18.0, 1.4]),
+        ("sensor2-wide", Kind::Three, [8.0, 25.0, 1.7]),
+        ("sensor1-wide", Kind::Anyhow, [5.5, 18.0, 1.4]),
     ] {
         let [one, several] = [1, 4].map(|contacts| Solver::new(&design(name, contacts)).unwrap());
         let frames: Vec<SceneFrame> = (0..24).map(|seed| frame(one.matrices().sensor(), kind, 7000 + seed)).collect();
@@ -145,13 +145,13 @@ fn each_body_has_its_own_forces() {
         assert!(right >= 20 && found.iter().zip(most).all(|(found, most)| *found <= most), "{said}");
         assert!(kind == Kind::Same || several.total.median < 0.5 * one.total.median, "{said}");
         // Without what is not known of the others it is 78 and 62 of the first two that tell it.
-        assert!(name.ends_with("joint") == within.is_nan() && (within.is_nan() || within > 90.0), "{said}");
+        assert!(name.ends_with("fast") == within.is_nan() && (within.is_nan() || within > 90.0), "{said}");
     }
 }
 
 #[test]
 fn bodies_add_up_to_the_frame() {
-    for (name, plan) in [("sensor1-joint", PlanKind::Reduced), ("sensor2-none", PlanKind::Paper)] {
+    for (name, plan) in [("sensor1-fast", PlanKind::Reduced), ("sensor2-none", PlanKind::Paper)] {
         let mut design = design(name, 3);
         design.algorithm.plan = plan;
         let solver = Solver::new(&design).unwrap();
@@ -219,7 +219,7 @@ fn a_workspace_of_another_solver_is_replaced() {
 /// Torques of bodies against the true ones about all axes, in N m over the normal force: a millimetre of arm at most.
 #[test]
 fn each_body_has_its_own_torque() {
-    for name in ["sensor1-joint", "sensor2-wide"] {
+    for name in ["sensor1-fast", "sensor2-wide"] {
         let solver = Solver::new(&design(name, 2)).unwrap();
         for seed in 0..12 {
             let frame = frame(solver.matrices().sensor(), Kind::Opposed, 7000 + seed);
@@ -243,7 +243,7 @@ fn each_body_has_its_own_torque() {
 
 #[test]
 fn mirrored_bodies_have_mirrored_forces() {
-    let design = design("sensor1-joint", 2);
+    let design = design("sensor1-fast", 2);
     let solver = Solver::new(&design).unwrap();
     for seed in 0..4 {
         let frame = frame(&design.sensor, Kind::Anyhow, seed);
@@ -259,7 +259,7 @@ fn mirrored_bodies_have_mirrored_forces() {
 
 #[test]
 fn bodies_without_a_record_are_told_and_their_forces_kept() {
-    let design = design("sensor2-joint", 2);
+    let design = design("sensor2-fast", 2);
     let solver = Solver::new(&design).unwrap();
     for seed in 0..4 {
         let frame = frame(&design.sensor, Kind::Three, seed);
@@ -273,7 +273,7 @@ fn bodies_without_a_record_are_told_and_their_forces_kept() {
 
 #[test]
 fn each_body_slips_by_itself() {
-    let mut design = design("sensor2-joint", 2);
+    let mut design = design("sensor2-fast", 2);
     let frames: Vec<Vec<f64>> = (0..4).map(|seed| frame(&design.sensor, Kind::Held, seed).stress).collect();
     design.algorithm.slip = Some(Slip { limit: 0.4, hysteresis: 0.3 });
     let solver = Solver::new(&design).unwrap();

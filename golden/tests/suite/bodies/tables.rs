@@ -41,15 +41,15 @@ pub const KINDS: [(Kind, &str); 19] = [
 fn told_apart() {
     for sensor in ["sensor1", "sensor2"] {
         for (kind, label) in KINDS {
-            let geometry = design(&format!("{sensor}-joint"), 1).sensor;
+            let geometry = design(&format!("{sensor}-fast"), 1).sensor;
             let frames: Vec<SceneFrame> = (0..100).map(|seed| frame(&geometry, kind, 3000 + seed)).collect();
             let (mut cells, mut right, mut within) = (String::new(), 0, 0.0);
-            for calibration in ["joint", "wide"] {
+            for calibration in ["fast", "wide"] {
                 let solvers =
                     [1, 4].map(|contacts| Solver::new(&design(&format!("{sensor}-{calibration}"), contacts)).unwrap());
                 let [one, several] = solvers.each_ref().map(|solver| judge(solver, &frames));
                 cells += &[one.total, several.total, several.bodies.tangential].map(row).concat();
-                if calibration == "joint" {
+                if calibration == "fast" {
                     cells += &row(several.bodies.normal);
                 }
                 (right, within) = (several.bodies.right, several.bodies.within);
@@ -62,9 +62,9 @@ fn told_apart() {
 
 /// The same of a shipped fast design with `contacts = 4`, and how many of the bodies, in percent, are doubtful.
 #[test]
-#[ignore = "prints the table of sensor1-fast-wide in docs/explanation/accuracy.md; minutes"]
+#[ignore = "prints the table of sensor1-wide in docs/explanation/accuracy.md; minutes"]
 fn of_the_shipped_one() {
-    let solver = Solver::new(&design("sensor1-fast-wide", 4)).unwrap();
+    let solver = Solver::new(&design("sensor1-wide", 4)).unwrap();
     for (kind, label) in KINDS {
         let frames: Vec<SceneFrame> =
             (0..100).map(|seed| frame(solver.matrices().sensor(), kind, 3000 + seed)).collect();
@@ -84,7 +84,7 @@ fn of_the_shipped_one() {
 #[ignore = "prints the table of what parting costs in docs/explanation/accuracy.md; minutes"]
 fn of_parting() {
     for sensor in ["sensor1", "sensor2"] {
-        let joint = design(&format!("{sensor}-joint"), 4);
+        let joint = design(&format!("{sensor}-fast"), 4);
         let mut plain = joint.clone();
         plain.algorithm.joint.correction = None;
         let solvers = [joint, plain].map(|design| Solver::new(&design).unwrap());
@@ -124,7 +124,7 @@ fn nearest(bodies: &[Body]) -> f64 {
 #[ignore = "prints the table of single bodies in docs/explanation/accuracy.md; minutes"]
 fn of_one_body() {
     for sensor in ["sensor1", "sensor2"] {
-        let names = ["joint", "wide"].map(|calibration| format!("{sensor}-{calibration}"));
+        let names = ["fast", "wide"].map(|calibration| format!("{sensor}-{calibration}"));
         let pairs = names.map(|name| [1, 4].map(|contacts| Solver::new(&design(&name, contacts)).unwrap()));
         for kind in scene::Kind::ALL {
             let label = kind.title();

@@ -2,7 +2,7 @@
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
-use golden::design::{Design, Estimator, Family, WEIGHTS_FILE};
+use golden::design::{Design, Estimator, TrainingSet, WEIGHTS_FILE};
 use sha2::{Digest, Sha256};
 
 use super::{MINIMAL, refused};
@@ -82,24 +82,30 @@ fn corrections_that_contradict_themselves() {
     }
 }
 
-/// A limit for an error that a design does not tell is refused, and so is not written either.
+/// A limit for an error that a design does not estimate is refused, and so is not written either.
 #[test]
-fn a_doubt_goes_with_the_wide_family() {
+fn a_limit_of_the_error_goes_with_general_contacts() {
     let joint = |keys: &str| format!("{MINIMAL}[algorithm]\nestimator = \"joint\"\n{keys}");
-    let mut design = Design::from_toml(&joint("family = \"wide\"\ndoubt = 0.1\n"), "pad.toml").unwrap();
+    let mut design =
+        Design::from_toml(&joint("training_set = \"general\"\nmax_standard_error = 0.1\n"), "pad.toml").unwrap();
     assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
-    refused(&joint("doubt = 0.1\n"), &["algorithm.doubt", "family = \"wide\"", "sptfra calibrate"]);
-    design.algorithm.joint.family = Family::Narrow;
-    assert!(!design.to_toml().contains("doubt"), "{}", design.to_toml());
+    refused(
+        &joint("max_standard_error = 0.1\n"),
+        &["algorithm.max_standard_error", "training_set = \"general\"", "sptfra calibrate"],
+    );
+    design.algorithm.joint.training_set = TrainingSet::Sliding;
+    assert!(!design.to_toml().contains("max_standard_error"), "{}", design.to_toml());
     assert!(Design::from_toml(&design.to_toml(), "resolved").is_ok());
 }
 
-/// Constants of one family are not those of the other.
+/// Constants of one training set, or noise, are not those of another.
 #[test]
-fn the_family_is_part_of_what_constants_were_fitted_to() {
+fn training_set_and_noise_are_part_of_what_constants_are_calibrated_for() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/sensor2-wide.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(Design::load(&path).is_ok());
-    let other = text.replace("family = \"wide\"\n", "").replace("doubt = 0.06\n", "");
-    refused(&other, &["algorithm.fitted_to", "wide\"", "sptfra calibrate"]);
+    let other = text.replace("training_set = \"general\"\n", "").replace("max_standard_error = 0.06\n", "");
+    refused(&other, &["algorithm.calibrated_for", "general\"", "sptfra calibrate"]);
+    let noisier = text.replace("noise = 0.01\n", "noise = 0.02\n");
+    refused(&noisier, &["algorithm.calibrated_for", "noise 0.01", "noise 0.02", "sptfra calibrate"]);
 }

@@ -60,7 +60,7 @@ fn design(name: &str) -> Design {
 
 #[test]
 fn frames_of_every_family_have_an_answer_not_far_from_the_truth() {
-    let joint = design("sensor2-joint");
+    let joint = design("sensor2-fast");
     let [solver, wide] = [&joint, &design("sensor2-wide")].map(|design| Solver::new(design).unwrap());
     for kind in Kind::ALL {
         let label = kind.title();
@@ -69,29 +69,35 @@ fn frames_of_every_family_have_an_answer_not_far_from_the_truth() {
         assert!(frames.iter().all(|frame| frame.friction <= 1.0 + 1e-9 && frame.direction.abs() <= PI));
         let limit = if kind == Kind::Sliding { 4.0 } else { 40.0 };
         assert!(share(&errors, 0.5) < limit, "{label}: {errors:?}");
-        // Calibrated on all kinds, it errs by little where there is something to see, and doubts where there is not.
+        // Calibrated on all kinds, it errs by little where there is something to see, and doubts where there is not. Trained
+        // at a noise of 1 %, it expects more than 6 % of half of the turned ones.
         let Judged { errors, flagged, within, .. } = judge(&wide, &frames);
         match kind {
             Kind::Border | Kind::Noisy => assert!(flagged > 70.0, "{label}: {flagged} % of {errors:?}"),
             Kind::MixedInside | Kind::Mixed => {}
-            _ => assert!(share(&errors, 0.5) < 5.0 && flagged < 40.0 && within > 70.0, "{label}: {errors:?} {within}"),
+            _ => assert!(
+                share(&errors, 0.5) < 5.0 && flagged < 60.0 && within > 70.0,
+                "{label}: {errors:?} {within} {flagged}"
+            ),
         }
     }
 }
 
 /// What the wide family's designs reach on kinds together, on frames that neither has seen, in percent: most of the median,
 /// of 95 % of errors; least of the errors within two standard errors, and of errors above 10 % that are doubtful. The
-/// narrow ones' errors are larger.
+/// narrow ones' median is larger.
 #[test]
 fn the_wide_family_keeps_to_its_figures_within_the_grid() {
-    for (sensor, wide) in [("sensor1", "wide"), ("sensor2", "wide"), ("sensor1", "fast-wide")] {
-        let [joint, wide] = ["joint", wide].map(|kind| design(&format!("{sensor}-{kind}")));
+    for sensor in ["sensor1", "sensor2"] {
+        let [joint, wide] = ["fast", "wide"].map(|kind| design(&format!("{sensor}-{kind}")));
         let frames = Kind::MixedInside.frames(&joint.sensor, 0.5, 5000..5060).unwrap();
         let [joint, wide] = [joint, wide].map(|design| judge(&Solver::new(&design).unwrap(), &frames));
         let [median, most] = [0.5, 0.95].map(|part| share(&wide.errors, part));
-        let said = format!("{sensor}: {median:.1}, {most:.1}, {:.0}, {:.0?}", wide.within, wide.doubtful);
-        assert!(median < 4.5 && most < 18.0 && wide.within > 88.0, "{said}");
-        assert!(share(&joint.errors, 0.5) > median && share(&joint.errors, 0.95) > most, "{said}");
+        let of_joint = share(&joint.errors, 0.5);
+        let said =
+            format!("{sensor}: {median:.1}, {most:.1}, {:.0}, {:.0?}; {of_joint:.1}", wide.within, wide.doubtful);
+        assert!(median < 5.0 && most < 18.0 && wide.within > 88.0, "{said}");
+        assert!(of_joint > 1.2 * median, "{said}");
         assert!(wide.doubtful[0] > wide.doubtful[1] + 20.0, "{said}");
     }
 }
@@ -106,7 +112,7 @@ pub fn row(Judged { errors, .. }: &Judged) -> String {
 fn table() {
     const FRAMES: u64 = 200;
     for sensor in ["sensor1", "sensor2"] {
-        let designs = ["none", "joint", "wide"].map(|kind| design(&format!("{sensor}-{kind}")));
+        let designs = ["none", "fast", "wide"].map(|kind| design(&format!("{sensor}-{kind}")));
         let [line, joint, wide] = designs.each_ref().map(|design| Solver::new(design).unwrap());
         for kind in Kind::ALL {
             let (label, all) = (kind.title(), kind.has_own_friction());
@@ -133,19 +139,5 @@ fn table() {
                 found.within
             );
         }
-    }
-}
-
-#[test]
-#[ignore = "prints the table of sensor1-fast-wide in docs/explanation/estimators.md; minutes"]
-fn fast() {
-    let designs = ["sensor1-wide", "sensor1-fast-wide"].map(design);
-    let solvers = designs.each_ref().map(|design| Solver::new(design).unwrap());
-    for kind in Kind::ALL {
-        let count = if kind.has_own_friction() { 2000 } else { 200 };
-        let frames = kind.frames(&designs[0].sensor, 0.5, 1000..1000 + count).unwrap();
-        let [wide, fast] = solvers.each_ref().map(|solver| judge(solver, &frames));
-        let [bad, good] = fast.doubtful.map(|share| if share.is_nan() { String::new() } else { format!("{share:.0}") });
-        println!("| {} |{}{} {bad} | {good} | {:.0} |", kind.title(), row(&wide), row(&fast), fast.within);
     }
 }

@@ -21,10 +21,15 @@ fn tangential_forces_tell_the_constants_of_friction() {
     let fit = |keys: &str| {
         fit_forces(&design("", &format!("{joint}{keys}")), &recording.frames, &recording.measured).unwrap()
     };
-    let found = fit("tangential = [2.0, 0.0]");
-    assert!(says(&found.determined, &["friction: tangential = ["]), "{:?} {:?}", found.determined, found.undetermined);
-    let [c1, c3] = found.design.algorithm.joint.tangential;
-    let again = fit(&format!("tangential = [{c1:?}, {c3:?}]"));
+    let found = fit("friction_correction = [2.0, 0.0]");
+    assert!(
+        says(&found.determined, &["friction: friction_correction = ["]),
+        "{:?} {:?}",
+        found.determined,
+        found.undetermined
+    );
+    let [c1, c3] = found.design.algorithm.joint.friction_correction;
+    let again = fit(&format!("friction_correction = [{c1:?}, {c3:?}]"));
     assert!(says(&again.undetermined, &["friction: other constants do no better"]), "{:?}", again.undetermined);
     let solver = Solver::new(&found.design).unwrap();
     let mut off: Vec<f64> = recording
@@ -42,13 +47,18 @@ fn tangential_forces_tell_the_constants_of_friction() {
     // Without F_z the design's own stands for it, and all but friction stays.
     let mut sideways = recording.measured.clone();
     sideways.forces.iter_mut().for_each(|force| force[2] = None);
-    let before = design("", &format!("{joint}tangential = [2.0, 0.0]"));
+    let before = design("", &format!("{joint}friction_correction = [2.0, 0.0]"));
     let alone = fit_forces(&before, &recording.frames, &sideways).unwrap();
-    assert!(says(&alone.determined, &["friction: tangential = ["]), "{:?} {:?}", alone.determined, alone.undetermined);
+    assert!(
+        says(&alone.determined, &["friction: friction_correction = ["]),
+        "{:?} {:?}",
+        alone.determined,
+        alone.undetermined
+    );
     assert!(says(&alone.undetermined, &["F_z, curve and gains: no normal force is known"]), "{:?}", alone.undetermined);
     assert!(says(&alone.remarks, &["friction is a share of F_z", "check it with a weight"]), "{:?}", alone.remarks);
     let mut unchanged = alone.design.clone();
-    unchanged.algorithm.joint.tangential = [2.0, 0.0];
+    unchanged.algorithm.joint.friction_correction = [2.0, 0.0];
     assert_eq!(unchanged, before);
     assert!(alone.holds.is_empty() && alone.errors.is_none() && alone.errors_fitted.is_none());
     assert!(found.errors_fitted.is_some());
@@ -58,7 +68,7 @@ fn tangential_forces_tell_the_constants_of_friction() {
     assert!(rested.forces.iter().any(|force| force[2].is_some()));
     assert_eq!(fit_forces(&before, &recording.frames, &rested).unwrap().design, alone.design);
     // As from all components: the design's F_z errs by little here.
-    let ratio = alone.design.algorithm.joint.tangential[0] / c1;
+    let ratio = alone.design.algorithm.joint.friction_correction[0] / c1;
     assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
     let pulled: Vec<Vec<f64>> = recording.frames.iter().map(|frame| frame.iter().map(|pa| -pa).collect()).collect();
     let said = fit_forces(&before, &pulled, &sideways).map(drop).unwrap_err().to_string();

@@ -4,8 +4,7 @@ use golden::design::{Correction, Design, Kernel};
 use golden::kernel::gain;
 use golden::parity::CLASSES;
 
-use super::points::MOST_POINTS;
-use super::{JointPlan, timing};
+use super::{JointPlan, SearchPlan, timing};
 use crate::plan::format::{MANY_LANES, short};
 
 /// Share by which the gain may differ from what the kernel lacks under a wide contact.
@@ -14,7 +13,7 @@ const STALE_GAIN: f64 = 0.1;
 /// What the estimator is made of.
 pub fn report(plan: &JointPlan, design: &Design) -> String {
     let constants = &design.algorithm.joint;
-    let [c1, c3] = constants.tangential;
+    let [c1, c3] = constants.friction_correction;
     let correction = match (&plan.network, &constants.correction) {
         (Some(network), Some(correction)) => format!(
             "{} hidden units, {} inputs, weights in steps of 2^{}; {} passes of {} words, {} MACs",
@@ -28,7 +27,7 @@ pub fn report(plan: &JointPlan, design: &Design) -> String {
         _ => "none: `sptfra calibrate` trains one".to_owned(),
     };
     format!(
-        "\nFriction, joint estimator\n  grid         {}\n  gain         {}, in the matrices\n  \
+        "\nFriction, joint estimator\n  search       {}\n  gain         {}, in the matrices\n  \
          friction     c1 {c1:.4}, c3 {c3:.4}\n  network      {correction}\n{}",
         grid(plan, design),
         short(constants.gain),
@@ -36,32 +35,28 @@ pub fn report(plan: &JointPlan, design: &Design) -> String {
     )
 }
 
-/// How Condition 1 is evaluated over the plane, and why so: a cell a point, or one for several taxels.
+/// How many points of the grid are evaluated at a time.
 fn grid(plan: &JointPlan, design: &Design) -> String {
-    let side = design.algorithm.joint.grid.side();
-    let (points, cells) = (side * side, plan.cells.cells);
-    match &plan.points {
-        Some(of) => {
-            let taxels = match of.taxels {
-                1 if design.hardware.lanes > MANY_LANES => "a taxel a cycle: contacts are counted as slowly".to_owned(),
-                1 => "a taxel a cycle".to_owned(),
-                taxels => format!("{taxels} taxels a cycle with more than {MANY_LANES} lanes"),
-            };
-            format!("{side} x {side} points: {points}, at most {MOST_POINTS}, so a cell each: {taxels}")
+    let SearchPlan { side, parallel, taxels, .. } = plan.search;
+    let at_a_time = if plan.search.is_serial() {
+        format!("{parallel} at a time, as optimise is \"area\"")
+    } else {
+        match taxels {
+            1 if design.hardware.lanes > MANY_LANES => {
+                "all at a time, a taxel a cycle: contacts are counted as slowly".to_owned()
+            }
+            1 => "all at a time, a taxel a cycle".to_owned(),
+            _ => format!("all at a time, {taxels} taxels a cycle with more than {MANY_LANES} lanes"),
         }
-        None => format!(
-            "{side} x {side} points: {points}, more than {MOST_POINTS}, so no cell each: walked over in {cells} cells \
-             of {} taxels",
-            plan.cells.elements
-        ),
-    }
+    };
+    format!("{side} x {side} points, {at_a_time}")
 }
 
 /// What the search spends its cycles on. Each stage has a frame of its own; the lanes work beside them.
 fn stages(plan: &JointPlan, design: &Design) -> String {
     let sensor = &design.sensor;
     let cycles: Vec<u64> = timing::stages(sensor, plan).iter().map(|stage| stage.cycles).collect();
-    let level = timing::level(plan);
+    let level = plan.search.level(sensor);
     let after = match (&plan.network, &cycles[1..]) {
         (Some(network), [look, correction]) => format!(
             "  look         {look} cycles, and a window of {}\n  correction   {correction} cycles: first word of the window {}, network {}, friction {}\n",
@@ -72,7 +67,11 @@ fn stages(plan: &JointPlan, design: &Design) -> String {
         ),
         _ => format!("  correction   {} cycles: friction\n", timing::FRICTION),
     };
-    format!("  search       {} cycles: plane {}, level set {level}\n{after}", cycles[0], cycles[0] - level)
+    format!(
+        "  search       {} cycles: first row of points {}, level set {level}\n{after}",
+        cycles[0],
+        cycles[0] - level
+    )
 }
 
 /// Forces are divided by the gain, which should be the kernel's.

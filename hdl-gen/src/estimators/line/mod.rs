@@ -71,7 +71,7 @@ impl LinePlan {
 }
 
 impl Slot for LinePlan {
-    fn cells(&self) -> Cells {
+    fn cells(&self, _sensor: &Sensor) -> Cells {
         self.cells
     }
 
@@ -85,10 +85,6 @@ impl Slot for LinePlan {
 
     fn stages(&self, _sensor: &Sensor) -> Vec<Stage> {
         vec![Stage { cycles: timing::search(self), shows: 0 }]
-    }
-
-    fn releases(&self) -> usize {
-        0
     }
 
     fn contact_block(&self) -> BlockCost {

@@ -35,9 +35,8 @@ pub(super) struct Durations {
     pub(super) line: Option<u64>,
     /// From the last stress to what `CeAn` knows of the frame.
     pub(super) direction: u64,
-    /// Of the search, and that behind which a frame's `u_q` has no place any more.
+    /// Of the search; behind the first one a frame's `u_q` has no place any more.
     pub(super) stages: Vec<estimators::Stage>,
-    pub(super) releases: usize,
     pub(super) programs: Vec<Program>,
     /// Of each program, counted from its first issue: when its results are written to the operand memories, and the stress
     /// that comes in stands still.
@@ -71,7 +70,6 @@ impl Durations {
             line: estimator.line_latency(),
             direction: estimator.contact_latency(),
             stages: estimator.stages(&plan.design.sensor),
-            releases: estimator.releases(),
             programs: schedule.programs.clone(),
             writes: writes(plan),
             last_sum: sums.max().unwrap_or(0),

@@ -429,7 +429,7 @@ impl<'a> Control<'a> {
     /// A frame leaves a stage of the search.
     fn leave(&mut self, stage: usize) {
         self.stages[stage] = Stage { ends: None, free: self.now + self.of.stages[stage].shows + 1 };
-        if stage == self.of.releases {
+        if stage == 0 {
             self.pending.push((self.now + 1, Change::Released));
         }
     }

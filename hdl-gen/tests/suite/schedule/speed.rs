@@ -61,7 +61,7 @@ fn more_lanes_are_never_slower_on_the_papers_sensor() {
             let timeline = &plan.timeline;
             assert!(timeline.latency_cycles < before && timeline.interval_cycles <= timeline.latency_cycles);
             before = timeline.latency_cycles;
-            let Cells { cells, elements } = plan.estimator.slot().cells();
+            let Cells { cells, elements } = plan.estimator.slot().cells(&plan.design.sensor);
             let (groups, of_group) = (cells / plan.ways(), plan.elements());
             assert!(groups * elements >= of_group && (groups - 1) * elements < of_group);
         }
@@ -73,7 +73,7 @@ fn more_lanes_are_never_slower_on_the_papers_sensor() {
 #[test]
 fn no_interval_is_shorter_than_what_the_lanes_issue() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a workspace").join("designs");
-    for design in ["sensor1-fast", "sensor1-clipped", "sensor1-clipped-wide"] {
+    for design in ["sensor1-fast", "sensor1-clipped-wide"] {
         let mut design = Design::load(&folder.join(design).with_extension("toml")).expect("right");
         for lanes in (16..=MAX_LANES).step_by(4) {
             design.hardware.lanes = lanes;

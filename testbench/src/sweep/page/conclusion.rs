@@ -206,9 +206,9 @@ fn keys(point: &Point) -> String {
         }
         None => format!("{{ kind = \"{}\" }}", point.filter),
     };
-    let calibrated = point.calibration.map_or_else(String::new, |Calibration { grid, units, family }| {
+    let calibrated = point.calibration.map_or_else(String::new, |Calibration { units, training_set }| {
         let remark = if units > 0 { format!("   # sptfra calibrate --hidden {units}") } else { String::new() };
-        format!("\ngrid = {grid}\nfamily = \"{family}\"{remark}")
+        format!("\ntraining_set = \"{training_set}\"{remark}")
     });
     let plan = if point.plan == PlanKind::Paper { "paper" } else { "reduced" };
     format!(

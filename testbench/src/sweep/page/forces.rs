@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn the_recommended_design_comes_first() {
-        let designs = ["sensor1-reduced", "sensor1-fast", "sensor1-joint"].map(|name| {
+        let designs = ["sensor1-reduced", "sensor1-fast", "sensor1-wide"].map(|name| {
             let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs");
             Design::load(&folder.join(format!("{name}.toml"))).expect("a design")
         });
@@ -142,8 +142,8 @@ mod tests {
         let mut recommended = point("a", 16, 2000, 2.0);
         recommended.estimator = Estimator::Joint;
         recommended.calibration = Calibration::of(&designs[2].algorithm);
-        assert_eq!(names(Some(&recommended)), ["sensor1_joint", "sensor1_fast", "sensor1_reduced"]);
+        assert_eq!(names(Some(&recommended)), ["sensor1_wide", "sensor1_fast", "sensor1_reduced"]);
         assert_eq!(names(Some(&point("a", 16, 2000, 2.0)))[0], "sensor1_reduced");
-        assert_eq!(names(None), ["sensor1_fast", "sensor1_joint", "sensor1_reduced"]);
+        assert_eq!(names(None), ["sensor1_fast", "sensor1_wide", "sensor1_reduced"]);
     }
 }

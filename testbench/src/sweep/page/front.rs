@@ -1,7 +1,6 @@
 //! Latency against error, and what width and lanes do to both.
 
-use golden::design::{Estimator, Family, PlanKind};
-use hdl_gen::estimators::joint::points::MOST_POINTS;
+use golden::design::{Estimator, PlanKind, TrainingSet};
 
 use super::dots::{self, Dot, Rim};
 use super::paper::TABLE_3;
@@ -25,8 +24,7 @@ const KINDS: [Kind; 6] = [
     ("line, paper's plan, F3", "#8e5bd0", |point| point.filter == "f3"),
 ];
 const JOINT: (&str, &str) = ("joint estimator", "#2a9d5c");
-const POINTS: (&str, &str) = ("joint estimator, a cell a point", "#10a3a3");
-const WIDE: (&str, &str) = ("joint estimator, wide family", "#8fb821");
+const GENERAL: (&str, &str) = ("joint estimator, trained on general contacts", "#8fb821");
 /// Errors above are drawn at the rim.
 const MOST_PERCENT: f64 = 100.0;
 const LEAST_PERCENT: f64 = 1.0;
@@ -37,7 +35,7 @@ pub type Legend = Vec<(&'static str, &'static str)>;
 /// The entries of the fronts' legend that points of a page have.
 pub fn legend(points: &[Point]) -> Legend {
     let used = |colour: &str| points.iter().any(|point| style(point).1 == colour);
-    let ours = KINDS.iter().map(|&(name, colour, _)| (name, colour)).chain([JOINT, POINTS, WIDE]);
+    let ours = KINDS.iter().map(|&(name, colour, _)| (name, colour)).chain([JOINT, GENERAL]);
     ours.filter(|(_, colour)| used(colour)).chain([("the paper, Table 3", MARK)]).collect()
 }
 
@@ -45,8 +43,7 @@ pub fn legend(points: &[Point]) -> Legend {
 pub fn style(point: &Point) -> (&'static str, &'static str) {
     if point.estimator == Estimator::Joint {
         return match point.calibration {
-            Some(joint) if joint.family == Family::Wide => WIDE,
-            Some(joint) if joint.grid * joint.grid <= MOST_POINTS => POINTS,
+            Some(joint) if joint.training_set == TrainingSet::General => GENERAL,
             _ => JOINT,
         };
     }
@@ -230,8 +227,8 @@ mod tests {
 
     #[test]
     fn long_names_are_broken_behind_a_comma() {
-        let long = "reduced, no filter, joint, 21 × 21 points, 160 units, wide family";
-        assert_eq!(in_lines(long), ["reduced, no filter, joint, 21 × 21 points,", "160 units, wide family"]);
+        let long = "reduced plan, no filter, joint estimator, 160 units, general";
+        assert_eq!(in_lines(long), ["reduced plan, no filter, joint estimator,", "160 units, general"]);
         assert_eq!(in_lines("paper, f3, line"), ["paper, f3, line"]);
     }
 

@@ -18,7 +18,7 @@ use testbench::trial::timeout;
 use testbench::verilate::Built;
 
 use crate::support::effort::share_of;
-use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, with_joint, with_points};
+use crate::support::{built, by_plan, frames, in_parallel, planned, shipped, with_joint};
 
 /// Frames of a long row.
 fn long() -> usize {
@@ -30,7 +30,7 @@ fn fewest_of_a_status() -> usize {
     share_of(5)
 }
 
-/// Cycles of a frame from which not every one is tried: the search of the joint estimator is one long walk.
+/// Cycles of a frame from which not every one is tried: the serial grid search is long.
 const LONG_FRAME: u64 = 2000;
 
 /// A design, planned and compiled.
@@ -59,7 +59,10 @@ fn subjects() -> &'static [Subject] {
                 (design.sensor.columns, design.sensor.rows) = (3, 3);
             }),
             small("small_joint", &|design| *design = with_joint(design.clone())),
-            small("small_points", &|design| *design = with_points(design.clone())),
+            small("small_area", &|design| {
+                *design = with_joint(design.clone());
+                design.hardware.optimise = Optimise::Area;
+            }),
             by_plan(shipped("small"), PlanKind::Reduced, Outputs::Resultants),
         ];
         in_parallel(&designs, |design| {
@@ -215,7 +218,7 @@ fn pressing_straight_down_has_no_direction() {
             let words = subject.answer(&encode(&stress.iter().map(|value| sign * value).collect::<Vec<_>>()));
             let pulls = if *sign < 0.0 { 0 } else { NO_TENSION };
             // Whoever tells an error says that it may be all of the force.
-            let doubts = if subject.plan.thresholds.doubt.is_some() { DOUBTFUL } else { 0 };
+            let doubts = if subject.plan.thresholds.error.is_some() { DOUBTFUL } else { 0 };
             assert_eq!(words[0], DIRECTION_UNKNOWN | pulls | doubts, "one sign everywhere");
             let answer = read(&words);
             assert_eq!(answer.mu_xy.map(f64::to_bits), [0, 0]);

@@ -8,7 +8,6 @@ mod module;
 use std::collections::BTreeMap;
 
 use golden::design::{Design, Estimator, Outputs, PlanKind, Sensor};
-use golden::estimators::joint::Grid;
 use golden::matrices::{Matrices, MatrixName};
 use golden::solver::{Solver, Status};
 use hdl_gen::blocks;
@@ -127,11 +126,11 @@ fn counting_is_over_before_the_search() {
         plain.algorithm.count_contacts = false;
         let [plain, counted] = [&plain, &design].map(planned);
         assert_eq!(plain.timeline, counted.timeline, "{}", design.name);
-        // With a cell a point on any other grid, too; walk and line have as many cells as the grid at hand needs.
+        // Of the grid search on any other sensor, too; the line search has as many cells as the sensor at hand needs.
         let slot = counted.estimator.slot();
         let own = &counted.design.sensor;
         let mut sensors = vec![own.clone()];
-        if design.algorithm.estimator == Estimator::Joint && design.algorithm.joint.grid == Grid::COARSE {
+        if design.algorithm.estimator == Estimator::Joint {
             let grids = (2..=64).flat_map(|columns| (2..=64).map(move |rows| (columns, rows)));
             sensors.extend(grids.map(|(columns, rows)| Sensor { columns, rows, ..own.clone() }));
         }
@@ -147,8 +146,6 @@ fn counting_is_over_before_the_search() {
 fn counts_wait_for_their_frames() {
     let mut design = counting(with_joint(shipped("small")));
     design.algorithm.outputs = Outputs::Resultants;
-    // With a cell a point a frame's u has a place no longer than its search takes: most frames are inside.
-    design.algorithm.joint.grid = Grid::COARSE;
     design.name += "_resultants";
     let plan = planned(&design);
     let matrices = Matrices::of(&plan.design).expect("matrices");
@@ -226,7 +223,7 @@ fn table() {
         (Kind::Heavier(6), "one 6 times as heavy"),
         (Kind::Heavier(10), "one 10 times as heavy"),
     ];
-    let pairs = ["sensor1-joint", "sensor2-joint"].map(pair);
+    let pairs = ["sensor1-fast", "sensor2-fast"].map(pair);
     for (kind, label) in kinds {
         let cells = pairs.iter().map(|(plan, solver)| {
             let [same, right, several] = agreement(plan, solver, kind, 100, 3000);

@@ -3,10 +3,9 @@
 use crate::calibration;
 use crate::support::{by_plan, shipped, with_lanes};
 use golden::design::{
-    Calibration, CalibrationIn, Curve, Design, Estimator, Input, InputRange, Outputs, Overrun, PlanKind, Samples, Slip,
+    Calibration, CalibrationIn, Curve, Design, Estimator, InputRange, Outputs, Overrun, PlanKind, Samples, Slip,
     Tension,
 };
-use golden::estimators::joint::Grid;
 
 /// One of each kind: square and not, filtered and not, fewest and most lanes, narrowest words, every plan.
 pub fn designs() -> Vec<Design> {
@@ -23,15 +22,16 @@ pub fn designs() -> Vec<Design> {
     let taxels = broken.sensor.taxels();
     let gain = (0..taxels).map(|taxel| (1.0 + taxel as f64) / 4.0).collect();
     let calibration = Some(Calibration { gain, offset: vec![-7.5; taxels] });
-    broken.input =
-        Input { pa_per_count: Some(-3.0), calibration, dead: vec![0, 1, 7], curve: None, tension: Tension::Clipped };
+    broken.input.pa_per_count = Some(-3.0);
+    broken.input.calibration = calibration;
+    broken.input.dead = vec![0, 1, 7];
+    broken.input.tension = Tension::Clipped;
     let mut curved = by_plan(shipped("small"), reduced, Outputs::Field);
     "curved".clone_into(&mut curved.name);
     curved.input.curve = Some(Curve { points: vec![[0.0, 0.0], [50.0, -100.0], [4095.0, -1e5]], law: None });
     // With more than 64 lanes: two taxels a cycle, a row of points weighed in one, a collector that looks ahead.
     let mut uncorrected = by_plan(with_lanes(shipped("odd"), 68), reduced, Outputs::Resultants);
     uncorrected.algorithm.estimator = Estimator::Joint;
-    uncorrected.algorithm.joint.grid = Grid::COARSE;
     uncorrected.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
     // Wide streams: samples taken at once, of a beat that is not filled, and one by one.
     let mut wide = by_plan(broken.clone(), reduced, Outputs::Field);
@@ -99,7 +99,6 @@ pub fn designs() -> Vec<Design> {
         shipped("sensor1-reduced-64"),
         shipped("sensor1-resultants"),
         tiny,
-        shipped("sensor1-joint"),
         shipped("sensor1-fast"),
         shipped("small-joint"),
         shipped("sensor2-wide"),

@@ -14,8 +14,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use golden::design::{Correction, Design, Doubt, Estimator, Outputs, PlanKind};
-use golden::estimators::joint::Grid;
+use golden::design::{Correction, Design, ErrorOutput, Estimator, Outputs, PlanKind};
 use hdl_gen::plan::Plan;
 use testbench::simulate::Simulation;
 use testbench::trial::{Trial, rtl_sources};
@@ -94,15 +93,8 @@ pub fn with_joint(mut design: Design) -> Design {
         half_window: [1, 1],
         hidden: vec![weights(inputs), weights(inputs), weights(inputs)],
         output: [weights(3), weights(3)],
-        doubt: Some(Doubt { base: -9000, output: weights(3) }),
+        error: Some(ErrorOutput { base: -9000, output: weights(3) }),
     });
-    design
-}
-
-/// As [`with_joint`], with a cell for each of 15 x 15 points.
-pub fn with_points(design: Design) -> Design {
-    let mut design = with_joint(design);
-    design.algorithm.joint.grid = Grid::COARSE;
     design
 }
 

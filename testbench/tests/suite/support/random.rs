@@ -3,7 +3,7 @@
 use std::env;
 
 use golden::design::{
-    Calibration, CalibrationIn, Correction, Curve, Design, Doubt, Grid, InputRange, JointConstants, Kernel, Optimise,
+    Calibration, CalibrationIn, Correction, Curve, Design, ErrorOutput, InputRange, JointConstants, Kernel, Optimise,
     Outputs, Overrun, Regularisation, Samples, Sensor, Slip, Tension,
 };
 use hdl_gen::plan::Plan;
@@ -150,9 +150,8 @@ lanes = {lanes}
 fn constants(sensor: &Sensor, correction: bool) -> JointConstants {
     let mut random = ChaCha8Rng::seed_from_u64((64 * sensor.columns + sensor.rows) as u64);
     let mut constants = JointConstants {
-        grid: Grid::ALL[random.random_range(0..Grid::ALL.len())],
         gain: random.random_range(0.5..2.0),
-        tangential: [random.random_range(0.5..1.5), random.random_range(-0.3..0.3)],
+        friction_correction: [random.random_range(0.5..1.5), random.random_range(-0.3..0.3)],
         ..JointConstants::default()
     };
     if correction {
@@ -164,9 +163,9 @@ fn constants(sensor: &Sensor, correction: bool) -> JointConstants {
         let inputs = Correction::inputs(half_window);
         let hidden = (0..units).map(|_| row(inputs, largest)).collect();
         let output = [row(units, 4096), row(units, 131_071)];
-        let doubt = Doubt { base: -12_000, output: row(units, 4096) };
-        let doubt = half_window[0].is_multiple_of(2).then_some(doubt);
-        constants.correction = Some(Correction { half_window, hidden, output, doubt });
+        let error = ErrorOutput { base: -12_000, output: row(units, 4096) };
+        let error = half_window[0].is_multiple_of(2).then_some(error);
+        constants.correction = Some(Correction { half_window, hidden, output, error });
     }
     constants
 }

@@ -31,14 +31,14 @@ pub struct Case {
 /// Designs with constants of the joint estimator for their sensors, and the names and contents of their weights.
 const CALIBRATED: [[&str; 3]; 2] = [
     [
-        include_str!("../../../../designs/sensor1-joint.toml"),
-        "sensor1-joint.weights.csv",
-        include_str!("../../../../designs/sensor1-joint.weights.csv"),
+        include_str!("../../../../designs/sensor1-fast.toml"),
+        "sensor1-fast.weights.csv",
+        include_str!("../../../../designs/sensor1-fast.weights.csv"),
     ],
     [
-        include_str!("../../../../designs/sensor2-joint.toml"),
-        "sensor2-joint.weights.csv",
-        include_str!("../../../../designs/sensor2-joint.weights.csv"),
+        include_str!("../../../../designs/sensor2-fast.toml"),
+        "sensor2-fast.weights.csv",
+        include_str!("../../../../designs/sensor2-fast.weights.csv"),
     ],
 ];
 

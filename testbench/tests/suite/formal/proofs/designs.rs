@@ -1,7 +1,6 @@
 //! The designs that are proved: the 4 × 3 one of `designs/small.toml`, changed.
 
 use golden::design::{CalibrationIn, Correction, Design, Estimator, InputRange, Optimise, Outputs, Overrun, PlanKind};
-use golden::estimators::joint::Grid;
 
 pub fn paper(design: &mut Design) {
     design.algorithm.plan = PlanKind::Paper;
@@ -52,17 +51,12 @@ pub fn corrected(design: &mut Design) {
         half_window: [0, 0],
         hidden: vec![vec![1; inputs]],
         output: [vec![1], vec![1]],
-        doubt: None,
+        error: None,
     });
 }
 
-pub fn corrected_after_points(design: &mut Design) {
-    corrected(design);
-    design.algorithm.joint.grid = Grid::COARSE;
-}
-
 pub fn corrected_resultants(design: &mut Design) {
-    corrected_after_points(design);
+    corrected(design);
     design.algorithm.outputs = Outputs::Resultants;
 }
 

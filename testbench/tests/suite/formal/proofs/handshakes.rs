@@ -1,8 +1,6 @@
 //! The handshakes between the blocks of a whole design: no frame is lost, doubled or overwritten on its way.
 
-use super::designs::{
-    corrected, corrected_after_points, corrected_resultants, joint, paper, reduced, reduced_for_latency, resultants,
-};
+use super::designs::{corrected, corrected_resultants, joint, paper, reduced, reduced_for_latency, resultants};
 use super::{Broken, Proof};
 
 /// The leaf cores that the handshake does not need, and the blocks of arithmetic.
@@ -17,8 +15,7 @@ const FREE: &[&str] = &[
     "*sptfra_bz*",
     "*sptfra_cean*",
     "*sptfra_search*",
-    "*sptfra_plane*",
-    "*sptfra_level_set*",
+    "*sptfra_grid_search*",
     "*sptfra_correction*",
     "*sptfra_friction*",
     "*sptfra_summary*",
@@ -61,20 +58,15 @@ const LOOK_BROKEN: &[Broken] = &[
     ("sptfra_joint_stages", "centre_waits) && !correcting : look_start", "centre_waits) : look_start"),
     ("sptfra_joint_stages", "!looking && !showing : !correcting", "!showing : !correcting"),
     ("sptfra_joint_stages", "!looking && !showing : !correcting", "!looking : !correcting"),
-    ("sptfra_joint_stages", "            centre_waits <= 1'b0;\n            look_bank", "            look_bank"),
+    (
+        "sptfra_joint_stages",
+        "            centre_waits <= 1'b0;\n            correcting <= 1'b1",
+        "            correcting <= 1'b1",
+    ),
     (
         "sptfra_joint_stages",
         "            showing <= 1'b0;\n        end\n        if (correction_start)",
         "        end\n        if (correction_start)",
-    ),
-];
-/// The memory that is filled is the look's, too.
-const KEPT_BROKEN: &[Broken] = &[
-    ("sptfra_joint_stages", "            look_bank <= !look_bank;\n", ""),
-    (
-        "sptfra_joint_stages",
-        "? look_start : correction_start;\n\n    always",
-        "? look_start : look_start;\n\n    always",
     ),
 ];
 const PAPER_BROKEN: &[Broken] = &[
@@ -169,7 +161,7 @@ pub const PROOFS: &[Proof] = &[
         broken: JOINT_BROKEN,
     },
     Proof {
-        name: "frame handshake, joint estimator with a correction after a walk",
+        name: "frame handshake, joint estimator with a correction",
         harness: "reduced",
         design: corrected,
         defines: &["JOINT", "LOOK"],
@@ -180,21 +172,7 @@ pub const PROOFS: &[Proof] = &[
         free_wires: &["turns.residual_written"],
         induction: "5",
         altered: &[],
-        broken: KEPT_BROKEN,
-    },
-    Proof {
-        name: "frame handshake, joint estimator with a correction after points",
-        harness: "reduced",
-        design: corrected_after_points,
-        defines: &["JOINT", "LOOK", "HANDED_ON"],
-        top: "subject",
-        parameters: "",
-        models: &[("sptfra_spmv_array", "reduced_lanes")],
-        free: FREE,
-        free_wires: &["turns.residual_written"],
-        induction: "5",
-        altered: &[],
-        broken: &[("sptfra_joint_stages", "(LOOK == 0) || (HANDED_ON != 0)", "(LOOK == 0)")],
+        broken: &[("sptfra_joint_stages", "u_released = look_start;", "u_released = search_start;")],
     },
     Proof {
         name: "frame handshake, resultants only by the joint estimator with a correction",

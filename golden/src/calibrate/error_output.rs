@@ -1,28 +1,30 @@
-//! Training of what a correction knows of the error that it leaves.
+//! Training of the standard error: the network's third output.
 //!
-//! The hidden units of the correction stay as they were found; some more join them that enter nothing but the doubt. The
+//! The hidden units of the correction stay as they were found; some more join them that enter this output alone. The
 //! logarithm of the error is a sum over the part of all of them that is the same for every mirror image. It is found on
-//! frames of the wide family that the correction has not seen, as the most likely width of a normal distribution of the
+//! general frames that the correction has not seen, as the most likely width of a normal distribution of the
 //! error in the plane.
 
 use nalgebra::{DMatrix, DVector};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
+use super::general::{self, Body};
 use super::looks::Basis;
 use super::observer::{Observer, Sample};
 use super::samples::stream;
 use super::train::{Layer, quantised, scaled_alike};
-use super::wide::{self, Body};
 use super::{CalibrateError, Settings, Stage, twins};
-use crate::estimators::doubt::{DOUBT_FRACTION, limited, ratio};
-use crate::estimators::joint::{Correction, Doubt, Joint, MAX_HIDDEN, NetworkScratch, WEIGHT_FRACTION, WEIGHT_LIMIT};
+use crate::estimators::joint::{
+    Correction, ErrorOutput, Joint, MAX_HIDDEN, NetworkScratch, WEIGHT_FRACTION, WEIGHT_LIMIT,
+};
+use crate::estimators::standard_error::{ERROR_FRACTION, limited, ratio};
 use crate::parity::{CLASSES, butterfly};
 use crate::scene::normal;
 
-/// One hidden unit for the doubt alone for so many of the correction.
+/// One hidden unit for the error alone for so many of the correction.
 const SHARE: usize = 4;
-/// Most hidden units of a correction whose doubt finds room beside them.
+/// Most hidden units of a correction whose error output finds room beside them.
 pub const MOST_FOUND: usize = MAX_HIDDEN * SHARE / (SHARE + 1);
 /// Samples of a step.
 const BATCH: usize = 256;
@@ -30,7 +32,7 @@ const BATCH: usize = 256;
 const RATES: [f32; 2] = [3e-3, 1e-2];
 /// A frame counts as at most so many times as far off, squared, as it should be.
 const FARTHEST: f64 = 16.0;
-/// A unit that varies by less tells nothing.
+/// A unit that varies by less is no input.
 const LEAST_SPREAD: f32 = 1e-2;
 /// No frame's error is taken for less: a logarithm has no 0.
 const LEAST_ERROR: f64 = 1e-4;
@@ -44,7 +46,7 @@ pub(super) fn samples(
     tick: &mut dyn FnMut(Stage),
 ) -> Result<Vec<Sample>, CalibrateError> {
     let (mut of_bodies, mut random) = (stream(settings.seed, 3), stream(settings.seed, 4));
-    let frames = settings.doubted();
+    let frames = settings.error_samples();
     let bodies: Vec<Body> = (0..frames)
         .map(|_| {
             tick(Stage::Contact);
@@ -54,12 +56,12 @@ pub(super) fn samples(
     let mut samples = Vec::with_capacity(frames);
     for index in 0..frames {
         tick(Stage::Sample);
-        samples.extend(wide::sample(&bodies, index, true, observer, &mut random)?);
+        samples.extend(general::sample(&bodies, index, true, observer, &mut random)?);
     }
     Ok(samples)
 }
 
-/// Finds the doubt of a correction, which has more hidden units then, on samples that it was not trained on.
+/// Trains the error output of a correction, which has more hidden units then, on samples that it was not trained on.
 pub(super) fn train(
     estimator: &Joint,
     correction: Correction,
@@ -90,7 +92,7 @@ pub(super) fn train(
     let mut batch = [0, 1, 2, 3].map(|class| DMatrix::zeros(basis.size(class), BATCH));
     let mut of_known = DMatrix::zeros(found, BATCH);
     let mut wanted = vec![0.0; BATCH];
-    let steps = settings.doubt_steps();
+    let steps = settings.error_steps();
     for step in 1..=steps {
         for (column, wanted) in wanted.iter_mut().enumerate() {
             let index = random.random_range(0..samples.len());
@@ -107,9 +109,9 @@ pub(super) fn train(
     learner.finish(&basis, correction, &mean, &spread)
 }
 
-/// The doubt while it is learned.
+/// The error output during training.
 struct Learner {
-    /// Weights of the units of the doubt alone (rows) on the whitened inputs of each class.
+    /// Weights of the units of the error output alone (rows) on the whitened inputs of each class.
     hidden: [Layer; CLASSES],
     /// Weights of these, of the units of the correction, and what is added.
     output: Layer,
@@ -191,7 +193,7 @@ impl Learner {
         let mut of_hidden = [0, 1, 2, 3].map(|class| &self.images[class] * batch[class].transpose());
         if let Some(diagonal) = &self.diagonal {
             diagonal.add(&mut of_hidden);
-            // A unit and its twin mean the same to the doubt.
+            // A unit and its twin weigh the same here.
             let before = of_output.clone();
             for unit in 0..units {
                 of_output[unit] += before[twins::twin(unit, units)];
@@ -203,7 +205,7 @@ impl Learner {
         self.output.descend(&of_output, RATES[1] * rate, step);
     }
 
-    /// The correction with the units of the doubt behind its own, in whole steps.
+    /// The correction with the units of the error output behind its own, in whole steps.
     fn finish(
         self,
         basis: &Basis,
@@ -214,34 +216,34 @@ impl Learner {
         let (units, found) = (self.images[0].nrows(), correction.hidden.len());
         let weights = self.output.weights.map(f64::from);
         let mut hidden = basis.weights(self.hidden.each_ref().map(|layer| &layer.weights));
-        let mut own = weights.rows(0, units).into_owned();
-        scaled_alike(&mut hidden, &mut own);
+        let mut own_weights = weights.rows(0, units).into_owned();
+        scaled_alike(&mut hidden, &mut own_weights);
         let of_known = weights.rows(units, found).component_div(&spread.map(f64::from));
         let base = weights[units + found] - of_known.dot(&mean.map(f64::from));
         let limit = f64::from(WEIGHT_LIMIT);
         let whole =
             |value: f64, fraction: u32| (value * f64::from(1 << fraction)).round().clamp(-limit, limit - 1.0) as i32;
         let output = |weights: &[f64]| weights.iter().map(|&weight| whole(weight, WEIGHT_FRACTION)).collect::<Vec<_>>();
-        let mut doubtful = Correction {
+        let mut own = Correction {
             half_window: correction.half_window,
             hidden: quantised(&hidden),
             output: [vec![0; units], vec![0; units]],
-            doubt: Some(Doubt { base: whole(base, DOUBT_FRACTION), output: output(own.as_slice()) }),
+            error: Some(ErrorOutput { base: whole(base, ERROR_FRACTION), output: output(own_weights.as_slice()) }),
         };
         let mut of_known = output(of_known.as_slice());
         if self.diagonal.is_some() {
-            twins::tie(&mut doubtful);
+            twins::tie(&mut own);
             for unit in 0..found {
                 let other = twins::twin(unit, found);
                 let mean = i32::midpoint(of_known[unit], of_known[other]);
                 (of_known[unit], of_known[other]) = (mean, mean);
             }
         }
-        correction.hidden.append(&mut doubtful.hidden);
-        for (output, mut zeros) in correction.output.iter_mut().zip(doubtful.output) {
+        correction.hidden.append(&mut own.hidden);
+        for (output, mut zeros) in correction.output.iter_mut().zip(own.output) {
             output.append(&mut zeros);
         }
-        correction.doubt = doubtful.doubt.map(|doubt| Doubt { output: [of_known, doubt.output].concat(), ..doubt });
+        correction.error = own.error.map(|error| ErrorOutput { output: [of_known, error.output].concat(), ..error });
         correction
     }
 }

@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// One taxel's part in Condition 1 at the points of the (mu_x, mu_y) plane: X_i = u0 - dead zone + mu_x u1 for each
-// column of points, Y_j = mu_y u2 for each row. Shifts and additions only; a taxel a cycle, six cycles from u to X, Y.
+// A taxel's terms in Condition 1: X_i = u0 - dead zone + mu_x u1 for each column, Y_j = mu_y u2 for each row.
 //
-// mu is a multiple of 3/16. A step of X and Y is 2^-23 of the power of two above sum |b|: the leading bit of the sum is
-// the frame's own scale. A u beyond two such powers is clipped.
+// Shifts and additions only, as mu is a multiple of 1/4. A step of X and Y is 2^-FRACTION of the power of two above
+// sum |b|: block floating point, with a scale for each frame. A u beyond that power is clipped. X and Y are rounded
+// down.
+//
+// Latency from u to X and Y: 6 cycles. Throughput: a taxel a cycle.
 
 `default_nettype none
 
-module sptfra_points_taxel #(
-    // Points along an axis, an odd number up to 15
-    parameter integer SIDE = 15,
+module sptfra_grid_terms #(
+    // Points along an axis, 11 or 13
+    parameter integer SIDE = 13,
+    // Rows of the grid whose Y is wanted: SIDE, or 1
+    parameter integer AT_ONCE = SIDE,
+    // Bits of a term below the leading bit of sum |b|
+    parameter integer FRACTION = 21,
     // Left shift of u before the right shift by the bits of sum |b|: to one bit finer than X
-    parameter integer U_LEFT = 24
+    parameter integer U_LEFT = 22,
+    // Derived: bits of a term, and of the margin
+    parameter integer TERM_BITS = FRACTION + 4,
+    parameter integer MARGIN_BITS = FRACTION - 7
 ) (
     input  wire clock,
     input  wire reset,
@@ -21,31 +30,34 @@ module sptfra_points_taxel #(
     input  wire start,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
-    output wire [15:0] margin, // 2^-8 sum |b|, and 1; there 6 cycles after start
+    output wire [MARGIN_BITS-1:0] margin, // 2^-8 sum |b|, and 1; there 6 cycles after start
     // A taxel, from the fourth cycle after start on
     input  wire valid,
     input  wire signed [26:0] u0,
     input  wire signed [26:0] u1,
     input  wire signed [26:0] u2,
-    // Its parts, the first of a row in the lowest bits
-    output wire [SIDE*27-1:0] along_x,
-    output wire [SIDE*27-1:0] along_y,
+    // The row that is wanted of one, five cycles after u
+    input  wire [3:0] row,
+    // Its terms, the least mu in the lowest bits
+    output wire [SIDE*TERM_BITS-1:0] along_x,
+    output wire [AT_ONCE*TERM_BITS-1:0] along_y,
     output reg  clipped // a u of the frame was
 );
 
     localparam integer REACH = SIDE / 2;
-    localparam integer FRACTION = 23;
     localparam integer SHARE_SHIFT = 8; // dead zone and margin are 2^-8 of the largest and of the sum
-    localparam integer U_BITS = 25; // of u, normalised
+    localparam integer U_BITS = FRACTION + 1; // of u, normalised
     localparam integer TWICE_BITS = U_BITS + 2; // of twice u, and what rounding adds
     localparam integer WIDE = 27 + ((U_LEFT > TWICE_BITS) ? U_LEFT : TWICE_BITS); // before the scale is taken off
-    localparam integer STEP_SHIFT = 4; // a step of mu is three times 2^-STEP_SHIFT
-    localparam integer MULTIPLE_BITS = U_BITS + 5; // of up to 7 steps
-    localparam integer PART_BITS = 27 + STEP_SHIFT; // before the fraction is dropped
+    localparam integer STEP_SHIFT = 2; // a step of mu is 2^-STEP_SHIFT
+    localparam integer MULTIPLES = 7; // of a step: 0 to 6
+    localparam integer MULTIPLE_BITS = U_BITS + 3;
+    localparam integer WIDE_BITS = TERM_BITS + STEP_SHIFT; // before the fraction is dropped
 
     generate
-        if ((SIDE % 2 == 0) || (SIDE > 15)) begin : gen_check
-            sptfra_error_points_along_an_axis_must_be_odd_and_at_most_15 invalid ();
+        // With more points a term would be wider
+        if (((SIDE != 11) && (SIDE != 13)) || ((AT_ONCE != 1) && (AT_ONCE != SIDE))) begin : gen_check
+            sptfra_error_a_side_has_11_or_13_points_all_rows_or_one invalid ();
         end
     endgenerate
 
@@ -75,7 +87,7 @@ module sptfra_points_taxel #(
     end
 
     // One more, so that the least value is below the level in any case
-    assign margin = {1'b0, sum_shifted[FRACTION-SHARE_SHIFT-1:0]} + 16'd1;
+    assign margin = {1'b0, sum_shifted[FRACTION-SHARE_SHIFT-1:0]} + {{(MARGIN_BITS - 1){1'b0}}, 1'b1};
 
     // ---- u normalised, rounded and clipped: index k: k cycles after u
     wire [3*27-1:0] given = {u2, u1, u0};
@@ -128,11 +140,11 @@ module sptfra_points_taxel #(
         end
     end
 
-    // ---- Three times u1 and u2, and their multiples
+    // ---- Multiples of u1 and u2: index k: k cycles after u
     wire signed [U_BITS-1:0] u0_3 = u_3[U_BITS*0 +: U_BITS];
     reg signed [U_BITS:0] base_4; // u0 - dead zone
     reg signed [U_BITS:0] base_5;
-    wire [2*8*MULTIPLE_BITS-1:0] multiples_5; // of u1, then of u2: 0 to 7 steps
+    wire [2*MULTIPLES*MULTIPLE_BITS-1:0] multiples_5; // of u1, then of u2
 
     always @(posedge clock) begin
         base_4 <= {u0_3[U_BITS-1], u0_3} - { {(U_BITS + 1 - FRACTION + SHARE_SHIFT){1'b0}}, dead_zone};
@@ -142,12 +154,11 @@ module sptfra_points_taxel #(
     generate
         for (index = 0; index < 2; index = index + 1) begin : gen_multiples
             wire signed [U_BITS-1:0] u = u_3[U_BITS*(index + 1) +: U_BITS];
-            wire signed [MULTIPLE_BITS-1:0] u_wide = { {(MULTIPLE_BITS - U_BITS){u[U_BITS-1]}}, u};
             reg signed [MULTIPLE_BITS-1:0] step_4;
-            reg [8*MULTIPLE_BITS-1:0] times_5;
+            reg [MULTIPLES*MULTIPLE_BITS-1:0] times_5;
 
             always @(posedge clock) begin
-                step_4 <= u_wide + (u_wide <<< 1);
+                step_4 <= { {(MULTIPLE_BITS - U_BITS){u[U_BITS-1]}}, u};
                 times_5[MULTIPLE_BITS*0 +: MULTIPLE_BITS] <= {MULTIPLE_BITS{1'b0}};
                 times_5[MULTIPLE_BITS*1 +: MULTIPLE_BITS] <= step_4;
                 times_5[MULTIPLE_BITS*2 +: MULTIPLE_BITS] <= step_4 <<< 1;
@@ -155,37 +166,60 @@ module sptfra_points_taxel #(
                 times_5[MULTIPLE_BITS*4 +: MULTIPLE_BITS] <= step_4 <<< 2;
                 times_5[MULTIPLE_BITS*5 +: MULTIPLE_BITS] <= (step_4 <<< 2) + step_4;
                 times_5[MULTIPLE_BITS*6 +: MULTIPLE_BITS] <= (step_4 <<< 2) + (step_4 <<< 1);
-                times_5[MULTIPLE_BITS*7 +: MULTIPLE_BITS] <= (step_4 <<< 3) - step_4;
             end
 
-            assign multiples_5[8*MULTIPLE_BITS*index +: 8*MULTIPLE_BITS] = times_5;
+            assign multiples_5[MULTIPLES*MULTIPLE_BITS*index +: MULTIPLES*MULTIPLE_BITS] = times_5;
         end
 
-        // ---- The parts, rounded down
-        for (index = 0; index < SIDE; index = index + 1) begin : gen_parts
+        // ---- The terms
+        for (index = 0; index < SIDE; index = index + 1) begin : gen_along_x
             localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
-            wire signed [MULTIPLE_BITS-1:0] of_u1 = multiples_5[MULTIPLE_BITS*STEPS +: MULTIPLE_BITS];
-            wire signed [MULTIPLE_BITS-1:0] of_u2 = multiples_5[MULTIPLE_BITS*(8 + STEPS) +: MULTIPLE_BITS];
-            wire signed [PART_BITS-1:0] base = { {(PART_BITS - U_BITS - 1 - STEP_SHIFT){base_5[U_BITS]}}, base_5,
+            wire signed [MULTIPLE_BITS-1:0] times = multiples_5[MULTIPLE_BITS*STEPS +: MULTIPLE_BITS];
+            wire signed [WIDE_BITS-1:0] base = { {(TERM_BITS - U_BITS - 1){base_5[U_BITS]}}, base_5,
                 {STEP_SHIFT{1'b0}}};
-            wire signed [PART_BITS-1:0] wide_u1 = { {(PART_BITS - MULTIPLE_BITS){of_u1[MULTIPLE_BITS-1]}}, of_u1};
-            wire signed [PART_BITS-1:0] wide_u2 = { {(PART_BITS - MULTIPLE_BITS){of_u2[MULTIPLE_BITS-1]}}, of_u2};
-            reg signed [PART_BITS-1:0] x_6;
-            reg signed [PART_BITS-1:0] y_6;
+            wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
+            reg signed [WIDE_BITS-1:0] x_6;
 
             always @(posedge clock) begin
-                x_6 <= (index < REACH) ? base - wide_u1 : base + wide_u1;
-                y_6 <= (index < REACH) ? -wide_u2 : wide_u2;
+                x_6 <= (index < REACH) ? base - wide : base + wide;
             end
 
-            assign along_x[27*index +: 27] = x_6[PART_BITS-1:STEP_SHIFT];
-            assign along_y[27*index +: 27] = y_6[PART_BITS-1:STEP_SHIFT];
+            assign along_x[TERM_BITS*index +: TERM_BITS] = x_6[WIDE_BITS-1:STEP_SHIFT];
 
-            wire _unused_part = &{1'b0, x_6[STEP_SHIFT-1:0], y_6[STEP_SHIFT-1:0]};
+            wire _unused_x = &{1'b0, x_6[STEP_SHIFT-1:0]};
+        end
+        for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_along_y
+            localparam integer STEPS = (index < REACH) ? REACH - index : index - REACH;
+            wire is_negative;
+            wire signed [MULTIPLE_BITS-1:0] times;
+            wire signed [WIDE_BITS-1:0] wide = { {(WIDE_BITS - MULTIPLE_BITS){times[MULTIPLE_BITS-1]}}, times};
+            reg signed [WIDE_BITS-1:0] y_6;
+
+            if (AT_ONCE == 1) begin : gen_one
+                wire [MULTIPLES*MULTIPLE_BITS-1:0] of_u2
+                    = multiples_5[2*MULTIPLES*MULTIPLE_BITS-1:MULTIPLES*MULTIPLE_BITS];
+                wire [3:0] steps = is_negative ? REACH[3:0] - row : row - REACH[3:0];
+
+                assign is_negative = (row < REACH[3:0]);
+                assign times = of_u2[MULTIPLE_BITS*steps[2:0] +: MULTIPLE_BITS];
+
+                wire _unused_steps = &{1'b0, steps[3]};
+            end else begin : gen_each
+                assign is_negative = (index < REACH);
+                assign times = multiples_5[MULTIPLE_BITS*(MULTIPLES + STEPS) +: MULTIPLE_BITS];
+            end
+
+            always @(posedge clock) begin
+                y_6 <= is_negative ? -wide : wide;
+            end
+
+            assign along_y[TERM_BITS*index +: TERM_BITS] = y_6[WIDE_BITS-1:STEP_SHIFT];
+
+            wire _unused_y = &{1'b0, y_6[STEP_SHIFT-1:0]};
         end
     endgenerate
 
-    wire _unused = &{1'b0, sum_shifted, largest_shifted};
+    wire _unused = &{1'b0, sum_shifted, largest_shifted, multiples_5, row};
 
 endmodule
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The error that a correction leaves: a weighted sum over the hidden units, as a logarithm of base 2 within its range.
+// Logarithm of the remaining error, base 2: a weighted sum over the hidden units, within its range.
 //
-// A unit a cycle; the logarithm is there six cycles after the last one.
+// Throughput: a unit a cycle. Latency from the last unit: six cycles.
 
 `default_nettype none
 
-module sptfra_doubt #(
+module sptfra_error_log #(
     // Bits dropped from the sum; negative: added
     parameter integer SHIFT = 12,
     // What is added to it then, 12 fraction bits

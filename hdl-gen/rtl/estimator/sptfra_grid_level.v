@@ -1,45 +1,49 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The level set of B over SIDE x SIDE points, and its centroid: where the friction lies in the (mu_x, mu_y) plane.
+// Level set of Condition 1 over SIDE x SIDE points, and its centroid, which is the friction (mu_x, mu_y).
 //
-// A row of points a cycle comes in, and the least values are kept. The level set lies below B_min + 2^-8 sum |b|; a
-// point weighs as the square of its depth, so that it weighs nothing at the edge. For that the rows come again: five
-// points a cycle are weighed, or a row of 15. From the first row to done: a cycle a row, then three, and 37; or one,
-// and 38.
+// Rows of points come in, and the least values are kept. The level set lies below B_min + 2^-8 sum |b|. A point weighs
+// as the square of its depth, so that it weighs nothing at the edge. For that the rows come again, and five points a
+// cycle are weighed, or a whole row.
+//
+// Latency from the last of the rows to done: 3 SIDE + 37 cycles, or SIDE + 38 with a whole row a cycle.
 
 `default_nettype none
 
-module sptfra_points_level #(
-    // Points along an axis, an odd multiple of 5
-    parameter integer SIDE = 15,
-    // Points weighed in a cycle: 5, or all of a row of 15
+module sptfra_grid_level #(
+    // Points along an axis, 11 or 13
+    parameter integer SIDE = 13,
+    // Points weighed in a cycle: 5, or all of a row
     parameter integer AT_ONCE = 5,
+    // Bits of a value below the leading bit of sum |b|
+    parameter integer FRACTION = 21,
     // From the first row to done, checked in simulation; 0: unchecked
-    parameter integer EXPECTED_LATENCY = 0
+    parameter integer EXPECTED_LATENCY = 0,
+    // Derived: bits of a value, and of the margin
+    parameter integer VALUE_BITS = FRACTION + 2,
+    parameter integer MARGIN_BITS = FRACTION - 7
 ) (
     input  wire clock,
     input  wire reset,
     input  wire start, // of a frame, before its rows
-    input  wire [15:0] margin, // above the least value, held with the rows and after
+    input  wire [MARGIN_BITS-1:0] margin, // above the least value, held with the rows and after
     // Rows of points, each held until the next one
     input  wire row_valid,
-    input  wire [SIDE*28-1:0] row_values,
+    input  wire [SIDE*VALUE_BITS-1:0] row_values,
     output wire again, // the next row once more, to be there three cycles later
     // Result, held until the next start
     output wire done, // one cycle
     output wire signed [17:0] mu_x, // 16 fraction bits
     output wire signed [17:0] mu_y,
     output reg  unknown, // nothing limits the friction
-    output reg  at_bound, // the least B lies on the border
-    output reg  saturated // the least B is the largest number
+    output reg  at_bound // the least B lies on the border
 );
 
-    localparam integer VALUE_BITS = 28;
-    localparam integer GROUPS = SIDE / AT_ONCE;
-    localparam integer DEPTH_BITS = 16; // of what a weight is the square of: up to the margin
-    localparam integer WEIGHT_DROP = 8; // bits dropped from the square
-    localparam integer WEIGHT_BITS = 2 * DEPTH_BITS - WEIGHT_DROP;
+    localparam integer GROUPS = (SIDE + AT_ONCE - 1) / AT_ONCE; // of a row, the last one with points that are not there
+    localparam integer LAST_IN_GROUP = (SIDE - 1) % AT_ONCE;
+    localparam integer WEIGHT_BITS = 24; // of the square of a depth, which is at most the margin
+    localparam integer WEIGHT_DROP = 2 * MARGIN_BITS - WEIGHT_BITS; // bits dropped from the square
     localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
     localparam [1:0] LAST_GROUP = GROUPS[1:0] - 2'd1;
     localparam integer LEVELS = $clog2(SIDE);
@@ -47,8 +51,8 @@ module sptfra_points_level #(
     localparam integer MIN_STAGES = LEVELS + 1; // from a row to its least values being kept
 
     generate
-        if ((SIDE % AT_ONCE != 0) || (SIDE % 2 == 0) || (SIDE > 15)) begin : gen_check
-            sptfra_error_points_along_an_axis_must_be_5_or_15 invalid ();
+        if (((SIDE != 11) && (SIDE != 13)) || (WEIGHT_DROP < 1) || (MARGIN_BITS > 17)) begin : gen_check
+            sptfra_error_a_side_has_11_or_13_points_and_a_value_20_to_24_bits_of_fraction invalid ();
         end
     endgenerate
 
@@ -154,8 +158,7 @@ module sptfra_points_level #(
         all_in <= {all_in[MIN_STAGES+LEVEL_STAGES-1:1], row_valid && (row_in == LAST_ROW)};
         at_bound <= (least_on_border < least_inside);
         least <= at_bound ? least_on_border : least_inside;
-        saturated <= (least == {VALUE_BITS{1'b1}});
-        level <= {1'b0, least} + { {(VALUE_BITS - 15){1'b0}}, margin};
+        level <= {1'b0, least} + { {(VALUE_BITS + 1 - MARGIN_BITS){1'b0}}, margin};
         if (reading) begin
             group <= last_group ? 2'd0 : group + 2'd1;
             row <= last_group ? row + 4'd1 : row;
@@ -183,19 +186,25 @@ module sptfra_points_level #(
     reg [1:0] group_1;
     reg [3:0] row_1;
     reg [1:0] corners_2; // the first and the last of these points are corners of the grid
+    wire [GROUPS*AT_ONCE*VALUE_BITS-1:0] padded_values; // a point that is not there weighs nothing
     wire [AT_ONCE*VALUE_BITS-1:0] group_values_1;
     wire [AT_ONCE-1:0] below_2;
     wire [AT_ONCE*WEIGHT_BITS-1:0] weights_5;
 
     generate
+        if (GROUPS * AT_ONCE > SIDE) begin : gen_padded
+            assign padded_values = { {((GROUPS * AT_ONCE - SIDE) * VALUE_BITS){1'b1}}, row_values};
+        end else begin : gen_full
+            assign padded_values = row_values;
+        end
         if (GROUPS == 1) begin : gen_row
-            assign group_values_1 = row_values;
+            assign group_values_1 = padded_values;
         end else begin : gen_group
-            assign group_values_1 = row_values[AT_ONCE*VALUE_BITS*group_1 +: AT_ONCE*VALUE_BITS];
+            assign group_values_1 = padded_values[AT_ONCE*VALUE_BITS*group_1 +: AT_ONCE*VALUE_BITS];
         end
         for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_weights
             reg signed [VALUE_BITS+1:0] depth_2;
-            reg [DEPTH_BITS-1:0] depth_3;
+            reg [MARGIN_BITS-1:0] depth_3;
             wire signed [44:0] square_low_4; // the square is their sum
             wire signed [44:0] square_high_4;
             wire signed [44:0] square_4 = square_low_4 + square_high_4;
@@ -206,8 +215,8 @@ module sptfra_points_level #(
             sptfra_multiply square (
                 .clock       (clock),
                 .enable      (1'b1),
-                .coefficient ({2'b00, depth_3}),
-                .data        ({11'd0, depth_3}),
+                .coefficient ({ {(18 - MARGIN_BITS){1'b0}}, depth_3}),
+                .data        ({ {(27 - MARGIN_BITS){1'b0}}, depth_3}),
                 .low         (square_low_4),
                 .high        (square_high_4)
             );
@@ -215,7 +224,7 @@ module sptfra_points_level #(
             always @(posedge clock) begin
                 depth_2 <= {1'b0, level} - {2'b00, group_values_1[VALUE_BITS*index +: VALUE_BITS]};
                 // Not more than the margin
-                depth_3 <= depth_2[VALUE_BITS+1] ? {DEPTH_BITS{1'b0}} : depth_2[DEPTH_BITS-1:0];
+                depth_3 <= depth_2[VALUE_BITS+1] ? {MARGIN_BITS{1'b0}} : depth_2[MARGIN_BITS-1:0];
                 weight_5 <= square_4[WEIGHT_DROP +: WEIGHT_BITS];
             end
 
@@ -232,7 +241,7 @@ module sptfra_points_level #(
         row_1 <= row;
         corners_2 <= {2{reads[1] && ((row_1 == 4'd0) || (row_1 == LAST_ROW))}}
             & {group_1 == LAST_GROUP, group_1 == 2'd0};
-        if ((corners_2[0] && !below_2[0]) || (corners_2[1] && !below_2[AT_ONCE-1])) begin
+        if ((corners_2[0] && !below_2[0]) || (corners_2[1] && !below_2[LAST_IN_GROUP])) begin
             unknown <= 1'b0;
         end
         if (start) begin
@@ -246,7 +255,7 @@ module sptfra_points_level #(
     end
 
     // ---- Their centroid
-    sptfra_points_centroid #(
+    sptfra_grid_centroid #(
         .SIDE        (SIDE),
         .AT_ONCE     (AT_ONCE),
         .WEIGHT_BITS (WEIGHT_BITS)

@@ -1,14 +1,14 @@
-//! How an estimator tells the error that it leaves: as a logarithm of its share of the normal force.
+//! The standard error that an estimator states: the logarithm of its share of the normal force.
 
 /// Fraction bits of the logarithm.
-pub const DOUBT_FRACTION: u32 = 12;
+pub const ERROR_FRACTION: u32 = 12;
 /// Least and largest logarithm of base 2: a thousandth of the normal force, and four times as much.
-pub const DOUBT_RANGE: [i32; 2] = [-10, 2];
+pub const ERROR_RANGE: [i32; 2] = [-10, 2];
 
 /// A logarithm within its range, as far as it goes there.
 pub(crate) fn limited(log: f64) -> f64 {
-    let [least, most] = DOUBT_RANGE.map(f64::from);
-    log.clamp(least, most - (-f64::from(DOUBT_FRACTION)).exp2())
+    let [least, most] = ERROR_RANGE.map(f64::from);
+    log.clamp(least, most - (-f64::from(ERROR_FRACTION)).exp2())
 }
 
 /// What a logarithm of base 2 stands for: `2^n (1 + f)` for n + f, which differs from `2^(n + f)` by 6 % at most and is a

@@ -1,18 +1,27 @@
-//! The level set of the points that have a cell each, in integers.
+//! The grid search in integers: the centroid of the level set of Condition 1.
 
 use super::super::super::Seen;
-use super::super::PointsPlan;
-use super::super::WEIGHT_DROP;
-use super::super::points::{VALUE_BITS, Values};
-use super::Centroid;
+use super::super::SearchPlan;
+use super::super::search::{GRID, Values, WEIGHT_DROP};
 use crate::cores::divider;
 use crate::plan::format::FRICTION_FRACTION;
 
+/// The level set's centroid.
+pub struct Centroid {
+    /// Friction components.
+    pub mu: [i64; 2],
+    /// All corners of the grid are in the level set.
+    pub unknown: bool,
+    /// The least value lies on the border of the grid only.
+    pub on_border: bool,
+    /// A value was clipped.
+    pub saturated: bool,
+}
+
 /// Finds the centroid of the points below the level, each weighing as its depth squared.
-pub fn search(plan: &PointsPlan, seen: &Seen) -> Centroid {
+pub fn search(plan: &SearchPlan, seen: &Seen) -> Centroid {
     let Values { values, margin, clipped } = plan.values(seen.u, seen.contact);
-    let (side, grid) = (plan.side, plan.grid);
-    let reach = i64::from(grid.reach);
+    let (side, reach) = (plan.side, i64::from(GRID.reach));
     let place = |index: usize| [index % side, index / side].map(|at| at as i64 - reach);
     let least = |border: bool| {
         let points = (0..values.len()).filter(|&index| place(index).iter().any(|at| at.abs() == reach) == border);
@@ -30,14 +39,9 @@ pub fn search(plan: &PointsPlan, seen: &Seen) -> Centroid {
     }
     let [sum, ref moments @ ..] = sums;
     let quotient = |moment: i64| {
-        let numerator = (i64::from(grid.numerator) * moment).unsigned_abs() << (FRICTION_FRACTION - grid.shift);
+        let numerator = moment.unsigned_abs() << (FRICTION_FRACTION - GRID.shift);
         let magnitude = divider::divide(numerator, sum as u64) as i64;
         if moment < 0 { -magnitude } else { magnitude }
     };
-    Centroid {
-        mu: moments.map(quotient),
-        unknown: corners == 4,
-        on_border: on_border < inside,
-        saturated: clipped || inside.min(on_border) == (1 << VALUE_BITS) - 1,
-    }
+    Centroid { mu: moments.map(quotient), unknown: corners == 4, on_border: on_border < inside, saturated: clipped }
 }

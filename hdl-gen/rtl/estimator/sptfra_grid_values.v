@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Part of the SpTFRA hardware generator.
+//
+// Condition 1 at the points of the grid: B = sum max(0, u0 + mu_x u1 + mu_y u2) over all taxels.
+//
+// An evaluator adds X of its column and Y of its row, and accumulates what is above zero. A sum beyond its width stays
+// the largest number.
+//
+//   PARALLEL     evaluators               start to first row        next row
+//   SIDE * SIDE  one a point              4 Q + 13, or 2 Q + 14     1 cycle
+//   SIDE         one a column, row after  4 Q + 13                  4 Q + 1 cycles
+//                row of the grid
+//
+// Q: quads; the second figure is with two taxels a cycle. Each row can be read again until the next start.
+
+`default_nettype none
+
+module sptfra_grid_values #(
+    // Taxels along x
+    parameter integer COLUMNS = 10,
+    // Taxels along y
+    parameter integer ROWS = 10,
+    // Bits of u_q
+    parameter integer DATA_BITS = 27,
+    // Bits of the number of a quad
+    parameter integer ROW_WIDTH = 5,
+    // Points along an axis, 11 or 13
+    parameter integer SIDE = 13,
+    // Points evaluated at a time: all of them, or SIDE
+    parameter integer PARALLEL = SIDE * SIDE,
+    // Taxels a cycle: 1, or 2 with all points at a time
+    parameter integer TAXELS = 1,
+    // Bits of a value below the leading bit of sum |b|
+    parameter integer FRACTION = 21,
+    // Left shift of u before the right shift by the bits of sum |b|
+    parameter integer U_LEFT = 22,
+    // From start to the first row, checked in simulation; 0: unchecked
+    parameter integer EXPECTED_LATENCY = 0,
+    // Derived: bits of a value, and of the margin
+    parameter integer VALUE_BITS = FRACTION + 2,
+    parameter integer MARGIN_BITS = FRACTION - 7
+) (
+    input  wire clock,
+    input  wire reset,
+    // u_q of a quad's taxels, member 0 in the lowest bits
+    input  wire [2:0] u_valid,
+    input  wire [ROW_WIDTH-1:0] u_quad,
+    input  wire [4*DATA_BITS-1:0] u_values,
+    input  wire fill_bank,
+    input  wire search_bank,
+    // Start, with these held from the next cycle on
+    input  wire start,
+    input  wire [39:0] stress_sum,
+    input  wire [26:0] largest, // max |b|
+    // 2^-8 sum |b|, in the steps of B
+    output wire [MARGIN_BITS-1:0] margin,
+    // All of a quad as it is first read, u_0 in the lowest bits
+    output reg  read_valid,
+    output reg  [ROW_WIDTH-1:0] read_quad,
+    output reg  [3*4*27-1:0] read_values,
+    // B, a row of points at a time, mu_x from the least one on in the lowest bits; held until the next one
+    output reg  row_valid,
+    input  wire again, // after the last row: the first one once more, three cycles later, and so on
+    output reg  [SIDE*VALUE_BITS-1:0] row_values,
+    output wire clipped // a u was; held until the next start
+);
+
+    localparam integer QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2);
+    localparam integer LAST_QUAD = QUADS - 1;
+    localparam integer AT_ONCE = PARALLEL / SIDE; // rows of the grid
+    localparam integer IS_SERIAL = (AT_ONCE == 1) ? 1 : 0;
+    localparam integer TERM_BITS = FRACTION + 4;
+    localparam integer STAGES = 10 + TAXELS; // from a taxel's address to its tension being added to the sums
+    localparam [1:0] STEP = TAXELS[1:0];
+    localparam [1:0] LAST_MEMBER = 2'd0 - STEP;
+    localparam [3:0] LAST_ROW = SIDE[3:0] - 4'd1;
+
+    generate
+        if ((TAXELS != 1) && ((TAXELS != 2) || (IS_SERIAL != 0))) begin : gen_check_taxels
+            sptfra_error_one_taxel_a_cycle_or_two_with_all_points invalid ();
+        end
+        if ((PARALLEL != SIDE) && (PARALLEL != SIDE * SIDE)) begin : gen_check_parallel
+            sptfra_error_a_row_of_points_at_a_time_or_all_of_them invalid ();
+        end
+    endgenerate
+
+    // ---- Taxels: the members of a quad one after the other, or two. Index k: k cycles after the address
+    reg reading;
+    reg pausing; // a cycle from one row of the grid to the next
+    reg [3:0] pass; // serial: the row of the grid
+    reg [ROW_WIDTH-1:0] quad;
+    reg [1:0] member;
+    reg [1:0] member_1;
+    reg [1:0] member_2;
+    wire last_taxel = (quad == LAST_QUAD[ROW_WIDTH-1:0]) && (member == LAST_MEMBER);
+    reg [STAGES:1] valids;
+    reg [STAGES:1] lasts;
+    wire [3*4*27-1:0] quad_1;
+    wire [3*4*27-1:0] quad_2 = read_values; // a register behind the memory, then the choice
+    wire [TAXELS*3*27-1:0] taxels_2;
+    reg [TAXELS*3*27-1:0] taxels_3;
+
+    sptfra_taxel_memory #(
+        .COLUMNS   (COLUMNS),
+        .ROWS      (ROWS),
+        .DATA_BITS (DATA_BITS),
+        .ROW_WIDTH (ROW_WIDTH)
+    ) taxels (
+        .clock       (clock),
+        .u_valid     (u_valid),
+        .fill_bank   (fill_bank),
+        .u_quad      (u_quad),
+        .u_values    (u_values),
+        .read_bank   (search_bank),
+        .read_quad   (quad),
+        .read_values (quad_1)
+    );
+
+    always @(posedge clock) begin
+        if (reading) begin
+            member <= member + STEP;
+            quad <= (member == LAST_MEMBER) ? quad + 1'b1 : quad;
+        end
+        if (reading && last_taxel) begin
+            reading <= 1'b0;
+            pausing <= (IS_SERIAL != 0) && (pass != LAST_ROW);
+        end
+        if (pausing) begin
+            pausing <= 1'b0;
+            reading <= 1'b1;
+            pass <= pass + 4'd1;
+        end
+        if (pausing || start) begin
+            quad <= {ROW_WIDTH{1'b0}};
+            member <= 2'd0;
+        end
+        if (start) begin
+            reading <= 1'b1;
+            pausing <= 1'b0;
+            pass <= 4'd0;
+        end
+        member_1 <= member;
+        member_2 <= member_1;
+        taxels_3 <= taxels_2;
+        read_valid <= valids[1] && (member_1 == 2'd0) && (pass == 4'd0);
+        read_quad <= quad; // of the same: it is read for two cycles at least
+        read_values <= quad_1;
+        valids <= {valids[STAGES-1:1], reading};
+        lasts <= {lasts[STAGES-1:1], reading && last_taxel};
+        if (reset) begin
+            reading <= 1'b0;
+            pausing <= 1'b0;
+            valids <= {STAGES{1'b0}};
+            lasts <= {STAGES{1'b0}};
+            read_valid <= 1'b0;
+        end
+    end
+
+    // ---- Their terms in each column and row of the grid
+    wire [TAXELS*SIDE*TERM_BITS-1:0] along_x_9;
+    wire [TAXELS*AT_ONCE*TERM_BITS-1:0] along_y_9;
+    wire [TAXELS*MARGIN_BITS-1:0] margins;
+    wire [TAXELS-1:0] clips;
+    reg [3:0] pass_8; // of the terms that are formed
+
+    assign margin = margins[MARGIN_BITS-1:0];
+    assign clipped = (clips != {TAXELS{1'b0}});
+
+    genvar index;
+    genvar column;
+    genvar taxel;
+
+    always @(posedge clock) begin
+        if (lasts[8]) begin
+            pass_8 <= pass_8 + 4'd1;
+        end
+        if (start) begin
+            pass_8 <= 4'd0;
+        end
+    end
+
+    generate
+        for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_taxels
+            localparam [1:0] MEMBER = taxel;
+            wire [1:0] of_quad_2 = member_2 | MEMBER;
+
+            for (index = 0; index < 3; index = index + 1) begin : gen_select
+                wire [4*27-1:0] of_q = quad_2[4*27*index +: 4*27];
+
+                assign taxels_2[27*(3*taxel + index) +: 27] = of_q[27*of_quad_2 +: 27];
+            end
+
+            sptfra_grid_terms #(
+                .SIDE     (SIDE),
+                .AT_ONCE  (AT_ONCE),
+                .FRACTION (FRACTION),
+                .U_LEFT   (U_LEFT)
+            ) terms (
+                .clock      (clock),
+                .reset      (reset),
+                .start      (start),
+                .stress_sum (stress_sum),
+                .largest    (largest),
+                .margin     (margins[MARGIN_BITS*taxel +: MARGIN_BITS]),
+                .valid      (valids[3]),
+                .u0         (taxels_3[27*(3*taxel + 0) +: 27]),
+                .u1         (taxels_3[27*(3*taxel + 1) +: 27]),
+                .u2         (taxels_3[27*(3*taxel + 2) +: 27]),
+                .row        (pass_8),
+                .along_x    (along_x_9[SIDE*TERM_BITS*taxel +: SIDE*TERM_BITS]),
+                .along_y    (along_y_9[AT_ONCE*TERM_BITS*taxel +: AT_ONCE*TERM_BITS]),
+                .clipped    (clips[taxel])
+            );
+        end
+    endgenerate
+
+    // ---- Evaluators. With one for each point, all rows move down by one for a row to leave, through the evaluators'
+    // own adders, and row 0 goes to the last one: no choice among rows, and no memory of them
+    reg giving;
+    reg [3:0] row;
+    reg turn; // this cycle
+    reg turn_next;
+    reg count_next;
+    reg nothing_8;
+    reg all_given;
+    wire turn_after_next = again || lasts[STAGES-1]
+        || ((IS_SERIAL == 0) && (lasts[STAGES] || (giving && (row < LAST_ROW - 4'd1))));
+    wire [(AT_ONCE+1)*SIDE*(VALUE_BITS+1)-1:0] sums; // row 0 above the last row once more
+
+    assign sums[AT_ONCE*SIDE*(VALUE_BITS+1) +: SIDE*(VALUE_BITS+1)] = sums[0 +: SIDE*(VALUE_BITS+1)];
+
+    generate
+        for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_rows
+            for (column = 0; column < SIDE; column = column + 1) begin : gen_points
+                wire [TAXELS*TERM_BITS-1:0] x;
+                wire [TAXELS*TERM_BITS-1:0] y;
+
+                for (taxel = 0; taxel < TAXELS; taxel = taxel + 1) begin : gen_terms
+                    assign x[TERM_BITS*taxel +: TERM_BITS] = along_x_9[TERM_BITS*(SIDE*taxel + column) +: TERM_BITS];
+                    assign y[TERM_BITS*taxel +: TERM_BITS] = along_y_9[TERM_BITS*(AT_ONCE*taxel + index) +: TERM_BITS];
+                end
+
+                sptfra_grid_point #(
+                    .TAXELS     (TAXELS),
+                    .TERM_BITS  (TERM_BITS),
+                    .VALUE_BITS (VALUE_BITS)
+                ) point (
+                    .clock   (clock),
+                    .clear   (start || ((IS_SERIAL != 0) && lasts[STAGES])),
+                    .nothing (nothing_8),
+                    .count   (count_next),
+                    .turn    (turn_next && (IS_SERIAL == 0)),
+                    .x       (x),
+                    .y       (y),
+                    .above   (sums[(VALUE_BITS+1)*(SIDE*(index + 1) + column) +: VALUE_BITS+1]),
+                    .sum     (sums[(VALUE_BITS+1)*(SIDE*index + column) +: VALUE_BITS+1])
+                );
+            end
+        end
+    endgenerate
+
+    // ---- Rows, when all taxels are in
+    always @(posedge clock) begin
+        turn_next <= turn_after_next;
+        count_next <= valids[STAGES-2] || (turn_after_next && (IS_SERIAL == 0));
+        nothing_8 <= !valids[7];
+        turn <= turn_next;
+        if (giving || (turn && all_given)) begin
+            row <= (row == LAST_ROW) ? 4'd0 : row + 4'd1;
+        end
+        if (giving && ((row == LAST_ROW) || (IS_SERIAL != 0))) begin
+            giving <= 1'b0;
+        end
+        if (giving && (row == LAST_ROW)) begin
+            all_given <= 1'b1;
+        end
+        if (lasts[STAGES]) begin
+            giving <= 1'b1;
+        end
+        if (start) begin
+            row <= 4'd0;
+            all_given <= 1'b0;
+        end
+        row_valid <= giving;
+        if (reset) begin
+            turn_next <= 1'b0;
+            giving <= 1'b0;
+            row_valid <= 1'b0;
+        end
+    end
+
+    wire [SIDE*VALUE_BITS-1:0] row_0;
+    wire [SIDE*VALUE_BITS-1:0] row_next;
+
+    generate
+        for (column = 0; column < SIDE; column = column + 1) begin : gen_values
+            wire [VALUE_BITS:0] of_column = sums[(VALUE_BITS+1)*column +: VALUE_BITS+1];
+
+            assign row_0[VALUE_BITS*column +: VALUE_BITS] = of_column[VALUE_BITS-1:0]
+                | {VALUE_BITS{of_column[VALUE_BITS]}};
+        end
+        if (IS_SERIAL != 0) begin : gen_memory
+            (* ram_style = "distributed" *) reg [SIDE*VALUE_BITS-1:0] memory [0:15];
+
+            always @(posedge clock) begin
+                if (giving) begin
+                    memory[row] <= row_0;
+                end
+            end
+
+            assign row_next = all_given ? memory[row] : row_0;
+        end else begin : gen_none
+            assign row_next = row_0;
+        end
+    endgenerate
+
+    always @(posedge clock) begin
+        if (turn) begin
+            row_values <= row_next;
+        end
+    end
+
+`ifdef SIMULATION
+    sptfra_check_latency #(
+        .CYCLES (EXPECTED_LATENCY)
+    ) check_latency (
+        .clock (clock),
+        .reset (reset),
+        .start (start),
+        .done  (row_valid)
+    );
+`else
+    wire _unused_check = (EXPECTED_LATENCY != 0);
+`endif
+
+    wire _unused = &{1'b0, margins};
+
+endmodule
+
+`default_nettype wire
