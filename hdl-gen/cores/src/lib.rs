@@ -13,7 +13,6 @@ mod register;
 mod section;
 mod sint;
 
-mod axis_skid;
 mod cordic;
 mod divider;
 mod ecp5;
@@ -63,7 +62,6 @@ pub fn print_all() -> Result<Vec<CoreFile>, CoreError> {
         multiply::core,
         ecp5::mac::core,
         ecp5::multiply::core,
-        axis_skid::core,
         row_sequencer::core,
         divider::core,
         cordic::core,

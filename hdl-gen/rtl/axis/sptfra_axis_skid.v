@@ -3,36 +3,41 @@
 //
 // AXI-Stream skid buffer: a register in every wire of a stream, tready included.
 //
-// Latency 1 cycle, one word of 32 bits a cycle, two words of storage. Both tvalid and tready are low from the
-// first clock edge in reset; tready rises one cycle after reset ends.
+// Latency 1 cycle, one beat a cycle, two beats of storage. Both tvalid and tready are low from the first clock edge in
+// reset; tready rises one cycle after reset ends.
 
 `default_nettype none
 
-module sptfra_axis_skid (
-    input  wire clock,           // rising edge
-    input  wire reset,           // synchronous, high: drops what is stored
-    input  wire [31:0] s_tdata,  // word in
-    input  wire s_tlast,         // last word of its frame, in
-    input  wire s_tvalid,        // a word is offered
-    output wire s_tready,        // a word offered now is taken
-    output wire [31:0] m_tdata,  // word out; with tlast stable while tvalid waits for tready
-    output wire m_tlast,         // last word of its frame, out
-    output wire m_tvalid,        // a word is offered
-    input  wire m_tready         // the word offered now is taken
+module sptfra_axis_skid #(
+    // Bits of a beat
+    parameter WIDTH = 32
+) (
+    input  wire clock,
+    input  wire reset, // drops what is stored
+    // Stream in
+    input  wire [WIDTH-1:0] s_tdata,
+    input  wire s_tlast,
+    input  wire s_tvalid,
+    output wire s_tready,
+    // Stream out: data and last hold while valid waits for ready
+    output wire [WIDTH-1:0] m_tdata,
+    output wire m_tlast,
+    output wire m_tvalid,
+    input  wire m_tready
 );
 
     reg ready;
     reg valid;
-    reg [31:0] data;
+    reg [WIDTH-1:0] data;
     reg last;
     reg spare_full;
-    reg [31:0] spare_data;
+    reg [WIDTH-1:0] spare_data;
     reg spare_last;
 
     wire taken = s_tvalid && ready;
     wire blocked = valid && !m_tready;
 
-    // a word that arrives while the output is blocked becomes the spare word
+    // A beat that arrives while the output is blocked becomes the spare one
     wire spare_needed = blocked && (spare_full || taken);
 
     always @(posedge clock) begin
@@ -43,7 +48,7 @@ module sptfra_axis_skid (
     end
 
     always @(posedge clock) begin
-        // the output register takes the spare word first; nothing is taken in while there is one
+        // The output register takes the spare beat first; nothing is taken in while there is one
         if (!blocked) begin
             valid <= spare_full || taken;
             if (spare_full) begin
@@ -55,7 +60,7 @@ module sptfra_axis_skid (
             end
         end
 
-        // nothing is offered or taken in reset
+        // Nothing is offered or taken in reset
         if (reset) begin
             valid <= 1'b0;
         end

@@ -60,7 +60,9 @@ module small_4x3 #(
     wire out_tvalid;
     wire out_tready;
 
-    sptfra_axis_skid skid_in (
+    sptfra_axis_skid #(
+        .WIDTH (32)
+    ) skid_in (
         .clock    (aclk),
         .reset    (!aresetn),
         .s_tdata  (s_axis_tdata),
@@ -73,7 +75,9 @@ module small_4x3 #(
         .m_tready (in_tready)
     );
 
-    sptfra_axis_skid skid_out (
+    sptfra_axis_skid #(
+        .WIDTH (32)
+    ) skid_out (
         .clock    (aclk),
         .reset    (!aresetn),
         .s_tdata  (out_tdata),
