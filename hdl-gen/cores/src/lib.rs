@@ -15,11 +15,8 @@ mod sint;
 
 mod cordic;
 mod divider;
-mod ecp5;
 mod fixed_to_float;
 mod float_to_fixed;
-mod mac;
-mod multiply;
 mod row_sequencer;
 
 /// One printed core.
@@ -57,20 +54,10 @@ pub enum CoreError {
 /// # Errors
 /// [`CoreError`] if a description does not translate; a test sees to it that none is released like that.
 pub fn print_all() -> Result<Vec<CoreFile>, CoreError> {
-    [
-        mac::core,
-        multiply::core,
-        ecp5::mac::core,
-        ecp5::multiply::core,
-        row_sequencer::core,
-        divider::core,
-        cordic::core,
-        float_to_fixed::core,
-        fixed_to_float::core,
-    ]
-    .into_iter()
-    .map(|core| core())
-    .collect()
+    [row_sequencer::core, divider::core, cordic::core, float_to_fixed::core, fixed_to_float::core]
+        .into_iter()
+        .map(|core| core())
+        .collect()
 }
 
 #[cfg(test)]

@@ -90,8 +90,6 @@ pub(super) fn type_of(symbols: &Symbols, expression: &Expression) -> Result<Opti
         Expression::Signed(inner) => type_of(symbols, inner)?
             .filter(|inner| !inner.signed)
             .map(|inner| Type { width: inner.width, signed: true }),
-        // As wide as its place, which `product` compares with the operands.
-        Expression::Binary(_, Op::Mul, _) => None,
         Expression::Binary(left, op, right) => match op {
             Op::Eq | Op::Ne | Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::LogicalAnd | Op::LogicalOr => Some(Type::BIT),
             Op::Shl | Op::Shr => type_of(symbols, left)?,
@@ -160,7 +158,7 @@ fn binary(symbols: &Symbols, left: &Expression, op: &Op, right: &Expression, wan
     let (sign, kind) = match op {
         Op::Add => ("+", wanted),
         Op::Sub => ("-", wanted),
-        Op::Mul => return product(symbols, left, right, wanted),
+        Op::Mul => return Err("a product needs a module of its own: sptfra_mac or sptfra_multiply".to_owned()),
         Op::BitXor => ("^", wanted),
         Op::BitAnd if wanted == Type::BIT => ("&&", wanted),
         Op::BitOr if wanted == Type::BIT => ("||", wanted),
@@ -185,19 +183,6 @@ fn binary(symbols: &Symbols, left: &Expression, op: &Op, right: &Expression, wan
         _ => operand(symbols, right, kind)?,
     };
     Ok(format!("{left} {sign} {right}"))
-}
-
-/// A product as synthesis looks for it: two signed names, neither widened, and as wide as both together. The place it
-/// is assigned to widens them by their signs.
-fn product(symbols: &Symbols, left: &Expression, right: &Expression, wanted: Type) -> Result<String, String> {
-    let [a, b] = [known(symbols, left)?, known(symbols, right)?];
-    if !(a.signed && b.signed && wanted.signed && a.width + b.width == wanted.width) {
-        let (a, b, wanted) = (a.words(), b.words(), wanted.words());
-        return Err(format!(
-            "a product of {a} and {b} in {wanted}: multiply signed numbers into the sum of their widths"
-        ));
-    }
-    Ok(format!("{} * {}", bare(symbols, left, a)?, bare(symbols, right, b)?))
 }
 
 /// As [`print`], in parentheses if it has an operator.

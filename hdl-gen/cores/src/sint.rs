@@ -3,7 +3,7 @@
 //! rust-hdl's own `Signed` multiplies 16 by 16 bits only and has no arithmetic shift. The operators here keep the width
 //! and wrap, so that a kernel means the same in Rust as the emitted expression of equally wide operands.
 
-use std::ops::{Add, Mul, Neg, Shl, Shr, Sub};
+use std::ops::{Add, Neg, Shl, Shr, Sub};
 
 use rust_hdl_core::prelude::{Bits, LiteralType, Synth, TypeDescriptor, TypeKind, VCDValue, VerilogLiteral};
 
@@ -47,14 +47,6 @@ impl<const N: usize> Sub for Sint<N> {
     type Output = Self;
     fn sub(self, right: Self) -> Self {
         Self::wrap(self.0.wrapping_sub(right.0))
-    }
-}
-
-/// The whole product, for a signal as wide as both operands together.
-impl<const N: usize, const M: usize> Mul<Sint<M>> for Sint<N> {
-    type Output = i64;
-    fn mul(self, right: Sint<M>) -> i64 {
-        self.0.wrapping_mul(right.0)
     }
 }
 

@@ -1,32 +1,56 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Multiplier of one DSP block of 27 by 18 bits: coefficient * data = low + high, high being zero.
+// Multiplier of one DSP block of 27 by 18 bits, or of two: coefficient * data = low + high.
 //
-// Latency 1 enabled cycle, one product a cycle. Operands of 18 and 27 bits and products of 45 are two's complement
-// integers. The two parts let the adder behind be the same as on fabrics that multiply in two pieces.
+// Latency 1 enabled cycle, one product a cycle. All are two's complement integers. Of one block, high is zero; of two,
+// low is the product with the data's lower 17 bits, high that with its upper 18. The adder behind joins them.
 
 `default_nettype none
 
-module sptfra_multiply (
-    input  wire clock,                      // rising edge
-    input  wire enable,                     // the product follows the operands; else it holds
-    input  wire signed [17:0] coefficient,  // left operand
-    input  wire signed [26:0] data,         // right operand
-    output wire signed [44:0] low,          // one part of the product
-    output wire signed [44:0] high          // the other
+module sptfra_multiply #(
+    // Two DSP blocks, else one
+    parameter WIDE = 0,
+    // Derived
+    parameter DATA_BITS = WIDE ? 35 : 27
+) (
+    input  wire clock,
+    input  wire enable, // the product follows the operands; else it holds
+    input  wire signed [17:0] coefficient,
+    input  wire signed [DATA_BITS-1:0] data,
+    output wire signed [DATA_BITS+17:0] low, // one part of the product
+    output wire signed [DATA_BITS+17:0] high // the other
 );
 
-    reg signed [44:0] product;
+    generate
+        if (WIDE) begin : gen_two_blocks
+            wire signed [17:0] data_low = {1'b0, data[16:0]};
+            wire signed [DATA_BITS-18:0] data_high = data[DATA_BITS-1:17];
+            reg signed [35:0] product_low;
+            reg signed [DATA_BITS:0] product_high;
 
-    always @(posedge clock) begin
-        if (enable) begin
-            product <= coefficient * data;
+            always @(posedge clock) begin
+                if (enable) begin
+                    product_low <= coefficient * data_low;
+                    product_high <= coefficient * data_high;
+                end
+            end
+
+            assign low = {{(DATA_BITS-18){product_low[35]}}, product_low};
+            assign high = {product_high, 17'd0};
+        end else begin : gen_one_block
+            reg signed [44:0] product;
+
+            always @(posedge clock) begin
+                if (enable) begin
+                    product <= coefficient * data;
+                end
+            end
+
+            assign low = product;
+            assign high = 45'sd0;
         end
-    end
-
-    assign low = product;
-    assign high = 45'sd0;
+    endgenerate
 
 endmodule
 

@@ -4,21 +4,32 @@
 // Multiply-accumulate lane: sums coefficient * data with two multipliers of 18 by 18 bits, for Lattice ECP5. Other
 // fabrics have an sptfra_mac with one of 27 by 18, with the same sums in the same cycles.
 //
-// Latency 3 cycles (operands, two products, accumulator), one product a cycle. Operands of 18 and 27 bits and the
-// accumulator of 48 are two's complement integers; the binary point is the user's. The accumulator wraps; a sum of up
-// to 15 products, and any sum whose coefficients add up to less than 2^21 in magnitude, never does.
+// Latency 3 cycles (operands, two products, accumulator), one product a cycle. All are two's complement integers. The
+// accumulator wraps, which up to 15 products never make it do.
 
 `default_nettype none
 
-module sptfra_mac (
-    input  wire clock,                      // rising edge
-    input  wire reset,                      // synchronous, high: discards products under way, keeps the accumulator
-    input  wire valid,                      // the operands count
-    input  wire first,                      // with valid: start a new sum with this product
-    input  wire signed [17:0] coefficient,  // left operand
-    input  wire signed [26:0] data,         // right operand
-    output wire signed [47:0] accumulator   // the sum, three cycles after the operands; holds without valid ones
+module sptfra_mac #(
+    // Must be 0: a wide lane would take four multipliers
+    parameter WIDE = 0,
+    // Derived
+    parameter COEFFICIENT_BITS = 18,
+    parameter DATA_BITS = 27
+) (
+    input  wire clock,
+    input  wire reset, // discards products under way, keeps the accumulator
+    input  wire valid, // the operands count
+    input  wire first, // with valid: start a new sum with this product
+    input  wire signed [COEFFICIENT_BITS-1:0] coefficient,
+    input  wire signed [DATA_BITS-1:0] data,
+    output wire signed [47:0] accumulator // the sum, three cycles after the operands; holds without valid ones
 );
+
+    generate
+        if (WIDE) begin : gen_check_wide
+            sptfra_error_ecp5_has_no_wide_mac invalid ();
+        end
+    endgenerate
 
     reg valid_a;
     reg first_a;
@@ -29,50 +40,27 @@ module sptfra_mac (
     reg signed [35:0] low;
     reg signed [27:0] high;
     reg signed [47:0] sum;
+    wire signed [17:0] data_low = {1'b0, data_a[16:0]};
+    wire signed [9:0] data_high = data_a[26:17];
+    wire signed [47:0] addend_low = {{12{low[35]}}, low};
+    wire signed [47:0] addend_high = {{3{high[27]}}, high, 17'd0};
 
-    reg signed [47:0] base;
+    assign accumulator = sum;
 
-    // operands
     always @(posedge clock) begin
         valid_a <= valid && !reset;
         first_a <= first;
         coefficient_a <= coefficient;
         data_a <= data;
-    end
-
-    // products with the lower 17 bits of the data and with the upper 10
-    wire [26:0] data_bits = $unsigned(data_a);
-    wire [17:0] lower = {1'b0, data_bits[16:0]};
-    wire [9:0] upper = data_bits[26:17];
-    wire signed [17:0] data_low = $signed(lower);
-    wire signed [9:0] data_high = $signed(upper);
-
-    always @(posedge clock) begin
         valid_m <= valid_a && !reset;
         first_m <= first_a;
         low <= coefficient_a * data_low;
         high <= coefficient_a * data_high;
-    end
-
-    // sum of three: no adder stands between the products and the accumulator's
-    wire signed [47:0] addend_low = $signed({{12{low[35]}}, low});
-    wire signed [47:0] high_wide = $signed({{20{high[27]}}, high});
-    wire signed [47:0] addend_high = high_wide << 17;
-
-    always @(*) begin
-        base = sum;
-        if (first_m) begin
-            base = 48'sd0;
-        end
-    end
-
-    always @(posedge clock) begin
+        // A sum of three: no adder stands between the products and the accumulator's
         if (valid_m) begin
-            sum <= (base + addend_low) + addend_high;
+            sum <= ((first_m ? 48'sd0 : sum) + addend_low) + addend_high;
         end
     end
-
-    assign accumulator = sum;
 
 endmodule
 

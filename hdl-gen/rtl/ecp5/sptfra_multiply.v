@@ -1,32 +1,31 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Multiplier made of two of 18 by 18 bits, for Lattice ECP5: coefficient * data = low + high modulo 2^45.
+// Multiplier made of two of 18 by 18 bits, for Lattice ECP5: coefficient * data = low + high.
 //
-// Latency 1 enabled cycle, one product a cycle. Operands of 18 and 27 bits and the parts of 45 are two's complement
-// integers. The parts are left for the adder behind to join with its own addend.
+// Latency 1 enabled cycle, one product a cycle. All are two's complement integers. low is the product with the data's
+// lower 17 bits, high that with those above. The adder behind joins them with its own addend.
 
 `default_nettype none
 
-module sptfra_multiply (
-    input  wire clock,                      // rising edge
-    input  wire enable,                     // the product follows the operands; else it holds
-    input  wire signed [17:0] coefficient,  // left operand
-    input  wire signed [26:0] data,         // right operand
-    output wire signed [44:0] low,          // one part of the product
-    output wire signed [44:0] high          // the other
+module sptfra_multiply #(
+    // Data of 35 bits, else of 27
+    parameter WIDE = 0,
+    // Derived
+    parameter DATA_BITS = WIDE ? 35 : 27
+) (
+    input  wire clock,
+    input  wire enable, // the product follows the operands; else it holds
+    input  wire signed [17:0] coefficient,
+    input  wire signed [DATA_BITS-1:0] data,
+    output wire signed [DATA_BITS+17:0] low, // one part of the product
+    output wire signed [DATA_BITS+17:0] high // the other
 );
 
+    wire signed [17:0] data_low = {1'b0, data[16:0]};
+    wire signed [DATA_BITS-18:0] data_high = data[DATA_BITS-1:17];
     reg signed [35:0] product_low;
-    reg signed [27:0] product_high;
-
-    // products with the lower 17 bits of the data and with the upper 10
-    wire [26:0] data_bits = $unsigned(data);
-    wire [17:0] lower = {1'b0, data_bits[16:0]};
-    wire [9:0] upper = data_bits[26:17];
-    wire signed [17:0] data_low = $signed(lower);
-    wire signed [9:0] data_high = $signed(upper);
-    wire signed [44:0] high_wide = $signed({{17{product_high[27]}}, product_high});
+    reg signed [DATA_BITS:0] product_high;
 
     always @(posedge clock) begin
         if (enable) begin
@@ -35,8 +34,8 @@ module sptfra_multiply (
         end
     end
 
-    assign low = $signed({{9{product_low[35]}}, product_low});
-    assign high = high_wide << 17;
+    assign low = {{(DATA_BITS-18){product_low[35]}}, product_low};
+    assign high = {product_high, 17'd0};
 
 endmodule
 

@@ -236,26 +236,18 @@ module sptfra_field #(
         for (place = 0; place < FACTOR_BITS; place = place + 1) begin : gen_weight
             assign weight_wide[place] = weight_4[(place < DATA_BITS) ? place : DATA_BITS - 1];
         end
-        if (DATA_BITS > 27) begin : gen_two_multipliers
-            sptfra_multiply_wide multiplier (
-                .clock       (clock),
-                .enable      (enable),
-                .coefficient (share_4),
-                .data        (weight_wide),
-                .low         (product_low_5),
-                .high        (product_high_5)
-            );
-        end else begin : gen_multiplier
-            sptfra_multiply multiplier (
-                .clock       (clock),
-                .enable      (enable),
-                .coefficient (share_4),
-                .data        (weight_wide),
-                .low         (product_low_5),
-                .high        (product_high_5)
-            );
-        end
     endgenerate
+
+    sptfra_multiply #(
+        .WIDE (DATA_BITS > 27)
+    ) multiplier (
+        .clock       (clock),
+        .enable      (enable),
+        .coefficient (share_4),
+        .data        (weight_wide),
+        .low         (product_low_5),
+        .high        (product_high_5)
+    );
 
     assign force_value = force_6;
 

@@ -189,25 +189,16 @@ module sptfra_field_wide #(
 
             assign force_value[64*index +: 64] = force_7;
 
-            if (DATA_BITS > 27) begin : gen_two_multipliers
-                sptfra_multiply_wide multiplier (
-                    .clock       (clock),
-                    .enable      (enable),
-                    .coefficient (share_5),
-                    .data        (weight_wide),
-                    .low         (product_low_6),
-                    .high        (product_high_6)
-                );
-            end else begin : gen_multiplier
-                sptfra_multiply multiplier (
-                    .clock       (clock),
-                    .enable      (enable),
-                    .coefficient (share_5),
-                    .data        (weight_wide),
-                    .low         (product_low_6),
-                    .high        (product_high_6)
-                );
-            end
+            sptfra_multiply #(
+                .WIDE (DATA_BITS > 27)
+            ) multiplier (
+                .clock       (clock),
+                .enable      (enable),
+                .coefficient (share_5),
+                .data        (weight_wide),
+                .low         (product_low_6),
+                .high        (product_high_6)
+            );
 
             always @(posedge clock) begin
                 if (enable) begin

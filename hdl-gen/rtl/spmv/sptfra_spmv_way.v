@@ -89,29 +89,17 @@ module sptfra_spmv_way #(
         endcase
     end
 
-    generate
-        if (WIDE) begin : gen_two_multipliers
-            sptfra_mac_wide mac (
-                .clock       (clock),
-                .reset       (reset),
-                .valid       (valid),
-                .first       (first),
-                .coefficient (left),
-                .data        (right),
-                .accumulator (accumulator)
-            );
-        end else begin : gen_multiplier
-            sptfra_mac mac (
-                .clock       (clock),
-                .reset       (reset),
-                .valid       (valid),
-                .first       (first),
-                .coefficient (left),
-                .data        (right),
-                .accumulator (accumulator)
-            );
-        end
-    endgenerate
+    sptfra_mac #(
+        .WIDE (WIDE)
+    ) mac (
+        .clock       (clock),
+        .reset       (reset),
+        .valid       (valid),
+        .first       (first),
+        .coefficient (left),
+        .data        (right),
+        .accumulator (accumulator)
+    );
 
     // ---- Sums
     wire [47:0] row_sum = accumulator + (next_carry & {48{is_head}});

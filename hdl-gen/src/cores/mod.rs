@@ -2,7 +2,7 @@
 //!
 //! Each file states what a core computes, bit for bit, and when; the integer model computes with these references, and
 //! a test compares each core's Verilog with its reference. The Verilog lies in `hdl-gen/rtl`; the package `hdl-cores`
-//! prints it from descriptions in rust-hdl.
+//! prints that of cores without parameters from descriptions in rust-hdl.
 
 pub mod axis_skid;
 pub mod cordic;

@@ -276,12 +276,6 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     } else {
         without.extend(["sptfra_fold", "sptfra_butterfly", "sptfra_taxel_walk"]);
     }
-    if !plan.factors().is_wide() {
-        without.push("sptfra_mac_wide");
-    }
-    if !plan.factors().has_wide_data() {
-        without.push("sptfra_multiply_wide");
-    }
     if plan.products.iter().all(|product| product.mirrored.is_none()) {
         without.push("sptfra_diagonal_mirror");
     }

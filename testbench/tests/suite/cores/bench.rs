@@ -114,7 +114,7 @@ fn words(ports: &[Port], packed: u128) -> String {
     words.join(" ")
 }
 
-/// The leaf cores: module and text, those that a fabric has of its own under a name of their own.
+/// The leaf cores: module and text. Wide ones and those of ECP5 stand under names of their own.
 pub fn cores() -> Vec<(String, String)> {
     let of = |multiplier, modules: &[&str], suffix: &str| -> Vec<(String, String)> {
         let library = library(multiplier);
@@ -135,7 +135,8 @@ pub fn cores() -> Vec<(String, String)> {
     let multipliers = ["sptfra_mac", "sptfra_multiply"];
     let mut all = of(Multiplier::Whole, &common, "");
     all.extend(of(Multiplier::Whole, &multipliers, ""));
-    all.extend(of(Multiplier::Whole, &["sptfra_mac_wide", "sptfra_multiply_wide"], ""));
+    let wide = of(Multiplier::Whole, &multipliers, "_wide");
+    all.extend(wide.into_iter().map(|(name, text)| (name, text.replace("parameter WIDE = 0", "parameter WIDE = 1"))));
     all.extend(of(Multiplier::Split, &multipliers, "_ecp5"));
     all
 }
