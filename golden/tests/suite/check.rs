@@ -393,7 +393,7 @@ fn rest_is_told_and_no_contact_is_made_of_it() {
 
 #[test]
 fn frames_that_are_each_scaled_by_their_own_peak() {
-    let design = design("sensor1-joint");
+    let design = design("sensor1-fast");
     let frames = frames(&design);
     for largest in [1.0, 255.0] {
         let scaled: Vec<Vec<f64>> = frames
@@ -414,7 +414,7 @@ fn frames_that_are_each_scaled_by_their_own_peak() {
 
 #[test]
 fn noise_about_the_tare_is_no_tension() {
-    let reads = design("sensor1-clipped");
+    let reads = design("sensor1-clipped-wide");
     let noise = |frame: usize, taxel: usize| f64::from(((frame * 7919 + taxel * 104_729) % 1601) as u32) / 800.0 - 1.0;
     let frames = frames(&reads);
     let peak = frames.iter().flatten().fold(0.0_f64, |peak, pa| peak.max(pa.abs()));
