@@ -173,7 +173,7 @@ fn all_frames(design: &Design) -> Vec<Vec<f64>> {
 #[test]
 fn the_field_of_every_frame_is_close_to_the_solver() {
     let names = sensor_designs();
-    for filter in ["none", "f1-l40", "f1-l50", "f2-p30", "f2-p50", "reduced", "joint"] {
+    for filter in ["none", "f1-l40", "f1-l50", "f2-p30", "f2-p50", "reduced", "fast"] {
         for sensor in ["sensor1", "sensor2"] {
             assert!(names.contains(&format!("{sensor}-{filter}")), "{sensor}-{filter}");
         }
