@@ -1,5 +1,4 @@
-//! The field memory: `sptfra_field` of a folded grid, `sptfra_field_wide` for several words a beat,
-//! `sptfra_coefficient_field` where taxels are not folded.
+//! The field memory: `sptfra_field` of a folded grid, `sptfra_coefficient_field` where taxels are not folded.
 
 use golden::parity::CLASSES;
 
@@ -13,16 +12,13 @@ use super::Parameters;
 
 /// The module.
 pub fn module(plan: &Plan) -> &'static str {
-    match (plan.ways() > 1, plan.streams().words() > 1) {
-        (true, false) => "sptfra_field",
-        (true, true) => "sptfra_field_wide",
-        (false, _) => "sptfra_coefficient_field",
-    }
+    if plan.ways() > 1 { "sptfra_field" } else { "sptfra_coefficient_field" }
 }
 
 /// Cycles from a step to the forces.
 pub fn stages(plan: &Plan) -> u64 {
-    if module(plan) == "sptfra_field_wide" { 7 } else { 6 }
+    // Several words of a folded grid are chosen among two taxels first.
+    if plan.ways() > 1 && plan.streams().words() > 1 { 7 } else { 6 }
 }
 
 /// The instance's parameters.
@@ -46,7 +42,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
 pub fn cost(plan: &Plan) -> BlockCost {
     let (data, elements) = (plan.design.hardware.data_bits, plan.elements());
     let words = plan.streams().words();
-    let modules = &["sptfra_field", "sptfra_field_wide", "sptfra_coefficient_field"];
+    let modules = &["sptfra_field", "sptfra_coefficient_field"];
     let narrow = plan.factors().element_is_narrow();
     let block =
         |multipliers| BlockCost::new("field", modules, multipliers).narrow(if narrow { multipliers } else { 0 });
@@ -63,10 +59,9 @@ pub fn cost(plan: &Plan) -> BlockCost {
     let weights = WEIGHT_PLACES * elements.next_power_of_two();
     if words > 1 {
         // A copy for a taxel, and one for the next.
-        let forces = 2 * elements.next_power_of_two();
         return block(words * multipliers).with([
             memory("weights", 2 * CLASSES, weights, data, false),
-            memory("field", 2 * 3 * CLASSES, forces, data, false),
+            memory("field", 2 * 3 * CLASSES, 2 * elements, data, false),
         ]);
     }
     block(multipliers)

@@ -61,6 +61,7 @@ foreach file {
     sptfra_spmv_sequencer.v
     sptfra_spmv_way.v
     sptfra_summary.v
+    sptfra_taxel_walk.v
     sptfra_times_index.v
     sptfra_turns.v
     sptfra_unfold.v
@@ -86,7 +87,7 @@ set predicted {
     {lanes 4 0.0
         {sptfra_spmv_array}}
     {field 1 0.0
-        {sptfra_field sptfra_field_wide sptfra_coefficient_field}}
+        {sptfra_field sptfra_coefficient_field}}
     {line 1 0.0
         {sptfra_line}}
     {cells 4 0.0
