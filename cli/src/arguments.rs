@@ -29,6 +29,20 @@ pub fn with_ending(path: PathBuf) -> PathBuf {
     if !path.exists() && longer.is_file() { longer } else { path }
 }
 
+/// A latency to meet.
+#[derive(clap::Args)]
+pub struct Target {
+    /// Take the fewest lanes whose latency is at most this many microseconds, in place of the design's.
+    #[arg(long, value_name = "US", value_parser = microseconds)]
+    pub target_us: Option<f64>,
+}
+
+/// Parses a time.
+fn microseconds(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| *time > 0.0 && time.is_finite());
+    time.ok_or_else(|| "give a time in microseconds, greater than 0, such as 15".to_owned())
+}
+
 /// Parses one of the words of an enum, those that serde knows its variants by.
 pub fn word<T: DeserializeOwned + Clone + Send + Sync + 'static>() -> impl TypedValueParser<Value = T> {
     let words = words::read::<T>("").err().map_or(&[][..], |unknown| unknown.allowed);
@@ -49,6 +63,14 @@ mod tests {
         assert_eq!(given.get_one("plan"), Some(&PlanKind::Reduced));
         let refused = command.try_get_matches_from(["read", "Reduced"]).unwrap_err().to_string();
         assert!(refused.contains("[possible values: paper, reduced]"), "{refused}");
+    }
+
+    #[test]
+    fn a_time_is_above_zero() {
+        assert_eq!(microseconds("15"), Ok(15.0));
+        for wrong in ["0", "-1", "inf", "nan", "soon"] {
+            assert!(microseconds(wrong).is_err_and(|refused| refused.contains("greater than 0")), "{wrong}");
+        }
     }
 
     #[test]

@@ -208,7 +208,7 @@ static int refused(
             said, code, path, line, "nothing replaces taxel %u of gain 0: write the file with sptfra export-calibration", place);
     case SPTFRA_TOO_MANY_DEAD:
         return sptfra_say(said, code, path, of->header,
-            "%u dead taxels, and the core has room for %u: [hardware] replaceable", (unsigned)of->dead_count, place);
+            "%u dead taxels, and the core has room for %u: [sensor] dead, room", (unsigned)of->dead_count, place);
     case SPTFRA_NO_SUCH_TAXEL:
         return sptfra_say(said, code, path, of->header, "dead taxels ascend, and taxel %u does not", place);
     case SPTFRA_WRONG_WEIGHT:

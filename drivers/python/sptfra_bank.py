@@ -144,7 +144,7 @@ def map_words(dead, room, taxels):
     Raises ValueError where there are more, or where weights are none that a bank takes.
     """
     if len(dead) > room:
-        raise ValueError(f"{len(dead)} dead taxels, and the core has room for {room}: [hardware] replaceable")
+        raise ValueError(f"{len(dead)} dead taxels, and the core has room for {room}: [sensor] dead, room")
     if room == 0:
         return np.zeros(0, dtype=np.uint32)
     weights = np.zeros((taxels, room))

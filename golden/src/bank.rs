@@ -27,7 +27,7 @@ pub fn to_csv(design: &Design) -> Result<String, NoBank> {
         return Err(NoBank { design: design.name.clone() });
     }
     let (input, taxels) = (&design.input, design.sensor.taxels());
-    let replaced = if design.hardware.replaceable == 0 { &[][..] } else { &input.dead };
+    let replaced = if design.input.room == 0 { &[][..] } else { &input.dead };
     let dead = DeadTaxels::new(&design.sensor, design.algorithm.kernel, replaced);
     let mut text = "gain,offset".to_owned();
     // Writing to a String cannot fail.

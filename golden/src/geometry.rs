@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::design::{DesignError, RawSensor, Sensor, syntax_position};
+use crate::design::{DesignError, Sensor, syntax_position};
 
 /// Frames of another sensor than the design's.
 #[derive(Debug, thiserror::Error)]
@@ -117,10 +117,10 @@ fn parse(text: &str, origin: &str) -> Result<Sensor, DesignError> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Raw {
-        sensor: RawSensor,
+        sensor: Sensor,
     }
     let raw: Raw = toml::from_str(text).map_err(|error| syntax_position(&error, text, origin))?;
-    raw.sensor.check(origin)
+    raw.sensor.checked(origin)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::DMatrix;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::half_space;
@@ -11,7 +12,7 @@ use crate::sensor::Sensor;
 use crate::words::print_as_words;
 
 /// How a force on one surface point loads a taxel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Kernel {
     /// Point force on an elastic half-space, as in the paper (Eq. 4).

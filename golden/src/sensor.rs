@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 /// Largest number of columns or rows of a sensor.
 pub const MAX_SIDE: usize = 64;
 /// Layers of fewer pitches are better served by the kernel "cell" (`docs/explanation/accuracy.md`, "Thin layers").
@@ -10,7 +12,8 @@ const CELL_BELOW: f64 = 0.5;
 const ROUNDING: f64 = 1e-9;
 
 /// Geometry of a rectangular grid of taxels under an elastic layer.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Sensor {
     /// Taxels along x, 2 to [`MAX_SIDE`].
     pub columns: usize,

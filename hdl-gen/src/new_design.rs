@@ -3,19 +3,19 @@
 use std::ops::RangeInclusive;
 
 use golden::calibrate::{CalibrateError, Settings, calibrate};
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Input, JointConstants, Samples, Tension};
+use golden::design::{
+    DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Input, Kernel, Regularisation, Samples, Tension,
+};
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
-use golden::sensor::Sensor;
 use golden::solver::Solver;
 
-const TEMPLATE: &str = include_str!("../templates/design.toml");
-/// The line of the template where the joint estimator's constants go.
-const CONSTANTS: &str = "@CONSTANTS@\n";
 /// Depth in pitches beyond which a new design is regularised.
 const DEEP: f64 = 1.5;
-/// Where the comments of the template begin.
-const COMMENTS: usize = 33;
+/// The noise that such a design allows for, as a share of the largest stress.
+const NOISE: f64 = 0.002;
+/// Digits of fitted constants: no processor rounds four otherwise, and no contact shows more.
+const DIGITS: f64 = 1e4;
 
 /// Bits that a converter may have.
 pub const COUNT_BITS: RangeInclusive<i64> = 4..=24;
@@ -98,22 +98,22 @@ pub fn errors(design: &Design) -> Option<Quantiles> {
     Some(Quantiles::of(frames.iter().map(error).collect::<Option<_>>()?))
 }
 
-/// The integers that hold counts of so many bits: with a sign, which a tare needs, where there is room for one. None for
-/// wider ones, which stay float32.
-fn samples(bits: u32) -> Option<Samples> {
+/// The integers that hold counts of so many bits: with a sign, which a tare needs, where there is room for one; float32
+/// for wider ones.
+fn samples(bits: u32) -> Samples {
     match bits {
-        ..=15 => Some(Samples::Int16),
-        16 => Some(Samples::Uint16),
-        _ => None,
+        ..=15 => Samples::Int16,
+        16 => Samples::Uint16,
+        _ => Samples::Float32,
     }
 }
 
 /// Pascals of a count, so that the largest one reaches the full scale, where it is flagged, and no count is beyond.
-fn pa_per_count(new: &NewDesign, bits: u32) -> String {
+fn pa_per_count(new: &NewDesign, bits: u32) -> f64 {
     let largest = f64::from(bits).exp2() - 1.0;
     let step = new.full_scale_pa / largest;
     let step = if step * largest < new.full_scale_pa { step.next_up() } else { step };
-    format!("{:?}", -step)
+    -step
 }
 
 impl NewDesign {
@@ -123,88 +123,47 @@ impl NewDesign {
     ///
     /// [`NewDesignError`].
     pub fn text(&self, stage: &mut dyn FnMut(&'static str)) -> Result<String, NewDesignError> {
-        text(self, stage)
-    }
-}
-
-fn text(new: &NewDesign, stage: &mut dyn FnMut(&'static str)) -> Result<String, NewDesignError> {
-    if let Some(bits) = new.counts.filter(|&bits| !COUNT_BITS.contains(&i64::from(bits))) {
-        return Err(NewDesignError::Counts(bits));
-    }
-    // Quoted, so that whatever the name holds reaches the check of names; a JSON string is a TOML string.
-    let mut text = with(TEMPLATE, "name", &serde_json::Value::from(new.name.as_str()).to_string());
-    for (key, value) in [
-        ("columns", new.columns.to_string()),
-        ("rows", new.rows.to_string()),
-        ("pitch_mm", format!("{:?}", new.pitch_mm)),
-        ("depth_mm", format!("{:?}", new.depth_mm)),
-        ("full_scale_pa", format!("{:?}", new.full_scale_pa)),
-    ] {
-        text = with(&text, key, &value);
-    }
-    if new.tension == Tension::Clipped {
-        text = text.replace("# tension = ", "tension = ");
-        text = with(&text, "tension", &format!("\"{}\"", new.tension));
-    }
-    if let Some(bits) = new.counts {
-        text = with(&text.replace("# pa_per_count = ", "pa_per_count = "), "pa_per_count", &pa_per_count(new, bits));
-        if let Some(samples) = samples(bits) {
-            text = with(&text.replace("# samples = ", "samples = "), "samples", &format!("\"{samples}\""));
+        let mut design = self.unfitted()?;
+        if self.estimator == Estimator::Joint {
+            stage("fitting gain and friction to contacts with known forces");
+            let mut found = calibrate(&design, &Settings::constants(), &mut |_| ())?;
+            let [gain, c1, c3] = [found.gain, found.friction_correction[0], found.friction_correction[1]]
+                .map(|value| (value * DIGITS).round() / DIGITS);
+            (found.gain, found.friction_correction) = (gain, [c1, c3]);
+            *design.algorithm.joint = found;
         }
-    }
-    // Where noise would become force, and no plan might be possible without.
-    let [x, y] = [new.pitch_mm[0], new.pitch_mm[1]];
-    if new.depth_mm > DEEP * x.min(y) {
-        text = text.replace("# regularisation = ", "regularisation = ");
-    }
-    let NewDesign { columns, rows, pitch_mm, depth_mm, .. } = *new;
-    if (Sensor { columns, rows, pitch_mm, depth_mm }).wants_cells() {
-        text = with(&text, "kernel", "\"cell\"");
-    }
-    let bare = text.replace(CONSTANTS, "");
-    if new.estimator == Estimator::Line {
-        let text = with(&bare, "estimator", "\"line\"");
+        let text = design.to_commented_toml();
         Design::from_toml(&text, "sptfra new")?;
-        return Ok(text);
+        Ok(text)
     }
-    let design = Design::from_toml(&bare, "sptfra new")?;
-    stage("fitting gain and friction to contacts with known forces");
-    let found = calibrate(&design, &Settings::constants(), &mut |_| ())?;
-    let text = text.replace(CONSTANTS, &constants(&found));
-    Design::from_toml(&text, "sptfra new")?;
-    Ok(text)
-}
 
-/// The lines of the joint estimator's constants; four digits, which no processor rounds otherwise and no contact shows.
-fn constants(JointConstants { gain, friction_correction: [c1, c3], calibrated_for, .. }: &JointConstants) -> String {
-    let remarks = [
-        "factor on all forces, fitted to the sensor above",
-        "friction c1 mu + c3 mu |mu|^2, likewise; the correction, which",
-        "  halves the error, is trained by sptfra calibrate",
-        "what they are for: for another sensor, noise, kernel or regularisation remove",
-        "  these lines, and run sptfra calibrate",
-    ];
-    let keys = [
-        format!("gain = {gain:.4}"),
-        format!("friction_correction = [{c1:.4}, {c3:.4}]"),
-        String::new(),
-        String::new(),
-        String::new(),
-    ];
-    let calibrated_for = format!("calibrated_for = {:?}\n", calibrated_for.as_deref().unwrap_or_default());
-    let constants: String =
-        keys.iter().zip(remarks).map(|(key, remark)| format!("{key:<COMMENTS$}# {remark}\n")).collect();
-    constants + &calibrated_for
-}
-
-/// The text with another value of a key, its comment where it was.
-fn with(text: &str, key: &str, value: &str) -> String {
-    let line = |line: &str| match (line.split_once(" = "), line.split_once(" # ")) {
-        (Some((found, _)), Some((_, comment))) if found == key => {
-            let pair = format!("{key} = {value} ");
-            format!("{pair:<COMMENTS$}# {comment}\n")
+    /// The design before anything is fitted.
+    fn unfitted(&self) -> Result<Design, NewDesignError> {
+        if let Some(bits) = self.counts.filter(|&bits| !COUNT_BITS.contains(&i64::from(bits))) {
+            return Err(NewDesignError::Counts(bits));
         }
-        _ => format!("{line}\n"),
-    };
-    text.lines().map(line).collect()
+        let Self { estimator, columns, rows, pitch_mm, depth_mm, tension, full_scale_pa, .. } = self;
+        // Quoted, so that whatever the name holds reaches the check of names; a JSON string is a TOML string.
+        let name = serde_json::Value::from(self.name.as_str());
+        let text = format!(
+            "format = 3\nname = {name}\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = {pitch_mm:?}\n\
+             depth_mm = {depth_mm:?}\ntension = \"{tension}\"\n\
+             [algorithm]\nestimator = \"{estimator}\"\ncount_contacts = true\n\
+             [hardware]\nfull_scale_pa = {full_scale_pa:?}\nscaling = \"per_frame\"\n"
+        );
+        let mut design = Design::from_toml(&text, "sptfra new")?;
+        if let Some(bits) = self.counts {
+            design.input.pa_per_count = Some(pa_per_count(self, bits));
+            design.hardware.samples = samples(bits);
+        }
+        // Where noise would become force, and no plan might be possible without.
+        let [x, y] = *pitch_mm;
+        if *depth_mm > DEEP * x.min(y) {
+            design.algorithm.regularisation = Regularisation::Noise { noise: NOISE };
+        }
+        if design.sensor.wants_cells() {
+            design.algorithm.kernel = Kernel::Cell;
+        }
+        Ok(design)
+    }
 }

@@ -14,7 +14,7 @@ import numpy as np
 import sptfra
 
 ROOT = Path(os.environ["SPTFRA_ROOT"])
-SMALL = "name = 'pad'\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
+SMALL = "format = 3\nname = 'pad'\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n"
 
 
 def design(more=""):

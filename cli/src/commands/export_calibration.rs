@@ -21,16 +21,16 @@ sensor.curve.
 In the design file:
   [sensor]
   calibration = "calibration.csv"   # a line gain,offset for each taxel, such as sptfra calibrate writes; gain 0: dead
-  dead = [37, 38]                   # others that read nothing
+  dead = { taxels = [37, 38], room = 8 }  # others that read nothing; dead taxels for which a bank has room: 1, 2, 4 or 8
 
   [hardware]
   control = true
   calibration = "ram"
-  replaceable = 8                   # dead taxels for which a bank has room: 1, 2, 4 or 8"#;
+"#;
 
 /// Writes the calibration that a board loads into its bank, as CSV.
 ///
-/// For a design with [hardware] calibration = "ram": each taxel's gain and offset and, with `replaceable`, its weights in
+/// For a design with [hardware] calibration = "ram": each taxel's gain and offset and, with `room` for dead taxels, its weights in
 /// the stress of the dead taxels that the design names. `load_calibration` of the Python driver reads the file. Nothing
 /// is synthesized again.
 #[derive(clap::Args)]
@@ -63,7 +63,7 @@ pub fn run(args: &Args) -> message::Result {
     let design = Design::load(path)?;
     let text = bank::to_csv(&design)?;
     write_whole(out, text.as_bytes())?;
-    let replaced: &[usize] = if design.hardware.replaceable == 0 { &[] } else { &design.input.dead };
+    let replaced: &[usize] = if design.input.room == 0 { &[] } else { &design.input.dead };
     let taxels = design.sensor.taxels();
     let report = Report { design: &design.name, bank: out, taxels, replaced };
     let text = |report: &Report<'_>| {

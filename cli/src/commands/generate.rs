@@ -11,7 +11,7 @@ use hdl_gen::emit::{Options, Prefix, emit_for};
 use hdl_gen::inspection::{excess_on, warnings};
 use hdl_gen::write::{check_folder, write_folder};
 
-use crate::arguments::design_file;
+use crate::arguments::{Target, design_file};
 use crate::message;
 
 /// Generates RTL, ROM files, flows for simulators and synthesis, and metadata.json.
@@ -30,6 +30,11 @@ pub struct Args {
     /// Prefix of the library's module names, for two cores of different versions in one project.
     #[arg(long, value_name = "NAME_")]
     prefix: Option<Prefix>,
+    #[command(flatten)]
+    target: Target,
+    /// Mark nets for a logic analyser in the FPGA, and write the script that attaches it.
+    #[arg(long)]
+    debug: bool,
 }
 
 /// A user's own board, from its file.
@@ -42,7 +47,7 @@ fn own_board(path: &Path) -> Result<Board, Box<dyn Error>> {
 
 /// Writes the folder, for the user's own boards too.
 pub fn run(args: &Args) -> message::Result {
-    let Args { design: path, out, boards, prefix } = args;
+    let Args { design: path, out, boards, prefix, target, debug } = args;
     let progress = Progress::new();
     let design = Design::load(path)?;
     let own = boards.iter().map(|board| own_board(board)).collect::<Result<Vec<_>, _>>()?;
@@ -54,9 +59,9 @@ pub fn run(args: &Args) -> message::Result {
     let folder = out.clone().unwrap_or_else(|| Path::new("rtl-out").join(&design.name));
     // Before the work rather than after it.
     check_folder(&folder)?;
-    let plan = super::inspect::planned(&design, path, &progress)?;
+    let plan = super::inspect::planned(&design, path, target, &progress)?;
     progress.stage("Verilog and ROM files".to_owned());
-    let files = emit_for(&plan, &Options { boards: own.clone(), prefix: prefix.clone() })?;
+    let files = emit_for(&plan, &Options { boards: own.clone(), prefix: prefix.clone(), debug: *debug })?;
     let kibibytes = files.values().map(Vec::len).sum::<usize>() / 1024;
     progress.stage(format!("writing {kibibytes} KiB"));
     write_folder(&folder, &files)?;

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use golden::design::{Design, Overrun, PlanKind};
+use golden::design::{Algorithm, Design, Overrun, PlanKind};
 use golden::progress::Progress;
 use golden::table::Table;
 use hdl_gen::emit::products;
@@ -14,7 +14,7 @@ use hdl_gen::plan::energy::Energy;
 use hdl_gen::plan::format::short;
 use hdl_gen::plan::savings::savings;
 
-use crate::arguments::design_file;
+use crate::arguments::{Target, design_file};
 use crate::message;
 
 /// Shows a design's geometry, condition numbers, nonzeros, cycles, memories and multipliers.
@@ -27,6 +27,8 @@ pub struct Args {
     /// Report as JSON.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    target: Target,
 }
 
 /// Condition number of A Aᵀ above which noise of a thousandth of the stress is no longer a small error of the force.
@@ -38,15 +40,21 @@ const MATRICES_PER_LINE: usize = 7;
 
 /// Plans the design and reports it.
 pub fn run(args: &Args) -> message::Result {
-    let Args { design: path, json } = args;
-    let plan = planned(&Design::load(path)?, path, &Progress::new())?;
+    let Args { design: path, json, target } = args;
+    let plan = planned(&Design::load(path)?, path, target, &Progress::new())?;
     Ok(report(&plan, *json)?.into())
 }
 
 /// The plan of the design of file `path`.
-pub(super) fn planned(design: &Design, path: &Path, progress: &Progress) -> Result<Plan, Box<dyn Error>> {
+pub(super) fn planned(
+    design: &Design,
+    path: &Path,
+    Target { target_us }: &Target,
+    progress: &Progress,
+) -> Result<Plan, Box<dyn Error>> {
     progress.stage(format!("matrices and plan of {} taxels", design.sensor.taxels()));
-    Plan::new(design).map_err(|error| format!("{}: {error}", path.display()).into())
+    let plan = target_us.map_or_else(|| Plan::new(design), |target_us| Plan::meeting(design, target_us));
+    plan.map_err(|error| format!("{}: {error}", path.display()).into())
 }
 
 fn report(plan: &Plan, as_json: bool) -> Result<String, Box<dyn Error>> {
@@ -84,16 +92,8 @@ fn sensor(out: &mut String, plan: &Plan) -> std::fmt::Result {
         plan.taxels(),
         sensor.depth_mm
     )?;
-    // As the design file writes them; those that it does not state are decided by filter and lanes.
-    let design = plan.design.to_toml();
-    let key = |name: &str| design.lines().find_map(|line| line.strip_prefix(name)).unwrap_or("").replace('"', "");
-    writeln!(
-        out,
-        "  design       plan {}, estimator {}, outputs {}",
-        key("plan = "),
-        key("estimator = "),
-        key("outputs = ")
-    )?;
+    let Algorithm { plan: kind, estimator, outputs, .. } = &plan.design.algorithm;
+    writeln!(out, "  design       plan {kind}, estimator {estimator}, outputs {outputs}")?;
     if let Some(contacts) = contacts(plan) {
         writeln!(out, "  contacts     {contacts}")?;
     }
@@ -134,9 +134,7 @@ fn matrices(out: &mut String, plan: &Plan) -> std::fmt::Result {
     let all = plan.taxels() * plan.taxels();
     let kept: usize = plan.nnz.0.iter().map(|&(_, count)| count).sum();
     let share = 100.0 * kept as f64 / (all * plan.nnz.0.len()) as f64;
-    // The filter as the design file writes it.
-    let design = plan.design.to_toml();
-    let filter = design.lines().find_map(|line| line.strip_prefix("filter = ")).unwrap_or("");
+    let filter = &plan.design.algorithm.filter;
     let whose = match plan.design.algorithm.plan {
         PlanKind::Paper => "Matrices",
         PlanKind::Reduced => "Matrices of the paper's plan",

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension};
+use golden::design::{DEFAULT_FULL_SCALE_PA, Design, Estimator, Tension, design_schema};
 use golden::kernel::Kernel;
 use golden::metrics::Quantiles;
 use hdl_gen::new_design::{self, COUNT_BITS, NewDesign};
@@ -49,7 +49,13 @@ pub struct Args {
     /// Stress at the end of the sensor's range; default: 100000.
     #[arg(long, value_name = "PA")]
     full_scale_pa: Option<f64>,
+    /// Write design.schema.json too, the JSON schema by which editors explain, complete and check the keys.
+    #[arg(long)]
+    schema: bool,
 }
+
+/// Name of the schema beside a design.
+const SCHEMA_FILE: &str = "design.schema.json";
 
 /// A length of the command line.
 fn length(text: &str) -> Result<f64, String> {
@@ -115,7 +121,13 @@ pub fn run(new: &Args) -> Result<String, Box<dyn Error>> {
         return Err(failed(ErrorKind::AlreadyExists.into()).into());
     }
     let (wanted, assumed) = new.design()?;
-    let text = wanted.text(&mut |what| progress.stage(what.to_owned()))?;
+    let mut text = wanted.text(&mut |what| progress.stage(what.to_owned()))?;
+    if new.schema {
+        let beside = folder.join(SCHEMA_FILE);
+        let failed = |error| format!("{}: cannot write the file: {error}", beside.display());
+        std::fs::write(&beside, format!("{:#}\n", design_schema())).map_err(failed)?;
+        text = format!("#:schema {SCHEMA_FILE}\n{text}");
+    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".sptfra-");
     #[cfg(unix)]

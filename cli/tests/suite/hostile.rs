@@ -23,7 +23,7 @@ fn generator(here: &Path, design: &str, out: &str) -> Command {
 
 /// Two designs of one name, in `one.toml` and `two.toml`, and what is generated from each.
 fn two_designs(here: &Path) -> [Files; 2] {
-    [("one", 2), ("two", 4)].map(|(file, lanes)| {
+    [("one", 4), ("two", 8)].map(|(file, lanes)| {
         let text = design_text("pad", [4, 3], [4.0, 2.0], 3.0, &format!("[hardware]\nlanes = {lanes}"));
         fs::write(here.join(format!("{file}.toml")), text).unwrap();
         good(here, &["generate", &format!("{file}.toml"), "--out", file]);

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use golden::design::{Design, InputRange};
+use golden::design::{Design, Scaling};
 use hdl_gen::plan::Plan;
 
 use crate::generate::good;
@@ -55,7 +55,7 @@ fn what_was_not_said_is_told() {
 fn a_range_for_each_frame_and_counted_contacts_cost_some_latency() {
     let (_, design) = new(&[]);
     let mut plain = design.clone();
-    plain.hardware.range = InputRange::FullScale;
+    plain.hardware.scaling = Scaling::Fixed;
     plain.algorithm.count_contacts = false;
     let [new, plain] = [design, plain].map(|design| Plan::new(&design).unwrap().timeline);
     assert_eq!([new.latency_cycles - plain.latency_cycles, new.interval_cycles], [31, plain.interval_cycles]);

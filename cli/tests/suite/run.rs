@@ -144,7 +144,7 @@ fn a_trace_is_written_where_asked() {
 fn bad_files_are_refused_with_their_place() {
     let folder = tempfile::tempdir().expect("a folder");
     assert!(refused(&["run", "no-such.toml"]).contains("no-such.toml"));
-    let (_, unknown) = file(&folder, "unknown.toml", "name = \"x\"\nfrobnicate = 1\n");
+    let (_, unknown) = file(&folder, "unknown.toml", "format = 3\nname = \"x\"\nfrobnicate = 1\n");
     assert!(refused(&["run", &unknown]).contains("frobnicate"));
     let joint = fs::read_to_string(design("sensor1-fast.toml")).expect("a design");
     let weights = fs::read_to_string(design("sensor1-fast.weights.csv")).expect("weights");

@@ -38,7 +38,7 @@ pub fn text(path: &Path) -> &str {
 /// A design file's text with every optional key left out but those of `more`, which may open tables.
 pub fn design_text(name: &str, size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f64, more: &str) -> String {
     format!(
-        "name = \"{name}\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n\
+        "format = 3\nname = \"{name}\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n\
          {more}\n",
         size[0], size[1]
     )

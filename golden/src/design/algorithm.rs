@@ -1,5 +1,6 @@
 //! The `[algorithm]` table: choices that change the result.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Filter, Regularisation};
@@ -9,7 +10,7 @@ use crate::kernel::Kernel;
 use crate::words::print_as_words;
 
 /// What a frame yields.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Outputs {
     /// The summary and three force components for each taxel.
@@ -20,19 +21,20 @@ pub enum Outputs {
 }
 
 /// How the mathematics is put into products.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum PlanKind {
     /// As in the paper: thirteen matrices of m by m, then three products with C33.
     Paper,
-    /// The same result from ten matrices in four mirror-symmetric blocks of m/4 by m/4, see [`crate::reduced`].
+    /// The same result from ten matrices in four mirror-symmetric blocks of m/4 by m/4.
+    #[default]
     Reduced,
 }
 
 /// The `[algorithm]` table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Algorithm {
-    /// Products behind the result; [`PlanKind::Reduced`] unless there is a filter or the lanes are no multiple of 4.
+    /// Products behind the result.
     pub plan: PlanKind,
     /// Load model behind C31, C32 and C33.
     pub kernel: Kernel,
@@ -46,7 +48,7 @@ pub struct Algorithm {
     pub joint: Box<JointConstants>,
     /// Most bodies that are told apart, 1 to [`crate::bodies::MOST`]; with 1 a frame is solved as that of one body.
     pub contacts: usize,
-    /// Whether the bodies of a frame are counted where it is solved as that of one, so that a frame of more says so.
+    /// Whether the contacts of a frame are counted where it is solved as that of one, so that a frame of more says so.
     pub count_contacts: bool,
     /// Contents of the output.
     pub outputs: Outputs,

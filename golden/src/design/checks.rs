@@ -11,7 +11,8 @@ pub(crate) struct Check<'a> {
 }
 
 impl Check<'_> {
-    pub(crate) fn value(&self, key: &str, problem: String, remedy: String) -> DesignError {
+    pub(crate) fn value(&self, key: &str, problem: impl Into<String>, remedy: impl Into<String>) -> DesignError {
+        let (problem, remedy) = (problem.into(), remedy.into());
         DesignError::Value { origin: self.origin.to_owned(), key: key.to_owned(), problem, remedy }
     }
 
@@ -61,15 +62,6 @@ impl Check<'_> {
             allowed: unknown.allowed,
         })
     }
-
-    /// As [`Check::word`], for a key that may be absent.
-    pub(crate) fn optional_word<T: DeserializeOwned>(
-        &self,
-        key: &str,
-        found: Option<&str>,
-    ) -> Result<Option<T>, DesignError> {
-        found.map(|found| self.word(key, found)).transpose()
-    }
 }
 
 /// Longest name; file systems and tools cope with it as a part of longer names.
@@ -85,11 +77,7 @@ pub fn is_name(word: &str) -> bool {
 
 pub(crate) fn name(check: &Check, name: &str) -> Result<(), DesignError> {
     let refuse = |problem: String| {
-        Err(check.value(
-            "name",
-            problem,
-            "use a Verilog identifier: a letter or _, then letters, digits and _".to_owned(),
-        ))
+        Err(check.value("name", problem, "use a Verilog identifier: a letter or _, then letters, digits and _"))
     };
     let mut characters = name.chars();
     let starts_well = characters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_');

@@ -2,12 +2,11 @@
 
 use std::fmt::Write;
 
-use serde::Deserialize;
-
 use super::DesignError;
 use super::checks::Check;
 use super::files::Beside;
 use super::hardware::{Hardware, Samples};
+use super::keys::CurveKey;
 use super::rows::{Row, Rows};
 
 /// Most segments of a curve.
@@ -20,25 +19,6 @@ const REACH: f64 = 4.0;
 const CLOSEST: f64 = 1e-6;
 /// What to write for a point.
 const REMEDY: &str = "write count,pascals, such as 120,-950.5";
-
-/// Key `curve` as it stands in the file.
-#[derive(Deserialize)]
-#[serde(
-    untagged,
-    expecting = "a curve is the name of a file, curve = \"curve.csv\", or a power law with two numbers and no other key, \
-                 curve = { power = 1.25, scale = -0.0066 }"
-)]
-pub(super) enum RawCurve {
-    File(String),
-    Law(RawLaw),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawLaw {
-    power: f64,
-    scale: f64,
-}
 
 /// Whether a row is the header of points that stand behind taxels.
 pub(super) fn is_header_of_points(row: &Row) -> bool {
@@ -55,17 +35,16 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Checks the key; a file is one of those `beside` the design.
+    /// From the key; a file is one of those `beside` the design.
     pub(super) fn new(
         check: &Check,
-        raw: RawCurve,
+        key: CurveKey,
         beside: Beside<'_>,
         hardware: &Hardware,
     ) -> Result<Self, DesignError> {
-        match raw {
-            RawCurve::File(file) => Self::load(&file, beside),
-            RawCurve::Law(RawLaw { power, scale }) => {
-                check.real("sensor.curve.power", power, 0.25, 4.0, "")?;
+        match key {
+            CurveKey::File(file) => Self::load(&file, beside),
+            CurveKey::Law { power, scale } => {
                 check.real(
                     "sensor.curve.scale",
                     scale.abs(),

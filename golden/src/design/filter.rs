@@ -3,22 +3,24 @@
 use std::fmt;
 use std::str::FromStr;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::names::MatrixName;
 use crate::words::{self, print_as_words};
 
 /// The kinds of filters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum FilterKind {
     /// All entries are kept.
+    #[default]
     None,
-    /// A band around the diagonal.
+    /// A band around the diagonal: the l outermost diagonals on either side are removed.
     F1,
     /// Entries that are large within their row.
     F2,
-    /// For each matrix its own filter.
+    /// For each matrix its own filter, which `sptfra tune-filter` chooses on scenes; with the paper's plan only.
     F3,
 }
 
@@ -67,6 +69,15 @@ impl Filter {
             Self::F1 { l } => Some(MatrixFilter::F1 { l: *l }),
             Self::F2 { p } => Some(MatrixFilter::F2 { p: *p }),
             Self::F3 { choices, .. } => choices.as_ref().map(|choices| choices.of(matrix)),
+        }
+    }
+}
+
+impl fmt::Display for Filter {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.of(MatrixName::C33inv) {
+            Some(filter) if self.kind() != FilterKind::F3 => filter.fmt(formatter),
+            _ => self.kind().fmt(formatter),
         }
     }
 }

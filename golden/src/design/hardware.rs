@@ -1,5 +1,6 @@
-//! The `[hardware]` table: choices that change only speed, size and rounding.
+//! The `[hardware]` table: choices that change speed, size and rounding.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::words::print_as_words;
@@ -12,24 +13,21 @@ pub const DEFAULT_FULL_SCALE_PA: f64 = 100_000.0;
 /// Widths of a beat on the streams, in bits.
 pub const STREAM_BITS: [u32; 3] = [32, 64, 128];
 
-/// Numbers of dead taxels for which a bank of a calibration can have room.
-pub const REPLACEABLE: [usize; 5] = [0, 1, 2, 4, 8];
-
 /// What the hardware spends its area on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Optimise {
     /// Frames a second.
     #[default]
-    Interval,
+    Throughput,
     /// Time from the last value of a frame to its result; with the reduced plan.
     Latency,
-    /// Nothing: as for the interval, but the joint estimator walks its grid with the fewest cells; with the reduced plan.
+    /// As throughput, but the grid search takes a row of points at a time; with the reduced plan.
     Area,
 }
 
 /// What a sample on the stream is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Samples {
     /// IEEE 754, single precision: pascals or counts.
@@ -77,7 +75,7 @@ impl Samples {
 }
 
 /// Where gains, offsets and the contact threshold stand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CalibrationIn {
     /// Fixed when the hardware is generated.
@@ -87,19 +85,19 @@ pub enum CalibrationIn {
     Ram,
 }
 
-/// Against what the hardware's numbers are scaled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// How the hardware's numbers are scaled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum InputRange {
-    /// The full scale, every frame alike.
+pub enum Scaling {
+    /// One scale for all frames, that of the full scale; a few cycles less.
     #[default]
-    FullScale,
-    /// The largest stress of each frame.
-    Frame,
+    Fixed,
+    /// Block floating point: each frame by its largest stress, so that weak contacts are as exact as strong ones.
+    PerFrame,
 }
 
 /// What becomes of a frame for which the core has no room.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Overrun {
     /// It waits: the source is held.
@@ -109,43 +107,63 @@ pub enum Overrun {
     Drop,
 }
 
-/// The `[hardware]` table.
-#[derive(Clone, Debug, PartialEq)]
+/// The hardware: choices that change speed, size and rounding.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct Hardware {
-    /// Width of matrix entries, 8 to 27 bits; beyond 18 a lane has two multipliers.
+    /// Bits of the matrix entries; beyond 18 a lane has two DSPs.
+    #[schemars(range(min = 8, max = 27))]
     pub coefficient_bits: u32,
-    /// Width of vector entries, 16 to 35 bits; beyond 27 a lane has two multipliers.
+    /// Bits of the vectors; beyond 27 a lane has two DSPs, with the reduced plan only.
+    #[schemars(range(min = 16, max = 35))]
     pub data_bits: u32,
-    /// Largest stress magnitude in pascals; input of that and more is reported, and clamped.
+    /// Largest stress in pascals; more is clipped, with a status bit.
+    // Far above the smallest float32, so that a stress or a force of one step has no denormal.
+    #[schemars(range(min = 1e-3, max = 1e9))]
     pub full_scale_pa: f64,
-    /// Whether numbers are scaled against the full scale or against each frame's own largest stress.
-    pub range: InputRange,
-    /// `SpMV` lanes, 1 to [`MAX_LANES`]; with the reduced plan a multiple of 4. With a target time the generator
-    /// chooses, and this is the default until then.
+    /// How numbers are scaled.
+    pub scaling: Scaling,
+    /// Multiply-accumulate lanes, one DSP each; with the reduced plan a multiple of 4.
+    #[schemars(range(min = 1, max = MAX_LANES))]
     pub lanes: usize,
-    /// Time in microseconds a frame may take; with the reduced plan, in place of the lanes.
-    pub target_us: Option<f64>,
     /// What the area is spent on.
     pub optimise: Optimise,
-    /// Bits of a beat on both streams, one of [`STREAM_BITS`].
+    /// Bits of a beat on both streams.
+    #[schemars(extend("enum" = STREAM_BITS))]
     pub stream_bits: u32,
-    /// What a sample on the stream is; integers only with counts.
+    /// What a sample on the stream is; integers need `pa_per_count` or `curve`.
     pub samples: Samples,
-    /// What becomes of a frame for which there is no room.
+    /// What becomes of a frame for which the core has no room.
     pub overrun: Overrun,
-    /// Whether the core has a register bank on AXI4-Lite.
+    /// Whether there is a register bank on AXI4-Lite: identity, counters, soft reset, interrupts.
     pub control: bool,
-    /// Where the calibration stands; in RAM only with `control`, and with counts that `pa_per_count` makes pascals.
+    /// Where gains, offsets and the contact threshold stand; `ram` needs `control`, and `pa_per_count` or `curve`.
     pub calibration: CalibrationIn,
-    /// Dead taxels that a bank of a calibration in RAM can have replaced, one of [`REPLACEABLE`]; 0: those of the design,
-    /// for good.
-    pub replaceable: usize,
-    /// Whether nets are marked for a logic analyser in the FPGA.
-    pub debug: bool,
-    /// Clock in megahertz, 1 to 1000.
+    /// Clock in megahertz, for the times in reports and the constraints.
+    #[schemars(range(min = 1.0, max = 1000.0))]
     pub clock_mhz: f64,
-    /// FPGA part name.
+    /// FPGA part, as Vivado writes it.
     pub part: String,
+}
+
+impl Default for Hardware {
+    fn default() -> Self {
+        Self {
+            coefficient_bits: 18,
+            data_bits: 27,
+            full_scale_pa: DEFAULT_FULL_SCALE_PA,
+            scaling: Scaling::default(),
+            lanes: 16,
+            optimise: Optimise::default(),
+            stream_bits: STREAM_BITS[0],
+            samples: Samples::default(),
+            overrun: Overrun::default(),
+            control: false,
+            calibration: CalibrationIn::default(),
+            clock_mhz: 125.0,
+            part: "xczu9eg-ffvb1156-2-e".to_owned(),
+        }
+    }
 }
 
 impl Hardware {
@@ -157,4 +175,4 @@ impl Hardware {
     }
 }
 
-print_as_words!(InputRange, Optimise, Samples, Overrun, CalibrationIn);
+print_as_words!(Scaling, Optimise, Samples, Overrun, CalibrationIn);

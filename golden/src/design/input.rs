@@ -1,23 +1,20 @@
 //! What the values of a frame are: pascals, or the counts of a real sensor.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::DesignError;
 use super::calibration::Calibration;
 use super::checks::Check;
-use super::curve::{Curve, RawCurve};
+use super::curve::Curve;
 use super::files::Beside;
 use super::hardware::Hardware;
-use crate::dead_taxels::MOST_DEAD;
-use crate::sensor::Sensor;
+use super::keys::{DeadKey, SensorKeys};
+use super::rules;
 use crate::words::print_as_words;
 
 /// Standard deviation of a reading's noise where a design names none, as a share of the frame's largest reading.
 pub const DEFAULT_NOISE: f64 = 0.005;
-/// Range of that share.
-const NOISE: [f64; 2] = [0.0, 0.1];
-/// Range of the magnitude of pascals per count.
-const PA_PER_COUNT: [f64; 2] = [1e-9, 1e9];
 
 /// From the values of a frame to stress: `Pa = (gain_i * count + offset_i) * pa_per_count`, or, with a curve,
 /// `Pa = gain_i * curve(count) + offset_i`.
@@ -31,6 +28,8 @@ pub struct Input {
     pub calibration: Option<Calibration>,
     /// Taxels whose readings mean nothing, in ascending order: others take their place. Those of gain 0 are among them.
     pub dead: Vec<usize>,
+    /// Dead taxels for which a bank of a calibration in RAM has room, 0, 1, 2, 4 or 8; 0: those of the design, for good.
+    pub room: usize,
     /// Whether the sensor reads what pulls.
     pub tension: Tension,
     /// Standard deviation of a reading's noise, as a share of the frame's largest reading: `sptfra calibrate` trains at this
@@ -45,6 +44,7 @@ impl Default for Input {
             curve: None,
             calibration: None,
             dead: Vec::new(),
+            room: 0,
             tension: Tension::default(),
             noise: DEFAULT_NOISE,
         }
@@ -52,13 +52,13 @@ impl Default for Input {
 }
 
 /// What a taxel reads that is pulled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Tension {
-    /// A pull, as a positive stress.
+    /// Tension, as a positive stress.
     #[default]
     Read,
-    /// Nothing: most resistive and capacitive arrays read pressure only.
+    /// Nothing, as of most resistive and capacitive arrays.
     Clipped,
 }
 
@@ -72,22 +72,6 @@ impl Tension {
             Self::Clipped => stress.min(0.0),
         }
     }
-}
-
-/// The keys of `[sensor]` that say what a frame's values are, as they stand in the file.
-pub(super) struct RawInput {
-    pub(super) pa_per_count: Option<f64>,
-    pub(super) curve: Option<RawCurve>,
-    pub(super) calibration: Option<String>,
-    pub(super) dead: Vec<i64>,
-    pub(super) tension: Tension,
-    pub(super) noise: f64,
-}
-
-/// The noise of a design, or the default one.
-pub(super) fn noise(check: &Check, given: Option<f64>) -> Result<f64, DesignError> {
-    let [low, high] = NOISE;
-    check.real("sensor.noise", given.unwrap_or(DEFAULT_NOISE), low, high, "of the frame's largest reading")
 }
 
 impl Input {
@@ -153,39 +137,22 @@ impl Input {
         self.curve.as_ref().is_some_and(|curve| value.abs() >= curve.largest_count())
     }
 
-    /// Checks the keys of `[sensor]`; a calibration is one of the files `beside` the design.
+    /// From the keys of `[sensor]`; a calibration is one of the files `beside` the design.
     pub(super) fn new(
         check: &Check,
-        raw: RawInput,
+        keys: SensorKeys,
         beside: Beside<'_>,
-        sensor: &Sensor,
+        taxels: usize,
         hardware: &Hardware,
     ) -> Result<Self, DesignError> {
-        let RawInput { pa_per_count, curve, calibration, dead, tension, noise } = raw;
-        let taxels = sensor.taxels();
-        let [low, high] = PA_PER_COUNT;
-        if let Some(value) = pa_per_count
-            && !(low..=high).contains(&value.abs())
-        {
-            return Err(check.value(
-                "sensor.pa_per_count",
-                format!("is {value}"),
-                format!("use a number from {low:e} to {high:e} or from -{high:e} to -{low:e}, negative if larger counts press"),
-            ));
-        }
-        if calibration.is_some() && pa_per_count.is_none() && curve.is_none() {
-            return Err(check.value(
-                "sensor.calibration",
-                "is given, but pa_per_count is not".to_owned(),
-                "add pa_per_count, the pascals of one count, or a curve: gains and offsets are those of counts"
-                    .to_owned(),
-            ));
-        }
-        if pa_per_count.is_some() && curve.is_some() {
-            let remedy = "a curve says what counts are worth: remove pa_per_count".to_owned();
-            return Err(check.value("sensor.curve", "is given, and so is pa_per_count".to_owned(), remedy));
-        }
+        rules::counts(check, &keys)?;
+        let SensorKeys { tension, noise, pa_per_count, curve, calibration, dead, .. } = keys;
         let curve = curve.map(|curve| Curve::new(check, curve, beside, hardware)).transpose()?;
+        let (dead, room) = match dead {
+            None => (Vec::new(), 0),
+            Some(DeadKey::Taxels(taxels)) => (taxels, 0),
+            Some(DeadKey::Room { taxels, room }) => (taxels, room),
+        };
         let named = dead.iter().enumerate().map(|(index, &taxel)| {
             let key = format!("sensor.dead[{index}]");
             check.integer(&key, taxel, 0, taxels as i64 - 1).map(|taxel| taxel as usize)
@@ -197,16 +164,6 @@ impl Input {
         dead.extend(gains.filter(|&(_, &gain)| gain == 0.0).map(|(taxel, _)| taxel));
         dead.sort_unstable();
         dead.dedup();
-        let most = MOST_DEAD.min(taxels / 2);
-        if dead.len() > most {
-            return Err(check.value(
-                "sensor.dead",
-                format!("has {} taxels, with those of gain 0 in the calibration", dead.len()),
-                format!(
-                    "at most {most} of this sensor's can be replaced: mend the sensor, or leave out the part of it"
-                ),
-            ));
-        }
-        Ok(Self { pa_per_count, curve, calibration, dead, tension, noise })
+        Ok(Self { pa_per_count, curve, calibration, dead, room, tension, noise })
     }
 }

@@ -1,15 +1,12 @@
 //! The constants of the joint estimator as keys of a design.
 
-use std::path::{Path, PathBuf};
-
-use serde::Deserialize;
+use std::path::Path;
 
 use super::checks::Check;
 use super::files::{Beside, sha256};
+use super::keys::{AlgorithmKeys, CorrectionKeys};
 use super::{DesignError, Kernel, Regularisation, Sensor, Tension};
-use crate::estimators::joint::{
-    CUBIC_LIMIT, Correction, DEFAULT_MAX_STANDARD_ERROR, JointConstants, MAX_HIDDEN, TrainingSet, WEIGHT_LIMIT,
-};
+use crate::estimators::joint::{CUBIC_LIMIT, Correction, DEFAULT_MAX_STANDARD_ERROR, JointConstants, TrainingSet};
 
 /// What the constants depend on, for people and for comparison.
 pub fn conditions(
@@ -24,148 +21,98 @@ pub fn conditions(
     format!("{sensor}, {kernel}, {}{reads}, noise {noise}, {training_set}", regularisation.factor())
 }
 
-/// The `[algorithm.correction]` table: the weights in a file with its hash, or in the table itself.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RawCorrection {
-    half_window: Vec<i64>,
-    pub(super) file: Option<String>,
-    sha256: Option<String>,
-    error_base: Option<i64>,
-    hidden: Option<Vec<Vec<i64>>>,
-    output: Option<Vec<Vec<i64>>>,
-}
-
-/// The constants as a file has them, without the correction.
-pub(super) struct Raw<'a> {
-    pub training_set: TrainingSet,
-    pub max_standard_error: Option<f64>,
-    pub gain: Option<f64>,
-    pub friction_correction: Option<&'a [f64]>,
-    pub calibrated_for: Option<String>,
-}
-
-/// Checks the constants; a design without any has the default ones. `conditions` are those of the design.
-pub(super) fn constants(check: &Check, raw: Raw<'_>, conditions: &str) -> Result<JointConstants, DesignError> {
-    if let Some(other) = raw.calibrated_for.as_ref().filter(|&calibrated_for| calibrated_for != conditions) {
+/// From the keys; the constants must belong to `conditions`, those of the design with its training set.
+pub(super) fn constants(
+    check: &Check,
+    keys: &AlgorithmKeys,
+    conditions: impl Fn(TrainingSet) -> String,
+) -> Result<JointConstants, DesignError> {
+    let training_set = keys.training_set.unwrap_or_default();
+    let conditions = conditions(training_set);
+    if let Some(other) = keys.calibrated_for.as_ref().filter(|&other| *other != conditions) {
         return Err(check.value(
             "algorithm.calibrated_for",
             format!("says that the constants belong to \"{other}\", but the design is \"{conditions}\""),
-            format!(
-                "run `sptfra calibrate {0} --out {1}`, which fits new ones",
-                check.origin,
-                resolved_name(check.origin).display()
-            ),
+            format!("run `{}`, which fits new ones", fit(check.origin)),
         ));
     }
-    let gain = check.real("algorithm.gain", raw.gain.unwrap_or(1.0), 0.1, 10.0, "")?;
-    let [c1, c3] =
-        two(check, "algorithm.friction_correction", raw.friction_correction.unwrap_or(&[1.0, 0.0]), "c1 and c3")?;
-    let friction_correction = [
-        check.real("algorithm.friction_correction[0]", c1, 0.1, 10.0, "")?,
-        check.real("algorithm.friction_correction[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?,
-    ];
-    if raw.max_standard_error.is_some() && raw.training_set == TrainingSet::Sliding {
+    let [c1, c3] = keys.friction_correction.unwrap_or([1.0, 0.0]);
+    check.real("algorithm.friction_correction[0]", c1, 0.1, 10.0, "")?;
+    check.real("algorithm.friction_correction[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?;
+    if keys.max_standard_error.is_some() && training_set == TrainingSet::Sliding {
         return Err(check.value(
             "algorithm.max_standard_error",
-            "limits a standard error that the design does not estimate".to_owned(),
-            "remove it, or write training_set = \"general\" and run `sptfra calibrate`".to_owned(),
+            "limits a standard error that the design does not estimate",
+            "remove it, or write training_set = \"general\" and run `sptfra calibrate`",
         ));
     }
-    let limit = raw.max_standard_error.unwrap_or(DEFAULT_MAX_STANDARD_ERROR);
-    let max_standard_error = check.real("algorithm.max_standard_error", limit, 0.001, 3.9, "")?;
-    let Raw { training_set, calibrated_for, .. } = raw;
-    Ok(JointConstants { training_set, gain, friction_correction, correction: None, max_standard_error, calibrated_for })
+    Ok(JointConstants {
+        training_set,
+        gain: keys.gain.unwrap_or(1.0),
+        friction_correction: [c1, c3],
+        correction: None,
+        max_standard_error: keys.max_standard_error.unwrap_or(DEFAULT_MAX_STANDARD_ERROR),
+        calibrated_for: keys.calibrated_for.clone(),
+    })
 }
 
-/// A name for the calibrated design beside the one at `origin`.
-fn resolved_name(origin: &str) -> PathBuf {
+/// The command that fits the constants of the design at `origin`.
+fn fit(origin: &str) -> String {
     let path = Path::new(origin);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!("{stem}-calibrated.toml"))
+    let calibrated = path.with_file_name(format!("{stem}-calibrated.toml"));
+    format!("sptfra calibrate {origin} --out {}", calibrated.display())
 }
 
-/// Refuses the keys of the joint estimator, of which those marked are there, beside another one.
-pub(super) fn refuse(check: &Check, given: [bool; 6]) -> Result<(), DesignError> {
-    let keys = ["training_set", "max_standard_error", "gain", "friction_correction", "correction", "calibrated_for"];
-    let given: Vec<&str> = keys.into_iter().zip(given).filter_map(|(key, given)| given.then_some(key)).collect();
-    match given.as_slice() {
-        [] => Ok(()),
-        [key] => Err(check.value(
-            &format!("algorithm.{key}"),
-            "belongs to the joint estimator".to_owned(),
-            "remove it or write estimator = \"joint\"".to_owned(),
-        )),
-        [key, others @ ..] => Err(check.value(
-            &format!("algorithm.{key}"),
-            format!("belongs to the joint estimator, and so do {}", others.join(", ")),
-            "remove all of them or write estimator = \"joint\"".to_owned(),
-        )),
-    }
-}
-
-fn key(name: &str) -> String {
-    format!("algorithm.correction.{name}")
+/// Refuses the keys of the joint estimator beside another one.
+pub(super) fn refuse(check: &Check, keys: &AlgorithmKeys) -> Result<(), DesignError> {
+    let given = [
+        ("training_set", keys.training_set.is_some()),
+        ("max_standard_error", keys.max_standard_error.is_some()),
+        ("gain", keys.gain.is_some()),
+        ("friction_correction", keys.friction_correction.is_some()),
+        ("correction", keys.correction.is_some()),
+        ("calibrated_for", keys.calibrated_for.is_some()),
+    ];
+    let given: Vec<&str> = given.into_iter().filter_map(|(key, given)| given.then_some(key)).collect();
+    let Some((key, others)) = given.split_first() else { return Ok(()) };
+    let more = if others.is_empty() { String::new() } else { format!(", and so do {}", others.join(", ")) };
+    Err(check.value(
+        &format!("algorithm.{key}"),
+        format!("belongs to the joint estimator{more}"),
+        "remove what belongs to it, or write estimator = \"joint\"",
+    ))
 }
 
 /// What to do about weights that are not there, or others than those of the design.
 const RESTORE: &str = "copy the file that was written with the design to its side, or remove [algorithm.correction] and run `sptfra calibrate`";
 
-/// Checks the correction, and reads its file if it has one.
+/// The correction with the weights of its file, which must be those that the design was written with.
 pub(super) fn correction(
     check: &Check,
-    raw: RawCorrection,
+    keys: &CorrectionKeys,
     sensor: &Sensor,
     beside: Beside<'_>,
 ) -> Result<Correction, DesignError> {
-    let [x, y] = two(check, &key("half_window"), &raw.half_window, "for x and y")?;
-    let half = |name: &str, value, side: usize| check.integer(&key(name), value, 0, side as i64 - 1);
-    let half_window =
-        [half("half_window[0]", x, sensor.columns)? as usize, half("half_window[1]", y, sensor.rows)? as usize];
-    let refuse = |name: &str, problem: &str, remedy: String| Err(check.value(&key(name), problem.to_owned(), remedy));
-    match (raw.file, raw.sha256, raw.hidden, raw.output) {
-        (Some(file), Some(hash), None, None) => {
-            let limit = i64::from(WEIGHT_LIMIT);
-            let base = raw.error_base.map(|base| check.integer(&key("error_base"), base, -limit, limit - 1));
-            from_file(check, (&file, &hash), half_window, base.transpose()?.map(|base| base as i32), beside)
-        }
-        (None, ..) if raw.error_base.is_some() => {
-            refuse("error_base", "is given without a file", "add the key file, or remove it".to_owned())
-        }
-        (None, None, Some(hidden), Some(output)) => from_table(check, half_window, &hidden, &output),
-        (Some(file), None, None, None) => {
-            refuse("sha256", "is missing", format!("write what `sha256sum {file}` prints"))
-        }
-        (None, Some(_), ..) => refuse("sha256", "is given without a file", "add the key file".to_owned()),
-        (Some(_), ..) => refuse("file", "is given beside weights", "remove hidden and output, or file".to_owned()),
-        (None, None, ..) => refuse(
-            "file",
-            "is missing",
-            "name the file of weights, or remove [algorithm.correction] and run `sptfra calibrate`".to_owned(),
-        ),
-    }
-}
-
-/// The weights of a file, which must be those that the design was written with.
-fn from_file(
-    check: &Check,
-    (file, hash): (&str, &str),
-    half_window: [usize; 2],
-    error_base: Option<i32>,
-    beside: Beside<'_>,
-) -> Result<Correction, DesignError> {
+    const KEY: &str = "algorithm.correction";
+    let CorrectionKeys { half_window: [x, y], file, sha256: hash, error_base } = keys;
+    let half = |axis: usize, value: i64, side: usize| {
+        let key = format!("{KEY}.half_window[{axis}]");
+        check.integer(&key, value, 0, side as i64 - 1).map(|half| half as usize)
+    };
+    let half_window = [half(0, *x, sensor.columns)?, half(1, *y, sensor.rows)?];
     let path = beside.path(file);
     let text = beside.read(file).map_err(|source| {
         let problem = format!("names {}, which cannot be read: {source}", path.display());
-        check.value(&key("file"), problem, RESTORE.to_owned())
+        check.value(&format!("{KEY}.file"), problem, RESTORE)
     })?;
     let found = sha256(&text);
-    if found != hash {
+    if found != *hash {
         let shown: String = hash.chars().take(found.len()).collect();
         let problem = format!("is {shown:?}, but {} has {found}: it holds other weights", path.display());
-        return Err(check.value(&key("sha256"), problem, RESTORE.to_owned()));
+        return Err(check.value(&format!("{KEY}.sha256"), problem, RESTORE));
     }
-    Correction::read_csv(&text, half_window, error_base).map_err(|error| DesignError::Table {
+    Correction::read_csv(&text, half_window, *error_base).map_err(|error| DesignError::Table {
         path,
         line: error.line,
         problem: error.problem,
@@ -173,65 +120,19 @@ fn from_file(
     })
 }
 
-/// The weights of the table itself.
-fn from_table(
-    check: &Check,
-    half_window: [usize; 2],
-    hidden: &[Vec<i64>],
-    output: &[Vec<i64>],
-) -> Result<Correction, DesignError> {
-    let again = || "remove [algorithm.correction] and run `sptfra calibrate`".to_owned();
-    check.integer(&key("hidden (number of rows)"), hidden.len() as i64, 1, MAX_HIDDEN as i64)?;
-    let row = |name: String, row: &[i64], length: usize| -> Result<Vec<i32>, DesignError> {
-        if row.len() != length {
-            return Err(check.value(&key(&name), format!("has {} weights, not {length}", row.len()), again()));
-        }
-        let limit = i64::from(WEIGHT_LIMIT);
-        let checked = row.iter().map(|&weight| check.integer(&key(&name), weight, -limit, limit - 1));
-        checked.map(|weight| weight.map(|weight| weight as i32)).collect()
-    };
-    let inputs = Correction::inputs(half_window);
-    let hidden: Vec<Vec<i32>> = hidden
-        .iter()
-        .enumerate()
-        .map(|(index, weights)| row(format!("hidden[{index}]"), weights, inputs))
-        .collect::<Result<_, _>>()?;
-    let [along_x, along_y] = two(check, &key("output"), output, "for x and y")?;
-    let output =
-        [row("output[0]".to_owned(), &along_x, hidden.len())?, row("output[1]".to_owned(), &along_y, hidden.len())?];
-    Ok(Correction { half_window, hidden, output, error: None })
-}
-
-/// Two values, where a TOML reader would drop a third without a word.
-fn two<T: Clone>(check: &Check, key: &str, values: &[T], which: &str) -> Result<[T; 2], DesignError> {
-    match values {
-        [first, second] => Ok([first.clone(), second.clone()]),
-        _ => Err(check.value(key, format!("has {} values", values.len()), format!("use two, {which}"))),
-    }
-}
-
-/// The keys of `[algorithm]`, and the table that follows all of them, with the weights in the file named `weights`.
-pub(super) fn print(constants: &JointConstants, weights: &str) -> [String; 2] {
-    let JointConstants { training_set, gain, friction_correction: [c1, c3], correction, .. } = constants;
-    let output = correction.as_ref().and_then(|correction| correction.error.as_ref());
-    let limit = constants.max_standard_error;
-    // A design of sliding contacts estimates no error, and a limit for one is refused.
-    let is_limited = *training_set == TrainingSet::General
-        && (output.is_some() || limit.to_bits() != DEFAULT_MAX_STANDARD_ERROR.to_bits());
-    let limit = if is_limited { format!("max_standard_error = {limit:?}\n") } else { String::new() };
-    let calibrated_for = constants
-        .calibrated_for
-        .as_ref()
-        .map_or_else(String::new, |conditions| format!("calibrated_for = {conditions:?}\n"));
-    let keys = format!(
-        "training_set = \"{training_set}\"\n{limit}{calibrated_for}gain = {gain:?}\n\
-         friction_correction = [{c1:?}, {c3:?}]\n"
-    );
-    let table = correction.as_ref().map_or_else(String::new, |correction| {
-        let ([x, y], hash) = (correction.half_window, sha256(&correction.to_csv()));
-        let file = toml::Value::from(weights);
-        let base = output.map_or_else(String::new, |output| format!("error_base = {}\n", output.base));
-        format!("\n[algorithm.correction]\nhalf_window = [{x}, {y}]\nfile = {file}\nsha256 = \"{hash}\"\n{base}")
+/// Writes the constants into `keys`, with the weights in the file named `weights`.
+pub(super) fn state(constants: &JointConstants, weights: &str, keys: &mut AlgorithmKeys) {
+    let JointConstants { training_set, gain, friction_correction, correction, calibrated_for, .. } = constants;
+    keys.training_set = Some(*training_set);
+    // A limit for an error that is not estimated is refused.
+    keys.max_standard_error = (*training_set == TrainingSet::General).then_some(constants.max_standard_error);
+    keys.calibrated_for.clone_from(calibrated_for);
+    keys.gain = Some(*gain);
+    keys.friction_correction = Some(*friction_correction);
+    keys.correction = correction.as_ref().map(|correction| CorrectionKeys {
+        half_window: correction.half_window.map(|half| half as i64),
+        file: weights.to_owned(),
+        sha256: sha256(&correction.to_csv()),
+        error_base: correction.error.as_ref().map(|error| error.base),
     });
-    [keys, table]
 }

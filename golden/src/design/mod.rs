@@ -1,26 +1,29 @@
 //! The design file: what sensor, what algorithm, what hardware.
 //!
+//! A key stands once, in `keys.rs` or, of `[hardware]`, in [`Hardware`]; rules that bind several keys stand in `rules.rs`.
 //! A [`Design`] that exists has passed every check, so code that takes one need not check again.
 
 mod algorithm;
+mod base;
 mod calibration;
-mod calibration_in_ram;
 pub(crate) mod checks;
+mod commented;
 mod curve;
 mod error;
 mod files;
 mod filter;
+mod filter_keys;
 mod hardware;
 mod input;
 mod joint;
-mod lengths;
-mod parse;
-mod parse_filter;
-mod parse_plan;
-mod print;
+mod keys;
+mod old_format;
+mod read;
 mod regularisation;
-mod renamed;
+mod resolve;
 mod rows;
+mod rules;
+mod schema;
 mod thin;
 
 use std::path::{Path, PathBuf};
@@ -38,14 +41,13 @@ pub(crate) use files::Beside;
 pub use files::{CALIBRATION_FILE, CURVE_FILE, FileNames, WEIGHTS_FILE};
 pub use filter::{Choices, Filter, FilterKind, MatrixFilter, UnknownMatrixFilter};
 pub use hardware::{
-    CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, InputRange, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples,
+    CalibrationIn, DEFAULT_FULL_SCALE_PA, Hardware, MAX_LANES, Optimise, Overrun, STREAM_BITS, Samples, Scaling,
 };
 pub use input::{DEFAULT_NOISE, Input, Tension};
 pub use joint::conditions;
-pub(crate) use lengths::Lengths;
-pub(crate) use parse::RawSensor;
-pub use parse::syntax_position;
+pub use read::syntax_position;
 pub use regularisation::Regularisation;
+pub use schema::design_schema;
 
 /// Largest number of columns or rows with the paper's plan, whose matrices are four times as large.
 pub const MAX_SIDE_PAPER: usize = 32;
@@ -91,7 +93,7 @@ impl Design {
     ///
     /// Every way a file can be wrong, see [`DesignError`]; the message names the file, the key and the remedy.
     pub fn load(path: &Path) -> Result<Self, DesignError> {
-        parse::design(&read(path)?, &path.display().to_string(), Beside::folder_of(path))
+        from_text(&text_of(path)?, &path.display().to_string(), Beside::folder_of(path))
     }
 
     /// As [`Design::load`], without the constants that were fitted to the sensor, be they those of another one.
@@ -100,7 +102,9 @@ impl Design {
     ///
     /// As [`Design::load`], but for what is wrong with these constants.
     pub fn load_unfitted(path: &Path) -> Result<Self, DesignError> {
-        parse::unfitted(&read(path)?, &path.display().to_string(), Beside::folder_of(path))
+        let (origin, beside) = (path.display().to_string(), Beside::folder_of(path));
+        let keys = resolve::unfitted(read::keys(&text_of(path)?, &origin, beside)?);
+        resolve::design(keys, &origin, beside)
     }
 
     /// Checks the text of a design file; `origin` is the name to use in messages, and files that the design names are
@@ -110,7 +114,7 @@ impl Design {
     ///
     /// As [`Design::load`], without the reading.
     pub fn from_toml(text: &str, origin: &str) -> Result<Self, DesignError> {
-        parse::design(text, origin, Beside::folder_of(Path::new(origin)))
+        from_text(text, origin, Beside::folder_of(Path::new(origin)))
     }
 
     /// As [`Design::from_toml`], with the files that the design names as pairs of name and content, as
@@ -120,7 +124,7 @@ impl Design {
     ///
     /// As [`Design::from_toml`]; a file that is not among them is one that cannot be read.
     pub fn from_parts(text: &str, origin: &str, files: &[(&str, String)]) -> Result<Self, DesignError> {
-        parse::design(text, origin, Beside::Memory(files))
+        from_text(text, origin, Beside::Memory(files))
     }
 
     /// The files that a design file names, none of which is read.
@@ -129,13 +133,13 @@ impl Design {
     ///
     /// [`DesignError::Read`] and [`DesignError::Syntax`].
     pub fn files_named_in(path: &Path) -> Result<Vec<PathBuf>, DesignError> {
-        parse::files_named_in(&read(path)?, &path.display().to_string(), Beside::folder_of(path))
+        read::files_named_in(&text_of(path)?, &path.display().to_string(), Beside::folder_of(path))
     }
 
-    /// The resolved design as TOML: every key, in a fixed order; parsing it gives this design back. The files that it
-    /// names are [`Design::files`]; write them beside it.
+    /// The resolved design as TOML: every key that has a value, in a fixed order; parsing it gives this design back. The
+    /// files that it names are [`Design::files`]; write them beside it.
     pub fn to_toml(&self) -> String {
-        print::to_toml(self, &FileNames::default())
+        self.to_toml_with(&FileNames::default())
     }
 
     /// As [`Design::to_toml`], with another name than [`WEIGHTS_FILE`]: several designs of a folder each have weights.
@@ -145,10 +149,24 @@ impl Design {
 
     /// As [`Design::to_toml`], with other names for the files beside it.
     pub fn to_toml_with(&self, names: &FileNames) -> String {
-        print::to_toml(self, names)
+        toml::to_string(&resolve::keys(self, names)).unwrap_or_default()
+    }
+
+    /// As [`Design::to_toml`], as a file to edit: each key with its meaning, and those without a value as remarks.
+    pub fn to_commented_toml(&self) -> String {
+        let mut keys = resolve::keys(self, &FileNames::default());
+        // Follows the full scale that is edited.
+        let usual = self.hardware.full_scale_pa / NOISE_FLOOR_DIVISOR;
+        keys.algorithm.noise_floor_pa =
+            keys.algorithm.noise_floor_pa.filter(|floor| floor.to_bits() != usual.to_bits());
+        commented::commented(&self.name, &toml::Table::try_from(keys).unwrap_or_default())
     }
 }
 
-fn read(path: &Path) -> Result<String, DesignError> {
+fn from_text(text: &str, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
+    resolve::design(read::keys(text, origin, beside)?, origin, beside)
+}
+
+fn text_of(path: &Path) -> Result<String, DesignError> {
     std::fs::read_to_string(path).map_err(|source| DesignError::Read { path: path.to_path_buf(), source })
 }

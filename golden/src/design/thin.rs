@@ -24,7 +24,7 @@ mod tests {
 
     fn by_kernel(depth_mm: f64, estimator: &str, kernel: &str) -> Option<String> {
         let text = format!(
-            "name = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = {depth_mm:?}\n\
+            "format = 3\nname = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = {depth_mm:?}\n\
              [algorithm]\nestimator = \"{estimator}\"\nkernel = \"{kernel}\"\n"
         );
         Design::from_toml(&text, "thin").expect("a design").thin_layer()

@@ -10,6 +10,7 @@ mod seen;
 pub(crate) mod standard_error;
 mod thin;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::kernel::Kernel;
@@ -23,7 +24,7 @@ pub use standard_error::{ERROR_FRACTION, ERROR_RANGE};
 pub(crate) use thin::Thin;
 
 /// How the friction components are found once the optimisation problem is set up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Estimator {
     /// Along the line that the direction of push fixes in the plane of the friction components.

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use super::parse_traction::RawTraction;
 use super::{Contact, Converter, Medium, Scene, SensorErrors, Shape};
 use crate::design::checks::Check;
-use crate::design::{DEFAULT_FULL_SCALE_PA, DesignError, Lengths, RawSensor, Sensor, syntax_position};
+use crate::design::{DEFAULT_FULL_SCALE_PA, DesignError, Sensor, Tension, syntax_position};
 
 /// Most frames of a sweep.
 const MAX_FRAMES: f64 = 100_000.0;
@@ -25,12 +25,13 @@ struct RawScene {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawSceneSensor {
-    columns: i64,
-    rows: i64,
-    pitch_mm: Lengths,
+    columns: usize,
+    rows: usize,
+    pitch_mm: Vec<f64>,
     depth_mm: f64,
-    taxel_mm: Option<Lengths>,
-    tension: Option<String>,
+    taxel_mm: Option<Vec<f64>>,
+    #[serde(default)]
+    tension: Tension,
 }
 
 #[derive(Deserialize)]
@@ -119,19 +120,20 @@ pub(super) fn scene(text: &str, origin: &str) -> Result<Scene, DesignError> {
         .map(|(index, raw)| contact(&check, raw, &|key| format!("contact[{index}].{key}"), !sweep_deg.is_empty()))
         .collect::<Result<_, _>>()?;
     let RawSceneSensor { columns, rows, pitch_mm, depth_mm, taxel_mm, tension } = raw.sensor;
-    let sensor = RawSensor { columns, rows, pitch_mm, depth_mm }.check(origin)?;
+    let pitch_mm = check.pair("sensor.pitch_mm", &pitch_mm)?;
+    let sensor = Sensor { columns, rows, pitch_mm, depth_mm }.checked(origin)?;
     let mut sensor_errors = match raw.sensor_errors {
         Some(raw) => sensor_errors(&check, &raw, sensor.taxels())?,
         None => SensorErrors::default(),
     };
-    sensor_errors.tension = check.optional_word("sensor.tension", tension.as_deref())?.unwrap_or_default();
+    sensor_errors.tension = tension;
     sensor_errors.taxel_m = taxel_mm.map(|taxel_mm| taxel(&check, &taxel_mm, &sensor)).transpose()?;
     Ok(Scene { sensor, medium: medium(&check, &raw.medium)?, contacts, sweep_deg, sensor_errors })
 }
 
 /// The sides of a taxel in metres, which fits into its cell.
-fn taxel(check: &Check, taxel_mm: &Lengths, sensor: &Sensor) -> Result<[f64; 2], DesignError> {
-    let [x, y] = taxel_mm.pair(check, "sensor.taxel_mm")?;
+fn taxel(check: &Check, taxel_mm: &[f64], sensor: &Sensor) -> Result<[f64; 2], DesignError> {
+    let [x, y] = check.pair("sensor.taxel_mm", taxel_mm)?;
     let side = |axis: usize, mm| {
         let key = format!("sensor.taxel_mm[{axis}]");
         check.real(&key, mm, 0.0, sensor.pitch_mm[axis], "mm, the pitch").map(|mm| mm * 1e-3)

@@ -52,7 +52,7 @@ impl RawTraction<'_> {
                 [along, across]
             }
         };
-        let shear: Kind = check.optional_word(&key("shear"), self.shear)?.unwrap_or(Kind::Sliding);
+        let shear: Kind = self.shear.map_or(Ok(Kind::Sliding), |word| check.word(&key("shear"), word))?;
         if self.spin.is_some() && shear != Kind::Sliding {
             return refuse("spin", "belongs to a contact that slides", "remove it or write shear = \"sliding\"");
         }

@@ -4,7 +4,7 @@ use golden::bank;
 use golden::dead_taxels::DeadTaxels;
 use golden::design::Design;
 
-const PAD: &str = "name = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n\
+const PAD: &str = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 2.0]\ndepth_mm = 2.0\n\
     pa_per_count = -2.0\n";
 
 fn design(sensor: &str, hardware: &str) -> Result<Design, String> {
@@ -14,26 +14,28 @@ fn design(sensor: &str, hardware: &str) -> Result<Design, String> {
 
 #[test]
 fn room_for_dead_taxels_is_one_two_four_or_eight() {
-    let good = design("dead = [1, 4]", "replaceable = 2").unwrap();
-    assert_eq!(good.hardware.replaceable, 2);
+    let good = design("dead = { taxels = [1, 4], room = 2 }", "").unwrap();
+    assert_eq!(good.input.room, 2);
     assert_eq!(Design::from_toml(&good.to_toml(), "again.toml").unwrap(), good);
-    assert!(!design("", "replaceable = 0").unwrap().to_toml().contains("replaceable"));
-    for (sensor, hardware, said) in [
-        ("", "replaceable = 3", "use 1, 2, 4 or 8"),
-        ("", "replaceable = -1", "use 1, 2, 4 or 8"),
-        ("dead = [1, 4]", "replaceable = 1", "2 taxels are dead"),
+    assert!(!design("", "").unwrap().to_toml().contains("room"));
+    for (sensor, said) in [
+        ("dead = { room = 3 }", "use one of 1, 2, 4, 8"),
+        ("dead = { room = 0 }", "use one of 1, 2, 4, 8"),
+        ("dead = { taxels = [1], room = -1 }", "use one of 1, 2, 4, 8"),
+        ("dead = { taxels = [1, 4], room = 1 }", "2 taxels are dead"),
+        ("dead = { taxels = [1, 4] }", "a list of taxels, dead = [44], or a table"),
     ] {
-        let message = design(sensor, hardware).unwrap_err();
-        assert!(message.contains("hardware.replaceable") && message.contains(said), "{message}");
+        let message = design(sensor, "").unwrap_err();
+        assert!(message.contains("sensor.dead") && message.contains(said), "{message}");
     }
-    let in_rom = Design::from_toml(&format!("{PAD}[hardware]\nreplaceable = 1\n"), "pad.toml").unwrap_err().to_string();
+    let in_rom = Design::from_toml(&format!("{PAD}dead = {{ room = 1 }}\n"), "pad.toml").unwrap_err().to_string();
     assert!(in_rom.contains("stands in ROM") && in_rom.contains("calibration = \"ram\""), "{in_rom}");
 }
 
 /// The header names the dead taxels; their gains are 0, and so are their weights; the others' are those of the prior.
 #[test]
 fn a_bank_has_the_weights_of_the_dead_taxels() {
-    let text = bank::to_csv(&design("dead = [4, 1]", "replaceable = 8").unwrap()).unwrap();
+    let text = bank::to_csv(&design("dead = { taxels = [4, 1], room = 8 }", "").unwrap()).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!((lines[0], lines.len()), ("gain,offset,taxel 1,taxel 4", 7));
     let table: Vec<Vec<f64>> =
@@ -43,14 +45,14 @@ fn a_bank_has_the_weights_of_the_dead_taxels() {
         assert_eq!(line[..2], [if dead { 0.0 } else { 1.0 }, 0.0], "taxel {taxel}");
         assert_eq!(line[2..] == [0.0, 0.0], dead, "taxel {taxel}");
     }
-    let both = design("dead = [1, 4]", "replaceable = 8").unwrap();
+    let both = design("dead = { taxels = [1, 4], room = 8 }", "").unwrap();
     let dead = DeadTaxels::new(&both.sensor, both.algorithm.kernel, &[1, 4]);
     for (place, weights) in dead.weights().iter().enumerate() {
         assert_eq!(table.iter().map(|line| line[2 + place]).collect::<Vec<_>>(), *weights, "place {place}");
     }
     // Where banks have no room, and where nothing is dead.
-    for hardware in ["", "replaceable = 2"] {
-        let text = bank::to_csv(&design("", hardware).unwrap()).unwrap();
+    for sensor in ["", "dead = { room = 2 }"] {
+        let text = bank::to_csv(&design(sensor, "").unwrap()).unwrap();
         assert_eq!(text, format!("gain,offset\n{}", "1.0,0.0\n".repeat(6)));
     }
     let of_rom = bank::to_csv(&design("dead = [1]", "").unwrap()).unwrap();
@@ -61,8 +63,8 @@ fn a_bank_has_the_weights_of_the_dead_taxels() {
 #[test]
 fn a_design_can_name_a_bank() {
     let load = |sensor: &str, files: &[(&str, String)]| {
-        let hardware = "[hardware]\ncontrol = true\ncalibration = \"ram\"\nreplaceable = 2\n";
-        let sensor = format!("{}{sensor}\n", PAD.replace("pa_per_count = -2.0\n", ""));
+        let hardware = "[hardware]\ncontrol = true\ncalibration = \"ram\"\n";
+        let sensor = format!("{}{sensor}\ndead = {{ room = 2 }}\n", PAD.replace("pa_per_count = -2.0\n", ""));
         Design::from_parts(&format!("{sensor}{hardware}"), "pad.toml", files).map_err(|error| error.to_string())
     };
     let gains = ("gains.csv", "1.5,3\n0.5,-2.25\n1,0\n1,0\n0,0\n1,1e-7\n".to_owned());

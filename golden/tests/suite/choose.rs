@@ -162,7 +162,7 @@ fn wrong_scenes_are_refused() {
         (Filter::F3 { scenes: Vec::new(), choices: None }, vec!["sensor1_f3", "no scenes", "scenes = ["]),
         (scenes("../scenes/absent.toml"), vec!["absent.toml", "cannot read"]),
         (scenes("../scenes/sensor2-disc.toml"), vec!["sensor2-disc.toml", "[sensor]", "sensor1_f3", "pitch_mm"]),
-        (scenes("sensor1-none.toml"), vec!["reference scene", "sensor1-none.toml", "line 10", "algorithm"]),
+        (scenes("sensor1-none.toml"), vec!["reference scene", "sensor1-none.toml", "line 11", "algorithm"]),
     ] {
         let message = with(filter);
         for part in parts {

@@ -32,7 +32,7 @@ fn design(name: &str) -> Design {
 }
 
 fn small(algorithm: &str) -> Design {
-    let sensor = "name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n";
+    let sensor = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n";
     Design::from_toml(&format!("{sensor}[algorithm]\n{algorithm}\n"), "pad.toml").unwrap()
 }
 
@@ -226,23 +226,17 @@ fn the_line_estimator_has_nothing_to_calibrate() {
 #[test]
 fn constants_that_make_no_sense_are_refused() {
     let text = |algorithm: &str| {
-        let sensor = "name = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
+        let sensor =
+            "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n";
         format!("{sensor}[algorithm]\n{algorithm}\n")
     };
     let joint = |keys: &str| text(&format!("estimator = \"joint\"\n{keys}"));
     let correction = |keys: &str| joint(&format!("[algorithm.correction]\n{keys}"));
-    let row = |length: usize| format!("{:?}", vec![1; length]);
     for (text, parts) in [
         (text("gain = 1.1"), ["algorithm.gain", "joint estimator"]),
         (text("friction_correction = [1.0, 0.0]"), ["algorithm.friction_correction", "joint estimator"]),
         (text("training_set = \"general\""), ["algorithm.training_set", "joint estimator"]),
-        (joint("training_set = \"broad\""), ["algorithm.training_set", "sliding"]),
-        // Keys of earlier versions.
-        (joint("grid = 13"), ["algorithm.grid", "remove it and run `sptfra calibrate`"]),
-        (joint("family = \"wide\""), ["algorithm.family", "training_set = \"general\""]),
-        (joint("doubt = 0.06"), ["algorithm.doubt", "max_standard_error"]),
-        (joint("tangential = [1.0, 0.0]"), ["algorithm.tangential", "friction_correction"]),
-        (joint("fitted_to = \"x\""), ["algorithm.fitted_to", "calibrated_for"]),
+        (joint("training_set = \"broad\""), ["training_set", "`sliding` or `general`"]),
         (
             joint("calibrated_for = \"4 x 3 taxels of 4 x 2 mm, 3 mm deep, point, 0\""),
             ["algorithm.calibrated_for", "noise 0.005, sliding"],
@@ -251,17 +245,11 @@ fn constants_that_make_no_sense_are_refused() {
         (joint("gain = nan"), ["algorithm.gain", "NaN"]),
         (joint("friction_correction = [1.0]"), ["algorithm.friction_correction", "has 1 values"]),
         (joint("friction_correction = [1.0, 9.0]"), ["algorithm.friction_correction[1]", "-3.9 to 3.9"]),
-        (correction("half_window = [0]\nhidden = []\noutput = []"), ["half_window", "has 1 values"]),
-        (correction("half_window = [4, 0]\nhidden = []\noutput = []"), ["half_window[0]", "0 to 3"]),
-        (correction("half_window = [0, 0]\nhidden = []\noutput = []"), ["hidden", "1 to 256"]),
-        (correction("half_window = [0, 0]\nhidden = [[1]]\noutput = []"), ["hidden[0]", "has 1 weights, not 6"]),
+        (correction("half_window = [0]\n"), ["half_window", "has 1 values"]),
+        (correction("half_window = [4, 0]\nfile = \"w.csv\"\nsha256 = \"0\"\n"), ["half_window[0]", "0 to 3"]),
         (
-            correction(&format!("half_window = [0, 0]\nhidden = [{}]\noutput = [[1]]", row(6))),
-            ["correction.output", "has 1 values"],
-        ),
-        (
-            correction(&format!("half_window = [0, 0]\nhidden = [{}]\noutput = [[1], [131072]]", row(6))),
-            ["output[1]", "131071"],
+            correction("half_window = [1, 0]\nfile = \"w.csv\"\nsha256 = \"0\"\nerror_base = 131072\n"),
+            ["correction.error_base", "131071"],
         ),
     ] {
         let error = Design::from_toml(&text, "pad.toml").unwrap_err().to_string();
@@ -320,7 +308,7 @@ fn a_mirrored_frame_has_mirrored_forces() {
 /// On a square x and y may change places, for any frame.
 #[test]
 fn a_transposed_frame_has_transposed_forces_on_a_square() {
-    let square = "name = \"pad\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
+    let square = "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n\
                   [algorithm]\nestimator = \"joint\"\n";
     for (family, hidden) in [(TrainingSet::Sliding, 5), (TrainingSet::General, 4)] {
         let mut design = Design::from_toml(square, "pad.toml").unwrap();

@@ -7,7 +7,7 @@ use golden::solver::Solver;
 
 fn text(depth_mm: f64, algorithm: &str) -> String {
     format!(
-        "name = \"pad\"\n[sensor]\ncolumns = 7\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth_mm:?}\n\
+        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 7\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = {depth_mm:?}\n\
          [algorithm]\n{algorithm}\n"
     )
 }
@@ -24,14 +24,14 @@ fn the_key_is_a_share_or_a_noise_and_comes_back() {
         ("regularisation = 0.0", Regularisation::None),
         ("regularisation = 0.01", Regularisation::Factor(0.01)),
         ("regularisation = 1", Regularisation::Factor(1.0)),
-        ("regularisation = { noise = 0.002 }", Regularisation::Noise(0.002)),
+        ("regularisation = { noise = 0.002 }", Regularisation::Noise { noise: 0.002 }),
     ] {
         let design = design(3.0, key);
         assert_eq!(design.algorithm.regularisation, expected, "{key}");
         assert_eq!(Design::from_toml(&design.to_toml(), "again").unwrap(), design);
     }
-    assert!(Regularisation::Noise(0.002).factor() > 0.002);
-    assert!(Regularisation::Noise(0.25).factor() <= 1.0);
+    assert!(Regularisation::Noise { noise: 0.002 }.factor() > 0.002);
+    assert!(Regularisation::Noise { noise: 0.25 }.factor() <= 1.0);
 }
 
 #[test]

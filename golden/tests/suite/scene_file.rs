@@ -310,7 +310,7 @@ fn keys_of_contacts_that_contradict_themselves() {
     refused_with("shear = \"even\"\nspin = 1.0", &["contact[0].spin", "slides"]);
     refused_with("shear = \"rolling\"", &["contact[0].shear", "sliding, held, even"]);
     refused(&with("depth_mm = 3.0", "depth_mm = 3.0\ntaxel_mm = [5.0, 1.0]"), &["sensor.taxel_mm[0]", "pitch"]);
-    refused(&with("depth_mm = 3.0", "depth_mm = 3.0\ntaxel_mm = 2.0"), &["sensor.taxel_mm", "[2.0, 2.0]"]);
+    refused(&with("depth_mm = 3.0", "depth_mm = 3.0\ntaxel_mm = 2.0"), &["taxel_mm", "[2.0, 2.0]"]);
 }
 
 /// The scene that the docs show has every key that they speak of, and makes frames.

@@ -29,7 +29,7 @@ fn design(depth_by_pitch: f64, kernel: Kernel, settings: Option<&Settings>) -> D
 fn calibrated(pitch_mm: [f64; 2], depth_by_pitch: f64, estimator: &str, settings: Option<&Settings>) -> Design {
     let depth = pitch_mm[0].max(pitch_mm[1]) * depth_by_pitch;
     let text = format!(
-        "name = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth:?}\n\
+        "format = 3\nname = \"thin\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth:?}\n\
          [algorithm]\nestimator = {estimator}\n"
     );
     let mut design = Design::from_toml(&text, "thin").unwrap();

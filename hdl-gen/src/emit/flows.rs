@@ -102,7 +102,7 @@ struct View {
 }
 
 impl View {
-    fn new(plan: &Plan, hash: &str, boards: &[Board], files: &FileMap) -> Self {
+    fn new(plan: &Plan, hash: &str, (boards, debug): (&[Board], bool), files: &FileMap) -> Self {
         let design = &plan.design;
         let testbench = format!("sim/{}_tb.v", design.name);
         let core = files.get(&format!("rtl/{}.v", core_module(plan)));
@@ -134,7 +134,7 @@ impl View {
             dsp_block: plan.resources.dsp_block.name(),
             blocks: plan.resources.blocks.clone(),
             control: design.hardware.control,
-            debug: design.hardware.debug.then(|| debug::nets(&core, debug::always_zero(plan))),
+            debug: debug.then(|| debug::nets(&core, debug::always_zero(plan))),
             samples: debug::samples(plan.timeline.latency_cycles),
             boards: boards.iter().map(Placed::new).collect(),
             name: design.name.clone(),
@@ -146,8 +146,13 @@ impl View {
 ///
 /// # Errors
 /// [`EmitError::Template`] if a template does not fit the view.
-pub fn insert(plan: &Plan, hash: &str, boards: &[Board], files: &mut FileMap) -> Result<(), EmitError> {
-    let view = View::new(plan, hash, boards, files);
+pub fn insert(
+    plan: &Plan,
+    hash: &str,
+    (boards, debug): (&[Board], bool),
+    files: &mut FileMap,
+) -> Result<(), EmitError> {
+    let view = View::new(plan, hash, (boards, debug), files);
     let failed = |path: &str| {
         let template = path.to_owned();
         move |source| EmitError::Template { template, source }
@@ -212,19 +217,19 @@ mod tests {
     #[test]
     fn the_testbench_is_named_only_where_it_is() {
         let text = golden::design::Design::from_toml(
-            "name = \"d\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n",
+            "format = 3\nname = \"d\"\n[sensor]\ncolumns = 3\nrows = 2\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n",
             "d.toml",
         );
         let plan = Plan::new(&text.unwrap()).unwrap();
         let mut files = FileMap::from([("rtl/d.v".to_owned(), Vec::new())]);
-        insert(&plan, "0123456789abcdef", &Board::all().unwrap(), &mut files).unwrap();
+        insert(&plan, "0123456789abcdef", (&Board::all().unwrap(), false), &mut files).unwrap();
         let text = |files: &FileMap, path: &str| String::from_utf8(files[path].clone()).unwrap();
         assert!(!text(&files, "d.core").contains("d_tb"));
         assert_eq!(text(&files, "d.f"), "rtl/d.v\n");
         assert!(!files.contains_key(SIMULATION) && !text(&files, "vivado/files.tcl").contains("testbench"));
         files.insert("sim/d_tb.v".to_owned(), Vec::new());
         files.insert("sim/d_stimulus.mem".to_owned(), Vec::new());
-        insert(&plan, "0123456789abcdef", &Board::all().unwrap(), &mut files).unwrap();
+        insert(&plan, "0123456789abcdef", (&Board::all().unwrap(), false), &mut files).unwrap();
         assert!(text(&files, "d.core").contains("sim/d_stimulus.mem: {copyto: d_stimulus.mem}"));
         assert!(text(&files, "d.core").contains("toplevel: d_tb"));
         assert!(text(&files, "Bender.yml").contains("sim/d_tb.v"));

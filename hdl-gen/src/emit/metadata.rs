@@ -160,7 +160,7 @@ pub fn metadata(plan: &Plan, hash: &str, files: &FileMap) -> Result<Vec<u8>, Emi
         value["registers"] = json!(registers::map_path(plan));
     }
     if plan.scales_frames() {
-        value["range"] = json!(plan.design.hardware.range);
+        value["range"] = json!(plan.design.hardware.scaling);
     }
     if plan.design.algorithm.count_contacts {
         value["count_contacts"] = json!({ "cycles": latency::count_contacts(&plan.design.sensor) });

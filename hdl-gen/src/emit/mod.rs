@@ -77,6 +77,8 @@ pub struct Options {
     pub boards: Vec<Board>,
     /// Before the names of the library's modules; none: they keep their own.
     pub prefix: Option<Prefix>,
+    /// Whether nets are marked for a logic analyser in the FPGA, with the script that attaches it.
+    pub debug: bool,
 }
 
 /// As [`emit`], with options.
@@ -88,7 +90,7 @@ pub fn emit_for(plan: &Plan, options: &Options) -> Result<FileMap, EmitError> {
     let mut files = FileMap::new();
     let design = plan.design.to_toml();
     let hash = resolved_hash(&plan.design);
-    for (module, text) in modules::render(plan, &hash)? {
+    for (module, text) in modules::render(plan, &hash, options.debug)? {
         files.insert(format!("rtl/{module}.v"), text.into_bytes());
     }
     roms::insert(plan, &mut files);
@@ -100,7 +102,7 @@ pub fn emit_for(plan: &Plan, options: &Options) -> Result<FileMap, EmitError> {
         files.insert(name.to_owned(), content.into_bytes());
     }
     // After every file that a list or script names.
-    flows::insert(plan, &hash, &boards, &mut files)?;
+    flows::insert(plan, &hash, (&boards, options.debug), &mut files)?;
     linux::insert(plan, &boards, &mut files)?;
     readme::insert(plan, &hash, &mut files)?;
     origin::insert(&plan.design.name, &hash, &mut files);

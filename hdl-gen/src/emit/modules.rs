@@ -11,8 +11,8 @@ use super::{registers, rtl, top};
 ///
 /// # Errors
 /// [`EmitError::Template`] if a template does not fit its view.
-pub fn render(plan: &Plan, hash: &str) -> Result<Vec<(String, String)>, EmitError> {
-    let mut modules = vec![top::render(plan)?];
+pub fn render(plan: &Plan, hash: &str, debug: bool) -> Result<Vec<(String, String)>, EmitError> {
+    let mut modules = vec![top::render(plan, debug)?];
     modules.extend(registers::render(plan, hash)?);
     let multiplier = Multiplier::of_part(&plan.design.hardware.part);
     let library = rtl::used_by(modules.iter().map(|(_, text)| text.as_str()), &top::without(plan), multiplier);

@@ -233,16 +233,16 @@ fn u_values(plan: &Plan) -> String {
     format!("{{{}}}", (0..plan.ways()).rev().map(upper).collect::<Vec<_>>().join(", "))
 }
 
-/// The module of the core and its text.
+/// The module of the core and its text, with nets marked for a logic analyser if `debug`.
 ///
 /// # Errors
 /// [`EmitError::Template`] if the template does not fit the view.
-pub(super) fn render(plan: &Plan) -> Result<(String, String), EmitError> {
+pub(super) fn render(plan: &Plan, debug: bool) -> Result<(String, String), EmitError> {
     let view = View::new(plan);
     let context =
         Context::from_serialize(&view).map_err(|source| EmitError::Template { template: "top".to_owned(), source })?;
     let text = design_module(&view.core_module, TEMPLATE, &context)?;
-    let text = if plan.design.hardware.debug { debug::marked(&text, debug::always_zero(plan)) } else { text };
+    let text = if debug { debug::marked(&text, debug::always_zero(plan)) } else { text };
     Ok((view.core_module, text))
 }
 

@@ -102,7 +102,7 @@ impl CalibrationPlan {
 
     /// The design's own dead taxels, where banks have room for them.
     fn dead_map(design: &Design) -> DeadMap {
-        let room = design.hardware.replaceable;
+        let room = design.input.room;
         let dead = if room == 0 { &[][..] } else { &design.input.dead };
         DeadMap { room, dead: DeadPlan::of(design, dead) }
     }

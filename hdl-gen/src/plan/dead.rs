@@ -37,7 +37,7 @@ pub struct Replaced {
 impl DeadPlan {
     /// The weights, if the design has dead taxels and they stand in ROM.
     pub fn new(design: &Design) -> Option<Self> {
-        let given = !design.input.dead.is_empty() && design.hardware.replaceable == 0;
+        let given = !design.input.dead.is_empty() && design.input.room == 0;
         given.then(|| Self::of(design, &design.input.dead))
     }
 

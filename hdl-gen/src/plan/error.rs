@@ -165,9 +165,18 @@ pub enum PlanError {
         /// 2-norm condition number of A Aᵀ.
         condition: f64,
     },
+    /// Lanes are found in the reduced plan only.
+    #[error(
+        "a target of {target_us} us: lanes are found for the reduced plan only; write plan = \"reduced\" under [algorithm], \
+         or state [hardware] lanes and leave the target out"
+    )]
+    TargetOfPaper {
+        /// What was asked for.
+        target_us: f64,
+    },
     /// No number of lanes is fast enough.
     #[error(
-        "[hardware] target_us = {target_us}: the fastest plan has {lanes} lanes and takes {latency_us:.2} us at \
+        "a target of {target_us} us: the fastest plan has {lanes} lanes and takes {latency_us:.2} us at \
          {clock_mhz} MHz; it would take a clock of {needed_mhz:.0} MHz, {remedies}fewer taxels, or a target of {latency_us:.2} us"
     )]
     Target {

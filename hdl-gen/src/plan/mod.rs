@@ -32,7 +32,7 @@ pub mod timing;
 pub mod vector_formats;
 pub mod words;
 
-use golden::design::{Design, InputRange, Outputs, PlanKind};
+use golden::design::{Design, Outputs, PlanKind, Scaling};
 #[cfg(doc)]
 use golden::estimators::ERROR_FRACTION;
 use golden::matrices::MatrixName;
@@ -156,7 +156,7 @@ impl Plan {
 
     /// Whether each frame is scaled by its own largest stress.
     pub fn scales_frames(&self) -> bool {
-        self.design.hardware.range == InputRange::Frame
+        self.design.hardware.scaling == Scaling::PerFrame
     }
 
     /// Elements of a vector as the lanes see it: taxels, or quads of the folded grid.

@@ -1,6 +1,6 @@
-//! From a design to what it needs: its lanes, or with `target_us` the fewest that meet it, or what else would.
+//! From a design to its plan: on its own lanes, or on the fewest that meet a target latency, or what else would.
 
-use golden::design::{Design, Estimator, MAX_LANES, Optimise, Outputs, STREAM_BITS};
+use golden::design::{Design, Estimator, MAX_LANES, Optimise, Outputs, PlanKind, STREAM_BITS};
 use golden::parity::CLASSES;
 
 use super::build::{Work, check_widths};
@@ -10,27 +10,37 @@ use crate::estimators;
 impl Plan {
     /// Plans the hardware of `design`.
     ///
-    /// With `target_us` the plan has the fewest lanes whose latency meets it, and its design states them.
+    /// # Errors
+    /// [`PlanError`] if the plan has no hardware for the estimator, the geometry is singular, the filter empties a matrix, or
+    /// the widths are too small.
+    pub fn new(design: &Design) -> Result<Self, PlanError> {
+        Ok(checked(design)?.on_lanes(design))
+    }
+
+    /// As [`Plan::new`], on the fewest lanes whose latency is `target_us` microseconds at most, in place of the design's. The
+    /// plan's design states them.
     ///
     /// # Errors
-    /// [`PlanError`] if the plan has no hardware for the estimator, the geometry is singular, the filter empties a matrix, the widths are too small, or no number of lanes meets the target.
-    pub fn new(design: &Design) -> Result<Self, PlanError> {
-        if !estimators::has_hardware(design) {
-            return Err(PlanError::JointEstimator);
+    /// As [`Plan::new`], or if no number of lanes meets the target, or the plan is the paper's.
+    pub fn meeting(design: &Design, target_us: f64) -> Result<Self, PlanError> {
+        if design.algorithm.plan == PlanKind::Paper {
+            return Err(PlanError::TargetOfPaper { target_us });
         }
-        check_widths(design)?;
-        match design.hardware.target_us {
-            Some(target_us) => meet(design, target_us),
-            None => Ok(Work::new(design)?.on_lanes(design)),
-        }
+        meet(&checked(design)?, design, target_us)
     }
 }
 
-/// The plan with the fewest lanes whose latency is `target_us` at most. Its design states them.
-fn meet(design: &Design, target_us: f64) -> Result<Plan, PlanError> {
-    let work = Work::new(design)?;
+/// The work of a design whose estimator and widths have hardware.
+fn checked(design: &Design) -> Result<Work, PlanError> {
+    if !estimators::has_hardware(design) {
+        return Err(PlanError::JointEstimator);
+    }
+    check_widths(design)?;
+    Work::new(design)
+}
+
+fn meet(work: &Work, design: &Design, target_us: f64) -> Result<Plan, PlanError> {
     let mut settled = design.clone();
-    settled.hardware.target_us = None;
     let mut fastest: Option<Plan> = None;
     for lanes in lanes() {
         settled.hardware.lanes = lanes;
@@ -119,7 +129,6 @@ impl Change {
     /// The design with it.
     fn apply(&self, design: &Design) -> Design {
         let mut changed = design.clone();
-        changed.hardware.target_us = None;
         if let Some(outputs) = self.outputs {
             changed.algorithm.outputs = outputs;
         }

@@ -1,6 +1,6 @@
 //! The two streams of a core: how samples and words fill their beats.
 
-use golden::design::{CalibrationIn, Design, InputRange, Outputs, Overrun, PlanKind, Samples};
+use golden::design::{CalibrationIn, Design, Outputs, Overrun, PlanKind, Samples, Scaling};
 
 use super::SUMMARY_WORDS;
 
@@ -52,7 +52,7 @@ impl Streams {
         } else if design.algorithm.plan == PlanKind::Paper
             || !design.input.dead.is_empty()
             || design.hardware.calibration == CalibrationIn::Ram
-            || design.hardware.range == InputRange::Frame
+            || design.hardware.scaling == Scaling::PerFrame
         {
             Intake::Unpacked
         } else {

@@ -69,7 +69,7 @@ fn standing() -> Vec<Plan> {
     plans.push(plan(&design_text("integer_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     let more = "pa_per_count = -12.5\n[hardware]\ncontrol = true\ncalibration = \"ram\"";
     plans.push(plan(&design_text("calibrated_pad", [6, 4], [4.0, 4.0], 3.0, more)));
-    let more = "pa_per_count = -12.5\n[hardware]\ncontrol = true\ncalibration = \"ram\"\nreplaceable = 8";
+    let more = "pa_per_count = -12.5\ndead = { room = 8 }\n[hardware]\ncontrol = true\ncalibration = \"ram\"";
     plans.push(plan(&design_text("mapped_pad", [6, 4], [4.0, 4.0], 3.0, more)));
     let more = "pa_per_count = -12.5\n[hardware]\noverrun = \"drop\"\ncontrol = true\ncalibration = \"ram\"";
     plans.push(plan(&design_text("scanned_pad", [6, 4], [4.0, 4.0], 3.0, more)));
@@ -79,8 +79,8 @@ fn standing() -> Vec<Plan> {
     plans.push(plan(&design_text("long_pad", [6, 4], [4.0, 4.0], 3.0, &format!("{more}\nstream_bits = 128"))));
     let more = "curve = { power = 1.25, scale = -0.5 }\n";
     plans.push(plan(&design_text("curved_pad", [6, 4], [4.0, 4.0], 3.0, more)));
-    let more = "curve = { power = 1.25, scale = -0.5 }\n[hardware]\noverrun = \"drop\"\ncontrol = true\n\
-                calibration = \"ram\"\nreplaceable = 8\nrange = \"frame\"";
+    let more = "curve = { power = 1.25, scale = -0.5 }\ndead = { room = 8 }\n[hardware]\noverrun = \"drop\"\ncontrol = true\n\
+                calibration = \"ram\"\nscaling = \"per_frame\"";
     plans.push(plan(&design_text("curved_banks", [6, 4], [4.0, 4.0], 3.0, more)));
     plans
 }

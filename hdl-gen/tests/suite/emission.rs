@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use golden::design::{Design, WEIGHTS_FILE};
+use golden::design::{Correction, Design, WEIGHTS_FILE};
 use hdl_gen::emit::{FileMap, emit};
 use hdl_gen::plan::Plan;
 use serde_json::Value;
@@ -15,7 +15,7 @@ fn text_files(files: &FileMap) -> impl Iterator<Item = (&str, &str)> {
 
 #[test]
 fn the_same_design_gives_the_same_bytes() {
-    let text = design_text("pad", [5, 4], [4.0, 2.0], 3.0, "[hardware]\nlanes = 6");
+    let text = design_text("pad", [5, 4], [4.0, 2.0], 3.0, "[algorithm]\nplan = \"paper\"\n[hardware]\nlanes = 6");
     let once = emit(&plan(&text)).unwrap();
     let threads: Vec<_> = (0..2)
         .map(|_| {
@@ -141,17 +141,21 @@ fn a_design_that_differs_differs_in_its_hash() {
         metadata["design_hash"].as_str().unwrap().to_owned()
     };
     assert_eq!(hash("lanes = 4"), hash("lanes = 4\nclock_mhz = 125.0"));
-    assert_ne!(hash("lanes = 4"), hash("lanes = 5"));
+    assert_ne!(hash("lanes = 4"), hash("lanes = 8"));
 }
 
 #[test]
 fn a_generated_design_has_its_weights_beside_it_and_in_its_hash() {
     let emitted = |weight: i32| {
-        let keys = format!(
-            "[algorithm]\nestimator = \"joint\"\n[algorithm.correction]\nhalf_window = [0, 0]\n\
-             hidden = [[1, 2, 3, 4, 5, {weight}]]\noutput = [[7], [8]]"
-        );
-        emit(&plan(&design_text("pad", [4, 3], [4.0, 2.0], 3.0, &keys))).unwrap()
+        let text = design_text("pad", [4, 3], [4.0, 2.0], 3.0, "[algorithm]\nestimator = \"joint\"");
+        let mut design = Design::from_toml(&text, "pad.toml").unwrap();
+        design.algorithm.joint.correction = Some(Correction {
+            half_window: [0, 0],
+            hidden: vec![vec![1, 2, 3, 4, 5, weight]],
+            output: [vec![7], vec![8]],
+            error: None,
+        });
+        emit(&Plan::new(&design).unwrap()).unwrap()
     };
     let files = emitted(6);
     // The folder's design can be used as it stands.

@@ -128,7 +128,13 @@ proptest! {
 #[test]
 fn a_band_that_leaves_only_zeros_of_a_matrix_has_a_plan() {
     // Of A2 and C32 the narrowest band keeps only entries between neighbours in x, which are zero by symmetry.
-    let plan = plan(&design_text("band", [4, 3], [4.0, 2.0], 3.0, "[algorithm]\nfilter = { kind = \"f1\", l = 10 }"));
+    let plan = plan(&design_text(
+        "band",
+        [4, 3],
+        [4.0, 2.0],
+        3.0,
+        "[algorithm]\nplan = \"paper\"\nfilter = { kind = \"f1\", l = 10 }",
+    ));
     check_widths(&plan);
     check_worst_cases(&plan);
     let a2 = plan.matrices.iter().find(|matrix| matrix.name == "A2").unwrap();

@@ -1,19 +1,19 @@
-//! `target_us`: the fewest lanes that meet the need, or what would.
+//! `--target-us`: the fewest lanes that meet the need, or what would.
 
-use golden::design::Design;
+use golden::design::{Design, PlanKind};
 use hdl_gen::plan::{Plan, PlanError};
 
 /// Sensor 1 by the reduced plan.
 fn sensor(algorithm: &str, hardware: &str) -> Design {
     let text = format!(
-        "name = \"need\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+        "format = 3\nname = \"need\"\n[sensor]\ncolumns = 10\nrows = 10\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
          [algorithm]\nplan = \"reduced\"\n{algorithm}\n[hardware]\n{hardware}\n"
     );
     Design::from_toml(&text, "need.toml").expect("a design")
 }
 
 fn refusal(algorithm: &str, target_us: f64) -> String {
-    match Plan::new(&sensor(algorithm, &format!("target_us = {target_us:?}"))) {
+    match Plan::meeting(&sensor(algorithm, ""), target_us) {
         Err(error @ PlanError::Target { .. }) => error.to_string(),
         other => panic!("{other:?}"),
     }
@@ -22,7 +22,7 @@ fn refusal(algorithm: &str, target_us: f64) -> String {
 #[test]
 fn the_fewest_lanes_that_meet_the_need() {
     for target_us in [13.0, 20.0, 40.0] {
-        let found = Plan::new(&sensor("", &format!("target_us = {target_us:?}"))).expect("a plan");
+        let found = Plan::meeting(&sensor("", ""), target_us).expect("a plan");
         let lanes = found.design.hardware.lanes;
         assert!(found.timeline.latency_cycles as f64 <= target_us * found.design.hardware.clock_mhz);
         // The plan that names as many lanes is the same, and one with a group of four less is too slow.
@@ -61,7 +61,7 @@ fn only_remedies_that_meet_the_need_are_offered() {
 #[test]
 fn remedies_do_what_is_said_of_them() {
     let met = |algorithm: &str, hardware: &str, target_us: f64| {
-        Plan::new(&sensor(algorithm, &format!("target_us = {target_us:?}\n{hardware}"))).is_ok()
+        Plan::meeting(&sensor(algorithm, hardware), target_us).is_ok()
     };
     let joint = "estimator = \"joint\"";
     assert!(!met(joint, "", 6.0) && met(joint, "stream_bits = 64", 6.0));
@@ -73,7 +73,7 @@ fn remedies_do_what_is_said_of_them() {
 /// A design that keeps its area small is offered no other estimator.
 #[test]
 fn a_small_area_keeps_its_estimator() {
-    let area = Plan::new(&sensor("estimator = \"joint\"", "optimise = \"area\"\ntarget_us = 5.0"));
+    let area = Plan::meeting(&sensor("estimator = \"joint\"", "optimise = \"area\""), 5.0);
     let refusal = area.expect_err("too slow").to_string();
     assert!(!offered(&refusal).contains("estimator"), "{refusal}");
 }
@@ -81,7 +81,16 @@ fn a_small_area_keeps_its_estimator() {
 /// What is offered does what is said of it.
 #[test]
 fn the_clock_that_is_offered_meets_the_need() {
-    let Err(PlanError::Target { needed_mhz, .. }) = Plan::new(&sensor("", "target_us = 8.0")) else { panic!() };
-    let faster = format!("target_us = 8.0\nclock_mhz = {needed_mhz:?}");
-    assert!(Plan::new(&sensor("", &faster)).is_ok(), "{needed_mhz}");
+    let Err(PlanError::Target { needed_mhz, .. }) = Plan::meeting(&sensor("", ""), 8.0) else { panic!() };
+    let faster = sensor("", &format!("clock_mhz = {needed_mhz:?}"));
+    assert!(Plan::meeting(&faster, 8.0).is_ok(), "{needed_mhz}");
+}
+
+/// The paper's plan has lanes of its own choice.
+#[test]
+fn a_need_that_nothing_can_be_found_for_is_refused() {
+    let mut design = sensor("", "");
+    design.algorithm.plan = PlanKind::Paper;
+    let paper = Plan::meeting(&design, 5.0).expect_err("refused").to_string();
+    assert!(paper.contains("5 us") && paper.contains("plan = \"reduced\""), "{paper}");
 }

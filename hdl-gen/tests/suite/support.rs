@@ -7,7 +7,7 @@ use proptest::prelude::*;
 /// A design file's text with every optional key left out but those of `more`, which may open tables.
 pub fn design_text(name: &str, size: [usize; 2], pitch_mm: [f64; 2], depth_mm: f64, more: &str) -> String {
     format!(
-        "name = \"{name}\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n\
+        "format = 3\nname = \"{name}\"\n[sensor]\ncolumns = {}\nrows = {}\npitch_mm = {pitch_mm:?}\ndepth_mm = {depth_mm:?}\n\
          {more}\n",
         size[0], size[1]
     )
@@ -66,7 +66,7 @@ pub fn any_reduced_design() -> impl Strategy<Value = String> {
     // Words of one multiplier a lane, and of two.
     let widths = prop_oneof![3 => (8_u32..=18, 20_u32..=27), 1 => (8_u32..=27, 29_u32..=35)];
     let hardware = (1_usize..=16, widths, 1.0e3..1.0e6_f64);
-    let keys = (prop_oneof![Just("field"), Just("resultants")], prop_oneof![Just("interval"), Just("latency")]);
+    let keys = (prop_oneof![Just("field"), Just("resultants")], prop_oneof![Just("throughput"), Just("latency")]);
     (geometry, hardware, keys).prop_flat_map(move |(geometry, hardware, (outputs, optimise))| {
         let (columns, mut rows, x, mut y, ratio, square) = geometry;
         if square == 0 {

@@ -108,7 +108,7 @@ fn constants(plan: &Plan) -> Vec<(&'static str, u32, u32)> {
         plan.streams().drops,
         plan.calibration.as_ref().is_some_and(|of| of.curve().is_some()),
     ];
-    let stream = stream | (plan.design.hardware.replaceable as u32) << 12;
+    let stream = stream | (plan.design.input.room as u32) << 12;
     vec![
         ("IDENTITY", address::IDENTITY, u32::from_be_bytes(*b"TFRA")),
         ("VERSION", address::VERSION, u32::from(MAP_VERSION) << 24 | part(0) << 16 | part(1) << 8 | part(2)),

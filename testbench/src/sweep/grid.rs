@@ -253,7 +253,6 @@ fn plain(base: &Design, estimator: Estimator) -> Design {
 
 fn set_lanes(design: &mut Design, lanes: usize) {
     design.hardware.lanes = lanes;
-    design.hardware.target_us = None;
 }
 
 /// Each design with each value.

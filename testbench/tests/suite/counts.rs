@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use golden::design::{Design, InputRange, Samples};
+use golden::design::{Design, Samples, Scaling};
 use golden::frames::read_labelled_frames;
 use hdl_gen::model::SATURATED;
 use hdl_gen::plan::Plan;
@@ -43,7 +43,7 @@ fn design(folder: &Path, name: &str, plan: &str, pa_per_count: f64, gains: Gains
     let calibration = if lines.is_empty() { "" } else { "calibration = \"gains.csv\"\n" };
     fs::write(folder.join("gains.csv"), lines).expect("writable");
     let text = format!(
-        "name = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
+        "format = 3\nname = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
          pa_per_count = {pa_per_count:?}\n{calibration}[algorithm]\nplan = \"{plan}\"\n\
          [hardware]\nlanes = 8\nfull_scale_pa = 50000.0\n"
     );
@@ -101,7 +101,7 @@ fn curved(folder: &Path, name: &str, plan: &str, curve: &str, dead: &str) -> Des
     fs::write(folder.join("points.csv"), "-90,700\n0,0\n40,-90\n500,-9000\n1700,-28000\n4095,-51000\n")
         .expect("writable");
     let text = format!(
-        "name = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
+        "format = 3\nname = \"{name}\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\n\
          curve = {curve}\ncalibration = \"curved.csv\"\n{dead}[algorithm]\nplan = \"{plan}\"\n\
          [hardware]\nlanes = 8\nfull_scale_pa = 50000.0\n"
     );
@@ -147,11 +147,11 @@ fn counts_follow_a_curve_bit_for_bit() {
 fn the_most_negative_count_on_a_capped_power_law() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut designs = Vec::new();
-    for (name, range, bits) in [("capped_fixed", InputRange::FullScale, 32), ("capped_frame", InputRange::Frame, 64)] {
+    for (name, range, bits) in [("capped_fixed", Scaling::Fixed, 32), ("capped_frame", Scaling::PerFrame, 64)] {
         let mut design = curved(folder.path(), name, "reduced", "{ power = 1.25, scale = -0.0066 }", "");
         design.input.calibration = None;
         design.hardware.samples = Samples::Int16;
-        design.hardware.range = range;
+        design.hardware.scaling = range;
         design.hardware.stream_bits = bits;
         // As a file with these keys has it.
         let design = Design::from_toml(&design.to_toml(), "capped.toml").expect("a design");

@@ -2,7 +2,7 @@
 //!
 //! A failure names the seed of the random designs and shows the design file.
 
-use golden::design::{InputRange, Optimise};
+use golden::design::{Optimise, Scaling};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -242,7 +242,7 @@ fn corner_designs_with_a_range_for_each_frame_agree_with_the_model() {
     ];
     let plan = |(name, shape): &(&str, Shape)| {
         let mut design = shape.design(name);
-        design.hardware.range = InputRange::Frame;
+        design.hardware.scaling = Scaling::PerFrame;
         // Beats of one, two and four words by turns.
         design.hardware.stream_bits = [32, 64, 128][(shape.columns + shape.lanes) % 3];
         planned(&design)

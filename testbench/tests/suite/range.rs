@@ -1,7 +1,7 @@
 //! A range of its own for each frame: frames of all strengths in one row, strong behind faint and faint behind strong, by
 //! every kind of stream and of intake, word by word against the model; and broken copies that they find.
 
-use golden::design::{Calibration, CalibrationIn, Design, InputRange, Outputs, PlanKind, Samples, Slip, Tension};
+use golden::design::{Calibration, CalibrationIn, Design, Outputs, PlanKind, Samples, Scaling, Slip, Tension};
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -47,10 +47,10 @@ fn designs() -> Vec<Design> {
     let mut banks = calibration::design(Outputs::Field);
     "scaled_banks".clone_into(&mut banks.name);
     banks.hardware.calibration = CalibrationIn::Ram;
-    banks.hardware.replaceable = 1;
+    banks.input.room = 1;
     let mut designs = vec![integers, small("single", 32, reduced, Outputs::Field), joint, dead, banks, unsigned];
     for design in &mut designs {
-        design.hardware.range = InputRange::Frame;
+        design.hardware.scaling = Scaling::PerFrame;
     }
     designs
 }

@@ -93,7 +93,7 @@ pub struct Point {
 pub fn square(kind: Kind, side: usize, lanes: usize) -> Result<Design, DesignError> {
     let keys = kind.keys();
     let text = format!(
-        "name = \"square_{side}\"\n[sensor]\ncolumns = {side}\nrows = {side}\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
+        "format = 3\nname = \"square_{side}\"\n[sensor]\ncolumns = {side}\nrows = {side}\npitch_mm = [4.0, 2.0]\ndepth_mm = 3.0\n\
          [algorithm]\n{keys}\n[hardware]\nlanes = {lanes}\n"
     );
     Design::from_toml(&text, "series of square sensors")

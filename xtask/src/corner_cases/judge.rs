@@ -2,7 +2,7 @@
 
 use golden::bodies::Body;
 use golden::dead_taxels::DeadTaxels;
-use golden::design::{Design, Estimator, InputRange};
+use golden::design::{Design, Estimator, Scaling};
 use golden::matrices::Matrices;
 use golden::metrics::{BodyErrors, field_error};
 use golden::parity::CLASSES;
@@ -77,7 +77,7 @@ pub struct Row {
 pub fn wide(design: &Design) -> Design {
     let mut wide = design.clone();
     (wide.hardware.coefficient_bits, wide.hardware.data_bits) = (WIDE_COEFFICIENT_BITS, WIDE_DATA_BITS);
-    wide.hardware.range = InputRange::Frame;
+    wide.hardware.scaling = Scaling::PerFrame;
     wide
 }
 

@@ -178,7 +178,7 @@ pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
          each over its own normal force, the length of that along the surface, by f64 with `contacts = 2`. \
          All else in these rows is of hardware, which counts the contacts, marks the frame and solves it as one contact. \
          The forces of the two next to cancel each other.\n\
-         * **wide**: the hardware of 27 × 35 bits, two multipliers a lane, with `range = \"frame\"`; its RTL is simulated \
+         * **wide**: the hardware of 27 × 35 bits, two multipliers a lane, with `scaling = \"per_frame\"`; its RTL is simulated \
          elsewhere. See [as exact as float32](choosing.md#as-exact-as-float32) for who wants it and where it ends.\n\
          * **field**: largest difference of a taxel's force to that of f64, relative to the largest |f_z|. **At its µ**: the \
          same where f64 takes the friction that was found, so that the estimator's own 16 fraction bits do not show.\n\
@@ -201,7 +201,7 @@ pub fn markdown(rows: &[Row], plot: Option<&str>) -> String {
          name, which look like taxels without stress, and offsets that nobody has tared: `sptfra check` finds both.",
     );
     page.line(
-        "Rows with `range = \"frame\"` have that key of the design file: each frame is scaled by its own largest stress, and \
+        "Rows with `scaling = \"per_frame\"` have that key of the design file: each frame is scaled by its own largest stress, and \
          a faint contact is solved as exactly as a strong one.",
     );
     page.line(

@@ -165,7 +165,7 @@ fn statuses_say_what_a_frame_is() {
 #[test]
 fn a_range_of_its_own_keeps_faint_frames_exact() {
     let rows = rows();
-    let own = |case: &str| format!("{case}, range = \"frame\"");
+    let own = |case: &str| format!("{case}, scaling = \"per_frame\"");
     let [faint, strong] = ["peak at 100 noise floors", "peak at the full scale"];
     for estimator in [Estimator::Line, Estimator::Joint] {
         let error = |case: &str| {
@@ -201,7 +201,7 @@ fn the_rtl_answers_hard_frames_as_the_model_does() {
     let design = |cases: &[Case], name: &str| {
         cases.iter().find(|case| case.name == name).unwrap_or_else(|| panic!("{name}")).design.clone()
     };
-    let own_range = "peak at 100 noise floors, range = \"frame\"";
+    let own_range = "peak at 100 noise floors, scaling = \"per_frame\"";
     let wanted = some_of([
         design(&line, "no contact"),
         design(&joint, "no contact"),

@@ -71,7 +71,7 @@ fn what_is_dropped_had_no_room() {
 fn with_banks() -> Vec<Design> {
     let mut curved = calibrated::design_with_curve();
     curved.name += "_stressed";
-    curved.hardware.replaceable = 1;
+    curved.input.room = 1;
     let mut joint = calibrated::design(Outputs::Field);
     "joint_stressed".clone_into(&mut joint.name);
     joint.algorithm.estimator = Estimator::Joint;

@@ -18,8 +18,8 @@ fn choose_then_solve() {
         [sweep]\ndirection_deg = { from = 0, to = 315, step = 45 }\n";
     let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
     fs::write(folder.path().join("scene.toml"), format!("{sensor}{scene}")).unwrap();
-    let filter = "[algorithm]\nfilter = { kind = \"f3\", scenes = [\"scene.toml\"] }\n";
-    fs::write(&design, format!("name = \"pad\"\n{sensor}{filter}")).unwrap();
+    let filter = "[algorithm]\nplan = \"paper\"\nfilter = { kind = \"f3\", scenes = [\"scene.toml\"] }\n";
+    fs::write(&design, format!("format = 3\nname = \"pad\"\n{sensor}{filter}")).unwrap();
 
     let (_frames_folder, frames) = folder_with(&row("-900"));
     let out = folder.path().join("out.csv");
@@ -117,7 +117,7 @@ fn calibrate_then_solve() {
     fs::write(folder.path().join("gains.csv"), "1.25,-3\n".repeat(12)).unwrap();
     let sensor = "[sensor]\ncolumns = 4\nrows = 3\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\npa_per_count = 2.0\n\
                   calibration = \"gains.csv\"\n";
-    fs::write(&design, format!("name = \"pad\"\n{sensor}[algorithm]\nestimator = \"joint\"\n")).unwrap();
+    fs::write(&design, format!("format = 3\nname = \"pad\"\n{sensor}[algorithm]\nestimator = \"joint\"\n")).unwrap();
     fs::write(&frames, row("-900")).unwrap();
 
     let calibrate = |more: &[&str]| {
@@ -173,7 +173,7 @@ fn one_command_fits_the_constants_to_a_changed_sensor() {
     let sensor = "[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
     let stale = "[algorithm]\nestimator = \"joint\"\ngain = 1.1\n\
         calibrated_for = \"6 x 5 taxels of 4 x 2 mm, 3 mm deep, point, 0, noise 0.005, sliding\"\n";
-    fs::write(&pad, format!("name = \"pad\"\n{sensor}{stale}")).unwrap();
+    fs::write(&pad, format!("format = 3\nname = \"pad\"\n{sensor}{stale}")).unwrap();
     let frames = folder.path().join("f.csv");
     let output = sptfra(&["scene", "--design", text(&pad), "--out", text(&frames)]);
     let said = String::from_utf8(output.stderr).unwrap();

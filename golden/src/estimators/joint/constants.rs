@@ -1,5 +1,6 @@
 //! What `sptfra calibrate` finds for the joint estimator.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::words::print_as_words;
@@ -19,7 +20,7 @@ pub const DEFAULT_MAX_STANDARD_ERROR: f64 = 0.06;
 pub const EXTRA_INPUTS: usize = 5;
 
 /// Contacts that the constants are trained on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TrainingSet {
     /// Round or nearly so, sliding, with a pressure that is the same in front and behind.

@@ -7,42 +7,43 @@ use sha2::{Digest, Sha256};
 
 use super::{MINIMAL, refused};
 
-/// A correction whose two hidden units see one taxel.
-const INLINE: &str = "half_window = [0, 0]\nhidden = [[1, 2, 3, 4, 5, 6], [-7, 8, -9, 10, -11, 12]]\n\
-                      output = [[13, 14], [-15, 131071]]\n";
+/// Weights whose two hidden units see one taxel.
+const WEIGHTS: &str =
+    "x+0y+0,mu_x,mu_y,centre_x,centre_y,one,to_x,to_y\n1,2,3,4,5,6,13,-15\n-7,8,-9,10,-11,12,14,131071\n";
 
 fn corrected(keys: &str) -> String {
     format!("{MINIMAL}[algorithm]\nestimator = \"joint\"\n[algorithm.correction]\n{keys}")
 }
 
+/// The keys of a correction by `weights` in the file w.csv.
+fn keys(weights: &str) -> String {
+    let hash: String = Sha256::digest(weights).iter().map(|byte| format!("{byte:02x}")).collect();
+    format!("half_window = [0, 0]\nfile = \"w.csv\"\nsha256 = \"{hash}\"\n")
+}
+
+fn design() -> Design {
+    let files = [("w.csv", WEIGHTS.to_owned())];
+    Design::from_parts(&corrected(&keys(WEIGHTS)), "pad.toml", &files).unwrap()
+}
+
 #[test]
 fn weights_stand_in_a_file_of_their_own() {
-    let inline = Design::from_toml(&corrected(INLINE), "pad.toml").unwrap();
-    let (resolved, files) = (inline.to_toml(), inline.files());
-    let [(name, weights)] = &files[..] else { panic!("one file, not {files:?}") };
-    assert_eq!(
-        (*name, weights.as_str()),
-        (
-            WEIGHTS_FILE,
-            "x+0y+0,mu_x,mu_y,centre_x,centre_y,one,to_x,to_y\n1,2,3,4,5,6,13,-15\n-7,8,-9,10,-11,12,14,131071\n"
-        )
-    );
-    assert!(resolved.contains("half_window = [0, 0]\nfile = \"weights.csv\"\nsha256 = \""), "{resolved}");
-    assert!(!resolved.contains("hidden"), "{resolved}");
-    assert_eq!(Design::from_parts(&resolved, "resolved", &files).unwrap(), inline);
-    let renamed = inline.to_toml_naming("a \"b\".csv");
-    assert_eq!(Design::from_parts(&renamed, "resolved", &[("a \"b\".csv", weights.clone())]).unwrap(), inline);
+    let design = design();
+    let (resolved, files) = (design.to_toml(), design.files());
+    assert_eq!(files, [(WEIGHTS_FILE, WEIGHTS.to_owned())]);
+    assert!(resolved.contains("file = \"weights.csv\"\nsha256 = \""), "{resolved}");
+    assert_eq!(Design::from_parts(&resolved, "resolved", &files).unwrap(), design);
+    let renamed = design.to_toml_naming("a \"b\".csv");
+    assert_eq!(Design::from_parts(&renamed, "resolved", &[("a \"b\".csv", WEIGHTS.to_owned())]).unwrap(), design);
     // The line estimator has no weights to write.
-    let mut line = inline.clone();
+    let mut line = design.clone();
     line.algorithm.estimator = Estimator::Line;
     assert!(line.files().is_empty() && !line.to_toml().contains("correction"));
 }
 
 #[test]
 fn weights_that_are_not_those_of_the_design() {
-    let inline = Design::from_toml(&corrected(INLINE), "pad.toml").unwrap();
-    let resolved = inline.to_toml();
-    let weights = &inline.files()[0].1;
+    let (resolved, weights) = (design().to_toml(), WEIGHTS);
     let said = |content: Option<String>| {
         let files: Vec<_> = content.into_iter().map(|content| (WEIGHTS_FILE, content)).collect();
         Design::from_parts(&resolved, "pad.toml", &files).unwrap_err().to_string()
@@ -58,9 +59,7 @@ fn weights_that_are_not_those_of_the_design() {
     }
     // With the right hash of a wrong table, as somebody who edits both could have it.
     let wrong = weights.replace("131071", "131072");
-    let hash: String = Sha256::digest(&wrong).iter().map(|byte| format!("{byte:02x}")).collect();
-    let keys = format!("half_window = [0, 0]\nfile = \"w.csv\"\nsha256 = \"{hash}\"\n");
-    let error = Design::from_parts(&corrected(&keys), "pad.toml", &[("w.csv", wrong)]).unwrap_err().to_string();
+    let error = Design::from_parts(&corrected(&keys(&wrong)), "pad.toml", &[("w.csv", wrong)]).unwrap_err().to_string();
     assert!(["w.csv", "line 3", "131072", "131071"].iter().all(|part| error.contains(part)), "{error}");
 }
 
@@ -68,15 +67,11 @@ fn weights_that_are_not_those_of_the_design() {
 fn corrections_that_contradict_themselves() {
     let file = "file = \"w.csv\"\n";
     for (keys, parts) in [
-        (
-            "half_window = [0, 0]\n".to_owned(),
-            ["algorithm.correction.file", "missing", "remove [algorithm.correction]"],
-        ),
-        (format!("{INLINE}{file}"), ["algorithm.correction.file", "beside weights", "remove"]),
-        (format!("half_window = [0, 0]\n{file}"), ["algorithm.correction.sha256", "missing", "sha256sum w.csv"]),
-        (format!("{INLINE}sha256 = \"0\"\n"), ["algorithm.correction.sha256", "without a file", "file"]),
+        ("half_window = [0, 0]\nsha256 = \"0\"\n".to_owned(), ["missing key", "file", "algorithm.correction"]),
+        (format!("half_window = [0, 0]\n{file}"), ["missing key", "sha256", "algorithm.correction"]),
+        (format!("half_window = [0]\n{file}sha256 = \"0\"\n"), ["half_window", "has 1 values", "use two"]),
         (format!("half_window = [0, 9]\n{file}sha256 = \"0\"\n"), ["half_window[1]", "is 9", "0 to 7"]),
-        (format!("half_window = [0, 0]\n{file}sha256 = \"0\"\nhash = 1\n"), ["hash", "unknown field", "sha256"]),
+        (format!("half_window = [0, 0]\n{file}sha256 = \"0\"\nhash = 1\n"), ["hash", "unknown key", "sha256"]),
     ] {
         refused(&corrected(&keys), &parts);
     }

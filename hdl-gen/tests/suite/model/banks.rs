@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use golden::design::{CalibrationIn, Design, InputRange};
+use golden::design::{CalibrationIn, Design, Scaling};
 use golden::solver::Solver;
 use hdl_gen::model::{DIRECTION_UNKNOWN, Model, NO_CONTACT, NO_TENSION};
 use hdl_gen::plan::Plan;
@@ -25,9 +25,9 @@ fn designs() -> Vec<Design> {
         design
     };
     let both = |name: &str| {
-        [InputRange::FullScale, InputRange::Frame].map(|range| {
+        [Scaling::Fixed, Scaling::PerFrame].map(|range| {
             let mut design = shipped(name);
-            design.hardware.range = range;
+            design.hardware.scaling = range;
             design
         })
     };

@@ -262,8 +262,13 @@ fn the_papers_sensors_keep_within_two_thousandths() {
         ([4.0, 4.0], "{ kind = \"none\" }"),
         ([4.0, 4.0], "{ kind = \"f2\", p = 50 }"),
     ] {
-        let (design, solver, plan) =
-            prepare(&design_text("paper", [10, 10], pitch, 3.0, &format!("[algorithm]\nfilter = {filter}")));
+        let (design, solver, plan) = prepare(&design_text(
+            "paper",
+            [10, 10],
+            pitch,
+            3.0,
+            &format!("[algorithm]\nplan = \"paper\"\nfilter = {filter}"),
+        ));
         for step in 0..36 {
             let direction = f64::from(step * 10).to_radians();
             let contact = Contact { centre: [0.48, 0.5], radius: 0.3, friction: 0.5, direction, strength: 0.3 };

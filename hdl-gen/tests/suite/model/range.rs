@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use golden::design::{Design, InputRange, Outputs, PlanKind};
+use golden::design::{Design, Outputs, PlanKind, Scaling};
 use golden::metrics::field_error;
 use golden::solver::Solver;
 use hdl_gen::model::{Model, NO_CONTACT, SATURATED};
@@ -20,8 +20,8 @@ fn shipped(name: &str) -> Design {
     Design::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../designs/{name}.toml"))).unwrap()
 }
 
-fn scaled_by(range: InputRange, mut design: Design) -> Design {
-    design.hardware.range = range;
+fn scaled_by(range: Scaling, mut design: Design) -> Design {
+    design.hardware.scaling = range;
     design
 }
 
@@ -68,8 +68,8 @@ fn differences(strong: &[u32], faint: &[u32], by: i32) -> usize {
 fn a_fainter_frame_has_the_same_answer_to_the_last_bit() {
     for design in designs() {
         let solver = Solver::new(&design).unwrap();
-        let [fixed, own] = [InputRange::FullScale, InputRange::Frame]
-            .map(|range| Plan::new(&scaled_by(range, design.clone())).unwrap());
+        let [fixed, own] =
+            [Scaling::Fixed, Scaling::PerFrame].map(|range| Plan::new(&scaled_by(range, design.clone())).unwrap());
         for by in [1, 3, 6] {
             let strong = in_steps(&own, &solver, by);
             let faint: Vec<f32> = strong.iter().map(|stress| stress * pow2(-by) as f32).collect();
@@ -84,8 +84,8 @@ fn a_fainter_frame_has_the_same_answer_to_the_last_bit() {
 fn a_frame_of_the_upper_half_of_the_range_is_answered_as_without_the_key() {
     for design in designs() {
         let solver = Solver::new(&design).unwrap();
-        let [fixed, own] = [InputRange::FullScale, InputRange::Frame]
-            .map(|range| Plan::new(&scaled_by(range, design.clone())).unwrap());
+        let [fixed, own] =
+            [Scaling::Fixed, Scaling::PerFrame].map(|range| Plan::new(&scaled_by(range, design.clone())).unwrap());
         let bound = own.formats.stress.bound;
         let mut frame = in_steps(&own, &solver, 0);
         assert_eq!(answer(&own, &frame), answer(&fixed, &frame), "{}", design.name);
@@ -105,8 +105,8 @@ fn a_frame_of_the_upper_half_of_the_range_is_answered_as_without_the_key() {
 #[test]
 fn what_a_frame_is_said_to_be_does_not_depend_on_its_range() {
     for design in designs() {
-        let [fixed, own] = [InputRange::FullScale, InputRange::Frame]
-            .map(|range| Plan::new(&scaled_by(range, design.clone())).unwrap());
+        let [fixed, own] =
+            [Scaling::Fixed, Scaling::PerFrame].map(|range| Plan::new(&scaled_by(range, design.clone())).unwrap());
         let (taxels, step) = (own.taxels(), own.formats.stress.step());
         let read = |stress: f64| design.input.tension.of(stress) as f32;
         let full = design.hardware.full_scale_pa;
@@ -140,7 +140,7 @@ fn faint_contacts_are_as_exact_as_strong_ones() {
     for name in ["sensor1-reduced", "sensor1-fast"] {
         let design = shipped(name);
         let solver = Solver::new(&design).unwrap();
-        let error = |range: InputRange, peak_pa: f64| {
+        let error = |range: Scaling, peak_pa: f64| {
             let plan = Plan::new(&scaled_by(range, design.clone())).unwrap();
             let strength = peak_pa / design.hardware.full_scale_pa;
             let frame = frame(&Contact { strength, ..CONTACT }, &design, &solver);
@@ -149,8 +149,8 @@ fn faint_contacts_are_as_exact_as_strong_ones() {
             field_error(&exact.field, &found.field)
         };
         let faint = 100.0 * design.algorithm.noise_floor_pa;
-        let strong = error(InputRange::FullScale, 0.9 * design.hardware.full_scale_pa);
-        let (before, after) = (error(InputRange::FullScale, faint), error(InputRange::Frame, faint));
+        let strong = error(Scaling::Fixed, 0.9 * design.hardware.full_scale_pa);
+        let (before, after) = (error(Scaling::Fixed, faint), error(Scaling::PerFrame, faint));
         assert!(before > 10.0 * strong, "{name}: {before:e} {strong:e}");
         assert!(after < 3.0 * strong, "{name}: {after:e} {strong:e}");
     }

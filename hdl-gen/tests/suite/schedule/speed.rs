@@ -91,7 +91,7 @@ fn no_interval_is_shorter_than_what_the_lanes_issue() {
 #[test]
 fn the_optimum_of_a_frame_alone_is_the_same() {
     let of = |optimise: &str| small_reduced(&format!("lanes = 4\noptimise = \"{optimise}\"")).timeline;
-    let (latency, interval) = (of("latency"), of("interval"));
+    let (latency, interval) = (of("latency"), of("throughput"));
     assert_eq!(latency.latency_cycles, interval.latency_cycles);
     assert!(latency.interval_cycles >= interval.interval_cycles);
 }

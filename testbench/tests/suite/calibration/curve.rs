@@ -90,7 +90,7 @@ fn other_designs_from_end_to_end() {
         design.name = format!("{}_{samples}_{bits}", design.name);
         design.algorithm.outputs = Outputs::Field;
         design.input.dead = vec![3];
-        design.hardware.replaceable = room;
+        design.input.room = room;
         design.hardware.samples = samples;
         design.hardware.stream_bits = bits;
         let plan = planned(&design);

@@ -26,7 +26,7 @@ use crate::support::{built, planned, shipped, simulate_exactly};
 pub fn design_with_map() -> Design {
     let mut design = design(Outputs::Resultants);
     design.name += "_map";
-    design.hardware.replaceable = 2;
+    design.input.room = 2;
     design.input.dead = vec![5];
     design
 }
@@ -84,7 +84,7 @@ fn at_power_up_the_designs_dead_taxels_are_replaced() {
 fn replaced_from_ram_as_from_rom() {
     let subject = subject();
     let mut rom = subject.plan.design.clone();
-    rom.hardware.replaceable = 0;
+    rom.input.room = 0;
     let packets = counts(&subject.plan, 20, &mut ChaCha8Rng::seed_from_u64(2));
     for (rom, ram) in model_answers(&planned(&rom), &packets).into_iter().zip(model_answers(&subject.plan, &packets)) {
         assert_eq!(rom, ram);
@@ -151,7 +151,7 @@ fn another_design_with_a_map_from_end_to_end() {
     design.sensor = shipped("odd").sensor;
     design.input.calibration = None;
     design.input.dead = vec![0, 1, 6, 7, 8, 12, 13, 18];
-    design.hardware.replaceable = 8;
+    design.input.room = 8;
     design.hardware.samples = Samples::Uint16;
     design.hardware.stream_bits = 64;
     let plan = planned(&design);

@@ -7,6 +7,7 @@ use std::process::Command;
 use crate::browser;
 use crate::support::{sptfra, workspace};
 
+mod keys;
 mod results;
 mod sessions;
 

@@ -172,7 +172,7 @@ fn prepare(session: &Session) {
         session.run(&format!("sptfra new {of} --columns 6 --rows 6 --pitch-mm 4 4 --depth-mm 3 --tension read"), name);
     }
     let design = fs::read_to_string(session.file("two_fingers.toml")).expect("written");
-    let several = design.replacen("\n[algorithm]\n", "\n[algorithm]\ncontacts = 4\n", 1);
+    let several = design.replacen("\ncontacts = 1\n", "\ncontacts = 4\n", 1);
     assert!(design != several, "{design}");
     fs::write(session.file("two-fingers.toml"), several).expect("written");
     session.run("sptfra scene --design pad --out frames.csv", "frames.csv");

@@ -15,7 +15,7 @@ use std::process::Command;
 
 use crate::support::effort::{self, half_of, some_of};
 use crate::support::{built, frames, planned, shipped, workspace};
-use golden::design::{Design, InputRange, Outputs, Overrun, PlanKind, Samples};
+use golden::design::{Design, Outputs, Overrun, PlanKind, Samples, Scaling};
 use hdl_gen::emit::{emit, resolved_hash};
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
@@ -49,7 +49,7 @@ impl Subject {
         Self::changed(Outputs::Field, |design| {
             design.hardware.control = true;
             design.hardware.stream_bits = 64;
-            design.hardware.range = InputRange::Frame;
+            design.hardware.scaling = Scaling::PerFrame;
             design.algorithm.count_contacts = true;
         })
     }

@@ -1,9 +1,9 @@
-//! The logic analyser of designs with `debug = true`, in the stand-in.
+//! The logic analyser that `generate --debug` prepares, in the stand-in.
 
 use std::fs;
 
 use golden::design::Design;
-use hdl_gen::emit::{FileMap, emit};
+use hdl_gen::emit::{FileMap, Options, emit_for};
 use hdl_gen::plan::Plan;
 
 use super::folder::{Folder, Ran, workspace};
@@ -14,9 +14,9 @@ const MARK: &str = "    (* mark_debug = \"true\" *)\n";
 
 /// The files of a design with marked nets.
 fn marked(design: &str) -> FileMap {
-    let mut design = Design::load(&workspace().join("designs").join(design)).expect("a design");
-    design.hardware.debug = true;
-    emit(&Plan::new(&design).expect("can be planned")).expect("is printed")
+    let design = Design::load(&workspace().join("designs").join(design)).expect("a design");
+    let plan = Plan::new(&design).expect("can be planned");
+    emit_for(&plan, &Options { debug: true, ..Options::default() }).expect("is printed")
 }
 
 #[test]

@@ -3,8 +3,7 @@
 use crate::calibration;
 use crate::support::{by_plan, shipped, with_lanes};
 use golden::design::{
-    Calibration, CalibrationIn, Curve, Design, Estimator, InputRange, Outputs, Overrun, PlanKind, Samples, Slip,
-    Tension,
+    Calibration, CalibrationIn, Curve, Design, Estimator, Outputs, Overrun, PlanKind, Samples, Scaling, Slip, Tension,
 };
 
 /// One of each kind: square and not, filtered and not, fewest and most lanes, narrowest words, every plan.
@@ -31,6 +30,7 @@ pub fn designs() -> Vec<Design> {
     curved.input.curve = Some(Curve { points: vec![[0.0, 0.0], [50.0, -100.0], [4095.0, -1e5]], law: None });
     // With more than 64 lanes: two taxels a cycle, a row of points weighed in one, a collector that looks ahead.
     let mut uncorrected = by_plan(with_lanes(shipped("odd"), 68), reduced, Outputs::Resultants);
+    "uncorrected".clone_into(&mut uncorrected.name);
     uncorrected.algorithm.estimator = Estimator::Joint;
     uncorrected.algorithm.slip = Some(Slip { limit: 0.6, hysteresis: 0.1 });
     // Wide streams: samples taken at once, of a beat that is not filled, and one by one.
@@ -45,6 +45,7 @@ pub fn designs() -> Vec<Design> {
     "unpacked".clone_into(&mut unpacked.name);
     unpacked.hardware.stream_bits = 64;
     let mut wide_control = by_plan(shipped("small-control"), reduced, Outputs::Resultants);
+    "wide_control".clone_into(&mut wide_control.name);
     wide_control.hardware.stream_bits = 64;
     let mut in_ram = integers.clone();
     "in_ram".clone_into(&mut in_ram.name);
@@ -53,11 +54,11 @@ pub fn designs() -> Vec<Design> {
     // Without a place for dead taxels, with one, with many.
     let mut mapped = in_ram.clone();
     "mapped".clone_into(&mut mapped.name);
-    mapped.hardware.replaceable = 8;
+    mapped.input.room = 8;
     mapped.input.dead = vec![0, 1, 7];
     let mut mapped_once = calibration::design(Outputs::Resultants);
     "mapped_once".clone_into(&mut mapped_once.name);
-    mapped_once.hardware.replaceable = 1;
+    mapped_once.input.room = 1;
     let [curve_in_ram, curve_of_floats] = with_curves_in_ram(&mapped, &curved);
     // Frames dropped, with and without registers, samples one by one and at once.
     let mut dropping = Design { name: "dropping".to_owned(), ..in_ram.clone() };
@@ -67,10 +68,6 @@ pub fn designs() -> Vec<Design> {
         design.hardware.overrun = Overrun::Drop;
     }
     let [scaled, scaled_fold, scaled_banks] = scaled(&curve_in_ram);
-    // Nets marked for a logic analyser, in every kind of core.
-    for design in [&mut curved, &mut uncorrected, &mut unpacked, &mut wide_control, &mut dropping] {
-        design.hardware.debug = true;
-    }
     vec![
         calibration::design(Outputs::Field),
         in_ram,
@@ -120,7 +117,7 @@ fn long() -> [Design; 3] {
     (long.hardware.coefficient_bits, long.hardware.data_bits) = (27, 35);
     let [mut beats, mut vectors] = [long.clone(), long.clone()];
     "long".clone_into(&mut long.name);
-    long.hardware.range = InputRange::Frame;
+    long.hardware.scaling = Scaling::PerFrame;
     "long_beats".clone_into(&mut beats.name);
     beats.hardware.stream_bits = 128;
     beats.algorithm.count_contacts = true;
@@ -153,7 +150,7 @@ fn scaled(banks: &Design) -> [Design; 3] {
     "scaled_banks".clone_into(&mut scaled_banks.name);
     scaled_banks.hardware.overrun = Overrun::Drop;
     for design in [&mut scaled, &mut scaled_fold, &mut scaled_banks] {
-        design.hardware.range = InputRange::Frame;
+        design.hardware.scaling = Scaling::PerFrame;
     }
     [scaled, scaled_fold, scaled_banks]
 }

@@ -14,11 +14,19 @@ use crate::support::effort::{self, some_of};
 use crate::support::random;
 use crate::support::{in_parallel, library_folders, look_in, planned, shipped};
 use golden::design::Design;
-use hdl_gen::emit::{FileMap, emit};
+use hdl_gen::emit::{FileMap, Options, emit_for};
 use tempfile::TempDir;
 use testbench::tools;
 
 const RANDOM_DESIGNS: u64 = 20;
+/// Designs with nets marked for a logic analyser, one for every kind of core.
+const MARKED: [&str; 5] = ["curved", "uncorrected", "unpacked", "wide_control", "dropping"];
+
+/// The files of a design.
+fn emitted(design: &Design) -> FileMap {
+    let options = Options { debug: MARKED.contains(&design.name.as_str()), ..Options::default() };
+    emit_for(&planned(design), &options).expect("emitted")
+}
 
 /// A design's folder, as `sptfra generate` writes it.
 struct Written {
@@ -30,7 +38,7 @@ struct Written {
 
 impl Written {
     fn new(design: &Design) -> Self {
-        Self::of(&design.name, &emit(&planned(design)).expect("emitted"))
+        Self::of(&design.name, &emitted(design))
     }
 
     fn of(name: &str, files: &FileMap) -> Self {
@@ -69,9 +77,8 @@ impl Written {
 
 /// All of [`designs`], planned once for all their readers.
 fn all() -> Vec<Written> {
-    static ALL: LazyLock<Vec<(String, FileMap)>> = LazyLock::new(|| {
-        in_parallel(&designs(), |design| (design.name.clone(), emit(&planned(design)).expect("emitted")))
-    });
+    static ALL: LazyLock<Vec<(String, FileMap)>> =
+        LazyLock::new(|| in_parallel(&designs(), |design| (design.name.clone(), emitted(design))));
     ALL.iter().map(|(name, files)| Written::of(name, files)).collect()
 }
 

@@ -3,8 +3,8 @@
 use std::env;
 
 use golden::design::{
-    Calibration, CalibrationIn, Correction, Curve, Design, ErrorOutput, InputRange, JointConstants, Kernel, Optimise,
-    Outputs, Overrun, Regularisation, Samples, Sensor, Slip, Tension,
+    Calibration, CalibrationIn, Correction, Curve, Design, ErrorOutput, JointConstants, Kernel, Optimise, Outputs,
+    Overrun, Regularisation, Samples, Scaling, Sensor, Slip, Tension,
 };
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
@@ -43,7 +43,7 @@ impl Kind {
         match self {
             Self::Paper => ["plan = \"paper\"", ""],
             Self::Field { latency: true } => ["plan = \"reduced\"", "optimise = \"latency\""],
-            Self::Field { latency: false } => ["plan = \"reduced\"", "optimise = \"interval\""],
+            Self::Field { latency: false } => ["plan = \"reduced\"", "optimise = \"throughput\""],
             Self::Resultants => ["plan = \"reduced\"\noutputs = \"resultants\"", ""],
             Self::Joint { field: true, .. } => ["plan = \"reduced\"\nestimator = \"joint\"", ""],
             Self::Joint { field: false, .. } => {
@@ -118,7 +118,7 @@ impl Shape {
         let Self { coefficient_bits, data_bits, full_scale_pa, .. } = self;
         let [algorithm, hardware] = self.kind.keys();
         let text = format!(
-            "name = \"{name}\"
+            "format = 3\nname = \"{name}\"
 [sensor]
 columns = {columns}
 rows = {rows}
@@ -137,7 +137,7 @@ lanes = {lanes}
         );
         let mut design = Design::from_toml(&text, name).unwrap_or_else(|error| panic!("{error}\n{text}"));
         design.algorithm.count_contacts = (columns + lanes) % 2 == 0;
-        design.hardware.range = if (rows + lanes) % 3 == 0 { InputRange::Frame } else { InputRange::FullScale };
+        design.hardware.scaling = if (rows + lanes) % 3 == 0 { Scaling::PerFrame } else { Scaling::Fixed };
         if let Kind::Joint { correction, .. } = self.kind {
             *design.algorithm.joint = constants(&design.sensor, correction);
         }
@@ -181,7 +181,7 @@ fn with_every_key(mut design: Design, random: &mut ChaCha8Rng) -> Result<Design,
         algorithm.kernel = Kernel::Cell;
     }
     if random.random_bool(0.3) {
-        algorithm.regularisation = Regularisation::Noise(random.random_range(0.0005..0.01));
+        algorithm.regularisation = Regularisation::Noise { noise: random.random_range(0.0005..0.01) };
     }
     if random.random_bool(0.3) {
         let limit = random.random_range(0.1..0.9);
@@ -226,11 +226,11 @@ fn with_every_key(mut design: Design, random: &mut ChaCha8Rng) -> Result<Design,
         }
         if hardware.control && random.random_bool(0.6) {
             hardware.calibration = CalibrationIn::Ram;
-            hardware.replaceable = [0, 1, 2, 4][random.random_range(0..4)];
+            input.room = [0, 1, 2, 4][random.random_range(0..4)];
         }
     }
     if random.random_bool(0.25) {
-        let most = if hardware.replaceable > 0 { hardware.replaceable } else { 3 };
+        let most = if input.room > 0 { input.room } else { 3 };
         let mut dead: Vec<usize> = (0..most.min(taxels / 4)).map(|_| random.random_range(0..taxels)).collect();
         dead.sort_unstable();
         dead.dedup();

@@ -55,7 +55,7 @@ const DEEP: f64 = 3.0;
 /// That one.
 const MORE: f64 = 0.03;
 /// Key under `[hardware]` with which each frame is scaled by its own largest stress.
-const OWN_RANGE: &str = "range = \"frame\"";
+const OWN_RANGE: &str = "scaling = \"per_frame\"";
 const DIRECTIONS: usize = 12;
 const SEED: u64 = 7;
 const FORCE_N: f64 = 6.0;
@@ -63,7 +63,7 @@ const FORCE_N: f64 = 6.0;
 fn design(sensor: &Sensor, algorithm: &str) -> Result<Design, DesignError> {
     let Sensor { columns, rows, pitch_mm: [x, y], depth_mm } = sensor;
     let text = format!(
-        "name = \"hard\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [{x:?}, {y:?}]\n\
+        "format = 3\nname = \"hard\"\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = [{x:?}, {y:?}]\n\
          depth_mm = {depth_mm:?}\n[algorithm]\nplan = \"reduced\"\n{algorithm}\n"
     );
     Design::from_toml(&text, "hard case")

@@ -1,6 +1,6 @@
 //! The designs that are proved: the 4 × 3 one of `designs/small.toml`, changed.
 
-use golden::design::{CalibrationIn, Correction, Design, Estimator, InputRange, Optimise, Outputs, Overrun, PlanKind};
+use golden::design::{CalibrationIn, Correction, Design, Estimator, Optimise, Outputs, Overrun, PlanKind, Scaling};
 
 pub fn paper(design: &mut Design) {
     design.algorithm.plan = PlanKind::Paper;
@@ -25,7 +25,7 @@ fn calibrated(design: &mut Design) {
 
 pub fn mapped(design: &mut Design) {
     calibrated(design);
-    design.hardware.replaceable = 1;
+    design.input.room = 1;
 }
 
 pub fn scanned(design: &mut Design) {
@@ -35,7 +35,7 @@ pub fn scanned(design: &mut Design) {
 
 pub fn scaled(design: &mut Design) {
     paper(design);
-    design.hardware.range = InputRange::Frame;
+    design.hardware.scaling = Scaling::PerFrame;
 }
 
 pub fn joint(design: &mut Design) {

@@ -1,0 +1,132 @@
+//! From the keys of a design file to a checked [`Design`], and back.
+
+use super::checks::{self, Check};
+use super::files::Beside;
+use super::keys::{AlgorithmKeys, CurveKey, DeadKey, DesignKeys, FORMAT, SensorKeys, SlipKeys};
+use super::{
+    Algorithm, Design, DesignError, Estimator, FileNames, Input, JointConstants, NOISE_FLOOR_DIVISOR, Regularisation,
+    Sensor, Slip, Tension, filter_keys, joint, rules,
+};
+use crate::estimators::Constants;
+
+/// `beside` are the files that the design names.
+pub(super) fn design(keys: DesignKeys, origin: &str, beside: Beside<'_>) -> Result<Design, DesignError> {
+    let check = Check { origin };
+    let DesignKeys { name, sensor: keys, algorithm, hardware, .. } = keys;
+    checks::name(&check, &name)?;
+    checks::part(&check, &hardware.part)?;
+    let SensorKeys { columns, rows, pitch_mm, depth_mm, .. } = keys;
+    let sensor = Sensor { columns, rows, pitch_mm, depth_mm };
+    let correction = algorithm.correction.clone();
+    let algorithm = self::algorithm(&check, algorithm, (&sensor, keys.tension, keys.noise), hardware.full_scale_pa)?;
+    rules::tables(&check, &sensor, &algorithm, &hardware)?;
+    // Last, so that what is wrong with the design itself is said before its files are read.
+    let input = Input::new(&check, keys, beside, sensor.taxels(), &hardware)?;
+    let mut design = Design { name, sensor, input, algorithm, hardware };
+    rules::input(&check, &design)?;
+    design.algorithm.joint.correction =
+        correction.map(|keys| joint::correction(&check, &keys, &design.sensor, beside)).transpose()?;
+    Ok(design)
+}
+
+/// Keys without constants that were fitted to the sensor.
+pub(super) fn unfitted(mut keys: DesignKeys) -> DesignKeys {
+    // Of another estimator they stay, to be refused.
+    if keys.algorithm.estimator == Estimator::Joint {
+        let AlgorithmKeys { gain, friction_correction, correction, calibrated_for, .. } = &mut keys.algorithm;
+        (*gain, *friction_correction, *correction, *calibrated_for) = (None, None, None, None);
+    }
+    keys
+}
+
+/// The table, without the correction, whose file is not read yet.
+fn algorithm(
+    check: &Check,
+    keys: AlgorithmKeys,
+    (sensor, tension, noise): (&Sensor, Tension, f64),
+    full_scale_pa: f64,
+) -> Result<Algorithm, DesignError> {
+    let regularisation = match keys.regularisation {
+        Some(Regularisation::Factor(0.0)) | None => Regularisation::None,
+        Some(other) => other,
+    };
+    let joint = match keys.estimator {
+        Estimator::Joint => joint::constants(check, &keys, |training_set| {
+            joint::conditions(sensor, tension, keys.kernel, regularisation, noise, training_set)
+        })?,
+        Estimator::Line => {
+            joint::refuse(check, &keys)?;
+            JointConstants::default()
+        }
+    };
+    Ok(Algorithm {
+        plan: keys.plan,
+        kernel: keys.kernel,
+        regularisation,
+        filter: filter_keys::filter(check, keys.filter, sensor)?,
+        estimator: keys.estimator,
+        joint: Box::new(joint),
+        contacts: keys.contacts,
+        count_contacts: keys.count_contacts,
+        outputs: keys.outputs,
+        noise_floor_pa: keys.noise_floor_pa.unwrap_or(full_scale_pa / NOISE_FLOOR_DIVISOR),
+        slip: keys.slip.map(|keys| slip(check, &keys)).transpose()?,
+    })
+}
+
+fn slip(check: &Check, keys: &SlipKeys) -> Result<Slip, DesignError> {
+    let limit = keys.limit;
+    let hysteresis = keys.hysteresis.unwrap_or(0.1 * limit);
+    Ok(Slip { limit, hysteresis: check.real("algorithm.slip.hysteresis", hysteresis, 0.0, limit, "")? })
+}
+
+/// The keys of a design: every key that has a value, defaults too, so that the text means the same in every version.
+pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
+    let Design { name, sensor, input, algorithm, hardware } = design;
+    let Sensor { columns, rows, pitch_mm, depth_mm } = *sensor;
+    let curve = input.curve.as_ref().map(|curve| match curve.law {
+        Some([power, scale]) => CurveKey::Law { power, scale },
+        None => CurveKey::File(names.curve.clone()),
+    });
+    let taxels: Vec<i64> = input.dead.iter().map(|&taxel| taxel as i64).collect();
+    let dead = match (input.room, taxels.is_empty()) {
+        (0, true) => None,
+        (0, false) => Some(DeadKey::Taxels(taxels)),
+        (room, _) => Some(DeadKey::Room { taxels, room }),
+    };
+    let mut keys = AlgorithmKeys {
+        plan: algorithm.plan,
+        kernel: algorithm.kernel,
+        regularisation: Some(algorithm.regularisation).filter(|&one| one != Regularisation::None),
+        filter: filter_keys::keys(&algorithm.filter),
+        estimator: algorithm.estimator,
+        contacts: algorithm.contacts,
+        count_contacts: algorithm.count_contacts,
+        outputs: algorithm.outputs,
+        noise_floor_pa: Some(algorithm.noise_floor_pa),
+        slip: algorithm.slip.map(|Slip { limit, hysteresis }| SlipKeys { limit, hysteresis: Some(hysteresis) }),
+        ..AlgorithmKeys::default()
+    };
+    if let Constants::Joint(constants) = algorithm.constants() {
+        joint::state(constants, &names.weights, &mut keys);
+    }
+    DesignKeys {
+        format: FORMAT,
+        base: None,
+        name: name.clone(),
+        sensor: SensorKeys {
+            columns,
+            rows,
+            pitch_mm,
+            depth_mm,
+            tension: input.tension,
+            noise: input.noise,
+            pa_per_count: input.pa_per_count,
+            curve,
+            calibration: input.calibration.as_ref().map(|_| names.calibration.clone()),
+            dead,
+        },
+        algorithm: keys,
+        hardware: hardware.clone(),
+    }
+}
