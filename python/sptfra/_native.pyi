@@ -93,7 +93,7 @@ class Design:
 
     @property
     def contacts(self) -> int:
-        """Most bodies that the solver tells apart."""
+        """Largest number of contacts that the solver separates."""
 
     @property
     def outputs(self) -> str:
@@ -199,8 +199,8 @@ def calibrate(
 ) -> Design:
     """The design with constants and a network fitted to its sensor, in a minute or some; Ctrl-C ends it.
 
-    `training_set` is "sliding" or "general"; a path may be that of a design whose constants are those of another sensor. Without a
-    `name` it is that of the design with `_calibrated` behind it.
+    `training_set` is "sliding" or "general"; a path may be that of a design whose constants are those of another sensor.
+    Without a `name` it is that of the design with `_calibrated` behind it.
     `progress` is called with the pieces of work done and all, ten times a second.
     """
 

@@ -72,7 +72,7 @@ def plot_bodies(design: Design, forces: Forces, index: int = 0, ax: Any = None) 
     plt = pyplot()
     if forces.records is None:
         raise ValueError(
-            f"the forces tell no bodies: write contacts = 2, or more, under [algorithm] of {design.name}, or draw plot_field"
+            f"the forces have no contacts: write contacts = 2, or more, under [algorithm] of {design.name}, or draw plot_field"
         )
     _has(forces, index)
     if ax is None:

@@ -164,13 +164,13 @@ fn lines(new: &Args, design: &Design, path: &Path, assumed: &[String], progress:
         progress.stage("trying it on other contacts");
         let errors = new_design::errors(design).map(|Quantiles { median, most, .. }| {
             format!(
-                " On {} round contacts that slide anywhere on it, forces along\n\
-                 the surface err by {median:.1} % of the normal force (median; 95 %: {most:.1}).",
+                " On {} round sliding contacts the\n\
+                 tangential force has a median error of {median:.1} % of the normal force (95 %: {most:.1}).",
                 new_design::TRIED
             )
         });
         lines.push(format!("Gain and friction are fitted to this sensor.{}", errors.unwrap_or_default()));
-        let trains = "sptfra calibrate trains a network against what is left";
+        let trains = "sptfra calibrate trains a network that corrects the remaining error";
         // General contacts were tried on points only.
         lines.push(if design.algorithm.kernel == Kernel::Point {
             // Sensors that read no tension were judged with all units.
@@ -184,7 +184,7 @@ fn lines(new: &Args, design: &Design, path: &Path, assumed: &[String], progress:
         });
     }
     if !assumed.is_empty() {
-        lines.push(format!("Not said, and taken from the paper's first sensor: {}", assumed.join(", ")));
+        lines.push(format!("Not given, so as the paper's first sensor: {}", assumed.join(", ")));
     }
     if new.counts.is_some() {
         lines.push(

@@ -36,10 +36,10 @@ fn a_pitch_is_one_number_or_two() {
 #[test]
 fn what_was_not_said_is_told() {
     let (said, _) = new(&["--estimator", "line", "--rows", "8"]);
-    let assumed = "Not said, and taken from the paper's first sensor: --columns 10, --pitch-mm 4 2, --depth-mm 3\n";
+    let assumed = "Not given, so as the paper's first sensor: --columns 10, --pitch-mm 4 2, --depth-mm 3\n";
     assert!(said.contains("10 x 8 taxels of 4 x 2 mm, 3 mm deep") && said.contains(assumed), "{said}");
     let all = ["--columns", "6", "--rows", "6", "--pitch-mm", "4", "--depth-mm", "3", "--estimator", "line"];
-    assert!(!new(&all).0.contains("Not said"));
+    assert!(!new(&all).0.contains("Not given"));
     // What a count is worth, and which way it goes.
     let (counts, _) = new(&[&all[..], &["--counts", "12"]].concat());
     assert!(
@@ -47,7 +47,7 @@ fn what_was_not_said_is_told() {
         "{counts}"
     );
     let (counts, _) = new(&[&all[..], &["--counts", "12", "--full-scale-pa", "60000"]].concat());
-    assert!(!counts.contains("Not said") && counts.contains("Larger counts are taken to press"), "{counts}");
+    assert!(!counts.contains("Not given") && counts.contains("Larger counts are taken to press"), "{counts}");
 }
 
 /// What docs/explanation/estimators.md says of a new design beside `sensor1-fast`, which has neither.
@@ -66,7 +66,7 @@ fn a_range_for_each_frame_and_counted_contacts_cost_some_latency() {
 fn a_new_design_tells_how_far_to_trust_it() {
     let of_depth = |depth: &str| {
         let (said, design) = new(&["--columns", "8", "--rows", "8", "--pitch-mm", "4", "--depth-mm", depth]);
-        let text = said.split("err by ").nth(1).and_then(|rest| rest.split(" % of the normal force").next());
+        let text = said.split("median error of ").nth(1).and_then(|rest| rest.split(" % of the normal force").next());
         let told: f64 = text.expect("errors").parse().unwrap();
         let found = hdl_gen::new_design::errors(&design).expect("frames").median;
         assert!((told - found).abs() < 0.06, "{told} {found}");

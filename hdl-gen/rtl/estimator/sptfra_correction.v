@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The correction of a frame's friction: a look at its contact, and what the network makes of a window around the centre
-// that the look found. The look has u_q of its own, so that the next frame may be searched meanwhile; while one is
-// corrected another may be looked at. From start to done: 11 cycles, a cycle for each word of each pass, one for each
-// unit of a pass, and 14.
+// Correction of a frame's friction pair: features of the contact, then the network.
+//
+// It has its own copy of u_q, so the next frame may be searched meanwhile. While one frame is corrected, the features of
+// another may be made. Latency from start to done: 11 cycles, one per word of each pass, one per unit of a pass, and 14.
 
 `default_nettype none
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Estimator: both friction components at once, from the level set of Condition 1 in the (mu_x, mu_y) plane.
+// Grid search estimator: friction pair (mu_x, mu_y) from the level set of Condition 1.
 //
-// Three stages, each with a frame of its own (sptfra_joint_stages). The search: Condition 1 over the plane, and the
-// level set's centroid. With NETWORK the look: the contact's stress, and where its centre is. The correction: what the
-// network makes of a window around it, and the friction. u_q of the next frame may arrive meanwhile. The answer is
-// both components as they are.
+// Three stages, each with its own frame (sptfra_joint_stages): search (sptfra_grid_search), with NETWORK the feature
+// window (sptfra_look), and correction. u_q of the next frame may arrive meanwhile.
 
 `default_nettype none
 

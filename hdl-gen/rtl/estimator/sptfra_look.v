@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// What the correction sees of a contact: the stress of the normal forces alone, in a window around its centre.
+// Feature window: stress of the normal forces alone, around the contact's centre.
 //
-// Along its way: scale (1 / sum |b|, while the plane is searched), stress (a quad in two cycles, its compression's
+// Along its way: scale (1 / sum |b|, during the grid search), stress (a quad in two cycles, its compression's
 // moments), their centroid; when the network is free for it the window (folded into parity classes). While one frame is
 // looked at the next one may start. From look_start to look_done: two cycles a quad, and 33; from window_start to
 // window_done: 10, and one a word.

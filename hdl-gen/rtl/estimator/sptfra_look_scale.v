@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The scale of a look: 1 / sum |b|, while the plane is searched.
+// The scale of a look: 1 / sum |b|, during the grid search.
 //
 // The leading bit of sum |b| goes to the top, then 2^56 is divided by it: the reciprocal of 17 bits is there 8 cycles
 // and a division after start.

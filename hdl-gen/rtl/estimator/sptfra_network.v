@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The network of the correction: one layer of hinges, then two sums, as a mean over its input's four mirror images;
+// The network of the correction: one hidden layer of rectifiers (ReLU), then two sums, as a mean over its input's four mirror images;
 // with WITH_ERROR a third one, the logarithm of the error that is left.
 //
 // The input stands in the basis of the parity classes, and so do the weights: one pass gives four classes' sums of

@@ -65,7 +65,7 @@ impl View {
             latency_cycles: timeline.latency_cycles,
             latency_us: format!("{:.2}", timeline.latency_cycles as f64 / hardware.clock_mhz),
             interval_cycles: timeline.interval_cycles,
-            frames_per_second: (hardware.clock_mhz * 1e6 / timeline.interval_cycles as f64) as u64,
+            frames_per_second: (hardware.clock_mhz * 1e6 / timeline.interval_cycles as f64).round() as u64,
             dsp_block: plan.resources.dsp_block.name(),
             dsp: plan.resources.dsp,
             bram36: plan.resources.bram36,

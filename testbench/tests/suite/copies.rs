@@ -67,13 +67,15 @@ fn shared(design: &Design, marked: bool) -> BTreeSet<String> {
     several.flatten().map(|(_, register)| register).filter(|register| !register.contains('$')).collect()
 }
 
+/// What each point of the grid search has of its own.
+const OF_POINTS: [&str; 3] = ["point.clears", "point.counts", "point.is_nothing"];
+
 #[test]
 fn each_point_has_its_own() {
     let design = shipped("small-joint");
     let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<BTreeSet<_>>();
     let [marked, free] = [true, false].map(|marked| shared(&design, marked));
-    // "turns" is one with a register outside, then.
-    assert_eq!(&free - &marked, names(&["clears", "counts", "nothing"]));
+    assert_eq!(&free - &marked, names(&OF_POINTS));
 }
 
 #[test]
@@ -86,12 +88,12 @@ fn each_lane_and_cell_has_its_own() {
     // A flag of a leaf core, and what becomes a register of the multiplier.
     let of_none = ["lane.row_sequencer.primes"];
     let factor = ["hinges.factor_1", "hinges.multiplier.coefficient"];
-    for (design, others, free) in [(line, &[][..], &factor[..]), (joint, &["hinges.step_1"][..], &[][..])] {
+    for (design, copies, free) in [(line, &of_cells[..], &factor[..]), (joint, &OF_POINTS[..], &[][..])] {
         let names = |parts: &[&[&str]]| -> BTreeSet<String> {
             parts.iter().flat_map(|part| part.iter().map(|&name| name.to_owned())).collect()
         };
         let left = names(&[&of_none, free]);
         assert_eq!(shared(&design, true), left);
-        assert_eq!(shared(&design, false), names(&[&of_lanes, &of_cells, others, &of_none, free]));
+        assert_eq!(shared(&design, false), names(&[&of_lanes, copies, &of_none, free]));
     }
 }

@@ -60,8 +60,8 @@ fn a_longer_vector_takes_two_in_lanes_and_field() {
         ("look", (6, 12), (6, 12)),
         ("friction", (1, 2), (1, 2)),
         ("summary", (1, 2), (1, 2)),
-        // Five squares of 17 bits, and two moments.
-        ("plane", (7, 9), (7, 9)),
+        // Five squares of 17 bits, and two moments of the grid search.
+        ("search", (7, 9), (7, 9)),
     ] {
         assert_eq!((by_name(&short, name), by_name(&long, name)), (with_25, with_27), "{name}");
     }

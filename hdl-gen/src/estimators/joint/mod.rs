@@ -119,8 +119,8 @@ impl Slot for JointPlan {
             let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + readouts(network));
             let width = WEIGHT_BITS * classes * network.at_once as u32;
             blocks.push(units.with([
-                memory("look, folded", 1, network.length, classes * INPUT_BITS, false),
-                memory("hinge weights", 1, network.weights.len(), width, true),
+                memory("features, folded", 1, network.length, classes * INPUT_BITS, false),
+                memory("network weights", 1, network.weights.len(), width, true),
                 memory("readout", 1, network.units(), readouts(network) as u32 * WEIGHT_BITS, true),
             ]));
         }
