@@ -138,7 +138,7 @@ class Recordings(unittest.TestCase):
             (forces[:40], "88 frames and 40 lines"),
             (np.zeros((len(forces), 2)), r"\(n, 3\)"),
             ("nowhere.csv", "nowhere.csv"),
-            (np.repeat([0, 3, 0, 1.5, 0, 1, 0, 2.5, 0, 2, 0], 8), "does not go with the forces"),
+            (np.repeat([0, 3, 0, 1.5, 0, 1, 0, 2.5, 0, 2, 0], 8), "do not begin together"),
         ]:
             with self.assertRaisesRegex(ValueError, text):
                 sptfra.calibrate_forces(made, frames, given)

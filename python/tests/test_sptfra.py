@@ -46,8 +46,8 @@ class Designs(unittest.TestCase):
     def test_what_is_wrong_is_said_as_the_commands_say_it(self):
         for call, text in [
             (lambda: sptfra.Design.load("nothing.toml"), "nothing.toml: cannot read the file"),
-            (lambda: sptfra.Design.from_toml("name = 1"), "line 1, column 8"),
-            (lambda: design("lanes = 3\n"), "pad.toml, line 7"),
+            (lambda: sptfra.Design.from_toml("format = 3\nname = 1"), "line 2, column 8"),
+            (lambda: design("lanes = 3\n"), "pad.toml, line 8"),
             (lambda: sptfra.Design(columns=1), "sensor.columns is 1; use a whole number from 2 to 64"),
             (lambda: sptfra.Design(tension="some"), 'tension is "some"; choose one of: read, clipped'),
             (lambda: sptfra.Design(estimator="both"), 'estimator is "both"; choose one of: line, joint'),

@@ -64,7 +64,7 @@ impl Kind {
             Self::Reduced => "plan = \"reduced\"",
             Self::Filtered => "plan = \"reduced\"\nfilter = { kind = \"f2\", p = 1.0 }",
             Self::Paper => "plan = \"paper\"",
-            Self::Joint => "plan = \"reduced\"\nestimator = \"joint\"\ngrid = 15",
+            Self::Joint => "plan = \"reduced\"\nestimator = \"joint\"",
         }
     }
 }

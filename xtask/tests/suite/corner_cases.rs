@@ -63,7 +63,13 @@ fn no_answer_is_wrong_in_silence() {
 /// Matrices are those of the line estimator; there is no float32.
 fn check_joint(row: &Row, f64: &Judged, fixed: &Judged) {
     assert!(row.f32.is_none());
-    assert_eq!(fixed.status, f64.status, "{}", row.case);
+    if row.case == "no tension" {
+        // One pressed taxel: a normalised u is clipped in the search, which bit 3 says. f64 has no such limit.
+        let said: Vec<_> = fixed.status.iter().map(|(name, count)| (name.as_str(), *count)).collect();
+        assert_eq!(said, [("direction unknown", 1), ("saturated", 1), ("no tension", 1)]);
+    } else {
+        assert_eq!(fixed.status, f64.status, "{}", row.case);
+    }
     for (reference, found) in [(f64.tangential, fixed.tangential), (f64.normal, fixed.normal)] {
         let difference = reference.zip(found).map_or(0.0, |(reference, found)| (reference - found).abs());
         assert!(difference < 0.5, "{}: {difference}", row.case);

@@ -43,9 +43,9 @@ module small_4x3 #(
     output wire        m_axis_tlast
 );
 
-    localparam ROW_WIDTH = 3; // of the number of a quad
+    localparam ROW_WIDTH = 3; // index of an orbit, a taxel and its mirror images
     localparam VECTOR_BITS = 108; // of what 4 ways have in a cycle
-    localparam OPERAND_WIDTH = 6; // of a place in the lanes' operand memories
+    localparam OPERAND_WIDTH = 6; // address in the operand memories
 
     wire reset; // of all but the streams, which stop with aresetn and go on a cycle after it
     sptfra_reset reset_register (.clock(aclk), .now(!aresetn), .reset(reset));
