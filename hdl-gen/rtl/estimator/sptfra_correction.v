@@ -3,8 +3,9 @@
 //
 // Correction of a frame's friction pair: features of the contact, then the network.
 //
-// It has its own copy of u_q, so the next frame may be searched meanwhile. While one frame is corrected, the features of
-// another may be made. Latency from start to done: 11 cycles, one per word of each pass, one per unit of a pass, and 14.
+// It has its own copy of u_q, so the next frame may be searched meanwhile. While one frame is corrected, the features
+// of another may be made. Latency from start to done: 11 cycles, one per word of each pass, one per unit of a pass,
+// and 14.
 
 `default_nettype none
 

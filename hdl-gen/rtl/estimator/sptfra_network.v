@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// The network of the correction: one hidden layer of rectifiers (ReLU), then two sums, as a mean over its input's four mirror images;
-// with WITH_ERROR a third one, the logarithm of the error that is left.
+// Network of the correction: one hidden layer of rectifiers (ReLU), then two sums, averaged over mirror images.
+// With WITH_ERROR a third sum: the logarithm of the standard error.
 //
 // The input stands in the basis of the parity classes, and so do the weights: one pass gives four classes' sums of
 // AT_ONCE hidden units, which a butterfly turns into the units of the four images, one after the other. PASSES passes

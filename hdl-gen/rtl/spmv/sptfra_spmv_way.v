@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Multiply-accumulate lane of a PE: the product and its sum, the carry of a row that is cut in two, and two places for finished sums.
+// Multiply-accumulate lane of a PE, with the carry of a row that is cut in two and two places for finished sums.
 //
 // Coefficients of up to 18 and operands of up to 27 bits take one multiplier; wider ones take two, whose sums are of
 // products over 2^17, rounded. There coefficients and friction components stand in the upper bits of theirs, so that of
