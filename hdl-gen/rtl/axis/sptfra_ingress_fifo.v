@@ -139,7 +139,7 @@ module sptfra_ingress_fifo #(
     always @(posedge clock) begin
         if (!reset && ((store && (waiting == DEPTH)) || (begins && (frames == FRAMES)))) begin
             $fdisplay(32'h80000002, "%m: a frame is kept that has no room");
-            $finish;
+            $fatal(1);
         end
     end
 `endif

@@ -24,7 +24,7 @@ module sptfra_check_delay #(
         starts <= next_starts[STAGES-1:0];
         if (!reset && (CYCLES != 0) && (done != starts[STAGES-1])) begin
             $fdisplay(32'h80000002, "%m: done is not start, %0d cycles later", CYCLES);
-            $finish;
+            $fatal(1);
         end
         if (reset) begin
             starts <= {STAGES{1'b0}};

@@ -24,7 +24,7 @@ module sptfra_check_latency #(
         running <= (running && !done) || start;
         if (running && done && !reset && (CYCLES != 0) && (count != CYCLES)) begin
             $fdisplay(32'h80000002, "%m: %0d cycles from start to done, expected %0d", count, CYCLES);
-            $finish;
+            $fatal(1);
         end
         if (reset) begin
             running <= 1'b0;

@@ -218,15 +218,15 @@ module sptfra_contact_counter #(
         frames_inside <= frames_inside + {1'b0, last_weights} - {1'b0, done};
         if (!reset && done && (left == 4'd8)) begin
             $fdisplay(32'h80000002, "%m: a ninth count has no place");
-            $finish;
+            $fatal(1);
         end
         if (!reset && contacts_take && (waiting == 4'd0)) begin
             $fdisplay(32'h80000002, "%m: a frame goes out before its contacts are counted");
-            $finish;
+            $fatal(1);
         end
         if (!reset && weights_valid && (frames_inside == 2'd2)) begin
             $fdisplay(32'h80000002, "%m: weights of a third frame come before the first one is counted");
-            $finish;
+            $fatal(1);
         end
         if (reset) begin
             frames_inside <= 2'd0;

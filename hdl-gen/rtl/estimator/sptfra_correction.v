@@ -31,7 +31,7 @@ module sptfra_correction #(
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
-    parameter ROM_NAME = "design",
+    parameter ROM_NAME = "",
     // Checked in simulation, 0: unchecked: cycles from the look's start to its end
     parameter integer EXPECTED_LOOK_LATENCY = 0,
     // ... from the first input of the network to the correction

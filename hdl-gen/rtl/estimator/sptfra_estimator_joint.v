@@ -52,7 +52,7 @@ module sptfra_estimator_joint #(
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
-    parameter ROM_NAME = "design",
+    parameter ROM_NAME = "",
     // Checked in simulation, 0: unchecked: cycles from the start to the first row of points
     parameter integer EXPECTED_VALUES_LATENCY = 0,
     // ... from that row to the centroid

@@ -225,13 +225,13 @@ module sptfra_grid_values #(
     reg all_given;
     wire turn_after_next = again || lasts[STAGES-1]
         || ((IS_SERIAL == 0) && (lasts[STAGES] || (giving && (row < LAST_ROW - 4'd1))));
-    wire [(AT_ONCE+1)*SIDE*(VALUE_BITS+1)-1:0] sums; // row 0 above the last row once more
-
-    assign sums[AT_ONCE*SIDE*(VALUE_BITS+1) +: SIDE*(VALUE_BITS+1)] = sums[0 +: SIDE*(VALUE_BITS+1)];
+    wire [AT_ONCE*SIDE*(VALUE_BITS+1)-1:0] sums;
 
     generate
         for (index = 0; index < AT_ONCE; index = index + 1) begin : gen_rows
             for (column = 0; column < SIDE; column = column + 1) begin : gen_points
+                // Row 0 follows on the last one
+                localparam integer ABOVE = ((index == AT_ONCE - 1) ? 0 : SIDE*(index + 1)) + column;
                 wire [TAXELS*TERM_BITS-1:0] x;
                 wire [TAXELS*TERM_BITS-1:0] y;
 
@@ -252,7 +252,7 @@ module sptfra_grid_values #(
                     .turn    (turn_next && (IS_SERIAL == 0)),
                     .x       (x),
                     .y       (y),
-                    .above   (sums[(VALUE_BITS+1)*(SIDE*(index + 1) + column) +: VALUE_BITS+1]),
+                    .above   (sums[(VALUE_BITS+1)*ABOVE +: VALUE_BITS+1]),
                     .sum     (sums[(VALUE_BITS+1)*(SIDE*index + column) +: VALUE_BITS+1])
                 );
             end

@@ -31,7 +31,7 @@ module sptfra_network #(
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
-    parameter ROM_NAME = "design",
+    parameter ROM_NAME = "",
     // From start to done, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LATENCY = 0
 ) (
@@ -130,7 +130,7 @@ module sptfra_network #(
         .DEPTH         (WEIGHTS),
         .ADDRESS_WIDTH (WEIGHT_WIDTH),
         .ROM_DIR       (ROM_DIR),
-        .FILE          ({ROM_NAME, "_weights.mem"})
+        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_weights.mem"})
     ) weights (
         .clock         (clock),
         .enable        (1'b1),
@@ -230,7 +230,7 @@ module sptfra_network #(
         .DEPTH         (UNITS),
         .ADDRESS_WIDTH (READOUT_WIDTH),
         .ROM_DIR       (ROM_DIR),
-        .FILE          ({ROM_NAME, "_readout.mem"})
+        .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_readout.mem"})
     ) readout (
         .clock         (clock),
         .enable        (1'b1),

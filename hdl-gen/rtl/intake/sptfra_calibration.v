@@ -157,12 +157,14 @@ module sptfra_calibration #(
     reg [27:0] copied_gain;
     reg signed [31:0] new_offset;
     wire new_offset_fits = (new_offset <= OFFSET_LIMIT) && (new_offset >= -OFFSET_LIMIT);
-    wire writes = write && write_allowed && idle;
+    wire writes = write && idle;
+    wire new_contact = writes && of_contact && (write_data != 32'd0);
+    wire new_noise = writes && of_noise && noise_fits;
 
     wire copy_ends = copy_writes && (place == LAST_TAXEL);
 
-    assign bank_write_gain = (writes && of_gain) || (copy_writes && new_offset_fits);
-    assign bank_write_offset = (writes && of_offset) || (copy_writes && new_offset_fits);
+    assign bank_write_gain = (writes && of_gain && gain_fits) || (copy_writes && new_offset_fits);
+    assign bank_write_offset = (writes && of_offset && offset_fits) || (copy_writes && new_offset_fits);
     assign bank_write_gain_data = idle ? write_data[27:0] : copied_gain;
     assign bank_write_offset_data = idle ? write_data[OFFSET_BITS-1:0] : new_offset[OFFSET_BITS-1:0];
 
@@ -182,20 +184,18 @@ module sptfra_calibration #(
     // ---- CRC-32 as of Ethernet and zlib, a byte a cycle, the lowest first
     wire [1:0] byte_place = step[1:0] - 2'd2;
     wire [7:0] next_byte = word[{byte_place, 3'd0} +: 8];
-    wire [31:0] crc_in = sum ^ {24'd0, next_byte};
     wire [31:0] crc_end = ~sum;
-    wire [287:0] crc_bits;
-    genvar position_bit;
 
-    assign crc_bits[31:0] = crc_in;
-
-    generate
-        for (position_bit = 0; position_bit < 8; position_bit = position_bit + 1) begin : gen_crc
-            wire [31:0] earlier = crc_bits[32*position_bit +: 32];
-
-            assign crc_bits[32*(position_bit+1) +: 32] = {1'b0, earlier[31:1]} ^ (earlier[0] ? 32'hedb88320 : 32'd0);
+    function [31:0] crc_of_byte;
+        input [31:0] value;
+        integer position_bit;
+        begin
+            crc_of_byte = value;
+            for (position_bit = 0; position_bit < 8; position_bit = position_bit + 1) begin
+                crc_of_byte = {1'b0, crc_of_byte[31:1]} ^ (crc_of_byte[0] ? 32'hedb88320 : 32'd0);
+            end
         end
-    endgenerate
+    endfunction
 
     wire wrong = checks && (crc_end != expected);
 
@@ -245,7 +245,7 @@ module sptfra_calibration #(
             end
             WALK: begin
                 if (step >= 3'd2) begin
-                    sum <= crc_bits[287:256];
+                    sum <= crc_of_byte(sum ^ {24'd0, next_byte});
                 end
                 if (step == LAST_BYTE) begin
                     step <= 3'd0;
@@ -287,16 +287,16 @@ module sptfra_calibration #(
             generation <= generation + 8'd1;
             crc <= crc_end;
         end
-        if ((writes && of_contact && active) || (copy_ends && active)) begin
+        if ((new_contact && active) || (copy_ends && active)) begin
             contacts[31:0] <= idle ? write_data : contacts[63:32];
         end
-        if ((writes && of_contact && !active) || (copy_ends && !active)) begin
+        if ((new_contact && !active) || (copy_ends && !active)) begin
             contacts[63:32] <= idle ? write_data : contacts[31:0];
         end
-        if ((writes && of_noise && active) || (copy_ends && active)) begin
+        if ((new_noise && active) || (copy_ends && active)) begin
             noises[26:0] <= idle ? write_data[26:0] : noises[53:27];
         end
-        if ((writes && of_noise && !active) || (copy_ends && !active)) begin
+        if ((new_noise && !active) || (copy_ends && !active)) begin
             noises[53:27] <= idle ? write_data[26:0] : noises[26:0];
         end
     end

@@ -200,7 +200,7 @@ module sptfra_frame_context #(
             always @(posedge clock) begin
                 if (!reset && direction_take && (next_direction == next_scaled)) begin
                     $fdisplay(32'h80000002, "%m: a frame is taken before its scale is known");
-                    $finish;
+                    $fatal(1);
                 end
             end
 `endif
@@ -223,7 +223,7 @@ module sptfra_frame_context #(
             held <= 5'd0;
         end else if ((take && (held == 5'd0)) || (begins && (held == 5'd16))) begin
             $fdisplay(32'h80000002, "%m: a frame leaves that has not come, or more are inside than there is room for");
-            $finish;
+            $fatal(1);
         end
     end
 `endif

@@ -220,7 +220,7 @@ module sptfra_co #(
             always @(posedge clock) begin
                 if (!reset && sum_valid && sums_complete && !sums_take) begin
                     $fdisplay(32'h80000002, "%m: sums have come while those before are not taken");
-                    $finish;
+                    $fatal(1);
                 end
             end
 `endif
@@ -306,7 +306,7 @@ module sptfra_co #(
             always @(posedge clock) begin
                 if (!reset && (g_valid != 3'd0) && sums_complete && !sums_take) begin
                     $fdisplay(32'h80000002, "%m: sums have come while those before are not taken");
-                    $finish;
+                    $fatal(1);
                 end
             end
 `endif

@@ -187,7 +187,7 @@ module sptfra_spmv_collector #(
     always @(posedge clock) begin
         if (!reset && restart && jump_waits && !jump && !(ends && aimed)) begin
             $fdisplay(32'h80000002, "%m: a program has begun while the one before waits for its first visit");
-            $finish;
+            $fatal(1);
         end
     end
 `endif

@@ -248,7 +248,7 @@ module sptfra_spmv_lane #(
     always @(posedge clock) begin
         if (!reset && result_ends[6] && (kept == 2'd2)) begin
             $fdisplay(32'h80000002, "%m: a result has come while both places are taken");
-            $finish;
+            $fatal(1);
         end
     end
 `endif

@@ -71,7 +71,7 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
     ]);
     let said = in_parallel(&cases, |(design, module, from, to, _)| said_of(design, module, from, to));
     for ((design, module, from, _, place), said) in cases.iter().zip(said) {
-        let stopped = said.contains(place) && said.contains("$finish");
+        let stopped = said.contains(place) && said.contains("$stop");
         assert!(stopped, "{}, {module} without {from:?}: {said:?}", design.name);
     }
 }

@@ -35,7 +35,7 @@ const APART: f64 = 0.03;
 pub fn fit_forces(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
     let name = || design.name.clone();
     let wrong = |(problem, remedy): loads::Wrong| RecordedError::Recording { name: name(), problem, remedy };
-    let (frames, measured, mut remarks) = loads::pair(frames, measured).map_err(wrong)?;
+    let (frames, measured, mut remarks) = loads::pair(design, frames, measured).map_err(wrong)?;
     remarks.splice(0..0, measured.remarks.iter().cloned());
     if sideways::is_all(&measured) {
         return sideways::fit(design, frames, measured, remarks);

@@ -1,5 +1,6 @@
 //! What pressed in each frame, what the taxels read without load, and where the converter ends.
 
+use super::lag;
 use super::table::Measured;
 use crate::design::Design;
 
@@ -14,10 +15,9 @@ pub(super) type Wrong = (String, String);
 /// Frames, what was measured with each, and what is to be known of it.
 pub(super) type Pairs<'a> = (&'a [Vec<f64>], Measured, Vec<String>);
 
-/// Frames and lines of the forces, one for one.
-pub(super) fn pair<'a>(frames: &'a [Vec<f64>], measured: &Measured) -> Result<Pairs<'a>, Wrong> {
+/// Frames and lines of the forces, one for one. Where they do not begin together, the lag is found.
+pub(super) fn pair<'a>(design: &Design, frames: &'a [Vec<f64>], measured: &Measured) -> Result<Pairs<'a>, Wrong> {
     let (count, lines) = (frames.len(), measured.forces.len());
-    let both = count.min(lines);
     let apart = count.abs_diff(lines);
     if apart as f64 > LENGTHS * count as f64 {
         return Err((
@@ -25,16 +25,47 @@ pub(super) fn pair<'a>(frames: &'a [Vec<f64>], measured: &Measured) -> Result<Pa
             "give one line for each frame; leave blank what is unknown".to_owned(),
         ));
     }
-    let mut measured = measured.clone();
-    measured.forces.truncate(both);
-    measured.pressures.truncate(both);
-    if let Some(contacts) = &mut measured.contacts {
-        contacts.truncate(both);
+    let is_alive = |(taxel, _): &(usize, &f64)| !design.input.dead.contains(taxel);
+    let sum = |frame: &Vec<f64>| frame.iter().enumerate().filter(is_alive).map(|(_, value)| value).sum();
+    let readings: Vec<f64> = frames.iter().map(sum).collect();
+    // Pressures of a bladder rise in steps, which any lag fits.
+    let loads: Vec<Option<f64>> = measured.forces.iter().map(|force| force[2]).collect();
+    let lag = lag::find(&readings, &loads).map_err(|[one, other]| {
+        (
+            format!(
+                "frames and loads do not begin together: {} fits the loads as well as {}",
+                together(one),
+                together(other)
+            ),
+            "give both files a column of times, or cut them so that both begin with the same touch".to_owned(),
+        )
+    })?;
+    let skip = |frames: isize| usize::try_from(frames).unwrap_or(0);
+    let (frames, from) = (&frames[skip(-lag)..], skip(lag));
+    let both = frames.len().min(lines - from);
+    let mut remarks = Vec::new();
+    if lag != 0 {
+        remarks.push(format!(
+            "frames and loads do not begin together: they are paired by what fits best, {}",
+            together(lag)
+        ));
+    } else if apart > 0 {
+        remarks.push(format!(
+            "{count} frames and {lines} lines of forces: paired from the first on, the last {apart} left out; check that the \
+             first belong together"
+        ));
     }
-    let remark = (apart > 0).then(|| {
-        format!("{count} frames and {lines} lines of forces: paired from the first on, the last {apart} left out; check that the first belong together")
-    });
-    Ok((&frames[..both], measured, remark.into_iter().collect()))
+    let mut measured = measured.clone();
+    measured.forces = measured.forces.iter().skip(from).take(both).copied().collect();
+    measured.pressures = measured.pressures.iter().skip(from).take(both).copied().collect();
+    measured.contacts = measured.contacts.map(|names| names.into_iter().skip(from).take(both).collect());
+    Ok((&frames[..both], measured, remarks))
+}
+
+/// Which frame and line belong together.
+fn together(lag: isize) -> String {
+    let first = lag.unsigned_abs() + 1;
+    if lag < 0 { format!("line 1 to frame {first}") } else { format!("line {first} to frame 1") }
 }
 
 /// What presses in each frame, whatever the sign of the file.

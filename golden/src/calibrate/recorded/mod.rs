@@ -12,6 +12,7 @@ mod force;
 mod friction;
 mod gains;
 mod holds;
+mod lag;
 mod loads;
 mod page;
 mod readings;

@@ -34,7 +34,7 @@ const BORDER: f64 = 0.1;
 pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) -> Result<Recorded, RecordedError> {
     let name = || design.name.clone();
     let wrong = |(problem, remedy): loads::Wrong| RecordedError::Recording { name: name(), problem, remedy };
-    let (frames, measured, mut remarks) = loads::pair(frames, measured).map_err(wrong)?;
+    let (frames, measured, mut remarks) = loads::pair(design, frames, measured).map_err(wrong)?;
     remarks.splice(0..0, measured.remarks.iter().cloned());
     // A pressure is a load at one place.
     let as_loads = Measured {

@@ -33,6 +33,39 @@ fn no_loaded_frame_becomes_no_contact() {
     }
 }
 
+/// A recording whose pauses differ, with its forces from another moment on.
+fn apart(recording: &Recording, lag: isize) -> (Vec<Vec<f64>>, Measured) {
+    let pause = |frame: usize| if frame % 10 == 9 { 1 + frame / 10 * 7 % 5 } else { 1 };
+    let places: Vec<usize> = (0..recording.frames.len()).flat_map(|frame| vec![frame; pause(frame)]).collect();
+    let skip = |frames: isize| usize::try_from(frames).unwrap_or(0);
+    (
+        places.iter().skip(skip(-lag)).map(|&frame| recording.frames[frame].clone()).collect(),
+        Measured::of_forces(places.iter().skip(skip(lag)).map(|&frame| recording.measured.forces[frame]).collect()),
+    )
+}
+
+#[test]
+fn logs_without_times_are_paired_by_what_they_have_in_common() {
+    let recording = recording();
+    let fit = |lag| {
+        let (frames, measured) = apart(&recording, lag);
+        fit_forces(&design(COUNTS, ""), &frames, &measured)
+    };
+    let together = fit(0).unwrap();
+    assert!(!says(&together.remarks, &["begin together"]), "{:?}", together.remarks);
+    let error = together.errors.unwrap().median;
+    for (lag, said) in [(4, "line 1 to frame 5"), (30, "line 1 to frame 31"), (-7, "line 8 to frame 1")] {
+        let found = fit(lag).unwrap();
+        assert!(says(&found.remarks, &["paired by what fits best", said]), "{lag}: {:?}", found.remarks);
+        assert!(found.errors.unwrap().median < 1.2 * error, "{lag}");
+    }
+    // The same loads at the same intervals again and again fit in many ways.
+    let mut measured = recording.measured.clone();
+    measured.forces.rotate_left(5);
+    let refused = fit_forces(&design(COUNTS, ""), &recording.frames, &measured).unwrap_err().to_string();
+    assert!(refused.contains("do not begin together") && refused.contains("column of times"), "{refused}");
+}
+
 #[test]
 fn logs_of_other_rates_are_paired_by_their_times() {
     let recording = recording();
