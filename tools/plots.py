@@ -197,7 +197,7 @@ def error_latency():
 
 def noise():
     """Error against noise, with the bound of any estimator."""
-    sensors = sorted({row["sensor"] for row in rows("noise.csv")})
+    sensors, designs = ("1", "2"), ("fast", "wide")
     left, top, bottom, limit = 64, 66, 300, 60
     parts = [text(left, 18, "solid: median, dotted: 95 %, grey: bound of the median", size=12)]
     for index, name in enumerate(("sliding", "general")):
@@ -220,9 +220,9 @@ def noise():
         parts.append(text(x0 + 150, bottom + 40, "noise, % of the frame's largest reading", "middle", size=12))
         bound = {"1": 4.3, "2": 5.5}[sensor]
         parts.append(line(x(0), y(0), x(2), y(2 * bound), COLOURS[0], 2))
-        for index, name in enumerate(("sliding", "general")):
-            of = [row for row in rows("noise.csv") if row["sensor"] == sensor and row["training_set"] == name]
-            points = sorted(of, key=lambda row: float(row["noise"]))
+        for index in range(2):
+            design = f"sensor{sensor}-{designs[index]}"
+            points = [row for row in rows("noise.csv") if row["design"] == design]
             for kind, dash in (("median", ""), ("p95", ' stroke-dasharray="2 3"')):
                 path = " ".join(f"{x(row['noise']):.1f},{y(row[kind]):.1f}" for row in points)
                 colour = COLOURS[index + 1]

@@ -63,19 +63,16 @@ pub fn csv(designs: &[(String, Design)]) -> Result<String, NoiseError> {
          # noise: standard deviation in percent of the largest reading of a frame.\n\
          # command: cargo xtask noise DESIGNS --out results/noise.csv\n\
          # designs: {}\n\
-         sensor,training_set,noise,median,p95,worst,design\n",
+         design,noise,median,p95,worst\n",
         SEEDS.count(),
         hashes.join(", ")
     );
     for (name, design) in designs {
-        // As in the other results: the paper's first and second sensor by their number.
-        let sensor = name.split('-').next().unwrap_or_default().trim_start_matches("sensor");
-        let training_set = design.algorithm.joint.training_set;
         let frames = Kind::Sliding.frames(&design.sensor, FRICTION, SEEDS)?;
         for percent in NOISE_PERCENT {
             let Quantiles { median, most, worst } = errors(design, &frames, percent)?;
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{sensor},{training_set},{percent},{median:.1},{most:.1},{worst:.1},{name}");
+            let _ = writeln!(text, "{name},{percent},{median:.1},{most:.1},{worst:.1}");
         }
     }
     Ok(text)

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::contacts::{Pressed, Truth, errors_of as judge, frames, inside, places_inside};
-use crate::families::{judge as judged, row, share};
+use crate::contacts::{Pressed, Truth, errors_of as judge, frames, inside};
+use crate::families::{cells, judge as judged, share};
 use golden::design::Design;
 use golden::scene::{Kind, Medium};
 use golden::solver::Solver;
@@ -51,7 +51,7 @@ fn one_contact_keeps_to_the_figures() {
 }
 
 #[test]
-#[ignore = "prints the first table of clipped sensors in docs/explanation/accuracy.md; seconds"]
+#[ignore = "prints the table of results/clipped.csv; seconds"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
         for kind in ["fast", "clipped-wide"] {
@@ -73,54 +73,18 @@ fn table() {
 }
 
 #[test]
-#[ignore = "prints the table of clipped families in docs/explanation/accuracy.md; minutes"]
+#[ignore = "prints the rows of results/clipped-kinds.csv; minutes"]
 fn families() {
     for sensor in ["sensor1", "sensor2"] {
         let design = design(&format!("{sensor}-clipped-wide"));
         let solver = Solver::new(&design).unwrap();
         for kind in Kind::ALL {
-            let (label, count) = (kind.title(), if kind.has_own_friction() { 2000 } else { 200 });
+            let count = if kind.has_own_friction() { 2000 } else { 200 };
             let mut frames = kind.frames(&design.sensor, 0.5, 1000..1000 + count).unwrap();
             for stress in frames.iter_mut().flat_map(|frame| &mut frame.stress) {
                 *stress = stress.min(0.0);
             }
-            let wide = judged(&solver, &frames);
-            let [bad, good] =
-                wide.doubtful.map(|share| if share.is_nan() { String::new() } else { format!("{share:.0}") });
-            println!("| {} | {label} |{} {bad} | {good} | {:.0} |", &sensor[6..], row(&wide), wide.within);
-        }
-    }
-}
-
-/// Which contacts make a sensor's 95 %: errors of one contact, as [`table`], by shape and radius.
-#[test]
-#[ignore = "prints which contacts of clipped sensors err most, for docs/explanation/accuracy.md; seconds"]
-fn by_size() {
-    for sensor in ["sensor1", "sensor2"] {
-        let design = design(&format!("{sensor}-clipped-wide"));
-        let solver = Solver::new(&design).unwrap();
-        let set = inside(&design.sensor, LAYER, SEED, 800);
-        let places = places_inside(&design.sensor, SEED, 800);
-        for friction in FRICTIONS {
-            let frames = clipped(&set, friction, 0.0);
-            let errors: Vec<f64> =
-                frames.iter().map(|frame| judge(&solver, std::slice::from_ref(frame)).0[0][0]).collect();
-            let of = |label: &str, belongs: &dyn Fn(usize) -> bool| {
-                let mut own: Vec<f64> =
-                    errors.iter().enumerate().filter(|(index, _)| belongs(*index)).map(|(_, error)| *error).collect();
-                own.sort_by(f64::total_cmp);
-                if !own.is_empty() {
-                    let [median, most] = [0.5, 0.95].map(|part| share(&own, part));
-                    println!("| {sensor} | {friction} | {label} | {} | {median:.1} / {most:.1} |", own.len());
-                }
-            };
-            for (first, last) in [(5.0, 6.0), (6.0, 7.0), (7.0, 8.1), (8.1, 10.1)] {
-                let within = |index: usize| (first..last).contains(&(1e3 * places[index].0));
-                of(&format!("Hertz, {first} to {last} mm"), &|index| index % 2 == 0 && within(index));
-                of(&format!("even, {first} to {last} mm"), &|index| index % 2 == 1 && within(index));
-            }
-            of("all up to 8.1 mm", &|index| places[index].0 < 8.1e-3);
-            of("all", &|_| true);
+            println!("{},{kind},general,{}", &sensor[6..], cells(&judged(&solver, &frames)));
         }
     }
 }

@@ -155,7 +155,7 @@ fn nine_tenths(name: &str) -> f64 {
 }
 
 #[test]
-#[ignore = "prints the table of finite elements in docs/explanation/accuracy.md"]
+#[ignore = "prints the table of results/finite-elements.csv"]
 fn table() {
     for name in ["sensor1-wide", "sensor2-wide"] {
         let [small, large] = doubts(name);

@@ -3,12 +3,10 @@
 use std::fmt::Write;
 
 use golden::calibrate::{Settings, calibrate};
-use golden::design::{Design, Sensor};
+use golden::design::Design;
 use golden::kernel::Kernel;
-use golden::matrices::Matrices;
 use golden::scene::Medium;
 use golden::solver::{Solver, Status};
-use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::contacts::{errors_of, frames, inside};
@@ -51,7 +49,7 @@ fn judge(design: &Design, count: usize) -> ([Vec<f64>; 2], usize, usize) {
 }
 
 #[test]
-#[ignore = "prints the tables of thin layers in docs/explanation/accuracy.md; minutes"]
+#[ignore = "prints rows of results/thin-layers.csv; minutes"]
 fn table() {
     for kernel in [Kernel::Point, Kernel::Cell] {
         // By points there is nothing below 0.3.
@@ -74,7 +72,7 @@ fn table() {
 
 /// What `sptfra new` and `sptfra calibrate` make of thin layers, with 64 hidden units, by either kernel.
 #[test]
-#[ignore = "prints the table of new designs on thin layers in docs/explanation/accuracy.md; a quarter of an hour"]
+#[ignore = "prints rows of results/thin-layers.csv; a quarter of an hour"]
 fn table_of_new_designs() {
     let settings = Settings { hidden: 64, ..Settings::default() };
     for pitch_mm in [[4.0, 4.0], [4.0, 2.0]] {
@@ -119,41 +117,4 @@ fn thin_layers_are_as_bad_as_the_table_says_and_their_frames_say_so() {
         assert_eq!(doubtful, doubted, "{said}");
         assert_eq!(design.thin_layer().is_some(), doubted > 0, "{said}");
     });
-}
-
-/// Median error of `F_z` in percent with `times` as many places for forces along each axis as taxels, of all forces that give
-/// the frame the least ones, where the true friction is known.
-fn finer(ratio: f64, times: usize) -> f64 {
-    let sensor = design(ratio, Kernel::Point, None).sensor;
-    let side = (sensor.columns - 1) * times + 1;
-    let places = Sensor {
-        columns: side,
-        rows: side,
-        pitch_mm: sensor.pitch_mm.map(|pitch| pitch / times as f64),
-        ..sensor.clone()
-    };
-    let matrices = Matrices::new(&places, Kernel::Point).unwrap();
-    let taxels: Vec<usize> = (0..sensor.taxels()).map(|taxel| (taxel / 10 * side + taxel % 10) * times).collect();
-    let [along_x, along_y, normal] =
-        [&matrices.c31, &matrices.c32, &matrices.c33].map(|c| c.dense().select_rows(&taxels));
-    let errors = frames(&inside(&sensor, LAYER, SEED, 40), 0.5, 0.0).into_iter().map(|truth| {
-        let (sin, cos) = truth.outcome.direction.sin_cos();
-        let [x, y] = [cos, sin].map(|part| truth.outcome.friction * part);
-        let stress = DVector::from_vec(truth.frame);
-        let given = &normal - &along_x * x - &along_y * y;
-        let least = given.transpose() * (&given * given.transpose()).lu().solve(&stress).unwrap();
-        100.0 * (least.sum() / truth.outcome.force[2] - 1.0).abs()
-    });
-    let mut errors: Vec<f64> = errors.collect();
-    errors.sort_by(f64::total_cmp);
-    share(&errors, 0.5)
-}
-
-#[test]
-#[ignore = "prints what a finer grid of forces does to thin layers, for docs/explanation/accuracy.md; a minute"]
-fn table_of_finer_grids() {
-    for ratio in [0.3, 0.4, 0.5, 0.75] {
-        let cells: String = [1, 2, 3].map(|times| format!(" {:.1} |", finer(ratio, times))).concat();
-        println!("| {ratio} |{cells}");
-    }
 }

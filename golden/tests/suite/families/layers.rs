@@ -4,13 +4,13 @@ use golden::design::Sensor;
 use golden::scene::{Kind, Medium, SceneFrame};
 use golden::solver::Solver;
 
-use super::{Judged, design, judge, row, share};
+use super::{Judged, cells, design, judge, share};
 
 /// A layer: its Poisson's ratio, and how much deeper it is than the design says, as a share.
 type Layer = (&'static str, f64, f64);
 
 const LAYERS: [Layer; 6] = [
-    ("as ever", 0.49, 0.0),
+    ("as designed", 0.49, 0.0),
     ("ν 0.45", 0.45, 0.0),
     ("ν 0.4", 0.4, 0.0),
     ("ν 0.3", 0.3, 0.0),
@@ -30,30 +30,31 @@ fn frames(sensor: &Sensor, (_, poisson, depth): Layer, seeds: std::ops::Range<u6
 }
 
 #[test]
-#[ignore = "prints the table of other layers in docs/explanation/accuracy.md; minutes"]
+#[ignore = "prints the rows of results/layers.csv; minutes"]
 fn table() {
     for sensor in ["sensor1", "sensor2"] {
-        let solvers = ["none", "joint", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap());
+        let solvers = ["none", "fast", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap());
         for layer in LAYERS {
             let frames = frames(solvers[0].matrices().sensor(), layer, 1000..1200);
-            let found = solvers.each_ref().map(|solver| judge(solver, &frames));
-            let along = mean_along(&solvers[2], &frames);
-            let [_, _, wide] = &found;
-            println!(
-                "| {} | {} |{} {:+.1} | {:.0} |",
-                &sensor[6..],
-                layer.0,
-                found.each_ref().map(row).concat(),
-                along,
-                wide.within
-            );
+            for (estimator, solver) in ["line", "sliding", "general"].iter().zip(&solvers) {
+                println!("{},{},{estimator},{}", &sensor[6..], layer.0, cells(&judge(solver, &frames)));
+            }
         }
     }
 }
 
+/// Error of a frame's tangential force in percent of the normal force: along its push, more than 0 for too much, and
+/// across.
+fn error_of(solver: &Solver, frame: &SceneFrame) -> [f64; 2] {
+    let found = solver.solve(&frame.stress).unwrap();
+    let [x, y] = [0, 1].map(|axis| 100.0 * (found.resultant[axis] - frame.force[axis]) / frame.force[2].abs());
+    let (sin, cos) = frame.direction.sin_cos();
+    [x * cos + y * sin, y * cos - x * sin]
+}
+
 /// Mean error along the push in percent of the normal force, more than 0 for too much of it.
 fn mean_along(solver: &Solver, frames: &[SceneFrame]) -> f64 {
-    let along = |frame: &SceneFrame| super::why::error_of(solver, frame)[0];
+    let along = |frame: &SceneFrame| error_of(solver, frame)[0];
     frames.iter().map(along).sum::<f64>() / frames.len() as f64
 }
 

@@ -1,9 +1,8 @@
 //! Contacts of other kinds than those that the estimators were made for: what is left of their accuracy.
 
-mod doubt;
 mod layers;
+mod limits;
 mod torque;
-mod why;
 
 use std::f64::consts::PI;
 
@@ -102,42 +101,45 @@ fn the_wide_family_keeps_to_its_figures_within_the_grid() {
     }
 }
 
-pub fn row(Judged { errors, .. }: &Judged) -> String {
+/// Median, 95 % and worst, as cells of a CSV file.
+pub fn cells(Judged { errors, .. }: &Judged) -> String {
     let [median, most, worst] = [0.5, 0.95, 1.0].map(|part| share(errors, part));
-    format!(" {median:.1} / {most:.1} / {worst:.1} |")
+    format!("{median:.1},{most:.1},{worst:.1}")
+}
+
+/// A share in whole percent, blank where there is nothing to share.
+pub fn percent(share: f64) -> String {
+    if share.is_nan() { String::new() } else { format!("{share:.0}") }
 }
 
 #[test]
-#[ignore = "prints the tables of families in docs/explanation/accuracy.md; a quarter of an hour"]
+#[ignore = "prints the rows of results/contact-kinds.csv, then of results/confidence.csv; a quarter of an hour"]
 fn table() {
     const FRAMES: u64 = 200;
+    let mut confidence = Vec::new();
     for sensor in ["sensor1", "sensor2"] {
         let designs = ["none", "fast", "wide"].map(|kind| design(&format!("{sensor}-{kind}")));
-        let [line, joint, wide] = designs.each_ref().map(|design| Solver::new(design).unwrap());
+        let solvers = designs.each_ref().map(|design| Solver::new(design).unwrap());
+        let number = &sensor[6..];
         for kind in Kind::ALL {
-            let (label, all) = (kind.title(), kind.has_own_friction());
+            let all = kind.has_own_friction();
             let of = |friction: f64| -> Vec<SceneFrame> {
                 let frames = if all { 10 * FRAMES } else { FRAMES };
                 kind.frames(&designs[1].sensor, friction, 1000..1000 + frames).unwrap()
             };
             let frames = of(0.5);
-            let [line, joint, found] = [&line, &joint, &wide].map(|solver| judge(solver, &frames));
-            let more: String = [0.2, 0.8]
-                .into_iter()
-                .map(|friction| if all { " |".to_owned() } else { row(&judge(&wide, &of(friction))) })
-                .collect();
-            let [bad, good] =
-                found.doubtful.map(|share| if share.is_nan() { String::new() } else { format!("{share:.0}") });
-            println!(
-                "| {} | {label} |{} {:.0} |{} {:.0} |{}{more} {bad} | {good} | {:.0} |",
-                &sensor[6..],
-                row(&line),
-                line.flagged,
-                row(&joint),
-                joint.flagged,
-                row(&found),
-                found.within
-            );
+            let found = solvers.each_ref().map(|solver| judge(solver, &frames));
+            let own = if all { "0.1 to 1" } else { "0.5" };
+            for (estimator, judged) in ["line", "sliding", "general"].iter().zip(&found) {
+                println!("{number},{kind},{estimator},{own},{}", cells(judged));
+            }
+            for friction in [0.2, 0.8].into_iter().filter(|_| !all) {
+                println!("{number},{kind},general,{friction},{}", cells(&judge(&solvers[2], &of(friction))));
+            }
+            let Judged { doubtful, within, .. } = &found[2];
+            let [caught, marked] = doubtful.map(percent);
+            confidence.push(format!("{number},{kind},{caught},{marked},{within:.0}"));
         }
     }
+    println!("\n{}", confidence.join("\n"));
 }

@@ -79,20 +79,20 @@ fn torques_are_near_the_true_ones_on_every_kind() {
 }
 
 #[test]
-#[ignore = "prints the table of torques in docs/explanation/accuracy.md; minutes"]
+#[ignore = "prints the rows of results/torques.csv; minutes"]
 fn table() {
-    let row = |Quantiles { median, most, worst }: Quantiles| format!(" {median:.2} / {most:.2} / {worst:.2} |");
+    let row = |Quantiles { median, most, worst }: Quantiles| format!("{median:.2},{most:.2},{worst:.2}");
     let solvers = ["sensor1", "sensor2"]
         .map(|sensor| ["none", "wide"].map(|kind| Solver::new(&design(&format!("{sensor}-{kind}"))).unwrap()));
     for kind in Kind::ALL {
         let count = if kind.has_own_friction() { 2000 } else { 200 };
-        let cells = solvers.each_ref().map(|[line, wide]| {
+        for (number, [line, wide]) in solvers.iter().enumerate() {
             let frames = kind.frames(wide.matrices().sensor(), 0.5, 1000..1000 + count).unwrap();
             let [line, wide] = [line, wide].map(|solver| judge(solver, &frames));
-            let cells = [line.about_middle, wide.about_middle].map(row).concat();
-            let Torques { place, along, beside, own, is, .. } = wide;
-            format!("{cells}{} {:.2} |{} {along:+.2} | {:.2} |", row(own), is.median, row(place), beside.median)
-        });
-        println!("| {} |{}", kind.title(), cells.concat());
+            let Torques { place, along, beside, about_middle, own, is } = wide;
+            let [line, about_middle, own, place] = [line.about_middle, about_middle, own, place].map(row);
+            let (sensor, own_true, beside) = (number + 1, is.median, beside.median);
+            println!("{sensor},{kind},{line},{about_middle},{own},{own_true:.2},{place},{along:.2},{beside:.2}");
+        }
     }
 }

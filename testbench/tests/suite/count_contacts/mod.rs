@@ -205,7 +205,7 @@ fn the_solver_counts_as_the_hardware_does() {
 }
 
 #[test]
-#[ignore = "prints the table of marked frames in docs/explanation/accuracy.md; a minute"]
+#[ignore = "prints the rows of results/counted-contacts.csv; a minute"]
 fn table() {
     let kinds = [
         (Kind::One, "one alone"),
@@ -225,10 +225,9 @@ fn table() {
     ];
     let pairs = ["sensor1-fast", "sensor2-fast"].map(pair);
     for (kind, label) in kinds {
-        let cells = pairs.iter().map(|(plan, solver)| {
+        for (number, (plan, solver)) in pairs.iter().enumerate() {
             let [same, right, several] = agreement(plan, solver, kind, 100, 3000);
-            format!(" {several} | {right} | {same} |")
-        });
-        println!("| {label} |{}", cells.collect::<String>());
+            println!("{},\"{label}\",{several},{right},{same}", number + 1);
+        }
     }
 }
