@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use golden::check::{Beyond, beyond, check};
+use golden::check::{Beyond, beyond, check, is_unloaded};
 use golden::design::Design;
 use golden::matrices::Matrices;
 use golden::progress::Progress;
@@ -90,6 +90,10 @@ pub fn run(args: &Args) -> message::Result {
         }
         if findings.is_empty() {
             say!(text, "{}: {} frames of {file}, nothing suspicious", design.name, frames.len());
+            if is_unloaded(&design, &frames) {
+                let floor = design.algorithm.noise_floor_pa;
+                say!(text, "Nothing presses: tare and noise are within algorithm.noise_floor_pa = {floor}");
+            }
         }
         if findings.is_empty() || beyond.readings > 0 {
             say!(text, "{beyond}");

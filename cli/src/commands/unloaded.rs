@@ -6,7 +6,7 @@ use golden::check::{Beyond, beyond};
 use golden::design::Design;
 use golden::output::write_whole;
 use golden::resolved::{folder, keep_apart};
-use golden::rest::{AtRest, TaxelAtRest};
+use golden::rest::AtRest;
 use serde::Serialize;
 
 use super::recording::Recording;
@@ -52,26 +52,26 @@ pub fn run(
     let mut text = String::new();
     let counts = if design.input.counts() { "counts" } else { "Pa" };
     say!(text, "{}: {} frames of {} without load", design.name, frames.len(), recording.file.display());
-    say!(text, "{:>6} {:>9} {:>9} {:>9}", "taxel", "offset", "noise", "drift");
-    for TaxelAtRest { taxel, offset, noise, drift } in &rest.taxels {
-        let kinds = [(&rest.dead, "dead"), (&rest.stuck, "stuck"), (&rest.noisy, "noisy")];
-        let kind = kinds.iter().find(|(taxels, _)| taxels.contains(taxel)).map_or("", |(_, kind)| kind);
-        let line = format!("{taxel:>6} {offset:>9.2} {noise:>9.2} {drift:>9.2}  {kind}");
-        say!(text, "{}", line.trim_end());
-    }
-    say!(text, "In {counts}: the median taxel varies by {:.2} and drifts by {:.2}", rest.noise, rest.drift);
+    say!(
+        text,
+        "In {counts}: the median taxel varies by {:.2} and drifts by {:.2}; all of them with --json",
+        rest.noise,
+        rest.drift
+    );
     for (kind, taxels) in [("Dead", &rest.dead), ("Stuck", &rest.stuck), ("Noisy", &rest.noisy)] {
         if !taxels.is_empty() {
             say!(text, "{kind}: {taxels:?}");
         }
     }
-    say!(text, "{beyond}");
+    if beyond.readings > 0 {
+        say!(text, "{beyond}");
+    }
     say!(text, "[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
     if rest.noise_of_full_scale > 0.0 {
         say!(
             text,
             "[algorithm] regularisation = {{ noise = {} }}  # for deep layers; relative to contacts whose largest stress is \
-             full_scale_pa: for those of a tenth of it, ten times that",
+             full_scale_pa",
             shown(rest.noise_of_full_scale)
         );
     }

@@ -62,9 +62,8 @@ fn the_calibration_takes_the_offsets_off() {
     let said = sptfra(&asked);
     let lines = String::from_utf8(said.stdout).unwrap();
     assert!(said.status.success() && said.stderr.is_empty(), "{:?}", String::from_utf8(said.stderr));
-    for part in
-        ["Dead: [9]", "noise_floor_pa = 1", "noise = 0.0", "calibration = \"mat.calibration.csv\"", "No readings"]
-    {
+    assert!(lines.lines().count() <= 6, "{lines}");
+    for part in ["Dead: [9]", "noise_floor_pa = 1", "noise = 0.0", "calibration = \"mat.calibration.csv\"", "--json"] {
         assert!(lines.contains(part), "no {part:?} in: {lines}");
     }
     let report: serde_json::Value =
@@ -82,6 +81,17 @@ fn the_calibration_takes_the_offsets_off() {
         let gain = tared.input.calibration.as_ref().unwrap().gain[taxel];
         assert!((gain - 1.0 - 0.001 * taxel as f64).abs() < 1e-12, "{gain}");
     }
+    // With the noise floor that was printed nothing is left to find.
+    let check = |design: &str| sptfra(&["check", design, "--frames", &rest]);
+    let said = check(&design);
+    let found = String::from_utf8(said.stdout).unwrap();
+    assert!(!said.status.success() && found.contains("nothing presses"), "{found}");
+    let floor = lines.lines().find_map(|line| line.strip_prefix("[algorithm] noise_floor_pa")).unwrap();
+    let keys = format!("calibration = \"mat.calibration.csv\"\n[algorithm]\nnoise_floor_pa{floor}\n");
+    fs::write(&design, text(&keys)).unwrap();
+    let said = check(&design);
+    let found = String::from_utf8(said.stdout).unwrap();
+    assert!(said.status.success() && found.contains("Nothing presses: tare and noise are within"), "{found}");
     // Not over a file that the design names, and not for pascals.
     let said = sptfra(&asked);
     assert!(!said.status.success(), "{said:?}");

@@ -9,6 +9,7 @@ mod broken;
 mod dead;
 pub(crate) mod ends;
 mod order;
+mod print;
 mod quiet;
 mod rest;
 mod scaled;
@@ -88,6 +89,10 @@ const PRESSES: f64 = 0.2;
 const LOUD: f64 = 0.01;
 /// A floor above the noise is this many times its mean.
 const ABOVE_NOISE: f64 = 1.5;
+/// Of a sensor at rest at most this share of the readings lies above a noise floor of three deviations,
+const ABOVE_FLOOR: f64 = 0.01;
+/// and none by more than this factor.
+const FAR_ABOVE: f64 = 3.0;
 /// Readings below this share of a frame's peak are as good as zero.
 const FAINT: f64 = 2e-3;
 
@@ -104,6 +109,14 @@ pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) 
     findings.retain(|finding| finding.kind != Kind::Order);
     findings.insert(0, Finding { kind: Kind::Dead, message });
     findings
+}
+
+/// Whether frames are those of a sensor at rest, tared, with a noise floor above its noise.
+pub fn is_unloaded(design: &Design, frames: &[Vec<f64>]) -> bool {
+    let floor = design.algorithm.noise_floor_pa;
+    let stress = in_pascals(design, frames).concat();
+    let above = stress.iter().filter(|stress| stress.abs() > floor).count();
+    above as f64 <= ABOVE_FLOOR * stress.len() as f64 && largest(&stress) <= FAR_ABOVE * floor
 }
 
 fn in_pascals(design: &Design, frames: &[Vec<f64>]) -> Vec<Vec<f64>> {
@@ -131,7 +144,13 @@ fn check_whole(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>
     let is_loaded: Vec<bool> = stress.iter().map(|frame| largest(frame) >= LOADED * peak).collect();
     let full_scale = design.hardware.full_scale_pa;
     if let Some(message) = quiet::check(design, &stress, &is_loaded, peak) {
-        found(Kind::Rest, message);
+        if !is_unloaded(design, frames) {
+            found(Kind::Rest, message);
+        }
+        return findings;
+    }
+    if let Some(message) = print::check(&stress, &is_loaded) {
+        found(Kind::Tare, message);
         return findings;
     }
     let counts = design.input.counts();

@@ -446,3 +446,21 @@ fn an_array_with_its_frames_last() {
     }
     assert!(found >= 9, "found in {found} of 18 kinds");
 }
+
+#[test]
+fn a_tare_under_load_is_named() {
+    let design = design("sensor1-fast");
+    let mut scene = Scene::standing(&design.sensor);
+    scene.contacts[0].centre_m[0] *= 0.5;
+    let (aside, frames) = (stress(&design, &scene), frames(&design));
+    let less = |frames: &[Vec<f64>], print: &[f64]| -> Vec<Vec<f64>> {
+        frames.iter().map(|frame| frame.iter().zip(print).map(|(pa, print)| pa - print).collect()).collect()
+    };
+    // Tared while the contact lay aside: it leaves its print, and presses again.
+    let nothing = vec![0.0; design.sensor.taxels()];
+    let tared = [less(&[nothing], &aside[0]), less(&frames, &aside[0])].concat();
+    let again: Vec<Vec<f64>> = less(&aside, &aside[0]).into_iter().chain(tared).collect();
+    let doubled: Vec<f64> = aside[0].iter().map(|pa| 2.0 * pa).collect();
+    let pressed = [again, less(&[doubled], &aside[0])].concat();
+    found(&design, &pressed, &[Kind::Tare], &["negative print of frame", "tared under a load", "Tare without load"]);
+}
