@@ -43,15 +43,15 @@ pub struct NewDesign {
     pub full_scale_pa: f64,
 }
 
-impl Default for NewDesign {
-    /// The paper's first sensor, by the joint estimator.
-    fn default() -> Self {
+impl NewDesign {
+    /// The paper's first sensor, or its second one, by the grid search.
+    pub fn paper(sensor: u8) -> Self {
         Self {
             name: "my_sensor".to_owned(),
             estimator: Estimator::Joint,
             columns: 10,
             rows: 10,
-            pitch_mm: [4.0, 2.0],
+            pitch_mm: if sensor == 2 { [4.0, 4.0] } else { [4.0, 2.0] },
             depth_mm: 3.0,
             tension: Tension::Read,
             counts: None,

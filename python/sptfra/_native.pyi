@@ -21,17 +21,17 @@ class Design:
         cls,
         name: str = "my_sensor",
         *,
-        columns: int = 10,
-        rows: int = 10,
-        pitch_mm: Sequence[float] | float = (4.0, 2.0),
-        depth_mm: float = 3.0,
+        columns: int,
+        rows: int,
+        pitch_mm: Sequence[float] | float,
+        depth_mm: float,
+        tension: str,
         estimator: str = "joint",
-        tension: str = "read",
         counts: int | None = None,
         full_scale_pa: float = 100000.0,
     ) -> Design:
-        """The design that `sptfra new` writes: for a grid of taxels, under a layer of `depth_mm`, that read a pull or, with
-        tension "clipped", nothing of it. With `counts` its frames are those of a converter of so many bits. The joint estimator's constants are fitted to it, which takes a second."""
+        """The design that `sptfra new` writes: for a grid of taxels, under a layer of `depth_mm`. With tension
+        "read" taxels read tension, with "clipped" they read nothing of it. With `counts` its frames are those of a converter of so many bits. The joint estimator's constants are fitted to it, which takes a second."""
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Design:

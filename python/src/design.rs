@@ -84,8 +84,7 @@ pub fn word<T: serde::de::DeserializeOwned>(key: &str, word: &str) -> PyResult<T
 impl Design {
     #[new]
     #[pyo3(signature = (
-        name = "my_sensor", *, columns = 10, rows = 10, pitch_mm = Pitch([4.0, 2.0]), depth_mm = 3.0, estimator = "joint",
-        tension = "read", counts = None, full_scale_pa = golden::design::DEFAULT_FULL_SCALE_PA
+        name = "my_sensor", *, columns, rows, pitch_mm, depth_mm, tension, estimator = "joint", counts = None, full_scale_pa = golden::design::DEFAULT_FULL_SCALE_PA
     ))]
     #[allow(clippy::too_many_arguments, reason = "keywords, most of them left out")]
     fn of_sensor(
@@ -95,8 +94,8 @@ impl Design {
         rows: usize,
         pitch_mm: Pitch,
         depth_mm: f64,
-        estimator: &str,
         tension: &str,
+        estimator: &str,
         counts: Option<u32>,
         full_scale_pa: f64,
     ) -> PyResult<Self> {

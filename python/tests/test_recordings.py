@@ -33,7 +33,7 @@ class Judging(unittest.TestCase):
             sptfra.beyond(design(), np.full(12, np.nan))
 
     def test_rest_tells_offsets_noise_and_dead_taxels(self):
-        counting = sptfra.Design("pad", columns=6, rows=5, counts=12, full_scale_pa=100_000.0)
+        counting = sptfra.Design("pad", columns=6, rows=5, pitch_mm=(4, 2), depth_mm=3, tension="read", counts=12, full_scale_pa=100_000.0)
         random = np.random.default_rng(5)
         offset = random.uniform(20, 90, 30)
         frames = np.round(offset + random.normal(0, 2, (200, 30)))
@@ -74,7 +74,7 @@ class Judging(unittest.TestCase):
         self.assertEqual(lines.frame(line.encode()).shape, (3, 4))
 
     def test_a_calibration_is_the_design_with_constants(self):
-        made, calls = sptfra.Design("pad", columns=4, rows=4), []
+        made, calls = sptfra.Design("pad", columns=4, rows=4, pitch_mm=(4, 2), depth_mm=3, tension="read"), []
         calibrated = sptfra.calibrate(made, hidden=0, quick=True, progress=lambda *parts: calls.append(parts))
         self.assertTrue(0 < calls[0][0] < calls[-1][0] <= calls[-1][1], calls)
         self.assertIn("gain = ", calibrated.to_toml())
@@ -90,11 +90,11 @@ class Judging(unittest.TestCase):
 class Recordings(unittest.TestCase):
     def pressed(self, reads=0.8):
         """Frames of a sensor that reads too little, touched five times, and the true normal forces."""
-        made = sptfra.Design("pad", columns=6, rows=6, pitch_mm=4, depth_mm=3)
+        made = sptfra.Design("pad", columns=6, rows=6, pitch_mm=4, depth_mm=3, tension="read")
         self.assertEqual(made.pitch_mm, (4, 4))
         for wrong, said in (([1, 2, 3], "pitch_mm: 3 lengths; write two, for x and y"), ("wide", "pitch_mm is no length")):
             with self.assertRaises(sptfra.Error) as raised:
-                sptfra.Design("pad", pitch_mm=wrong)
+                sptfra.Design("pad", columns=6, rows=6, pitch_mm=wrong, depth_mm=3, tension="read")
             self.assertIn(said, str(raised.exception))
         scene = sptfra.scene(made)
         touch, force = reads * scene.frames[0], scene.truth.resultant[0, 2]
@@ -124,7 +124,7 @@ class Recordings(unittest.TestCase):
         self.assertEqual(again.design, found.design)
 
     def test_a_bladder_tells_each_taxels_gain(self):
-        made = sptfra.Design("pad", columns=4, rows=3, pitch_mm=(4, 4), depth_mm=3)
+        made = sptfra.Design("pad", columns=4, rows=3, pitch_mm=(4, 4), depth_mm=3, tension="read")
         gains = np.linspace(0.8, 1.2, 12).reshape(3, 4)
         pressures = np.repeat([0, 5e3, 0, 10e3, 0, 20e3, 0, 40e3, 0], 8)
         found = sptfra.calibrate_uniform(made, -pressures[:, None, None] / gains, pressures)

@@ -21,14 +21,23 @@ def design(more=""):
     return sptfra.Design.from_toml(SMALL + more, "pad.toml")
 
 
+def made(**keys):
+    sensor = dict(columns=10, rows=10, pitch_mm=(4, 2), depth_mm=3, tension="read")
+    return sptfra.Design("pad", **{**sensor, **keys})
+
+
 class Designs(unittest.TestCase):
     def test_properties_and_keywords(self):
-        made = sptfra.Design("pad", columns=6, rows=5, pitch_mm=(4, 3.5), depth_mm=3, counts=12)
+        made = sptfra.Design("pad", columns=6, rows=5, pitch_mm=(4, 3.5), depth_mm=3, tension="read", counts=12)
         found = (made.name, made.columns, made.rows, made.taxels, made.pitch_mm, made.depth_mm, made.counts)
         self.assertEqual(found, ("pad", 6, 5, 30, (4.0, 3.5), 3.0, True))
         self.assertEqual((made.plan, made.estimator, made.outputs, made.tension), ("reduced", "joint", "field", "read"))
         self.assertEqual((made.samples, made.full_scale_pa, made.clock_mhz), ("int16", 100000.0, 125.0))
         self.assertIn("6 x 5 taxels", repr(made))
+
+    def test_geometry_and_tension_have_to_be_given(self):
+        with self.assertRaisesRegex(TypeError, "depth_mm.*tension"):
+            sptfra.Design("pad", columns=6, rows=5, pitch_mm=4)
 
     def test_files_and_pickles_give_the_same_design(self):
         loaded = sptfra.Design.load(ROOT / "designs" / "sensor1-fast")
@@ -48,10 +57,10 @@ class Designs(unittest.TestCase):
             (lambda: sptfra.Design.load("nothing.toml"), "nothing.toml: cannot read the file"),
             (lambda: sptfra.Design.from_toml("format = 3\nname = 1"), "line 2, column 8"),
             (lambda: design("lanes = 3\n"), "pad.toml, line 8"),
-            (lambda: sptfra.Design(columns=1), "sensor.columns is 1; use a whole number from 2 to 64"),
-            (lambda: sptfra.Design(tension="some"), 'tension is "some"; choose one of: read, clipped'),
-            (lambda: sptfra.Design(estimator="both"), 'estimator is "both"; choose one of: line, joint'),
-            (lambda: sptfra.Design(counts=3), "counts of 3 bits; use 4 to 24"),
+            (lambda: made(columns=1), "sensor.columns is 1; use a whole number from 2 to 64"),
+            (lambda: made(tension="some"), 'tension is "some"; choose one of: read, clipped'),
+            (lambda: made(estimator="both"), 'estimator is "both"; choose one of: line, joint'),
+            (lambda: made(counts=3), "counts of 3 bits; use 4 to 24"),
             (lambda: sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml", design=design()), "the scene has"),
             (lambda: sptfra.scene(), "nothing to make frames of"),
             (lambda: sptfra.calibrate(design("[algorithm]\nestimator = 'line'\n")), "nothing to calibrate"),

@@ -15,7 +15,9 @@ use crate::arguments::word;
 
 /// Writes a commented design file NAME.toml to start from.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  sptfra new pad --columns 12 --rows 8 --pitch-mm 4 2 --depth-mm 3 --counts 12")]
+#[command(
+    after_help = "Example:\n  sptfra new pad --columns 12 --rows 8 --pitch-mm 4 2 --depth-mm 3 --tension clipped --counts 12"
+)]
 pub struct Args {
     /// Name of the design, a Verilog identifier.
     name: String,
@@ -25,21 +27,26 @@ pub struct Args {
     /// Friction by a grid search with constants fitted to the sensor, or by the paper's line search.
     #[arg(long, value_parser = word::<Estimator>(), default_value = "joint")]
     estimator: Estimator,
-    /// Taxels in x; default: 10, the paper's first sensor, as for the next three.
+    /// Taxels in x.
     #[arg(long)]
     columns: Option<usize>,
-    /// Taxels in y; default: 10.
+    /// Taxels in y.
     #[arg(long)]
     rows: Option<usize>,
-    /// Distance of neighbouring taxels in x and y, or one number for both; default: 4 2.
+    /// Distance of neighbouring taxels in x and y, or one number for both.
     #[arg(long, num_args = 1..=2, value_delimiter = ',', value_names = ["X", "Y"], value_parser = length)]
     pitch_mm: Option<Vec<f64>>,
-    /// Thickness of the layer above the taxels; default: 3.
+    /// Thickness of the layer above the taxels.
     #[arg(long, value_parser = length)]
     depth_mm: Option<f64>,
     /// Reading of a taxel under tension: its stress, or nothing, as of most resistive and capacitive arrays.
-    #[arg(long, value_parser = word::<Tension>(), default_value = "read")]
-    tension: Tension,
+    ///
+    /// Drag a finger over the array: if taxels behind it read less than without load, write `read`, else `clipped`.
+    #[arg(long, value_parser = word::<Tension>())]
+    tension: Option<Tension>,
+    /// The first or second sensor of the paper; the options above change it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=2))]
+    paper_sensor: Option<u8>,
     /// Frames hold counts of a converter of this many bits: 0 without load, the largest at full scale.
     ///
     /// If your counts fall under load, change the sign of `pa_per_count` in the file. Up to 16 bits the stream carries
@@ -53,6 +60,10 @@ pub struct Args {
     #[arg(long)]
     schema: bool,
 }
+
+/// How a user finds out about `--tension`.
+const FIND_OUT: &str = "\nDrag a finger over the array: if taxels behind it read less than without load, write --tension read, \
+                        else --tension clipped.";
 
 /// Name of the schema beside a design.
 const SCHEMA_FILE: &str = "design.schema.json";
@@ -68,39 +79,44 @@ fn length(text: &str) -> Result<f64, String> {
 }
 
 impl Args {
-    /// The sensor, and the options that were left out.
-    fn design(&self) -> Result<(NewDesign, Vec<String>), String> {
-        let paper = NewDesign::default();
+    /// The sensor that the options describe.
+    fn design(&self) -> Result<NewDesign, String> {
+        let paper = self.paper_sensor.map(NewDesign::paper);
         let pitch_mm = match self.pitch_mm.as_deref() {
-            None => paper.pitch_mm,
-            Some(&[pitch]) => [pitch; 2],
-            Some(&[x, y]) => [x, y],
+            None => None,
+            Some(&[pitch]) => Some([pitch; 2]),
+            Some(&[x, y]) => Some([x, y]),
             Some(more) => return Err(format!("--pitch-mm: {} lengths; give one or two, for x and y", more.len())),
         };
-        let [x, y] = paper.pitch_mm;
-        let assumed = [
-            (self.columns.is_none(), format!("--columns {}", paper.columns)),
-            (self.rows.is_none(), format!("--rows {}", paper.rows)),
-            (self.pitch_mm.is_none(), format!("--pitch-mm {x} {y}")),
-            (self.depth_mm.is_none(), format!("--depth-mm {}", paper.depth_mm)),
-            // What a count is worth follows from it.
-            (
-                self.counts.is_some() && self.full_scale_pa.is_none(),
-                format!("--full-scale-pa {DEFAULT_FULL_SCALE_PA}, a guess at the largest count"),
-            ),
-        ];
-        let wanted = NewDesign {
+        let missing: Vec<&str> = [
+            (self.columns.is_none(), "--columns"),
+            (self.rows.is_none(), "--rows"),
+            (pitch_mm.is_none(), "--pitch-mm"),
+            (self.depth_mm.is_none(), "--depth-mm"),
+            (self.tension.is_none(), "--tension"),
+        ]
+        .into_iter()
+        .filter_map(|(is_missing, option)| is_missing.then_some(option))
+        .collect();
+        let Some(paper) = paper.or_else(|| missing.is_empty().then(|| NewDesign::paper(1))) else {
+            let find_out = if self.tension.is_none() { FIND_OUT } else { "" };
+            return Err(format!(
+                "{} missing: a design needs the sensor's geometry, and what a taxel reads under tension.{find_out}\n\
+                 For a sensor of the paper: --paper-sensor 1 or --paper-sensor 2",
+                missing.join(", ")
+            ));
+        };
+        Ok(NewDesign {
             name: self.name.clone(),
             estimator: self.estimator,
             columns: self.columns.unwrap_or(paper.columns),
             rows: self.rows.unwrap_or(paper.rows),
-            pitch_mm,
+            pitch_mm: pitch_mm.unwrap_or(paper.pitch_mm),
             depth_mm: self.depth_mm.unwrap_or(paper.depth_mm),
-            tension: self.tension,
+            tension: self.tension.unwrap_or(paper.tension),
             counts: self.counts,
             full_scale_pa: self.full_scale_pa.unwrap_or(DEFAULT_FULL_SCALE_PA),
-        };
-        Ok((wanted, assumed.into_iter().filter(|(left_out, _)| *left_out).map(|(_, option)| option).collect()))
+        })
     }
 }
 
@@ -120,7 +136,7 @@ pub fn run(new: &Args) -> Result<String, Box<dyn Error>> {
     if path.exists() {
         return Err(failed(ErrorKind::AlreadyExists.into()).into());
     }
-    let (wanted, assumed) = new.design()?;
+    let wanted = new.design()?;
     let mut text = wanted.text(&mut |what| progress.stage(what.to_owned()))?;
     if new.schema {
         let beside = folder.join(SCHEMA_FILE);
@@ -140,11 +156,11 @@ pub fn run(new: &Args) -> Result<String, Box<dyn Error>> {
     file.write_all(text.as_bytes()).map_err(failed)?;
     file.persist_noclobber(&path).map_err(|error| failed(error.error))?;
     let design = Design::from_toml(&text, "sptfra new")?;
-    Ok(lines(new, &design, &path, &assumed, progress).join("\n") + "\n")
+    Ok(lines(new, &design, &path, progress).join("\n") + "\n")
 }
 
-/// What to tell of a new design at `path`, with the options that were `assumed`.
-fn lines(new: &Args, design: &Design, path: &Path, assumed: &[String], progress: &Progress) -> Vec<String> {
+/// What to tell of a new design at `path`.
+fn lines(new: &Args, design: &Design, path: &Path, progress: &Progress) -> Vec<String> {
     let shown = path.display();
     let mut next = vec![
         (format!("sptfra check {shown} --frames FRAMES"), "is anything wrong with a recording?"),
@@ -183,10 +199,12 @@ fn lines(new: &Args, design: &Design, path: &Path, assumed: &[String], progress:
             format!("{trains}.")
         });
     }
-    if !assumed.is_empty() {
-        lines.push(format!("Not given, so as the paper's first sensor: {}", assumed.join(", ")));
-    }
     if new.counts.is_some() {
+        if new.full_scale_pa.is_none() {
+            lines.push(format!(
+                "The largest count is taken for {DEFAULT_FULL_SCALE_PA} Pa; --full-scale-pa says otherwise."
+            ));
+        }
         lines.push(
             "Larger counts are taken to press; if yours fall under load, change the sign of pa_per_count.".to_owned(),
         );

@@ -55,7 +55,7 @@ pub fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 fn from_a_new_design_to_a_folder() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    assert!(good(here, &["new", "my_pad"]).contains("my_pad.toml"));
+    assert!(good(here, &["new", "my_pad", "--paper-sensor", "1"]).contains("my_pad.toml"));
     let text = fs::read_to_string(here.join("my_pad.toml")).unwrap();
     assert!(
         text.contains("\nformat = 3\n")
@@ -111,7 +111,7 @@ fn a_new_design_of_a_deep_sensor_has_hardware() {
 /// What `sptfra new` writes with some options.
 fn new_design(options: &[&str]) -> golden::design::Design {
     let folder = tempfile::tempdir().unwrap();
-    good(folder.path(), &[&["new", "full"], options].concat());
+    good(folder.path(), &[&["new", "full", "--paper-sensor", "1"], options].concat());
     golden::design::Design::load(&folder.path().join("full.toml")).unwrap()
 }
 
@@ -196,7 +196,7 @@ fn a_new_design_without_tension_is_fitted_to_what_such_taxels_read() {
 fn new_writes_into_another_folder() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("designs")).unwrap();
-    good(folder.path(), &["new", "pad", "--dir", "designs"]);
+    good(folder.path(), &["new", "pad", "--dir", "designs", "--paper-sensor", "1"]);
     assert!(contents(folder.path()).into_keys().eq(["designs/pad.toml"]));
 }
 

@@ -102,7 +102,7 @@ fn inspect_says_how_the_line_is_searched() {
 fn inspect_compares_the_gain_with_what_the_kernel_lacks() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    good(here, &["new", "pad", "--pitch-mm", "4", "4"]);
+    good(here, &["new", "pad", "--paper-sensor", "2"]);
     assert!(good(here, &["inspect", "pad.toml"]).contains("has 1.254:\n               so F_z is right"));
     let text = fs::read_to_string(here.join("pad.toml")).unwrap();
     // Without a word of what the constants belong to, which would refuse the design.
@@ -118,7 +118,7 @@ fn inspect_compares_the_gain_with_what_the_kernel_lacks() {
         ("1.7", "line", "take \"cell\", and for mu estimator = \"joint\""),
     ] {
         let name = format!("pad_{kernel}_{}", depth.replace('.', "_"));
-        good(here, &["new", &name, "--pitch-mm", "4", "--depth-mm", depth, "--estimator", kernel]);
+        good(here, &["new", &name, "--paper-sensor", "2", "--depth-mm", depth, "--estimator", kernel]);
         let said = good(here, &["inspect", &format!("{name}.toml")]);
         assert!(said.contains(advice) && said.lines().all(|line| line.chars().count() <= 110), "{said}");
     }

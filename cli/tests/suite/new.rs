@@ -11,7 +11,8 @@ use crate::support::sptfra_in;
 /// What is said of a new design, and the design.
 fn new(options: &[&str]) -> (String, Design) {
     let folder = tempfile::tempdir().unwrap();
-    let said = good(folder.path(), &[&["new", "pad"], options].concat());
+    let paper = if options.contains(&"--paper-sensor") { &[][..] } else { &["--paper-sensor", "1"] };
+    let said = good(folder.path(), &[&["new", "pad"], paper, options].concat());
     (said, Design::load(&folder.path().join("pad.toml")).unwrap())
 }
 
@@ -26,7 +27,7 @@ fn a_pitch_is_one_number_or_two() {
     for (pitch, part) in
         [(&["4,4,4"][..], "3 lengths; give one or two"), (&["wide"], "as 4 2 or 4,2"), (&["nan"], "nan")]
     {
-        let output = sptfra_in(folder.path(), &[&["new", "pad", "--pitch-mm"], pitch].concat());
+        let output = sptfra_in(folder.path(), &[&["new", "pad", "--paper-sensor", "1", "--pitch-mm"], pitch].concat());
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(!output.status.success() && said.contains(part), "{said}");
     }
@@ -34,20 +35,26 @@ fn a_pitch_is_one_number_or_two() {
 }
 
 #[test]
-fn what_was_not_said_is_told() {
-    let (said, _) = new(&["--estimator", "line", "--rows", "8"]);
-    let assumed = "Not given, so as the paper's first sensor: --columns 10, --pitch-mm 4 2, --depth-mm 3\n";
-    assert!(said.contains("10 x 8 taxels of 4 x 2 mm, 3 mm deep") && said.contains(assumed), "{said}");
-    let all = ["--columns", "6", "--rows", "6", "--pitch-mm", "4", "--depth-mm", "3", "--estimator", "line"];
-    assert!(!new(&all).0.contains("Not given"));
+fn geometry_and_tension_have_to_be_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |options: &[&str]| {
+        let output = sptfra_in(folder.path(), &[&["new", "pad"], options].concat());
+        assert!(!output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let said = refused(&[]);
+    assert!(said.contains("--columns, --rows, --pitch-mm, --depth-mm, --tension missing"), "{said}");
+    assert!(said.contains("Drag a finger") && said.contains("--paper-sensor 1"), "{said}");
+    let said = refused(&["--columns", "6", "--rows", "6", "--pitch-mm", "4", "--tension", "read"]);
+    assert!(said.contains("--depth-mm missing") && !said.contains("Drag a finger"), "{said}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is written");
+    assert!(new(&["--paper-sensor", "2"]).0.contains("10 x 10 taxels of 4 x 4 mm, 3 mm deep"));
     // What a count is worth, and which way it goes.
-    let (counts, _) = new(&[&all[..], &["--counts", "12"]].concat());
-    assert!(
-        counts.contains(": --full-scale-pa 100000, a guess") && counts.contains("Larger counts are taken to press"),
-        "{counts}"
-    );
-    let (counts, _) = new(&[&all[..], &["--counts", "12", "--full-scale-pa", "60000"]].concat());
-    assert!(!counts.contains("Not given") && counts.contains("Larger counts are taken to press"), "{counts}");
+    let counts = ["--estimator", "line", "--counts", "12"];
+    let (said, _) = new(&counts);
+    assert!(said.contains("taken for 100000 Pa") && said.contains("Larger counts are taken to press"), "{said}");
+    let (said, _) = new(&[&counts[..], &["--full-scale-pa", "60000"]].concat());
+    assert!(!said.contains("taken for 100000 Pa") && said.contains("Larger counts are taken to press"), "{said}");
 }
 
 /// What docs/explanation/estimators.md says of a new design beside `sensor1-fast`, which has neither.

@@ -183,7 +183,7 @@ fn new_refuses_bad_names_and_existing_files() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     for name in ["module", "../x", "a\"b", "a b", "", "päd", "a\nb", "-"] {
-        let message = refused(here, &["new", "--", name]);
+        let message = refused(here, &["new", "--paper-sensor", "1", "--", name]);
         assert!(message.contains("name") && message.contains("Verilog"), "{message}");
     }
     fs::write(here.join("pad.toml"), "mine").unwrap();
@@ -222,7 +222,9 @@ fn folders_that_cannot_be_written() {
     let folder = folder_with_design("");
     let message = refused(folder.path(), &["generate", "pad.toml", "--out", "/proc/hdl-gen/out"]);
     assert!(message.contains("/proc/hdl-gen") && message.contains("choose another folder"), "{message}");
-    assert!(refused(folder.path(), &["new", "other", "--dir", "/proc"]).contains("/proc/other.toml"));
+    assert!(
+        refused(folder.path(), &["new", "other", "--paper-sensor", "1", "--dir", "/proc"]).contains("/proc/other.toml")
+    );
 }
 
 /// A disk that fills up is played by a limit on the size of files.

@@ -46,7 +46,7 @@ fn uncorrected(mut design: Design) -> Design {
 
 /// What `sptfra new` makes of a layer of 0.4 pitches: the kernel "cell", no correction.
 fn thin() -> Design {
-    let new = NewDesign { name: "thin".to_owned(), pitch_mm: [4.0; 2], depth_mm: 1.6, ..NewDesign::default() };
+    let new = NewDesign { name: "thin".to_owned(), pitch_mm: [4.0; 2], depth_mm: 1.6, ..NewDesign::paper(1) };
     let design = Design::from_toml(&new.text(&mut |_| ()).expect("can be fitted"), "thin").expect("a design");
     assert_eq!(design.algorithm.kernel, Kernel::Cell);
     design
