@@ -44,7 +44,7 @@ const char *sptfra_status_name(unsigned bit)
         "saturated",
         "NaN or infinity in",
         "frame length wrong",
-        "doubtful",
+        "low confidence",
         "more than one contact",
         "dead taxel replaced",
         "too many replaced",

@@ -80,7 +80,7 @@ pub struct AtRest {
     pub noise_of_full_scale: f64,
     /// Median of the taxels' drift, in the units of the file.
     pub drift: f64,
-    /// What makes one doubt that nothing pressed, or that the recording is good for it.
+    /// Signs that something pressed, or that the recording does not suit.
     pub warnings: Vec<String>,
 }
 
@@ -125,7 +125,7 @@ impl AtRest {
             drift,
             warnings: Vec::new(),
         };
-        rest.warnings = rest.doubts(design, frames, &silent, usual);
+        rest.warnings = rest.warnings_of(design, frames, &silent, usual);
         Ok(rest)
     }
 
@@ -134,7 +134,7 @@ impl AtRest {
     }
 
     /// What speaks against a sensor at rest.
-    fn doubts(&self, design: &Design, frames: &[Vec<f64>], silent: &[usize], usual: f64) -> Vec<String> {
+    fn warnings_of(&self, design: &Design, frames: &[Vec<f64>], silent: &[usize], usual: f64) -> Vec<String> {
         let (mut said, full_scale) = (Vec::new(), design.hardware.full_scale_pa);
         let live: Vec<&TaxelAtRest> = self.taxels.iter().filter(|each| self.works(each.taxel)).collect();
         if self.noise_pa > LOUD * full_scale {

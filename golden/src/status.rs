@@ -26,7 +26,7 @@ impl Status {
 
     /// The tangential force may be far off: its standard error is above the design's limit, or the layer is too thin for the
     /// taxels ([`crate::design::Design::thin_layer`]), which is so of every frame of a design.
-    pub const DOUBTFUL: Self = Self(1 << 6);
+    pub const LOW_CONFIDENCE: Self = Self(1 << 6);
     /// More than one contact, where contacts are counted.
     pub const SEVERAL_CONTACTS: Self = Self(1 << 7);
     /// Friction is at the design's limit: what is held begins to slide.
@@ -45,7 +45,7 @@ impl Status {
         (Self::SATURATED, "saturated"),
         (Self::NOT_FINITE, "NaN or infinity in"),
         (Self::FRAME_LENGTH, "frame length wrong"),
-        (Self::DOUBTFUL, "doubtful"),
+        (Self::LOW_CONFIDENCE, "low confidence"),
         (Self::SEVERAL_CONTACTS, "more than one contact"),
         (Self::REPLACED, "dead taxel replaced"),
         (Self::TOO_MANY_REPLACED, "too many replaced"),

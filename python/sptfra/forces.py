@@ -21,7 +21,7 @@ class Status(enum.IntFlag):
     SATURATED = 8
     NOT_FINITE = 16
     BAD_LENGTH = 32
-    DOUBTFUL = 64
+    LOW_CONFIDENCE = 64
     SEVERAL_CONTACTS = 128
     REPLACED = 256
     TOO_MANY_REPLACED = 512

@@ -61,7 +61,7 @@ class Rest:
     noise_floor_pa: float
     #: For `algorithm.regularisation.noise`.
     noise_of_full_scale: float
-    #: What makes one doubt that nothing pressed.
+    #: Signs that something pressed.
     warnings: tuple[str, ...]
     _calibration: str = field(repr=False)
     _refused: str = field(repr=False)

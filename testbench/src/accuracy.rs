@@ -53,7 +53,7 @@ pub struct StatusCounts {
     pub frame_length: usize,
     /// Bit 6.
     #[serde(default)]
-    pub doubtful: usize,
+    pub low_confidence: usize,
     /// Bit 7.
     #[serde(default)]
     pub several_contacts: usize,
@@ -88,7 +88,7 @@ impl StatusCounts {
             saturated: with(Status::SATURATED),
             not_finite: with(Status::NOT_FINITE),
             frame_length: with(Status::FRAME_LENGTH),
-            doubtful: with(Status::DOUBTFUL),
+            low_confidence: with(Status::LOW_CONFIDENCE),
             several_contacts: with(Status::SEVERAL_CONTACTS),
             replaced: with(Status::REPLACED),
             too_many_replaced: with(Status::TOO_MANY_REPLACED),
@@ -106,7 +106,7 @@ impl StatusCounts {
             (Status::SATURATED, self.saturated),
             (Status::NOT_FINITE, self.not_finite),
             (Status::FRAME_LENGTH, self.frame_length),
-            (Status::DOUBTFUL, self.doubtful),
+            (Status::LOW_CONFIDENCE, self.low_confidence),
             (Status::SEVERAL_CONTACTS, self.several_contacts),
             (Status::REPLACED, self.replaced),
             (Status::TOO_MANY_REPLACED, self.too_many_replaced),

@@ -20,7 +20,7 @@ use crate::message::{self, Message, say};
 /// converter, broken taxels. Then the share that lies beyond the calibration. The exit code is 0 only if nothing is
 /// found.
 ///
-/// With `--unloaded`: offset, noise and drift of each taxel from a recording without load, and doubts as warnings.
+/// With `--unloaded`: offset, noise and drift of each taxel from a recording without load, and warnings.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  sptfra check pad --frames frames.csv\n  sptfra check pad --frames unloaded.csv --unloaded --out tare.csv"

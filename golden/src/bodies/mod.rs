@@ -46,7 +46,7 @@ pub struct Body {
 
 impl Body {
     /// Status bits that a body can have. A frame has those of its bodies, and others.
-    pub const BITS: [Status; 4] = [Status::DIRECTION_UNKNOWN, Status::AT_BOUND, Status::DOUBTFUL, Status::SLIP];
+    pub const BITS: [Status; 4] = [Status::DIRECTION_UNKNOWN, Status::AT_BOUND, Status::LOW_CONFIDENCE, Status::SLIP];
 
     /// The bits of a frame's status that can be a body's.
     pub fn bits_of(status: Status) -> Status {

@@ -109,7 +109,7 @@ impl Solver {
         }
         workspace.b = whole;
         workspace.parted.alone = Some(alone);
-        self.doubt_more(&workspace.parted.changed, solution);
+        self.widen_standard_errors(&workspace.parted.changed, solution);
         solution.sum_up();
         Body::largest_first(&mut solution.records);
     }
@@ -117,7 +117,7 @@ impl Solver {
     /// Makes the standard errors of several bodies larger by what is not known of the others, which the estimator, that sees
     /// one at a time, does not know of; `changed` is what the last round has changed of each, in newtons. An estimator without a
     /// standard error has none here either.
-    fn doubt_more(&self, changed: &[f64], solution: &mut Solution) {
+    fn widen_standard_errors(&self, changed: &[f64], solution: &mut Solution) {
         let [x, y] = self.matrices.sensor().pitch_mm;
         let reach = 1e-3 * REACH * x.max(y);
         let bodies = solution.records.clone();
@@ -135,7 +135,7 @@ impl Solver {
                 .sum();
             body.standard_error = body.standard_error.hypot(CHANGE * changed).hypot(felt);
             if body.standard_error > self.max_standard_error * body.force[2].abs() {
-                body.status.insert(Status::DOUBTFUL);
+                body.status.insert(Status::LOW_CONFIDENCE);
             }
         }
         // Errors of bodies are independent.

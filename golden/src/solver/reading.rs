@@ -95,7 +95,7 @@ impl Reader {
             status.insert(Status::NO_TENSION);
         }
         if self.thin {
-            status.insert(Status::DOUBTFUL);
+            status.insert(Status::LOW_CONFIDENCE);
         }
         if !self.dead.taxels().is_empty() {
             status.insert(Status::REPLACED);

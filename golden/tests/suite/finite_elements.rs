@@ -121,9 +121,9 @@ fn errors_are_those_of_the_results() {
     assert_eq!(wrong, 0, "rows that results/finite-elements-summary.csv lacks; all are printed above");
 }
 
-/// Shares of frames in percent, presses of 4 % of the depth and others: doubtful ones, and those with an error within two
-/// standard errors.
-fn doubts(name: &str) -> [[f64; 2]; 2] {
+/// Shares of frames in percent, presses of 4 % of the depth and others: those of low confidence, and those with an
+/// error within two standard errors.
+fn low_confidence(name: &str) -> [[f64; 2]; 2] {
     let solver = Solver::new(&design(name)).unwrap();
     let (small, large): (Vec<Frame>, Vec<Frame>) =
         frames(&name[..7]).into_iter().partition(|frame| !frame.case.ends_with("-soft"));
@@ -132,7 +132,7 @@ fn doubts(name: &str) -> [[f64; 2]; 2] {
         for frame in &frames {
             let found = solver.solve(&frame.stress).unwrap();
             let [x, y] = [0, 1].map(|axis| found.resultant[axis] - frame.truth.force[axis]);
-            let says = [found.status.contains(Status::DOUBTFUL), x.hypot(y) <= 2.0 * found.standard_error];
+            let says = [found.status.contains(Status::LOW_CONFIDENCE), x.hypot(y) <= 2.0 * found.standard_error];
             counts.iter_mut().zip(says).for_each(|(count, says)| *count += f64::from(u8::from(says)));
         }
         counts.map(|count| 100.0 * count / frames.len() as f64)
@@ -158,8 +158,10 @@ fn nine_tenths(name: &str) -> f64 {
 #[ignore = "prints the table of results/finite-elements.csv"]
 fn table() {
     for name in ["sensor1-wide", "sensor2-wide"] {
-        let [small, large] = doubts(name);
-        println!("{name}: doubtful, within two standard errors, %: {small:.0?}; with the large press {large:.0?}");
+        let [small, large] = low_confidence(name);
+        println!(
+            "{name}: low confidence, within two standard errors, %: {small:.0?}; with the large press {large:.0?}"
+        );
         println!("{name}: 90 % are within {:.1} standard errors", nine_tenths(name));
     }
     for sensor in ["sensor1", "sensor2"] {

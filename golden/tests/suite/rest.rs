@@ -110,21 +110,21 @@ fn each_taxel_at_rest_is_measured() {
 }
 
 #[test]
-fn what_is_no_rest_is_doubted() {
+fn a_load_in_an_unloaded_recording_is_warned_of() {
     let design = mat("");
-    let doubts = |recording: &[Vec<f64>]| AtRest::of(&design, recording).unwrap().warnings.join("\n");
+    let warnings = |recording: &[Vec<f64>]| AtRest::of(&design, recording).unwrap().warnings.join("\n");
     let bump = |taxel: usize| {
         let [x, y] = [(taxel % 6) as f64 - 2.5, (taxel / 6) as f64 - 6.0];
         1000.0 * (-(x * x + y * y) / 4.0).exp()
     };
-    assert_eq!(doubts(&untared()), "");
+    assert_eq!(warnings(&untared()), "");
     let touched = |from: usize| {
         frames(100, |frame, taxel| 2.0 * noise(frame, taxel) + if frame >= from { bump(taxel) } else { 0.0 })
     };
-    assert!(doubts(&touched(60)).contains("did something touch"), "{}", doubts(&touched(60)));
-    assert!(doubts(&touched(0)).contains("does something lie"), "{}", doubts(&touched(0)));
+    assert!(warnings(&touched(60)).contains("did something touch"), "{}", warnings(&touched(60)));
+    assert!(warnings(&touched(0)).contains("does something lie"), "{}", warnings(&touched(0)));
     let warm = frames(100, |frame, taxel| offset(taxel) + 2.0 * noise(frame, taxel) + 0.2 * frame as f64);
-    assert!(doubts(&warm).contains("drifts by 13"), "{}", doubts(&warm));
+    assert!(warnings(&warm).contains("drifts by 13"), "{}", warnings(&warm));
     // A converter that clips at 0, or with steps larger than the noise: constant taxels need not be dead.
     let clipped = frames(100, |frame, taxel| if taxel == 7 { 0.0 } else { (2.0 * noise(frame, taxel)).max(0.0) });
     let coarse =
@@ -134,7 +134,7 @@ fn what_is_no_rest_is_doubted() {
         assert!(rest.dead.is_empty() && rest.stuck.is_empty(), "{:?} {:?}", rest.dead, rest.stuck);
         assert!(rest.warnings.join("").contains("[7] never change"), "{:?}", rest.warnings);
     }
-    assert!(doubts(&frames(20, |_, _| 0.0)).contains("never changes"));
+    assert!(warnings(&frames(20, |_, _| 0.0)).contains("never changes"));
     assert_eq!(AtRest::of(&design, &untared()[..3]), Err(RestError::Few(3)));
 }
 

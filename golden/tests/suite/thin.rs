@@ -38,14 +38,14 @@ fn calibrated(pitch_mm: [f64; 2], depth_by_pitch: f64, estimator: &str, settings
 }
 
 /// Errors of frames along the surface and of the normal force in rising order, frames that say something else than that they
-/// are doubtful, and those that say that they are.
+/// have another status, and those with low confidence.
 fn judge(design: &Design, count: usize) -> ([Vec<f64>; 2], usize, usize) {
     let frames = frames(&inside(&design.sensor, LAYER, SEED, count), 0.5, 0.0);
     let solver = Solver::new(design).unwrap();
     let statuses: Vec<Status> = frames.iter().map(|truth| solver.solve(&truth.frame).unwrap().status).collect();
-    let doubtful = statuses.iter().filter(|status| status.contains(Status::DOUBTFUL)).count();
-    let other = statuses.iter().filter(|status| status.0 & !Status::DOUBTFUL.0 != 0).count();
-    (errors_of(&solver, &frames).0, other, doubtful)
+    let low_confidence = statuses.iter().filter(|status| status.contains(Status::LOW_CONFIDENCE)).count();
+    let other = statuses.iter().filter(|status| status.0 & !Status::LOW_CONFIDENCE.0 != 0).count();
+    (errors_of(&solver, &frames).0, other, low_confidence)
 }
 
 #[test]
@@ -106,15 +106,15 @@ fn thin_layers_are_as_bad_as_the_table_says_and_their_frames_say_so() {
         (0.3, Kernel::Cell, Some(&quick), [1.0, 7.0], [0.0, 4.0], 0),
         (1.0, Kernel::Point, None, [1.0, 5.0], [5.0, 8.0], 0),
     ];
-    cases.into_par_iter().for_each(|(ratio, kernel, settings, tangential, normal, doubted)| {
+    cases.into_par_iter().for_each(|(ratio, kernel, settings, tangential, normal, marked)| {
         let design = design(ratio, kernel, settings);
-        let (errors, _, doubtful) = judge(&design, 20);
+        let (errors, _, low_confidence) = judge(&design, 20);
         let medians = errors.map(|errors| share(&errors, 0.5));
-        let said = format!("{ratio}, {kernel}, {}: {medians:.1?}, {doubtful}", design.algorithm.estimator);
+        let said = format!("{ratio}, {kernel}, {}: {medians:.1?}, {low_confidence}", design.algorithm.estimator);
         for (median, [least, most]) in medians.into_iter().zip([tangential, normal]) {
             assert!((least..=most).contains(&median), "{said}");
         }
-        assert_eq!(doubtful, doubted, "{said}");
-        assert_eq!(design.thin_layer().is_some(), doubted > 0, "{said}");
+        assert_eq!(low_confidence, marked, "{said}");
+        assert_eq!(design.thin_layer().is_some(), marked > 0, "{said}");
     });
 }

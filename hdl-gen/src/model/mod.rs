@@ -309,7 +309,7 @@ fn scalars(
         is_uncertain |= found.error_log > limit;
     }
     if is_uncertain {
-        answer[words::STATUS] |= DOUBTFUL;
+        answer[words::STATUS] |= LOW_CONFIDENCE;
     }
     (answer, summary)
 }

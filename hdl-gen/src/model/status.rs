@@ -15,7 +15,7 @@ pub const NOT_FINITE: u32 = Status::NOT_FINITE.0;
 /// Early or late TLAST.
 pub const BAD_LENGTH: u32 = Status::FRAME_LENGTH.0;
 /// The error is above the design's limit.
-pub const DOUBTFUL: u32 = Status::DOUBTFUL.0;
+pub const LOW_CONFIDENCE: u32 = Status::LOW_CONFIDENCE.0;
 /// More contacts than the one that is solved.
 pub const SEVERAL_CONTACTS: u32 = Status::SEVERAL_CONTACTS.0;
 /// A dead taxel was replaced.

@@ -11,7 +11,7 @@ use golden::kernel::Kernel;
 use golden::metrics::Outcome;
 use golden::scene::{Medium, Shape};
 use golden::solver::Solver;
-use hdl_gen::model::{AT_BOUND, DIRECTION_UNKNOWN, DOUBTFUL, NO_CONTACT, SATURATED};
+use hdl_gen::model::{AT_BOUND, DIRECTION_UNKNOWN, LOW_CONFIDENCE, NO_CONTACT, SATURATED};
 use hdl_gen::new_design::NewDesign;
 use hdl_gen::plan::Plan;
 use rand::SeedableRng;
@@ -147,11 +147,11 @@ fn the_model_is_close_to_the_solver() {
         for (index, (packet, words)) in packets.iter().zip(model_answers(&plan, &packets)).enumerate() {
             let solution = solver.solve(&as_received(packet)).expect("a frame of the right length");
             let answer = decode(&words).expect("a whole frame");
-            // Right at the limit of doubt a digit decides.
+            // Right at the limit of confidence a digit decides.
             let limit = design.algorithm.joint.max_standard_error * solution.resultant[2].abs();
             let undecided = (solution.standard_error - limit).abs() < 0.02 * limit;
-            let doubt = if undecided { DOUBTFUL } else { 0 };
-            assert_eq!(answer.status | doubt, solution.status.0 | doubt, "{}, frame {index}: status", design.name);
+            let either = if undecided { LOW_CONFIDENCE } else { 0 };
+            assert_eq!(answer.status | either, solution.status.0 | either, "{}, frame {index}: status", design.name);
             let apart = (answer.standard_error - solution.standard_error).abs();
             assert!(apart <= 0.02 * solution.standard_error, "{}, frame {index}: {apart} N", design.name);
             let [x, y] = answer.mu_xy;

@@ -57,7 +57,7 @@ impl<'a> Single<'a> {
             status.insert(Status::SATURATED);
         }
         if self.design.thin_layer().is_some() {
-            status.insert(Status::DOUBTFUL);
+            status.insert(Status::LOW_CONFIDENCE);
         }
         let pushed = status.contains(Status::DIRECTION_UNKNOWN) || f64::from(mu_x.abs() + mu_y.abs()) >= PULLING;
         if pushed && self.design.input.tension == Tension::Read && b.iter().all(|&stress| stress <= floor) {

@@ -156,7 +156,7 @@ fn statuses_say_what_a_frame_is() {
         ("peak at one step", "no contact"),
         ("peak at twice the full scale", "saturated"),
         ("a taxel beyond the full scale", "saturated"),
-        ("h/s = 0.5", "doubtful"),
+        ("h/s = 0.5", "low confidence"),
     ] {
         let row = row(rows, case);
         for judged in [&row.f64, &row.f32, &row.fixed] {

@@ -108,7 +108,7 @@ impl Joint {
 
     fn answer(&self, mut status: Status, mu: [f64; 2], error_log: Option<f64>) -> Answer {
         if error_log.is_some_and(|log| log > self.max_error_log) {
-            status.insert(Status::DOUBTFUL);
+            status.insert(Status::LOW_CONFIDENCE);
         }
         Answer { status, mu, error: error_log.map_or(0.0, ratio) }
     }

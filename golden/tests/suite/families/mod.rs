@@ -14,16 +14,16 @@ use golden::solver::{Solver, Status};
 pub struct Judged {
     /// Length of the error of the tangential force in percent of the normal force: of each frame, in rising order.
     pub errors: Vec<f64>,
-    /// Shares of frames: with another status than good; with an error within two standard errors; doubtful of those with an
-    /// error above 10 %, and of those below 5 %.
+    /// Shares of frames: with another status than good; with an error within two standard errors; with low confidence of those
+    /// with an error above 10 %, and of those below 5 %.
     pub flagged: f64,
     pub within: f64,
-    pub doubtful: [f64; 2],
+    pub low_confidence: [f64; 2],
 }
 
 pub fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
     let (mut flagged, mut within) = (0, 0);
-    let mut doubtful = [[0; 2]; 2];
+    let mut low_confidence = [[0; 2]; 2];
     let mut errors: Vec<f64> = frames
         .iter()
         .map(|frame| {
@@ -32,9 +32,9 @@ pub fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
             let [x, y] = [0, 1].map(|axis| found.resultant[axis] - frame.force[axis]);
             let error = 100.0 * x.hypot(y) / frame.force[2].abs();
             within += usize::from(x.hypot(y) <= 2.0 * found.standard_error);
-            for ([marked, of], applies) in doubtful.iter_mut().zip([error > 10.0, error < 5.0]) {
+            for ([marked, of], applies) in low_confidence.iter_mut().zip([error > 10.0, error < 5.0]) {
                 *of += usize::from(applies);
-                *marked += usize::from(applies && found.status.contains(Status::DOUBTFUL));
+                *marked += usize::from(applies && found.status.contains(Status::LOW_CONFIDENCE));
             }
             error
         })
@@ -45,7 +45,7 @@ pub fn judge(solver: &Solver, frames: &[SceneFrame]) -> Judged {
         errors,
         flagged: share(flagged, frames.len()),
         within: share(within, frames.len()),
-        doubtful: doubtful.map(|[marked, of]| share(marked, of)),
+        low_confidence: low_confidence.map(|[marked, of]| share(marked, of)),
     }
 }
 
@@ -68,7 +68,7 @@ fn frames_of_every_family_have_an_answer_not_far_from_the_truth() {
         assert!(frames.iter().all(|frame| frame.friction <= 1.0 + 1e-9 && frame.direction.abs() <= PI));
         let limit = if kind == Kind::Sliding { 4.0 } else { 40.0 };
         assert!(share(&errors, 0.5) < limit, "{label}: {errors:?}");
-        // Calibrated on all kinds, it errs by little where there is something to see, and doubts where there is not. Trained
+        // Calibrated on all kinds, it errs by little where there is something to see, and has low confidence where not. Trained
         // at a noise of 1 %, it expects more than 6 % of half of the turned ones.
         let Judged { errors, flagged, within, .. } = judge(&wide, &frames);
         match kind {
@@ -83,7 +83,7 @@ fn frames_of_every_family_have_an_answer_not_far_from_the_truth() {
 }
 
 /// What the wide family's designs reach on kinds together, on frames that neither has seen, in percent: most of the median,
-/// of 95 % of errors; least of the errors within two standard errors, and of errors above 10 % that are doubtful. The
+/// of 95 % of errors; least of the errors within two standard errors, and of errors above 10 % that have low confidence. The
 /// narrow ones' median is larger.
 #[test]
 fn the_wide_family_keeps_to_its_figures_within_the_grid() {
@@ -94,10 +94,10 @@ fn the_wide_family_keeps_to_its_figures_within_the_grid() {
         let [median, most] = [0.5, 0.95].map(|part| share(&wide.errors, part));
         let of_joint = share(&joint.errors, 0.5);
         let said =
-            format!("{sensor}: {median:.1}, {most:.1}, {:.0}, {:.0?}; {of_joint:.1}", wide.within, wide.doubtful);
+            format!("{sensor}: {median:.1}, {most:.1}, {:.0}, {:.0?}; {of_joint:.1}", wide.within, wide.low_confidence);
         assert!(median < 5.0 && most < 18.0 && wide.within > 88.0, "{said}");
         assert!(of_joint > 1.2 * median, "{said}");
-        assert!(wide.doubtful[0] > wide.doubtful[1] + 20.0, "{said}");
+        assert!(wide.low_confidence[0] > wide.low_confidence[1] + 20.0, "{said}");
     }
 }
 
@@ -136,8 +136,8 @@ fn table() {
             for friction in [0.2, 0.8].into_iter().filter(|_| !all) {
                 println!("{number},{kind},general,{friction},{}", cells(&judge(&solvers[2], &of(friction))));
             }
-            let Judged { doubtful, within, .. } = &found[2];
-            let [caught, marked] = doubtful.map(percent);
+            let Judged { low_confidence, within, .. } = &found[2];
+            let [caught, marked] = low_confidence.map(percent);
             confidence.push(format!("{number},{kind},{caught},{marked},{within:.0}"));
         }
     }

@@ -1,11 +1,11 @@
-//! The status word of the integer model: frames without an answer, and what is in doubt about others.
+//! The status word of the integer model: frames without an answer, and marks of the others.
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
 use golden::design::{Design, PlanKind, Tension};
 use golden::solver::{Solution, Status};
 use hdl_gen::model::{
-    BAD_LENGTH, DIRECTION_UNKNOWN, DOUBTFUL, Model, NO_CONTACT, NO_TENSION, NOT_FINITE, SATURATED, SLIP,
+    BAD_LENGTH, DIRECTION_UNKNOWN, LOW_CONFIDENCE, Model, NO_CONTACT, NO_TENSION, NOT_FINITE, SATURATED, SLIP,
 };
 use hdl_gen::plan::Plan;
 
@@ -79,9 +79,9 @@ fn a_sensor_that_reads_no_tension_is_not_asked_for_it() {
     assert_eq!((read.summary, read.field), (clipped.summary, clipped.field));
 }
 
-/// A layer too thin for its taxels makes every answer doubtful, in the model and in the core, and no frame without one.
+/// A layer too thin for its taxels gives every answer low confidence, in the model and in the core, and no frame without one.
 #[test]
-fn answers_of_a_thin_layer_are_doubtful() {
+fn answers_of_a_thin_layer_have_low_confidence() {
     for (depth, estimator, thin) in
         [(2.9, "line", true), (3.1, "line", false), (1.9, "joint", true), (2.1, "joint", false)]
     {
@@ -94,7 +94,7 @@ fn answers_of_a_thin_layer_are_doubtful() {
             let touched = frame(&contact, &design, &solver);
             let (found, exact) = (answer(&plan, &touched), reference(&solver, &touched));
             assert_eq!(
-                (found.status & DOUBTFUL != 0, exact.status.0 & DOUBTFUL != 0),
+                (found.status & LOW_CONFIDENCE != 0, exact.status.0 & LOW_CONFIDENCE != 0),
                 (thin, thin),
                 "{depth} {estimator}"
             );

@@ -66,7 +66,7 @@ fn judged(frames: &[SceneFrame], found: &[Answer]) -> [Cell; 2] {
         100.0 * x.hypot(y) / frame.force[2].abs()
     };
     let Quantiles { median, most, worst } = Quantiles::of(frames.iter().zip(found).map(error).collect());
-    // A slipping contact is no doubtful one.
+    // A slipping contact has no low confidence by that.
     let tells = |answer: &&Answer| answer.status & !Status::SLIP.0 != 0;
     let flagged = 100.0 * found.iter().filter(tells).count() as f64 / found.len() as f64;
     [Cell::from(format!("{median:.1} / {most:.1} / {worst:.1}")), Cell::from(format!("{flagged:.0}"))]

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use golden::design::{Design, Optimise, Outputs, PlanKind};
 use hdl_gen::model::{
-    AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, DOUBTFUL, Model, NO_CONTACT, NO_TENSION, NOT_FINITE, SATURATED,
+    AT_BOUND, BAD_LENGTH, DIRECTION_UNKNOWN, LOW_CONFIDENCE, Model, NO_CONTACT, NO_TENSION, NOT_FINITE, SATURATED,
 };
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
@@ -104,11 +104,11 @@ fn read(words: &[u32]) -> Answer {
     decode(words).expect("a whole frame")
 }
 
-/// A contact that is dragged, with an answer to every question, doubtful or not.
+/// A contact that is dragged, with every value found, of any confidence.
 fn good(plan: &Plan, random: &mut ChaCha8Rng) -> Vec<u32> {
     loop {
         let packet = frames::contact(plan, random);
-        if Model::new(plan).process(&packet)[0] & !DOUBTFUL == 0 {
+        if Model::new(plan).process(&packet)[0] & !LOW_CONFIDENCE == 0 {
             return packet;
         }
     }
@@ -218,8 +218,8 @@ fn pressing_straight_down_has_no_direction() {
             let words = subject.answer(&encode(&stress.iter().map(|value| sign * value).collect::<Vec<_>>()));
             let pulls = if *sign < 0.0 { 0 } else { NO_TENSION };
             // Whoever tells an error says that it may be all of the force.
-            let doubts = if subject.plan.thresholds.error.is_some() { DOUBTFUL } else { 0 };
-            assert_eq!(words[0], DIRECTION_UNKNOWN | pulls | doubts, "one sign everywhere");
+            let low = if subject.plan.thresholds.error.is_some() { LOW_CONFIDENCE } else { 0 };
+            assert_eq!(words[0], DIRECTION_UNKNOWN | pulls | low, "one sign everywhere");
             let answer = read(&words);
             assert_eq!(answer.mu_xy.map(f64::to_bits), [0, 0]);
             let forces = answer.field.iter().flatten().any(|&force| force != 0.0);
@@ -281,7 +281,7 @@ fn mixed_in_every_mode(subject: &Subject) {
     let expected: Vec<Vec<u32>> = packets.iter().map(|packet| model.process(packet)).collect();
     for status in [0, NO_CONTACT, DIRECTION_UNKNOWN, AT_BOUND, SATURATED, NOT_FINITE, BAD_LENGTH] {
         // A frame in which nothing pulls says that beside what else it says.
-        let seen = expected.iter().filter(|words| words[0] & 0xFFFF & !(NO_TENSION | DOUBTFUL) == status).count();
+        let seen = expected.iter().filter(|words| words[0] & 0xFFFF & !(NO_TENSION | LOW_CONFIDENCE) == status).count();
         assert!(seen >= fewest_of_a_status(), "only {seen} frames with the status {status:#x} alone");
     }
     let seen = expected.iter().filter(|words| words[0] & NO_TENSION != 0).count();

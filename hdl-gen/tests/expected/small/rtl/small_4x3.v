@@ -19,7 +19,7 @@
 //    3  saturated             10  slip
 //    4  NaN or infinity in    11  no tension
 //    5  frame length wrong    12  frames dropped before
-//    6  doubtful
+//    6  low confidence
 
 `default_nettype none
 
