@@ -27,7 +27,7 @@ struct Arguments {
 }
 
 const START: &str = "Example: from a sensor to its forces and its hardware
-  sptfra new pad --columns 10 --rows 10 --pitch-mm 4 2 --depth-mm 3
+  sptfra new pad --columns 10 --rows 10 --pitch-mm 4 2 --depth-mm 3 --tension read
   sptfra solve pad --frames frames.csv --out forces.csv
   sptfra generate pad --out rtl-out/pad
   sptfra run pad --frames frames.csv";
@@ -87,7 +87,62 @@ fn execute(command: Command) -> message::Result {
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write;
+
+    use clap::ArgAction;
+
     use super::*;
+
+    const MARK: &str = "<!-- printed from the commands -->\n";
+
+    /// The printed part of the page: a table of commands, then the options of each.
+    fn page() -> String {
+        let command = Arguments::command();
+        let about = |command: &clap::Command| command.get_about().map(ToString::to_string).unwrap_or_default();
+        let subcommands: Vec<_> = command.get_subcommands().cloned().map(|sub| sub.bin_name("sptfra")).collect();
+        let mut page = "| command | what it does |\n|---|---|\n".to_owned();
+        for sub in &subcommands {
+            let _ = writeln!(page, "| [`{0}`](#sptfra-{0}) | {1} |", sub.get_name(), about(sub));
+        }
+        for sub in subcommands {
+            let _ = writeln!(page, "\n### sptfra {}\n\n{}.\n", sub.get_name(), about(&sub));
+            for option in sub.get_arguments() {
+                let values = option.get_value_names().into_iter().flatten().map(|name| name.to_string());
+                let name = option.get_long().map(|name| format!("--{name}"));
+                let takes = !matches!(option.get_action(), ArgAction::SetTrue);
+                let values: Vec<_> = if takes { values.collect() } else { Vec::new() };
+                let shown = name.into_iter().chain(values).collect::<Vec<_>>().join(" ");
+                let help = option.get_help().map(ToString::to_string).unwrap_or_default();
+                let words: Vec<_> =
+                    option.get_possible_values().iter().map(|word| format!("`{}`", word.get_name())).collect();
+                let words =
+                    if takes && !words.is_empty() { format!(" One of {}.", words.join(", ")) } else { String::new() };
+                let default =
+                    option.get_default_values().iter().map(|value| value.to_string_lossy()).collect::<Vec<_>>();
+                let default = if takes && !default.is_empty() {
+                    format!(" Default: `{}`.", default.join(" "))
+                } else {
+                    String::new()
+                };
+                let _ = writeln!(page, "- `{shown}`: {help}.{words}{default}");
+            }
+        }
+        page
+    }
+
+    /// `UPDATE_EXPECTED=1` prints the commands of the page anew.
+    #[test]
+    fn commands_of_the_page_are_those_of_the_command() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/reference/commands.md");
+        let text = std::fs::read_to_string(file).expect("a page");
+        let (by_hand, printed) = text.split_once(MARK).expect("a mark");
+        let expected = page();
+        if std::env::var_os("UPDATE_EXPECTED").is_some() {
+            std::fs::write(file, format!("{by_hand}{MARK}{expected}")).expect("written");
+        } else {
+            assert!(printed == expected, "UPDATE_EXPECTED=1 prints the commands anew");
+        }
+    }
 
     #[test]
     fn every_command_has_an_example_and_short_lines() {

@@ -9,7 +9,7 @@ use hdl_gen::plan::Plan;
 
 use testbench::trial;
 
-/// Compiles a design's RTL for a program of your own and prints the path of the shared object.
+/// Compiles a design's RTL into a shared object and prints its path.
 ///
 /// `drivers/simulated` gives drivers, and the programs above them, the registers and memory of that core. The shared
 /// object stays in the cache while it is used.

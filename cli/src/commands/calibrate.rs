@@ -20,24 +20,10 @@ const CALIBRATE_FILES: &str = r#"FORCES.csv: one line a frame; a header with uni
 unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
 load, with the force 0, give the offsets. PRESSURES.csv: pressure (kPa), one line a frame.
 
-For the grid search's constants, in the design file (training has noise up to `[sensor] noise`):
-  [algorithm]
-  estimator = "joint"
+RESOLVED.toml is the design with the fitted keys, among them gain, friction_correction, calibrated_for and correction. The
+network's weights stand beside it, in RESOLVED.weights.csv. `sptfra new --schema` explains each key."#;
 
-In RESOLVED.toml, besides:
-  gain = 1.1                        # factor on all forces
-  friction_correction = [1.0, 0.0]  # friction vector c1 mu + c3 mu |mu|^2
-  training_set = "sliding"          # contacts of the training, or "general"
-  calibrated_for = "..."            # sensor, kernel and noise that the constants belong to
-  max_standard_error = 0.06         # with "general": a larger share of F_z marks a frame as of low confidence
-  [algorithm.correction]            # of the friction vector, by a small network
-  half_window = [3, 7]              # taxels either side of the contact's centre, along x and y
-  file = "RESOLVED.weights.csv"     # its weights in steps of 2^-12, written beside RESOLVED.toml: a line for each
-                                    # hidden unit, under a header
-  sha256 = "..."                    # of that file
-  error_base = -17123               # with "general": offset of the standard error's logarithm"#;
-
-/// Fits a design's constants to simulated contacts, or to recordings with measured forces.
+/// Fits a design's constants to simulated contacts or to recordings.
 ///
 /// Without --frames and --uniform: the constants of the grid search (`estimator = "joint"`). Makes random contacts on a bonded layer, from
 /// the seed alone, and fits to their known forces a gain, two constants of the friction, and the weights of the

@@ -17,7 +17,7 @@ use hdl_gen::plan::savings::savings;
 use crate::arguments::{Target, design_file};
 use crate::message;
 
-/// Shows a design's geometry, condition numbers, nonzeros, cycles, memories and multipliers.
+/// Shows a design's geometry, nonzeros, cycles, memories and multipliers.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  sptfra inspect designs/sensor1-fast.toml --json")]
 pub struct Args {

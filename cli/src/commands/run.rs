@@ -11,7 +11,7 @@ use golden::progress::Progress;
 use testbench::run::{self, Options, page};
 use testbench::verilate::Trace;
 
-/// Simulates a design's hardware and compares every word with the integer model and the f64 solver.
+/// Simulates a design's hardware and compares every word with the models.
 ///
 /// The streams run freely, with an idle source, with a stalled sink, and with both. The exit code is 0 only if every
 /// word is the model's, latency and interval are the predicted ones, and every register has its expected value.

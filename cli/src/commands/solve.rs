@@ -19,25 +19,6 @@ use crate::message::{self, Message, json_or, say};
 
 const EXAMPLE: &str = "Example:\n  sptfra solve pad --frames frames.csv --out forces.csv";
 
-const ALGORITHM: &str = r#"In the design file, what changes the result:
-  [sensor]                          # besides the geometry, for frames in counts:
-  pa_per_count = -12.5              # pascals of one count, negative where larger counts press
-  calibration = "calibration.csv"   # a line gain,offset for each taxel: Pa = (gain * count + offset) * pa_per_count
-  curve = "curve.csv"               # in place of pa_per_count: lines count,pascals; or { power = 1.25, scale = -0.0066 }
-  dead = [44, 45]                   # taxels that read nothing, up to 8: others replace them; so does gain 0
-
-  [algorithm]
-  plan = "reduced"                  # the paper's result from ten folded matrices, the default without a filter; or
-                                    # "paper": thirteen matrices
-  kernel = "point"                  # point forces, as in the paper, for layers of half a pitch and more. Or "cell":
-                                    # forces spread over a cell of the grid, for thinner ones; F_z is right without a gain
-  filter = { kind = "none" }        # or { kind = "f1", l = 40 }: l diagonals removed on either side;
-                                    # { kind = "f2", p = 30 }: kept is |B_ij| >= row maximum / (1000 p);
-                                    # { kind = "f3", ... }: a filter for each matrix, see `sptfra tune-filter --help`
-  estimator = "line"                # the paper's; or "joint", better, see `sptfra calibrate --help`
-  outputs = "field"                 # or "resultants": no field; reduced plan only
-  noise_floor_pa = 1.5              # stress below which a taxel tells nothing; full scale / 65536 if absent"#;
-
 /// Computes forces from frames in double precision.
 ///
 /// A line of FORCES.csv has, for one frame: status, `F_x`, `F_y`, `F_z`, mu, phi, `mu_x`, `mu_y`, and with --field then
@@ -46,7 +27,7 @@ const ALGORITHM: &str = r#"In the design file, what changes the result:
 /// With `--out -` the lines go to standard output, each as soon as its frame is there. With `--frames -`, from standard
 /// input, the command is a filter for frames as they come from a sensor. The first frames are checked.
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLE, after_long_help = format!("{EXAMPLE}\n\n{ALGORITHM}"))]
+#[command(after_help = EXAMPLE)]
 pub struct Args {
     /// Design file (TOML).
     #[arg(value_parser = design_file())]

@@ -12,7 +12,7 @@ use super::frames::FrameArguments;
 use golden::progress::Progress;
 use testbench::view::{self, FrameRange, Rate};
 
-/// Shows the forces of a frame in the terminal, plays several, or draws one as a picture.
+/// Shows forces in the terminal or as a picture.
 ///
 /// One cell a taxel, y upwards: an arrow for the direction of the shear, a digit for its share of the largest force, and
 /// a digit for that of the normal force. In colour on a terminal, unless `NO_COLOR` is set. The forces are the
