@@ -107,7 +107,7 @@ mod tests {
         for sub in subcommands {
             let _ = writeln!(page, "\n### sptfra {}\n\n{}.\n", sub.get_name(), about(&sub));
             for option in sub.get_arguments() {
-                let values = option.get_value_names().into_iter().flatten().map(|name| name.to_string());
+                let values = option.get_value_names().into_iter().flatten().map(ToString::to_string);
                 let name = option.get_long().map(|name| format!("--{name}"));
                 let takes = !matches!(option.get_action(), ArgAction::SetTrue);
                 let values: Vec<_> = if takes { values.collect() } else { Vec::new() };

@@ -16,12 +16,13 @@ use crate::message::{self, json_or, say};
 
 const EXAMPLE: &str = "Example:\n  sptfra calibrate pad --out pad-calibrated.toml\n  sptfra calibrate pad --frames weights.csv --forces weights.forces.csv --out pad-fitted.toml";
 
-const CALIBRATE_FILES: &str = r#"FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (N); any of them may be missing, blanks are
+const CALIBRATE_FILES: &str = "\
+FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (N); any of them may be missing, blanks are
 unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
 load, with the force 0, give the offsets. PRESSURES.csv: pressure (kPa), one line a frame.
 
 RESOLVED.toml is the design with the fitted keys, among them gain, friction_correction, calibrated_for and correction. The
-network's weights stand beside it, in RESOLVED.weights.csv. `sptfra new --schema` explains each key."#;
+network's weights stand beside it, in RESOLVED.weights.csv. `sptfra new --schema` explains each key.";
 
 /// Fits a design's constants to simulated contacts or to recordings.
 ///

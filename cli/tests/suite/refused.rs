@@ -159,6 +159,22 @@ fn words_of_two_multipliers_have_their_plan_and_their_part() {
 }
 
 #[test]
+fn the_core_has_a_vendor_a_library_and_a_version() {
+    for vlnv in ["acme:1.0", "acme:pads:1", "acme:pads:1.0.0", "a b:pads:1.0", ":pads:1.0"] {
+        let text = changed("depth_mm = 3.0", &format!("depth_mm = 3.0\n[hardware]\nvlnv = \"{vlnv}\""));
+        check_design(&text, &["hardware.vlnv", vlnv, "vendor:library:version", "example.org:sensors:1.2"]);
+    }
+    let folder = folder_with_design("vlnv = \"acme.com:pads:2.7\"");
+    good(folder.path(), &["generate", "pad.toml", "--out", "out"]);
+    let read = |file: &str| fs::read_to_string(folder.path().join("out").join(file)).unwrap();
+    assert!(read("pad.core").contains("\nname: acme.com:pads:pad:2.7\n"));
+    assert!(read("README.md").contains("acme.com:pads:pad"));
+    let package = read("vivado/package_ip.tcl");
+    assert!(package.contains("-vendor acme.com -library pads ") && package.contains("set_property version 2.7 $core"));
+    assert!(read("vivado/block_design.tcl").contains("-vlnv acme.com:pads:$design:2.7 core"));
+}
+
+#[test]
 fn a_geometry_that_amplifies_beyond_the_widths_is_refused() {
     let text = design_text("deep", [10, 10], [4.0, 4.0], 12.0, "");
     check_design(&text, &["data_bits = 27", "rounding alone", "condition number", "depth_mm", "regularisation"]);

@@ -2,7 +2,7 @@
 
 use serde::de::DeserializeOwned;
 
-use super::DesignError;
+use super::{DesignError, Hardware};
 use crate::words;
 
 /// Makes errors that name the file.
@@ -103,6 +103,17 @@ pub(crate) fn part(check: &Check, part: &str) -> Result<(), DesignError> {
             "hardware.part",
             format!("is {part:?}"),
             format!("use 1 to {MAX_NAME} letters, digits, dots, dashes and underscores"),
+        ));
+    }
+    Ok(())
+}
+
+pub(crate) fn vlnv(check: &Check, hardware: &Hardware) -> Result<(), DesignError> {
+    if hardware.vendor_library_version().is_none() {
+        return Err(check.value(
+            "hardware.vlnv",
+            format!("is {:?}", hardware.vlnv),
+            "write vendor:library:version, the version as two numbers, such as \"example.org:sensors:1.2\"",
         ));
     }
     Ok(())

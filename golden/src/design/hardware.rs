@@ -144,6 +144,9 @@ pub struct Hardware {
     pub clock_mhz: f64,
     /// FPGA part, as Vivado writes it.
     pub part: String,
+    /// Vendor, library and version under which tools list the core. Its name there is the design's.
+    #[schemars(extend("examples" = ["example.org:sensors:1.2"]))]
+    pub vlnv: String,
 }
 
 impl Default for Hardware {
@@ -162,11 +165,23 @@ impl Default for Hardware {
             calibration: CalibrationIn::default(),
             clock_mhz: 125.0,
             part: "xczu9eg-ffvb1156-2-e".to_owned(),
+            vlnv: "user.org:tactile:1.0".to_owned(),
         }
     }
 }
 
 impl Hardware {
+    /// Vendor, library and version of `vlnv`, where it has the three.
+    pub fn vendor_library_version(&self) -> Option<[&str; 3]> {
+        let parts: Vec<&str> = self.vlnv.split(':').collect();
+        let legal =
+            |part: &&str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c));
+        let [vendor, library, version] = parts[..] else { return None };
+        let numbers = version.split('.').filter(|number| number.parse::<u16>().is_ok()).count();
+        let is_version = numbers == 2 && version.matches('.').count() == 1;
+        (parts.iter().all(legal) && is_version).then_some([vendor, library, version])
+    }
+
     /// The largest float32 that is no more than the full scale, in pascals: a frame cannot bring more of it. From here
     /// on a stress counts as saturated.
     pub fn full_scale_in_frames(&self) -> f64 {

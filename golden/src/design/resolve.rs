@@ -15,6 +15,7 @@ pub(super) fn design(keys: DesignKeys, origin: &str, beside: Beside<'_>) -> Resu
     let DesignKeys { name, sensor: keys, algorithm, hardware, .. } = keys;
     checks::name(&check, &name)?;
     checks::part(&check, &hardware.part)?;
+    checks::vlnv(&check, &hardware)?;
     let SensorKeys { columns, rows, pitch_mm, depth_mm, .. } = keys;
     let sensor = Sensor { columns, rows, pitch_mm, depth_mm };
     let correction = algorithm.correction.clone();

@@ -2,6 +2,7 @@
 //!
 //! They name the files that the folder holds, relative to the folder, so they come after everything else.
 
+use golden::design::Design;
 use serde::Serialize;
 use tera::{Context, Tera};
 
@@ -72,7 +73,9 @@ struct View {
     clock_mhz: f64,
     /// Nanoseconds with three decimals, Vivado's resolution.
     period_ns: String,
-    /// Major and minor version of the generator.
+    /// Under which tools list the core.
+    vendor: String,
+    library: String,
     ip_version: String,
     /// Revision of the packaged IP.
     revision: u32,
@@ -101,6 +104,11 @@ struct View {
     boards: Vec<Placed>,
 }
 
+/// Vendor, library and version, which a checked design has.
+pub(super) fn vlnv(design: &Design) -> [String; 3] {
+    design.hardware.vendor_library_version().map(|words| words.map(str::to_owned)).unwrap_or_default()
+}
+
 impl View {
     fn new(plan: &Plan, hash: &str, (boards, debug): (&[Board], bool), files: &FileMap) -> Self {
         let design = &plan.design;
@@ -110,6 +118,7 @@ impl View {
         let streams = plan.streams();
         let bytes_in = streams.words_in() * WORD_BYTES;
         let bytes_out = streams.words_out * WORD_BYTES;
+        let [vendor, library, ip_version] = vlnv(design);
         Self {
             version: VERSION,
             hash: hash.to_owned(),
@@ -121,7 +130,9 @@ impl View {
             yaml_part: format!("\"{}\"", design.hardware.part),
             clock_mhz: design.hardware.clock_mhz,
             period_ns: period_ns(design.hardware.clock_mhz),
-            ip_version: format!("{}.{}", env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR")),
+            vendor,
+            library,
+            ip_version,
             revision: revision(hash),
             stream_bits: streams.bits,
             bytes_in,

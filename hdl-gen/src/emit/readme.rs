@@ -7,6 +7,7 @@ use tera::{Context, Tera};
 use crate::plan::Plan;
 use crate::plan::words::{SUMMARY, SUMMARY_WORDS, Word, status_bits};
 
+use super::flows::vlnv;
 use super::{EmitError, FileMap, VERSION};
 
 const TEMPLATE: &str = include_str!("../../templates/README.md.tera");
@@ -23,6 +24,8 @@ struct View {
     rows: usize,
     taxels: usize,
     part: String,
+    vendor: String,
+    library: String,
     clock_mhz: f64,
     latency_cycles: u64,
     latency_us: String,
@@ -53,6 +56,7 @@ impl View {
         let (streams, timeline) = (plan.streams(), &plan.timeline);
         let unit = if design.input.counts() { "counts" } else { "pascals, compression negative," };
         let kind = if streams.sample == Samples::Float32 { "float32".to_owned() } else { streams.sample.to_string() };
+        let [vendor, library, _] = vlnv(design);
         Self {
             name: design.name.clone(),
             version: VERSION,
@@ -61,6 +65,8 @@ impl View {
             rows: design.sensor.rows,
             taxels: plan.taxels(),
             part: hardware.part.clone(),
+            vendor,
+            library,
             clock_mhz: hardware.clock_mhz,
             latency_cycles: timeline.latency_cycles,
             latency_us: format!("{:.2}", timeline.latency_cycles as f64 / hardware.clock_mhz),
