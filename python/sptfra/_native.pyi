@@ -120,6 +120,12 @@ class Design:
         """The FPGA."""
 
 @final
+class Average:
+    """Average of a stream's frames, in a design with `sensor.smoothing`; empty at first."""
+
+    def __new__(cls) -> Average: ...
+
+@final
 class Solver:
     """Forces from frames in double precision, as `sptfra solve` finds them."""
 
@@ -128,12 +134,15 @@ class Solver:
     def design(self) -> Design:
         """The design that it was made for."""
 
-    def solve(self, frames: npt.ArrayLike, *, slips: bool | Forces | None = None) -> Forces:
+    def solve(
+        self, frames: npt.ArrayLike, *, slips: bool | Forces | None = None, average: Average | None = None
+    ) -> Forces:
         """Forces of frames that follow each other, on all cores, without Python's lock; Ctrl-C ends it.
 
         Frames are numbers of shape (n, rows, columns) or (n, taxels); (rows, columns) and (taxels,) are one frame. In Pa,
         compression negative, or in counts if the design counts. For designs with a limit of
         slip, `slips` are the forces of the frame before them, or whether that one slipped, with all bodies in it.
+        With smoothing, `average` is that of the frames before them, and then of these; without it these begin a stream.
         """
 
 @final

@@ -1,6 +1,9 @@
 //! The f64 solver on all cores.
 
+use std::sync::{Mutex, PoisonError};
+
 use golden::bodies::Body;
+use golden::smoothing::Average as InnerAverage;
 use golden::solver::{PIECE, Slips, Solver as Inner, SolverError, Status};
 use pyo3::prelude::*;
 
@@ -11,6 +14,21 @@ use crate::errors::{look_up, without_lock};
 /// Values, and for each core pieces of frames, that are solved before Python is asked for signals: tenths of a second.
 const VALUES: usize = 1 << 18;
 const PIECES: usize = 4;
+
+/// Average of a stream's frames, in a design with smoothing.
+#[pyclass(frozen, module = "sptfra")]
+#[derive(Default)]
+pub struct Average {
+    inner: Mutex<InnerAverage>,
+}
+
+#[pymethods]
+impl Average {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+}
 
 /// Forces from frames in double precision.
 #[pyclass(frozen, module = "sptfra")]
@@ -35,23 +53,27 @@ impl Solver {
         self.design.clone_ref(py)
     }
 
-    #[pyo3(signature = (frames, *, slips = None))]
+    #[pyo3(signature = (frames, *, slips = None, average = None))]
     fn solve<'py>(
         &self,
         py: Python<'py>,
         frames: &Bound<'py, PyAny>,
         slips: Option<&Bound<'py, PyAny>>,
+        average: Option<&Average>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut slips = slips.map_or(Ok(Slips::default()), slips_of)?;
         let design = &self.design.get().inner;
         let frames = Frames::of(design, frames)?;
+        let own = Average::default();
+        let average = &average.unwrap_or(&own).inner;
         let forces = without_lock(py, || {
             let (records, has_field) = (self.inner.records(), self.inner.field_length() > 0);
             let mut forces = Forces::zeros(&design.sensor, frames.count(), records, has_field);
             let (mut pieces, taxels) = (forces.pieces().into_iter(), design.sensor.taxels());
+            let mut average = average.lock().unwrap_or_else(PoisonError::into_inner);
             let at_a_time = (VALUES / (PIECE * taxels)).max(PIECES * self.cores);
             for values in frames.values.chunks(at_a_time * PIECE * taxels) {
-                self.inner.solve_on_all_cores(values, pieces.by_ref().take(at_a_time), Piece::put)?;
+                self.inner.solve_on_all_cores(values, &mut average, pieces.by_ref().take(at_a_time), Piece::put)?;
                 look_up(|_| Ok(()));
             }
             drop(pieces);

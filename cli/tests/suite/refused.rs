@@ -141,6 +141,14 @@ fn the_papers_plan_has_no_joint_estimator() {
 }
 
 #[test]
+fn keys_that_software_alone_has_are_refused() {
+    for (key, value) in [("crosstalk", "0.02"), ("smoothing", "4")] {
+        let keys = format!("depth_mm = 3.0\n{key} = {value}");
+        check_design(&changed("depth_mm = 3.0", &keys), &[&format!("[sensor] {key}"), "software", "remove the key"]);
+    }
+}
+
+#[test]
 fn widths_resolve_the_noise_floor() {
     let text = "depth_mm = 3.0\n[algorithm]\nnoise_floor_pa = 0.5\n[hardware]\ndata_bits = 16\nfull_scale_pa = 1e6";
     check_design(&changed("depth_mm = 3.0", text), &["data_bits = 16", "noise floor of 0.5 Pa", "full_scale_pa"]);

@@ -6,7 +6,7 @@ use super::count;
 use crate::bodies::{Finder, Found};
 use crate::design::Design;
 use crate::matrices::{Matrices, MatrixName};
-use crate::solver::reading::{Reader, Reading};
+use crate::solver::reading::{Given, Reader, Reading};
 
 /// What is to be said of a design that counts bodies and is solved as if there were one: in how many frames there are
 /// more. `frames` are the loaded ones: noise has many bodies.
@@ -18,7 +18,7 @@ pub(super) fn check(design: &Design, frames: &[&Vec<f64>], matrices: &Matrices) 
     let inverse = matrices.folded(MatrixName::C33inv);
     let (mut b, mut found) = (DVector::zeros(reader.taxels()), Found::default());
     let several = |frame: &&&Vec<f64>| {
-        let Ok(Reading::Contact { .. }) = reader.read(frame, &mut b) else { return false };
+        let Ok(Reading::Contact { .. }) = reader.read(Given::Values(frame), &mut b) else { return false };
         let weight: Vec<f64> = (&*inverse * &b).iter().map(|force| (-force).max(0.0)).collect();
         finder.count(&weight, &mut found);
         found.bodies > 1

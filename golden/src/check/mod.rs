@@ -120,10 +120,7 @@ pub fn is_unloaded(design: &Design, frames: &[Vec<f64>]) -> bool {
 }
 
 fn in_pascals(design: &Design, frames: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    frames
-        .iter()
-        .map(|frame| frame.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect())
-        .collect()
+    frames.iter().map(|frame| design.stress_of(frame)).collect()
 }
 
 #[allow(clippy::too_many_lines, reason = "one check after the other, and what each knows of those before")]

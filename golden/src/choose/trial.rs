@@ -11,7 +11,7 @@ use crate::scene::SceneFrame;
 use crate::solver::SolverError;
 use crate::solver::cean::Contact;
 use crate::solver::op;
-use crate::solver::reading::{Reader, Reading};
+use crate::solver::reading::{Given, Reader, Reading};
 
 /// What a matrix multiplies.
 #[derive(Clone, Copy, PartialEq)]
@@ -88,7 +88,7 @@ impl Trial {
         let (mut columns, mut contacts, mut truth, mut unsolved) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
         let mut b = DVector::zeros(reader.taxels());
         for frame in frames {
-            match reader.read(&frame.stress, &mut b)? {
+            match reader.read(Given::Values(&frame.stress), &mut b)? {
                 Reading::Contact { contact, .. } => {
                     columns.extend_from_slice(b.as_slice());
                     contacts.push(contact);

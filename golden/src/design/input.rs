@@ -35,6 +35,10 @@ pub struct Input {
     /// Standard deviation of a reading's noise, as a share of the frame's largest reading: `sptfra calibrate` trains at this
     /// noise and below.
     pub noise: f64,
+    /// Share of the sums of its row and of its column that a taxel reads beside its own stress; 0: none.
+    pub crosstalk: f64,
+    /// Frames are averaged with the weight `2^-k`; 0: they are not.
+    pub smoothing: u32,
 }
 
 impl Default for Input {
@@ -47,6 +51,8 @@ impl Default for Input {
             room: 0,
             tension: Tension::default(),
             noise: DEFAULT_NOISE,
+            crosstalk: 0.0,
+            smoothing: 0,
         }
     }
 }
@@ -75,7 +81,7 @@ impl Tension {
 }
 
 impl Input {
-    /// Stress in pascals of a taxel whose value in the frame is `value`; of a dead one 0.
+    /// Stress in pascals of a taxel whose value in the frame is `value`, with crosstalk in it; of a dead one 0.
     pub fn to_pa(&self, taxel: usize, value: f64) -> f64 {
         if self.dead.contains(&taxel) {
             return 0.0;
@@ -108,18 +114,10 @@ impl Input {
         }
     }
 
-    /// A frame of stress in pascals as the sensor delivers it: without what pulls, if it does not read that, and in whole
-    /// counts, if it counts.
-    pub fn deliver(&self, frame: &mut [f64]) {
-        for value in &mut *frame {
-            *value = self.tension.of(*value);
-        }
-        if self.counts() {
-            for (taxel, value) in frame.iter_mut().enumerate() {
-                // No count is -0.
-                *value = self.from_pa(taxel, *value).round() + 0.0;
-            }
-        }
+    /// The input of the same sensor whose frames are in pascals, one by one: what gains and curve have made of counts.
+    pub(crate) fn of_pascals(&self) -> Self {
+        let Self { ref dead, tension, crosstalk, .. } = *self;
+        Self { dead: dead.clone(), tension, crosstalk, ..Self::default() }
     }
 
     /// Gain and offset of a taxel.
@@ -146,7 +144,8 @@ impl Input {
         hardware: &Hardware,
     ) -> Result<Self, DesignError> {
         rules::counts(check, &keys)?;
-        let SensorKeys { tension, noise, pa_per_count, curve, calibration, dead, .. } = keys;
+        let SensorKeys { tension, noise, crosstalk, smoothing, pa_per_count, curve, calibration, dead, .. } = keys;
+        let (crosstalk, smoothing) = (crosstalk.unwrap_or(0.0), smoothing.unwrap_or(0));
         let curve = curve.map(|curve| Curve::new(check, curve, beside, hardware)).transpose()?;
         let (dead, room) = match dead {
             None => (Vec::new(), 0),
@@ -164,6 +163,6 @@ impl Input {
         dead.extend(gains.filter(|&(_, &gain)| gain == 0.0).map(|(taxel, _)| taxel));
         dead.sort_unstable();
         dead.dedup();
-        Ok(Self { pa_per_count, curve, calibration, dead, room, tension, noise })
+        Ok(Self { pa_per_count, curve, calibration, dead, room, tension, noise, crosstalk, smoothing })
     }
 }

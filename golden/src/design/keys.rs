@@ -62,6 +62,14 @@ pub(super) struct SensorKeys {
     #[serde(default = "noise")]
     #[schemars(range(min = 0.0, max = 0.1))]
     pub noise: f64,
+    /// Crosstalk of a row-column array: each taxel reads its stress plus this share of the sum of its row and of its column, the
+    /// taxel among them. The solver removes it exactly, in pascals, after gains and dead taxels.
+    #[schemars(range(min = 0.0001, max = 0.1), extend("examples" = [0.02]))]
+    pub crosstalk: Option<f64>,
+    /// The k of an exponential moving average of each taxel over the frames, with the weight 2^-k. A step of any taxel by more
+    /// than 6 standard deviations, `noise` times the frame's largest reading, restarts it.
+    #[schemars(range(min = 1, max = 8), extend("examples" = [4]))]
+    pub smoothing: Option<u32>,
     /// Pascals of one count, negative where larger counts press. Without this key or `curve`, frames hold pascals.
     #[schemars(extend("examples" = [-12.5]))]
     pub pa_per_count: Option<f64>,

@@ -28,10 +28,12 @@ mod thin;
 
 use std::path::{Path, PathBuf};
 
+use crate::crosstalk::Crosstalk;
 pub use crate::estimators::Estimator;
 pub use crate::estimators::joint::{Correction, ErrorOutput, Grid, JointConstants, TrainingSet};
 pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
+use crate::smoothing::Smoothing;
 pub use algorithm::{Algorithm, Outputs, PlanKind, Slip};
 pub use calibration::Calibration;
 pub use checks::is_name;
@@ -70,13 +72,50 @@ pub struct Design {
 }
 
 impl Design {
-    /// A frame of stress in pascals as the design's sensor delivers it: without what pulls, if it does not read that, and
-    /// in whole counts, if it counts, as far as its samples reach.
+    /// A frame of stress in pascals as the design's sensor delivers it: without what pulls, if it does not read that, with
+    /// crosstalk, and in whole counts, if it counts, as far as its samples reach.
     pub fn deliver(&self, frame: &mut [f64]) {
-        self.input.deliver(frame);
+        for value in &mut *frame {
+            *value = self.input.tension.of(*value);
+        }
+        self.read_stress(frame);
         for value in frame {
+            // No count is -0.
+            *value = if self.input.counts() { value.round() + 0.0 } else { *value };
             *value = self.hardware.samples.clip(*value);
         }
+    }
+
+    /// Values of a frame, not rounded, of taxels under these stresses in pascals. A dead taxel reads 0.
+    pub fn read_stress(&self, frame: &mut [f64]) {
+        if let Some(crosstalk) = self.crosstalk() {
+            crosstalk.add(frame);
+        }
+        for (taxel, value) in frame.iter_mut().enumerate() {
+            *value = self.input.from_pa(taxel, *value);
+        }
+    }
+
+    /// Stresses in pascals of a frame's values. A dead taxel counts as one without load.
+    pub fn stress_of(&self, frame: &[f64]) -> Vec<f64> {
+        let mut stress: Vec<f64> =
+            frame.iter().enumerate().map(|(taxel, &value)| self.input.to_pa(taxel, value)).collect();
+        if let Some(crosstalk) = self.crosstalk() {
+            crosstalk.remove(&mut stress);
+        }
+        stress
+    }
+
+    /// How frames are averaged, if they are.
+    pub fn smoothing(&self) -> Option<Smoothing> {
+        let Input { smoothing, noise, .. } = self.input;
+        (smoothing > 0).then(|| Smoothing::new(smoothing, noise))
+    }
+
+    /// Crosstalk of the sensor, if it has any.
+    pub fn crosstalk(&self) -> Option<Crosstalk> {
+        let share = self.input.crosstalk;
+        (share > 0.0).then(|| Crosstalk::new(&self.sensor, share))
     }
 
     /// The design with which every frame is solved as one contact, as by its hardware, which counts contacts alone.

@@ -122,6 +122,8 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
             depth_mm,
             tension: input.tension,
             noise: input.noise,
+            crosstalk: Some(input.crosstalk).filter(|&share| share > 0.0),
+            smoothing: Some(input.smoothing).filter(|&k| k > 0),
             pa_per_count: input.pa_per_count,
             curve,
             calibration: input.calibration.as_ref().map(|_| names.calibration.clone()),

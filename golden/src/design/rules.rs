@@ -138,6 +138,12 @@ pub(super) fn input(check: &Check, design: &Design) -> Result<(), DesignError> {
                 ),
             ),
             (
+                input.smoothing > 0 && input.noise <= 0.0,
+                "sensor.smoothing",
+                format!("is {}, and sensor.noise is 0, so that every frame would restart it", input.smoothing),
+                "state the noise of the sensor, which `sptfra check --unloaded` measures, or remove the key".to_owned(),
+            ),
+            (
                 hardware.samples != Samples::Float32 && !input.counts(),
                 "hardware.samples",
                 format!("is \"{}\", and frames are in pascals", hardware.samples),

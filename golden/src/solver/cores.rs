@@ -2,8 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::reading::Given;
 use super::{Slips, Solution, Solver, SolverError, Status};
 use crate::bodies::Body;
+use crate::smoothing::Average;
 
 /// Frames that one core takes at a time.
 pub const PIECE: usize = crate::products::batch::FRAMES;
@@ -14,7 +16,7 @@ impl Solver {
     ///
     /// Every [`PIECE`] frames have a place of their own among `places`, in order; `put` gets it with the frame's index in
     /// the piece and its solution, on whatever thread. The cores know nothing of each other's frames: let
-    /// [`Solver::follow_slips`] decide which slip.
+    /// [`Solver::follow_slips`] decide which slip. `average` is that of the frames before, and then of these.
     ///
     /// # Errors
     ///
@@ -22,6 +24,7 @@ impl Solver {
     pub fn solve_on_all_cores<P: Send>(
         &self,
         values: &[f64],
+        average: &mut Average,
         places: impl IntoIterator<Item = P>,
         put: impl Fn(&mut P, usize, &Solution) + Sync,
     ) -> Result<(), SolverError> {
@@ -33,16 +36,23 @@ impl Solver {
         if values.len() == taxels {
             // Of a stream: what a batch needs would take longer than the frame.
             let mut solution = Solution::zeros(Status::default(), 0);
-            self.solve_into(&mut self.workspace(), values, &mut solution)?;
+            let mut workspace = self.workspace();
+            std::mem::swap(&mut workspace.average, average);
+            self.solve_into(&mut workspace, values, &mut solution)?;
+            *average = workspace.average;
             places.into_iter().take(1).for_each(|mut place| put(&mut place, 0, &solution));
             return Ok(());
         }
-        let pieces: Vec<_> = values.chunks(PIECE * taxels).zip(places).collect();
+        let decoded = self.reader.averages().then(|| self.averaged(average, values.chunks(taxels))).transpose()?;
+        let frames = match &decoded {
+            Some(decoded) => decoded.given(),
+            None => values.chunks(taxels).map(Given::Values).collect(),
+        };
+        let pieces: Vec<_> = frames.chunks(PIECE).zip(places).collect();
         pieces.into_par_iter().try_for_each_init(
             || (self.workspace(), Vec::new()),
-            |(workspace, solutions), (values, mut place)| {
-                let frames: Vec<&[f64]> = values.chunks(taxels).collect();
-                self.solve_batch(workspace, &frames, solutions)?;
+            |(workspace, solutions), (frames, mut place)| {
+                self.solve_given(workspace, frames, solutions)?;
                 solutions.iter().enumerate().for_each(|(index, solution)| put(&mut place, index, solution));
                 Ok(())
             },

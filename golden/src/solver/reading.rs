@@ -4,20 +4,33 @@ use nalgebra::DVector;
 
 use super::cean::{self, Contact};
 use super::{SolverError, Status};
+use crate::crosstalk::Crosstalk;
 use crate::dead_taxels::{DeadTaxels, GUESSED};
 use crate::design::{Design, Input, Tension};
+use crate::smoothing::{Average, Smoothing};
 
 /// Reads the frames of one sensor.
 #[derive(Clone, Debug)]
 pub(crate) struct Reader {
     input: Input,
     dead: DeadTaxels,
+    crosstalk: Option<Crosstalk>,
+    smoothing: Option<Smoothing>,
     positions: Vec<[f64; 2]>,
     noise_floor: f64,
     full_scale: f64,
     flagged: f64,
     /// Whether contacts fall between the taxels, so that no answer is to be trusted.
     thin: bool,
+}
+
+/// A frame to be solved.
+#[derive(Clone, Copy)]
+pub(crate) enum Given<'a> {
+    /// Values as the sensor delivers them.
+    Values(&'a [f64]),
+    /// What [`Reader::decode`] and [`Reader::average`] have made of them.
+    Decoded(&'a [f64], Status),
 }
 
 /// A frame as the solver takes it.
@@ -39,6 +52,8 @@ impl Reader {
         Self {
             input: design.input.clone(),
             dead: DeadTaxels::new(sensor, design.algorithm.kernel, &design.input.dead),
+            crosstalk: design.crosstalk(),
+            smoothing: design.smoothing(),
             positions: (0..sensor.taxels()).map(|i| sensor.position_m(i)).collect(),
             noise_floor: design.algorithm.noise_floor_pa,
             full_scale: design.hardware.full_scale_pa,
@@ -62,15 +77,33 @@ impl Reader {
         cean::cean(b, &self.positions, self.noise_floor)
     }
 
-    /// Checks one frame, converts it to pascals within the full scale, into `b` of length m, and analyses it.
-    pub(crate) fn read(&self, frame: &[f64], b: &mut DVector<f64>) -> Result<Reading, SolverError> {
+    /// Whether frames are averaged.
+    pub(crate) fn averages(&self) -> bool {
+        self.smoothing.is_some()
+    }
+
+    /// Reads a frame into `b` of length m.
+    pub(crate) fn read(&self, frame: Given<'_>, b: &mut DVector<f64>) -> Result<Reading, SolverError> {
+        let status = match frame {
+            Given::Values(values) => self.decode(values, b.as_mut_slice())?,
+            Given::Decoded(stress, status) => {
+                b.as_mut_slice().copy_from_slice(stress);
+                status
+            }
+        };
+        Ok(self.judge(status, b))
+    }
+
+    /// Converts a frame to pascals within the full scale, a dead taxel to 0. Its status is [`Status::NOT_FINITE`] where it
+    /// is a bad one.
+    pub(crate) fn decode(&self, frame: &[f64], b: &mut [f64]) -> Result<Status, SolverError> {
         let taxels = self.taxels();
         if frame.len() != taxels {
             return Err(SolverError::FrameLength { found: frame.len(), expected: taxels });
         }
         let is_dead = |taxel| self.dead.contains(taxel);
         if frame.iter().enumerate().any(|(taxel, value)| !value.is_finite() && !is_dead(taxel)) {
-            return Ok(Reading::Nothing(Status::NOT_FINITE));
+            return Ok(Status::NOT_FINITE);
         }
         let mut status = Status::default();
         for (taxel, (stress, &value)) in b.iter_mut().zip(frame).enumerate() {
@@ -81,15 +114,40 @@ impl Reader {
         if b.iter().any(|stress| stress.abs() >= self.flagged) || frame.iter().enumerate().any(beyond) {
             status.insert(Status::SATURATED);
         }
-        b.apply(|stress| *stress = stress.clamp(-self.full_scale, self.full_scale));
+        for stress in b {
+            *stress = self.clamped(*stress);
+        }
+        Ok(status)
+    }
+
+    /// Takes a decoded frame into the average of its stream, which takes its place. A bad frame leaves the average as it was.
+    pub(crate) fn average(&self, average: &mut Average, status: Status, b: &mut [f64]) {
+        if let Some(smoothing) = self.smoothing.filter(|_| !status.contains(Status::NOT_FINITE)) {
+            smoothing.take(average, b);
+        }
+    }
+
+    fn clamped(&self, stress: f64) -> f64 {
+        stress.clamp(-self.full_scale, self.full_scale)
+    }
+
+    /// Replaces dead taxels, removes crosstalk and analyses a decoded frame.
+    pub(crate) fn judge(&self, mut status: Status, b: &mut DVector<f64>) -> Reading {
+        if status.contains(Status::NOT_FINITE) {
+            return Reading::Nothing(status);
+        }
         self.dead.replace(b.as_mut_slice());
         if self.dead.taxels().iter().any(|&taxel| b[taxel].abs() > self.full_scale) {
             status.insert(Status::SATURATED);
         }
-        b.apply(|stress| *stress = stress.clamp(-self.full_scale, self.full_scale));
+        b.apply(|stress| *stress = self.clamped(*stress));
+        if let Some(crosstalk) = &self.crosstalk {
+            crosstalk.remove(b.as_mut_slice());
+            b.apply(|stress| *stress = self.clamped(*stress));
+        }
         let contact = self.analyse(b);
         if !contact.touched {
-            return Ok(Reading::Nothing(Status::NO_CONTACT));
+            return Reading::Nothing(Status::NO_CONTACT);
         }
         if self.reads_tension() && b.iter().all(|&stress| stress <= self.noise_floor) {
             status.insert(Status::NO_TENSION);
@@ -104,6 +162,6 @@ impl Reader {
         if guessed > GUESSED * contact.stress_sum {
             status.insert(Status::TOO_MANY_REPLACED);
         }
-        Ok(Reading::Contact { contact, status })
+        Reading::Contact { contact, status }
     }
 }

@@ -6,13 +6,14 @@ use nalgebra::DVector;
 
 use super::batch::{self, BatchFrame};
 use super::bodies::{Census, Parted};
-use super::reading::Reading;
+use super::reading::{Given, Reading};
 use super::{Paper, Products, Reduced, Slips, Solution, Solver, SolverError, Status};
 use crate::estimators::{Contact, Friction, FrictionScratch, Seen};
 use crate::parity::{CLASSES, Quads};
 use crate::products::batch::{Blocks, FRAMES};
 use crate::products::{Engine, PaperMatrices, ProductList, RealFrame, Stored};
 use crate::reduced::ReducedMatrices;
+use crate::smoothing::Average;
 
 /// Memory for solving frames with one solver; see [`Solver::workspace`].
 #[derive(Clone, Debug)]
@@ -27,8 +28,25 @@ pub struct Workspace {
     pub(super) parted: Parted,
     /// What slipped in the last frame.
     slips: Slips,
+    /// Average of the frames solved, in a design with smoothing.
+    pub(super) average: Average,
     /// For several frames at once, made when first used.
     batches: Batches,
+}
+
+/// Frames that are decoded and averaged.
+pub(super) struct Decoded {
+    taxels: usize,
+    stress: Vec<f64>,
+    statuses: Vec<Status>,
+}
+
+impl Decoded {
+    /// The frames, to be solved.
+    pub(super) fn given(&self) -> Vec<Given<'_>> {
+        let frames = self.stress.chunks(self.taxels).zip(&self.statuses);
+        frames.map(|(stress, &status)| Given::Decoded(stress, status)).collect()
+    }
 }
 
 /// Memory for batches of either plan.
@@ -58,6 +76,7 @@ impl Solver {
             },
             parted: Parted::default(),
             slips: Slips::default(),
+            average: Average::default(),
             batches: Batches::default(),
         }
     }
@@ -65,7 +84,7 @@ impl Solver {
     /// As [`Solver::solve`], into a solution that is there already: after the first frame no memory is asked for.
     ///
     /// The workspace is that of this solver; that of another is replaced. Frames solved with one workspace follow each
-    /// other: whether a frame slips depends on the one before.
+    /// other: whether a frame slips depends on the one before, and smoothing averages over them.
     ///
     /// # Errors
     ///
@@ -77,8 +96,16 @@ impl Solver {
         solution: &mut Solution,
     ) -> Result<(), SolverError> {
         self.fit(workspace);
+        let status = self.reader.decode(frame, workspace.b.as_mut_slice())?;
+        self.reader.average(&mut workspace.average, status, workspace.b.as_mut_slice());
+        let reading = self.reader.judge(status, &mut workspace.b);
+        self.solve_reading(workspace, &reading, solution);
+        Ok(())
+    }
+
+    fn solve_reading(&self, workspace: &mut Workspace, reading: &Reading, solution: &mut Solution) {
         let mut census = Census::default();
-        match self.reader.read(frame, &mut workspace.b)? {
+        match *reading {
             Reading::Nothing(status) => solution.reset(status, self.field_length()),
             Reading::Contact { contact, status } => {
                 solution.reset(status, self.solved_length());
@@ -87,7 +114,6 @@ impl Solver {
             }
         }
         self.finish(workspace, census, solution);
-        Ok(())
     }
 
     /// Finds the bodies of the workspace's stress, solved as that of one; where there are several, solves them.
@@ -131,7 +157,7 @@ impl Solver {
     pub(crate) fn see<'a>(&self, workspace: &'a mut Workspace, frame: &[f64]) -> Result<Option<Seen<'a>>, SolverError> {
         self.fit(workspace);
         let Workspace { b, products, .. } = workspace;
-        let Reading::Contact { contact, .. } = self.reader.read(frame, b)? else { return Ok(None) };
+        let Reading::Contact { contact, .. } = self.reader.read(Given::Values(frame), b)? else { return Ok(None) };
         let b = b.as_slice();
         Ok(match (&self.products, products) {
             (Products::Paper(paper), Scratch::Paper(frame)) => Some(see(&paper.engine, frame, b, contact)),
@@ -151,6 +177,41 @@ impl Solver {
         &self,
         workspace: &mut Workspace,
         frames: &[F],
+        solutions: &mut Vec<Solution>,
+    ) -> Result<(), SolverError> {
+        self.fit(workspace);
+        if !self.reader.averages() {
+            let given: Vec<Given<'_>> = frames.iter().map(|frame| Given::Values(frame.as_ref())).collect();
+            return self.solve_given(workspace, &given, solutions);
+        }
+        let decoded = self.averaged(&mut workspace.average, frames.iter().map(AsRef::as_ref))?;
+        self.solve_given(workspace, &decoded.given(), solutions)
+    }
+
+    /// Decodes frames that follow each other, and averages them.
+    pub(super) fn averaged<'a>(
+        &self,
+        average: &mut Average,
+        frames: impl Iterator<Item = &'a [f64]>,
+    ) -> Result<Decoded, SolverError> {
+        let taxels = self.taxels();
+        let mut decoded = Decoded { taxels, stress: Vec::new(), statuses: Vec::new() };
+        for frame in frames {
+            let begin = decoded.stress.len();
+            decoded.stress.resize(begin + taxels, 0.0);
+            let stress = &mut decoded.stress[begin..];
+            let status = self.reader.decode(frame, stress)?;
+            self.reader.average(average, status, stress);
+            decoded.statuses.push(status);
+        }
+        Ok(decoded)
+    }
+
+    /// As [`Solver::solve_batch`], of frames that smoothing is done with.
+    pub(super) fn solve_given(
+        &self,
+        workspace: &mut Workspace,
+        frames: &[Given<'_>],
         solutions: &mut Vec<Solution>,
     ) -> Result<(), SolverError> {
         self.fit(workspace);
@@ -176,23 +237,27 @@ impl Solver {
             }
             _ => {
                 let mut pairs = frames.iter().zip(solutions);
-                pairs.try_for_each(|(frame, solution)| self.solve_into(workspace, frame.as_ref(), solution))
+                pairs.try_for_each(|(&frame, solution)| {
+                    let reading = self.reader.read(frame, &mut workspace.b)?;
+                    self.solve_reading(workspace, &reading, solution);
+                    Ok(())
+                })
             }
         }
     }
 
     /// Solves many frames with shared products.
-    fn solve_together<F: AsRef<[f64]>, const W: usize>(
+    fn solve_together<const W: usize>(
         &self,
         workspace: &mut Workspace,
         batch: &mut BatchFrame<W>,
-        frames: &[F],
+        frames: &[Given<'_>],
         solutions: &mut [Solution],
     ) -> Result<(), SolverError> {
         for (frames, solutions) in frames.chunks(FRAMES).zip(solutions.chunks_mut(FRAMES)) {
             batch.clear();
-            for (index, (frame, solution)) in frames.iter().zip(&mut *solutions).enumerate() {
-                match self.reader.read(frame.as_ref(), &mut workspace.b)? {
+            for (index, (&frame, solution)) in frames.iter().zip(&mut *solutions).enumerate() {
+                match self.reader.read(frame, &mut workspace.b)? {
                     Reading::Nothing(status) => solution.reset(status, self.field_length()),
                     Reading::Contact { contact, status } => {
                         solution.reset(status, self.solved_length());
@@ -201,11 +266,11 @@ impl Solver {
                 }
             }
             batch.solve(&self.friction, &mut workspace.friction, solutions);
-            for (frame, solution) in frames.iter().zip(solutions) {
+            for (&frame, solution) in frames.iter().zip(solutions) {
                 let mut census = Census::default();
                 // Its stress, and its status before it was solved, once more: they are kept of no frame.
                 if self.finder.is_some()
-                    && let Reading::Contact { status, .. } = self.reader.read(frame.as_ref(), &mut workspace.b)?
+                    && let Reading::Contact { status, .. } = self.reader.read(frame, &mut workspace.b)?
                 {
                     census = self.tell_apart(workspace, status, solution);
                 }

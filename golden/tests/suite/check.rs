@@ -28,7 +28,7 @@ fn stress(design: &Design, scene: &Scene) -> Vec<Vec<f64>> {
     let frames = scene.frames().unwrap().into_iter().map(|frame| frame.stress);
     frames
         .map(|mut frame| {
-            design.input.deliver(&mut frame);
+            design.deliver(&mut frame);
             frame
         })
         .collect()

@@ -12,7 +12,7 @@ use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-fn shipped(name: &str) -> Design {
+pub fn shipped(name: &str) -> Design {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs").join(format!("{name}.toml"));
     Design::load(&path).unwrap()
 }

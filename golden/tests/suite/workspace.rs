@@ -7,6 +7,7 @@ use golden::design::{
     Correction, Design, ErrorOutput, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind, Slip,
 };
 use golden::estimators::line;
+use golden::smoothing::Average;
 use golden::solver::{PIECE, Slips, Solution, Solver, Status, co, op, we};
 use nalgebra::DVector;
 
@@ -254,7 +255,12 @@ fn all_cores_give_what_one_gives() {
     assert!((1..frames.len()).contains(&slipping), "{slipping}");
     let mut found = vec![Solution::zeros(Status::default(), 0); frames.len()];
     let places = found.chunks_mut(PIECE);
-    solver.solve_on_all_cores(&frames.concat(), places, |place, index, found| place[index].clone_from(found)).unwrap();
+    let mut average = Average::default();
+    solver
+        .solve_on_all_cores(&frames.concat(), &mut average, places, |place, index, found| {
+            place[index].clone_from(found);
+        })
+        .unwrap();
     let mut slips = Slips::default();
     solver.follow_slips(
         &mut slips,
@@ -266,8 +272,10 @@ fn all_cores_give_what_one_gives() {
     assert_eq!(found, expected);
     // A single one as if it had come alone.
     let mut alone = Solution::zeros(Status::default(), 0);
-    solver.solve_on_all_cores(&frames[0], [&mut alone], |place, _, found| place.clone_from(found)).unwrap();
+    solver
+        .solve_on_all_cores(&frames[0], &mut average, [&mut alone], |place, _, found| place.clone_from(found))
+        .unwrap();
     assert_eq!(alone, solver.solve(&frames[0]).unwrap());
-    let said = solver.solve_on_all_cores(&[0.0; 21], [()], |(), _, _| ()).unwrap_err().to_string();
+    let said = solver.solve_on_all_cores(&[0.0; 21], &mut average, [()], |(), _, _| ()).unwrap_err().to_string();
     assert!(said.contains("the frame has 1 values, the sensor 20 taxels"), "{said}");
 }

@@ -102,9 +102,11 @@ fn packets(plan: &Plan) -> Result<Vec<Vec<u32>>, SceneError> {
     let of_scene = |scene: Scene| {
         // On a half-space stress has a closed form, so no layer is too thin.
         let frames = scene.frames().or_else(|_| Scene { medium: Medium::HalfSpace, ..scene }.frames())?;
-        let value = |(taxel, &pascal): (usize, &f64)| plan.design.input.from_pa(taxel, pascal);
-        let packet = |stress: &[f64]| streams.packet(&stress.iter().enumerate().map(value).collect::<Vec<_>>());
-        Ok::<_, SceneError>(frames.iter().map(|frame| packet(&frame.stress)).collect::<Vec<_>>())
+        let packet = |mut stress: Vec<f64>| {
+            plan.design.read_stress(&mut stress);
+            streams.packet(&stress)
+        };
+        Ok::<_, SceneError>(frames.into_iter().map(|frame| packet(frame.stress)).collect::<Vec<_>>())
     };
     let scene = Scene { sweep_deg: DIRECTIONS_DEG.to_vec(), ..Scene::standing(&plan.design.sensor) };
     let mut packets = of_scene(scene.clone())?;

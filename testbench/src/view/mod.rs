@@ -173,7 +173,7 @@ pub fn frames(
             origin: frames.origin.clone(),
             frame,
             sensor: design.sensor.clone(),
-            stress: stress.iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect(),
+            stress: design.stress_of(stress),
             truth: frames.truth_of(frame),
             // The model's answers have the length that it was made for.
             answer: decode(&words).unwrap_or_default(),

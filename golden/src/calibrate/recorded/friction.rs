@@ -5,7 +5,7 @@ use super::holds::Hold;
 use crate::calibrate::observer::{Observer, Sample};
 use crate::calibrate::samples::{stream, target};
 use crate::calibrate::{CalibrateError, contacts, fit_friction_correction};
-use crate::design::{Design, Estimator, Input};
+use crate::design::{Design, Estimator};
 use crate::estimators::joint::{CUBIC_LIMIT, Joint, JointConstants, NetworkScratch};
 
 use super::RecordedError;
@@ -154,8 +154,7 @@ fn samples(
     dragged: &[usize],
 ) -> Result<Vec<Seen>, CalibrateError> {
     let constants = &design.algorithm.joint;
-    let Input { tension, dead, .. } = design.input.clone();
-    let plain = Design { input: Input { dead, tension, ..Input::default() }, ..design.clone() };
+    let plain = Design { input: design.input.of_pascals(), ..design.clone() };
     let half_window = constants
         .correction
         .as_ref()

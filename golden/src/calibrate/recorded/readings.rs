@@ -92,10 +92,9 @@ impl Readings {
         remarks: &mut Vec<String>,
     ) -> Design {
         let mut calibrated = design.clone();
-        let Input { tension, dead, .. } = design.input.clone();
         let full_scale = full_scale(design, largest, remarks);
         let hardware = Hardware { full_scale_pa: full_scale, ..design.hardware.clone() };
-        let mut input = Input { dead, tension, ..Input::default() };
+        let mut input = Input { pa_per_count: None, curve: None, calibration: None, ..design.input.clone() };
         match shape {
             // Pascals are negative where something presses.
             Shape::Line(slope) => input.pa_per_count = Some(-self.sign * slope),

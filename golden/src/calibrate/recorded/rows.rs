@@ -8,8 +8,9 @@
 
 use nalgebra::DVector;
 
+use crate::crosstalk::Crosstalk;
 use crate::dead_taxels::DeadTaxels;
-use crate::design::{Design, Input, Outputs, PlanKind};
+use crate::design::{Design, Outputs, PlanKind};
 use crate::names::MatrixName;
 use crate::parity::FoldedMatrix;
 use crate::solver::{Solution, Solver, SolverError, Status, Workspace};
@@ -23,6 +24,7 @@ pub(super) struct Rows {
     workspace: Workspace,
     solution: Solution,
     dead: DeadTaxels,
+    crosstalk: Option<Crosstalk>,
     c33inv: FoldedMatrix,
     /// Column sums of D30, D31, D32.
     sums: [Vec<f64>; 3],
@@ -31,8 +33,7 @@ pub(super) struct Rows {
 impl Rows {
     pub(super) fn new(design: &Design) -> Result<Self, SolverError> {
         let mut design = design.clone();
-        let Input { tension, dead, .. } = design.input;
-        design.input = Input { dead, tension, ..Input::default() };
+        design.input = design.input.of_pascals();
         design.hardware.full_scale_pa = 1e3 * PEAK;
         design.algorithm.noise_floor_pa = 1.0;
         if design.algorithm.plan == PlanKind::Reduced {
@@ -51,6 +52,7 @@ impl Rows {
             solution: Solution::zeros(Status::default(), 0),
             solver,
             dead,
+            crosstalk: design.crosstalk(),
             c33inv,
             sums,
         })
@@ -78,13 +80,21 @@ impl Rows {
         let [mu_x, mu_y] = [self.solution.mu_x, self.solution.mu_y];
         let mut stress: Vec<f64> = pressing.iter().map(|stress| -stress).collect();
         self.dead.replace(&mut stress);
-        let y = &self.c33inv * &DVector::from_vec(stress.clone());
+        let read = stress.clone();
+        if let Some(crosstalk) = &self.crosstalk {
+            crosstalk.remove(&mut stress);
+        }
+        let y = &self.c33inv * &DVector::from_vec(stress);
         let [s30, s31, s32] = &self.sums;
         let q = y.iter().enumerate().map(|(k, &y)| if y < 0.0 { 1.0 - mu_x * s31[k] - mu_y * s32[k] } else { -s30[k] });
         let q = DVector::from_iterator(y.len(), q);
         let mut weights = (&self.c33inv * &q).as_slice().to_vec();
+        // What removes crosstalk is its own transpose.
+        if let Some(crosstalk) = &self.crosstalk {
+            crosstalk.remove(&mut weights);
+        }
         // Gain of the estimator, and what a filter changes, are in the force that the solver finds.
-        let linear: f64 = weights.iter().zip(&stress).map(|(weight, stress)| weight * stress).sum();
+        let linear: f64 = weights.iter().zip(&read).map(|(weight, stress)| weight * stress).sum();
         let factor = fz / linear;
         if !factor.is_finite() || fz >= 0.0 {
             return None;

@@ -36,12 +36,14 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     let wrong = |(problem, remedy): loads::Wrong| RecordedError::Recording { name: name(), problem, remedy };
     let (frames, measured, mut remarks) = loads::pair(design, frames, measured).map_err(wrong)?;
     remarks.splice(0..0, measured.remarks.iter().cloned());
+    // With crosstalk a taxel under the pressure of all reads so many times that.
+    let reads = design.crosstalk().map_or(1.0, |crosstalk| crosstalk.under_uniform_pressure());
     // A pressure is a load at one place.
     let as_loads = Measured {
         forces: measured
             .pressures
             .iter()
-            .map(|pressure| [None, None, pressure.map(|pressure| -pressure.abs())])
+            .map(|pressure| [None, None, pressure.map(|pressure| -reads * pressure.abs())])
             .collect(),
         contacts: Some(vec![String::new(); measured.pressures.len()]),
         ..Measured::default()
@@ -51,7 +53,10 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     let mut work = Uniform::new(design, &parted);
     let mut design = design.clone();
     let dead = work.dead(&design);
-    let most = MOST_DEAD.min(design.sensor.taxels() / 2);
+    let most = match design.input.room {
+        0 => MOST_DEAD.min(design.sensor.taxels() / 2),
+        room => room,
+    };
     if dead.len() > most {
         return Err(wrong((
             format!("{} of {} taxels read next to nothing under pressure", dead.len(), design.sensor.taxels()),
@@ -98,8 +103,8 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
     let shown = parted.all.iter().map(|hold| Hold {
         frames: [hold.frames.start, hold.frames.end - 1],
         place: 0,
-        measured_n: hold.load,
-        found_n: mean(hold),
+        measured_n: hold.load / reads,
+        found_n: mean(hold) / reads,
     });
     let mut recorded = Recorded {
         holds: shown.collect(),
@@ -114,7 +119,7 @@ pub fn fit_uniform(design: &Design, frames: &[Vec<f64>], measured: &Measured) ->
         points: work.readings.points(&calibrated.input),
         contacts: parted.contacts,
         places: 0,
-        loads: [steps[0][0], steps.last().map_or(0.0, |last| last[1])],
+        loads: [steps[0][0], steps.last().map_or(0.0, |last| last[1])].map(|load| load / reads),
         determined: Vec::new(),
         undetermined: Vec::new(),
         remarks,

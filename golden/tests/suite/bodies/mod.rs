@@ -8,6 +8,7 @@ use golden::bodies::Body;
 use golden::design::{Design, PlanKind, Slip};
 use golden::metrics::{BodyErrors, Quantiles};
 use golden::scene::SceneFrame;
+use golden::smoothing::Average;
 use golden::solver::{PIECE, Slips, Solution, Solver, Status};
 use kinds::{Kind, frame};
 
@@ -298,7 +299,9 @@ fn each_body_slips_by_itself() {
     let mut on_cores = vec![Solution::zeros(Status::default(), 0); 4];
     let places = on_cores.chunks_mut(PIECE);
     solver
-        .solve_on_all_cores(&sequence.concat(), places, |place, index, found| place[index].clone_from(found))
+        .solve_on_all_cores(&sequence.concat(), &mut Average::default(), places, |place, index, found| {
+            place[index].clone_from(found);
+        })
         .unwrap();
     solver.follow_slips(&mut Slips::default(), of_slips(&mut on_cores));
     assert_eq!(on_cores, one_by_one);

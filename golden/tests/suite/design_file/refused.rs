@@ -52,6 +52,16 @@ fn choices_that_are_none() {
 }
 
 #[test]
+fn crosstalk_and_smoothing_in_their_ranges() {
+    let sensor = |keys: &str| with("depth_mm = 3.0", &format!("depth_mm = 3.0\n{keys}"));
+    refused(&sensor("crosstalk = 0.2"), &["sensor.crosstalk", "is 0.2", "0.0001 to 0.1"]);
+    refused(&sensor("smoothing = 9"), &["sensor.smoothing", "is 9", "1 to 8"]);
+    refused(&sensor("smoothing = 4\nnoise = 0"), &["sensor.smoothing", "sensor.noise is 0", "check --unloaded"]);
+    let design = Design::from_toml(&sensor("crosstalk = 0.02\nsmoothing = 4"), "pad.toml").unwrap();
+    assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
+}
+
+#[test]
 fn unknown_and_missing_keys() {
     refused(&with("depth_mm = 3.0", "depth_mm = 3.0\nwidth = 2"), &["width", "line 8", "depth_mm"]);
     refused(&format!("{MINIMAL}[hardwear]\nlanes = 3\n"), &["hardwear", "did you mean `hardware`?"]);

@@ -68,8 +68,7 @@ pub fn field(designs: &[&Design], scene: Option<&SweepScene>) -> Result<(Vec<Fig
         answer.resultant[2]
     );
     let sensor = &design.sensor;
-    let felt: Vec<f64> =
-        frames.stress[0].iter().enumerate().map(|(taxel, &value)| design.input.to_pa(taxel, value)).collect();
+    let felt: Vec<f64> = design.stress_of(&frames.stress[0]);
     let found = field_plot::forces(sensor, answer, Some(&truth));
     let mut figures = vec![
         Figure { svg: field_plot::stress(sensor, &felt), caption: "what the taxels feel".to_owned() },

@@ -1,0 +1,94 @@
+//! Crosstalk of row-column arrays: what it does to forces, and that the key undoes it.
+
+use golden::calibrate::recorded::{Measured, fit_forces};
+use golden::design::Design;
+use golden::metrics::Quantiles;
+use golden::scene::{Kind, SceneFrame};
+use golden::solver::Solver;
+
+use crate::dead_taxels::shipped;
+
+/// Each reading has this share of the sums of its row and of its column added.
+const SHARE: f64 = 0.02;
+
+/// Errors of the normal and of the tangential force in percent of the normal one.
+fn errors(design: &Design, frames: &[(Vec<f64>, &SceneFrame)]) -> [Quantiles; 2] {
+    let solver = Solver::new(design).unwrap();
+    let of = |(read, truth): &(Vec<f64>, &SceneFrame)| {
+        let found = solver.solve(read).unwrap().resultant;
+        let [x, y, z] = [0, 1, 2].map(|axis| found[axis] - truth.force[axis]);
+        [z.abs(), x.hypot(y)].map(|error| 100.0 * error / truth.force[2].abs())
+    };
+    let found: Vec<[f64; 2]> = frames.iter().map(of).collect();
+    [0, 1].map(|kind| Quantiles::of(found.iter().map(|errors| errors[kind]).collect()))
+}
+
+#[test]
+fn the_key_undoes_crosstalk() {
+    let plain = shipped("sensor1-fast");
+    let mut crossed = plain.clone();
+    crossed.input.crosstalk = SHARE;
+    let contacts = Kind::Sliding.frames(&plain.sensor, 0.5, 90_000..90_200).unwrap();
+    let read = |design: &Design| -> Vec<(Vec<f64>, &SceneFrame)> {
+        let deliver = |truth: &SceneFrame| {
+            let mut frame = truth.stress.clone();
+            design.deliver(&mut frame);
+            frame
+        };
+        contacts.iter().map(|truth| (deliver(truth), truth)).collect()
+    };
+    let expected = errors(&plain, &read(&plain));
+    let frames = read(&crossed);
+    let [before, after] = [&plain, &crossed].map(|design| errors(design, &frames));
+    for (name, [normal, tangential]) in [("none", &expected), ("uncorrected", &before), ("corrected", &after)] {
+        println!("{name}: normal {normal:.2?} %, tangential {tangential:.2?} %");
+    }
+    assert!(before[0].median > 30.0, "crosstalk of 2 % is no small matter");
+    for (after, expected) in after.iter().zip(&expected) {
+        assert!((after.median - expected.median).abs() < 1e-6 && (after.worst - expected.worst).abs() < 1e-6);
+    }
+    // What stands for a dead taxel has crosstalk, too.
+    let mut dead = plain.clone();
+    dead.input.dead = vec![44];
+    let without = errors(&dead, &read(&dead));
+    let mut both = crossed.clone();
+    both.input.dead = vec![44];
+    let with = errors(&both, &read(&both));
+    println!("a dead taxel: {without:.2?}, with crosstalk {with:.2?}");
+    for (with, without) in with.iter().zip(&without) {
+        assert!(with.median < without.median + 0.1 && with.most < without.most + 0.5);
+    }
+}
+
+#[test]
+fn gains_are_found_through_crosstalk() {
+    let mut truth = shipped("sensor1-fast");
+    truth.input.crosstalk = SHARE;
+    truth.input.pa_per_count = Some(-10.0);
+    let contacts = Kind::Sliding.frames(&truth.sensor, 0.0, 91_000..91_030).unwrap();
+    let solver = Solver::new(&shipped("sensor1-fast")).unwrap();
+    let mut frames = vec![vec![0.0; truth.sensor.taxels()]; 5];
+    let mut forces = vec![[None, None, Some(0.0)]; 5];
+    for contact in &contacts {
+        let mut frame = contact.stress.clone();
+        // The solver's own error without crosstalk is none of the calibration's.
+        let load = solver.solve(&frame).unwrap().resultant[2];
+        truth.deliver(&mut frame);
+        for rest in 0..2 {
+            frames.push(if rest == 0 { frame.clone() } else { vec![0.0; truth.sensor.taxels()] });
+            forces.push([None, None, Some(if rest == 0 { load } else { 0.0 })]);
+        }
+    }
+    let mut guess = truth.clone();
+    guess.input.pa_per_count = Some(-8.0);
+    let measured = Measured { forces, ..Measured::default() };
+    let found = fit_forces(&guess, &frames, &measured).unwrap();
+    let calibrated = Solver::new(&found.design).unwrap();
+    for (frame, force) in frames.iter().zip(&measured.forces).filter(|(_, force)| force[2] != Some(0.0)) {
+        let load = calibrated.solve(frame).unwrap().resultant[2];
+        let error = load / force[2].unwrap() - 1.0;
+        assert!(error.abs() < 0.03, "{load} {:?}", force[2]);
+    }
+    assert_eq!(found.design.input.crosstalk.to_bits(), SHARE.to_bits());
+    assert_eq!(found.design.input.noise.to_bits(), truth.input.noise.to_bits());
+}

@@ -1,0 +1,147 @@
+//! Averages over frames: what they follow, what restarts them, and the same in every way to solve many frames.
+
+#![allow(clippy::float_cmp)] // the same bits are meant
+
+use golden::design::Design;
+use golden::scene::{Kind, normal};
+use golden::smoothing::{Average, RESTART, Smoothing};
+use golden::solver::{PIECE, Solution, Solver, Status};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+const NOISE: f64 = 0.01;
+
+/// Frames of 100 taxels with one that reads 1 and noise.
+fn noisy(random: &mut ChaCha8Rng) -> Vec<f64> {
+    (0..100).map(|taxel| if taxel == 44 { -1.0 } else { 0.0 } + NOISE * normal(random)).collect()
+}
+
+#[test]
+fn noise_alone_hardly_ever_restarts() {
+    const FRAMES: usize = 40_000;
+    for k in [1, 2, 4, 8] {
+        let smoothing = Smoothing::new(k, NOISE);
+        let (mut average, mut random) = (Average::default(), ChaCha8Rng::seed_from_u64(7));
+        let mut restarts = 0;
+        let (mut squares, mut count) = (0.0, 0.0);
+        for number in 0..FRAMES {
+            let frame = noisy(&mut random);
+            let mut smoothed = frame.clone();
+            smoothing.take(&mut average, &mut smoothed);
+            restarts += usize::from(number > 0 && smoothed == frame);
+            if number > 2000 {
+                squares += smoothed[..44].iter().map(|stress| stress * stress).sum::<f64>();
+                count += 44.0;
+            }
+        }
+        let weight = 0.5_f64.powi(k as i32);
+        let expected = NOISE * (weight / (2.0 - weight)).sqrt();
+        let found = f64::sqrt(squares / count);
+        println!("k = {k}: {restarts} restarts of {FRAMES}, noise {found:.6}, expected {expected:.6}");
+        assert!(restarts * 10_000 < FRAMES, "k = {k}: {restarts}");
+        assert!((found / expected - 1.0).abs() < 0.03, "k = {k}: {found} {expected}");
+    }
+}
+
+#[test]
+fn a_step_is_followed_at_once_or_within_its_frames() {
+    for k in 1..=8 {
+        let smoothing = Smoothing::new(k, NOISE);
+        let mut average = Average::default();
+        let mut take = |stress: f64| {
+            let mut frame = [stress, -1.0];
+            smoothing.take(&mut average, &mut frame);
+            frame[0]
+        };
+        assert_eq!(take(0.0), 0.0);
+        let above = -1.01 * RESTART * NOISE;
+        assert_eq!(take(above), above, "a step above the limit restarts");
+        assert_eq!(take(above), above, "what is constant stays");
+        // Below the limit it is left by a factor of 1 - 2^-k with each frame.
+        let below = above - 0.9 * RESTART * NOISE;
+        let frames = 5 * (1 << k);
+        let last = (0..frames).map(|_| take(below)).last().unwrap();
+        assert!((last - below).abs() < 0.01 * (below - above).abs(), "k = {k}: {last} {below}");
+        assert_eq!(take(0.0), 0.0, "a release restarts");
+    }
+}
+
+fn design(more: &str) -> Design {
+    let text = format!(
+        "format = 3\nname = \"pad\"\n[sensor]\ncolumns = 6\nrows = 5\npitch_mm = [4.0, 3.0]\ndepth_mm = 3.0\nnoise = 0.01\n{more}"
+    );
+    Design::from_toml(&text, "pad.toml").unwrap()
+}
+
+#[test]
+fn frames_are_averaged_alike_however_they_are_solved() {
+    let smooth = design("smoothing = 2\ndead = [3]\ncrosstalk = 0.01\n");
+    let plain = design("dead = [3]\ncrosstalk = 0.01\n");
+    let [solver, without] = [&smooth, &plain].map(|design| Solver::new(design).unwrap());
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let contacts = Kind::Sliding.frames(&smooth.sensor, 0.5, 1..3).unwrap();
+    let mut frames = Vec::new();
+    let mut frame_of = |contact: usize| {
+        let mut stress = contacts[contact].stress.clone();
+        let peak = stress.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+        for stress in &mut stress {
+            *stress += NOISE * peak * normal(&mut random);
+        }
+        smooth.deliver(&mut stress);
+        stress
+    };
+    for number in 0..2 * PIECE + 5 {
+        frames.push(frame_of(usize::from(number % 40 >= 20)));
+    }
+    frames[9][0] = f64::NAN;
+    // By hand: averages of what is decoded, restarted where the contact changes.
+    let decoded: Vec<Vec<f64>> =
+        frames.iter().map(|frame| (0..30).map(|taxel| smooth.input.to_pa(taxel, frame[taxel])).collect()).collect();
+    let (mut expected, mut average): (Vec<Solution>, Vec<f64>) = (Vec::new(), Vec::new());
+    for (number, frame) in decoded.iter().enumerate() {
+        if number == 9 {
+            expected.push(without.solve(frame).unwrap());
+            assert_eq!(expected[9].status, Status::NOT_FINITE);
+            continue;
+        }
+        if number % 20 == 0 {
+            average.clone_from(frame);
+        } else {
+            average.iter_mut().zip(frame).for_each(|(average, stress)| *average += (stress - *average) / 4.0);
+        }
+        expected.push(without.solve(&average).unwrap());
+    }
+    let mut workspace = solver.workspace();
+    let mut one_by_one = vec![Solution::zeros(Status::default(), 0); frames.len()];
+    for (frame, solution) in frames.iter().zip(&mut one_by_one) {
+        solver.solve_into(&mut workspace, frame, solution).unwrap();
+    }
+    assert_eq!(one_by_one, expected);
+    let close = |found: &[Solution]| {
+        for (found, expected) in found.iter().zip(&expected) {
+            assert_eq!(found.status, expected.status);
+            let far = (0..3).map(|axis| (found.resultant[axis] - expected.resultant[axis]).abs()).fold(0.0, f64::max);
+            assert!(far < 1e-9, "{far}");
+        }
+    };
+    // In batches that go on with the average.
+    let (mut workspace, mut together, mut some) = (solver.workspace(), Vec::new(), Vec::new());
+    for part in frames.chunks(50) {
+        solver.solve_batch(&mut workspace, part, &mut some).unwrap();
+        together.append(&mut some);
+    }
+    close(&together);
+    // On all cores, in two calls and a single frame.
+    let mut average = Average::default();
+    let mut on_cores = vec![Solution::zeros(Status::default(), 0); frames.len()];
+    for (begin, end) in [(0, 70), (70, 71), (71, frames.len())] {
+        let places = on_cores[begin..end].chunks_mut(PIECE);
+        let values = frames[begin..end].concat();
+        solver
+            .solve_on_all_cores(&values, &mut average, places, |place, index, found| place[index].clone_from(found))
+            .unwrap();
+    }
+    close(&on_cores);
+    // A frame alone has no average.
+    assert_eq!(solver.solve(&frames[5]).unwrap(), without.solve(&frames[5]).unwrap());
+}
