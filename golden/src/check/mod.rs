@@ -6,6 +6,7 @@
 mod beyond;
 mod bodies;
 mod broken;
+mod crosstalk;
 mod dead;
 pub(crate) mod ends;
 mod order;
@@ -46,6 +47,8 @@ pub enum Kind {
     Tare,
     /// Taxels that read the same whatever presses around them, or much where nothing does.
     Dead,
+    /// Taxels read a share of their rows and columns.
+    Crosstalk,
     /// The taxels stand in another order.
     Order,
     /// Readings at the end of the converter's range, below the full scale.
@@ -100,6 +103,18 @@ const FAINT: f64 = 2e-3;
 ///
 /// `matrices` are those of the design; without them the order of the taxels is not looked at.
 pub fn check(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
+    if let Some(crosstalk::Found { share, message }) = crosstalk::check(design, frames) {
+        // What else is wrong shows without it.
+        let mut corrected = design.clone();
+        corrected.input.crosstalk = share;
+        let mut findings = check_mended(&corrected, frames, matrices);
+        findings.insert(0, Finding { kind: Kind::Crosstalk, message });
+        return findings;
+    }
+    check_mended(design, frames, matrices)
+}
+
+fn check_mended(design: &Design, frames: &[Vec<f64>], matrices: Option<&Matrices>) -> Vec<Finding> {
     // One taxel that is broken would pass for another order, unit or tare.
     let stress = in_pascals(design, frames);
     let Some(broken::Broken { message, mended }) = broken::check(design, frames, &stress) else {
@@ -272,6 +287,11 @@ fn farthest(values: &[f64]) -> f64 {
 
 fn largest_of(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0_f64, |peak, value| peak.max(value.abs()))
+}
+
+fn middle(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 fn holds(frames: usize, of: usize) -> bool {

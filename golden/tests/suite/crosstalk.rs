@@ -1,10 +1,13 @@
 //! Crosstalk of row-column arrays: what it does to forces, and that the key undoes it.
 
 use golden::calibrate::recorded::{Measured, fit_forces};
+use golden::check::{Kind as Finds, check};
 use golden::design::Design;
 use golden::metrics::Quantiles;
-use golden::scene::{Kind, SceneFrame};
+use golden::scene::{Kind, SceneFrame, normal};
 use golden::solver::Solver;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 
 use crate::dead_taxels::shipped;
 
@@ -91,4 +94,60 @@ fn gains_are_found_through_crosstalk() {
     }
     assert_eq!(found.design.input.crosstalk.to_bits(), SHARE.to_bits());
     assert_eq!(found.design.input.noise.to_bits(), truth.input.noise.to_bits());
+}
+
+/// Contacts with crosstalk and noise, as a design's sensor delivers them.
+fn recorded(
+    design: &Design,
+    contacts: &[SceneFrame],
+    (share, noise): (f64, f64),
+    random: &mut ChaCha8Rng,
+) -> Vec<Vec<f64>> {
+    let mut crossed = design.clone();
+    crossed.input.crosstalk = share;
+    let mut read = |contact: &SceneFrame| {
+        let mut frame = contact.stress.clone();
+        crossed.deliver(&mut frame);
+        let peak = frame.iter().fold(0.0_f64, |peak, stress| peak.max(stress.abs()));
+        for stress in &mut frame {
+            *stress += noise * peak * normal(random);
+        }
+        frame
+    };
+    contacts.iter().map(&mut read).collect()
+}
+
+#[test]
+fn check_measures_crosstalk_and_invents_none() {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let (mut sets, mut worst) = (0, 0.0_f64);
+    for name in ["sensor1-wide", "sensor2-clipped-wide"] {
+        let design = shipped(name);
+        for kind in Kind::ALL {
+            let contacts = kind.frames(&design.sensor, 0.5, 500..524).unwrap();
+            for noise in [0.0, 0.01, 0.02] {
+                let frames = recorded(&design, &contacts, (0.0, noise), &mut random);
+                let findings = check(&design, &frames, None);
+                let invented = findings.iter().find(|finding| finding.kind == Finds::Crosstalk);
+                assert!(invented.is_none(), "{name}, {kind}, noise {noise}: {invented:?}");
+                sets += 1;
+            }
+            for (share, noise) in [(0.01, 0.01), (0.02, 0.01), (0.05, 0.0)] {
+                let frames = recorded(&design, &contacts, (share, noise), &mut random);
+                let findings = check(&design, &frames, None);
+                assert_eq!(findings[0].kind, Finds::Crosstalk, "{name}, {kind}, {share}: {findings:?}");
+                let said = findings[0].to_string();
+                let found: f64 = said.rsplit("sensor.crosstalk = ").next().unwrap().parse().unwrap();
+                // What is left of F_z's error.
+                let left = 100.0 * ((1.0 + 20.0 * share) / (1.0 + 20.0 * found) - 1.0).abs();
+                worst = worst.max(left);
+                assert!(left < 3.0, "{name}, {kind}, {share}: {said}");
+                // With the key it is known, and nothing else was found because of it.
+                let mut corrected = design.clone();
+                corrected.input.crosstalk = found;
+                assert_eq!(check(&corrected, &frames, None), findings[1..], "{name}, {kind}, {share}");
+            }
+        }
+    }
+    println!("0 of {sets} sets without crosstalk have a finding; the shares found leave {worst:.2} % of F_z at most");
 }
