@@ -1,6 +1,9 @@
 //! A design that was made from another one, and the files beside it: where they go, and what they must not overwrite.
 
+use std::fs;
 use std::path::{Path, PathBuf};
+
+use toml_edit::{DocumentMut, Item, TableLike};
 
 use crate::design::{CALIBRATION_FILE, CURVE_FILE, Design, DesignError, FileNames, JointConstants, WEIGHTS_FILE};
 
@@ -43,6 +46,8 @@ pub fn keep_apart(out: &Path, inputs: &[&Path]) -> Result<(), ResolvedError> {
 pub struct Resolved<'a> {
     design: &'a Path,
     names: FileNames,
+    /// The file that it was made from, whose comments it keeps.
+    source: Option<String>,
 }
 
 impl<'a> Resolved<'a> {
@@ -55,7 +60,7 @@ impl<'a> Resolved<'a> {
     pub fn new(design: &Design, path: &Path, out: &'a Path) -> Result<Self, ResolvedError> {
         let named = Design::files_named_in(path)?;
         let inputs: Vec<&Path> = named.iter().map(AsRef::as_ref).chain([path]).collect();
-        Self::beside(design, &inputs, out)
+        Ok(Self { source: fs::read_to_string(path).ok(), ..Self::beside(design, &inputs, out)? })
     }
 
     /// The same of a design that was made from these files, of none perhaps.
@@ -65,7 +70,7 @@ impl<'a> Resolved<'a> {
     /// [`ResolvedError::Overwrites`] and [`ResolvedError::Calibration`].
     pub fn beside(design: &Design, inputs: &[&Path], out: &'a Path) -> Result<Self, ResolvedError> {
         let FileNames { weights, .. } = FileNames::of(&stem(out));
-        let resolved = Self { design: out, names: FileNames { weights, ..FileNames::default() } };
+        let resolved = Self { design: out, names: FileNames { weights, ..FileNames::default() }, source: None };
         keep_apart(out, inputs)?;
         keep_apart(&resolved.path(WEIGHTS_FILE), inputs)?;
         if design.input.calibration.is_some() && resolved.path(CALIBRATION_FILE).exists() {
@@ -82,7 +87,8 @@ impl<'a> Resolved<'a> {
     pub fn anew(path: &Path, out: &'a Path) -> Result<Self, ResolvedError> {
         let named = Design::files_named_in(path)?;
         let inputs: Vec<&Path> = named.iter().map(AsRef::as_ref).chain([path]).collect();
-        let resolved = Self { design: out, names: FileNames::of(&stem(out)) };
+        let source = fs::read_to_string(path).ok();
+        let resolved = Self { design: out, names: FileNames::of(&stem(out)), source };
         resolved.all().iter().try_for_each(|output| keep_apart(output, &inputs))?;
         Ok(resolved)
     }
@@ -99,7 +105,9 @@ impl<'a> Resolved<'a> {
         let common = self.names.calibration == CALIBRATION_FILE;
         let files = design.files().into_iter().map(|(name, content)| (self.path(name), content));
         let files = files.filter(|(path, _)| !common || *path != self.path(CALIBRATION_FILE) || !path.exists());
-        let text = format!("# {remark}\n{}", design.to_toml_with(&self.names));
+        let keys = design.to_toml_with(&self.names);
+        let commented = self.source.as_ref().and_then(|source| with_comments(source, &keys));
+        let text = format!("# {remark}\n{}", commented.unwrap_or(keys));
         files.chain([(self.design.to_path_buf(), text)]).collect()
     }
 
@@ -119,6 +127,46 @@ impl<'a> Resolved<'a> {
         match Design::from_toml(&plain.to_toml(), &self.design.display().to_string()) {
             Ok(again) if again.input.calibration == design.input.calibration => Ok(()),
             _ => Err(ResolvedError::Calibration(self.path(CALIBRATION_FILE))),
+        }
+    }
+}
+
+/// What begins the first line of a resolved design.
+const RESOLVED: &str = "# Resolved by";
+
+/// The text of a design file with other keys, and its comments. `None` of a file with a base, whose keys stand elsewhere.
+fn with_comments(source: &str, keys: &str) -> Option<String> {
+    let own = if source.starts_with(RESOLVED) { source.split_once('\n')?.1 } else { source };
+    let mut document: DocumentMut = own.parse().ok()?;
+    if document.contains_key("base") {
+        return None;
+    }
+    update(document.as_table_mut(), keys.parse::<DocumentMut>().ok()?.as_table());
+    Some(document.to_string())
+}
+
+/// Makes the keys of a table those of another one; what stays keeps its comments.
+fn update(table: &mut dyn TableLike, keys: &dyn TableLike) {
+    let gone: Vec<String> = table.iter().map(|(key, _)| key.to_owned()).filter(|key| !keys.contains_key(key)).collect();
+    for key in gone {
+        table.remove(&key);
+    }
+    for (key, item) in keys.iter() {
+        match (table.get_mut(key), item) {
+            (Some(Item::Table(old)), Item::Table(new)) => update(old, new),
+            (Some(Item::Value(old)), new) => {
+                let decor = old.decor().clone();
+                // A table of the printed keys may stand in a line here.
+                *old = new.clone().into_value().unwrap_or_else(|_| old.clone());
+                *old.decor_mut() = decor;
+            }
+            _ => {
+                let mut item = item.clone();
+                if let Item::Table(new) = &mut item {
+                    new.set_position(None);
+                }
+                table.insert(key, item);
+            }
         }
     }
 }

@@ -100,8 +100,7 @@ pub fn run(args: &Args) -> message::Result {
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
         *scenes = rebase_scenes(scenes, folder(path), folder(out));
     }
-    let remark =
-        format!("Resolved by `sptfra calibrate`, seed {}: the constants of the joint estimator.", settings.seed);
+    let remark = format!("Resolved by `sptfra calibrate`, seed {}: the constants of the grid search.", settings.seed);
     write_together(&resolved.contents(&design, &remark))?;
 
     let constants = &design.algorithm.joint;

@@ -154,3 +154,24 @@ fn frames_of_another_order_are_told_of() {
     let warned = calibrate(&dead);
     assert!(warned.contains("38 (2, 6)"), "{warned}");
 }
+
+#[test]
+fn comments_and_order_of_a_design_file_stay() {
+    let folder = TempDir::new().unwrap();
+    let [pad, out, again] = ["pad.toml", "out.toml", "again.toml"].map(|name| folder.path().join(name));
+    let sensor = "# mine\n[sensor]\ncolumns = 6 # of them\nrows = 6\npitch_mm = [4.0, 4.0]\ndepth_mm = 3.0\n";
+    let algorithm = "\n[algorithm]\n# no filter\nfilter = { kind = \"none\" }\nestimator = \"joint\"\n";
+    fs::write(&pad, format!("# a pad\nformat = 3\nname = \"pad\"\n{sensor}{algorithm}")).unwrap();
+    let calibrate = |from, to| {
+        let output = sptfra(&["calibrate", text(from), "--quick", "--out", text(to)]);
+        assert!(output.status.success(), "{output:?}");
+        fs::read_to_string(to).unwrap()
+    };
+    let resolved = calibrate(&pad, &out);
+    let kept = ["# a pad\nformat = 3\nname = \"out\"\n", sensor, "# no filter\nfilter = { kind = \"none\" }\n"];
+    assert!(kept.iter().all(|part| resolved.contains(part)), "{resolved}");
+    assert!(resolved.contains("\n[algorithm.correction]\n"), "{resolved}");
+    let resolved = calibrate(&out, &again);
+    assert_eq!((resolved.matches("# Resolved by").count(), resolved.matches("# mine").count()), (1, 1), "{resolved}");
+    assert_eq!(Design::load(&again).unwrap().algorithm.joint, Design::load(&out).unwrap().algorithm.joint);
+}
