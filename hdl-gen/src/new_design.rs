@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use golden::calibrate::{CalibrateError, Settings, calibrate};
+use golden::calibrate::{CalibrateError, Settings, calibrate, standard_error};
 use golden::design::{
     DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Input, Kernel, Regularisation, Samples, Tension,
 };
@@ -132,6 +132,8 @@ impl NewDesign {
             (found.gain, found.friction_correction) = (gain, [c1, c3]);
             *design.algorithm.joint = found;
         }
+        stage("fitting the standard error to contacts of all kinds");
+        design.algorithm.standard_error = Some(standard_error(&design, Settings::constants().seed, &mut |_| ())?);
         let text = design.to_commented_toml();
         Design::from_toml(&text, "sptfra new")?;
         Ok(text)

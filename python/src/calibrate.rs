@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use golden::calibrate::{Work, calibrate as fit};
-use golden::design::{Design as Checked, TrainingSet};
+use golden::calibrate::{CalibrateError, ERROR_FRAMES, Work, calibrate as fit, standard_error};
+use golden::design::{Design as Checked, Estimator, TrainingSet};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
@@ -35,18 +35,24 @@ pub fn calibrate(
     }
     let training_set = design.algorithm.joint.training_set;
     let settings = Work { seed, hidden, quick, thorough }.settings(training_set).map_err(raised)?;
-    let all = settings.work(training_set);
+    // The line search has a standard error only.
+    let has_constants = design.algorithm.estimator == Estimator::Joint;
+    let all = ERROR_FRAMES + if has_constants { settings.work() } else { 0 };
     let (mut done, mut told) = (0, Instant::now());
-    let found = without_lock(py, || {
-        fit(&design, &settings, &mut |_| {
-            done += 1;
-            if told.elapsed() >= PAUSE || done == all {
-                told = Instant::now();
-                look_up(|py| progress.as_ref().map_or(Ok(()), |tell| tell.call1(py, (done, all)).map(drop)));
-            }
-        })
+    let mut tick = |_| {
+        done += 1;
+        if told.elapsed() >= PAUSE || done == all {
+            told = Instant::now();
+            look_up(|py| progress.as_ref().map_or(Ok(()), |tell| tell.call1(py, (done, all)).map(drop)));
+        }
+    };
+    let design = without_lock(py, || {
+        if has_constants {
+            *design.algorithm.joint = fit(&design, &settings, &mut tick)?;
+        }
+        design.algorithm.standard_error = Some(standard_error(&design, seed, &mut tick)?);
+        Ok::<_, CalibrateError>(design)
     })?;
-    *design.algorithm.joint = found;
     named_anew(design, name)
 }
 

@@ -63,7 +63,6 @@ class Designs(unittest.TestCase):
             (lambda: made(counts=3), "counts of 3 bits; use 4 to 24"),
             (lambda: sptfra.scene(path=ROOT / "scenes" / "sensor1-hertz.toml", design=design()), "the scene has"),
             (lambda: sptfra.scene(), "nothing to make frames of"),
-            (lambda: sptfra.calibrate(design("[algorithm]\nestimator = 'line'\n")), "nothing to calibrate"),
             (lambda: sptfra.calibrate(design(), training_set="odd"), 'training_set is "odd"; choose one of: sliding, general'),
             (lambda: sptfra.load_frames(ROOT / "data" / "bed_mat_64x27.csv", design()), "line 2"),
             (lambda: sptfra.generate(design(), ROOT), "which `sptfra generate` did not write; move it away or choose another folder"),

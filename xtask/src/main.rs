@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use sptfra::message;
 
-use commands::{bench, cells, corner_cases, mutants, noise, solver, stress};
+use commands::{bench, cells, confidence, corner_cases, mutants, noise, solver, stress};
 
 /// Runs what only developers run.
 #[derive(Parser)]
@@ -25,6 +25,7 @@ enum Command {
     Stress(stress::Args),
     Mutants(mutants::Args),
     Noise(noise::Args),
+    Confidence(confidence::Args),
     Cells(cells::Args),
 }
 
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Stress(args) => stress::run(&args),
         Command::Mutants(args) => mutants::run(&args),
         Command::Noise(args) => noise::run(&args),
+        Command::Confidence(args) => confidence::run(&args),
         Command::Cells(args) => cells::run(&args),
     }))
 }

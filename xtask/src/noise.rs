@@ -29,20 +29,25 @@ pub enum NoiseError {
     Solver(#[from] SolverError),
 }
 
+/// What the design's sensor reads of a frame, with noise in percent of its largest reading.
+pub(crate) fn noisy(design: &Design, frame: &SceneFrame, percent: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
+    let mut stress = frame.stress.clone();
+    let tension = design.input.tension;
+    let largest = stress.iter().fold(0.0_f64, |largest, stress| largest.max(tension.of(*stress).abs()));
+    for stress in &mut stress {
+        *stress += 0.01 * percent * largest * normal(random);
+    }
+    design.deliver(&mut stress);
+    stress
+}
+
 /// Errors of the tangential force of a design on frames in percent of the normal force, at a noise in percent.
 fn errors(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Quantiles, SolverError> {
     let solver = Solver::new(design)?;
     let mut random = ChaCha8Rng::seed_from_u64(SEEDS.start);
     let mut errors = Vec::new();
     for frame in frames {
-        let mut stress = frame.stress.clone();
-        let tension = design.input.tension;
-        let largest = stress.iter().fold(0.0_f64, |largest, stress| largest.max(tension.of(*stress).abs()));
-        for stress in &mut stress {
-            *stress += 0.01 * percent * largest * normal(&mut random);
-        }
-        design.deliver(&mut stress);
-        let found = solver.solve(&stress)?.resultant;
+        let found = solver.solve(&noisy(design, frame, percent, &mut random))?.resultant;
         let [x, y] = [0, 1].map(|axis| found[axis] - frame.force[axis]);
         errors.push(100.0 * x.hypot(y) / frame.force[2].abs());
     }

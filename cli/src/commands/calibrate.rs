@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use golden::calibrate::{Work, calibrate};
+use golden::calibrate::{ERROR_FRAMES, Work, calibrate, standard_error};
 use golden::choose::rebase_scenes;
-use golden::design::{Design, Filter, TrainingSet, is_name};
+use golden::design::{Design, Estimator, Filter, StandardError, TrainingSet, is_name};
 use golden::output::write_together;
 use golden::progress::Progress;
 use golden::resolved::{Resolved, folder};
@@ -21,14 +21,16 @@ FORCES.csv: one line a frame; a header with units, such as F_x (N),F_y (N),F_z (
 unknown. F_z or weights alone will do: weight (g). A column contact or place names what belongs together. Frames without
 load, with the force 0, give the offsets. PRESSURES.csv: pressure (kPa), one line a frame.
 
-RESOLVED.toml is the design with the fitted keys, among them gain, friction_correction, calibrated_for and correction. The
+RESOLVED.toml is the design with the fitted keys, among them standard_error, gain, friction_correction, calibrated_for
+and correction. The
 network's weights stand beside it, in RESOLVED.weights.csv. `sptfra new --schema` explains each key.";
 
 /// Fits a design's constants to simulated contacts or to recordings.
 ///
-/// Without --frames and --uniform: the constants of the grid search (`estimator = "joint"`). Makes random contacts on a bonded layer, from
-/// the seed alone, and fits to their known forces a gain, two constants of the friction, and the weights of the
-/// correction. The weights go to RESOLVED.weights.csv beside RESOLVED.toml: both are written, or none.
+/// Without --frames and --uniform: the standard error, and the constants of the grid search (`estimator = "joint"`).
+/// Makes random contacts on a bonded layer, from the seed alone. Fits to their known forces a gain, two constants of the
+/// friction, and the weights of the correction, then the three numbers of the standard error. The weights go
+/// to RESOLVED.weights.csv beside RESOLVED.toml: both are written, or none.
 ///
 /// With --frames and --forces: the scale of a count (a curve, a gain for all taxels, and the taxels' own), and the
 /// constants of friction where tangential forces are known. Reports what the recording determines, with errors at places
@@ -74,6 +76,7 @@ struct Report<'a> {
     friction_correction: [f64; 2],
     half_window: Option<[usize; 2]>,
     weights: usize,
+    standard_error: StandardError,
 }
 
 /// Calibrates a design and writes the resolved one.
@@ -94,13 +97,20 @@ pub fn run(args: &Args) -> message::Result {
     let settings = work.settings(training_set)?;
     let resolved = Resolved::new(&design, path, out)?;
     let progress = Progress::new();
-    progress.counted_in("steps", "calibrating", settings.work(training_set) as u64);
-    *design.algorithm.joint = calibrate(&design, &settings, &mut |_| progress.step())?;
+    // The line search has a standard error only.
+    let has_constants = design.algorithm.estimator == Estimator::Joint;
+    let work = if has_constants { settings.work() } else { 0 };
+    progress.counted_in("steps", "calibrating", (work + ERROR_FRAMES) as u64);
+    if has_constants {
+        *design.algorithm.joint = calibrate(&design, &settings, &mut |_| progress.step())?;
+    }
+    let error = standard_error(&design, settings.seed, &mut |_| progress.step())?;
+    design.algorithm.standard_error = Some(error);
     drop(progress);
     if let Filter::F3 { scenes, .. } = &mut design.algorithm.filter {
         *scenes = rebase_scenes(scenes, folder(path), folder(out));
     }
-    let remark = format!("Resolved by `sptfra calibrate`, seed {}: the constants of the grid search.", settings.seed);
+    let remark = format!("Resolved by `sptfra calibrate`, seed {}.", settings.seed);
     write_together(&resolved.contents(&design, &remark))?;
 
     let constants = &design.algorithm.joint;
@@ -112,19 +122,26 @@ pub fn run(args: &Args) -> message::Result {
         gain: constants.gain,
         friction_correction: constants.friction_correction,
         half_window: correction.map(|correction| correction.half_window),
+        standard_error: error,
         weights: correction.map_or(0, |found| found.hidden.iter().chain(&found.output).map(Vec::len).sum()),
     };
     let text = |report: &Report<'_>| {
         let mut text = String::new();
         say!(text, "{}: calibrated design in {}", report.design, out.display());
-        say!(text, "  training set  {}", report.training_set);
+        if has_constants {
+            say!(text, "  training set  {}", report.training_set);
+        }
         say!(text, "  noise       up to {} % of the largest reading", 100.0 * design.input.noise);
-        say!(text, "  gain        {:.4}", report.gain);
-        let [c1, c3] = report.friction_correction;
-        say!(text, "  friction    {c1:.4} mu + {c3:.4} mu |mu|^2");
+        if has_constants {
+            say!(text, "  gain        {:.4}", report.gain);
+            let [c1, c3] = report.friction_correction;
+            say!(text, "  friction    {c1:.4} mu + {c3:.4} mu |mu|^2");
+        }
         if let Some([x, y]) = report.half_window {
             say!(text, "  correction  {} weights, window {} x {} taxels", report.weights, 2 * x + 1, 2 * y + 1);
         }
+        let StandardError { model, noise, border } = report.standard_error;
+        say!(text, "  standard error  model {model}, noise {noise}, border {border}");
         text
     };
     Ok(json_or(&report, *json, text)?.into())

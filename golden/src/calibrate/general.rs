@@ -16,9 +16,6 @@ const POISSON: [f64; 6] = [0.4655, 0.475, 0.48, 0.485, 0.49, 0.495];
 const DEPTH: f64 = 0.05;
 /// Largest standard deviation of the taxels' gains.
 const GAIN_SPREAD: f64 = 0.02;
-/// For the standard error one frame in [`LOUD`] has up to so many times the design's noise.
-const LOUDER: f64 = 3.0;
-const LOUD: usize = 6;
 /// Largest sides of a taxel, in pitches, and the share of bodies that are read by such ones.
 const TAXEL: f64 = 0.8;
 const AVERAGED: f64 = 0.5;
@@ -99,12 +96,9 @@ impl Body {
 }
 
 /// What a body, or two, give at random; nothing if that has no answer.
-///
-/// With `beyond` the noise is that of the standard error's frames, too.
 pub(super) fn sample(
     bodies: &[Body],
     index: usize,
-    beyond: bool,
     observer: &mut Observer<'_>,
     random: &mut ChaCha8Rng,
 ) -> Result<Option<Sample>, CalibrateError> {
@@ -125,7 +119,6 @@ pub(super) fn sample(
     for stress in &mut frame {
         *stress *= 1.0 + spread * normal(random);
     }
-    let loud = beyond && random.random_range(0..LOUD) == 0;
-    let noise = if loud { LOUDER } else { 1.0 } * observer.noise() * random.random::<f64>();
+    let noise = observer.noise() * random.random::<f64>();
     observer.sample(frame, force, noise, random)
 }

@@ -4,23 +4,22 @@
 //! before it is calibrated, then a gain, two constants for the friction, and the weights of the correction.
 
 mod contacts;
-mod error_output;
 mod general;
 mod looks;
 mod observer;
 pub mod recorded;
 mod samples;
+mod standard_error;
 mod train;
 mod twins;
 mod work;
 
-pub use error_output::MOST_FOUND as MOST_HIDDEN_GENERAL;
-
 pub use contacts::random_contacts;
+pub use standard_error::{ERROR_FRAMES, standard_error};
 pub use work::Work;
 
 use crate::design::{Design, Estimator, Input, JointConstants, conditions};
-use crate::estimators::joint::{CUBIC_LIMIT, Joint, TrainingSet};
+use crate::estimators::joint::{CUBIC_LIMIT, MAX_HIDDEN, TrainingSet};
 use crate::scene::SceneError;
 use crate::solver::SolverError;
 use observer::{Observer, Sample};
@@ -67,23 +66,11 @@ impl Settings {
         Self { contacts: 4 * contacts, samples: 4 * samples, steps: 4 * steps, spare, hollow: true, ..self }
     }
 
-    /// Pieces of work with a training set, each of which is reported.
-    pub fn work(&self, training_set: TrainingSet) -> usize {
-        let error =
-            if training_set == TrainingSet::General { 2 * self.error_samples() + self.error_steps() } else { 0 };
+    /// Pieces of work, each of which is reported.
+    pub fn work(&self) -> usize {
         // Without hidden units nothing is trained.
-        let training = if self.hidden > 0 { self.steps + error } else { 0 };
+        let training = if self.hidden > 0 { self.steps } else { 0 };
         self.contacts + self.samples + training
-    }
-
-    /// Frames, each of a contact of its own, that the standard error is trained on.
-    fn error_samples(&self) -> usize {
-        self.samples / 5
-    }
-
-    /// Steps of the training of the standard error.
-    fn error_steps(&self) -> usize {
-        self.steps / 4
     }
 
     /// A tenth of the work, for a first look: errors are up to twice as large.
@@ -107,10 +94,7 @@ impl Default for Settings {
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
     /// The estimator has no constants.
-    #[error(
-        "{name}: the estimator is \"line\", which has nothing to calibrate; write estimator = \"joint\" under \
-         [algorithm]"
-    )]
+    #[error("{name}: the estimator is \"line\", which has no constants; write estimator = \"joint\" under [algorithm]")]
     OtherEstimator {
         /// Name of the design.
         name: String,
@@ -122,14 +106,10 @@ pub enum CalibrateError {
     #[error("contacts for the calibration: {0}")]
     Scene(#[from] SceneError),
     /// More hidden units than there is room for.
-    #[error("--hidden {hidden}: {why}the hardware has room for 256; use at most {most}")]
+    #[error("--hidden {hidden}: the hardware has room for {MAX_HIDDEN}; use at most {MAX_HIDDEN}")]
     Hidden {
         /// Units asked for.
         hidden: usize,
-        /// What takes the rest of the room.
-        why: &'static str,
-        /// The most there can be.
-        most: usize,
     },
     /// No frame had an answer.
     #[error(
@@ -204,31 +184,12 @@ pub fn calibrate(
         return Err(CalibrateError::OutOfRange { name: name(), gain, c1, c3 });
     }
     let (sensor, training_set) = (&design.sensor, design.algorithm.joint.training_set);
-    let mut correction = (settings.hidden > 0).then(|| {
+    let correction = (settings.hidden > 0).then(|| {
         train::train((sensor, training_set), &samples, &targets, friction_correction, half_window, settings, tick)
     });
-    // A network trained on one kind of contact cannot estimate its error on others.
-    if training_set == TrainingSet::General
-        && let Some(found) = correction.take()
-    {
-        drop(samples);
-        let constants =
-            JointConstants { gain, friction_correction, correction: Some(found.clone()), ..JointConstants::default() };
-        let estimator = Joint::new(&constants, sensor.columns);
-        let samples = error_output::samples(&mut observer, settings, tick)?;
-        let square = twins::has_diagonal(sensor);
-        correction = Some(error_output::train(&estimator, found, &samples, (square, settings), tick));
-    }
     let algorithm = &design.algorithm;
     let conditions = conditions(sensor, tension, algorithm.kernel, algorithm.regularisation, noise, training_set);
-    Ok(JointConstants {
-        training_set,
-        gain,
-        friction_correction,
-        correction,
-        max_standard_error: algorithm.joint.max_standard_error,
-        calibrated_for: Some(conditions),
-    })
+    Ok(JointConstants { training_set, gain, friction_correction, correction, calibrated_for: Some(conditions) })
 }
 
 /// The constants `c1, c3` that bring `c1 mu + c3 mu |mu|^2` closest to the targets, by least squares.

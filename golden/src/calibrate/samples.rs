@@ -113,7 +113,7 @@ fn general(
     let mut samples = Vec::with_capacity(settings.samples);
     for index in 0..settings.samples {
         tick(Stage::Sample);
-        samples.extend(general::sample(&bodies, index, false, observer, &mut random)?);
+        samples.extend(general::sample(&bodies, index, observer, &mut random)?);
     }
     Ok(samples)
 }

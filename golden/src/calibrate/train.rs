@@ -239,7 +239,7 @@ impl Learner {
         scaled_alike(&mut hidden, &mut output);
         let mut output = quantised(&output.transpose()).into_iter();
         let output = [0, 1].map(|_| output.next().unwrap_or_default());
-        let mut correction = Correction { half_window, hidden: quantised(&hidden), output, error: None };
+        let mut correction = Correction { half_window, hidden: quantised(&hidden), output };
         if self.diagonal.is_some() {
             twins::tie(&mut correction);
         }

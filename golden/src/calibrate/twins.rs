@@ -84,10 +84,6 @@ pub(super) fn tie(correction: &mut Correction) {
     for unit in 0..units {
         let other = twin(unit, units);
         let mirrored = transposed(&correction.hidden[unit]);
-        if let Some(error) = &mut correction.error {
-            let mean = i32::midpoint(error.output[unit], error.output[other]);
-            (error.output[unit], error.output[other]) = (mean, mean);
-        }
         if other > unit {
             correction.hidden[other] = mirrored;
             let [along_x, along_y] = &mut correction.output;

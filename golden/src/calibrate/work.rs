@@ -1,6 +1,6 @@
 //! How much work a calibration is asked to take on.
 
-use super::{CalibrateError, MOST_HIDDEN_GENERAL, Settings};
+use super::{CalibrateError, Settings};
 use crate::estimators::joint::{MAX_HIDDEN, TrainingSet};
 
 /// Hidden units for sliding contacts: with twice as many a frame takes a quarter longer on 16 lanes.
@@ -26,15 +26,8 @@ impl Work {
     ///
     /// [`CalibrateError::Hidden`] for more units than the hardware has room for.
     pub fn settings(self, training_set: TrainingSet) -> Result<Settings, CalibrateError> {
-        let (most, why) = match training_set {
-            TrainingSet::Sliding => (MAX_HIDDEN, ""),
-            TrainingSet::General => (
-                MOST_HIDDEN_GENERAL,
-                "with training_set \"general\" a quarter as many units more estimate the error, and ",
-            ),
-        };
-        if let Some(hidden) = self.hidden.filter(|&hidden| hidden > most) {
-            return Err(CalibrateError::Hidden { hidden, why, most });
+        if let Some(hidden) = self.hidden.filter(|&hidden| hidden > MAX_HIDDEN) {
+            return Err(CalibrateError::Hidden { hidden });
         }
         let usual = Settings::of(training_set, self.quick);
         let is_sliding = training_set == TrainingSet::Sliding;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Filter, Regularisation};
 use crate::estimators::joint::JointConstants;
-use crate::estimators::{Constants, Estimator};
+use crate::estimators::{Constants, Estimator, StandardError};
 use crate::kernel::Kernel;
 use crate::words::print_as_words;
 
@@ -19,6 +19,9 @@ pub enum Outputs {
     /// The summary only; with the reduced plan.
     Resultants,
 }
+
+/// Standard error as a share of the normal force above which a frame has low confidence, unless a design says otherwise.
+pub const DEFAULT_MAX_STANDARD_ERROR: f64 = 0.1;
 
 /// How the mathematics is put into products.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -46,6 +49,10 @@ pub struct Algorithm {
     pub estimator: Estimator,
     /// Constants of the joint estimator; the line estimator has none and leaves them at their default.
     pub joint: Box<JointConstants>,
+    /// The standard error of the tangential force, if it was fitted.
+    pub standard_error: Option<StandardError>,
+    /// A frame whose standard error is a larger share of the normal force has low confidence.
+    pub max_standard_error: f64,
     /// Most bodies that are told apart, 1 to [`crate::bodies::MOST`]; with 1 a frame is solved as that of one body.
     pub contacts: usize,
     /// Whether the contacts of a frame are counted where it is solved as that of one, so that a frame of more says so.

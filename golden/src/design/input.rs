@@ -114,10 +114,16 @@ impl Input {
         }
     }
 
+    /// Standard deviation of the noise that is left in a steady average, as a share of the frame's largest reading.
+    pub fn averaged_noise(&self) -> f64 {
+        let weight = (-f64::from(self.smoothing)).exp2();
+        self.noise * (weight / (2.0 - weight)).sqrt()
+    }
+
     /// The input of the same sensor whose frames are in pascals, one by one: what gains and curve have made of counts.
     pub(crate) fn of_pascals(&self) -> Self {
-        let Self { ref dead, tension, crosstalk, .. } = *self;
-        Self { dead: dead.clone(), tension, crosstalk, ..Self::default() }
+        let Self { ref dead, tension, noise, crosstalk, .. } = *self;
+        Self { dead: dead.clone(), tension, noise, crosstalk, ..Self::default() }
     }
 
     /// Gain and offset of a taxel.

@@ -6,7 +6,7 @@ use super::checks::Check;
 use super::files::{Beside, sha256};
 use super::keys::{AlgorithmKeys, CorrectionKeys};
 use super::{DesignError, Kernel, Regularisation, Sensor, Tension};
-use crate::estimators::joint::{CUBIC_LIMIT, Correction, DEFAULT_MAX_STANDARD_ERROR, JointConstants, TrainingSet};
+use crate::estimators::joint::{CUBIC_LIMIT, Correction, JointConstants, TrainingSet};
 
 /// What the constants depend on, for people and for comparison.
 pub fn conditions(
@@ -39,19 +39,11 @@ pub(super) fn constants(
     let [c1, c3] = keys.friction_correction.unwrap_or([1.0, 0.0]);
     check.real("algorithm.friction_correction[0]", c1, 0.1, 10.0, "")?;
     check.real("algorithm.friction_correction[1]", c3, -CUBIC_LIMIT, CUBIC_LIMIT, "")?;
-    if keys.max_standard_error.is_some() && training_set == TrainingSet::Sliding {
-        return Err(check.value(
-            "algorithm.max_standard_error",
-            "limits a standard error that the design does not estimate",
-            "remove it, or write training_set = \"general\" and run `sptfra calibrate`",
-        ));
-    }
     Ok(JointConstants {
         training_set,
         gain: keys.gain.unwrap_or(1.0),
         friction_correction: [c1, c3],
         correction: None,
-        max_standard_error: keys.max_standard_error.unwrap_or(DEFAULT_MAX_STANDARD_ERROR),
         calibrated_for: keys.calibrated_for.clone(),
     })
 }
@@ -68,7 +60,6 @@ fn fit(origin: &str) -> String {
 pub(super) fn refuse(check: &Check, keys: &AlgorithmKeys) -> Result<(), DesignError> {
     let given = [
         ("training_set", keys.training_set.is_some()),
-        ("max_standard_error", keys.max_standard_error.is_some()),
         ("gain", keys.gain.is_some()),
         ("friction_correction", keys.friction_correction.is_some()),
         ("correction", keys.correction.is_some()),
@@ -95,7 +86,7 @@ pub(super) fn correction(
     beside: Beside<'_>,
 ) -> Result<Correction, DesignError> {
     const KEY: &str = "algorithm.correction";
-    let CorrectionKeys { half_window: [x, y], file, sha256: hash, error_base } = keys;
+    let CorrectionKeys { half_window: [x, y], file, sha256: hash } = keys;
     let half = |axis: usize, value: i64, side: usize| {
         let key = format!("{KEY}.half_window[{axis}]");
         check.integer(&key, value, 0, side as i64 - 1).map(|half| half as usize)
@@ -112,7 +103,7 @@ pub(super) fn correction(
         let problem = format!("is {shown:?}, but {} has {found}: it holds other weights", path.display());
         return Err(check.value(&format!("{KEY}.sha256"), problem, RESTORE));
     }
-    Correction::read_csv(&text, half_window, *error_base).map_err(|error| DesignError::Table {
+    Correction::read_csv(&text, half_window).map_err(|error| DesignError::Table {
         path,
         line: error.line,
         problem: error.problem,
@@ -122,10 +113,8 @@ pub(super) fn correction(
 
 /// Writes the constants into `keys`, with the weights in the file named `weights`.
 pub(super) fn state(constants: &JointConstants, weights: &str, keys: &mut AlgorithmKeys) {
-    let JointConstants { training_set, gain, friction_correction, correction, calibrated_for, .. } = constants;
+    let JointConstants { training_set, gain, friction_correction, correction, calibrated_for } = constants;
     keys.training_set = Some(*training_set);
-    // A limit for an error that is not estimated is refused.
-    keys.max_standard_error = (*training_set == TrainingSet::General).then_some(constants.max_standard_error);
     keys.calibrated_for.clone_from(calibrated_for);
     keys.gain = Some(*gain);
     keys.friction_correction = Some(*friction_correction);
@@ -133,6 +122,5 @@ pub(super) fn state(constants: &JointConstants, weights: &str, keys: &mut Algori
         half_window: correction.half_window.map(|half| half as i64),
         file: weights.to_owned(),
         sha256: sha256(&correction.to_csv()),
-        error_base: correction.error.as_ref().map(|error| error.base),
     });
 }

@@ -11,8 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::{DEFAULT_NOISE, FilterKind, Hardware, MAX_SIDE, Outputs, PlanKind, Regularisation, Slip};
 use super::{Tension, TrainingSet};
 use crate::bodies;
-use crate::estimators::Estimator;
-use crate::estimators::joint::WEIGHT_LIMIT;
+use crate::estimators::{Estimator, StandardError};
 use crate::kernel::Kernel;
 
 /// The version of the format that this file describes.
@@ -150,8 +149,11 @@ pub(super) struct AlgorithmKeys {
     /// Contacts that the grid search's constants are trained on.
     #[schemars(extend("examples" = ["sliding"]))]
     pub training_set: Option<TrainingSet>,
-    /// Standard error of the tangential force, as a share of the normal force, above which a frame has `low_confidence`.
-    /// Only with `training_set = "general"`; 0.06 without the key.
+    /// Standard error of the tangential force. `sptfra calibrate` fits its three numbers to contacts of all kinds. Without
+    /// the key a design states no standard error.
+    #[schemars(extend("examples" = [{"model": 0.03, "noise": 120.0, "border": 1.5}]))]
+    pub standard_error: Option<StandardError>,
+    /// Standard error, as a share of the normal force, above which a frame has `low_confidence`; 0.1 without the key.
     #[schemars(range(min = 0.001, max = 3.9), extend("examples" = [0.1]))]
     pub max_standard_error: Option<f64>,
     /// Sensor and method that the constants were fitted for. `sptfra calibrate` writes it; any other design is refused.
@@ -191,6 +193,7 @@ impl Default for AlgorithmKeys {
             filter: FilterKeys::default(),
             estimator: Estimator::default(),
             training_set: None,
+            standard_error: None,
             max_standard_error: None,
             calibrated_for: None,
             gain: None,
@@ -249,7 +252,4 @@ pub(super) struct CorrectionKeys {
     /// SHA-256 sum of the file.
     #[schemars(extend("examples" = ["..."]))]
     pub sha256: String,
-    /// Constant term of the network's estimate of its error, as a binary logarithm in steps of the weights.
-    #[schemars(range(min = -WEIGHT_LIMIT, max = WEIGHT_LIMIT - 1), extend("examples" = [-8000]))]
-    pub error_base: Option<i32>,
 }

@@ -30,11 +30,12 @@ use std::path::{Path, PathBuf};
 
 use crate::crosstalk::Crosstalk;
 pub use crate::estimators::Estimator;
-pub use crate::estimators::joint::{Correction, ErrorOutput, Grid, JointConstants, TrainingSet};
+pub use crate::estimators::StandardError;
+pub use crate::estimators::joint::{Correction, Grid, JointConstants, TrainingSet};
 pub use crate::kernel::Kernel;
 pub use crate::sensor::{MAX_SIDE, Sensor};
 use crate::smoothing::Smoothing;
-pub use algorithm::{Algorithm, Outputs, PlanKind, Slip};
+pub use algorithm::{Algorithm, DEFAULT_MAX_STANDARD_ERROR, Outputs, PlanKind, Slip};
 pub use calibration::Calibration;
 pub use checks::is_name;
 pub use curve::{Curve, MOST_SEGMENTS};

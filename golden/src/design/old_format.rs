@@ -44,6 +44,9 @@ fn change(table: &str, key: &str, value: &Value, file: &Table) -> Option<String>
         ("algorithm", "family") if word == "wide" => "write training_set = \"general\"".to_owned(),
         ("algorithm", "family") => "write training_set = \"sliding\"".to_owned(),
         ("algorithm", "doubt") => format!("write max_standard_error = {value}"),
+        ("algorithm", "correction") if value.get("error_base").is_some() => {
+            "remove correction and run `sptfra calibrate`".to_owned()
+        }
         ("algorithm", "tangential") => format!("write friction_correction = {value}"),
         ("algorithm", "grid" | "fitted_to") => "remove it and run `sptfra calibrate`".to_owned(),
         ("hardware", "range") if word == "frame" => "write scaling = \"per_frame\"".to_owned(),

@@ -4,8 +4,8 @@ use super::checks::{self, Check};
 use super::files::Beside;
 use super::keys::{AlgorithmKeys, CurveKey, DeadKey, DesignKeys, FORMAT, SensorKeys, SlipKeys};
 use super::{
-    Algorithm, Design, DesignError, Estimator, FileNames, Input, JointConstants, NOISE_FLOOR_DIVISOR, Regularisation,
-    Sensor, Slip, Tension, filter_keys, joint, rules,
+    Algorithm, DEFAULT_MAX_STANDARD_ERROR, Design, DesignError, Estimator, FileNames, Input, JointConstants,
+    NOISE_FLOOR_DIVISOR, Regularisation, Sensor, Slip, Tension, filter_keys, joint, rules,
 };
 use crate::estimators::Constants;
 
@@ -32,6 +32,7 @@ pub(super) fn design(keys: DesignKeys, origin: &str, beside: Beside<'_>) -> Resu
 
 /// Keys without constants that were fitted to the sensor.
 pub(super) fn unfitted(mut keys: DesignKeys) -> DesignKeys {
+    keys.algorithm.standard_error = None;
     // Of another estimator they stay, to be refused.
     if keys.algorithm.estimator == Estimator::Joint {
         let AlgorithmKeys { gain, friction_correction, correction, calibrated_for, .. } = &mut keys.algorithm;
@@ -67,6 +68,8 @@ fn algorithm(
         filter: filter_keys::filter(check, keys.filter, sensor)?,
         estimator: keys.estimator,
         joint: Box::new(joint),
+        standard_error: keys.standard_error,
+        max_standard_error: keys.max_standard_error.unwrap_or(DEFAULT_MAX_STANDARD_ERROR),
         contacts: keys.contacts,
         count_contacts: keys.count_contacts,
         outputs: keys.outputs,
@@ -101,6 +104,8 @@ pub(super) fn keys(design: &Design, names: &FileNames) -> DesignKeys {
         regularisation: Some(algorithm.regularisation).filter(|&one| one != Regularisation::None),
         filter: filter_keys::keys(&algorithm.filter),
         estimator: algorithm.estimator,
+        standard_error: algorithm.standard_error,
+        max_standard_error: algorithm.standard_error.map(|_| algorithm.max_standard_error),
         contacts: algorithm.contacts,
         count_contacts: algorithm.count_contacts,
         outputs: algorithm.outputs,

@@ -20,7 +20,7 @@ use joint::{Joint, JointConstants, JointScratch};
 use line::LineScratch;
 pub(crate) use seen::{Answer, Seen};
 pub use seen::{Contact, RANGE};
-pub use standard_error::{ERROR_FRACTION, ERROR_RANGE};
+pub use standard_error::{BORDER, ERROR_FRACTION, ERROR_RANGE, StandardError, log as error_log};
 pub(crate) use thin::Thin;
 
 /// How the friction components are found once the optimisation problem is set up.
@@ -60,13 +60,6 @@ impl<'a> Constants<'a> {
             Estimator::Line => Self::Line,
             Estimator::Joint => Self::Joint(joint),
         }
-    }
-
-    /// The logarithm of base 2 that stands for the error over `|F_z|` above which a frame has low confidence; nothing if
-    /// the estimator does not estimate its error.
-    pub fn max_error_log(self) -> Option<f64> {
-        let Self::Joint(joint) = self else { return None };
-        joint.correction.as_ref()?.error.as_ref().map(|_| standard_error::log(joint.max_standard_error))
     }
 
     /// How thin a layer may be for this estimator.
@@ -109,12 +102,12 @@ impl Friction {
         }
     }
 
-    /// Finds the components `[mu_x, mu_y]`, their error, and the status bits to raise.
+    /// Finds the components `[mu_x, mu_y]`, and the status bits to raise.
     pub(crate) fn find(&self, seen: &Seen, scratch: &mut FrictionScratch) -> Answer {
         match self {
             Self::Line => {
                 let (status, mu) = line::friction(&seen.contact, seen.sums, seen.u, line::LEVEL, &mut scratch.line);
-                Answer { status, mu, error: 0.0 }
+                Answer { status, mu }
             }
             Self::Joint(joint) => joint.find(seen, &mut scratch.joint),
         }

@@ -25,8 +25,6 @@ pub(crate) struct Answer {
     pub(crate) status: Status,
     /// Friction components.
     pub(crate) mu: [f64; 2],
-    /// Standard error of `(F_x, F_y)` over `|F_z|`; 0 where the estimator has none.
-    pub(crate) error: f64,
 }
 
 /// What an estimator sees of a frame; either plan has all of it.

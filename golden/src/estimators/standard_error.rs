@@ -1,24 +1,105 @@
-//! The standard error that an estimator states: the logarithm of its share of the normal force.
+//! The standard error of the tangential force, as a share of the normal force: what noise, the model and the grid's
+//! border each add to it.
+//!
+//! `s = |model, noise sigma max|b| / sum|b|, border e|`, where `e` is the share of `sum|b|` on taxels at the border beyond
+//! [`BORDER`], and `|x, y|` is [`added`]: the hardware takes the same steps. Three numbers of a design, fitted to contacts of
+//! all kinds by [`crate::calibrate::standard_error`].
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::design::{Algorithm, Design};
 
 /// Fraction bits of the logarithm.
 pub const ERROR_FRACTION: u32 = 12;
 /// Least and largest logarithm of base 2: a thousandth of the normal force, and four times as much.
 pub const ERROR_RANGE: [i32; 2] = [-10, 2];
+/// Share of `sum|b|` that taxels at the grid's border have of a contact inside the grid.
+pub const BORDER: f64 = 1.0 / 32.0;
 
-/// A logarithm within its range, as far as it goes there.
-pub(crate) fn limited(log: f64) -> f64 {
-    let [least, most] = ERROR_RANGE.map(f64::from);
-    log.clamp(least, most - (-f64::from(ERROR_FRACTION)).exp2())
+/// The three numbers of a design.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StandardError {
+    /// The error without noise, as a share of the normal force.
+    #[schemars(range(min = 0.001, max = 3.9))]
+    pub model: f64,
+    /// The error for noise: times `sensor.noise`, and the largest reading over the sum of all.
+    #[schemars(range(min = 0.0, max = 10000.0))]
+    pub noise: f64,
+    /// The error for contacts at the grid's border: times the share of stress there.
+    #[schemars(range(min = 0.0, max = 15.9))]
+    pub border: f64,
 }
 
-/// What a logarithm of base 2 stands for: `2^n (1 + f)` for n + f, which differs from `2^(n + f)` by 6 % at most and is a
-/// floating-point number as it is.
-pub(crate) fn ratio(log: f64) -> f64 {
-    (1.0 + log - log.floor()) * log.floor().exp2()
+/// What the standard error depends on in a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Marks {
+    /// `max|b| / sum|b|`.
+    pub(crate) peak: f64,
+    /// Share of `sum|b|` at the grid's border, beyond [`BORDER`].
+    pub(crate) border: f64,
 }
 
-/// The logarithm that stands for a ratio above 0.
-pub(crate) fn log(ratio: f64) -> f64 {
+impl Marks {
+    /// Of the stress `b`, in rows of `columns`.
+    pub(crate) fn of(b: &[f64], columns: usize) -> Self {
+        let (mut largest, mut sum, mut border) = (0.0_f64, 0.0, 0.0);
+        let rows = b.len() / columns;
+        for (taxel, stress) in b.iter().enumerate() {
+            let (x, y, stress) = (taxel % columns, taxel / columns, stress.abs());
+            largest = largest.max(stress);
+            sum += stress;
+            if x == 0 || y == 0 || x + 1 == columns || y + 1 == rows {
+                border += stress;
+            }
+        }
+        let share = |part: f64| if sum > 0.0 { part / sum } else { 0.0 };
+        Self { peak: share(largest), border: (share(border) - BORDER).max(0.0) }
+    }
+}
+
+impl StandardError {
+    /// The standard error over `|F_z|` at a noise that is a share of the frame's largest reading.
+    pub(crate) fn share(&self, noise: f64, marks: Marks) -> f64 {
+        let share = added(added(self.model, self.noise * noise * marks.peak), self.border * marks.border);
+        let [least, most] = ERROR_RANGE.map(|log| f64::from(log).exp2());
+        share.clamp(least, most * (1.0 - (-f64::from(ERROR_FRACTION)).exp2()))
+    }
+}
+
+/// The standard error of a design's frames, and where confidence ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Confidence {
+    of: StandardError,
+    noise: f64,
+    columns: usize,
+    /// A frame with a larger one has low confidence.
+    pub(crate) most: f64,
+}
+
+impl Confidence {
+    /// That of a design, if its standard error was fitted.
+    pub(crate) fn of(design: &Design) -> Option<Self> {
+        let Algorithm { standard_error, max_standard_error: most, .. } = &design.algorithm;
+        let (noise, columns) = (design.input.averaged_noise(), design.sensor.columns);
+        standard_error.map(|of| Self { of, noise, columns, most: *most })
+    }
+
+    /// The standard error over `|F_z|` of the stress `b`.
+    pub(crate) fn share(&self, b: &[f64]) -> f64 {
+        self.of.share(self.noise, Marks::of(b, self.columns))
+    }
+}
+
+/// Two independent errors together: `sqrt(x^2 + y^2)` within 3 %, without a square or a root.
+pub(crate) fn added(x: f64, y: f64) -> f64 {
+    let (larger, smaller) = (x.max(y), x.min(y));
+    larger.max(0.875 * larger + 0.5 * smaller)
+}
+
+/// The logarithm of base 2 that stands for a ratio above 0: `n + f` for `2^n (1 + f)`, as the hardware has it.
+pub fn log(ratio: f64) -> f64 {
     let whole = ratio.log2().floor();
     whole + ratio / whole.exp2() - 1.0
 }
@@ -28,11 +109,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ratio_comes_back_from_its_logarithm() {
-        for value in [1e-3, 0.05, 0.1, 0.125, 0.3, 1.0, 1.7, 3.99] {
-            assert!((ratio(log(value)) / value - 1.0).abs() < 1e-12, "{value}");
-            assert!((ratio(value.log2()) / value - 1.0).abs() < 0.062, "{value}");
+    fn errors_add_as_squares() {
+        for (x, y) in [(1.0, 0.0), (0.3, 0.1), (0.2, 0.2), (0.1, 0.7), (1.0, 0.25)] {
+            let exact = f64::hypot(x, y);
+            assert!((added(x, y) / exact - 1.0).abs() < 0.031, "{x} {y}");
+            assert_eq!(added(x, y).to_bits(), added(y, x).to_bits());
         }
-        assert!((limited(-99.0) + 10.0).abs() < 1e-12 && limited(99.0) < 2.0);
+        assert!((log(0.125) + 3.0).abs() < 1e-12 && (log(0.1875) + 2.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn each_mark_has_its_share() {
+        let of = StandardError { model: 0.03, noise: 100.0, border: 1.0 };
+        let middle: Vec<f64> = (0..25).map(|taxel| if taxel == 12 { -4.0 } else { 0.0 }).collect();
+        let edge: Vec<f64> = (0..25).map(|taxel| if taxel == 10 { -4.0 } else { 0.0 }).collect();
+        let [middle, edge] = [middle, edge].map(|b| Marks::of(&b, 5));
+        assert_eq!(middle, Marks { peak: 1.0, border: 0.0 });
+        assert_eq!(edge, Marks { peak: 1.0, border: 1.0 - BORDER });
+        assert!((of.share(0.0, middle) - 0.03).abs() < 1e-12);
+        assert!((of.share(0.01, middle) - added(0.03, 1.0)).abs() < 1e-12);
+        assert!(of.share(0.0, edge) > 0.9);
+        // Nothing at all has no share.
+        assert_eq!(Marks::of(&[0.0; 25], 5), Marks { peak: 0.0, border: 0.0 });
     }
 }

@@ -27,6 +27,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::bodies::{Body, Finder};
 use crate::design::{Design, Outputs, PlanKind, Slip};
+use crate::estimators::standard_error::Confidence;
 use crate::estimators::{Answer, Friction, FrictionScratch, Seen};
 use crate::filter::{FilterError, FilteredMatrices};
 use crate::matrices::{Matrices, MatrixError};
@@ -139,8 +140,9 @@ impl Solution {
     }
 
     /// Finds the friction components, and puts them and what follows from them in place.
-    fn optimum(&mut self, friction: &Friction, seen: &Seen, scratch: &mut FrictionScratch) -> [f64; 2] {
-        let Answer { status, mu, error } = friction.find(seen, scratch);
+    fn optimum(&mut self, estimate: &Estimate, seen: &Seen, scratch: &mut FrictionScratch) -> [f64; 2] {
+        let Estimate { friction, confidence } = estimate;
+        let Answer { status, mu } = friction.find(seen, scratch);
         self.status.insert(status);
         if !status.contains(Status::DIRECTION_UNKNOWN) && mu[0].abs() + mu[1].abs() < PULLING {
             self.status.remove(Status::NO_TENSION);
@@ -149,7 +151,15 @@ impl Solution {
         let resultant = [fx, fy, fz];
         [self.mu_x, self.mu_y] = mu;
         (self.resultant, self.torque, self.bodies) = (resultant, [tx, ty, tz], 1);
-        self.standard_error = error * fz.abs();
+        if let Some(of) = confidence {
+            // Without a direction the error is as much as presses.
+            let unknown = status.contains(Status::DIRECTION_UNKNOWN);
+            let share = if unknown { 1.0 } else { of.share(seen.b) };
+            self.standard_error = share * fz.abs();
+            if share > of.most {
+                self.status.insert(Status::LOW_CONFIDENCE);
+            }
+        }
         (self.mu, self.phi) = (op::quotient(resultant), fy.atan2(fx));
         mu
     }
@@ -161,7 +171,7 @@ pub struct Solver {
     reader: Reader,
     matrices: Matrices,
     products: Products,
-    friction: Friction,
+    estimate: Estimate,
     /// Where bodies are told apart, or counted.
     finder: Option<Finder>,
     /// Whether solutions have the forces of all taxels.
@@ -169,6 +179,13 @@ pub struct Solver {
     /// Standard error as a share of the normal force above which a contact has low confidence.
     max_standard_error: f64,
     slip: Option<Slip>,
+}
+
+/// What a frame's friction and standard error are found with.
+#[derive(Clone, Debug)]
+struct Estimate {
+    friction: Friction,
+    confidence: Option<Confidence>,
 }
 
 /// The products of the design's plan.
@@ -229,14 +246,17 @@ impl Solver {
     }
 
     fn with(design: &Design, matrices: Matrices, products: Products) -> Self {
-        let friction = Friction::new(design.algorithm.constants(), &design.sensor);
+        let estimate = Estimate {
+            friction: Friction::new(design.algorithm.constants(), &design.sensor),
+            confidence: Confidence::of(design),
+        };
         let contacts = design.algorithm.contacts;
         let finder = (contacts > 1 || design.algorithm.count_contacts).then(|| Finder::new(&design.sensor, contacts));
         let (reader, slip) = (Reader::new(design), design.algorithm.slip);
-        let max_standard_error = design.algorithm.joint.max_standard_error;
+        let max_standard_error = design.algorithm.max_standard_error;
         // By the paper's plan every solution has them.
         let keeps_field = design.algorithm.outputs == Outputs::Field || matches!(products, Products::Paper(_));
-        Self { reader, matrices, products, friction, finder, keeps_field, max_standard_error, slip }
+        Self { reader, matrices, products, estimate, finder, keeps_field, max_standard_error, slip }
     }
 
     /// The unfiltered matrices.

@@ -7,8 +7,8 @@ use nalgebra::DVector;
 use super::batch::{self, BatchFrame};
 use super::bodies::{Census, Parted};
 use super::reading::{Given, Reading};
-use super::{Paper, Products, Reduced, Slips, Solution, Solver, SolverError, Status};
-use crate::estimators::{Contact, Friction, FrictionScratch, Seen};
+use super::{Estimate, Paper, Products, Reduced, Slips, Solution, Solver, SolverError, Status};
+use crate::estimators::{Contact, FrictionScratch, Seen};
 use crate::parity::{CLASSES, Quads};
 use crate::products::batch::{Blocks, FRAMES};
 use crate::products::{Engine, PaperMatrices, ProductList, RealFrame, Stored};
@@ -131,7 +131,7 @@ impl Solver {
         if self.field_length() == 0 {
             solution.field.iter_mut().for_each(Vec::clear);
         }
-        if let Some(gain) = self.friction.gain() {
+        if let Some(gain) = self.estimate.friction.gain() {
             solution.scale(gain);
         }
         self.note_slip(&mut workspace.slips, &mut solution.status, solution.mu, &mut solution.records);
@@ -143,10 +143,10 @@ impl Solver {
         let b = b.as_slice();
         match (&self.products, products) {
             (Products::Paper(paper), Scratch::Paper(frame)) => {
-                solve(&paper.engine, frame, (b, contact), &self.friction, scratch, solution);
+                solve(&paper.engine, frame, (b, contact), &self.estimate, scratch, solution);
             }
             (Products::Reduced(reduced), Scratch::Reduced(frame)) => {
-                solve(&reduced.engine, frame, (b, contact), &self.friction, scratch, solution);
+                solve(&reduced.engine, frame, (b, contact), &self.estimate, scratch, solution);
             }
             // `fit` has seen to it that there is no other case.
             _ => {}
@@ -265,7 +265,7 @@ impl Solver {
                     }
                 }
             }
-            batch.solve(&self.friction, &mut workspace.friction, solutions);
+            batch.solve(&self.estimate, &mut workspace.friction, solutions);
             for (&frame, solution) in frames.iter().zip(solutions) {
                 let mut census = Census::default();
                 // Its stress, and its status before it was solved, once more: they are kept of no frame.
@@ -298,11 +298,11 @@ fn solve<S: Stored<W>, const W: usize>(
     engine: &Engine<f64, S, W>,
     frame: &mut RealFrame<f64, S, W>,
     (b, contact): (&[f64], Contact),
-    friction: &Friction,
+    estimate: &Estimate,
     scratch: &mut FrictionScratch,
     solution: &mut Solution,
 ) {
-    let mu = solution.optimum(friction, &see(engine, frame, b, contact), scratch);
+    let mu = solution.optimum(estimate, &see(engine, frame, b, contact), scratch);
     engine.field(mu, frame, |p, taxel, force| solution.field[p][taxel] = force);
 }
 

@@ -4,7 +4,7 @@ use golden::calibrate::random_contacts;
 use golden::design::Sensor;
 use golden::metrics::{Outcome, errors};
 use golden::scene::{Contact, Medium, Scene, SensorErrors, Shape, Traction};
-use golden::solver::Solver;
+use golden::solver::{Solver, Status};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -24,7 +24,7 @@ pub struct Worst {
     pub error: [f64; 3],
     /// Median of the larger of both tangential errors.
     pub median: f64,
-    /// Frames with a status other than good.
+    /// Frames with a status other than good and low confidence, which contacts that reach the border have.
     pub flagged: usize,
 }
 
@@ -152,7 +152,7 @@ pub fn worst(solver: &Solver, set: &[Pressed], friction: f64, noise: f64) -> Wor
 pub fn judged(frames: &[Truth], answers: impl Iterator<Item = (u32, Outcome)>) -> Worst {
     let (mut error, mut larger, mut flagged) = ([0.0_f64; 3], Vec::new(), 0);
     for (truth, (status, found)) in frames.iter().zip(answers) {
-        flagged += usize::from(status != 0);
+        flagged += usize::from(status & !Status::LOW_CONFIDENCE.0 != 0);
         let [x, y, z, ..] = errors(&truth.outcome, &found);
         larger.push(x.max(y));
         for (worst, found) in error.iter_mut().zip([x, y, z]) {

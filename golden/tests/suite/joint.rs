@@ -156,7 +156,7 @@ fn a_calibration_is_the_same_for_the_same_seed_and_survives_the_file() {
     let mut design = small("estimator = \"joint\"");
     let mut ticks = 0_usize;
     let found = calibrate(&design, &settings, &mut |_| ticks += 1).unwrap();
-    assert_eq!(ticks, settings.work(TrainingSet::Sliding));
+    assert_eq!(ticks, settings.work());
     assert_eq!(found, calibrate(&design, &settings, &mut |_| ()).unwrap());
     assert_ne!(found, calibrate(&design, &Settings { seed: 4, ..settings }, &mut |_| ()).unwrap());
     let plain = calibrate(&design, &Settings { hidden: 0, ..settings }, &mut |_| ()).unwrap();
@@ -247,10 +247,6 @@ fn constants_that_make_no_sense_are_refused() {
         (joint("friction_correction = [1.0, 9.0]"), ["algorithm.friction_correction[1]", "-3.9 to 3.9"]),
         (correction("half_window = [0]\n"), ["half_window", "has 1 values"]),
         (correction("half_window = [4, 0]\nfile = \"w.csv\"\nsha256 = \"0\"\n"), ["half_window[0]", "0 to 3"]),
-        (
-            correction("half_window = [1, 0]\nfile = \"w.csv\"\nsha256 = \"0\"\nerror_base = 131072\n"),
-            ["correction.error_base", "131071"],
-        ),
     ] {
         let error = Design::from_toml(&text, "pad.toml").unwrap_err().to_string();
         assert!(parts.iter().all(|part| error.contains(part)), "{parts:?}: {error}");

@@ -3,9 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use golden::design::{
-    Correction, Design, ErrorOutput, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind, Slip,
-};
+use golden::design::{Correction, Design, Estimator, Filter, JointConstants, MatrixFilter, Outputs, PlanKind, Slip};
 use golden::estimators::line;
 use golden::smoothing::Average;
 use golden::solver::{PIECE, Slips, Solution, Solver, Status, co, op, we};
@@ -94,8 +92,7 @@ fn assert_close(one: &Solution, other: &Solution) {
 fn constants() -> JointConstants {
     let hidden = vec![vec![700, -300, 500, 90, -40, 310, -820, 60, 75, 210, -190, 33, 480, 120]; 2];
     let output = [vec![400, -150], vec![90, 260]];
-    let error = Some(ErrorOutput { base: -9000, output: vec![300; hidden.len()] });
-    let correction = Correction { half_window: [1, 1], hidden, output, error };
+    let correction = Correction { half_window: [1, 1], hidden, output };
     JointConstants {
         gain: 1.25,
         friction_correction: [0.9, -0.1],

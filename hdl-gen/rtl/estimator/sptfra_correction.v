@@ -25,10 +25,6 @@ module sptfra_correction #(
     parameter integer STRESS_LEFT = 9,
     parameter integer UNIT_SHIFT = 12,
     parameter integer CORRECTION_SHIFT = 12,
-    // 1: the network estimates the remaining error; bits dropped from its sum, and what is added to it then
-    parameter integer WITH_ERROR = 0,
-    parameter integer ERROR_SHIFT = 12,
-    parameter signed [17:0] ERROR_BASE = 18'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
@@ -62,8 +58,7 @@ module sptfra_correction #(
     // Result, held until the next start: within 1/4, 16 fraction bits
     output wire done, // one cycle
     output wire signed [17:0] correction_x,
-    output wire signed [17:0] correction_y,
-    output wire signed [17:0] error_log // of base 2, of the error that is left over |F_z|, 12 fraction bits
+    output wire signed [17:0] correction_y
 );
 
     localparam integer WORD_WIDTH = $clog2(LENGTH);
@@ -133,9 +128,6 @@ module sptfra_correction #(
         .AT_ONCE          (AT_ONCE),
         .UNIT_SHIFT       (UNIT_SHIFT),
         .CORRECTION_SHIFT (CORRECTION_SHIFT),
-        .WITH_ERROR       (WITH_ERROR),
-        .ERROR_SHIFT      (ERROR_SHIFT),
-        .ERROR_BASE       (ERROR_BASE),
         .ROM_DIR          (ROM_DIR),
         .ROM_NAME         (ROM_NAME),
         .EXPECTED_LATENCY (EXPECTED_NETWORK_LATENCY)
@@ -148,8 +140,7 @@ module sptfra_correction #(
         .start        (first_input),
         .done         (done),
         .correction_x (correction_x),
-        .correction_y (correction_y),
-        .error_log    (error_log)
+        .correction_y (correction_y)
     );
 
 endmodule

@@ -30,6 +30,11 @@ module sptfra_estimator_joint #(
     // c1 and c3 of the friction, with 22 and 15 fraction bits
     parameter signed [26:0] LINEAR = 27'sd4194304,
     parameter signed [17:0] CUBIC = 18'sd0,
+    // 1: with a standard error, and its constants: see sptfra_standard_error
+    parameter integer WITH_ERROR = 0,
+    parameter [17:0] ERROR_MODEL = 18'd0,
+    parameter [16:0] ERROR_NOISE = 17'd0,
+    parameter [16:0] ERROR_BORDER = 17'd0,
     // 1: with a correction; the parameters from here to ROM_NAME are its own
     parameter integer NETWORK = 0,
     // Taxels on either side of the window's middle
@@ -43,10 +48,6 @@ module sptfra_estimator_joint #(
     parameter integer STRESS_LEFT = 9,
     parameter integer UNIT_SHIFT = 12,
     parameter integer CORRECTION_SHIFT = 12,
-    // 1: the network estimates the remaining error; bits dropped from its sum, and what is added to it then
-    parameter integer WITH_ERROR = 0,
-    parameter integer ERROR_SHIFT = 12,
-    parameter signed [17:0] ERROR_BASE = 18'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
@@ -84,6 +85,7 @@ module sptfra_estimator_joint #(
     input  wire no_direction,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
+    input  wire [39:0] border,
     input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // One cycle: the place of a frame's u_q is free
     output wire u_released,
@@ -164,13 +166,15 @@ module sptfra_estimator_joint #(
     wire signed [17:0] found_x, found_y;
     wire found_unknown, found_on_border, found_saturated, look_saturated;
     localparam integer WITH_FOUND = 2 * 18 + 3; // what the search found
-    localparam integer WITH_FRAME = 18 * 40 + 6 + WITH_FOUND;
-    wire [WITH_FRAME-1:0] searched = {search_sums, search_flags, found_x, found_y, found_unknown, found_on_border,
-        found_saturated};
+    localparam integer WITH_FRAME = 18 * 40 + 6 + 18 + WITH_FOUND;
+    wire signed [17:0] found_error;
+    wire [WITH_FRAME-1:0] searched = {search_sums, search_flags, found_error, found_x, found_y, found_unknown,
+        found_on_border, found_saturated};
     wire [WITH_FRAME-1:0] seen; // of the frame in the look, or that was searched
     reg signed [17:0] centroid_x, centroid_y;
     reg on_border, before_saturated; // a value of search or look was clipped
     reg correction_started;
+    reg signed [17:0] frame_error;
     wire signed [17:0] look_x = seen[WITH_FOUND-18 +: 18], look_y = seen[WITH_FOUND-36 +: 18];
 
     always @(posedge clock) begin
@@ -187,7 +191,7 @@ module sptfra_estimator_joint #(
         // What was seen stays for a cycle more, and the answer comes twenty later or more
         correction_started <= correction_start;
         if (correction_started) begin
-            {sums, flags} <= seen[WITH_FRAME-1:WITH_FOUND];
+            {sums, flags, frame_error} <= seen[WITH_FRAME-1:WITH_FOUND];
         end
     end
 
@@ -229,9 +233,32 @@ module sptfra_estimator_joint #(
         .saturated   (found_saturated)
     );
 
+    // ---- Standard error: during the search
+    generate
+        if (WITH_ERROR != 0) begin : gen_error
+            sptfra_standard_error #(
+                .MODEL  (ERROR_MODEL),
+                .NOISE  (ERROR_NOISE),
+                .BORDER (ERROR_BORDER)
+            ) standard_error (
+                .clock      (clock),
+                .reset      (reset),
+                .start      (search_start),
+                .stress_sum (stress_sum),
+                .largest    (largest),
+                .border     (border),
+                .error_log  (found_error)
+            );
+        end else begin : gen_no_error
+            assign found_error = 18'sd0;
+
+            wire _unused_error = &{1'b0, border, ERROR_MODEL, ERROR_NOISE, ERROR_BORDER};
+        end
+    endgenerate
+
     // ---- Look and correction
     wire correction_done, clipped;
-    wire signed [17:0] correction_x, correction_y, left_error;
+    wire signed [17:0] correction_x, correction_y;
 
     generate
         if (NETWORK != 0) begin : gen_correction
@@ -255,9 +282,6 @@ module sptfra_estimator_joint #(
                 .STRESS_LEFT              (STRESS_LEFT),
                 .UNIT_SHIFT               (UNIT_SHIFT),
                 .CORRECTION_SHIFT         (CORRECTION_SHIFT),
-                .WITH_ERROR               (WITH_ERROR),
-                .ERROR_SHIFT              (ERROR_SHIFT),
-                .ERROR_BASE               (ERROR_BASE),
                 .ROM_DIR                  (ROM_DIR),
                 .ROM_NAME                 (ROM_NAME),
                 .EXPECTED_LOOK_LATENCY    (EXPECTED_LOOK_LATENCY),
@@ -279,17 +303,16 @@ module sptfra_estimator_joint #(
                 .window_done  (window_done),
                 .done         (correction_done),
                 .correction_x (correction_x),
-                .correction_y (correction_y),
-                .error_log    (left_error)
+                .correction_y (correction_y)
             );
         end else begin : gen_none
             assign seen = searched;
             assign {centre_done, window_done, correction_done, look_saturated} = 4'd0;
-            assign {correction_x, correction_y, left_error} = 54'd0;
+            assign {correction_x, correction_y} = 36'd0;
 
             wire _unused = &{1'b0, look_start, look_x, look_y, read_valid, read_quad, read_values,
                 HALF_X != 0, HALF_Y != 0, LENGTH != 0, PASSES != 0, STRESS_LEFT != 0, UNIT_SHIFT != 0,
-                CORRECTION_SHIFT != 0, WITH_ERROR != 0, ERROR_SHIFT != 0, ERROR_BASE, EXPECTED_LOOK_LATENCY != 0,
+                CORRECTION_SHIFT != 0, EXPECTED_LOOK_LATENCY != 0,
                 EXPECTED_NETWORK_LATENCY != 0, AT_ONCE != 0, ROM_DIR == "", ROM_NAME == ""};
         end
     endgenerate
@@ -318,7 +341,7 @@ module sptfra_estimator_joint #(
 
     assign x_is_free = 1'b1;
     assign slope = 18'sd0;
-    assign error_log = unknown ? 18'sd0 : left_error; // without a direction as much as presses
+    assign error_log = unknown ? 18'sd0 : frame_error; // without a direction as much as presses
     assign at_bound = on_border || clipped;
     assign saturated = before_saturated && !unknown;
 

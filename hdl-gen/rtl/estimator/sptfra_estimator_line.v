@@ -26,6 +26,11 @@ module sptfra_estimator_line #(
     parameter integer POINTS = 1,
     // Left shift (negative: right) that turns sum |b| into the level above the least B
     parameter integer LEVEL_SHIFT = -1,
+    // 1: with a standard error, and its constants: see sptfra_standard_error
+    parameter integer WITH_ERROR = 0,
+    parameter [17:0] ERROR_MODEL = 18'd0,
+    parameter [16:0] ERROR_NOISE = 17'd0,
+    parameter [16:0] ERROR_BORDER = 17'd0,
     // From the direction to the line, checked in simulation; 0: unchecked
     parameter integer EXPECTED_LINE_LATENCY = 0,
     // From the start of a search to its end, checked in simulation; 0: unchecked
@@ -53,6 +58,7 @@ module sptfra_estimator_line #(
     input  wire no_direction,
     input  wire [39:0] stress_sum,
     input  wire [26:0] largest,
+    input  wire [39:0] border,
     input  wire [5:0] flags_in, // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
     // One cycle: the place of a frame's u_q is free
     output wire u_released,
@@ -63,7 +69,7 @@ module sptfra_estimator_line #(
     output wire signed [17:0] free, // 16 fraction bits
     output wire signed [17:0] other, // of the other component: offset and slope, 15 fraction bits
     output wire signed [17:0] slope,
-    output wire signed [17:0] error_log, // none
+    output wire signed [17:0] error_log, // of base 2, of the error of (F_x, F_y) over |F_z|, 12 fraction bits
     output reg  unknown,
     output wire at_bound,
     output wire saturated,
@@ -103,11 +109,15 @@ module sptfra_estimator_line #(
     wire signed [17:0] line_c0;
     wire signed [17:0] line_c1;
     reg [39:0] line_stress_sum;
+    reg [26:0] line_largest;
+    reg [39:0] line_border;
     reg [5:0] line_flags;
 
     always @(posedge clock) begin
         if (direction_take) begin
             line_stress_sum <= stress_sum;
+            line_largest <= largest;
+            line_border <= border;
             line_flags <= flags_in;
         end
     end
@@ -151,7 +161,6 @@ module sptfra_estimator_line #(
     assign answer_valid = search_done || answer_waits;
     assign other = c0;
     assign slope = c1;
-    assign error_log = 18'sd0;
 
     always @(posedge clock) begin
         u_waiting <= u_waiting + {1'b0, fill_complete} - {1'b0, search_start};
@@ -216,8 +225,32 @@ module sptfra_estimator_line #(
         .saturated   (saturated)
     );
 
-    // Only other estimators want to know
-    wire _unused = &{1'b0, largest};
+    // ---- Standard error: during the search
+    generate
+        if (WITH_ERROR != 0) begin : gen_error
+            wire signed [17:0] found_error;
+
+            sptfra_standard_error #(
+                .MODEL  (ERROR_MODEL),
+                .NOISE  (ERROR_NOISE),
+                .BORDER (ERROR_BORDER)
+            ) standard_error (
+                .clock      (clock),
+                .reset      (reset),
+                .start      (search_start),
+                .stress_sum (line_stress_sum),
+                .largest    (line_largest),
+                .border     (line_border),
+                .error_log  (found_error)
+            );
+
+            assign error_log = unknown ? 18'sd0 : found_error; // without a direction as much as presses
+        end else begin : gen_no_error
+            assign error_log = 18'sd0;
+
+            wire _unused = &{1'b0, line_largest, line_border, ERROR_MODEL, ERROR_NOISE, ERROR_BORDER};
+        end
+    endgenerate
 
 endmodule
 

@@ -2,7 +2,6 @@
 // Part of the SpTFRA hardware generator.
 //
 // Network of the correction: one hidden layer of rectifiers (ReLU), then two sums, averaged over mirror images.
-// With WITH_ERROR a third sum: the logarithm of the standard error.
 //
 // The input stands in the basis of the parity classes, and so do the weights: one pass gives four classes' sums of
 // AT_ONCE hidden units, which a butterfly turns into the units of the four images, one after the other. PASSES passes
@@ -23,11 +22,6 @@ module sptfra_network #(
     parameter integer UNIT_SHIFT = 12,
     // Bits dropped from the sum of the output; negative: added
     parameter integer CORRECTION_SHIFT = 12,
-    // 1: the network estimates the remaining error; bits dropped from its sum, negative: added; what is added to it, 12
-    // fraction bits
-    parameter integer WITH_ERROR = 0,
-    parameter integer ERROR_SHIFT = 12,
-    parameter signed [17:0] ERROR_BASE = 18'sd0,
     // Prefix of the ROM file names, for instance a directory with its slash
     parameter ROM_DIR = "",
     // Name of the ROM files, without what they hold
@@ -45,8 +39,7 @@ module sptfra_network #(
     // Result, held until the next start: within 1/4, 16 fraction bits
     output reg  done, // one cycle
     output reg  signed [17:0] correction_x,
-    output reg  signed [17:0] correction_y,
-    output wire signed [17:0] error_log // of base 2, of the error over |F_z|, from -10 to 2, 12 fraction bits
+    output reg  signed [17:0] correction_y
 );
 
     localparam integer INPUT_BITS = 27;
@@ -218,15 +211,14 @@ module sptfra_network #(
     // ---- Output: odd in x, and odd in y
     reg [READOUT_WIDTH-1:0] readout_address;
     reg first_5;
-    localparam integer READOUT_BITS = (WITH_ERROR != 0) ? 54 : 36;
-    wire [READOUT_BITS-1:0] readout_5;
+    wire [35:0] readout_5;
     wire signed [47:0] sum_x;
     wire signed [47:0] sum_y;
     wire signed [26:0] along_x_5 = mean_5[(UNIT_BITS+2)*1 +: 27];
     wire signed [26:0] along_y_5 = mean_5[(UNIT_BITS+2)*2 +: 27];
 
     sptfra_rom #(
-        .WIDTH         (READOUT_BITS),
+        .WIDTH         (36),
         .DEPTH         (UNITS),
         .ADDRESS_WIDTH (READOUT_WIDTH),
         .ROM_DIR       (ROM_DIR),
@@ -257,24 +249,6 @@ module sptfra_network #(
         .data        (along_y_5),
         .accumulator (sum_y)
     );
-
-    // ---- The error that is left: of four that are not negative half of the sum fits
-    generate
-        if (WITH_ERROR != 0) begin : gen_error
-            sptfra_error_log #(.SHIFT (ERROR_SHIFT), .BASE (ERROR_BASE)) of_units (
-                .clock     (clock),
-                .reset     (reset),
-                .valid     (unit_there[5]),
-                .first     (first_5),
-                .weight    (readout_5[53:36]),
-                .unit      (mean_5[1 +: 27]),
-                .error_log (error_log)
-            );
-        end else begin : gen_no_error
-            assign error_log = 18'sd0;
-            wire _unused_error = &{1'b0, ERROR_SHIFT != 0, ERROR_BASE};
-        end
-    endgenerate
 
     always @(posedge clock) begin
         if (unit_there[4]) begin

@@ -17,6 +17,8 @@ module sptfra_cean #(
     parameter integer DIRECTION = 0,
     // 1: the sensor reads what pulls, so that a frame in which nothing does is to be told
     parameter integer TENSION_READ = 1,
+    // 1: the stress at the grid's border is summed up, for the standard error
+    parameter integer WITH_ERROR = 0,
     // Pitch in x over the larger pitch, 16 fraction bits
     parameter signed [17:0] PITCH_X = 18'sd65536,
     // Pitch in y over the larger pitch, 16 fraction bits
@@ -48,6 +50,7 @@ module sptfra_cean #(
     output wire no_direction, // nothing pushes, or nothing pulls
     output wire [39:0] stress_sum, // sum |b|
     output wire [26:0] largest, // max |b|
+    output wire [39:0] border, // sum |b| of the taxels at the grid's border
     output wire [5:0] flags // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
 );
 
@@ -84,6 +87,38 @@ module sptfra_cean #(
             pulled <= 1'b0;
         end
     end
+
+    // ---- The taxels at the grid's border, beside stage 2
+    wire [39:0] edge_sum;
+
+    generate
+        if (WITH_ERROR != 0) begin : gen_border
+            localparam integer LAST_X = COLUMNS - 1;
+            localparam integer LAST_Y = ROWS - 1;
+            reg [5:0] x;
+            reg [5:0] y;
+            reg [39:0] at_edge;
+            wire row_ends = (x == LAST_X[5:0]);
+            wire is_edge = row_ends || (x == 6'd0) || (y == 6'd0) || (y == LAST_Y[5:0]);
+
+            assign edge_sum = at_edge;
+
+            always @(posedge clock) begin
+                if (valid_1) begin
+                    x <= row_ends ? 6'd0 : x + 6'd1;
+                    y <= row_ends ? y + 6'd1 : y;
+                    at_edge <= at_edge + (is_edge ? {13'd0, magnitude_1} : 40'd0);
+                end
+                if (clear) begin
+                    x <= 6'd0;
+                    y <= 6'd0;
+                    at_edge <= 40'd0;
+                end
+            end
+        end else begin : gen_no_border
+            assign edge_sum = 40'd0;
+        end
+    endgenerate
 
     // ---- Centroids and direction
     wire measured; // at the end of MEASURE
@@ -169,16 +204,16 @@ module sptfra_cean #(
 
     // ---- Two places for finished frames: never full, since Bz asks first
     wire no_tension = (TENSION_READ != 0) && !pulled;
-    wire [127:0] pushed = {push_x, push_y, no_push, sum, most, no_tension, guessed, below_floor, faults};
-    reg [127:0] waiting_0;
-    reg [127:0] waiting_1;
+    wire [167:0] pushed = {push_x, push_y, no_push, sum, most, edge_sum, no_tension, guessed, below_floor, faults};
+    reg [167:0] waiting_0;
+    reg [167:0] waiting_1;
     reg [1:0] waiting;
     wire push = (state == PUSH);
 
     assign frame_take = push;
     assign direction_valid = (waiting != 2'd0);
     assign direction_room = (waiting != 2'd2);
-    assign {direction_x, direction_y, no_direction, stress_sum, largest, flags} = waiting_0;
+    assign {direction_x, direction_y, no_direction, stress_sum, largest, border, flags} = waiting_0;
 
     always @(posedge clock) begin
         waiting <= waiting + {1'b0, push} - {1'b0, direction_take};

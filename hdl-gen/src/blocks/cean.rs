@@ -13,11 +13,13 @@ pub fn parameters(plan: &Plan) -> Parameters {
     let slot = plan.estimator.slot();
     let pitch = slot.pitch();
     let [pitch_x, pitch_y] = pitch.unwrap_or_default();
-    Parameters::new()
+    let parameters = Parameters::new()
         .count("COLUMNS", plan.design.sensor.columns)
         .count("ROWS", plan.design.sensor.rows)
         .flag("DIRECTION", pitch.is_some())
-        .flag("TENSION_READ", plan.design.input.tension == Tension::Read)
+        .flag("TENSION_READ", plan.design.input.tension == Tension::Read);
+    let parameters = if plan.thresholds.error.is_some() { parameters.flag("WITH_ERROR", true) } else { parameters };
+    parameters
         .wide("PITCH_X", SHORT_BITS, pitch_x)
         .wide("PITCH_Y", SHORT_BITS, pitch_y)
         .cycles("EXPECTED_LATENCY", slot.contact_latency())

@@ -19,7 +19,7 @@ pub fn parameters(plan: &Plan) -> Parameters {
         .number("TORQUE_LSB", plan.formats.torque_lsb.into())
         .number("FIELD_LSB", field_lsb(plan).into());
     let parameters = match plan.thresholds.error {
-        Some(limit) => parameters.flag("WITH_ERROR", true).wide("ERROR_LIMIT", 18, limit),
+        Some(error) => parameters.flag("WITH_ERROR", true).wide("ERROR_LIMIT", 18, error.limit),
         None => parameters,
     };
     let parameters = if plan.thresholds.thin { parameters.flag("THIN", true) } else { parameters };

@@ -119,13 +119,14 @@ mod tests {
         QUAD_TO_READY, TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, stress_to_ready,
         taxels_to_write,
     };
-    use golden::estimators::{ERROR_FRACTION, ERROR_RANGE};
+    use golden::estimators::ERROR_RANGE;
 
     use crate::cores::{Multiplier, cordic};
     use crate::emit::rtl::library;
     use crate::estimators::{joint, line};
     use crate::model::{PULLING, inverse_gain};
     use crate::plan::format::FRICTION_FRACTION;
+    use crate::plan::standard_error::SHARE_FRACTION;
 
     /// What a constant in a module of the library is.
     fn literal(module: &str, name: &str) -> String {
@@ -176,9 +177,8 @@ mod tests {
             ("sptfra_look_window", "INPUT_ONE", 1 << joint::INPUT_FRACTION),
             ("sptfra_network", "UNIT_BITS", joint::UNIT_BITS.into()),
             ("sptfra_network", "LIMIT", joint::CORRECTION_LIMIT),
-            // A negative one, and the last step below the other.
-            ("sptfra_error_log", "LEAST", -i64::from(ERROR_RANGE[0]) << ERROR_FRACTION),
-            ("sptfra_error_log", "MOST", (i64::from(ERROR_RANGE[1]) << ERROR_FRACTION) - 1),
+            ("sptfra_standard_error", "LEAST", 1 << (i64::from(SHARE_FRACTION) + i64::from(ERROR_RANGE[0]))),
+            ("sptfra_standard_error", "MOST", (1 << (i64::from(SHARE_FRACTION) + i64::from(ERROR_RANGE[1]))) - 1),
         ];
         for (module, name, value) in expected {
             assert_eq!(constant(module, name), value, "{module}: {name}");

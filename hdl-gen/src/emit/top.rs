@@ -202,7 +202,11 @@ impl View {
             we: we::parameters(plan),
             co: co::parameters(plan),
             estimator_module: slot.module(),
-            estimator_parameters: slot.parameters(design, plan.ways()),
+            estimator_parameters: plan
+                .thresholds
+                .error
+                .iter()
+                .fold(slot.parameters(design, plan.ways()), |parameters, error| error.parameters(parameters)),
             field_module: field::module(plan),
             field_parameters: field::parameters(plan),
             contacts: design.algorithm.count_contacts.then(|| contacts::parameters(plan)),
@@ -249,6 +253,9 @@ pub(super) fn render(plan: &Plan, debug: bool) -> Result<(String, String), EmitE
 /// Modules of the library that stand only in a `generate if` that the design does not take.
 pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     let mut without = plan.estimator.slot().without();
+    if plan.thresholds.error.is_none() {
+        without.push("sptfra_standard_error");
+    }
     let curve = plan.design.input.curve.is_some();
     if !plan.design.input.counts() {
         without.extend(["sptfra_counts", "sptfra_gains"]);

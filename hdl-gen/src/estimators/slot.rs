@@ -1,8 +1,6 @@
 //! What every estimator tells the rest of the generator, and what it is given.
 
 use golden::design::Design;
-#[cfg(doc)]
-use golden::estimators::ERROR_FRACTION;
 use golden::products::ByPq;
 use golden::sensor::Sensor;
 use serde_json::Value;
@@ -47,20 +45,25 @@ pub struct Seen<'a> {
     pub u: &'a [Vec<i64>; 3],
 }
 
-/// The stress of a frame in two numbers.
+/// The stress of a frame in three numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
     /// `sum |b|`.
     pub stress_sum: i64,
     /// `max |b|`.
     pub largest: i64,
+    /// `sum |b|` of the taxels at the grid's border.
+    pub border: i64,
 }
 
 impl Contact {
-    /// Of the stress of each taxel.
-    pub fn new(stress: &[i64]) -> Self {
+    /// Of the stress of each taxel, in rows of `columns`.
+    pub fn new(stress: &[i64], columns: usize) -> Self {
         let magnitudes = || stress.iter().map(|value| value.abs());
-        Self { stress_sum: magnitudes().sum(), largest: magnitudes().max().unwrap_or(0) }
+        let ends = |at: usize, side: usize| at == 0 || at + 1 == side;
+        let is_border = |taxel: usize| ends(taxel % columns, columns) || ends(taxel / columns, stress.len() / columns);
+        let border = magnitudes().enumerate().filter(|&(taxel, _)| is_border(taxel)).map(|(_, value)| value).sum();
+        Self { stress_sum: magnitudes().sum(), largest: magnitudes().max().unwrap_or(0), border }
     }
 }
 
@@ -75,9 +78,6 @@ pub struct Found {
     pub at_bound: bool,
     /// An intermediate value was clipped.
     pub saturated: bool,
-    /// Logarithm of base 2 of the error of `(F_x, F_y)` over `|F_z|`, [`ERROR_FRACTION`] fraction bits, for estimators
-    /// that have one.
-    pub error_log: i64,
 }
 
 /// The cells that hold a frame's `u_q` for the search.

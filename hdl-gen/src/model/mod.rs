@@ -101,11 +101,12 @@ impl<'plan> Model<'plan> {
             replaced_sum = replaced.sum;
         }
         let mut noted = if self.replaced() > 0 { REPLACED } else { 0 };
-        if GUESSED_SHARE * replaced_sum > Contact::new(&stress).stress_sum {
+        let stress_sum = Contact::new(&stress, self.plan.design.sensor.columns).stress_sum;
+        if GUESSED_SHARE * replaced_sum > stress_sum {
             noted |= TOO_MANY_REPLACED;
         }
         let contact = self.bank.as_ref().map_or(self.plan.thresholds.contact, |bank| i64::from(bank.contact));
-        if Contact::new(&stress).stress_sum < contact {
+        if stress_sum < contact {
             self.slips = false;
             return self.blank(counter | NO_CONTACT);
         }
@@ -275,7 +276,8 @@ fn scalars(
     // The estimator takes the upper bits.
     let below = plan.formats.u.bits - plan.formats.u.narrowed().bits;
     let upper = u.each_ref().map(|of_q| of_q.iter().map(|value| value >> below).collect());
-    let seen = Seen { sensor, stress, contact: Contact::new(stress), noise_floor, sums, u: &upper };
+    let contact = Contact::new(stress, sensor.columns);
+    let seen = Seen { sensor, stress, contact, noise_floor, sums, u: &upper };
     let found = plan.estimator.slot().find(&seen);
     let summary = Summary::new(sums, found.friction);
 
@@ -303,10 +305,12 @@ fn scalars(
     put(words::MU + 1, &[i64::from(summary.angle)], angle_exponent);
     put(words::MU_XY, &summary.friction, -friction);
     let mut is_uncertain = plan.thresholds.thin;
-    if let Some(limit) = plan.thresholds.error {
-        let (error, exponent) = summary.standard_error(found.error_log);
+    if let Some(of) = &plan.thresholds.error {
+        // Without a direction the error is as much as presses.
+        let log = if found.unknown { 0 } else { of.log(&contact) };
+        let (error, exponent) = summary.standard_error(log);
         put(words::STANDARD_ERROR, &[error], plan.formats.g.lsb - friction + exponent);
-        is_uncertain |= found.error_log > limit;
+        is_uncertain |= log > of.limit;
     }
     if is_uncertain {
         answer[words::STATUS] |= LOW_CONFIDENCE;

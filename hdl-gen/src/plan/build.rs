@@ -1,7 +1,6 @@
 //! From a checked design to its plan on so many lanes.
 
 use golden::design::{Design, Outputs, PlanKind, Slip};
-use golden::estimators::ERROR_FRACTION;
 use golden::matrices::Matrices;
 
 use super::calibration::CalibrationPlan;
@@ -17,6 +16,7 @@ use super::product::Product;
 use super::quantise::{Quantised, quantise, taxel_force_n};
 use super::resources::Resources;
 use super::schedule::Schedule;
+use super::standard_error::StandardErrorPlan;
 use super::timing::Timeline;
 use super::vector_formats::{Formats, arms};
 use super::{Condition, Nnz, Plan, Thresholds, control, elements, ways};
@@ -157,7 +157,6 @@ fn thresholds(design: &Design, stress: Format) -> Result<Thresholds, PlanError> 
         // Never 0: that friction of 0 slips is no limit's meaning.
         [limit, limit - hysteresis].map(|friction| ((friction * pow2(FRICTION_FRACTION as i32)).round() as i64).max(1))
     });
-    let error =
-        design.algorithm.constants().max_error_log().map(|log| (log * pow2(ERROR_FRACTION as i32)).round() as i64);
+    let error = StandardErrorPlan::of(design);
     Ok(Thresholds { taxel, contact, slip, error, thin: design.thin_layer().is_some() })
 }

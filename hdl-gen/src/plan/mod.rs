@@ -27,14 +27,13 @@ pub mod quantise;
 pub mod resources;
 pub mod savings;
 pub mod schedule;
+pub mod standard_error;
 pub mod streams;
 pub mod timing;
 pub mod vector_formats;
 pub mod words;
 
 use golden::design::{Design, Outputs, PlanKind, Scaling};
-#[cfg(doc)]
-use golden::estimators::ERROR_FRACTION;
 use golden::matrices::MatrixName;
 use golden::parity::{CLASSES, Quads};
 use serde::Serialize;
@@ -50,6 +49,7 @@ use matrix::QuantisedMatrix;
 use product::{Block, Product};
 use resources::Resources;
 use schedule::Schedule;
+use standard_error::StandardErrorPlan;
 use streams::Streams;
 use timing::Timeline;
 use vector_formats::Formats;
@@ -66,10 +66,9 @@ pub struct Thresholds {
     /// [`format::FRICTION_FRACTION`] fraction bits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slip: Option<[i64; 2]>,
-    /// A frame whose error over `|F_z|` is larger has low confidence: a logarithm of base 2 with [`ERROR_FRACTION`] fraction bits,
-    /// where the estimator has one.
+    /// The standard error, if it was fitted.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub error: Option<i64>,
+    pub error: Option<StandardErrorPlan>,
     /// Whether every answer has low confidence, as the layer is too thin for the taxels.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub thin: bool,

@@ -153,7 +153,6 @@ fn a_generated_design_has_its_weights_beside_it_and_in_its_hash() {
             half_window: [0, 0],
             hidden: vec![vec![1, 2, 3, 4, 5, weight]],
             output: [vec![7], vec![8]],
-            error: None,
         });
         emit(&Plan::new(&design).unwrap()).unwrap()
     };

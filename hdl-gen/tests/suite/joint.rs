@@ -1,6 +1,6 @@
 //! The joint estimator's plan: formats that no frame can leave, ROMs that hold what the plan says.
 
-use golden::design::{Correction, Design, ErrorOutput, Estimator};
+use golden::design::{Correction, Design, Estimator, StandardError};
 use hdl_gen::emit::emit;
 use hdl_gen::estimators::joint::search::{FRACTION, GRID, MARGIN_BITS, U_BITS, VALUE_BITS, WEIGHT_DROP};
 use hdl_gen::estimators::joint::{CORRECTION_LIMIT, INPUT_BITS, NetworkPlan, STRESS_BITS, UNIT_BITS};
@@ -11,7 +11,7 @@ use super::support::{design_text, plan};
 
 const FRICTION_STEP: f32 = 1.0 / 65_536.0;
 
-/// A design with a correction of one weight all over, of either sign in turn if it alternates; then it knows its error, too.
+/// A design with a correction of one weight all over, of either sign in turn if it alternates.
 fn with_weights(half_window: [usize; 2], units: usize, hidden: i32, output: i32, alternating: bool) -> Plan {
     let text = design_text("pad", [10, 10], [4.0, 2.0], 3.0, "");
     let mut design = Design::from_toml(&text, "test.toml").unwrap();
@@ -20,12 +20,8 @@ fn with_weights(half_window: [usize; 2], units: usize, hidden: i32, output: i32,
     let sign = |index: usize| if alternating && index % 2 == 1 { -1 } else { 1 };
     let row = |shift: usize| (0..inputs).map(|index| sign(index + shift) * hidden).collect();
     let readout = |shift: usize| (0..units).map(|index| sign(index + shift) * output).collect();
-    design.algorithm.joint.correction = Some(Correction {
-        half_window,
-        hidden: (0..units).map(row).collect(),
-        output: [readout(0), readout(1)],
-        error: alternating.then(|| ErrorOutput { base: -9000, output: readout(0) }),
-    });
+    design.algorithm.joint.correction =
+        Some(Correction { half_window, hidden: (0..units).map(row).collect(), output: [readout(0), readout(1)] });
     Plan::new(&design).unwrap()
 }
 
@@ -62,10 +58,6 @@ fn no_sum_of_the_network_can_overflow() {
             }
             let total: i64 = network.readout.iter().map(|weights| i64::from(weights[0].abs())).sum();
             assert!(total << (UNIT_BITS) < 1 << 47, "the output fits the accumulator");
-            if let Some(error) = &network.error {
-                let total: i64 = error.readout.iter().map(|weight| i64::from(weight.abs())).sum();
-                assert!(total << (UNIT_BITS) < 1 << 47, "the sum of the error fits the accumulator");
-            }
             // The worst look: every value of the window at its limit, with the signs of the weights.
             let inputs = Correction::inputs(half_window) as i64;
             let unit = i128::from(inputs * i64::from(hidden.abs())) << (STRESS_BITS - 1);
@@ -167,8 +159,8 @@ fn a_square_is_symmetric_about_its_diagonal() {
     };
     let hidden: Vec<Vec<i32>> = (1..4).flat_map(|seed| [unit(seed), transposed(&unit(seed))]).collect();
     let output = [vec![300, -500, 90, 20, -700, 40], vec![-500, 300, 20, 90, 40, -700]];
-    let error = Some(ErrorOutput { base: -16_000, output: vec![150, 150, -80, -80, 60, 60] });
-    design.algorithm.joint.correction = Some(Correction { half_window: [HALF; 2], hidden, output, error });
+    design.algorithm.standard_error = Some(StandardError { model: 0.03, noise: 100.0, border: 1.0 });
+    design.algorithm.joint.correction = Some(Correction { half_window: [HALF; 2], hidden, output });
     let plan = Plan::new(&design).unwrap();
     for shift in 0..5 {
         let frame: Vec<f32> = (0..100)
@@ -218,8 +210,6 @@ fn the_roms_hold_the_weights() {
     for (index, line) in readout.iter().enumerate() {
         let wanted = network.readout.get(index).copied().unwrap_or_default();
         assert_eq!([weight(line, 0), weight(line, 1)], wanted);
-        let of_error = network.error.as_ref().and_then(|error| error.readout.get(index)).copied();
-        assert_eq!(weight(line, 2), of_error.unwrap_or_default());
     }
     assert!(files.contains_key("rtl/sptfra_grid_search.v") && !files.contains_key("rtl/sptfra_line.v"));
     let metadata: serde_json::Value = serde_json::from_slice(&files["metadata.json"]).unwrap();

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod cells;
+pub mod confidence;
 pub mod corner_cases;
 pub mod mutants;
 pub mod noise;

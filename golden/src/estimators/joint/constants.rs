@@ -14,8 +14,6 @@ pub const MAX_HIDDEN: usize = 256;
 /// Largest magnitude of `c3`, less than 4, as far as the hardware's word for it reaches. Sensors that read no tension
 /// need more than 2.
 pub const CUBIC_LIMIT: f64 = 3.9;
-/// Standard error as a share of the normal force above which a frame has low confidence, unless a design says otherwise.
-pub const DEFAULT_MAX_STANDARD_ERROR: f64 = 0.06;
 /// Inputs of a correction besides the window: two friction components, two fractions of the centre, one.
 pub const EXTRA_INPUTS: usize = 5;
 
@@ -43,9 +41,6 @@ pub struct JointConstants {
     pub friction_correction: [f64; 2],
     /// What a small network adds to that; nothing unless trained.
     pub correction: Option<Correction>,
-    /// A frame whose standard error of `(F_x, F_y)` is a larger share of `|F_z|` has low confidence, if the correction
-    /// estimates it.
-    pub max_standard_error: f64,
     /// What they were calibrated for, as [`crate::design::conditions`] states it; a design of other conditions is refused. `None` for
     /// constants of unknown origin.
     pub calibrated_for: Option<String>,
@@ -58,7 +53,6 @@ impl Default for JointConstants {
             gain: 1.0,
             friction_correction: [1.0, 0.0],
             correction: None,
-            max_standard_error: DEFAULT_MAX_STANDARD_ERROR,
             calibrated_for: None,
         }
     }
@@ -76,8 +70,6 @@ pub struct Correction {
     pub hidden: Vec<Vec<i32>>,
     /// Weights of the hidden units in the x and the y component of the correction.
     pub output: [Vec<i32>; 2],
-    /// The output for the remaining error, where it was trained.
-    pub error: Option<ErrorOutput>,
 }
 
 impl Correction {
@@ -85,14 +77,4 @@ impl Correction {
     pub fn inputs(half_window: [usize; 2]) -> usize {
         (2 * half_window[0] + 1) * (2 * half_window[1] + 1) + EXTRA_INPUTS
     }
-}
-
-/// A third output of the network: the logarithm of the remaining error of `(F_x, F_y)` over `|F_z|`, to the base 2.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ErrorOutput {
-    /// What is added to the sum, in steps of `2^-`[`ERROR_FRACTION`](crate::estimators::ERROR_FRACTION).
-    pub base: i32,
-    /// Weight of each hidden unit, as the mean over the mirror images, in steps of
-    /// [`WEIGHT_FRACTION`].
-    pub output: Vec<i32>,
 }

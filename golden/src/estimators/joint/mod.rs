@@ -13,11 +13,9 @@ mod thin;
 mod weights;
 
 use super::seen::{Answer, RANGE, Seen};
-use super::standard_error::{log, ratio};
 use crate::status::Status;
 pub use constants::{
-    CUBIC_LIMIT, Correction, DEFAULT_MAX_STANDARD_ERROR, EXTRA_INPUTS, ErrorOutput, JointConstants, MAX_HIDDEN,
-    TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT,
+    CUBIC_LIMIT, Correction, EXTRA_INPUTS, JointConstants, MAX_HIDDEN, TrainingSet, WEIGHT_FRACTION, WEIGHT_LIMIT,
 };
 pub use grid::Grid;
 pub(crate) use level_set::Found;
@@ -74,8 +72,6 @@ pub(crate) struct Joint {
     friction_correction: [f64; 2],
     columns: usize,
     network: Option<Network>,
-    /// A frame whose error has a larger logarithm has low confidence.
-    max_error_log: f64,
 }
 
 impl Joint {
@@ -85,32 +81,24 @@ impl Joint {
             friction_correction: constants.friction_correction,
             columns,
             network: constants.correction.as_ref().map(Network::new),
-            max_error_log: log(constants.max_standard_error),
         }
     }
 
-    /// Finds the friction components, and the error of `(F_x, F_y)` over `|F_z|` where the network tells it.
+    /// Finds the friction components.
     pub(crate) fn find(&self, seen: &Seen, scratch: &mut JointScratch) -> Answer {
         let Found { status, mu } = raw(seen, scratch);
-        let tells = self.network.as_ref().is_some_and(Network::tells_its_error);
         if status.contains(Status::DIRECTION_UNKNOWN) {
-            // The error is as much as presses.
-            return self.answer(status, mu, tells.then_some(0.0));
+            return Answer { status, mu };
         }
-        let Some(network) = &self.network else {
-            let (status, mu) = within(status, scaled(mu, self.friction_correction));
-            return self.answer(status, mu, None);
+        let mu = match &self.network {
+            None => scaled(mu, self.friction_correction),
+            Some(network) => {
+                look(seen, mu, self.columns, network.half_window, TIE, scratch);
+                self.corrected(mu, &scratch.look, &mut scratch.network)
+            }
         };
-        look(seen, mu, self.columns, network.half_window, TIE, scratch);
-        let (status, mu) = within(status, self.corrected(mu, &scratch.look, &mut scratch.network));
-        self.answer(status, mu, network.error_log(&scratch.network))
-    }
-
-    fn answer(&self, mut status: Status, mu: [f64; 2], error_log: Option<f64>) -> Answer {
-        if error_log.is_some_and(|log| log > self.max_error_log) {
-            status.insert(Status::LOW_CONFIDENCE);
-        }
-        Answer { status, mu, error: error_log.map_or(0.0, ratio) }
+        let (status, mu) = within(status, mu);
+        Answer { status, mu }
     }
 
     /// The friction components for the centroid of the level set and what the network sees; not clipped.

@@ -4,9 +4,8 @@
 //! percent, in a way that repeats with the pitch. The network sees the stress that the normal forces alone would
 //! cause, in a window that moves with the contact, and adds a bounded amount to the estimate.
 
-use super::constants::{Correction, ErrorOutput, WEIGHT_FRACTION};
+use super::constants::{Correction, WEIGHT_FRACTION};
 use super::look::Look;
-use crate::estimators::standard_error::{ERROR_FRACTION, limited};
 use crate::parity::{CLASSES, Quads, butterfly};
 
 /// The correction of a component is at most this, so that an unforeseen contact is never made much worse.
@@ -29,8 +28,6 @@ pub(crate) struct Network {
     /// the units next to each other.
     hidden: Vec<[Vec<f64>; CLASSES]>,
     output: [Vec<f64>; 2],
-    /// What is added to the logarithm of the error, and the weights in it.
-    error: Option<(f64, Vec<f64>)>,
 }
 
 /// Memory of the network, to be used again for the next frame.
@@ -40,21 +37,12 @@ pub(crate) struct NetworkScratch {
     inputs: Vec<[f64; CLASSES]>,
     /// The hidden units' sums by class.
     sums: [Vec<f64>; CLASSES],
-    /// The hidden units' mean over the mirror images.
-    even: Vec<f64>,
-}
-
-impl NetworkScratch {
-    /// The hidden units' mean over the mirror images of the last look.
-    pub(crate) fn even(&self) -> &[f64] {
-        &self.even
-    }
 }
 
 impl Network {
     pub(crate) fn new(correction: &Correction) -> Self {
         let step = (-f64::from(WEIGHT_FRACTION)).exp2();
-        let Correction { half_window, hidden, output, error } = correction;
+        let Correction { half_window, hidden, output } = correction;
         let [half_x, half_y] = *half_window;
         let quads = Quads::new(2 * half_x + 1, 2 * half_y + 1);
         let weight = |unit: &Vec<i32>, input: usize| step * f64::from(unit[input]);
@@ -83,11 +71,7 @@ impl Network {
             })));
         }
         let output = output.each_ref().map(|weights| weights.iter().map(|of| step * f64::from(*of)).collect());
-        let error = error.as_ref().map(|ErrorOutput { base, output }| {
-            let base = f64::from(*base) * (-f64::from(ERROR_FRACTION)).exp2();
-            (base, output.iter().map(|of| step * f64::from(*of)).collect())
-        });
-        Self { half_window: *half_window, window, hidden: words, output, error }
+        Self { half_window: *half_window, window, hidden: words, output }
     }
 
     /// The correction, each component within [`LARGEST`].
@@ -121,27 +105,13 @@ impl Network {
         }
         let [a, b, c, d] = &scratch.sums;
         let mut sums = [0.0; 2];
-        scratch.even.clear();
         for unit in 0..units {
             let images = butterfly([a[unit], b[unit], c[unit], d[unit]]).map(|sum| sum.max(0.0));
-            let [even, odd_x, odd_y, _] = butterfly(images);
-            scratch.even.push(0.25 * even);
+            let [_, odd_x, odd_y, _] = butterfly(images);
             sums[0] += self.output[0][unit] * odd_x;
             sums[1] += self.output[1][unit] * odd_y;
         }
         sums.map(|sum| (0.25 * sum).clamp(-LARGEST, LARGEST))
-    }
-
-    /// Whether it tells the error that it leaves.
-    pub(crate) fn tells_its_error(&self) -> bool {
-        self.error.is_some()
-    }
-
-    /// The logarithm of base 2 of the error of the last correction, over the normal force, if it tells that.
-    pub(crate) fn error_log(&self, scratch: &NetworkScratch) -> Option<f64> {
-        let (base, weights) = self.error.as_ref()?;
-        let sum: f64 = scratch.even.iter().zip(weights).map(|(unit, weight)| unit * weight).sum();
-        Some(limited(base + sum))
     }
 }
 
@@ -198,7 +168,7 @@ mod tests {
         for half_window in [[1, 2], [0, 1], [2, 0]] {
             let length = Correction::inputs(half_window);
             let hidden = (1..6).map(|unit| numbers(length, 91 * unit)).collect();
-            let correction = Correction { half_window, hidden, output: [numbers(5, 3), numbers(5, 8)], error: None };
+            let correction = Correction { half_window, hidden, output: [numbers(5, 3), numbers(5, 8)] };
             let values = numbers(length, 55).into_iter().map(|value| f64::from(value) / 700.0).collect();
             let seen = Look { half_window, values };
             let found = Network::new(&correction).correct(&seen, &mut NetworkScratch::default());
@@ -216,7 +186,6 @@ mod tests {
             half_window: [1, 0],
             hidden: vec![vec![4096, -2048, 512, 300, 20, -7, 900, 100], vec![-900, 4096, 77, -100, 5, 80, 1, 50]],
             output: [vec![300, -200], vec![150, 60]],
-            error: None,
         };
         let network = Network::new(&correction);
         let correct = |look: &Look| network.correct(look, &mut NetworkScratch::default());

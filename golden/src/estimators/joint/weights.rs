@@ -2,15 +2,13 @@
 
 use std::fmt::Write;
 
-use super::constants::{Correction, EXTRA_INPUTS, ErrorOutput, MAX_HIDDEN, WEIGHT_LIMIT};
+use super::constants::{Correction, EXTRA_INPUTS, MAX_HIDDEN, WEIGHT_LIMIT};
 
 /// Names of the inputs behind the window, in order: friction of the level set's centre, the contact's centre within its
 /// taxel, and one.
 const EXTRA: [&str; EXTRA_INPUTS] = ["mu_x", "mu_y", "centre_x", "centre_y", "one"];
-/// The last columns: the hidden unit's weights in both components of the correction,
+/// The last columns: the hidden unit's weights in both components of the correction.
 const OUTPUT: [&str; 2] = ["to_x", "to_y"];
-/// and in the logarithm of the error that is left, where that is known.
-const ERROR: &str = "to_error";
 
 /// What is wrong with a table of weights.
 #[derive(Debug, PartialEq, Eq)]
@@ -24,55 +22,46 @@ pub(crate) struct WeightsError {
 }
 
 /// The columns: places of the window, row by row, seen from the contact's centre; the other inputs; the outputs.
-fn header([half_x, half_y]: [usize; 2], error: bool) -> String {
+fn header([half_x, half_y]: [usize; 2]) -> String {
     let steps = |half: usize| -(half as i64)..=half as i64;
     let places = steps(half_y).flat_map(|y| steps(half_x).map(move |x| format!("x{x:+}y{y:+}")));
-    let others = EXTRA.into_iter().chain(OUTPUT).chain(error.then_some(ERROR));
+    let others = EXTRA.into_iter().chain(OUTPUT);
     places.chain(others.map(str::to_owned)).collect::<Vec<_>>().join(",")
 }
 
 impl Correction {
     /// The weights as CSV, in the form of `docs/reference/files.md`; a design reads them back.
     pub fn to_csv(&self) -> String {
-        let mut text = header(self.half_window, self.error.is_some()) + "\n";
+        let mut text = header(self.half_window) + "\n";
         let [along_x, along_y] = &self.output;
-        for (index, ((unit, to_x), to_y)) in self.hidden.iter().zip(along_x).zip(along_y).enumerate() {
+        for ((unit, to_x), to_y) in self.hidden.iter().zip(along_x).zip(along_y) {
             for weight in unit {
                 // Writing to a String cannot fail.
                 let _ = write!(text, "{weight},");
             }
-            let _ = write!(text, "{to_x},{to_y}");
-            let _ = match &self.error {
-                Some(error) => writeln!(text, ",{}", error.output[index]),
-                None => writeln!(text),
-            };
+            let _ = writeln!(text, "{to_x},{to_y}");
         }
         text
     }
 
-    /// Reads what [`Correction::to_csv`] writes; with the base of the error, if the design has one.
-    pub(crate) fn read_csv(text: &str, half_window: [usize; 2], error_base: Option<i32>) -> Result<Self, WeightsError> {
+    /// Reads what [`Correction::to_csv`] writes.
+    pub(crate) fn read_csv(text: &str, half_window: [usize; 2]) -> Result<Self, WeightsError> {
         let wrong =
             |line: usize, problem: String, remedy: &str| WeightsError { line, problem, remedy: remedy.to_owned() };
         let again = "take the file that was written with the design, or remove [algorithm.correction] and run `sptfra calibrate`";
         let mut lines = (1..).zip(text.lines());
-        if lines.next().is_none_or(|(_, line)| line != header(half_window, error_base.is_some())) {
+        if lines.next().is_none_or(|(_, line)| line != header(half_window)) {
             let [x, y] = half_window;
-            let with = if error_base.is_some() { "with" } else { "without" };
-            let problem = format!("the header is not that of half_window = [{x}, {y}] {with} error_base");
+            let problem = format!("the header is not that of half_window = [{x}, {y}]");
             return Err(wrong(1, problem, again));
         }
         let (mut hidden, mut output) = (Vec::new(), [Vec::new(), Vec::new()]);
-        let mut error = error_base.map(|base| ErrorOutput { base, output: Vec::new() });
-        let columns = Self::inputs(half_window) + OUTPUT.len() + usize::from(error.is_some());
+        let columns = Self::inputs(half_window) + OUTPUT.len();
         for (line, content) in lines {
             let weights = content.split(',').map(|word| weight(word).map_err(|problem| wrong(line, problem, again)));
             let mut weights: Vec<i32> = weights.collect::<Result<_, _>>()?;
             if weights.len() != columns {
                 return Err(wrong(line, format!("{} weights in place of {columns}", weights.len()), again));
-            }
-            if let Some(error) = &mut error {
-                error.output.extend(weights.pop());
             }
             for (output, weight) in output.iter_mut().zip(weights.split_off(Self::inputs(half_window))) {
                 output.push(weight);
@@ -83,7 +72,7 @@ impl Correction {
             let problem = format!("{} hidden units, not 1 to {MAX_HIDDEN}", hidden.len());
             return Err(wrong(hidden.len() + 1, problem, again));
         }
-        Ok(Self { half_window, hidden, output, error })
+        Ok(Self { half_window, hidden, output })
     }
 }
 
@@ -107,7 +96,6 @@ mod tests {
             half_window: [1, 0],
             hidden: vec![vec![1, -2, 3, 4, 5, 6, 7, -131_072], vec![0, 0, 0, 0, 0, 0, 0, 131_071]],
             output: [vec![9, -10], vec![11, 12]],
-            error: None,
         }
     }
 
@@ -117,12 +105,7 @@ mod tests {
         let expected = "x-1y+0,x+0y+0,x+1y+0,mu_x,mu_y,centre_x,centre_y,one,to_x,to_y\n\
                         1,-2,3,4,5,6,7,-131072,9,11\n0,0,0,0,0,0,0,131071,-10,12\n";
         assert_eq!(text, expected);
-        assert_eq!(Correction::read_csv(&text, [1, 0], None), Ok(small()));
-        let with_error = Correction { error: Some(ErrorOutput { base: -5, output: vec![13, -14] }), ..small() };
-        let text = with_error.to_csv();
-        assert!(text.starts_with("x-1y+0,") && text.contains("to_y,to_error\n") && text.ends_with(",-10,12,-14\n"));
-        assert_eq!(Correction::read_csv(&text, [1, 0], Some(-5)), Ok(with_error));
-        assert_eq!(Correction::read_csv(&text, [1, 0], None).map_err(|error| error.line), Err(1));
+        assert_eq!(Correction::read_csv(&text, [1, 0]), Ok(small()));
     }
 
     #[test]
@@ -138,7 +121,7 @@ mod tests {
             (text.replace("131071", "131072"), [1, 0], 3, "131072 is no weight from -131072 to 131071"),
             (text.replace("-2,", "2.5,"), [1, 0], 2, "\"2.5\" is no whole number"),
         ] {
-            let error = Correction::read_csv(&damaged, half_window, None).expect_err("it is damaged");
+            let error = Correction::read_csv(&damaged, half_window).expect_err("it is damaged");
             assert!(error.line == line && error.problem.contains(part), "{error:?}");
             assert!(error.remedy.contains("sptfra calibrate"), "{error:?}");
         }

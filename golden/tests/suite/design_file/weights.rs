@@ -2,7 +2,7 @@
 
 #![allow(clippy::float_cmp)] // the same bits are meant
 
-use golden::design::{Design, Estimator, TrainingSet, WEIGHTS_FILE};
+use golden::design::{Design, Estimator, StandardError, WEIGHTS_FILE};
 use sha2::{Digest, Sha256};
 
 use super::{MINIMAL, refused};
@@ -77,20 +77,22 @@ fn corrections_that_contradict_themselves() {
     }
 }
 
-/// A limit for an error that a design does not estimate is refused, and so is not written either.
+/// The standard error and its limit are keys of every estimator, and are read back.
 #[test]
-fn a_limit_of_the_error_goes_with_general_contacts() {
-    let joint = |keys: &str| format!("{MINIMAL}[algorithm]\nestimator = \"joint\"\n{keys}");
-    let mut design =
-        Design::from_toml(&joint("training_set = \"general\"\nmax_standard_error = 0.1\n"), "pad.toml").unwrap();
-    assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
-    refused(
-        &joint("max_standard_error = 0.1\n"),
-        &["algorithm.max_standard_error", "training_set = \"general\"", "sptfra calibrate"],
-    );
-    design.algorithm.joint.training_set = TrainingSet::Sliding;
-    assert!(!design.to_toml().contains("max_standard_error"), "{}", design.to_toml());
-    assert!(Design::from_toml(&design.to_toml(), "resolved").is_ok());
+fn a_standard_error_goes_with_every_estimator() {
+    for estimator in ["line", "joint"] {
+        let text = |keys: &str| format!("{MINIMAL}[algorithm]\nestimator = \"{estimator}\"\n{keys}");
+        let keys = "standard_error = { model = 0.03, noise = 120.0, border = 1.5 }\nmax_standard_error = 0.2\n";
+        let design = Design::from_toml(&text(keys), "pad.toml").unwrap();
+        let stated = StandardError { model: 0.03, noise: 120.0, border: 1.5 };
+        assert_eq!((design.algorithm.standard_error, design.algorithm.max_standard_error), (Some(stated), 0.2));
+        assert_eq!(Design::from_toml(&design.to_toml(), "resolved").unwrap(), design);
+        refused(&text("standard_error = { model = 0.03, noise = 120.0 }\n"), &["standard_error", "border"]);
+        refused(
+            &text("standard_error = { model = 0.0, noise = 120.0, border = 1.5 }\n"),
+            &["standard_error.model", "0.001"],
+        );
+    }
 }
 
 /// Constants of one training set, or noise, are not those of another.
@@ -99,7 +101,7 @@ fn training_set_and_noise_are_part_of_what_constants_are_calibrated_for() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../designs/sensor2-wide.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(Design::load(&path).is_ok());
-    let other = text.replace("training_set = \"general\"\n", "").replace("max_standard_error = 0.06\n", "");
+    let other = text.replace("training_set = \"general\"\n", "");
     refused(&other, &["algorithm.calibrated_for", "general\"", "sptfra calibrate"]);
     let noisier = text.replace("noise = 0.01\n", "noise = 0.02\n");
     refused(&noisier, &["algorithm.calibrated_for", "noise 0.01", "noise 0.02", "sptfra calibrate"]);

@@ -22,9 +22,7 @@ use crate::cores::{LONG_BITS, SHORT_BITS};
 use crate::plan::format::{FRICTION_FRACTION, Factors, pow2};
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
-pub use network::{
-    ErrorPlan, INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS,
-};
+pub use network::{INPUT_BITS, INPUT_FRACTION, NORMAL_DROP, NetworkPlan, RECIPROCAL_BITS, STRESS_BITS, UNIT_BITS};
 pub use search::SearchPlan;
 
 /// Fraction bits of c3.
@@ -74,10 +72,8 @@ impl JointPlan {
     }
 }
 
-/// Sums of the hidden units: both components, and the error that is left.
-fn readouts(network: &NetworkPlan) -> usize {
-    2 + usize::from(network.error.is_some())
-}
+/// Sums of the hidden units: both components.
+const READOUTS: usize = 2;
 
 impl Slot for JointPlan {
     fn cells(&self, sensor: &Sensor) -> Cells {
@@ -115,13 +111,13 @@ impl Slot for JointPlan {
             let look = BlockCost::new("look", &["sptfra_look"], CLASSES + 2);
             // Each member of a place in the window may be in any quarter of the grid.
             blocks.push(look.with([handed_on(), memory("look", CLASSES * CLASSES, rows, STRESS_BITS, false)]));
-            // The hidden units' four classes, both components, and the error that is left.
-            let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + readouts(network));
+            // The hidden units' four classes, and both components.
+            let units = BlockCost::new("network", &["sptfra_network"], CLASSES * network.at_once + READOUTS);
             let width = WEIGHT_BITS * classes * network.at_once as u32;
             blocks.push(units.with([
                 memory("features, folded", 1, network.length, classes * INPUT_BITS, false),
                 memory("network weights", 1, network.weights.len(), width, true),
-                memory("readout", 1, network.units(), readouts(network) as u32 * WEIGHT_BITS, true),
+                memory("readout", 1, network.units(), READOUTS as u32 * WEIGHT_BITS, true),
             ]));
         }
         // One after the other.
@@ -133,10 +129,7 @@ impl Slot for JointPlan {
         let Some(network) = &self.network else { return Vec::new() };
         let weights = network.weights.iter().map(|units| units.iter().flatten().copied().collect());
         let mut readout: Vec<Vec<i32>> = network.readout.iter().map(|weights| weights.to_vec()).collect();
-        if let Some(error) = &network.error {
-            readout.iter_mut().zip(&error.readout).for_each(|(weights, weight)| weights.push(*weight));
-        }
-        readout.resize(network.units(), vec![0; readouts(network)]);
+        readout.resize(network.units(), vec![0; READOUTS]);
         vec![("weights", weights.collect()), ("readout", readout)]
     }
 
@@ -166,7 +159,7 @@ impl Slot for JointPlan {
             );
         let Some(network) = &self.network else { return parameters };
         let [half_x, half_y] = network.half_window;
-        let parameters = parameters
+        parameters
             .count("HALF_X", half_x)
             .count("HALF_Y", half_y)
             .count("LENGTH", network.length)
@@ -174,14 +167,7 @@ impl Slot for JointPlan {
             .count("AT_ONCE", network.at_once)
             .number("STRESS_LEFT", network.stress_left.into())
             .number("UNIT_SHIFT", network.unit_shift.into())
-            .number("CORRECTION_SHIFT", network.correction_shift.into());
-        let parameters = match &network.error {
-            Some(ErrorPlan { shift, base, .. }) => {
-                parameters.flag("WITH_ERROR", true).number("ERROR_SHIFT", (*shift).into()).wide("ERROR_BASE", 18, *base)
-            }
-            None => parameters,
-        };
-        parameters
+            .number("CORRECTION_SHIFT", network.correction_shift.into())
             .expression("ROM_DIR", "ROM_DIR")
             .expression("ROM_NAME", format!("\"{}\"", design.name))
             .cycles("EXPECTED_LOOK_LATENCY", timing::look(&design.sensor))
@@ -189,14 +175,7 @@ impl Slot for JointPlan {
     }
 
     fn without(&self) -> Vec<&'static str> {
-        let mut without = Vec::new();
-        if self.network.is_none() {
-            without.push("sptfra_correction");
-        }
-        if self.network.as_ref().is_none_or(|network| network.error.is_none()) {
-            without.push("sptfra_error_log");
-        }
-        without
+        if self.network.is_none() { vec!["sptfra_correction"] } else { Vec::new() }
     }
 
     fn pitch(&self) -> Option<[i64; 2]> {

@@ -3,7 +3,6 @@
 //! A mirrored look changes the signs of what is odd in x or y. So the window is folded into parity classes, the
 //! weights too, and one pass over the weights gives the four sums from which the hidden units of all four looks follow.
 
-use golden::estimators::ERROR_FRACTION;
 use golden::estimators::joint::{Correction, EXTRA_INPUTS, STRESS_SCALE, WEIGHT_FRACTION, WEIGHT_LIMIT};
 use golden::parity::{CLASSES, sign};
 use serde::Serialize;
@@ -54,27 +53,12 @@ pub struct NetworkPlan {
     pub unit_shift: u32,
     /// Bits dropped from the sum of the output; negative: added.
     pub correction_shift: i32,
-    /// The output for the remaining error, if there is one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub error: Option<ErrorPlan>,
     /// Weights by pass and word, of each unit of the pass.
     #[serde(skip)]
     pub weights: Vec<Vec<ByClass>>,
     /// Weights of each hidden unit in the x and the y component.
     #[serde(skip)]
     pub readout: Vec<[i32; 2]>,
-}
-
-/// The logarithm of the error that is left: a third sum of the hidden units, [`ERROR_FRACTION`] fraction bits.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ErrorPlan {
-    /// Bits dropped from the sum; negative: added.
-    pub shift: i32,
-    /// What is added to it then.
-    pub base: i64,
-    /// Weights of each hidden unit.
-    #[serde(skip)]
-    pub readout: Vec<i32>,
 }
 
 impl NetworkPlan {
@@ -121,17 +105,16 @@ impl NetworkPlan {
         }
 
         let mut drop = 0;
-        let error = correction.error.as_ref().map_or(&[][..], |error| &error.output);
         let [along_x, along_y] = correction.output.each_ref().map(Vec::as_slice);
-        let readout = |drop: u32| [along_x, along_y, error].map(|of| of.iter().map(|&v| dropped(v, drop)).collect());
-        let sums = |readout: &[Vec<i32>; 3]| readout.iter().map(row).max().unwrap_or(0);
-        let mut chosen: [Vec<i32>; 3] = readout(drop);
+        let readout = |drop: u32| [along_x, along_y].map(|of| of.iter().map(|&v| dropped(v, drop)).collect());
+        let sums = |readout: &[Vec<i32>; 2]| readout.iter().map(row).max().unwrap_or(0);
+        let mut chosen: [Vec<i32>; 2] = readout(drop);
         while sums(&chosen) >= SUM_LIMIT {
             drop += 1;
             chosen = readout(drop);
         }
         let readout_lsb = drop as i32 - WEIGHT_FRACTION as i32;
-        let [along_x, along_y, of_error] = chosen;
+        let [along_x, along_y] = chosen;
         let readout: Vec<[i32; 2]> = along_x.into_iter().zip(along_y).map(|(x, y)| [x, y]).collect();
 
         // Of the output: the mean over four looks.
@@ -146,12 +129,6 @@ impl NetworkPlan {
             stress_left: stress_left(coarser),
             unit_shift,
             correction_shift: fraction - FRICTION_FRACTION as i32,
-            // Half of what is even in both is as wide as what is odd in one.
-            error: correction.error.as_ref().map(|error| ErrorPlan {
-                shift: fraction - 1 - ERROR_FRACTION as i32,
-                base: error.base.into(),
-                readout: of_error,
-            }),
             weights,
             readout,
         }

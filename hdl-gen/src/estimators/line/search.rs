@@ -62,7 +62,7 @@ pub fn friction(plan: &LinePlan, seen: &Seen) -> Found {
         (false, true) => [t, dependent],
         (false, false) => [dependent, t],
     };
-    Found { friction, unknown: line.unknown, at_bound: at_bound || dependent != exact, saturated, error_log: 0 }
+    Found { friction, unknown: line.unknown, at_bound: at_bound || dependent != exact, saturated }
 }
 
 /// Where the search ended.

@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use golden::design::{Correction, Design, ErrorOutput, Estimator, Outputs, PlanKind};
+use golden::design::{Correction, Design, Estimator, Outputs, PlanKind, StandardError};
 use hdl_gen::plan::Plan;
 use testbench::simulate::Simulation;
 use testbench::trial::{Trial, rtl_sources};
@@ -93,8 +93,8 @@ pub fn with_joint(mut design: Design) -> Design {
         half_window: [1, 1],
         hidden: vec![weights(inputs), weights(inputs), weights(inputs)],
         output: [weights(3), weights(3)],
-        error: Some(ErrorOutput { base: -9000, output: weights(3) }),
     });
+    design.algorithm.standard_error = Some(StandardError { model: 0.03, noise: 100.0, border: 1.0 });
     design
 }
 

@@ -3,8 +3,8 @@
 use std::env;
 
 use golden::design::{
-    Calibration, CalibrationIn, Correction, Curve, Design, ErrorOutput, JointConstants, Kernel, Optimise, Outputs,
-    Overrun, Regularisation, Samples, Scaling, Sensor, Slip, Tension,
+    Calibration, CalibrationIn, Correction, Curve, Design, JointConstants, Kernel, Optimise, Outputs, Overrun,
+    Regularisation, Samples, Scaling, Sensor, Slip, StandardError, Tension,
 };
 use hdl_gen::plan::Plan;
 use rand::{Rng, SeedableRng};
@@ -138,10 +138,23 @@ lanes = {lanes}
         let mut design = Design::from_toml(&text, name).unwrap_or_else(|error| panic!("{error}\n{text}"));
         design.algorithm.count_contacts = (columns + lanes) % 2 == 0;
         design.hardware.scaling = if (rows + lanes) % 3 == 0 { Scaling::PerFrame } else { Scaling::Fixed };
+        if (columns + rows) % 2 == 0 {
+            design.algorithm.standard_error = Some(standard_error((columns + lanes) as u64));
+        }
         if let Kind::Joint { correction, .. } = self.kind {
             *design.algorithm.joint = constants(&design.sensor, correction);
         }
         design
+    }
+}
+
+/// Numbers of a standard error from nothing to the largest.
+fn standard_error(seed: u64) -> StandardError {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    StandardError {
+        model: random.random_range(0.001..3.9),
+        noise: 10_f64.powf(random.random_range(0.0..4.0)),
+        border: random.random_range(0.0..15.9),
     }
 }
 
@@ -163,9 +176,7 @@ fn constants(sensor: &Sensor, correction: bool) -> JointConstants {
         let inputs = Correction::inputs(half_window);
         let hidden = (0..units).map(|_| row(inputs, largest)).collect();
         let output = [row(units, 4096), row(units, 131_071)];
-        let error = ErrorOutput { base: -12_000, output: row(units, 4096) };
-        let error = half_window[0].is_multiple_of(2).then_some(error);
-        constants.correction = Some(Correction { half_window, hidden, output, error });
+        constants.correction = Some(Correction { half_window, hidden, output });
     }
     constants
 }

@@ -16,13 +16,11 @@ pub fn friction(joint: &JointPlan, seen: &Seen) -> Found {
     if let Some(network) = &joint.network {
         let look = look::take(network, seen, centroid.mu);
         found.saturated = look.saturated;
-        (correction, found.error_log) = network::correction(network, &look.inputs);
+        correction = network::correction(network, &look.inputs);
     }
     found.saturated = (found.saturated || centroid.saturated) && !centroid.unknown;
     let exact = scaled(joint, centroid.mu);
     if centroid.unknown {
-        // Without a direction the error is as much as presses.
-        found.error_log = 0;
         return found;
     }
     for (axis, component) in found.friction.iter_mut().enumerate() {

@@ -1,15 +1,13 @@
 //! The network of hinges in integers.
 
-use golden::estimators::{ERROR_FRACTION, ERROR_RANGE};
 use golden::parity::CLASSES;
 
 use super::super::{CORRECTION_LIMIT, NetworkPlan};
 use crate::plan::format::round_shift;
 
-/// The correction of both friction components for a look's inputs by word and class, and the logarithm of the error that
-/// is left, 0 where the network tells none.
-pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> ([i64; 2], i64) {
-    let (mut sums, mut error) = ([0; 2], 0);
+/// The correction of both friction components for a look's inputs by word and class.
+pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> [i64; 2] {
+    let mut sums = [0; 2];
     for (pass, weights) in network.weights.chunks(network.length).enumerate() {
         for (unit, readout) in network.readout.iter().skip(pass * network.at_once).take(network.at_once).enumerate() {
             let class = |class: usize| -> i64 {
@@ -23,16 +21,8 @@ pub fn correction(network: &NetworkPlan, inputs: &[[i64; CLASSES]]) -> ([i64; 2]
             let [a, b, c, d] = looks.map(|sum| sum.max(0));
             sums[0] += i64::from(readout[0]) * (a - b + c - d);
             sums[1] += i64::from(readout[1]) * (a + b - c - d);
-            if let Some(plan) = &network.error {
-                error += i64::from(plan.readout[pass * network.at_once + unit]) * ((a + b + c + d) >> 1);
-            }
         }
     }
     let shifted = |sum: i64, shift: i32| if shift >= 0 { round_shift(sum, shift as u32) } else { sum << -shift };
-    let mu = sums.map(|sum| shifted(sum, network.correction_shift).clamp(-CORRECTION_LIMIT, CORRECTION_LIMIT));
-    let error_log = network.error.as_ref().map_or(0, |plan| {
-        let [least, most] = ERROR_RANGE.map(|log| i64::from(log) << ERROR_FRACTION);
-        (shifted(error, plan.shift) + plan.base).clamp(least, most - 1)
-    });
-    (mu, error_log)
+    sums.map(|sum| shifted(sum, network.correction_shift).clamp(-CORRECTION_LIMIT, CORRECTION_LIMIT))
 }

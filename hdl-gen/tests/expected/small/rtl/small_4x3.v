@@ -188,7 +188,7 @@ module small_4x3 #(
     // ---- CeAn: what of the frame needs no lanes
     wire direction_valid, no_direction;
     wire signed [26:0] direction_x, direction_y;
-    wire [39:0] stress_sum;
+    wire [39:0] stress_sum, border;
     wire [26:0] largest;
     wire [5:0] frame_flags; // no tension, too much replaced, no contact, saturated, NaN or infinity, bad length
 
@@ -222,6 +222,7 @@ module small_4x3 #(
         .no_direction     (no_direction),
         .stress_sum       (stress_sum),
         .largest          (largest),
+        .border           (border),
         .flags            (frame_flags)
     );
 
@@ -484,6 +485,7 @@ module small_4x3 #(
         .no_direction    (no_direction),
         .stress_sum      (stress_sum),
         .largest         (largest),
+        .border          (border),
         .flags_in        (frame_flags),
         .u_released      (u_released),
         .answer_valid    (answer_valid),

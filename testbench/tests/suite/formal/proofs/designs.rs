@@ -47,12 +47,8 @@ pub fn joint(design: &mut Design) {
 pub fn corrected(design: &mut Design) {
     joint(design);
     let inputs = Correction::inputs([0, 0]);
-    design.algorithm.joint.correction = Some(Correction {
-        half_window: [0, 0],
-        hidden: vec![vec![1; inputs]],
-        output: [vec![1], vec![1]],
-        error: None,
-    });
+    design.algorithm.joint.correction =
+        Some(Correction { half_window: [0, 0], hidden: vec![vec![1; inputs]], output: [vec![1], vec![1]] });
 }
 
 pub fn corrected_resultants(design: &mut Design) {

@@ -1,0 +1,91 @@
+//! The standard error in integers, as `sptfra_standard_error` takes the steps.
+
+use golden::design::{Algorithm, Design};
+use golden::estimators::{BORDER, ERROR_FRACTION, error_log};
+use serde::Serialize;
+
+use super::format::{largest, pow2};
+use crate::blocks::parameters::Parameters;
+use crate::estimators::Contact;
+
+/// Fraction bits of an error over `|F_z|`.
+pub const SHARE_FRACTION: u32 = 16;
+/// Fraction bits of the weights of noise and border.
+pub const WEIGHT_FRACTION: u32 = 13;
+/// Bits of such a weight.
+const WEIGHT_BITS: u32 = 17;
+/// Bits of an error, of which the lowest ones are never there alone: 2^-10 at least, just below 4 at most.
+const SHARE_BITS: u32 = 18;
+const LEAST: i64 = 1 << (SHARE_FRACTION - 10);
+/// Share of the stress that is allowed at the border, as a right shift.
+const BORDER_SHIFT: u32 = 5;
+const _: () = assert!(BORDER == 1.0 / (1 << BORDER_SHIFT) as f64);
+/// Cycles from the start to the result.
+pub const LATENCY: u64 = 50;
+
+/// Constants of a design.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct StandardErrorPlan {
+    /// The error of the model, [`SHARE_FRACTION`] fraction bits.
+    pub model: i64,
+    /// Weight of `max|b| / sum|b|` at the design's noise, [`WEIGHT_FRACTION`] fraction bits.
+    pub noise: i64,
+    /// Weight of the border's share, likewise.
+    pub border: i64,
+    /// A frame with a larger logarithm has low confidence, [`ERROR_FRACTION`] fraction bits.
+    pub limit: i64,
+}
+
+impl StandardErrorPlan {
+    /// Of a design whose standard error was fitted.
+    pub(super) fn of(design: &Design) -> Option<Self> {
+        let Algorithm { standard_error, max_standard_error, .. } = &design.algorithm;
+        let fixed = |value: f64, fraction: u32, bits: u32| {
+            ((value * pow2(fraction as i32)).round() as i64).min((1 << bits) - 1)
+        };
+        standard_error.map(|of| Self {
+            model: fixed(of.model, SHARE_FRACTION, SHARE_BITS),
+            noise: fixed(of.noise * design.input.averaged_noise(), WEIGHT_FRACTION, WEIGHT_BITS),
+            border: fixed(of.border, WEIGHT_FRACTION, WEIGHT_BITS),
+            limit: (error_log(*max_standard_error) * pow2(ERROR_FRACTION as i32)).round() as i64,
+        })
+    }
+
+    /// Parameters of an estimator that has it.
+    pub fn parameters(&self, parameters: Parameters) -> Parameters {
+        parameters
+            .flag("WITH_ERROR", true)
+            .expression("ERROR_MODEL", format!("{SHARE_BITS}'d{}", self.model))
+            .expression("ERROR_NOISE", format!("{WEIGHT_BITS}'d{}", self.noise))
+            .expression("ERROR_BORDER", format!("{WEIGHT_BITS}'d{}", self.border))
+    }
+
+    /// The logarithm of base 2 of the error over `|F_z|`, [`ERROR_FRACTION`] fraction bits.
+    pub fn log(&self, contact: &Contact) -> i64 {
+        let sum = contact.stress_sum;
+        let excess = (contact.border - (sum >> BORDER_SHIFT)).max(0);
+        let noise = weighed(contact.largest, sum, self.noise);
+        let total = added(added(self.model, noise), weighed(excess, sum, self.border));
+        let share = total.clamp(LEAST, largest(SHARE_BITS + 1));
+        let whole = i64::from(share.ilog2()) - i64::from(SHARE_FRACTION);
+        let fraction = (share << (63 - share.ilog2())) as u64 >> (63 - ERROR_FRACTION);
+        (whole << ERROR_FRACTION) + (fraction & ((1 << ERROR_FRACTION) - 1)) as i64
+    }
+}
+
+/// `weight part / sum`, from [`WEIGHT_FRACTION`] to [`SHARE_FRACTION`] fraction bits; the quotient bit by bit.
+fn weighed(part: i64, sum: i64, weight: i64) -> i64 {
+    let (mut remainder, mut total) = (part, 0);
+    for _ in 0..=SHARE_FRACTION {
+        let fits = remainder >= sum;
+        total = 2 * total + if fits { weight } else { 0 };
+        remainder = 2 * (remainder - if fits { sum } else { 0 });
+    }
+    total >> WEIGHT_FRACTION
+}
+
+/// Two errors together, as [`golden::estimators`] adds them.
+fn added(x: i64, y: i64) -> i64 {
+    let (larger, smaller) = (x.max(y), x.min(y));
+    larger.max(larger - (larger >> 3) + (smaller >> 1))
+}

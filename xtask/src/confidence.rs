@@ -1,0 +1,102 @@
+//! How right a standard error is: shares of errors within it, by noise and kind of contact.
+
+use std::fmt::Write;
+use std::ops::Range;
+
+use golden::design::Design;
+use golden::scene::Kind;
+use golden::solver::{Solver, Status};
+use hdl_gen::emit::resolved_hash;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::noise::{NoiseError, noisy};
+
+/// Standard deviations of a reading in percent of the frame's largest; the design is told each.
+const NOISE_PERCENT: [f64; 4] = [0.2, 0.5, 1.0, 2.0];
+/// Friction of the contacts.
+const FRICTION: f64 = 0.5;
+/// A contact of each kind, which no calibration draws.
+const SEEDS: Range<u64> = 91_000..91_200;
+/// Parts of the frames sorted by standard error.
+const PARTS: usize = 5;
+
+/// A frame's error and standard error as shares of the normal force found, and whether it has low confidence.
+struct Frame {
+    error: f64,
+    standard_error: f64,
+    low: bool,
+}
+
+/// The table of some designs, which go by the names of their files.
+///
+/// # Errors
+///
+/// [`NoiseError`]: a sensor without matrices or scenes.
+pub fn csv(designs: &[(String, Design)]) -> Result<String, NoiseError> {
+    let hashes: Vec<String> =
+        designs.iter().map(|(name, design)| format!("{name} {}", resolved_hash(design))).collect();
+    let mut text = format!(
+        "# Standard error against error of the tangential force, by the f64 solver, by noise and kind of contact.\n\
+         # {} contacts of each kind at a friction of {FRICTION}, none of them drawn by a calibration.\n\
+         # noise: standard deviation in percent of the largest reading of a frame; the design states it.\n\
+         # within_one, within_two: percent of frames with an error within one and two standard errors; low: with low confidence.\n\
+         # least, most: root mean square of the errors over mean standard error, of fifths of frames sorted by the latter.\n\
+         # kind inside: all kinds but border, mixed and noisy together.\n\
+         # command: cargo xtask confidence DESIGNS --out results/confidence.csv\n\
+         # designs: {}\n\
+         design,noise,kind,within_one,within_two,low,least,most\n",
+        SEEDS.count(),
+        hashes.join(", ")
+    );
+    for (name, design) in designs {
+        for percent in NOISE_PERCENT {
+            let mut told = design.clone();
+            told.input.noise = 0.01 * percent;
+            let solver = Solver::new(&told)?;
+            let mut inside = Vec::new();
+            for kind in Kind::ALL.into_iter().filter(|&kind| kind != Kind::Noisy) {
+                let found = frames(&told, &solver, kind, percent)?;
+                row(&mut text, &format!("{name},{percent},{kind}"), &found, "");
+                if !matches!(kind, Kind::Border | Kind::Mixed) {
+                    inside.extend(found);
+                }
+            }
+            inside.sort_by(|one, other| one.standard_error.total_cmp(&other.standard_error));
+            let ratios: Vec<f64> = inside.chunks(inside.len().div_ceil(PARTS).max(1)).map(ratio).collect();
+            let [least, most] = [f64::min, f64::max].map(|of| ratios.iter().copied().reduce(of).unwrap_or_default());
+            row(&mut text, &format!("{name},{percent},inside"), &inside, &format!("{least:.2},{most:.2}"));
+        }
+    }
+    Ok(text)
+}
+
+fn frames(design: &Design, solver: &Solver, kind: Kind, percent: f64) -> Result<Vec<Frame>, NoiseError> {
+    let mut random = ChaCha8Rng::seed_from_u64(SEEDS.start);
+    let mut found = Vec::new();
+    for frame in kind.frames(&design.sensor, FRICTION, SEEDS)? {
+        let solution = solver.solve(&noisy(design, &frame, percent, &mut random))?;
+        let [x, y] = [0, 1].map(|axis| solution.resultant[axis] - frame.force[axis]);
+        let [error, standard_error] =
+            [x.hypot(y), solution.standard_error].map(|newtons| newtons / solution.resultant[2].abs());
+        found.push(Frame { error, standard_error, low: solution.status.contains(Status::LOW_CONFIDENCE) });
+    }
+    Ok(found)
+}
+
+/// Root mean square of the errors over the mean of the standard errors.
+fn ratio(frames: &[Frame]) -> f64 {
+    let count = frames.len() as f64;
+    let square = frames.iter().map(|frame| frame.error.powi(2)).sum::<f64>() / count;
+    square.sqrt() / (frames.iter().map(|frame| frame.standard_error).sum::<f64>() / count)
+}
+
+fn row(text: &mut String, head: &str, frames: &[Frame], ratios: &str) {
+    let share = |is: &dyn Fn(&Frame) -> bool| {
+        100.0 * frames.iter().filter(|frame| is(frame)).count() as f64 / frames.len().max(1) as f64
+    };
+    let within = |errors: f64| share(&move |frame: &Frame| frame.error <= errors * frame.standard_error);
+    let ratios = if ratios.is_empty() { "," } else { ratios };
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "{head},{:.0},{:.0},{:.0},{ratios}", within(1.0), within(2.0), share(&|frame| frame.low));
+}
