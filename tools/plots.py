@@ -230,12 +230,48 @@ def noise():
     return picture(left + 360 * len(sensors) + 20, bottom + 54, "Error against noise", parts)
 
 
+def smoothing():
+    """Error against frames averaged, with the bound of any estimator."""
+    table = rows("smoothing.csv")
+    left, top, bottom, limit = 64, 66, 300, 30
+    parts = [text(left, 18, "solid: median, dotted: 95 %, dashed: bound of the median", size=12)]
+    noises = ["0.5", "1", "2"]
+    for index, noise in enumerate(noises):
+        parts.append(text(left + 110 * index, 36, f"\u25cf noise {noise} %", colour=COLOURS[index + 1], size=12))
+    for number, design in enumerate(("sensor1-wide", "sensor2-wide")):
+        x0 = left + number * 360
+
+        def x(k, x0=x0):
+            return x0 + 300 * float(k) / 8
+
+        def y(error):
+            return bottom - (bottom - top) * float(error) / limit
+
+        parts.append(text(x0, 56, f"sensor {number + 1}, general", more=' font-weight="bold"'))
+        for error in range(0, limit + 1, 5):
+            parts.append(line(x0, y(error), x0 + 300, y(error)))
+            parts.append(text(x0 - 8, y(error) + 4, str(error), "end", size=12))
+        for k in range(9):
+            frames = next(row["frames"] for row in table if row["k"] == str(k))
+            parts.append(text(x(k), bottom + 18, frames, "middle", size=12))
+        parts.append(text(x0 + 150, bottom + 40, "frames averaged, for smoothing = 0 (none) to 8", "middle", size=12))
+        for index, noise in enumerate(noises):
+            points = [row for row in table if row["design"] == design and row["noise"] == noise]
+            for kind, dash in (("median", ""), ("p95", "2 3"), ("bound", "7 4")):
+                path = " ".join(f"{x(row['k']):.1f},{y(row[kind]):.1f}" for row in points)
+                more = f' stroke-dasharray="{dash}"' if dash else ""
+                colour = COLOURS[index + 1]
+                parts.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"{more}/>')
+    return picture(left + 360 * 2 + 20, bottom + 54, "Error against frames averaged", parts)
+
+
 PLOTS = {
     "contact-kinds.svg": contact_kinds,
     "error-latency.svg": error_latency,
     "finite-elements.svg": finite_elements,
     "noise.svg": noise,
     "several-contacts.svg": several_contacts,
+    "smoothing.svg": smoothing,
 }
 
 

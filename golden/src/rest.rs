@@ -26,6 +26,8 @@ const QUIET: f64 = 3.0;
 const LOUD: f64 = 0.01;
 /// Neighbours at rest have less than this in common.
 const TOGETHER: f64 = 0.5;
+/// Frames whose largest reading is this share of the largest of all have load.
+const LOADED: f64 = 0.1;
 
 /// Why frames tell nothing of a sensor at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -181,6 +183,22 @@ impl AtRest {
             ));
         }
         said
+    }
+
+    /// The noise over the largest reading of a typical frame of contacts: for `sensor.noise`. Nothing where no frame has load.
+    pub fn noise_of(&self, design: &Design, loaded: &[Vec<f64>]) -> Option<f64> {
+        let above = |frame: &Vec<f64>, each: &TaxelAtRest| {
+            let of = |value: f64| design.input.to_pa(each.taxel, value);
+            (of(frame[each.taxel]) - of(each.offset)).abs()
+        };
+        let peak = |frame: &Vec<f64>| {
+            let live = self.taxels.iter().filter(|each| self.works(each.taxel));
+            live.map(|each| above(frame, each)).fold(0.0, f64::max)
+        };
+        let peaks: Vec<f64> = loaded.iter().map(peak).collect();
+        let largest = peaks.iter().copied().fold(0.0, f64::max);
+        let typical = median(peaks.into_iter().filter(|&peak| peak >= LOADED * largest));
+        (typical > QUIET * self.noise_pa).then(|| self.noise_pa / typical)
     }
 
     /// Gains and offsets with which these readings are none: the design's gains, 0 for dead and stuck taxels.

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 
 use golden::calibrate::{CalibrateError, Settings, calibrate, standard_error};
 use golden::design::{
-    DEFAULT_FULL_SCALE_PA, Design, DesignError, Estimator, Input, Kernel, Regularisation, Samples, Tension,
+    DEFAULT_FULL_SCALE_PA, DEFAULT_NOISE, Design, DesignError, Estimator, Input, Kernel, Regularisation, Samples,
+    Tension,
 };
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneFrame};
@@ -41,6 +42,8 @@ pub struct NewDesign {
     pub counts: Option<u32>,
     /// Stress at the end of the sensor's range.
     pub full_scale_pa: f64,
+    /// Standard deviation of a reading's noise, as a share of the frame's largest reading.
+    pub noise: f64,
 }
 
 impl NewDesign {
@@ -56,6 +59,7 @@ impl NewDesign {
             tension: Tension::Read,
             counts: None,
             full_scale_pa: DEFAULT_FULL_SCALE_PA,
+            noise: DEFAULT_NOISE,
         }
     }
 }
@@ -144,12 +148,12 @@ impl NewDesign {
         if let Some(bits) = self.counts.filter(|&bits| !COUNT_BITS.contains(&i64::from(bits))) {
             return Err(NewDesignError::Counts(bits));
         }
-        let Self { estimator, columns, rows, pitch_mm, depth_mm, tension, full_scale_pa, .. } = self;
+        let Self { estimator, columns, rows, pitch_mm, depth_mm, tension, full_scale_pa, noise, .. } = self;
         // Quoted, so that whatever the name holds reaches the check of names; a JSON string is a TOML string.
         let name = serde_json::Value::from(self.name.as_str());
         let text = format!(
             "format = 3\nname = {name}\n[sensor]\ncolumns = {columns}\nrows = {rows}\npitch_mm = {pitch_mm:?}\n\
-             depth_mm = {depth_mm:?}\ntension = \"{tension}\"\n\
+             depth_mm = {depth_mm:?}\ntension = \"{tension}\"\nnoise = {noise:?}\n\
              [algorithm]\nestimator = \"{estimator}\"\ncount_contacts = true\n\
              [hardware]\nfull_scale_pa = {full_scale_pa:?}\nscaling = \"per_frame\"\n"
         );

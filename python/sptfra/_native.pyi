@@ -29,9 +29,10 @@ class Design:
         estimator: str = "joint",
         counts: int | None = None,
         full_scale_pa: float = 100000.0,
+        noise: float = 0.005,
     ) -> Design:
         """The design that `sptfra new` writes: for a grid of taxels, under a layer of `depth_mm`. With tension
-        "read" taxels read tension, with "clipped" they read nothing of it. With `counts` its frames are those of a converter of so many bits. The joint estimator's constants are fitted to it, which takes a second."""
+        "read" taxels read tension, with "clipped" they read nothing of it. With `counts` its frames are those of a converter of so many bits. `noise` is `sensor.noise`. The joint estimator's constants are fitted to it, which takes a second."""
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Design:

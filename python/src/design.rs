@@ -84,7 +84,8 @@ pub fn word<T: serde::de::DeserializeOwned>(key: &str, word: &str) -> PyResult<T
 impl Design {
     #[new]
     #[pyo3(signature = (
-        name = "my_sensor", *, columns, rows, pitch_mm, depth_mm, tension, estimator = "joint", counts = None, full_scale_pa = golden::design::DEFAULT_FULL_SCALE_PA
+        name = "my_sensor", *, columns, rows, pitch_mm, depth_mm, tension, estimator = "joint", counts = None, full_scale_pa = golden::design::DEFAULT_FULL_SCALE_PA,
+        noise = golden::design::DEFAULT_NOISE
     ))]
     #[allow(clippy::too_many_arguments, reason = "keywords, most of them left out")]
     fn of_sensor(
@@ -98,12 +99,14 @@ impl Design {
         estimator: &str,
         counts: Option<u32>,
         full_scale_pa: f64,
+        noise: f64,
     ) -> PyResult<Self> {
         let estimator: Estimator = word("estimator", estimator)?;
         let tension: Tension = word("tension", tension)?;
         let Pitch(pitch_mm) = pitch_mm;
         let name = name.to_owned();
-        let new = NewDesign { name, estimator, columns, rows, pitch_mm, depth_mm, tension, counts, full_scale_pa };
+        let new =
+            NewDesign { name, estimator, columns, rows, pitch_mm, depth_mm, tension, counts, full_scale_pa, noise };
         let text = without_lock(py, || new.text(&mut |_| ()))?;
         Ok(Self::new(Checked::from_toml(&text, &new.name).map_err(raised)?))
     }

@@ -1,22 +1,33 @@
 //! Errors against the noise of a reading: round sliding contacts on which no design was trained.
 
 use std::fmt::Write;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use golden::design::Design;
 use golden::metrics::Quantiles;
 use golden::scene::{Kind, SceneError, SceneFrame, normal};
+use golden::smoothing::{Average, Smoothing};
 use golden::solver::{Solver, SolverError};
 use hdl_gen::emit::resolved_hash;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 
 /// Standard deviations of a reading in percent of the frame's largest.
 pub const NOISE_PERCENT: [f64; 5] = [0.0, 0.2, 0.5, 1.0, 2.0];
+/// Median of an efficient estimator's errors over their root mean square.
+const MEDIAN: f64 = 0.83;
 /// Friction of the contacts.
 const FRICTION: f64 = 0.5;
 /// A contact each, which no calibration draws.
 const SEEDS: Range<u64> = 90_000..90_200;
+
+/// Noises of the table of smoothing.
+const SMOOTHED_PERCENT: [f64; 3] = [0.5, 1.0, 2.0];
+/// Keys `smoothing` of it; 0: one frame.
+const SMOOTHING: RangeInclusive<u32> = 0..=8;
+/// Frames of a contact from the first one on: the average of the slowest has forgotten all but 1 % of it.
+const FRAMES: usize = 1200;
 
 /// Why there is no table.
 #[derive(Debug, thiserror::Error)]
@@ -52,6 +63,82 @@ fn errors(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Quanti
         errors.push(100.0 * x.hypot(y) / frame.force[2].abs());
     }
     Ok(Quantiles::of(errors))
+}
+
+/// Errors of the tangential force where each contact is averaged over frames, for each of [`SMOOTHING`], in percent of the normal
+/// force, at a noise in percent.
+fn smoothed(design: &Design, frames: &[SceneFrame], percent: f64) -> Result<Vec<Quantiles>, SolverError> {
+    let solver = Solver::new(design)?;
+    let tension = design.input.tension;
+    let of_contact = |(index, frame): (usize, &SceneFrame)| -> Result<Vec<f64>, SolverError> {
+        let mut random = ChaCha8Rng::seed_from_u64(SEEDS.start + index as u64);
+        let largest = frame.stress.iter().fold(0.0_f64, |largest, stress| largest.max(tension.of(*stress).abs()));
+        let mut averages: Vec<(Option<Smoothing>, Average, Vec<f64>)> = SMOOTHING
+            .map(|k| ((k > 0).then(|| Smoothing::new(k, 0.01 * percent)), Average::default(), Vec::new()))
+            .collect();
+        for _ in 0..FRAMES {
+            let mut read = frame.stress.clone();
+            for stress in &mut read {
+                *stress += 0.01 * percent * largest * normal(&mut random);
+            }
+            design.deliver(&mut read);
+            for (smoothing, average, last) in &mut averages {
+                last.clone_from(&read);
+                if let Some(smoothing) = smoothing {
+                    smoothing.take(average, last);
+                }
+            }
+        }
+        let error = |(_, _, last): &(Option<Smoothing>, Average, Vec<f64>)| {
+            let found = solver.solve(last)?.resultant;
+            let [x, y] = [0, 1].map(|axis| found[axis] - frame.force[axis]);
+            Ok(100.0 * x.hypot(y) / frame.force[2].abs())
+        };
+        averages.iter().map(error).collect()
+    };
+    let errors: Vec<Vec<f64>> = frames.par_iter().enumerate().map(of_contact).collect::<Result<_, _>>()?;
+    Ok((0..SMOOTHING.count()).map(|k| Quantiles::of(errors.iter().map(|of| of[k]).collect())).collect())
+}
+
+/// The table of smoothing of some designs of the paper's sensors, each with the bound of its sensor: the median error of the best
+/// estimator over the noise.
+///
+/// # Errors
+///
+/// [`NoiseError`]: a sensor without matrices or scenes.
+pub fn smoothing_csv(designs: &[(String, Design, f64)]) -> Result<String, NoiseError> {
+    let hashes: Vec<String> =
+        designs.iter().map(|(name, design, _)| format!("{name} {}", resolved_hash(design))).collect();
+    let mut text = format!(
+        "# Error of the tangential force against smoothing, in percent of the normal force, by the f64 solver.\n\
+         # {} round sliding contacts at a friction of {FRICTION}, each averaged over {FRAMES} frames with their own noise.\n\
+         # k: sensor.smoothing, 0 one frame. frames: so many equally weighted ones have the same noise.\n\
+         # noise: standard deviation in percent of the largest reading of a frame. bound: median of the best estimator.\n\
+         # command: cargo xtask noise DESIGNS --smoothing --out results/smoothing.csv\n\
+         # designs: {}\n\
+         design,noise,k,frames,median,p95,bound\n",
+        SEEDS.count(),
+        hashes.join(", ")
+    );
+    for (name, design, bound) in designs {
+        let frames = Kind::Sliding.frames(&design.sensor, FRICTION, SEEDS)?;
+        for percent in SMOOTHED_PERCENT {
+            for (k, Quantiles { median, most, .. }) in SMOOTHING.zip(smoothed(design, &frames, percent)?) {
+                let count = 2_u32.pow(k + 1) - 1;
+                let bound = bound * percent / f64::from(count).sqrt();
+                let _ = writeln!(text, "{name},{percent},{k},{count},{median:.2},{most:.2},{bound:.2}");
+            }
+        }
+    }
+    Ok(text)
+}
+
+/// The bound of a sensor of the paper: median error of the best estimator, in percent of the normal force at a noise of 1 %.
+pub fn bound(design: &Design) -> Option<f64> {
+    let bounds = [([4.0, 2.0], 5.2), ([4.0, 4.0], 6.6)];
+    let is = |pitch_mm: [f64; 2]| pitch_mm.map(f64::to_bits) == design.sensor.pitch_mm.map(f64::to_bits);
+    let found = bounds.into_iter().find(|(pitch_mm, _)| is(*pitch_mm) && design.sensor.taxels() == 100);
+    found.map(|(_, root_mean_square)| MEDIAN * root_mean_square)
 }
 
 /// The table of some designs, which go by the names of their files.

@@ -23,7 +23,7 @@ use crate::message::{self, Message, say};
 /// With `--unloaded`: offset, noise and drift of each taxel from a recording without load, and warnings.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  sptfra check pad --frames frames.csv\n  sptfra check pad --frames unloaded.csv --unloaded --out tare.csv"
+    after_help = "Example:\n  sptfra check pad --frames frames.csv\n  sptfra check pad --frames unloaded.csv --unloaded --loaded frames.csv --out tare.csv"
 )]
 pub struct Args {
     /// Design file (TOML).
@@ -37,6 +37,9 @@ pub struct Args {
     /// Nothing presses in the frames: report offsets, noise, drift, dead taxels, and the keys that suit the noise.
     #[arg(long)]
     unloaded: bool,
+    /// Frames of typical contacts, recorded like the others: `sensor.noise` is relative to their largest readings.
+    #[arg(long, value_name = "FRAMES.csv", requires = "unloaded")]
+    loaded: Option<PathBuf>,
     /// Where to write the calibration that removes the offsets (lines gain,offset), for `sensor.calibration`.
     #[arg(long, value_name = "CALIBRATION.csv", requires = "unloaded")]
     out: Option<PathBuf>,
@@ -61,7 +64,7 @@ struct Line {
 
 /// Checks the frames of a file; an error if anything is found.
 pub fn run(args: &Args) -> message::Result {
-    let Args { design: path, frames, layout, unloaded, out, json } = args;
+    let Args { design: path, frames, layout, unloaded, loaded, out, json } = args;
     let recording = &Recording { file: frames, layout: layout.layout() };
     if is_standard(recording.file) {
         return Err("--frames -: this looks at all frames of a recording; write them into a file first".into());
@@ -69,7 +72,10 @@ pub fn run(args: &Args) -> message::Result {
     let design = Design::load(path)?;
     let frames = recording.read(&design)?;
     if *unloaded {
-        return unloaded::run(path, &design, recording, &frames, out.as_deref(), *json);
+        let of = |file| Recording { file, layout: layout.layout() }.read(&design);
+        let loaded = loaded.as_deref().map(of).transpose()?;
+        let frames = unloaded::Frames { unloaded: &frames, loaded: loaded.as_deref() };
+        return unloaded::run(path, &design, recording, frames, out.as_deref(), *json);
     }
     let beyond = beyond(&design, &frames);
     let matrices = {

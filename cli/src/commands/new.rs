@@ -56,6 +56,11 @@ pub struct Args {
     /// Stress at the end of the sensor's range; default: 100000.
     #[arg(long, value_name = "PA")]
     full_scale_pa: Option<f64>,
+    /// Standard deviation of a reading, as a share of the frame's largest reading: 1% or 0.01; default: 0.5%.
+    ///
+    /// `sptfra calibrate` trains at this noise and below. `sptfra check --unloaded --loaded` measures it.
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    noise: Option<f64>,
     /// Write design.schema.json too, the JSON schema by which editors explain, complete and check the keys.
     #[arg(long)]
     schema: bool,
@@ -76,6 +81,15 @@ fn length(text: &str) -> Result<f64, String> {
         let remedy = if is_name { "; the design's name goes before --pitch-mm" } else { "" };
         format!("a length in mm, such as 4; a pitch may have two, for x and y, as 4 2 or 4,2{remedy}")
     })
+}
+
+/// A share of the command line: 1% or 0.01.
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |percent| (percent, 100.0));
+    let share = number.trim().parse().ok().map(|number: f64| number / unit);
+    share
+        .filter(|share| (0.0..=0.1).contains(share))
+        .ok_or_else(|| "a share from 0 to 0.1, such as 1% or 0.01".to_owned())
 }
 
 impl Args {
@@ -116,6 +130,7 @@ impl Args {
             tension: self.tension.unwrap_or(paper.tension),
             counts: self.counts,
             full_scale_pa: self.full_scale_pa.unwrap_or(DEFAULT_FULL_SCALE_PA),
+            noise: self.noise.unwrap_or(paper.noise),
         })
     }
 }

@@ -12,6 +12,13 @@ use serde::Serialize;
 use super::recording::Recording;
 use crate::message::{self, say};
 
+/// Frames without load, and those of typical contacts.
+#[derive(Clone, Copy)]
+pub struct Frames<'a> {
+    pub unloaded: &'a [Vec<f64>],
+    pub loaded: Option<&'a [Vec<f64>]>,
+}
+
 #[derive(Serialize)]
 struct Report<'a> {
     design: &'a str,
@@ -21,6 +28,9 @@ struct Report<'a> {
     beyond: Beyond,
     #[serde(skip_serializing_if = "Option::is_none")]
     calibration: Option<&'a Path>,
+    /// The noise over the largest reading of a typical contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    noise_of_contacts: Option<f64>,
 }
 
 /// Reports what each taxel reads at rest, and writes the calibration that takes it off.
@@ -28,7 +38,7 @@ pub fn run(
     path: &Path,
     design: &Design,
     recording: &Recording,
-    frames: &[Vec<f64>],
+    Frames { unloaded: frames, loaded }: Frames<'_>,
     out: Option<&Path>,
     json: bool,
 ) -> message::Result {
@@ -44,8 +54,10 @@ pub fn run(
     for warning in &rest.warnings {
         eprintln!("warning: {warning}");
     }
+    let noise_of_contacts = loaded.map(|loaded| share(design, &rest, loaded)).transpose()?;
     let beyond = beyond(design, frames);
-    let report = Report { design: &design.name, frames: frames.len(), rest: &rest, beyond, calibration: out };
+    let report =
+        Report { design: &design.name, frames: frames.len(), rest: &rest, beyond, calibration: out, noise_of_contacts };
     if json {
         return Ok((serde_json::to_string_pretty(&report)? + "\n").into());
     }
@@ -66,6 +78,15 @@ pub fn run(
     if beyond.readings > 0 {
         say!(text, "{beyond}");
     }
+    match noise_of_contacts {
+        Some(share) => say!(text, "[sensor] noise = {}  # of the largest reading of a typical contact", shown(share)),
+        None if rest.noise_of_full_scale > 0.0 => say!(
+            text,
+            "[sensor] noise = {}  # for contacts that reach full_scale_pa; for yours, name their frames with --loaded",
+            shown(rest.noise_of_full_scale)
+        ),
+        None => (),
+    }
     say!(text, "[algorithm] noise_floor_pa = {:.1}  # three standard deviations", ceil(rest.noise_floor_pa));
     if rest.noise_of_full_scale > 0.0 {
         say!(
@@ -85,6 +106,18 @@ pub fn run(
         );
     }
     Ok(text.into())
+}
+
+/// The noise as a share of what typical contacts read.
+fn share(design: &Design, rest: &AtRest, loaded: &[Vec<f64>]) -> Result<f64, String> {
+    let share = rest.noise_of(design, loaded).ok_or("--loaded: no frame has load above the noise; record contacts")?;
+    if share > 0.1 {
+        return Err(format!(
+            "--loaded: the noise is {:.0} % of a typical contact's largest reading, above the 10 % of sensor.noise; press harder",
+            100.0 * share
+        ));
+    }
+    Ok(share)
 }
 
 /// Rounded up to a tenth, and not to 0.

@@ -57,6 +57,23 @@ fn geometry_and_tension_have_to_be_given() {
     assert!(!said.contains("taken for 100000 Pa") && said.contains("Larger counts are taken to press"), "{said}");
 }
 
+#[test]
+fn noise_is_a_share_or_percent() {
+    let line = ["--estimator", "line"];
+    for (noise, expected) in [("1%", 0.01), ("0.01", 0.01), ("2.5 %", 0.025), ("0", 0.0)] {
+        let (_, design) = new(&[&line[..], &["--noise", noise]].concat());
+        assert_eq!(design.input.noise.to_bits(), f64::to_bits(expected), "{noise}");
+    }
+    assert_eq!(new(&line).1.input.noise.to_bits(), golden::design::DEFAULT_NOISE.to_bits());
+    let folder = tempfile::tempdir().unwrap();
+    for wrong in ["1", "20%", "-1%", "nan", "%"] {
+        let noise = format!("--noise={wrong}");
+        let output = sptfra_in(folder.path(), &["new", "pad", "--paper-sensor", "1", &noise]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.contains("such as 1% or 0.01"), "{wrong}: {said}");
+    }
+}
+
 /// What docs/explanation/estimators.md says of a new design beside `sensor1-fast`, which has neither.
 #[test]
 fn a_range_for_each_frame_and_counted_contacts_cost_some_latency() {

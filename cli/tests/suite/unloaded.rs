@@ -62,7 +62,7 @@ fn the_calibration_takes_the_offsets_off() {
     let said = sptfra(&asked);
     let lines = String::from_utf8(said.stdout).unwrap();
     assert!(said.status.success() && said.stderr.is_empty(), "{:?}", String::from_utf8(said.stderr));
-    assert!(lines.lines().count() <= 6, "{lines}");
+    assert!(lines.lines().count() <= 7, "{lines}");
     for part in ["Dead: [9]", "noise_floor_pa = 1", "noise = 0.0", "calibration = \"mat.calibration.csv\"", "--json"] {
         assert!(lines.contains(part), "no {part:?} in: {lines}");
     }
@@ -71,6 +71,21 @@ fn the_calibration_takes_the_offsets_off() {
     assert_eq!((&report["dead"][0], report["taxels"].as_array().unwrap().len()), (&serde_json::json!(9), TAXELS));
     assert_eq!(report["beyond"]["readings"], 0);
 
+    // Relative to contacts that read 1000 counts above their offsets, in every second frame.
+    let contacts = frames(20, |frame, taxel| {
+        let load = if taxel == 40 && frame % 2 == 0 { 1000.0 / 1.04 } else { 0.0 };
+        if taxel == 9 { 0.0 } else { offset(taxel) + load }
+    });
+    let loaded = path("loaded.csv");
+    write_frames(loaded.as_ref(), &contacts).unwrap();
+    let said = sptfra(&["check", &design, "--frames", &rest, "--unloaded", "--loaded", &loaded]);
+    let lines = String::from_utf8(said.stdout).unwrap();
+    let share = lines.lines().find_map(|line| line.strip_prefix("[sensor] noise = ")).expect("a share");
+    let share: f64 = share.split("  #").next().unwrap().parse().unwrap();
+    assert!((0.0019..0.0023).contains(&share), "{share}: two counts of a thousand");
+    let said = sptfra(&["check", &design, "--frames", &rest, "--unloaded", "--loaded", &rest]);
+    let wrong = String::from_utf8(said.stderr).unwrap();
+    assert!(!said.status.success() && wrong.contains("--loaded"), "{wrong}");
     // The design reads it, and is tared.
     fs::write(&design, text("calibration = \"mat.calibration.csv\"\n")).unwrap();
     let tared = Design::load(design.as_ref()).unwrap();
