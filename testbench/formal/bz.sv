@@ -3,13 +3,13 @@
 // The frame checker (Bz): every beat once and in order, every frame ended once and rightly judged, banks never overrun.
 //
 // A second pipeline beside it carries each beat with its place in its frame. With PAPER it is that of the paper's plan,
-// which writes each stress as it comes, without a fold, and has a place for every direction.
+// which writes each stress without a fold.
 module harness (
     input wire clock,
     input wire [31:0] s_tdata,
     input wire s_tlast,
     input wire s_tvalid,
-    input wire write_ready,
+    input wire write_ready, // of the operand memories
     input wire cean_idle,
     input wire direction_room,
     input wire frame_start,
@@ -19,8 +19,10 @@ module harness (
     localparam [4:0] TAXELS = 5'd12, MANY = 5'd31;
 `ifdef PAPER
     localparam ROW_BITS = 4;
+    localparam [3:0] ELEMENTS = 4'd12;
 `else
-    localparam ROW_BITS = 2;
+    localparam ROW_BITS = 3;
+    localparam [3:0] ELEMENTS = 4'd4;
 `endif
 
     reg started = 1'b0;
@@ -36,7 +38,6 @@ module harness (
     wire frame_not_finite;
     wire frame_bad_length;
     wire frame_ready;
-    wire advance;
     wire in_frame;
     wire may_open;
     wire [3:0] index;
@@ -49,11 +50,13 @@ module harness (
     wire seen_saturated;
     wire seen_not_finite;
     wire [14:0] stages;
-`ifdef PAPER
-    wire [3:1] fold_lasts = 3'd0;
-`else
-    wire [3:1] fold_lasts;
-`endif
+    wire ended;
+    wire folded;
+    wire [ROW_BITS-1:0] quad;
+    wire [4:1] fold_valid;
+    wire [4:1] fold_lasts;
+    wire [4*ROW_BITS-1:0] fold_rows;
+    wire fold_turn;
     wire frame_written;
 
     sptfra_bz subject (
@@ -79,7 +82,6 @@ module harness (
         .frame_start      (frame_start),
         .frame_release    (frame_release),
         // Inside
-        .advance          (advance),
         .in_frame         (in_frame),
         .\gate.may_open (may_open),
         .\gate.index (index),
@@ -92,11 +94,28 @@ module harness (
         .\writer.seen_saturated (seen_saturated),
         .\writer.seen_not_finite (seen_not_finite),
         .\writer.frame_written (frame_written),
-`ifndef PAPER
-        .\writer.gen_fold.fold.lasts (fold_lasts),
-`endif
-        .\samples.decode.gen_float.float_to_fixed.stages (stages)
+        .\writer.ended (ended),
+        .\writer.fold.done (folded),
+        .\writer.fold.turn (fold_turn),
+        .\writer.fold.quad (quad),
+        .\writer.fold.valid (fold_valid),
+        .\writer.fold.lasts (fold_lasts),
+        .\writer.fold.rows (fold_rows),
+        .\gen_samples[0].samples.decode.gen_float.float_to_fixed.stages (stages)
     );
+
+    // ---- Elements in the order in which they are written
+    function [ROW_BITS-1:0] row_of(input [3:0] place);
+`ifdef PAPER
+        row_of = place;
+`else
+        row_of = 3'd3 - place[2:0];
+`endif
+    endfunction
+
+    function [3:0] after(input [3:0] place);
+        after = (place == ELEMENTS - 4'd1) ? 4'd0 : place + 4'd1;
+    endfunction
 
     // ---- Each beat with its place in its frame; a place of 31 is that or more
     function [4:0] following(input [4:0] place, input last);
@@ -112,7 +131,7 @@ module harness (
     reg [14:0] words;
     reg any_saturated; // of the beats of the frame that have come out
     reg any_not_finite;
-    wire comes_out = there[5] && advance;
+    wire comes_out = there[5];
     wire counts = comes_out && (places[24:20] < TAXELS);
 
     always @(posedge clock) begin
@@ -120,12 +139,10 @@ module harness (
         if (taken) begin
             place_in <= following(place_in, s_tlast);
         end
-        if (advance) begin
-            there <= {there[4:1], taken};
-            places <= {places[19:0], place_in};
-            ends <= {ends[4:1], s_tlast};
-            words <= {words[11:0], s_tdata[2:0]};
-        end
+        there <= {there[4:1], taken};
+        places <= {places[19:0], place_in};
+        ends <= {ends[4:1], s_tlast};
+        words <= {words[11:0], s_tdata[2:0]};
         if (comes_out) begin
             place_out <= following(place_out, ends[5]);
             any_saturated <= !ends[5] && (any_saturated || (counts && words[13]));
@@ -162,23 +179,28 @@ module harness (
     reg waited = 1'b0;
     wire [ROW_BITS:0] to_write = {write_bank, write_row};
     reg [ROW_BITS:0] waiting;
-`ifdef PAPER
-    reg bank_out; // of the frame that comes out
-`endif
+    wire writes = write_valid && write_ready;
+    reg bank_out; // of the frame that is written
+    reg [3:0] element; // of it that is written next
+    reg [3:0] turned; // elements of the frame inside that had their turn
+    reg kept; // a whole frame is inside
     reg nothing_missing; // for a new frame, a cycle ago
+    wire last_element = (element == ELEMENTS - 4'd1);
 
     always @(posedge clock) begin
         waited <= write_valid && !write_ready && !reset;
         waiting <= to_write;
-        nothing_missing <= !taken && cean_idle && direction_room && (frames_inside != 3'd2) && (there == 5'd0);
-`ifdef PAPER
-        bank_out <= bank_out ^ frame_done;
-`endif
+        nothing_missing <= !taken && cean_idle && direction_room && (frames_inside != 3'd2) && (there == 5'd0) && !kept;
+        bank_out <= bank_out ^ (writes && last_element);
+        element <= !writes ? element : last_element ? 4'd0 : element + 4'd1;
+        turned <= (kept && (turned == ELEMENTS)) ? 4'd0 : turned + {3'd0, fold_turn};
+        kept <= frame_done || (kept && (turned != ELEMENTS));
         if (reset) begin
             nothing_missing <= 1'b1;
-`ifdef PAPER
             bank_out <= 1'b0;
-`endif
+            element <= 4'd0;
+            turned <= 4'd0;
+            kept <= 1'b0;
         end
     end
 
@@ -198,12 +220,12 @@ module harness (
             assert (!frame_written || (frames_waiting != 2'd2));
             // What is to be written stays until it is
             assert (!waited || (write_valid && (to_write == waiting)));
-`ifdef PAPER
-            // Each stress goes to its place in its frame's bank
-            assert (!write_valid || ((write_bank == bank_out) && ({1'b0, write_row} == places[24:20])));
-`endif
+            // Each element once, in order, into its frame's bank; the frame is written with its last one
+            assert (!write_valid || ((write_bank == bank_out) && (write_row == row_of(element))));
+            assert (frame_written == (writes && last_element));
             // Whoever waits is served: nothing stands still but for want of a bank, of CeAn or of the memories' port
-            assert (s_tready || !write_ready || (!in_frame && !nothing_missing));
+            assert (s_tready || (!in_frame && !nothing_missing));
+            assert (!kept || (turned == ELEMENTS) || (fold_turn == write_ready));
         end
     end
 
@@ -214,15 +236,45 @@ module harness (
     wire [4:0] next_1 = there[2] ? following(next_2, ends[2]) : next_2;
     wire [4:0] next_0 = there[1] ? following(next_1, ends[1]) : next_1;
     wire [5:1] frames = there & ends;
+    // Elements on their way to be written
+    wire [3:0] row_3 = fold_valid[4] ? after(element) : element;
+    wire [3:0] row_2 = fold_valid[3] ? after(row_3) : row_3;
+    wire [3:0] row_1 = fold_valid[2] ? after(row_2) : row_2;
+    wire [3:0] row_0 = fold_valid[1] ? after(row_1) : row_1;
+    wire [15:0] rows_there = {element, row_3, row_2, row_1};
     integer stage;
+    integer before;
 
     always @(posedge clock) begin
         if (!reset) begin
             assert (valid == there);
-`ifdef PAPER
             assert (write_bank == bank_out);
-            assert ({1'b0, write_row} == ((place_out > TAXELS) ? TAXELS : place_out));
-`endif
+            assert (element < ELEMENTS);
+            assert (turned <= ELEMENTS);
+            assert (ended == kept);
+            assert (folded == (turned == ELEMENTS));
+            assert (folded || (quad == ELEMENTS[ROW_BITS-1:0] - 1'b1 - turned[ROW_BITS-1:0]));
+            assert (!folded || kept);
+            assert (((turned == ELEMENTS) ? 4'd0 : turned) == row_0);
+            assert (!kept || (there == 5'd0));
+            assert (!kept || !in_frame);
+            assert (!may_open || ((there == 5'd0) && !kept));
+            for (stage = 1; stage <= 5; stage = stage + 1) begin
+                if (frames[stage]) begin
+                    assert (!in_frame);
+                    assert (!may_open);
+                    for (before = 1; before < stage; before = before + 1) begin
+                        assert (!there[before]);
+                    end
+                end
+            end
+            for (stage = 1; stage <= 4; stage = stage + 1) begin
+                if (fold_valid[stage]) begin
+                    assert (fold_rows[ROW_BITS*stage-1 -: ROW_BITS] == row_of(rows_there[4*stage-1 -: 4]));
+                end
+                assert (fold_lasts[stage]
+                    == (fold_valid[stage] && (rows_there[4*stage-1 -: 4] == ELEMENTS - 4'd1)));
+            end
             assert (in_frame == (place_in != 5'd0));
             assert ({1'b0, index} == ((place_in > TAXELS) ? TAXELS : place_in));
             for (stage = 1; stage <= 5; stage = stage + 1) begin
@@ -245,7 +297,8 @@ module harness (
             assert (may_open == nothing_missing);
             assert (!may_open || (banks_taken != 2'd2));
             assert ({2'd0, frames_inside} == {4'd0, in_frame} + frames[1] + frames[2] + frames[3] + frames[4]
-                + frames[5] + fold_lasts[1] + fold_lasts[2] + fold_lasts[3] + {1'b0, frames_waiting} + frames_in_work);
+                + frames[5] + (ended && !folded) + fold_lasts[1] + fold_lasts[2] + fold_lasts[3] + fold_lasts[4]
+                + {1'b0, frames_waiting} + frames_in_work);
         end
     end
 `endif

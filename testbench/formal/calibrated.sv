@@ -29,15 +29,14 @@ module harness (
     wire frame_done;
     wire old_in_use;
     wire frame_calibrates;
-    wire advance;
     wire bank;
     wire bank_held;
     wire in_frame;
     wire may_open;
     wire marked;
     wire replace_busy;
-    wire whole_valid;
-    wire whole_last;
+    wire whole_takes;
+    wire whole_ends;
     wire [STAGES:1] valid;
     wire [STAGES:1] lasts;
 
@@ -57,7 +56,6 @@ module harness (
         .tare_command           ({tare_run, 8'd0}),
         .frame_calibrates       (frame_calibrates),
         // Inside
-        .advance      (advance),
         .bank         (bank),
         .bank_held    (bank_held),
         .in_frame     (in_frame),
@@ -65,14 +63,14 @@ module harness (
         .\gate.may_open (may_open),
         .\gate.valid (valid),
         .\gate.lasts (lasts),
-        .\writer.whole_valid (whole_valid),
-        .\writer.whole_last (whole_last),
+        .\writer.takes (whole_takes),
+        .\writer.ends (whole_ends),
         .\gen_calibration.banks.marked (marked)
     );
 
     // ---- The frame inside, and what was active at its first beat
     wire taken = s_tvalid && s_tready;
-    wire arrives = valid[STAGES] && lasts[STAGES] && advance;
+    wire arrives = valid[STAGES] && lasts[STAGES];
     reg open; // its last beat has not come in
     reg kept; // it has not left
     reg replaces; // its last reading has come, and not gone out
@@ -106,7 +104,7 @@ module harness (
         assume (!change || !old_in_use);
         assume (!writes || (!old_in_use && (written_bank != active)));
         assume (replace_busy == replaces);
-        assume (!whole_valid || replaces);
+        assume (!(whole_takes || whole_ends) || replaces);
     end
 
     always @(posedge clock) begin

@@ -6,10 +6,8 @@
 // Assumed: readings come only while no frame is inside, and the first one is of the frame.
 module harness (
     input wire clock,
-    input wire advance,
-    input wire in_valid,
-    input wire in_store,
-    input wire in_last
+    input wire in_takes,
+    input wire in_ends
 );
 
     localparam TAXELS = 4;
@@ -31,10 +29,8 @@ module harness (
     sptfra_replace subject (
         .clock     (clock),
         .reset     (reset),
-        .advance   (advance),
-        .in_valid  (in_valid),
-        .in_store  (in_store),
-        .in_last   (in_last),
+        .in_takes  (in_takes),
+        .in_ends   (in_ends),
         .busy      (busy),
         .out_valid (out_valid),
         .out_last  (out_last),
@@ -54,23 +50,19 @@ module harness (
     reg [2:0] length;
     reg [2:0] out;
     reg whole;
-    wire moves = in_valid && advance;
-    wire leaves = out_valid && advance;
-    wire [2:0] counted = count + {2'd0, in_store};
+    wire [2:0] counted = count + {2'd0, in_takes};
 
     always @(posedge clock) begin
         started <= 1'b1;
-        if (moves) begin
-            count <= in_last ? 3'd0 : counted;
-        end
-        if (moves && in_last) begin
+        count <= in_ends ? 3'd0 : counted;
+        if (in_ends) begin
             length <= counted;
             whole <= 1'b1;
         end
-        if (leaves) begin
+        if (out_valid) begin
             out <= out + 3'd1;
         end
-        if (leaves && out_last) begin
+        if (out_valid && out_last) begin
             whole <= 1'b0;
             out <= 3'd0;
         end
@@ -82,8 +74,9 @@ module harness (
     end
 
     always @(*) begin
-        assume (!in_valid || !whole);
-        assume (!in_valid || (in_store == (count != TAXELS)));
+        assume (!(in_takes || in_ends) || !whole);
+        assume (!in_takes || (count != TAXELS));
+        assume (!in_ends || (counted != 3'd0));
     end
 
     always @(posedge clock) begin

@@ -48,24 +48,15 @@ module sptfra_banks #(
     input  wire active,
     output wire [3:0] active_count, // dead taxels of the active bank
     // Reads
-    input  wire advance,
     input  wire opens, // a frame begins
     input  wire exponent_bank,
     input  wire [TAXEL_WIDTH-1:0] exponent_taxel,
-    output wire [9:0] exponent,
     input  wire bank, // of all else
     input  wire [TAXEL_WIDTH-1:0] gain_taxel,
-    output wire [17:0] gain,
-    output wire [OFFSET_BITS-1:0] offset,
+    output wire [OFFSET_BITS+27:0] constants, // exponent, gain, offset
     input  wire [TAXEL_WIDTH-1:0] taxel_ahead,
-    output wire [18*PLACES-1:0] weights,
-    output wire [3:0] count,
-    output wire [4:0] weight_shift,
-    output wire [16*PLACES-1:0] numbers,
-    output wire [27*(1<<LEVELS)-1:0] knots,
-    output wire [6:0] segments,
-    output wire signed [26:0] last,
-    output wire [26:0] reach, // magnitude from which on a number is at an end of the curve
+    output wire [34*PLACES+8:0] map, // weights, count, shift of the weights, numbers: see sptfra_replace
+    output wire [27*(1<<LEVELS)+60:0] curve, // knots, segments, last, reach: see sptfra_curve_bank
     input  wire [LEVELS-1:0] segment,
     output wire [77:0] line, // as sptfra_curve takes it
     // Stresses of the frames, for a tare
@@ -80,10 +71,25 @@ module sptfra_banks #(
     localparam [31:0] FIRST_OF_MAP = 2 * TAXELS + 2;
     localparam [31:0] FIRST_OF_CURVE = FIRST_OF_MAP + ((REPLACEABLE != 0) ? 1 + REPLACEABLE + REPLACEABLE * TAXELS : 0);
 
+    wire [9:0] exponent;
+    wire [17:0] gain;
+    wire [OFFSET_BITS-1:0] offset;
+    wire [18*PLACES-1:0] weights;
+    wire [3:0] count;
+    wire [4:0] weight_shift;
+    wire [16*PLACES-1:0] numbers;
+    wire [27*(1<<LEVELS)-1:0] knots;
+    wire [6:0] segments;
+    wire signed [26:0] last;
+    wire [26:0] reach; // magnitude from which on a number is at an end of the curve
     reg marked; // the frame that is read began with the tare under way
     wire tare_run = tare_command[TAXEL_WIDTH+4];
     wire copying; // of the curve
     wire finished;
+
+    assign constants = {exponent, gain, offset};
+    assign map = {weights, count, weight_shift, numbers};
+    assign curve = {knots, segments, last, reach};
 
     // ---- Gains and offsets
     wire write_gain, write_offset;
@@ -104,7 +110,7 @@ module sptfra_banks #(
         .address      (address),
         .write_data   (gain_in[27:18]),
         .data         (words[OFFSET_BITS+18 +: 10]),
-        .read_enable  (advance),
+        .read_enable  (1'b1),
         .read_address ({exponent_bank, exponent_taxel}),
         .read_data    (exponent)
     );
@@ -120,7 +126,7 @@ module sptfra_banks #(
         .address      (address),
         .write_data   (gain_in[17:0]),
         .data         (words[OFFSET_BITS +: 18]),
-        .read_enable  (advance),
+        .read_enable  (1'b1),
         .read_address ({bank, gain_taxel}),
         .read_data    (gain)
     );
@@ -136,7 +142,7 @@ module sptfra_banks #(
         .address      (address),
         .write_data   (offset_in),
         .data         (words[OFFSET_BITS-1:0]),
-        .read_enable  (advance),
+        .read_enable  (1'b1),
         .read_address ({bank, gain_taxel}),
         .read_data    (offset)
     );
@@ -183,7 +189,7 @@ module sptfra_banks #(
                 .result       (map_result),
                 .active       (active),
                 .acting_count (active_count),
-                .read_enable  (advance),
+                .read_enable  (1'b1),
                 .read_bank    (bank),
                 .read_taxel   (taxel_ahead),
                 .read_weights (weights),
@@ -233,7 +239,7 @@ module sptfra_banks #(
                 .counts       (both_counts),
                 .lasts        (lasts),
                 .reaches      (reaches),
-                .read_enable  (advance),
+                .read_enable  (1'b1),
                 .read_bank    (bank),
                 .read_segment (segment),
                 .read_first   (line[77:51]),
@@ -277,7 +283,6 @@ module sptfra_banks #(
         .run         (tare_run),
         .log2_frames (tare_command[TAXEL_WIDTH +: 4]),
         .most_spread (most_spread),
-        .advance     (advance),
         .valid       (read_valid),
         .marked      (marked),
         .last        (read_last),

@@ -4,9 +4,10 @@
 // Bz: takes frames of stresses or counts from the stream, checks them, and writes them as fixed point into one
 // of two banks of the lanes' operand memories: taxel by taxel, or folded into parity classes.
 //
-// Beat to stress: as of sptfra_samples, one beat a cycle. Where taxels are dead, a frame is complete before its first
-// stress goes on: see sptfra_replace. A frame is accepted while a bank is free and CeAn has finished the frame before.
-// Frames of a wrong length are swallowed up to their TLAST and marked.
+// Beat to stress: as of sptfra_samples, a beat a cycle; what fills a frame's last beat behind its samples is ignored.
+// Where taxels are dead, a frame is complete before its first stress goes on: see sptfra_replace. A frame is accepted
+// while a bank is free and CeAn has finished the frame before. Frames of a wrong length are swallowed up to their TLAST
+// and marked.
 //
 // With CALIBRATED a frame takes its constants from the calibration bank that is active at its first beat.
 
@@ -16,9 +17,12 @@ module sptfra_bz #(
     // Taxels in x and y
     parameter COLUMNS = 10,
     parameter ROWS = 10,
+    // Samples of a beat: 1, 2, 4 or 8; one where a frame is corrected or CALIBRATED
+    parameter SAMPLES = 1,
     // As of sptfra_frame_writer
     parameter WAYS = 4,
     parameter DATA_BITS = 27,
+    parameter SCALED = 0,
     // As of sptfra_samples
     parameter NUMBER_SHIFT = 9,
     parameter [26:0] NUMBER_BOUND = 27'd51200000,
@@ -45,6 +49,9 @@ module sptfra_bz #(
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
+    // Crosstalk: see sptfra_corrections
+    parameter CROSSTALK = 0,
+    parameter [53:0] CROSSTALK_FACTORS = 54'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
@@ -63,7 +70,7 @@ module sptfra_bz #(
     input  wire clock,
     input  wire reset,
     // Stream in
-    input  wire [SAMPLE_BITS-1:0] s_tdata,
+    input  wire [SAMPLES*SAMPLE_BITS-1:0] s_tdata, // the first sample in the lowest bits
     input  wire s_tlast,
     input  wire s_tvalid,
     output wire s_tready,
@@ -83,6 +90,9 @@ module sptfra_bz #(
     output wire frame_not_finite,
     output wire frame_bad_length,
     output wire [29:0] frame_replaced, // sum of the magnitudes that took a dead taxel's place
+    // The frame's power of two, for one cycle, before it is ready
+    output wire scaled,
+    output wire [4:0] exponent,
     // Banks
     output wire frame_ready, // a whole frame waits
     input  wire frame_start, // the lanes begin with it
@@ -100,6 +110,8 @@ module sptfra_bz #(
     output wire [70:0] frame_calibration // {contact, noise, version, replaced taxels}
 );
 
+    localparam BEATS = (TAXELS + SAMPLES - 1) / SAMPLES;
+    localparam BEAT_WIDTH = (BEATS > 2) ? $clog2(BEATS) : 1;
     localparam LEVELS = (CURVE_LEVELS != 0) ? CURVE_LEVELS : 1;
     localparam PLACES = (REPLACEABLE != 0) ? REPLACEABLE : 1;
     localparam NUMBER_STAGES = 5;
@@ -110,19 +122,21 @@ module sptfra_bz #(
         if ((COLUMNS < 2) || (ROWS < 2) || (COLUMNS > 64) || (ROWS > 64)) begin : gen_check_grid
             sptfra_error_columns_and_rows_must_be_2_to_64 invalid ();
         end
+        if ((SAMPLES != 1) && ((REPLACEABLE != 0) || (CROSSTALK != 0) || (CALIBRATED != 0))) begin : gen_check_samples
+            sptfra_error_samples_go_one_by_one_where_frames_are_corrected_or_calibrated invalid ();
+        end
         if ((EXPECTED_STAGES != 0) && (EXPECTED_STAGES != STAGES)) begin : gen_check_stages
             sptfra_error_the_plan_counts_on_other_stages invalid ();
         end
     endgenerate
 
     // ---- Frames, one at a time in the pipeline
-    wire advance = write_ready; // whether or not there is something to write: a short way to the stream
-    wire accept, opens, in_frame, under_way, out_valid, out_bad_length, bank_free, replace_busy;
+    wire accept, opens, in_frame, under_way, out_valid, out_bad_length, bank_free, replace_busy, writer_busy;
     wire [STAGES:0] takes;
     wire [STAGES:0] ends;
 
     sptfra_frame_gate #(
-        .BEATS  (TAXELS),
+        .BEATS  (BEATS),
         .STAGES (STAGES)
     ) gate (
         .clock          (clock),
@@ -130,8 +144,7 @@ module sptfra_bz #(
         .s_tlast        (s_tlast),
         .s_tvalid       (s_tvalid),
         .s_tready       (s_tready),
-        .room           (!replace_busy && cean_idle && bank_free && direction_room),
-        .advance        (advance),
+        .room           (!replace_busy && !writer_busy && cean_idle && bank_free && direction_room),
         .accept         (accept),
         .opens          (opens),
         .in_frame       (in_frame),
@@ -163,77 +176,74 @@ module sptfra_bz #(
     reg [TAXEL_WIDTH-1:0] taxel_ahead;
 
     always @(posedge clock) begin
-        if (advance && takes[STAGES-2]) begin
+        if (takes[STAGES-2]) begin
             taxel_ahead <= taxel_ahead + 1'b1;
         end
-        if (reset || (advance && ends[STAGES-2])) begin
+        if (reset || ends[STAGES-2]) begin
             taxel_ahead <= {TAXEL_WIDTH{1'b0}};
         end
     end
 
     // ---- Samples to stress
-    wire [TAXEL_WIDTH-1:0] exponent_taxel, gain_taxel;
-    wire [9:0] exponent;
-    wire [17:0] gain;
-    wire [OFFSET_BITS-1:0] offset;
-    wire [27*(1<<LEVELS)-1:0] knots;
-    wire [6:0] segments;
-    wire signed [26:0] last_number;
-    wire [26:0] reach;
-    wire [LEVELS-1:0] segment;
+    wire [BEAT_WIDTH*SAMPLES-1:0] exponent_taxels, gain_taxels; // those of sample 0 are for the banks
+    wire [OFFSET_BITS+27:0] constants;
+    wire [27*(1<<LEVELS)+60:0] curve;
+    wire [LEVELS*SAMPLES-1:0] segment;
     wire [77:0] line;
-    wire signed [26:0] read;
-    wire read_saturated, read_not_finite;
+    wire [27*SAMPLES-1:0] read;
+    wire [SAMPLES-1:0] read_saturated, read_not_finite;
+    genvar sample;
 
-    sptfra_samples #(
-        .TAXELS       (TAXELS),
-        .SAMPLE       (SAMPLE),
-        .NUMBER_SHIFT (NUMBER_SHIFT),
-        .NUMBER_BOUND (NUMBER_BOUND),
-        .COUNTS       (COUNTS),
-        .CALIBRATED   (CALIBRATED),
-        .PER_TAXEL    (PER_TAXEL),
-        .EXPONENT     (EXPONENT),
-        .GAIN         (GAIN),
-        .OFFSET_BITS  (OFFSET_BITS),
-        .COUNT_SHIFT  (COUNT_SHIFT),
-        .FULL_SCALE   (FULL_SCALE),
-        .CURVE_LEVELS (CURVE_LEVELS),
-        .CURVE_KNOTS  (CURVE_KNOTS),
-        .CURVE_LAST   (CURVE_LAST),
-        .STRESS_BOUND (STRESS_BOUND),
-        .ROM_DIR      (ROM_DIR),
-        .ROM_NAME     (ROM_NAME)
-    ) samples (
-        .clock          (clock),
-        .reset          (reset),
-        .advance        (advance),
-        .sample         (s_tdata),
-        .sample_taken   (takes[0]),
-        .sample_ends    (ends[0]),
-        .value_taken    (takes[VALUE_STAGES]),
-        .value_ends     (ends[VALUE_STAGES]),
-        .exponent_taxel (exponent_taxel),
-        .gain_taxel     (gain_taxel),
-        .bank_exponent  (exponent),
-        .bank_gain      (gain),
-        .bank_offset    (offset),
-        .bank_knots     (knots),
-        .bank_segments  (segments),
-        .bank_last      (last_number),
-        .bank_reach     (reach),
-        .segment        (segment),
-        .bank_line      (line),
-        .stress         (read),
-        .saturated      (read_saturated),
-        .not_finite     (read_not_finite)
-    );
+    generate
+        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_samples
+            localparam [7:0] DIGIT = 48 + sample;
+            wire signed [26:0] fixed;
+
+            assign read[27*sample +: 27] = fixed;
+
+            sptfra_samples #(
+                .TAXELS       (BEATS),
+                .SAMPLE       (SAMPLE),
+                .NUMBER_SHIFT (NUMBER_SHIFT),
+                .NUMBER_BOUND (NUMBER_BOUND),
+                .COUNTS       (COUNTS),
+                .CALIBRATED   (CALIBRATED),
+                .PER_TAXEL    (PER_TAXEL),
+                .EXPONENT     (EXPONENT),
+                .GAIN         (GAIN),
+                .OFFSET_BITS  (OFFSET_BITS),
+                .COUNT_SHIFT  (COUNT_SHIFT),
+                .FULL_SCALE   (FULL_SCALE),
+                .CURVE_LEVELS (CURVE_LEVELS),
+                .CURVE_KNOTS  (CURVE_KNOTS),
+                .CURVE_LAST   (CURVE_LAST),
+                .STRESS_BOUND (STRESS_BOUND),
+                .ROM_DIR      (ROM_DIR),
+                .ROM_NAME     (ROM_NAME),
+                .TAXEL_NAME   ((ROM_NAME == "") ? "" : {ROM_NAME, "_sample", DIGIT})
+            ) samples (
+                .clock          (clock),
+                .reset          (reset),
+                .sample         (s_tdata[SAMPLE_BITS*sample +: SAMPLE_BITS]),
+                .sample_taken   (takes[0]),
+                .sample_ends    (ends[0]),
+                .value_taken    (takes[VALUE_STAGES]),
+                .value_ends     (ends[VALUE_STAGES]),
+                .exponent_taxel (exponent_taxels[BEAT_WIDTH*sample +: BEAT_WIDTH]),
+                .gain_taxel     (gain_taxels[BEAT_WIDTH*sample +: BEAT_WIDTH]),
+                .bank_constants (constants),
+                .bank_curve     (curve),
+                .segment        (segment[LEVELS*sample +: LEVELS]),
+                .bank_line      (line),
+                .stress         (fixed),
+                .saturated      (read_saturated[sample]),
+                .not_finite     (read_not_finite[sample])
+            );
+        end
+    endgenerate
 
     // ---- A calibration in RAM
-    wire [18*PLACES-1:0] weights;
-    wire [3:0] count;
-    wire [4:0] weight_shift;
-    wire [16*PLACES-1:0] numbers;
+    wire [34*PLACES+8:0] map;
 
     generate
         if (CALIBRATED != 0) begin : gen_calibration
@@ -265,76 +275,66 @@ module sptfra_bz #(
                 .most_spread    (calibration_acting[26:0]),
                 .active         (active),
                 .active_count   (replaced),
-                .advance        (advance),
                 .opens          (opens),
                 .exponent_bank  ((CURVE_LEVELS == 0) ? bank : bank_held),
-                .exponent_taxel (exponent_taxel),
-                .exponent       (exponent),
+                .exponent_taxel (exponent_taxels[TAXEL_WIDTH-1:0]),
                 .bank           (bank_held),
-                .gain_taxel     (gain_taxel),
-                .gain           (gain),
-                .offset         (offset),
+                .gain_taxel     (gain_taxels[TAXEL_WIDTH-1:0]),
+                .constants      (constants),
                 .taxel_ahead    (taxel_ahead),
-                .weights        (weights),
-                .count          (count),
-                .weight_shift   (weight_shift),
-                .numbers        (numbers),
-                .knots          (knots),
-                .segments       (segments),
-                .last           (last_number),
-                .reach          (reach),
-                .segment        (segment),
+                .map            (map),
+                .curve          (curve),
+                .segment        (segment[LEVELS-1:0]),
                 .line           (line),
                 .read_valid     (out_valid),
                 .read_last      (ends[STAGES]),
-                .read_bad       (read_saturated || read_not_finite || !takes[STAGES]
+                .read_bad       (read_saturated[0] || read_not_finite[0] || !takes[STAGES]
                     || (ends[STAGES] && out_bad_length)),
-                .read           (read)
+                .read           (read[26:0])
             );
         end else begin : gen_constant
             assign frame_calibration = 71'd0;
             assign bank_words = 1'b0;
             assign tare_result = 30'd0;
-            assign {exponent, gain, offset} = {(28+OFFSET_BITS){1'b0}};
-            assign {knots, segments, last_number, reach, line} = {(27*(1<<LEVELS)+139){1'b0}};
-            assign {weights, count, weight_shift, numbers} = {(34*PLACES+9){1'b0}};
+            assign {constants, curve, line, map} = {(OFFSET_BITS+27*(1<<LEVELS)+34*PLACES+176){1'b0}};
             wire _unused_calibration = &{1'b0, calibration_acting, bank_command, tare_command, segment, CURVE_COUNT,
-                CURVE_LAST_VALUE, exponent_taxel, gain_taxel, bank};
+                CURVE_LAST_VALUE, exponent_taxels, gain_taxels, bank, out_valid};
         end
     endgenerate
 
-    // ---- Stresses to the lanes
+    // ---- Stresses to the lanes and to CeAn
     sptfra_frame_writer #(
-        .COLUMNS         (COLUMNS),
-        .ROWS            (ROWS),
-        .WAYS            (WAYS),
-        .DATA_BITS       (DATA_BITS),
-        .STRESS_BOUND    (STRESS_BOUND),
-        .REPLACEABLE     (REPLACEABLE),
-        .MAPPED          (MAPPED),
-        .REPLACED_COUNT  (REPLACED_COUNT),
-        .REPLACED_SHIFT  (REPLACED_SHIFT),
-        .REPLACED_TAXELS (REPLACED_TAXELS),
-        .ROM_DIR         (ROM_DIR),
-        .ROM_NAME        (ROM_NAME)
+        .COLUMNS           (COLUMNS),
+        .ROWS              (ROWS),
+        .SAMPLES           (SAMPLES),
+        .WAYS              (WAYS),
+        .DATA_BITS         (DATA_BITS),
+        .STRESS_BOUND      (STRESS_BOUND),
+        .SCALED            (SCALED),
+        .REPLACEABLE       (REPLACEABLE),
+        .MAPPED            (MAPPED),
+        .REPLACED_COUNT    (REPLACED_COUNT),
+        .REPLACED_SHIFT    (REPLACED_SHIFT),
+        .REPLACED_TAXELS   (REPLACED_TAXELS),
+        .CROSSTALK         (CROSSTALK),
+        .CROSSTALK_FACTORS (CROSSTALK_FACTORS),
+        .ROM_DIR           (ROM_DIR),
+        .ROM_NAME          (ROM_NAME)
     ) writer (
         .clock            (clock),
         .reset            (reset),
-        .advance          (advance),
-        .in_valid         (out_valid),
-        .in_store         (takes[STAGES]),
-        .in_last          (ends[STAGES]),
+        .in_takes         (takes[STAGES]),
+        .in_ends          (ends[STAGES]),
         .in_bad_length    (out_bad_length),
-        .in_stress        (read),
+        .in_stresses      (read),
         .in_saturated     (read_saturated),
         .in_not_finite    (read_not_finite),
         .taxel_ahead      (taxel_ahead),
-        .map_weights      (weights),
-        .map_count        (count),
-        .map_shift        (weight_shift),
-        .map_numbers      (numbers),
-        .busy             (replace_busy),
+        .map              (map),
+        .busy             (writer_busy),
+        .replace_busy     (replace_busy),
         .write_valid      (write_valid),
+        .write_ready      (write_ready),
         .write_bank       (write_bank),
         .write_row        (write_row),
         .write_data       (write_data),
@@ -345,6 +345,8 @@ module sptfra_bz #(
         .frame_not_finite (frame_not_finite),
         .frame_bad_length (frame_bad_length),
         .frame_replaced   (frame_replaced),
+        .scaled           (scaled),
+        .exponent         (exponent),
         .frame_opens      (opens),
         .frame_ready      (frame_ready),
         .frame_start      (frame_start),

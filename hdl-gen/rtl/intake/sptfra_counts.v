@@ -18,7 +18,6 @@ module sptfra_counts #(
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000
 ) (
     input  wire clock,
-    input  wire advance,
     // Counts
     input  wire signed [26:0] number,
     input  wire number_saturated,
@@ -43,7 +42,7 @@ module sptfra_counts #(
 
     sptfra_multiply multiplier (
         .clock       (clock),
-        .enable      (advance),
+        .enable      (1'b1),
         .coefficient (gain_1),
         .data        (number_1),
         .low         (product_low_2),
@@ -73,15 +72,13 @@ module sptfra_counts #(
             assign offset = offsets[4*OFFSET_BITS-1 -: OFFSET_BITS];
 
             always @(posedge clock) begin
-                if (advance) begin
-                    drop_2 <= drop[11] ? 6'd0 : (drop > MOST) ? MOST[5:0] : drop[5:0];
-                    drop_3 <= drop_2;
-                    product_3 <= {product_2, 1'b0};
-                    coarse_4 <= product_3 >>> {drop_3[5:3], 3'd0};
-                    drop_4 <= drop_3[2:0];
-                    fine_5 <= coarse_4 >>> drop_4;
-                    offsets <= {offsets[3*OFFSET_BITS-1:0], offset_1};
-                end
+                drop_2 <= drop[11] ? 6'd0 : (drop > MOST) ? MOST[5:0] : drop[5:0];
+                drop_3 <= drop_2;
+                product_3 <= {product_2, 1'b0};
+                coarse_4 <= product_3 >>> {drop_3[5:3], 3'd0};
+                drop_4 <= drop_3[2:0];
+                fine_5 <= coarse_4 >>> drop_4;
+                offsets <= {offsets[3*OFFSET_BITS-1:0], offset_1};
             end
 
             wire _unused = &{1'b0, half[0], SHIFT_WIDE, drop};
@@ -93,9 +90,7 @@ module sptfra_counts #(
             assign offset = offset_2;
 
             always @(posedge clock) begin
-                if (advance) begin
-                    offset_2 <= offset_1;
-                end
+                offset_2 <= offset_1;
             end
 
             wire _unused = &{1'b0, exponent_1};
@@ -112,14 +107,12 @@ module sptfra_counts #(
     assign not_finite = not_finite_to[SUMMED+1];
 
     always @(posedge clock) begin
-        if (advance) begin
-            number_1 <= number;
-            sum <= rounded + {{(48-OFFSET_BITS){offset[OFFSET_BITS-1]}}, offset};
-            stress <= above ? STRESS_BOUND : below ? -STRESS_BOUND : sum[26:0];
-            saturated <= above || below || number_saturated_to[SUMMED];
-            number_saturated_to <= {number_saturated_to[SUMMED-1:1], number_saturated};
-            not_finite_to <= {not_finite_to[SUMMED:1], number_not_finite};
-        end
+        number_1 <= number;
+        sum <= rounded + {{(48-OFFSET_BITS){offset[OFFSET_BITS-1]}}, offset};
+        stress <= above ? STRESS_BOUND : below ? -STRESS_BOUND : sum[26:0];
+        saturated <= above || below || number_saturated_to[SUMMED];
+        number_saturated_to <= {number_saturated_to[SUMMED-1:1], number_saturated};
+        not_finite_to <= {not_finite_to[SUMMED:1], number_not_finite};
     end
 
 endmodule

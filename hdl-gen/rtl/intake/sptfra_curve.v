@@ -13,7 +13,6 @@ module sptfra_curve #(
     parameter LEVELS = 4
 ) (
     input  wire clock,
-    input  wire advance,
     // Counts
     input  wire signed [26:0] number,
     input  wire number_saturated,
@@ -44,9 +43,7 @@ module sptfra_curve #(
     assign segments[LEVELS-1:0] = {LEVELS{1'b0}};
 
     always @(posedge clock) begin
-        if (advance) begin
-            number_in <= (number < first) ? first : (number > last) ? last : number;
-        end
+        number_in <= (number < first) ? first : (number > last) ? last : number;
     end
 
     generate
@@ -63,10 +60,8 @@ module sptfra_curve #(
             assign segments[LEVELS*(level+1) +: LEVELS] = held_segment;
 
             always @(posedge clock) begin
-                if (advance) begin
-                    held_number <= here;
-                    held_segment <= (({{(7-LEVELS){1'b0}}, upper} < count) && (here >= knot)) ? upper : lower;
-                end
+                held_number <= here;
+                held_segment <= (({{(7-LEVELS){1'b0}}, upper} < count) && (here >= knot)) ? upper : lower;
             end
         end
     endgenerate
@@ -99,7 +94,7 @@ module sptfra_curve #(
 
     sptfra_multiply multiplier (
         .clock       (clock),
-        .enable      (advance),
+        .enable      (1'b1),
         .coefficient (slope_2),
         .data        (along_2),
         .low         (product_low_3),
@@ -107,21 +102,19 @@ module sptfra_curve #(
     );
 
     always @(posedge clock) begin
-        if (advance) begin
-            number_1 <= $signed(numbers[27*LEVELS +: 27]);
-            along_2 <= number_1 - from_1;
-            slope_2 <= slope_1;
-            shift_2 <= shift_1;
-            value_2 <= value_1;
-            shift_3 <= shift_2;
-            value_3 <= value_2;
-            product_4 <= product_low_3 + product_high_3;
-            shift_4 <= shift_3;
-            value_4 <= value_3;
-            rise_5 <= product_4 >>> shift_4;
-            value_5 <= value_4;
-            value_6 <= value_5 + rise_half[27:1];
-        end
+        number_1 <= $signed(numbers[27*LEVELS +: 27]);
+        along_2 <= number_1 - from_1;
+        slope_2 <= slope_1;
+        shift_2 <= shift_1;
+        value_2 <= value_1;
+        shift_3 <= shift_2;
+        value_3 <= value_2;
+        product_4 <= product_low_3 + product_high_3;
+        shift_4 <= shift_3;
+        value_4 <= value_3;
+        rise_5 <= product_4 >>> shift_4;
+        value_5 <= value_4;
+        value_6 <= value_5 + rise_half[27:1];
     end
 
     // ---- Beside it
@@ -133,10 +126,8 @@ module sptfra_curve #(
     assign not_finite = not_finite_to[STAGES];
 
     always @(posedge clock) begin
-        if (advance) begin
-            saturated_to <= {saturated_to[STAGES-1:1], number_saturated};
-            not_finite_to <= {not_finite_to[STAGES-1:1], number_not_finite};
-        end
+        saturated_to <= {saturated_to[STAGES-1:1], number_saturated};
+        not_finite_to <= {not_finite_to[STAGES-1:1], number_not_finite};
     end
 
     wire _unused = &{1'b0, rise_half[44:28], rise_half[0]};

@@ -14,7 +14,6 @@ module sptfra_decode #(
     parameter SAMPLE_BITS = (SAMPLE == 0) ? 32 : 16
 ) (
     input  wire clock,
-    input  wire enable,
     input  wire [SAMPLE_BITS-1:0] sample,
     input  wire signed [9:0] shift, // sampled with the sample
     input  wire [26:0] limit, // constant while samples are under way
@@ -27,7 +26,7 @@ module sptfra_decode #(
         if (SAMPLE == 0) begin : gen_float
             sptfra_float_to_fixed float_to_fixed (
                 .clock      (clock),
-                .enable     (enable),
+                .enable     (1'b1),
                 .float_bits (sample),
                 .shift      (shift),
                 .limit      (limit),
@@ -40,7 +39,7 @@ module sptfra_decode #(
                 .SIGNED ((SAMPLE == 1) ? 1 : 0)
             ) int_to_fixed (
                 .clock     (clock),
-                .enable    (enable),
+                .enable    (1'b1),
                 .count     (sample),
                 .shift     (shift),
                 .limit     (limit),

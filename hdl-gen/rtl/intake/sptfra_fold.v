@@ -1,191 +1,264 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Folds the stresses of a frame, taxel after taxel, into the four parity classes of the lanes' operand memories.
+// Fold: a frame's stresses, kept as they come, to the lanes' operand memories as four parity classes, or as they are.
 //
 // A quad is a taxel and its mirror images in x, in y and in both; class c of it is their sum with the signs of
-// parity: even and even, odd in x, odd in y, odd in both. First each row folds onto its left half, then the lower rows
-// onto the upper ones: a quad is complete with the last of its four taxels. Taxel to quad: 3 cycles.
+// parity: even and even, odd in x, odd in y, odd in both. One quad a cycle, those of the middle rows first: so the
+// last taxel of the frame belongs to the last quad. From a quad's turn to its write: 4 cycles, with SCALED 6.
 // A class has the bits of a stress and four times its step; or, where there is room for the sum of four, its step.
 
 `default_nettype none
 
 module sptfra_fold #(
-    // Taxels in x and y
+    // Taxels in x and y, and of a beat
     parameter COLUMNS = 10,
     parameter ROWS = 10,
+    parameter SAMPLES = 1,
+    // 4: folded into parity classes; 1: as they are, in the order of taxels
+    parameter WAYS = 4,
     // Bits of a stress, and of a class: as many, or two more, or beyond
     parameter STRESS_BITS = 27,
     parameter DATA_BITS = 27,
+    // 1: stresses are shifted by the frame's exponent first
+    parameter SCALED = 0,
     // Derived
-    parameter QUADS = ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter ROW_WIDTH = (QUADS > 8) ? $clog2(QUADS) : 3
+    parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
+    parameter BEATS = (COLUMNS * ROWS + SAMPLES - 1) / SAMPLES,
+    parameter BEAT_WIDTH = (BEATS > 2) ? $clog2(BEATS) : 1,
+    parameter COUNT_WIDTH = $clog2(BEATS + 1)
 ) (
     input  wire clock,
     input  wire reset,
     input  wire advance,
-    // From Bz
-    input  wire in_valid,
-    input  wire in_store, // a taxel of the frame, rather than what follows a frame that is too long
-    input  wire in_last,
-    input  wire signed [STRESS_BITS-1:0] in_stress,
+    // The frame as it comes
+    input  wire beat_valid,
+    input  wire [BEAT_WIDTH-1:0] beat,
+    input  wire [SAMPLES*STRESS_BITS-1:0] stresses,
+    input  wire [COUNT_WIDTH-1:0] written, // beats whose quads may have their turn
+    input  wire whole, // all quads may
+    input  wire [4:0] exponent, // two enabled cycles after the first turn
+    output wire folded, // every quad had its turn, until restart
+    input  wire restart, // with the next frame
     // Operand memories
     output wire write_valid,
     output wire write_bank,
-    output wire [ROW_WIDTH-1:0] write_quad,
-    output wire [4*DATA_BITS-1:0] write_data, // class 0 in the lowest bits
+    output wire [ROW_WIDTH-1:0] write_row,
+    output wire [WAYS*DATA_BITS-1:0] write_data, // class 0 in the lowest bits
     output wire frame_written // the frame is complete
 );
 
-    localparam SUM_BITS = STRESS_BITS + 2;
+    localparam SUM_BITS = (WAYS == 4) ? STRESS_BITS + 2 : STRESS_BITS;
     localparam DROPPED = (DATA_BITS < SUM_BITS) ? 2 : 0; // bits of a sum
-    localparam LAST_TO_WRITTEN = 3; // cycles, which simulations check of a frame that flows
-    localparam QUAD_COLUMNS = (COLUMNS + 1) / 2;
-    localparam QUAD_ROWS = (ROWS + 1) / 2;
-    localparam X_WIDTH = $clog2(COLUMNS);
-    localparam Y_WIDTH = $clog2(ROWS);
+    localparam TURN_TO_WRITTEN = (SCALED != 0) ? 6 : 4; // cycles, which simulations check of a frame that flows
+    localparam SAMPLE_WIDTH = $clog2(SAMPLES);
+    localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
+    localparam QUAD_COLUMNS = (WAYS == 4) ? (COLUMNS + 1) / 2 : COLUMNS;
+    localparam QUAD_ROWS = (WAYS == 4) ? (ROWS + 1) / 2 : ROWS;
     localparam QUAD_X_WIDTH = (QUAD_COLUMNS > 2) ? $clog2(QUAD_COLUMNS) : 1;
-    localparam UPPER_DEPTH = (QUADS > 8) ? QUADS : 8;
-    localparam [31:0] LAST_X = COLUMNS - 1;
-    localparam [31:0] LAST_Y = ROWS - 1;
-    localparam [31:0] FIRST_X = COLUMNS - QUAD_COLUMNS;
-    localparam [31:0] FIRST_Y = ROWS - QUAD_ROWS;
-    localparam [X_WIDTH-1:0] LAST_COLUMN = LAST_X[X_WIDTH-1:0];
-    localparam [Y_WIDTH-1:0] LAST_ROW = LAST_Y[Y_WIDTH-1:0];
-    localparam [X_WIDTH-1:0] FIRST_RIGHT = FIRST_X[X_WIDTH-1:0]; // that completes a pair
-    localparam [Y_WIDTH-1:0] FIRST_LOWER = FIRST_Y[Y_WIDTH-1:0];
+    // Beats with taxels of the upper half, and the first one with taxels of the lower half
+    localparam UPPER_BEATS = (QUAD_ROWS * COLUMNS + SAMPLES - 1) / SAMPLES;
+    localparam LOWER_BEAT = ((ROWS - QUAD_ROWS) * COLUMNS) / SAMPLES;
+    localparam LOWER_FIRST = (ROWS - QUAD_ROWS) * COLUMNS - LOWER_BEAT * SAMPLES;
+    // Taxels of the first quad, on the left and on the right of the upper and of the lower half
+    localparam [31:0] FIRST_UPPER_LEFT = (QUAD_ROWS - 1) * COLUMNS + QUAD_COLUMNS - 1;
+    localparam [31:0] FIRST_UPPER_RIGHT = (QUAD_ROWS - 1) * COLUMNS + COLUMNS - QUAD_COLUMNS;
+    localparam [31:0] FIRST_LOWER_LEFT = LOWER_FIRST + QUAD_COLUMNS - 1;
+    localparam [31:0] FIRST_LOWER_RIGHT = LOWER_FIRST + COLUMNS - QUAD_COLUMNS;
+    // From the last quad of a row to the first of the next one
+    localparam [31:0] ROW_UPPER_LEFT = QUAD_COLUMNS - 1 - COLUMNS;
+    localparam [31:0] ROW_UPPER_RIGHT = 1 - QUAD_COLUMNS - COLUMNS;
+    localparam [31:0] ROW_LOWER_LEFT = QUAD_COLUMNS - 1 + COLUMNS;
+    localparam [31:0] ROW_LOWER_RIGHT = 1 - QUAD_COLUMNS + COLUMNS;
+    localparam [31:0] FIRST_QUAD = ELEMENTS - 1;
+    localparam [31:0] FIRST_QUAD_X = QUAD_COLUMNS - 1;
+    localparam [31:0] LOWER_BEAT_WIDE = LOWER_BEAT;
+    localparam [INDEX_WIDTH-1:0] ONE = {{(INDEX_WIDTH-1){1'b0}}, 1'b1};
 
-    // ---- Place of the taxel: its column, its mirror image, and the quads' row
-    reg [X_WIDTH-1:0] column;
-    reg [Y_WIDTH-1:0] row;
-    wire [X_WIDTH-1:0] opposite = LAST_COLUMN - column;
-    wire right_half = (column >= FIRST_RIGHT);
-    wire centre_column = (column == opposite);
-    wire lower_half = (row >= FIRST_LOWER);
-    wire centre_row = (row == LAST_ROW - row);
-    wire taken = in_valid && in_store && advance;
-    wire frame_ends = in_valid && in_last && advance;
-    wire [ROW_WIDTH-1:0] row_base; // first quad of the row
-    wire [31:0] opposite_wide = {{(32-X_WIDTH){1'b0}}, opposite};
+    generate
+        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
+            sptfra_error_ways_must_be_1_or_4 invalid ();
+        end
+    endgenerate
 
-    sptfra_quad_rows #(
-        .COLUMNS (COLUMNS),
-        .ROWS    (ROWS)
-    ) quad_rows (
-        .clock     (clock),
-        .restart   (reset || frame_ends),
-        .next_row  (taken && (column == LAST_COLUMN)),
-        .row       (row),
-        .row_base  (row_base)
-    );
+    // ---- Whose turn it is: the quad and its taxels
+    reg done;
+    reg [ROW_WIDTH-1:0] quad;
+    reg [QUAD_X_WIDTH-1:0] quad_x;
+    reg [INDEX_WIDTH-1:0] upper_left;
+    reg [INDEX_WIDTH-1:0] upper_right;
+    reg [INDEX_WIDTH-1:0] lower_left;
+    reg [INDEX_WIDTH-1:0] lower_right; // the last of them in the frame
+    wire last_quad = (quad == {ROW_WIDTH{1'b0}});
+    wire row_ends = (quad_x == {QUAD_X_WIDTH{1'b0}});
+    wire [31:0] beat_needed = {{(32-BEAT_WIDTH){1'b0}}, lower_right[SAMPLE_WIDTH +: BEAT_WIDTH]} + LOWER_BEAT_WIDE;
+    wire [31:0] beats_there = {{(32-COUNT_WIDTH){1'b0}}, written};
+    // The last one waits for the frame's end, wherever that is
+    wire turn = (whole || (!last_quad && (beat_needed < beats_there))) && !done && advance;
+
+    assign folded = done;
 
     always @(posedge clock) begin
-        if (taken) begin
-            column <= (column == LAST_COLUMN) ? {X_WIDTH{1'b0}} : column + 1;
-            if (column == LAST_COLUMN) begin
-                row <= row + 1;
+        if (turn) begin
+            done <= last_quad;
+            quad <= quad - 1'b1;
+            if (row_ends) begin
+                quad_x <= FIRST_QUAD_X[QUAD_X_WIDTH-1:0];
+                upper_left <= upper_left + ROW_UPPER_LEFT[INDEX_WIDTH-1:0];
+                upper_right <= upper_right + ROW_UPPER_RIGHT[INDEX_WIDTH-1:0];
+                lower_left <= lower_left + ROW_LOWER_LEFT[INDEX_WIDTH-1:0];
+                lower_right <= lower_right + ROW_LOWER_RIGHT[INDEX_WIDTH-1:0];
+            end else begin
+                quad_x <= quad_x - 1'b1;
+                upper_left <= upper_left - ONE;
+                upper_right <= upper_right + ONE;
+                lower_left <= lower_left - ONE;
+                lower_right <= lower_right + ONE;
             end
         end
-        if (reset || frame_ends) begin
-            column <= {X_WIDTH{1'b0}};
-            row <= {Y_WIDTH{1'b0}};
+        if (reset || restart) begin
+            done <= 1'b0;
+            quad <= FIRST_QUAD[ROW_WIDTH-1:0];
+            quad_x <= FIRST_QUAD_X[QUAD_X_WIDTH-1:0];
+            upper_left <= FIRST_UPPER_LEFT[INDEX_WIDTH-1:0];
+            upper_right <= FIRST_UPPER_RIGHT[INDEX_WIDTH-1:0];
+            lower_left <= FIRST_LOWER_LEFT[INDEX_WIDTH-1:0];
+            lower_right <= FIRST_LOWER_RIGHT[INDEX_WIDTH-1:0];
         end
     end
 
-    // ---- Stage 1: the row onto its left half
-    (* ram_style = "distributed" *) reg signed [STRESS_BITS-1:0] left [0:QUAD_COLUMNS-1];
-    wire signed [STRESS_BITS-1:0] partner = centre_column ? in_stress : left[opposite[QUAD_X_WIDTH-1:0]];
-    reg [3:1] valid;
-    reg [3:1] lasts;
-    reg [2:1] lower;
-    reg [2:1] centre;
-    reg signed [STRESS_BITS:0] even_1;
-    reg signed [STRESS_BITS:0] odd_1;
-    reg [ROW_WIDTH-1:0] quad_1;
+    // ---- Its stresses, from a copy of half the frame for each of its taxels; then in the frame's scale
+    wire [4*INDEX_WIDTH-1:0] taxels = {lower_left, upper_right, upper_left, lower_right};
+    wire [WAYS*STRESS_BITS-1:0] shifted;
+    genvar member;
 
-    always @(posedge clock) begin
-        if (taken && !right_half) begin
-            left[column[QUAD_X_WIDTH-1:0]] <= in_stress;
+    generate
+        for (member = 0; member < WAYS; member = member + 1) begin : gen_members
+            localparam UPPER = ((member == 1) || (member == 2)) ? 1 : 0;
+            wire [STRESS_BITS-1:0] kept_2;
+
+            sptfra_frame_memory #(
+                .SAMPLES (SAMPLES),
+                .BEATS   (BEATS),
+                .FIRST   ((UPPER != 0) ? 0 : LOWER_BEAT),
+                .KEPT    ((UPPER != 0) ? UPPER_BEATS : BEATS - LOWER_BEAT),
+                .WIDTH   (STRESS_BITS)
+            ) frame (
+                .clock          (clock),
+                .write_enable   (beat_valid),
+                .write_beat     (beat),
+                .write_stresses (stresses),
+                .read_enable    (advance),
+                .taxel          (taxels[INDEX_WIDTH*member +: INDEX_WIDTH]),
+                .stress         (kept_2)
+            );
+
+            if (SCALED != 0) begin : gen_scale
+                reg [STRESS_BITS-1:0] octets_3;
+                reg [STRESS_BITS-1:0] exact_4;
+
+                assign shifted[STRESS_BITS*member +: STRESS_BITS] = exact_4;
+
+                always @(posedge clock) begin
+                    if (advance) begin
+                        octets_3 <= kept_2 << {exponent[4:3], 3'd0};
+                        exact_4 <= octets_3 << exponent[2:0];
+                    end
+                end
+            end else begin : gen_as_read
+                assign shifted[STRESS_BITS*member +: STRESS_BITS] = kept_2;
+            end
         end
-        if (advance) begin
-            even_1 <= {partner[STRESS_BITS-1], partner} + {in_stress[STRESS_BITS-1], in_stress};
-            odd_1 <= {partner[STRESS_BITS-1], partner} - {in_stress[STRESS_BITS-1], in_stress};
-            quad_1 <= row_base + opposite_wide[ROW_WIDTH-1:0];
-            lower[1] <= lower_half;
-            centre[1] <= centre_row;
+        if (SCALED == 0) begin : gen_unscaled
+            wire _unused_exponent = &{1'b0, exponent};
         end
-    end
+    endgenerate
 
-    // ---- Stages 2 and 3: the lower rows onto the upper ones
-    wire signed [STRESS_BITS:0] upper_even;
-    wire signed [STRESS_BITS:0] upper_odd;
-    reg signed [STRESS_BITS:0] even_2;
-    reg signed [STRESS_BITS:0] odd_2;
-    reg [ROW_WIDTH-1:0] quad_2;
-    reg [ROW_WIDTH-1:0] quad_3;
-
-    sptfra_ram #(
-        .WIDTH         (2 * STRESS_BITS + 2),
-        .DEPTH         (UPPER_DEPTH),
-        .ADDRESS_WIDTH (ROW_WIDTH)
-    ) upper (
-        .clock         (clock),
-        .write_enable  (valid[1] && !lower[1] && advance),
-        .write_address (quad_1),
-        .write_data    ({odd_1, even_1}),
-        .read_enable   (advance),
-        .read_address  (quad_1),
-        .read_data     ({upper_odd, upper_even})
-    );
-
+    // ---- Mirror in x, mirror in y: two cycles. On a centre line both are the same taxel
     localparam signed [SUM_BITS-1:0] HALF = DROPPED; // half a step of the result, for the rounding
-    wire signed [SUM_BITS-1:0] even_above = centre[2] ? {even_2[STRESS_BITS], even_2}
-        : {upper_even[STRESS_BITS], upper_even};
-    wire signed [SUM_BITS-1:0] odd_above = centre[2] ? {odd_2[STRESS_BITS], odd_2}
-        : {upper_odd[STRESS_BITS], upper_odd};
-    wire signed [SUM_BITS-1:0] even_below = {even_2[STRESS_BITS], even_2};
-    wire signed [SUM_BITS-1:0] odd_below = {odd_2[STRESS_BITS], odd_2};
-    reg signed [SUM_BITS-1:0] sum_0;
-    reg signed [SUM_BITS-1:0] sum_1;
-    reg signed [SUM_BITS-1:0] sum_2;
-    reg signed [SUM_BITS-1:0] sum_3;
+    wire [WAYS*SUM_BITS-1:0] sums;
+
+    generate
+        if (WAYS == 4) begin : gen_classes
+            wire signed [STRESS_BITS-1:0] d = $signed(shifted[0 +: STRESS_BITS]);
+            wire signed [STRESS_BITS-1:0] a = $signed(shifted[STRESS_BITS +: STRESS_BITS]);
+            wire signed [STRESS_BITS-1:0] b = $signed(shifted[2*STRESS_BITS +: STRESS_BITS]);
+            wire signed [STRESS_BITS-1:0] c = $signed(shifted[3*STRESS_BITS +: STRESS_BITS]);
+            reg signed [STRESS_BITS:0] upper_even;
+            reg signed [STRESS_BITS:0] upper_odd;
+            reg signed [STRESS_BITS:0] lower_even;
+            reg signed [STRESS_BITS:0] lower_odd;
+            wire signed [SUM_BITS-1:0] even_above = {upper_even[STRESS_BITS], upper_even};
+            wire signed [SUM_BITS-1:0] odd_above = {upper_odd[STRESS_BITS], upper_odd};
+            wire signed [SUM_BITS-1:0] even_below = {lower_even[STRESS_BITS], lower_even};
+            wire signed [SUM_BITS-1:0] odd_below = {lower_odd[STRESS_BITS], lower_odd};
+            reg signed [SUM_BITS-1:0] sum_0;
+            reg signed [SUM_BITS-1:0] sum_1;
+            reg signed [SUM_BITS-1:0] sum_2;
+            reg signed [SUM_BITS-1:0] sum_3;
+
+            assign sums = {sum_3, sum_2, sum_1, sum_0};
+
+            always @(posedge clock) begin
+                if (advance) begin
+                    upper_even <= {a[STRESS_BITS-1], a} + {b[STRESS_BITS-1], b};
+                    upper_odd <= {a[STRESS_BITS-1], a} - {b[STRESS_BITS-1], b};
+                    lower_even <= {c[STRESS_BITS-1], c} + {d[STRESS_BITS-1], d};
+                    lower_odd <= {c[STRESS_BITS-1], c} - {d[STRESS_BITS-1], d};
+                    sum_0 <= even_above + even_below + HALF;
+                    sum_1 <= odd_above + odd_below + HALF;
+                    sum_2 <= even_above - even_below + HALF;
+                    sum_3 <= odd_above - odd_below + HALF;
+                end
+            end
+        end else begin : gen_taxels
+            reg [2*SUM_BITS-1:0] held;
+
+            assign sums = held[SUM_BITS +: SUM_BITS];
+
+            always @(posedge clock) begin
+                if (advance) begin
+                    held <= {held[SUM_BITS-1:0], shifted};
+                end
+            end
+
+            wire _unused_images = &{1'b0, taxels, HALF};
+        end
+    endgenerate
+
+    // ---- Write
+    reg [TURN_TO_WRITTEN:1] valid;
+    reg [TURN_TO_WRITTEN:1] lasts;
+    reg [ROW_WIDTH*TURN_TO_WRITTEN-1:0] rows;
     reg bank;
+    genvar parity;
+    genvar place;
+
+    assign write_valid = valid[TURN_TO_WRITTEN];
+    assign write_bank = bank;
+    assign write_row = rows[ROW_WIDTH*TURN_TO_WRITTEN-1 -: ROW_WIDTH];
+    assign frame_written = lasts[TURN_TO_WRITTEN] && advance;
 
     always @(posedge clock) begin
         if (advance) begin
-            valid <= {valid[2] && lower[2], valid[1], in_valid && in_store && right_half};
-            lasts <= {lasts[2:1], in_valid && in_last};
-            lower[2] <= lower[1];
-            centre[2] <= centre[1];
-            even_2 <= even_1;
-            odd_2 <= odd_1;
-            quad_2 <= quad_1;
-            quad_3 <= quad_2;
-            sum_0 <= even_above + even_below + HALF;
-            sum_1 <= odd_above + odd_below + HALF;
-            sum_2 <= even_above - even_below + HALF;
-            sum_3 <= odd_above - odd_below + HALF;
+            valid <= {valid[TURN_TO_WRITTEN-1:1], turn};
+            lasts <= {lasts[TURN_TO_WRITTEN-1:1], turn && last_quad};
+            rows <= {rows[ROW_WIDTH*(TURN_TO_WRITTEN-1)-1:0],
+                (WAYS == 4) ? quad : FIRST_QUAD[ROW_WIDTH-1:0] - quad};
         end
         if (frame_written) begin
             bank <= !bank;
         end
         if (reset) begin
-            valid <= 3'd0;
-            lasts <= 3'd0;
+            valid <= {TURN_TO_WRITTEN{1'b0}};
+            lasts <= {TURN_TO_WRITTEN{1'b0}};
             bank <= 1'b0;
         end
     end
 
-    assign write_valid = valid[3];
-    assign write_bank = bank;
-    assign write_quad = quad_3;
-    assign frame_written = lasts[3] && advance;
-
-    wire [4*SUM_BITS-1:0] sums = {sum_3, sum_2, sum_1, sum_0};
-    genvar parity;
-    genvar place;
     generate
-        for (parity = 0; parity < 4; parity = parity + 1) begin : gen_classes
+        for (parity = 0; parity < WAYS; parity = parity + 1) begin : gen_results
             for (place = 0; place < DATA_BITS; place = place + 1) begin : gen_bits
                 localparam OF_SUM = (place + DROPPED < SUM_BITS) ? place + DROPPED : SUM_BITS - 1;
 
@@ -195,15 +268,15 @@ module sptfra_fold #(
     endgenerate
 
     sptfra_check_latency #(
-        .CYCLES (LAST_TO_WRITTEN)
+        .CYCLES (TURN_TO_WRITTEN)
     ) check_latency (
         .clock (clock),
         .reset (reset || !advance),
-        .start (in_valid && in_last),
+        .start (turn && last_quad),
         .done  (frame_written)
     );
 
-    wire _unused = &{1'b0, sums, opposite_wide};
+    wire _unused = &{1'b0, sums};
 
 endmodule
 

@@ -23,7 +23,6 @@ module sptfra_frame_gate #(
     output wire s_tready,
     // Room for another frame, which a frame's first beat alone takes
     input  wire room,
-    input  wire advance, // of the pipeline
     output wire accept,
     output wire opens, // a frame's first beat comes in
     output reg  in_frame,
@@ -50,7 +49,7 @@ module sptfra_frame_gate #(
     reg [STAGES:1] bad_lengths;
     wire store = (index != BEYOND);
 
-    assign s_tready = advance && (in_frame || may_open);
+    assign s_tready = in_frame || may_open;
     assign accept = s_tvalid && s_tready;
     assign opens = accept && !in_frame;
     assign under_way = (valid != {STAGES{1'b0}});
@@ -65,12 +64,10 @@ module sptfra_frame_gate #(
             index <= s_tlast ? {INDEX_WIDTH{1'b0}} : store ? index + 1'b1 : index;
         end
         may_open <= !accept && !under_way && room;
-        if (advance) begin
-            valid <= {valid[STAGES-1:1], accept};
-            stores <= {stores[STAGES-1:1], store};
-            lasts <= {lasts[STAGES-1:1], s_tlast};
-            bad_lengths <= {bad_lengths[STAGES-1:1], index != LAST};
-        end
+        valid <= {valid[STAGES-1:1], accept};
+        stores <= {stores[STAGES-1:1], store};
+        lasts <= {lasts[STAGES-1:1], s_tlast};
+        bad_lengths <= {bad_lengths[STAGES-1:1], index != LAST};
         if (reset) begin
             may_open <= 1'b1;
             in_frame <= 1'b0;

@@ -1,59 +1,64 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Part of the SpTFRA hardware generator.
 //
-// Frame writer of Bz: replaces dead taxels, shows stresses to CeAn, and writes them to the lanes as they are or folded.
+// Frame writer of Bz: replaces dead taxels, keeps a frame's stresses, writes them to the lanes, scaled and folded, and
+// shows them to CeAn one by one.
 //
-// Stress to write: the same cycle, folded three cycles; with dead taxels see sptfra_replace.
+// Beat to CeAn: the same cycle, with several samples a beat 3 cycles and a taxel a cycle. Beat to write: 5 cycles, with
+// SCALED see sptfra_frame_scale; with dead taxels later by what sptfra_replace takes.
 
 `default_nettype none
 
 module sptfra_frame_writer #(
-    // Taxels in x and y
+    // Taxels in x and y, and of a beat
     parameter COLUMNS = 10,
     parameter ROWS = 10,
+    parameter SAMPLES = 1,
     // 4: folded into parity classes; 1: as they are
     parameter WAYS = 4,
     // Bits of a stress, 27 at most, and of what the lanes read: as many, or 29 and more where taxels are folded
     parameter DATA_BITS = 27,
     // Full scale, in steps of the stress
     parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
-    // Places for dead taxels, 0 for none, and whether a calibration in RAM says which they are; else these
+    // 1: each frame has a scale of its own
+    parameter SCALED = 0,
+    // Places for dead taxels, 0 for none: see sptfra_replace
     parameter REPLACEABLE = 0,
     parameter MAPPED = 0,
     parameter [3:0] REPLACED_COUNT = 4'd0,
     parameter [4:0] REPLACED_SHIFT = 5'd17,
     parameter [16*((REPLACEABLE != 0) ? REPLACEABLE : 1)-1:0] REPLACED_TAXELS
         = {16*((REPLACEABLE != 0) ? REPLACEABLE : 1){1'b0}},
+    // Crosstalk: see sptfra_corrections
+    parameter CROSSTALK = 0,
+    parameter [53:0] CROSSTALK_FACTORS = 54'd0,
     // Prefix of the ROM file names, and what they begin with
     parameter ROM_DIR = "",
     parameter ROM_NAME = "",
     // Derived
-    parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
-    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3,
     parameter TAXELS = COLUMNS * ROWS,
     parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1,
-    parameter PLACES = (REPLACEABLE != 0) ? REPLACEABLE : 1
+    parameter PLACES = (REPLACEABLE != 0) ? REPLACEABLE : 1,
+    parameter ELEMENTS = (WAYS == 1) ? COLUMNS * ROWS : ((COLUMNS + 1) / 2) * ((ROWS + 1) / 2),
+    parameter ROW_WIDTH = (ELEMENTS > 8) ? $clog2(ELEMENTS) : 3
 ) (
     input  wire clock,
     input  wire reset,
-    input  wire advance,
-    // Stresses
-    input  wire in_valid,
-    input  wire in_store, // a taxel of the frame, rather than what follows a frame that is too long
-    input  wire in_last,
+    // Beats of stresses
+    input  wire in_takes, // it is of the frame
+    input  wire in_ends, // the frame ends with it, or with what follows a frame that is too long
     input  wire in_bad_length,
-    input  wire signed [26:0] in_stress,
-    input  wire in_saturated,
-    input  wire in_not_finite,
-    // Dead taxels of a calibration in RAM: weights a cycle after their taxel is ahead, two stages before its stress
+    input  wire [27*SAMPLES-1:0] in_stresses,
+    input  wire [SAMPLES-1:0] in_saturated,
+    input  wire [SAMPLES-1:0] in_not_finite,
+    // Of dead taxels: see sptfra_replace
     input  wire [TAXEL_WIDTH-1:0] taxel_ahead,
-    input  wire [18*PLACES-1:0] map_weights,
-    input  wire [3:0] map_count,
-    input  wire [4:0] map_shift,
-    input  wire [16*PLACES-1:0] map_numbers,
-    output wire busy, // a frame's last stress has come in and not gone out
+    input  wire [34*PLACES+8:0] map,
+    output wire replace_busy, // from a frame's last beat in to its last stress out
+    output wire busy, // a frame's last stress has come, and not all that is made of it
     // Operand memories, class 0 in the lowest bits
     output wire write_valid,
+    input  wire write_ready,
     output wire write_bank,
     output wire [ROW_WIDTH-1:0] write_row,
     output wire [WAYS*DATA_BITS-1:0] write_data,
@@ -65,6 +70,9 @@ module sptfra_frame_writer #(
     output wire frame_not_finite,
     output wire frame_bad_length,
     output wire [29:0] frame_replaced, // sum of the magnitudes that took a dead taxel's place
+    // The frame's power of two, for one cycle, before it is ready
+    output wire scaled,
+    output wire [4:0] exponent,
     // Banks
     input  wire frame_opens, // a frame begins to come in
     output wire frame_ready, // a whole frame waits
@@ -73,168 +81,240 @@ module sptfra_frame_writer #(
     output wire bank_free
 );
 
+    localparam BEATS = (TAXELS + SAMPLES - 1) / SAMPLES;
+    localparam BEAT_WIDTH = (BEATS > 2) ? $clog2(BEATS) : 1;
+    localparam COUNT_WIDTH = $clog2(BEATS + 1);
+    localparam REST = TAXELS - (BEATS - 1) * SAMPLES; // samples of the last beat
+    localparam [31:0] REST_MASK = (1 << REST) - 1;
+    localparam [31:0] LAST_BEAT_WIDE = BEATS - 1;
+    localparam [COUNT_WIDTH-1:0] LAST_BEAT = LAST_BEAT_WIDE[COUNT_WIDTH-1:0];
     localparam STRESS_BITS = (DATA_BITS < 27) ? DATA_BITS : 27;
 
     generate
-        if ((WAYS != 1) && (WAYS != 4)) begin : gen_check_ways
-            sptfra_error_ways_must_be_1_or_4 invalid ();
+        if ((SAMPLES != 1) && (SAMPLES != 2) && (SAMPLES != 4) && (SAMPLES != 8)) begin : gen_check_samples
+            sptfra_error_samples_of_a_beat_must_be_1_2_4_or_8 invalid ();
         end
         if ((DATA_BITS < 16) || (DATA_BITS > ((WAYS == 4) ? 35 : 27))) begin : gen_check_data
             sptfra_error_data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded invalid ();
         end
     endgenerate
 
-    // ---- Dead taxels
-    wire whole_valid, whole_store, whole_last;
-    wire signed [26:0] fixed;
-    wire saturated, not_finite;
+    // ---- Dead taxels, crosstalk
+    wire takes, ends, bad_length_now, replaced, crosstalk_busy;
+    wire [27*SAMPLES-1:0] stresses;
+    wire [SAMPLES-1:0] saturated, not_finite;
 
-    assign stress = fixed;
+    sptfra_corrections #(
+        .COLUMNS           (COLUMNS),
+        .ROWS              (ROWS),
+        .SAMPLES           (SAMPLES),
+        .STRESS_BOUND      (STRESS_BOUND),
+        .REPLACEABLE       (REPLACEABLE),
+        .MAPPED            (MAPPED),
+        .REPLACED_COUNT    (REPLACED_COUNT),
+        .REPLACED_SHIFT    (REPLACED_SHIFT),
+        .REPLACED_TAXELS   (REPLACED_TAXELS),
+        .CROSSTALK         (CROSSTALK),
+        .CROSSTALK_FACTORS (CROSSTALK_FACTORS),
+        .ROM_DIR           (ROM_DIR),
+        .ROM_NAME          (ROM_NAME)
+    ) corrections (
+        .clock          (clock),
+        .reset          (reset),
+        .in_takes       (in_takes),
+        .in_ends        (in_ends),
+        .in_bad_length  (in_bad_length),
+        .in_stresses    (in_stresses),
+        .in_saturated   (in_saturated),
+        .in_not_finite  (in_not_finite),
+        .taxel_ahead    (taxel_ahead),
+        .map            (map),
+        .replace_busy   (replace_busy),
+        .crosstalk_busy (crosstalk_busy),
+        .takes          (takes),
+        .ends           (ends),
+        .bad_length     (bad_length_now),
+        .stresses       (stresses),
+        .saturated      (saturated),
+        .not_finite     (not_finite),
+        .replaced       (replaced)
+    );
 
-    generate
-        if (REPLACEABLE != 0) begin : gen_replace
-            wire [18*PLACES-1:0] weights;
-            reg bad_length;
-
-            if (MAPPED != 0) begin : gen_map
-                assign weights = map_weights;
-                wire _unused_ahead = &{1'b0, taxel_ahead, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS};
-            end else begin : gen_neighbours
-                sptfra_rom #(
-                    .WIDTH         (18 * PLACES),
-                    .DEPTH         (TAXELS),
-                    .ADDRESS_WIDTH (TAXEL_WIDTH),
-                    .ROM_DIR       (ROM_DIR),
-                    .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_neighbours.mem"})
-                ) neighbours (
-                    .clock   (clock),
-                    .enable  (advance),
-                    .address (taxel_ahead),
-                    .data    (weights)
-                );
-
-                wire _unused_map = &{1'b0, map_weights, map_count, map_shift, map_numbers};
-            end
-
-            assign whole_store = 1'b1;
-            assign frame_bad_length = bad_length;
-
-            always @(posedge clock) begin
-                if (advance && in_valid && in_last) begin
-                    bad_length <= in_bad_length;
-                end
-            end
-
-            sptfra_replace #(
-                .TAXELS       (TAXELS),
-                .REPLACEABLE  (REPLACEABLE),
-                .STRESS_BOUND (STRESS_BOUND)
-            ) replace (
-                .clock          (clock),
-                .reset          (reset),
-                .advance        (advance),
-                .in_valid       (in_valid),
-                .in_store       (in_store),
-                .in_last        (in_last),
-                .in_stress      (in_stress),
-                .in_saturated   (in_saturated),
-                .in_not_finite  (in_not_finite),
-                .weights_ahead  (weights),
-                .count          ((MAPPED != 0) ? map_count : REPLACED_COUNT),
-                .weight_shift   ((MAPPED != 0) ? map_shift : REPLACED_SHIFT),
-                .taxels         ((MAPPED != 0) ? map_numbers : REPLACED_TAXELS),
-                .busy           (busy),
-                .out_valid      (whole_valid),
-                .out_last       (whole_last),
-                .out_stress     (fixed),
-                .out_saturated  (saturated),
-                .out_not_finite (not_finite),
-                .replaced       (frame_replaced)
-            );
-        end else begin : gen_as_read
-            assign fixed = in_stress;
-            assign saturated = in_saturated;
-            assign not_finite = in_not_finite;
-            assign whole_valid = in_valid;
-            assign whole_store = in_store;
-            assign whole_last = in_last;
-            assign frame_bad_length = in_bad_length;
-            assign busy = 1'b0;
-            assign frame_replaced = 30'd0;
-            wire _unused_map = &{1'b0, STRESS_BOUND, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, ROM_DIR != "",
-                ROM_NAME != "", MAPPED != 0, taxel_ahead, map_weights, map_count, map_shift, map_numbers};
-        end
-    endgenerate
-
-    // ---- Write
-    wire frame_written; // the frame is complete
-    wire taxel_valid = whole_valid && whole_store;
-    generate
-        if (WAYS == 4) begin : gen_fold
-            sptfra_fold #(
-                .COLUMNS     (COLUMNS),
-                .ROWS        (ROWS),
-                .STRESS_BITS (STRESS_BITS),
-                .DATA_BITS   (DATA_BITS)
-            ) fold (
-                .clock         (clock),
-                .reset         (reset),
-                .advance       (advance),
-                .in_valid      (whole_valid),
-                .in_store      (whole_store),
-                .in_last       (whole_last),
-                .in_stress     (fixed[STRESS_BITS-1:0]),
-                .write_valid   (write_valid),
-                .write_bank    (write_bank),
-                .write_quad    (write_row),
-                .write_data    (write_data),
-                .frame_written (frame_written)
-            );
-        end else begin : gen_taxels
-            reg bank;
-            reg [ROW_WIDTH-1:0] taxel;
-
-            assign write_valid = taxel_valid;
-            assign write_bank = bank;
-            assign write_row = taxel;
-            assign write_data = fixed[STRESS_BITS-1:0];
-            assign frame_written = frame_done;
-
-            always @(posedge clock) begin
-                if (stress_valid) begin
-                    taxel <= taxel + 1;
-                end
-                if (frame_done) begin
-                    bank <= !bank;
-                    taxel <= {ROW_WIDTH{1'b0}};
-                end
-                if (reset) begin
-                    bank <= 1'b0;
-                    taxel <= {ROW_WIDTH{1'b0}};
-                end
-            end
-        end
-    endgenerate
-
-    // ---- Tell CeAn
+    // ---- The frame as it comes
+    reg ended; // its last beat is there
+    reg [COUNT_WIDTH-1:0] written; // beats that are there
+    reg bad_length;
     reg seen_saturated;
     reg seen_not_finite;
+    reg [29:0] replaced_before; // without the stress that is shown
+    wire shown_replaced;
+    wire [26:0] magnitude = stress[26] ? -stress : stress;
+    wire folded;
+    wire told; // CeAn has the frame's flags
+    wire over = folded && told; // all is made of the frame
+    wire [SAMPLES-1:0] counted = (written == LAST_BEAT) ? REST_MASK[SAMPLES-1:0] : {SAMPLES{1'b1}};
+    wire [31:0] written_wide = {{(32-COUNT_WIDTH){1'b0}}, written};
 
-    assign stress_valid = taxel_valid && advance;
-    assign frame_done = whole_valid && whole_last && advance;
-    assign frame_saturated = seen_saturated || (whole_store && saturated);
-    assign frame_not_finite = seen_not_finite || (whole_store && not_finite);
+    assign busy = ended || crosstalk_busy;
+    assign frame_saturated = seen_saturated || (takes && ((saturated & counted) != {SAMPLES{1'b0}}));
+    assign frame_not_finite = seen_not_finite || (takes && ((not_finite & counted) != {SAMPLES{1'b0}}));
+    assign frame_bad_length = ends ? bad_length_now : bad_length;
+    assign frame_replaced = replaced_before + ((stress_valid && shown_replaced) ? {3'd0, magnitude} : 30'd0);
 
     always @(posedge clock) begin
-        if (stress_valid) begin
-            seen_saturated <= frame_saturated;
-            seen_not_finite <= frame_not_finite;
+        seen_saturated <= frame_saturated;
+        seen_not_finite <= frame_not_finite;
+        bad_length <= frame_bad_length;
+        replaced_before <= frame_replaced;
+        if (takes) begin
+            written <= written + 1'b1;
+        end
+        if (ends) begin
+            ended <= 1'b1;
+        end
+        if (reset || over) begin
+            ended <= 1'b0;
+            written <= {COUNT_WIDTH{1'b0}};
         end
         if (reset || frame_done) begin
             seen_saturated <= 1'b0;
             seen_not_finite <= 1'b0;
+            replaced_before <= 30'd0;
         end
     end
+
+    // ---- Its scale
+    wire whole; // the lanes may have all of it
+
+    generate
+        if (SCALED != 0) begin : gen_scale
+            sptfra_frame_scale #(
+                .SAMPLES      (SAMPLES),
+                .STRESS_BOUND (STRESS_BOUND)
+            ) scale (
+                .clock      (clock),
+                .reset      (reset),
+                .beat_valid (takes),
+                .stresses   (stresses),
+                .counted    (counted),
+                .ends       (ends),
+                .bad_length (bad_length_now),
+                .restart    (over),
+                .whole      (whole),
+                .scaled     (scaled),
+                .exponent   (exponent)
+            );
+        end else begin : gen_full_scale
+            assign whole = ended;
+            assign scaled = 1'b0;
+            assign exponent = 5'd0;
+            wire _unused_bound = &{1'b0, STRESS_BOUND};
+        end
+    endgenerate
+
+    // ---- To the lanes, quad by quad
+    wire [STRESS_BITS*SAMPLES-1:0] narrow_stresses;
+    wire frame_written;
+    genvar sample;
+
+    generate
+        for (sample = 0; sample < SAMPLES; sample = sample + 1) begin : gen_narrow
+            assign narrow_stresses[STRESS_BITS*sample +: STRESS_BITS] = stresses[27*sample +: STRESS_BITS];
+        end
+    endgenerate
+
+    sptfra_fold #(
+        .COLUMNS     (COLUMNS),
+        .ROWS        (ROWS),
+        .SAMPLES     (SAMPLES),
+        .WAYS        (WAYS),
+        .STRESS_BITS (STRESS_BITS),
+        .DATA_BITS   (DATA_BITS),
+        .SCALED      (SCALED)
+    ) fold (
+        .clock         (clock),
+        .reset         (reset),
+        .advance       (write_ready), // whether or not there is something to write
+        .beat_valid    (takes),
+        .beat          (written_wide[BEAT_WIDTH-1:0]),
+        .stresses      (narrow_stresses),
+        .written       ((SCALED != 0) ? {COUNT_WIDTH{1'b0}} : written),
+        .whole         (whole),
+        .exponent      (exponent),
+        .folded        (folded),
+        .restart       (over),
+        .write_valid   (write_valid),
+        .write_bank    (write_bank),
+        .write_row     (write_row),
+        .write_data    (write_data),
+        .frame_written (frame_written)
+    );
+
+    // ---- To CeAn, taxel by taxel
+    generate
+        if (SAMPLES == 1) begin : gen_at_once
+            assign stress_valid = takes;
+            assign stress = $signed(stresses);
+            assign shown_replaced = replaced;
+            assign frame_done = ends;
+            assign told = ended;
+        end else begin : gen_one_by_one
+            localparam SAMPLE_WIDTH = $clog2(SAMPLES);
+            localparam INDEX_WIDTH = BEAT_WIDTH + SAMPLE_WIDTH;
+            localparam [31:0] LAST_WIDE = TAXELS - 1;
+            localparam TURN_TO_STRESS = 2; // of the memory
+            reg [INDEX_WIDTH-1:0] taxel;
+            reg all_shown;
+            reg [TURN_TO_STRESS:1] shows;
+            reg [TURN_TO_STRESS:1] shows_last;
+            reg is_told;
+            wire last_taxel = (taxel == LAST_WIDE[INDEX_WIDTH-1:0]);
+            wire [31:0] beat_needed = {{(32-BEAT_WIDTH){1'b0}}, taxel[SAMPLE_WIDTH +: BEAT_WIDTH]};
+            wire show = (ended || (!last_taxel && (beat_needed < written_wide))) && !all_shown;
+            wire [26:0] kept;
+
+            assign stress_valid = shows[TURN_TO_STRESS];
+            assign stress = $signed(kept);
+            assign shown_replaced = replaced; // never
+            assign frame_done = shows_last[TURN_TO_STRESS];
+            assign told = frame_done || is_told;
+
+            sptfra_frame_memory #(
+                .SAMPLES (SAMPLES),
+                .BEATS   (BEATS),
+                .WIDTH   (27)
+            ) frame (
+                .clock          (clock),
+                .write_enable   (takes),
+                .write_beat     (written_wide[BEAT_WIDTH-1:0]),
+                .write_stresses (stresses),
+                .read_enable    (1'b1),
+                .taxel          (taxel),
+                .stress         (kept)
+            );
+
+            always @(posedge clock) begin
+                shows <= {shows[1], show};
+                shows_last <= {shows_last[1], show && last_taxel};
+                if (show) begin
+                    taxel <= taxel + 1'b1;
+                    all_shown <= last_taxel;
+                end
+                if (frame_done) begin
+                    is_told <= 1'b1;
+                end
+                if (reset || over) begin
+                    taxel <= {INDEX_WIDTH{1'b0}};
+                    all_shown <= 1'b0;
+                    is_told <= 1'b0;
+                end
+                if (reset) begin
+                    shows <= 2'd0;
+                    shows_last <= 2'd0;
+                end
+            end
+        end
+    endgenerate
 
     // ---- Banks
     reg [1:0] banks_taken;
@@ -251,6 +331,8 @@ module sptfra_frame_writer #(
             frames_waiting <= 2'd0;
         end
     end
+
+    wire _unused = &{1'b0, written_wide};
 
 endmodule
 

@@ -28,7 +28,6 @@ module sptfra_gains #(
 ) (
     input  wire clock,
     input  wire reset,
-    input  wire advance,
     // The sample that comes in is of a taxel, the next one of the taxel after it, or of the first one
     input  wire sample_taken,
     input  wire sample_ends,
@@ -38,9 +37,7 @@ module sptfra_gains #(
     // To the banks and from them
     output wire [TAXEL_WIDTH-1:0] exponent_taxel,
     output wire [TAXEL_WIDTH-1:0] gain_taxel,
-    input  wire [9:0] bank_exponent,
-    input  wire [17:0] bank_gain,
-    input  wire [OFFSET_BITS-1:0] bank_offset,
+    input  wire [OFFSET_BITS+27:0] bank_constants,
     output wire signed [9:0] exponent,
     output wire [17:0] gain,
     output wire [OFFSET_BITS-1:0] offset
@@ -53,10 +50,10 @@ module sptfra_gains #(
             assign gain_taxel = valued;
 
             always @(posedge clock) begin
-                if (advance && value_taken) begin
+                if (value_taken) begin
                     valued <= valued + 1'b1;
                 end
-                if (reset || (advance && value_ends)) begin
+                if (reset || value_ends) begin
                     valued <= {TAXEL_WIDTH{1'b0}};
                 end
             end
@@ -70,10 +67,10 @@ module sptfra_gains #(
                 assign exponent_taxel = decoded;
 
                 always @(posedge clock) begin
-                    if (advance && sample_taken) begin
+                    if (sample_taken) begin
                         decoded <= decoded + 1'b1;
                     end
-                    if (reset || (advance && sample_ends)) begin
+                    if (reset || sample_ends) begin
                         decoded <= {TAXEL_WIDTH{1'b0}};
                     end
                 end
@@ -87,12 +84,9 @@ module sptfra_gains #(
             assign exponent = EXPONENT;
             assign gain = GAIN;
             assign offset = {OFFSET_BITS{1'b0}};
-            wire _unused_names = &{1'b0, clock, advance, ROM_DIR != "", ROM_NAME != "", CALIBRATED != 0, bank_exponent,
-                bank_gain, bank_offset};
+            wire _unused_names = &{1'b0, clock, ROM_DIR != "", ROM_NAME != "", CALIBRATED != 0, bank_constants};
         end else if (CALIBRATED != 0) begin : gen_banks
-            assign exponent = bank_exponent;
-            assign gain = bank_gain;
-            assign offset = bank_offset;
+            assign {exponent, gain, offset} = bank_constants;
             wire _unused_constants = &{1'b0, EXPONENT, GAIN, ROM_DIR != "", ROM_NAME != ""};
         end else begin : gen_roms
             wire [9:0] exponent_bits;
@@ -107,7 +101,7 @@ module sptfra_gains #(
                 .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_exponents.mem"})
             ) exponents (
                 .clock   (clock),
-                .enable  (advance),
+                .enable  (1'b1),
                 .address (exponent_taxel),
                 .data    (exponent_bits)
             );
@@ -120,7 +114,7 @@ module sptfra_gains #(
                 .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_gains.mem"})
             ) gains (
                 .clock   (clock),
-                .enable  (advance),
+                .enable  (1'b1),
                 .address (gain_taxel),
                 .data    (gain)
             );
@@ -133,12 +127,12 @@ module sptfra_gains #(
                 .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_offsets.mem"})
             ) offsets (
                 .clock   (clock),
-                .enable  (advance),
+                .enable  (1'b1),
                 .address (gain_taxel),
                 .data    (offset)
             );
 
-            wire _unused_constants = &{1'b0, EXPONENT, GAIN, bank_exponent, bank_gain, bank_offset};
+            wire _unused_constants = &{1'b0, EXPONENT, GAIN, bank_constants};
         end
     endgenerate
 

@@ -14,40 +14,80 @@ module sptfra_replace #(
     parameter TAXELS = 100,
     // Places for dead taxels, 1 to 8
     parameter REPLACEABLE = 8,
+    // 1: a calibration in RAM says which taxels are dead; 0: these
+    parameter MAPPED = 0,
+    parameter [3:0] REPLACED_COUNT = 4'd0,
+    parameter [4:0] REPLACED_SHIFT = 5'd17,
+    parameter [16*REPLACEABLE-1:0] REPLACED_TAXELS = {16*REPLACEABLE{1'b0}}, // ascending
     // Full scale: what a larger sum becomes
-    parameter signed [26:0] STRESS_BOUND = 27'sd51200000
+    parameter signed [26:0] STRESS_BOUND = 27'sd51200000,
+    // Prefix of the ROM file names, and what they begin with
+    parameter ROM_DIR = "",
+    parameter ROM_NAME = "",
+    // Derived
+    parameter TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1
 ) (
     input  wire clock,
     input  wire reset,
-    input  wire advance,
     // Readings
-    input  wire in_valid,
-    input  wire in_store, // a taxel of the frame, rather than what follows a frame that is too long
-    input  wire in_last,
-    input  wire signed [26:0] in_stress,
+    input  wire in_takes, // it is a taxel of the frame
+    input  wire in_ends, // the frame ends, with its last taxel or behind it
+    input  wire in_bad_length,
+    input  wire [26:0] in_stress,
     input  wire in_saturated,
     input  wire in_not_finite,
-    // Weights of the reading that comes next; of the frame, which taxels are dead
-    input  wire [18*REPLACEABLE-1:0] weights_ahead,
-    input  wire [3:0] count,
-    input  wire [4:0] weight_shift,
-    input  wire [16*REPLACEABLE-1:0] taxels, // ascending
+    // Taxel of two cycles before its reading; of a calibration in RAM its map, the weights a cycle later
+    input  wire [TAXEL_WIDTH-1:0] taxel_ahead,
+    input  wire [34*REPLACEABLE+8:0] map,
     // The frame again
     output reg  busy, // from the last reading in to the last one out
     output wire out_valid,
     output wire out_last,
-    output wire signed [26:0] out_stress,
+    output reg  out_bad_length,
+    output wire [26:0] out_stress,
     output wire out_saturated,
     output wire out_not_finite,
-    output wire [29:0] replaced // sum of the magnitudes that took a reading's place, with the last reading
+    output wire out_replaced // a sum took the reading's place
 );
 
-    localparam TAXEL_WIDTH = (TAXELS > 2) ? $clog2(TAXELS) : 1;
     localparam signed [47:0] MOST = {{21{STRESS_BOUND[26]}}, STRESS_BOUND};
 
     generate
         if ((REPLACEABLE < 1) || (REPLACEABLE > 8)) begin : gen_check_map
             sptfra_error_places_for_dead_taxels_must_be_1_to_8 invalid ();
+        end
+    endgenerate
+
+    // ---- Weights of the reading that comes next; of the frame, which taxels are dead
+    wire [18*REPLACEABLE-1:0] weights_ahead;
+    wire [3:0] count;
+    wire [4:0] weight_shift;
+    wire [16*REPLACEABLE-1:0] taxels; // ascending
+
+    generate
+        if (MAPPED != 0) begin : gen_map
+            assign {weights_ahead, count, weight_shift, taxels} = map;
+            wire _unused_rom = &{1'b0, taxel_ahead, REPLACED_COUNT, REPLACED_SHIFT, REPLACED_TAXELS, ROM_DIR != "",
+                ROM_NAME != ""};
+        end else begin : gen_neighbours
+            assign count = REPLACED_COUNT;
+            assign weight_shift = REPLACED_SHIFT;
+            assign taxels = REPLACED_TAXELS;
+
+            sptfra_rom #(
+                .WIDTH         (18 * REPLACEABLE),
+                .DEPTH         (TAXELS),
+                .ADDRESS_WIDTH (TAXEL_WIDTH),
+                .ROM_DIR       (ROM_DIR),
+                .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_neighbours.mem"})
+            ) neighbours (
+                .clock   (clock),
+                .enable  (1'b1),
+                .address (taxel_ahead),
+                .data    (weights_ahead)
+            );
+
+            wire _unused_map = &{1'b0, map};
         end
     endgenerate
 
@@ -57,33 +97,30 @@ module sptfra_replace #(
     reg [2:1] settles; // until the last product is in its sum
     reg replays;
     reg holds; // the sums are complete
-    wire takes = in_valid && in_store;
-    wire ends = in_valid && in_last;
     wire replays_last = replays && (place == end_place);
 
     always @(posedge clock) begin
-        if (advance) begin
-            settles <= {settles[1], ends};
-            holds <= settles[2];
-            if (takes || replays) begin
-                place <= place + 1'b1;
-            end
-            if (takes) begin
-                end_place <= place;
-            end
-            if (ends) begin
-                busy <= 1'b1;
-            end
-            if (ends || replays_last) begin
-                place <= {TAXEL_WIDTH{1'b0}};
-                replays <= 1'b0;
-            end
-            if (settles[2]) begin
-                replays <= 1'b1;
-            end
-            if (out_valid && out_last) begin
-                busy <= 1'b0;
-            end
+        settles <= {settles[1], in_ends};
+        holds <= settles[2];
+        if (in_takes || replays) begin
+            place <= place + 1'b1;
+        end
+        if (in_takes) begin
+            end_place <= place;
+        end
+        if (in_ends) begin
+            busy <= 1'b1;
+            out_bad_length <= in_bad_length;
+        end
+        if (in_ends || replays_last) begin
+            place <= {TAXEL_WIDTH{1'b0}};
+            replays <= 1'b0;
+        end
+        if (settles[2]) begin
+            replays <= 1'b1;
+        end
+        if (out_valid && out_last) begin
+            busy <= 1'b0;
         end
         if (reset) begin
             place <= {TAXEL_WIDTH{1'b0}};
@@ -102,10 +139,10 @@ module sptfra_replace #(
         .ADDRESS_WIDTH (TAXEL_WIDTH)
     ) frame (
         .clock         (clock),
-        .write_enable  (takes && advance),
+        .write_enable  (in_takes),
         .write_address (place),
         .write_data    ({in_not_finite, in_saturated, in_stress}),
-        .read_enable   (advance),
+        .read_enable   (1'b1),
         .read_address  (place),
         .read_data     (kept)
     );
@@ -131,7 +168,7 @@ module sptfra_replace #(
             sptfra_mac neighbours (
                 .clock       (clock),
                 .reset       (reset),
-                .valid       (takes && advance),
+                .valid       (in_takes),
                 .first       (place == {TAXEL_WIDTH{1'b0}}),
                 .coefficient (weight),
                 .data        (in_stress),
@@ -140,10 +177,10 @@ module sptfra_replace #(
 
             // Once the first has gone out, those behind it move up
             always @(posedge clock) begin
-                if (advance && holds) begin
+                if (holds) begin
                     waiting[48*index +: 48] <= sums[48*index +: 48];
                     waiting_taxels[16*index +: 16] <= taxels[16*index +: 16];
-                end else if (advance && dead_1) begin
+                end else if (dead_1) begin
                     waiting[48*index +: 48] <= waiting[48*((index + 1) % REPLACEABLE) +: 48];
                     waiting_taxels[16*index +: 16] <= waiting_taxels[16*((index + 1) % REPLACEABLE) +: 16];
                 end
@@ -152,18 +189,16 @@ module sptfra_replace #(
     endgenerate
 
     always @(posedge clock) begin
-        if (advance) begin
-            weights <= weights_ahead;
-            valid_1 <= replays;
-            taxel_1 <= place_wide[15:0];
-            if (dead_1) begin
-                left <= left - 4'd1;
-            end
-            if (holds) begin
-                left <= count;
-                shift_1 <= weight_shift;
-                half_1 <= (48'sd1 <<< weight_shift) >>> 1;
-            end
+        weights <= weights_ahead;
+        valid_1 <= replays;
+        taxel_1 <= place_wide[15:0];
+        if (dead_1) begin
+            left <= left - 4'd1;
+        end
+        if (holds) begin
+            left <= count;
+            shift_1 <= weight_shift;
+            half_1 <= (48'sd1 <<< weight_shift) >>> 1;
         end
         if (reset) begin
             valid_1 <= 1'b0;
@@ -183,40 +218,32 @@ module sptfra_replace #(
     reg signed [26:0] stress_4;
     reg saturated_4;
     reg not_finite_4;
-    reg [29:0] replaced_before; // without that of the reading that goes out
     wire above = (sum_3 > MOST);
     wire below = (sum_3 < -MOST);
     wire signed [26:0] clipped = above ? STRESS_BOUND : below ? -STRESS_BOUND : $signed(sum_3[26:0]);
-    wire [26:0] magnitude = stress_4[26] ? -stress_4 : stress_4;
 
     assign out_valid = valid[4];
     assign out_last = lasts[4];
     assign out_stress = stress_4;
     assign out_saturated = saturated_4;
     assign out_not_finite = not_finite_4;
-    assign replaced = replaced_before + (replaces_4 ? {3'd0, magnitude} : 30'd0);
+    assign out_replaced = replaces_4;
 
     always @(posedge clock) begin
-        if (advance) begin
-            valid <= {valid[3:2], valid_1};
-            lasts <= {lasts[3:1], replays_last};
-            replaces <= {replaces[2], dead_1};
-            replaces_4 <= replaces[3];
-            read_2 <= kept;
-            read_3 <= read_2;
-            shift_2 <= shift_1;
-            sum_2 <= $signed(waiting[47:0]) + half_1;
-            sum_3 <= sum_2 >>> shift_2;
-            stress_4 <= replaces[3] ? clipped : $signed(read_3[26:0]);
-            saturated_4 <= replaces[3] ? above || below : read_3[27];
-            not_finite_4 <= !replaces[3] && read_3[28];
-            if (valid[4]) begin
-                replaced_before <= out_last ? 30'd0 : replaced;
-            end
-        end
+        valid <= {valid[3:2], valid_1};
+        lasts <= {lasts[3:1], replays_last};
+        replaces <= {replaces[2], dead_1};
+        replaces_4 <= replaces[3];
+        read_2 <= kept;
+        read_3 <= read_2;
+        shift_2 <= shift_1;
+        sum_2 <= $signed(waiting[47:0]) + half_1;
+        sum_3 <= sum_2 >>> shift_2;
+        stress_4 <= replaces[3] ? clipped : $signed(read_3[26:0]);
+        saturated_4 <= replaces[3] ? above || below : read_3[27];
+        not_finite_4 <= !replaces[3] && read_3[28];
         if (reset) begin
             valid <= 3'd0;
-            replaced_before <= 30'd0;
         end
     end
 

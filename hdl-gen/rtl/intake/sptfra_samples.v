@@ -42,7 +42,6 @@ module sptfra_samples #(
 ) (
     input  wire clock,
     input  wire reset,
-    input  wire advance,
     // Samples of the stream
     input  wire [SAMPLE_BITS-1:0] sample,
     input  wire sample_taken, // it is of a taxel, the next one of the taxel after it
@@ -53,13 +52,8 @@ module sptfra_samples #(
     // Of a calibration in RAM: see sptfra_banks
     output wire [TAXEL_WIDTH-1:0] exponent_taxel,
     output wire [TAXEL_WIDTH-1:0] gain_taxel,
-    input  wire [9:0] bank_exponent,
-    input  wire [17:0] bank_gain,
-    input  wire [OFFSET_BITS-1:0] bank_offset,
-    input  wire [27*(1<<LEVELS)-1:0] bank_knots,
-    input  wire [6:0] bank_segments,
-    input  wire signed [26:0] bank_last,
-    input  wire [26:0] bank_reach,
+    input  wire [OFFSET_BITS+27:0] bank_constants,
+    input  wire [27*(1<<LEVELS)+60:0] bank_curve,
     output wire [LEVELS-1:0] segment,
     input  wire [77:0] bank_line,
     // Stress
@@ -70,6 +64,13 @@ module sptfra_samples #(
 
     localparam signed [9:0] SHIFT = NUMBER_SHIFT[9:0];
     localparam SHIFTS = (CURVE_LEVELS != 0) ? 1 : 0;
+
+    wire [27*(1<<LEVELS)-1:0] bank_knots;
+    wire [6:0] bank_segments;
+    wire signed [26:0] bank_last;
+    wire [26:0] bank_reach;
+
+    assign {bank_knots, bank_segments, bank_last, bank_reach} = bank_curve;
 
     // ---- To fixed point
     wire signed [26:0] number;
@@ -90,11 +91,9 @@ module sptfra_samples #(
             assign shift = exponent_2;
 
             always @(posedge clock) begin
-                if (advance) begin
-                    sample_1 <= sample;
-                    sample_2 <= sample_1;
-                    exponent_2 <= exponent;
-                end
+                sample_1 <= sample;
+                sample_2 <= sample_1;
+                exponent_2 <= exponent;
             end
         end else begin : gen_exponent
             assign decoded = sample;
@@ -106,7 +105,6 @@ module sptfra_samples #(
         .SAMPLE (SAMPLE)
     ) decode (
         .clock      (clock),
-        .enable     (advance),
         .sample     (decoded),
         .shift      (shift),
         .limit      (((CALIBRATED != 0) && (SHIFTS != 0)) ? bank_reach : NUMBER_BOUND),
@@ -136,7 +134,7 @@ module sptfra_samples #(
                     .FILE          ((ROM_NAME == "") ? "" : {ROM_NAME, "_curve.mem"})
                 ) lines (
                     .clock   (clock),
-                    .enable  (advance),
+                    .enable  (1'b1),
                     .address (segment),
                     .data    (line)
                 );
@@ -146,7 +144,6 @@ module sptfra_samples #(
                 .LEVELS (CURVE_LEVELS)
             ) curve (
                 .clock             (clock),
-                .advance           (advance),
                 .number            (number),
                 .number_saturated  (number_saturated),
                 .number_not_finite (number_not_finite),
@@ -187,16 +184,13 @@ module sptfra_samples #(
             ) gains (
                 .clock          (clock),
                 .reset          (reset),
-                .advance        (advance),
                 .sample_taken   (sample_taken),
                 .sample_ends    (sample_ends),
                 .value_taken    (value_taken),
                 .value_ends     (value_ends),
                 .exponent_taxel (exponent_taxel),
                 .gain_taxel     (gain_taxel),
-                .bank_exponent  (bank_exponent),
-                .bank_gain      (bank_gain),
-                .bank_offset    (bank_offset),
+                .bank_constants (bank_constants),
                 .exponent       (exponent),
                 .gain           (gain),
                 .offset         (offset)
@@ -210,7 +204,6 @@ module sptfra_samples #(
                 .STRESS_BOUND (STRESS_BOUND)
             ) counts (
                 .clock             (clock),
-                .advance           (advance),
                 .number            (count),
                 .number_saturated  (count_saturated),
                 .number_not_finite (count_not_finite),
@@ -233,7 +226,7 @@ module sptfra_samples #(
         end
     endgenerate
 
-    wire _unused_bank = &{1'b0, bank_exponent, bank_gain, bank_offset, bank_knots, bank_segments, bank_last,
+    wire _unused_bank = &{1'b0, bank_constants, bank_knots, bank_segments, bank_last,
         bank_reach, bank_line, ROM_DIR != "", ROM_NAME != ""};
 
 endmodule

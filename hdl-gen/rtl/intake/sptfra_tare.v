@@ -22,7 +22,6 @@ module sptfra_tare #(
     input  wire [3:0] log2_frames, // 10 at most
     input  wire [26:0] most_spread,
     // Readings
-    input  wire advance,
     input  wire valid,
     input  wire marked, // of a frame that began after the command
     input  wire last,
@@ -44,7 +43,7 @@ module sptfra_tare #(
     reg first_frame;
     reg [2:0] complete; // no reading counts any more, and two cycles later its spread is known
     wire [10:0] most_frames = 11'd1 << log2_frames;
-    wire takes = run && !complete[0] && valid && marked && advance;
+    wire takes = run && !complete[0] && valid && marked;
 
     assign finished = complete[2];
 
@@ -69,19 +68,15 @@ module sptfra_tare #(
         .write_enable  (takes),
         .write_address (taxel),
         .write_data    ({sum, largest, smallest}),
-        .read_enable   (advance || complete[0]),
+        .read_enable   (1'b1),
         .read_address  (complete[0] ? mean_taxel : taxel_ahead),
         .read_data     (stored_9)
     );
 
     always @(posedge clock) begin
-        if (advance) begin
-            taxel_9 <= taxel_ahead;
-            taxel <= taxel_9;
-        end
-        if (advance || complete[0]) begin
-            {sum_10, largest_10, smallest_10} <= stored_9;
-        end
+        taxel_9 <= taxel_ahead;
+        taxel <= taxel_9;
+        {sum_10, largest_10, smallest_10} <= stored_9;
     end
 
     // ---- Spread, and the end

@@ -1,36 +1,25 @@
-//! Bz, the stream's frames to fixed point: `sptfra_bz`, or `sptfra_bz_wide` where all samples of a beat are taken at once.
+//! Bz, the stream's frames to fixed point: `sptfra_bz`.
 
 use golden::design::Samples;
-use golden::parity::CLASSES;
 
 use crate::cores::{ACCUMULATOR_BITS, LONG_BITS};
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
 use crate::plan::counts::{CountsPlan, EXPONENT_BITS};
+use crate::plan::crosstalk::{CrosstalkPlan, FACTOR_BITS};
 use crate::plan::curve::{self, CurvePlan, SEGMENT_BITS};
 use crate::plan::dead::{DeadPlan, WEIGHT_BITS};
 use crate::plan::gain::{GAIN_BITS, LARGEST_NUMBER};
 use crate::plan::memory::memory;
 use crate::plan::resources::BlockCost;
-use crate::plan::streams::{Intake, Streams};
+use crate::plan::streams::Streams;
 
 use super::{Parameters, calibration, latency};
 
-/// The module.
-pub fn module(plan: &Plan) -> &'static str {
-    match plan.streams().intake {
-        Intake::Whole => "sptfra_bz_wide",
-        Intake::Single | Intake::Unpacked => "sptfra_bz",
-    }
-}
-
-/// What the ROM files of taxels' constants are called behind the design's name: one for all, or one for each sample of a
-/// beat.
+/// What the ROM files of taxels' constants are called behind the design's name: one for each sample that is converted at a
+/// time.
 pub fn taxel_files(streams: Streams) -> Vec<String> {
-    match streams.intake {
-        Intake::Whole => (0..streams.samples()).map(|sample| format!("_sample{sample}")).collect(),
-        Intake::Single | Intake::Unpacked => vec![String::new()],
-    }
+    (0..streams.conversions()).map(|sample| format!("_sample{sample}")).collect()
 }
 
 /// The instance's parameters.
@@ -45,16 +34,13 @@ pub fn parameters(plan: &Plan) -> Parameters {
     };
     let counts = plan.counts.is_some() || plan.calibration.is_some();
     let bound = if counts { curve.map_or(LARGEST_NUMBER, CurvePlan::reach) } else { stress.bound };
-    let parameters =
-        Parameters::new().count("COLUMNS", plan.design.sensor.columns).count("ROWS", plan.design.sensor.rows);
-    let parameters = if streams.intake == Intake::Whole {
-        parameters.count("STREAM_BITS", streams.bits)
-    } else {
-        // Where frames are scaled, that is done before they are folded.
-        parameters.count("WAYS", if plan.scales_frames() { 1 } else { plan.ways() })
-    };
-    let written = if plan.scales_frames() { plan.factors().outside_bits() } else { plan.design.hardware.data_bits };
-    let parameters = parameters.number("DATA_BITS", written.into());
+    let parameters = Parameters::new()
+        .count("COLUMNS", plan.design.sensor.columns)
+        .count("ROWS", plan.design.sensor.rows)
+        .count("SAMPLES", streams.conversions())
+        .count("WAYS", plan.ways())
+        .number("DATA_BITS", plan.design.hardware.data_bits.into())
+        .flag("SCALED", plan.scales_frames());
     // As in sptfra_samples.
     let parameters = match streams.sample {
         Samples::Float32 => parameters,
@@ -74,17 +60,19 @@ pub fn parameters(plan: &Plan) -> Parameters {
         Some(dead) => of_dead(parameters.count("REPLACEABLE", dead.taxels.len()), dead, dead.taxels.len()),
         None => parameters,
     };
+    let parameters = match &plan.crosstalk {
+        Some(crosstalk) => of_crosstalk(parameters, crosstalk),
+        None => parameters,
+    };
     let parameters = match &plan.calibration {
         Some(of) => calibration::of_frames(parameters, of),
         None => parameters,
     };
+    let parameters = parameters.wide("STRESS_BOUND", LONG_BITS, stress.bound);
     let parameters = if plan.counts.is_none() && plan.dead.is_none() && plan.calibration.is_none() {
         parameters
     } else {
-        parameters
-            .wide("STRESS_BOUND", LONG_BITS, stress.bound)
-            .expression("ROM_DIR", "ROM_DIR")
-            .expression("ROM_NAME", format!("\"{}\"", plan.design.name))
+        parameters.expression("ROM_DIR", "ROM_DIR").expression("ROM_NAME", format!("\"{}\"", plan.design.name))
     };
     parameters.cycles("EXPECTED_STAGES", beat_to_stress(plan))
 }
@@ -99,57 +87,48 @@ pub fn beat_to_stress(plan: &Plan) -> u64 {
 }
 
 /// When what a frame brings is there, in cycles after its first beat enters Bz, streams never waiting.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Arrival {
     /// Its last beat has entered Bz.
     pub taken: u64,
-    /// The frame is ready for the lanes.
-    pub ready: u64,
+    /// Each element may be read, to be written to the lanes; while these write results it waits.
+    pub elements: Vec<u64>,
+    /// From the last element's turn to its write, in cycles in which the lanes write nothing.
+    pub turn_to_write: u64,
     /// `CeAn` has its last stress.
     pub last_stress: u64,
-    /// Nothing of it is in Bz any more.
-    pub done: u64,
-    /// What it does from here on waits while the lanes write results.
-    pub waits_from: u64,
 }
 
 /// Cycles of Bz.
 pub fn arrival(plan: &Plan) -> Arrival {
     let (sensor, streams) = (&plan.design.sensor, plan.streams());
-    let stages = beat_to_stress(plan);
-    if streams.intake != Intake::Whole {
-        let dead = if plan.places_for_dead() > 0 { latency::replacing(plan.taxels()) } else { 0 };
-        let taken = plan.taxels() as u64 - 1;
-        let last_stress = taken + stages + dead;
-        if plan.scales_frames() {
-            let ready = last_stress + latency::range(plan.elements());
-            return Arrival {
-                taken,
-                ready,
-                last_stress,
-                done: ready,
-                waits_from: last_stress + latency::RANGE_TO_TURN + 1,
-            };
-        }
-        let ready = last_stress + latency::stress_to_ready(plan.ways() > 1);
-        return Arrival { taken, ready, last_stress, done: last_stress + 1, waits_from: 0 };
-    }
-    let beat_there = |taxel: usize| (taxel / streams.samples()) as u64 + stages + 1;
-    // A quad a cycle, from the middle rows on, each when its last taxel is there.
-    let (columns, rows) = (sensor.columns, sensor.rows);
-    let last_taxels = (rows / 2..rows).flat_map(|y| (columns / 2..columns).map(move |x| y * columns + x));
-    let last_quad = last_taxels.fold(0, |before, taxel| beat_there(taxel).max(before + 1));
+    let samples = streams.conversions();
+    let dead = if plan.places_for_dead() > 0 { latency::replacing(plan.taxels()) } else { 0 };
+    let crosstalk = if plan.crosstalk.is_some() { latency::crosstalk(sensor) } else { 0 };
+    let there = |taxel: usize| (taxel / samples) as u64 + beat_to_stress(plan) + dead + crosstalk;
+    let last = there(plan.taxels() - 1);
     // A taxel a cycle.
-    let last_taxel = (0..plan.taxels()).fold(0, |before, taxel| beat_there(taxel).max(before + 1));
-    let last_stress = last_taxel + latency::TAXEL_TO_CEAN;
-    let done = last_stress.max(last_quad + 1) + 1;
-    let taken = streams.beats_in() as u64 - 1;
-    Arrival { taken, ready: last_quad + latency::QUAD_TO_READY, last_stress, done, waits_from: 0 }
+    let last_stress = if samples == 1 {
+        last
+    } else {
+        (0..plan.taxels()).fold(0, |before, taxel| (there(taxel) + 1).max(before + 1)) + latency::TAXEL_TO_CEAN
+    };
+    // Each element when its last taxel is there, quads from the middle rows on; where frames are scaled, when the scale is.
+    let (columns, rows) = if plan.ways() > 1 { (sensor.columns / 2, sensor.rows / 2) } else { (0, 0) };
+    let last_taxels = (rows..sensor.rows).flat_map(|y| (columns..sensor.columns).map(move |x| y * sensor.columns + x));
+    let whole = last + latency::frame_scale(samples);
+    let element = |taxel| if plan.scales_frames() { whole } else { there(taxel) + 1 };
+    Arrival {
+        taken: plan.taxels().div_ceil(samples) as u64 - 1,
+        elements: last_taxels.map(element).collect(),
+        turn_to_write: latency::turn_to_write(plan.scales_frames()),
+        last_stress,
+    }
 }
 
-/// A multiplier each for a count's slope, a stress's gain and each place for a dead taxel.
+/// A multiplier each for a count's slope, a stress's gain, each place for a dead taxel and crosstalk.
 pub fn cost(plan: &Plan) -> BlockCost {
-    let (streams, data) = (plan.streams(), plan.factors().outside_bits());
+    let (streams, stress) = (plan.streams(), plan.factors().outside_bits());
     let (taxels, places) = (plan.taxels(), plan.places_for_dead());
     let conversions = streams.conversions();
     let curve = plan.counts.as_ref().and_then(|counts| counts.curve.as_ref());
@@ -169,21 +148,25 @@ pub fn cost(plan: &Plan) -> BlockCost {
         // With a stress, whether it was clipped and whether it was a number.
         memories.push(memory("whole frame", 1, taxels, LONG_BITS + 2, false));
     }
+    if plan.crosstalk.is_some() {
+        // With a stress, three flags.
+        memories.push(memory("frame with crosstalk", 1, taxels, LONG_BITS + 3, false));
+    }
     if plan.dead.is_some() {
         memories.push(memory("neighbours", 1, taxels, WEIGHT_BITS * places as u32, true));
     }
-    if streams.intake == Intake::Whole {
-        // One for each taxel of a quad, and one for CeAn.
-        let samples = streams.samples();
-        memories.push(memory("frame by quads", CLASSES * samples, streams.beats_in(), data, false));
-        memories.push(memory("frame by taxels", samples, streams.beats_in(), LONG_BITS, false));
-    } else if plan.ways() > 1 && !plan.scales_frames() {
-        memories.push(memory("half-folded b", 1, plan.elements(), 2 * data + 2, false));
+    // A copy for each taxel of an element, of the half of the frame that it is in; and one for CeAn.
+    let beats = |taxels: usize| taxels.div_ceil(conversions);
+    let half = if plan.ways() > 1 { plan.design.sensor.rows.div_ceil(2) } else { plan.design.sensor.rows };
+    let kept = beats(half * plan.design.sensor.columns);
+    memories.push(memory("frame by elements", plan.ways() * conversions, kept, stress, false));
+    if conversions > 1 {
+        memories.push(memory("frame by taxels", conversions, beats(taxels), LONG_BITS, false));
     }
     let gain = plan.counts.is_some() || plan.calibration.is_some();
     let curve = plan.design.input.curve.is_some();
-    let dsp = conversions * (usize::from(gain) + usize::from(curve)) + places;
-    BlockCost::new("Bz", &["sptfra_bz", "sptfra_bz_wide"], dsp).with(memories)
+    let dsp = conversions * (usize::from(gain) + usize::from(curve)) + places + usize::from(plan.crosstalk.is_some());
+    BlockCost::new("Bz", &["sptfra_bz"], dsp).with(memories)
 }
 
 fn of_counts(parameters: Parameters, counts: &CountsPlan) -> Parameters {
@@ -203,6 +186,13 @@ fn of_curve(parameters: Parameters, curve: &CurvePlan) -> Parameters {
         LONG_BITS,
         curve.last,
     )
+}
+
+fn of_crosstalk(parameters: Parameters, crosstalk: &CrosstalkPlan) -> Parameters {
+    let factors = crosstalk.factors.map(|factor| format!("{FACTOR_BITS}'d{factor}"));
+    parameters
+        .number("CROSSTALK", crosstalk.fraction.into())
+        .expression("CROSSTALK_FACTORS", format!("{{{}}}", factors.join(", ")))
 }
 
 /// Which taxels are replaced at power-up, in so many places.

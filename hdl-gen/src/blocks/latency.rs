@@ -26,22 +26,24 @@ pub fn replacing(taxels: usize) -> u64 {
     taxels as u64 + 6
 }
 
-/// From a frame's last stress to the frame being ready for the lanes: the fold, and the count of frames.
-pub fn stress_to_ready(folded: bool) -> u64 {
-    if folded { 4 } else { 1 }
+/// What removing crosstalk adds: a term for each row, each column and the frame, then the frame is read once more.
+pub fn crosstalk(sensor: &Sensor) -> u64 {
+    (sensor.taxels() + sensor.columns + sensor.rows) as u64 + 8
 }
 
-/// The same where each frame has a range of its own: the power of two is found, then an element a cycle is scaled.
-pub fn range(elements: usize) -> u64 {
-    elements as u64 + 10
+/// From an element's turn to its write to the operand memories: two cycles more where stresses are shifted.
+pub fn turn_to_write(scaled: bool) -> u64 {
+    if scaled { 6 } else { 4 }
 }
 
-/// Of these cycles, those behind which results that the lanes write hold the frame up.
-pub const RANGE_TO_TURN: u64 = 4;
-/// In `sptfra_bz_wide`, from a taxel's turn to its stress in `CeAn`.
+/// From a frame's last stress to the first element's turn, where each frame has a scale of its own: the largest stress of
+/// a beat is found by a tree.
+pub fn frame_scale(samples: usize) -> u64 {
+    5 + u64::from(samples.ilog2())
+}
+
+/// With several samples a beat, from a taxel's turn to its stress in `CeAn`.
 pub const TAXEL_TO_CEAN: u64 = 2;
-/// In `sptfra_bz_wide`, from the turn of a frame's last quad to the frame being ready for the lanes.
-pub const QUAD_TO_READY: u64 = 5;
 
 // ---- The array of lanes
 /// From the sequencer's control to the lanes' and the collector's: the register on the way.

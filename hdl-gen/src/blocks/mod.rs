@@ -16,7 +16,6 @@ pub mod ingress_fifo;
 pub mod latency;
 pub mod op;
 pub mod parameters;
-pub mod range;
 pub mod registers;
 pub mod turns;
 pub mod unfold;
@@ -39,7 +38,6 @@ pub fn costs(plan: &Plan) -> Vec<BlockCost> {
     let slot = plan.estimator.slot();
     let mut costs: Vec<BlockCost> = ingress_fifo::cost(plan).into_iter().chain(calibration::cost(plan)).collect();
     costs.extend([bz::cost(plan), slot.contact_block()]);
-    costs.extend(range::cost(plan));
     costs.extend([array::cost(plan), we::cost(), co::cost(plan), field::cost(plan)]);
     costs.extend(contacts::cost(plan));
     costs.extend(slot.search_blocks(&plan.design.sensor));

@@ -116,8 +116,7 @@ impl Serialize for Parameters {
 mod tests {
     use super::Parameters;
     use crate::blocks::latency::{
-        QUAD_TO_READY, TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, stress_to_ready,
-        taxels_to_write,
+        TAXEL_TO_CEAN, VISIT_TO_BUS, bus_to_sums, bus_to_taxels, bus_to_write, taxels_to_write, turn_to_write,
     };
     use golden::estimators::ERROR_RANGE;
 
@@ -146,11 +145,8 @@ mod tests {
     #[test]
     fn modules_and_model_have_the_same_constants() {
         let one = 1 << FRICTION_FRACTION;
-        let expected: [(&str, &str, i64); 31] = [
-            // A cycle more counts the frame.
-            ("sptfra_fold", "LAST_TO_WRITTEN", stress_to_ready(true) as i64 - 1),
-            ("sptfra_fold_frame", "TURN_TO_WRITTEN", QUAD_TO_READY as i64 - 1),
-            ("sptfra_bz_wide", "TURN_TO_STRESS", TAXEL_TO_CEAN as i64),
+        let expected: [(&str, &str, i64); 29] = [
+            ("sptfra_frame_writer", "TURN_TO_STRESS", TAXEL_TO_CEAN as i64),
             ("sptfra_spmv_collector", "TAKE_TO_BUS", VISIT_TO_BUS as i64),
             ("sptfra_direction", "CENTROID_FRACTION", line::CENTROID_FRACTION.into()),
             ("sptfra_direction", "PITCH_FRACTION", line::PITCH_FRACTION.into()),
@@ -199,6 +195,9 @@ mod tests {
             let choice = format!("(WAYS == 4) ? {folded} : {taxels}");
             assert_eq!(literal(module, name), choice, "{module}: {name}");
         }
+        let [scaled, unscaled] = [true, false].map(turn_to_write);
+        let choice = format!("(SCALED != 0) ? {scaled} : {unscaled}");
+        assert_eq!(literal("sptfra_fold", "TURN_TO_WRITTEN"), choice);
     }
 
     #[test]

@@ -6,8 +6,8 @@ use tera::Context;
 use golden::design::{Filter, Samples};
 
 use crate::blocks::{
-    FEWEST_ELEMENTS, Parameters, array, bz, calibration, cean, co, contacts, field, frame_context, ingress_fifo, op,
-    range, row_width, turns, unfold, we,
+    Parameters, array, bz, calibration, cean, co, contacts, field, frame_context, ingress_fifo, op, row_width, turns,
+    unfold, we,
 };
 use crate::plan::Plan;
 use crate::plan::calibration::CalibrationPlan;
@@ -62,15 +62,14 @@ struct View {
     /// Whether samples go to Bz one by one, and what the stream is called that does.
     unpack: bool,
     samples_from: &'static str,
-    /// Of a range of its own for each frame, if it has one: what finds it, and bits of a taxel's number as Bz has it.
-    range: Option<Parameters>,
+    /// Whether each frame has a scale of its own.
+    scaled: bool,
     context: Parameters,
     /// Thresholds of the design: a taxel's noise, the least sum `|b|` of a contact.
     noise: String,
     contact: String,
     /// Dead taxels of the design.
     dead: usize,
-    range_row_width: u32,
     field: bool,
     latency_cycles: u64,
     latency_us: String,
@@ -97,13 +96,9 @@ struct View {
     operand_width: u32,
     component_width: u32,
     data_bits: u32,
-    stress_bits: u32,
     vector_bits: usize,
     u_values: String,
 
-    bz_module: &'static str,
-    /// Whether it has the ports of a calibration in RAM.
-    bz_calibrates: bool,
     bz: Parameters,
     cean: Parameters,
     turns: Parameters,
@@ -158,12 +153,11 @@ impl View {
             last_keep: format!("{:x}", streams.last_keep()),
             unpack,
             samples_from: if unpack { "sample" } else { "in" },
-            range: plan.scales_frames().then(|| range::parameters(plan)),
+            scaled: plan.scales_frames(),
             context: frame_context::parameters(plan),
             noise,
             contact,
             dead: plan.dead.as_ref().map_or(0, |dead| dead.taxels.len()),
-            range_row_width: address_bits(plan.taxels().max(FEWEST_ELEMENTS)),
             field: plan.has_field(),
             latency_cycles: timeline.latency_cycles,
             latency_us: microseconds(timeline.latency_cycles),
@@ -188,12 +182,9 @@ impl View {
             operand_width: address_bits(plan.operands.words()),
             component_width: address_bits(3 * plan.elements()),
             data_bits: hardware.data_bits,
-            stress_bits: plan.factors().outside_bits(),
             vector_bits: plan.ways() * hardware.data_bits as usize,
             u_values: u_values(plan),
 
-            bz_module: bz::module(plan),
-            bz_calibrates: streams.intake != Intake::Whole,
             bz: bz::parameters(plan),
             cean: cean::parameters(plan),
             turns: turns::parameters(plan),
@@ -272,6 +263,12 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     } else if !curve {
         without.push("sptfra_curve_bank");
     }
+    if plan.crosstalk.is_none() {
+        without.push("sptfra_crosstalk");
+    }
+    if !plan.scales_frames() {
+        without.push("sptfra_frame_scale");
+    }
     if plan.places_for_dead() == 0 {
         without.push("sptfra_replace");
     }
@@ -281,7 +278,7 @@ pub(super) fn without(plan: &Plan) -> Vec<&'static str> {
     if plan.ways() > 1 {
         without.push("sptfra_coefficients");
     } else {
-        without.extend(["sptfra_fold", "sptfra_butterfly", "sptfra_taxel_walk"]);
+        without.extend(["sptfra_butterfly", "sptfra_taxel_walk"]);
     }
     if plan.products.iter().all(|product| product.mirrored.is_none()) {
         without.push("sptfra_diagonal_mirror");

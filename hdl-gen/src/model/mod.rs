@@ -94,12 +94,14 @@ impl<'plan> Model<'plan> {
         }
         let mut saturated = converted.iter().any(|stress| stress.saturated);
         let mut stress: Vec<i64> = converted.iter().map(|stress| stress.steps).collect();
-        let mut replaced_sum = 0;
         if let Some(dead) = self.dead() {
-            let replaced = dead.replace(&mut stress, self.plan.formats.stress);
-            saturated |= replaced.saturated;
-            replaced_sum = replaced.sum;
+            saturated |= dead.replace(&mut stress, self.plan.formats.stress);
         }
+        if let Some(crosstalk) = &self.plan.crosstalk {
+            crosstalk.remove(&mut stress, self.plan.formats.stress);
+        }
+        let replaced = self.dead().map_or(&[][..], |dead| &dead.taxels);
+        let replaced_sum: i64 = replaced.iter().map(|&taxel| stress[taxel].abs()).sum();
         let mut noted = if self.replaced() > 0 { REPLACED } else { 0 };
         let stress_sum = Contact::new(&stress, self.plan.design.sensor.columns).stress_sum;
         if GUESSED_SHARE * replaced_sum > stress_sum {

@@ -1,4 +1,4 @@
-//! A range of its own for each frame, in integers: what `sptfra_range` and the output do.
+//! A range of its own for each frame, in integers: what `sptfra_frame_scale` and the output do.
 
 use crate::plan::{Plan, SUMMARY_WORDS, words};
 

@@ -5,6 +5,7 @@ use golden::matrices::Matrices;
 
 use super::calibration::CalibrationPlan;
 use super::counts::CountsPlan;
+use super::crosstalk::CrosstalkPlan;
 use super::dead::DeadPlan;
 use super::error::{FEWEST_FORCE_STEPS, MOST_ROUNDING, PlanError};
 use super::filtered::Filtered;
@@ -101,6 +102,7 @@ impl Work {
             counts: self.counts.clone(),
             calibration: self.calibration.clone(),
             dead: self.dead.clone(),
+            crosstalk: CrosstalkPlan::new(design),
             thresholds: self.thresholds,
             estimator,
             operands: OperandLayout::new(&self.products, elements, ways as u32 * hardware.data_bits),

@@ -25,15 +25,6 @@ pub struct DeadPlan {
     pub shift: u32,
 }
 
-/// What a frame's replacement has to say.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Replaced {
-    /// Whether a sum was clipped.
-    pub saturated: bool,
-    /// Sum of the magnitudes that took a reading's place.
-    pub sum: i64,
-}
-
 impl DeadPlan {
     /// The weights, if the design has dead taxels and they stand in ROM.
     pub fn new(design: &Design) -> Option<Self> {
@@ -56,18 +47,17 @@ impl DeadPlan {
         Self { taxels: dead.taxels().to_vec(), weights: dead.weights().iter().map(of).collect(), shift }
     }
 
-    /// Replaces the readings of a frame.
-    pub fn replace(&self, stress: &mut [i64], format: Format) -> Replaced {
-        let mut replaced = Replaced::default();
+    /// Replaces the readings of a frame; whether a sum was clipped.
+    pub fn replace(&self, stress: &mut [i64], format: Format) -> bool {
+        let mut saturated = false;
         // A dead taxel's own weight is 0, so that the order does not matter.
         for (&taxel, weights) in self.taxels.iter().zip(&self.weights) {
             let sum: i64 = weights.iter().zip(&*stress).map(|(&weight, stress)| i64::from(weight) * stress).sum();
             let rounded = round_shift(sum, self.shift);
             stress[taxel] = rounded.clamp(-format.bound, format.bound);
-            replaced.saturated |= stress[taxel] != rounded;
-            replaced.sum += stress[taxel].abs();
+            saturated |= stress[taxel] != rounded;
         }
-        replaced
+        saturated
     }
 
     /// Each taxel's weights in all sums, taxel by taxel.

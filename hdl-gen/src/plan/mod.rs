@@ -7,6 +7,7 @@ mod build;
 pub mod calibration;
 mod control;
 pub mod counts;
+pub mod crosstalk;
 pub mod curve;
 pub mod dead;
 mod dealing;
@@ -41,6 +42,7 @@ use serde::Serialize;
 use crate::estimators::EstimatorPlan;
 use calibration::CalibrationPlan;
 use counts::CountsPlan;
+use crosstalk::CrosstalkPlan;
 use dead::DeadPlan;
 pub use error::PlanError;
 use format::Factors;
@@ -112,6 +114,8 @@ pub struct Plan {
     pub calibration: Option<CalibrationPlan>,
     /// Weights that replace the readings of dead taxels, if there are any.
     pub dead: Option<DeadPlan>,
+    /// What removes crosstalk, if the sensor has it.
+    pub crosstalk: Option<CrosstalkPlan>,
     /// Status thresholds.
     pub thresholds: Thresholds,
     /// The estimator of friction: `CeAn`, and the search in Op.

@@ -36,9 +36,8 @@ fn checked(design: &Design) -> Result<Work, PlanError> {
         return Err(PlanError::JointEstimator);
     }
     let input = &design.input;
-    let software = [("crosstalk", input.crosstalk > 0.0), ("smoothing", input.smoothing > 0)];
-    if let Some((key, _)) = software.into_iter().find(|(_, is_set)| *is_set) {
-        return Err(PlanError::SoftwareOnly { key });
+    if input.smoothing > 0 {
+        return Err(PlanError::SoftwareOnly { key: "smoothing" });
     }
     check_widths(design)?;
     Work::new(design)

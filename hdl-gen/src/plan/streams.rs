@@ -1,6 +1,6 @@
 //! The two streams of a core: how samples and words fill their beats.
 
-use golden::design::{CalibrationIn, Design, Outputs, Overrun, PlanKind, Samples, Scaling};
+use golden::design::{CalibrationIn, Design, Outputs, Overrun, PlanKind, Samples};
 
 use super::SUMMARY_WORDS;
 
@@ -11,8 +11,8 @@ pub const WORD_BITS: usize = 32;
 pub enum Intake {
     /// A beat is a sample.
     Single,
-    /// A beat's samples are handed on one by one: where taxels are not folded, dead ones are replaced, gains stand in
-    /// RAM, or each frame is scaled.
+    /// A beat's samples are handed on one by one: where taxels are not folded, dead ones are replaced, crosstalk is
+    /// removed, or gains stand in RAM.
     Unpacked,
     /// All samples of a beat at once.
     Whole,
@@ -51,8 +51,8 @@ impl Streams {
             Intake::Single
         } else if design.algorithm.plan == PlanKind::Paper
             || !design.input.dead.is_empty()
+            || design.input.crosstalk > 0.0
             || design.hardware.calibration == CalibrationIn::Ram
-            || design.hardware.scaling == Scaling::PerFrame
         {
             Intake::Unpacked
         } else {

@@ -65,7 +65,13 @@ fn a_broken_schedule_stops_the_simulation_where_it_breaks() {
         (joint(), "grid_values", "row_valid <= giving;", "row_valid <= lasts[STAGES];", "check_latency.v"),
         (joint(), "friction", "running && (step == 5'd17);", "running && (step == 5'd16);", "check_latency.v"),
         (shipped("sensor1-fast"), "network", "== SUMMING[4:0])", "== SUMMING[4:0] + 5'd1)", "check_latency.v"),
-        (reduced(), "fold", "lasts[3] && advance", "lasts[2] && advance", "check_latency.v"),
+        (
+            reduced(),
+            "fold",
+            "lasts[TURN_TO_WRITTEN] && advance",
+            "lasts[TURN_TO_WRITTEN-1] && advance",
+            "check_latency.v",
+        ),
         // More frames are begun than Op has places for.
         (resultants(), "turns", "(u_held != 2'd2) && ", "", "_co.v"),
     ]);

@@ -28,8 +28,10 @@ fn designs() -> Vec<Design> {
         (0..counts.sensor.taxels()).map(|taxel| if taxel == 4 { 0.0 } else { 0.5 + 0.1 * taxel as f64 }).collect();
     let offset = (0..counts.sensor.taxels()).map(|taxel| taxel as f64 - 9.5).collect();
     counts.input = Input { pa_per_count: Some(-12.5), calibration: Some(Calibration { gain, offset }), ..counts.input };
+    let mut pair = with_dead(odd(PlanKind::Paper, Outputs::Field), "dead_pair", &[6, 7]);
+    pair.input.crosstalk = 0.05;
     vec![
-        with_dead(odd(PlanKind::Paper, Outputs::Field), "dead_pair", &[6, 7]),
+        pair,
         with_dead(small, "dead_corner", &[taxels - 1]),
         with_joint(with_dead(shipped("small"), "dead_joint", &[0, 5])),
         counts,

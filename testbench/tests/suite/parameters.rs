@@ -7,10 +7,11 @@ use testbench::tools;
 use crate::support::{library_file, library_folders, look_in};
 
 /// Module, parameter, value, what the tool must name.
-const SENSELESS: [(&str, &str, &str, &str); 35] = [
+const SENSELESS: [(&str, &str, &str, &str); 36] = [
     ("bz", "COLUMNS", "1", "columns_and_rows_must_be_2_to_64"),
-    ("frame_writer", "WAYS", "2", "ways_must_be_1_or_4"),
+    ("fold", "WAYS", "2", "ways_must_be_1_or_4"),
     ("frame_writer", "DATA_BITS", "36", "data_bits_must_be_16_to_27_or_to_35_where_taxels_are_folded"),
+    ("frame_writer", "SAMPLES", "3", "samples_of_a_beat_must_be_1_2_4_or_8"),
     ("bz", "EXPECTED_STAGES", "6", "the_plan_counts_on_other_stages"),
     ("cean", "ROWS", "65", "columns_and_rows_must_be_2_to_64"),
     ("spmv_array", "WAYS", "3", "ways_must_be_1_or_4"),

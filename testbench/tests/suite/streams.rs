@@ -63,6 +63,7 @@ fn subjects() -> &'static [Subject] {
         dead.sensor.rows = 5;
         dead.sensor.columns = 3;
         dead.input.dead = vec![3, 4];
+        dead.input.crosstalk = 0.1;
         let designs = [
             small("paper", 64, paper, Outputs::Field),
             small("whole", 128, reduced, Outputs::Field),

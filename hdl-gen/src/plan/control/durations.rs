@@ -77,14 +77,10 @@ impl Durations {
     }
 }
 
-/// When each program's results take the operand memories' port, if that holds up the stress: where all samples of a beat
-/// are taken at once, its way to `CeAn` is the long one, a taxel a cycle, and goes past the port.
+/// When each program's results take the operand memories' port, which holds up the stress.
 fn writes(plan: &Plan) -> Vec<Vec<u64>> {
     let folded = plan.ways() > 1;
     let mut writes = vec![Vec::new(); plan.schedule.programs.len()];
-    if plan.streams().intake == Intake::Whole {
-        return writes;
-    }
     for visit in plan.schedule.visits.iter().filter(|visit| (visit.row as usize) < plan.elements()) {
         let product = &plan.products[visit.product as usize];
         let on_bus = visit.cycle + VISIT_TO_BUS;

@@ -77,9 +77,9 @@ struct Control<'a> {
     arrivals: VecDeque<u64>,
     /// Frames in the ingress FIFO, with the one that is leaving it.
     in_fifo: usize,
-    /// Frames on their way through Bz: cycles since their first beat in which it did not stand still.
-    arriving: VecDeque<u64>,
-    /// Cycles in which results are written, and it does.
+    /// Frames on their way through Bz.
+    arriving: VecDeque<Arriving>,
+    /// Cycles in which results are written, and its writes wait.
     writes: BTreeSet<u64>,
     cean_idle: u64,
     directions: VecDeque<u64>,
@@ -112,6 +112,18 @@ struct Control<'a> {
 struct Stage {
     ends: Option<u64>,
     free: u64,
+}
+
+/// A frame on its way through Bz.
+#[derive(Clone, Copy, Default)]
+struct Arriving {
+    /// Cycles since its first beat.
+    since: u64,
+    /// Elements that had their turn, then cycles in which the last one moved on.
+    turns: usize,
+    moved: u64,
+    /// It is open for another frame.
+    over: bool,
 }
 
 /// Where the line is.
@@ -230,7 +242,9 @@ impl<'a> Control<'a> {
             state.extend(queue.iter().map(|&time| since(time)));
         }
         state.push(self.arriving.len() as u64);
-        state.extend(&self.arriving);
+        for frame in &self.arriving {
+            state.extend([frame.since, frame.turns as u64, frame.moved, u64::from(frame.over)]);
+        }
         for stage in &self.stages {
             state.extend([stage.ends.map_or(FOREVER, since), since(stage.free)]);
         }
@@ -244,7 +258,7 @@ impl<'a> Control<'a> {
         self.show_changes();
         let stands_still = self.writes.remove(&self.now);
         self.arrive(stands_still);
-        let opens = self.opens(offered && !(stands_still && self.of.arrival.waits_from == 0));
+        let opens = self.opens(offered);
         self.give_turn();
         if let Some(latency) = self.of.line {
             self.find_line(latency);
@@ -287,36 +301,40 @@ impl<'a> Control<'a> {
         self.idle_since = None;
         self.stress_places += 1;
         (self.next_open, self.cean_idle) = (FOREVER, FOREVER);
-        self.arriving.push_back(0);
+        self.arriving.push_back(Arriving::default());
         true
     }
 
-    /// Frames move on in Bz, those that write to the lanes' memories not in this cycle if it `stands_still`.
+    /// Frames move on in Bz; what is on its way to the lanes' memories does not in this cycle if it `stands_still`.
     fn arrive(&mut self, stands_still: bool) {
-        let Arrival { taken, ready, last_stress, done, waits_from } = self.of.arrival;
-        for moved in &mut self.arriving {
-            // With a range of its own a frame that is written waits for nothing more.
-            let waits = *moved + 1 >= waits_from && (waits_from == 0 || *moved + 1 < ready);
-            if stands_still && waits {
-                continue;
-            }
-            *moved += 1;
-            if *moved == taken {
+        let Arrival { taken, elements, turn_to_write, last_stress } = &self.of.arrival;
+        for frame in &mut self.arriving {
+            frame.since += 1;
+            if frame.since == *taken {
                 self.in_fifo = self.in_fifo.saturating_sub(1);
             }
-            if *moved == ready {
-                self.frames_ready.push_back(self.now);
-            }
-            if *moved == last_stress {
+            if frame.since == *last_stress {
                 self.cean_idle = self.now + self.of.direction;
                 self.directions.push_back(self.cean_idle);
             }
-            if *moved + 1 == done {
+            // A register says that all had their turn, a cycle later.
+            if frame.turns == elements.len() && frame.since >= *last_stress && !frame.over {
+                frame.over = true;
                 self.next_open = self.now + 1;
             }
+            if stands_still {
+                continue;
+            }
+            if let Some(there) = elements.get(frame.turns) {
+                frame.turns += usize::from(*there <= frame.since);
+            } else {
+                frame.moved += 1;
+                if frame.moved == *turn_to_write {
+                    self.frames_ready.push_back(self.now + 1);
+                }
+            }
         }
-        let through = ready.max(last_stress).max(done - 1);
-        self.arriving.retain(|&moved| moved < through);
+        self.arriving.retain(|frame| !frame.over || frame.moved < *turn_to_write);
     }
 
     /// The lanes' next program.

@@ -9,6 +9,7 @@ rtl/sptfra_check_latency.v
 rtl/sptfra_co.v
 rtl/sptfra_context_words.v
 rtl/sptfra_cordic.v
+rtl/sptfra_corrections.v
 rtl/sptfra_decode.v
 rtl/sptfra_direction.v
 rtl/sptfra_divider.v
@@ -19,6 +20,7 @@ rtl/sptfra_float_to_fixed.v
 rtl/sptfra_fold.v
 rtl/sptfra_frame_context.v
 rtl/sptfra_frame_gate.v
+rtl/sptfra_frame_memory.v
 rtl/sptfra_frame_writer.v
 rtl/sptfra_leading_bit.v
 rtl/sptfra_line.v
@@ -28,7 +30,6 @@ rtl/sptfra_multiply.v
 rtl/sptfra_op.v
 rtl/sptfra_output.v
 rtl/sptfra_output_word.v
-rtl/sptfra_quad_rows.v
 rtl/sptfra_ram.v
 rtl/sptfra_ratio.v
 rtl/sptfra_reset.v

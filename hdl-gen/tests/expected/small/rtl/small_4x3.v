@@ -98,7 +98,8 @@ module small_4x3 #(
     wire [26:0] noise;
     wire [7:0] version;
     wire [3:0] replaced;
-    wire [4:0] direction_exponent, exponent;
+    wire frame_scaled;
+    wire [4:0] frame_exponent, direction_exponent, exponent;
 
     sptfra_frame_context frame_context (
         .clock              (aclk),
@@ -111,8 +112,8 @@ module small_4x3 #(
         .in_noise           (frame_calibration[38:12]),
         .in_version         (frame_calibration[11:4]),
         .in_replaced        (frame_calibration[3:0]),
-        .scaled             (1'b0),
-        .in_exponent        (5'd0),
+        .scaled             (frame_scaled),
+        .in_exponent        (frame_exponent),
         .cean_take          (cean_take),
         .contact            (contact),
         .noise              (noise),
@@ -146,10 +147,13 @@ module small_4x3 #(
     sptfra_bz #(
         .COLUMNS         (4),
         .ROWS            (3),
+        .SAMPLES         (1),
         .WAYS            (4),
         .DATA_BITS       (27),
+        .SCALED          (0),
         .NUMBER_SHIFT    (9),
         .NUMBER_BOUND    (27'sd51200000),
+        .STRESS_BOUND    (27'sd51200000),
         .EXPECTED_STAGES (5)
     ) bz (
         .clock            (aclk),
@@ -172,6 +176,8 @@ module small_4x3 #(
         .frame_not_finite (frame_not_finite),
         .frame_bad_length (frame_bad_length),
         .frame_replaced   (frame_replaced),
+        .scaled           (frame_scaled),
+        .exponent         (frame_exponent),
         .frame_ready      (frame_ready),
         .frame_start      (start[0]),
         .frame_release    (coefficients_complete),

@@ -24,6 +24,7 @@ foreach file {
     sptfra_co.v
     sptfra_context_words.v
     sptfra_cordic.v
+    sptfra_corrections.v
     sptfra_decode.v
     sptfra_direction.v
     sptfra_divider.v
@@ -34,6 +35,7 @@ foreach file {
     sptfra_fold.v
     sptfra_frame_context.v
     sptfra_frame_gate.v
+    sptfra_frame_memory.v
     sptfra_frame_writer.v
     sptfra_leading_bit.v
     sptfra_line.v
@@ -43,7 +45,6 @@ foreach file {
     sptfra_op.v
     sptfra_output.v
     sptfra_output_word.v
-    sptfra_quad_rows.v
     sptfra_ram.v
     sptfra_ratio.v
     sptfra_reset.v
