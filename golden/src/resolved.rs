@@ -154,13 +154,16 @@ fn update(table: &mut dyn TableLike, keys: &dyn TableLike) {
     for (key, item) in keys.iter() {
         match (table.get_mut(key), item) {
             (Some(Item::Table(old)), Item::Table(new)) => update(old, new),
-            (Some(Item::Value(old)), new) => {
+            // A table of the printed keys may stand in a line here, if it fits.
+            (Some(Item::Value(old)), new)
+                if new.as_table().is_none_or(|new| !new.iter().any(|(_, item)| item.is_table())) =>
+            {
                 let decor = old.decor().clone();
-                // A table of the printed keys may stand in a line here.
                 *old = new.clone().into_value().unwrap_or_else(|_| old.clone());
                 *old.decor_mut() = decor;
             }
             _ => {
+                table.remove(key);
                 let mut item = item.clone();
                 if let Item::Table(new) = &mut item {
                     new.set_position(None);
